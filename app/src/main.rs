@@ -1,0 +1,2 @@
+//! Lovelock.
+fn main() {}

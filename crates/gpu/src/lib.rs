@@ -1,0 +1,1 @@
+//! The wgpu device, shader composition, typed buffers, readback and timers.

@@ -1,0 +1,1 @@
+//! Hairstyles: scalp, wisps, guides, strands; growing, styling, interpolation and hair files.

@@ -1,0 +1,1 @@
+//! One picture: strands, shading, transparency, body, ground and tone mapping.

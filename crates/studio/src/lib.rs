@@ -1,0 +1,1 @@
+//! The engine: project, session, commands, events, clock and the headless loop.

@@ -1,0 +1,1 @@
+//! The wisp simulator: rigid links, collisions, density-grid repulsion and wind.

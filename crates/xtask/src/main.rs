@@ -1,0 +1,2 @@
+//! Chores: run, test, ci, layers, goldens and assets.
+fn main() {}
