@@ -1,2 +1,10 @@
 //! Chores: run, test, ci, layers, goldens and assets.
-fn main() {}
+
+mod assets;
+
+fn main() -> anyhow::Result<()> {
+    match std::env::args().nth(1).as_deref() {
+        Some("assets") => assets::run(),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,76 @@
+//! A hairstyle: what is grown from settings or imported from a file.
+
+use crate::{Guides, HairLook, Scalp};
+
+/// One wisp: three guide strands, and the run of strands that they carry.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wisp {
+    /// Indices of its guides in [`Guides`].
+    pub guides: [u32; 3],
+    /// Index of its first strand in [`StrandSet`]; a wisp's strands are consecutive.
+    pub first_strand: u32,
+    /// How many strands it carries; may be 0.
+    pub strand_count: u32,
+}
+
+/// How every rendered strand follows the guides of its wisp. Structure of arrays.
+///
+/// A point of a strand is `sum_g(weight_g * guide_g(u)) + frame(u) * offset`: the guides are Catmull-Rom
+/// curves with parameter `u` in links (0 at the root, `points_per_guide - 1` at the tip), and `frame(u)` is
+/// the rotation-minimising frame along the mean of the wisp's guides. Curl, frizz, clumping, strays and the
+/// exact shape of an imported strand all live in the offsets, which are constants of the hairstyle.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StrandSet {
+    /// The wisp of each strand; strands are sorted by wisp.
+    pub wisp: Vec<u32>,
+    /// Barycentric weights of the wisp's three guides, a strand; they sum to 1 and may lie outside 0..=1.
+    pub weights: Vec<[f32; 3]>,
+    /// Index of the first point of each strand, with the total number of points at the end (strands + 1).
+    pub first_point: Vec<u32>,
+    /// Curve parameter along the guides of each point, in links.
+    pub guide_param: Vec<f32>,
+    /// Offset of each point along the frame's normal, metres.
+    pub offset_normal: Vec<f32>,
+    /// Offset of each point along the frame's binormal, metres.
+    pub offset_binormal: Vec<f32>,
+    /// Offset of each point along the frame's tangent, metres.
+    pub offset_tangent: Vec<f32>,
+    /// Width of each point as a fraction of the hair's diameter: 1 along the strand, tapering at the tip.
+    pub taper: Vec<f32>,
+    /// A shade a strand in 0..=1, from which drawing varies its colour.
+    pub shade: Vec<f32>,
+}
+
+impl StrandSet {
+    /// Number of strands.
+    pub fn count(&self) -> usize {
+        self.wisp.len()
+    }
+
+    /// Number of points of all strands.
+    pub fn points(&self) -> usize {
+        self.guide_param.len()
+    }
+
+    /// Number of segments of all strands.
+    pub fn segments(&self) -> usize {
+        self.points() - self.count()
+    }
+}
+
+/// A hairstyle, immutable once made and shared by `Arc`.
+#[derive(Clone, Debug, Default)]
+pub struct Hairstyle {
+    /// What the interface calls it.
+    pub name: String,
+    /// The surface that it grows on, in head space.
+    pub scalp: Scalp,
+    /// The wisps, in the order of their strands.
+    pub wisps: Vec<Wisp>,
+    /// The guides at rest, in head space.
+    pub guides: Guides,
+    /// The rendered strands, expressed by the guides.
+    pub strands: StrandSet,
+    /// Colour and width that the style suggests; a project may override them.
+    pub look: HairLook,
+}

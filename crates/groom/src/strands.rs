@@ -1,0 +1,42 @@
+//! The strands of one instant, in world space.
+
+use std::sync::Arc;
+
+use glam::Vec3;
+
+/// Every rendered strand at one instant, in world space: what is shadowed and drawn.
+///
+/// Structure of arrays, strand after strand, root first. Reused from frame to frame without allocation.
+#[derive(Clone, Debug, Default)]
+pub struct Strands {
+    /// Index of the first point of each strand, and the number of points at the end (strands + 1).
+    pub first_point: Arc<[u32]>,
+    /// Positions in world space, metres.
+    pub x: Vec<f32>,
+    /// See `x`.
+    pub y: Vec<f32>,
+    /// See `x`.
+    pub z: Vec<f32>,
+}
+
+impl Strands {
+    /// Number of strands.
+    pub fn count(&self) -> usize {
+        self.first_point.len().saturating_sub(1)
+    }
+
+    /// Number of points of all strands.
+    pub fn points(&self) -> usize {
+        self.x.len()
+    }
+
+    /// Number of segments of all strands.
+    pub fn segments(&self) -> usize {
+        self.points() - self.count()
+    }
+
+    /// Point `i`, world space, metres.
+    pub fn point(&self, i: usize) -> Vec3 {
+        Vec3::new(self.x[i], self.y[i], self.z[i])
+    }
+}
