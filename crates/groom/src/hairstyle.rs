@@ -1,5 +1,7 @@
 //! A hairstyle: what is grown from settings or imported from a file.
 
+use thiserror::Error;
+
 use crate::{Guides, HairLook, Scalp};
 
 /// One wisp: three guide strands, and the run of strands that they carry.
@@ -73,4 +75,78 @@ pub struct Hairstyle {
     pub strands: StrandSet,
     /// Colour and width that the style suggests; a project may override them.
     pub look: HairLook,
+}
+
+/// What is inconsistent in a [`Hairstyle`].
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum HairstyleError {
+    /// Guides of fewer than 2 points, or arrays that are not a whole number of guides.
+    #[error("the guides do not hold whole guides of 2 points or more")]
+    Guides,
+    /// An array of the strands that has a length of its own.
+    #[error("the strands' array `{0}` has the wrong length")]
+    Length(&'static str),
+    /// Strands that do not follow each other, or of fewer than 2 points.
+    #[error("strand {0} is out of order or has fewer than 2 points")]
+    Strand(usize),
+    /// A wisp that names guides that are missing, or strands that are not the next ones.
+    #[error("wisp {0} names a missing guide or strands out of order")]
+    Wisp(usize),
+}
+
+impl Hairstyle {
+    /// Checks every index and length, so that interpolation can rely on them.
+    ///
+    /// # Errors
+    /// The first inconsistency found.
+    pub fn check(&self) -> Result<(), HairstyleError> {
+        let guides = &self.guides;
+        let n = guides.x.len();
+        let whole = guides.points_per_guide >= 2 && n.is_multiple_of(guides.points_per_guide);
+        if !whole || guides.y.len() != n || guides.z.len() != n {
+            return Err(HairstyleError::Guides);
+        }
+        let set = &self.strands;
+        let (count, points) = (set.count(), set.points());
+        for (name, found, wanted) in [
+            ("weights", set.weights.len(), count),
+            ("first_point", set.first_point.len(), count + 1),
+            ("shade", set.shade.len(), count),
+            ("offset_normal", set.offset_normal.len(), points),
+            ("offset_binormal", set.offset_binormal.len(), points),
+            ("offset_tangent", set.offset_tangent.len(), points),
+            ("taper", set.taper.len(), points),
+        ] {
+            if found != wanted {
+                return Err(HairstyleError::Length(name));
+            }
+        }
+        if set.first_point[0] != 0 || set.first_point[count] as usize != points {
+            return Err(HairstyleError::Length("first_point"));
+        }
+        if let Some(bad) = set
+            .first_point
+            .windows(2)
+            .position(|w| w[1] < w[0].saturating_add(2))
+        {
+            return Err(HairstyleError::Strand(bad));
+        }
+        let mut next = 0;
+        for (w, wisp) in self.wisps.iter().enumerate() {
+            let strands = wisp.first_strand as usize..wisp.first_strand as usize + wisp.strand_count as usize;
+            let sound = strands.start == next
+                && strands.end <= count
+                && wisp.guides.iter().all(|&g| (g as usize) < guides.count())
+                && set.wisp[strands.clone()].iter().all(|&of| of as usize == w);
+            if !sound {
+                return Err(HairstyleError::Wisp(w));
+            }
+            next = strands.end;
+        }
+        if next == count {
+            Ok(())
+        } else {
+            Err(HairstyleError::Strand(next))
+        }
+    }
 }

@@ -5,14 +5,18 @@
 //! The simulator moves its [`Guides`] and leaves a [`GuideFrame`] in world space; `interpolate` makes the
 //! [`Strands`] that are shadowed and drawn.
 
+mod frame;
 mod guides;
 mod hairstyle;
+mod interpolate;
 mod look;
 mod scalp;
 mod strands;
 
+pub use frame::WispCurve;
 pub use guides::{GuideFrame, Guides};
-pub use hairstyle::{Hairstyle, StrandSet, Wisp};
+pub use hairstyle::{Hairstyle, HairstyleError, StrandSet, Wisp};
+pub use interpolate::interpolate;
 pub use look::HairLook;
 pub use scalp::Scalp;
 pub use strands::Strands;
