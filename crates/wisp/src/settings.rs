@@ -1,0 +1,209 @@
+//! What the artist can change about how hair moves.
+
+use serde::{Deserialize, Serialize};
+
+/// How hair moves. Every field has a range that cannot break the motion; [`SimulationSettings::clamped`]
+/// puts a value into it, and the simulator does so itself.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct SimulationSettings {
+    /// Gravity, metres per second squared, downwards: 0 to 30.
+    pub gravity: f32,
+    /// How much of its own weight the hairstyle carries at rest: 1 keeps the style exactly as it was drawn,
+    /// 0 lets it sag as far as its stiffness allows. 0 to 1.
+    pub style_support: f32,
+    /// Substeps of one step, 1 to 16; a fast head raises them.
+    pub substeps: u32,
+    /// Bending stiffness near the roots, as the angular frequency (1/s) with which a lock 0.2 m long, held
+    /// at one end and without weight, would sway: 0 (a chain) to 200 (wire). One real hair has about 3.
+    pub stiffness_root: f32,
+    /// Bending stiffness at the tips, 1/s, as `stiffness_root`: 0 to 200.
+    pub stiffness_tip: f32,
+    /// Damping of bending, seconds: 0 to 0.2. A sway of frequency f is damped by the ratio pi * f * this.
+    pub bend_damping: f32,
+    /// Pull of the roots' half toward the style as it was drawn, as an angular frequency, 1/s; it falls to
+    /// zero at the tips: 0 to 60.
+    pub hold: f32,
+    /// Friction against the hair around, as the rate (1/s) at which motion relative to the head dies away:
+    /// 0 to 20.
+    pub settle: f32,
+    /// Drag of the air, as the rate (1/s) at which hair takes on the speed of the wind: 0 to 20.
+    pub drag: f32,
+    /// The wind.
+    pub wind: Wind,
+    /// Friction coefficient of hair on the body: 0 to 2.
+    pub friction: f32,
+    /// Distance at which hair stays off the body, metres: 0 to 0.03. Hair that rests nearer keeps its
+    /// distance of rest.
+    pub skin_margin: f32,
+    /// How much of its height above the skull a lock keeps when it is pressed down, so that layers keep
+    /// their order and the hair its volume: 0 to 1.
+    pub layering: f32,
+    /// How hair keeps other hair away.
+    pub repulsion: Repulsion,
+    /// How many links at the root leave the scalp in the direction of rest: 0 (a hinge), 1 or 2.
+    pub clamped_links: u32,
+}
+
+impl Default for SimulationSettings {
+    fn default() -> Self {
+        Self {
+            gravity: 9.81,
+            style_support: 1.0,
+            substeps: 4,
+            stiffness_root: 14.0,
+            stiffness_tip: 5.0,
+            bend_damping: 0.03,
+            hold: 5.0,
+            settle: 2.0,
+            drag: 0.8,
+            wind: Wind::default(),
+            friction: 0.3,
+            skin_margin: 0.003,
+            layering: 0.35,
+            repulsion: Repulsion::default(),
+            clamped_links: 1,
+        }
+    }
+}
+
+impl SimulationSettings {
+    /// The same settings with every value inside its range; a value that is not a number becomes the default.
+    #[must_use]
+    pub fn clamped(&self) -> Self {
+        let d = Self::default();
+        Self {
+            gravity: within(self.gravity, 0.0, 30.0, d.gravity),
+            style_support: within(self.style_support, 0.0, 1.0, d.style_support),
+            substeps: self.substeps.clamp(1, MAX_SUBSTEPS),
+            stiffness_root: within(self.stiffness_root, 0.0, 200.0, d.stiffness_root),
+            stiffness_tip: within(self.stiffness_tip, 0.0, 200.0, d.stiffness_tip),
+            bend_damping: within(self.bend_damping, 0.0, 0.2, d.bend_damping),
+            hold: within(self.hold, 0.0, 60.0, d.hold),
+            settle: within(self.settle, 0.0, 20.0, d.settle),
+            drag: within(self.drag, 0.0, 20.0, d.drag),
+            wind: self.wind.clamped(),
+            friction: within(self.friction, 0.0, 2.0, d.friction),
+            skin_margin: within(self.skin_margin, 0.0, 0.03, d.skin_margin),
+            layering: within(self.layering, 0.0, 1.0, d.layering),
+            repulsion: self.repulsion.clamped(),
+            clamped_links: self.clamped_links.min(2),
+        }
+    }
+}
+
+/// The most substeps that one step may take.
+pub const MAX_SUBSTEPS: u32 = 16;
+
+/// Air that moves: a direction, a speed, gusts in time and eddies in space. The same seed blows the same wind.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Wind {
+    /// Where the wind blows to, world space, any length; a zero vector is still air.
+    pub direction: [f32; 3],
+    /// Mean speed, metres per second: 0 to 30.
+    pub speed: f32,
+    /// How far gusts raise and lower the speed, as a fraction of it: 0 to 1.
+    pub gusts: f32,
+    /// Speed of the eddies as a fraction of the mean speed: 0 to 1.
+    pub turbulence: f32,
+    /// Which wind.
+    pub seed: u32,
+}
+
+impl Default for Wind {
+    fn default() -> Self {
+        Self { direction: [1.0, 0.0, 0.0], speed: 0.0, gusts: 0.5, turbulence: 0.3, seed: 1 }
+    }
+}
+
+impl Wind {
+    fn clamped(&self) -> Self {
+        let d = Self::default();
+        let finite = self.direction.iter().all(|v| v.is_finite() && v.abs() < 1e9);
+        Self {
+            direction: if finite { self.direction } else { d.direction },
+            speed: within(self.speed, 0.0, 30.0, d.speed),
+            gusts: within(self.gusts, 0.0, 1.0, d.gusts),
+            turbulence: within(self.turbulence, 0.0, 1.0, d.turbulence),
+            seed: self.seed,
+        }
+    }
+}
+
+/// How over-dense cells of the density grid push hair out, and how near hair moves together.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Repulsion {
+    /// Which force.
+    pub mode: RepulsionMode,
+    /// Strength, metres squared per second squared (a push of `strength / cell` for a cell twice as dense as
+    /// it may be): 0 to 1.
+    pub strength: f32,
+    /// From how many times the density at rest a cell counts as over-dense: 1 to 10.
+    pub threshold: f32,
+    /// Rate at which hair takes on the mean velocity of the hair around it, 1/s: 0 to 20.
+    pub cohesion: f32,
+}
+
+impl Default for Repulsion {
+    fn default() -> Self {
+        Self { mode: RepulsionMode::Pressure, strength: 0.05, threshold: 1.3, cohesion: 2.0 }
+    }
+}
+
+impl Repulsion {
+    fn clamped(&self) -> Self {
+        let d = Self::default();
+        Self {
+            mode: self.mode,
+            strength: within(self.strength, 0.0, 1.0, d.strength),
+            threshold: within(self.threshold, 1.0, 10.0, d.threshold),
+            cohesion: within(self.cohesion, 0.0, 20.0, d.cohesion),
+        }
+    }
+}
+
+/// The force with which an over-dense cell pushes hair.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RepulsionMode {
+    /// Away from the centre of the over-dense cell (Bertails, Ménier, Cani 2005, section 4.1).
+    Centre,
+    /// Down the gradient of the excess density, which has no preferred lattice planes.
+    Pressure,
+}
+
+fn within(value: f32, min: f32, max: f32, default: f32) -> f32 {
+    if value.is_nan() { default } else { value.clamp(min, max) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_defaults_lie_inside_their_ranges() {
+        let d = SimulationSettings::default();
+        assert_eq!(d, d.clamped());
+    }
+
+    #[test]
+    fn nonsense_becomes_a_value_that_can_be_simulated() {
+        let mut s = SimulationSettings {
+            gravity: f32::NAN,
+            stiffness_root: f32::INFINITY,
+            drag: -3.0,
+            substeps: 0,
+            clamped_links: 99,
+            ..SimulationSettings::default()
+        };
+        s.wind.direction = [f32::NAN, 0.0, 1.0];
+        s.repulsion.strength = -1.0;
+        let c = s.clamped();
+        assert_eq!(c.gravity, SimulationSettings::default().gravity);
+        assert_eq!((c.stiffness_root, c.drag, c.substeps, c.clamped_links), (200.0, 0.0, 1, 2));
+        assert_eq!(c.wind.direction, Wind::default().direction);
+        assert_eq!(c.repulsion.strength, 0.0);
+    }
+}
