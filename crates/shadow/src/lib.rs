@@ -1,1 +1,22 @@
-//! Shadow methods inside hair: their definitions on the processor and their passes on the GPU.
+//! Shadow methods inside hair: how much light reaches a point through the strands before it.
+//!
+//! [`ShadowMethod`] names the methods, [`ShadowSettings`] keeps the values of every one of them, and
+//! [`CpuShadow`] is the behaviour: build from strands and a light, then answer a transmittance in `0..=1` for
+//! any point. The processor's version of a method is its definition.
+//!
+//! Adding a method is a folder in `methods/`, a variant of [`ShadowMethod`], and the lines that the compiler
+//! then asks for.
+
+mod cpu;
+mod light;
+mod method;
+mod settings;
+
+pub mod methods;
+
+pub use cpu::{ColumnMap, CpuShadow, ShadowInput, ShadowReport, cpu_shadow};
+pub use light::LightFrame;
+pub use method::{ShadowMethod, UnknownShadowMethod};
+pub use methods::voxel_map;
+pub use methods::voxel_map::VoxelMapSettings;
+pub use settings::ShadowSettings;

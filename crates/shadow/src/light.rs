@@ -1,0 +1,126 @@
+//! The axes of a light's maps.
+
+use glam::{Quat, Vec3};
+
+/// Right-handed orthonormal axes along a directional light, in world space (`y × z = x`).
+///
+/// Make the first with [`LightFrame::new`] and follow a light that moves with [`LightFrame::transported`]:
+/// axes found anew for every direction jump somewhere on the sphere, and with them the whole map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightFrame {
+    /// Direction in which the light travels, unit length (the paper's *L*, also ω).
+    pub x: Vec3,
+    /// First axis across the light.
+    pub y: Vec3,
+    /// Second axis across the light.
+    pub z: Vec3,
+}
+
+impl LightFrame {
+    /// Axes for light that travels along `direction` (any length; straight down where it has none).
+    ///
+    /// Duff et al. 2017, "Building an Orthonormal Basis, Revisited".
+    pub fn new(direction: Vec3) -> Self {
+        let x = direction.normalize_or(Vec3::NEG_Y);
+        let sign = 1.0_f32.copysign(x.z);
+        let a = -1.0 / (sign + x.z);
+        let b = x.x * x.y * a;
+        let y = Vec3::new(1.0 + sign * x.x * x.x * a, sign * b, -sign * x.x);
+        let z = Vec3::new(b, sign + x.y * x.y * a, -x.y);
+        Self { x, y, z }
+    }
+
+    /// These axes carried to another direction by the shortest rotation, which adds no roll: a light that is
+    /// dragged a little turns its map a little. A direction of no length changes nothing.
+    pub fn transported(&self, direction: Vec3) -> Self {
+        let x = direction.normalize_or(self.x);
+        let y = Quat::from_rotation_arc(self.x, x) * self.y;
+        // Rounding would add up over a long drag: make the axes orthonormal anew.
+        match (y - y.dot(x) * x).try_normalize() {
+            Some(y) => Self { x, y, z: x.cross(y) },
+            None => Self::new(x),
+        }
+    }
+
+    /// A world vector in the axes of the light.
+    pub fn light_from_world(&self, v: Vec3) -> Vec3 {
+        Vec3::new(v.dot(self.x), v.dot(self.y), v.dot(self.z))
+    }
+
+    /// A vector in the axes of the light, in world space.
+    pub fn world_from_light(&self, v: Vec3) -> Vec3 {
+        v.x * self.x + v.y * self.y + v.z * self.z
+    }
+}
+
+impl Default for LightFrame {
+    /// Light from straight above.
+    fn default() -> Self {
+        Self::new(Vec3::NEG_Y)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn assert_orthonormal(frame: &LightFrame) {
+        // A few units in the last place of 1.
+        let close = |a: f32, b: f32| (a - b).abs() < 2e-6;
+        assert!(close(frame.x.length(), 1.0) && close(frame.y.length(), 1.0) && close(frame.z.length(), 1.0));
+        assert!(close(frame.x.dot(frame.y), 0.0) && close(frame.y.dot(frame.z), 0.0));
+        assert!((frame.y.cross(frame.z) - frame.x).length() < 4e-6, "left-handed: {frame:?}");
+    }
+
+    fn directions() -> impl Iterator<Item = Vec3> {
+        let axes = [Vec3::X, Vec3::Y, Vec3::Z, Vec3::NEG_X, Vec3::NEG_Y, Vec3::NEG_Z];
+        let spiral = (0..500).map(|i| {
+            let (z, a) = (1.0 - (i as f32 + 0.5) / 250.0, i as f32 * 2.399_963);
+            let r = (1.0 - z * z).sqrt();
+            3.0 * Vec3::new(r * a.cos(), r * a.sin(), z)
+        });
+        axes.into_iter().chain(spiral)
+    }
+
+    #[test]
+    fn axes_are_orthonormal_for_every_direction() {
+        for direction in directions() {
+            let frame = LightFrame::new(direction);
+            assert_orthonormal(&frame);
+            assert!((frame.x - direction.normalize_or_zero()).length() < 1e-6);
+        }
+        assert_eq!(LightFrame::new(Vec3::ZERO).x, Vec3::NEG_Y);
+        assert_eq!(LightFrame::new(Vec3::NAN).x, Vec3::NEG_Y);
+    }
+
+    #[test]
+    fn transport_is_steady_where_a_fresh_basis_jumps() {
+        // A drag through the seam of the branchless basis (z changes sign).
+        let at = |t: f32| Vec3::new(0.6, -0.8, t).normalize_or_zero();
+        let (before, after) = (at(1e-4), at(-1e-4));
+        let fresh = LightFrame::new(before).y.distance(LightFrame::new(after).y);
+        assert!(fresh > 0.5, "the control must jump: {fresh}");
+        let frame = LightFrame::new(before);
+        assert!(frame.transported(after).y.distance(frame.y) < 1e-3);
+    }
+
+    #[test]
+    fn long_drags_and_reversals_stay_orthonormal() {
+        let mut frame = LightFrame::default();
+        for direction in directions() {
+            frame = frame.transported(direction);
+            assert_orthonormal(&frame);
+            let reversed = frame.transported(-direction);
+            assert_orthonormal(&reversed);
+        }
+        assert_eq!(frame.transported(Vec3::ZERO).x, frame.x);
+    }
+
+    #[test]
+    fn light_space_round_trip() {
+        let frame = LightFrame::new(Vec3::new(0.3, -1.0, 0.2));
+        let v = Vec3::new(0.1, 0.2, -0.3);
+        assert!((frame.world_from_light(frame.light_from_world(v)) - v).length() < 1e-6);
+        assert!((frame.light_from_world(frame.x) - Vec3::X).length() < 1e-6);
+    }
+}

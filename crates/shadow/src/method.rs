@@ -1,0 +1,112 @@
+//! The names of the shadow methods.
+
+use std::fmt;
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize};
+
+/// A way to find the light that reaches a point inside hair.
+///
+/// Menus, the command line, comparisons and tests go through [`ShadowMethod::ALL`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub enum ShadowMethod {
+    /// No shadow inside hair: every point receives all light.
+    None,
+    /// Light-oriented map of density and transmittance (Bertails, Ménier, Cani 2005).
+    #[default]
+    VoxelMap,
+}
+
+impl ShadowMethod {
+    /// Every method, in the order of menus and reports.
+    pub const ALL: &'static [Self] = &[Self::None, Self::VoxelMap];
+
+    /// The stable name of the command line, of projects and of reports.
+    pub const fn id(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::VoxelMap => "voxel-map",
+        }
+    }
+
+    /// What the interface calls it.
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::None => "None",
+            Self::VoxelMap => "Voxel map",
+        }
+    }
+
+    /// One sentence: what it does and whose it is.
+    pub const fn description(self) -> &'static str {
+        match self {
+            Self::None => "No shadow inside hair: every strand receives all light.",
+            Self::VoxelMap => {
+                "Density of hair in a grid along the light, summed slice by slice (Bertails, Ménier, Cani 2005)."
+            }
+        }
+    }
+}
+
+impl fmt::Display for ShadowMethod {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.id())
+    }
+}
+
+/// A name that is no shadow method's.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no shadow method is called \"{found}\"; use one of: {}", ids())]
+pub struct UnknownShadowMethod {
+    /// The name that was asked for.
+    pub found: String,
+}
+
+fn ids() -> String {
+    let ids: Vec<_> = ShadowMethod::ALL.iter().map(|method| method.id()).collect();
+    ids.join(", ")
+}
+
+impl FromStr for ShadowMethod {
+    type Err = UnknownShadowMethod;
+
+    fn from_str(name: &str) -> Result<Self, Self::Err> {
+        let found = Self::ALL.iter().find(|method| method.id() == name);
+        found.copied().ok_or_else(|| UnknownShadowMethod { found: name.to_owned() })
+    }
+}
+
+impl TryFrom<String> for ShadowMethod {
+    type Error = UnknownShadowMethod;
+
+    fn try_from(name: String) -> Result<Self, Self::Error> {
+        name.parse()
+    }
+}
+
+impl From<ShadowMethod> for String {
+    fn from(method: ShadowMethod) -> Self {
+        method.id().to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ids_are_distinct_and_read_back() {
+        for (i, &method) in ShadowMethod::ALL.iter().enumerate() {
+            assert_eq!(method.id().parse(), Ok(method));
+            assert_eq!(String::from(method), method.to_string());
+            assert!(ShadowMethod::ALL[..i].iter().all(|other| other.id() != method.id()));
+        }
+    }
+
+    #[test]
+    fn an_unknown_name_lists_the_known_ones() {
+        let error = "Voxel map".parse::<ShadowMethod>().unwrap_err().to_string();
+        assert_eq!(error, "no shadow method is called \"Voxel map\"; use one of: none, voxel-map");
+    }
+}

@@ -1,0 +1,103 @@
+//! `voxel-map`: a grid of density whose first axis runs along the light (Bertails, Ménier, Cani 2005,
+//! "A Practical Self-Shadowing Algorithm for Interactive Hair Animation").
+//!
+//! 1. Every piece of strand adds its optical depth to the cell that it lies in.
+//! 2. Along each column of cells, optical depth is summed from the light on: a cell holds the sum up to and
+//!    including itself, which belongs to its *back face*.
+//! 3. A point reads the four columns around it, interpolates optical depth along the light and transmittance
+//!    across it.
+//!
+//! `docs/shadow_methods.md` has the equations and says where and why they differ from the paper's print. The
+//! plain version is in [`reference`](self::reference); [`VoxelMap`] is the same map made quickly.
+
+mod cpu;
+mod lattice;
+pub mod reference;
+mod samples;
+
+pub use cpu::VoxelMap;
+pub use lattice::{Bounds, Lattice};
+
+use std::ops::RangeInclusive;
+
+use serde::{Deserialize, Serialize};
+
+/// How large the map is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum MapExtent {
+    /// As large as the hair is now, with an empty cell around it.
+    #[default]
+    Fit,
+    /// The paper's constant bound: twice the longest strand plus the head.
+    Paper,
+}
+
+/// How a point reads the cells around it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum VoxelFilter {
+    /// Optical depth interpolated between a cell's faces along the light, transmittance between cell centres
+    /// across it.
+    #[default]
+    Centred,
+    /// As printed: transmittance interpolated on all three axes as if it lay at a cell's far corner, which
+    /// displaces the shadow by half a cell on both axes across the light.
+    Paper,
+}
+
+/// What strands add to the cells.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum VoxelDeposit {
+    /// The optical depth of each piece of strand; the shadow depends neither on the map's resolution nor on
+    /// how finely strands are sampled.
+    #[default]
+    Length,
+    /// As printed: one for each point of a strand, times [`VoxelMapSettings::point_extinction`] and the cell's
+    /// size. Depends on both, by the third power of the cell's size.
+    PointCount,
+}
+
+/// What a user sets about the voxel map.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct VoxelMapSettings {
+    /// Cells along each edge; see [`VoxelMapSettings::RESOLUTIONS`].
+    pub resolution: u32,
+    /// How large the map is.
+    pub extent: MapExtent,
+    /// Size of the head for [`MapExtent::Paper`] (the paper's *h_max*), metres.
+    pub head_size: f32,
+    /// How a point reads the cells around it.
+    pub filter: VoxelFilter,
+    /// What strands add to the cells.
+    pub deposit: VoxelDeposit,
+    /// The paper's *f* for [`VoxelDeposit::PointCount`]: extinction per metre that one point adds to a cell,
+    /// before the extinction scale.
+    pub point_extinction: f32,
+}
+
+impl VoxelMapSettings {
+    /// Cells along each edge that the map can have; multiples of 8.
+    pub const RESOLUTIONS: RangeInclusive<u32> = 32..=512;
+
+    /// The resolution that is used: the nearest multiple of 8 in [`VoxelMapSettings::RESOLUTIONS`].
+    pub fn safe_resolution(&self) -> u32 {
+        let resolution = self.resolution.clamp(*Self::RESOLUTIONS.start(), *Self::RESOLUTIONS.end());
+        (resolution + 4) / 8 * 8
+    }
+}
+
+impl Default for VoxelMapSettings {
+    fn default() -> Self {
+        Self {
+            resolution: 128,
+            extent: MapExtent::default(),
+            head_size: 0.24,
+            filter: VoxelFilter::default(),
+            deposit: VoxelDeposit::default(),
+            point_extinction: 50.0,
+        }
+    }
+}

@@ -1,0 +1,175 @@
+//! The voxel map in plain code: dense, in double precision, one loop a step of the paper.
+//!
+//! The quick map is held against it, and it carries the paper's own addressing. It is for tests and
+//! benchmarks: building one takes a hundred times as long.
+
+use glam::{IVec3, Vec3};
+
+use super::lattice::{Bounds, Lattice};
+use super::samples::sample_count;
+use super::{VoxelDeposit, VoxelFilter};
+use crate::{ShadowInput, ShadowSettings};
+
+/// How cells are addressed. Both give the same shadow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Addressing {
+    /// By coordinates in the window.
+    Window,
+    /// By the paper's mapping Ψ, modulo *N*.
+    Psi,
+}
+
+/// A dense map of optical depth.
+#[derive(Clone, Debug)]
+pub struct DenseMap {
+    /// Where its cells lie.
+    pub lattice: Lattice,
+    /// Optical depth added to each cell, `[i][j][k]` with i along the light.
+    pub density: Vec<f64>,
+    /// Optical depth from the light to the back face of each cell, the cell included.
+    pub depth: Vec<f64>,
+    addressing: Addressing,
+    filter: VoxelFilter,
+}
+
+impl DenseMap {
+    /// Builds the map of `input`.
+    pub fn build(input: &ShadowInput, settings: &ShadowSettings, addressing: Addressing) -> Self {
+        let bounds = Bounds::of(input.strands, 0, input.strands.points(), &input.light, input.anchor);
+        Self::build_in(Lattice::new(input, &settings.voxel_map, &bounds), input, settings, addressing)
+    }
+
+    /// Builds the map of `input` in a window that is given.
+    pub fn build_in(
+        lattice: Lattice,
+        input: &ShadowInput,
+        settings: &ShadowSettings,
+        addressing: Addressing,
+    ) -> Self {
+        let n = lattice.resolution as usize;
+        let filter = settings.voxel_map.filter;
+        let mut map =
+            Self { lattice, density: vec![0.0; n * n * n], depth: vec![0.0; n * n * n], addressing, filter };
+        let scale = f64::from(settings.safe_extinction_scale());
+        match settings.voxel_map.deposit {
+            VoxelDeposit::Length => map.deposit_lengths(input, scale),
+            VoxelDeposit::PointCount => {
+                let f = scale * f64::from(settings.voxel_map.point_extinction);
+                map.deposit_points(input, f * f64::from(lattice.cell_size));
+            }
+        }
+        map.sum_along_light();
+        map
+    }
+
+    /// `τ_cell = s_ext Σ w ℓ sinθ / ds²`: in cells, the area across the light is 1 and `ℓ sinθ` is the length of the
+    /// segment's projection along the light.
+    fn deposit_lengths(&mut self, input: &ShadowInput, scale: f64) {
+        let per_cell = scale * f64::from(input.strand_width) / f64::from(self.lattice.cell_size);
+        for ends in input.strands.first_point.windows(2) {
+            for point in ends[0] as usize + 1..ends[1] as usize {
+                let from = self.lattice.window_from_world(input.strands.point(point - 1));
+                let to = self.lattice.window_from_world(input.strands.point(point));
+                let step = to - from;
+                let count = sample_count((step.x * step.x + step.y * step.y + step.z * step.z).sqrt());
+                let projected = f64::from(step.y).hypot(f64::from(step.z));
+                if !(from.is_finite() && to.is_finite()) {
+                    continue;
+                }
+                for sample in 0..count {
+                    let t = (sample as f32 + 0.5) / count as f32;
+                    self.add(from + step * t, per_cell * projected / f64::from(count));
+                }
+            }
+        }
+    }
+
+    /// The paper's `κ ds = f d ds` with *d* the number of points in the cell.
+    fn deposit_points(&mut self, input: &ShadowInput, depth: f64) {
+        for point in 0..input.strands.points() {
+            let p = self.lattice.window_from_world(input.strands.point(point));
+            if p.is_finite() {
+                self.add(p, depth);
+            }
+        }
+    }
+
+    fn add(&mut self, p: Vec3, depth: f64) {
+        // Rounding must not put hair into the empty cells at the border.
+        let cell = p.floor().as_ivec3().clamp(IVec3::ONE, IVec3::splat(self.lattice.resolution as i32 - 2));
+        let at = self.address(cell);
+        self.density[at] += depth;
+    }
+
+    /// Where a cell of the window is stored.
+    fn address(&self, cell: IVec3) -> usize {
+        let n = self.lattice.resolution as usize;
+        let [i, j, k] = match self.addressing {
+            Addressing::Window => cell.to_array().map(|c| c as usize),
+            Addressing::Psi => self.lattice.wrapped(self.lattice.first + cell),
+        };
+        (i * n + j) * n + k
+    }
+
+    /// Equation 3 in optical depth: from the slice nearest to the light to the farthest, inclusive.
+    fn sum_along_light(&mut self) {
+        let n = self.lattice.resolution as i32;
+        for j in 0..n {
+            for k in 0..n {
+                let mut depth = 0.0;
+                for i in 0..n {
+                    let at = self.address(IVec3::new(i, j, k));
+                    depth += self.density[at];
+                    self.depth[at] = depth;
+                }
+            }
+        }
+    }
+
+    /// Optical depth at the back face of a cell of the window; before the first slice it is none, and beside
+    /// the window it is that of the border.
+    fn back_face(&self, i: i32, j: i32, k: i32) -> f64 {
+        let last = self.lattice.resolution as i32 - 1;
+        if i < 0 {
+            return 0.0;
+        }
+        self.depth[self.address(IVec3::new(i, j, k).clamp(IVec3::ZERO, IVec3::splat(last)))]
+    }
+
+    /// Filtered transmittance at `p`.
+    pub fn transmittance(&self, p: Vec3) -> f64 {
+        let n = self.lattice.resolution as f32;
+        let p = self.lattice.window_from_world(p);
+        if !p.is_finite() {
+            return 1.0;
+        }
+        let along = p.x.clamp(0.0, n);
+        let i = (along as i32).min(n as i32 - 1);
+        let along = f64::from(along) - f64::from(i);
+        // The value of a column belongs to its centre; the paper's print has it at the far edge.
+        let lead = match self.filter {
+            VoxelFilter::Centred => 0.5,
+            VoxelFilter::Paper => 1.0,
+        };
+        let (y, z) = ((p.y - lead).clamp(-1.0, n), (p.z - lead).clamp(-1.0, n));
+        let (j, k) = (y.floor(), z.floor());
+        let mut sum = 0.0;
+        for (dj, wj) in [(0, 1.0 - f64::from(y - j)), (1, f64::from(y - j))] {
+            for (dk, wk) in [(0, 1.0 - f64::from(z - k)), (1, f64::from(z - k))] {
+                let front = self.back_face(i - 1, j as i32 + dj, k as i32 + dk);
+                let back = self.back_face(i, j as i32 + dj, k as i32 + dk);
+                sum += wj * wk * match self.filter {
+                    VoxelFilter::Centred => (-(front + (back - front) * along)).exp(),
+                    VoxelFilter::Paper => (1.0 - along) * (-front).exp() + along * (-back).exp(),
+                };
+            }
+        }
+        sum
+    }
+
+    /// Transmittance of the cell that `p` lies in, unfiltered.
+    pub fn unfiltered(&self, p: Vec3) -> f64 {
+        let cell = self.lattice.window_from_world(p).floor().as_ivec3();
+        (-self.back_face(cell.x, cell.y, cell.z)).exp()
+    }
+}

@@ -1,0 +1,43 @@
+//! What a user sets about shadows.
+
+use std::ops::RangeInclusive;
+
+use serde::{Deserialize, Serialize};
+
+use crate::{ShadowMethod, VoxelMapSettings};
+
+/// The method in use, what all methods share, and the values of each: switching loses nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct ShadowSettings {
+    /// The method in use.
+    pub method: ShadowMethod,
+    /// Factor on the optical depth of every strand; 0.01 to 4 on a logarithmic slider.
+    ///
+    /// It stands for the light that hair scatters forward instead of blocking: 1 is a head of opaque fibres,
+    /// which is black a centimetre inside.
+    pub extinction_scale: f32,
+    /// Values of [`ShadowMethod::VoxelMap`].
+    pub voxel_map: VoxelMapSettings,
+}
+
+impl ShadowSettings {
+    /// Range of the slider of `extinction_scale`. Values outside are safe.
+    pub const EXTINCTION_SCALES: RangeInclusive<f32> = 0.01..=4.0;
+
+    /// The extinction scale as methods use it: not negative, finite, and 0 where it is no number.
+    pub fn safe_extinction_scale(&self) -> f32 {
+        // `max` turns NaN into 0.
+        self.extinction_scale.max(0.0).min(1e6)
+    }
+}
+
+impl Default for ShadowSettings {
+    fn default() -> Self {
+        Self {
+            method: ShadowMethod::default(),
+            extinction_scale: 0.15,
+            voxel_map: VoxelMapSettings::default(),
+        }
+    }
+}
