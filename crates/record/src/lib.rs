@@ -1,1 +1,34 @@
 //! Films and picture sequences, written beside their final name and renamed when whole.
+//!
+//! A picture comes in as 8-bit sRGB, four bytes a pixel (RGBA, row by row from the top), and goes out either as
+//! an H.264 film in an MP4 file ([`FilmWriter`]) or as a folder of PNG files with a manifest
+//! ([`SequenceWriter`]). [`PictureSink`] is the one type over both; it picks by the output's name.
+//!
+//! Three promises hold for every output:
+//!
+//! - Nothing unfinished ever carries the final name: a file grows as `NAME.partial` beside it and is renamed when it
+//!   is whole. An error or a cancel removes it.
+//! - Memory does not grow with the length: frames are encoded on a named thread behind a short bounded queue, so
+//!   `push` waits when the encoder is behind.
+//! - The same pictures give the same bytes: the encoder runs on one thread and no clock is read.
+//!
+//! [`read_film`] and [`FilmReader`] read a film back without any other program.
+
+mod error;
+mod film;
+mod manifest;
+mod mp4;
+mod partial;
+mod rate;
+mod reader;
+mod sequence;
+mod sink;
+mod yuv;
+
+pub use error::RecordError;
+pub use film::{FilmQuality, FilmReport, FilmSettings, FilmWriter, MAX_FILM_SIDES};
+pub use manifest::{Manifest, ManifestFrame, MANIFEST_NAME, read_manifest};
+pub use rate::FrameRate;
+pub use reader::{FilmInfo, FilmReader, read_film};
+pub use sequence::{SequenceReport, SequenceSettings, SequenceWriter, frame_name};
+pub use sink::{OutputKind, PictureSink, SinkReport, SinkSettings};

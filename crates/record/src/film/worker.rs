@@ -1,0 +1,85 @@
+//! The thread that codes frames and writes them.
+
+use super::encoder::FrameEncoder;
+use super::{FilmReport, FilmSettings, give_back};
+use crate::mp4::{Mp4Writer, Track};
+use crate::partial::{Opener, PartialFile};
+use crate::{FrameRate, RecordError};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, SyncSender};
+
+/// What the worker is told.
+pub(super) enum Job {
+    /// The next picture.
+    Frame(Vec<u8>),
+    /// That was all. A channel that closes without it is a cancel.
+    Finish,
+}
+
+/// The unfinished film. Dropped, it takes its file with it.
+pub(super) struct Film {
+    path: PathBuf,
+    settings: FilmSettings,
+    rate: FrameRate,
+    writer: Mp4Writer<PartialFile>,
+    frames: u64,
+}
+
+impl Film {
+    pub(super) fn new(path: &Path, settings: FilmSettings, rate: FrameRate, opener: &Opener) -> io::Result<Self> {
+        let (ticks_per_second, ticks_per_frame) = rate.clock();
+        let track =
+            Track { width: settings.width as u16, height: settings.height as u16, ticks_per_second, ticks_per_frame };
+        let writer = Mp4Writer::new(PartialFile::create(path, opener)?, track)?;
+        Ok(Self { path: path.to_owned(), settings, rate, writer, frames: 0 })
+    }
+
+    /// Takes jobs until told to finish (the report), until the channel closes (nothing), or until something fails.
+    pub(super) fn run(
+        mut self,
+        todo: &Receiver<Job>,
+        done: &SyncSender<Vec<u8>>,
+    ) -> Result<Option<FilmReport>, RecordError> {
+        let mut encoder =
+            FrameEncoder::new(self.settings, self.rate).map_err(|error| self.encoder_error(&error.to_string()))?;
+        while let Ok(job) = todo.recv() {
+            match job {
+                Job::Frame(rgba) => {
+                    self.add(&mut encoder, &rgba)?;
+                    give_back(done, rgba);
+                }
+                Job::Finish => return self.finish(&encoder).map(Some),
+            }
+        }
+        Ok(None)
+    }
+
+    fn add(&mut self, encoder: &mut FrameEncoder, rgba: &[u8]) -> Result<(), RecordError> {
+        let (sample, key) = encoder.encode(rgba).map_err(|error| self.encoder_error(&error.to_string()))?;
+        if sample.is_empty() {
+            return Err(self.encoder_error("it skipped the frame"));
+        }
+        self.writer
+            .write_frame(sample, key)
+            .map_err(|error| RecordError::io(&self.path, format!("write frame {}", self.frames), error))?;
+        self.frames += 1;
+        Ok(())
+    }
+
+    fn finish(self, encoder: &FrameEncoder) -> Result<FilmReport, RecordError> {
+        let Self { path, rate, writer, frames, .. } = self;
+        if frames == 0 {
+            return Err(RecordError::request(format!("{}: a film needs one frame or more", path.display())));
+        }
+        let (file, bytes) = writer
+            .finish(encoder.config())
+            .map_err(|error| RecordError::io(&path, "finish the film", error))?;
+        file.commit(true).map_err(|error| RecordError::io(&path, "finish the film", error))?;
+        Ok(FilmReport { path, frames, bytes, duration_secs: frames as f64 / rate.as_f64() })
+    }
+
+    fn encoder_error(&self, reason: &str) -> RecordError {
+        RecordError::Encoder { path: self.path.clone(), frame: self.frames, reason: reason.to_owned() }
+    }
+}

@@ -1,0 +1,9 @@
+//! The MP4 file around the coded frames (ISO/IEC 14496-12 and -15), as little of it as one picture track needs.
+
+mod nal;
+mod parse;
+mod write;
+
+pub(crate) use nal::{AvcConfig, append_sample};
+pub(crate) use parse::{Movie, parse};
+pub(crate) use write::{Mp4Writer, Track};

@@ -1,0 +1,214 @@
+//! A file that grows as `NAME.partial` and gets its name when it is whole.
+
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+/// What an unfinished file is written to. A file, except in tests of full disks.
+pub(crate) trait Medium: Write + Seek + Send {
+    /// Waits until what was written is on the disk.
+    fn sync(&mut self) -> io::Result<()>;
+}
+
+impl Medium for File {
+    fn sync(&mut self) -> io::Result<()> {
+        self.sync_all()
+    }
+}
+
+/// Opens the medium for the path of the unfinished file.
+pub(crate) type Opener = dyn Fn(&Path) -> io::Result<Box<dyn Medium>> + Send + Sync;
+
+/// The opener of every real recording: a new file.
+pub(crate) fn open_file(partial: &Path) -> io::Result<Box<dyn Medium>> {
+    // A crash may have left one behind.
+    match fs::remove_file(partial) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
+        _ => {}
+    }
+    Ok(Box::new(File::create_new(partial)?))
+}
+
+/// An unfinished file. Dropped before [`PartialFile::commit`], it leaves nothing.
+pub(crate) struct PartialFile {
+    target: PathBuf,
+    partial: PathBuf,
+    medium: Option<BufWriter<Box<dyn Medium>>>,
+}
+
+impl PartialFile {
+    pub(crate) fn create(target: &Path, opener: &Opener) -> io::Result<Self> {
+        let partial = partial_path(target);
+        let medium = BufWriter::with_capacity(1 << 16, opener(&partial)?);
+        Ok(Self { target: target.to_owned(), partial, medium: Some(medium) })
+    }
+
+    /// Gives the file its name. `durable` waits for the disk first, so that a name never stands for lost bytes.
+    pub(crate) fn commit(mut self, durable: bool) -> io::Result<()> {
+        let medium = self.medium()?;
+        medium.flush()?;
+        if durable {
+            medium.get_mut().sync()?;
+        }
+        self.close();
+        fs::rename(&self.partial, &self.target)?;
+        if durable && let Some(folder) = self.target.parent() {
+            // The rename itself lives in the folder. Not every system lets a folder be opened; the file is safe anyway.
+            let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+            let _ = File::open(folder).and_then(|folder| folder.sync_all());
+        }
+        Ok(())
+    }
+
+    fn medium(&mut self) -> io::Result<&mut BufWriter<Box<dyn Medium>>> {
+        self.medium.as_mut().ok_or_else(|| io::Error::other("the file is closed"))
+    }
+
+    /// Closes without flushing: what matters was flushed, and a full disk should not be asked again.
+    fn close(&mut self) {
+        if let Some(medium) = self.medium.take() {
+            drop(medium.into_parts());
+        }
+    }
+}
+
+impl Write for PartialFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.medium()?.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.medium()?.flush()
+    }
+}
+
+impl Seek for PartialFile {
+    fn seek(&mut self, position: SeekFrom) -> io::Result<u64> {
+        self.medium()?.seek(position)
+    }
+}
+
+impl Drop for PartialFile {
+    fn drop(&mut self) {
+        self.close();
+        // After a commit the name is gone already; otherwise this is the cleaning up, and there is no one to tell.
+        let _ = fs::remove_file(&self.partial);
+    }
+}
+
+/// `NAME.partial` beside `NAME`.
+pub(crate) fn partial_path(target: &Path) -> PathBuf {
+    let mut name = target.file_name().unwrap_or_default().to_owned();
+    name.push(".partial");
+    target.with_file_name(name)
+}
+
+/// Creates the folder that `target` lies in, where it is missing.
+pub(crate) fn create_parent(target: &Path) -> io::Result<()> {
+    match target.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => fs::create_dir_all(folder),
+        _ => Ok(()),
+    }
+}
+
+/// Media that fail, for tests.
+#[cfg(test)]
+pub(crate) mod failing {
+    use super::{Medium, open_file};
+    use std::io::{self, Seek, SeekFrom, Write};
+    use std::path::Path;
+
+    /// A disk with room for so many bytes more.
+    pub(crate) struct SmallDisk {
+        inner: Box<dyn Medium>,
+        room: u64,
+    }
+
+    impl Write for SmallDisk {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            let fits = bytes.len().min(usize::try_from(self.room).unwrap_or(usize::MAX));
+            if fits == 0 && !bytes.is_empty() {
+                return Err(io::ErrorKind::StorageFull.into());
+            }
+            self.room -= fits as u64;
+            self.inner.write(&bytes[..fits])
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            self.inner.flush()
+        }
+    }
+
+    impl Seek for SmallDisk {
+        fn seek(&mut self, position: SeekFrom) -> io::Result<u64> {
+            self.inner.seek(position)
+        }
+    }
+
+    impl Medium for SmallDisk {
+        fn sync(&mut self) -> io::Result<()> {
+            self.inner.sync()
+        }
+    }
+
+    /// An opener of files on such a disk.
+    pub(crate) fn small_disk(room: u64) -> impl Fn(&Path) -> io::Result<Box<dyn Medium>> + Send + Sync {
+        move |path| Ok(Box::new(SmallDisk { inner: open_file(path)?, room }) as Box<dyn Medium>)
+    }
+
+    /// An opener of a file whose bytes go to the device that is always full.
+    #[cfg(target_os = "linux")]
+    pub(crate) fn full_device(_: &Path) -> io::Result<Box<dyn Medium>> {
+        Ok(Box::new(std::fs::OpenOptions::new().write(true).open("/dev/full")?))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::failing::small_disk;
+    use super::{PartialFile, open_file, partial_path};
+    use std::fs;
+    use std::io::Write;
+    use std::path::Path;
+
+    #[test]
+    fn the_name_appears_only_when_the_file_is_whole() {
+        let folder = tempfile::tempdir().unwrap();
+        let target = folder.path().join("a file ü.bin");
+        let mut file = PartialFile::create(&target, &open_file).unwrap();
+        file.write_all(b"whole").unwrap();
+        assert!(!target.exists());
+        assert!(partial_path(&target).exists());
+        file.commit(true).unwrap();
+        assert_eq!(fs::read(&target).unwrap(), b"whole");
+        assert!(!partial_path(&target).exists());
+    }
+
+    #[test]
+    fn dropping_leaves_the_old_file_as_it_was() {
+        let folder = tempfile::tempdir().unwrap();
+        let target = folder.path().join("film.mp4");
+        fs::write(&target, b"old").unwrap();
+        fs::write(partial_path(&target), b"left by a crash").unwrap();
+        let mut file = PartialFile::create(&target, &open_file).unwrap();
+        file.write_all(b"new").unwrap();
+        drop(file);
+        assert_eq!(fs::read(&target).unwrap(), b"old");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_full_disk_at_commit_leaves_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let target = folder.path().join("film.mp4");
+        let mut file = PartialFile::create(&target, &small_disk(3)).unwrap();
+        file.write_all(b"four").unwrap(); // Buffered: the disk has not been asked yet.
+        assert!(file.commit(true).is_err());
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn the_partial_name_keeps_the_whole_name() {
+        assert_eq!(partial_path(Path::new("out/dance.mp4")), Path::new("out/dance.mp4.partial"));
+    }
+}

@@ -1,0 +1,131 @@
+//! Reading films back.
+
+use crate::RecordError;
+use crate::mp4::{Movie, parse};
+use crate::yuv::write_rgba;
+use openh264::decoder::Decoder;
+use serde::Serialize;
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+
+/// What a film's tables say.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FilmInfo {
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// Frames.
+    pub frames: u64,
+    /// Length in seconds.
+    pub duration_secs: f64,
+    /// Four letters of the coding: `avc1` is H.264.
+    pub codec: String,
+}
+
+/// Reads what a film is, without decoding it.
+///
+/// # Errors
+/// [`RecordError::Io`] where it cannot be read; [`RecordError::Malformed`] where it is no MP4 file, or its tables
+/// disagree with each other or with the file's length.
+pub fn read_film(path: &Path) -> Result<FilmInfo, RecordError> {
+    let mut file = open(path)?;
+    Ok(info(&parse(path, &mut file)?))
+}
+
+fn open(path: &Path) -> Result<File, RecordError> {
+    File::open(path).map_err(|error| RecordError::io(path, "open the film", error))
+}
+
+fn info(movie: &Movie) -> FilmInfo {
+    FilmInfo {
+        width: movie.width,
+        height: movie.height,
+        frames: movie.frames.len() as u64,
+        duration_secs: movie.duration_ticks as f64 / f64::from(movie.ticks_per_second),
+        codec: String::from_utf8_lossy(&movie.codec).into_owned(),
+    }
+}
+
+/// Decodes a film of this crate (H.264 without reordered frames), frame by frame.
+pub struct FilmReader {
+    path: PathBuf,
+    file: File,
+    movie: Movie,
+    decoder: Decoder,
+    next: usize,
+    stream: Vec<u8>,
+}
+
+impl FilmReader {
+    /// Opens a film.
+    ///
+    /// # Errors
+    /// As [`read_film`]; also [`RecordError::Malformed`] for a coding other than H.264.
+    pub fn open(path: &Path) -> Result<Self, RecordError> {
+        let mut file = open(path)?;
+        let movie = parse(path, &mut file)?;
+        let Some(config) = &movie.config else {
+            return Err(RecordError::Malformed {
+                path: path.to_owned(),
+                offset: 0,
+                found: format!("pictures coded as `{}`", String::from_utf8_lossy(&movie.codec)),
+                wanted: "H.264 (`avc1`)".into(),
+            });
+        };
+        let mut stream = Vec::new();
+        for set in [&config.sps, &config.pps] {
+            stream.extend([0, 0, 0, 1]);
+            stream.extend(set);
+        }
+        let decoder = Decoder::new().map_err(|error| RecordError::Encoder {
+            path: path.to_owned(),
+            frame: 0,
+            reason: format!("no decoder: {error}"),
+        })?;
+        Ok(Self { path: path.to_owned(), file, movie, decoder, next: 0, stream })
+    }
+
+    /// What the film is.
+    pub fn info(&self) -> FilmInfo {
+        info(&self.movie)
+    }
+
+    /// Decodes the next frame into `rgba` (`width × height × 4` bytes, alpha 255). False at the end.
+    ///
+    /// # Errors
+    /// [`RecordError::Io`] where the file cannot be read, [`RecordError::Malformed`] where a frame does not decode.
+    pub fn next_frame(&mut self, rgba: &mut Vec<u8>) -> Result<bool, RecordError> {
+        let Some(&(offset, size)) = self.movie.frames.get(self.next) else { return Ok(false) };
+        let read = |error| RecordError::io(&self.path, format!("read frame {}", self.next), error);
+        let mut sample = vec![0; size as usize];
+        self.file.seek(SeekFrom::Start(offset)).map_err(read)?;
+        self.file.read_exact(&mut sample).map_err(read)?;
+        let malformed = |found: String| RecordError::Malformed {
+            path: self.path.clone(),
+            offset,
+            found,
+            wanted: format!("frame {} as H.264 of {}x{}", self.next, self.movie.width, self.movie.height),
+        };
+        // The first frame goes in behind the parameter sets that `open` left in the stream.
+        let mut rest = &sample[..];
+        while let Some((length, tail)) = rest.split_first_chunk::<4>() {
+            let unit = tail.split_at_checked(u32::from_be_bytes(*length) as usize);
+            let (unit, tail) = unit.ok_or_else(|| malformed("a unit longer than its frame".into()))?;
+            self.stream.extend([0, 0, 0, 1]);
+            self.stream.extend(unit);
+            rest = tail;
+        }
+        let decoded = self.decoder.decode(&self.stream).map_err(|error| malformed(error.to_string()))?;
+        let picture = decoded.ok_or_else(|| malformed("no picture".into()))?;
+        let size = openh264::formats::YUVSource::dimensions(&picture);
+        if size != (self.movie.width as usize, self.movie.height as usize) {
+            return Err(malformed(format!("a picture of {}x{}", size.0, size.1)));
+        }
+        write_rgba(&picture, rgba);
+        self.stream.clear();
+        self.next += 1;
+        Ok(true)
+    }
+}
