@@ -33,7 +33,9 @@ pub enum RecordError {
         reason: String,
     },
     /// A picture of another size than the settings say was handed over.
-    #[error("a frame of {found} bytes was handed over, {wanted} were wanted ({width}x{height} pixels of RGBA)")]
+    #[error(
+        "a frame of {found} bytes was handed over, {wanted} were wanted ({width}x{height} pixels of RGBA)"
+    )]
     FrameSize {
         /// Bytes handed over.
         found: usize,
@@ -86,6 +88,10 @@ impl RecordError {
     }
 
     pub(crate) fn io(path: impl Into<PathBuf>, action: impl Into<String>, source: io::Error) -> Self {
-        Self::Io { path: path.into(), action: action.into(), source }
+        Self::Io {
+            path: path.into(),
+            action: action.into(),
+            source,
+        }
     }
 }

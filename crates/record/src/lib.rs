@@ -27,7 +27,7 @@ mod yuv;
 
 pub use error::RecordError;
 pub use film::{FilmQuality, FilmReport, FilmSettings, FilmWriter, MAX_FILM_SIDES};
-pub use manifest::{Manifest, ManifestFrame, MANIFEST_NAME, read_manifest};
+pub use manifest::{MANIFEST_NAME, Manifest, ManifestFrame, read_manifest};
 pub use rate::FrameRate;
 pub use reader::{FilmInfo, FilmReader, read_film};
 pub use sequence::{SequenceReport, SequenceSettings, SequenceWriter, frame_name};

@@ -21,18 +21,26 @@ impl FrameRate {
     /// [`RecordError::Request`] outside 1 to 240 frames per second, and for NaN.
     pub fn from_fps(fps: f64) -> Result<Self, RecordError> {
         if !(1.0..=240.0).contains(&fps) {
-            return Err(RecordError::request(format!("{fps} frames per second: wanted a number from 1 to 240")));
+            return Err(RecordError::request(format!(
+                "{fps} frames per second: wanted a number from 1 to 240"
+            )));
         }
         for whole in [24_u32, 30, 48, 60, 120] {
             let broadcast = f64::from(whole) * 1000.0 / 1001.0;
             // 0.006 covers two decimals (23.98 stands for 23.976) and stays clear of the whole number (0.024 off).
             if (fps - broadcast).abs() < 0.006 {
-                return Ok(Self { num: whole * 1000, den: 1001 });
+                return Ok(Self {
+                    num: whole * 1000,
+                    den: 1001,
+                });
             }
         }
         let thousandths = (fps * 1000.0).round() as u32;
         let divisor = greatest_common_divisor(thousandths, 1000);
-        Ok(Self { num: thousandths / divisor, den: 1000 / divisor })
+        Ok(Self {
+            num: thousandths / divisor,
+            den: 1000 / divisor,
+        })
     }
 
     /// Frames per second as a decimal number.
@@ -51,7 +59,11 @@ impl FrameRate {
 }
 
 fn greatest_common_divisor(a: u32, b: u32) -> u32 {
-    if b == 0 { a } else { greatest_common_divisor(b, a % b) }
+    if b == 0 {
+        a
+    } else {
+        greatest_common_divisor(b, a % b)
+    }
 }
 
 #[cfg(test)]
@@ -87,7 +99,10 @@ mod tests {
         for fps in [1.0, 12.5, 23.976, 30.0, 60.0, 240.0] {
             let rate = FrameRate::from_fps(fps).unwrap();
             let (ticks_per_second, ticks_per_frame) = rate.clock();
-            assert_eq!(u64::from(ticks_per_second) * u64::from(rate.den), u64::from(ticks_per_frame) * u64::from(rate.num));
+            assert_eq!(
+                u64::from(ticks_per_second) * u64::from(rate.den),
+                u64::from(ticks_per_frame) * u64::from(rate.num)
+            );
             assert!(ticks_per_second >= 10_000);
         }
     }

@@ -84,7 +84,14 @@ impl FilmReader {
             frame: 0,
             reason: format!("no decoder: {error}"),
         })?;
-        Ok(Self { path: path.to_owned(), file, movie, decoder, next: 0, stream })
+        Ok(Self {
+            path: path.to_owned(),
+            file,
+            movie,
+            decoder,
+            next: 0,
+            stream,
+        })
     }
 
     /// What the film is.
@@ -97,7 +104,9 @@ impl FilmReader {
     /// # Errors
     /// [`RecordError::Io`] where the file cannot be read, [`RecordError::Malformed`] where a frame does not decode.
     pub fn next_frame(&mut self, rgba: &mut Vec<u8>) -> Result<bool, RecordError> {
-        let Some(&(offset, size)) = self.movie.frames.get(self.next) else { return Ok(false) };
+        let Some(&(offset, size)) = self.movie.frames.get(self.next) else {
+            return Ok(false);
+        };
         let read = |error| RecordError::io(&self.path, format!("read frame {}", self.next), error);
         let mut sample = vec![0; size as usize];
         self.file.seek(SeekFrom::Start(offset)).map_err(read)?;
@@ -106,7 +115,10 @@ impl FilmReader {
             path: self.path.clone(),
             offset,
             found,
-            wanted: format!("frame {} as H.264 of {}x{}", self.next, self.movie.width, self.movie.height),
+            wanted: format!(
+                "frame {} as H.264 of {}x{}",
+                self.next, self.movie.width, self.movie.height
+            ),
         };
         // The first frame goes in behind the parameter sets that `open` left in the stream.
         let mut rest = &sample[..];
@@ -117,7 +129,10 @@ impl FilmReader {
             self.stream.extend(unit);
             rest = tail;
         }
-        let decoded = self.decoder.decode(&self.stream).map_err(|error| malformed(error.to_string()))?;
+        let decoded = self
+            .decoder
+            .decode(&self.stream)
+            .map_err(|error| malformed(error.to_string()))?;
         let picture = decoded.ok_or_else(|| malformed("no picture".into()))?;
         let size = openh264::formats::YUVSource::dimensions(&picture);
         if size != (self.movie.width as usize, self.movie.height as usize) {

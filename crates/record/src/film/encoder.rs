@@ -6,8 +6,8 @@ use crate::mp4::{AvcConfig, append_sample};
 use crate::yuv::Planes;
 use openh264::OpenH264API;
 use openh264::encoder::{
-    BitRate, Complexity, Encoder, EncoderConfig, FrameRate as Hertz, IntraFramePeriod, QpRange, RateControlMode,
-    TransferCharacteristics, VuiConfig,
+    BitRate, Complexity, Encoder, EncoderConfig, FrameRate as Hertz, IntraFramePeriod, QpRange,
+    RateControlMode, TransferCharacteristics, VuiConfig,
 };
 
 /// Seconds between key frames: what a player has to decode at most to show any one frame.
@@ -24,24 +24,32 @@ pub(super) struct FrameEncoder {
 
 impl FrameEncoder {
     pub(super) fn new(settings: FilmSettings, rate: FrameRate) -> Result<Self, openh264::Error> {
-        let FilmSettings { width, height, quality, .. } = settings;
+        let FilmSettings {
+            width,
+            height,
+            quality,
+            ..
+        } = settings;
         let fps = rate.as_f64();
         let quantiser = quality.quantiser();
         let pixels_per_second = f64::from(width * height) * fps;
         let config = EncoderConfig::new()
-            // A range of one quantiser pins it: every frame equally fine. The bit rate then only picks the level that
-            // the stream names, so it is the one that hair takes at this quantiser (measured: about 0.3 bits a pixel
-            // at 20, doubling every six).
-            .rate_control_mode(RateControlMode::Quality)
+            // This mode raises and lowers the quantiser inside its range and never skips a frame; a range of one pins
+            // it, so every frame is equally fine. The bit rate then only picks the level that the stream names, so it
+            // is about what moving hair takes (0.3 bits a pixel at 20, doubling every six).
+            .rate_control_mode(RateControlMode::Bufferbased)
             .qp(QpRange::new(quantiser, quantiser))
             .bitrate(BitRate::from_bps(
                 (pixels_per_second * 0.3 * f64::exp2((20.0 - f64::from(quantiser)) / 6.0)).min(200e6) as u32,
             ))
             .max_frame_rate(Hertz::from_hz(fps as f32))
-            .intra_frame_period(IntraFramePeriod::from_num_frames((fps * KEY_FRAME_SECS).round() as u32))
+            .intra_frame_period(IntraFramePeriod::from_num_frames(
+                (fps * KEY_FRAME_SECS).round() as u32
+            ))
             .complexity(Complexity::Medium)
             .skip_frames(false)
-            // Both save bits where little moves, and leave ghosts of thin hair there.
+            // These save bits, by coarser frames at a cut and by ghosts of thin hair where little moves.
+            .scene_change_detect(false)
             .background_detection(false)
             .adaptive_quantization(false)
             // One thread: the same pictures give the same bytes on every machine.

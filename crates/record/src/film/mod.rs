@@ -144,10 +144,17 @@ impl FilmWriter {
         Self::create_on(path, settings, &partial::open_file)
     }
 
-    pub(crate) fn create_on(path: &Path, settings: FilmSettings, opener: &Opener) -> Result<Self, RecordError> {
+    pub(crate) fn create_on(
+        path: &Path,
+        settings: FilmSettings,
+        opener: &Opener,
+    ) -> Result<Self, RecordError> {
         let rate = settings.check()?;
         if path.is_dir() || path.file_name().is_none() {
-            return Err(RecordError::request(format!("{}: is a folder, a film needs a file name", path.display())));
+            return Err(RecordError::request(format!(
+                "{}: is a folder, a film needs a file name",
+                path.display()
+            )));
         }
         let create = |error| RecordError::io(path, "create the film", error);
         partial::create_parent(path).map_err(create)?;
@@ -158,7 +165,13 @@ impl FilmWriter {
             .name("lovelock-film".into())
             .spawn(move || film.run(&todo, &done))
             .map_err(|error| RecordError::io(path, "start the encoder's thread", error))?;
-        Ok(Self { path: path.to_owned(), settings, jobs: Some(jobs), spent, worker: Some(worker) })
+        Ok(Self {
+            path: path.to_owned(),
+            settings,
+            jobs: Some(jobs),
+            spent,
+            worker: Some(worker),
+        })
     }
 
     /// Hands over the next frame: RGBA, 8 bits sRGB, rows from the top, `width × height × 4` bytes. Alpha is ignored.
@@ -171,11 +184,19 @@ impl FilmWriter {
     /// the like, [`RecordError::Encoder`], and [`RecordError::Stopped`] after either: the unfinished file is gone.
     pub fn push(&mut self, rgba: &[u8]) -> Result<(), RecordError> {
         check_frame(rgba, self.settings.width, self.settings.height)?;
-        let Some(jobs) = &self.jobs else { return Err(RecordError::Stopped { path: self.path.clone() }) };
+        let Some(jobs) = &self.jobs else {
+            return Err(RecordError::Stopped {
+                path: self.path.clone(),
+            });
+        };
         let mut buffer = self.spent.try_recv().unwrap_or_default();
         buffer.clear();
         buffer.extend_from_slice(rgba);
-        if jobs.send(Job::Frame(buffer)).is_ok() { Ok(()) } else { self.join().map(drop) }
+        if jobs.send(Job::Frame(buffer)).is_ok() {
+            Ok(())
+        } else {
+            self.join().map(drop)
+        }
     }
 
     /// Codes what still waits, writes the film's tables, and gives it its name.
@@ -200,7 +221,9 @@ impl FilmWriter {
         match ended {
             Some(Ok(Ok(Some(report)))) => Ok(report),
             Some(Ok(Err(error))) => Err(error),
-            _ => Err(RecordError::Stopped { path: self.path.clone() }),
+            _ => Err(RecordError::Stopped {
+                path: self.path.clone(),
+            }),
         }
     }
 }
@@ -214,7 +237,10 @@ impl Drop for FilmWriter {
 
 impl std::fmt::Debug for FilmWriter {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("FilmWriter").field("path", &self.path).field("settings", &self.settings).finish_non_exhaustive()
+        f.debug_struct("FilmWriter")
+            .field("path", &self.path)
+            .field("settings", &self.settings)
+            .finish_non_exhaustive()
     }
 }
 
@@ -224,7 +250,12 @@ pub(crate) fn check_frame(rgba: &[u8], width: u32, height: u32) -> Result<(), Re
     if rgba.len() == wanted {
         return Ok(());
     }
-    Err(RecordError::FrameSize { found: rgba.len(), wanted, width, height })
+    Err(RecordError::FrameSize {
+        found: rgba.len(),
+        wanted,
+        width,
+        height,
+    })
 }
 
 /// Gives a spent buffer back, unless enough of them lie about.

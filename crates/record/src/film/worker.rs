@@ -27,12 +27,27 @@ pub(super) struct Film {
 }
 
 impl Film {
-    pub(super) fn new(path: &Path, settings: FilmSettings, rate: FrameRate, opener: &Opener) -> io::Result<Self> {
+    pub(super) fn new(
+        path: &Path,
+        settings: FilmSettings,
+        rate: FrameRate,
+        opener: &Opener,
+    ) -> io::Result<Self> {
         let (ticks_per_second, ticks_per_frame) = rate.clock();
-        let track =
-            Track { width: settings.width as u16, height: settings.height as u16, ticks_per_second, ticks_per_frame };
+        let track = Track {
+            width: settings.width as u16,
+            height: settings.height as u16,
+            ticks_per_second,
+            ticks_per_frame,
+        };
         let writer = Mp4Writer::new(PartialFile::create(path, opener)?, track)?;
-        Ok(Self { path: path.to_owned(), settings, rate, writer, frames: 0 })
+        Ok(Self {
+            path: path.to_owned(),
+            settings,
+            rate,
+            writer,
+            frames: 0,
+        })
     }
 
     /// Takes jobs until told to finish (the report), until the channel closes (nothing), or until something fails.
@@ -41,8 +56,8 @@ impl Film {
         todo: &Receiver<Job>,
         done: &SyncSender<Vec<u8>>,
     ) -> Result<Option<FilmReport>, RecordError> {
-        let mut encoder =
-            FrameEncoder::new(self.settings, self.rate).map_err(|error| self.encoder_error(&error.to_string()))?;
+        let mut encoder = FrameEncoder::new(self.settings, self.rate)
+            .map_err(|error| self.encoder_error(&error.to_string()))?;
         while let Ok(job) = todo.recv() {
             match job {
                 Job::Frame(rgba) => {
@@ -56,7 +71,9 @@ impl Film {
     }
 
     fn add(&mut self, encoder: &mut FrameEncoder, rgba: &[u8]) -> Result<(), RecordError> {
-        let (sample, key) = encoder.encode(rgba).map_err(|error| self.encoder_error(&error.to_string()))?;
+        let (sample, key) = encoder
+            .encode(rgba)
+            .map_err(|error| self.encoder_error(&error.to_string()))?;
         if sample.is_empty() {
             return Err(self.encoder_error("it skipped the frame"));
         }
@@ -68,18 +85,37 @@ impl Film {
     }
 
     fn finish(self, encoder: &FrameEncoder) -> Result<FilmReport, RecordError> {
-        let Self { path, rate, writer, frames, .. } = self;
+        let Self {
+            path,
+            rate,
+            writer,
+            frames,
+            ..
+        } = self;
         if frames == 0 {
-            return Err(RecordError::request(format!("{}: a film needs one frame or more", path.display())));
+            return Err(RecordError::request(format!(
+                "{}: a film needs one frame or more",
+                path.display()
+            )));
         }
         let (file, bytes) = writer
             .finish(encoder.config())
             .map_err(|error| RecordError::io(&path, "finish the film", error))?;
-        file.commit(true).map_err(|error| RecordError::io(&path, "finish the film", error))?;
-        Ok(FilmReport { path, frames, bytes, duration_secs: frames as f64 / rate.as_f64() })
+        file.commit(true)
+            .map_err(|error| RecordError::io(&path, "finish the film", error))?;
+        Ok(FilmReport {
+            path,
+            frames,
+            bytes,
+            duration_secs: frames as f64 / rate.as_f64(),
+        })
     }
 
     fn encoder_error(&self, reason: &str) -> RecordError {
-        RecordError::Encoder { path: self.path.clone(), frame: self.frames, reason: reason.to_owned() }
+        RecordError::Encoder {
+            path: self.path.clone(),
+            frame: self.frames,
+            reason: reason.to_owned(),
+        }
     }
 }

@@ -7,3 +7,6 @@ mod write;
 pub(crate) use nal::{AvcConfig, append_sample};
 pub(crate) use parse::{Movie, parse};
 pub(crate) use write::{Mp4Writer, Track};
+
+#[cfg(test)]
+mod tests;

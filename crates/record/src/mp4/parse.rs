@@ -42,24 +42,52 @@ pub(crate) fn parse(path: &Path, file: &mut File) -> Result<Movie, RecordError> 
         let mut head = [0; 16];
         let got = (length - at).min(16) as usize;
         file.read_exact(&mut head[..got]).map_err(read)?;
-        let (kind, header, size) = box_head(&head[..got], length - at)
-            .ok_or_else(|| malformed(path, at, format!("bytes {:02X?}", &head[..got.min(8)]), "a box of the film"))?;
+        let (kind, header, size) = box_head(&head[..got], length - at).ok_or_else(|| {
+            malformed(
+                path,
+                at,
+                format!("bytes {:02X?}", &head[..got.min(8)]),
+                "a box of the film",
+            )
+        })?;
         if at == 0 && &kind != b"ftyp" {
-            return Err(malformed(path, 0, format!("bytes {:02X?}", &head[..8]), "an MP4 file (a box `ftyp`)"));
+            return Err(malformed(
+                path,
+                0,
+                format!("bytes {:02X?}", &head[..8]),
+                "an MP4 file (a box `ftyp`)",
+            ));
         }
         if &kind == b"moov" {
             if size > LARGEST_TABLES {
-                return Err(malformed(path, at, format!("tables of {size} bytes"), format!("at most {LARGEST_TABLES}")));
+                return Err(malformed(
+                    path,
+                    at,
+                    format!("tables of {size} bytes"),
+                    format!("at most {LARGEST_TABLES}"),
+                ));
             }
             // No more than the file holds, which `box_head` has checked.
             let mut bytes = vec![0; (size - header) as usize];
             file.seek(SeekFrom::Start(at + header)).map_err(read)?;
             file.read_exact(&mut bytes).map_err(read)?;
-            return movie(Span { path, start: at + header, bytes: &bytes }, length);
+            return movie(
+                Span {
+                    path,
+                    start: at + header,
+                    bytes: &bytes,
+                },
+                length,
+            );
         }
         at += size;
     }
-    Err(malformed(path, length, "the end of the file", "the film's tables (a box `moov`)"))
+    Err(malformed(
+        path,
+        length,
+        "the end of the file",
+        "the film's tables (a box `moov`)",
+    ))
 }
 
 /// Kind, length of the head, and whole size of the box that starts here, if it fits into `room` bytes.
@@ -75,7 +103,12 @@ fn box_head(bytes: &[u8], room: u64) -> Option<([u8; 4], u64, u64)> {
 }
 
 fn malformed(path: &Path, offset: u64, found: impl Into<String>, wanted: impl Into<String>) -> RecordError {
-    RecordError::Malformed { path: path.to_owned(), offset, found: found.into(), wanted: wanted.into() }
+    RecordError::Malformed {
+        path: path.to_owned(),
+        offset,
+        found: found.into(),
+        wanted: wanted.into(),
+    }
 }
 
 impl<'a> Span<'a> {
@@ -105,18 +138,26 @@ impl<'a> Span<'a> {
     fn find(self, wanted: [u8; 4]) -> Result<Self, RecordError> {
         let found = self.boxes()?.into_iter().find(|(kind, _)| *kind == wanted);
         found.map(|(_, body)| body).ok_or_else(|| {
-            self.error(0, "no such box", format!("a box `{}`", String::from_utf8_lossy(&wanted)))
+            self.error(
+                0,
+                "no such box",
+                format!("a box `{}`", String::from_utf8_lossy(&wanted)),
+            )
         })
     }
 
     fn u16(self, at: usize) -> Result<u16, RecordError> {
         let bytes = self.bytes.get(at..).and_then(<[u8]>::first_chunk);
-        bytes.map(|b| u16::from_be_bytes(*b)).ok_or_else(|| self.error(at, "the end of the box", "2 bytes more"))
+        bytes
+            .map(|b| u16::from_be_bytes(*b))
+            .ok_or_else(|| self.error(at, "the end of the box", "2 bytes more"))
     }
 
     fn u32(self, at: usize) -> Result<u32, RecordError> {
         let bytes = self.bytes.get(at..).and_then(<[u8]>::first_chunk);
-        bytes.map(|b| u32::from_be_bytes(*b)).ok_or_else(|| self.error(at, "the end of the box", "4 bytes more"))
+        bytes
+            .map(|b| u32::from_be_bytes(*b))
+            .ok_or_else(|| self.error(at, "the end of the box", "4 bytes more"))
     }
 
     fn u64(self, at: usize) -> Result<u64, RecordError> {
@@ -129,7 +170,11 @@ impl<'a> Span<'a> {
         let bytes = &self.bytes[at + 4..];
         if count * size as u64 > bytes.len() as u64 {
             let room = bytes.len() / size;
-            return Err(self.error(at, format!("{count} entries"), format!("at most the {room} that the box holds")));
+            return Err(self.error(
+                at,
+                format!("{count} entries"),
+                format!("at most the {room} that the box holds"),
+            ));
         }
         Ok(bytes[..count as usize * size].chunks_exact(size))
     }
@@ -159,19 +204,42 @@ fn track(mdia: Span, file_length: u64) -> Result<Movie, RecordError> {
     }
     let stbl = mdia.find(*b"minf")?.find(*b"stbl")?;
     let stsd = stbl.find(*b"stsd")?;
-    let entries = Span { start: stsd.start + 8, bytes: stsd.bytes.get(8..).unwrap_or_default(), ..stsd };
-    let (codec, entry) = entries.boxes()?.into_iter().next().ok_or_else(|| stsd.error(4, "no coding", "one"))?;
-    let (width, height) = (u32::from(entry.u16(24)?), u32::from(entry.u16(26)?));
-    let parts = Span { start: entry.start + 78, bytes: entry.bytes.get(78..).unwrap_or_default(), ..entry };
-    let config = if &codec == b"avc1" {
-        let record = parts.find(*b"avcC")?;
-        let config = AvcConfig::from_record(record.bytes);
-        Some(config.ok_or_else(|| record.error(0, "broken parameter sets", "an SPS and a PPS, four-byte lengths"))?)
-    } else {
-        None
+    let entries = Span {
+        start: stsd.start + 8,
+        bytes: stsd.bytes.get(8..).unwrap_or_default(),
+        ..stsd
     };
+    let (codec, entry) = entries
+        .boxes()?
+        .into_iter()
+        .next()
+        .ok_or_else(|| stsd.error(4, "no coding", "one"))?;
+    let (width, height) = (u32::from(entry.u16(24)?), u32::from(entry.u16(26)?));
+    let parts = Span {
+        start: entry.start + 78,
+        bytes: entry.bytes.get(78..).unwrap_or_default(),
+        ..entry
+    };
+    let config =
+        if &codec == b"avc1" {
+            let record = parts.find(*b"avcC")?;
+            let config = AvcConfig::from_record(record.bytes);
+            Some(config.ok_or_else(|| {
+                record.error(0, "broken parameter sets", "an SPS and a PPS, four-byte lengths")
+            })?)
+        } else {
+            None
+        };
     let frames = frames(stbl, file_length)?;
-    Ok(Movie { width, height, ticks_per_second, duration_ticks, codec, config, frames })
+    Ok(Movie {
+        width,
+        height,
+        ticks_per_second,
+        duration_ticks,
+        codec,
+        config,
+        frames,
+    })
 }
 
 /// Start and length of every frame, by the three tables that say so together.
@@ -180,7 +248,11 @@ fn frames(stbl: Span, file_length: u64) -> Result<Vec<(u64, u32)>, RecordError> 
     let stsz = stbl.find(*b"stsz")?;
     let (uniform, count) = (stsz.u32(4)?, stsz.u32(8)?);
     if uniform != 0 && u64::from(uniform) * u64::from(count) > file_length {
-        return Err(stsz.error(8, format!("{count} frames of {uniform} bytes"), "no more than the file holds"));
+        return Err(stsz.error(
+            8,
+            format!("{count} frames of {uniform} bytes"),
+            "no more than the file holds",
+        ));
     }
     let sizes: Vec<u32> = if uniform == 0 {
         stsz.table(8, 4)?.map(|entry| word(entry, 0)).collect()
@@ -197,8 +269,10 @@ fn frames(stbl: Span, file_length: u64) -> Result<Vec<(u64, u32)>, RecordError> 
             .collect(),
     };
     let stsc = stbl.find(*b"stsc")?;
-    let runs: Vec<(u64, u32)> =
-        stsc.table(4, 12)?.map(|entry| (u64::from(word(entry, 0)), word(entry, 4))).collect();
+    let runs: Vec<(u64, u32)> = stsc
+        .table(4, 12)?
+        .map(|entry| (u64::from(word(entry, 0)), word(entry, 4)))
+        .collect();
 
     let mut frames = Vec::with_capacity(sizes.len());
     let mut run = 0;
@@ -210,7 +284,10 @@ fn frames(stbl: Span, file_length: u64) -> Result<Vec<(u64, u32)>, RecordError> 
         let in_chunk = runs.get(run).map_or(0, |run| run.1) as usize;
         let first = frames.len();
         for &size in &sizes[first..first.saturating_add(in_chunk).min(sizes.len())] {
-            if at.checked_add(u64::from(size)).is_none_or(|end| end > file_length) {
+            if at
+                .checked_add(u64::from(size))
+                .is_none_or(|end| end > file_length)
+            {
                 let found = format!("frame {} at byte {at}, {size} bytes long", frames.len());
                 return Err(stsz.error(0, found, format!("one inside the file of {file_length} bytes")));
             }

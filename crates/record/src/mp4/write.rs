@@ -46,12 +46,21 @@ impl<W: Write + Seek> Mp4Writer<W> {
         out.write_all(b"mdat")?;
         out.write_all(&16_u64.to_be_bytes())?;
         let position = mdat_start + 16;
-        Ok(Self { out, track, mdat_start, position, sizes: Vec::new(), chunks: Vec::new(), keys: Vec::new() })
+        Ok(Self {
+            out,
+            track,
+            mdat_start,
+            position,
+            sizes: Vec::new(),
+            chunks: Vec::new(),
+            keys: Vec::new(),
+        })
     }
 
     /// Appends one coded frame.
     pub(crate) fn write_frame(&mut self, sample: &[u8], key: bool) -> io::Result<()> {
-        let size = u32::try_from(sample.len()).map_err(|_| io::Error::other("a coded frame of over 4 GiB"))?;
+        let size =
+            u32::try_from(sample.len()).map_err(|_| io::Error::other("a coded frame of over 4 GiB"))?;
         self.out.write_all(sample)?;
         if (self.sizes.len() as u32).is_multiple_of(FRAMES_PER_CHUNK) {
             self.chunks.push(self.position);
@@ -69,13 +78,19 @@ impl<W: Write + Seek> Mp4Writer<W> {
         let moov = self.moov(config);
         self.out.write_all(&moov)?;
         self.out.seek(SeekFrom::Start(self.mdat_start + 8))?;
-        self.out.write_all(&(self.position - self.mdat_start).to_be_bytes())?;
+        self.out
+            .write_all(&(self.position - self.mdat_start).to_be_bytes())?;
         self.out.flush()?;
         Ok((self.out, self.position + moov.len() as u64))
     }
 
     fn moov(&self, config: &AvcConfig) -> Vec<u8> {
-        let Track { width, height, ticks_per_second, ticks_per_frame } = self.track;
+        let Track {
+            width,
+            height,
+            ticks_per_second,
+            ticks_per_frame,
+        } = self.track;
         let duration = self.sizes.len() as u64 * u64::from(ticks_per_frame);
         let mvhd = full(b"mvhd", 1, 0, |b| {
             b.extend([0; 16]); // No times of creation: the same pictures give the same file.
@@ -124,7 +139,12 @@ impl<W: Write + Seek> Mp4Writer<W> {
     }
 
     fn stbl(&self, config: &AvcConfig) -> Vec<u8> {
-        let Track { width, height, ticks_per_frame, .. } = self.track;
+        let Track {
+            width,
+            height,
+            ticks_per_frame,
+            ..
+        } = self.track;
         let frames = self.sizes.len() as u32;
         let avc1 = leaf(b"avc1", |b| {
             b.extend([0, 0, 0, 0, 0, 0, 0, 1]);
@@ -148,7 +168,9 @@ impl<W: Write + Seek> Mp4Writer<W> {
             b.extend(avc1);
         });
         let stts = full(b"stts", 0, 0, |b| numbers(b, 1, [frames, ticks_per_frame]));
-        let stss = full(b"stss", 0, 0, |b| numbers(b, self.keys.len(), self.keys.iter().copied()));
+        let stss = full(b"stss", 0, 0, |b| {
+            numbers(b, self.keys.len(), self.keys.iter().copied())
+        });
         let rest = frames % FRAMES_PER_CHUNK;
         let whole_chunks = frames / FRAMES_PER_CHUNK;
         let mut runs = Vec::new();
@@ -164,7 +186,9 @@ impl<W: Write + Seek> Mp4Writer<W> {
             numbers(b, self.sizes.len(), self.sizes.iter().copied());
         });
         let offsets = if self.position <= u64::from(u32::MAX) {
-            full(b"stco", 0, 0, |b| numbers(b, self.chunks.len(), self.chunks.iter().map(|&at| at as u32)))
+            full(b"stco", 0, 0, |b| {
+                numbers(b, self.chunks.len(), self.chunks.iter().map(|&at| at as u32))
+            })
         } else {
             full(b"co64", 0, 0, |b| {
                 numbers(b, self.chunks.len(), []);
@@ -201,7 +225,9 @@ fn nest(kind: &[u8; 4], parts: &[Vec<u8>]) -> Vec<u8> {
 /// A table: how many entries, then the numbers.
 fn numbers(bytes: &mut Vec<u8>, count: usize, values: impl IntoIterator<Item = u32>) {
     bytes.extend((count as u32).to_be_bytes());
-    values.into_iter().for_each(|value| bytes.extend(value.to_be_bytes()));
+    values
+        .into_iter()
+        .for_each(|value| bytes.extend(value.to_be_bytes()));
 }
 
 /// Neither turned nor scaled: 1, 1 as 16.16 and 1 as 2.30 on the diagonal.

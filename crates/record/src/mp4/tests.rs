@@ -1,0 +1,105 @@
+use super::{AvcConfig, Mp4Writer, Track, parse};
+use crate::RecordError;
+use std::fs::{self, File};
+use std::io::Cursor;
+use std::path::Path;
+
+const TRACK: Track = Track {
+    width: 64,
+    height: 32,
+    ticks_per_second: 12_000,
+    ticks_per_frame: 400,
+};
+
+fn config() -> AvcConfig {
+    AvcConfig {
+        sps: vec![0x67, 66, 0xC0, 31, 9],
+        pps: vec![0x68, 1],
+    }
+}
+
+fn film(frames: usize) -> Vec<u8> {
+    let mut writer = Mp4Writer::new(Cursor::new(Vec::new()), TRACK).unwrap();
+    for frame in 0..frames {
+        writer
+            .write_frame(&vec![frame as u8; 10 + frame], frame % 10 == 0)
+            .unwrap();
+    }
+    let (cursor, length) = writer.finish(&config()).unwrap();
+    assert_eq!(cursor.get_ref().len() as u64, length);
+    cursor.into_inner()
+}
+
+fn parse_bytes(bytes: &[u8]) -> Result<super::Movie, RecordError> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("film.mp4");
+    fs::write(&path, bytes).unwrap();
+    parse(&path, &mut File::open(&path).unwrap())
+}
+
+#[test]
+fn every_frame_is_found_again() {
+    // None, one, one chunk, one more, two chunks, and some more.
+    for count in [0, 1, 16, 17, 32, 50] {
+        let bytes = film(count);
+        let movie = parse_bytes(&bytes).unwrap();
+        assert_eq!((movie.width, movie.height, movie.frames.len()), (64, 32, count));
+        assert_eq!(
+            (movie.ticks_per_second, movie.duration_ticks),
+            (12_000, 400 * count as u64)
+        );
+        assert_eq!(movie.config, Some(config()));
+        for (frame, &(offset, size)) in movie.frames.iter().enumerate() {
+            assert_eq!(
+                &bytes[offset as usize..][..size as usize],
+                vec![frame as u8; 10 + frame]
+            );
+        }
+    }
+}
+
+#[test]
+fn a_cut_film_is_refused_at_every_length() {
+    let bytes = film(20);
+    for length in 0..bytes.len() {
+        let error = parse_bytes(&bytes[..length]).unwrap_err();
+        assert!(
+            error.is_request() && error.to_string().contains("film.mp4"),
+            "{length}: {error}"
+        );
+    }
+}
+
+/// Any one byte of the tables set to the extremes: an answer or an error, never a panic or a large allocation.
+#[test]
+fn broken_tables_are_survived() {
+    let bytes = film(20);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("film.mp4");
+    let mut refused = 0;
+    for at in (0..40).chain(bytes.len() - 900..bytes.len()) {
+        for value in [0, 0x7F, 0xFF] {
+            let mut broken = bytes.clone();
+            broken[at] = value;
+            fs::write(&path, &broken).unwrap();
+            refused += usize::from(parse(&path, &mut File::open(&path).unwrap()).is_err());
+        }
+    }
+    // Most of a file's bytes are in the names and counts that are checked.
+    assert!(refused > 500, "{refused}");
+}
+
+#[test]
+fn other_files_are_refused_by_their_first_bytes() {
+    for bytes in [
+        &b""[..],
+        b"x",
+        b"RIFF1234WAVEfmt ",
+        b"\x89PNG\r\n\x1a\n0000IHDR",
+        &[0; 64],
+    ] {
+        assert!(parse_bytes(bytes).unwrap_err().is_request());
+    }
+    let missing = Path::new("no/such/film.mp4");
+    assert!(matches!(crate::read_film(missing), Err(RecordError::Io { .. })));
+}
