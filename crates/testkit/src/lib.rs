@@ -1,1 +1,7 @@
-//! For tests alone: image comparison, tiny scenes, a test device and negative controls.
+//! For tests alone: comparison of pictures, the folder of real files, and what to do without an adapter.
+
+mod compare;
+mod data;
+
+pub use compare::{Flip, flip, mean_color, psnr_db};
+pub use data::{data_dir, skip_without_adapter};

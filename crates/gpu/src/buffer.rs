@@ -1,0 +1,76 @@
+//! Buffers that grow and are written whole.
+
+use bytemuck::Pod;
+
+/// A buffer of `T` that is written whole and grows when more is written than it holds.
+#[derive(Debug)]
+pub struct GrowBuffer<T> {
+    label: &'static str,
+    usage: wgpu::BufferUsages,
+    buffer: wgpu::Buffer,
+    len: usize,
+    _of: std::marker::PhantomData<T>,
+}
+
+impl<T: Pod> GrowBuffer<T> {
+    /// An empty buffer that can be used as `usage` says; it can always be written.
+    pub fn new(device: &wgpu::Device, label: &'static str, usage: wgpu::BufferUsages) -> Self {
+        let usage = usage | wgpu::BufferUsages::COPY_DST;
+        let buffer = make(device, label, usage, size_of::<T>().max(16) as u64);
+        Self {
+            label,
+            usage,
+            buffer,
+            len: 0,
+            _of: std::marker::PhantomData,
+        }
+    }
+
+    /// Makes room for `len` items without writing any. Returns whether the buffer is a new one, so that bind
+    /// groups of the old one must be made again.
+    pub fn reserve(&mut self, device: &wgpu::Device, len: usize) -> bool {
+        self.len = len;
+        let size = ((len * size_of::<T>()).max(16) as u64).next_multiple_of(16);
+        if size <= self.buffer.size() {
+            return false;
+        }
+        // Grow by half as much again, so that a slider does not make a new buffer at every step.
+        let limit = device.limits().max_buffer_size;
+        let grown = (size + size / 2).next_multiple_of(16).min(limit).max(size);
+        self.buffer = make(device, self.label, self.usage, grown);
+        true
+    }
+
+    /// Writes `items` as the whole content. Returns as [`Self::reserve`].
+    pub fn write(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, items: &[T]) -> bool {
+        let new = self.reserve(device, items.len());
+        if !items.is_empty() {
+            queue.write_buffer(&self.buffer, 0, bytemuck::cast_slice(items));
+        }
+        new
+    }
+
+    /// The buffer.
+    pub fn raw(&self) -> &wgpu::Buffer {
+        &self.buffer
+    }
+
+    /// Items that were last written or reserved.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Whether nothing was written.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+}
+
+fn make(device: &wgpu::Device, label: &str, usage: wgpu::BufferUsages, size: u64) -> wgpu::Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size,
+        usage,
+        mapped_at_creation: false,
+    })
+}

@@ -1,0 +1,58 @@
+//! Reading textures back.
+
+use crate::{Gpu, GpuError};
+
+/// Reads a texture of four bytes a pixel back; rows from the top, tightly packed, into `out`.
+///
+/// # Errors
+/// The device is lost or the buffer cannot be mapped.
+pub fn read_texture_rgba8(gpu: &Gpu, texture: &wgpu::Texture, out: &mut Vec<u8>) -> Result<(), GpuError> {
+    let (width, height) = (texture.width(), texture.height());
+    let row = width * 4;
+    let padded_row = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("readback"),
+        size: u64::from(padded_row) * u64::from(height),
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let mut encoder = gpu
+        .device
+        .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    encoder.copy_texture_to_buffer(
+        texture.as_image_copy(),
+        wgpu::TexelCopyBufferInfo {
+            buffer: &buffer,
+            layout: wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(padded_row),
+                rows_per_image: None,
+            },
+        },
+        texture.size(),
+    );
+    gpu.queue.submit([encoder.finish()]);
+    let (sender, receiver) = std::sync::mpsc::sync_channel(1);
+    buffer.map_async(wgpu::MapMode::Read, .., move |result| {
+        let _ = sender.send(result);
+    });
+    let failed = |reason: String| GpuError::Readback(reason);
+    gpu.device
+        .poll(wgpu::PollType::wait_indefinitely())
+        .map_err(|error| failed(error.to_string()))?;
+    receiver
+        .recv()
+        .map_err(|error| failed(error.to_string()))?
+        .map_err(|error| failed(error.to_string()))?;
+    out.clear();
+    {
+        let bytes = buffer
+            .get_mapped_range(..)
+            .map_err(|error| failed(error.to_string()))?;
+        for line in bytes.chunks_exact(padded_row as usize) {
+            out.extend_from_slice(&line[..row as usize]);
+        }
+    }
+    buffer.unmap();
+    Ok(())
+}

@@ -1,0 +1,121 @@
+//! Shaders composed of parts, with errors that name the part and its line.
+
+use crate::GpuError;
+
+/// One file of WGSL.
+#[derive(Clone, Copy, Debug)]
+pub struct ShaderPart {
+    /// Its path, as errors name it.
+    pub name: &'static str,
+    /// Its text.
+    pub text: &'static str,
+}
+
+/// A shader made of parts that follow each other.
+#[derive(Clone, Debug)]
+pub struct ShaderSource {
+    parts: Vec<ShaderPart>,
+    text: String,
+}
+
+impl ShaderSource {
+    /// Joins `parts` in their order.
+    pub fn new(parts: &[ShaderPart]) -> Self {
+        let text = parts.iter().flat_map(|part| [part.text, "\n"]).collect();
+        Self {
+            parts: parts.to_vec(),
+            text,
+        }
+    }
+
+    /// The whole text.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The part and the line in it (from 1) of line `line` (from 1) of the whole.
+    fn locate(&self, line: usize) -> (&'static str, usize) {
+        let mut first = 1;
+        for part in &self.parts {
+            let lines = part.text.lines().count().max(1) + usize::from(part.text.ends_with('\n'));
+            if line < first + lines {
+                return (part.name, line + 1 - first);
+            }
+            first += lines;
+        }
+        self.parts.last().map_or(("", line), |part| (part.name, line))
+    }
+}
+
+/// Parses and validates a shader; needs no device.
+///
+/// # Errors
+/// The part, the line and the reason.
+pub fn check_shader(source: &ShaderSource) -> Result<naga::Module, GpuError> {
+    let module = naga::front::wgsl::parse_str(&source.text).map_err(|error| {
+        let line = error
+            .location(&source.text)
+            .map_or(1, |at| at.line_number as usize);
+        let (name, line) = source.locate(line);
+        GpuError::Shader(format!("{name}, line {line}: {}", error.message()))
+    })?;
+    // `pack2x16float` and its inverse are part of core WebGPU; every adapter has them.
+    let capabilities =
+        naga::valid::Capabilities::default() | naga::valid::Capabilities::SHADER_FLOAT16_IN_FLOAT32;
+    let mut validator = naga::valid::Validator::new(naga::valid::ValidationFlags::all(), capabilities);
+    validator.validate(&module).map_err(|error| {
+        let span = error
+            .spans()
+            .next()
+            .map_or(1, |(span, _)| span.location(&source.text).line_number as usize);
+        let (name, line) = source.locate(span);
+        let mut reason = error.as_inner().to_string();
+        let mut cause = std::error::Error::source(error.as_inner());
+        while let Some(deeper) = cause {
+            reason = format!("{reason}: {deeper}");
+            cause = deeper.source();
+        }
+        GpuError::Shader(format!("{name}, line {line}: {reason}"))
+    })?;
+    Ok(module)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GOOD: ShaderPart = ShaderPart {
+        name: "good.wgsl",
+        text: "const A: f32 = 1.0;\nconst B: f32 = 2.0;\n",
+    };
+
+    #[test]
+    fn a_good_shader_passes() {
+        let source = ShaderSource::new(&[GOOD]);
+        check_shader(&source).expect("valid");
+    }
+
+    #[test]
+    fn an_error_names_the_part_and_its_own_line() {
+        let bad = ShaderPart {
+            name: "bad.wgsl",
+            text: "const C: f32 = A;\n\nconst D: f32 = Missing;\n",
+        };
+        let error = check_shader(&ShaderSource::new(&[GOOD, bad]))
+            .expect_err("unknown name")
+            .to_string();
+        assert!(error.starts_with("bad.wgsl, line 3:"), "{error}");
+    }
+
+    #[test]
+    fn a_validation_error_names_the_part_too() {
+        let bad = ShaderPart {
+            name: "types.wgsl",
+            text: "fn f() -> f32 {\n    return 1u;\n}\n",
+        };
+        let error = check_shader(&ShaderSource::new(&[GOOD, bad]))
+            .expect_err("wrong type")
+            .to_string();
+        assert!(error.starts_with("types.wgsl, line"), "{error}");
+    }
+}

@@ -1,0 +1,80 @@
+//! The camera.
+
+use glam::{Mat4, Vec3, camera::rh};
+
+/// Distance of the near plane, metres: closer than any view of a head needs.
+pub(crate) const NEAR_METRES: f32 = 0.02;
+
+/// A pinhole camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// Where it is, world space, metres.
+    pub eye: Vec3,
+    /// What it looks at, world space, metres; not the same as `eye`.
+    pub target: Vec3,
+    /// Vertical field of view, radians, between 0 and π.
+    pub fov_y: f32,
+}
+
+impl Camera {
+    /// Carries world space to view space: right-handed, looking along -Z.
+    pub fn view_from_world(&self) -> Mat4 {
+        let forward = (self.target - self.eye).normalize_or(Vec3::NEG_Z);
+        let up = if forward.y.abs() > 0.999 { Vec3::Z } else { Vec3::Y };
+        rh::view::look_at_mat4(self.eye, self.eye + forward, up)
+    }
+
+    /// Carries world space to clip space; depth is 1 at the near plane and falls to 0 at infinity.
+    pub fn clip_from_world(&self, aspect: f32) -> Mat4 {
+        let fov_y = self.fov_y.clamp(0.01, 3.0);
+        rh::proj::directx::perspective_infinite_reverse(fov_y, aspect.max(1e-3), NEAR_METRES)
+            * self.view_from_world()
+    }
+
+    /// Pixels that one metre covers at a distance of one metre, for a picture of `height` pixels.
+    pub fn pixels_per_metre_at_one_metre(&self, height: u32) -> f32 {
+        height as f32 * 0.5 / (self.fov_y.clamp(0.01, 3.0) * 0.5).tan()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn depth_is_one_at_the_near_plane_and_falls() {
+        let camera = Camera {
+            eye: Vec3::new(0.0, 1.0, 2.0),
+            target: Vec3::new(0.0, 1.0, 0.0),
+            fov_y: 0.6,
+        };
+        let clip = camera.clip_from_world(1.5);
+        let depth = |z: f32| {
+            let p = clip * Vec3::new(0.0, 1.0, 2.0 - z).extend(1.0);
+            p.z / p.w
+        };
+        assert!((depth(NEAR_METRES) - 1.0).abs() < 1e-4);
+        assert!(depth(1.0) > depth(2.0) && depth(2.0) > 0.0);
+    }
+
+    #[test]
+    fn the_target_is_in_the_middle_and_the_fov_is_vertical() {
+        let camera = Camera {
+            eye: Vec3::new(1.0, 1.0, 2.0),
+            target: Vec3::ZERO,
+            fov_y: 0.5,
+        };
+        let clip = camera.clip_from_world(2.0) * Vec3::ZERO.extend(1.0);
+        assert!(clip.x.abs() < 1e-5 && clip.y.abs() < 1e-5);
+        let level = Camera {
+            eye: Vec3::Z,
+            target: Vec3::ZERO,
+            fov_y: 0.5,
+        };
+        let top = level.clip_from_world(2.0) * Vec3::new(0.0, 0.25_f32.tan(), 0.0).extend(1.0);
+        assert!(
+            (top.y / top.w - 1.0).abs() < 1e-5,
+            "half the angle reaches the upper edge"
+        );
+    }
+}

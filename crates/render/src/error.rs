@@ -1,0 +1,19 @@
+//! What can go wrong with a picture.
+
+/// Why a picture could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum RenderError {
+    /// The graphics device refused or is gone.
+    #[error(transparent)]
+    Gpu(#[from] lovelock_gpu::GpuError),
+    /// The asked size is out of range.
+    #[error("a picture of {width}x{height} pixels is out of range: each side must be 1 to {limit}")]
+    Size {
+        /// The width asked for, pixels.
+        width: u32,
+        /// The height asked for, pixels.
+        height: u32,
+        /// The longest side that the device can draw.
+        limit: u32,
+    },
+}

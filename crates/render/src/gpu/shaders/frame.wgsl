@@ -1,0 +1,82 @@
+// What every pass knows of the picture. Twin of `FrameUniform` and `LightUniform` in uniform.rs.
+
+const MAX_LIGHTS: u32 = 4u;
+
+struct LightUniform {
+    // The way the light travels; w is how much of it makes highlights.
+    direction_specular: vec4f,
+    // Colour times intensity; w is the blur of the body's shadow in texels of its map.
+    radiance_blur: vec4f,
+    // To the clip space of the body's depth map, z in 0..1.
+    shadow_from_world: mat4x4f,
+    // To the texture of what light the hair lets through, for surfaces behind all hair; z and w are unused.
+    columns_from_world: mat4x4f,
+}
+
+struct FrameUniform {
+    clip_from_world: mat4x4f,
+    world_from_clip: mat4x4f,
+    // w: number of lights.
+    eye_lights: vec4f,
+    // Size in pixels, pixels that a metre covers at one metre, exposure as a factor.
+    size_scale_exposure: vec4f,
+    // Light from above; w: 1 where the ground is drawn.
+    ambient_up_ground: vec4f,
+    // Light from below; w: texels of the body's depth maps.
+    ambient_down_texels: vec4f,
+    background_top: vec4f,
+    background_bottom: vec4f,
+    // Absorption of the hair; w: variation between strands.
+    absorption_variation: vec4f,
+    // Full width of a drawn strand in metres, opacity, tip lightening, colour on the scalp.
+    width_opacity_tip_scalp: vec4f,
+    // Strength of the first and second highlight, their exponents.
+    highlights: vec4f,
+    lights: array<LightUniform, 4>,
+}
+
+@group(0) @binding(0) var<uniform> frame: FrameUniform;
+@group(0) @binding(1) var body_depth: texture_depth_2d_array;
+@group(0) @binding(2) var compare: sampler_comparison;
+@group(0) @binding(3) var hair_columns: texture_2d_array<f32>;
+@group(0) @binding(4) var linear_clamp: sampler;
+
+fn light_count() -> u32 {
+    return min(u32(frame.eye_lights.w), MAX_LIGHTS);
+}
+
+// Share of light `i` that the body lets through to `p`, which is moved `bias` metres toward the light first.
+fn body_light(i: u32, p: vec3f, bias: f32, taps: u32) -> f32 {
+    let light = frame.lights[i];
+    let at = light.shadow_from_world * vec4f(p - light.direction_specular.xyz * bias, 1.0);
+    let uv = at.xy * vec2f(0.5, -0.5) + 0.5;
+    if (any(uv < vec2f(0.0)) || any(uv > vec2f(1.0))) {
+        return 1.0;
+    }
+    if (taps <= 1u) {
+        return textureSampleCompareLevel(body_depth, compare, uv, i, at.z);
+    }
+    // A golden-angle disc: even at any number of taps, and the same for every pixel, so it never shimmers.
+    let radius = max(light.radiance_blur.w, 1.0) / frame.ambient_down_texels.w;
+    var sum = 0.0;
+    for (var k = 0u; k < taps; k++) {
+        let angle = 2.3999632 * f32(k);
+        let r = radius * sqrt((f32(k) + 0.5) / f32(taps));
+        sum += textureSampleCompareLevel(body_depth, compare, uv + r * vec2f(cos(angle), sin(angle)), i, at.z);
+    }
+    return sum / f32(taps);
+}
+
+// Share of light `i` that all hair on the way lets through, for a point behind all of it.
+fn columns_light(i: u32, p: vec3f) -> f32 {
+    let uv = (frame.lights[i].columns_from_world * vec4f(p, 1.0)).xy;
+    if (any(uv < vec2f(0.0)) || any(uv > vec2f(1.0))) {
+        return 1.0;
+    }
+    return textureSampleLevel(hair_columns, linear_clamp, uv, i, 0.0).r;
+}
+
+// Light from everywhere that reaches a surface with normal `n`.
+fn ambient(n: vec3f) -> vec3f {
+    return mix(frame.ambient_down_texels.xyz, frame.ambient_up_ground.xyz, 0.5 + 0.5 * n.y);
+}

@@ -1,0 +1,87 @@
+// Projects and shades every strand point once.
+
+struct ShadedPoint {
+    // Pixels from the left and top, depth.
+    at: vec3f,
+    // Half of the strand's width in pixels; negative where the point must not be drawn.
+    half_width: f32,
+    // Unit vector across the strand on the screen.
+    across: vec2f,
+    // Colour as four half floats; the fourth is a hash of the strand in 0..1.
+    color: vec2u,
+}
+
+@group(1) @binding(0) var<storage, read> points: array<vec4f>;       // position; w holds four 8-bit transmittances
+@group(1) @binding(1) var<storage, read> details: array<u32>;        // see `pack_detail` in hair.rs
+@group(1) @binding(2) var<storage, read_write> shaded: array<ShadedPoint>;
+
+struct Projected { pixel: vec2f, depth: f32, w: f32 }
+
+fn project(p: vec3f) -> Projected {
+    let clip = frame.clip_from_world * vec4f(p, 1.0);
+    let w = max(clip.w, 1e-4);
+    let ndc = clip.xyz / w;
+    let pixel = (ndc.xy * vec2f(0.5, -0.5) + 0.5) * frame.size_scale_exposure.xy;
+    return Projected(pixel, ndc.z, clip.w);
+}
+
+@compute @workgroup_size(64)
+fn shade_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    let i = id.x + id.y * groups.x * 64u;
+    if (i >= arrayLength(&details)) {
+        return;
+    }
+    let detail = details[i];
+    let taper = f32(detail & 0xffu) / 255.0;
+    let along = f32((detail >> 8u) & 0xffu) / 255.0;
+    let shade = f32((detail >> 16u) & 0xffu) / 255.0;
+    let first = (detail >> 24u) & 1u;
+    let last = (detail >> 25u) & 1u;
+
+    let point = points[i];
+    let p = point.xyz;
+    let before = points[i - (1u - first)].xyz;
+    let after = points[i + (1u - last)].xyz;
+    var t = after - before;
+    t = t / max(length(t), 1e-9);
+
+    let here = project(p);
+    let a = project(before);
+    let b = project(after);
+    var run = b.pixel - a.pixel;
+    let run_length = length(run);
+    run = select(vec2f(0.0, 1.0), run / max(run_length, 1e-6), run_length > 1e-4);
+
+    let to_eye = frame.eye_lights.xyz - p;
+    let distance = max(length(to_eye), 1e-3);
+    let v = to_eye / distance;
+    let variation = 1.0 + frame.absorption_variation.w * (2.0 * shade - 1.0);
+    let tip = 1.0 - frame.width_opacity_tip_scalp.z * smoothstep(0.2, 1.0, along);
+    let color = strand_color(frame.absorption_variation.xyz * variation * tip);
+
+    let transmittance = unpack4x8unorm(bitcast<u32>(point.w));
+    var sum = vec3f(0.0);
+    var open = 0.0;
+    let lights = light_count();
+    for (var k = 0u; k < lights; k++) {
+        let light = frame.lights[k];
+        let lit = transmittance[k];
+        open += sqrt(lit);
+        // Roots lie on the skin: the bias keeps the skin under a strand from shadowing it.
+        let body = body_light(k, p, 0.006, 4u);
+        sum += light.radiance_blur.xyz * (lit * body)
+            * strand_light(t, -light.direction_specular.xyz, v, color, light.direction_specular.w, lit);
+    }
+    // What comes from everywhere reaches the inside through the same hair; some of it always does.
+    let inside = select(1.0, open / f32(max(lights, 1u)), lights > 0u);
+    sum += 0.5 * ambient(vec3f(0.0, 0.3, 0.0)) * color.body * (0.22 + 0.78 * inside);
+
+    let half_width = 0.5 * frame.width_opacity_tip_scalp.x * taper * frame.size_scale_exposure.z / max(here.w, 1e-3);
+    let visible = here.w > 0.02 && a.w > 0.02 && b.w > 0.02;
+    shaded[i] = ShadedPoint(
+        vec3f(here.pixel, here.depth),
+        select(-1.0, half_width, visible),
+        vec2f(-run.y, run.x),
+        vec2u(pack2x16float(sum.rg), pack2x16float(vec2f(sum.b, fract(shade * 37.0)))),
+    );
+}

@@ -1,0 +1,62 @@
+// The body, lit, with the shadow of the hair and its own.
+
+struct Vertex {
+    @location(0) position: vec3f,
+    // Transmittance of hair toward four lights, 8 bits each.
+    @location(1) hair: u32,
+    @location(2) normal: vec3f,
+    // Linear sRGB; w is 1 where hair grows.
+    @location(3) color_scalp: vec4f,
+}
+
+struct Surface {
+    @builtin(position) position: vec4f,
+    @location(0) world: vec3f,
+    @location(1) normal: vec3f,
+    @location(2) color_scalp: vec4f,
+    @location(3) hair: vec4f,
+}
+
+@vertex
+fn surface(in: Vertex) -> Surface {
+    var out: Surface;
+    out.position = frame.clip_from_world * vec4f(in.position, 1.0);
+    out.world = in.position;
+    out.normal = in.normal;
+    out.color_scalp = in.color_scalp;
+    out.hair = unpack4x8unorm(in.hair);
+    return out;
+}
+
+@fragment
+fn shade_surface(in: Surface) -> @location(0) vec4f {
+    let v = normalize(frame.eye_lights.xyz - in.world);
+    let n = normalize(in.normal);
+    // Under hair the skin is painted with the colour of the roots, so that gaps never read as baldness.
+    let root = 0.35 * exp(-1.55 * frame.absorption_variation.xyz);
+    let albedo = mix(in.color_scalp.rgb, root, 0.88 * smoothstep(0.15, 0.75, in.color_scalp.w));
+    let skin = 1.0 - in.color_scalp.w;
+    var sum = vec3f(0.0);
+    var open = 0.0;
+    let lights = light_count();
+    for (var k = 0u; k < lights; k++) {
+        let light = frame.lights[k];
+        let l = -light.direction_specular.xyz;
+        let facing = dot(n, l);
+        open += in.hair[k];
+        // Light wraps a little round skin; the shadow map is asked only where light can come.
+        let wrapped = clamp((facing + 0.12) / 1.12, 0.0, 1.0);
+        if (wrapped <= 0.0) {
+            continue;
+        }
+        let bias = 0.004 + 0.006 * (1.0 - clamp(facing, 0.0, 1.0));
+        let lit = body_light(k, in.world + n * 0.002, bias, 12u) * in.hair[k];
+        let h = normalize(l + v);
+        let gloss = 0.035 * skin * light.direction_specular.w
+            * (pow(max(dot(n, h), 0.0), 24.0) + 0.6 * pow(1.0 - max(dot(n, v), 0.0), 4.0));
+        sum += light.radiance_blur.xyz * lit * (albedo * wrapped * 0.318 + vec3f(gloss) * clamp(facing, 0.0, 1.0));
+    }
+    let inside = select(1.0, open / f32(max(lights, 1u)), lights > 0u);
+    sum += 0.5 * ambient(n) * albedo * (0.35 + 0.65 * inside);
+    return vec4f(sum, 1.0);
+}

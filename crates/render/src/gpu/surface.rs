@@ -1,0 +1,254 @@
+//! The body on the GPU: its buffers, and its depth as each light sees it.
+
+use std::sync::Arc;
+
+use bytemuck::{Pod, Zeroable};
+use glam::{Mat4, Vec3};
+use lovelock_gpu::{Gpu, GrowBuffer, wgpu};
+use lovelock_motion::{Body, Skin};
+use rayon::prelude::*;
+
+use super::pipelines::Pipelines;
+use super::targets::DEPTH_FORMAT;
+use super::uniform::LightMaps;
+use crate::MAX_LIGHTS;
+
+/// Vertex attributes that change every frame: position, transmittance of hair, normal.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+struct Moving {
+    position: [f32; 3],
+    hair: u32,
+    normal: [f32; 3],
+    pad: u32,
+}
+
+/// Colour, and 1 where hair grows.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+struct Fixed([f32; 4]);
+
+/// The body's buffers and depth maps.
+#[derive(Debug)]
+pub(super) struct SurfaceBuffers {
+    body: Option<Arc<Body>>,
+    moving: GrowBuffer<Moving>,
+    fixed: GrowBuffer<Fixed>,
+    indices: GrowBuffer<u32>,
+    staging: Vec<Moving>,
+    /// The depth maps of all lights, as a texture array.
+    pub depth: wgpu::TextureView,
+    layers: Vec<wgpu::TextureView>,
+    uniforms: Vec<(wgpu::Buffer, wgpu::BindGroup)>,
+    /// Texels of a depth map's edge.
+    pub texels: u32,
+}
+
+impl SurfaceBuffers {
+    pub fn new(gpu: &Gpu, pipelines: &Pipelines) -> Self {
+        let device = &gpu.device;
+        // One millimetre of a standing figure a texel on a card; twice that where the processor draws.
+        let texels = if gpu.is_software() { 1024 } else { 2048 };
+        let texture = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("body depth"),
+            size: wgpu::Extent3d {
+                width: texels,
+                height: texels,
+                depth_or_array_layers: MAX_LIGHTS as u32,
+            },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: DEPTH_FORMAT,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
+        let layers = (0..MAX_LIGHTS as u32)
+            .map(|layer| {
+                texture.create_view(&wgpu::TextureViewDescriptor {
+                    dimension: Some(wgpu::TextureViewDimension::D2),
+                    base_array_layer: layer,
+                    array_layer_count: Some(1),
+                    ..Default::default()
+                })
+            })
+            .collect();
+        let depth = texture.create_view(&wgpu::TextureViewDescriptor {
+            dimension: Some(wgpu::TextureViewDimension::D2Array),
+            ..Default::default()
+        });
+        let uniforms = (0..MAX_LIGHTS)
+            .map(|_| {
+                let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+                    label: Some("depth pass"),
+                    size: 64,
+                    usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                    mapped_at_creation: false,
+                });
+                let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+                    label: Some("depth pass"),
+                    layout: &pipelines.depth_layout,
+                    entries: &[wgpu::BindGroupEntry {
+                        binding: 0,
+                        resource: buffer.as_entire_binding(),
+                    }],
+                });
+                (buffer, group)
+            })
+            .collect();
+        let vertex = wgpu::BufferUsages::VERTEX;
+        Self {
+            body: None,
+            moving: GrowBuffer::new(device, "body surface", vertex),
+            fixed: GrowBuffer::new(device, "body colours", vertex),
+            indices: GrowBuffer::new(device, "body triangles", wgpu::BufferUsages::INDEX),
+            staging: Vec::new(),
+            depth,
+            layers,
+            uniforms,
+            texels,
+        }
+    }
+
+    /// Writes one frame; `hair` holds one packed word of transmittances a vertex.
+    pub fn write(&mut self, gpu: &Gpu, body: Option<(&Arc<Body>, &Skin)>, hair: &[u32]) {
+        let (device, queue) = (&gpu.device, &gpu.queue);
+        let Some((body, skin)) = body else {
+            self.body = None;
+            self.indices.reserve(device, 0);
+            return;
+        };
+        if !self.body.as_ref().is_some_and(|old| Arc::ptr_eq(old, body)) {
+            let mesh = &body.mesh;
+            let fixed: Vec<_> = (0..mesh.positions.len())
+                .map(|i| {
+                    let color = mesh.colors.get(i).copied().unwrap_or(Vec3::splat(0.5));
+                    Fixed([
+                        color.x,
+                        color.y,
+                        color.z,
+                        mesh.scalp.get(i).copied().unwrap_or(0.0),
+                    ])
+                })
+                .collect();
+            self.fixed.write(device, queue, &fixed);
+            self.indices.write(device, queue, mesh.triangles.as_flattened());
+            self.body = Some(Arc::clone(body));
+        }
+        skin.positions
+            .par_iter()
+            .zip(&skin.normals)
+            .zip(hair)
+            .map(|((p, n), &hair)| Moving {
+                position: p.to_array(),
+                hair,
+                normal: n.to_array(),
+                pad: 0,
+            })
+            .collect_into_vec(&mut self.staging);
+        self.moving.write(device, queue, &self.staging);
+    }
+
+    /// Draws the depth of the body for light `k`.
+    pub fn draw_depth(
+        &self,
+        gpu: &Gpu,
+        pipelines: &Pipelines,
+        encoder: &mut wgpu::CommandEncoder,
+        k: usize,
+        shadow_from_world: Mat4,
+    ) {
+        let (buffer, group) = &self.uniforms[k];
+        gpu.queue
+            .write_buffer(buffer, 0, bytemuck::bytes_of(&shadow_from_world));
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("body depth"),
+            color_attachments: &[],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &self.layers[k],
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(1.0),
+                    store: wgpu::StoreOp::Store,
+                }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        });
+        if self.indices.is_empty() {
+            return;
+        }
+        pass.set_pipeline(&pipelines.depth);
+        pass.set_bind_group(0, group, &[]);
+        pass.set_vertex_buffer(0, self.moving.raw().slice(..));
+        pass.set_index_buffer(self.indices.raw().slice(..), wgpu::IndexFormat::Uint32);
+        pass.draw_indexed(0..self.indices.len() as u32, 0, 0..1);
+    }
+
+    /// Draws the body. The frame's bind group is group 0.
+    pub fn draw(&self, pipelines: &Pipelines, pass: &mut wgpu::RenderPass, frame: &wgpu::BindGroup) {
+        if self.indices.is_empty() {
+            return;
+        }
+        pass.set_pipeline(&pipelines.surface);
+        pass.set_bind_group(0, frame, &[]);
+        pass.set_vertex_buffer(0, self.moving.raw().slice(..));
+        pass.set_vertex_buffer(1, self.fixed.raw().slice(..));
+        pass.set_index_buffer(self.indices.raw().slice(..), wgpu::IndexFormat::Uint32);
+        pass.draw_indexed(0..self.indices.len() as u32, 0, 0..1);
+    }
+}
+
+/// The orthographic view of a light that travels along `direction` over a sphere, and its texels' size.
+pub(super) fn light_view(direction: Vec3, center: Vec3, radius: f32, texels: u32) -> LightMaps {
+    let radius = radius.max(0.01);
+    let up = if direction.y.abs() > 0.99 {
+        Vec3::Z
+    } else {
+        Vec3::Y
+    };
+    let view = glam::camera::rh::view::look_at_mat4(center - direction * radius, center, up);
+    let project =
+        glam::camera::rh::proj::directx::orthographic(-radius, radius, -radius, radius, 0.0, 2.0 * radius);
+    LightMaps {
+        shadow_from_world: project * view,
+        columns_from_world: Mat4::IDENTITY,
+        metres_per_texel: 2.0 * radius / texels as f32,
+    }
+}
+
+/// A sphere round all points: the middle of their box and half of its diagonal.
+pub(super) fn bounding_sphere(points: &[Vec3]) -> (Vec3, f32) {
+    let (low, high) = points
+        .iter()
+        .filter(|p| p.is_finite())
+        .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), &p| {
+            (low.min(p), high.max(p))
+        });
+    if low.x > high.x {
+        return (Vec3::ZERO, 1.0);
+    }
+    ((low + high) * 0.5, (high - low).length() * 0.5 * 1.02)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_light_sees_its_sphere_and_depth_grows_along_the_light() {
+        let direction = Vec3::new(0.3, -0.8, 0.5).normalize_or_zero();
+        let center = Vec3::new(0.2, 0.9, -0.1);
+        let maps = light_view(direction, center, 1.2, 1024);
+        let at = |p: Vec3| maps.shadow_from_world.project_point3(p);
+        assert!(at(center).truncate().length() < 1e-5);
+        assert!((at(center).z - 0.5).abs() < 1e-5);
+        assert!(at(center + direction).z > at(center).z);
+        assert!((at(center - direction * 1.2).z).abs() < 1e-5);
+    }
+
+    #[test]
+    fn a_sphere_of_nothing_is_finite() {
+        assert_eq!(bounding_sphere(&[]), (Vec3::ZERO, 1.0));
+        assert_eq!(bounding_sphere(&[Vec3::NAN]), (Vec3::ZERO, 1.0));
+    }
+}

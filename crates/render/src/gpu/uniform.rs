@@ -1,0 +1,172 @@
+//! What every pass knows of the picture: the twin of `frame.wgsl`.
+
+use bytemuck::{Pod, Zeroable};
+use glam::{Mat4, Vec3, Vec4};
+
+use crate::{FrameInput, MAX_LIGHTS};
+
+/// Twin of `LightUniform` in `frame.wgsl`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct LightUniform {
+    pub direction_specular: Vec4,
+    pub radiance_blur: Vec4,
+    pub shadow_from_world: Mat4,
+    pub columns_from_world: Mat4,
+}
+
+/// Twin of `FrameUniform` in `frame.wgsl`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct FrameUniform {
+    pub clip_from_world: Mat4,
+    pub world_from_clip: Mat4,
+    pub eye_lights: Vec4,
+    pub size_scale_exposure: Vec4,
+    pub ambient_up_ground: Vec4,
+    pub ambient_down_texels: Vec4,
+    pub background_top: Vec4,
+    pub background_bottom: Vec4,
+    pub absorption_variation: Vec4,
+    pub width_opacity_tip_scalp: Vec4,
+    pub highlights: Vec4,
+    pub lights: [LightUniform; MAX_LIGHTS],
+}
+
+/// Where one light's maps lie.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct LightMaps {
+    pub shadow_from_world: Mat4,
+    pub columns_from_world: Mat4,
+    pub metres_per_texel: f32,
+}
+
+/// Colour of the light from above and below, before `PictureSettings::ambient`.
+const SKY: Vec3 = Vec3::new(0.62, 0.68, 0.78);
+const EARTH: Vec3 = Vec3::new(0.36, 0.33, 0.31);
+
+impl FrameUniform {
+    /// Gathers what `input` says. `maps` are those of its lights, in order.
+    pub fn new(input: &FrameInput, width: u32, height: u32, maps: &[LightMaps], shadow_texels: u32) -> Self {
+        let picture = input.picture.clamped();
+        let look = input.look;
+        let clip_from_world = input.camera.clip_from_world(width as f32 / height as f32);
+        let mut lights = [LightUniform::default(); MAX_LIGHTS];
+        let mut count = 0;
+        for (light, map) in input
+            .lights
+            .iter()
+            .filter(|light| light.enabled)
+            .take(MAX_LIGHTS)
+            .zip(maps)
+        {
+            let light = light.clamped();
+            lights[count] = LightUniform {
+                direction_specular: light.direction.extend(light.specular),
+                radiance_blur: (light.color * light.intensity)
+                    .extend(light.softness / map.metres_per_texel.max(1e-6)),
+                shadow_from_world: map.shadow_from_world,
+                columns_from_world: map.columns_from_world,
+            };
+            count += 1;
+        }
+        let scale = input.camera.pixels_per_metre_at_one_metre(height);
+        let exponents = highlight_exponents(look.roughness);
+        let opacity = picture.strand_opacity;
+        let strand_width = look.shadow_width(input.style.strands.count()) * look.width_scale.clamp(0.01, 4.0);
+        Self {
+            clip_from_world,
+            world_from_clip: clip_from_world.inverse(),
+            eye_lights: input.camera.eye.extend(count as f32),
+            size_scale_exposure: Vec4::new(width as f32, height as f32, scale, picture.exposure_stops.exp2()),
+            ambient_up_ground: (SKY * picture.ambient).extend(f32::from(u8::from(picture.ground))),
+            ambient_down_texels: (EARTH * picture.ambient).extend(shadow_texels as f32),
+            background_top: picture.background_top.extend(1.0),
+            background_bottom: picture.background_bottom.extend(1.0),
+            absorption_variation: look.absorption().extend(look.variation.clamp(0.0, 1.0)),
+            width_opacity_tip_scalp: Vec4::new(
+                strand_width,
+                opacity,
+                look.tip_lightening.clamp(0.0, 1.0),
+                1.0,
+            ),
+            highlights: Vec4::new(
+                look.primary_strength.clamp(0.0, 4.0),
+                look.secondary_strength.clamp(0.0, 4.0),
+                exponents[0],
+                exponents[1],
+            ),
+            lights,
+        }
+    }
+}
+
+/// Exponents of the two highlights: 80 and 20 (Xu et al.) at a roughness of 0.3, falling with its square.
+fn highlight_exponents(roughness: f32) -> [f32; 2] {
+    let r = roughness.clamp(0.05, 1.0) / 0.3;
+    [80.0, 20.0].map(|k: f32| (k / (r * r)).clamp(1.0, 2000.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::mem::offset_of;
+
+    use lovelock_gpu::check_shader;
+    use naga::TypeInner;
+
+    use super::*;
+    use crate::all_shaders;
+
+    /// Offsets of the members of a structure of the composed shaders, with its size at the end.
+    fn layout_in_shader(name: &str) -> Vec<usize> {
+        let (_, source) = all_shaders().into_iter().next().expect("a shader");
+        let module = check_shader(&source).expect("valid");
+        let (_, ty) = module
+            .types
+            .iter()
+            .find(|(_, ty)| ty.name.as_deref() == Some(name))
+            .unwrap_or_else(|| panic!("no structure {name}"));
+        let TypeInner::Struct { members, span } = &ty.inner else {
+            panic!("{name} is no structure")
+        };
+        members
+            .iter()
+            .map(|m| m.offset as usize)
+            .chain([*span as usize])
+            .collect()
+    }
+
+    #[test]
+    fn structures_have_the_layout_of_the_shader() {
+        assert_eq!(
+            layout_in_shader("LightUniform"),
+            [
+                offset_of!(LightUniform, direction_specular),
+                offset_of!(LightUniform, radiance_blur),
+                offset_of!(LightUniform, shadow_from_world),
+                offset_of!(LightUniform, columns_from_world),
+                size_of::<LightUniform>(),
+            ]
+        );
+        assert_eq!(
+            layout_in_shader("FrameUniform"),
+            [
+                offset_of!(FrameUniform, clip_from_world),
+                offset_of!(FrameUniform, world_from_clip),
+                offset_of!(FrameUniform, eye_lights),
+                offset_of!(FrameUniform, size_scale_exposure),
+                offset_of!(FrameUniform, ambient_up_ground),
+                offset_of!(FrameUniform, ambient_down_texels),
+                offset_of!(FrameUniform, background_top),
+                offset_of!(FrameUniform, background_bottom),
+                offset_of!(FrameUniform, absorption_variation),
+                offset_of!(FrameUniform, width_opacity_tip_scalp),
+                offset_of!(FrameUniform, highlights),
+                offset_of!(FrameUniform, lights),
+                size_of::<FrameUniform>(),
+            ]
+        );
+        // The shaded point is written and read by shaders alone, but Rust makes room for it.
+        assert_eq!(layout_in_shader("ShadedPoint").last(), Some(&32));
+    }
+}

@@ -1,0 +1,81 @@
+//! Settings of the picture as a whole, and the finished picture.
+
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+
+use crate::Transparency;
+
+/// Settings of the picture as a whole.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct PictureSettings {
+    /// Exposure in stops relative to the default: -6 to 6.
+    pub exposure_stops: f32,
+    /// Brightness of the light that comes from everywhere: 0 to 4.
+    pub ambient: f32,
+    /// Background at the upper edge, linear sRGB.
+    pub background_top: Vec3,
+    /// Background at the horizon, linear sRGB.
+    pub background_bottom: Vec3,
+    /// Whether the ground is drawn, with the shadows on it.
+    pub ground: bool,
+    /// How overlapping strands are put together.
+    pub transparency: Transparency,
+    /// Opacity of a strand where it covers a pixel wholly: 0.05 to 1.
+    pub strand_opacity: f32,
+}
+
+impl Default for PictureSettings {
+    fn default() -> Self {
+        Self {
+            exposure_stops: 0.0,
+            ambient: 0.5,
+            background_top: Vec3::new(0.055, 0.062, 0.075),
+            background_bottom: Vec3::new(0.20, 0.215, 0.235),
+            ground: true,
+            transparency: Transparency::default(),
+            strand_opacity: 0.85,
+        }
+    }
+}
+
+impl PictureSettings {
+    /// A copy whose every value is finite and in range.
+    pub fn clamped(&self) -> Self {
+        let default = Self::default();
+        let finite = |v: f32, low: f32, high: f32, default: f32| {
+            if v.is_finite() {
+                v.clamp(low, high)
+            } else {
+                default
+            }
+        };
+        let color = |v: Vec3, d: Vec3| {
+            if v.is_finite() {
+                v.clamp(Vec3::ZERO, Vec3::splat(4.0))
+            } else {
+                d
+            }
+        };
+        Self {
+            exposure_stops: finite(self.exposure_stops, -6.0, 6.0, 0.0),
+            ambient: finite(self.ambient, 0.0, 4.0, default.ambient),
+            background_top: color(self.background_top, default.background_top),
+            background_bottom: color(self.background_bottom, default.background_bottom),
+            ground: self.ground,
+            transparency: self.transparency,
+            strand_opacity: finite(self.strand_opacity, 0.05, 1.0, default.strand_opacity),
+        }
+    }
+}
+
+/// A finished picture in the memory of the processor.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Picture {
+    /// Width, pixels.
+    pub width: u32,
+    /// Height, pixels.
+    pub height: u32,
+    /// Rows from the top, four bytes a pixel: red, green, blue (sRGB encoded) and alpha.
+    pub rgba: Vec<u8>,
+}

@@ -1,0 +1,162 @@
+//! Tiny scenes, and the device that the tests share.
+
+use std::sync::{Arc, Mutex, OnceLock};
+
+use glam::{Affine3A, Vec3};
+use lovelock_groom::{HairLook, Hairstyle, StrandSet, Strands};
+use lovelock_motion::{Body, Mesh, Skin};
+use lovelock_render::{
+    Camera, FrameInput, Gpu, Light, Picture, PictureSettings, Renderer, ShadowMethod, ShadowSettings,
+};
+
+/// The renderer that all tests of a binary share: making one takes seconds where the processor draws.
+pub fn renderer() -> Option<&'static Mutex<Renderer>> {
+    static RENDERER: OnceLock<Option<Mutex<Renderer>>> = OnceLock::new();
+    RENDERER
+        .get_or_init(|| match Gpu::open() {
+            Ok(gpu) => Some(Mutex::new(Renderer::new(gpu).expect("the shaders compile"))),
+            Err(error) => {
+                lovelock_testkit::skip_without_adapter(&error);
+                None
+            }
+        })
+        .as_ref()
+}
+
+/// A scene of some strands before a camera that looks at the origin from one metre along +Z.
+pub struct Scene {
+    pub style: Arc<Hairstyle>,
+    pub strands: Strands,
+    pub look: HairLook,
+    pub body: Option<(Arc<Body>, Skin)>,
+    pub lights: Vec<Light>,
+    pub shadow: ShadowSettings,
+    pub camera: Camera,
+    pub picture: PictureSettings,
+}
+
+impl Scene {
+    /// Draws it.
+    pub fn draw(&self, width: u32, height: u32) -> Option<Picture> {
+        let mut renderer = renderer()?
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner);
+        let mut picture = Picture {
+            width: 0,
+            height: 0,
+            rgba: Vec::new(),
+        };
+        renderer
+            .picture(&self.input(), width, height, &mut picture)
+            .expect("a picture");
+        Some(picture)
+    }
+
+    /// What the renderer takes.
+    pub fn input(&self) -> FrameInput<'_> {
+        FrameInput {
+            style: &self.style,
+            strands: &self.strands,
+            look: &self.look,
+            body: self.body.as_ref().map(|(body, skin)| (body, skin)),
+            world_from_head: Affine3A::IDENTITY,
+            lights: &self.lights,
+            shadow: &self.shadow,
+            camera: &self.camera,
+            picture: &self.picture,
+        }
+    }
+}
+
+/// Strands given as points; the style says nothing more about them than that they are there.
+pub fn scene(lines: &[Vec<Vec3>]) -> Scene {
+    let mut first_point = vec![0];
+    let mut strands = Strands::default();
+    for line in lines {
+        for p in line {
+            strands.x.push(p.x);
+            strands.y.push(p.y);
+            strands.z.push(p.z);
+        }
+        first_point.push(strands.x.len() as u32);
+    }
+    strands.first_point = first_point.as_slice().into();
+    let points = strands.x.len();
+    let set = StrandSet {
+        wisp: vec![0; lines.len()],
+        weights: vec![[1.0, 0.0, 0.0]; lines.len()],
+        first_point: first_point,
+        guide_param: vec![0.0; points],
+        offset_normal: vec![0.0; points],
+        offset_binormal: vec![0.0; points],
+        offset_tangent: vec![0.0; points],
+        taper: vec![1.0; points],
+        shade: vec![0.5; lines.len()],
+    };
+    Scene {
+        style: Arc::new(Hairstyle {
+            strands: set,
+            ..Hairstyle::default()
+        }),
+        strands,
+        look: HairLook {
+            real_hairs: lines.len() as f32,
+            variation: 0.0,
+            ..HairLook::default()
+        },
+        body: None,
+        lights: vec![Light {
+            direction: Vec3::new(0.0, -0.6, -0.8),
+            ..Light::default()
+        }],
+        shadow: ShadowSettings {
+            method: ShadowMethod::None,
+            ..ShadowSettings::default()
+        },
+        camera: Camera {
+            eye: Vec3::Z,
+            target: Vec3::ZERO,
+            fov_y: 0.5,
+        },
+        picture: PictureSettings {
+            background_top: Vec3::ZERO,
+            background_bottom: Vec3::ZERO,
+            ground: false,
+            strand_opacity: 1.0,
+            ..PictureSettings::default()
+        },
+    }
+}
+
+/// A square in the plane `z`, `half` metres to each side, facing +Z.
+pub fn quad(z: f32, half: f32, color: Vec3) -> (Arc<Body>, Skin) {
+    let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+    let positions: Vec<Vec3> = corners
+        .iter()
+        .map(|&(x, y)| Vec3::new(x * half, y * half, z))
+        .collect();
+    let normals = vec![Vec3::Z; 4];
+    let mesh = Mesh {
+        positions: positions.clone(),
+        normals: normals.clone(),
+        colors: vec![color; 4],
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        ..Mesh::default()
+    };
+    let mut skin = Skin::default();
+    skin.positions = positions;
+    skin.normals = normals;
+    (
+        Arc::new(Body {
+            mesh,
+            ..Body::default()
+        }),
+        skin,
+    )
+}
+
+/// The bytes of the pixel at `x`, `y` from the top left.
+pub fn pixel(picture: &Picture, x: u32, y: u32) -> [u8; 4] {
+    let i = ((y * picture.width + x) * 4) as usize;
+    picture.rgba[i..i + 4].try_into().expect("four bytes")
+}
