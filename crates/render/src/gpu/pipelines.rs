@@ -270,6 +270,7 @@ impl Pipelines {
 }
 
 /// What differs between the raster pipelines.
+#[derive(Clone, Copy)]
 struct Draw {
     format: wgpu::TextureFormat,
     samples: u32,

@@ -101,15 +101,8 @@ impl Renderer {
         let watch = Stopwatch::start();
         let (device, queue) = (&self.gpu.device, &self.gpu.queue);
         let transparency = input.picture.transparency;
-        self.hair.write(
-            &self.gpu,
-            &self.pipelines,
-            input.style,
-            input.strands,
-            &self.shadow.at_points,
-            input.camera,
-            transparency,
-        );
+        self.hair
+            .write(&self.gpu, &self.pipelines, input, &self.shadow.at_points);
         self.surface
             .write(&self.gpu, input.body, &self.shadow.at_vertices);
         self.columns.write(&self.gpu, &self.shadow);
