@@ -26,6 +26,41 @@ pub struct Skeleton {
     pub world_at_rest: Vec<Affine3A>,
 }
 
+impl Skeleton {
+    /// Local transform of a joint at rest.
+    pub fn local_at_rest(&self, joint: usize) -> Affine3A {
+        let j = &self.joints[joint];
+        Affine3A::from_scale_rotation_translation(j.scale, j.rotation, j.translation)
+    }
+
+    /// Fills `world_at_rest` from the joints.
+    pub fn update_rest(&mut self) {
+        self.world_at_rest.clear();
+        for j in 0..self.joints.len() {
+            let local = self.local_at_rest(j);
+            let world = self.joints[j].parent.map_or(local, |p| self.world_at_rest[p] * local);
+            self.world_at_rest.push(world);
+        }
+    }
+
+    /// Position of a joint at rest, world space, metres.
+    pub fn rest_position(&self, joint: usize) -> Vec3 {
+        self.world_at_rest[joint].translation.into()
+    }
+
+    /// True where `joint` is `ancestor` or hangs below it.
+    pub fn is_below(&self, joint: usize, ancestor: usize) -> bool {
+        let mut at = Some(joint);
+        while let Some(j) = at {
+            if j == ancestor {
+                return true;
+            }
+            at = self.joints[j].parent;
+        }
+        false
+    }
+}
+
 /// A triangle mesh bound to joints, in the rest pose in world space. Structure of arrays, one entry a vertex.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
@@ -45,6 +80,45 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
 }
 
+/// A joint together with the transform that brings bind-space positions into it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bind {
+    /// Index of the joint in the skeleton.
+    pub joint: u16,
+    /// Carries bind space to the joint's space (glTF: the inverse bind matrix).
+    pub joint_from_bind: Affine3A,
+}
+
+/// A shape that the surface is blended toward, in bind space. Only the vertices that it moves are kept.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MorphTarget {
+    /// Its name in the file, else its number.
+    pub name: String,
+    /// Vertices that it moves.
+    pub vertices: Vec<u32>,
+    /// By how much at weight 1, metres; one entry a vertex.
+    pub positions: Vec<Vec3>,
+    /// Change of the normal at weight 1; one entry a vertex.
+    pub normals: Vec<Vec3>,
+    /// Weight at rest.
+    pub rest_weight: f32,
+}
+
+/// What skinning needs: the surface as its meshes were bound, which need not be the rest pose.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SkinData {
+    /// Positions in bind space, one a vertex of the mesh, metres.
+    pub positions: Vec<Vec3>,
+    /// Unit normals in bind space.
+    pub normals: Vec<Vec3>,
+    /// The joints with their bind transforms; different skins may bind one joint differently.
+    pub palette: Vec<Bind>,
+    /// Entries of the palette that move each vertex, heaviest first; the weights are the mesh's.
+    pub binds: Vec<[u16; 8]>,
+    /// Shapes to blend.
+    pub morphs: Vec<MorphTarget>,
+}
+
 /// A character, immutable once loaded.
 #[derive(Clone, Debug, Default)]
 pub struct Body {
@@ -54,6 +128,27 @@ pub struct Body {
     pub skeleton: Skeleton,
     /// Its surface, all meshes of the file together.
     pub mesh: Mesh,
+    /// The surface as it was bound.
+    pub skin: SkinData,
     /// The joint that carries the hair; a guess that the user may change.
     pub head_joint: usize,
+}
+
+impl Body {
+    /// Head to toe: the extent of the rest pose along Y, metres.
+    pub fn height(&self) -> f32 {
+        let (low, high) = self
+            .mesh
+            .positions
+            .iter()
+            .fold((f32::MAX, f32::MIN), |(low, high), p| (low.min(p.y), high.max(p.y)));
+        (high - low).max(0.0)
+    }
+
+    /// The joint that moves a vertex most.
+    pub fn dominant_joint(&self, vertex: usize) -> usize {
+        let weights = &self.mesh.weights[vertex];
+        let heaviest = (1..8).fold(0, |best, k| if weights[k] > weights[best] { k } else { best });
+        usize::from(self.mesh.joints[vertex][heaviest])
+    }
 }

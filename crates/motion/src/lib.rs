@@ -4,9 +4,33 @@
 //! rest pose toward +Z; loaders convert.
 
 mod body;
+mod bvh;
+mod clip;
+mod collide;
 mod collider;
+mod distance;
+mod error;
+mod gltf;
+mod head;
+mod info;
 mod pose;
+mod retarget;
+mod sample;
+mod settings;
+mod skinning;
 
-pub use body::{Body, Joint, Mesh, Skeleton};
+pub use body::{Bind, Body, Joint, Mesh, MorphTarget, SkinData, Skeleton};
+pub use bvh::{MotionFile, MotionJoint, load_motion, load_motion_bytes, load_motion_with};
+pub use clip::{Clip, Interpolation, JointTracks, MorphTrack, Seam, Track};
+pub use collide::{fit_colliders, place_colliders, signed_distance};
 pub use collider::{Collider, ColliderShape, PlacedCollider};
+pub use distance::RestDistance;
+pub use error::MotionError;
+pub use gltf::{Character, load_character, load_character_bytes, load_character_bytes_with, load_character_with};
+pub use head::{HeadMesh, guess_head, head_mesh, joint_paths};
+pub use info::{CharacterInfo, ClipInfo, MotionInfo};
 pub use pose::Pose;
+pub use retarget::retarget;
+pub use sample::pose_at;
+pub use settings::{BodySettings, LengthUnit, MotionSettings, RootPosition, UpAxis};
+pub use skinning::{Skin, skin};

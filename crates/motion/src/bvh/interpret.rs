@@ -1,0 +1,264 @@
+//! What the numbers of a BVH file mean: rotations, positions, axis and unit.
+//!
+//! The format says none of it. Each rule here is the one that sorts the files that people have; the settings
+//! override all of them.
+
+use std::path::Path;
+
+use glam::{Affine3A, Quat, Vec3};
+
+use super::{
+    MotionFile, MotionJoint,
+    parse::{Channel, RawJoint, RawMotion},
+};
+use crate::{
+    LengthUnit, MotionSettings, RootPosition, UpAxis,
+    retarget::roles::{Humanoid, Role, Side},
+};
+
+/// How a joint's position channels combine with its OFFSET.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Meaning {
+    Replace,
+    Add,
+}
+
+/// Brings a parsed file to metres, Y up, and quaternions.
+pub(super) fn interpret(file: &str, raw: RawMotion, settings: MotionSettings) -> MotionFile {
+    let stem = Path::new(file).file_stem().map_or_else(|| file.to_owned(), |s| s.to_string_lossy().into_owned());
+    let mut motion = MotionFile {
+        name: stem,
+        joints: raw.joints.iter().map(joint).collect(),
+        frames: raw.frames,
+        frame_secs: raw.frame_secs,
+        dropped: raw.dropped.clone(),
+        notes: raw.notes.clone(),
+        unit_metres: 1.0,
+        up: UpAxis::Y,
+        ..MotionFile::default()
+    };
+    let rest = meaning_of_joints(&raw);
+    decode(&raw, rest, &mut motion);
+    let probe = Probe::new(&motion);
+    motion.up = match settings.up {
+        UpAxis::Auto => probe.up,
+        chosen => chosen,
+    };
+    choose_root(&raw, settings.root, &probe, &mut motion);
+    choose_unit(settings.unit, probe.height, &mut motion);
+    convert(&mut motion);
+    motion
+}
+
+fn joint(raw: &RawJoint) -> MotionJoint {
+    MotionJoint {
+        name: raw.name.clone(),
+        parent: raw.parent,
+        offset: Vec3::from(raw.offset),
+        end: raw.end.map(Vec3::from),
+    }
+}
+
+/// Over the joints below the root: where most positions of the first frame are close to OFFSET they replace it,
+/// where most are close to zero they add to it.
+fn meaning_of_joints(raw: &RawMotion) -> Meaning {
+    let (mut replace, mut add) = (0, 0);
+    let mut at = 0;
+    for joint in &raw.joints {
+        let numbers = &raw.rows[at..at + joint.channels.len()];
+        at += joint.channels.len();
+        let (position, given) = position(joint, numbers, Vec3::ZERO);
+        let offset = Vec3::from(joint.offset);
+        let near = 0.1 * offset.length();
+        // A zero offset says nothing.
+        if joint.parent.is_some() && given && near > 1e-6 {
+            replace += u32::from(position.distance(offset) < near);
+            add += u32::from(position.length() < near);
+        }
+    }
+    if add > replace { Meaning::Add } else { Meaning::Replace }
+}
+
+/// The position channels of a row, and whether there are any; axes without a channel keep `missing`.
+fn position(joint: &RawJoint, numbers: &[f32], missing: Vec3) -> (Vec3, bool) {
+    let (mut position, mut given) = (missing, false);
+    for (channel, &value) in joint.channels.iter().zip(numbers) {
+        if let Channel::Position(axis) = channel {
+            position[*axis] = value;
+            given = true;
+        }
+    }
+    (position, given)
+}
+
+/// The rotation channels of a row, multiplied in the order in which they are listed.
+fn rotation(joint: &RawJoint, numbers: &[f32]) -> Quat {
+    let turn = |channel: &Channel, degrees: f32| match channel {
+        Channel::Rotation(0) => Quat::from_rotation_x(degrees.to_radians()),
+        Channel::Rotation(1) => Quat::from_rotation_y(degrees.to_radians()),
+        Channel::Rotation(_) => Quat::from_rotation_z(degrees.to_radians()),
+        Channel::Position(_) => Quat::IDENTITY,
+    };
+    joint.channels.iter().zip(numbers).fold(Quat::IDENTITY, |q, (c, &v)| q * turn(c, v))
+}
+
+/// Fills rotations and positions in the file's own unit and axes; roots replace their OFFSET for now.
+fn decode(raw: &RawMotion, below_root: Meaning, motion: &mut MotionFile) {
+    let count = raw.joints.len();
+    motion.rotations.reserve_exact(count * raw.frames);
+    motion.positions.reserve_exact(count * raw.frames);
+    for row in raw.rows.chunks_exact(raw.channels) {
+        let mut at = 0;
+        for joint in &raw.joints {
+            let numbers = &row[at..at + joint.channels.len()];
+            at += joint.channels.len();
+            let offset = Vec3::from(joint.offset);
+            let adds = joint.parent.is_some() && below_root == Meaning::Add;
+            let missing = if adds { Vec3::ZERO } else { offset };
+            let (position, given) = position(joint, numbers, missing);
+            motion.positions.push(if given && adds { offset + position } else if given { position } else { offset });
+            let mut q = rotation(joint, numbers).normalize();
+            // The same side of the sphere as in the frame before, so that nothing jumps between them.
+            if let Some(&before) = motion.rotations.len().checked_sub(count).map(|i| &motion.rotations[i])
+                && before.dot(q) < 0.0
+            {
+                q = -q;
+            }
+            motion.rotations.push(q);
+        }
+    }
+}
+
+/// What some frames of the motion show about the figure, in the file's own unit and axes.
+struct Probe {
+    up: UpAxis,
+    /// From the feet to the head along the bones; 0 where it cannot be told.
+    height: f32,
+    /// Lowest point of any joint over the probed frames, along Y and along Z.
+    lowest: [f32; 2],
+}
+
+impl Probe {
+    /// As many frames as tell a lying figure from a standing one.
+    const FRAMES: usize = 48;
+
+    fn new(motion: &MotionFile) -> Self {
+        let figure = Humanoid::of_motion(motion);
+        let head = figure.get(Role::Head).or(figure.get(Role::Neck));
+        let feet: Vec<usize> = Side::BOTH
+            .iter()
+            .filter_map(|&side| figure.get(Role::Foot(side)).or(figure.get(Role::Shin(side))))
+            .collect();
+        let step = (motion.frames / Self::FRAMES).max(1);
+        let mut world: Vec<Affine3A> = Vec::new();
+        let mut upward = Vec3::ZERO;
+        let mut spread = Vec3::ZERO;
+        let mut lowest = [f32::MAX; 2];
+        for frame in (0..motion.frames).step_by(step) {
+            motion.world(frame, &mut world);
+            let at = |j: usize| Vec3::from(world[j].translation);
+            if let (Some(head), false) = (head, feet.is_empty()) {
+                let foot = feet.iter().map(|&f| at(f)).sum::<Vec3>() / feet.len() as f32;
+                upward += (at(head) - foot).normalize_or_zero();
+            }
+            let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+            for p in world.iter().map(|w| Vec3::from(w.translation)) {
+                (low, high) = (low.min(p), high.max(p));
+            }
+            spread += high - low;
+            lowest = [lowest[0].min(low.y), lowest[1].min(low.z)];
+        }
+        let stands_in = if upward == Vec3::ZERO { spread } else { upward };
+        let up = if stands_in.z.abs() > stands_in.y.abs() { UpAxis::Z } else { UpAxis::Y };
+        let path = |mut j: usize| {
+            let mut length = 0.0;
+            while let Some(parent) = motion.joints[j].parent {
+                length += motion.joints[j].offset.length();
+                j = parent;
+            }
+            length
+        };
+        let height = match (head, feet.iter().map(|&f| path(f)).reduce(f32::max)) {
+            (Some(head), Some(leg)) => path(head) + leg,
+            _ => spread.max_element() / motion.frames.div_ceil(step).max(1) as f32,
+        };
+        Self { up, height, lowest }
+    }
+}
+
+/// Adds the root's OFFSET to its positions where that is what they mean.
+fn choose_root(raw: &RawMotion, setting: RootPosition, probe: &Probe, motion: &mut MotionFile) {
+    let count = motion.joints.len();
+    for (j, joint) in raw.joints.iter().enumerate().filter(|(_, joint)| joint.parent.is_none()) {
+        let offset = Vec3::from(joint.offset);
+        let moves = joint.channels.iter().any(|c| matches!(c, Channel::Position(_)));
+        if offset == Vec3::ZERO || !moves {
+            continue;
+        }
+        let adds = match setting {
+            RootPosition::Added => true,
+            RootPosition::Absolute => false,
+            RootPosition::Auto => {
+                let (axis, lowest) =
+                    if motion.up == UpAxis::Z { (2, probe.lowest[1]) } else { (1, probe.lowest[0]) };
+                let (replaced, added) = (lowest.abs(), (lowest + offset[axis]).abs());
+                // Only a plain difference overrules the common meaning.
+                let adds = added + 0.2 * probe.height < replaced;
+                if adds || replaced + 0.2 * probe.height < added {
+                    let how = if adds { "were added to" } else { "replaced" };
+                    motion.notes.push(format!("positions of `{}` {how} its offset, which puts the feet on the ground", joint.name));
+                }
+                adds
+            }
+        };
+        if adds {
+            motion.positions.iter_mut().skip(j).step_by(count).for_each(|p| *p += offset);
+        }
+    }
+}
+
+fn choose_unit(setting: LengthUnit, height: f32, motion: &mut MotionFile) {
+    /// From the feet to the head joint of a grown person, metres.
+    const USUAL: f32 = 1.5;
+    if let Some(metres) = setting.metres() {
+        motion.unit_metres = metres;
+        return;
+    }
+    let candidates = [
+        LengthUnit::Centimetres,
+        LengthUnit::Metres,
+        LengthUnit::Decimetres,
+        LengthUnit::Millimetres,
+        LengthUnit::Inches,
+        LengthUnit::Cmu,
+    ];
+    let miss = |unit: &LengthUnit| (height * unit.metres().unwrap_or(1.0) / USUAL).ln().abs();
+    let best = candidates.into_iter().min_by(|a, b| miss(a).total_cmp(&miss(b))).filter(|_| height > 0.0);
+    let unit = best.unwrap_or(LengthUnit::Centimetres);
+    motion.unit_metres = unit.metres().unwrap_or(0.01);
+    motion.notes.push(format!(
+        "from foot to head the figure is {height:.1} units, so they were taken for {}: {:.2} m",
+        unit.label(),
+        height * motion.unit_metres
+    ));
+}
+
+/// Brings everything to metres and Y up.
+fn convert(motion: &mut MotionFile) {
+    let scale = motion.unit_metres;
+    let turn = match motion.up {
+        UpAxis::Z => Quat::from_rotation_x(-std::f32::consts::FRAC_PI_2),
+        _ => Quat::IDENTITY,
+    };
+    let carry = |v: &mut Vec3| *v = turn * *v * scale;
+    for joint in &mut motion.joints {
+        carry(&mut joint.offset);
+        joint.end.iter_mut().for_each(carry);
+    }
+    motion.positions.iter_mut().for_each(carry);
+    if motion.up == UpAxis::Z {
+        motion.notes.push("Z points up; turned so that Y does".into());
+        // A rotation about an axis becomes the same rotation about the turned axis.
+        motion.rotations.iter_mut().for_each(|q| *q = (turn * *q * turn.conjugate()).normalize());
+    }
+}

@@ -1,0 +1,296 @@
+//! The text of a BVH file, taken as people write it: names with spaces, any line ends, wrong counts.
+
+use std::collections::BTreeMap;
+
+use crate::MotionError;
+
+/// Most joints of one file.
+const JOINT_LIMIT: usize = 10_000;
+/// Deepest nesting of joints.
+const DEPTH_LIMIT: usize = 1_000;
+
+/// One number of a row: a position along an axis or a rotation about it (0 for X, 1 for Y, 2 for Z).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Channel {
+    Position(usize),
+    Rotation(usize),
+}
+
+#[derive(Clone, Debug, Default)]
+pub(super) struct RawJoint {
+    pub(super) name: String,
+    pub(super) parent: Option<usize>,
+    pub(super) offset: [f32; 3],
+    pub(super) channels: Vec<Channel>,
+    pub(super) end: Option<[f32; 3]>,
+}
+
+/// A file as it stands, in its own unit and axes.
+#[derive(Clone, Debug, Default)]
+pub(super) struct RawMotion {
+    pub(super) joints: Vec<RawJoint>,
+    /// Numbers of a row.
+    pub(super) channels: usize,
+    /// Rows, one after the other; all numbers are finite.
+    pub(super) rows: Vec<f32>,
+    pub(super) frames: usize,
+    pub(super) frame_secs: f64,
+    pub(super) dropped: BTreeMap<String, u64>,
+    pub(super) notes: Vec<String>,
+}
+
+/// A place in the text that knows its line.
+struct Cursor<'a> {
+    file: &'a str,
+    rest: &'a str,
+    line: usize,
+}
+
+impl<'a> Cursor<'a> {
+    fn skip_space(&mut self) {
+        let trimmed = self.rest.trim_start();
+        let skipped = &self.rest[..self.rest.len() - trimmed.len()];
+        self.line += skipped.bytes().filter(|&b| b == b'\n').count();
+        self.rest = trimmed;
+    }
+
+    /// The next word; braces stand alone even without spaces.
+    fn word(&mut self) -> Option<&'a str> {
+        self.skip_space();
+        let first = self.rest.chars().next()?;
+        let end = if matches!(first, '{' | '}') {
+            1
+        } else {
+            self.rest.find(|c: char| c.is_whitespace() || c == '{' || c == '}').unwrap_or(self.rest.len())
+        };
+        let (word, rest) = self.rest.split_at(end);
+        self.rest = rest;
+        Some(word)
+    }
+
+    /// The rest of the line up to a brace: a name.
+    fn name(&mut self) -> &'a str {
+        let end = self.rest.find(['\n', '\r', '{']).unwrap_or(self.rest.len());
+        let (name, rest) = self.rest.split_at(end);
+        self.rest = rest;
+        name.trim()
+    }
+
+    fn fault(&self, problem: impl Into<String>) -> MotionError {
+        MotionError::malformed(self.file, format!("line {}", self.line), problem)
+    }
+
+    fn expect(&mut self, wanted: &str) -> Result<(), MotionError> {
+        match self.word() {
+            Some(word) if word.eq_ignore_ascii_case(wanted) => Ok(()),
+            found => Err(self.fault(format!("{}; wanted `{wanted}`", quote(found)))),
+        }
+    }
+}
+
+fn quote(word: Option<&str>) -> String {
+    word.map_or_else(
+        || "the file ends here".into(),
+        |w| format!("found `{}`", w.chars().take(40).collect::<String>()),
+    )
+}
+
+/// Parses a file.
+pub(super) fn parse(file: &str, bytes: &[u8]) -> Result<RawMotion, MotionError> {
+    let text = String::from_utf8_lossy(bytes);
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+    let mut cursor = Cursor { file, rest: text, line: 1 };
+    cursor.expect("HIERARCHY")?;
+    let mut raw = RawMotion::default();
+    parse_hierarchy(&mut cursor, &mut raw)?;
+    parse_rows(&mut cursor, &mut raw)?;
+    if raw.frames == 0 {
+        let found = format!("{} joints and no frame of {} numbers", raw.joints.len(), raw.channels);
+        return Err(MotionError::Empty { file: file.into(), found, wanted: "at least one frame of motion" });
+    }
+    // A joint without channels has no bytes in a row: a text of joints times a text of rows must not explode.
+    if (raw.frames as u64) * (raw.joints.len() as u64) > (bytes.len() as u64).max(1 << 20) {
+        let problem = format!("{} frames of {} joints, nearly all without channels", raw.frames, raw.joints.len());
+        return Err(cursor.fault(problem));
+    }
+    Ok(raw)
+}
+
+/// Reads joints up to and including the word MOTION.
+fn parse_hierarchy(cursor: &mut Cursor, raw: &mut RawMotion) -> Result<(), MotionError> {
+    // The open braces: a joint, or an end site of the joint before it.
+    let mut open: Vec<Option<usize>> = Vec::new();
+    loop {
+        let word = cursor.word();
+        match word.map(str::to_ascii_uppercase).as_deref() {
+            Some(kind @ ("ROOT" | "JOINT" | "END")) => {
+                let name = cursor.name().to_owned();
+                let parent = open.last().copied().flatten();
+                if kind != "ROOT" && parent.is_none() {
+                    return Err(cursor.fault(format!("`{kind} {name}` outside a joint")));
+                }
+                cursor.expect("{")?;
+                if kind == "END" {
+                    open.push(None);
+                } else {
+                    open.push(Some(raw.joints.len()));
+                    raw.joints.push(RawJoint { name, parent, ..RawJoint::default() });
+                }
+                if raw.joints.len() > JOINT_LIMIT || open.len() > DEPTH_LIMIT {
+                    let problem = format!("more than {JOINT_LIMIT} joints or {DEPTH_LIMIT} levels");
+                    return Err(cursor.fault(problem));
+                }
+            }
+            Some("OFFSET") => {
+                let offset = parse_offset(cursor, &mut raw.dropped)?;
+                match (open.last(), open.len().checked_sub(2).map(|i| open[i])) {
+                    (Some(Some(joint)), _) => raw.joints[*joint].offset = offset,
+                    (Some(None), Some(Some(joint))) => raw.joints[joint].end = Some(offset),
+                    _ => return Err(cursor.fault("an OFFSET outside a joint")),
+                }
+            }
+            Some("CHANNELS") => {
+                let joint = open.last().copied().flatten();
+                let channels = parse_channels(cursor)?;
+                let Some(joint) = joint.filter(|&j| raw.joints[j].channels.is_empty()) else {
+                    return Err(cursor.fault("CHANNELS outside a joint, or twice in one"));
+                };
+                raw.channels += channels.len();
+                raw.joints[joint].channels = channels;
+            }
+            Some("}") => {
+                if open.pop().is_none() {
+                    return Err(cursor.fault("a closing brace too many"));
+                }
+            }
+            Some("MOTION") if open.is_empty() && !raw.joints.is_empty() => return Ok(()),
+            Some("MOTION") => return Err(cursor.fault(format!("MOTION with {} joints still open", open.len()))),
+            _ => {
+                return Err(cursor.fault(format!("{}; wanted a joint, its end, or MOTION", quote(word))));
+            }
+        }
+    }
+}
+
+fn parse_offset(cursor: &mut Cursor, dropped: &mut BTreeMap<String, u64>) -> Result<[f32; 3], MotionError> {
+    let mut offset = [0.0; 3];
+    for value in &mut offset {
+        let word = cursor.word();
+        let number = word.and_then(|w| w.parse::<f32>().ok());
+        *value = number.ok_or_else(|| cursor.fault(format!("{}; wanted a number", quote(word))))?;
+    }
+    if offset.iter().all(|v| v.is_finite() && v.abs() < 1e9) {
+        Ok(offset)
+    } else {
+        *dropped.entry("offsets".into()).or_default() += 1;
+        Ok([0.0; 3])
+    }
+}
+
+fn parse_channels(cursor: &mut Cursor) -> Result<Vec<Channel>, MotionError> {
+    let word = cursor.word();
+    let count = word.and_then(|w| w.parse::<usize>().ok()).filter(|&n| n <= 9);
+    let count = count.ok_or_else(|| cursor.fault(format!("{}; wanted up to 9 channels", quote(word))))?;
+    (0..count)
+        .map(|_| {
+            let word = cursor.word();
+            channel(word.unwrap_or_default())
+                .ok_or_else(|| cursor.fault(format!("{}; wanted a channel such as Xrotation", quote(word))))
+        })
+        .collect()
+}
+
+fn channel(word: &str) -> Option<Channel> {
+    let word = word.to_ascii_lowercase();
+    let axis = match word.bytes().next()? {
+        b'x' => 0,
+        b'y' => 1,
+        b'z' => 2,
+        _ => return None,
+    };
+    match &word[1..] {
+        "position" | "translation" => Some(Channel::Position(axis)),
+        "rotation" => Some(Channel::Rotation(axis)),
+        _ => None,
+    }
+}
+
+fn parse_rows(cursor: &mut Cursor, raw: &mut RawMotion) -> Result<(), MotionError> {
+    let mut promised = None;
+    let mut frame_secs = None;
+    // `Frames: 12`, `Frames:12` and `Frame Time: 0.01`, in any order and case.
+    while let Some((line, rest)) = {
+        cursor.skip_space();
+        let end = cursor.rest.find('\n').unwrap_or(cursor.rest.len());
+        let (line, rest) = cursor.rest.split_at(end);
+        line.split_once(':').map(|parts| (parts, rest))
+    } {
+        let (key, value) = (line.0.trim().to_ascii_lowercase(), line.1.trim());
+        match key.as_str() {
+            "frames" => promised = value.parse::<u64>().ok(),
+            "frame time" => frame_secs = value.parse::<f64>().ok(),
+            _ => return Err(cursor.fault(format!("{}; wanted `Frames:` or `Frame Time:`", quote(Some(&key))))),
+        }
+        cursor.rest = rest;
+    }
+    raw.frame_secs = match frame_secs {
+        Some(secs) if secs.is_finite() && secs > 1e-6 && secs < 1e4 => secs,
+        _ => {
+            raw.notes.push("no usable frame time; 30 frames a second were taken".into());
+            1.0 / 30.0
+        }
+    };
+    if raw.channels == 0 {
+        return Ok(());
+    }
+    let first_line = cursor.rest.lines().next().unwrap_or_default();
+    if first_line.split_whitespace().count() == raw.channels {
+        read_lines(cursor.rest, raw);
+    } else {
+        read_stream(cursor.rest, raw);
+    }
+    raw.frames = raw.rows.len() / raw.channels;
+    if let Some(promised) = promised.filter(|&n| n != raw.frames as u64) {
+        raw.notes.push(format!("the header says {promised} frames and {} were found; those were taken", raw.frames));
+    }
+    Ok(())
+}
+
+/// A number of a row; one that is none, or not finite, is taken from the row before and counted.
+fn number(word: &str, raw: &mut RawMotion) -> f32 {
+    match word.parse::<f32>() {
+        Ok(value) if value.is_finite() && value.abs() < 1e9 => value,
+        _ => {
+            *raw.dropped.entry("numbers".into()).or_default() += 1;
+            raw.rows.len().checked_sub(raw.channels).map_or(0.0, |i| raw.rows[i])
+        }
+    }
+}
+
+/// A row a line; lines of another length are dropped and counted.
+fn read_lines(text: &str, raw: &mut RawMotion) {
+    for line in text.lines() {
+        let count = line.split_whitespace().count();
+        if count == raw.channels {
+            for word in line.split_whitespace() {
+                let value = number(word, raw);
+                raw.rows.push(value);
+            }
+        } else if count > 0 {
+            *raw.dropped.entry("rows".into()).or_default() += 1;
+        }
+    }
+}
+
+/// Rows broken over lines: numbers are taken one after the other; an unfinished row is dropped and counted.
+fn read_stream(text: &str, raw: &mut RawMotion) {
+    for word in text.split_whitespace() {
+        let value = number(word, raw);
+        raw.rows.push(value);
+    }
+    let left = raw.rows.len() % raw.channels;
+    if left > 0 {
+        raw.rows.truncate(raw.rows.len() - left);
+        *raw.dropped.entry("rows".into()).or_default() += 1;
+    }
+}

@@ -1,0 +1,134 @@
+//! Motion over time: keyed tracks of joints and morph targets.
+
+use std::sync::Arc;
+
+use glam::{Quat, Vec3};
+
+use crate::{Body, Pose, pose_at};
+
+/// How values between keys are found (glTF 2.0, section 3.11 and appendix C).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Interpolation {
+    /// The value of the key before.
+    Step,
+    /// A straight line; for rotations the shorter great arc.
+    #[default]
+    Linear,
+    /// A cubic Hermite spline. Values come three a key: in-tangent, value, out-tangent, tangents per second.
+    Cubic,
+}
+
+/// One keyed quantity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Track<T> {
+    /// Times of the keys, increasing, seconds. Tracks of one clip often share them.
+    pub times: Arc<[f32]>,
+    /// Values: one a key, or three a key where the interpolation is cubic.
+    pub values: Vec<T>,
+    /// How values between keys are found.
+    pub interpolation: Interpolation,
+}
+
+/// What moves one joint; a missing track leaves the rest pose's value.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct JointTracks {
+    /// Index of the joint in the skeleton.
+    pub joint: usize,
+    /// Translation relative to the parent, metres.
+    pub translation: Option<Track<Vec3>>,
+    /// Rotation relative to the parent.
+    pub rotation: Option<Track<Quat>>,
+    /// Scale relative to the parent.
+    pub scale: Option<Track<Vec3>>,
+}
+
+/// What drives a run of morph targets.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MorphTrack {
+    /// The first morph target of the body that it drives.
+    pub first: usize,
+    /// How many it drives; `values` holds this many numbers a key (or in-tangents, values, out-tangents).
+    pub count: usize,
+    /// Weights, key after key.
+    pub track: Track<f32>,
+}
+
+/// How far a clip's last pose is from its first.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Seam {
+    /// Largest distance that a joint jumps, metres.
+    pub distance: f32,
+    /// Largest angle that a joint turns, radians.
+    pub angle: f32,
+}
+
+/// A motion of one body, immutable once made.
+#[derive(Clone, Debug, Default)]
+pub struct Clip {
+    /// What the interface calls it.
+    pub name: String,
+    /// After this time it starts again, seconds. Shorter than the keys last where ends are cross-faded.
+    pub duration_secs: f64,
+    /// True where it starts again without a jump.
+    pub loops: bool,
+    /// For this long after each start the end of the keys fades into their beginning, seconds; 0 for no fade.
+    pub loop_blend_secs: f64,
+    /// Tracks of joints, sorted by joint.
+    pub joints: Vec<JointTracks>,
+    /// Tracks of morph targets.
+    pub morphs: Vec<MorphTrack>,
+}
+
+impl Clip {
+    /// Largest jump of a joint, as a fraction of the body's height, with which a clip still counts as looping:
+    /// 2 cm on a person, about what a limb travels between two frames of a dance.
+    const LOOP_DISTANCE: f32 = 0.012;
+
+    /// Time of the last key, seconds.
+    pub fn keys_end_secs(&self) -> f64 {
+        let joints = self.joints.iter().flat_map(|j| {
+            [
+                j.translation.as_ref().map(|t| &t.times),
+                j.rotation.as_ref().map(|t| &t.times),
+                j.scale.as_ref().map(|t| &t.times),
+            ]
+        });
+        let morphs = self.morphs.iter().map(|m| Some(&m.track.times));
+        joints.chain(morphs).flatten().filter_map(|times| times.last()).fold(0.0_f64, |end, &t| end.max(f64::from(t)))
+    }
+
+    /// Measures the jump from the last pose to the first.
+    pub fn seam(&self, body: &Body) -> Seam {
+        let unfaded = Self { duration_secs: self.keys_end_secs(), loop_blend_secs: 0.0, ..self.clone() };
+        let (mut first, mut last) = (Pose::default(), Pose::default());
+        pose_at(body, Some(&unfaded), 0.0, &mut first);
+        // Wrapping would bring the end itself back to the start.
+        pose_at(body, Some(&unfaded), unfaded.duration_secs.next_down(), &mut last);
+        let mut seam = Seam::default();
+        for (a, b) in first.world_from_joint.iter().zip(&last.world_from_joint) {
+            seam.distance = seam.distance.max(Vec3::from(a.translation - b.translation).length());
+            let turn = crate::pose::rotation_of(&b.matrix3) * crate::pose::rotation_of(&a.matrix3).conjugate();
+            seam.angle = seam.angle.max(2.0 * turn.w.abs().min(1.0).acos());
+        }
+        seam
+    }
+
+    /// Finds out whether the clip starts again without a jump and sets `loops`.
+    pub fn detect_loop(&mut self, body: &Body) {
+        let seam = self.seam(body);
+        let reach = body.height().max(0.1) * Self::LOOP_DISTANCE;
+        // An ankle turned by 10 degrees about its own axis moves no joint, and is seen.
+        self.loops = self.duration_secs > 0.0 && seam.distance <= reach && seam.angle <= 10_f32.to_radians();
+    }
+
+    /// The same clip with its last `blend_secs` faded into its first, so that it starts again without a jump. It
+    /// gets shorter by that time, of which at most half its length is taken; 0 removes the fade.
+    #[must_use]
+    pub fn with_loop_blend(mut self, blend_secs: f64) -> Self {
+        let end = self.keys_end_secs();
+        self.loop_blend_secs = if blend_secs.is_finite() { blend_secs.clamp(0.0, end / 2.0) } else { 0.0 };
+        self.duration_secs = end - self.loop_blend_secs;
+        self.loops |= self.loop_blend_secs > 0.0;
+        self
+    }
+}

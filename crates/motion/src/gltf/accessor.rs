@@ -1,0 +1,256 @@
+//! Typed numbers out of buffers: every component type, normalisation, strides, sparse and zero-filled accessors.
+
+use std::cell::Cell;
+
+use super::document::{Accessor, Document};
+use crate::MotionError;
+
+/// Reads the accessors of one file, and refuses those that reach past their buffers.
+pub(super) struct Accessors<'a> {
+    pub(super) file: &'a str,
+    pub(super) document: &'a Document,
+    pub(super) buffers: &'a [Vec<u8>],
+    /// Numbers that may still be decoded: a small file that names the same bytes a thousand times ends here.
+    budget: Cell<u64>,
+}
+
+/// A component type of glTF.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Component {
+    I8,
+    U8,
+    I16,
+    U16,
+    U32,
+    F32,
+}
+
+impl Component {
+    fn new(code: u32) -> Option<Self> {
+        Some(match code {
+            5120 => Self::I8,
+            5121 => Self::U8,
+            5122 => Self::I16,
+            5123 => Self::U16,
+            5125 => Self::U32,
+            5126 => Self::F32,
+            _ => return None,
+        })
+    }
+
+    fn size(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::U32 | Self::F32 => 4,
+        }
+    }
+
+    /// One number from its first bytes; integers are normalised by the rule of glTF 2.0, section 3.11.
+    fn decode(self, b: &[u8], normalized: bool) -> f32 {
+        let n = |value: f32, largest: f32| if normalized { (value / largest).max(-1.0) } else { value };
+        match self {
+            Self::I8 => n(f32::from(b[0] as i8), 127.0),
+            Self::U8 => n(f32::from(b[0]), 255.0),
+            Self::I16 => n(f32::from(i16::from_le_bytes([b[0], b[1]])), 32767.0),
+            Self::U16 => n(f32::from(u16::from_le_bytes([b[0], b[1]])), 65535.0),
+            Self::U32 => n(u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as f32, u32::MAX as f32),
+            Self::F32 => f32::from_le_bytes([b[0], b[1], b[2], b[3]]),
+        }
+    }
+
+    /// One unsigned integer; `None` for types that are none.
+    fn decode_index(self, b: &[u8]) -> Option<u32> {
+        Some(match self {
+            Self::U8 => u32::from(b[0]),
+            Self::U16 => u32::from(u16::from_le_bytes([b[0], b[1]])),
+            Self::U32 => u32::from_le_bytes([b[0], b[1], b[2], b[3]]),
+            Self::I8 | Self::I16 | Self::F32 => return None,
+        })
+    }
+}
+
+fn components_of(kind: &str) -> Option<usize> {
+    Some(match kind {
+        "SCALAR" => 1,
+        "VEC2" => 2,
+        "VEC3" => 3,
+        "VEC4" => 4,
+        "MAT4" => 16,
+        _ => return None,
+    })
+}
+
+/// A run of elements: bytes from the first element on, and the step between elements.
+#[derive(Clone, Copy)]
+struct Run<'a> {
+    bytes: &'a [u8],
+    stride: usize,
+}
+
+impl<'a> Accessors<'a> {
+    pub(super) fn new(file: &'a str, document: &'a Document, buffers: &'a [Vec<u8>]) -> Self {
+        let bytes: u64 = buffers.iter().map(|b| b.len() as u64).sum();
+        Self { file, document, buffers, budget: Cell::new(64 * bytes.max(1 << 16)) }
+    }
+
+    fn fault(&self, index: usize, problem: impl Into<String>) -> MotionError {
+        MotionError::malformed(self.file, format!("accessor {index}"), problem)
+    }
+
+    fn get(&self, index: usize) -> Result<&'a Accessor, MotionError> {
+        let count = self.document.accessors.len();
+        self.document.accessors.get(index).ok_or_else(|| self.fault(index, format!("is not there; the file has {count}")))
+    }
+
+    /// Number of elements, not yet known to exist.
+    pub(super) fn count(&self, index: usize) -> Result<u64, MotionError> {
+        Ok(self.get(index)?.count)
+    }
+
+    /// Bytes of `count` elements of `element` bytes in a view, checked in 64 bits.
+    fn run(&self, index: usize, view: usize, offset: u64, count: u64, element: usize) -> Result<Run<'a>, MotionError> {
+        let missing = |what: &str, i: usize| self.fault(index, format!("needs {what} {i}, which is not there"));
+        let v = self.document.buffer_views.get(view).ok_or_else(|| missing("bufferView", view))?;
+        let buffer = self.buffers.get(v.buffer).ok_or_else(|| missing("buffer", v.buffer))?;
+        // Zero is not allowed and means that elements are packed.
+        let stride = v.byte_stride.filter(|&s| s != 0).unwrap_or(element as u64);
+        let length = match count {
+            0 => Some(0),
+            _ => (count - 1).checked_mul(stride).and_then(|n| n.checked_add(element as u64)),
+        };
+        let end_in_view = length.and_then(|n| n.checked_add(offset));
+        let end = v.byte_offset.checked_add(v.byte_length);
+        match (end_in_view, end) {
+            (Some(in_view), Some(end)) if in_view <= v.byte_length && end <= buffer.len() as u64 => {
+                let start = (v.byte_offset + offset) as usize;
+                Ok(Run { bytes: &buffer[start..end as usize], stride: stride as usize })
+            }
+            _ => Err(self.fault(
+                index,
+                format!(
+                    "{count} elements of {element} bytes from byte {offset} of bufferView {view}, which has {} bytes \
+                     from byte {} of a buffer of {}",
+                    v.byte_length,
+                    v.byte_offset,
+                    buffer.len()
+                ),
+            )),
+        }
+    }
+
+    /// Calls `store` with the bytes of each element: the base run, then what a sparse accessor puts in its place.
+    /// Elements without bytes are left alone, which is zero.
+    fn each(
+        &self,
+        index: usize,
+        element: usize,
+        mut store: impl FnMut(usize, &[u8]) -> Result<(), MotionError>,
+    ) -> Result<(), MotionError> {
+        let accessor = self.get(index)?;
+        if let Some(view) = accessor.buffer_view {
+            let run = self.run(index, view, accessor.byte_offset, accessor.count, element)?;
+            for i in 0..accessor.count as usize {
+                store(i, &run.bytes[i * run.stride..][..element])?;
+            }
+        }
+        let Some(sparse) = &accessor.sparse else { return Ok(()) };
+        let component = Component::new(sparse.indices.component_type)
+            .ok_or_else(|| self.fault(index, "sparse indices of an unknown component type"))?;
+        let places = self.run(
+            index,
+            sparse.indices.buffer_view,
+            sparse.indices.byte_offset,
+            sparse.count,
+            component.size(),
+        )?;
+        let values = self.run(index, sparse.values.buffer_view, sparse.values.byte_offset, sparse.count, element)?;
+        for k in 0..sparse.count as usize {
+            let place = component
+                .decode_index(&places.bytes[k * places.stride..])
+                .ok_or_else(|| self.fault(index, "sparse indices that are not unsigned integers"))?;
+            if u64::from(place) >= accessor.count {
+                let problem = format!("sparse index {place}; the accessor has {} elements", accessor.count);
+                return Err(self.fault(index, problem));
+            }
+            store(place as usize, &values.bytes[k * values.stride..][..element])?;
+        }
+        Ok(())
+    }
+
+    /// Checks that `count` elements may be allocated, before they are.
+    fn spend(&self, index: usize, accessor: &Accessor, components: usize) -> Result<(), MotionError> {
+        let bytes: u64 = self.buffers.iter().map(|b| b.len() as u64).sum();
+        // Where the file holds no bytes for the elements, their number must still be of the file's order.
+        if accessor.buffer_view.is_none() && accessor.count > bytes.max(1 << 16) {
+            return Err(self.fault(index, format!("{} elements that the file holds no bytes for", accessor.count)));
+        }
+        let wanted = accessor.count.saturating_mul(components as u64);
+        let left = self.budget.get().checked_sub(wanted);
+        let left = left.ok_or_else(|| {
+            self.fault(index, format!("{} elements: far more than a file of {bytes} bytes can mean", accessor.count))
+        })?;
+        self.budget.set(left);
+        Ok(())
+    }
+
+    /// Decodes elements of exactly `N` numbers.
+    pub(super) fn read<const N: usize>(&self, index: usize) -> Result<Vec<[f32; N]>, MotionError> {
+        let (accessor, component, components) = self.shape(index)?;
+        if components != N {
+            return Err(self.fault(index, format!("is {}; wanted {N} numbers an element", accessor.kind)));
+        }
+        // Bounds first: the allocation below is then no larger than the file warrants.
+        if let Some(view) = accessor.buffer_view {
+            self.run(index, view, accessor.byte_offset, accessor.count, N * component.size())?;
+        }
+        self.spend(index, accessor, N)?;
+        let mut out = vec![[0.0; N]; accessor.count as usize];
+        let size = component.size();
+        self.each(index, N * size, |i, bytes| {
+            for (value, b) in out[i].iter_mut().zip(bytes.chunks_exact(size)) {
+                *value = component.decode(b, accessor.normalized);
+            }
+            Ok(())
+        })?;
+        Ok(out)
+    }
+
+    /// Decodes elements of 3 or 4 numbers; a missing fourth is 1 (colours).
+    pub(super) fn read_3_or_4(&self, index: usize) -> Result<Vec<[f32; 4]>, MotionError> {
+        match self.shape(index)?.2 {
+            4 => self.read::<4>(index),
+            _ => Ok(self.read::<3>(index)?.into_iter().map(|[r, g, b]| [r, g, b, 1.0]).collect()),
+        }
+    }
+
+    /// Decodes elements of `N` unsigned integers.
+    pub(super) fn read_indices<const N: usize>(&self, index: usize) -> Result<Vec<[u32; N]>, MotionError> {
+        let (accessor, component, components) = self.shape(index)?;
+        if components != N || component.decode_index(&[0; 4]).is_none() {
+            return Err(self.fault(index, format!("wanted elements of {N} unsigned integers")));
+        }
+        if let Some(view) = accessor.buffer_view {
+            self.run(index, view, accessor.byte_offset, accessor.count, N * component.size())?;
+        }
+        self.spend(index, accessor, N)?;
+        let mut out = vec![[0; N]; accessor.count as usize];
+        let size = component.size();
+        self.each(index, N * size, |i, bytes| {
+            for (value, b) in out[i].iter_mut().zip(bytes.chunks_exact(size)) {
+                *value = component.decode_index(b).unwrap_or(0);
+            }
+            Ok(())
+        })?;
+        Ok(out)
+    }
+
+    fn shape(&self, index: usize) -> Result<(&'a Accessor, Component, usize), MotionError> {
+        let accessor = self.get(index)?;
+        let component = Component::new(accessor.component_type)
+            .ok_or_else(|| self.fault(index, format!("unknown component type {}", accessor.component_type)))?;
+        let components = components_of(&accessor.kind)
+            .ok_or_else(|| self.fault(index, format!("type `{}`, which no attribute read here has", accessor.kind)))?;
+        Ok((accessor, component, components))
+    }
+}

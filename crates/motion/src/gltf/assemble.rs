@@ -1,0 +1,236 @@
+//! From checked parts to a body and its clips: nodes, surface, rest pose, unit, head.
+
+use std::{
+    collections::{BTreeMap, HashMap},
+    path::Path,
+    sync::Arc,
+};
+
+use glam::{Affine3A, Vec3};
+
+use super::{
+    Character,
+    accessor::Accessors,
+    clip::{Targets, read_clip},
+    document::{Document, Mesh as MeshEntry},
+    mesh::{Binding, Surface},
+    nodes::Tree,
+    skin::{Palette, read_skin},
+};
+use crate::{Body, BodySettings, Clip, LengthUnit, MotionError, Pose, Skin, guess_head, pose_at, skin};
+
+/// A file whose largest extent passes this many units is not in metres.
+const GIANT: f32 = 10.0;
+
+pub(super) fn assemble(accessors: &Accessors, settings: BodySettings) -> Result<Character, MotionError> {
+    let (file, document) = (accessors.file, accessors.document);
+    let mut dropped = BTreeMap::new();
+    let mut notes = Vec::new();
+    let tree = Tree::new(file, document, &mut dropped, &mut notes)?;
+
+    let mut wanted = vec![false; document.nodes.len()];
+    let mut is_joint = vec![false; document.nodes.len()];
+    for &n in &tree.order {
+        let node = &document.nodes[n];
+        let Some(mesh) = node.mesh else { continue };
+        if mesh >= document.meshes.len() {
+            let problem = format!("mesh {mesh} is not there; the file has {}", document.meshes.len());
+            return Err(MotionError::malformed(file, format!("node {n}"), problem));
+        }
+        match node.skin {
+            None => wanted[n] = true,
+            Some(skin) => {
+                let Some(skin) = document.skins.get(skin).filter(|s| !s.joints.is_empty()) else {
+                    let problem = format!("skin {skin} is not there or has no joints");
+                    return Err(MotionError::malformed(file, format!("node {n}"), problem));
+                };
+                for &joint in &skin.joints {
+                    (wanted[joint], is_joint[joint]) = (true, true);
+                }
+            }
+        }
+    }
+    let mesh_nodes = wanted.iter().filter(|w| **w).count();
+    let joints = match is_joint.iter().filter(|j| **j).count() {
+        0 => mesh_nodes,
+        some => some,
+    };
+    let (skeleton, joint_of_node) = tree.skeleton(file, document, wanted, settings.up, &mut dropped)?;
+
+    let mut palette = Palette::default();
+    let mut skins: BTreeMap<usize, Vec<u16>> = BTreeMap::new();
+    let mut surface = Surface::default();
+    let mut morphs_of_node = BTreeMap::new();
+    for &n in &tree.order {
+        let node = &document.nodes[n];
+        let Some(mesh) = node.mesh.map(|m| &document.meshes[m]) else { continue };
+        let count = mesh.primitives.iter().map(|p| p.targets.len()).max().unwrap_or(0);
+        let weights = node.weights.as_deref().or(mesh.weights.as_deref()).unwrap_or_default();
+        let first_morph = surface.add_morphs(&morph_names(mesh), weights, count);
+        if count > 0 {
+            morphs_of_node.insert(n, (first_morph, count));
+        }
+        if let Some(skin) = node.skin
+            && !skins.contains_key(&skin)
+        {
+            skins.insert(skin, read_skin(accessors, skin, &joint_of_node, &mut palette, &mut dropped)?);
+        }
+        let rigid = if node.skin.is_none() {
+            let joint = joint_of_node[n].unwrap_or(0);
+            palette.add(joint, Affine3A::IDENTITY).ok_or_else(|| {
+                MotionError::malformed(file, format!("node {n}"), "more nodes with meshes than can be told apart")
+            })?
+        } else {
+            0
+        };
+        let binding = node.skin.map_or(Binding::Rigid(rigid), |s| Binding::Skin(&skins[&s]));
+        for primitive in &mesh.primitives {
+            surface.add(accessors, primitive, &binding, first_morph, &mut dropped)?;
+        }
+    }
+    surface.skin.palette = palette.binds;
+    let (mesh, skin_data) = surface.finish();
+    if mesh.triangles.is_empty() {
+        let found = found_instead(document, &dropped);
+        return Err(MotionError::Empty { file: file.to_owned(), found, wanted: "a mesh of triangles" });
+    }
+    let stem = Path::new(file).file_stem().map_or_else(|| file.to_owned(), |s| s.to_string_lossy().into_owned());
+    let mut body = Body { name: stem, skeleton, mesh, skin: skin_data, head_joint: 0 };
+    rest_surface(&mut body);
+    if !body.mesh.positions.iter().all(|p| p.is_finite() && p.max_element() < 1e12) {
+        return Err(MotionError::malformed(file, "the scene", "its transforms carry vertices to infinity"));
+    }
+
+    let targets = Targets { joint_of_node: &joint_of_node, morphs_of_node: &morphs_of_node };
+    let mut times = HashMap::new();
+    let mut clips = Vec::new();
+    for (i, animation) in document.animations.iter().enumerate() {
+        let clip = read_clip(accessors, i, animation, &targets, &mut times, &mut dropped)?;
+        if clip.joints.is_empty() && clip.morphs.is_empty() {
+            *dropped.entry("empty_clips".into()).or_default() += 1;
+        } else {
+            clips.push(clip);
+        }
+    }
+
+    let unit_metres = choose_unit(&body, settings.unit, &mut notes);
+    if unit_metres != 1.0 {
+        rescale(&mut body, &mut clips, unit_metres);
+    }
+    mend_winding(&mut body);
+    body.head_joint = guess_head(&body.skeleton, &body.mesh);
+    for clip in &mut clips {
+        clip.detect_loop(&body);
+    }
+    note_pictures(document, &mut notes);
+    Ok(Character {
+        body: Arc::new(body),
+        clips: clips.into_iter().map(Arc::new).collect(),
+        dropped,
+        notes,
+        format: String::new(),
+        joints,
+        skins: document.skins.len(),
+        unit_metres,
+    })
+}
+
+fn found_instead(document: &Document, dropped: &BTreeMap<String, u64>) -> String {
+    let lost = ["triangles", "primitives_without_triangles", "node_links"];
+    let lost: Vec<String> = lost
+        .iter()
+        .filter_map(|&what| dropped.get(what).map(|n| format!("{n} {} dropped", what.replace('_', " "))))
+        .collect();
+    let found = format!("{} nodes and {} meshes without a usable triangle", document.nodes.len(), document.meshes.len());
+    if lost.is_empty() { found } else { format!("{found} ({})", lost.join(", ")) }
+}
+
+fn morph_names(mesh: &MeshEntry) -> Vec<String> {
+    let names = mesh.extras.as_ref().and_then(|e| e.get("targetNames")).and_then(|n| n.as_array());
+    names.map_or_else(Vec::new, |names| {
+        names.iter().map(|n| n.as_str().unwrap_or_default().to_owned()).collect()
+    })
+}
+
+fn note_pictures(document: &Document, notes: &mut Vec<String>) {
+    let textured =
+        document.materials.iter().filter(|m| m.pbr_metallic_roughness.base_color_texture.is_some()).count();
+    if textured > 0 && !document.textures.is_empty() {
+        notes.push(format!("{textured} materials have pictures, which are not drawn; their plain colour is"));
+    }
+}
+
+/// Skins the surface in the rest pose, which is what the mesh holds.
+fn rest_surface(body: &mut Body) {
+    let (mut pose, mut rest) = (Pose::default(), Skin::default());
+    pose_at(body, None, 0.0, &mut pose);
+    skin(body, &pose, &mut rest);
+    body.mesh.positions = rest.positions;
+    body.mesh.normals = rest.normals;
+}
+
+/// Turns round the triangles that the rest pose mirrors, so that all are counter-clockwise from outside.
+fn mend_winding(body: &mut Body) {
+    let mirrors: Vec<bool> = body
+        .skin
+        .palette
+        .iter()
+        .map(|bind| {
+            let world = body.skeleton.world_at_rest[usize::from(bind.joint)];
+            (world.matrix3 * bind.joint_from_bind.matrix3).determinant() < 0.0
+        })
+        .collect();
+    if mirrors.contains(&true) {
+        for triangle in &mut body.mesh.triangles {
+            if mirrors[usize::from(body.skin.binds[triangle[0] as usize][0])] {
+                triangle.swap(1, 2);
+            }
+        }
+    }
+}
+
+/// Metres of one unit. glTF says metres; a figure of more than ten of them was exported in centimetres or
+/// millimetres.
+fn choose_unit(body: &Body, unit: LengthUnit, notes: &mut Vec<String>) -> f32 {
+    let size = extent(&body.mesh.positions).max_element();
+    if let Some(metres) = unit.metres() {
+        return metres;
+    }
+    let guess = if size > 100.0 * GIANT {
+        LengthUnit::Millimetres
+    } else if size > GIANT {
+        LengthUnit::Centimetres
+    } else {
+        return 1.0;
+    };
+    let metres = guess.metres().unwrap_or(1.0);
+    notes.push(format!(
+        "the figure is {size:.0} units long, so they were taken for {}: {:.2} m",
+        guess.label(),
+        size * metres
+    ));
+    metres
+}
+
+fn extent(positions: &[Vec3]) -> Vec3 {
+    let low = positions.iter().fold(Vec3::INFINITY, |a, &b| a.min(b));
+    let high = positions.iter().fold(Vec3::NEG_INFINITY, |a, &b| a.max(b));
+    (high - low).max(Vec3::ZERO)
+}
+
+/// Multiplies every length by `scale`. Scales and rotations stay: a joint's transform `W` becomes `S W S^-1`.
+fn rescale(body: &mut Body, clips: &mut [Clip], scale: f32) {
+    for joint in &mut body.skeleton.joints {
+        joint.translation *= scale;
+    }
+    body.skeleton.update_rest();
+    for bind in &mut body.skin.palette {
+        bind.joint_from_bind.translation *= scale;
+    }
+    let morphs = body.skin.morphs.iter_mut().flat_map(|m| &mut m.positions);
+    let positions = body.mesh.positions.iter_mut().chain(&mut body.skin.positions).chain(morphs);
+    positions.for_each(|p| *p *= scale);
+    for track in clips.iter_mut().flat_map(|c| &mut c.joints).filter_map(|j| j.translation.as_mut()) {
+        track.values.iter_mut().for_each(|v| *v *= scale);
+    }
+}

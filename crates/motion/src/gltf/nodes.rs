@@ -1,0 +1,160 @@
+//! The tree of nodes, flattened into joints with parents first.
+
+use std::collections::BTreeMap;
+
+use glam::{Mat4, Quat, Vec3};
+
+use super::document::{Document, Node};
+use crate::{Joint, MotionError, Skeleton, UpAxis};
+
+/// The nodes of the scene in an order that has parents first.
+pub(super) struct Tree {
+    /// Nodes, parents first.
+    pub(super) order: Vec<usize>,
+    parent: Vec<Option<usize>>,
+}
+
+impl Tree {
+    /// Walks the scene. Links that close a cycle or give a node a second parent are dropped and counted.
+    pub(super) fn new(
+        file: &str,
+        document: &Document,
+        dropped: &mut BTreeMap<String, u64>,
+        notes: &mut Vec<String>,
+    ) -> Result<Self, MotionError> {
+        let nodes = &document.nodes;
+        let mut claimed = vec![None; nodes.len()];
+        for (n, node) in nodes.iter().enumerate() {
+            for &child in &node.children {
+                if child >= nodes.len() {
+                    let problem = format!("child {child} is not there; the file has {} nodes", nodes.len());
+                    return Err(MotionError::malformed(file, format!("node {n}"), problem));
+                }
+                claimed[child].get_or_insert(n);
+            }
+        }
+        let mut roots: Vec<usize> = match document.scenes.get(document.scene.unwrap_or(0)) {
+            Some(scene) => scene.nodes.clone(),
+            None => {
+                if let Some(scene) = document.scene {
+                    notes.push(format!("scene {scene} is not there; all nodes were taken"));
+                }
+                (0..nodes.len()).filter(|&n| claimed[n].is_none()).collect()
+            }
+        };
+        // Joints outside the scene belong to it all the same.
+        for skin in &document.skins {
+            for &joint in &skin.joints {
+                if joint >= nodes.len() {
+                    let problem = format!("joint {joint} is not there; the file has {} nodes", nodes.len());
+                    return Err(MotionError::malformed(file, "a skin", problem));
+                }
+                roots.push(top_of(joint, &claimed));
+            }
+        }
+        let mut tree = Self { order: Vec::new(), parent: vec![None; nodes.len()] };
+        let mut seen = vec![false; nodes.len()];
+        for root in roots {
+            if root >= nodes.len() {
+                let problem = format!("node {root} is not there; the file has {}", nodes.len());
+                return Err(MotionError::malformed(file, "the scene", problem));
+            }
+            if !seen[root] {
+                tree.walk(root, nodes, &mut seen, dropped);
+            }
+        }
+        Ok(tree)
+    }
+
+    fn walk(&mut self, root: usize, nodes: &[Node], seen: &mut [bool], dropped: &mut BTreeMap<String, u64>) {
+        seen[root] = true;
+        let mut stack = vec![root];
+        while let Some(n) = stack.pop() {
+            self.order.push(n);
+            for &child in nodes[n].children.iter().rev() {
+                if std::mem::replace(&mut seen[child], true) {
+                    *dropped.entry("node_links".into()).or_default() += 1;
+                } else {
+                    self.parent[child] = Some(n);
+                    stack.push(child);
+                }
+            }
+        }
+    }
+
+    /// Makes a skeleton of the nodes that `wanted` names and of those above them. The second value is the joint of
+    /// each node.
+    pub(super) fn skeleton(
+        &self,
+        file: &str,
+        document: &Document,
+        mut wanted: Vec<bool>,
+        up: UpAxis,
+        dropped: &mut BTreeMap<String, u64>,
+    ) -> Result<(Skeleton, Vec<Option<usize>>), MotionError> {
+        for &n in self.order.iter().rev() {
+            if let (true, Some(parent)) = (wanted[n], self.parent[n]) {
+                wanted[parent] = true;
+            }
+        }
+        let mut skeleton = Skeleton::default();
+        let turned = up == UpAxis::Z;
+        if turned {
+            skeleton.joints.push(Joint {
+                name: "up axis".into(),
+                parent: None,
+                translation: Vec3::ZERO,
+                rotation: Quat::from_rotation_x(-std::f32::consts::FRAC_PI_2),
+                scale: Vec3::ONE,
+            });
+        }
+        let mut joint_of_node = vec![None; document.nodes.len()];
+        for &n in self.order.iter().filter(|&&n| wanted[n]) {
+            let (translation, rotation, scale) = local(&document.nodes[n]).unwrap_or_else(|| {
+                *dropped.entry("node_transforms".into()).or_default() += 1;
+                (Vec3::ZERO, Quat::IDENTITY, Vec3::ONE)
+            });
+            let parent = self.parent[n].and_then(|p| joint_of_node[p]).or(turned.then_some(0));
+            let name = document.nodes[n].name.clone().unwrap_or_else(|| format!("node {n}"));
+            joint_of_node[n] = Some(skeleton.joints.len());
+            skeleton.joints.push(Joint { name, parent, translation, rotation, scale });
+        }
+        if skeleton.joints.len() > usize::from(u16::MAX) {
+            let problem = format!("{} joints; at most {} are read", skeleton.joints.len(), u16::MAX);
+            return Err(MotionError::malformed(file, "the scene", problem));
+        }
+        skeleton.update_rest();
+        Ok((skeleton, joint_of_node))
+    }
+}
+
+/// The highest node above another, or some node of the cycle that it hangs from.
+fn top_of(mut node: usize, parent: &[Option<usize>]) -> usize {
+    for _ in 0..parent.len() {
+        match parent[node] {
+            Some(above) => node = above,
+            None => break,
+        }
+    }
+    node
+}
+
+/// Translation, rotation and scale of a node; `None` where they are not finite.
+fn local(node: &Node) -> Option<(Vec3, Quat, Vec3)> {
+    let (scale, rotation, translation) = if let Some(matrix) = &node.matrix {
+        let matrix = Mat4::from_cols_array(matrix);
+        if !matrix.is_finite() || matrix.determinant().abs() < 1e-30 {
+            return None;
+        }
+        matrix.to_scale_rotation_translation()
+    } else {
+        (
+            node.scale.map_or(Vec3::ONE, Vec3::from),
+            node.rotation.map_or(Quat::IDENTITY, Quat::from_array),
+            node.translation.map_or(Vec3::ZERO, Vec3::from),
+        )
+    };
+    let length = rotation.length();
+    let finite = scale.is_finite() && rotation.is_finite() && translation.is_finite() && length > 1e-6;
+    finite.then(|| (translation, rotation * (1.0 / length), scale))
+}

@@ -1,0 +1,8 @@
+//! The head: which joint carries it, and the surface on which hair grows.
+
+mod pick;
+mod scalp;
+mod surface;
+
+pub use pick::{guess_head, joint_paths};
+pub use surface::{HeadMesh, head_mesh};

@@ -1,0 +1,103 @@
+//! What `lovelock info` says about characters and motions.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use crate::{Character, MotionFile};
+
+/// One clip of a character.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ClipInfo {
+    /// Its name in the file.
+    pub name: String,
+    /// How long it lasts, seconds.
+    pub duration_secs: f64,
+    /// True where it starts again without a jump.
+    pub loops: bool,
+}
+
+/// A character file in numbers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CharacterInfo {
+    /// Its format.
+    pub format: String,
+    /// What was left out, with counts.
+    pub dropped: BTreeMap<String, u64>,
+    /// Guesses and other things to know.
+    pub notes: Vec<String>,
+    /// Joints that skins use; nodes with meshes where there is no skin.
+    pub joints: usize,
+    /// Number of skins.
+    pub skins: usize,
+    /// Vertices of all meshes.
+    pub vertices: usize,
+    /// Triangles of all meshes.
+    pub triangles: usize,
+    /// Number of morph targets.
+    pub morph_targets: usize,
+    /// Height of the rest pose, metres.
+    pub height_m: f32,
+    /// Name of the joint that was taken for the head.
+    pub head: String,
+    /// Its clips.
+    pub clips: Vec<ClipInfo>,
+}
+
+impl Character {
+    /// What the command line prints.
+    pub fn info(&self) -> CharacterInfo {
+        let body = &self.body;
+        CharacterInfo {
+            format: self.format.clone(),
+            dropped: self.dropped.clone(),
+            notes: self.notes.clone(),
+            joints: self.joints,
+            skins: self.skins,
+            vertices: body.mesh.positions.len(),
+            triangles: body.mesh.triangles.len(),
+            morph_targets: body.skin.morphs.len(),
+            height_m: body.height(),
+            head: body.skeleton.joints.get(body.head_joint).map_or_else(String::new, |j| j.name.clone()),
+            clips: self
+                .clips
+                .iter()
+                .map(|c| ClipInfo { name: c.name.clone(), duration_secs: c.duration_secs, loops: c.loops })
+                .collect(),
+        }
+    }
+}
+
+/// A motion file in numbers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MotionInfo {
+    /// Its format.
+    pub format: String,
+    /// What was left out, with counts.
+    pub dropped: BTreeMap<String, u64>,
+    /// Guesses and other things to know.
+    pub notes: Vec<String>,
+    /// Number of joints, without end sites.
+    pub joints: usize,
+    /// Number of rows.
+    pub frames: usize,
+    /// Time between rows, seconds.
+    pub frame_secs: f64,
+    /// Metres of one unit of the file.
+    pub unit_metres: f32,
+}
+
+impl MotionFile {
+    /// What the command line prints.
+    pub fn info(&self) -> MotionInfo {
+        MotionInfo {
+            format: "BVH".into(),
+            dropped: self.dropped.clone(),
+            notes: self.notes.clone(),
+            joints: self.joints.len(),
+            frames: self.frames,
+            frame_secs: self.frame_secs,
+            unit_metres: self.unit_metres,
+        }
+    }
+}

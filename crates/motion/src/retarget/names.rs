@@ -1,0 +1,181 @@
+//! Names of joints taken apart: side, number, and the part of the body.
+
+/// Left or right, as the figure itself sees it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Side {
+    /// Toward +X in a rest pose that faces +Z.
+    Left,
+    /// Toward -X.
+    Right,
+}
+
+impl Side {
+    pub(crate) const BOTH: [Self; 2] = [Self::Left, Self::Right];
+
+    /// +1 for the left, toward +X.
+    pub(crate) fn sign(self) -> f32 {
+        if self == Self::Left { 1.0 } else { -1.0 }
+    }
+}
+
+/// A part of the body as a name has it; some words mean one of two parts, which depends on the joint's fellows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Part {
+    Hips,
+    Neck,
+    Head,
+    Clavicle,
+    /// The collar bone (Mixamo, Rokoko) or the upper arm (CMU).
+    Shoulder,
+    UpperArm,
+    Forearm,
+    Hand,
+    Thigh,
+    /// The shin where the thigh has a name of its own, else the thigh.
+    Leg,
+    Shin,
+    Foot,
+    Toe,
+}
+
+/// A name taken apart.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Label {
+    pub(crate) part: Part,
+    pub(crate) side: Option<Side>,
+    /// Numbers in the name: `upperleg02` comes after `upperleg01`.
+    pub(crate) numbers: Vec<u32>,
+    /// True for helpers that rigs put beside the real joint, such as `__UpLeg_L`.
+    pub(crate) helper: bool,
+}
+
+/// Words that say nothing about the part.
+const NOISE: [&str; 22] = [
+    "mixamorig", "bip", "biped", "valve", "valvebiped", "def", "org", "cc", "base", "joint", "jnt", "bone", "j", "b",
+    "c", "sk", "skel", "skeleton", "rig", "bn", "human", "character",
+];
+
+/// Words of joints that carry no limb.
+const OTHERS: [&str; 34] = [
+    "end", "nub", "tip", "ik", "pole", "target", "twist", "roll", "helper", "dummy", "socket", "breast", "finger",
+    "thumb", "index", "middle", "ring", "pinky", "little", "metacarpal", "metatarsal", "eye", "jaw", "tongue", "hair",
+    "ear", "tail", "skirt", "effector", "site", "prop", "top", "in", "fingers",
+];
+
+/// Takes a name apart; `None` where it names no part of a limb, hips, neck or head.
+pub(crate) fn label(name: &str) -> Option<Label> {
+    let local = name.rsplit([':', '|']).next().unwrap_or(name);
+    let (mut side, mut numbers, mut words) = (None, Vec::new(), Vec::new());
+    for token in tokens(local) {
+        if let Ok(number) = token.parse::<u32>() {
+            numbers.push(number);
+            continue;
+        }
+        match token.as_str() {
+            "l" | "left" => side = Some(Side::Left),
+            "r" | "right" => side = Some(Side::Right),
+            noise if NOISE.contains(&noise) => {}
+            other if OTHERS.contains(&other) => return None,
+            _ => words.push(token),
+        }
+    }
+    let mut word = words.concat();
+    if part(&word, side.is_some()).is_none() && side.is_none() {
+        // `leftarm`, `lhand`: a side grown together with the word.
+        for (prefix, s) in [("left", Side::Left), ("right", Side::Right), ("l", Side::Left), ("r", Side::Right)] {
+            if let Some(rest) = word.strip_prefix(prefix).filter(|rest| part(rest, true).is_some()) {
+                side = Some(s);
+                word = rest.to_owned();
+                break;
+            }
+        }
+    }
+    let part = part(&word, side.is_some())?;
+    Some(Label { part, side, numbers, helper: local.starts_with("__") })
+}
+
+fn part(word: &str, sided: bool) -> Option<Part> {
+    Some(match (word, sided) {
+        ("hips" | "hip" | "pelvis" | "cog" | "hipscenter", false) => Part::Hips,
+        ("neck" | "lowerneck" | "upperneck" | "necklower" | "neckupper", false) => Part::Neck,
+        ("head" | "skull", false) => Part::Head,
+        ("clavicle" | "clav" | "collar" | "collarbone", true) => Part::Clavicle,
+        ("shoulder", true) => Part::Shoulder,
+        ("upperarm" | "uparm" | "arm" | "armupper" | "bicep" | "uarm", true) => Part::UpperArm,
+        ("forearm" | "lowerarm" | "loarm" | "lowarm" | "armlower" | "elbow", true) => Part::Forearm,
+        ("hand" | "wrist", true) => Part::Hand,
+        ("thigh" | "upleg" | "upperleg" | "legupper" | "femur" | "hip", true) => Part::Thigh,
+        ("leg", true) => Part::Leg,
+        ("shin" | "calf" | "knee" | "lowerleg" | "loleg" | "lowleg" | "leglower", true) => Part::Shin,
+        ("foot" | "ankle", true) => Part::Foot,
+        ("toe" | "toes" | "ball", true) => Part::Toe,
+        _ => return None,
+    })
+}
+
+/// Lower-case words and numbers of a name: split at signs, at digits, and where case changes (`LHipJoint` is
+/// `l hip joint`).
+fn tokens(name: &str) -> Vec<String> {
+    let chars: Vec<char> = name.chars().take(200).collect();
+    let mut tokens = vec![String::new()];
+    for (i, &c) in chars.iter().enumerate() {
+        let before = i.checked_sub(1).map(|k| chars[k]);
+        let after = chars.get(i + 1).copied();
+        let starts = before.is_some_and(|b| {
+            b.is_ascii_digit() != c.is_ascii_digit()
+                || c.is_uppercase() && (b.is_lowercase() || after.is_some_and(char::is_lowercase))
+        });
+        if starts || !c.is_alphanumeric() {
+            tokens.push(String::new());
+        }
+        if c.is_alphanumeric()
+            && let Some(token) = tokens.last_mut()
+        {
+            token.extend(c.to_lowercase());
+        }
+    }
+    tokens.retain(|t| !t.is_empty());
+    tokens
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_many_rigs() {
+        use Part::*;
+        let (l, r) = (Some(Side::Left), Some(Side::Right));
+        for (name, part, side) in [
+            ("hips", Hips, None),
+            ("mixamorig:Hips", Hips, None),
+            ("mixamorig:LeftUpLeg", Thigh, l),
+            ("mixamorig1:RightForeArm", Forearm, r),
+            ("Bip001 L Thigh", Thigh, l),
+            ("Bip01_R_Calf", Shin, r),
+            ("J_Bip_L_UpperArm", UpperArm, l),
+            ("upper_arm_l", UpperArm, l),
+            ("DEF-shin.R", Shin, r),
+            ("LHipJoint", Thigh, l),
+            ("lhand", Hand, l),
+            ("LeftShoulder", Shoulder, l),
+            ("UpArm_L", UpperArm, l),
+            ("LoLeg_R", Shin, r),
+            ("lowerarm01.L", Forearm, l),
+            ("wrist.R", Hand, r),
+            ("LeftToeBase", Toe, l),
+            ("b_Head_05", Head, None),
+            ("Head", Head, None),
+            ("lowerneck", Neck, None),
+            ("foot_r", Foot, r),
+            ("CC_Base_L_Foot", Foot, l),
+        ] {
+            let found = label(name).unwrap_or_else(|| panic!("{name}"));
+            assert_eq!((found.part, found.side), (part, side), "{name}");
+        }
+        for name in ["HeadTop_End", "LeftHandThumb1", "lowerback", "pelvis.L", "root", "finger1-1.L", "node 3", "", "eye.L"]
+        {
+            assert_eq!(label(name), None, "{name}");
+        }
+    }
+}

@@ -1,0 +1,201 @@
+//! What the joints of a figure are for, from their names and their tree.
+
+use std::collections::BTreeMap;
+
+pub(crate) use super::names::Side;
+use super::names::{Label, Part, label};
+use crate::{MotionFile, Skeleton};
+
+/// What a joint is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Role {
+    /// Where legs and spine meet: what carries the whole figure.
+    Hips,
+    /// Where the legs meet, where that is another joint than the hips.
+    Pelvis,
+    /// Where the arms meet.
+    Chest,
+    Neck,
+    Head,
+    Clavicle(Side),
+    UpperArm(Side),
+    Forearm(Side),
+    Hand(Side),
+    Thigh(Side),
+    Shin(Side),
+    Foot(Side),
+    Toe(Side),
+}
+
+impl Role {
+    /// What an error calls it.
+    pub(crate) fn label(self) -> String {
+        let side = |s: Side| if s == Side::Left { "left" } else { "right" };
+        match self {
+            Self::Hips => "hips".into(),
+            Self::Pelvis => "pelvis".into(),
+            Self::Chest => "chest".into(),
+            Self::Neck => "neck".into(),
+            Self::Head => "head".into(),
+            Self::Clavicle(s) => format!("{} clavicle", side(s)),
+            Self::UpperArm(s) => format!("{} upper arm", side(s)),
+            Self::Forearm(s) => format!("{} forearm", side(s)),
+            Self::Hand(s) => format!("{} hand", side(s)),
+            Self::Thigh(s) => format!("{} thigh", side(s)),
+            Self::Shin(s) => format!("{} shin", side(s)),
+            Self::Foot(s) => format!("{} foot", side(s)),
+            Self::Toe(s) => format!("{} toe", side(s)),
+        }
+    }
+}
+
+/// The role that a name alone tells.
+pub(crate) fn role_of(name: &str) -> Option<Role> {
+    label(name).filter(|l| l.part == Part::Head).map(|_| Role::Head)
+}
+
+/// The roles of a skeleton's joints.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Humanoid {
+    joints: BTreeMap<Role, usize>,
+    /// Joints between hips and neck, from below.
+    pub(crate) spine: Vec<usize>,
+    /// Joints of the neck, from below.
+    pub(crate) neck: Vec<usize>,
+}
+
+impl Humanoid {
+    pub(crate) fn of_motion(motion: &MotionFile) -> Self {
+        Self::new(
+            &motion.joints.iter().map(|j| j.name.as_str()).collect::<Vec<_>>(),
+            &motion.joints.iter().map(|j| j.parent).collect::<Vec<_>>(),
+        )
+    }
+
+    pub(crate) fn of_skeleton(skeleton: &Skeleton) -> Self {
+        Self::new(
+            &skeleton.joints.iter().map(|j| j.name.as_str()).collect::<Vec<_>>(),
+            &skeleton.joints.iter().map(|j| j.parent).collect::<Vec<_>>(),
+        )
+    }
+
+    /// The joint of a role.
+    pub(crate) fn get(&self, role: Role) -> Option<usize> {
+        self.joints.get(&role).copied()
+    }
+
+    /// All roles that were found.
+    pub(crate) fn roles(&self) -> impl Iterator<Item = (Role, usize)> {
+        self.joints.iter().map(|(&role, &joint)| (role, joint))
+    }
+
+    fn new(names: &[&str], parents: &[Option<usize>]) -> Self {
+        let labels: Vec<Option<Label>> = names.iter().map(|n| label(n)).collect();
+        let depth = depths(parents);
+        // The best joint of a part: no helper, the lowest number, then the deepest (`LHipJoint` above `LeftHip`).
+        let best = |parts: &[Part], side: Option<Side>| {
+            parts.iter().find_map(|&part| {
+                (0..names.len())
+                    .filter(|&j| labels[j].as_ref().is_some_and(|l| l.part == part && l.side == side))
+                    .min_by(|&a, &b| {
+                        let key = |j: usize| {
+                            let l = labels[j].as_ref();
+                            (l.map(|l| (l.helper, l.numbers.clone())), std::cmp::Reverse(depth[j]), j)
+                        };
+                        key(a).cmp(&key(b))
+                    })
+            })
+        };
+        let mut joints = BTreeMap::new();
+        let mut put = |role: Role, joint: Option<usize>| {
+            if let Some(joint) = joint {
+                joints.insert(role, joint);
+            }
+        };
+        put(Role::Head, best(&[Part::Head], None));
+        for side in Side::BOTH {
+            let s = Some(side);
+            let has_upper_arm = best(&[Part::UpperArm], s).is_some();
+            let shoulder = if has_upper_arm { Part::Clavicle } else { Part::UpperArm };
+            put(Role::UpperArm(side), best(&[Part::UpperArm, Part::Shoulder], s));
+            put(
+                Role::Clavicle(side),
+                best(if shoulder == Part::Clavicle { &[Part::Clavicle, Part::Shoulder] } else { &[Part::Clavicle] }, s),
+            );
+            put(Role::Forearm(side), best(&[Part::Forearm], s));
+            put(Role::Hand(side), best(&[Part::Hand], s));
+            let has_thigh = best(&[Part::Thigh], s).is_some();
+            put(Role::Thigh(side), best(&[Part::Thigh, Part::Leg], s));
+            put(Role::Shin(side), best(if has_thigh { &[Part::Shin, Part::Leg] } else { &[Part::Shin] }, s));
+            put(Role::Foot(side), best(&[Part::Foot], s));
+            put(Role::Toe(side), best(&[Part::Toe], s));
+        }
+        let meet = |a: Option<usize>, b: Option<usize>| Some(common(parents, &depth, a?, b?)).flatten();
+        let find = |joints: &BTreeMap<Role, usize>, role| joints.get(&role).copied();
+        let legs = meet(find(&joints, Role::Thigh(Side::Left)), find(&joints, Role::Thigh(Side::Right)));
+        let arms = meet(find(&joints, Role::UpperArm(Side::Left)), find(&joints, Role::UpperArm(Side::Right)));
+        let head = find(&joints, Role::Head).or_else(|| best(&[Part::Neck], None));
+        let hips = meet(legs, head).or_else(|| best(&[Part::Hips], None));
+        let mut figure = Self { joints, ..Self::default() };
+        if let Some(hips) = hips {
+            figure.joints.insert(Role::Hips, hips);
+        }
+        if let Some(legs) = legs.filter(|&legs| Some(legs) != hips) {
+            figure.joints.insert(Role::Pelvis, legs);
+        }
+        if let Some(arms) = arms {
+            figure.joints.insert(Role::Chest, arms);
+        }
+        if let (Some(hips), Some(head)) = (hips, head) {
+            figure.split_trunk(&labels, parents, hips, head);
+        }
+        figure
+    }
+
+    /// Sorts the joints between hips and head into spine and neck.
+    fn split_trunk(&mut self, labels: &[Option<Label>], parents: &[Option<usize>], hips: usize, head: usize) {
+        let mut path = Vec::new();
+        let mut at = parents[head];
+        while let Some(j) = at.filter(|&j| j != hips) {
+            path.push(j);
+            at = parents[j];
+        }
+        path.reverse();
+        if at.is_none() {
+            return;
+        }
+        let is_neck = |j: &usize| labels[*j].as_ref().is_some_and(|l| l.part == Part::Neck);
+        // Above the arms all is neck; where the arms are not known, a name or the last joint tells.
+        let chest = self.get(Role::Chest).and_then(|c| path.iter().position(|&j| j == c));
+        let split = match chest {
+            Some(c) => c + 1,
+            None => path.iter().position(is_neck).unwrap_or(path.len().saturating_sub(1)),
+        };
+        self.neck = path.split_off(split);
+        self.spine = path;
+        if let Some(&neck) = self.neck.iter().find(|j| is_neck(j)).or(self.neck.first()) {
+            self.joints.insert(Role::Neck, neck);
+        }
+    }
+}
+
+fn depths(parents: &[Option<usize>]) -> Vec<usize> {
+    let mut depth = Vec::with_capacity(parents.len());
+    for parent in parents {
+        let d = parent.map_or(0, |p| depth[p] + 1);
+        depth.push(d);
+    }
+    depth
+}
+
+/// The lowest joint above both, or one of them where it is above the other.
+fn common(parents: &[Option<usize>], depth: &[usize], mut a: usize, mut b: usize) -> Option<usize> {
+    while a != b {
+        if depth[a] >= depth[b] {
+            a = parents[a]?;
+        } else {
+            b = parents[b]?;
+        }
+    }
+    Some(a)
+}
