@@ -73,7 +73,9 @@ impl FromStr for ShadowMethod {
 
     fn from_str(name: &str) -> Result<Self, Self::Err> {
         let found = Self::ALL.iter().find(|method| method.id() == name);
-        found.copied().ok_or_else(|| UnknownShadowMethod { found: name.to_owned() })
+        found.copied().ok_or_else(|| UnknownShadowMethod {
+            found: name.to_owned(),
+        })
     }
 }
 
@@ -100,13 +102,20 @@ mod tests {
         for (i, &method) in ShadowMethod::ALL.iter().enumerate() {
             assert_eq!(method.id().parse(), Ok(method));
             assert_eq!(String::from(method), method.to_string());
-            assert!(ShadowMethod::ALL[..i].iter().all(|other| other.id() != method.id()));
+            assert!(
+                ShadowMethod::ALL[..i]
+                    .iter()
+                    .all(|other| other.id() != method.id())
+            );
         }
     }
 
     #[test]
     fn an_unknown_name_lists_the_known_ones() {
         let error = "Voxel map".parse::<ShadowMethod>().unwrap_err().to_string();
-        assert_eq!(error, "no shadow method is called \"Voxel map\"; use one of: none, voxel-map");
+        assert_eq!(
+            error,
+            "no shadow method is called \"Voxel map\"; use one of: none, voxel-map"
+        );
     }
 }

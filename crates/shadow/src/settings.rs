@@ -27,8 +27,11 @@ impl ShadowSettings {
 
     /// The extinction scale as methods use it: not negative, finite, and 0 where it is no number.
     pub fn safe_extinction_scale(&self) -> f32 {
-        // `max` turns NaN into 0.
-        self.extinction_scale.max(0.0).min(1e6)
+        if self.extinction_scale > 0.0 {
+            self.extinction_scale.min(1e6)
+        } else {
+            0.0
+        }
     }
 }
 

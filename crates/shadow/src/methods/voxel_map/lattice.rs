@@ -32,8 +32,11 @@ pub struct Bounds {
 
 impl Bounds {
     /// Bounds of nothing.
-    pub const EMPTY: Self =
-        Self { min: Vec3::splat(f32::INFINITY), max: Vec3::splat(f32::NEG_INFINITY), ignored: 0 };
+    pub const EMPTY: Self = Self {
+        min: Vec3::splat(f32::INFINITY),
+        max: Vec3::splat(f32::NEG_INFINITY),
+        ignored: 0,
+    };
 
     /// Bounds of points `first..` of `strands`, `count` of them.
     pub fn of(strands: &Strands, first: usize, count: usize, light: &LightFrame, anchor: Vec3) -> Self {
@@ -51,8 +54,16 @@ impl Bounds {
                 ignored += u32::from(!near);
                 for axis in 0..3 {
                     let (low, high) = (&mut min[axis][lane], &mut max[axis][lane]);
-                    *low = if near & (along[axis] < *low) { along[axis] } else { *low };
-                    *high = if near & (along[axis] > *high) { along[axis] } else { *high };
+                    *low = if near & (along[axis] < *low) {
+                        along[axis]
+                    } else {
+                        *low
+                    };
+                    *high = if near & (along[axis] > *high) {
+                        along[axis]
+                    } else {
+                        *high
+                    };
                 }
             }
         };
@@ -71,8 +82,12 @@ impl Bounds {
             }
         }
         for lane in 0..8 {
-            bounds.min = bounds.min.min(Vec3::from([min[0][lane], min[1][lane], min[2][lane]]));
-            bounds.max = bounds.max.max(Vec3::from([max[0][lane], max[1][lane], max[2][lane]]));
+            bounds.min = bounds
+                .min
+                .min(Vec3::from([min[0][lane], min[1][lane], min[2][lane]]));
+            bounds.max = bounds
+                .max
+                .max(Vec3::from([max[0][lane], max[1][lane], max[2][lane]]));
         }
         bounds.ignored += u64::from(ignored);
         bounds
@@ -131,7 +146,10 @@ impl Lattice {
         let farthest = min.abs().max(max.abs()).max_element();
         let cell_size = round_up_to_step(wanted.max(SMALLEST_CELL).max(farthest / 65_536.0));
         let per_cell = 1.0 / cell_size;
-        let (low, high) = ((min * per_cell).floor().as_ivec3(), (max * per_cell).floor().as_ivec3());
+        let (low, high) = (
+            (min * per_cell).floor().as_ivec3(),
+            (max * per_cell).floor().as_ivec3(),
+        );
         // What the hair does not need lies half on each side.
         let spare = (IVec3::splat(resolution as i32) - (high - low + 1)).max(IVec3::ZERO);
         let light = &input.light;
@@ -147,12 +165,21 @@ impl Lattice {
     /// Coordinates of `p` on the infinite lattice, in cells from the anchor.
     pub fn lattice_from_world(&self, p: Vec3) -> Vec3 {
         let d = p - self.anchor;
-        Vec3::from(self.axes_per_cell.map(|axis| d.x * axis.x + d.y * axis.y + d.z * axis.z))
+        Vec3::from(
+            self.axes_per_cell
+                .map(|axis| d.x * axis.x + d.y * axis.y + d.z * axis.z),
+        )
     }
 
     /// Coordinates of `p` in the window, in cells: its cell is their whole part.
     pub fn window_from_world(&self, p: Vec3) -> Vec3 {
         self.lattice_from_world(p) - self.first.as_vec3()
+    }
+
+    /// Whether a point in window coordinates is one of those that the window was made for: finite, and not one
+    /// that was left out for its distance.
+    pub fn holds(&self, p: Vec3) -> bool {
+        p.abs().cmple(Vec3::splat(2.0 * self.resolution as f32)).all()
     }
 
     /// The paper's mapping Ψ: the cell of `p` in a map that is addressed modulo *N*, so that the window may
@@ -165,27 +192,50 @@ impl Lattice {
 
     /// Where a map addressed modulo *N* stores a cell of the lattice.
     pub fn wrapped(&self, cell: IVec3) -> [usize; 3] {
-        cell.to_array().map(|c| c.rem_euclid(self.resolution as i32) as usize)
+        cell.to_array()
+            .map(|c| c.rem_euclid(self.resolution as i32) as usize)
     }
 }
 
 /// Length of the longest strand along its points, metres; strands that are not finite count for nothing.
 fn longest_strand(strands: &Strands) -> f32 {
-    let ends = strands.first_point.windows(2).map(|ends| ends[0] as usize..ends[1] as usize);
-    let length =
-        |range: std::ops::Range<usize>| -> f32 {
-            range.clone().zip(range.skip(1)).map(|(a, b)| strands.point(a).distance(strands.point(b))).sum()
-        };
-    ends.map(length).filter(|length| *length < FARTHEST).fold(0.0, f32::max)
+    let ends = strands
+        .first_point
+        .windows(2)
+        .map(|ends| ends[0] as usize..ends[1] as usize);
+    let length = |range: std::ops::Range<usize>| -> f32 {
+        range
+            .clone()
+            .zip(range.skip(1))
+            .map(|(a, b)| strands.point(a).distance(strands.point(b)))
+            .sum()
+    };
+    ends.map(length)
+        .filter(|length| *length < FARTHEST)
+        .fold(0.0, f32::max)
 }
 
 /// The next sixteenth of an octave at or above `size`, which must be positive and finite.
 fn round_up_to_step(size: f32) -> f32 {
     // 2^(k/16), so that the result is the same wherever this runs.
     const STEPS: [f32; 17] = [
-        1.0, 1.044_273_8, 1.090_507_7, 1.138_788_6, 1.189_207_1, 1.241_857_8, 1.296_839_6, 1.354_255_5,
-        1.414_213_5, 1.476_826_1, 1.542_210_8, 1.610_490_3, 1.681_792_9, 1.756_252_2, 1.834_008_1,
-        1.915_206_6, 2.0,
+        1.0,
+        1.044_273_8,
+        1.090_507_7,
+        1.138_788_6,
+        1.189_207_1,
+        1.241_857_8,
+        1.296_839_6,
+        1.354_255_5,
+        1.414_213_5,
+        1.476_826_1,
+        1.542_210_8,
+        1.610_490_3,
+        1.681_792_9,
+        1.756_252_2,
+        1.834_008_1,
+        1.915_206_6,
+        2.0,
     ];
     let octave = f32::from_bits(size.to_bits() & 0x7f80_0000);
     let step = STEPS.iter().find(|step| octave * **step >= size);

@@ -11,9 +11,16 @@
 //! plain version is in [`reference`](self::reference); [`VoxelMap`] is the same map made quickly.
 
 mod cpu;
+mod deposit;
+mod exp;
+mod grid;
 mod lattice;
+mod layout;
+mod lookup;
 pub mod reference;
 mod samples;
+mod simd;
+mod sum;
 
 pub use cpu::VoxelMap;
 pub use lattice::{Bounds, Lattice};
@@ -84,7 +91,9 @@ impl VoxelMapSettings {
 
     /// The resolution that is used: the nearest multiple of 8 in [`VoxelMapSettings::RESOLUTIONS`].
     pub fn safe_resolution(&self) -> u32 {
-        let resolution = self.resolution.clamp(*Self::RESOLUTIONS.start(), *Self::RESOLUTIONS.end());
+        let resolution = self
+            .resolution
+            .clamp(*Self::RESOLUTIONS.start(), *Self::RESOLUTIONS.end());
         (resolution + 4) / 8 * 8
     }
 }

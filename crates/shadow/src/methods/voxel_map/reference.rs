@@ -6,7 +6,7 @@
 use glam::{IVec3, Vec3};
 
 use super::lattice::{Bounds, Lattice};
-use super::samples::sample_count;
+use super::samples::{sample_at, sample_count};
 use super::{VoxelDeposit, VoxelFilter};
 use crate::{ShadowInput, ShadowSettings};
 
@@ -35,8 +35,19 @@ pub struct DenseMap {
 impl DenseMap {
     /// Builds the map of `input`.
     pub fn build(input: &ShadowInput, settings: &ShadowSettings, addressing: Addressing) -> Self {
-        let bounds = Bounds::of(input.strands, 0, input.strands.points(), &input.light, input.anchor);
-        Self::build_in(Lattice::new(input, &settings.voxel_map, &bounds), input, settings, addressing)
+        let bounds = Bounds::of(
+            input.strands,
+            0,
+            input.strands.points(),
+            &input.light,
+            input.anchor,
+        );
+        Self::build_in(
+            Lattice::new(input, &settings.voxel_map, &bounds),
+            input,
+            settings,
+            addressing,
+        )
     }
 
     /// Builds the map of `input` in a window that is given.
@@ -48,8 +59,13 @@ impl DenseMap {
     ) -> Self {
         let n = lattice.resolution as usize;
         let filter = settings.voxel_map.filter;
-        let mut map =
-            Self { lattice, density: vec![0.0; n * n * n], depth: vec![0.0; n * n * n], addressing, filter };
+        let mut map = Self {
+            lattice,
+            density: vec![0.0; n * n * n],
+            depth: vec![0.0; n * n * n],
+            addressing,
+            filter,
+        };
         let scale = f64::from(settings.safe_extinction_scale());
         match settings.voxel_map.deposit {
             VoxelDeposit::Length => map.deposit_lengths(input, scale),
@@ -65,20 +81,22 @@ impl DenseMap {
     /// `τ_cell = s_ext Σ w ℓ sinθ / ds²`: in cells, the area across the light is 1 and `ℓ sinθ` is the length of the
     /// segment's projection along the light.
     fn deposit_lengths(&mut self, input: &ShadowInput, scale: f64) {
-        let per_cell = scale * f64::from(input.strand_width) / f64::from(self.lattice.cell_size);
+        let per_cell = scale * f64::from(input.strand_width.max(0.0)) / f64::from(self.lattice.cell_size);
         for ends in input.strands.first_point.windows(2) {
             for point in ends[0] as usize + 1..ends[1] as usize {
                 let from = self.lattice.window_from_world(input.strands.point(point - 1));
                 let to = self.lattice.window_from_world(input.strands.point(point));
+                if !(self.lattice.holds(from) && self.lattice.holds(to)) {
+                    continue;
+                }
                 let step = to - from;
                 let count = sample_count((step.x * step.x + step.y * step.y + step.z * step.z).sqrt());
                 let projected = f64::from(step.y).hypot(f64::from(step.z));
-                if !(from.is_finite() && to.is_finite()) {
-                    continue;
-                }
                 for sample in 0..count {
-                    let t = (sample as f32 + 0.5) / count as f32;
-                    self.add(from + step * t, per_cell * projected / f64::from(count));
+                    self.add(
+                        from + step * sample_at(sample, 1.0 / count as f32),
+                        per_cell * projected / f64::from(count),
+                    );
                 }
             }
         }
@@ -88,7 +106,7 @@ impl DenseMap {
     fn deposit_points(&mut self, input: &ShadowInput, depth: f64) {
         for point in 0..input.strands.points() {
             let p = self.lattice.window_from_world(input.strands.point(point));
-            if p.is_finite() {
+            if self.lattice.holds(p) {
                 self.add(p, depth);
             }
         }
@@ -96,7 +114,10 @@ impl DenseMap {
 
     fn add(&mut self, p: Vec3, depth: f64) {
         // Rounding must not put hair into the empty cells at the border.
-        let cell = p.floor().as_ivec3().clamp(IVec3::ONE, IVec3::splat(self.lattice.resolution as i32 - 2));
+        let cell = p
+            .floor()
+            .as_ivec3()
+            .clamp(IVec3::ONE, IVec3::splat(self.lattice.resolution as i32 - 2));
         let at = self.address(cell);
         self.density[at] += depth;
     }
@@ -158,10 +179,12 @@ impl DenseMap {
             for (dk, wk) in [(0, 1.0 - f64::from(z - k)), (1, f64::from(z - k))] {
                 let front = self.back_face(i - 1, j as i32 + dj, k as i32 + dk);
                 let back = self.back_face(i, j as i32 + dj, k as i32 + dk);
-                sum += wj * wk * match self.filter {
-                    VoxelFilter::Centred => (-(front + (back - front) * along)).exp(),
-                    VoxelFilter::Paper => (1.0 - along) * (-front).exp() + along * (-back).exp(),
-                };
+                sum += wj
+                    * wk
+                    * match self.filter {
+                        VoxelFilter::Centred => (-(front + (back - front) * along)).exp(),
+                        VoxelFilter::Paper => (1.0 - along) * (-front).exp() + along * (-back).exp(),
+                    };
             }
         }
         sum

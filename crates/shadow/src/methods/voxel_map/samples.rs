@@ -1,14 +1,19 @@
 //! How a segment is cut into the samples that are put into cells.
-
-/// Longest run of samples that one segment may take. Beyond it a segment is longer than any window.
-pub const MOST_SAMPLES: u32 = 4096;
+//!
+//! The quick map and the reference share these two lines, so that a sample at a cell's border falls on the
+//! same side in both.
+// Compiled within the versions of `simd`.
+#![allow(clippy::inline_always)]
 
 /// Number of samples of a segment of `length` cells: no two of them more than half a cell apart.
-///
-/// 0 for a length that is no number.
 #[inline(always)]
-pub fn sample_count(length: f32) -> u32 {
-    // Saturating, and 0 for NaN. `as` truncates: one more than the whole part is the ceiling, or one above it
-    // where the length is a whole number of half cells, which does no harm.
-    (2.0 * length) as u32 + 1
+pub(super) fn sample_count(length: f32) -> u32 {
+    // `⌈2·length⌉`, but at least 1, and one more where that is a whole number: SSE2 has no ceiling.
+    (2.0 * length) as i32 as u32 + 1
+}
+
+/// Where along its segment sample `index` lies, 0 to 1; `inverse_count` is 1 over the number of samples.
+#[inline(always)]
+pub(super) fn sample_at(index: u32, inverse_count: f32) -> f32 {
+    (index as i32 as f32 + 0.5) * inverse_count
 }

@@ -1,0 +1,242 @@
+//! Density: every piece of strand adds its optical depth to the cell that it lies in.
+//!
+//! Points go through in blocks of 64. Coordinates, lengths and addresses are computed in loops over fixed
+//! arrays, which the compiler turns into vector code; only the additions themselves go one by one.
+// Every loop must be compiled within the version of `simd` that calls it, and must not branch.
+#![allow(clippy::inline_always, clippy::needless_bitwise_bool)]
+
+use lovelock_groom::Strands;
+
+use super::grid::{DEPTH_ONE, Grid};
+use super::lattice::Lattice;
+use super::layout::Layout;
+use super::samples::{sample_at, sample_count};
+
+/// Points that are transformed together; all but the last begin a segment.
+const BLOCK: usize = 64;
+/// Segments whose samples are addressed together.
+const LANES: usize = 16;
+/// Segments with more samples than this, among shorter ones, go one by one.
+const LONG: u32 = 24;
+/// The most that one sample adds, in fixed point: τ = 32, twice what a cell can tell from darkness.
+const MOST_PER_SAMPLE: f32 = 32.0 * DEPTH_ONE;
+
+/// What a deposit needs beside the strands.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Deposit {
+    pub layout: Layout,
+    pub lattice: Lattice,
+    /// Optical depth, in fixed point: of a segment a cell of its length across the light, or of a point.
+    pub depth: f32,
+    /// Each point adds one `depth`, as the paper has it; else each segment by its length.
+    pub by_point: bool,
+}
+
+/// A block of segments in window coordinates.
+struct Block {
+    from: [[f32; BLOCK]; 3],
+    step: [[f32; BLOCK]; 3],
+    /// Samples of a segment; 0 where the lane holds none.
+    samples: [u32; BLOCK],
+    inverse: [f32; BLOCK],
+    /// Fixed-point depth of one sample.
+    depth: [u32; BLOCK],
+}
+
+impl Deposit {
+    /// Adds strands `first..last` to `grid`; says how many samples that were.
+    #[inline(always)]
+    pub(super) fn run(&self, strands: &Strands, first: usize, last: usize, grid: &mut Grid) -> u64 {
+        let (mut at, end) = (
+            strands.first_point[first] as usize,
+            strands.first_point[last] as usize,
+        );
+        let mut strand = first;
+        let mut samples = 0;
+        while at < end {
+            let count = (end - at).min(BLOCK);
+            // The last point of each strand begins no segment. Lane 63 never does: the next block begins with it.
+            let mut ends = [false; BLOCK];
+            ends[BLOCK - 1] = true;
+            while strand < last && (strands.first_point[strand + 1] as usize) <= at + BLOCK {
+                let after = strands.first_point[strand + 1] as usize;
+                if after > at {
+                    ends[after - 1 - at] = true;
+                }
+                strand += 1;
+            }
+            // The strand that holds the next block's first point may end in it.
+            strand = strand.saturating_sub(1).max(first);
+            let points = [&strands.x, &strands.y, &strands.z].map(|axis| {
+                let mut lanes = [f32::NAN; BLOCK];
+                lanes[..count].copy_from_slice(&axis[at..at + count]);
+                lanes
+            });
+            let block = if self.by_point {
+                self.points(&points)
+            } else {
+                self.segments(&points, &ends)
+            };
+            samples += block.samples.iter().map(|n| u64::from(*n)).sum::<u64>();
+            self.scatter(&block, grid);
+            at += BLOCK - 1;
+        }
+        samples
+    }
+
+    /// Window coordinates, and whether a point lies in the window's neighbourhood and is finite.
+    #[inline(always)]
+    fn transform(&self, points: &[[f32; BLOCK]; 3]) -> ([[f32; BLOCK]; 3], [bool; BLOCK]) {
+        let (lattice, anchor) = (&self.lattice, self.lattice.anchor);
+        let first = lattice.first.as_vec3().to_array();
+        let limit = 2.0 * lattice.resolution as f32;
+        let highest = highest_inside(lattice.resolution);
+        let mut cells = [[0.0; BLOCK]; 3];
+        let mut valid = [true; BLOCK];
+        for axis in 0..3 {
+            let to = lattice.axes_per_cell[axis];
+            for lane in 0..BLOCK {
+                let (x, y, z) = (
+                    points[0][lane] - anchor.x,
+                    points[1][lane] - anchor.y,
+                    points[2][lane] - anchor.z,
+                );
+                let c = (x * to.x + y * to.y + z * to.z) - first[axis];
+                valid[lane] &= c.abs() <= limit;
+                // Rounding must not put hair into the empty cells at the border. NaN becomes 1.
+                let c = if c > 1.0 { c } else { 1.0 };
+                cells[axis][lane] = if c < highest { c } else { highest };
+            }
+        }
+        (cells, valid)
+    }
+
+    #[inline(always)]
+    fn segments(&self, points: &[[f32; BLOCK]; 3], ends: &[bool; BLOCK]) -> Block {
+        let (from, valid) = self.transform(points);
+        let mut step = [[0.0; BLOCK]; 3];
+        let mut keep = [0.0; BLOCK];
+        for lane in 0..BLOCK - 1 {
+            keep[lane] = if valid[lane] & valid[lane + 1] & !ends[lane] {
+                1.0
+            } else {
+                0.0
+            };
+        }
+        for axis in 0..3 {
+            for lane in 0..BLOCK - 1 {
+                step[axis][lane] = (from[axis][lane + 1] - from[axis][lane]) * keep[lane];
+            }
+        }
+        let mut samples = [0; BLOCK];
+        let mut inverse = [0.0; BLOCK];
+        let mut depth = [0; BLOCK];
+        for lane in 0..BLOCK {
+            let (x, y, z) = (step[0][lane], step[1][lane], step[2][lane]);
+            let across = y * y + z * z;
+            let count = sample_count((x * x + across).sqrt()) as i32 as f32;
+            inverse[lane] = 1.0 / count;
+            // ℓ sinθ in cells is the length across the light.
+            let of_sample = self.depth * across.sqrt() * inverse[lane] + 0.5;
+            let of_sample = if of_sample < MOST_PER_SAMPLE {
+                of_sample
+            } else {
+                MOST_PER_SAMPLE
+            };
+            samples[lane] = (count * keep[lane]) as i32 as u32;
+            depth[lane] = (of_sample * keep[lane]) as i32 as u32;
+        }
+        Block {
+            from,
+            step,
+            samples,
+            inverse,
+            depth,
+        }
+    }
+
+    #[inline(always)]
+    fn points(&self, points: &[[f32; BLOCK]; 3]) -> Block {
+        let (from, mut valid) = self.transform(points);
+        valid[BLOCK - 1] = false;
+        let depth = (self.depth + 0.5).min(MOST_PER_SAMPLE) as u32;
+        Block {
+            from,
+            step: [[0.0; BLOCK]; 3],
+            samples: valid.map(u32::from),
+            inverse: [1.0; BLOCK],
+            depth: valid.map(|valid| if valid { depth } else { 0 }),
+        }
+    }
+
+    /// Adds all samples of a block.
+    #[inline(always)]
+    fn scatter(&self, block: &Block, grid: &mut Grid) {
+        for start in (0..BLOCK).step_by(LANES) {
+            let samples: &[u32; LANES] = block.samples[start..start + LANES].try_into().expect("16 lanes");
+            let mut most = 0;
+            for count in samples {
+                most = most.max(*count);
+            }
+            if most > LONG && samples.iter().sum::<u32>() < most * 8 {
+                self.scatter_one_by_one(block, start, grid);
+                continue;
+            }
+            for sample in 0..most {
+                let (addresses, depths) = self.addresses(block, start, sample);
+                for (address, depth) in addresses.iter().zip(&depths) {
+                    self.add(grid, *address, *depth);
+                }
+            }
+        }
+    }
+
+    /// Addresses and depths of sample `sample` of the lanes from `start` on. A lane with fewer samples adds
+    /// nothing to the cell of its end.
+    #[inline(always)]
+    fn addresses(&self, block: &Block, start: usize, sample: u32) -> ([u32; LANES], [u32; LANES]) {
+        let mut addresses = [0; LANES];
+        let mut depths = [0; LANES];
+        for lane in 0..LANES {
+            let at = start + lane;
+            let t = sample_at(sample, block.inverse[at]);
+            let t = if t < 1.0 { t } else { 1.0 };
+            let cell = |axis: usize| (block.from[axis][at] + block.step[axis][at] * t) as i32 as u32;
+            addresses[lane] = self.layout.address(cell(0), cell(1), cell(2));
+            depths[lane] = if sample < block.samples[at] {
+                block.depth[at]
+            } else {
+                0
+            };
+        }
+        (addresses, depths)
+    }
+
+    #[cold]
+    fn scatter_one_by_one(&self, block: &Block, start: usize, grid: &mut Grid) {
+        for lane in start..start + LANES {
+            for sample in 0..block.samples[lane] {
+                let t = sample_at(sample, block.inverse[lane]);
+                let cell = |axis: usize| (block.from[axis][lane] + block.step[axis][lane] * t) as u32;
+                self.add(
+                    grid,
+                    self.layout.address(cell(0), cell(1), cell(2)),
+                    block.depth[lane],
+                );
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn add(&self, grid: &mut Grid, address: u32, depth: u32) {
+        let cell = &mut grid.cells[address as usize];
+        // Saturating sums of numbers that are not negative do not depend on their order either.
+        *cell = cell.saturating_add(depth);
+        grid.touched[(address >> self.layout.group_len_shift()) as usize] = 1;
+    }
+}
+
+/// The largest coordinate whose cell leaves one empty cell before the window's end.
+fn highest_inside(resolution: u32) -> f32 {
+    (resolution - 1) as f32 * (1.0 - f32::EPSILON)
+}

@@ -1,0 +1,112 @@
+//! Where a cell of the quick map lies in memory.
+//!
+//! Columns of cells (along the light) are bundled by 8 × 8 into *tiles*: `[tile j][tile k][i][8 × 8]`. One
+//! slice of a tile is 256 contiguous bytes, and the address is a sum of one term for each coordinate. Hair
+//! fills few tiles, and a short run of slices in each; nothing else is ever cleared, summed or even mapped by
+//! the operating system.
+// Compiled within the versions of `simd`.
+#![allow(clippy::inline_always)]
+
+/// Columns along the edge of a tile.
+pub(super) const TILE_EDGE: u32 = 8;
+/// Cells of one slice of a tile.
+pub(super) const TILE_CELLS: usize = 64;
+
+/// The layout for one resolution.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Layout {
+    /// Cells along each edge, a multiple of 8.
+    pub resolution: u32,
+    /// Tiles along each edge across the light.
+    pub tiles_per_edge: u32,
+    /// Logarithm of a tile's number of cells, to which slices are padded: a power of two.
+    pub tile_shift: u32,
+    /// Logarithm of the slices in a *group*, the unit in which touched slices are recorded.
+    pub group_shift: u32,
+}
+
+impl Layout {
+    pub(super) fn new(resolution: u32) -> Self {
+        debug_assert!(resolution.is_multiple_of(TILE_EDGE));
+        Self {
+            resolution,
+            tiles_per_edge: resolution / TILE_EDGE,
+            tile_shift: (resolution.next_power_of_two() * TILE_CELLS as u32).ilog2(),
+            group_shift: if resolution <= 256 { 2 } else { 3 },
+        }
+    }
+
+    pub(super) fn tiles(&self) -> usize {
+        (self.tiles_per_edge * self.tiles_per_edge) as usize
+    }
+
+    pub(super) fn tile_len(&self) -> usize {
+        1 << self.tile_shift
+    }
+
+    pub(super) fn cells(&self) -> usize {
+        self.tiles() << self.tile_shift
+    }
+
+    /// Groups of slices in a tile.
+    pub(super) fn groups(&self) -> usize {
+        self.tile_len() >> self.group_len_shift()
+    }
+
+    /// Logarithm of the cells in a group of slices: an address shifted right by it counts groups of all tiles.
+    pub(super) fn group_len_shift(&self) -> u32 {
+        self.group_shift + TILE_CELLS.ilog2()
+    }
+
+    /// The term of an address that depends on j.
+    #[inline(always)]
+    pub(super) fn row(&self, j: u32) -> u32 {
+        (((j >> 3) * self.tiles_per_edge) << self.tile_shift) + ((j & 7) << 3)
+    }
+
+    /// The term of an address that depends on k.
+    #[inline(always)]
+    pub(super) fn column(&self, k: u32) -> u32 {
+        ((k >> 3) << self.tile_shift) + (k & 7)
+    }
+
+    /// Address of cell `(i, j, k)`.
+    #[inline(always)]
+    pub(super) fn address(&self, i: u32, j: u32, k: u32) -> u32 {
+        self.row(j) + self.column(k) + (i << 6)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_cell_has_its_own_address() {
+        for resolution in [32, 40, 56] {
+            let layout = Layout::new(resolution);
+            let mut seen = vec![false; layout.cells()];
+            for i in 0..resolution {
+                for j in 0..resolution {
+                    for k in 0..resolution {
+                        let at = layout.address(i, j, k) as usize;
+                        assert!(!std::mem::replace(&mut seen[at], true));
+                        let tile = at >> layout.tile_shift;
+                        assert_eq!(tile as u32, (j / 8) * layout.tiles_per_edge + k / 8);
+                        let group = (at >> layout.group_len_shift()) % layout.groups();
+                        assert_eq!(group as u32, i >> layout.group_shift);
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn addresses_fit_at_every_resolution() {
+        for resolution in (32..=512).step_by(8) {
+            let layout = Layout::new(resolution);
+            assert!(layout.cells() <= 1 << 27);
+            assert!(layout.groups() <= 64 && layout.groups().is_multiple_of(8));
+        }
+    }
+}

@@ -1,0 +1,217 @@
+//! Filtered lookups: four loads and four exponentials a point.
+// Every loop must be compiled within the version of `simd` that calls it.
+#![allow(clippy::inline_always)]
+
+use glam::Vec3;
+
+use super::exp::exp_of_minus_steps;
+use super::grid::Span;
+use super::lattice::Lattice;
+use super::layout::Layout;
+
+/// Points that are looked up together.
+pub(super) const BLOCK: usize = 64;
+
+/// A map that is ready to be read.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lookup<'a> {
+    pub layout: Layout,
+    pub lattice: &'a Lattice,
+    /// Faces; see `sum`.
+    pub cells: &'a [u32],
+    /// Touched slices, a tile.
+    pub touched: &'a [Span],
+    /// Slices that hold faces, a tile. Before them a column is lit; behind them the last one counts.
+    pub filled: &'a [Span],
+    /// Filter as printed in the paper.
+    pub as_printed: bool,
+}
+
+/// Where a block of points lies.
+struct Places {
+    along: [f32; BLOCK],
+    across_y: [f32; BLOCK],
+    across_z: [f32; BLOCK],
+    /// Addresses of the four columns: `(j, k)`, `(j, k + 1)`, `(j + 1, k)`, `(j + 1, k + 1)`.
+    addresses: [[u32; BLOCK]; 4],
+    slice: [u32; BLOCK],
+    /// The tile that the point itself lies in.
+    tile: [u32; BLOCK],
+}
+
+impl Lookup<'_> {
+    /// Transmittance of one point.
+    pub(super) fn one(&self, p: Vec3) -> f32 {
+        let mut out = [0.0];
+        self.run(&[p.x], &[p.y], &[p.z], &mut out);
+        out[0]
+    }
+
+    /// Transmittance of many points; slices of one length.
+    #[inline(always)]
+    pub(super) fn run(&self, x: &[f32], y: &[f32], z: &[f32], out: &mut [f32]) {
+        let blocks = x
+            .chunks(BLOCK)
+            .zip(y.chunks(BLOCK))
+            .zip(z.chunks(BLOCK))
+            .zip(out.chunks_mut(BLOCK));
+        for (((x, y), z), out) in blocks {
+            if let (Ok(x), Ok(y), Ok(z), Ok(out)) = (
+                x.try_into(),
+                y.try_into(),
+                z.try_into(),
+                <&mut [f32; BLOCK]>::try_from(&mut *out),
+            ) {
+                self.block([x, y, z], out);
+            } else {
+                let pad = |axis: &[f32]| {
+                    let mut lanes = [0.0; BLOCK];
+                    lanes[..axis.len()].copy_from_slice(axis);
+                    lanes
+                };
+                let mut padded = [0.0; BLOCK];
+                self.block([&pad(x), &pad(y), &pad(z)], &mut padded);
+                out.copy_from_slice(&padded[..out.len()]);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn block(&self, points: [&[f32; BLOCK]; 3], out: &mut [f32; BLOCK]) {
+        let mut places = self.place(points);
+        let faces = self.load(&mut places);
+        if self.as_printed {
+            filter::<true>(&places, &faces, out);
+        } else {
+            filter::<false>(&places, &faces, out);
+        }
+    }
+
+    #[inline(always)]
+    fn place(&self, points: [&[f32; BLOCK]; 3]) -> Places {
+        let (layout, lattice, anchor) = (&self.layout, self.lattice, self.lattice.anchor);
+        let first = lattice.first.as_vec3();
+        let n = layout.resolution as f32;
+        // A column's value belongs to its centre; as printed, to its far edge.
+        let lead = if self.as_printed { 1.0 } else { 0.5 };
+        let mut places = Places {
+            along: [0.0; BLOCK],
+            across_y: [0.0; BLOCK],
+            across_z: [0.0; BLOCK],
+            addresses: [[0; BLOCK]; 4],
+            slice: [0; BLOCK],
+            tile: [0; BLOCK],
+        };
+        let [to_i, to_j, to_k] = lattice.axes_per_cell;
+        for lane in 0..BLOCK {
+            let d = [
+                points[0][lane] - anchor.x,
+                points[1][lane] - anchor.y,
+                points[2][lane] - anchor.z,
+            ];
+            let u = (d[0] * to_i.x + d[1] * to_i.y + d[2] * to_i.z) - first.x;
+            let v = (d[0] * to_j.x + d[1] * to_j.y + d[2] * to_j.z) - first.y;
+            let w = (d[0] * to_k.x + d[1] * to_k.y + d[2] * to_k.z) - first.z;
+            // Before the window and for what is no number: its first face and its border, which are lit.
+            let (u, i) = split(u, n, layout.resolution - 1);
+            let (fy, j) = split(v - lead, n - 1.0, layout.resolution - 2);
+            let (fz, k) = split(w - lead, n - 1.0, layout.resolution - 2);
+            places.along[lane] = u;
+            places.across_y[lane] = fy;
+            places.across_z[lane] = fz;
+            places.slice[lane] = i;
+            let (near_j, far_j) = (layout.row(j) + (i << 6), layout.row(j + 1) + (i << 6));
+            let (near_k, far_k) = (layout.column(k), layout.column(k + 1));
+            places.addresses[0][lane] = near_j + near_k;
+            places.addresses[1][lane] = near_j + far_k;
+            places.addresses[2][lane] = far_j + near_k;
+            places.addresses[3][lane] = far_j + far_k;
+            let (_, j) = split(v, n, layout.resolution - 1);
+            let (_, k) = split(w, n, layout.resolution - 1);
+            places.tile[lane] = (j >> 3) * layout.tiles_per_edge + (k >> 3);
+        }
+        places
+    }
+
+    /// The four cells of every point.
+    #[inline(always)]
+    fn load(&self, places: &mut Places) -> [[u32; BLOCK]; 4] {
+        let mut faces = [[0; BLOCK]; 4];
+        for lane in 0..BLOCK {
+            // Behind what its own tile touched, a column may not be filled. Hair itself never lies there.
+            let last = self.touched[places.tile[lane] as usize].last;
+            if places.slice[lane] as i32 > i32::from(last) {
+                self.load_behind(places, lane, &mut faces);
+                continue;
+            }
+            for column in 0..4 {
+                faces[column][lane] = self.cells[places.addresses[column][lane] as usize];
+            }
+        }
+        faces
+    }
+
+    /// The four cells of a point that may lie behind filled slices: there both faces are the last back face.
+    #[cold]
+    #[inline(never)]
+    fn load_behind(&self, places: &Places, lane: usize, faces: &mut [[u32; BLOCK]; 4]) {
+        for (column, faces) in faces.iter_mut().enumerate() {
+            let address = places.addresses[column][lane] as usize;
+            let last = i32::from(self.filled[address >> self.layout.tile_shift].last);
+            let behind = places.slice[lane] as i32 - last;
+            faces[lane] = if last < 0 {
+                0
+            } else if behind <= 0 {
+                self.cells[address]
+            } else {
+                let back = self.cells[address - ((behind as usize) << 6)] >> 16;
+                back | back << 16
+            };
+        }
+    }
+}
+
+/// The fraction and the whole part of `c`, held within `0..=end` and at most `last`.
+#[inline(always)]
+fn split(c: f32, end: f32, last: u32) -> (f32, u32) {
+    // NaN becomes 0.
+    let c = if c > 0.0 { c } else { 0.0 };
+    let c = if c < end { c } else { end };
+    let whole = (c as i32).min(last as i32);
+    (c - whole as f32, whole as u32)
+}
+
+/// Interpolation along the light, exponentials, and interpolation across.
+#[inline(always)]
+fn filter<const AS_PRINTED: bool>(places: &Places, faces: &[[u32; BLOCK]; 4], out: &mut [f32; BLOCK]) {
+    for (lane, out) in out.iter_mut().enumerate() {
+        let light = |column: usize| {
+            let cell = faces[column][lane];
+            let (front, back) = ((cell & 0xffff) as i32 as f32, (cell >> 16) as i32 as f32);
+            if AS_PRINTED {
+                mix(
+                    exp_of_minus_steps(front),
+                    exp_of_minus_steps(back),
+                    places.along[lane],
+                )
+            } else {
+                // Exact for a cell of even density.
+                exp_of_minus_steps(mix(front, back, places.along[lane]))
+            }
+        };
+        let near = mix(light(0), light(1), places.across_z[lane]);
+        let far = mix(light(2), light(3), places.across_z[lane]);
+        let t = mix(near, far, places.across_y[lane]);
+        *out = if t < 1.0 { t } else { 1.0 };
+    }
+}
+
+#[inline(always)]
+fn mix(a: f32, b: f32, t: f32) -> f32 {
+    a + (b - a) * t
+}
+
+/// Transmittance of a whole column: what its last back face says.
+pub(super) fn behind_all(cell: u32) -> f32 {
+    exp_of_minus_steps((cell >> 16) as i32 as f32)
+}

@@ -1,0 +1,129 @@
+//! Strands to shadow: small hairstyles grown from a seed, and slabs of known density.
+#![allow(dead_code)] // Each test and benchmark uses its part.
+
+use std::sync::Arc;
+
+use glam::Vec3;
+use lovelock_groom::Strands;
+
+/// Random numbers that are the same everywhere (Steele, Lea, Flood 2014, SplitMix64).
+pub struct Random(pub u64);
+
+impl Random {
+    /// The next number in 0..1.
+    pub fn unit(&mut self) -> f32 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 40) as f32 / (1 << 24) as f32
+    }
+
+    /// The next number in -1..1.
+    pub fn signed(&mut self) -> f32 {
+        2.0 * self.unit() - 1.0
+    }
+
+    /// A vector in the cube -1..1.
+    pub fn cube(&mut self) -> Vec3 {
+        Vec3::new(self.signed(), self.signed(), self.signed())
+    }
+}
+
+/// Strands through the given points.
+pub fn strands(of: &[Vec<Vec3>]) -> Strands {
+    let mut made = Strands::default();
+    let mut first_point = vec![0];
+    for p in of.iter().flatten() {
+        made.x.push(p.x);
+        made.y.push(p.y);
+        made.z.push(p.z);
+    }
+    for strand in of {
+        first_point.push(first_point[first_point.len() - 1] + strand.len() as u32);
+    }
+    made.first_point = Arc::from(first_point);
+    made
+}
+
+/// A hairstyle to grow.
+#[derive(Clone, Copy)]
+pub struct Style {
+    pub wisps: usize,
+    pub strands_per_wisp: usize,
+    pub segments: usize,
+    /// Length of a strand, metres.
+    pub length: f32,
+    /// Radius of the curl, metres.
+    pub curl: f32,
+}
+
+/// The published hairstyle: 134 wisps of 25 strands of 30 segments.
+pub const SMOOTH: Style = Style {
+    wisps: 134,
+    strands_per_wisp: 25,
+    segments: 30,
+    length: 0.3,
+    curl: 0.002,
+};
+/// The published curly hairstyle: twice the segments.
+pub const CURLY: Style = Style {
+    wisps: 134,
+    strands_per_wisp: 25,
+    segments: 60,
+    length: 0.3,
+    curl: 0.012,
+};
+
+/// The centre of the head that [`grow`] grows on.
+pub const HEAD: Vec3 = Vec3::new(0.0, 1.6, 0.0);
+
+/// Tufts on the upper part of a head of 9 cm around [`HEAD`], which bend down and curl.
+pub fn grow(style: Style, seed: u64) -> Vec<Vec<Vec3>> {
+    let mut random = Random(seed);
+    let mut grown = Vec::new();
+    for wisp in 0..style.wisps {
+        // A spiral over the cap of the sphere.
+        let height = 1.0 - 1.1 * (wisp as f32 + 0.5) / style.wisps as f32;
+        let turn = wisp as f32 * 2.399_963;
+        let out = Vec3::new(turn.cos(), 0.0, turn.sin()) * (1.0 - height * height).sqrt() + Vec3::Y * height;
+        let phase = 6.28 * random.unit();
+        for _ in 0..style.strands_per_wisp {
+            let offset = 0.012 * random.cube();
+            let own = phase + 0.6 * random.signed();
+            let (mut p, mut direction) = (HEAD + 0.09 * out + offset, out);
+            let step = style.length / style.segments as f32;
+            let mut strand = Vec::new();
+            for segment in 0..=style.segments {
+                let t = segment as f32 / style.segments as f32;
+                let angle = own + 40.0 * t;
+                let curl = Vec3::new(angle.cos(), 0.0, angle.sin()) * style.curl * t.min(0.2) * 5.0;
+                strand.push(p + curl - 0.4 * t * offset);
+                direction =
+                    (direction + 0.25 * Vec3::NEG_Y * 30.0 / style.segments as f32).normalize_or_zero();
+                p += step * direction;
+                // Off the head.
+                let from_head = p - HEAD;
+                if from_head.length() < 0.1 {
+                    p = HEAD + 0.1 * from_head.normalize_or(out);
+                }
+            }
+            grown.push(strand);
+        }
+    }
+    grown
+}
+
+/// The same curves with `factor` times the points, linearly: sampled more or less finely, of the same shape.
+pub fn resampled(of: &[Vec<Vec3>], factor: f32) -> Vec<Vec<Vec3>> {
+    let resample = |strand: &Vec<Vec3>| {
+        let segments = ((strand.len() - 1) as f32 * factor).round().max(1.0) as usize;
+        let at = |i: usize| {
+            let t = i as f32 / segments as f32 * (strand.len() - 1) as f32;
+            let whole = (t as usize).min(strand.len() - 2);
+            strand[whole].lerp(strand[whole + 1], t - whole as f32)
+        };
+        (0..=segments).map(at).collect()
+    };
+    of.iter().map(resample).collect()
+}
