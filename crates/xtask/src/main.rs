@@ -1,10 +1,63 @@
-//! Chores: run, test, ci, layers, goldens and assets.
+//! Chores of the workspace: run, test, ci, layers and assets. `cargo xtask` lists them.
 
 mod assets;
+mod ci;
+mod launch;
+mod layers;
+mod system;
+mod testing;
+mod tool;
+mod totals;
 
-fn main() -> anyhow::Result<()> {
-    match std::env::args().nth(1).as_deref() {
-        Some("assets") => assets::run(),
-        _ => Ok(()),
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+/// Chores of Lovelock.
+#[derive(Parser)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask")]
+struct Arguments {
+    #[command(subcommand)]
+    chore: Chore,
+}
+
+#[derive(Subcommand)]
+enum Chore {
+    /// Builds Lovelock optimised and opens its window; without a display, records the default dance
+    Run {
+        /// Arguments for `lovelock`
+        #[arg(last = true)]
+        arguments: Vec<std::ffi::OsString>,
+    },
+    /// Runs every test and prints the totals
+    Test {
+        /// Only tests whose name holds this
+        #[arg(long)]
+        filter: Option<String>,
+        /// Only the tests of this package
+        #[arg(short, long)]
+        package: Option<String>,
+    },
+    /// Runs every check: tests, format, clippy, layers, documentation
+    Ci,
+    /// Checks which crate may use which
+    Layers,
+    /// Makes the shipped assets anew
+    Assets,
+}
+
+fn main() -> ExitCode {
+    let done = match Arguments::parse().chore {
+        Chore::Run { arguments } => launch::run(&arguments),
+        Chore::Test { filter, package } => testing::run(filter.as_deref(), package.as_deref()),
+        Chore::Ci => ci::run(),
+        Chore::Layers => layers::run(),
+        Chore::Assets => assets::run(),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("xtask: {error:#}");
+            ExitCode::FAILURE
+        }
     }
 }

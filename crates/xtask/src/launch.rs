@@ -1,0 +1,59 @@
+//! `cargo xtask run`: the window, or where there is no display, the default dance as a film.
+
+use crate::{system, tool};
+use std::ffi::{OsStr, OsString};
+
+/// Where the film goes that is made for lack of a display.
+const FILM: &str = "out/dance.mp4";
+
+/// Builds Lovelock optimised and starts it.
+pub(crate) fn run(arguments: &[OsString]) -> anyhow::Result<()> {
+    system::prepare()?;
+    println!("Building Lovelock, optimised. The first time takes some minutes.");
+    tool::run(&mut tool::cargo(&["build", "--release", "--package", "lovelock"]))?;
+    let manifest = tool::root().join("Cargo.toml");
+    let mut lovelock = tool::cargo(&[
+        "run",
+        "--quiet",
+        "--release",
+        "--package",
+        "lovelock",
+        "--manifest-path",
+    ]);
+    lovelock.arg(manifest).arg("--");
+    if arguments.is_empty() && !has_display(cfg!(target_os = "linux"), |name| std::env::var_os(name)) {
+        println!(
+            "There is no display (neither DISPLAY nor WAYLAND_DISPLAY is set): recording the default dance to {FILM}."
+        );
+        tool::run(lovelock.args(["record", "-o", FILM]))?;
+        println!("The dance is in {}.", tool::root().join(FILM).display());
+        return Ok(());
+    }
+    // Paths among the arguments are meant from where the user is; cargo finds the workspace by the manifest's path.
+    lovelock.current_dir(std::env::current_dir()?);
+    tool::run(lovelock.args(arguments))
+}
+
+/// Whether a window can open. macOS and Windows always have a display here.
+fn has_display(by_environment: bool, variable: impl Fn(&str) -> Option<OsString>) -> bool {
+    let set = |name| variable(name).is_some_and(|value| value.as_os_str() != OsStr::new(""));
+    !by_environment
+        || ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"]
+            .into_iter()
+            .any(set)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::has_display;
+
+    #[test]
+    fn a_display_is_one_of_three_variables_and_not_empty() {
+        let only = |set: &'static str, value: &'static str| {
+            has_display(true, move |name| (name == set).then(|| value.into()))
+        };
+        assert!(only("DISPLAY", ":0") && only("WAYLAND_DISPLAY", "wayland-0") && only("WAYLAND_SOCKET", "5"));
+        assert!(!only("DISPLAY", "") && !only("TERM", "xterm"));
+        assert!(has_display(false, |_| None), "other systems are not asked");
+    }
+}

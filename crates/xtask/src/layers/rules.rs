@@ -1,0 +1,183 @@
+//! The arrows of docs/architecture.md, and what breaks them.
+
+use super::graph::Graph;
+
+/// Who may use whom, each crate by its name without `lovelock-`.
+const ARROWS: [(&str, &[&str]); 11] = [
+    ("app", &["studio"]),
+    ("studio", &["render", "wisp", "motion", "groom", "record"]),
+    ("render", &["shadow", "gpu", "groom", "motion"]),
+    ("shadow", &["gpu", "groom"]),
+    ("wisp", &["groom", "motion"]),
+    ("record", &["groom"]),
+    ("motion", &[]),
+    ("groom", &[]),
+    ("gpu", &[]),
+    ("testkit", &[]),
+    ("xtask", &[]),
+];
+
+/// Crates that any other may use for its tests.
+const FOR_TESTS: &str = "testkit";
+
+/// Crates that build and test without a graphics library, so that their tests stay quick on a small machine.
+const WITHOUT_WGPU: [&str; 6] = ["groom", "motion", "wisp", "record", "testkit", "xtask"];
+
+/// Libraries that only some crates may name: how their packages' names start, and who may.
+const LIBRARIES: [(&[&str], &[&str]); 3] = [
+    (&["egui", "eframe", "epaint", "emath"], &["app"]),
+    (&["clap"], &["app", "xtask"]),
+    (&["wgpu", "naga"], &["gpu", "shadow", "render", "studio", "app"]),
+];
+
+/// One sentence for every arrow that may not be.
+pub(crate) fn faults(graph: &Graph) -> Vec<String> {
+    let mut faults = Vec::new();
+    for member in &graph.members {
+        let crate_name = short(member);
+        let Some((_, allowed)) = ARROWS.iter().find(|(name, _)| *name == crate_name) else {
+            faults.push(format!("{member}: the crate has no row in the table of arrows"));
+            continue;
+        };
+        let all = graph.used_by(member).map(|used| (used, false));
+        for (used, in_tests) in all.chain(graph.used_by_tests_of(member).map(|used| (used, true))) {
+            let used_name = short(used);
+            if graph.members.contains(used) {
+                let fine = allowed.contains(&used_name) || in_tests && used_name == FOR_TESTS;
+                if !fine && used != member {
+                    let whom = if allowed.is_empty() {
+                        "none of the others".into()
+                    } else {
+                        allowed.join(", ")
+                    };
+                    faults.push(format!("{member} → {used}: {crate_name} may use {whom}"));
+                }
+                continue;
+            }
+            for (starts, users) in LIBRARIES {
+                if starts.iter().any(|start| used.starts_with(start)) && !users.contains(&crate_name) {
+                    faults.push(format!("{member} → {used}: only {} may use it", users.join(", ")));
+                }
+            }
+        }
+        if WITHOUT_WGPU.contains(&crate_name)
+            && let Some(way) = graph.way(member, |name| name == "wgpu" || name == "wgpu-core")
+        {
+            faults.push(format!(
+                "{}: {crate_name} builds and tests without wgpu",
+                way.join(" → ")
+            ));
+        }
+    }
+    faults
+}
+
+/// The crate's name in the architecture.
+fn short(package: &str) -> &str {
+    match package {
+        "lovelock" => "app",
+        _ => package.strip_prefix("lovelock-").unwrap_or(package),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Graph, faults};
+
+    /// A graph of `user → used` for what is built and `user ⇢ used` for tests.
+    fn graph(arrows: &[&str]) -> Graph {
+        let mut graph = Graph::default();
+        for arrow in arrows {
+            let (user, used, to) = if let Some((user, used)) = arrow.split_once(" → ") {
+                (user, used, &mut graph.uses)
+            } else {
+                let (user, used) = arrow.split_once(" ⇢ ").unwrap();
+                (user, used, &mut graph.tests_use)
+            };
+            to.entry(user.to_owned()).or_default().insert(used.to_owned());
+            let own = [user, used]
+                .into_iter()
+                .filter(|name| name.starts_with("lovelock"));
+            graph.members.extend(own.map(str::to_owned));
+        }
+        graph
+    }
+
+    const GOOD: [&str; 14] = [
+        "lovelock → lovelock-studio",
+        "lovelock → egui",
+        "lovelock → clap",
+        "lovelock-xtask → clap",
+        "lovelock-studio → lovelock-render",
+        "lovelock-studio → lovelock-wisp",
+        "lovelock-render → lovelock-gpu",
+        "lovelock-shadow → lovelock-groom",
+        "lovelock-wisp → lovelock-motion",
+        "lovelock-record → lovelock-groom",
+        "lovelock-gpu → wgpu",
+        "lovelock-groom → glam",
+        "lovelock-groom ⇢ lovelock-testkit",
+        "lovelock-testkit → nv-flip",
+    ];
+
+    #[test]
+    fn the_arrows_of_the_architecture_are_fine() {
+        assert_eq!(faults(&graph(&GOOD)), Vec::<String>::new());
+    }
+
+    fn wrong_user(arrow: &str) -> &str {
+        arrow.split_once(' ').map_or(arrow, |(user, _)| user)
+    }
+
+    #[test]
+    fn every_wrong_arrow_is_named() {
+        for (wrong, word) in [
+            ("lovelock → lovelock-render", "app may use studio"),
+            ("lovelock-groom → lovelock-motion", "none of the others"),
+            ("lovelock-record → lovelock-studio", "record may use groom"),
+            ("lovelock-groom → lovelock-testkit", "groom may use"),
+            ("lovelock-groom ⇢ lovelock-wisp", "groom may use"),
+            ("lovelock-studio → egui_plot", "only app"),
+            ("lovelock-render ⇢ eframe", "only app"),
+            ("lovelock-studio → clap_builder", "only app, xtask"),
+            ("lovelock-wisp → wgpu-types", "only gpu"),
+            ("lovelock-new → glam", "no row"),
+        ] {
+            let found = faults(&graph(&[&GOOD[..], &[wrong]].concat()));
+            // A wrong arrow may also open a way to wgpu, which is a fault of its own.
+            assert!(
+                found
+                    .iter()
+                    .any(|fault| fault.starts_with(wrong_user(wrong)) && fault.contains(word)),
+                "{found:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn wgpu_is_found_behind_other_packages() {
+        let hidden = [
+            "lovelock-groom → some-viewer",
+            "some-viewer → deeper",
+            "deeper → some-viewer",
+            "deeper → wgpu",
+        ];
+        let found = faults(&graph(&[&GOOD[..], &hidden].concat()));
+        // groom itself, and everyone above it who promises the same: wisp does not use it here, record does.
+        assert_eq!(found.len(), 2, "{found:?}");
+        assert!(
+            found[0].starts_with("lovelock-groom → some-viewer → deeper → wgpu"),
+            "{found:?}"
+        );
+        assert!(
+            found[1].starts_with("lovelock-record → lovelock-groom → "),
+            "{found:?}"
+        );
+        // The same package where wgpu is allowed is fine.
+        let allowed = ["lovelock-render → some-viewer", "some-viewer → wgpu"];
+        assert_eq!(
+            faults(&graph(&[&GOOD[..], &allowed].concat())),
+            Vec::<String>::new()
+        );
+    }
+}

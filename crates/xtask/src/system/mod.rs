@@ -1,0 +1,100 @@
+//! What the system lacks, and getting it.
+
+mod needs;
+mod plan;
+mod probe;
+
+use anyhow::bail;
+use plan::{Plan, Rights, Step, plan};
+use probe::Here;
+use std::process::Command;
+
+/// Sees to what building, testing and the window need of the system.
+///
+/// On Debian and its kin, what is missing is installed; elsewhere the command is said. Only a missing compiler is an
+/// error: without the rest, the window or the GPU pictures are missing, and a warning says so. macOS and Windows need
+/// nothing.
+pub(crate) fn prepare() -> anyhow::Result<()> {
+    if !cfg!(target_os = "linux") {
+        return Ok(());
+    }
+    let Some(first) = plan(&Here::new()) else {
+        return Ok(());
+    };
+    name(&first);
+    if let Step::Install {
+        rights,
+        update_first,
+        packages,
+    } = &first.step
+    {
+        println!("Installing with apt-get: {}", packages.join(" "));
+        install(*rights, *update_first, packages);
+    }
+    let Some(left) = plan(&Here::new()) else {
+        return Ok(());
+    };
+    let what: Vec<_> = left.missing.iter().map(|need| need.what).collect();
+    let advice = advice(&left);
+    if left.stops_the_build() {
+        bail!("missing: {}. {advice}", what.join(", "));
+    }
+    eprintln!("Still missing: {}. {advice} Going on without.", what.join(", "));
+    Ok(())
+}
+
+fn name(plan: &Plan) {
+    println!("This system lacks:");
+    for need in &plan.missing {
+        match need.test {
+            needs::Test::Library(library) => println!("  {} ({library})", need.what),
+            _ => println!("  {}", need.what),
+        }
+    }
+}
+
+/// What the user can do.
+fn advice(plan: &Plan) -> String {
+    match &plan.step {
+        Step::Install { packages, .. } => format!("apt-get could not install {}.", packages.join(" ")),
+        Step::Say { command } => format!("Install with: {command}"),
+        Step::Name => "Install these with this system's package manager.".into(),
+    }
+}
+
+/// Installs, and once more with fresh lists if that fails: the old ones may name packages that are gone.
+fn install(rights: Rights, update_first: bool, packages: &[&str]) {
+    let update = || apt_get(rights, &["update"]);
+    let install = || {
+        apt_get(
+            rights,
+            &[&["install", "-y", "--no-install-recommends"], packages].concat(),
+        )
+    };
+    if update_first {
+        update();
+    }
+    if !install() && !update_first {
+        update();
+        install();
+    }
+}
+
+/// Runs apt-get without questions; whether it succeeded.
+fn apt_get(rights: Rights, arguments: &[&str]) -> bool {
+    let before: &[&str] = match rights {
+        Rights::Root => &["env"],
+        Rights::FreeSudo => &["sudo", "-n", "env"],
+        Rights::AskingSudo => &["sudo", "env"],
+    };
+    let words = [
+        before,
+        &["DEBIAN_FRONTEND=noninteractive", "apt-get", "-q"],
+        arguments,
+    ]
+    .concat();
+    Command::new(words[0])
+        .args(&words[1..])
+        .status()
+        .is_ok_and(|status| status.success())
+}

@@ -1,0 +1,333 @@
+//! What to do about what is missing: decided here, from what a [`Probe`] sees, without touching anything.
+
+use super::needs::{NEEDS, Need, Test};
+
+/// What the machine is asked.
+pub(crate) trait Probe {
+    /// Whether a C++ compiler answers.
+    fn has_cxx_compiler(&self) -> bool;
+    /// Whether the dynamic loader knows a library.
+    fn has_library(&self, name: &str) -> bool;
+    /// Whether there is a Vulkan driver that can work: a software one, or one with its device.
+    fn has_vulkan_driver(&self) -> bool;
+    /// `ID` and `ID_LIKE` of os-release, in that order.
+    fn distribution(&self) -> Vec<String>;
+    /// Whether this is the superuser.
+    fn is_root(&self) -> bool;
+    /// Whether sudo works without a question.
+    fn has_free_sudo(&self) -> bool;
+    /// Whether sudo is there and someone can answer its question.
+    fn can_ask_for_sudo(&self) -> bool;
+    /// Whether apt-get has its lists of packages.
+    fn has_package_lists(&self) -> bool;
+}
+
+/// Distributions that share their packages' names, in the order of [`Need::packages`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Family {
+    Debian,
+    Fedora,
+    Arch,
+    Suse,
+    Alpine,
+}
+
+impl Family {
+    fn of(ids: &[String]) -> Option<Self> {
+        ids.iter().find_map(|id| match id.as_str() {
+            "debian" | "ubuntu" => Some(Self::Debian),
+            "fedora" | "rhel" | "centos" => Some(Self::Fedora),
+            "arch" => Some(Self::Arch),
+            "suse" | "opensuse" => Some(Self::Suse),
+            "alpine" => Some(Self::Alpine),
+            _ => None,
+        })
+    }
+
+    /// The command that installs, without the packages.
+    fn install(self) -> &'static [&'static str] {
+        match self {
+            Self::Debian => &["apt-get", "install", "-y", "--no-install-recommends"],
+            Self::Fedora => &["dnf", "install", "-y"],
+            Self::Arch => &["pacman", "-S", "--needed"],
+            Self::Suse => &["zypper", "install"],
+            Self::Alpine => &["apk", "add"],
+        }
+    }
+}
+
+/// How to become the superuser.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Rights {
+    /// It is one already.
+    Root,
+    /// `sudo -n`: no question.
+    FreeSudo,
+    /// `sudo`: it will ask for a password.
+    AskingSudo,
+}
+
+/// What to do.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Step {
+    /// Install these, on Debian and its kin.
+    Install {
+        rights: Rights,
+        update_first: bool,
+        packages: Vec<&'static str>,
+    },
+    /// Say this command; the user runs it.
+    Say { command: String },
+    /// Say that these are missing; what their packages are called here is not known.
+    Name,
+}
+
+/// What is missing, and what to do about it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Plan {
+    pub(crate) missing: Vec<Need>,
+    pub(crate) step: Step,
+}
+
+impl Plan {
+    /// Whether nothing can be built before something is done.
+    pub(crate) fn stops_the_build(&self) -> bool {
+        self.missing.iter().any(|need| need.to_build)
+    }
+}
+
+/// Asks for everything on the list; nothing where nothing is missing.
+pub(crate) fn plan(probe: &dyn Probe) -> Option<Plan> {
+    let there = |need: &Need| match need.test {
+        Test::CxxCompiler => probe.has_cxx_compiler(),
+        Test::Library(name) => probe.has_library(name),
+        Test::VulkanDriver => probe.has_vulkan_driver(),
+    };
+    let missing: Vec<Need> = NEEDS.into_iter().filter(|need| !there(need)).collect();
+    if missing.is_empty() {
+        return None;
+    }
+    let Some(family) = Family::of(&probe.distribution()) else {
+        return Some(Plan {
+            missing,
+            step: Step::Name,
+        });
+    };
+    let mut packages = Vec::new();
+    for need in &missing {
+        let package = need.packages[family as usize];
+        if !packages.contains(&package) {
+            packages.push(package);
+        }
+    }
+    let rights = if probe.is_root() {
+        Some(Rights::Root)
+    } else if family == Family::Debian && probe.has_free_sudo() {
+        Some(Rights::FreeSudo)
+    } else if family == Family::Debian && probe.can_ask_for_sudo() {
+        Some(Rights::AskingSudo)
+    } else {
+        None
+    };
+    let step = match (family, rights) {
+        (Family::Debian, Some(rights)) => Step::Install {
+            rights,
+            update_first: !probe.has_package_lists(),
+            packages,
+        },
+        _ => {
+            let sudo = if probe.is_root() { "" } else { "sudo " };
+            let update = if family == Family::Debian && !probe.has_package_lists() {
+                format!("{sudo}apt-get update && ")
+            } else {
+                String::new()
+            };
+            let command = [family.install(), &packages].concat().join(" ");
+            Step::Say {
+                command: format!("{update}{sudo}{command}"),
+            }
+        }
+    };
+    Some(Plan { missing, step })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Family, NEEDS, Plan, Probe, Rights, Step, Test, plan};
+
+    /// A machine made up.
+    struct Machine {
+        compiler: bool,
+        driver: bool,
+        libraries: bool,
+        without: &'static str,
+        ids: &'static [&'static str],
+        root: bool,
+        free_sudo: bool,
+        asking_sudo: bool,
+        lists: bool,
+    }
+
+    const WHOLE: Machine = Machine {
+        compiler: true,
+        driver: true,
+        libraries: true,
+        without: "",
+        ids: &["debian"],
+        root: false,
+        free_sudo: false,
+        asking_sudo: false,
+        lists: true,
+    };
+
+    impl Probe for Machine {
+        fn has_cxx_compiler(&self) -> bool {
+            self.compiler
+        }
+        fn has_library(&self, name: &str) -> bool {
+            self.libraries && name != self.without
+        }
+        fn has_vulkan_driver(&self) -> bool {
+            self.driver
+        }
+        fn distribution(&self) -> Vec<String> {
+            self.ids.iter().map(|&id| id.to_owned()).collect()
+        }
+        fn is_root(&self) -> bool {
+            self.root
+        }
+        fn has_free_sudo(&self) -> bool {
+            self.free_sudo
+        }
+        fn can_ask_for_sudo(&self) -> bool {
+            self.asking_sudo
+        }
+        fn has_package_lists(&self) -> bool {
+            self.lists
+        }
+    }
+
+    #[test]
+    fn a_whole_machine_needs_nothing() {
+        assert_eq!(plan(&WHOLE), None);
+        assert_eq!(plan(&Machine { ids: &[], ..WHOLE }), None);
+    }
+
+    #[test]
+    fn a_bare_debian_gets_everything_as_root() {
+        let bare = Machine {
+            compiler: false,
+            driver: false,
+            libraries: false,
+            root: true,
+            lists: false,
+            ..WHOLE
+        };
+        let plan = plan(&bare).unwrap();
+        assert!(plan.stops_the_build());
+        assert_eq!(plan.missing.len(), NEEDS.len());
+        let packages = NEEDS.map(|need| need.packages[Family::Debian as usize]).to_vec();
+        assert_eq!(
+            plan.step,
+            Step::Install {
+                rights: Rights::Root,
+                update_first: true,
+                packages
+            }
+        );
+    }
+
+    #[test]
+    fn ubuntu_and_its_kin_are_debian_and_sudo_is_used_as_far_as_it_goes() {
+        let machine = Machine {
+            without: "libXcursor.so.1",
+            ids: &["linuxmint", "ubuntu", "debian"],
+            ..WHOLE
+        };
+        let install = |rights| Step::Install {
+            rights,
+            update_first: false,
+            packages: vec!["libxcursor1"],
+        };
+        let with = |free_sudo, asking_sudo| {
+            plan(&Machine {
+                free_sudo,
+                asking_sudo,
+                ..machine
+            })
+            .unwrap()
+        };
+        assert_eq!(with(true, true).step, install(Rights::FreeSudo));
+        assert_eq!(with(false, true).step, install(Rights::AskingSudo));
+        let command = "sudo apt-get install -y --no-install-recommends libxcursor1".to_owned();
+        assert_eq!(with(false, false).step, Step::Say { command });
+        assert!(
+            !with(false, false).stops_the_build(),
+            "a window's library does not stop a build"
+        );
+    }
+
+    #[test]
+    fn elsewhere_the_exact_command_is_said() {
+        let say = |ids, root| {
+            let machine = Machine {
+                compiler: false,
+                libraries: false,
+                ids,
+                root,
+                free_sudo: true,
+                ..WHOLE
+            };
+            match plan(&machine) {
+                Some(Plan {
+                    step: Step::Say { command },
+                    ..
+                }) => command,
+                other => panic!("{other:?}"),
+            }
+        };
+        let fedora = say(&["nobara", "fedora"], false);
+        assert!(
+            fedora.starts_with("sudo dnf install -y gcc-c++ vulkan-loader libX11 "),
+            "{fedora}"
+        );
+        let arch = say(&["arch"], true);
+        assert!(
+            arch.starts_with("pacman -S --needed gcc vulkan-icd-loader libx11 libxcursor "),
+            "{arch}"
+        );
+        assert_eq!(arch.matches(" libx11").count(), 1, "a package is named once");
+        assert!(
+            say(&["opensuse-leap", "suse", "opensuse"], false)
+                .starts_with("sudo zypper install gcc-c++ libvulkan1 ")
+        );
+        assert!(say(&["alpine"], true).starts_with("apk add g++ vulkan-loader libx11 "));
+    }
+
+    #[test]
+    fn an_unknown_system_is_told_what_is_missing() {
+        let plan = plan(&Machine {
+            driver: false,
+            ids: &["plan9"],
+            root: true,
+            ..WHOLE
+        })
+        .unwrap();
+        assert_eq!(plan.step, Step::Name);
+        assert_eq!(
+            plan.missing.iter().map(|need| need.test).collect::<Vec<_>>(),
+            [Test::VulkanDriver]
+        );
+    }
+
+    #[test]
+    fn missing_lists_are_fetched_first_and_said_so() {
+        let machine = Machine {
+            compiler: false,
+            lists: false,
+            ..WHOLE
+        };
+        let command = "sudo apt-get update && sudo apt-get install -y --no-install-recommends g++".to_owned();
+        assert_eq!(plan(&machine).unwrap().step, Step::Say { command });
+    }
+}
