@@ -1,1 +1,32 @@
 //! The engine: project, session, commands, events, clock and the headless loop.
+//!
+//! It knows no window and no command line; both are leaves on it. There are three kinds of state, kept apart:
+//! a [`Project`] is what is saved and undone, a session ([`Scene`], [`Engine`], [`Worker`]) is what runs, and the
+//! state of the interface lives in the interface.
+
+mod clock;
+mod command;
+mod error;
+mod history;
+mod project;
+mod slot;
+mod stats;
+
+pub use clock::{FrameClock, MAX_STEPS_PER_TICK, Playback, STEP_SECS, Stopwatch};
+pub use command::{COMMANDS, Command, CommandGroup, CommandInfo, Shortcut};
+pub use error::{Place, Problem, ProblemKind, StudioError};
+pub use history::{GestureId, History};
+pub use project::{
+    Access, BodySection, BodySource, CameraMode, CameraSection, FileRef, HairSection, HairSource,
+    MotionSection, MotionSource, PROJECT_EXTENSION, PROJECT_VERSION, Project, RecordingSection, load_project,
+    load_project_with, parse_project, save_project,
+};
+pub use slot::Slot;
+pub use stats::{Stage, StageHistory, StageTimes, median};
+
+// What the interface edits and shows, so that it needs no other crate of the engine.
+pub use lovelock_groom as groom;
+pub use lovelock_motion as motion;
+pub use lovelock_record as record;
+pub use lovelock_render as render;
+pub use lovelock_wisp as wisp;

@@ -1,0 +1,212 @@
+//! Time: the only module that reads the machine's clock.
+
+use std::time::{Duration, Instant};
+
+/// Length of one step of the simulation, seconds.
+pub const STEP_SECS: f64 = 1.0 / 60.0;
+
+/// Steps that one tick may ask for. A machine that is slower plays in slow motion instead of falling behind
+/// for ever.
+pub const MAX_STEPS_PER_TICK: u32 = 4;
+
+/// Measures how long work takes. Nothing that is simulated depends on it.
+#[derive(Clone, Copy, Debug)]
+pub struct Stopwatch(Instant);
+
+impl Stopwatch {
+    /// Starts to measure.
+    #[allow(clippy::disallowed_methods, reason = "this is the clock module")]
+    pub fn start() -> Self {
+        Self(Instant::now())
+    }
+
+    /// Milliseconds since the start.
+    pub fn ms(&self) -> f64 {
+        self.0.elapsed().as_secs_f64() * 1e3
+    }
+
+    /// Seconds since the start.
+    pub fn secs(&self) -> f64 {
+        self.0.elapsed().as_secs_f64()
+    }
+
+    /// Milliseconds since the start, and starts again.
+    pub fn lap_ms(&mut self) -> f64 {
+        let ms = self.ms();
+        *self = Self::start();
+        ms
+    }
+}
+
+/// How the window plays: turns time that passes into whole steps of the simulation.
+///
+/// It holds no clock itself: [`Playback::advance`] is told how much time has passed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Playback {
+    playing: bool,
+    rate: f64,
+    /// Time that has passed and is not yet a whole step, seconds, below one step.
+    rest_secs: f64,
+}
+
+impl Default for Playback {
+    fn default() -> Self {
+        Self {
+            playing: true,
+            rate: 1.0,
+            rest_secs: 0.0,
+        }
+    }
+}
+
+impl Playback {
+    /// Whether time passes.
+    pub fn is_playing(&self) -> bool {
+        self.playing
+    }
+
+    /// Plays or pauses.
+    pub fn set_playing(&mut self, playing: bool) {
+        self.playing = playing;
+        self.rest_secs = 0.0;
+    }
+
+    /// How many seconds of the scene pass in a second: below 1 is slow motion, of the hair too.
+    pub fn rate(&self) -> f64 {
+        self.rate
+    }
+
+    /// Sets the rate, 0.05 to 2.
+    pub fn set_rate(&mut self, rate: f64) {
+        self.rate = if rate.is_finite() {
+            rate.clamp(0.05, 2.0)
+        } else {
+            1.0
+        };
+    }
+
+    /// `elapsed_secs` have passed: how many steps are due.
+    pub fn advance(&mut self, elapsed_secs: f64) -> u32 {
+        if !self.playing || !elapsed_secs.is_finite() {
+            return 0;
+        }
+        self.rest_secs += elapsed_secs.max(0.0) * self.rate;
+        // A hair's breadth before a whole step counts: sixty frames of 1/60 s are sixty steps.
+        let due = (self.rest_secs / STEP_SECS + 1e-6).floor();
+        if due > f64::from(MAX_STEPS_PER_TICK) {
+            self.rest_secs = 0.0;
+            return MAX_STEPS_PER_TICK;
+        }
+        self.rest_secs = (self.rest_secs - due * STEP_SECS).max(0.0);
+        due as u32
+    }
+
+    /// How long to sleep until the next step is due; none while paused.
+    pub fn until_next_step(&self) -> Option<Duration> {
+        self.playing
+            .then(|| Duration::from_secs_f64(((STEP_SECS - self.rest_secs) / self.rate).clamp(0.0, 0.5)))
+    }
+}
+
+/// How a recording is stepped: whole steps of equal length a frame, whatever the frame rate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrameClock {
+    /// Length of one step, seconds: 1/60 for 30 and 60 frames a second, and never longer.
+    pub step_secs: f64,
+    /// Steps a frame.
+    pub steps_per_frame: u32,
+}
+
+impl FrameClock {
+    /// The clock of a frame rate, which is clamped to 1 to 240.
+    pub fn new(fps: f64) -> Self {
+        let fps = if fps.is_finite() {
+            fps.clamp(1.0, 240.0)
+        } else {
+            30.0
+        };
+        let steps_per_frame = (1.0 / (fps * STEP_SECS) - 1e-6).ceil().max(1.0);
+        Self {
+            step_secs: 1.0 / (fps * steps_per_frame),
+            steps_per_frame: steps_per_frame as u32,
+        }
+    }
+
+    /// The step at which frame `frame` is drawn, counted from time zero.
+    pub fn step_of_frame(&self, frame: u64) -> u64 {
+        frame * u64::from(self.steps_per_frame)
+    }
+
+    /// The time of frame `frame`, seconds.
+    pub fn time_of_frame(&self, frame: u64) -> f64 {
+        self.step_of_frame(frame) as f64 * self.step_secs
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sixty_frames_of_a_sixtieth_are_sixty_steps() {
+        let mut playback = Playback::default();
+        assert_eq!((0..60).map(|_| playback.advance(1.0 / 60.0)).sum::<u32>(), 60);
+    }
+
+    #[test]
+    fn uneven_frames_add_up() {
+        let mut playback = Playback::default();
+        let frames = [0.003, 0.011, 0.02, 0.007, 0.016, 0.0001, 0.0429]
+            .iter()
+            .cycle()
+            .take(700);
+        let steps: u32 = frames.clone().map(|&secs| playback.advance(secs)).sum();
+        let total: f64 = frames.sum();
+        assert!(
+            (f64::from(steps) - total / STEP_SECS).abs() <= 1.0,
+            "{steps} steps in {total} s"
+        );
+    }
+
+    #[test]
+    fn slow_motion_takes_fewer_steps_and_a_pause_none() {
+        let mut playback = Playback::default();
+        playback.set_rate(0.25);
+        assert_eq!((0..80).map(|_| playback.advance(1.0 / 60.0)).sum::<u32>(), 20);
+        playback.set_playing(false);
+        assert_eq!(playback.advance(1.0), 0);
+        assert_eq!(playback.until_next_step(), None);
+        playback.set_playing(true);
+        assert_eq!(playback.advance(0.001), 0, "the pause does not count");
+    }
+
+    #[test]
+    fn a_hang_is_not_caught_up() {
+        let mut playback = Playback::default();
+        assert_eq!(playback.advance(10.0), MAX_STEPS_PER_TICK);
+        assert_eq!(playback.advance(0.001), 0);
+        assert_eq!(playback.advance(f64::NAN), 0);
+        assert_eq!(playback.advance(-1.0), 0);
+    }
+
+    #[test]
+    fn every_frame_rate_has_whole_equal_steps_no_longer_than_a_sixtieth() {
+        for (fps, steps) in [
+            (60.0, 1),
+            (30.0, 2),
+            (24.0, 3),
+            (25.0, 3),
+            (20.0, 3),
+            (10.0, 6),
+            (120.0, 1),
+            (1.0, 60),
+        ] {
+            let clock = FrameClock::new(fps);
+            assert_eq!(clock.steps_per_frame, steps, "{fps}");
+            assert!(clock.step_secs <= STEP_SECS * (1.0 + 1e-9));
+            assert!((clock.time_of_frame(240) - 240.0 / fps).abs() < 1e-9);
+        }
+        assert_eq!(FrameClock::new(30.0).step_secs, STEP_SECS);
+        assert_eq!(FrameClock::new(f64::NAN), FrameClock::new(30.0));
+    }
+}

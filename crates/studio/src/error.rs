@@ -1,0 +1,189 @@
+//! What can go wrong, and what went only partly right.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+/// Why a request could not be done. Displays as one line that names the file or the option.
+#[derive(Debug, thiserror::Error)]
+pub enum StudioError {
+    /// The request or an input file is wrong.
+    #[error("{message}")]
+    Request {
+        /// The file that is wrong, where it is a file.
+        file: Option<PathBuf>,
+        /// What is wrong, and what would be right.
+        message: String,
+    },
+    /// The request was fine and the work failed: a full disk, no graphics device.
+    #[error("{message}")]
+    Work {
+        /// The file that was being written or read, where there is one.
+        file: Option<PathBuf>,
+        /// What happened.
+        message: String,
+    },
+    /// Somebody asked for the work to stop.
+    #[error("cancelled: nothing was left under the final name")]
+    Cancelled,
+}
+
+impl StudioError {
+    /// An input file that is wrong; `message` names the file.
+    pub fn input(file: &Path, message: impl fmt::Display) -> Self {
+        Self::Request {
+            file: Some(file.to_owned()),
+            message: message.to_string(),
+        }
+    }
+
+    /// An option that is wrong.
+    pub fn option(message: impl fmt::Display) -> Self {
+        Self::Request {
+            file: None,
+            message: message.to_string(),
+        }
+    }
+
+    /// Work that failed on a file; `message` names the file.
+    pub fn output(file: &Path, message: impl fmt::Display) -> Self {
+        Self::Work {
+            file: Some(file.to_owned()),
+            message: message.to_string(),
+        }
+    }
+
+    /// Work that failed.
+    pub fn work(message: impl fmt::Display) -> Self {
+        Self::Work {
+            file: None,
+            message: message.to_string(),
+        }
+    }
+
+    /// The exit status of the command line: 2 for a wrong request or input file, 1 for work that failed.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Request { .. } => 2,
+            Self::Work { .. } | Self::Cancelled => 1,
+        }
+    }
+
+    /// The file that the error is about.
+    pub fn file(&self) -> Option<&Path> {
+        match self {
+            Self::Request { file, .. } | Self::Work { file, .. } => file.as_deref(),
+            Self::Cancelled => None,
+        }
+    }
+
+    /// What `--json` prints: `{"error": {"message": …, "file": … or null}}`.
+    pub fn to_json(&self) -> serde_json::Value {
+        let file = self.file().map(|f| f.display().to_string());
+        serde_json::json!({ "error": { "message": self.to_string(), "file": file } })
+    }
+}
+
+/// The part of a project that a problem belongs to: where the interface shows it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Place {
+    /// The project file as a whole.
+    Project,
+    /// The body.
+    Body,
+    /// The motion.
+    Motion,
+    /// The hairstyle.
+    Hair,
+    /// Colour and width of the hair.
+    Look,
+    /// The simulation.
+    Simulation,
+    /// The shadow.
+    Shadow,
+    /// The lights.
+    Lights,
+    /// The camera.
+    Camera,
+    /// Settings of the picture.
+    Picture,
+    /// The recording.
+    Recording,
+}
+
+impl Place {
+    /// The name in sentences.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Project => "project",
+            Self::Body => "body",
+            Self::Motion => "motion",
+            Self::Hair => "hair",
+            Self::Look => "look",
+            Self::Simulation => "simulation",
+            Self::Shadow => "shadow",
+            Self::Lights => "lights",
+            Self::Camera => "camera",
+            Self::Picture => "picture",
+            Self::Recording => "recording",
+        }
+    }
+}
+
+/// What kind of problem it is: what the interface can offer to do about it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ProblemKind {
+    /// A value was out of range and has been moved into it.
+    Adjusted,
+    /// Something in the file is not understood and was left out.
+    Ignored,
+    /// A file could not be loaded; what was there before stays.
+    NotLoaded,
+    /// The project names a file outside its folder that the user has not picked: picking it lets it load.
+    NeedsPermission(PathBuf),
+    /// Loaded, with something to know about it.
+    Note,
+}
+
+/// Something that went only partly right. The scene lives on.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Problem {
+    /// The part of the project.
+    pub place: Place,
+    /// What kind of problem.
+    pub kind: ProblemKind,
+    /// A sentence that says what happened and what to do.
+    pub message: String,
+}
+
+impl Problem {
+    /// A problem.
+    pub fn new(place: Place, kind: ProblemKind, message: impl fmt::Display) -> Self {
+        Self {
+            place,
+            kind,
+            message: message.to_string(),
+        }
+    }
+
+    /// A file that could not be loaded.
+    pub fn not_loaded(place: Place, message: impl fmt::Display) -> Self {
+        Self::new(place, ProblemKind::NotLoaded, message)
+    }
+
+    /// Whether a part of the scene is missing because of it.
+    pub fn is_failure(&self) -> bool {
+        matches!(
+            self.kind,
+            ProblemKind::NotLoaded | ProblemKind::NeedsPermission(_)
+        )
+    }
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.place.label(), self.message)
+    }
+}

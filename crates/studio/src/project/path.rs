@@ -1,0 +1,248 @@
+//! Files that a project names, and which of them it may reach.
+
+use std::collections::BTreeSet;
+use std::path::{Component, Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use crate::{Place, Problem, ProblemKind};
+
+/// A file that a project names.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct FileRef {
+    /// In memory absolute; on disk relative to the project's folder where it lies in it, with `/` between names.
+    pub path: PathBuf,
+    /// On disk: whether it lies outside the project's folder. The user has to pick it again before it is read.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub outside: bool,
+}
+
+impl FileRef {
+    /// A file by its path; a relative path is taken from the current folder.
+    pub fn new(path: impl Into<PathBuf>) -> Self {
+        let path = path.into();
+        Self {
+            path: std::path::absolute(&path).unwrap_or(path),
+            outside: false,
+        }
+    }
+
+    /// The path as a project in `folder` stores it.
+    pub(super) fn for_disk(&self, folder: &Path) -> Self {
+        let path = canonical(&self.path);
+        match path.strip_prefix(canonical(folder)) {
+            Ok(inside) if !inside.as_os_str().is_empty() => {
+                let names: Vec<_> = inside.iter().map(|name| name.to_string_lossy()).collect();
+                Self {
+                    path: PathBuf::from(names.join("/")),
+                    outside: false,
+                }
+            }
+            _ => Self {
+                path: self.path.clone(),
+                outside: true,
+            },
+        }
+    }
+
+    /// The path in memory of what a project in `folder` stores.
+    pub(super) fn from_disk(&self, folder: &Path) -> Self {
+        let path = folder.join(&self.path);
+        Self {
+            path: normal(&path),
+            outside: self.outside,
+        }
+    }
+}
+
+/// Which files a project may reach: those in its own folder and below, and those that the user picked.
+///
+/// A project from elsewhere can so not make the program read (or overwrite) files that its author guessed.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Access {
+    folder: Option<PathBuf>,
+    picked: BTreeSet<PathBuf>,
+}
+
+impl Access {
+    /// Access of a project that has not been saved: only what the user picks.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Access of the project at `path`.
+    pub fn for_project(path: &Path) -> Self {
+        let mut access = Self::new();
+        access.set_project(Some(path));
+        access
+    }
+
+    /// Another project is opened, or this one is saved elsewhere; what was picked stays picked.
+    pub fn set_project(&mut self, path: Option<&Path>) {
+        self.folder = path.map(folder_of).map(|folder| canonical(&folder));
+    }
+
+    /// The user picked this file in a dialog, dropped it on the window or named it on the command line.
+    pub fn pick(&mut self, path: &Path) {
+        self.picked.insert(canonical(path));
+    }
+
+    /// Whether the project may reach `path`. Links are followed first.
+    pub fn allows(&self, path: &Path) -> bool {
+        let path = canonical(path);
+        self.picked.contains(&path)
+            || self
+                .folder
+                .as_ref()
+                .is_some_and(|folder| path.starts_with(folder))
+    }
+
+    /// The path of a file that is to be read.
+    ///
+    /// # Errors
+    /// A problem where the file is missing, no file, or not allowed, with what to do about it.
+    pub fn read(&self, place: Place, file: &FileRef) -> Result<PathBuf, Problem> {
+        let name = file.path.display();
+        if !self.allows(&file.path) {
+            return Err(Problem::new(
+                place,
+                ProblemKind::NeedsPermission(file.path.clone()),
+                format!(
+                    "{name} lies outside the project's folder and was not loaded; pick the file yourself to allow it"
+                ),
+            ));
+        }
+        match std::fs::metadata(&file.path) {
+            Ok(data) if data.is_file() => Ok(file.path.clone()),
+            Ok(_) => Err(Problem::not_loaded(
+                place,
+                format!("{name} is not a file; pick another"),
+            )),
+            Err(error) => Err(Problem::not_loaded(
+                place,
+                format!("{name} cannot be read ({error}); put it back or pick another"),
+            )),
+        }
+    }
+}
+
+/// The folder of a file, absolute.
+pub(super) fn folder_of(path: &Path) -> PathBuf {
+    let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    path.parent().map_or_else(|| path.clone(), Path::to_owned)
+}
+
+/// The path with links followed as far as it exists, and the rest normalised.
+fn canonical(path: &Path) -> PathBuf {
+    let path = normal(path);
+    let mut missing = Vec::new();
+    let mut at = path.as_path();
+    loop {
+        if let Ok(real) = at.canonicalize() {
+            return missing
+                .iter()
+                .rev()
+                .fold(real, |path: PathBuf, name| path.join(name));
+        }
+        match (at.parent(), at.file_name()) {
+            (Some(parent), Some(name)) => {
+                missing.push(name.to_owned());
+                at = parent;
+            }
+            _ => return path,
+        }
+    }
+}
+
+/// Absolute, without `.` and `..`.
+fn normal(path: &Path) -> PathBuf {
+    let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    let mut out = PathBuf::new();
+    for part in path.components() {
+        match part {
+            Component::CurDir => {}
+            Component::ParentDir => {
+                out.pop();
+            }
+            part => out.push(part),
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_project_reaches_its_own_folder_and_below() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let inside = dir.path().join("project/hair/a b ü.hair");
+        let outside = dir.path().join("secret.hair");
+        std::fs::create_dir_all(inside.parent().expect("a parent")).expect("folders");
+        std::fs::write(&inside, b"x").expect("a file");
+        std::fs::write(&outside, b"x").expect("a file");
+        let mut access = Access::for_project(&dir.path().join("project/p.lovelock"));
+        assert!(access.allows(&inside));
+        assert!(!access.allows(&outside));
+        assert!(
+            !access.allows(&dir.path().join("project/../secret.hair")),
+            "a way out by `..`"
+        );
+        let problem = access
+            .read(Place::Hair, &FileRef::new(&outside))
+            .expect_err("refused");
+        assert!(matches!(problem.kind, ProblemKind::NeedsPermission(_)));
+        assert!(problem.message.contains("secret.hair"));
+        access.pick(&outside);
+        assert!(access.read(Place::Hair, &FileRef::new(&outside)).is_ok());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_does_not_lead_out() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let folder = dir.path().join("project");
+        std::fs::create_dir(&folder).expect("a folder");
+        std::fs::write(dir.path().join("secret"), b"x").expect("a file");
+        std::os::unix::fs::symlink(dir.path().join("secret"), folder.join("link.hair")).expect("a link");
+        let access = Access::for_project(&folder.join("p.lovelock"));
+        assert!(!access.allows(&folder.join("link.hair")));
+    }
+
+    #[test]
+    fn an_unsaved_project_reaches_nothing_that_was_not_picked() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let file = dir.path().join("x.hair");
+        std::fs::write(&file, b"x").expect("a file");
+        let mut access = Access::new();
+        assert!(!access.allows(&file));
+        access.pick(&file);
+        assert!(access.allows(&file));
+        std::fs::remove_file(&file).expect("removed");
+        let problem = access
+            .read(Place::Hair, &FileRef::new(&file))
+            .expect_err("missing");
+        assert_eq!(problem.kind, ProblemKind::NotLoaded);
+    }
+
+    #[test]
+    fn disk_and_memory_agree() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = FileRef::new(folder.path().join("sub/x.bvh"));
+        let disk = file.for_disk(folder.path());
+        assert_eq!(
+            disk,
+            FileRef {
+                path: "sub/x.bvh".into(),
+                outside: false
+            }
+        );
+        assert_eq!(disk.from_disk(folder.path()), file);
+        let far = FileRef::new(folder.path().parent().expect("a parent").join("y.bvh"));
+        let disk = far.for_disk(folder.path());
+        assert!(disk.outside && disk.path.is_absolute());
+        assert_eq!(disk.from_disk(folder.path()).path, far.path);
+    }
+}

@@ -1,0 +1,151 @@
+//! Values brought into their ranges, so that nothing in a file or on a slider breaks the picture.
+
+use std::f32::consts::PI;
+
+use glam::Vec3;
+use lovelock_render::{Light, MAX_LIGHTS, ShadowSettings};
+
+use super::generic::differences;
+use super::{CameraSection, MotionSection, PROJECT_VERSION, Project, RecordingSection};
+use crate::{Place, Problem, ProblemKind};
+
+impl Project {
+    /// The project with every value inside its range, and what had to be moved.
+    pub fn sanitised(&self) -> (Self, Vec<Problem>) {
+        let mut project = self.clone();
+        project.version = PROJECT_VERSION;
+        project.motion = motion(&self.motion);
+        project.hair.groom = self.hair.groom.clamped();
+        project.hair.import = self.hair.import.in_range();
+        project.look = self.look.clamped();
+        project.simulation = self.simulation.clamped();
+        project.shadow = shadow(&self.shadow);
+        project.lights = self.lights.iter().take(MAX_LIGHTS).map(light).collect();
+        project.camera = camera(&self.camera);
+        project.picture = self.picture.clamped();
+        project.recording = recording(&self.recording);
+
+        let mut problems = Vec::new();
+        let mut note = |place, changes: Vec<String>| {
+            problems.extend(
+                changes
+                    .into_iter()
+                    .map(|change| Problem::new(place, ProblemKind::Adjusted, change)),
+            );
+        };
+        note(Place::Motion, differences(&self.motion, &project.motion));
+        note(Place::Hair, differences(&self.hair, &project.hair));
+        note(Place::Look, differences(&self.look, &project.look));
+        note(
+            Place::Simulation,
+            differences(&self.simulation, &project.simulation),
+        );
+        note(Place::Shadow, differences(&self.shadow, &project.shadow));
+        note(Place::Camera, differences(&self.camera, &project.camera));
+        note(Place::Picture, differences(&self.picture, &project.picture));
+        note(Place::Recording, differences(&self.recording, &project.recording));
+        for (before, after) in self.lights.iter().zip(&project.lights) {
+            // Any length of direction is fine; it is only told where it was no direction at all.
+            let mut before = before.clone();
+            if before.direction.is_finite() && before.direction.length_squared() > 0.0 {
+                before.direction = after.direction;
+            }
+            note(Place::Lights, differences(&before, after));
+        }
+        if self.lights.len() > MAX_LIGHTS {
+            let found = self.lights.len();
+            note(
+                Place::Lights,
+                vec![format!(
+                    "there were {found} lights; the first {MAX_LIGHTS}, the most there can be, are kept"
+                )],
+            );
+        }
+        (project, problems)
+    }
+}
+
+fn within(value: f32, low: f32, high: f32, default: f32) -> f32 {
+    if value.is_nan() {
+        default
+    } else {
+        value.clamp(low, high)
+    }
+}
+
+fn within_cube(value: Vec3, half: f32, default: Vec3) -> Vec3 {
+    if value.is_nan() {
+        default
+    } else {
+        value.clamp(Vec3::splat(-half), Vec3::splat(half))
+    }
+}
+
+fn motion(motion: &MotionSection) -> MotionSection {
+    MotionSection {
+        speed: within(motion.speed, 0.1, 4.0, 1.0),
+        loop_blend_secs: within(motion.loop_blend_secs, 0.0, 2.0, 0.0),
+        ..motion.clone()
+    }
+}
+
+fn shadow(shadow: &ShadowSettings) -> ShadowSettings {
+    let range = ShadowSettings::EXTINCTION_SCALES;
+    let d = ShadowSettings::default();
+    let mut shadow = *shadow;
+    shadow.extinction_scale = within(shadow.extinction_scale, 0.0, *range.end(), d.extinction_scale);
+    let map = &mut shadow.voxel_map;
+    map.resolution = map.safe_resolution();
+    map.head_size = within(map.head_size, 0.05, 1.0, d.voxel_map.head_size);
+    map.point_extinction = within(map.point_extinction, 0.0, 1e4, d.voxel_map.point_extinction);
+    shadow
+}
+
+/// The light in range; a direction of any length but zero is kept as it is.
+fn light(light: &Light) -> Light {
+    let mut clamped = light.clamped();
+    if light.direction.is_finite() && light.direction.try_normalize().is_some() {
+        clamped.direction = light.direction;
+    }
+    clamped
+}
+
+fn camera(camera: &CameraSection) -> CameraSection {
+    let d = CameraSection::default();
+    let azimuth = if !camera.azimuth.is_finite() {
+        d.azimuth
+    } else if camera.azimuth.abs() > PI {
+        (camera.azimuth + PI).rem_euclid(2.0 * PI) - PI
+    } else {
+        camera.azimuth
+    };
+    CameraSection {
+        mode: camera.mode,
+        follow_offset: within_cube(camera.follow_offset, 3.0, d.follow_offset),
+        follow_secs: within(camera.follow_secs, 0.0, 4.0, d.follow_secs),
+        fixed_target: within_cube(camera.fixed_target, 20.0, d.fixed_target),
+        azimuth,
+        elevation: within(camera.elevation, -1.5, 1.5, d.elevation),
+        distance: within(camera.distance, 0.1, 30.0, d.distance),
+        fov_y: within(camera.fov_y, 0.05, 2.0, d.fov_y),
+    }
+}
+
+fn recording(recording: &RecordingSection) -> RecordingSection {
+    let fps = if recording.fps.is_nan() {
+        30.0
+    } else {
+        recording.fps.clamp(1.0, 240.0)
+    };
+    let first_frame = recording.first_frame.min(10_000_000);
+    RecordingSection {
+        width: recording.width.clamp(16, 8192),
+        height: recording.height.clamp(16, 8192),
+        fps,
+        first_frame,
+        end_frame: recording
+            .end_frame
+            .map(|end| end.clamp(first_frame + 1, 20_000_000)),
+        ..recording.clone()
+    }
+}

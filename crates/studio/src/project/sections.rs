@@ -1,0 +1,199 @@
+//! The sections of a project that are the studio's own.
+
+use glam::Vec3;
+use lovelock_groom::{GroomSettings, ImportSettings, Preset};
+use lovelock_motion::{BodySettings, MotionSettings};
+use lovelock_record::FilmQuality;
+use serde::{Deserialize, Serialize};
+
+use super::FileRef;
+
+/// Where the body comes from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum BodySource {
+    /// The dancer that is part of the program.
+    #[default]
+    Dancer,
+    /// [`BodySection::file`].
+    File,
+}
+
+/// The body that dances.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct BodySection {
+    /// Where it comes from.
+    pub source: BodySource,
+    /// A character file: glTF, binary or text.
+    pub file: Option<FileRef>,
+    /// Unit and up axis of that file.
+    pub settings: BodySettings,
+    /// The joint that carries the hair, by its name or its path (`hips/spine/neck/head`); the guess where none.
+    pub head_joint: Option<String>,
+}
+
+/// Where the motion comes from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum MotionSource {
+    /// The body's own clip named [`MotionSection::clip`].
+    #[default]
+    Clip,
+    /// [`MotionSection::file`].
+    File,
+    /// None: the body stays in its rest pose.
+    Rest,
+}
+
+/// How the body dances.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct MotionSection {
+    /// Where the motion comes from.
+    pub source: MotionSource,
+    /// Name of one of the body's clips; its first one where empty.
+    pub clip: String,
+    /// A motion file (BVH), retargeted to the body.
+    pub file: Option<FileRef>,
+    /// Unit, axis and root position of that file.
+    pub settings: MotionSettings,
+    /// Tempo: how many seconds of the clip pass in a second, 0.1 to 4.
+    pub speed: f32,
+    /// Whether the clip starts again at its end; it holds its last pose otherwise.
+    pub looping: bool,
+    /// How long the end of a clip that does not loop by itself is faded into its beginning, seconds, 0 to 2.
+    pub loop_blend_secs: f32,
+}
+
+impl Default for MotionSection {
+    fn default() -> Self {
+        Self {
+            source: MotionSource::Clip,
+            clip: "dance".to_owned(),
+            file: None,
+            settings: MotionSettings::default(),
+            speed: 1.0,
+            looping: true,
+            loop_blend_secs: 0.0,
+        }
+    }
+}
+
+/// Where the hairstyle comes from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum HairSource {
+    /// Grown on the body's scalp from [`HairSection::groom`].
+    #[default]
+    Grown,
+    /// [`HairSection::file`].
+    File,
+}
+
+/// The hairstyle.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct HairSection {
+    /// Where it comes from.
+    pub source: HairSource,
+    /// The shipped style that `groom` began as: where its controls return to.
+    pub preset: Preset,
+    /// How hair grows. Its `look` is not used: [`super::Project::look`] is.
+    pub groom: GroomSettings,
+    /// A hair file: Yuksel `.hair` or TressFX `.tfx`.
+    pub file: Option<FileRef>,
+    /// How that file becomes a hairstyle.
+    pub import: ImportSettings,
+}
+
+impl Default for HairSection {
+    fn default() -> Self {
+        Self {
+            source: HairSource::Grown,
+            preset: Preset::Smooth,
+            groom: GroomSettings::preset(Preset::Smooth),
+            file: None,
+            import: ImportSettings::default(),
+        }
+    }
+}
+
+/// What the camera looks at.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum CameraMode {
+    /// The head, followed smoothly.
+    #[default]
+    Follow,
+    /// A place in the world.
+    Fixed,
+}
+
+/// A camera on a sphere around its target.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct CameraSection {
+    /// What it looks at.
+    pub mode: CameraMode,
+    /// The target where it follows: offset from the smoothed head joint, world axes, metres, each -3 to 3.
+    pub follow_offset: Vec3,
+    /// How slowly it follows: the width of the window over which the head's path is smoothed, seconds, 0 to 4.
+    pub follow_secs: f32,
+    /// The target where it is fixed, world space, metres, each -20 to 20.
+    pub fixed_target: Vec3,
+    /// Angle about the vertical from the front (+Z) toward the dancer's left (+X), radians, -π to π.
+    pub azimuth: f32,
+    /// Angle above the horizon, radians, -1.5 to 1.5.
+    pub elevation: f32,
+    /// Distance from the target, metres, 0.1 to 30.
+    pub distance: f32,
+    /// Vertical field of view, radians, 0.05 to 2.
+    pub fov_y: f32,
+}
+
+impl Default for CameraSection {
+    /// Head height, the look of a 65 mm lens on a frame 24 mm high, head and shoulders in the picture.
+    fn default() -> Self {
+        Self {
+            mode: CameraMode::Follow,
+            follow_offset: Vec3::new(0.0, -0.06, 0.0),
+            follow_secs: 1.2,
+            fixed_target: Vec3::new(0.0, 1.45, 0.0),
+            azimuth: 0.45,
+            elevation: 0.03,
+            distance: 2.5,
+            fov_y: 2.0 * (12.0_f32 / 65.0).atan(),
+        }
+    }
+}
+
+/// What a recording is.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct RecordingSection {
+    /// Width, pixels, 16 to 8192.
+    pub width: u32,
+    /// Height, pixels, 16 to 8192.
+    pub height: u32,
+    /// Frames a second, 1 to 240.
+    pub fps: f64,
+    /// Number of the first frame.
+    pub first_frame: u64,
+    /// One past the number of the last frame; all of the clip's where none.
+    pub end_frame: Option<u64>,
+    /// How finely a film is coded.
+    pub quality: FilmQuality,
+    /// Where it goes: a name ending in `.mp4`, or a folder.
+    pub output: Option<FileRef>,
+}
+
+impl Default for RecordingSection {
+    fn default() -> Self {
+        Self {
+            width: 1280,
+            height: 720,
+            fps: 30.0,
+            first_frame: 0,
+            end_frame: None,
+            quality: FilmQuality::default(),
+            output: None,
+        }
+    }
+}

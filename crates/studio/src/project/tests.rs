@@ -1,0 +1,254 @@
+use std::path::Path;
+
+use glam::Vec3;
+use proptest::prelude::*;
+
+use super::*;
+use crate::ProblemKind;
+
+fn round_trip(project: &Project) -> (Project, Vec<crate::Problem>) {
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = dir.path().join("a project ü.lovelock");
+    save_project(&path, project).expect("saved");
+    let left: Vec<_> = std::fs::read_dir(dir.path()).expect("a folder").collect();
+    assert_eq!(left.len(), 1, "nothing but the project is left");
+    load_project(&path).expect("opened")
+}
+
+#[test]
+fn the_default_project_comes_back_without_a_word() {
+    let project = Project::default();
+    assert_eq!(
+        project.sanitised(),
+        (project.clone(), Vec::new()),
+        "the defaults lie in their ranges"
+    );
+    assert_eq!(round_trip(&project), (project, Vec::new()));
+}
+
+#[test]
+fn a_sparse_project_takes_the_rest_from_the_defaults() {
+    let (project, problems) = parse_project(
+        Path::new("p"),
+        "(version: 1, hair: (preset: curly), motion: (speed: 0.5))",
+    )
+    .expect("reads");
+    assert_eq!(problems, []);
+    assert_eq!(project.motion.speed, 0.5);
+    assert_eq!(project.lights, Project::default().lights);
+}
+
+#[test]
+fn unknown_fields_are_named_and_left_out() {
+    let text = "(version: 1, sparkle: 3, hair: (glitter: (a: [1, 2])), camera: (distance: 3.0))";
+    let (project, problems) = parse_project(Path::new("p"), text).expect("reads");
+    assert_eq!(project.camera.distance, 3.0);
+    let messages: Vec<_> = problems.iter().map(|p| p.message.as_str()).collect();
+    assert!(messages.iter().any(|m| m.contains("`sparkle`")), "{messages:?}");
+    assert!(
+        messages.iter().any(|m| m.contains("`hair.glitter`")),
+        "{messages:?}"
+    );
+    assert_eq!(problems.len(), 2);
+    assert!(problems.iter().all(|p| p.kind == ProblemKind::Ignored));
+}
+
+#[test]
+fn a_newer_version_is_refused_even_where_it_makes_no_sense() {
+    let error = parse_project(Path::new("p.lovelock"), "(version: 7, hair: Wig(3))").expect_err("too new");
+    assert_eq!(error.exit_code(), 2);
+    assert!(error.to_string().contains("version 7"), "{error}");
+    assert_eq!(error.file(), Some(Path::new("p.lovelock")));
+}
+
+#[test]
+fn nonsense_is_refused_with_a_line() {
+    for text in [
+        "",
+        "hello",
+        "(version: 1, motion: (speed: fast))",
+        "[1, 2",
+        "(version: 1",
+        "{\"version\": 1",
+    ] {
+        let error = parse_project(Path::new("p"), text).expect_err(text);
+        assert!(error.to_string().contains("line"), "{error}");
+    }
+    let deep = format!("(version: 1, x: {}{})", "[".repeat(100_000), "]".repeat(100_000));
+    parse_project(Path::new("p"), &deep).expect_err("too deep");
+}
+
+#[test]
+fn values_out_of_range_are_moved_and_told() {
+    let text = "(version: 1, motion: (speed: NaN), camera: (distance: inf, fov_y: -1.0), \
+                simulation: (gravity: -inf), recording: (width: 0, fps: 1e9))";
+    let (project, problems) = parse_project(Path::new("p"), text).expect("reads");
+    assert_eq!(
+        (
+            project.motion.speed,
+            project.camera.distance,
+            project.simulation.gravity
+        ),
+        (1.0, 30.0, 0.0)
+    );
+    assert_eq!(
+        (
+            project.camera.fov_y,
+            project.recording.width,
+            project.recording.fps
+        ),
+        (0.05, 16, 240.0)
+    );
+    assert_eq!(problems.len(), 6, "{problems:?}");
+    assert!(problems.iter().all(|p| p.kind == ProblemKind::Adjusted));
+    assert_eq!(project.sanitised().1, [], "once is enough");
+}
+
+#[test]
+fn a_light_without_a_direction_shines_down_and_a_fifth_light_goes() {
+    let mut project = Project::default();
+    project.lights.resize(6, Light::default());
+    project.lights[0].direction = Vec3::ZERO;
+    let (clean, problems) = project.sanitised();
+    assert_eq!(clean.lights.len(), lovelock_render::MAX_LIGHTS);
+    assert_eq!(clean.lights[0].direction, Vec3::NEG_Y);
+    assert!(problems.len() >= 2, "{problems:?}");
+}
+
+#[test]
+fn missing_files_are_named_and_the_rest_opens() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = dir.path().join("p.lovelock");
+    let mut project = Project::default();
+    project.set_hair_file(dir.path().join("wigs/gone.hair"));
+    project.camera.distance = 4.0;
+    save_project(&path, &project).expect("saved");
+    let text = std::fs::read_to_string(&path).expect("text");
+    assert!(
+        text.contains("wigs/gone.hair") && !text.contains(&dir.path().display().to_string()),
+        "{text}"
+    );
+    let (opened, problems) = load_project(&path).expect("opened");
+    assert_eq!(opened, project);
+    assert_eq!(problems.len(), 1);
+    assert!(
+        problems[0].is_failure() && problems[0].message.contains("gone.hair"),
+        "{problems:?}"
+    );
+}
+
+#[test]
+fn a_moved_project_finds_its_files() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let (old, new) = (dir.path().join("old"), dir.path().join("new"));
+    std::fs::create_dir(&old).expect("a folder");
+    std::fs::write(old.join("x.hair"), b"HAIR").expect("a file");
+    let mut project = Project::default();
+    project.set_hair_file(old.join("x.hair"));
+    save_project(&old.join("p.lovelock"), &project).expect("saved");
+    std::fs::rename(&old, &new).expect("moved");
+    let (opened, problems) = load_project(&new.join("p.lovelock")).expect("opened");
+    assert_eq!(problems, []);
+    assert_eq!(
+        opened.hair.file.expect("a file").path,
+        FileRef::new(new.join("x.hair")).path
+    );
+}
+
+#[test]
+fn a_file_outside_is_not_loaded_until_it_is_picked() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let folder = dir.path().join("project");
+    std::fs::create_dir(&folder).expect("a folder");
+    let hair = dir.path().join("x.hair");
+    std::fs::write(&hair, b"HAIR").expect("a file");
+    let path = folder.join("p.lovelock");
+    let mut project = Project::default();
+    project.set_hair_file(&hair);
+    save_project(&path, &project).expect("saved");
+    assert!(
+        std::fs::read_to_string(&path)
+            .expect("text")
+            .contains("outside: true")
+    );
+    let (_, problems) = load_project(&path).expect("opened");
+    assert!(
+        matches!(&problems[..], [p] if matches!(p.kind, ProblemKind::NeedsPermission(_))),
+        "{problems:?}"
+    );
+    let mut access = Access::new();
+    access.pick(&hair);
+    let (_, problems) = load_project_with(&path, &mut access).expect("opened");
+    assert_eq!(problems, []);
+    // Written by hand, without the mark: the same.
+    std::fs::write(
+        &path,
+        "(version: 1, hair: (source: File, file: (path: \"../x.hair\")))",
+    )
+    .expect("written");
+    let (_, problems) = load_project(&path).expect("opened");
+    assert!(
+        matches!(&problems[..], [p] if matches!(p.kind, ProblemKind::NeedsPermission(_))),
+        "{problems:?}"
+    );
+}
+
+#[test]
+fn a_failed_save_keeps_what_was_there() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = dir.path().join("folder.lovelock");
+    std::fs::create_dir_all(path.join("x")).expect("a folder in the way");
+    let error = save_project(&path, &Project::default()).expect_err("in the way");
+    assert_eq!(error.exit_code(), 1);
+    assert!(path.join("x").is_dir());
+    assert!(!dir.path().join("folder.lovelock.partial").exists());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    /// Any finite or not finite numbers: once clamped, a project survives disk bit for bit.
+    #[test]
+    fn clamped_projects_come_back_equal(
+        speed in prop::num::f32::ANY,
+        gravity in prop::num::f32::ANY,
+        distance in prop::num::f32::ANY,
+        azimuth in prop::num::f32::ANY,
+        length in prop::num::f32::ANY,
+        melanin in prop::num::f32::ANY,
+        exposure in prop::num::f32::ANY,
+        extinction in prop::num::f32::ANY,
+        direction in prop::array::uniform3(prop::num::f32::ANY),
+        fps in prop::num::f64::ANY,
+        first in any::<u64>(),
+        end in prop::option::of(any::<u64>()),
+        width in any::<u32>(),
+        clip in "\\PC{0,12}",
+        preset in prop::sample::select(Preset::ALL.to_vec()),
+    ) {
+        let mut project = Project::default();
+        project.set_preset(preset);
+        project.motion.speed = speed;
+        project.motion.clip = clip;
+        project.simulation.gravity = gravity;
+        project.camera.distance = distance;
+        project.camera.azimuth = azimuth;
+        project.hair.groom.length = length;
+        project.look.eumelanin = melanin;
+        project.picture.exposure_stops = exposure;
+        project.shadow.extinction_scale = extinction;
+        project.lights[0].direction = Vec3::from_array(direction);
+        project.recording.fps = fps;
+        project.recording.first_frame = first;
+        project.recording.end_frame = end;
+        project.recording.width = width;
+        let (clean, _) = project.sanitised();
+        prop_assert_eq!(round_trip(&clean), (clean.clone(), Vec::new()));
+    }
+
+    /// No text makes the reader panic or hang.
+    #[test]
+    fn any_text_is_read_or_refused(text in "[(){}\\[\\]:,.a-z0-9\"' \\\\n-]{0,80}") {
+        let _ = parse_project(Path::new("p"), &text);
+    }
+}
