@@ -88,10 +88,6 @@ impl RecordError {
     }
 
     pub(crate) fn io(path: impl Into<PathBuf>, action: impl Into<String>, source: io::Error) -> Self {
-        Self::Io {
-            path: path.into(),
-            action: action.into(),
-            source,
-        }
+        Self::Io { path: path.into(), action: action.into(), source }
     }
 }

@@ -62,10 +62,7 @@ pub fn read_manifest(folder: &Path) -> Result<Manifest, RecordError> {
     };
     let manifest: Manifest = serde_json::from_slice(&text).map_err(|error| malformed(error.to_string()))?;
     if manifest.format != "lovelock-sequence" || manifest.version != VERSION {
-        return Err(malformed(format!(
-            "`{}`, version {}",
-            manifest.format, manifest.version
-        )));
+        return Err(malformed(format!("`{}`, version {}", manifest.format, manifest.version)));
     }
     Ok(manifest)
 }

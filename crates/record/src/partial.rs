@@ -40,11 +40,7 @@ impl PartialFile {
     pub(crate) fn create(target: &Path, opener: &Opener) -> io::Result<Self> {
         let partial = partial_path(target);
         let medium = BufWriter::with_capacity(1 << 16, opener(&partial)?);
-        Ok(Self {
-            target: target.to_owned(),
-            partial,
-            medium: Some(medium),
-        })
+        Ok(Self { target: target.to_owned(), partial, medium: Some(medium) })
     }
 
     /// Gives the file its name. `durable` waits for the disk first, so that a name never stands for lost bytes.
@@ -58,20 +54,14 @@ impl PartialFile {
         fs::rename(&self.partial, &self.target)?;
         if durable && let Some(folder) = self.target.parent() {
             // The rename itself lives in the folder. Not every system lets a folder be opened; the file is safe anyway.
-            let folder = if folder.as_os_str().is_empty() {
-                Path::new(".")
-            } else {
-                folder
-            };
+            let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
             let _ = File::open(folder).and_then(|folder| folder.sync_all());
         }
         Ok(())
     }
 
     fn medium(&mut self) -> io::Result<&mut BufWriter<Box<dyn Medium>>> {
-        self.medium
-            .as_mut()
-            .ok_or_else(|| io::Error::other("the file is closed"))
+        self.medium.as_mut().ok_or_else(|| io::Error::other("the file is closed"))
     }
 
     /// Closes without flushing: what matters was flushed, and a full disk should not be asked again.
@@ -163,20 +153,13 @@ pub(crate) mod failing {
 
     /// An opener of files on such a disk.
     pub(crate) fn small_disk(room: u64) -> impl Fn(&Path) -> io::Result<Box<dyn Medium>> + Send + Sync {
-        move |path| {
-            Ok(Box::new(SmallDisk {
-                inner: open_file(path)?,
-                room,
-            }) as Box<dyn Medium>)
-        }
+        move |path| Ok(Box::new(SmallDisk { inner: open_file(path)?, room }) as Box<dyn Medium>)
     }
 
     /// An opener of a file whose bytes go to the device that is always full.
     #[cfg(target_os = "linux")]
     pub(crate) fn full_device(_: &Path) -> io::Result<Box<dyn Medium>> {
-        Ok(Box::new(
-            std::fs::OpenOptions::new().write(true).open("/dev/full")?,
-        ))
+        Ok(Box::new(std::fs::OpenOptions::new().write(true).open("/dev/full")?))
     }
 }
 
@@ -226,9 +209,6 @@ mod tests {
 
     #[test]
     fn the_partial_name_keeps_the_whole_name() {
-        assert_eq!(
-            partial_path(Path::new("out/dance.mp4")),
-            Path::new("out/dance.mp4.partial")
-        );
+        assert_eq!(partial_path(Path::new("out/dance.mp4")), Path::new("out/dance.mp4.partial"));
     }
 }

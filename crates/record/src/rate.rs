@@ -29,18 +29,12 @@ impl FrameRate {
             let broadcast = f64::from(whole) * 1000.0 / 1001.0;
             // 0.006 covers two decimals (23.98 stands for 23.976) and stays clear of the whole number (0.024 off).
             if (fps - broadcast).abs() < 0.006 {
-                return Ok(Self {
-                    num: whole * 1000,
-                    den: 1001,
-                });
+                return Ok(Self { num: whole * 1000, den: 1001 });
             }
         }
         let thousandths = (fps * 1000.0).round() as u32;
         let divisor = greatest_common_divisor(thousandths, 1000);
-        Ok(Self {
-            num: thousandths / divisor,
-            den: 1000 / divisor,
-        })
+        Ok(Self { num: thousandths / divisor, den: 1000 / divisor })
     }
 
     /// Frames per second as a decimal number.
@@ -59,11 +53,7 @@ impl FrameRate {
 }
 
 fn greatest_common_divisor(a: u32, b: u32) -> u32 {
-    if b == 0 {
-        a
-    } else {
-        greatest_common_divisor(b, a % b)
-    }
+    if b == 0 { a } else { greatest_common_divisor(b, a % b) }
 }
 
 #[cfg(test)]

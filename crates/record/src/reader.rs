@@ -84,14 +84,7 @@ impl FilmReader {
             frame: 0,
             reason: format!("no decoder: {error}"),
         })?;
-        Ok(Self {
-            path: path.to_owned(),
-            file,
-            movie,
-            decoder,
-            next: 0,
-            stream,
-        })
+        Ok(Self { path: path.to_owned(), file, movie, decoder, next: 0, stream })
     }
 
     /// What the film is.
@@ -115,10 +108,7 @@ impl FilmReader {
             path: self.path.clone(),
             offset,
             found,
-            wanted: format!(
-                "frame {} as H.264 of {}x{}",
-                self.next, self.movie.width, self.movie.height
-            ),
+            wanted: format!("frame {} as H.264 of {}x{}", self.next, self.movie.width, self.movie.height),
         };
         // The first frame goes in behind the parameter sets that `open` left in the stream.
         let mut rest = &sample[..];
@@ -129,10 +119,7 @@ impl FilmReader {
             self.stream.extend(unit);
             rest = tail;
         }
-        let decoded = self
-            .decoder
-            .decode(&self.stream)
-            .map_err(|error| malformed(error.to_string()))?;
+        let decoded = self.decoder.decode(&self.stream).map_err(|error| malformed(error.to_string()))?;
         let picture = decoded.ok_or_else(|| malformed("no picture".into()))?;
         let size = openh264::formats::YUVSource::dimensions(&picture);
         if size != (self.movie.width as usize, self.movie.height as usize) {

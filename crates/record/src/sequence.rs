@@ -88,17 +88,15 @@ impl SequenceWriter {
     /// [`RecordError::Request`] for a size, a rate or a `folder` that cannot be (it is a file); [`RecordError::Io`] where the
     /// folder cannot be written.
     pub fn create(folder: &Path, settings: SequenceSettings) -> Result<Self, RecordError> {
-        Self::create_on(folder, settings, Arc::new(open_file))
+        Self::create_on(folder, settings, &(Arc::new(open_file) as Arc<Opener>))
     }
 
     pub(crate) fn create_on(
         folder: &Path,
         settings: SequenceSettings,
-        opener: Arc<Opener>,
+        opener: &Arc<Opener>,
     ) -> Result<Self, RecordError> {
-        let SequenceSettings {
-            width, height, fps, ..
-        } = settings;
+        let SequenceSettings { width, height, fps, .. } = settings;
         if width.min(height) == 0 || width.max(height) > LARGEST_SIDE {
             return Err(RecordError::request(format!(
                 "a sequence of {width}x{height} pixels: wanted sides of 1 to {LARGEST_SIDE}"
@@ -115,19 +113,13 @@ impl SequenceWriter {
         let manifest_path = folder.join(MANIFEST_NAME);
         let mut old_files = Vec::new();
         if let Ok(old) = read_manifest(folder) {
-            old_files = old
-                .frames
-                .into_iter()
-                .filter(|f| f.file == frame_name(f.number))
-                .map(|f| f.file)
-                .collect();
+            old_files =
+                old.frames.into_iter().filter(|f| f.file == frame_name(f.number)).map(|f| f.file).collect();
             fs::remove_file(&manifest_path)
                 .map_err(|error| RecordError::io(&manifest_path, "remove the old manifest", error))?;
         }
 
-        let count = std::thread::available_parallelism()
-            .map_or(1, usize::from)
-            .min(MOST_THREADS);
+        let count = std::thread::available_parallelism().map_or(1, usize::from).min(MOST_THREADS);
         let (jobs, todo) = sync_channel(count);
         let (done, spent) = sync_channel(2 * count + 2);
         let todo = Arc::new(Mutex::new(todo));
@@ -172,9 +164,7 @@ impl SequenceWriter {
     pub fn push(&mut self, rgba: &[u8]) -> Result<(), RecordError> {
         check_frame(rgba, self.settings.width, self.settings.height)?;
         let Some(jobs) = &self.jobs else {
-            return Err(RecordError::Stopped {
-                path: self.folder.clone(),
-            });
+            return Err(RecordError::Stopped { path: self.folder.clone() });
         };
         let number = self.settings.first_frame + self.pushed;
         let mut buffer = self.spent.try_recv().unwrap_or_default();
@@ -205,18 +195,10 @@ impl SequenceWriter {
     /// Ends the threads and writes the manifest.
     fn end(&mut self, finished: bool) -> Result<SequenceReport, RecordError> {
         if std::mem::replace(&mut self.ended, true) {
-            return Err(RecordError::Stopped {
-                path: self.folder.clone(),
-            });
+            return Err(RecordError::Stopped { path: self.folder.clone() });
         }
         self.jobs = None;
-        let panicked = self
-            .threads
-            .drain(..)
-            .map(JoinHandle::join)
-            .filter(Result::is_err)
-            .count()
-            > 0;
+        let panicked = self.threads.drain(..).map(JoinHandle::join).filter(Result::is_err).count() > 0;
         let Progress { frames, error } = std::mem::take(&mut *lock(&self.shared));
         let whole = finished && error.is_none() && !panicked && frames.len() as u64 == self.pushed;
         let manifest = Manifest {
@@ -232,17 +214,11 @@ impl SequenceWriter {
         };
         // A folder without a single frame needs no manifest, and after an error there may be no room for one: the error
         // that came first is the one to tell.
-        let written = if manifest.frames.is_empty() {
-            Ok(())
-        } else {
-            self.write_manifest(&manifest)
-        };
+        let written = if manifest.frames.is_empty() { Ok(()) } else { self.write_manifest(&manifest) };
         match error {
             Some(error) => return Err(error),
             None if panicked => {
-                return Err(RecordError::Stopped {
-                    path: self.folder.clone(),
-                });
+                return Err(RecordError::Stopped { path: self.folder.clone() });
             }
             None => written?,
         }
@@ -250,11 +226,7 @@ impl SequenceWriter {
             self.remove_old_frames(&manifest);
         }
         let bytes = manifest.frames.iter().map(|frame| frame.bytes).sum();
-        Ok(SequenceReport {
-            folder: self.folder.clone(),
-            frames: manifest.frames.len() as u64,
-            bytes,
-        })
+        Ok(SequenceReport { folder: self.folder.clone(), frames: manifest.frames.len() as u64, bytes })
     }
 
     fn write_manifest(&self, manifest: &Manifest) -> Result<(), RecordError> {
@@ -286,9 +258,7 @@ impl Drop for SequenceWriter {
 
 impl std::fmt::Debug for SequenceWriter {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("SequenceWriter")
-            .field("folder", &self.folder)
-            .finish_non_exhaustive()
+        f.debug_struct("SequenceWriter").field("folder", &self.folder).finish_non_exhaustive()
     }
 }
 
@@ -337,10 +307,7 @@ impl Worker {
             (rgba, ExtendedColorType::Rgba8)
         } else {
             opaque.clear();
-            opaque.extend(
-                rgba.chunks_exact(4)
-                    .flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]),
-            );
+            opaque.extend(rgba.chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]));
             (&opaque[..], ExtendedColorType::Rgb8)
         };
         file.clear();
@@ -351,12 +318,7 @@ impl Worker {
         partial.write_all(file).map_err(failed)?;
         partial.commit(false).map_err(failed)?;
         let crc32 = format!("{:08x}", crc32fast::hash(file));
-        Ok(ManifestFrame {
-            number,
-            file: name,
-            bytes: file.len() as u64,
-            crc32,
-        })
+        Ok(ManifestFrame { number, file: name, bytes: file.len() as u64, crc32 })
     }
 }
 

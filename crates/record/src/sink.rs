@@ -35,10 +35,7 @@ impl OutputKind {
         if ends_in_separator || path.is_dir() {
             return Ok(Self::Sequence);
         }
-        match path
-            .extension()
-            .map(|extension| extension.to_string_lossy().to_ascii_lowercase())
-        {
+        match path.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase()) {
             Some(extension) if extension == "mp4" => Ok(Self::Film),
             Some(extension) if extension.chars().any(|letter| !letter.is_ascii_digit()) => {
                 Err(RecordError::request(format!(
@@ -136,35 +133,13 @@ impl PictureSink {
     /// # Errors
     /// As [`FilmWriter::create`], [`SequenceWriter::create`] and [`OutputKind::of`].
     pub fn for_path(path: &Path, settings: SinkSettings) -> Result<Self, RecordError> {
-        let SinkSettings {
-            width,
-            height,
-            fps,
-            first_frame,
-            quality,
-            alpha,
-            settings,
-        } = settings;
+        let SinkSettings { width, height, fps, first_frame, quality, alpha, settings } = settings;
         match OutputKind::of(path)? {
-            OutputKind::Film => FilmWriter::create(
-                path,
-                FilmSettings {
-                    width,
-                    height,
-                    fps,
-                    quality,
-                },
-            )
-            .map(Self::Film),
+            OutputKind::Film => {
+                FilmWriter::create(path, FilmSettings { width, height, fps, quality }).map(Self::Film)
+            }
             OutputKind::Sequence => {
-                let settings = SequenceSettings {
-                    width,
-                    height,
-                    fps,
-                    first_frame,
-                    alpha,
-                    settings,
-                };
+                let settings = SequenceSettings { width, height, fps, first_frame, alpha, settings };
                 SequenceWriter::create(path, settings).map(Self::Sequence)
             }
         }
@@ -204,42 +179,23 @@ mod tests {
     #[test]
     fn the_name_decides() {
         for name in ["dance.mp4", "out/Dance.MP4", "ä b/c.mp4"] {
-            assert_eq!(
-                OutputKind::of(Path::new(name)).unwrap(),
-                OutputKind::Film,
-                "{name}"
-            );
+            assert_eq!(OutputKind::of(Path::new(name)).unwrap(), OutputKind::Film, "{name}");
         }
         for name in ["out/frames", "out/v1.2", "out/take.b/", "out/", "."] {
-            assert_eq!(
-                OutputKind::of(Path::new(name)).unwrap(),
-                OutputKind::Sequence,
-                "{name}"
-            );
+            assert_eq!(OutputKind::of(Path::new(name)).unwrap(), OutputKind::Sequence, "{name}");
         }
-        for name in [
-            "",
-            "dance.avi",
-            "dance.mp4.gz",
-            "dance.png",
-            "frames.take",
-            "a.b2",
-        ] {
+        for name in ["", "dance.avi", "dance.mp4.gz", "dance.png", "frames.take", "a.b2"] {
             let error = OutputKind::of(Path::new(name)).unwrap_err();
-            assert!(
-                error.is_request() && error.to_string().contains(".mp4"),
-                "{name}: {error}"
-            );
+            assert!(error.is_request() && error.to_string().contains(".mp4"), "{name}: {error}");
         }
     }
 
     #[test]
     fn both_kinds_are_made_in_missing_folders() {
         let folder = tempfile::tempdir().unwrap();
-        for (name, file) in [
-            ("new/ö film/dance.mp4", "new/ö film/dance.mp4"),
-            ("new/frames", "new/frames/manifest.json"),
-        ] {
+        for (name, file) in
+            [("new/ö film/dance.mp4", "new/ö film/dance.mp4"), ("new/frames", "new/frames/manifest.json")]
+        {
             let settings = SinkSettings::new(16, 16, 30.0);
             let mut sink = PictureSink::for_path(&folder.path().join(name), settings).unwrap();
             sink.push(&[7; 16 * 16 * 4]).unwrap();

@@ -23,16 +23,10 @@ const fn fixed(x: f64, scale: f64) -> i32 {
 
 const LUMA: [i32; 3] = [fixed(0.2126, 219.0), fixed(0.7152, 219.0), fixed(0.0722, 219.0)];
 // The middle coefficients are the rests, so that greys come out as exactly 128.
-const BLUE: [i32; 3] = [
-    fixed(-0.2126 / 1.8556, 224.0),
-    -fixed(-0.2126 / 1.8556, 224.0) - fixed(0.5, 224.0),
-    fixed(0.5, 224.0),
-];
-const RED: [i32; 3] = [
-    fixed(0.5, 224.0),
-    -fixed(-0.0722 / 1.5748, 224.0) - fixed(0.5, 224.0),
-    fixed(-0.0722 / 1.5748, 224.0),
-];
+const BLUE: [i32; 3] =
+    [fixed(-0.2126 / 1.8556, 224.0), -fixed(-0.2126 / 1.8556, 224.0) - fixed(0.5, 224.0), fixed(0.5, 224.0)];
+const RED: [i32; 3] =
+    [fixed(0.5, 224.0), -fixed(-0.0722 / 1.5748, 224.0) - fixed(0.5, 224.0), fixed(-0.0722 / 1.5748, 224.0)];
 
 /// One picture as three planes, 4:2:0: luma of every pixel, chroma of every second column and row.
 pub(crate) struct Planes {
@@ -66,10 +60,7 @@ impl Planes {
         let [sum_r, sum_g, sum_b] = &mut self.sums;
         let row_pairs = rgba.chunks_exact(width * 8);
         let luma_pairs = self.luma.chunks_exact_mut(width * 2);
-        let chroma_rows = self
-            .blue
-            .chunks_exact_mut(width / 2)
-            .zip(self.red.chunks_exact_mut(width / 2));
+        let chroma_rows = self.blue.chunks_exact_mut(width / 2).zip(self.red.chunks_exact_mut(width / 2));
         for ((pair, luma), (blue, red)) in row_pairs.zip(luma_pairs).zip(chroma_rows) {
             let (upper, lower) = pair.split_at(width * 4);
             let (luma_upper, luma_lower) = luma.split_at_mut(width);
@@ -144,17 +135,9 @@ pub(crate) fn write_rgba(source: &impl openh264::formats::YUVSource, rgba: &mut 
         let red = &source.v()[row / 2 * red_stride..][..width / 2];
         for (column, &luma) in luma.iter().enumerate() {
             let left = column / 2;
-            let right = if column % 2 == 0 {
-                left
-            } else {
-                (left + 1).min(width / 2 - 1)
-            };
-            let chroma = |plane: &[u8]| (f32::from(plane[left]) + f32::from(plane[right])) / 2.0 - 128.0;
-            let (y, pb, pr) = (
-                (f32::from(luma) - 16.0) / 219.0,
-                chroma(blue) / 224.0,
-                chroma(red) / 224.0,
-            );
+            let right = if column % 2 == 0 { left } else { (left + 1).min(width / 2 - 1) };
+            let chroma = |plane: &[u8]| f32::midpoint(plane[left].into(), plane[right].into()) - 128.0;
+            let (y, pb, pr) = ((f32::from(luma) - 16.0) / 219.0, chroma(blue) / 224.0, chroma(red) / 224.0);
             let (r, b) = (y + 1.5748 * pr, y + 1.8556 * pb);
             let g = (y - 0.2126 * r - 0.0722 * b) / 0.7152;
             rgba.extend([r, g, b].map(|x| (x * 255.0).round().clamp(0.0, 255.0) as u8));
@@ -203,13 +186,7 @@ mod tests {
 
     #[test]
     fn flat_colours_come_back() {
-        for colour in [
-            [10_u8, 200, 90],
-            [90, 45, 20],
-            [250, 250, 240],
-            [1, 2, 3],
-            [128, 0, 64],
-        ] {
+        for colour in [[10_u8, 200, 90], [90, 45, 20], [250, 250, 240], [1, 2, 3], [128, 0, 64]] {
             let mut planes = Planes::new(6, 4);
             planes.read_rgba(&[colour[0], colour[1], colour[2], 0].repeat(24));
             let mut rgba = Vec::new();
@@ -228,9 +205,8 @@ mod tests {
     #[test]
     fn chroma_lies_on_the_even_columns() {
         let mut planes = Planes::new(8, 2);
-        let row: Vec<u8> = (0..8)
-            .flat_map(|x| if x < 4 { [0, 0, 0, 255] } else { [0, 0, 255, 255] })
-            .collect();
+        let row: Vec<u8> =
+            (0..8).flat_map(|x| if x < 4 { [0, 0, 0, 255] } else { [0, 0, 255, 255] }).collect();
         planes.read_rgba(&[row.clone(), row].concat());
         assert_eq!(planes.blue, [128, 128, 128 + 84, 240]);
     }

@@ -4,12 +4,8 @@ use lovelock_record::{FilmQuality, FilmSettings, FilmWriter};
 use std::path::Path;
 use std::process::Command;
 
-const SETTINGS: FilmSettings = FilmSettings {
-    width: 320,
-    height: 180,
-    fps: 30.0,
-    quality: FilmQuality::High,
-};
+const SETTINGS: FilmSettings =
+    FilmSettings { width: 320, height: 180, fps: 30.0, quality: FilmQuality::High };
 
 /// Red left, green right, a white bar that moves.
 fn picture(frame: u32) -> Vec<u8> {
@@ -36,16 +32,12 @@ fn run(program: &str, arguments: &[&str], path: &Path) -> Option<(bool, Vec<u8>,
             command.arg(argument)
         };
     }
-    match command.output() {
-        Ok(output) => {
-            let errors = String::from_utf8_lossy(&output.stderr).into_owned();
-            Some((output.status.success(), output.stdout, errors))
-        }
-        Err(_) => {
-            println!("skipped: no {program} on this machine");
-            None
-        }
-    }
+    let Ok(output) = command.output() else {
+        println!("skipped: no {program} on this machine");
+        return None;
+    };
+    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+    Some((output.status.success(), output.stdout, errors))
 }
 
 #[test]
@@ -53,16 +45,7 @@ fn ffprobe_sees_what_was_written() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("film.mp4");
     write(&path);
-    let arguments = [
-        "-v",
-        "error",
-        "-count_frames",
-        "-show_streams",
-        "-show_format",
-        "-of",
-        "flat",
-        "FILM",
-    ];
+    let arguments = ["-v", "error", "-count_frames", "-show_streams", "-show_format", "-of", "flat", "FILM"];
     let Some((good, text, errors)) = run("ffprobe", &arguments, &path) else {
         return;
     };
@@ -94,9 +77,7 @@ fn ffmpeg_decodes_the_colours_that_went_in() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("film.mp4");
     write(&path);
-    let arguments = [
-        "-v", "error", "-xerror", "-i", "FILM", "-f", "rawvideo", "-pix_fmt", "rgb24", "-",
-    ];
+    let arguments = ["-v", "error", "-xerror", "-i", "FILM", "-f", "rawvideo", "-pix_fmt", "rgb24", "-"];
     let Some((good, pixels, errors)) = run("ffmpeg", &arguments, &path) else {
         return;
     };
@@ -108,12 +89,7 @@ fn ffmpeg_decodes_the_colours_that_went_in() {
         for (x, (pixel, wanted)) in decoded.chunks_exact(3).zip(wanted.chunks_exact(4)).enumerate() {
             // Away from edges, where halved chroma and coding smear: the middles of the two fields.
             if [40, 280].contains(&(x % 320)) && ![4, 5, 6, 34, 35, 36].contains(&(frame % 40)) {
-                let off = pixel
-                    .iter()
-                    .zip(wanted)
-                    .map(|(a, b)| a.abs_diff(*b))
-                    .max()
-                    .unwrap_or(0);
+                let off = pixel.iter().zip(wanted).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0);
                 worst = worst.max(off);
             }
         }
@@ -140,26 +116,14 @@ fn a_limit_of_the_system_stops_the_film_and_leaves_nothing() {
     let name = "a_limit_of_the_system_stops_the_film_and_leaves_nothing";
     // Ignoring the signal turns the limit into an error of `write`.
     let script = format!("trap '' XFSZ; ulimit -f 64 && exec \"$0\" --exact {name} --nocapture");
-    let output = Command::new("bash")
-        .arg("-c")
-        .arg(script)
-        .arg(this)
-        .env(FOLDER, folder.path())
-        .output();
+    let output = Command::new("bash").arg("-c").arg(script).arg(this).env(FOLDER, folder.path()).output();
     let Ok(output) = output else {
         println!("skipped: no bash on this machine");
         return;
     };
     let text = String::from_utf8_lossy(&output.stdout);
-    assert!(
-        output.status.success(),
-        "{text}\n{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    assert!(
-        text.contains("ended by: ") && text.contains("film.mp4: could not write frame"),
-        "{text}"
-    );
+    assert!(output.status.success(), "{text}\n{}", String::from_utf8_lossy(&output.stderr));
+    assert!(text.contains("ended by: ") && text.contains("film.mp4: could not write frame"), "{text}");
     assert!(text.contains("File too large"), "{text}");
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }

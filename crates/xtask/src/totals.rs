@@ -58,11 +58,7 @@ impl AddAssign for Totals {
 
 impl fmt::Display for Totals {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "{} passed, {} failed, {} skipped",
-            self.passed, self.failed, self.skipped
-        )
+        write!(f, "{} passed, {} failed, {} skipped", self.passed, self.failed, self.skipped)
     }
 }
 
@@ -84,12 +80,9 @@ fn without_colours(line: &str) -> String {
 mod tests {
     use super::Totals;
 
+    #[expect(clippy::unnecessary_wraps, reason = "what it is compared with is an option")]
     fn totals(passed: u64, failed: u64, skipped: u64) -> Option<Totals> {
-        Some(Totals {
-            passed,
-            failed,
-            skipped,
-        })
+        Some(Totals { passed, failed, skipped })
     }
 
     #[test]
@@ -113,29 +106,17 @@ mod tests {
 
     #[test]
     fn other_lines_count_nothing() {
-        for line in [
-            "",
-            "test a::b ... ok",
-            "    PASS [ 0.1s] a b",
-            "3 passed; 0 failed",
-            "Summary of it: 3 passed",
-        ] {
+        for line in
+            ["", "test a::b ... ok", "    PASS [ 0.1s] a b", "3 passed; 0 failed", "Summary of it: 3 passed"]
+        {
             assert_eq!(Totals::of_line(line), None, "{line}");
         }
     }
 
     #[test]
     fn the_sum_prints_as_promised() {
-        let mut sum = Totals {
-            passed: 1,
-            failed: 0,
-            skipped: 2,
-        };
-        sum += Totals {
-            passed: 10,
-            failed: 1,
-            skipped: 0,
-        };
+        let mut sum = Totals { passed: 1, failed: 0, skipped: 2 };
+        sum += Totals { passed: 10, failed: 1, skipped: 0 };
         assert_eq!(sum.to_string(), "11 passed, 1 failed, 2 skipped");
     }
 }

@@ -24,12 +24,7 @@ pub(super) struct FrameEncoder {
 
 impl FrameEncoder {
     pub(super) fn new(settings: FilmSettings, rate: FrameRate) -> Result<Self, openh264::Error> {
-        let FilmSettings {
-            width,
-            height,
-            quality,
-            ..
-        } = settings;
+        let FilmSettings { width, height, quality, .. } = settings;
         let fps = rate.as_f64();
         let quantiser = quality.quantiser();
         let pixels_per_second = f64::from(width * height) * fps;
@@ -43,9 +38,7 @@ impl FrameEncoder {
                 (pixels_per_second * 0.3 * f64::exp2((20.0 - f64::from(quantiser)) / 6.0)).min(200e6) as u32,
             ))
             .max_frame_rate(Hertz::from_hz(fps as f32))
-            .intra_frame_period(IntraFramePeriod::from_num_frames(
-                (fps * KEY_FRAME_SECS).round() as u32
-            ))
+            .intra_frame_period(IntraFramePeriod::from_num_frames((fps * KEY_FRAME_SECS).round() as u32))
             .complexity(Complexity::Medium)
             .skip_frames(false)
             // These save bits, by coarser frames at a cut and by ghosts of thin hair where little moves.

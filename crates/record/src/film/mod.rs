@@ -165,13 +165,7 @@ impl FilmWriter {
             .name("lovelock-film".into())
             .spawn(move || film.run(&todo, &done))
             .map_err(|error| RecordError::io(path, "start the encoder's thread", error))?;
-        Ok(Self {
-            path: path.to_owned(),
-            settings,
-            jobs: Some(jobs),
-            spent,
-            worker: Some(worker),
-        })
+        Ok(Self { path: path.to_owned(), settings, jobs: Some(jobs), spent, worker: Some(worker) })
     }
 
     /// Hands over the next frame: RGBA, 8 bits sRGB, rows from the top, `width × height × 4` bytes. Alpha is ignored.
@@ -185,18 +179,12 @@ impl FilmWriter {
     pub fn push(&mut self, rgba: &[u8]) -> Result<(), RecordError> {
         check_frame(rgba, self.settings.width, self.settings.height)?;
         let Some(jobs) = &self.jobs else {
-            return Err(RecordError::Stopped {
-                path: self.path.clone(),
-            });
+            return Err(RecordError::Stopped { path: self.path.clone() });
         };
         let mut buffer = self.spent.try_recv().unwrap_or_default();
         buffer.clear();
         buffer.extend_from_slice(rgba);
-        if jobs.send(Job::Frame(buffer)).is_ok() {
-            Ok(())
-        } else {
-            self.join().map(drop)
-        }
+        if jobs.send(Job::Frame(buffer)).is_ok() { Ok(()) } else { self.join().map(drop) }
     }
 
     /// Codes what still waits, writes the film's tables, and gives it its name.
@@ -221,9 +209,7 @@ impl FilmWriter {
         match ended {
             Some(Ok(Ok(Some(report)))) => Ok(report),
             Some(Ok(Err(error))) => Err(error),
-            _ => Err(RecordError::Stopped {
-                path: self.path.clone(),
-            }),
+            _ => Err(RecordError::Stopped { path: self.path.clone() }),
         }
     }
 }
@@ -250,12 +236,7 @@ pub(crate) fn check_frame(rgba: &[u8], width: u32, height: u32) -> Result<(), Re
     if rgba.len() == wanted {
         return Ok(());
     }
-    Err(RecordError::FrameSize {
-        found: rgba.len(),
-        wanted,
-        width,
-        height,
-    })
+    Err(RecordError::FrameSize { found: rgba.len(), wanted, width, height })
 }
 
 /// Gives a spent buffer back, unless enough of them lie about.

@@ -4,12 +4,7 @@ use crate::{FilmReader, RecordError, read_film};
 use std::fs;
 use std::path::Path;
 
-const SMALL: FilmSettings = FilmSettings {
-    width: 96,
-    height: 64,
-    fps: 25.0,
-    quality: FilmQuality::High,
-};
+const SMALL: FilmSettings = FilmSettings { width: 96, height: 64, fps: 25.0, quality: FilmQuality::High };
 
 /// A warm gradient with a lighter disc that moves two pixels a frame, and stripes of a few pixels that move with it.
 fn picture(settings: FilmSettings, frame: u64) -> Vec<u8> {
@@ -20,16 +15,8 @@ fn picture(settings: FilmSettings, frame: u64) -> Vec<u8> {
         for x in 0..width {
             let (dx, dy) = (x - width / 4 - shift, y - height / 2);
             let inside = dx * dx + dy * dy < height * height / 9;
-            let stripe = if inside {
-                ((dx as f32 * 0.9).sin() * 40.0) as i32
-            } else {
-                0
-            };
-            let base = if inside {
-                [190, 130, 80]
-            } else {
-                [60 + x * 80 / width, 50 + y * 60 / height, 70]
-            };
+            let stripe = if inside { ((dx as f32 * 0.9).sin() * 40.0) as i32 } else { 0 };
+            let base = if inside { [190, 130, 80] } else { [60 + x * 80 / width, 50 + y * 60 / height, 70] };
             rgba.extend(base.map(|c| (c + stripe).clamp(0, 255) as u8));
             rgba.push(255);
         }
@@ -61,10 +48,7 @@ fn decode(path: &Path) -> Vec<Vec<u8>> {
 /// Peak signal to noise ratio over R, G and B, in decibels.
 fn psnr_db(a: &[u8], b: &[u8]) -> f64 {
     assert_eq!(a.len(), b.len());
-    let colours = a
-        .chunks_exact(4)
-        .zip(b.chunks_exact(4))
-        .flat_map(|(a, b)| a[..3].iter().zip(&b[..3]));
+    let colours = a.chunks_exact(4).zip(b.chunks_exact(4)).flat_map(|(a, b)| a[..3].iter().zip(&b[..3]));
     let sum: u64 = colours.map(|(a, b)| u64::from(a.abs_diff(*b)).pow(2)).sum();
     10.0 * (255.0 * 255.0 * (a.len() / 4 * 3) as f64 / sum as f64).log10()
 }
@@ -76,10 +60,7 @@ fn a_film_comes_back() {
     // More frames than a chunk holds, and than lie between two key frames.
     write(&path, SMALL, 40);
     let info = read_film(&path).unwrap();
-    assert_eq!(
-        (info.width, info.height, info.frames, info.codec.as_str()),
-        (96, 64, 40, "avc1")
-    );
+    assert_eq!((info.width, info.height, info.frames, info.codec.as_str()), (96, 64, 40, "avc1"));
     assert!((info.duration_secs - 1.6).abs() < 1e-12);
     let frames = decode(&path);
     assert_eq!(frames.len(), 40);
@@ -89,17 +70,9 @@ fn a_film_comes_back() {
         assert!(quality > 35.0, "frame {index}: {quality:.1} dB");
         // Negative control: the picture of three frames later is another one.
         let other = psnr_db(frame, &picture(SMALL, index as u64 + 3));
-        assert!(
-            other < 30.0,
-            "frame {index} looks like {}: {other:.1} dB",
-            index + 3
-        );
+        assert!(other < 30.0, "frame {index} looks like {}: {other:.1} dB", index + 3);
     }
-    assert_eq!(
-        fs::read_dir(path.parent().unwrap()).unwrap().count(),
-        1,
-        "only the film is left"
-    );
+    assert_eq!(fs::read_dir(path.parent().unwrap()).unwrap().count(), 1, "only the film is left");
 }
 
 #[test]
@@ -110,14 +83,8 @@ fn finer_quality_is_nearer_and_larger() {
         let settings = FilmSettings { quality, ..SMALL };
         let path = folder.path().join(format!("{}.mp4", quality.id()));
         write(&path, settings, 6);
-        let found = (
-            psnr_db(&decode(&path)[5], &picture(settings, 5)),
-            fs::metadata(&path).unwrap().len(),
-        );
-        assert!(
-            found.0 > last.0 && found.1 > last.1,
-            "{quality:?}: {found:?} after {last:?}"
-        );
+        let found = (psnr_db(&decode(&path)[5], &picture(settings, 5)), fs::metadata(&path).unwrap().len());
+        assert!(found.0 > last.0 && found.1 > last.1, "{quality:?}: {found:?} after {last:?}");
         last = found;
     }
 }
@@ -156,12 +123,7 @@ fn requests_that_no_film_meets_are_refused_before_anything_is_written() {
         (1280, 720, 0.0, "240"),
         (1280, 720, f64::NAN, "240"),
     ] {
-        let settings = FilmSettings {
-            width,
-            height,
-            fps,
-            quality: FilmQuality::High,
-        };
+        let settings = FilmSettings { width, height, fps, quality: FilmQuality::High };
         let error = FilmWriter::create(&path, settings).unwrap_err();
         assert!(error.is_request() && error.to_string().contains(word), "{error}");
     }
@@ -175,11 +137,7 @@ fn requests_that_no_film_meets_are_refused_before_anything_is_written() {
 fn the_smallest_and_the_tall_film_play() {
     let folder = tempfile::tempdir().unwrap();
     for (width, height) in [(16, 16), (18, 130), (250, 34)] {
-        let settings = FilmSettings {
-            width,
-            height,
-            ..SMALL
-        };
+        let settings = FilmSettings { width, height, ..SMALL };
         let path = folder.path().join(format!("{width}x{height}.mp4"));
         write(&path, settings, 3);
         assert_eq!(decode(&path).len(), 3, "{width}x{height}");
@@ -191,14 +149,7 @@ fn a_frame_of_another_size_is_refused_and_the_film_goes_on() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.mp4");
     let mut film = FilmWriter::create(&path, SMALL).unwrap();
-    assert!(matches!(
-        film.push(&[0; 12]),
-        Err(RecordError::FrameSize {
-            found: 12,
-            wanted: 24_576,
-            ..
-        })
-    ));
+    assert!(matches!(film.push(&[0; 12]), Err(RecordError::FrameSize { found: 12, wanted: 24_576, .. })));
     film.push(&picture(SMALL, 0)).unwrap();
     assert_eq!(film.finish().unwrap().frames, 1);
 }
@@ -234,19 +185,10 @@ fn a_full_disk_stops_the_film_and_leaves_nothing() {
             film.finish()
         };
         let error = push_all().unwrap_err();
-        let RecordError::Io { source, .. } = &error else {
-            panic!("{error:?}")
-        };
+        let RecordError::Io { source, .. } = &error else { panic!("{error:?}") };
         assert_eq!(source.kind(), std::io::ErrorKind::StorageFull);
-        assert!(
-            !error.is_request() && error.to_string().contains("a.mp4"),
-            "{error}"
-        );
-        assert_eq!(
-            fs::read_dir(folder.path()).unwrap().count(),
-            0,
-            "{room} bytes of room"
-        );
+        assert!(!error.is_request() && error.to_string().contains("a.mp4"), "{error}");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "{room} bytes of room");
     }
 }
 
@@ -257,10 +199,7 @@ fn after_an_error_the_film_stays_stopped() {
     while film.push(&picture(SMALL, 0)).is_ok() {
         // A still picture takes few bytes a frame; the buffer in front of the disk takes some hundred frames.
     }
-    assert!(matches!(
-        film.push(&picture(SMALL, 1)),
-        Err(RecordError::Stopped { .. })
-    ));
+    assert!(matches!(film.push(&picture(SMALL, 1)), Err(RecordError::Stopped { .. })));
     assert!(matches!(film.finish(), Err(RecordError::Stopped { .. })));
 }
 

@@ -41,13 +41,7 @@ impl Film {
             ticks_per_frame,
         };
         let writer = Mp4Writer::new(PartialFile::create(path, opener)?, track)?;
-        Ok(Self {
-            path: path.to_owned(),
-            settings,
-            rate,
-            writer,
-            frames: 0,
-        })
+        Ok(Self { path: path.to_owned(), settings, rate, writer, frames: 0 })
     }
 
     /// Takes jobs until told to finish (the report), until the channel closes (nothing), or until something fails.
@@ -71,9 +65,7 @@ impl Film {
     }
 
     fn add(&mut self, encoder: &mut FrameEncoder, rgba: &[u8]) -> Result<(), RecordError> {
-        let (sample, key) = encoder
-            .encode(rgba)
-            .map_err(|error| self.encoder_error(&error.to_string()))?;
+        let (sample, key) = encoder.encode(rgba).map_err(|error| self.encoder_error(&error.to_string()))?;
         if sample.is_empty() {
             return Err(self.encoder_error("it skipped the frame"));
         }
@@ -85,37 +77,18 @@ impl Film {
     }
 
     fn finish(self, encoder: &FrameEncoder) -> Result<FilmReport, RecordError> {
-        let Self {
-            path,
-            rate,
-            writer,
-            frames,
-            ..
-        } = self;
+        let Self { path, rate, writer, frames, .. } = self;
         if frames == 0 {
-            return Err(RecordError::request(format!(
-                "{}: a film needs one frame or more",
-                path.display()
-            )));
+            return Err(RecordError::request(format!("{}: a film needs one frame or more", path.display())));
         }
         let (file, bytes) = writer
             .finish(encoder.config())
             .map_err(|error| RecordError::io(&path, "finish the film", error))?;
-        file.commit(true)
-            .map_err(|error| RecordError::io(&path, "finish the film", error))?;
-        Ok(FilmReport {
-            path,
-            frames,
-            bytes,
-            duration_secs: frames as f64 / rate.as_f64(),
-        })
+        file.commit(true).map_err(|error| RecordError::io(&path, "finish the film", error))?;
+        Ok(FilmReport { path, frames, bytes, duration_secs: frames as f64 / rate.as_f64() })
     }
 
     fn encoder_error(&self, reason: &str) -> RecordError {
-        RecordError::Encoder {
-            path: self.path.clone(),
-            frame: self.frames,
-            reason: reason.to_owned(),
-        }
+        RecordError::Encoder { path: self.path.clone(), frame: self.frames, reason: reason.to_owned() }
     }
 }

@@ -108,10 +108,7 @@ mod tests {
     #[test]
     fn units_are_split_at_both_start_codes() {
         let stream = [0, 0, 0, 1, 0x67, 1, 2, 0, 0, 0, 1, 0x68, 3, 0, 0, 1, 0x65, 9, 9];
-        assert_eq!(
-            split_annex_b(&stream),
-            [&[0x67, 1, 2][..], &[0x68, 3], &[0x65, 9, 9]]
-        );
+        assert_eq!(split_annex_b(&stream), [&[0x67, 1, 2][..], &[0x68, 3], &[0x65, 9, 9]]);
         assert!(split_annex_b(&[]).is_empty());
         assert!(split_annex_b(&[0, 0, 1]).is_empty());
         assert!(split_annex_b(&[5, 6, 7, 8]).is_empty());
@@ -123,13 +120,7 @@ mod tests {
         let (mut sample, mut config) = (Vec::new(), AvcConfig::default());
         assert!(append_sample(&stream, &mut sample, &mut config));
         assert_eq!(sample, [0, 0, 0, 2, 0x65, 9]);
-        assert_eq!(
-            config,
-            AvcConfig {
-                sps: vec![0x67, 66, 0, 31],
-                pps: vec![0x68, 3]
-            }
-        );
+        assert_eq!(config, AvcConfig { sps: vec![0x67, 66, 0, 31], pps: vec![0x68, 3] });
         sample.clear();
         assert!(!append_sample(&[0, 0, 1, 0x61, 7], &mut sample, &mut config));
     }
@@ -137,10 +128,7 @@ mod tests {
     #[test]
     fn the_record_comes_back() {
         for profile in [66, 77, 100] {
-            let config = AvcConfig {
-                sps: vec![0x67, profile, 0xC0, 31, 5],
-                pps: vec![0x68, 1, 2],
-            };
+            let config = AvcConfig { sps: vec![0x67, profile, 0xC0, 31, 5], pps: vec![0x68, 1, 2] };
             let record = config.record();
             assert_eq!(AvcConfig::from_record(&record), Some(config));
             // Negative control: any cut inside the sets is noticed.

@@ -43,12 +43,7 @@ pub(crate) fn parse(path: &Path, file: &mut File) -> Result<Movie, RecordError> 
         let got = (length - at).min(16) as usize;
         file.read_exact(&mut head[..got]).map_err(read)?;
         let (kind, header, size) = box_head(&head[..got], length - at).ok_or_else(|| {
-            malformed(
-                path,
-                at,
-                format!("bytes {:02X?}", &head[..got.min(8)]),
-                "a box of the film",
-            )
+            malformed(path, at, format!("bytes {:02X?}", &head[..got.min(8)]), "a box of the film")
         })?;
         if at == 0 && &kind != b"ftyp" {
             return Err(malformed(
@@ -71,23 +66,11 @@ pub(crate) fn parse(path: &Path, file: &mut File) -> Result<Movie, RecordError> 
             let mut bytes = vec![0; (size - header) as usize];
             file.seek(SeekFrom::Start(at + header)).map_err(read)?;
             file.read_exact(&mut bytes).map_err(read)?;
-            return movie(
-                Span {
-                    path,
-                    start: at + header,
-                    bytes: &bytes,
-                },
-                length,
-            );
+            return movie(Span { path, start: at + header, bytes: &bytes }, length);
         }
         at += size;
     }
-    Err(malformed(
-        path,
-        length,
-        "the end of the file",
-        "the film's tables (a box `moov`)",
-    ))
+    Err(malformed(path, length, "the end of the file", "the film's tables (a box `moov`)"))
 }
 
 /// Kind, length of the head, and whole size of the box that starts here, if it fits into `room` bytes.
@@ -103,12 +86,7 @@ fn box_head(bytes: &[u8], room: u64) -> Option<([u8; 4], u64, u64)> {
 }
 
 fn malformed(path: &Path, offset: u64, found: impl Into<String>, wanted: impl Into<String>) -> RecordError {
-    RecordError::Malformed {
-        path: path.to_owned(),
-        offset,
-        found: found.into(),
-        wanted: wanted.into(),
-    }
+    RecordError::Malformed { path: path.to_owned(), offset, found: found.into(), wanted: wanted.into() }
 }
 
 impl<'a> Span<'a> {
@@ -138,11 +116,7 @@ impl<'a> Span<'a> {
     fn find(self, wanted: [u8; 4]) -> Result<Self, RecordError> {
         let found = self.boxes()?.into_iter().find(|(kind, _)| *kind == wanted);
         found.map(|(_, body)| body).ok_or_else(|| {
-            self.error(
-                0,
-                "no such box",
-                format!("a box `{}`", String::from_utf8_lossy(&wanted)),
-            )
+            self.error(0, "no such box", format!("a box `{}`", String::from_utf8_lossy(&wanted)))
         })
     }
 
@@ -204,22 +178,11 @@ fn track(mdia: Span, file_length: u64) -> Result<Movie, RecordError> {
     }
     let stbl = mdia.find(*b"minf")?.find(*b"stbl")?;
     let stsd = stbl.find(*b"stsd")?;
-    let entries = Span {
-        start: stsd.start + 8,
-        bytes: stsd.bytes.get(8..).unwrap_or_default(),
-        ..stsd
-    };
-    let (codec, entry) = entries
-        .boxes()?
-        .into_iter()
-        .next()
-        .ok_or_else(|| stsd.error(4, "no coding", "one"))?;
+    let entries = Span { start: stsd.start + 8, bytes: stsd.bytes.get(8..).unwrap_or_default(), ..stsd };
+    let (codec, entry) =
+        entries.boxes()?.into_iter().next().ok_or_else(|| stsd.error(4, "no coding", "one"))?;
     let (width, height) = (u32::from(entry.u16(24)?), u32::from(entry.u16(26)?));
-    let parts = Span {
-        start: entry.start + 78,
-        bytes: entry.bytes.get(78..).unwrap_or_default(),
-        ..entry
-    };
+    let parts = Span { start: entry.start + 78, bytes: entry.bytes.get(78..).unwrap_or_default(), ..entry };
     let config =
         if &codec == b"avc1" {
             let record = parts.find(*b"avcC")?;
@@ -231,15 +194,7 @@ fn track(mdia: Span, file_length: u64) -> Result<Movie, RecordError> {
             None
         };
     let frames = frames(stbl, file_length)?;
-    Ok(Movie {
-        width,
-        height,
-        ticks_per_second,
-        duration_ticks,
-        codec,
-        config,
-        frames,
-    })
+    Ok(Movie { width, height, ticks_per_second, duration_ticks, codec, config, frames })
 }
 
 /// Start and length of every frame, by the three tables that say so together.
@@ -269,10 +224,8 @@ fn frames(stbl: Span, file_length: u64) -> Result<Vec<(u64, u32)>, RecordError> 
             .collect(),
     };
     let stsc = stbl.find(*b"stsc")?;
-    let runs: Vec<(u64, u32)> = stsc
-        .table(4, 12)?
-        .map(|entry| (u64::from(word(entry, 0)), word(entry, 4)))
-        .collect();
+    let runs: Vec<(u64, u32)> =
+        stsc.table(4, 12)?.map(|entry| (u64::from(word(entry, 0)), word(entry, 4))).collect();
 
     let mut frames = Vec::with_capacity(sizes.len());
     let mut run = 0;
@@ -284,10 +237,7 @@ fn frames(stbl: Span, file_length: u64) -> Result<Vec<(u64, u32)>, RecordError> 
         let in_chunk = runs.get(run).map_or(0, |run| run.1) as usize;
         let first = frames.len();
         for &size in &sizes[first..first.saturating_add(in_chunk).min(sizes.len())] {
-            if at
-                .checked_add(u64::from(size))
-                .is_none_or(|end| end > file_length)
-            {
+            if at.checked_add(u64::from(size)).is_none_or(|end| end > file_length) {
                 let found = format!("frame {} at byte {at}, {size} bytes long", frames.len());
                 return Err(stsz.error(0, found, format!("one inside the file of {file_length} bytes")));
             }

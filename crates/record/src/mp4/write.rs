@@ -34,7 +34,7 @@ pub(crate) struct Mp4Writer<W> {
 
 impl<W: Write + Seek> Mp4Writer<W> {
     pub(crate) fn new(mut out: W, track: Track) -> io::Result<Self> {
-        let ftyp = leaf(b"ftyp", |b| {
+        let ftyp = leaf(*b"ftyp", |b| {
             b.extend(b"isom");
             b.extend(512_u32.to_be_bytes());
             b.extend(b"isomiso2avc1mp41");
@@ -46,15 +46,7 @@ impl<W: Write + Seek> Mp4Writer<W> {
         out.write_all(b"mdat")?;
         out.write_all(&16_u64.to_be_bytes())?;
         let position = mdat_start + 16;
-        Ok(Self {
-            out,
-            track,
-            mdat_start,
-            position,
-            sizes: Vec::new(),
-            chunks: Vec::new(),
-            keys: Vec::new(),
-        })
+        Ok(Self { out, track, mdat_start, position, sizes: Vec::new(), chunks: Vec::new(), keys: Vec::new() })
     }
 
     /// Appends one coded frame.
@@ -78,21 +70,15 @@ impl<W: Write + Seek> Mp4Writer<W> {
         let moov = self.moov(config);
         self.out.write_all(&moov)?;
         self.out.seek(SeekFrom::Start(self.mdat_start + 8))?;
-        self.out
-            .write_all(&(self.position - self.mdat_start).to_be_bytes())?;
+        self.out.write_all(&(self.position - self.mdat_start).to_be_bytes())?;
         self.out.flush()?;
         Ok((self.out, self.position + moov.len() as u64))
     }
 
     fn moov(&self, config: &AvcConfig) -> Vec<u8> {
-        let Track {
-            width,
-            height,
-            ticks_per_second,
-            ticks_per_frame,
-        } = self.track;
+        let Track { width, height, ticks_per_second, ticks_per_frame } = self.track;
         let duration = self.sizes.len() as u64 * u64::from(ticks_per_frame);
-        let mvhd = full(b"mvhd", 1, 0, |b| {
+        let mvhd = full(*b"mvhd", 1, 0, |b| {
             b.extend([0; 16]); // No times of creation: the same pictures give the same file.
             b.extend(ticks_per_second.to_be_bytes());
             b.extend(duration.to_be_bytes());
@@ -104,7 +90,7 @@ impl<W: Write + Seek> Mp4Writer<W> {
             b.extend(2_u32.to_be_bytes()); // and the next track's number.
         });
         // Flags: enabled, in the movie, in the preview.
-        let tkhd = full(b"tkhd", 1, 7, |b| {
+        let tkhd = full(*b"tkhd", 1, 7, |b| {
             b.extend([0; 16]);
             b.extend(1_u32.to_be_bytes());
             b.extend([0; 4]);
@@ -114,39 +100,34 @@ impl<W: Write + Seek> Mp4Writer<W> {
             b.extend((u32::from(width) << 16).to_be_bytes());
             b.extend((u32::from(height) << 16).to_be_bytes());
         });
-        let mdhd = full(b"mdhd", 1, 0, |b| {
+        let mdhd = full(*b"mdhd", 1, 0, |b| {
             b.extend([0; 16]);
             b.extend(ticks_per_second.to_be_bytes());
             b.extend(duration.to_be_bytes());
             b.extend([0x55, 0xC4, 0, 0]); // Language: undetermined.
         });
-        let hdlr = full(b"hdlr", 0, 0, |b| {
+        let hdlr = full(*b"hdlr", 0, 0, |b| {
             b.extend([0; 4]);
             b.extend(b"vide");
             b.extend([0; 12]);
             b.extend(b"Lovelock\0");
         });
-        let vmhd = full(b"vmhd", 0, 1, |b| b.extend([0; 8]));
+        let vmhd = full(*b"vmhd", 0, 1, |b| b.extend([0; 8]));
         // One data reference, flag 1: the frames are in this same file.
-        let dref = full(b"dref", 0, 0, |b| {
+        let dref = full(*b"dref", 0, 0, |b| {
             b.extend(1_u32.to_be_bytes());
-            b.extend(full(b"url ", 0, 1, |_| ()));
+            b.extend(full(*b"url ", 0, 1, |_| ()));
         });
-        let dinf = nest(b"dinf", &[dref]);
-        let minf = nest(b"minf", &[vmhd, dinf, self.stbl(config)]);
-        let mdia = nest(b"mdia", &[mdhd, hdlr, minf]);
-        nest(b"moov", &[mvhd, nest(b"trak", &[tkhd, mdia])])
+        let dinf = nest(*b"dinf", &[dref]);
+        let minf = nest(*b"minf", &[vmhd, dinf, self.stbl(config)]);
+        let mdia = nest(*b"mdia", &[mdhd, hdlr, minf]);
+        nest(*b"moov", &[mvhd, nest(*b"trak", &[tkhd, mdia])])
     }
 
     fn stbl(&self, config: &AvcConfig) -> Vec<u8> {
-        let Track {
-            width,
-            height,
-            ticks_per_frame,
-            ..
-        } = self.track;
+        let Track { width, height, ticks_per_frame, .. } = self.track;
         let frames = self.sizes.len() as u32;
-        let avc1 = leaf(b"avc1", |b| {
+        let avc1 = leaf(*b"avc1", |b| {
             b.extend([0, 0, 0, 0, 0, 0, 0, 1]);
             b.extend([0; 16]);
             b.extend(width.to_be_bytes());
@@ -158,19 +139,17 @@ impl<W: Write + Seek> Mp4Writer<W> {
             b.extend([0; 32]); // No compressor name.
             b.extend(24_u16.to_be_bytes());
             b.extend([0xFF, 0xFF]);
-            b.extend(leaf(b"avcC", |b| b.extend(config.record())));
+            b.extend(leaf(*b"avcC", |b| b.extend(config.record())));
             // Colours: BT.709 primaries, sRGB transfer, BT.709 matrix, limited range; as in the stream itself.
-            b.extend(leaf(b"colr", |b| b.extend(b"nclx\0\x01\0\x0D\0\x01\0")));
-            b.extend(leaf(b"pasp", |b| b.extend([0, 0, 0, 1, 0, 0, 0, 1])));
+            b.extend(leaf(*b"colr", |b| b.extend(b"nclx\0\x01\0\x0D\0\x01\0")));
+            b.extend(leaf(*b"pasp", |b| b.extend([0, 0, 0, 1, 0, 0, 0, 1])));
         });
-        let stsd = full(b"stsd", 0, 0, |b| {
+        let stsd = full(*b"stsd", 0, 0, |b| {
             b.extend(1_u32.to_be_bytes());
             b.extend(avc1);
         });
-        let stts = full(b"stts", 0, 0, |b| numbers(b, 1, [frames, ticks_per_frame]));
-        let stss = full(b"stss", 0, 0, |b| {
-            numbers(b, self.keys.len(), self.keys.iter().copied())
-        });
+        let stts = full(*b"stts", 0, 0, |b| numbers(b, 1, [frames, ticks_per_frame]));
+        let stss = full(*b"stss", 0, 0, |b| numbers(b, self.keys.len(), self.keys.iter().copied()));
         let rest = frames % FRAMES_PER_CHUNK;
         let whole_chunks = frames / FRAMES_PER_CHUNK;
         let mut runs = Vec::new();
@@ -180,27 +159,25 @@ impl<W: Write + Seek> Mp4Writer<W> {
         if rest > 0 {
             runs.push([whole_chunks + 1, rest, 1]);
         }
-        let stsc = full(b"stsc", 0, 0, |b| numbers(b, runs.len(), runs.concat()));
-        let stsz = full(b"stsz", 0, 0, |b| {
+        let stsc = full(*b"stsc", 0, 0, |b| numbers(b, runs.len(), runs.concat()));
+        let stsz = full(*b"stsz", 0, 0, |b| {
             b.extend([0; 4]);
             numbers(b, self.sizes.len(), self.sizes.iter().copied());
         });
-        let offsets = if self.position <= u64::from(u32::MAX) {
-            full(b"stco", 0, 0, |b| {
-                numbers(b, self.chunks.len(), self.chunks.iter().map(|&at| at as u32))
-            })
+        let offsets = if u32::try_from(self.position).is_ok() {
+            full(*b"stco", 0, 0, |b| numbers(b, self.chunks.len(), self.chunks.iter().map(|&at| at as u32)))
         } else {
-            full(b"co64", 0, 0, |b| {
+            full(*b"co64", 0, 0, |b| {
                 numbers(b, self.chunks.len(), []);
                 b.extend(self.chunks.iter().flat_map(|at| at.to_be_bytes()));
             })
         };
-        nest(b"stbl", &[stsd, stts, stss, stsc, stsz, offsets])
+        nest(*b"stbl", &[stsd, stts, stss, stsc, stsz, offsets])
     }
 }
 
 /// A box of anything.
-fn leaf(kind: &[u8; 4], fill: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
+fn leaf(kind: [u8; 4], fill: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
     let mut bytes = vec![0; 4];
     bytes.extend(kind);
     fill(&mut bytes);
@@ -210,7 +187,7 @@ fn leaf(kind: &[u8; 4], fill: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
 }
 
 /// A box with a version and flags.
-fn full(kind: &[u8; 4], version: u8, flags: u32, fill: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
+fn full(kind: [u8; 4], version: u8, flags: u32, fill: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
     leaf(kind, |bytes| {
         bytes.extend((u32::from(version) << 24 | flags).to_be_bytes());
         fill(bytes);
@@ -218,16 +195,14 @@ fn full(kind: &[u8; 4], version: u8, flags: u32, fill: impl FnOnce(&mut Vec<u8>)
 }
 
 /// A box of boxes.
-fn nest(kind: &[u8; 4], parts: &[Vec<u8>]) -> Vec<u8> {
+fn nest(kind: [u8; 4], parts: &[Vec<u8>]) -> Vec<u8> {
     leaf(kind, |bytes| parts.iter().for_each(|part| bytes.extend(part)))
 }
 
 /// A table: how many entries, then the numbers.
 fn numbers(bytes: &mut Vec<u8>, count: usize, values: impl IntoIterator<Item = u32>) {
     bytes.extend((count as u32).to_be_bytes());
-    values
-        .into_iter()
-        .for_each(|value| bytes.extend(value.to_be_bytes()));
+    values.into_iter().for_each(|value| bytes.extend(value.to_be_bytes()));
 }
 
 /// Neither turned nor scaled: 1, 1 as 16.16 and 1 as 2.30 on the diagonal.

@@ -1,4 +1,5 @@
 use super::{SequenceSettings, SequenceWriter, frame_name};
+use crate::partial::Opener;
 use crate::partial::failing::small_disk;
 use crate::{Manifest, RecordError, read_manifest};
 use std::fs;
@@ -18,14 +19,7 @@ fn settings() -> SequenceSettings {
 
 fn picture(seed: u8) -> Vec<u8> {
     (0..33 * 7)
-        .flat_map(|i: u32| {
-            [
-                seed,
-                (i % 33 * 7) as u8,
-                (i / 33 * 30) as u8,
-                128 + (i % 100) as u8,
-            ]
-        })
+        .flat_map(|i: u32| [seed, (i % 33 * 7) as u8, (i / 33 * 30) as u8, 128 + (i % 100) as u8])
         .collect()
 }
 
@@ -52,42 +46,19 @@ fn frames_come_back_exactly() {
     for alpha in [false, true] {
         let folder = tempfile::tempdir().unwrap();
         let folder = folder.path().join("frames é");
-        let mut writer = SequenceWriter::create(
-            &folder,
-            SequenceSettings {
-                alpha,
-                first_frame: 7,
-                ..settings()
-            },
-        )
-        .unwrap();
+        let mut writer =
+            SequenceWriter::create(&folder, SequenceSettings { alpha, first_frame: 7, ..settings() })
+                .unwrap();
         (0..12).for_each(|frame| writer.push(&picture(frame)).unwrap());
         let report = writer.finish().unwrap();
         let manifest = read_manifest(&folder).unwrap();
-        assert_eq!(
-            (report.frames, manifest.frames.len(), manifest.complete),
-            (12, 12, true)
-        );
-        assert_eq!(
-            report.bytes,
-            manifest.frames.iter().map(|frame| frame.bytes).sum::<u64>()
-        );
-        assert_eq!(
-            (
-                manifest.width,
-                manifest.height,
-                manifest.fps,
-                manifest.first_frame
-            ),
-            (33, 7, 24.0, 7)
-        );
+        assert_eq!((report.frames, manifest.frames.len(), manifest.complete), (12, 12, true));
+        assert_eq!(report.bytes, manifest.frames.iter().map(|frame| frame.bytes).sum::<u64>());
+        assert_eq!((manifest.width, manifest.height, manifest.fps, manifest.first_frame), (33, 7, 24.0, 7));
         assert_eq!(manifest.settings["resolution"], 128);
         check_files(&folder, &manifest);
         for (index, frame) in manifest.frames.iter().enumerate() {
-            assert_eq!(
-                (frame.number, &frame.file),
-                (index as u64 + 7, &frame_name(index as u64 + 7))
-            );
+            assert_eq!((frame.number, &frame.file), (index as u64 + 7, &frame_name(index as u64 + 7)));
             let image = image::open(folder.join(&frame.file)).unwrap();
             let wanted = picture(index as u8);
             if alpha {
@@ -111,11 +82,7 @@ fn a_cancel_keeps_whole_frames_and_says_incomplete() {
     let manifest = read_manifest(folder.path()).unwrap();
     assert!(!manifest.complete);
     check_files(folder.path(), &manifest);
-    assert!(
-        files(folder.path())
-            .iter()
-            .all(|name| !name.ends_with(".partial"))
-    );
+    assert!(files(folder.path()).iter().all(|name| !name.ends_with(".partial")));
 }
 
 #[test]
@@ -127,15 +94,7 @@ fn a_shorter_sequence_replaces_a_longer_one_and_nothing_else() {
         (0..frames).for_each(|frame| writer.push(&picture(frame)).unwrap());
         writer.finish().unwrap();
     }
-    assert_eq!(
-        files(folder.path()),
-        [
-            "frame_000000.png",
-            "frame_000001.png",
-            "manifest.json",
-            "notes.png"
-        ]
-    );
+    assert_eq!(files(folder.path()), ["frame_000000.png", "frame_000001.png", "manifest.json", "notes.png"]);
 }
 
 #[test]
@@ -145,19 +104,11 @@ fn a_manifest_cannot_name_files_to_remove() {
     writer.push(&picture(0)).unwrap();
     writer.finish().unwrap();
     let path = folder.path().join("manifest.json");
-    let text = fs::read_to_string(&path)
-        .unwrap()
-        .replace("\"frame_000000.png\"", "\"precious.txt\"");
+    let text = fs::read_to_string(&path).unwrap().replace("\"frame_000000.png\"", "\"precious.txt\"");
     fs::write(&path, text).unwrap();
     fs::write(folder.path().join("precious.txt"), b"mine").unwrap();
-    let mut writer = SequenceWriter::create(
-        folder.path(),
-        SequenceSettings {
-            first_frame: 5,
-            ..settings()
-        },
-    )
-    .unwrap();
+    let mut writer =
+        SequenceWriter::create(folder.path(), SequenceSettings { first_frame: 5, ..settings() }).unwrap();
     writer.push(&picture(0)).unwrap();
     writer.finish().unwrap();
     assert!(folder.path().join("precious.txt").exists());
@@ -166,7 +117,8 @@ fn a_manifest_cannot_name_files_to_remove() {
 #[test]
 fn a_full_disk_stops_the_sequence_and_leaves_no_unfinished_frame() {
     let folder = tempfile::tempdir().unwrap();
-    let mut writer = SequenceWriter::create_on(folder.path(), settings(), Arc::new(small_disk(50))).unwrap();
+    let opener: Arc<Opener> = Arc::new(small_disk(50));
+    let mut writer = SequenceWriter::create_on(folder.path(), settings(), &opener).unwrap();
     let mut pushed = 0;
     let error = loop {
         if let Err(error) = writer.push(&picture(0)) {
@@ -175,18 +127,10 @@ fn a_full_disk_stops_the_sequence_and_leaves_no_unfinished_frame() {
         pushed += 1;
         assert!(pushed < 10_000, "the disk never got full");
     };
-    let RecordError::Io { source, .. } = &error else {
-        panic!("{error:?}")
-    };
+    let RecordError::Io { source, .. } = &error else { panic!("{error:?}") };
     assert_eq!(source.kind(), std::io::ErrorKind::StorageFull);
-    assert!(
-        error.to_string().contains("frame_") && !error.is_request(),
-        "{error}"
-    );
-    assert!(matches!(
-        writer.push(&picture(0)),
-        Err(RecordError::Stopped { .. })
-    ));
+    assert!(error.to_string().contains("frame_") && !error.is_request(), "{error}");
+    assert!(matches!(writer.push(&picture(0)), Err(RecordError::Stopped { .. })));
     drop(writer);
     assert!(files(folder.path()).is_empty());
 }
@@ -196,30 +140,13 @@ fn impossible_sequences_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("file");
     fs::write(&file, b"").unwrap();
-    assert!(
-        SequenceWriter::create(&file, settings())
-            .unwrap_err()
-            .is_request()
-    );
+    assert!(SequenceWriter::create(&file, settings()).unwrap_err().is_request());
     for bad in [
-        SequenceSettings {
-            width: 0,
-            ..settings()
-        },
-        SequenceSettings {
-            height: 100_000,
-            ..settings()
-        },
-        SequenceSettings {
-            fps: f64::NAN,
-            ..settings()
-        },
+        SequenceSettings { width: 0, ..settings() },
+        SequenceSettings { height: 100_000, ..settings() },
+        SequenceSettings { fps: f64::NAN, ..settings() },
     ] {
-        assert!(
-            SequenceWriter::create(&folder.path().join("new"), bad)
-                .unwrap_err()
-                .is_request()
-        );
+        assert!(SequenceWriter::create(&folder.path().join("new"), bad).unwrap_err().is_request());
     }
     assert!(!folder.path().join("new").exists());
     let empty = SequenceWriter::create(&folder.path().join("empty"), settings()).unwrap();
@@ -230,16 +157,10 @@ fn impossible_sequences_are_refused() {
 #[test]
 fn foreign_manifests_are_refused_by_name() {
     let folder = tempfile::tempdir().unwrap();
-    assert!(matches!(
-        read_manifest(folder.path()),
-        Err(RecordError::Io { .. })
-    ));
+    assert!(matches!(read_manifest(folder.path()), Err(RecordError::Io { .. })));
     for text in ["", "[]", "{\"format\": \"other\"}", "\u{0}"] {
         fs::write(folder.path().join("manifest.json"), text).unwrap();
         let error = read_manifest(folder.path()).unwrap_err();
-        assert!(
-            error.is_request() && error.to_string().contains("manifest.json"),
-            "{error}"
-        );
+        assert!(error.is_request() && error.to_string().contains("manifest.json"), "{error}");
     }
 }

@@ -22,12 +22,7 @@ pub(crate) fn prepare() -> anyhow::Result<()> {
         return Ok(());
     };
     name(&first);
-    if let Step::Install {
-        rights,
-        update_first,
-        packages,
-    } = &first.step
-    {
+    if let Step::Install { rights, update_first, packages } = &first.step {
         println!("Installing with apt-get: {}", packages.join(" "));
         install(*rights, *update_first, packages);
     }
@@ -65,12 +60,7 @@ fn advice(plan: &Plan) -> String {
 /// Installs, and once more with fresh lists if that fails: the old ones may name packages that are gone.
 fn install(rights: Rights, update_first: bool, packages: &[&str]) {
     let update = || apt_get(rights, &["update"]);
-    let install = || {
-        apt_get(
-            rights,
-            &[&["install", "-y", "--no-install-recommends"], packages].concat(),
-        )
-    };
+    let install = || apt_get(rights, &[&["install", "-y", "--no-install-recommends"], packages].concat());
     if update_first {
         update();
     }
@@ -87,14 +77,6 @@ fn apt_get(rights: Rights, arguments: &[&str]) -> bool {
         Rights::FreeSudo => &["sudo", "-n", "env"],
         Rights::AskingSudo => &["sudo", "env"],
     };
-    let words = [
-        before,
-        &["DEBIAN_FRONTEND=noninteractive", "apt-get", "-q"],
-        arguments,
-    ]
-    .concat();
-    Command::new(words[0])
-        .args(&words[1..])
-        .status()
-        .is_ok_and(|status| status.success())
+    let words = [before, &["DEBIAN_FRONTEND=noninteractive", "apt-get", "-q"], arguments].concat();
+    Command::new(words[0]).args(&words[1..]).status().is_ok_and(|status| status.success())
 }

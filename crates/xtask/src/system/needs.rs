@@ -26,12 +26,7 @@ pub(crate) enum Test {
 
 /// A library that is opened at run time, when the window opens.
 const fn library(what: &'static str, name: &'static str, packages: [&'static str; 5]) -> Need {
-    Need {
-        what,
-        test: Test::Library(name),
-        to_build: false,
-        packages,
-    }
+    Need { what, test: Test::Library(name), to_build: false, packages }
 }
 
 /// Everything. The names of the libraries are those that the crates open: winit by x11-dl (Xlib, Xcursor, Xlib-xcb,
@@ -46,13 +41,7 @@ pub(crate) const NEEDS: [Need; 11] = [
     library(
         "the Vulkan loader",
         "libvulkan.so.1",
-        [
-            "libvulkan1",
-            "vulkan-loader",
-            "vulkan-icd-loader",
-            "libvulkan1",
-            "vulkan-loader",
-        ],
+        ["libvulkan1", "vulkan-loader", "vulkan-icd-loader", "libvulkan1", "vulkan-loader"],
     ),
     Need {
         what: "a software driver for Vulkan",
@@ -66,11 +55,7 @@ pub(crate) const NEEDS: [Need; 11] = [
             "mesa-vulkan-swrast",
         ],
     },
-    library(
-        "Xlib",
-        "libX11.so.6",
-        ["libx11-6", "libX11", "libx11", "libX11-6", "libx11"],
-    ),
+    library("Xlib", "libX11.so.6", ["libx11-6", "libX11", "libx11", "libX11-6", "libx11"]),
     library(
         "Xlib for XCB",
         "libX11-xcb.so.1",
@@ -79,29 +64,13 @@ pub(crate) const NEEDS: [Need; 11] = [
     library(
         "X cursors",
         "libXcursor.so.1",
-        [
-            "libxcursor1",
-            "libXcursor",
-            "libxcursor",
-            "libXcursor1",
-            "libxcursor",
-        ],
+        ["libxcursor1", "libXcursor", "libxcursor", "libXcursor1", "libxcursor"],
     ),
-    library(
-        "X input",
-        "libXi.so.6",
-        ["libxi6", "libXi", "libxi", "libXi6", "libxi"],
-    ),
+    library("X input", "libXi.so.6", ["libxi6", "libXi", "libxi", "libXi6", "libxi"]),
     library(
         "keyboard layouts",
         "libxkbcommon.so.0",
-        [
-            "libxkbcommon0",
-            "libxkbcommon",
-            "libxkbcommon",
-            "libxkbcommon0",
-            "libxkbcommon",
-        ],
+        ["libxkbcommon0", "libxkbcommon", "libxkbcommon", "libxkbcommon0", "libxkbcommon"],
     ),
     library(
         "keyboard layouts for X",
@@ -117,13 +86,7 @@ pub(crate) const NEEDS: [Need; 11] = [
     library(
         "the Wayland client",
         "libwayland-client.so.0",
-        [
-            "libwayland-client0",
-            "libwayland-client",
-            "wayland",
-            "libwayland-client0",
-            "wayland-libs-client",
-        ],
+        ["libwayland-client0", "libwayland-client", "wayland", "libwayland-client0", "wayland-libs-client"],
     ),
     library(
         "D-Bus (for file dialogs)",

@@ -71,11 +71,7 @@ pub(crate) enum Rights {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Step {
     /// Install these, on Debian and its kin.
-    Install {
-        rights: Rights,
-        update_first: bool,
-        packages: Vec<&'static str>,
-    },
+    Install { rights: Rights, update_first: bool, packages: Vec<&'static str> },
     /// Say this command; the user runs it.
     Say { command: String },
     /// Say that these are missing; what their packages are called here is not known.
@@ -108,10 +104,7 @@ pub(crate) fn plan(probe: &dyn Probe) -> Option<Plan> {
         return None;
     }
     let Some(family) = Family::of(&probe.distribution()) else {
-        return Some(Plan {
-            missing,
-            step: Step::Name,
-        });
+        return Some(Plan { missing, step: Step::Name });
     };
     let mut packages = Vec::new();
     for need in &missing {
@@ -129,24 +122,18 @@ pub(crate) fn plan(probe: &dyn Probe) -> Option<Plan> {
     } else {
         None
     };
-    let step = match (family, rights) {
-        (Family::Debian, Some(rights)) => Step::Install {
-            rights,
-            update_first: !probe.has_package_lists(),
-            packages,
-        },
-        _ => {
-            let sudo = if probe.is_root() { "" } else { "sudo " };
-            let update = if family == Family::Debian && !probe.has_package_lists() {
-                format!("{sudo}apt-get update && ")
-            } else {
-                String::new()
-            };
-            let command = [family.install(), &packages].concat().join(" ");
-            Step::Say {
-                command: format!("{update}{sudo}{command}"),
-            }
-        }
+    let step = if let (Family::Debian, Some(rights)) = (family, rights) {
+        let update_first = !probe.has_package_lists();
+        Step::Install { rights, update_first, packages }
+    } else {
+        let sudo = if probe.is_root() { "" } else { "sudo " };
+        let update = if family == Family::Debian && !probe.has_package_lists() {
+            format!("{sudo}apt-get update && ")
+        } else {
+            String::new()
+        };
+        let command = [family.install(), &packages].concat().join(" ");
+        Step::Say { command: format!("{update}{sudo}{command}") }
     };
     Some(Plan { missing, step })
 }
@@ -156,6 +143,7 @@ mod tests {
     use super::{Family, NEEDS, Plan, Probe, Rights, Step, Test, plan};
 
     /// A machine made up.
+    #[expect(clippy::struct_excessive_bools, reason = "each answers one question of the probe")]
     struct Machine {
         compiler: bool,
         driver: bool,
@@ -215,87 +203,41 @@ mod tests {
 
     #[test]
     fn a_bare_debian_gets_everything_as_root() {
-        let bare = Machine {
-            compiler: false,
-            driver: false,
-            libraries: false,
-            root: true,
-            lists: false,
-            ..WHOLE
-        };
+        let bare =
+            Machine { compiler: false, driver: false, libraries: false, root: true, lists: false, ..WHOLE };
         let plan = plan(&bare).unwrap();
         assert!(plan.stops_the_build());
         assert_eq!(plan.missing.len(), NEEDS.len());
         let packages = NEEDS.map(|need| need.packages[Family::Debian as usize]).to_vec();
-        assert_eq!(
-            plan.step,
-            Step::Install {
-                rights: Rights::Root,
-                update_first: true,
-                packages
-            }
-        );
+        assert_eq!(plan.step, Step::Install { rights: Rights::Root, update_first: true, packages });
     }
 
     #[test]
     fn ubuntu_and_its_kin_are_debian_and_sudo_is_used_as_far_as_it_goes() {
-        let machine = Machine {
-            without: "libXcursor.so.1",
-            ids: &["linuxmint", "ubuntu", "debian"],
-            ..WHOLE
-        };
-        let install = |rights| Step::Install {
-            rights,
-            update_first: false,
-            packages: vec!["libxcursor1"],
-        };
-        let with = |free_sudo, asking_sudo| {
-            plan(&Machine {
-                free_sudo,
-                asking_sudo,
-                ..machine
-            })
-            .unwrap()
-        };
+        let machine =
+            Machine { without: "libXcursor.so.1", ids: &["linuxmint", "ubuntu", "debian"], ..WHOLE };
+        let install = |rights| Step::Install { rights, update_first: false, packages: vec!["libxcursor1"] };
+        let with = |free_sudo, asking_sudo| plan(&Machine { free_sudo, asking_sudo, ..machine }).unwrap();
         assert_eq!(with(true, true).step, install(Rights::FreeSudo));
         assert_eq!(with(false, true).step, install(Rights::AskingSudo));
         let command = "sudo apt-get install -y --no-install-recommends libxcursor1".to_owned();
         assert_eq!(with(false, false).step, Step::Say { command });
-        assert!(
-            !with(false, false).stops_the_build(),
-            "a window's library does not stop a build"
-        );
+        assert!(!with(false, false).stops_the_build(), "a window's library does not stop a build");
     }
 
     #[test]
     fn elsewhere_the_exact_command_is_said() {
         let say = |ids, root| {
-            let machine = Machine {
-                compiler: false,
-                libraries: false,
-                ids,
-                root,
-                free_sudo: true,
-                ..WHOLE
-            };
+            let machine = Machine { compiler: false, libraries: false, ids, root, free_sudo: true, ..WHOLE };
             match plan(&machine) {
-                Some(Plan {
-                    step: Step::Say { command },
-                    ..
-                }) => command,
+                Some(Plan { step: Step::Say { command }, .. }) => command,
                 other => panic!("{other:?}"),
             }
         };
         let fedora = say(&["nobara", "fedora"], false);
-        assert!(
-            fedora.starts_with("sudo dnf install -y gcc-c++ vulkan-loader libX11 "),
-            "{fedora}"
-        );
+        assert!(fedora.starts_with("sudo dnf install -y gcc-c++ vulkan-loader libX11 "), "{fedora}");
         let arch = say(&["arch"], true);
-        assert!(
-            arch.starts_with("pacman -S --needed gcc vulkan-icd-loader libx11 libxcursor "),
-            "{arch}"
-        );
+        assert!(arch.starts_with("pacman -S --needed gcc vulkan-icd-loader libx11 libxcursor "), "{arch}");
         assert_eq!(arch.matches(" libx11").count(), 1, "a package is named once");
         assert!(
             say(&["opensuse-leap", "suse", "opensuse"], false)
@@ -306,27 +248,14 @@ mod tests {
 
     #[test]
     fn an_unknown_system_is_told_what_is_missing() {
-        let plan = plan(&Machine {
-            driver: false,
-            ids: &["plan9"],
-            root: true,
-            ..WHOLE
-        })
-        .unwrap();
+        let plan = plan(&Machine { driver: false, ids: &["plan9"], root: true, ..WHOLE }).unwrap();
         assert_eq!(plan.step, Step::Name);
-        assert_eq!(
-            plan.missing.iter().map(|need| need.test).collect::<Vec<_>>(),
-            [Test::VulkanDriver]
-        );
+        assert_eq!(plan.missing.iter().map(|need| need.test).collect::<Vec<_>>(), [Test::VulkanDriver]);
     }
 
     #[test]
     fn missing_lists_are_fetched_first_and_said_so() {
-        let machine = Machine {
-            compiler: false,
-            lists: false,
-            ..WHOLE
-        };
+        let machine = Machine { compiler: false, lists: false, ..WHOLE };
         let command = "sudo apt-get update && sudo apt-get install -y --no-install-recommends g++".to_owned();
         assert_eq!(plan(&machine).unwrap().step, Step::Say { command });
     }

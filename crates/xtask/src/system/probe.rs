@@ -20,9 +20,7 @@ impl Here {
             .into_iter()
             .find_map(|program| output_of(program, &["-p"]))
             .unwrap_or_default();
-        Self {
-            libraries: libraries_in_cache(&cache, std::env::consts::ARCH),
-        }
+        Self { libraries: libraries_in_cache(&cache, std::env::consts::ARCH) }
     }
 }
 
@@ -34,28 +32,16 @@ fn libraries_in_cache(cache: &str, arch: &str) -> BTreeSet<String> {
         _ => "",
     };
     let lines = cache.lines().filter_map(|line| line.trim().split_once(" ("));
-    lines
-        .filter(|(_, rest)| rest.contains(mark))
-        .map(|(name, _)| name.to_owned())
-        .collect()
+    lines.filter(|(_, rest)| rest.contains(mark)).map(|(name, _)| name.to_owned()).collect()
 }
 
 /// Folders where libraries lie on systems whose loader keeps no cache, and those that the user adds.
 fn library_folders() -> Vec<PathBuf> {
     let added = std::env::var_os("LD_LIBRARY_PATH").unwrap_or_default();
-    let mut folders: Vec<PathBuf> = std::env::split_paths(&added)
-        .filter(|path| path.is_absolute())
-        .collect();
+    let mut folders: Vec<PathBuf> = std::env::split_paths(&added).filter(|path| path.is_absolute()).collect();
     folders.extend(
-        [
-            "/lib",
-            "/usr/lib",
-            "/lib64",
-            "/usr/lib64",
-            "/usr/local/lib",
-            "/run/opengl-driver/lib",
-        ]
-        .map(PathBuf::from),
+        ["/lib", "/usr/lib", "/lib64", "/usr/lib64", "/usr/local/lib", "/run/opengl-driver/lib"]
+            .map(PathBuf::from),
     );
     folders
 }
@@ -64,9 +50,7 @@ impl Probe for Here {
     fn has_cxx_compiler(&self) -> bool {
         let chosen = std::env::var("CXX").ok();
         let compilers = chosen.iter().map(String::as_str).chain(["c++", "g++", "clang++"]);
-        compilers
-            .into_iter()
-            .any(|compiler| output_of(compiler, &["--version"]).is_some())
+        compilers.into_iter().any(|compiler| output_of(compiler, &["--version"]).is_some())
     }
 
     fn has_library(&self, name: &str) -> bool {
@@ -74,10 +58,7 @@ impl Probe for Here {
     }
 
     fn has_vulkan_driver(&self) -> bool {
-        if ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"]
-            .iter()
-            .any(|name| std::env::var_os(name).is_some())
-        {
+        if ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"].iter().any(|name| std::env::var_os(name).is_some()) {
             return true;
         }
         let folders = [
@@ -86,27 +67,18 @@ impl Probe for Here {
             "/usr/local/share/vulkan/icd.d",
             "/run/opengl-driver/share/vulkan/icd.d",
         ];
-        let drivers = folders
-            .iter()
-            .filter_map(|folder| fs::read_dir(folder).ok())
-            .flatten()
-            .filter_map(Result::ok);
-        let names: Vec<_> = drivers
-            .map(|entry| entry.file_name().to_string_lossy().into_owned())
-            .collect();
-        let has_device = ["/dev/dri/renderD128", "/dev/nvidia0"]
-            .iter()
-            .any(|device| Path::new(device).exists());
+        let drivers =
+            folders.iter().filter_map(|folder| fs::read_dir(folder).ok()).flatten().filter_map(Result::ok);
+        let names: Vec<_> = drivers.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
+        let has_device =
+            ["/dev/dri/renderD128", "/dev/nvidia0"].iter().any(|device| Path::new(device).exists());
         has_working_driver(&names, has_device)
     }
 
     fn distribution(&self) -> Vec<String> {
         let files = ["/etc/os-release", "/usr/lib/os-release"];
         distribution_ids(
-            &files
-                .into_iter()
-                .find_map(|file| fs::read_to_string(file).ok())
-                .unwrap_or_default(),
+            &files.into_iter().find_map(|file| fs::read_to_string(file).ok()).unwrap_or_default(),
         )
     }
 
@@ -125,42 +97,24 @@ impl Probe for Here {
     }
 
     fn has_package_lists(&self) -> bool {
-        let lists = fs::read_dir("/var/lib/apt/lists")
-            .into_iter()
-            .flatten()
-            .filter_map(Result::ok);
-        lists
-            .into_iter()
-            .any(|entry| entry.file_name().to_string_lossy().contains("_Packages"))
+        let lists = fs::read_dir("/var/lib/apt/lists").into_iter().flatten().filter_map(Result::ok);
+        lists.into_iter().any(|entry| entry.file_name().to_string_lossy().contains("_Packages"))
     }
 }
 
 /// A software driver always works; any other needs its device.
 fn has_working_driver(names: &[String], has_device: bool) -> bool {
-    let json = |name: &&String| {
-        Path::new(name)
-            .extension()
-            .is_some_and(|extension| extension == "json")
-    };
-    names
-        .iter()
-        .filter(json)
-        .any(|name| name.starts_with("lvp_") || has_device)
+    let json = |name: &&String| Path::new(name).extension().is_some_and(|extension| extension == "json");
+    names.iter().filter(json).any(|name| name.starts_with("lvp_") || has_device)
 }
 
 /// `ID` and then `ID_LIKE` of an os-release file.
 fn distribution_ids(os_release: &str) -> Vec<String> {
     let value = |key: &str| {
         let mut lines = os_release.lines().filter_map(|line| line.split_once('='));
-        lines
-            .find(|(name, _)| *name == key)
-            .map_or("", |(_, value)| value.trim_matches(['"', '\'']))
+        lines.find(|(name, _)| *name == key).map_or("", |(_, value)| value.trim_matches(['"', '\'']))
     };
-    value("ID")
-        .split_whitespace()
-        .chain(value("ID_LIKE").split_whitespace())
-        .map(str::to_owned)
-        .collect()
+    value("ID").split_whitespace().chain(value("ID_LIKE").split_whitespace()).map(str::to_owned).collect()
 }
 
 #[cfg(test)]
@@ -180,10 +134,7 @@ mod tests {
     #[test]
     fn drivers_need_their_device_and_software_none() {
         let names = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect::<Vec<_>>();
-        assert!(has_working_driver(
-            &names(&["intel_icd.x86_64.json", "lvp_icd.x86_64.json"]),
-            false
-        ));
+        assert!(has_working_driver(&names(&["intel_icd.x86_64.json", "lvp_icd.x86_64.json"]), false));
         assert!(!has_working_driver(&names(&["intel_icd.x86_64.json"]), false));
         assert!(has_working_driver(&names(&["nvidia_icd.json"]), true));
         assert!(!has_working_driver(&names(&["README"]), true));
