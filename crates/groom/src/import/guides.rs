@@ -1,0 +1,132 @@
+//! Chooses three strands of each wisp as its guides, and spaces their points equally.
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use super::{PlacedGroom, length};
+use crate::Guides;
+
+/// Fraction of a wisp's strands, the most ordinary ones, from which guides are chosen.
+const ORDINARY: f32 = 0.7;
+/// How far apart guides stand that have no strands of their own, metres.
+const APART: f32 = 0.0015;
+/// Links of a guide differ by no more than this fraction of their mean, unless so many rounds do not do it.
+const UNEVEN: f32 = 1e-4;
+const MOST_ROUNDS: usize = 64;
+
+/// Three guides a wisp, in the order of the wisps.
+pub(super) fn choose(groom: &PlacedGroom, wisps: &[Vec<u32>], points_per_guide: usize) -> Guides {
+    let chosen: Vec<[Vec<Vec3>; 3]> =
+        wisps.par_iter().map(|members| guides_of(groom, members, points_per_guide)).collect();
+    let mut guides = Guides { points_per_guide, ..Guides::default() };
+    for guide in chosen.iter().flatten() {
+        guides.push(guide);
+    }
+    guides
+}
+
+fn guides_of(groom: &PlacedGroom, members: &[u32], points: usize) -> [Vec<Vec3>; 3] {
+    let strands: Vec<&[Vec3]> = members.iter().map(|&member| groom.strand(member as usize)).collect();
+    let chosen = triangle(&ordinary(&strands));
+    let mut guides = chosen.map(|strand| equally_spaced(strand, points));
+    // Guides at one place span nothing: set them beside each other, as if the wisp had a little width.
+    let along = (guides[0][points - 1] - guides[0][0]).normalize_or(Vec3::Y);
+    let (side, other) = along.any_orthonormal_pair();
+    for (later, direction) in [(1, side), (2, other)] {
+        let twin = guides[..later].iter().any(|guide| guide[0].distance(guides[later][0]) < 0.1 * APART);
+        if twin {
+            guides[later].iter_mut().for_each(|point| *point += APART * direction);
+        }
+    }
+    guides
+}
+
+/// The strands closest to the wisp's mean, by root, middle and tip.
+fn ordinary<'a>(strands: &[&'a [Vec3]]) -> Vec<&'a [Vec3]> {
+    let places = |strand: &[Vec3]| [strand[0], strand[strand.len() / 2], strand[strand.len() - 1]];
+    let mut mean = [Vec3::ZERO; 3];
+    for strand in strands {
+        for (mean, place) in mean.iter_mut().zip(places(strand)) {
+            *mean += place / strands.len() as f32;
+        }
+    }
+    let mut by_distance: Vec<(f32, &[Vec3])> = strands
+        .iter()
+        .map(|&strand| {
+            (
+                places(strand).iter().zip(&mean).map(|(place, mean)| place.distance_squared(*mean)).sum(),
+                strand,
+            )
+        })
+        .collect();
+    by_distance.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let keep = ((ORDINARY * strands.len() as f32).ceil() as usize).max(3).min(strands.len());
+    by_distance.into_iter().take(keep).map(|(_, strand)| strand).collect()
+}
+
+/// Three strands that span a wide triangle: the one furthest from the middle, the one furthest from that, and
+/// the one that makes the largest triangle with both. One or two strands fill the rest with repeats.
+fn triangle<'a>(strands: &[&'a [Vec3]]) -> [&'a [Vec3]; 3] {
+    // Halfway down counts like the root: wisps of one spot on the scalp may still fan out.
+    let place = |strand: &[Vec3]| [strand[0], strand[strand.len() / 2]];
+    let apart = |a: &[Vec3], b: &[Vec3]| {
+        place(a).iter().zip(place(b)).map(|(a, b)| a.distance_squared(b)).sum::<f32>()
+    };
+    let area = |a: &[Vec3], b: &[Vec3], c: &[Vec3]| {
+        let (a, b, c) = (place(a), place(b), place(c));
+        (0..2).map(|i| (b[i] - a[i]).cross(c[i] - a[i]).length()).sum::<f32>()
+    };
+    let most = |score: &dyn Fn(&[Vec3]) -> f32| {
+        let mut best = (f32::NEG_INFINITY, strands[0]);
+        for &strand in strands {
+            let score = score(strand);
+            if score > best.0 {
+                best = (score, strand);
+            }
+        }
+        best.1
+    };
+    // The strands come sorted: the first is nearest the mean.
+    let first = most(&|strand| apart(strand, strands[0]));
+    let second = most(&|strand| apart(strand, first));
+    let third = most(&|strand| area(first, second, strand));
+    [first, second, third]
+}
+
+/// `count` points along a polyline, ends included, with equal distances from each to the next.
+///
+/// Equal lengths along the line are not enough: where it bends, their chords, which become the simulator's
+/// links, are shorter. Spacing the result again, and again, rounds the bends until the chords are equal. What
+/// a guide loses of its strand's shape by that, the strand keeps in its offsets.
+fn equally_spaced(strand: &[Vec3], count: usize) -> Vec<Vec3> {
+    let mut points = spaced_along(strand, count);
+    for _ in 0..MOST_ROUNDS {
+        let mean = length(&points) / (count - 1) as f32;
+        if points.array_windows().all(|[a, b]| (a.distance(*b) - mean).abs() <= UNEVEN * mean) {
+            break;
+        }
+        points = spaced_along(&points, count);
+    }
+    points
+}
+
+/// `count` points at equal lengths along a polyline, ends included.
+fn spaced_along(line: &[Vec3], count: usize) -> Vec<Vec3> {
+    let total = length(line);
+    let (mut link, mut before) = (0, 0.0);
+    let mut points: Vec<Vec3> = (0..count)
+        .map(|i| {
+            let wanted = total * i as f32 / (count - 1) as f32;
+            let mut step = line[link].distance(line[link + 1]);
+            while link + 2 < line.len() && before + step < wanted {
+                before += step;
+                link += 1;
+                step = line[link].distance(line[link + 1]);
+            }
+            let along = if step > 0.0 { ((wanted - before) / step).clamp(0.0, 1.0) } else { 0.0 };
+            line[link].lerp(line[link + 1], along)
+        })
+        .collect();
+    points[count - 1] = line[line.len() - 1];
+    points
+}

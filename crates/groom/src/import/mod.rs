@@ -1,0 +1,121 @@
+//! From a hair file to a hairstyle that can be simulated.
+//!
+//! 1. [`Orientation`]: unit and axes, as set or guessed.
+//! 2. [`place`](mod@place): the groom is fitted to the scalp, its roots set on the skin.
+//! 3. [`cluster`]: strands are grouped into wisps by root and shape.
+//! 4. [`guides`]: three members of each wisp become its guides.
+//! 5. [`express`]: every strand is written as a blend of its wisp's guides plus its own offsets, exactly.
+
+mod cluster;
+mod colour;
+mod express;
+mod fit;
+mod guides;
+mod orientation;
+mod place;
+mod settings;
+mod snap;
+mod surface;
+
+use glam::Vec3;
+use thiserror::Error;
+
+use crate::{HairFile, Hairstyle, Obstacle, Scalp, Wisp};
+
+pub(crate) use orientation::Orientation;
+pub use place::{PlacedGroom, place};
+pub use settings::{ImportSettings, Placement};
+
+/// Why a groom could not be placed on a scalp.
+#[derive(Debug, Error)]
+pub enum ImportError {
+    /// The scalp has no triangles.
+    #[error("{name}: there is no scalp to place the hair on: found a scalp without triangles")]
+    NoScalp {
+        /// The hair file.
+        name: String,
+    },
+    /// The groom is too small or too large to be hair in the unit that was set.
+    #[error("{name}: the hair would be {size_m:e} m across in this unit, wanted 1e-5 to 100 m")]
+    Size {
+        /// The hair file.
+        name: String,
+        /// Longest side of its box, metres.
+        size_m: f32,
+    },
+}
+
+/// Makes a hairstyle of a hair file, on a scalp in head space.
+///
+/// At rest every strand comes back as [`place`] put it. The result depends on nothing but the arguments.
+///
+/// # Errors
+/// Where the scalp is empty, or the unit that was set makes the groom absurdly small or large.
+pub fn import(file: &HairFile, settings: &ImportSettings, scalp: &Scalp) -> Result<Hairstyle, ImportError> {
+    import_around(file, settings, scalp, None)
+}
+
+/// As [`import`], and pushes the parts of strands that would lie inside `body` out to its surface.
+///
+/// # Errors
+/// As [`import`].
+pub fn import_around(
+    file: &HairFile,
+    settings: &ImportSettings,
+    scalp: &Scalp,
+    body: Option<&dyn Obstacle>,
+) -> Result<Hairstyle, ImportError> {
+    let groom = place(file, settings, scalp, body)?;
+    Ok(hairstyle_of(file, settings, scalp, &groom).0)
+}
+
+/// The hairstyle of a placed groom, and the strand of the groom that each of its strands is.
+fn hairstyle_of(
+    file: &HairFile,
+    settings: &ImportSettings,
+    scalp: &Scalp,
+    groom: &PlacedGroom,
+) -> (Hairstyle, Vec<u32>) {
+    let settings = settings.in_range();
+    let wisps = cluster::cluster(groom, settings.wisps_for(groom.strands()), settings.seed);
+    let points_per_guide = settings.points_per_guide_for(groom);
+    let guides = guides::choose(groom, &wisps, points_per_guide);
+    let order: Vec<u32> = wisps.iter().flatten().copied().collect();
+    let mut first_strand = 0;
+    let mut guide = 0;
+    let wisps: Vec<Wisp> = wisps
+        .iter()
+        .map(|members| {
+            let wisp = Wisp {
+                guides: [guide, guide + 1, guide + 2],
+                first_strand,
+                strand_count: members.len() as u32,
+            };
+            first_strand += wisp.strand_count;
+            guide += 3;
+            wisp
+        })
+        .collect();
+    let mut strands = express::express(groom, &order, &wisps, &guides);
+    strands.taper = colour::taper(file, groom, &order);
+    strands.shade = colour::shade(file, &order, settings.seed);
+    let style = Hairstyle {
+        name: std::path::Path::new(&file.name)
+            .file_stem()
+            .map_or_else(|| file.name.clone(), |stem| stem.to_string_lossy().into_owned()),
+        scalp: scalp.clone(),
+        wisps,
+        guides,
+        strands,
+        look: colour::look(file),
+    };
+    (style, order)
+}
+
+/// Length of a polyline, metres.
+fn length(points: &[Vec3]) -> f32 {
+    points.array_windows().map(|[a, b]| a.distance(*b)).sum()
+}
+
+#[cfg(test)]
+mod tests;

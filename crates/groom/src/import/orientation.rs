@@ -1,0 +1,45 @@
+//! Unit and axes of a file, settled.
+
+use glam::{Quat, Vec3};
+
+use super::ImportSettings;
+use crate::io::{guess_facing, rotation_to_head_axes};
+use crate::{Facing, HairFile, UpAxis, guess_units};
+
+/// The unit and axes that a file is read in: as set, else as guessed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Orientation {
+    pub(crate) metres_per_unit: f32,
+    pub(crate) unit_guessed: bool,
+    /// `Y` or `Z`.
+    pub(crate) up: UpAxis,
+    /// An axis square to `up`.
+    pub(crate) facing: Facing,
+    rotation: Quat,
+}
+
+impl Orientation {
+    pub(crate) fn resolve(file: &HairFile, settings: &ImportSettings) -> Self {
+        let guess = guess_units(file);
+        let up = if settings.up == UpAxis::Auto { guess.up } else { settings.up };
+        let facing = if settings.facing != Facing::Auto && settings.facing.is_square_to(up) {
+            settings.facing
+        } else if up == guess.up {
+            guess.facing
+        } else {
+            guess_facing(file, up)
+        };
+        Self {
+            metres_per_unit: settings.unit.metres().unwrap_or(guess.metres_per_unit),
+            unit_guessed: settings.unit.metres().is_none(),
+            up,
+            facing,
+            rotation: rotation_to_head_axes(up, facing),
+        }
+    }
+
+    /// A point of the file in metres, Y up, the face toward +Z, about the file's own origin.
+    pub(crate) fn head_axes_from_file(&self, point: Vec3) -> Vec3 {
+        self.rotation * (point * self.metres_per_unit)
+    }
+}

@@ -1,0 +1,131 @@
+//! Places a groom on a head: unit and axes, fit, a person's own changes, roots to the skin, out of the body.
+
+use glam::{EulerRot, Quat, Vec3};
+use rayon::prelude::*;
+
+use super::fit::{Fit, fit};
+use super::snap::{Skin, shifts};
+use super::surface::Surface;
+use super::{ImportError, ImportSettings, Orientation};
+use crate::io::fit_sphere;
+use crate::{Bounds, HairFile, Obstacle, Scalp};
+
+/// The strands of a file as they will rest on the head.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlacedGroom {
+    /// Index of the first point of each strand, with the number of points at the end (strands + 1).
+    pub first_point: Vec<u32>,
+    /// Points of all strands, root first, in the order of the file; head space, metres.
+    pub points: Vec<Vec3>,
+    /// Length of one unit of the file before the fit, metres.
+    pub metres_per_unit: f32,
+    /// By how much the fit changed that size.
+    pub fitted_scale: f32,
+    /// Mean distance by which roots were moved to the skin, metres; 0 where they were not.
+    pub mean_root_gap_m: f32,
+}
+
+impl PlacedGroom {
+    /// Number of strands.
+    pub fn strands(&self) -> usize {
+        self.first_point.len() - 1
+    }
+
+    /// The points of strand `strand`, root first, head space, metres.
+    pub fn strand(&self, strand: usize) -> &[Vec3] {
+        &self.points[self.first_point[strand] as usize..self.first_point[strand + 1] as usize]
+    }
+}
+
+/// Places the strands of a file on a scalp, each keeping its shape, except where it would lie inside `body`.
+///
+/// # Errors
+/// Where the scalp is empty, or the unit that was set makes the groom absurdly small or large.
+pub fn place(
+    file: &HairFile,
+    settings: &ImportSettings,
+    scalp: &Scalp,
+    body: Option<&dyn Obstacle>,
+) -> Result<PlacedGroom, ImportError> {
+    let settings = settings.in_range();
+    let no_scalp = || ImportError::NoScalp { name: file.name.clone() };
+    let skin = Skin {
+        grows: Surface::where_hair_grows(scalp).ok_or_else(no_scalp)?,
+        whole: Surface::whole(scalp).ok_or_else(no_scalp)?,
+    };
+    let orientation = Orientation::resolve(file, &settings);
+    let in_head_axes = |p: Vec3| orientation.head_axes_from_file(p);
+    check_size(file, orientation.metres_per_unit)?;
+    let roots: Vec<Vec3> = file.roots().map(in_head_axes).collect();
+    let Fit { scale, shift } = fit(&roots, &skin.grows, settings.fit_scale);
+    check_size(file, orientation.metres_per_unit * scale)?;
+
+    let middle = middle_of(&skin.grows);
+    let own = settings.placement;
+    let turn = Quat::from_euler(EulerRot::XYZ, own.turn.x, own.turn.y, own.turn.z);
+    let place =
+        |p: Vec3| middle + own.offset_m + own.scale * (turn * (scale * in_head_axes(p) + shift - middle));
+    let mut groom = PlacedGroom {
+        first_point: file.first_point.clone(),
+        points: file.points.par_iter().with_min_len(4096).map(|&p| place(p)).collect(),
+        metres_per_unit: orientation.metres_per_unit,
+        fitted_scale: scale,
+        mean_root_gap_m: 0.0,
+    };
+    if settings.snap_roots {
+        let strands = groom.strands();
+        let roots: Vec<Vec3> = (0..strands).map(|strand| groom.strand(strand)[0]).collect();
+        let shifts = shifts(&roots, &skin);
+        groom.mean_root_gap_m = shifts.iter().map(|shift| shift.length()).sum::<f32>() / strands as f32;
+        for (strand, shift) in shifts.into_iter().enumerate() {
+            let span = groom.first_point[strand] as usize..groom.first_point[strand + 1] as usize;
+            for point in &mut groom.points[span] {
+                *point += shift;
+            }
+        }
+    }
+    if let Some(body) = body {
+        push_out(&mut groom, body);
+    }
+    Ok(groom)
+}
+
+/// The middle of the ball that a scalp is nearly part of.
+fn middle_of(skin: &Surface) -> Vec3 {
+    let corners: Vec<Vec3> = skin.corners().collect();
+    fit_sphere(&corners).map_or_else(
+        || {
+            let mut bounds = Bounds::EMPTY;
+            for &corner in &corners {
+                bounds.include(corner);
+            }
+            bounds.centre()
+        },
+        |sphere| sphere.centre,
+    )
+}
+
+fn check_size(file: &HairFile, metres_per_unit: f32) -> Result<(), ImportError> {
+    let size_m = file.bounds.size().max_element() * metres_per_unit;
+    let far_m = file.bounds.min.abs().max(file.bounds.max.abs()).max_element() * metres_per_unit;
+    // Far from the file's origin, single precision holds a groom only coarsely: 1 in 1e5 at 100 sizes away.
+    if (1e-5..=100.0).contains(&size_m) && far_m.is_finite() {
+        Ok(())
+    } else {
+        Err(ImportError::Size { name: file.name.clone(), size_m })
+    }
+}
+
+/// Moves points that lie inside the body to its surface; roots stay where they are.
+fn push_out(groom: &mut PlacedGroom, body: &dyn Obstacle) {
+    let mut is_root = vec![false; groom.points.len()];
+    for &first in &groom.first_point[..groom.strands()] {
+        is_root[first as usize] = true;
+    }
+    groom.points.par_iter_mut().zip(is_root).with_min_len(1024).for_each(|(point, is_root)| {
+        let (distance, outward) = body.distance(*point);
+        if !is_root && distance < 0.0 && (distance * outward).is_finite() {
+            *point -= distance * outward;
+        }
+    });
+}

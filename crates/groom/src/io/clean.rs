@@ -1,0 +1,221 @@
+//! From what a file says to strands that can be drawn: drops and counts what cannot.
+
+use std::collections::BTreeMap;
+
+use glam::Vec3;
+
+use super::{Bounds, HairFile, HairFileError, HairFormat};
+
+/// The largest coordinate that is taken for a place, file units. Squares and sums of squares of such
+/// numbers stay finite in single precision.
+const LARGEST_COORDINATE: f32 = 1e12;
+/// A strand that reaches further from the middle of the roots than this many times what the median strand
+/// does is no part of the groom.
+const LARGEST_REACH: f32 = 1000.0;
+/// A strand shorter than this fraction of the median reach has no direction in single precision.
+const SMALLEST_LENGTH: f32 = 1e-5;
+/// The shortest strand, file units: below it, a scale to metres overflows.
+const SMALLEST_ABSOLUTE_LENGTH: f32 = 1e-12;
+
+/// What a reader found, before anything is dropped. Arrays over points agree in length with the sum of
+/// `point_counts`, which fits `u32`.
+pub(super) struct RawHair {
+    pub(super) format: HairFormat,
+    pub(super) point_counts: Vec<u32>,
+    pub(super) points: Vec<Vec3>,
+    pub(super) thickness: Option<Vec<f32>>,
+    pub(super) transparency: Option<Vec<f32>>,
+    pub(super) colours: Option<Vec<[f32; 3]>>,
+    pub(super) default_thickness: Option<f32>,
+    pub(super) default_transparency: Option<f32>,
+    pub(super) default_colour: Option<[f32; 3]>,
+    pub(super) both_ends_pinned: bool,
+    pub(super) trailing_bytes: u64,
+    pub(super) notes: Vec<String>,
+}
+
+/// Why a strand is left out.
+#[derive(Clone, Copy, PartialEq)]
+enum Fault {
+    OnePoint,
+    NonFinite,
+    Distant,
+    ZeroLength,
+}
+
+impl Fault {
+    const ALL: [Self; 4] = [Self::OnePoint, Self::NonFinite, Self::Distant, Self::ZeroLength];
+
+    fn key(self) -> &'static str {
+        match self {
+            Self::OnePoint => "one_point_strands",
+            Self::NonFinite => "non_finite_strands",
+            Self::Distant => "distant_strands",
+            Self::ZeroLength => "zero_length_strands",
+        }
+    }
+
+    fn note(self, count: u64) -> String {
+        let strands = if count == 1 { "strand" } else { "strands" };
+        let why = match self {
+            Self::OnePoint => "of fewer than two points",
+            Self::NonFinite => "with coordinates that are not numbers",
+            Self::Distant => "that reach over 1000 times further than the others",
+            Self::ZeroLength => "of no length",
+        };
+        format!("Left out {count} {strands} {why}.")
+    }
+}
+
+/// Keeps the strands that can be drawn.
+pub(super) fn clean(name: &str, raw: RawHair) -> Result<HairFile, HairFileError> {
+    let strands = raw.point_counts.len();
+    let mut faults: Vec<Option<Fault>> = Vec::with_capacity(strands);
+    let mut first = 0;
+    for &count in &raw.point_counts {
+        let points = &raw.points[first..first + count as usize];
+        first += count as usize;
+        faults.push(if points.len() < 2 {
+            Some(Fault::OnePoint)
+        } else if points.iter().any(|p| !p.is_finite()) {
+            Some(Fault::NonFinite)
+        } else if points.iter().any(|p| p.abs().max_element() > LARGEST_COORDINATE) {
+            Some(Fault::Distant)
+        } else {
+            None
+        });
+    }
+    drop_by_size(&raw, &mut faults);
+
+    let mut file = HairFile {
+        name: name.to_owned(),
+        format: raw.format,
+        first_point: Vec::with_capacity(strands + 1),
+        points: Vec::with_capacity(raw.points.len()),
+        thickness: raw.thickness.as_ref().map(|values| Vec::with_capacity(values.len())),
+        transparency: raw.transparency.as_ref().map(|values| Vec::with_capacity(values.len())),
+        colours: raw.colours.as_ref().map(|values| Vec::with_capacity(values.len())),
+        default_thickness: raw.default_thickness,
+        default_transparency: raw.default_transparency,
+        default_colour: raw.default_colour,
+        both_ends_pinned: raw.both_ends_pinned,
+        dropped: BTreeMap::new(),
+        notes: raw.notes,
+        bounds: Bounds::EMPTY,
+    };
+    file.first_point.push(0);
+    let (mut repeated, mut non_finite) = (0_u64, 0_u64);
+    // A value that is not a number becomes the default, or what stands for "none".
+    let mut finite = |value: f32, default: f32| {
+        if value.is_finite() {
+            value
+        } else {
+            non_finite += 1;
+            default
+        }
+    };
+    let mut end = 0;
+    for (&count, fault) in raw.point_counts.iter().zip(&faults) {
+        let start = end;
+        end += count as usize;
+        if fault.is_some() {
+            continue;
+        }
+        for i in start..end {
+            if i > start && raw.points[i] == raw.points[i - 1] {
+                repeated += 1;
+                continue;
+            }
+            file.bounds.include(raw.points[i]);
+            file.points.push(raw.points[i]);
+            if let (Some(from), Some(to)) = (&raw.thickness, &mut file.thickness) {
+                to.push(finite(from[i], raw.default_thickness.unwrap_or(0.0)));
+            }
+            if let (Some(from), Some(to)) = (&raw.transparency, &mut file.transparency) {
+                to.push(finite(from[i], raw.default_transparency.unwrap_or(0.0)));
+            }
+            if let (Some(from), Some(to)) = (&raw.colours, &mut file.colours) {
+                let default = raw.default_colour.unwrap_or([0.5; 3]);
+                to.push(std::array::from_fn(|k| finite(from[i][k], default[k])));
+            }
+        }
+        file.first_point.push(file.points.len() as u32);
+    }
+
+    report(&mut file, &faults, repeated, non_finite, raw.trailing_bytes);
+    if file.strands() == 0 {
+        let reason = match file.dropped.len() {
+            0 => "it holds none".to_owned(),
+            _ => file.dropped.iter().map(|(what, n)| format!("{what}: {n}")).collect::<Vec<_>>().join(", "),
+        };
+        return Err(HairFileError::NothingToDraw { name: name.to_owned(), reason });
+    }
+    Ok(file)
+}
+
+/// Marks strands that are far from the groom, or have no length beside it.
+fn drop_by_size(raw: &RawHair, faults: &mut [Option<Fault>]) {
+    let spans = || {
+        raw.point_counts.iter().scan(0, |first, &count| {
+            let start = *first;
+            *first += count as usize;
+            Some(start..*first)
+        })
+    };
+    let mut roots: [Vec<f32>; 3] = Default::default();
+    for (span, fault) in spans().zip(faults.iter()) {
+        if fault.is_none() {
+            for (axis, values) in roots.iter_mut().enumerate() {
+                values.push(raw.points[span.start][axis]);
+            }
+        }
+    }
+    let [Some(x), Some(y), Some(z)] = roots.map(|mut values| median(&mut values)) else { return };
+    let centre = Vec3::new(x, y, z);
+    let reach =
+        |points: &[Vec3]| points.iter().map(|&p| (p - centre).abs().max_element()).fold(0.0_f32, f32::max);
+    let kept = || spans().zip(faults.iter()).filter(|(_, fault)| fault.is_none());
+    let mut reaches: Vec<f32> = kept().map(|(span, _)| reach(&raw.points[span])).collect();
+    let Some(median_reach) = median(&mut reaches.clone()) else { return };
+    let shortest = (SMALLEST_LENGTH * median_reach).max(SMALLEST_ABSOLUTE_LENGTH);
+    let mut reaches = reaches.drain(..);
+    for (span, fault) in spans().zip(faults.iter_mut()) {
+        if fault.is_some() {
+            continue;
+        }
+        let points = &raw.points[span];
+        let length: f32 = points.array_windows().map(|[a, b]| a.distance(*b)).sum();
+        if length < shortest {
+            *fault = Some(Fault::ZeroLength);
+        }
+        if reaches.next().is_some_and(|reach| reach > LARGEST_REACH * median_reach) {
+            *fault = Some(Fault::Distant);
+        }
+    }
+}
+
+/// The middle value (the upper one of two); none of nothing. Reorders `values`, which are finite.
+fn median(values: &mut [f32]) -> Option<f32> {
+    let middle = values.len() / 2;
+    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f32::total_cmp).1)
+}
+
+fn report(file: &mut HairFile, faults: &[Option<Fault>], repeated: u64, non_finite: u64, trailing: u64) {
+    for kind in Fault::ALL {
+        let count = faults.iter().filter(|&&fault| fault == Some(kind)).count() as u64;
+        if count > 0 {
+            file.dropped.insert(kind.key().to_owned(), count);
+            file.notes.push(kind.note(count));
+        }
+    }
+    for (count, key, note) in [
+        (repeated, "repeated_points", "points that repeat the one before"),
+        (non_finite, "non_finite_values", "widths, transparencies or colours that are not numbers"),
+        (trailing, "trailing_bytes", "bytes after the last array"),
+    ] {
+        if count > 0 {
+            file.dropped.insert(key.to_owned(), count);
+            file.notes.push(format!("Left out {count} {note}."));
+        }
+    }
+}

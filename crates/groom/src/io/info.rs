@@ -1,0 +1,100 @@
+//! A summary of a hair file, for reports.
+
+use std::collections::BTreeMap;
+
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+
+use super::{HairFile, guess_units};
+use crate::import::{ImportSettings, Orientation};
+
+/// A box along the axes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Bounds {
+    /// Its smallest corner.
+    pub min: Vec3,
+    /// Its largest corner.
+    pub max: Vec3,
+}
+
+impl Bounds {
+    /// The box of no points.
+    pub const EMPTY: Self = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
+
+    /// Grows to hold `point`.
+    pub fn include(&mut self, point: Vec3) {
+        self.min = self.min.min(point);
+        self.max = self.max.max(point);
+    }
+
+    /// Lengths of the sides; zero for the empty box.
+    pub fn size(&self) -> Vec3 {
+        (self.max - self.min).max(Vec3::ZERO)
+    }
+
+    /// The middle.
+    pub fn centre(&self) -> Vec3 {
+        0.5 * (self.min + self.max)
+    }
+}
+
+/// What a hair file holds, in the unit and axes that settings say.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct HairInfo {
+    /// The format, with its version where it has one.
+    pub format: String,
+    /// Number of strands that can be drawn.
+    pub strands: u64,
+    /// Number of their points.
+    pub points: u64,
+    /// Number of their segments.
+    pub segments: u64,
+    /// Box of the points in metres, Y up, the face toward +Z.
+    pub bounds_m: Bounds,
+    /// `m`, `cm`, `mm`, `in`; `custom` where a number was given; `scaled` where the guess is a head's size.
+    pub unit: String,
+    /// Length of one unit of the file, metres.
+    pub metres_per_unit: f32,
+    /// `y` or `z`: the axis of the file that points up.
+    pub up: String,
+    /// The axis of the file that the face looks along: `+y`, `-z` and so on.
+    pub facing: String,
+    /// Whether the unit was guessed.
+    pub unit_guessed: bool,
+    /// What was left out, and how many of it.
+    pub dropped: BTreeMap<String, u64>,
+    /// Remarks in sentences, the reason of a guess among them.
+    pub notes: Vec<String>,
+}
+
+/// Sums up `file` in the unit and axes of `settings`.
+pub fn hair_info(file: &HairFile, settings: &ImportSettings) -> HairInfo {
+    let orientation = Orientation::resolve(file, settings);
+    let mut bounds_m = Bounds::EMPTY;
+    for &point in &file.points {
+        bounds_m.include(orientation.head_axes_from_file(point));
+    }
+    let mut notes = file.notes.clone();
+    let guess = guess_units(file);
+    if orientation.unit_guessed {
+        notes.push(guess.reason);
+    }
+    let unit = match settings.unit.metres() {
+        Some(_) => settings.unit.id(),
+        None => guess.unit.map_or("scaled", super::Unit::id),
+    };
+    HairInfo {
+        format: file.format.to_string(),
+        strands: file.strands() as u64,
+        points: file.points.len() as u64,
+        segments: file.segments() as u64,
+        bounds_m,
+        unit: unit.to_owned(),
+        metres_per_unit: orientation.metres_per_unit,
+        up: orientation.up.id().to_owned(),
+        facing: orientation.facing.id().to_owned(),
+        unit_guessed: orientation.unit_guessed,
+        dropped: file.dropped.clone(),
+        notes,
+    }
+}
