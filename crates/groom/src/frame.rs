@@ -175,7 +175,7 @@ fn folded(axis: Vec3A) -> (Vec3A, Vec3A, Vec3A) {
 }
 
 /// A unit vector square to the unit vector `tangent`, made from the axis least along it.
-fn reference_normal(tangent: Vec3A) -> Vec3A {
+pub(crate) fn reference_normal(tangent: Vec3A) -> Vec3A {
     let size = tangent.abs();
     let axis = if size.x <= size.y && size.x <= size.z {
         Vec3A::X
@@ -189,7 +189,7 @@ fn reference_normal(tangent: Vec3A) -> Vec3A {
 
 /// Carries `normal`, square to the unit vector `from`, by the smallest rotation from `from` to the unit vector
 /// `to`. Where they oppose, the rotation is the half turn about the normal itself.
-fn transport(normal: Vec3A, from: Vec3A, to: Vec3A) -> Vec3A {
+pub(crate) fn transport(normal: Vec3A, from: Vec3A, to: Vec3A) -> Vec3A {
     let one_plus_cos = 1.0 + from.dot(to);
     let turned = if one_plus_cos > 1e-6 {
         normal - (from + to) * (normal.dot(to) / one_plus_cos)

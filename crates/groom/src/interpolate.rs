@@ -98,6 +98,7 @@ fn wisps_into(
     scratch: &mut Scratch,
 ) {
     let set = &style.strands;
+    let Slices { x, y, z } = out;
     let last = style.guides.points_per_guide.saturating_sub(1);
     for wisp in wisps.iter().filter(|w| w.strand_count > 0) {
         scratch
@@ -115,10 +116,10 @@ fn wisps_into(
                 .zip(&set.offset_normal[range.clone()])
                 .zip(&set.offset_binormal[range.clone()])
                 .zip(&set.offset_tangent[range]);
-            let to = out.x[placed.clone()]
+            let to = x[placed.clone()]
                 .iter_mut()
-                .zip(&mut out.y[placed.clone()])
-                .zip(&mut out.z[placed]);
+                .zip(&mut y[placed.clone()])
+                .zip(&mut z[placed]);
             for ((((&u, &along_normal), &along_binormal), &along_tangent), ((x, y), z)) in from.zip(to) {
                 let (p, t) = locate(u, last);
                 let c: &[Vec3A; 4] = scratch.controls[p..p + 4].try_into().expect("four controls");

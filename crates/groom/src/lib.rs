@@ -6,17 +6,37 @@
 //! [`Strands`] that are shadowed and drawn.
 
 mod frame;
+mod grow;
 mod guides;
 mod hairstyle;
+mod import;
 mod interpolate;
+mod io;
 mod look;
+mod obstacle;
+mod plain_head;
+mod presets;
+mod rng;
 mod scalp;
+mod scalp_index;
+mod settings;
 mod strands;
 
 pub use frame::WispCurve;
+pub use grow::{GUIDE_POINTS, GrowError, grow};
 pub use guides::{GuideFrame, Guides};
 pub use hairstyle::{Hairstyle, HairstyleError, StrandSet, Wisp};
+pub use import::{ImportError, ImportSettings, PlacedGroom, Placement, import, import_around, place};
 pub use interpolate::interpolate;
+pub use io::{
+    Bounds, Facing, HairFile, HairFileError, HairFormat, HairInfo, Unit, UnitGuess, UpAxis, guess_units,
+    hair_info, load_hair, load_hair_bytes,
+};
 pub use look::HairLook;
-pub use scalp::Scalp;
+pub use obstacle::{NoObstacle, Obstacle};
+pub use plain_head::PlainHead;
+pub use presets::Preset;
+pub use scalp::{Scalp, ScalpError, ScalpPoint};
+pub use scalp_index::ScalpIndex;
+pub use settings::{GroomSettings, MOST_POINTS};
 pub use strands::Strands;

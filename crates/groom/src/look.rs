@@ -3,6 +3,8 @@
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
+use crate::settings::within;
+
 /// What hair is made of and how thick it is: everything about its appearance that no light changes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -47,6 +49,23 @@ impl Default for HairLook {
 }
 
 impl HairLook {
+    /// The look with every number inside its range; what is not a number takes the value of the default.
+    pub fn clamped(&self) -> Self {
+        let d = Self::default();
+        Self {
+            eumelanin: within(self.eumelanin, 0.0, 8.0, d.eumelanin),
+            pheomelanin: within(self.pheomelanin, 0.0, 8.0, d.pheomelanin),
+            variation: within(self.variation, 0.0, 1.0, d.variation),
+            tip_lightening: within(self.tip_lightening, 0.0, 1.0, d.tip_lightening),
+            diameter: within(self.diameter, 17e-6, 100e-6, d.diameter),
+            real_hairs: within(self.real_hairs, 1.0, 1e7, d.real_hairs),
+            width_scale: within(self.width_scale, 0.05, 2.0, d.width_scale),
+            primary_strength: within(self.primary_strength, 0.0, 2.0, d.primary_strength),
+            secondary_strength: within(self.secondary_strength, 0.0, 2.0, d.secondary_strength),
+            roughness: within(self.roughness, 0.05, 1.0, d.roughness),
+        }
+    }
+
     /// Absorption per unit of path through a fibre, linear sRGB.
     ///
     /// Chiang et al. 2016, "A practical and controllable hair and fur model", after d'Eon et al. 2011.

@@ -1,0 +1,129 @@
+//! Three guides about a wisp's path.
+
+use glam::Vec3;
+
+use super::cells::Cell;
+use super::path::Path;
+use super::{GUIDE_POINTS, smoothstep};
+use crate::frame::{reference_normal, transport};
+use crate::rng::Rng;
+use crate::{GroomSettings, Obstacle, ScalpIndex};
+
+/// Three guides of equal links about `path`, `length` metres long, rooted on the scalp and outside `obstacle`.
+pub(super) fn around(
+    settings: &GroomSettings,
+    index: &ScalpIndex<'_>,
+    obstacle: &dyn Obstacle,
+    cell: &Cell,
+    path: &Path,
+    length: f32,
+) -> [[Vec3; GUIDE_POINTS]; 3] {
+    let mut rng = Rng::new(settings.seed, 0x901d_0000 + cell.stream);
+    let start = rng.angle();
+    let root = cell.centre;
+    let along =
+        (path.directions[0] - root.normal * path.directions[0].dot(root.normal)).normalize_or(Vec3::X);
+    let across = root.normal.cross(along);
+    let mut tangents = Vec::with_capacity(GUIDE_POINTS);
+    let mut normals = Vec::with_capacity(GUIDE_POINTS);
+    let mut middle = Vec::with_capacity(GUIDE_POINTS);
+    for k in 0..GUIDE_POINTS {
+        let (p, t) = path.at(length * fraction(k));
+        let normal = match k {
+            0 => reference_normal(t.into()),
+            _ => transport(normals[k - 1], tangents[k - 1], t.into()),
+        };
+        middle.push(p);
+        tangents.push(t.into());
+        normals.push(normal);
+    }
+    std::array::from_fn(|g| {
+        // The triangle of the guides is as wide as the disc of the cell's area.
+        let angle = start + g as f32 * std::f32::consts::TAU / 3.0;
+        let reach = 1.41 * cell.spread;
+        let aim = root.position + (along * angle.cos() + across * angle.sin()) * reach;
+        let own_root = index.closest(aim).unwrap_or(root);
+        let from_middle = own_root.position - root.position;
+        let local = [
+            from_middle.dot(normals[0].into()),
+            from_middle.dot(tangents[0].cross(normals[0]).into()),
+            from_middle.dot(tangents[0].into()),
+        ];
+        let own_length = length * (1.0 + 0.15 * settings.length_variation * rng.bell());
+        let target: [Vec3; GUIDE_POINTS] = std::array::from_fn(|k| {
+            let t = fraction(k);
+            // Hair fans out a little above the roots, where it overlaps its neighbours, then gathers.
+            let fan = 1.0 + 0.12 * smoothstep(0.0, 0.25, t);
+            let gather = 1.0 - settings.clump * smoothstep(0.1, 1.0, t);
+            let binormal: Vec3 = tangents[k].cross(normals[k]).into();
+            let (normal, tangent): (Vec3, Vec3) = (normals[k].into(), tangents[k].into());
+            middle[k] + (normal * local[0] + binormal * local[1] + tangent * local[2]) * (fan * gather)
+        });
+        let mut target = target;
+        target[0] = own_root.position;
+        lay(&target, own_length, own_root.normal, obstacle)
+    })
+}
+
+fn fraction(k: usize) -> f32 {
+    k as f32 / (GUIDE_POINTS - 1) as f32
+}
+
+/// Lays a chain of equal links along `target`, `length` metres long, outside `obstacle`.
+fn lay(
+    target: &[Vec3; GUIDE_POINTS],
+    length: f32,
+    root_normal: Vec3,
+    obstacle: &dyn Obstacle,
+) -> [Vec3; GUIDE_POINTS] {
+    let link = length / (GUIDE_POINTS - 1) as f32;
+    let mut guide = [target[0]; GUIDE_POINTS];
+    // Where along the target the chain has come, in its segments.
+    let mut at = 0.0_f32;
+    let mut direction = root_normal;
+    for k in 1..GUIDE_POINTS {
+        let from = guide[k - 1];
+        at = next_at(target, at, from, link);
+        direction = (sample(target, at) - from).normalize_or(direction);
+        let margin = 0.003_f32.min(0.35 * link * k as f32);
+        let mut p = from + direction * link;
+        for _ in 0..12 {
+            let (distance, n) = obstacle.distance(p);
+            if distance >= margin {
+                break;
+            }
+            // Out by a little more than needed, since laying the link anew brings it back by a part.
+            direction = (p + n * (1.3 * (margin - distance) + 1e-5) - from).normalize_or(direction);
+            p = from + direction * link;
+        }
+        guide[k] = p;
+    }
+    guide
+}
+
+/// The first place on the polyline beyond `at` that is `link` away from `from`; past its end, along its last
+/// segment.
+fn next_at(target: &[Vec3; GUIDE_POINTS], at: f32, from: Vec3, link: f32) -> f32 {
+    let last = (GUIDE_POINTS - 1) as f32;
+    let mut low = at;
+    let mut high = at;
+    while high < last + 8.0 && sample(target, high).distance(from) < link {
+        low = high;
+        high += 0.25;
+    }
+    for _ in 0..16 {
+        let middle = 0.5 * (low + high);
+        if sample(target, middle).distance(from) < link {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    high
+}
+
+/// A point of the polyline at `at` segments, extended straight past its end.
+fn sample(target: &[Vec3; GUIDE_POINTS], at: f32) -> Vec3 {
+    let i = (at as usize).min(GUIDE_POINTS - 2);
+    target[i] + (target[i + 1] - target[i]) * (at - i as f32)
+}

@@ -1,0 +1,99 @@
+//! Growing a hairstyle: cells of roots, combed paths, guides, strands.
+//!
+//! 1. [`comb`]: the parting and the whorl, and the direction in which hair lies at each point of the head.
+//! 2. [`cells`]: the scalp divided among wisps, and the roots of each wisp's strands.
+//! 3. [`path`]: how a wisp leaves the scalp, lies on the head, falls and drapes.
+//! 4. [`cut`]: how long each wisp is.
+//! 5. [`guides`]: three guides about each path, outside of the body, of equal links.
+//! 6. [`strands`]: curl, waves, frizz, locks, strays and tips, as offsets from the guides.
+
+mod cells;
+mod comb;
+mod cut;
+mod guides;
+mod path;
+mod strands;
+
+use rayon::prelude::*;
+use thiserror::Error;
+
+use crate::{
+    GroomSettings, Guides, Hairstyle, Obstacle, Preset, Scalp, ScalpError, ScalpIndex, StrandSet, Wisp,
+};
+
+/// Points of each grown guide: 30 links, as in Bertails et al. 2005.
+pub const GUIDE_POINTS: usize = 31;
+
+/// Why a hairstyle could not grow.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum GrowError {
+    /// The scalp is unusable.
+    #[error(transparent)]
+    Scalp(#[from] ScalpError),
+}
+
+/// Grows a hairstyle on `scalp`, around `obstacle` (the body without hair), both in head space.
+///
+/// `settings` are clamped to their safe ranges first. The result depends on nothing but the arguments: not on the
+/// number of threads.
+///
+/// # Errors
+/// If the scalp is malformed, or has no area above the hairline.
+pub fn grow(
+    settings: &GroomSettings,
+    scalp: &Scalp,
+    obstacle: &dyn Obstacle,
+) -> Result<Hairstyle, GrowError> {
+    scalp.check()?;
+    let settings = settings.clamped();
+    let index = ScalpIndex::new(scalp);
+    let comb = comb::Comb::new(&settings, &index).ok_or(ScalpError::Bare)?;
+    let cells = cells::divide(&settings, &index, &comb);
+    if cells.is_empty() {
+        return Err(ScalpError::Bare.into());
+    }
+    let paths: Vec<path::Path> =
+        cells.par_iter().map(|cell| path::trace(&settings, &comb, obstacle, cell)).collect();
+    let lengths = cut::lengths(&settings, &comb, &cells, &paths);
+
+    let grown: Vec<_> = (0..cells.len())
+        .into_par_iter()
+        .map(|w| {
+            let guides = guides::around(&settings, &index, obstacle, &cells[w], &paths[w], lengths[w]);
+            let strands = strands::of_wisp(&settings, &comb, obstacle, &cells[w], &guides);
+            (guides, strands)
+        })
+        .collect();
+
+    let mut guides = Guides { points_per_guide: GUIDE_POINTS, ..Guides::default() };
+    let mut set = StrandSet { first_point: vec![0], ..StrandSet::default() };
+    let mut wisps = Vec::with_capacity(cells.len());
+    for (w, (of_wisp, strands)) in grown.into_iter().enumerate() {
+        let first_guide = guides.count() as u32;
+        let first_strand = set.count() as u32;
+        for guide in &of_wisp {
+            guides.push(guide);
+        }
+        strands.append_to(&mut set, w as u32);
+        wisps.push(Wisp {
+            guides: [first_guide, first_guide + 1, first_guide + 2],
+            first_strand,
+            strand_count: set.count() as u32 - first_strand,
+        });
+    }
+    let name = Preset::ALL.into_iter().find(|&p| GroomSettings::preset(p) == settings);
+    Ok(Hairstyle {
+        name: name.map_or("Custom", Preset::label).to_owned(),
+        scalp: scalp.clone(),
+        wisps,
+        guides,
+        strands: set,
+        look: settings.look,
+    })
+}
+
+/// The smooth step from 0 at `low` to 1 at `high`.
+fn smoothstep(low: f32, high: f32, x: f32) -> f32 {
+    let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}

@@ -1,0 +1,105 @@
+//! The way of one wisp: off the scalp at an angle, over the head as it is combed, and down.
+
+use glam::Vec3;
+
+use super::cells::Cell;
+use super::comb::Comb;
+use super::smoothstep;
+use crate::rng::Rng;
+use crate::{GroomSettings, Obstacle};
+
+/// Distance between the points of a path, metres.
+const STEP: f32 = 0.004;
+/// Distance over which hair bends from one direction to the next, metres.
+const BEND: f32 = 0.022;
+
+/// The middle line of a wisp, from the root, in points `step` metres apart.
+pub(super) struct Path {
+    /// Distance between points, metres.
+    pub step: f32,
+    /// Points, head space, metres.
+    pub points: Vec<Vec3>,
+    /// Direction at each point, unit.
+    pub directions: Vec<Vec3>,
+}
+
+impl Path {
+    /// Position and direction at `arc` metres from the root.
+    pub(super) fn at(&self, arc: f32) -> (Vec3, Vec3) {
+        let u = (arc / self.step).clamp(0.0, (self.points.len() - 1) as f32);
+        let i = (u as usize).min(self.points.len() - 2);
+        let t = u - i as f32;
+        let direction = self.directions[i].lerp(self.directions[i + 1], t);
+        (self.points[i].lerp(self.points[i + 1], t), direction.normalize_or(self.directions[i]))
+    }
+}
+
+/// How far from the skin hair lies that has come `arc` metres from its root, at `p` on the head.
+///
+/// Hair that has come far lies over hair whose roots are here, so thickness grows with the distance from the root.
+pub(super) fn height(settings: &GroomSettings, comb: &Comb, loft: f32, arc: f32, p: Vec3, n: Vec3) -> f32 {
+    let arc = arc.max(0.0);
+    let body = settings.volume * loft;
+    // The first part rises at the root's angle, the second slowly, as more and more roots lie underneath.
+    let rise = (0.45 * body + 0.003).max(1e-4) / settings.root_lift.tan();
+    let near = (0.45 * body + 0.003) * (1.0 - (-arc / rise).exp());
+    let far = 0.55 * body * (1.0 - (-arc / 0.10).exp());
+    let q = (p - comb.centre) / comb.half;
+    let on_top = smoothstep(0.1, 0.9, q.y) * smoothstep(0.0, 0.8, n.y);
+    let crown = settings.crown_volume * on_top * (1.0 - (-arc / 0.02).exp());
+    // On neck and shoulders hair lies flat.
+    let on_head = smoothstep(-1.35, -0.6, q.y);
+    near + (far + crown) * on_head + 0.002 * (1.0 - on_head)
+}
+
+/// Traces the way of the wisp of `cell`, as far as the longest hair may reach.
+pub(super) fn trace(settings: &GroomSettings, comb: &Comb, obstacle: &dyn Obstacle, cell: &Cell) -> Path {
+    let mut rng = Rng::new(settings.seed, 0xfa7_0000 + cell.stream);
+    let rank = comb.rank(cell.centre.position);
+    let loft = (0.45 + 0.55 * rank) * (1.0 + 0.18 * rng.bell().clamp(-2.0, 2.0));
+    let veer = 0.10 * rng.bell();
+    let steps = (settings.length * 1.1 / STEP).ceil().max(4.0) as usize;
+
+    let root = cell.centre;
+    let flow = comb.flow(root.position, root.normal, cell.side, cell.fringe);
+    let flow = (flow + veer * root.normal.cross(flow)).normalize_or(flow);
+    let mut direction = flow * settings.root_lift.cos() + root.normal * settings.root_lift.sin();
+    let mut p = root.position;
+    let mut path = Path { step: STEP, points: vec![p], directions: vec![direction] };
+    for step in 1..=steps {
+        let arc = step as f32 * STEP;
+        let (distance, n) = obstacle.distance(p);
+        let wanted = height(settings, comb, loft, arc, p, n);
+        let above = distance - wanted;
+
+        let combed = (-arc / settings.hold).exp();
+        let flow = comb.flow(p, n, cell.side, cell.fringe);
+        let flow = (flow + veer * n.cross(flow)).normalize_or(flow);
+        // Near the hair that lies below, gravity pulls along it; free of it, straight down.
+        let free = smoothstep(0.0, 0.025, above);
+        let down = Vec3::NEG_Y;
+        let pull = down - n * (down.dot(n) * (1.0 - free)).min(0.0);
+        let mut wish = flow * (combed * (1.0 - free)) + pull * (1.05 - combed) + 0.35 * direction;
+        if settings.ends != 0.0 {
+            let inward = Vec3::new(comb.centre.x - p.x, 0.0, comb.centre.z - p.z).normalize_or_zero();
+            wish += inward * (settings.ends * 1.2 * smoothstep(settings.length - 0.07, settings.length, arc));
+        }
+        let wish = wish.normalize_or(direction);
+        direction = direction.lerp(wish, 1.0 - (-STEP / BEND).exp()).normalize_or(wish);
+        // Keep to the wanted height: rise where too low, and never go further in.
+        if above < 0.004 {
+            let inward = direction.dot(n).min(0.0) * (1.0 - smoothstep(0.0, 0.004, above));
+            let rise = (-above / 0.012).clamp(0.0, 0.9);
+            direction = (direction - n * inward + n * rise * 0.35).normalize_or(direction);
+        }
+        p += direction * STEP;
+        let (distance, n) = obstacle.distance(p);
+        let least = 0.5 * height(settings, comb, loft, arc, p, n).min(arc * 0.6);
+        if distance < least {
+            p += n * (least - distance);
+        }
+        path.points.push(p);
+        path.directions.push(direction);
+    }
+    path
+}

@@ -1,0 +1,168 @@
+//! The shipped hairstyles.
+
+use serde::{Deserialize, Serialize};
+
+use crate::{GroomSettings, HairLook};
+
+/// A shipped hairstyle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Preset {
+    /// Brown, smooth, to the shoulders: 134 wisps, 3,350 strands, 100,500 segments.
+    Smooth,
+    /// Red curls: 134 wisps, 3,350 strands, 201,000 segments.
+    Curly,
+    /// Golden waves far past the shoulders.
+    Long,
+}
+
+impl Preset {
+    /// Every preset, in the order of menus.
+    pub const ALL: [Self; 3] = [Self::Smooth, Self::Curly, Self::Long];
+
+    /// The stable name in project files and on the command line.
+    pub const fn id(self) -> &'static str {
+        match self {
+            Self::Smooth => "smooth",
+            Self::Curly => "curly",
+            Self::Long => "long",
+        }
+    }
+
+    /// The name in the interface.
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::Smooth => "Smooth bob",
+            Self::Curly => "Red curls",
+            Self::Long => "Long waves",
+        }
+    }
+
+    /// The preset of that id.
+    pub fn from_id(id: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|p| p.id() == id)
+    }
+}
+
+impl GroomSettings {
+    /// The settings of a shipped hairstyle.
+    pub const fn preset(preset: Preset) -> Self {
+        match preset {
+            Preset::Smooth => SMOOTH,
+            Preset::Curly => CURLY,
+            Preset::Long => LONG,
+        }
+    }
+}
+
+const SMOOTH: GroomSettings = GroomSettings {
+    seed: 1,
+    wisps: 134,
+    strands_per_wisp: 25,
+    segments_per_strand: 30,
+    length: 0.31,
+    layering: 0.25,
+    length_variation: 0.10,
+    face_framing: 0.35,
+    fringe: 0.0,
+    fringe_length: 0.09,
+    hairline: 0.5,
+    part_position: 0.022,
+    part_strength: 1.0,
+    sweep: 0.15,
+    volume: 0.016,
+    crown_volume: 0.008,
+    root_lift: 0.75,
+    hold: 0.06,
+    ends: 0.35,
+    clump: 0.45,
+    locks: 0.25,
+    frizz: 0.0012,
+    frizz_scale: 0.05,
+    strays: 0.03,
+    stray_reach: 0.012,
+    curl_radius: 0.0,
+    curl_pitch: 0.05,
+    curl_onset: 0.05,
+    curl_wander: 0.4,
+    wave: 0.003,
+    wave_length: 0.12,
+    taper: 0.25,
+    look: HairLook {
+        eumelanin: 1.3,
+        pheomelanin: 0.1,
+        variation: 0.25,
+        tip_lightening: 0.15,
+        diameter: 80e-6,
+        real_hairs: 100_000.0,
+        width_scale: 0.3,
+        primary_strength: 0.6,
+        secondary_strength: 0.8,
+        roughness: 0.3,
+    },
+};
+
+const CURLY: GroomSettings = GroomSettings {
+    segments_per_strand: 60,
+    length: 0.30,
+    layering: 0.45,
+    length_variation: 0.12,
+    face_framing: 0.3,
+    part_position: -0.015,
+    part_strength: 0.8,
+    sweep: 0.2,
+    volume: 0.030,
+    crown_volume: 0.010,
+    root_lift: 0.9,
+    hold: 0.10,
+    ends: 0.0,
+    clump: 0.7,
+    locks: 0.3,
+    frizz: 0.0022,
+    frizz_scale: 0.03,
+    strays: 0.05,
+    stray_reach: 0.014,
+    curl_radius: 0.0075,
+    curl_pitch: 0.034,
+    curl_onset: 0.07,
+    curl_wander: 0.6,
+    wave: 0.0,
+    taper: 0.3,
+    look: HairLook {
+        eumelanin: 0.25,
+        pheomelanin: 0.9,
+        roughness: 0.35,
+        ..SMOOTH.look
+    },
+    ..SMOOTH
+};
+
+const LONG: GroomSettings = GroomSettings {
+    wisps: 180,
+    strands_per_wisp: 30,
+    segments_per_strand: 40,
+    length: 0.58,
+    layering: 0.3,
+    length_variation: 0.10,
+    face_framing: 0.3,
+    part_position: 0.0,
+    sweep: 0.25,
+    volume: 0.016,
+    crown_volume: 0.007,
+    ends: 0.15,
+    clump: 0.6,
+    locks: 0.35,
+    frizz: 0.0014,
+    strays: 0.03,
+    stray_reach: 0.014,
+    curl_onset: 0.2,
+    curl_wander: 0.5,
+    wave: 0.009,
+    wave_length: 0.10,
+    look: HairLook {
+        eumelanin: 0.35,
+        pheomelanin: 0.15,
+        ..SMOOTH.look
+    },
+    ..SMOOTH
+};

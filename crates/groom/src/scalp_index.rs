@@ -1,0 +1,164 @@
+//! Closest points of a scalp by a uniform grid.
+
+use glam::{IVec3, Vec3};
+
+use crate::{Scalp, ScalpPoint};
+
+/// Cells along the longest side of the scalp's box.
+const CELLS: f32 = 24.0;
+
+/// A scalp with a grid over its triangles, to find the closest point fast.
+#[derive(Clone, Debug)]
+pub struct ScalpIndex<'a> {
+    scalp: &'a Scalp,
+    low: Vec3,
+    cell: f32,
+    size: IVec3,
+    /// Where each cell's triangles begin in `items`, with their number at the end.
+    first: Vec<u32>,
+    items: Vec<u32>,
+}
+
+impl<'a> ScalpIndex<'a> {
+    /// Sorts the triangles of `scalp`, which has passed [`Scalp::check`], into cells.
+    pub fn new(scalp: &'a Scalp) -> Self {
+        let used = scalp.triangles.iter().flatten().map(|&v| scalp.positions[v as usize]);
+        let (low, high) = used.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
+        let (low, high) = if low.is_finite() { (low, high) } else { (Vec3::ZERO, Vec3::ZERO) };
+        let cell = ((high - low).max_element() / CELLS).max(1e-4);
+        let size = ((high - low) / cell).as_ivec3() + IVec3::ONE;
+        let mut index = Self { scalp, low, cell, size, first: Vec::new(), items: Vec::new() };
+        let cells = (size.x * size.y * size.z) as usize;
+        let mut counts = vec![0_u32; cells + 1];
+        for t in 0..scalp.triangles.len() as u32 {
+            index.each_cell(t, |c| counts[c + 1] += 1);
+        }
+        for c in 0..cells {
+            counts[c + 1] += counts[c];
+        }
+        let mut next = counts.clone();
+        let mut items = vec![0; counts[cells] as usize];
+        for t in 0..scalp.triangles.len() as u32 {
+            index.each_cell(t, |c| {
+                items[next[c] as usize] = t;
+                next[c] += 1;
+            });
+        }
+        index.first = counts;
+        index.items = items;
+        index
+    }
+
+    /// The scalp that this searches.
+    pub fn scalp(&self) -> &'a Scalp {
+        self.scalp
+    }
+
+    /// The point of the scalp closest to `p`; `None` for a scalp without triangles.
+    pub fn closest(&self, p: Vec3) -> Option<ScalpPoint> {
+        self.closest_within(p, f32::INFINITY)
+    }
+
+    /// The point of the scalp closest to `p`, if it is no farther than `reach` metres.
+    pub fn closest_within(&self, p: Vec3, reach: f32) -> Option<ScalpPoint> {
+        let home = self.cell_of(p);
+        let mut best: Option<(f32, u32, [f32; 3])> = None;
+        for shell in 0..=self.size.max_element() {
+            // Nothing in this shell or beyond is nearer than `shell - 1` cells from where the search began.
+            let nearest = (shell - 1) as f32 * self.cell;
+            if nearest > reach || best.is_some_and(|(d2, ..)| d2.sqrt() <= nearest) {
+                break;
+            }
+            self.each_of_shell(home, shell, |triangle| {
+                let corners =
+                    self.scalp.triangles[triangle as usize].map(|v| self.scalp.positions[v as usize]);
+                let b = closest_barycentric(p, corners);
+                let d2 = (corners[0] * b[0] + corners[1] * b[1] + corners[2] * b[2]).distance_squared(p);
+                // The lower index wins a tie, so that the answer does not depend on the order of the search.
+                if best.is_none_or(|(d, t, _)| d2 < d || (d2 == d && triangle < t)) {
+                    best = Some((d2, triangle, b));
+                }
+            });
+        }
+        let reached = best.filter(|(d2, ..)| d2.sqrt() <= reach);
+        reached.map(|(_, triangle, b)| self.scalp.point(triangle, b))
+    }
+
+    fn cell_of(&self, p: Vec3) -> IVec3 {
+        ((p - self.low) / self.cell).as_ivec3().clamp(IVec3::ZERO, self.size - IVec3::ONE)
+    }
+
+    fn number(&self, c: IVec3) -> usize {
+        ((c.z * self.size.y + c.y) * self.size.x + c.x) as usize
+    }
+
+    fn each_cell(&self, triangle: u32, mut visit: impl FnMut(usize)) {
+        let corners = self.scalp.triangles[triangle as usize].map(|v| self.scalp.positions[v as usize]);
+        let low = self.cell_of(corners[0].min(corners[1]).min(corners[2]));
+        let high = self.cell_of(corners[0].max(corners[1]).max(corners[2]));
+        for z in low.z..=high.z {
+            for y in low.y..=high.y {
+                for x in low.x..=high.x {
+                    visit(self.number(IVec3::new(x, y, z)));
+                }
+            }
+        }
+    }
+
+    fn each_of_shell(&self, home: IVec3, shell: i32, mut visit: impl FnMut(u32)) {
+        let low = (home - shell).max(IVec3::ZERO);
+        let high = (home + shell).min(self.size - 1);
+        for z in low.z..=high.z {
+            for y in low.y..=high.y {
+                let whole_row = (z - home.z).abs() == shell || (y - home.y).abs() == shell;
+                let step = if whole_row { 1 } else { (2 * shell).max(1) };
+                let mut x = if whole_row { low.x } else { home.x - shell };
+                while x <= high.x {
+                    if x >= low.x {
+                        let c = self.number(IVec3::new(x, y, z));
+                        let range = self.first[c] as usize..self.first[c + 1] as usize;
+                        self.items[range].iter().for_each(|&t| visit(t));
+                    }
+                    x += step;
+                }
+            }
+        }
+    }
+}
+
+/// Barycentric coordinates of the point of a triangle closest to `p` (Ericson 2005, "Real-time collision
+/// detection", §5.1.5).
+fn closest_barycentric(p: Vec3, [a, b, c]: [Vec3; 3]) -> [f32; 3] {
+    let (ab, ac) = (b - a, c - a);
+    let ratio = |n: f32, d: f32| if d > 0.0 { (n / d).clamp(0.0, 1.0) } else { 0.0 };
+    let (d1, d2) = (ab.dot(p - a), ac.dot(p - a));
+    if d1 <= 0.0 && d2 <= 0.0 {
+        return [1.0, 0.0, 0.0];
+    }
+    let (d3, d4) = (ab.dot(p - b), ac.dot(p - b));
+    if d3 >= 0.0 && d4 <= d3 {
+        return [0.0, 1.0, 0.0];
+    }
+    let vc = d1 * d4 - d3 * d2;
+    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+        let t = ratio(d1, d1 - d3);
+        return [1.0 - t, t, 0.0];
+    }
+    let (d5, d6) = (ab.dot(p - c), ac.dot(p - c));
+    if d6 >= 0.0 && d5 <= d6 {
+        return [0.0, 0.0, 1.0];
+    }
+    let vb = d5 * d2 - d1 * d6;
+    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+        let t = ratio(d2, d2 - d6);
+        return [1.0 - t, 0.0, t];
+    }
+    let va = d3 * d6 - d5 * d4;
+    if va <= 0.0 && d4 >= d3 && d5 >= d6 {
+        let t = ratio(d4 - d3, (d4 - d3) + (d5 - d6));
+        return [0.0, 1.0 - t, t];
+    }
+    let sum = va + vb + vc;
+    let (v, w) = (ratio(vb, sum), ratio(vc, sum));
+    [1.0 - v - w, v, w]
+}
