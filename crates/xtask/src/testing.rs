@@ -31,19 +31,8 @@ pub(crate) fn totals(
         }
     };
     if has_nextest() {
-        let colour = if std::io::stderr().is_terminal() {
-            "always"
-        } else {
-            "never"
-        };
-        let mut nextest = cargo(&[
-            "nextest",
-            "run",
-            "--no-fail-fast",
-            "--no-tests=pass",
-            "--color",
-            colour,
-        ]);
+        let colour = if std::io::stderr().is_terminal() { "always" } else { "never" };
+        let mut nextest = cargo(&["nextest", "run", "--no-fail-fast", "--color", colour]);
         good &= watch(nextest.args(&scope).args(filter), Stream::Err, &mut see)?;
         // nextest leaves the examples in the documentation out. Without a library there are none, and cargo objects.
         if package.is_none_or(|package| !["lovelock", "lovelock-xtask"].contains(&package)) {
@@ -56,10 +45,7 @@ pub(crate) fn totals(
     }
     let outcome = (|| {
         ensure!(totals.failed == 0, "{} of the tests failed", totals.failed);
-        ensure!(
-            good,
-            "the tests did not run to their end; the reason stands above"
-        );
+        ensure!(good, "the tests did not run to their end; the reason stands above");
         Ok(())
     })();
     Ok((totals, outcome))

@@ -51,7 +51,9 @@ fn name(plan: &Plan) {
 /// What the user can do.
 fn advice(plan: &Plan) -> String {
     match &plan.step {
-        Step::Install { packages, .. } => format!("apt-get could not install {}.", packages.join(" ")),
+        Step::Install { packages, .. } => {
+            format!("Installing {} with apt-get did not help.", packages.join(" "))
+        }
         Step::Say { command } => format!("Install with: {command}"),
         Step::Name => "Install these with this system's package manager.".into(),
     }

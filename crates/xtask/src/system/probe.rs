@@ -48,9 +48,10 @@ fn library_folders() -> Vec<PathBuf> {
 
 impl Probe for Here {
     fn has_cxx_compiler(&self) -> bool {
-        let chosen = std::env::var("CXX").ok();
-        let compilers = chosen.iter().map(String::as_str).chain(["c++", "g++", "clang++"]);
-        compilers.into_iter().any(|compiler| output_of(compiler, &["--version"]).is_some())
+        // As the build of the encoder chooses it; `CXX` may hold arguments behind the name.
+        let chosen = std::env::var("CXX").unwrap_or_default();
+        let compiler = chosen.split_whitespace().next().unwrap_or("c++");
+        output_of(compiler, &["--version"]).is_some()
     }
 
     fn has_library(&self, name: &str) -> bool {
