@@ -17,19 +17,9 @@ pub(crate) fn run() -> anyhow::Result<()> {
     steps.push(("test", outcome, time));
     // Clippy reads the dependencies anew without making code of them, and the documentation reuses what it has read.
     for (name, check) in [
-        (
-            "format",
-            (|| run_tool(&mut cargo(&["fmt", "--all", "--check"]))) as fn() -> anyhow::Result<()>,
-        ),
+        ("format", (|| run_tool(&mut cargo(&["fmt", "--all", "--check"]))) as fn() -> anyhow::Result<()>),
         ("clippy", || {
-            run_tool(&mut cargo(&[
-                "clippy",
-                "--workspace",
-                "--all-targets",
-                "--",
-                "-D",
-                "warnings",
-            ]))
+            run_tool(&mut cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))
         }),
         ("layers", layers::run),
         ("documentation", || {
@@ -46,11 +36,8 @@ pub(crate) fn run() -> anyhow::Result<()> {
     if let Some(totals) = totals {
         println!("{totals}");
     }
-    let failed: Vec<_> = steps
-        .iter()
-        .filter(|(_, outcome, _)| outcome.is_err())
-        .map(|(name, ..)| *name)
-        .collect();
+    let failed: Vec<_> =
+        steps.iter().filter(|(_, outcome, _)| outcome.is_err()).map(|(name, ..)| *name).collect();
     ensure!(failed.is_empty(), "failed: {}", failed.join(", "));
     if totals.is_none() {
         bail!("the tests did not run");
@@ -79,11 +66,7 @@ mod tests {
     fn every_step_has_its_line() {
         let steps = [
             ("test", Ok(()), Duration::from_millis(61_240)),
-            (
-                "clippy",
-                Err(anyhow::anyhow!("`cargo clippy` failed")),
-                Duration::ZERO,
-            ),
+            ("clippy", Err(anyhow::anyhow!("`cargo clippy` failed")), Duration::ZERO),
         ];
         let lines =
             "test              61.2 s  good\nclippy             0.0 s  FAILED: `cargo clippy` failed\n";

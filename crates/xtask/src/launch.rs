@@ -12,14 +12,8 @@ pub(crate) fn run(arguments: &[OsString]) -> anyhow::Result<()> {
     println!("Building Lovelock, optimised. The first time takes some minutes.");
     tool::run(&mut tool::cargo(&["build", "--release", "--package", "lovelock"]))?;
     let manifest = tool::root().join("Cargo.toml");
-    let mut lovelock = tool::cargo(&[
-        "run",
-        "--quiet",
-        "--release",
-        "--package",
-        "lovelock",
-        "--manifest-path",
-    ]);
+    let mut lovelock =
+        tool::cargo(&["run", "--quiet", "--release", "--package", "lovelock", "--manifest-path"]);
     lovelock.arg(manifest).arg("--");
     if arguments.is_empty() && !has_display(cfg!(target_os = "linux"), |name| std::env::var_os(name)) {
         println!(
@@ -37,10 +31,7 @@ pub(crate) fn run(arguments: &[OsString]) -> anyhow::Result<()> {
 /// Whether a window can open. macOS and Windows always have a display here.
 fn has_display(by_environment: bool, variable: impl Fn(&str) -> Option<OsString>) -> bool {
     let set = |name| variable(name).is_some_and(|value| value.as_os_str() != OsStr::new(""));
-    !by_environment
-        || ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"]
-            .into_iter()
-            .any(set)
+    !by_environment || ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"].into_iter().any(set)
 }
 
 #[cfg(test)]

@@ -22,9 +22,7 @@ pub(crate) fn cargo(arguments: &[&str]) -> Command {
 /// Runs a program to its end; an error if it cannot start or does not succeed.
 pub(crate) fn run(command: &mut Command) -> anyhow::Result<()> {
     let shown = shown(command);
-    let status = command
-        .status()
-        .with_context(|| format!("could not start `{shown}`"))?;
+    let status = command.status().with_context(|| format!("could not start `{shown}`"))?;
     ensure!(status.success(), "`{shown}` failed ({status})");
     Ok(())
 }
@@ -48,9 +46,7 @@ pub(crate) fn watch(
         Stream::Out => command.stdout(Stdio::piped()),
         Stream::Err => command.stderr(Stdio::piped()),
     };
-    let mut child = command
-        .spawn()
-        .with_context(|| format!("could not start `{shown}`"))?;
+    let mut child = command.spawn().with_context(|| format!("could not start `{shown}`"))?;
     if let Some(out) = child.stdout.take() {
         copy_lines(out, &mut std::io::stdout(), &mut see)?;
     }
@@ -74,33 +70,20 @@ fn copy_lines(from: impl Read, to: &mut impl Write, see: &mut impl FnMut(&str)) 
 
 /// A program's whole standard output, if it can be started and succeeds.
 pub(crate) fn output_of(program: &str, arguments: &[&str]) -> Option<String> {
-    let output = Command::new(program)
-        .args(arguments)
-        .stdin(Stdio::null())
-        .stderr(Stdio::null())
-        .output()
-        .ok()?;
-    output
-        .status
-        .success()
-        .then(|| String::from_utf8_lossy(&output.stdout).into_owned())
+    let output =
+        Command::new(program).args(arguments).stdin(Stdio::null()).stderr(Stdio::null()).output().ok()?;
+    output.status.success().then(|| String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
 /// A command as one would type it.
 pub(crate) fn shown(command: &Command) -> String {
     let program = Path::new(command.get_program()).file_name().unwrap_or_default();
     let words = std::iter::once(program).chain(command.get_args());
-    words
-        .map(std::ffi::OsStr::to_string_lossy)
-        .collect::<Vec<_>>()
-        .join(" ")
+    words.map(std::ffi::OsStr::to_string_lossy).collect::<Vec<_>>().join(" ")
 }
 
 /// How long something took.
-#[expect(
-    clippy::disallowed_methods,
-    reason = "chores tell how long they took; no result depends on it"
-)]
+#[expect(clippy::disallowed_methods, reason = "chores tell how long they took; no result depends on it")]
 pub(crate) fn timed<T>(work: impl FnOnce() -> T) -> (T, Duration) {
     let start = std::time::Instant::now();
     let result = work();

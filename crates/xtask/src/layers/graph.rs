@@ -53,29 +53,17 @@ impl Graph {
     /// Reads the output of `cargo metadata --format-version 1`.
     pub(crate) fn parse(json: &[u8]) -> serde_json::Result<Self> {
         let metadata: Metadata = serde_json::from_slice(json)?;
-        let names: BTreeMap<_, _> = metadata
-            .packages
-            .iter()
-            .map(|package| (&package.id, &package.name))
-            .collect();
+        let names: BTreeMap<_, _> =
+            metadata.packages.iter().map(|package| (&package.id, &package.name)).collect();
         let name = |id: &String| names.get(id).map_or_else(|| id.clone(), |name| (*name).clone());
-        let mut graph = Self {
-            members: metadata.workspace_members.iter().map(name).collect(),
-            ..Self::default()
-        };
+        let mut graph =
+            Self { members: metadata.workspace_members.iter().map(name).collect(), ..Self::default() };
         for node in &metadata.resolve.nodes {
             for dependency in &node.deps {
                 for kind in &dependency.dep_kinds {
                     let tests_only = kind.kind.as_deref() == Some("dev");
-                    let arrows = if tests_only {
-                        &mut graph.tests_use
-                    } else {
-                        &mut graph.uses
-                    };
-                    arrows
-                        .entry(name(&node.id))
-                        .or_default()
-                        .insert(name(&dependency.pkg));
+                    let arrows = if tests_only { &mut graph.tests_use } else { &mut graph.uses };
+                    arrows.entry(name(&node.id)).or_default().insert(name(&dependency.pkg));
                 }
             }
         }
@@ -89,11 +77,7 @@ impl Graph {
 
     /// What its tests need beyond that, one step.
     pub(crate) fn used_by_tests_of(&self, package: &str) -> impl Iterator<Item = &str> {
-        self.tests_use
-            .get(package)
-            .into_iter()
-            .flatten()
-            .map(String::as_str)
+        self.tests_use.get(package).into_iter().flatten().map(String::as_str)
     }
 
     /// A way from `package`, its tests included, to a package that `wanted` picks: the names along it.

@@ -45,11 +45,8 @@ pub(crate) fn faults(graph: &Graph) -> Vec<String> {
             if graph.members.contains(used) {
                 let fine = allowed.contains(&used_name) || in_tests && used_name == FOR_TESTS;
                 if !fine && used != member {
-                    let whom = if allowed.is_empty() {
-                        "none of the others".into()
-                    } else {
-                        allowed.join(", ")
-                    };
+                    let whom =
+                        if allowed.is_empty() { "none of the others".into() } else { allowed.join(", ") };
                     faults.push(format!("{member} → {used}: {crate_name} may use {whom}"));
                 }
                 continue;
@@ -63,10 +60,7 @@ pub(crate) fn faults(graph: &Graph) -> Vec<String> {
         if WITHOUT_WGPU.contains(&crate_name)
             && let Some(way) = graph.way(member, |name| name == "wgpu" || name == "wgpu-core")
         {
-            faults.push(format!(
-                "{}: {crate_name} builds and tests without wgpu",
-                way.join(" → ")
-            ));
+            faults.push(format!("{}: {crate_name} builds and tests without wgpu", way.join(" → ")));
         }
     }
     faults
@@ -95,9 +89,7 @@ mod tests {
                 (user, used, &mut graph.tests_use)
             };
             to.entry(user.to_owned()).or_default().insert(used.to_owned());
-            let own = [user, used]
-                .into_iter()
-                .filter(|name| name.starts_with("lovelock"));
+            let own = [user, used].into_iter().filter(|name| name.starts_with("lovelock"));
             graph.members.extend(own.map(str::to_owned));
         }
         graph
@@ -146,9 +138,7 @@ mod tests {
             let found = faults(&graph(&[&GOOD[..], &[wrong]].concat()));
             // A wrong arrow may also open a way to wgpu, which is a fault of its own.
             assert!(
-                found
-                    .iter()
-                    .any(|fault| fault.starts_with(wrong_user(wrong)) && fault.contains(word)),
+                found.iter().any(|fault| fault.starts_with(wrong_user(wrong)) && fault.contains(word)),
                 "{found:?}"
             );
         }
@@ -156,28 +146,15 @@ mod tests {
 
     #[test]
     fn wgpu_is_found_behind_other_packages() {
-        let hidden = [
-            "lovelock-groom → some-viewer",
-            "some-viewer → deeper",
-            "deeper → some-viewer",
-            "deeper → wgpu",
-        ];
+        let hidden =
+            ["lovelock-groom → some-viewer", "some-viewer → deeper", "deeper → some-viewer", "deeper → wgpu"];
         let found = faults(&graph(&[&GOOD[..], &hidden].concat()));
         // groom itself, and everyone above it who promises the same: wisp does not use it here, record does.
         assert_eq!(found.len(), 2, "{found:?}");
-        assert!(
-            found[0].starts_with("lovelock-groom → some-viewer → deeper → wgpu"),
-            "{found:?}"
-        );
-        assert!(
-            found[1].starts_with("lovelock-record → lovelock-groom → "),
-            "{found:?}"
-        );
+        assert!(found[0].starts_with("lovelock-groom → some-viewer → deeper → wgpu"), "{found:?}");
+        assert!(found[1].starts_with("lovelock-record → lovelock-groom → "), "{found:?}");
         // The same package where wgpu is allowed is fine.
         let allowed = ["lovelock-render → some-viewer", "some-viewer → wgpu"];
-        assert_eq!(
-            faults(&graph(&[&GOOD[..], &allowed].concat())),
-            Vec::<String>::new()
-        );
+        assert_eq!(faults(&graph(&[&GOOD[..], &allowed].concat())), Vec::<String>::new());
     }
 }
