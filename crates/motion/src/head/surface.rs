@@ -2,7 +2,8 @@
 
 use glam::Vec3;
 
-use crate::Body;
+use super::scalp::guess_scalp;
+use crate::{Body, retarget::roles::Humanoid};
 
 /// Head and neck at rest in head space (see [`crate::Pose::world_from_head`]), for hair to grow on.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -21,7 +22,55 @@ pub struct HeadMesh {
     pub scalp_is_guessed: bool,
 }
 
-/// Cuts head and neck out of the resting body.
-pub fn head_mesh(_body: &Body) -> HeadMesh {
-    HeadMesh::default()
+/// Cuts head and neck out of the resting body: what the head joint, the joints below it and those of the neck move
+/// most. A body whose head joint moves next to nothing gives its whole surface.
+pub fn head_mesh(body: &Body) -> HeadMesh {
+    let mesh = &body.mesh;
+    let head = body.head_joint;
+    let count = mesh.positions.len();
+    if body.skeleton.joints.is_empty() || count == 0 {
+        return HeadMesh::default();
+    }
+    let is_head: Vec<bool> = (0..body.skeleton.joints.len()).map(|j| body.skeleton.is_below(j, head)).collect();
+    let mut is_part = is_head.clone();
+    for j in neck_joints(body) {
+        is_part[j] = true;
+    }
+    let share = |v: usize, part: &[bool]| -> f32 {
+        mesh.joints[v].iter().zip(&mesh.weights[v]).filter(|(j, _)| part[usize::from(**j)]).map(|(_, w)| w).sum()
+    };
+    let mut chosen: Vec<bool> = (0..count).map(|v| share(v, &is_part) >= 0.5).collect();
+    if chosen.iter().filter(|c| **c).count() < 32 {
+        chosen.fill(true);
+    }
+    let origin = body.skeleton.rest_position(head);
+    let mut out = HeadMesh::default();
+    let mut slot = vec![u32::MAX; count];
+    let mut of_head = Vec::new();
+    for v in (0..count).filter(|&v| chosen[v]) {
+        slot[v] = out.positions.len() as u32;
+        out.positions.push(mesh.positions[v] - origin);
+        out.normals.push(mesh.normals[v]);
+        out.vertex.push(v as u32);
+        of_head.push(share(v, &is_head) >= 0.5);
+    }
+    out.triangles = mesh
+        .triangles
+        .iter()
+        .map(|t| t.map(|v| slot[v as usize]))
+        .filter(|t| !t.contains(&u32::MAX))
+        .collect();
+    out.scalp_is_guessed = mesh.scalp.is_empty();
+    out.scalp = if out.scalp_is_guessed {
+        guess_scalp(&out.positions, &out.normals, &of_head)
+    } else {
+        out.vertex.iter().map(|&v| mesh.scalp[v as usize]).collect()
+    };
+    out
+}
+
+/// Joints between the chest and the head.
+pub(crate) fn neck_joints(body: &Body) -> Vec<usize> {
+    let figure = Humanoid::of_skeleton(&body.skeleton);
+    figure.neck.into_iter().filter(|&j| j != body.head_joint && body.skeleton.is_below(body.head_joint, j)).collect()
 }

@@ -1,0 +1,230 @@
+//! The pose in which the source has all rotations at zero, compared with the target's rest pose.
+//!
+//! Where that pose is one of standing, the trunk differs only in the way that it faces, and only limbs are aligned
+//! bone by bone (T-pose against A-pose). Where it is no pose at all (exporters that lay every bone along +X), every
+//! bone is aligned, from the hips outward: each by the smallest turn left after its parent's, which is the turn that
+//! such an exporter's first frame takes back.
+
+use glam::{Mat3, Quat, Vec3};
+
+use super::roles::{Humanoid, Role, Side};
+use crate::{MotionFile, Skeleton};
+
+/// By source joint, the rotation from the target's rest pose to the source's zero pose, in the world.
+pub(super) struct Alignment {
+    turns: Vec<Quat>,
+}
+
+impl Alignment {
+    pub(super) fn of(&self, joint: usize) -> Quat {
+        self.turns[joint]
+    }
+
+    pub(super) fn new(motion: &MotionFile, source: &Humanoid, skeleton: &Skeleton, target: &Humanoid) -> Self {
+        let mut builder = Builder {
+            motion,
+            source,
+            target,
+            source_rest: motion.rest(),
+            target_rest: (0..skeleton.joints.len()).map(|j| skeleton.rest_position(j)).collect(),
+            turns: vec![Quat::IDENTITY; motion.joints.len()],
+        };
+        let stands = builder.stands();
+        builder.trunk(stands);
+        for side in Side::BOTH {
+            builder.arm(side, stands);
+            builder.leg(side, stands);
+        }
+        if !stands {
+            builder.flatten_feet();
+            builder.head();
+        }
+        Self { turns: builder.turns }
+    }
+}
+
+struct Builder<'a> {
+    motion: &'a MotionFile,
+    source: &'a Humanoid,
+    target: &'a Humanoid,
+    source_rest: Vec<Vec3>,
+    target_rest: Vec<Vec3>,
+    turns: Vec<Quat>,
+}
+
+impl Builder<'_> {
+    fn source_at(&self, role: Role) -> Option<Vec3> {
+        self.source.get(role).map(|j| self.source_rest[j])
+    }
+
+    /// Direction of the bone between two roles in the source's zero pose.
+    fn source_bone(&self, from: Role, to: Role) -> Option<Vec3> {
+        (self.source_at(to)? - self.source_at(from)?).try_normalize()
+    }
+
+    fn target_bone(&self, from: Role, to: Role) -> Option<Vec3> {
+        (self.target_rest[self.target.get(to)?] - self.target_rest[self.target.get(from)?]).try_normalize()
+    }
+
+    fn set(&mut self, role: Role, turn: Quat) {
+        if let Some(j) = self.source.get(role) {
+            self.turns[j] = turn;
+        }
+    }
+
+    /// True where the zero pose has the head above the hips and the feet below, legs nearly straight down.
+    fn stands(&self) -> bool {
+        let up = |from: Role, to: Role| self.source_bone(from, to).map_or(1.0, |d| d.y);
+        let legs = Side::BOTH.map(|s| up(Role::Shin(s), Role::Thigh(s)).min(up(Role::Foot(s), Role::Shin(s))));
+        up(Role::Hips, Role::Head) > 0.7 && legs[0].min(legs[1]) > 0.6
+    }
+
+    /// The frame of the hips: left along X, up along the spine as far as it is not.
+    fn hips(&self, stands: bool) -> Quat {
+        let sides = Side::BOTH.map(|s| self.source_at(Role::Thigh(s)));
+        let [Some(left), Some(right)] = sides else { return Quat::IDENTITY };
+        let Some(x) = (left - right).try_normalize() else { return Quat::IDENTITY };
+        let hips = self.source_at(Role::Hips).unwrap_or_default();
+        let first_up = self.source.spine.iter().chain(&self.source.neck).map(|&j| self.source_rest[j] - hips);
+        let up = if stands { Vec3::Y } else { first_up.filter_map(Vec3::try_normalize).next().unwrap_or(Vec3::Y) };
+        let Some(y) = (up - x * up.dot(x)).try_normalize() else { return Quat::IDENTITY };
+        if stands {
+            // Only the way that it faces: hips that hang askew in a file do so in no pose.
+            let forward = x.cross(Vec3::Y);
+            return Quat::from_rotation_y(forward.x.atan2(forward.z));
+        }
+        Quat::from_mat3(&Mat3::from_cols(x, y, x.cross(y))).normalize()
+    }
+
+    fn trunk(&mut self, stands: bool) {
+        let hips = self.hips(stands);
+        self.turns.fill(hips);
+        if stands {
+            return;
+        }
+        // In a standing figure spine, neck and head point up, whatever bends a rig's joints describe.
+        let mut turn = hips;
+        let mut chain: Vec<usize> = self.source.spine.iter().chain(&self.source.neck).copied().collect();
+        chain.extend(self.source.get(Role::Head));
+        for (i, &j) in chain.iter().enumerate() {
+            let bone = match chain.get(i + 1) {
+                Some(&next) => self.source_rest[next] - self.source_rest[j],
+                None => self.motion.joints[j].end.unwrap_or_default(),
+            };
+            if let Some(bone) = bone.try_normalize() {
+                turn = swing(turn, Vec3::Y, bone);
+            }
+            self.turns[j] = turn;
+        }
+    }
+
+    fn chest(&self) -> Quat {
+        let chest = self.source.spine.last().copied().or(self.source.get(Role::Hips));
+        chest.map_or(Quat::IDENTITY, |j| self.turns[j])
+    }
+
+    fn arm(&mut self, side: Side, stands: bool) {
+        let mut turn = self.chest();
+        if let Some(bone) = self.source_bone(Role::Clavicle(side), Role::UpperArm(side)).filter(|_| !stands) {
+            turn = swing(turn, Vec3::X * side.sign(), bone);
+        }
+        self.set(Role::Clavicle(side), turn);
+        for (from, to) in
+            [(Role::UpperArm(side), Role::Forearm(side)), (Role::Forearm(side), Role::Hand(side))]
+        {
+            if let (Some(target), Some(source)) = (self.target_bone(from, to), self.source_bone(from, to)) {
+                turn = swing(turn, target, source);
+            }
+            self.set(from, turn);
+        }
+        self.set(Role::Hand(side), turn);
+    }
+
+    fn leg(&mut self, side: Side, stands: bool) {
+        let pelvis = self.source.get(Role::Pelvis).or(self.source.get(Role::Hips));
+        let trunk = pelvis.map_or(Quat::IDENTITY, |j| self.turns[j]);
+        let mut turn = trunk;
+        for (from, to) in [(Role::Thigh(side), Role::Shin(side)), (Role::Shin(side), Role::Foot(side))] {
+            if let (Some(target), Some(source)) = (self.target_bone(from, to), self.source_bone(from, to)) {
+                turn = swing(turn, target, source);
+            }
+            self.set(from, turn);
+        }
+        let bones = (
+            self.target_bone(Role::Foot(side), Role::Toe(side)),
+            self.source_bone(Role::Foot(side), Role::Toe(side)),
+        );
+        let foot = match bones {
+            (Some(target), Some(source)) if stands => {
+                // Both soles lie flat, however high the ankles are: only the way that the toes point counts.
+                let (a, b) = (trunk * target, source);
+                Quat::from_rotation_y(b.x.atan2(b.z) - a.x.atan2(a.z)) * trunk
+            }
+            _ if stands => trunk,
+            (Some(target), Some(source)) => swing(turn, target, source),
+            _ => turn,
+        };
+        self.set(Role::Foot(side), foot);
+        self.set(Role::Toe(side), foot);
+        if let (Some(bone), false) = (self.target_bone(Role::Foot(side), Role::Toe(side)), stands)
+            && let Some(end) = self.source.get(Role::Toe(side)).and_then(|j| self.motion.joints[j].end)
+            && let (Some(forward), Some(end)) = ((bone * Vec3::new(1.0, 0.0, 1.0)).try_normalize(), end.try_normalize())
+        {
+            // Toes lie flat at rest, though the bone of the foot slopes.
+            self.set(Role::Toe(side), swing(foot, forward, end));
+        }
+    }
+
+    /// Corrects the alignment of the feet so that the soles are level in the frames in which an ankle is lowest,
+    /// when it stands. A file may have one foot standing and never the other, so both are corrected alike.
+    fn flatten_feet(&mut self) {
+        let feet: Vec<(Side, usize)> =
+            Side::BOTH.iter().filter_map(|&s| Some((s, self.source.get(Role::Foot(s))?))).collect();
+        let mirror = |side: Side| Vec3::new(side.sign(), 1.0, 1.0);
+        let mut world = Vec::new();
+        let mut samples: Vec<(f32, Vec3)> = Vec::new();
+        for frame in 0..self.motion.frames {
+            self.motion.world(frame, &mut world);
+            for &(side, foot) in &feet {
+                let turn = Quat::from_mat3a(&world[foot].matrix3) * self.turns[foot];
+                samples.push((world[foot].translation.y, mirror(side) * (turn.conjugate() * Vec3::Y)));
+            }
+        }
+        samples.sort_by(|a, b| a.0.total_cmp(&b.0));
+        // Few enough that a dance on the toes, with one moment of standing, still finds that moment.
+        let lowest = samples.len().div_ceil(33);
+        let up = samples[..lowest].iter().map(|(_, up)| *up).sum::<Vec3>().normalize_or(Vec3::Y);
+        // Feet that never stand tell nothing.
+        if up.y > 0.5 {
+            for (side, foot) in feet {
+                self.turns[foot] *= Quat::from_rotation_arc(Vec3::Y, (mirror(side) * up).normalize_or(Vec3::Y));
+            }
+        }
+    }
+
+    /// Chooses the alignment of the head. Its frame may follow the neck's or the hips', and its end site may point
+    /// anywhere; people mostly hold their heads as they hold their chests.
+    fn head(&mut self) {
+        let (Some(head), Some(hips)) = (self.source.get(Role::Head), self.source.get(Role::Hips)) else { return };
+        let chest = self.source.spine.last().copied().unwrap_or(hips);
+        let neck = self.source.neck.last().copied().unwrap_or(chest);
+        let mut world = Vec::new();
+        let candidates = [self.turns[head], self.turns[neck], self.turns[hips]];
+        let mut scores = [0.0; 3];
+        for frame in (0..self.motion.frames).step_by((self.motion.frames / 100).max(1)) {
+            self.motion.world(frame, &mut world);
+            let of = |j: usize, turn: Quat| Quat::from_mat3a(&world[j].matrix3) * turn;
+            let held = of(chest, self.turns[chest]);
+            for (score, candidate) in scores.iter_mut().zip(candidates) {
+                *score += of(head, candidate).dot(held).abs();
+            }
+        }
+        let best = (0..3).fold(0, |best, k| if scores[k] > scores[best] + 1e-3 { k } else { best });
+        self.turns[head] = candidates[best];
+    }
+}
+
+/// `turn` followed by the smallest rotation that brings a bone, which points along `target` at rest, along `source`.
+fn swing(turn: Quat, target: Vec3, source: Vec3) -> Quat {
+    (Quat::from_rotation_arc((turn * target).normalize_or(source), source) * turn).normalize()
+}
