@@ -32,5 +32,5 @@ pub use info::{CharacterInfo, ClipInfo, MotionInfo};
 pub use pose::Pose;
 pub use retarget::retarget;
 pub use sample::pose_at;
-pub use settings::{BodySettings, LengthUnit, MotionSettings, RootPosition, UpAxis};
+pub use settings::{BodySettings, Facing, LengthUnit, MotionSettings, RootPosition, UpAxis};
 pub use skinning::{Skin, skin};

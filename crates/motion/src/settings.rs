@@ -64,6 +64,23 @@ pub enum UpAxis {
     Z,
 }
 
+/// The way that a rest pose faces.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Facing {
+    /// Guessed from the legs.
+    #[default]
+    Auto,
+    /// As glTF has it.
+    PlusZ,
+    /// Turned by a quarter to the figure's left.
+    PlusX,
+    /// Turned round.
+    MinusZ,
+    /// Turned by a quarter to the figure's right.
+    MinusX,
+}
+
 /// How to read a character.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
@@ -72,6 +89,8 @@ pub struct BodySettings {
     pub unit: LengthUnit,
     /// The axis that points up. Automatic is Y, as glTF has it.
     pub up: UpAxis,
+    /// The way that the rest pose faces; it is turned to +Z.
+    pub facing: Facing,
 }
 
 /// How the root's position of a BVH row is meant.

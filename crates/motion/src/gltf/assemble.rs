@@ -11,6 +11,7 @@ use glam::{Affine3A, Vec3};
 use super::{
     Character,
     accessor::Accessors,
+    axes::turn_to_face,
     clip::{Targets, read_clip},
     document::{Document, Mesh as MeshEntry},
     mesh::{Binding, Surface},
@@ -55,7 +56,7 @@ pub(super) fn assemble(accessors: &Accessors, settings: BodySettings) -> Result<
         0 => mesh_nodes,
         some => some,
     };
-    let (skeleton, joint_of_node) = tree.skeleton(file, document, wanted, settings.up, &mut dropped)?;
+    let (skeleton, joint_of_node) = tree.skeleton(file, document, wanted, &mut dropped)?;
 
     let mut palette = Palette::default();
     let mut skins: BTreeMap<usize, Vec<u16>> = BTreeMap::new();
@@ -117,6 +118,7 @@ pub(super) fn assemble(accessors: &Accessors, settings: BodySettings) -> Result<
     if unit_metres != 1.0 {
         rescale(&mut body, &mut clips, unit_metres);
     }
+    turn_to_face(&mut body, &mut clips, settings, &mut notes);
     mend_winding(&mut body);
     body.head_joint = guess_head(&body.skeleton, &body.mesh);
     for clip in &mut clips {
@@ -161,7 +163,7 @@ fn note_pictures(document: &Document, notes: &mut Vec<String>) {
 }
 
 /// Skins the surface in the rest pose, which is what the mesh holds.
-fn rest_surface(body: &mut Body) {
+pub(super) fn rest_surface(body: &mut Body) {
     let (mut pose, mut rest) = (Pose::default(), Skin::default());
     pose_at(body, None, 0.0, &mut pose);
     skin(body, &pose, &mut rest);

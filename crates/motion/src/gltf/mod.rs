@@ -6,6 +6,7 @@
 
 mod accessor;
 mod assemble;
+mod axes;
 mod buffers;
 mod clip;
 mod document;

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glam::{Mat4, Quat, Vec3};
 
 use super::document::{Document, Node};
-use crate::{Joint, MotionError, Skeleton, UpAxis};
+use crate::{Joint, MotionError, Skeleton};
 
 /// The nodes of the scene in an order that has parents first.
 pub(super) struct Tree {
@@ -89,7 +89,6 @@ impl Tree {
         file: &str,
         document: &Document,
         mut wanted: Vec<bool>,
-        up: UpAxis,
         dropped: &mut BTreeMap<String, u64>,
     ) -> Result<(Skeleton, Vec<Option<usize>>), MotionError> {
         for &n in self.order.iter().rev() {
@@ -98,28 +97,18 @@ impl Tree {
             }
         }
         let mut skeleton = Skeleton::default();
-        let turned = up == UpAxis::Z;
-        if turned {
-            skeleton.joints.push(Joint {
-                name: "up axis".into(),
-                parent: None,
-                translation: Vec3::ZERO,
-                rotation: Quat::from_rotation_x(-std::f32::consts::FRAC_PI_2),
-                scale: Vec3::ONE,
-            });
-        }
         let mut joint_of_node = vec![None; document.nodes.len()];
         for &n in self.order.iter().filter(|&&n| wanted[n]) {
             let (translation, rotation, scale) = local(&document.nodes[n]).unwrap_or_else(|| {
                 *dropped.entry("node_transforms".into()).or_default() += 1;
                 (Vec3::ZERO, Quat::IDENTITY, Vec3::ONE)
             });
-            let parent = self.parent[n].and_then(|p| joint_of_node[p]).or(turned.then_some(0));
+            let parent = self.parent[n].and_then(|p| joint_of_node[p]);
             let name = document.nodes[n].name.clone().unwrap_or_else(|| format!("node {n}"));
             joint_of_node[n] = Some(skeleton.joints.len());
             skeleton.joints.push(Joint { name, parent, translation, rotation, scale });
         }
-        if skeleton.joints.len() > usize::from(u16::MAX) {
+        if skeleton.joints.len() >= usize::from(u16::MAX) {
             let problem = format!("{} joints; at most {} are read", skeleton.joints.len(), u16::MAX);
             return Err(MotionError::malformed(file, "the scene", problem));
         }

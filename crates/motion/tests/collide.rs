@@ -1,0 +1,64 @@
+//! Colliders and the distance of the resting body, on real characters.
+
+mod common;
+
+use glam::Vec3;
+use lovelock_motion::{RestDistance, fit_colliders, head_mesh, load_character, signed_distance};
+
+#[test]
+fn colliders_hug_head_neck_and_shoulders() {
+    let Some(data) = common::data_dir() else { return };
+    let body = load_character(&data.join("characters/mh_body.glb")).unwrap().body;
+    let colliders = fit_colliders(&body);
+    for c in &colliders {
+        println!("{:20} {:?}", c.name, c.shape_at_rest);
+    }
+    let union = |p: Vec3| colliders.iter().map(|c| signed_distance(&c.shape_at_rest, p)).fold(f32::MAX, f32::min);
+    let head = body.skeleton.rest_position(body.head_joint);
+    let mesh = head_mesh(&body);
+    let stats = |name: &str, points: &[Vec3]| {
+        let mut d: Vec<f32> = points.iter().map(|&p| union(p)).collect();
+        d.sort_by(f32::total_cmp);
+        let mean = d.iter().sum::<f32>() / d.len() as f32;
+        println!(
+            "{name}: {} points, mean {:.1} mm, 5% {:.1}, 50% {:.1}, 95% {:.1}",
+            d.len(), mean * 1e3, d[d.len() / 20] * 1e3, d[d.len() / 2] * 1e3, d[d.len() * 19 / 20] * 1e3
+        );
+        mean
+    };
+    let scalp: Vec<Vec3> =
+        mesh.positions.iter().zip(&mesh.scalp).filter(|(_, s)| **s > 0.5).map(|(p, _)| *p + head).collect();
+    let all: Vec<Vec3> = mesh.positions.iter().map(|p| *p + head).collect();
+    let chest: Vec<Vec3> =
+        body.mesh.positions.iter().copied().filter(|p| p.y > head.y - 0.35 && p.x.abs() < 0.25).collect();
+    assert!((stats("scalp", &scalp) - 0.002).abs() < 0.004);
+    assert!(stats("head and neck", &all).abs() < 0.005);
+    assert!(stats("head to chest", &chest).abs() < 0.005);
+}
+
+#[test]
+fn distance_of_the_resting_body() {
+    let Some(data) = common::data_dir() else { return };
+    let body = load_character(&data.join("characters/mh_body.glb")).unwrap().body;
+    let start = std::time::Instant::now();
+    let distance = RestDistance::new(&body);
+    println!("build {:?}", start.elapsed());
+    let mesh = head_mesh(&body);
+    println!("head mesh {} vertices {} triangles", mesh.positions.len(), mesh.triangles.len());
+    let start = std::time::Instant::now();
+    let mut count = 0;
+    let mut askew = 0;
+    let scalp = mesh.positions.iter().zip(&mesh.normals).zip(&mesh.scalp).filter(|(_, s)| **s > 0.5);
+    for ((p, n), _) in scalp {
+        for (offset, sign) in [(0.01, 1.0), (-0.01, -1.0)] {
+            let (d, normal) = distance.distance(*p + *n * offset);
+            // A point is never farther from the surface than from the vertex that it left.
+            assert!(d.abs() <= 0.01 + 1e-5, "{d}");
+            askew += usize::from(d * sign < 0.005 || normal.dot(*n) < 0.7);
+            count += 1;
+        }
+    }
+    // Where ears are thinner than 2 cm the other side is closer.
+    assert!(askew * 20 < count, "{askew} of {count}");
+    println!("{count} queries {:?}", start.elapsed());
+}
