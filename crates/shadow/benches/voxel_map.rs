@@ -36,9 +36,7 @@ fn stages(c: &mut Criterion, name: &str, style: Style) {
         let settings = settings(resolution);
         let mut map = VoxelMap::default();
         let mut group = c.benchmark_group(format!("{name}/{resolution}"));
-        group.bench_function("build", |b| {
-            b.iter(|| map.build(black_box(&input(&hair)), &settings))
-        });
+        group.bench_function("build", |b| b.iter(|| map.build(black_box(&input(&hair)), &settings)));
         group.bench_function("lookup", |b| {
             b.iter(|| map.transmittance_at(&hair.x, &hair.y, &hair.z, black_box(&mut out)));
         });
@@ -54,14 +52,7 @@ fn stages(c: &mut Criterion, name: &str, style: Style) {
 
 fn quick(c: &mut Criterion) {
     stages(c, "100k", SMOOTH);
-    stages(
-        c,
-        "1m",
-        Style {
-            strands_per_wisp: 241,
-            ..SMOOTH
-        },
-    );
+    stages(c, "1m", Style { strands_per_wisp: 241, ..SMOOTH });
 }
 
 fn plain(c: &mut Criterion) {

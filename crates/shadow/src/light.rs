@@ -69,10 +69,7 @@ mod tests {
         let close = |a: f32, b: f32| (a - b).abs() < 2e-6;
         assert!(close(frame.x.length(), 1.0) && close(frame.y.length(), 1.0) && close(frame.z.length(), 1.0));
         assert!(close(frame.x.dot(frame.y), 0.0) && close(frame.y.dot(frame.z), 0.0));
-        assert!(
-            (frame.y.cross(frame.z) - frame.x).length() < 4e-6,
-            "left-handed: {frame:?}"
-        );
+        assert!((frame.y.cross(frame.z) - frame.x).length() < 4e-6, "left-handed: {frame:?}");
     }
 
     fn directions() -> impl Iterator<Item = Vec3> {

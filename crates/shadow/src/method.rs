@@ -73,9 +73,7 @@ impl FromStr for ShadowMethod {
 
     fn from_str(name: &str) -> Result<Self, Self::Err> {
         let found = Self::ALL.iter().find(|method| method.id() == name);
-        found.copied().ok_or_else(|| UnknownShadowMethod {
-            found: name.to_owned(),
-        })
+        found.copied().ok_or_else(|| UnknownShadowMethod { found: name.to_owned() })
     }
 }
 
@@ -102,20 +100,26 @@ mod tests {
         for (i, &method) in ShadowMethod::ALL.iter().enumerate() {
             assert_eq!(method.id().parse(), Ok(method));
             assert_eq!(String::from(method), method.to_string());
-            assert!(
-                ShadowMethod::ALL[..i]
-                    .iter()
-                    .all(|other| other.id() != method.id())
-            );
+            assert!(ShadowMethod::ALL[..i].iter().all(|other| other.id() != method.id()));
         }
+    }
+
+    #[test]
+    fn projects_hold_the_id() {
+        use serde::de::value::{Error, StrDeserializer};
+        use serde::de::{Deserialize, IntoDeserializer};
+        for &method in ShadowMethod::ALL {
+            let text: StrDeserializer<'_, Error> = method.id().into_deserializer();
+            assert_eq!(ShadowMethod::deserialize(text), Ok(method));
+        }
+        let text: StrDeserializer<'_, Error> = "fog".into_deserializer();
+        let error = ShadowMethod::deserialize(text).unwrap_err().to_string();
+        assert!(error.contains("fog") && error.contains("voxel-map"), "{error}");
     }
 
     #[test]
     fn an_unknown_name_lists_the_known_ones() {
         let error = "Voxel map".parse::<ShadowMethod>().unwrap_err().to_string();
-        assert_eq!(
-            error,
-            "no shadow method is called \"Voxel map\"; use one of: none, voxel-map"
-        );
+        assert_eq!(error, "no shadow method is called \"Voxel map\"; use one of: none, voxel-map");
     }
 }

@@ -27,11 +27,7 @@ impl ShadowSettings {
 
     /// The extinction scale as methods use it: not negative, finite, and 0 where it is no number.
     pub fn safe_extinction_scale(&self) -> f32 {
-        if self.extinction_scale > 0.0 {
-            self.extinction_scale.min(1e6)
-        } else {
-            0.0
-        }
+        if self.extinction_scale > 0.0 { self.extinction_scale.min(1e6) } else { 0.0 }
     }
 }
 
@@ -41,6 +37,22 @@ impl Default for ShadowSettings {
             method: ShadowMethod::default(),
             extinction_scale: 0.15,
             voxel_map: VoxelMapSettings::default(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn extinction_is_always_a_usable_number() {
+        let cases = [(0.15, 0.15), (0.0, 0.0), (-1.0, 0.0), (f32::NAN, 0.0), (f32::INFINITY, 1e6)];
+        for (extinction_scale, safe) in cases {
+            assert_eq!(
+                ShadowSettings { extinction_scale, ..Default::default() }.safe_extinction_scale(),
+                safe
+            );
         }
     }
 }

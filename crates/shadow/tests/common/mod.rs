@@ -1,12 +1,12 @@
 //! Strands to shadow: small hairstyles grown from a seed, and slabs of known density.
-#![allow(dead_code)] // Each test and benchmark uses its part.
+#![allow(dead_code, unreachable_pub, missing_docs)] // A module of each test and benchmark, which uses its part.
 
 use std::sync::Arc;
 
 use glam::Vec3;
 use lovelock_groom::Strands;
 
-/// Random numbers that are the same everywhere (Steele, Lea, Flood 2014, SplitMix64).
+/// Random numbers that are the same everywhere (Steele, Lea, Flood 2014, split-mix of 64 bits).
 pub struct Random(pub u64);
 
 impl Random {
@@ -59,21 +59,9 @@ pub struct Style {
 }
 
 /// The published hairstyle: 134 wisps of 25 strands of 30 segments.
-pub const SMOOTH: Style = Style {
-    wisps: 134,
-    strands_per_wisp: 25,
-    segments: 30,
-    length: 0.3,
-    curl: 0.002,
-};
+pub const SMOOTH: Style = Style { wisps: 134, strands_per_wisp: 25, segments: 30, length: 0.3, curl: 0.002 };
 /// The published curly hairstyle: twice the segments.
-pub const CURLY: Style = Style {
-    wisps: 134,
-    strands_per_wisp: 25,
-    segments: 60,
-    length: 0.3,
-    curl: 0.012,
-};
+pub const CURLY: Style = Style { wisps: 134, strands_per_wisp: 25, segments: 60, length: 0.3, curl: 0.012 };
 
 /// The centre of the head that [`grow`] grows on.
 pub const HEAD: Vec3 = Vec3::new(0.0, 1.6, 0.0);
@@ -87,7 +75,7 @@ pub fn grow(style: Style, seed: u64) -> Vec<Vec<Vec3>> {
         let height = 1.0 - 1.1 * (wisp as f32 + 0.5) / style.wisps as f32;
         let turn = wisp as f32 * 2.399_963;
         let out = Vec3::new(turn.cos(), 0.0, turn.sin()) * (1.0 - height * height).sqrt() + Vec3::Y * height;
-        let phase = 6.28 * random.unit();
+        let phase = std::f32::consts::TAU * random.unit();
         for _ in 0..style.strands_per_wisp {
             let offset = 0.012 * random.cube();
             let own = phase + 0.6 * random.signed();

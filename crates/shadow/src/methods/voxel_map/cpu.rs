@@ -5,9 +5,9 @@ use lovelock_groom::Strands;
 use rayon::prelude::*;
 
 use super::deposit::Deposit;
-use super::grid::{DEPTH_ONE, Grid, Span};
+use super::grid::{DEPTH_ONE, Grid};
 use super::lattice::{Bounds, Lattice};
-use super::layout::{Layout, TILE_EDGE};
+use super::layout::Layout;
 use super::lookup::{Lookup, behind_all};
 use super::simd::{self, Width};
 use super::{VoxelDeposit, VoxelFilter, VoxelMapSettings, sum};
@@ -19,6 +19,8 @@ const POINTS_PER_WORKER: usize = 4096;
 const MOST_GRIDS: usize = 8;
 /// Most cells of all private grids together, which bounds their address space to 1 GiB.
 const MOST_CELLS: usize = 1 << 28;
+/// Points of one parallel piece of the bounds.
+const POINTS_PER_BOUNDS: usize = 1 << 16;
 /// Points of one parallel piece of a lookup.
 const POINTS_PER_LOOKUP: usize = 4096;
 
@@ -39,10 +41,8 @@ struct Built {
     width: Width,
     /// The first one holds the map once it is built.
     grids: Vec<Grid>,
-    /// Slices with hair in them, a tile.
-    touched: Vec<Span>,
-    /// Slices that are summed, a tile.
-    filled: Vec<Span>,
+    /// Groups of slices with hair in them, a tile.
+    touched: Vec<u64>,
     report: ShadowReport,
 }
 
@@ -53,7 +53,7 @@ impl VoxelMap {
     }
 
     fn build_with(&mut self, input: &ShadowInput, settings: &ShadowSettings, width: Width) {
-        let bounds = bounds(input);
+        let bounds = bounds(width, input);
         let lattice = Lattice::new(input, &settings.voxel_map, &bounds);
         let layout = Layout::new(lattice.resolution);
         let grids = grid_count(&layout, input.strands.points());
@@ -67,7 +67,6 @@ impl VoxelMap {
                 width,
                 grids: Vec::new(),
                 touched: Vec::new(),
-                filled: Vec::new(),
                 report: ShadowReport::default(),
             }),
         };
@@ -77,12 +76,11 @@ impl VoxelMap {
         built.grids.truncate(grids);
         built.grids.resize_with(grids, || Grid::new(&layout));
         let samples = built.deposit(input, settings);
-        sum::touched_spans(&layout, &built.grids, &mut built.touched);
-        sum::dilate(&layout, &built.touched, &mut built.filled);
-        sum::sum_along_light(&layout, &mut built.grids, &built.filled);
+        sum::touched(&built.grids, &mut built.touched);
+        sum::sum_along_light(width, &layout, &mut built.grids, &built.touched);
         built.report = ShadowReport {
             memory_bytes: built.memory_bytes(),
-            cells_touched: built.filled.iter().map(|span| span.cells().len() as u64).sum(),
+            cells_touched: built.cells_in_use(),
             cells_total: u64::from(layout.resolution).pow(3),
             cell_size: lattice.cell_size,
             samples,
@@ -94,7 +92,7 @@ impl VoxelMap {
 impl Built {
     /// Empties the grids and adds the strands to them; says how many samples that were.
     fn deposit(&mut self, input: &ShadowInput, settings: &ShadowSettings) -> u64 {
-        let (layout, width, filled) = (self.layout, self.width, &self.filled);
+        let (layout, width) = (self.layout, self.width);
         let deposit = Deposit {
             layout,
             lattice: self.lattice,
@@ -107,68 +105,59 @@ impl Built {
             .enumerate()
             .with_max_len(1)
             .map(|(piece, grid)| {
-                // The first grid holds the last map, the others what their workers put there.
-                if piece == 0 {
-                    grid.clear_spans(&layout, filled);
-                } else {
-                    grid.clear(&layout);
-                }
-                let (first, last) = (
-                    first_strand(strands, piece, pieces),
-                    first_strand(strands, piece + 1, pieces),
-                );
-                simd::deposit(width, &deposit, strands, first, last, grid)
+                grid.clear(&layout);
+                let (first, last) =
+                    (first_strand(strands, piece, pieces), first_strand(strands, piece + 1, pieces));
+                let samples = simd::deposit(width, &deposit, strands, first, last, grid);
+                grid.take_marks(&layout);
+                samples
             })
             .sum()
     }
 
     fn lookup(&self) -> Option<Lookup<'_>> {
+        let map = self.grids.first()?;
         Some(Lookup {
             layout: self.layout,
             lattice: &self.lattice,
-            cells: &self.grids.first()?.cells,
+            cells: &map.cells,
             touched: &self.touched,
-            filled: &self.filled,
+            filled: &map.used,
             as_printed: self.filter == VoxelFilter::Paper,
         })
     }
 
-    fn memory_bytes(&self) -> u64 {
-        let grids: usize = self
+    /// Cells that the last build summed.
+    fn cells_in_use(&self) -> u64 {
+        let groups: u64 = self
             .grids
-            .iter()
-            .map(|grid| grid.cells.len() * 4 + grid.touched.len())
-            .sum();
-        (grids + (self.touched.len() + self.filled.len()) * size_of::<Span>()) as u64
+            .first()
+            .map_or(0, |map| map.used.iter().map(|used| u64::from(used.count_ones())).sum());
+        groups << self.layout.group_len_shift()
+    }
+
+    fn memory_bytes(&self) -> u64 {
+        let grids =
+            self.grids.iter().map(|grid| grid.cells.len() * 4 + grid.marks.len() + grid.used.len() * 8);
+        (grids.sum::<usize>() + self.touched.len() * 8) as u64
     }
 }
 
 /// Bounds of all points, in parallel.
-fn bounds(input: &ShadowInput) -> Bounds {
-    let points = input.strands.points();
-    let piece = 16_384;
-    (0..points.div_ceil(piece))
-        .into_par_iter()
-        .map(|at| {
-            let first = at * piece;
-            Bounds::of(
-                input.strands,
-                first,
-                piece.min(points - first),
-                &input.light,
-                input.anchor,
-            )
-        })
+fn bounds(width: Width, input: &ShadowInput) -> Bounds {
+    let Strands { x, y, z, .. } = input.strands;
+    let pieces = x
+        .par_chunks(POINTS_PER_BOUNDS)
+        .zip(y.par_chunks(POINTS_PER_BOUNDS))
+        .zip(z.par_chunks(POINTS_PER_BOUNDS));
+    pieces
+        .map(|((x, y), z)| simd::bounds(width, x, y, z, &input.light, input.anchor))
         .reduce(|| Bounds::EMPTY, Bounds::join)
 }
 
 /// What a segment one cell long across the light, or a point, adds to its cell, in fixed point.
 fn fixed_point_depth(input: &ShadowInput, settings: &ShadowSettings, lattice: &Lattice) -> f32 {
-    let VoxelMapSettings {
-        deposit,
-        point_extinction,
-        ..
-    } = settings.voxel_map;
+    let VoxelMapSettings { deposit, point_extinction, .. } = settings.voxel_map;
     let scale = settings.safe_extinction_scale();
     let depth = match deposit {
         // τ = s_ext w ℓ sinθ / ds², with ℓ sinθ in units of ds.
@@ -176,18 +165,12 @@ fn fixed_point_depth(input: &ShadowInput, settings: &ShadowSettings, lattice: &L
         // τ = f ds.
         VoxelDeposit::PointCount => scale * point_extinction * lattice.cell_size,
     };
-    if depth > 0.0 {
-        (depth * DEPTH_ONE).min(1e30)
-    } else {
-        0.0
-    }
+    if depth > 0.0 { (depth * DEPTH_ONE).min(1e30) } else { 0.0 }
 }
 
 /// How many private grids to use here and now.
 fn grid_count(layout: &Layout, points: usize) -> usize {
-    let useful = rayon::current_num_threads()
-        .min(points / POINTS_PER_WORKER)
-        .min(MOST_GRIDS);
+    let useful = rayon::current_num_threads().min(points / POINTS_PER_WORKER).min(MOST_GRIDS);
     useful.min(MOST_CELLS / layout.cells()).max(1)
 }
 
@@ -197,10 +180,7 @@ fn first_strand(strands: &Strands, piece: usize, pieces: usize) -> usize {
         return strands.count();
     }
     let point = (strands.points() * piece / pieces) as u32;
-    strands
-        .first_point
-        .partition_point(|first| *first < point)
-        .min(strands.count())
+    strands.first_point.partition_point(|first| *first < point).min(strands.count())
 }
 
 impl CpuShadow for VoxelMap {
@@ -209,55 +189,38 @@ impl CpuShadow for VoxelMap {
     }
 
     fn transmittance(&self, p: Vec3) -> f32 {
-        self.built
-            .as_ref()
-            .and_then(Built::lookup)
-            .map_or(1.0, |lookup| lookup.one(p))
+        self.built.as_ref().and_then(Built::lookup).map_or(1.0, |lookup| lookup.one(p))
     }
 
     fn transmittance_at(&self, x: &[f32], y: &[f32], z: &[f32], out: &mut [f32]) {
-        assert!(
-            x.len() == out.len() && y.len() == out.len() && z.len() == out.len(),
-            "slices of one length"
-        );
-        let Some((lookup, width)) = self
-            .built
-            .as_ref()
-            .and_then(|built| Some((built.lookup()?, built.width)))
+        assert!(x.len() == out.len() && y.len() == out.len() && z.len() == out.len(), "slices of one length");
+        let Some((lookup, width)) =
+            self.built.as_ref().and_then(|built| Some((built.lookup()?, built.width)))
         else {
             out.fill(1.0);
             return;
         };
         let piece = POINTS_PER_LOOKUP;
-        let points = x
-            .par_chunks(piece)
-            .zip(y.par_chunks(piece))
-            .zip(z.par_chunks(piece));
+        let points = x.par_chunks(piece).zip(y.par_chunks(piece)).zip(z.par_chunks(piece));
         points
             .zip(out.par_chunks_mut(piece))
             .for_each(|(((x, y), z), out)| simd::lookup(width, &lookup, x, y, z, out));
     }
 
     fn report(&self) -> ShadowReport {
-        self.built
-            .as_ref()
-            .map_or_else(ShadowReport::default, |built| built.report)
+        self.built.as_ref().map_or_else(ShadowReport::default, |built| built.report)
     }
 
     fn column_map(&self) -> Option<ColumnMap> {
         let built = self.built.as_ref()?;
         let (layout, lattice) = (&built.layout, &built.lattice);
-        let cells = &built.grids.first()?.cells;
+        let lookup = built.lookup()?;
         let n = layout.resolution;
         let mut transmittance = vec![1.0; (n * n) as usize];
         for (j, row) in transmittance.chunks_exact_mut(n as usize).enumerate() {
             for (k, out) in row.iter_mut().enumerate() {
-                let (j, k) = (j as u32, k as u32);
-                let last =
-                    built.filled[((j / TILE_EDGE) * layout.tiles_per_edge + k / TILE_EDGE) as usize].last;
-                if last >= 0 {
-                    *out = behind_all(cells[layout.address(last as u32, j, k) as usize]);
-                }
+                let last = layout.address(n - 1, j as u32, k as u32) as usize;
+                *out = behind_all(lookup.cell_anywhere(last));
             }
         }
         // Rows of the map run along the second axis across the light.
@@ -268,10 +231,73 @@ impl CpuShadow for VoxelMap {
             per_map.extend(-per_map.dot(lattice.anchor) - first[axis] / n)
         };
         let uv_from_world = Mat4::from_cols(row(2), row(1), row(0), Vec4::W).transpose();
-        Some(ColumnMap {
-            size: layout.resolution,
-            transmittance,
-            uv_from_world,
-        })
+        Some(ColumnMap { size: layout.resolution, transmittance, uv_from_world })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::LightFrame;
+
+    /// Strands that wind through a box, with a broken point and a segment across the whole box.
+    fn strands() -> Strands {
+        let mut made = Strands::default();
+        let mut first_point = vec![0];
+        for strand in 0..300_u32 {
+            for point in 0..=20_u32 {
+                let (s, p) = (strand as f32, point as f32);
+                made.x.push(0.1 * (0.7 * s + 0.2 * p).sin());
+                made.y.push(1.5 - 0.01 * p + 0.02 * (1.3 * s).cos());
+                made.z.push(if strand == 7 && point == 3 {
+                    f32::NAN
+                } else {
+                    0.1 * (1.1 * s + 0.3 * p).cos()
+                });
+            }
+            first_point.push(made.x.len() as u32);
+        }
+        (made.x[21], made.y[21], made.z[21]) = (0.5, 1.0, 0.5);
+        made.first_point = Arc::from(first_point);
+        made
+    }
+
+    #[test]
+    fn every_instruction_set_gives_the_same_bits() {
+        let strands = strands();
+        let light = LightFrame::new(Vec3::new(0.2, -1.0, 0.3));
+        let input = ShadowInput { strands: &strands, strand_width: 2e-3, light, anchor: Vec3::Y };
+        for filter in [VoxelFilter::Centred, VoxelFilter::Paper] {
+            let mut settings = ShadowSettings::default();
+            settings.voxel_map.filter = filter;
+            let answers = |width: Width| {
+                let mut map = VoxelMap::default();
+                map.build_with(&input, &settings, width);
+                let mut out = vec![f32::NAN; strands.points()];
+                map.transmittance_at(&strands.x, &strands.y, &strands.z, &mut out);
+                let columns = map.column_map().map(|columns| columns.transmittance);
+                (out.iter().map(|t| t.to_bits()).collect::<Vec<_>>(), columns, map.report())
+            };
+            let baseline = answers(Width::Baseline);
+            for &width in Width::ALL.iter().filter(|width| width.is_available()) {
+                assert!(answers(width) == baseline, "{width:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn pieces_cover_every_strand_once() {
+        let mut strands = strands();
+        for (pieces, first_point) in
+            [(3, Arc::clone(&strands.first_point)), (2, Arc::from([0_u32, 0, 0])), (4, Arc::from([0_u32]))]
+        {
+            strands.x.truncate(first_point[first_point.len() - 1] as usize);
+            strands.first_point = first_point;
+            let starts: Vec<_> = (0..=pieces).map(|piece| first_strand(&strands, piece, pieces)).collect();
+            assert_eq!((starts[0], starts[pieces]), (0, strands.count()));
+            assert!(starts.is_sorted());
+        }
     }
 }

@@ -11,6 +11,7 @@ use super::grid::{DEPTH_ONE, Grid};
 use super::lattice::Lattice;
 use super::layout::Layout;
 use super::samples::{sample_at, sample_count};
+use super::simd::whole_part;
 
 /// Points that are transformed together; all but the last begin a segment.
 const BLOCK: usize = 64;
@@ -47,10 +48,10 @@ impl Deposit {
     /// Adds strands `first..last` to `grid`; says how many samples that were.
     #[inline(always)]
     pub(super) fn run(&self, strands: &Strands, first: usize, last: usize, grid: &mut Grid) -> u64 {
-        let (mut at, end) = (
-            strands.first_point[first] as usize,
-            strands.first_point[last] as usize,
-        );
+        if first == last {
+            return 0;
+        }
+        let (mut at, end) = (strands.first_point[first] as usize, strands.first_point[last] as usize);
         let mut strand = first;
         let mut samples = 0;
         while at < end {
@@ -72,11 +73,7 @@ impl Deposit {
                 lanes[..count].copy_from_slice(&axis[at..at + count]);
                 lanes
             });
-            let block = if self.by_point {
-                self.points(&points)
-            } else {
-                self.segments(&points, &ends)
-            };
+            let block = if self.by_point { self.points(&points) } else { self.segments(&points, &ends) };
             samples += block.samples.iter().map(|n| u64::from(*n)).sum::<u64>();
             self.scatter(&block, grid);
             at += BLOCK - 1;
@@ -96,11 +93,8 @@ impl Deposit {
         for axis in 0..3 {
             let to = lattice.axes_per_cell[axis];
             for lane in 0..BLOCK {
-                let (x, y, z) = (
-                    points[0][lane] - anchor.x,
-                    points[1][lane] - anchor.y,
-                    points[2][lane] - anchor.z,
-                );
+                let (x, y, z) =
+                    (points[0][lane] - anchor.x, points[1][lane] - anchor.y, points[2][lane] - anchor.z);
                 let c = (x * to.x + y * to.y + z * to.z) - first[axis];
                 valid[lane] &= c.abs() <= limit;
                 // Rounding must not put hair into the empty cells at the border. NaN becomes 1.
@@ -117,11 +111,7 @@ impl Deposit {
         let mut step = [[0.0; BLOCK]; 3];
         let mut keep = [0.0; BLOCK];
         for lane in 0..BLOCK - 1 {
-            keep[lane] = if valid[lane] & valid[lane + 1] & !ends[lane] {
-                1.0
-            } else {
-                0.0
-            };
+            keep[lane] = if valid[lane] & valid[lane + 1] & !ends[lane] { 1.0 } else { 0.0 };
         }
         for axis in 0..3 {
             for lane in 0..BLOCK - 1 {
@@ -138,21 +128,11 @@ impl Deposit {
             inverse[lane] = 1.0 / count;
             // ℓ sinθ in cells is the length across the light.
             let of_sample = self.depth * across.sqrt() * inverse[lane] + 0.5;
-            let of_sample = if of_sample < MOST_PER_SAMPLE {
-                of_sample
-            } else {
-                MOST_PER_SAMPLE
-            };
-            samples[lane] = (count * keep[lane]) as i32 as u32;
-            depth[lane] = (of_sample * keep[lane]) as i32 as u32;
+            let of_sample = if of_sample < MOST_PER_SAMPLE { of_sample } else { MOST_PER_SAMPLE };
+            samples[lane] = whole_part(count * keep[lane]) as u32;
+            depth[lane] = whole_part(of_sample * keep[lane]) as u32;
         }
-        Block {
-            from,
-            step,
-            samples,
-            inverse,
-            depth,
-        }
+        Block { from, step, samples, inverse, depth }
     }
 
     #[inline(always)]
@@ -201,13 +181,9 @@ impl Deposit {
             let at = start + lane;
             let t = sample_at(sample, block.inverse[at]);
             let t = if t < 1.0 { t } else { 1.0 };
-            let cell = |axis: usize| (block.from[axis][at] + block.step[axis][at] * t) as i32 as u32;
+            let cell = |axis: usize| whole_part(block.from[axis][at] + block.step[axis][at] * t) as u32;
             addresses[lane] = self.layout.address(cell(0), cell(1), cell(2));
-            depths[lane] = if sample < block.samples[at] {
-                block.depth[at]
-            } else {
-                0
-            };
+            depths[lane] = if sample < block.samples[at] { block.depth[at] } else { 0 };
         }
         (addresses, depths)
     }
@@ -217,12 +193,9 @@ impl Deposit {
         for lane in start..start + LANES {
             for sample in 0..block.samples[lane] {
                 let t = sample_at(sample, block.inverse[lane]);
-                let cell = |axis: usize| (block.from[axis][lane] + block.step[axis][lane] * t) as u32;
-                self.add(
-                    grid,
-                    self.layout.address(cell(0), cell(1), cell(2)),
-                    block.depth[lane],
-                );
+                let cell =
+                    |axis: usize| whole_part(block.from[axis][lane] + block.step[axis][lane] * t) as u32;
+                self.add(grid, self.layout.address(cell(0), cell(1), cell(2)), block.depth[lane]);
             }
         }
     }
@@ -232,7 +205,7 @@ impl Deposit {
         let cell = &mut grid.cells[address as usize];
         // Saturating sums of numbers that are not negative do not depend on their order either.
         *cell = cell.saturating_add(depth);
-        grid.touched[(address >> self.layout.group_len_shift()) as usize] = 1;
+        grid.marks[(address >> self.layout.group_len_shift()) as usize] = 1;
     }
 }
 

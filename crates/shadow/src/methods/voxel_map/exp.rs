@@ -2,6 +2,8 @@
 // Compiled within the versions of `simd`.
 #![allow(clippy::inline_always)]
 
+use super::simd::whole_part;
+
 /// One optical depth in the 16-bit steps of a cell.
 pub(super) const DEPTH_STEPS: f32 = 4096.0;
 
@@ -12,7 +14,7 @@ pub(super) const DEPTH_STEPS: f32 = 4096.0;
 #[inline(always)]
 pub(super) fn exp_of_minus_steps(depth: f32) -> f32 {
     let octaves = depth * (std::f32::consts::LOG2_E / DEPTH_STEPS);
-    let whole = octaves as i32;
+    let whole = whole_part(octaves);
     let g = octaves - whole as f32;
     let p = -9.449_037e-4_f32;
     let p = p * g + 9.205_799e-3;

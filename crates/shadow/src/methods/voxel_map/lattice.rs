@@ -2,6 +2,8 @@
 //!
 //! The cells are a window of `N × N × N` on an infinite lattice of cubes along the light's axes, one corner of
 //! which is the anchor. The window follows the hair; the lattice follows the anchor alone.
+// Bounds are compiled within the versions of `simd`.
+#![allow(clippy::inline_always)]
 
 use glam::{IVec3, Vec3};
 use lovelock_groom::Strands;
@@ -32,64 +34,28 @@ pub struct Bounds {
 
 impl Bounds {
     /// Bounds of nothing.
-    pub const EMPTY: Self = Self {
-        min: Vec3::splat(f32::INFINITY),
-        max: Vec3::splat(f32::NEG_INFINITY),
-        ignored: 0,
-    };
+    pub const EMPTY: Self =
+        Self { min: Vec3::splat(f32::INFINITY), max: Vec3::splat(f32::NEG_INFINITY), ignored: 0 };
 
-    /// Bounds of points `first..` of `strands`, `count` of them.
-    pub fn of(strands: &Strands, first: usize, count: usize, light: &LightFrame, anchor: Vec3) -> Self {
-        let axes = [light.x, light.y, light.z];
-        let (mut min, mut max, mut ignored) = ([[f32::INFINITY; 8]; 3], [[f32::NEG_INFINITY; 8]; 3], 0_u32);
-        let range = first..first + count;
-        let (xs, x_rest) = strands.x[range.clone()].as_chunks::<8>();
-        let (ys, y_rest) = strands.y[range.clone()].as_chunks::<8>();
-        let (zs, z_rest) = strands.z[range].as_chunks::<8>();
-        let mut add = |x: &[f32; 8], y: &[f32; 8], z: &[f32; 8]| {
-            for lane in 0..8 {
-                let (dx, dy, dz) = (x[lane] - anchor.x, y[lane] - anchor.y, z[lane] - anchor.z);
-                let along = axes.map(|axis| dx * axis.x + dy * axis.y + dz * axis.z);
-                let near = is_near(along[0]) & is_near(along[1]) & is_near(along[2]);
-                ignored += u32::from(!near);
-                for axis in 0..3 {
-                    let (low, high) = (&mut min[axis][lane], &mut max[axis][lane]);
-                    *low = if near & (along[axis] < *low) {
-                        along[axis]
-                    } else {
-                        *low
-                    };
-                    *high = if near & (along[axis] > *high) {
-                        along[axis]
-                    } else {
-                        *high
-                    };
-                }
-            }
-        };
+    /// Bounds of points; slices of one length.
+    #[inline(always)]
+    pub(super) fn of_points(x: &[f32], y: &[f32], z: &[f32], light: &LightFrame, anchor: Vec3) -> Self {
+        let mut running = Running::default();
+        let (xs, x_rest) = x.as_chunks::<LANES>();
+        let (ys, y_rest) = y.as_chunks::<LANES>();
+        let (zs, z_rest) = z.as_chunks::<LANES>();
         for ((x, y), z) in xs.iter().zip(ys).zip(zs) {
-            add(x, y, z);
+            running.add([x, y, z], light, anchor);
         }
-        let mut bounds = Self::EMPTY;
-        for ((&x, &y), &z) in x_rest.iter().zip(y_rest).zip(z_rest) {
-            let p = Vec3::new(x, y, z) - anchor;
-            let p = Vec3::from(axes.map(|axis| p.x * axis.x + p.y * axis.y + p.z * axis.z));
-            if is_near(p.x) && is_near(p.y) && is_near(p.z) {
-                bounds.min = bounds.min.min(p);
-                bounds.max = bounds.max.max(p);
-            } else {
-                bounds.ignored += 1;
-            }
-        }
-        for lane in 0..8 {
-            bounds.min = bounds
-                .min
-                .min(Vec3::from([min[0][lane], min[1][lane], min[2][lane]]));
-            bounds.max = bounds
-                .max
-                .max(Vec3::from([max[0][lane], max[1][lane], max[2][lane]]));
-        }
-        bounds.ignored += u64::from(ignored);
+        // The rest, filled up with points that are ignored.
+        let fill = |rest: &[f32]| {
+            let mut lanes = [f32::NAN; LANES];
+            lanes[..rest.len()].copy_from_slice(rest);
+            lanes
+        };
+        running.add([&fill(x_rest), &fill(y_rest), &fill(z_rest)], light, anchor);
+        let mut bounds = running.bounds();
+        bounds.ignored -= (LANES - x_rest.len()) as u64;
         bounds
     }
 
@@ -103,8 +69,56 @@ impl Bounds {
     }
 }
 
-fn is_near(coordinate: f32) -> bool {
-    coordinate.abs() <= FARTHEST
+/// Points that are bounded together.
+const LANES: usize = 16;
+
+/// Bounds on the way, one for each lane.
+struct Running {
+    min: [[f32; LANES]; 3],
+    max: [[f32; LANES]; 3],
+    ignored: [u32; LANES],
+}
+
+impl Default for Running {
+    fn default() -> Self {
+        Self { min: [[f32::INFINITY; LANES]; 3], max: [[f32::NEG_INFINITY; LANES]; 3], ignored: [0; LANES] }
+    }
+}
+
+impl Running {
+    #[inline(always)]
+    fn add(&mut self, points: [&[f32; LANES]; 3], light: &LightFrame, anchor: Vec3) {
+        let mut along = [[0.0; LANES]; 3];
+        let mut near = [true; LANES];
+        for (along, axis) in along.iter_mut().zip([light.x, light.y, light.z]) {
+            for lane in 0..LANES {
+                let d = [points[0][lane] - anchor.x, points[1][lane] - anchor.y, points[2][lane] - anchor.z];
+                along[lane] = d[0] * axis.x + d[1] * axis.y + d[2] * axis.z;
+                near[lane] &= along[lane].abs() <= FARTHEST;
+            }
+        }
+        for ((along, min), max) in along.iter().zip(&mut self.min).zip(&mut self.max) {
+            for lane in 0..LANES {
+                let low = if near[lane] { along[lane] } else { f32::INFINITY };
+                let high = if near[lane] { along[lane] } else { f32::NEG_INFINITY };
+                min[lane] = if low < min[lane] { low } else { min[lane] };
+                max[lane] = if high > max[lane] { high } else { max[lane] };
+            }
+        }
+        for (ignored, near) in self.ignored.iter_mut().zip(near) {
+            *ignored += u32::from(!near);
+        }
+    }
+
+    fn bounds(&self) -> Bounds {
+        let least = self.min.map(|lanes| lanes.into_iter().fold(f32::INFINITY, f32::min));
+        let most = self.max.map(|lanes| lanes.into_iter().fold(f32::NEG_INFINITY, f32::max));
+        Bounds {
+            min: Vec3::from(least),
+            max: Vec3::from(most),
+            ignored: self.ignored.iter().map(|ignored| u64::from(*ignored)).sum(),
+        }
+    }
 }
 
 /// The window of cells, and the way from the world into it.
@@ -118,7 +132,7 @@ pub struct Lattice {
     pub anchor: Vec3,
     /// The light's axes divided by the cell's size: scalar products with them count cells.
     pub axes_per_cell: [Vec3; 3],
-    /// Lattice coordinates of the window's first cell (the paper's *i_min*, and its like for j and k).
+    /// Lattice coordinates of the window's first cell (the paper's i with index min, and its like for j and k).
     pub first: IVec3,
 }
 
@@ -129,11 +143,8 @@ impl Lattice {
     /// frame while the hair's extent changes little.
     pub fn new(input: &ShadowInput, settings: &VoxelMapSettings, bounds: &Bounds) -> Self {
         let resolution = settings.safe_resolution();
-        let (min, max) = if bounds.min.x <= bounds.max.x {
-            (bounds.min, bounds.max)
-        } else {
-            (Vec3::ZERO, Vec3::ZERO)
-        };
+        let (min, max) =
+            if bounds.min.x <= bounds.max.x { (bounds.min, bounds.max) } else { (Vec3::ZERO, Vec3::ZERO) };
         let fitting = (max - min).max_element() / (resolution - SPARE_CELLS) as f32;
         let wanted = match settings.extent {
             MapExtent::Fit => fitting,
@@ -146,10 +157,7 @@ impl Lattice {
         let farthest = min.abs().max(max.abs()).max_element();
         let cell_size = round_up_to_step(wanted.max(SMALLEST_CELL).max(farthest / 65_536.0));
         let per_cell = 1.0 / cell_size;
-        let (low, high) = (
-            (min * per_cell).floor().as_ivec3(),
-            (max * per_cell).floor().as_ivec3(),
-        );
+        let (low, high) = ((min * per_cell).floor().as_ivec3(), (max * per_cell).floor().as_ivec3());
         // What the hair does not need lies half on each side.
         let spare = (IVec3::splat(resolution as i32) - (high - low + 1)).max(IVec3::ZERO);
         let light = &input.light;
@@ -165,10 +173,7 @@ impl Lattice {
     /// Coordinates of `p` on the infinite lattice, in cells from the anchor.
     pub fn lattice_from_world(&self, p: Vec3) -> Vec3 {
         let d = p - self.anchor;
-        Vec3::from(
-            self.axes_per_cell
-                .map(|axis| d.x * axis.x + d.y * axis.y + d.z * axis.z),
-        )
+        Vec3::from(self.axes_per_cell.map(|axis| d.x * axis.x + d.y * axis.y + d.z * axis.z))
     }
 
     /// Coordinates of `p` in the window, in cells: its cell is their whole part.
@@ -192,27 +197,17 @@ impl Lattice {
 
     /// Where a map addressed modulo *N* stores a cell of the lattice.
     pub fn wrapped(&self, cell: IVec3) -> [usize; 3] {
-        cell.to_array()
-            .map(|c| c.rem_euclid(self.resolution as i32) as usize)
+        cell.to_array().map(|c| c.rem_euclid(self.resolution as i32) as usize)
     }
 }
 
 /// Length of the longest strand along its points, metres; strands that are not finite count for nothing.
 fn longest_strand(strands: &Strands) -> f32 {
-    let ends = strands
-        .first_point
-        .windows(2)
-        .map(|ends| ends[0] as usize..ends[1] as usize);
+    let ends = strands.first_point.windows(2).map(|ends| ends[0] as usize..ends[1] as usize);
     let length = |range: std::ops::Range<usize>| -> f32 {
-        range
-            .clone()
-            .zip(range.skip(1))
-            .map(|(a, b)| strands.point(a).distance(strands.point(b)))
-            .sum()
+        range.clone().zip(range.skip(1)).map(|(a, b)| strands.point(a).distance(strands.point(b))).sum()
     };
-    ends.map(length)
-        .filter(|length| *length < FARTHEST)
-        .fold(0.0, f32::max)
+    ends.map(length).filter(|length| *length < FARTHEST).fold(0.0, f32::max)
 }
 
 /// The next sixteenth of an octave at or above `size`, which must be positive and finite.
@@ -227,7 +222,7 @@ fn round_up_to_step(size: f32) -> f32 {
         1.241_857_8,
         1.296_839_6,
         1.354_255_5,
-        1.414_213_5,
+        std::f32::consts::SQRT_2,
         1.476_826_1,
         1.542_210_8,
         1.610_490_3,

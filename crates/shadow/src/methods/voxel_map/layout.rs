@@ -58,6 +58,11 @@ impl Layout {
         self.group_shift + TILE_CELLS.ilog2()
     }
 
+    /// The cells of a group within a tile.
+    pub(super) fn group_cells(&self, group: usize) -> std::ops::Range<usize> {
+        group << self.group_len_shift()..(group + 1) << self.group_len_shift()
+    }
+
     /// The term of an address that depends on j.
     #[inline(always)]
     pub(super) fn row(&self, j: u32) -> u32 {

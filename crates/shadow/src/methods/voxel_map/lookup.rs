@@ -1,13 +1,13 @@
 //! Filtered lookups: four loads and four exponentials a point.
 // Every loop must be compiled within the version of `simd` that calls it.
-#![allow(clippy::inline_always)]
+#![allow(clippy::inline_always, clippy::needless_range_loop)]
 
 use glam::Vec3;
 
 use super::exp::exp_of_minus_steps;
-use super::grid::Span;
 use super::lattice::Lattice;
-use super::layout::Layout;
+use super::layout::{Layout, TILE_CELLS};
+use super::simd::whole_part;
 
 /// Points that are looked up together.
 pub(super) const BLOCK: usize = 64;
@@ -19,10 +19,10 @@ pub(super) struct Lookup<'a> {
     pub lattice: &'a Lattice,
     /// Faces; see `sum`.
     pub cells: &'a [u32],
-    /// Touched slices, a tile.
-    pub touched: &'a [Span],
-    /// Slices that hold faces, a tile. Before them a column is lit; behind them the last one counts.
-    pub filled: &'a [Span],
+    /// Groups of slices with hair in them, a tile.
+    pub touched: &'a [u64],
+    /// Groups that hold faces, a tile. Elsewhere the last one before counts; before all of them a column is lit.
+    pub filled: &'a [u64],
     /// Filter as printed in the paper.
     pub as_printed: bool,
 }
@@ -50,18 +50,11 @@ impl Lookup<'_> {
     /// Transmittance of many points; slices of one length.
     #[inline(always)]
     pub(super) fn run(&self, x: &[f32], y: &[f32], z: &[f32], out: &mut [f32]) {
-        let blocks = x
-            .chunks(BLOCK)
-            .zip(y.chunks(BLOCK))
-            .zip(z.chunks(BLOCK))
-            .zip(out.chunks_mut(BLOCK));
+        let blocks = x.chunks(BLOCK).zip(y.chunks(BLOCK)).zip(z.chunks(BLOCK)).zip(out.chunks_mut(BLOCK));
         for (((x, y), z), out) in blocks {
-            if let (Ok(x), Ok(y), Ok(z), Ok(out)) = (
-                x.try_into(),
-                y.try_into(),
-                z.try_into(),
-                <&mut [f32; BLOCK]>::try_from(&mut *out),
-            ) {
+            if let (Ok(x), Ok(y), Ok(z), Ok(out)) =
+                (x.try_into(), y.try_into(), z.try_into(), <&mut [f32; BLOCK]>::try_from(&mut *out))
+            {
                 self.block([x, y, z], out);
             } else {
                 let pad = |axis: &[f32]| {
@@ -78,8 +71,8 @@ impl Lookup<'_> {
 
     #[inline(always)]
     fn block(&self, points: [&[f32; BLOCK]; 3], out: &mut [f32; BLOCK]) {
-        let mut places = self.place(points);
-        let faces = self.load(&mut places);
+        let places = self.place(points);
+        let faces = self.load(&places);
         if self.as_printed {
             filter::<true>(&places, &faces, out);
         } else {
@@ -104,11 +97,7 @@ impl Lookup<'_> {
         };
         let [to_i, to_j, to_k] = lattice.axes_per_cell;
         for lane in 0..BLOCK {
-            let d = [
-                points[0][lane] - anchor.x,
-                points[1][lane] - anchor.y,
-                points[2][lane] - anchor.z,
-            ];
+            let d = [points[0][lane] - anchor.x, points[1][lane] - anchor.y, points[2][lane] - anchor.z];
             let u = (d[0] * to_i.x + d[1] * to_i.y + d[2] * to_i.z) - first.x;
             let v = (d[0] * to_j.x + d[1] * to_j.y + d[2] * to_j.z) - first.y;
             let w = (d[0] * to_k.x + d[1] * to_k.y + d[2] * to_k.z) - first.z;
@@ -135,39 +124,44 @@ impl Lookup<'_> {
 
     /// The four cells of every point.
     #[inline(always)]
-    fn load(&self, places: &mut Places) -> [[u32; BLOCK]; 4] {
+    fn load(&self, places: &Places) -> [[u32; BLOCK]; 4] {
         let mut faces = [[0; BLOCK]; 4];
         for lane in 0..BLOCK {
-            // Behind what its own tile touched, a column may not be filled. Hair itself never lies there.
-            let last = self.touched[places.tile[lane] as usize].last;
-            if places.slice[lane] as i32 > i32::from(last) {
-                self.load_behind(places, lane, &mut faces);
+            // Where a tile has hair, it and the tiles around it are filled. Hair itself hardly lies elsewhere.
+            let groups = self.touched[places.tile[lane] as usize];
+            if groups >> (places.slice[lane] >> self.layout.group_shift) & 1 == 0 {
+                self.load_anywhere(places, lane, &mut faces);
                 continue;
             }
-            for column in 0..4 {
-                faces[column][lane] = self.cells[places.addresses[column][lane] as usize];
+            for (faces, addresses) in faces.iter_mut().zip(&places.addresses) {
+                faces[lane] = self.cells[addresses[lane] as usize];
             }
         }
         faces
     }
 
-    /// The four cells of a point that may lie behind filled slices: there both faces are the last back face.
+    /// The four cells of a point that may lie outside the groups that are filled.
     #[cold]
     #[inline(never)]
-    fn load_behind(&self, places: &Places, lane: usize, faces: &mut [[u32; BLOCK]; 4]) {
-        for (column, faces) in faces.iter_mut().enumerate() {
-            let address = places.addresses[column][lane] as usize;
-            let last = i32::from(self.filled[address >> self.layout.tile_shift].last);
-            let behind = places.slice[lane] as i32 - last;
-            faces[lane] = if last < 0 {
-                0
-            } else if behind <= 0 {
-                self.cells[address]
-            } else {
-                let back = self.cells[address - ((behind as usize) << 6)] >> 16;
-                back | back << 16
-            };
+    fn load_anywhere(&self, places: &Places, lane: usize, faces: &mut [[u32; BLOCK]; 4]) {
+        for (faces, addresses) in faces.iter_mut().zip(&places.addresses) {
+            faces[lane] = self.cell_anywhere(addresses[lane] as usize);
         }
+    }
+
+    /// The faces of any cell: in a gap both are the last back face before it.
+    pub(super) fn cell_anywhere(&self, address: usize) -> u32 {
+        let layout = &self.layout;
+        let tile = address >> layout.tile_shift;
+        let group = (address >> layout.group_len_shift()) % layout.groups();
+        let until = self.filled[tile] & (u64::MAX >> (63 - group));
+        if until >> group & 1 != 0 {
+            return self.cells[address];
+        }
+        let Some(last) = until.checked_ilog2() else { return 0 };
+        let last_slice = layout.group_cells(last as usize).end - TILE_CELLS;
+        let back = self.cells[(tile << layout.tile_shift) + last_slice + address % TILE_CELLS] >> 16;
+        back | back << 16
     }
 }
 
@@ -177,7 +171,7 @@ fn split(c: f32, end: f32, last: u32) -> (f32, u32) {
     // NaN becomes 0.
     let c = if c > 0.0 { c } else { 0.0 };
     let c = if c < end { c } else { end };
-    let whole = (c as i32).min(last as i32);
+    let whole = whole_part(c).min(last as i32);
     (c - whole as f32, whole as u32)
 }
 
@@ -189,11 +183,7 @@ fn filter<const AS_PRINTED: bool>(places: &Places, faces: &[[u32; BLOCK]; 4], ou
             let cell = faces[column][lane];
             let (front, back) = ((cell & 0xffff) as i32 as f32, (cell >> 16) as i32 as f32);
             if AS_PRINTED {
-                mix(
-                    exp_of_minus_steps(front),
-                    exp_of_minus_steps(back),
-                    places.along[lane],
-                )
+                mix(exp_of_minus_steps(front), exp_of_minus_steps(back), places.along[lane])
             } else {
                 // Exact for a cell of even density.
                 exp_of_minus_steps(mix(front, back, places.along[lane]))

@@ -74,7 +74,7 @@ pub struct VoxelMapSettings {
     pub resolution: u32,
     /// How large the map is.
     pub extent: MapExtent,
-    /// Size of the head for [`MapExtent::Paper`] (the paper's *h_max*), metres.
+    /// Size of the head for [`MapExtent::Paper`] (the paper's h with index max), metres.
     pub head_size: f32,
     /// How a point reads the cells around it.
     pub filter: VoxelFilter,
@@ -91,9 +91,7 @@ impl VoxelMapSettings {
 
     /// The resolution that is used: the nearest multiple of 8 in [`VoxelMapSettings::RESOLUTIONS`].
     pub fn safe_resolution(&self) -> u32 {
-        let resolution = self
-            .resolution
-            .clamp(*Self::RESOLUTIONS.start(), *Self::RESOLUTIONS.end());
+        let resolution = self.resolution.clamp(*Self::RESOLUTIONS.start(), *Self::RESOLUTIONS.end());
         (resolution + 4) / 8 * 8
     }
 }

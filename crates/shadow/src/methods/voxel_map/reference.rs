@@ -4,6 +4,7 @@
 //! benchmarks: building one takes a hundred times as long.
 
 use glam::{IVec3, Vec3};
+use lovelock_groom::Strands;
 
 use super::lattice::{Bounds, Lattice};
 use super::samples::{sample_at, sample_count};
@@ -35,19 +36,9 @@ pub struct DenseMap {
 impl DenseMap {
     /// Builds the map of `input`.
     pub fn build(input: &ShadowInput, settings: &ShadowSettings, addressing: Addressing) -> Self {
-        let bounds = Bounds::of(
-            input.strands,
-            0,
-            input.strands.points(),
-            &input.light,
-            input.anchor,
-        );
-        Self::build_in(
-            Lattice::new(input, &settings.voxel_map, &bounds),
-            input,
-            settings,
-            addressing,
-        )
+        let Strands { x, y, z, .. } = input.strands;
+        let bounds = Bounds::of_points(x, y, z, &input.light, input.anchor);
+        Self::build_in(Lattice::new(input, &settings.voxel_map, &bounds), input, settings, addressing)
     }
 
     /// Builds the map of `input` in a window that is given.
@@ -59,13 +50,8 @@ impl DenseMap {
     ) -> Self {
         let n = lattice.resolution as usize;
         let filter = settings.voxel_map.filter;
-        let mut map = Self {
-            lattice,
-            density: vec![0.0; n * n * n],
-            depth: vec![0.0; n * n * n],
-            addressing,
-            filter,
-        };
+        let mut map =
+            Self { lattice, density: vec![0.0; n * n * n], depth: vec![0.0; n * n * n], addressing, filter };
         let scale = f64::from(settings.safe_extinction_scale());
         match settings.voxel_map.deposit {
             VoxelDeposit::Length => map.deposit_lengths(input, scale),
@@ -114,10 +100,7 @@ impl DenseMap {
 
     fn add(&mut self, p: Vec3, depth: f64) {
         // Rounding must not put hair into the empty cells at the border.
-        let cell = p
-            .floor()
-            .as_ivec3()
-            .clamp(IVec3::ONE, IVec3::splat(self.lattice.resolution as i32 - 2));
+        let cell = p.floor().as_ivec3().clamp(IVec3::ONE, IVec3::splat(self.lattice.resolution as i32 - 2));
         let at = self.address(cell);
         self.density[at] += depth;
     }

@@ -5,11 +5,13 @@
 // Compiled within the versions of `simd`.
 #![allow(clippy::inline_always)]
 
+use super::simd::whole_part;
+
 /// Number of samples of a segment of `length` cells: no two of them more than half a cell apart.
 #[inline(always)]
 pub(super) fn sample_count(length: f32) -> u32 {
     // `⌈2·length⌉`, but at least 1, and one more where that is a whole number: SSE2 has no ceiling.
-    (2.0 * length) as i32 as u32 + 1
+    whole_part(2.0 * length) as u32 + 1
 }
 
 /// Where along its segment sample `index` lies, 0 to 1; `inverse_count` is 1 over the number of samples.

@@ -1,14 +1,34 @@
-//! The two inner loops, compiled once for every processor and once more for those with wide vectors.
+//! The inner loops, compiled once for every processor and once more for those with wide vectors.
 //!
 //! The source is the same safe code; only the instruction set differs. Nothing in it is reordered or fused by
 //! the compiler, so that all versions give the same bits, which a test checks.
-#![allow(unsafe_code)] // Calling a function compiled for features that were just found to be there.
+//!
+//! Unsafe for two reasons: a function compiled for features of the processor may only be called where they were
+//! found, and the conversion of a float to an integer that vectorises is undefined out of range.
+#![allow(unsafe_code, clippy::inline_always)]
 
+use glam::Vec3;
 use lovelock_groom::Strands;
 
 use super::deposit::Deposit;
 use super::grid::Grid;
+use super::lattice::Bounds;
+use super::layout::Layout;
 use super::lookup::Lookup;
+use super::sum;
+use crate::LightFrame;
+
+/// The whole part of `c`, held within 0 and 2^26; 0 for what is no number.
+///
+/// `as` would be compiled to a branch or two for each number, since it must saturate at the integers' ends.
+#[inline(always)]
+pub(super) fn whole_part(c: f32) -> i32 {
+    const MOST: f32 = (1 << 26) as f32;
+    let c = if c > 0.0 { c } else { 0.0 };
+    let c = if c < MOST { c } else { MOST };
+    // SAFETY: `c` is a number between 0 and 2^26: the comparison above turns NaN into 0.
+    unsafe { c.to_int_unchecked() }
+}
 
 /// Which version runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,70 +71,78 @@ impl Width {
 
     /// The widest that this processor has.
     pub(super) fn widest() -> Self {
-        Self::ALL
-            .iter()
-            .rev()
-            .copied()
-            .find(|width| width.is_available())
-            .unwrap_or(Self::Baseline)
+        Self::ALL.iter().rev().copied().find(|width| width.is_available()).unwrap_or(Self::Baseline)
     }
 }
 
-/// [`Deposit::run`] in the version `width`, which must be available.
-pub(super) fn deposit(
-    width: Width,
-    deposit: &Deposit,
-    strands: &Strands,
-    first: usize,
-    last: usize,
-    grid: &mut Grid,
-) -> u64 {
-    assert!(width.is_available());
-    match width {
-        Width::Baseline => deposit.run(strands, first, last, grid),
-        // SAFETY: the processor has the features.
-        #[cfg(target_arch = "x86_64")]
-        Width::Avx2 => unsafe { deposit_avx2(deposit, strands, first, last, grid) },
-        // SAFETY: the processor has the features.
-        #[cfg(target_arch = "x86_64")]
-        Width::Avx512 => unsafe { deposit_avx512(deposit, strands, first, last, grid) },
+/// A function in every version: the first argument says which, and it must be available.
+macro_rules! versions {
+    ($(#[$doc:meta])* fn $name:ident($($argument:ident: $of:ty),*) -> $result:ty { $body:expr }) => {
+        $(#[$doc])*
+        pub(super) fn $name(width: Width, $($argument: $of),*) -> $result {
+            #[cfg(target_arch = "x86_64")]
+            #[target_feature(enable = "avx2")]
+            fn avx2($($argument: $of),*) -> $result {
+                $body
+            }
+            #[cfg(target_arch = "x86_64")]
+            #[target_feature(enable = "avx2,avx512f,avx512bw,avx512dq,avx512vl")]
+            fn avx512($($argument: $of),*) -> $result {
+                $body
+            }
+            assert!(width.is_available(), "{width:?} on a processor without");
+            match width {
+                Width::Baseline => $body,
+                // SAFETY: the processor has the features, as asserted above.
+                #[cfg(target_arch = "x86_64")]
+                Width::Avx2 => unsafe { avx2($($argument),*) },
+                // SAFETY: the processor has the features, as asserted above.
+                #[cfg(target_arch = "x86_64")]
+                Width::Avx512 => unsafe { avx512($($argument),*) },
+            }
+        }
+    };
+}
+
+versions! {
+    /// [`Bounds::of_points`].
+    fn bounds(x: &[f32], y: &[f32], z: &[f32], light: &LightFrame, anchor: Vec3) -> Bounds {
+        Bounds::of_points(x, y, z, light, anchor)
     }
 }
 
-/// [`Lookup::run`] in the version `width`, which must be available.
-pub(super) fn lookup(width: Width, lookup: &Lookup, x: &[f32], y: &[f32], z: &[f32], out: &mut [f32]) {
-    assert!(width.is_available());
-    match width {
-        Width::Baseline => lookup.run(x, y, z, out),
-        // SAFETY: the processor has the features.
-        #[cfg(target_arch = "x86_64")]
-        Width::Avx2 => unsafe { lookup_avx2(lookup, x, y, z, out) },
-        // SAFETY: the processor has the features.
-        #[cfg(target_arch = "x86_64")]
-        Width::Avx512 => unsafe { lookup_avx512(lookup, x, y, z, out) },
+versions! {
+    /// [`Deposit::run`].
+    fn deposit(deposit: &Deposit, strands: &Strands, first: usize, last: usize, grid: &mut Grid) -> u64 {
+        deposit.run(strands, first, last, grid)
     }
 }
 
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn deposit_avx2(deposit: &Deposit, strands: &Strands, first: usize, last: usize, grid: &mut Grid) -> u64 {
-    deposit.run(strands, first, last, grid)
+versions! {
+    /// [`sum::sum_tile`].
+    fn sum_tile(layout: &Layout, tile: usize, used: u64, cells: &mut [u32], others: &[Grid]) -> () {
+        sum::sum_tile(layout, tile, used, cells, others)
+    }
 }
 
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,avx512f,avx512bw,avx512dq,avx512vl")]
-fn deposit_avx512(deposit: &Deposit, strands: &Strands, first: usize, last: usize, grid: &mut Grid) -> u64 {
-    deposit.run(strands, first, last, grid)
+versions! {
+    /// [`Lookup::run`].
+    fn lookup(lookup: &Lookup, x: &[f32], y: &[f32], z: &[f32], out: &mut [f32]) -> () {
+        lookup.run(x, y, z, out)
+    }
 }
 
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn lookup_avx2(lookup: &Lookup, x: &[f32], y: &[f32], z: &[f32], out: &mut [f32]) {
-    lookup.run(x, y, z, out);
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,avx512f,avx512bw,avx512dq,avx512vl")]
-fn lookup_avx512(lookup: &Lookup, x: &[f32], y: &[f32], z: &[f32], out: &mut [f32]) {
-    lookup.run(x, y, z, out);
+    #[test]
+    fn whole_parts() {
+        let cases = [(0.0, 0), (0.999_999_94, 0), (1.0, 1), (511.999, 511), (8_388_607.0, 8_388_607)];
+        let beyond =
+            [(-1.0, 0), (f32::NAN, 0), (f32::NEG_INFINITY, 0), (f32::INFINITY, 1 << 26), (1e9, 1 << 26)];
+        for (c, whole) in cases.into_iter().chain(beyond) {
+            assert_eq!(whole_part(c), whole, "{c}");
+        }
+    }
 }
