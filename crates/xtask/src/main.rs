@@ -42,7 +42,11 @@ enum Chore {
     /// Checks which crate may use which
     Layers,
     /// Makes the shipped assets anew
-    Assets,
+    Assets {
+        /// Also write pictures of the dancer into this folder
+        #[arg(long, value_name = "DIR")]
+        preview: Option<std::path::PathBuf>,
+    },
 }
 
 fn main() -> ExitCode {
@@ -51,7 +55,7 @@ fn main() -> ExitCode {
         Chore::Test { filter, package } => testing::run(filter.as_deref(), package.as_deref()),
         Chore::Ci => ci::run(),
         Chore::Layers => layers::run(),
-        Chore::Assets => assets::run(),
+        Chore::Assets { preview } => assets::run(preview.as_deref()),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,0 +1,230 @@
+//! Writes glTF 2.0 in its binary form: one skinned mesh, a skeleton and clips.
+
+use glam::{Quat, Vec3};
+use serde_json::{Value, json};
+
+use super::rig::RigJoint;
+use super::weights::Influences;
+
+/// A clip: poses at equal steps of time, the last one equal to the first.
+pub(super) struct SampledClip {
+    /// Its name in the file.
+    pub(super) name: &'static str,
+    /// Time of each key, seconds.
+    pub(super) times: Vec<f32>,
+    /// Rotation of each joint relative to its parent, by joint, then by key.
+    pub(super) rotations: Vec<Vec<Quat>>,
+    /// Place of the hips, metres, by key.
+    pub(super) hips: Vec<Vec3>,
+}
+
+/// Everything that goes into the file.
+pub(super) struct Dancer {
+    /// Rest positions, metres.
+    pub(super) positions: Vec<Vec3>,
+    /// Unit normals.
+    pub(super) normals: Vec<Vec3>,
+    /// Linear sRGB.
+    pub(super) colours: Vec<Vec3>,
+    /// 1 where hair grows.
+    pub(super) scalp: Vec<f32>,
+    /// Joints and weights.
+    pub(super) influences: Vec<Influences>,
+    /// Counter-clockwise triangles.
+    pub(super) triangles: Vec<[u32; 3]>,
+    /// The skeleton.
+    pub(super) joints: Vec<RigJoint>,
+    /// The clips.
+    pub(super) clips: Vec<SampledClip>,
+}
+
+const FLOAT: u32 = 5126;
+const UNSIGNED_BYTE: u32 = 5121;
+const UNSIGNED_SHORT: u32 = 5123;
+const ARRAY_BUFFER: u32 = 34962;
+const ELEMENT_ARRAY_BUFFER: u32 = 34963;
+
+/// The binary chunk with the views and accessors into it.
+#[derive(Default)]
+struct Buffer {
+    bytes: Vec<u8>,
+    views: Vec<Value>,
+    accessors: Vec<Value>,
+}
+
+impl Buffer {
+    /// Appends data as a view of its own with one accessor; returns the accessor's index.
+    fn add(&mut self, data: &[u8], kind: &str, component: u32, count: usize, target: Option<u32>) -> usize {
+        while !self.bytes.len().is_multiple_of(4) {
+            self.bytes.push(0);
+        }
+        let mut view = json!({"buffer": 0, "byteOffset": self.bytes.len(), "byteLength": data.len()});
+        if let Some(target) = target {
+            view["target"] = json!(target);
+        }
+        self.bytes.extend_from_slice(data);
+        self.views.push(view);
+        self.accessors.push(json!({
+            "bufferView": self.views.len() - 1, "componentType": component, "count": count, "type": kind,
+        }));
+        self.accessors.len() - 1
+    }
+
+    fn floats<const N: usize>(&mut self, values: &[[f32; N]], kind: &str, target: Option<u32>) -> usize {
+        let bytes: Vec<u8> = values.iter().flatten().flat_map(|v| v.to_le_bytes()).collect();
+        self.add(&bytes, kind, FLOAT, values.len(), target)
+    }
+
+    /// States the extremes of accessor `index`, as positions and times must.
+    fn bound<const N: usize>(&mut self, index: usize, values: &[[f32; N]]) {
+        let fold = |f: fn(f32, f32) -> f32| -> Vec<f32> {
+            (0..N).map(|c| values.iter().map(|v| v[c]).reduce(f).unwrap_or(0.0)).collect()
+        };
+        self.accessors[index]["min"] = json!(fold(f32::min));
+        self.accessors[index]["max"] = json!(fold(f32::max));
+    }
+}
+
+/// The bytes of the `.glb` file.
+pub(super) fn write(dancer: &Dancer) -> anyhow::Result<Vec<u8>> {
+    let mut buffer = Buffer::default();
+    let primitive = primitive(dancer, &mut buffer);
+
+    let bind: Vec<[f32; 16]> = dancer
+        .joints
+        .iter()
+        .map(|joint| {
+            let t = -joint.rest;
+            [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, t.x, t.y, t.z, 1.0]
+        })
+        .collect();
+    let bind = buffer.floats(&bind, "MAT4", None);
+
+    // Node 0 is the mesh, the joints follow.
+    let mut nodes = vec![json!({"name": "dancer", "mesh": 0, "skin": 0})];
+    for (index, joint) in dancer.joints.iter().enumerate() {
+        let parent = joint.parent.map_or(Vec3::ZERO, |p| dancer.joints[p].rest);
+        let mut node = json!({"name": joint.name, "translation": (joint.rest - parent).to_array()});
+        let children: Vec<usize> = (0..dancer.joints.len())
+            .filter(|other| dancer.joints[*other].parent == Some(index))
+            .map(|other| other + 1)
+            .collect();
+        if !children.is_empty() {
+            node["children"] = json!(children);
+        }
+        nodes.push(node);
+    }
+    let animations: Vec<Value> = dancer.clips.iter().map(|clip| animation(clip, &mut buffer)).collect();
+
+    let document = json!({
+        "asset": {"version": "2.0", "generator": "cargo xtask assets"},
+        "scene": 0,
+        "scenes": [{"name": "dancer", "nodes": [0, 1]}],
+        "nodes": nodes,
+        "meshes": [{"name": "dancer", "primitives": [primitive]}],
+        "materials": [{
+            "name": "matt",
+            "pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 0.75},
+        }],
+        "skins": [{
+            "name": "dancer",
+            "inverseBindMatrices": bind,
+            "skeleton": 1,
+            "joints": (1..=dancer.joints.len()).collect::<Vec<_>>(),
+        }],
+        "animations": animations,
+        "buffers": [{"byteLength": buffer.bytes.len()}],
+        "bufferViews": buffer.views,
+        "accessors": buffer.accessors,
+    });
+    let mut text = serde_json::to_vec(&document)?;
+    while !text.len().is_multiple_of(4) {
+        text.push(b' ');
+    }
+    let mut binary = buffer.bytes;
+    while !binary.len().is_multiple_of(4) {
+        binary.push(0);
+    }
+    let total = 12 + 8 + text.len() + 8 + binary.len();
+    let mut out = Vec::with_capacity(total);
+    out.extend_from_slice(b"glTF");
+    for word in [2, total as u32, text.len() as u32] {
+        out.extend_from_slice(&word.to_le_bytes());
+    }
+    out.extend_from_slice(b"JSON");
+    out.extend_from_slice(&text);
+    out.extend_from_slice(&(binary.len() as u32).to_le_bytes());
+    out.extend_from_slice(b"BIN\0");
+    out.extend_from_slice(&binary);
+    Ok(out)
+}
+
+fn primitive(dancer: &Dancer, buffer: &mut Buffer) -> Value {
+    let count = dancer.positions.len();
+    let positions: Vec<[f32; 3]> = dancer.positions.iter().map(|p| p.to_array()).collect();
+    let position = buffer.floats(&positions, "VEC3", Some(ARRAY_BUFFER));
+    buffer.bound(position, &positions);
+    let normals: Vec<[f32; 3]> = dancer.normals.iter().map(|n| n.to_array()).collect();
+    let normal = buffer.floats(&normals, "VEC3", Some(ARRAY_BUFFER));
+    let colours: Vec<u8> = dancer
+        .colours
+        .iter()
+        .flat_map(|c| [c.x, c.y, c.z, 1.0])
+        .flat_map(|v| ((v.clamp(0.0, 1.0) * 65535.0).round() as u16).to_le_bytes())
+        .collect();
+    let colour = buffer.add(&colours, "VEC4", UNSIGNED_SHORT, count, Some(ARRAY_BUFFER));
+    buffer.accessors[colour]["normalized"] = json!(true);
+    let scalp: Vec<[f32; 1]> = dancer.scalp.iter().map(|v| [*v]).collect();
+    let scalp = buffer.floats(&scalp, "SCALAR", Some(ARRAY_BUFFER));
+    let joints: Vec<u8> = dancer.influences.iter().flatten().map(|(joint, _)| *joint).collect();
+    let joints = buffer.add(&joints, "VEC4", UNSIGNED_BYTE, count, Some(ARRAY_BUFFER));
+    let weights: Vec<u8> = dancer.influences.iter().flatten().flat_map(|(_, w)| w.to_le_bytes()).collect();
+    let weights = buffer.add(&weights, "VEC4", UNSIGNED_SHORT, count, Some(ARRAY_BUFFER));
+    buffer.accessors[weights]["normalized"] = json!(true);
+    let indices: Vec<u8> =
+        dancer.triangles.iter().flatten().flat_map(|i| (*i as u16).to_le_bytes()).collect();
+    let indices = buffer.add(
+        &indices,
+        "SCALAR",
+        UNSIGNED_SHORT,
+        dancer.triangles.len() * 3,
+        Some(ELEMENT_ARRAY_BUFFER),
+    );
+    json!({
+        "attributes": {
+            "POSITION": position, "NORMAL": normal, "COLOR_0": colour, "_SCALP": scalp,
+            "JOINTS_0": joints, "WEIGHTS_0": weights,
+        },
+        "indices": indices,
+        "material": 0,
+    })
+}
+
+fn animation(clip: &SampledClip, buffer: &mut Buffer) -> Value {
+    let times: Vec<[f32; 1]> = clip.times.iter().map(|t| [*t]).collect();
+    let input = buffer.floats(&times, "SCALAR", None);
+    buffer.bound(input, &times);
+    let mut samplers = Vec::new();
+    let mut channels = Vec::new();
+    let mut channel = |output: usize, node: usize, path: &str| {
+        channels.push(json!({"sampler": samplers.len(), "target": {"node": node, "path": path}}));
+        samplers.push(json!({"input": input, "output": output, "interpolation": "LINEAR"}));
+    };
+    let places: Vec<[f32; 3]> = clip.hips.iter().map(|p| p.to_array()).collect();
+    let places = buffer.floats(&places, "VEC3", None);
+    channel(places, 1, "translation");
+    for (joint, rotations) in clip.rotations.iter().enumerate() {
+        // Neighbouring keys keep to the same half of the sphere, so that any reader takes the short way.
+        let mut last = Quat::IDENTITY;
+        let keys: Vec<[f32; 4]> = rotations
+            .iter()
+            .map(|q| {
+                last = if q.dot(last) < 0.0 { -*q } else { *q };
+                last.to_array()
+            })
+            .collect();
+        let keys = buffer.floats(&keys, "VEC4", None);
+        channel(keys, joint + 1, "rotation");
+    }
+    json!({"name": clip.name, "channels": channels, "samplers": samplers})
+}
