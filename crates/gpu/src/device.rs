@@ -41,11 +41,23 @@ impl Gpu {
     /// # Errors
     /// No adapter, or an adapter that makes no device.
     pub fn open() -> Result<Arc<Self>, GpuError> {
+        Self::open_adapter(false)
+    }
+
+    /// Opens a software adapter, which draws on the processor (Mesa's llvmpipe, where it is installed).
+    ///
+    /// # Errors
+    /// No software adapter, or one that makes no device.
+    pub fn open_software() -> Result<Arc<Self>, GpuError> {
+        Self::open_adapter(true)
+    }
+
+    fn open_adapter(force_fallback_adapter: bool) -> Result<Arc<Self>, GpuError> {
         let descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
         let instance = wgpu::Instance::new(descriptor);
         let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions {
             power_preference: wgpu::PowerPreference::HighPerformance,
-            force_fallback_adapter: false,
+            force_fallback_adapter,
             compatible_surface: None,
             apply_limit_buckets: false,
         }))
