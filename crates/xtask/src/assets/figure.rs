@@ -299,3 +299,29 @@ impl Figure {
         d
     }
 }
+
+/// How long the edges of the mesh should be at a place of the surface, metres: fine where the form or the paint is.
+pub(super) fn edge_length(p: Vec3) -> f32 {
+    let q = Vec3::new(p.x.abs(), p.y, p.z);
+    let v = Vec3::new;
+    let mut size = 0.0130_f32;
+    // Each place: how far its fine region reaches, how fine, and how fast the edges grow away from it.
+    let mut near = |distance: f32, reach: f32, fine: f32, growth: f32| {
+        size = size.min(fine + growth * (distance - reach).max(0.0));
+    };
+    near(round_cone(q, rest::WRIST, rest::WRIST + rest::forearm_direction() * 0.16, 0.0, 0.0), 0.055, 0.0052, 0.10);
+    near(round_cone(q, v(rest::ANKLE.x, 0.02, -0.07), v(0.10, 0.01, 0.14), 0.0, 0.0), 0.045, 0.0080, 0.10);
+    near(paint::seam(q), 0.003, 0.0042, 0.32);
+    if p.y > 1.30 {
+        near(ellipsoid(q - v(0.0, 1.590, 0.0), v(0.085, 0.120, 0.110)).max(0.0), 0.0, 0.0056, 0.10);
+        if p.z > 0.0 {
+            near(ellipsoid(q - v(0.0, 1.545, 0.085), v(0.050, 0.075, 0.040)).max(0.0), 0.0, 0.0036, 0.14);
+            near((q - super::head::EYE - v(0.0, 0.0, 0.010)).length(), 0.0165, 0.0012, 0.15);
+            near(round_cone(q, v(0.0, 1.512, 0.100), v(0.018, 1.512, 0.092), 0.0, 0.0), 0.010, 0.0016, 0.15);
+            near(round_cone(q, v(0.0, 1.548, 0.112), v(0.008, 1.540, 0.105), 0.0, 0.0), 0.010, 0.0021, 0.15);
+            near(round_cone(q, v(0.014, 1.602, 0.098), v(0.046, 1.604, 0.078), 0.0, 0.0), 0.006, 0.0019, 0.15);
+        }
+        near((q - super::head::EAR).length(), 0.032, 0.0026, 0.12);
+    }
+    size
+}

@@ -8,6 +8,7 @@ mod ik;
 mod mesh;
 mod paint;
 mod preview;
+mod remesh;
 mod rig;
 mod score;
 mod sdf;
@@ -26,6 +27,9 @@ pub(crate) fn run(preview: Option<&Path>) -> anyhow::Result<()> {
     eprintln!("nets {} {:?}", net.positions.len(), t.elapsed());
     use rayon::prelude::*;
     net.positions.par_iter_mut().for_each(|p| *p = mesh::project(&distance, *p));
+    eprintln!("projected {:?}", t.elapsed());
+    remesh::remesh(&mut net, &distance, &figure::edge_length, 6);
+    eprintln!("remeshed {} {:?}", net.positions.len(), t.elapsed());
     let normals = mesh::normals(&distance, &net.positions);
     eprintln!("projected {:?}", t.elapsed());
     let colours: Vec<Vec3> = net.positions.iter().map(|p| paint::colour(*p)).collect();
