@@ -84,6 +84,41 @@ fn quick_and_plain_agree_on_hair_and_everywhere() {
 }
 
 #[test]
+fn quick_and_plain_agree_on_strands_of_any_number_of_points() {
+    // Points go through in blocks of 64: strands that are empty, single, and that end at, before and behind one.
+    let mut random = Random(21);
+    let lengths = [0, 1, 2, 63, 64, 65, 1, 0, 0, 127, 128, 62, 3, 190, 1, 1, 64, 0];
+    let walk = |count: usize| {
+        let mut p = HEAD + 0.1 * random.cube();
+        let step = |_| {
+            p += 0.01 * random.cube();
+            p
+        };
+        (0..count).map(step).collect::<Vec<_>>()
+    };
+    let of: Vec<Vec<Vec3>> = lengths.into_iter().cycle().take(90).map(walk).collect();
+    let hair = strands(&of);
+    for deposit in [VoxelDeposit::Length, VoxelDeposit::PointCount] {
+        let mut settings = settings(64);
+        settings.voxel_map.deposit = deposit;
+        let input = ShadowInput { strand_width: 5e-4, ..input(&hair, LIGHT) };
+        let map = built(&input, &settings);
+        let dense = DenseMap::build(&input, &settings, Addressing::Window);
+        let points = || (0..hair.points()).map(|i| hair.point(i));
+        assert!(worst(&map, &dense, points()) < MOST_DIFFERENCE, "{deposit:?}");
+        if deposit == VoxelDeposit::PointCount {
+            assert_eq!(map.report().samples, hair.points() as u64);
+        }
+        // Control: strands that are joined end to end cast another shadow.
+        let joined = strands(&[of.concat()]);
+        let dense =
+            DenseMap::build(&ShadowInput { strands: &joined, ..input }, &settings, Addressing::Window);
+        let joined_differ = worst(&map, &dense, points()) > 10.0 * MOST_DIFFERENCE;
+        assert_eq!(joined_differ, deposit == VoxelDeposit::Length);
+    }
+}
+
+#[test]
 fn quick_and_plain_agree_in_the_paper_s_modes() {
     let hair = strands(&small(CURLY));
     let input = input(&hair, LIGHT);

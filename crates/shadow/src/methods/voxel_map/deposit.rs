@@ -3,7 +3,7 @@
 //! Points go through in blocks of 64. Coordinates, lengths and addresses are computed in loops over fixed
 //! arrays, which the compiler turns into vector code; only the additions themselves go one by one.
 // Every loop must be compiled within the version of `simd` that calls it, and must not branch.
-#![allow(clippy::inline_always, clippy::needless_bitwise_bool)]
+#![allow(clippy::inline_always, clippy::needless_bitwise_bool, clippy::needless_range_loop)]
 
 use lovelock_groom::Strands;
 
@@ -42,6 +42,43 @@ struct Block {
     inverse: [f32; BLOCK],
     /// Fixed-point depth of one sample.
     depth: [u32; BLOCK],
+    /// Whether a point is finite and near the window.
+    valid: [bool; BLOCK],
+    /// Whether a lane begins no segment, since its strand or the block ends there.
+    ends: [bool; BLOCK],
+}
+
+impl Block {
+    const EMPTY: Self = Self {
+        from: [[0.0; BLOCK]; 3],
+        step: [[0.0; BLOCK]; 3],
+        samples: [0; BLOCK],
+        inverse: [1.0; BLOCK],
+        depth: [0; BLOCK],
+        valid: [false; BLOCK],
+        ends: [true; BLOCK],
+    };
+
+    /// Marks the lanes of points `at..` that end a strand; `strand` goes to the one that holds the next block's
+    /// first point, which is this block's last.
+    #[inline(always)]
+    fn mark_ends(&mut self, first_point: &[u32], strand: &mut usize, at: usize) {
+        self.ends = [false; BLOCK];
+        self.ends[BLOCK - 1] = true;
+        while let Some(&after) = first_point.get(*strand + 1) {
+            let after = after as usize;
+            if after > at + BLOCK {
+                return;
+            }
+            if after > at {
+                self.ends[after - 1 - at] = true;
+            }
+            if after == at + BLOCK {
+                return;
+            }
+            *strand += 1;
+        }
+    }
 }
 
 impl Deposit {
@@ -52,100 +89,94 @@ impl Deposit {
             return 0;
         }
         let (mut at, end) = (strands.first_point[first] as usize, strands.first_point[last] as usize);
+        let axes = [&strands.x[..end], &strands.y[..end], &strands.z[..end]];
+        let mut block = Block::EMPTY;
+        let mut padded = [[f32::NAN; BLOCK]; 3];
         let mut strand = first;
         let mut samples = 0;
         while at < end {
-            let count = (end - at).min(BLOCK);
-            // The last point of each strand begins no segment. Lane 63 never does: the next block begins with it.
-            let mut ends = [false; BLOCK];
-            ends[BLOCK - 1] = true;
-            while strand < last && (strands.first_point[strand + 1] as usize) <= at + BLOCK {
-                let after = strands.first_point[strand + 1] as usize;
-                if after > at {
-                    ends[after - 1 - at] = true;
+            block.mark_ends(&strands.first_point, &mut strand, at);
+            if let [Some(x), Some(y), Some(z)] = axes.map(|axis| axis[at..].first_chunk()) {
+                self.fill(&mut block, [x, y, z]);
+            } else {
+                for (lanes, axis) in padded.iter_mut().zip(axes) {
+                    lanes[..end - at].copy_from_slice(&axis[at..]);
+                    lanes[end - at..].fill(f32::NAN);
                 }
-                strand += 1;
+                self.fill(&mut block, [&padded[0], &padded[1], &padded[2]]);
             }
-            // The strand that holds the next block's first point may end in it.
-            strand = strand.saturating_sub(1).max(first);
-            let points = [&strands.x, &strands.y, &strands.z].map(|axis| {
-                let mut lanes = [f32::NAN; BLOCK];
-                lanes[..count].copy_from_slice(&axis[at..at + count]);
-                lanes
-            });
-            let block = if self.by_point { self.points(&points) } else { self.segments(&points, &ends) };
             samples += block.samples.iter().map(|n| u64::from(*n)).sum::<u64>();
             self.scatter(&block, grid);
+            // The last point begins the next block.
             at += BLOCK - 1;
         }
         samples
     }
 
-    /// Window coordinates, and whether a point lies in the window's neighbourhood and is finite.
     #[inline(always)]
-    fn transform(&self, points: &[[f32; BLOCK]; 3]) -> ([[f32; BLOCK]; 3], [bool; BLOCK]) {
+    fn fill(&self, block: &mut Block, points: [&[f32; BLOCK]; 3]) {
+        self.transform(block, points);
+        if self.by_point {
+            self.fill_points(block);
+        } else {
+            self.fill_segments(block);
+        }
+    }
+
+    /// Window coordinates, and whether a point is one that the window was made for.
+    #[inline(always)]
+    fn transform(&self, block: &mut Block, points: [&[f32; BLOCK]; 3]) {
         let (lattice, anchor) = (&self.lattice, self.lattice.anchor);
         let first = lattice.first.as_vec3().to_array();
         let limit = 2.0 * lattice.resolution as f32;
         let highest = highest_inside(lattice.resolution);
-        let mut cells = [[0.0; BLOCK]; 3];
-        let mut valid = [true; BLOCK];
+        block.valid = [true; BLOCK];
         for axis in 0..3 {
             let to = lattice.axes_per_cell[axis];
             for lane in 0..BLOCK {
                 let (x, y, z) =
                     (points[0][lane] - anchor.x, points[1][lane] - anchor.y, points[2][lane] - anchor.z);
                 let c = (x * to.x + y * to.y + z * to.z) - first[axis];
-                valid[lane] &= c.abs() <= limit;
+                block.valid[lane] &= c.abs() <= limit;
                 // Rounding must not put hair into the empty cells at the border. NaN becomes 1.
                 let c = if c > 1.0 { c } else { 1.0 };
-                cells[axis][lane] = if c < highest { c } else { highest };
+                block.from[axis][lane] = if c < highest { c } else { highest };
             }
         }
-        (cells, valid)
     }
 
     #[inline(always)]
-    fn segments(&self, points: &[[f32; BLOCK]; 3], ends: &[bool; BLOCK]) -> Block {
-        let (from, valid) = self.transform(points);
-        let mut step = [[0.0; BLOCK]; 3];
+    fn fill_segments(&self, block: &mut Block) {
         let mut keep = [0.0; BLOCK];
         for lane in 0..BLOCK - 1 {
-            keep[lane] = if valid[lane] & valid[lane + 1] & !ends[lane] { 1.0 } else { 0.0 };
+            keep[lane] =
+                if block.valid[lane] & block.valid[lane + 1] & !block.ends[lane] { 1.0 } else { 0.0 };
         }
-        for axis in 0..3 {
+        for (step, from) in block.step.iter_mut().zip(&block.from) {
             for lane in 0..BLOCK - 1 {
-                step[axis][lane] = (from[axis][lane + 1] - from[axis][lane]) * keep[lane];
+                step[lane] = (from[lane + 1] - from[lane]) * keep[lane];
             }
         }
-        let mut samples = [0; BLOCK];
-        let mut inverse = [0.0; BLOCK];
-        let mut depth = [0; BLOCK];
         for lane in 0..BLOCK {
-            let (x, y, z) = (step[0][lane], step[1][lane], step[2][lane]);
+            let [x, y, z] = [block.step[0][lane], block.step[1][lane], block.step[2][lane]];
             let across = y * y + z * z;
             let count = sample_count((x * x + across).sqrt()) as i32 as f32;
-            inverse[lane] = 1.0 / count;
+            let inverse = 1.0 / count;
             // ℓ sinθ in cells is the length across the light.
-            let of_sample = self.depth * across.sqrt() * inverse[lane] + 0.5;
-            let of_sample = if of_sample < MOST_PER_SAMPLE { of_sample } else { MOST_PER_SAMPLE };
-            samples[lane] = whole_part(count * keep[lane]) as u32;
-            depth[lane] = whole_part(of_sample * keep[lane]) as u32;
+            let depth = self.depth * across.sqrt() * inverse + 0.5;
+            let depth = if depth < MOST_PER_SAMPLE { depth } else { MOST_PER_SAMPLE };
+            block.inverse[lane] = inverse;
+            block.samples[lane] = whole_part(count * keep[lane]) as u32;
+            block.depth[lane] = whole_part(depth * keep[lane]) as u32;
         }
-        Block { from, step, samples, inverse, depth }
     }
 
     #[inline(always)]
-    fn points(&self, points: &[[f32; BLOCK]; 3]) -> Block {
-        let (from, mut valid) = self.transform(points);
-        valid[BLOCK - 1] = false;
-        let depth = (self.depth + 0.5).min(MOST_PER_SAMPLE) as u32;
-        Block {
-            from,
-            step: [[0.0; BLOCK]; 3],
-            samples: valid.map(u32::from),
-            inverse: [1.0; BLOCK],
-            depth: valid.map(|valid| if valid { depth } else { 0 }),
+    fn fill_points(&self, block: &mut Block) {
+        let depth = whole_part((self.depth + 0.5).min(MOST_PER_SAMPLE)) as u32;
+        for lane in 0..BLOCK - 1 {
+            block.samples[lane] = u32::from(block.valid[lane]);
+            block.depth[lane] = if block.valid[lane] { depth } else { 0 };
         }
     }
 
