@@ -51,11 +51,7 @@ pub struct Playback {
 
 impl Default for Playback {
     fn default() -> Self {
-        Self {
-            playing: true,
-            rate: 1.0,
-            rest_secs: 0.0,
-        }
+        Self { playing: true, rate: 1.0, rest_secs: 0.0 }
     }
 }
 
@@ -78,11 +74,7 @@ impl Playback {
 
     /// Sets the rate, 0.05 to 2.
     pub fn set_rate(&mut self, rate: f64) {
-        self.rate = if rate.is_finite() {
-            rate.clamp(0.05, 2.0)
-        } else {
-            1.0
-        };
+        self.rate = if rate.is_finite() { rate.clamp(0.05, 2.0) } else { 1.0 };
     }
 
     /// `elapsed_secs` have passed: how many steps are due.
@@ -120,16 +112,9 @@ pub struct FrameClock {
 impl FrameClock {
     /// The clock of a frame rate, which is clamped to 1 to 240.
     pub fn new(fps: f64) -> Self {
-        let fps = if fps.is_finite() {
-            fps.clamp(1.0, 240.0)
-        } else {
-            30.0
-        };
+        let fps = if fps.is_finite() { fps.clamp(1.0, 240.0) } else { 30.0 };
         let steps_per_frame = (1.0 / (fps * STEP_SECS) - 1e-6).ceil().max(1.0);
-        Self {
-            step_secs: 1.0 / (fps * steps_per_frame),
-            steps_per_frame: steps_per_frame as u32,
-        }
+        Self { step_secs: 1.0 / (fps * steps_per_frame), steps_per_frame: steps_per_frame as u32 }
     }
 
     /// The step at which frame `frame` is drawn, counted from time zero.
@@ -156,16 +141,10 @@ mod tests {
     #[test]
     fn uneven_frames_add_up() {
         let mut playback = Playback::default();
-        let frames = [0.003, 0.011, 0.02, 0.007, 0.016, 0.0001, 0.0429]
-            .iter()
-            .cycle()
-            .take(700);
+        let frames = [0.003, 0.011, 0.02, 0.007, 0.016, 0.0001, 0.0429].iter().cycle().take(700);
         let steps: u32 = frames.clone().map(|&secs| playback.advance(secs)).sum();
         let total: f64 = frames.sum();
-        assert!(
-            (f64::from(steps) - total / STEP_SECS).abs() <= 1.0,
-            "{steps} steps in {total} s"
-        );
+        assert!((f64::from(steps) - total / STEP_SECS).abs() <= 1.0, "{steps} steps in {total} s");
     }
 
     #[test]
@@ -191,16 +170,9 @@ mod tests {
 
     #[test]
     fn every_frame_rate_has_whole_equal_steps_no_longer_than_a_sixtieth() {
-        for (fps, steps) in [
-            (60.0, 1),
-            (30.0, 2),
-            (24.0, 3),
-            (25.0, 3),
-            (20.0, 3),
-            (10.0, 6),
-            (120.0, 1),
-            (1.0, 60),
-        ] {
+        for (fps, steps) in
+            [(60.0, 1), (30.0, 2), (24.0, 3), (25.0, 3), (20.0, 3), (10.0, 6), (120.0, 1), (1.0, 60)]
+        {
             let clock = FrameClock::new(fps);
             assert_eq!(clock.steps_per_frame, steps, "{fps}");
             assert!(clock.step_secs <= STEP_SECS * (1.0 + 1e-9));

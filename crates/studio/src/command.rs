@@ -74,14 +74,7 @@ pub enum CommandGroup {
 
 impl CommandGroup {
     /// All groups, in the order of menus.
-    pub const ALL: [Self; 6] = [
-        Self::File,
-        Self::Edit,
-        Self::Playback,
-        Self::View,
-        Self::Hair,
-        Self::Help,
-    ];
+    pub const ALL: [Self; 6] = [Self::File, Self::Edit, Self::Playback, Self::View, Self::Hair, Self::Help];
 
     /// The name in menus.
     pub fn label(self) -> &'static str {
@@ -124,10 +117,7 @@ impl Command {
 
     /// The command of that id.
     pub fn from_id(id: &str) -> Option<Self> {
-        COMMANDS
-            .iter()
-            .find(|info| info.id == id)
-            .map(|info| info.command)
+        COMMANDS.iter().find(|info| info.id == id).map(|info| info.command)
     }
 }
 
@@ -149,12 +139,7 @@ impl<'a> Shortcut<'a> {
     pub fn parse(text: &'a str) -> Option<Self> {
         let mut parts = text.split('+').rev();
         let key = parts.next().filter(|key| !key.is_empty())?;
-        let mut shortcut = Self {
-            ctrl: false,
-            shift: false,
-            alt: false,
-            key,
-        };
+        let mut shortcut = Self { ctrl: false, shift: false, alt: false, key };
         for modifier in parts {
             match modifier {
                 "Ctrl" => shortcut.ctrl = true,
@@ -175,15 +160,7 @@ const fn entry(
     shortcuts: &'static [&'static str],
     group: CommandGroup,
 ) -> CommandInfo {
-    CommandInfo {
-        command,
-        id,
-        label,
-        tooltip,
-        shortcuts,
-        group,
-        in_palette: true,
-    }
+    CommandInfo { command, id, label, tooltip, shortcuts, group, in_palette: true }
 }
 
 /// Every command, in the order of [`Command`].
@@ -199,22 +176,8 @@ pub const COMMANDS: &[CommandInfo] = {
             &["Space"],
             G::Playback,
         ),
-        entry(
-            C::StepForward,
-            "step-forward",
-            "Next frame",
-            "Moves one frame on.",
-            &["Right"],
-            G::Playback,
-        ),
-        entry(
-            C::StepBack,
-            "step-back",
-            "Previous frame",
-            "Moves one frame back.",
-            &["Left"],
-            G::Playback,
-        ),
+        entry(C::StepForward, "step-forward", "Next frame", "Moves one frame on.", &["Right"], G::Playback),
+        entry(C::StepBack, "step-back", "Previous frame", "Moves one frame back.", &["Left"], G::Playback),
         entry(
             C::JumpToStart,
             "jump-to-start",
@@ -287,14 +250,7 @@ pub const COMMANDS: &[CommandInfo] = {
             &["Shift+Home"],
             G::View,
         ),
-        entry(
-            C::Undo,
-            "undo",
-            "Undo",
-            "Takes back the last change.",
-            &["Ctrl+Z"],
-            G::Edit,
-        ),
+        entry(C::Undo, "undo", "Undo", "Takes back the last change.", &["Ctrl+Z"], G::Edit),
         entry(
             C::Redo,
             "redo",
@@ -319,14 +275,7 @@ pub const COMMANDS: &[CommandInfo] = {
             &["Ctrl+O"],
             G::File,
         ),
-        entry(
-            C::Save,
-            "save",
-            "Save",
-            "Saves the project.",
-            &["Ctrl+S"],
-            G::File,
-        ),
+        entry(C::Save, "save", "Save", "Saves the project.", &["Ctrl+S"], G::File),
         entry(
             C::SaveAs,
             "save-as",
@@ -378,14 +327,7 @@ pub const COMMANDS: &[CommandInfo] = {
             &["Tab"],
             G::View,
         ),
-        entry(
-            C::ShowKeys,
-            "show-keys",
-            "Keys",
-            "Lists the keys.",
-            &["?", "F1"],
-            G::Help,
-        ),
+        entry(C::ShowKeys, "show-keys", "Keys", "Lists the keys.", &["?", "F1"], G::Help),
         entry(
             C::Quit,
             "quit",
@@ -410,28 +352,17 @@ mod tests {
             assert_eq!(info.command.info(), info);
             assert_eq!(Command::from_id(info.id), Some(info.command));
         }
-        assert_eq!(
-            Command::Quit as usize + 1,
-            COMMANDS.len(),
-            "every command has its row"
-        );
+        assert_eq!(Command::Quit as usize + 1, COMMANDS.len(), "every command has its row");
     }
 
     #[test]
     fn ids_labels_and_keys_are_distinct() {
         let mut seen = BTreeSet::new();
         for info in COMMANDS {
-            for text in [info.id, info.label]
-                .into_iter()
-                .chain(info.shortcuts.iter().copied())
-            {
+            for text in [info.id, info.label].into_iter().chain(info.shortcuts.iter().copied()) {
                 assert!(seen.insert(text), "`{text}` is used twice");
             }
-            assert!(
-                info.tooltip.ends_with('.'),
-                "{}: a tooltip is a sentence",
-                info.id
-            );
+            assert!(info.tooltip.ends_with('.'), "{}: a tooltip is a sentence", info.id);
         }
     }
 
@@ -440,12 +371,7 @@ mod tests {
         for shortcut in COMMANDS.iter().flat_map(|info| info.shortcuts) {
             assert!(Shortcut::parse(shortcut).is_some(), "{shortcut}");
         }
-        let redo = Shortcut {
-            ctrl: true,
-            shift: true,
-            alt: false,
-            key: "Z",
-        };
+        let redo = Shortcut { ctrl: true, shift: true, alt: false, key: "Z" };
         assert_eq!(Shortcut::parse("Ctrl+Shift+Z"), Some(redo));
         for wrong in ["", "Ctrl+", "Hyper+Z"] {
             assert_eq!(Shortcut::parse(wrong), None, "{wrong}");

@@ -32,34 +32,22 @@ pub enum StudioError {
 impl StudioError {
     /// An input file that is wrong; `message` names the file.
     pub fn input(file: &Path, message: impl fmt::Display) -> Self {
-        Self::Request {
-            file: Some(file.to_owned()),
-            message: message.to_string(),
-        }
+        Self::Request { file: Some(file.to_owned()), message: message.to_string() }
     }
 
     /// An option that is wrong.
     pub fn option(message: impl fmt::Display) -> Self {
-        Self::Request {
-            file: None,
-            message: message.to_string(),
-        }
+        Self::Request { file: None, message: message.to_string() }
     }
 
     /// Work that failed on a file; `message` names the file.
     pub fn output(file: &Path, message: impl fmt::Display) -> Self {
-        Self::Work {
-            file: Some(file.to_owned()),
-            message: message.to_string(),
-        }
+        Self::Work { file: Some(file.to_owned()), message: message.to_string() }
     }
 
     /// Work that failed.
     pub fn work(message: impl fmt::Display) -> Self {
-        Self::Work {
-            file: None,
-            message: message.to_string(),
-        }
+        Self::Work { file: None, message: message.to_string() }
     }
 
     /// The exit status of the command line: 2 for a wrong request or input file, 1 for work that failed.
@@ -161,11 +149,7 @@ pub struct Problem {
 impl Problem {
     /// A problem.
     pub fn new(place: Place, kind: ProblemKind, message: impl fmt::Display) -> Self {
-        Self {
-            place,
-            kind,
-            message: message.to_string(),
-        }
+        Self { place, kind, message: message.to_string() }
     }
 
     /// A file that could not be loaded.
@@ -175,10 +159,7 @@ impl Problem {
 
     /// Whether a part of the scene is missing because of it.
     pub fn is_failure(&self) -> bool {
-        matches!(
-            self.kind,
-            ProblemKind::NotLoaded | ProblemKind::NeedsPermission(_)
-        )
+        matches!(self.kind, ProblemKind::NotLoaded | ProblemKind::NeedsPermission(_))
     }
 }
 

@@ -72,10 +72,7 @@ impl History {
             }
         } else {
             let before = std::mem::replace(&mut self.present, project);
-            self.past.push_back(Step {
-                label: label.to_owned(),
-                project: before,
-            });
+            self.past.push_back(Step { label: label.to_owned(), project: before });
             if self.past.len() > self.limit {
                 self.past.pop_front();
             }
@@ -106,10 +103,7 @@ impl History {
     pub fn undo(&mut self) -> Option<&Arc<Project>> {
         let step = self.past.pop_back()?;
         let after = std::mem::replace(&mut self.present, step.project);
-        self.future.push(Step {
-            label: step.label,
-            project: after,
-        });
+        self.future.push(Step { label: step.label, project: after });
         self.gesture = None;
         Some(&self.present)
     }
@@ -118,10 +112,7 @@ impl History {
     pub fn redo(&mut self) -> Option<&Arc<Project>> {
         let step = self.future.pop()?;
         let before = std::mem::replace(&mut self.present, step.project);
-        self.past.push_back(Step {
-            label: step.label,
-            project: before,
-        });
+        self.past.push_back(Step { label: step.label, project: before });
         self.gesture = None;
         Some(&self.present)
     }
@@ -178,11 +169,7 @@ mod tests {
         }
         history.end_gesture();
         history.edit("Distance", Some(7), at(30.0));
-        assert_eq!(
-            history.undo_len(),
-            2,
-            "a second drag with the same id, after the first has ended"
-        );
+        assert_eq!(history.undo_len(), 2, "a second drag with the same id, after the first has ended");
         assert_eq!(history.undo().map(|p| p.camera.distance), Some(19.0));
         assert_eq!(history.undo().map(|p| p.camera.distance), Some(1.0));
         assert!(history.undo().is_none());

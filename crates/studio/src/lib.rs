@@ -7,19 +7,30 @@
 mod clock;
 mod command;
 mod error;
+mod headless;
 mod history;
+mod info;
+mod painter;
 mod project;
+mod session;
 mod slot;
 mod stats;
 
 pub use clock::{FrameClock, MAX_STEPS_PER_TICK, Playback, STEP_SECS, Stopwatch};
 pub use command::{COMMANDS, Command, CommandGroup, CommandInfo, Shortcut};
 pub use error::{Place, Problem, ProblemKind, StudioError};
+pub use headless::{Backend, Progress, RecordJob, RecordReport, RecordRequest, StageMedians, record};
 pub use history::{GestureId, History};
+pub use info::{Content, FileKind, Info, ProjectInfo, info};
+pub use painter::{Adapter, PaintRequest, Painted, Painter};
 pub use project::{
     Access, BodySection, BodySource, CameraMode, CameraSection, FileRef, HairSection, HairSource,
     MotionSection, MotionSource, PROJECT_EXTENSION, PROJECT_VERSION, Project, RecordingSection, load_project,
     load_project_with, parse_project, save_project,
+};
+pub use session::{
+    BodyObstacle, Engine, Event, FrameSnapshot, HeadPath, LoadControl, LoadProgress, SETTLE_SECS, Scene,
+    SceneLoader, Totals, Wake, Worker, camera_at, dancer, frame_points,
 };
 pub use slot::Slot;
 pub use stats::{Stage, StageHistory, StageTimes, median};
@@ -27,6 +38,6 @@ pub use stats::{Stage, StageHistory, StageTimes, median};
 // What the interface edits and shows, so that it needs no other crate of the engine.
 pub use lovelock_groom as groom;
 pub use lovelock_motion as motion;
-pub use lovelock_record as record;
+pub use lovelock_record as recording;
 pub use lovelock_render as render;
 pub use lovelock_wisp as wisp;

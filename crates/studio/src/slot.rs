@@ -18,20 +18,13 @@ struct Held<T> {
 
 impl<T> Default for Slot<T> {
     fn default() -> Self {
-        Self {
-            shared: Arc::new(Mutex::new(Held {
-                number: 0,
-                value: None,
-            })),
-        }
+        Self { shared: Arc::new(Mutex::new(Held { number: 0, value: None })) }
     }
 }
 
 impl<T> Clone for Slot<T> {
     fn clone(&self) -> Self {
-        Self {
-            shared: Arc::clone(&self.shared),
-        }
+        Self { shared: Arc::clone(&self.shared) }
     }
 }
 
@@ -49,11 +42,7 @@ impl<T> Slot<T> {
 
     /// The latest value, which stays in the slot.
     pub fn latest(&self) -> Option<Arc<T>> {
-        self.shared
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .value
-            .clone()
+        self.shared.lock().unwrap_or_else(PoisonError::into_inner).value.clone()
     }
 
     /// The latest value if it is newer than number `seen`, which is then moved on.

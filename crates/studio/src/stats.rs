@@ -24,14 +24,8 @@ pub enum Stage {
 
 impl Stage {
     /// All stages, in order.
-    pub const ALL: [Self; 6] = [
-        Self::Motion,
-        Self::Simulate,
-        Self::Interpolate,
-        Self::Shadow,
-        Self::Draw,
-        Self::Encode,
-    ];
+    pub const ALL: [Self; 6] =
+        [Self::Motion, Self::Simulate, Self::Interpolate, Self::Shadow, Self::Draw, Self::Encode];
 
     /// The name in the interface.
     pub fn label(self) -> &'static str {
@@ -105,10 +99,7 @@ impl StageHistory {
     /// A history that keeps the last `capacity` frames (at least one).
     pub fn new(capacity: usize) -> Self {
         let capacity = capacity.max(1);
-        Self {
-            frames: VecDeque::with_capacity(capacity),
-            capacity,
-        }
+        Self { frames: VecDeque::with_capacity(capacity), capacity }
     }
 
     /// Adds a frame, forgetting the oldest one where it is full.
@@ -175,10 +166,7 @@ mod tests {
     fn the_oldest_frame_is_forgotten() {
         let mut history = StageHistory::new(3);
         for i in 0..5 {
-            history.push(StageTimes {
-                draw: f64::from(i),
-                ..StageTimes::default()
-            });
+            history.push(StageTimes { draw: f64::from(i), ..StageTimes::default() });
         }
         assert_eq!(history.series(Stage::Draw).collect::<Vec<_>>(), [2.0, 3.0, 4.0]);
         assert_eq!(history.medians().draw, 3.0);

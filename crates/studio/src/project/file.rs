@@ -43,15 +43,10 @@ pub fn load_project_with(path: &Path, access: &mut Access) -> Result<(Project, V
     let file = File::open(path).map_err(cannot_read)?;
     let data = file.metadata().map_err(cannot_read)?;
     if data.is_dir() {
-        return Err(StudioError::input(
-            path,
-            format!("{name}: is a folder; wanted a project file"),
-        ));
+        return Err(StudioError::input(path, format!("{name}: is a folder; wanted a project file")));
     }
     let mut bytes = Vec::new();
-    file.take(LARGEST_BYTES + 1)
-        .read_to_end(&mut bytes)
-        .map_err(cannot_read)?;
+    file.take(LARGEST_BYTES + 1).read_to_end(&mut bytes).map_err(cannot_read)?;
     if bytes.len() as u64 > LARGEST_BYTES {
         let message = format!("{name}: longer than {LARGEST_BYTES} bytes, which no project is");
         return Err(StudioError::input(path, message));
@@ -88,10 +83,7 @@ pub fn parse_project(path: &Path, text: &str) -> Result<(Project, Vec<Problem>),
     let refuse = |error: ron::error::SpannedError| {
         StudioError::input(
             path,
-            format!(
-                "{name}: line {}: {}; wanted a project",
-                error.span.start, error.code
-            ),
+            format!("{name}: line {}: {}; wanted a project", error.span.start, error.code),
         )
     };
     let options = ron::Options::default()

@@ -30,11 +30,7 @@ fn compare(path: &str, before: &serde_json::Value, after: &serde_json::Value, ou
         }
         (a, b) if a != b => {
             let name = if path.is_empty() { "the value" } else { path };
-            out.push(format!(
-                "{name} was {}, out of range, and is now {}",
-                text(a),
-                text(b)
-            ));
+            out.push(format!("{name} was {}, out of range, and is now {}", text(a), text(b)));
         }
         _ => {}
     }
@@ -45,9 +41,9 @@ fn text(value: &serde_json::Value) -> String {
         // JSON has no NaN and no infinity: serde_json writes null.
         serde_json::Value::Null => "not a finite number".to_owned(),
         // Single precision, or 0.1 would read as 0.10000000149011612.
-        serde_json::Value::Number(number) if number.is_f64() => number
-            .as_f64()
-            .map_or_else(|| number.to_string(), |v| (v as f32).to_string()),
+        serde_json::Value::Number(number) if number.is_f64() => {
+            number.as_f64().map_or_else(|| number.to_string(), |v| (v as f32).to_string())
+        }
         other => other.to_string(),
     }
 }
@@ -81,9 +77,5 @@ fn collect_unknown(path: &str, found: &Value, known: &Value, out: &mut Vec<Strin
 }
 
 fn join(path: &str, name: &str) -> String {
-    if path.is_empty() {
-        name.to_owned()
-    } else {
-        format!("{path}.{name}")
-    }
+    if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") }
 }

@@ -105,35 +105,21 @@ impl Project {
 
     /// Every file that the project names and uses, with the part that uses it.
     pub fn files(&self) -> Vec<(crate::Place, &FileRef)> {
-        let body = (self.body.source == BodySource::File)
-            .then_some(self.body.file.as_ref())
-            .flatten();
-        let motion = (self.motion.source == MotionSource::File)
-            .then_some(self.motion.file.as_ref())
-            .flatten();
-        let hair = (self.hair.source == HairSource::File)
-            .then_some(self.hair.file.as_ref())
-            .flatten();
-        [
-            (crate::Place::Body, body),
-            (crate::Place::Motion, motion),
-            (crate::Place::Hair, hair),
-        ]
-        .into_iter()
-        .filter_map(|(place, file)| Some((place, file?)))
-        .collect()
+        let body = (self.body.source == BodySource::File).then_some(self.body.file.as_ref()).flatten();
+        let motion =
+            (self.motion.source == MotionSource::File).then_some(self.motion.file.as_ref()).flatten();
+        let hair = (self.hair.source == HairSource::File).then_some(self.hair.file.as_ref()).flatten();
+        [(crate::Place::Body, body), (crate::Place::Motion, motion), (crate::Place::Hair, hair)]
+            .into_iter()
+            .filter_map(|(place, file)| Some((place, file?)))
+            .collect()
     }
 
     /// Every file that the project names, used or not.
     pub(crate) fn file_refs_mut(&mut self) -> impl Iterator<Item = &mut FileRef> {
-        [
-            &mut self.body.file,
-            &mut self.motion.file,
-            &mut self.hair.file,
-            &mut self.recording.output,
-        ]
-        .into_iter()
-        .flatten()
+        [&mut self.body.file, &mut self.motion.file, &mut self.hair.file, &mut self.recording.output]
+            .into_iter()
+            .flatten()
     }
 }
 

@@ -22,10 +22,7 @@ impl FileRef {
     /// A file by its path; a relative path is taken from the current folder.
     pub fn new(path: impl Into<PathBuf>) -> Self {
         let path = path.into();
-        Self {
-            path: std::path::absolute(&path).unwrap_or(path),
-            outside: false,
-        }
+        Self { path: std::path::absolute(&path).unwrap_or(path), outside: false }
     }
 
     /// The path as a project in `folder` stores it.
@@ -34,25 +31,16 @@ impl FileRef {
         match path.strip_prefix(canonical(folder)) {
             Ok(inside) if !inside.as_os_str().is_empty() => {
                 let names: Vec<_> = inside.iter().map(|name| name.to_string_lossy()).collect();
-                Self {
-                    path: PathBuf::from(names.join("/")),
-                    outside: false,
-                }
+                Self { path: PathBuf::from(names.join("/")), outside: false }
             }
-            _ => Self {
-                path: self.path.clone(),
-                outside: true,
-            },
+            _ => Self { path: self.path.clone(), outside: true },
         }
     }
 
     /// The path in memory of what a project in `folder` stores.
     pub(super) fn from_disk(&self, folder: &Path) -> Self {
         let path = folder.join(&self.path);
-        Self {
-            path: normal(&path),
-            outside: self.outside,
-        }
+        Self { path: normal(&path), outside: self.outside }
     }
 }
 
@@ -91,11 +79,7 @@ impl Access {
     /// Whether the project may reach `path`. Links are followed first.
     pub fn allows(&self, path: &Path) -> bool {
         let path = canonical(path);
-        self.picked.contains(&path)
-            || self
-                .folder
-                .as_ref()
-                .is_some_and(|folder| path.starts_with(folder))
+        self.picked.contains(&path) || self.folder.as_ref().is_some_and(|folder| path.starts_with(folder))
     }
 
     /// The path of a file that is to be read.
@@ -115,10 +99,7 @@ impl Access {
         }
         match std::fs::metadata(&file.path) {
             Ok(data) if data.is_file() => Ok(file.path.clone()),
-            Ok(_) => Err(Problem::not_loaded(
-                place,
-                format!("{name} is not a file; pick another"),
-            )),
+            Ok(_) => Err(Problem::not_loaded(place, format!("{name} is not a file; pick another"))),
             Err(error) => Err(Problem::not_loaded(
                 place,
                 format!("{name} cannot be read ({error}); put it back or pick another"),
@@ -140,10 +121,7 @@ fn canonical(path: &Path) -> PathBuf {
     let mut at = path.as_path();
     loop {
         if let Ok(real) = at.canonicalize() {
-            return missing
-                .iter()
-                .rev()
-                .fold(real, |path: PathBuf, name| path.join(name));
+            return missing.iter().rev().fold(real, |path: PathBuf, name| path.join(name));
         }
         match (at.parent(), at.file_name()) {
             (Some(parent), Some(name)) => {
@@ -186,13 +164,8 @@ mod tests {
         let mut access = Access::for_project(&dir.path().join("project/p.lovelock"));
         assert!(access.allows(&inside));
         assert!(!access.allows(&outside));
-        assert!(
-            !access.allows(&dir.path().join("project/../secret.hair")),
-            "a way out by `..`"
-        );
-        let problem = access
-            .read(Place::Hair, &FileRef::new(&outside))
-            .expect_err("refused");
+        assert!(!access.allows(&dir.path().join("project/../secret.hair")), "a way out by `..`");
+        let problem = access.read(Place::Hair, &FileRef::new(&outside)).expect_err("refused");
         assert!(matches!(problem.kind, ProblemKind::NeedsPermission(_)));
         assert!(problem.message.contains("secret.hair"));
         access.pick(&outside);
@@ -221,9 +194,7 @@ mod tests {
         access.pick(&file);
         assert!(access.allows(&file));
         std::fs::remove_file(&file).expect("removed");
-        let problem = access
-            .read(Place::Hair, &FileRef::new(&file))
-            .expect_err("missing");
+        let problem = access.read(Place::Hair, &FileRef::new(&file)).expect_err("missing");
         assert_eq!(problem.kind, ProblemKind::NotLoaded);
     }
 
@@ -232,13 +203,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let file = FileRef::new(folder.path().join("sub/x.bvh"));
         let disk = file.for_disk(folder.path());
-        assert_eq!(
-            disk,
-            FileRef {
-                path: "sub/x.bvh".into(),
-                outside: false
-            }
-        );
+        assert_eq!(disk, FileRef { path: "sub/x.bvh".into(), outside: false });
         assert_eq!(disk.from_disk(folder.path()), file);
         let far = FileRef::new(folder.path().parent().expect("a parent").join("y.bvh"));
         let disk = far.for_disk(folder.path());

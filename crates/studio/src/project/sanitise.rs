@@ -27,19 +27,13 @@ impl Project {
 
         let mut problems = Vec::new();
         let mut note = |place, changes: Vec<String>| {
-            problems.extend(
-                changes
-                    .into_iter()
-                    .map(|change| Problem::new(place, ProblemKind::Adjusted, change)),
-            );
+            problems
+                .extend(changes.into_iter().map(|change| Problem::new(place, ProblemKind::Adjusted, change)));
         };
         note(Place::Motion, differences(&self.motion, &project.motion));
         note(Place::Hair, differences(&self.hair, &project.hair));
         note(Place::Look, differences(&self.look, &project.look));
-        note(
-            Place::Simulation,
-            differences(&self.simulation, &project.simulation),
-        );
+        note(Place::Simulation, differences(&self.simulation, &project.simulation));
         note(Place::Shadow, differences(&self.shadow, &project.shadow));
         note(Place::Camera, differences(&self.camera, &project.camera));
         note(Place::Picture, differences(&self.picture, &project.picture));
@@ -66,25 +60,17 @@ impl Project {
 }
 
 fn within(value: f32, low: f32, high: f32, default: f32) -> f32 {
-    if value.is_nan() {
-        default
-    } else {
-        value.clamp(low, high)
-    }
+    if value.is_nan() { default } else { value.clamp(low, high) }
 }
 
 fn within_cube(value: Vec3, half: f32, default: Vec3) -> Vec3 {
-    if value.is_nan() {
-        default
-    } else {
-        value.clamp(Vec3::splat(-half), Vec3::splat(half))
-    }
+    if value.is_nan() { default } else { value.clamp(Vec3::splat(-half), Vec3::splat(half)) }
 }
 
 fn motion(motion: &MotionSection) -> MotionSection {
     MotionSection {
         speed: within(motion.speed, 0.1, 4.0, 1.0),
-        loop_blend_secs: within(motion.loop_blend_secs, 0.0, 2.0, 0.0),
+        loop_blend_secs: within(motion.loop_blend_secs, 0.0, 2.0, 0.5),
         ..motion.clone()
     }
 }
@@ -132,20 +118,14 @@ fn camera(camera: &CameraSection) -> CameraSection {
 }
 
 fn recording(recording: &RecordingSection) -> RecordingSection {
-    let fps = if recording.fps.is_nan() {
-        30.0
-    } else {
-        recording.fps.clamp(1.0, 240.0)
-    };
+    let fps = if recording.fps.is_nan() { 30.0 } else { recording.fps.clamp(1.0, 240.0) };
     let first_frame = recording.first_frame.min(10_000_000);
     RecordingSection {
         width: recording.width.clamp(16, 8192),
         height: recording.height.clamp(16, 8192),
         fps,
         first_frame,
-        end_frame: recording
-            .end_frame
-            .map(|end| end.clamp(first_frame + 1, 20_000_000)),
+        end_frame: recording.end_frame.map(|end| end.clamp(first_frame + 1, 20_000_000)),
         ..recording.clone()
     }
 }

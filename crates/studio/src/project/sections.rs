@@ -73,7 +73,7 @@ impl Default for MotionSection {
             settings: MotionSettings::default(),
             speed: 1.0,
             looping: true,
-            loop_blend_secs: 0.0,
+            loop_blend_secs: 0.5,
         }
     }
 }

@@ -18,21 +18,15 @@ fn round_trip(project: &Project) -> (Project, Vec<crate::Problem>) {
 #[test]
 fn the_default_project_comes_back_without_a_word() {
     let project = Project::default();
-    assert_eq!(
-        project.sanitised(),
-        (project.clone(), Vec::new()),
-        "the defaults lie in their ranges"
-    );
+    assert_eq!(project.sanitised(), (project.clone(), Vec::new()), "the defaults lie in their ranges");
     assert_eq!(round_trip(&project), (project, Vec::new()));
 }
 
 #[test]
 fn a_sparse_project_takes_the_rest_from_the_defaults() {
-    let (project, problems) = parse_project(
-        Path::new("p"),
-        "(version: 1, hair: (preset: curly), motion: (speed: 0.5))",
-    )
-    .expect("reads");
+    let (project, problems) =
+        parse_project(Path::new("p"), "(version: 1, hair: (preset: curly), motion: (speed: 0.5))")
+            .expect("reads");
     assert_eq!(problems, []);
     assert_eq!(project.motion.speed, 0.5);
     assert_eq!(project.lights, Project::default().lights);
@@ -45,10 +39,7 @@ fn unknown_fields_are_named_and_left_out() {
     assert_eq!(project.camera.distance, 3.0);
     let messages: Vec<_> = problems.iter().map(|p| p.message.as_str()).collect();
     assert!(messages.iter().any(|m| m.contains("`sparkle`")), "{messages:?}");
-    assert!(
-        messages.iter().any(|m| m.contains("`hair.glitter`")),
-        "{messages:?}"
-    );
+    assert!(messages.iter().any(|m| m.contains("`hair.glitter`")), "{messages:?}");
     assert_eq!(problems.len(), 2);
     assert!(problems.iter().all(|p| p.kind == ProblemKind::Ignored));
 }
@@ -63,14 +54,9 @@ fn a_newer_version_is_refused_even_where_it_makes_no_sense() {
 
 #[test]
 fn nonsense_is_refused_with_a_line() {
-    for text in [
-        "",
-        "hello",
-        "(version: 1, motion: (speed: fast))",
-        "[1, 2",
-        "(version: 1",
-        "{\"version\": 1",
-    ] {
+    for text in
+        ["", "hello", "(version: 1, motion: (speed: fast))", "[1, 2", "(version: 1", "{\"version\": 1"]
+    {
         let error = parse_project(Path::new("p"), text).expect_err(text);
         assert!(error.to_string().contains("line"), "{error}");
     }
@@ -83,22 +69,8 @@ fn values_out_of_range_are_moved_and_told() {
     let text = "(version: 1, motion: (speed: NaN), camera: (distance: inf, fov_y: -1.0), \
                 simulation: (gravity: -inf), recording: (width: 0, fps: 1e9))";
     let (project, problems) = parse_project(Path::new("p"), text).expect("reads");
-    assert_eq!(
-        (
-            project.motion.speed,
-            project.camera.distance,
-            project.simulation.gravity
-        ),
-        (1.0, 30.0, 0.0)
-    );
-    assert_eq!(
-        (
-            project.camera.fov_y,
-            project.recording.width,
-            project.recording.fps
-        ),
-        (0.05, 16, 240.0)
-    );
+    assert_eq!((project.motion.speed, project.camera.distance, project.simulation.gravity), (1.0, 30.0, 0.0));
+    assert_eq!((project.camera.fov_y, project.recording.width, project.recording.fps), (0.05, 16, 240.0));
     assert_eq!(problems.len(), 6, "{problems:?}");
     assert!(problems.iter().all(|p| p.kind == ProblemKind::Adjusted));
     assert_eq!(project.sanitised().1, [], "once is enough");
@@ -124,17 +96,11 @@ fn missing_files_are_named_and_the_rest_opens() {
     project.camera.distance = 4.0;
     save_project(&path, &project).expect("saved");
     let text = std::fs::read_to_string(&path).expect("text");
-    assert!(
-        text.contains("wigs/gone.hair") && !text.contains(&dir.path().display().to_string()),
-        "{text}"
-    );
+    assert!(text.contains("wigs/gone.hair") && !text.contains(&dir.path().display().to_string()), "{text}");
     let (opened, problems) = load_project(&path).expect("opened");
     assert_eq!(opened, project);
     assert_eq!(problems.len(), 1);
-    assert!(
-        problems[0].is_failure() && problems[0].message.contains("gone.hair"),
-        "{problems:?}"
-    );
+    assert!(problems[0].is_failure() && problems[0].message.contains("gone.hair"), "{problems:?}");
 }
 
 #[test]
@@ -149,10 +115,7 @@ fn a_moved_project_finds_its_files() {
     std::fs::rename(&old, &new).expect("moved");
     let (opened, problems) = load_project(&new.join("p.lovelock")).expect("opened");
     assert_eq!(problems, []);
-    assert_eq!(
-        opened.hair.file.expect("a file").path,
-        FileRef::new(new.join("x.hair")).path
-    );
+    assert_eq!(opened.hair.file.expect("a file").path, FileRef::new(new.join("x.hair")).path);
 }
 
 #[test]
@@ -166,11 +129,7 @@ fn a_file_outside_is_not_loaded_until_it_is_picked() {
     let mut project = Project::default();
     project.set_hair_file(&hair);
     save_project(&path, &project).expect("saved");
-    assert!(
-        std::fs::read_to_string(&path)
-            .expect("text")
-            .contains("outside: true")
-    );
+    assert!(std::fs::read_to_string(&path).expect("text").contains("outside: true"));
     let (_, problems) = load_project(&path).expect("opened");
     assert!(
         matches!(&problems[..], [p] if matches!(p.kind, ProblemKind::NeedsPermission(_))),
@@ -181,11 +140,8 @@ fn a_file_outside_is_not_loaded_until_it_is_picked() {
     let (_, problems) = load_project_with(&path, &mut access).expect("opened");
     assert_eq!(problems, []);
     // Written by hand, without the mark: the same.
-    std::fs::write(
-        &path,
-        "(version: 1, hair: (source: File, file: (path: \"../x.hair\")))",
-    )
-    .expect("written");
+    std::fs::write(&path, "(version: 1, hair: (source: File, file: (path: \"../x.hair\")))")
+        .expect("written");
     let (_, problems) = load_project(&path).expect("opened");
     assert!(
         matches!(&problems[..], [p] if matches!(p.kind, ProblemKind::NeedsPermission(_))),

@@ -1,0 +1,14 @@
+//! Recording without a window.
+
+mod job;
+mod record;
+mod report;
+mod request;
+
+pub use job::RecordJob;
+pub use record::record;
+pub use report::{RecordReport, StageMedians};
+pub use request::{Backend, Progress, RecordRequest};
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,238 @@
+//! The loop of a recording: the window's engine with a fixed clock.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use lovelock_groom::Strands;
+use lovelock_record::{FrameRate, OutputKind, PictureSink, RecordError, SinkSettings};
+use lovelock_render::{Gpu, GpuError, Picture, RenderError, Renderer};
+
+use super::{Backend, Progress, RecordReport, RecordRequest};
+use crate::{
+    Engine, FrameClock, LoadControl, Problem, Project, Scene, SceneLoader, StageHistory, StageTimes,
+    Stopwatch, StudioError,
+};
+
+/// The most frames of which times are kept for the medians.
+const MOST_TIMES: usize = 1 << 20;
+
+/// Records a project: simulates from its first frame, draws the frames asked for, and writes them.
+///
+/// `progress` is told each stage and frame, and may stop the recording. The simulation's bytes depend on the
+/// project and the frame rate alone.
+///
+/// # Errors
+/// [`StudioError::exit_code`] 2 for a wrong request, 1 where the work fails (no adapter, a full disk). Nothing is
+/// left under the final name of a film then; of a sequence the frames that are whole are.
+pub fn record(
+    project: &Project,
+    request: &RecordRequest,
+    progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+) -> Result<RecordReport, StudioError> {
+    let job = Job::new(project, request)?;
+    let gpu = open(request)?;
+    let mut renderer = Renderer::new(Arc::clone(&gpu))?;
+    let (scene, problems) = load(&job.project, request, progress)?;
+    tell(progress, Progress::Loaded { problems: problems.clone() })?;
+
+    let frames = job.frames(&scene)?;
+    let clock = FrameClock::new(job.fps);
+    let mut engine = Engine::with_step(Arc::clone(&scene), job.project.simulation, clock.step_secs);
+    simulate_to(&mut engine, clock.step_of_frame(frames.start), progress)?;
+    engine.clear_totals();
+
+    let refused = |error: RecordError| job.refused(&error);
+    let mut sink = PictureSink::for_path(&request.out, job.sink_settings(frames.start)).map_err(refused)?;
+    let (mut strands, mut picture) = (Strands::default(), Picture { width: 0, height: 0, rgba: Vec::new() });
+    let mut history = StageHistory::new(((frames.end - frames.start) as usize).min(MOST_TIMES));
+    let mut whole = Vec::new();
+    for frame in frames.clone() {
+        let watch = Stopwatch::start();
+        engine.advance_to_step(clock.step_of_frame(frame));
+        let snapshot = engine.snapshot();
+        let interpolate = snapshot.interpolate(&mut strands);
+        let camera = snapshot.camera(&job.project.camera);
+        let input = snapshot.frame_input(&job.project, &strands, &camera);
+        let stats = renderer.picture(&input, job.width, job.height, &mut picture)?;
+        let encoding = Stopwatch::start();
+        sink.push(&picture.rgba).map_err(refused)?;
+        history.push(StageTimes {
+            interpolate,
+            shadow: stats.shadow_ms,
+            draw: stats.draw_ms,
+            encode: encoding.ms(),
+            ..snapshot.times
+        });
+        whole.push(watch.ms());
+        let (done, total) = (frame + 1 - frames.start, frames.end - frames.start);
+        tell(progress, Progress::Frame { done, total })?;
+    }
+    tell(progress, Progress::Finishing)?;
+    let written = sink.finish().map_err(refused)?;
+
+    let totals = engine.totals();
+    Ok(RecordReport {
+        out: request.out.clone(),
+        frames: written.frames(),
+        first_frame: frames.start,
+        fps: job.fps,
+        width: job.width,
+        height: job.height,
+        backend: if request.backend == Backend::Cpu { "cpu" } else { "gpu" }.to_owned(),
+        adapter: gpu.info.name.clone(),
+        shadow: job.project.shadow.method.to_string(),
+        transparency: job.project.picture.transparency.to_string(),
+        strands: strands.count() as u64,
+        segments: strands.segments() as u64,
+        frame_ms: crate::median(whole.into_iter()),
+        stage_ms: history.medians(),
+        max_stretch: totals.max_stretch,
+        max_penetration_m: totals.max_penetration_m,
+        recovered_guides: totals.recovered_guides,
+        state_hash: engine.state_hash(),
+        bytes: written.bytes(),
+        steps_per_frame: clock.steps_per_frame,
+        notes: problems.iter().map(ToString::to_string).collect(),
+    })
+}
+
+/// A request together with the project, checked.
+struct Job<'a> {
+    project: Project,
+    request: &'a RecordRequest,
+    fps: f64,
+    width: u32,
+    height: u32,
+}
+
+impl<'a> Job<'a> {
+    /// Checks the request before anything is loaded.
+    fn new(project: &Project, request: &'a RecordRequest) -> Result<Self, StudioError> {
+        let (mut project, _) = project.sanitised();
+        if let Some(shadow) = request.shadow {
+            project.shadow.method = shadow;
+        }
+        if let Some(transparency) = request.transparency {
+            project.picture.transparency = transparency;
+        }
+        let fps = request.fps.unwrap_or(project.recording.fps);
+        let (width, height) = request.size.unwrap_or((project.recording.width, project.recording.height));
+        let job = Self { project, request, fps, width, height };
+        FrameRate::from_fps(fps).map_err(|error| job.refused(&error))?;
+        if let Some(frames) = &request.frames
+            && frames.is_empty()
+        {
+            return Err(StudioError::option(format!(
+                "frames {}..{}: an empty range; the second number is one past the last frame",
+                frames.start, frames.end
+            )));
+        }
+        let kind = OutputKind::of(&request.out).map_err(|error| job.refused(&error))?;
+        if kind == OutputKind::Film {
+            let quality = job.project.recording.quality;
+            lovelock_record::FilmSettings { width, height, fps, quality }
+                .check()
+                .map_err(|error| job.refused(&error))?;
+        }
+        Ok(job)
+    }
+
+    /// The frames to draw: as asked for, else as the project says, else the whole clip.
+    fn frames(&self, scene: &Scene) -> Result<std::ops::Range<u64>, StudioError> {
+        let recording = &self.project.recording;
+        let frames = self.request.frames.clone().unwrap_or_else(|| {
+            let first = recording.first_frame;
+            first..recording.end_frame.unwrap_or_else(|| scene.frames(self.fps).max(first + 1))
+        });
+        // About two weeks at 30 frames a second: a slip of the finger.
+        if frames.end > 40_000_000 {
+            return Err(StudioError::option(format!("frame {} is farther than any dance goes", frames.end)));
+        }
+        Ok(frames)
+    }
+
+    fn sink_settings(&self, first_frame: u64) -> SinkSettings {
+        let mut settings = SinkSettings::new(self.width, self.height, self.fps);
+        settings.first_frame = first_frame;
+        settings.quality = self.project.recording.quality;
+        settings.settings = serde_json::json!({
+            "shadow": self.project.shadow.method.id(),
+            "transparency": self.project.picture.transparency.id(),
+        });
+        settings
+    }
+
+    fn refused(&self, error: &RecordError) -> StudioError {
+        let file = error.path().map(Path::to_owned);
+        if error.is_request() {
+            let file = file.or_else(|| Some(self.request.out.clone()));
+            StudioError::Request { file, message: error.to_string() }
+        } else {
+            StudioError::Work { file, message: error.to_string() }
+        }
+    }
+}
+
+/// Opens what draws.
+fn open(request: &RecordRequest) -> Result<Arc<Gpu>, StudioError> {
+    let gpu = match (&request.gpu, request.backend) {
+        (Some(gpu), _) => Ok(Arc::clone(gpu)),
+        (None, Backend::Auto | Backend::Gpu) => Gpu::open(),
+        (None, Backend::Cpu) => Gpu::open_software(),
+    };
+    gpu.map_err(|error| match (&error, request.backend) {
+        (GpuError::NoAdapter(_), Backend::Gpu) => StudioError::work(format!("--backend gpu: {error}")),
+        _ => StudioError::work(error),
+    })
+}
+
+fn load(
+    project: &Project,
+    request: &RecordRequest,
+    progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+) -> Result<(Arc<Scene>, Vec<Problem>), StudioError> {
+    let cancelled = AtomicBool::new(false);
+    let mut show = |what: &str, _: f32| {
+        if progress(Progress::Loading { what: what.to_owned() }).is_break() {
+            cancelled.store(true, std::sync::atomic::Ordering::Relaxed);
+        }
+    };
+    let mut control = LoadControl { cancelled: &cancelled, progress: &mut show };
+    let (scene, mut problems) = SceneLoader::new().load(project, &request.access, &mut control)?;
+    problems.extend(scene.notes.iter().cloned());
+    Ok((scene, problems))
+}
+
+/// Lives through the frames before the first one that is drawn, so that frame 100 is the same in every recording.
+fn simulate_to(
+    engine: &mut Engine,
+    step: u64,
+    progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+) -> Result<(), StudioError> {
+    const STEPS_A_REPORT: u64 = 60;
+    let mut done = 0;
+    while done < step {
+        tell(progress, Progress::Simulating { done, total: step })?;
+        done = (done + STEPS_A_REPORT).min(step);
+        engine.advance_to_step(done);
+    }
+    Ok(())
+}
+
+fn tell(progress: &mut dyn FnMut(Progress) -> ControlFlow<()>, what: Progress) -> Result<(), StudioError> {
+    match progress(what) {
+        ControlFlow::Continue(()) => Ok(()),
+        ControlFlow::Break(()) => Err(StudioError::Cancelled),
+    }
+}
+
+impl From<RenderError> for StudioError {
+    fn from(error: RenderError) -> Self {
+        match error {
+            RenderError::Size { .. } => Self::option(error),
+            RenderError::Gpu(_) => Self::work(error),
+        }
+    }
+}

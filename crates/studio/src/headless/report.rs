@@ -1,0 +1,67 @@
+//! What a recording was: the keys of `record --json`.
+
+use std::path::PathBuf;
+
+use serde::{Serialize, Serializer};
+
+use crate::StageTimes;
+
+/// Medians over the frames of a recording, milliseconds.
+pub type StageMedians = StageTimes;
+
+/// What was recorded, as `record --json` prints it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RecordReport {
+    /// The film, or the folder.
+    #[serde(serialize_with = "as_text")]
+    pub out: PathBuf,
+    /// Frames written.
+    pub frames: u64,
+    /// Number of the first one.
+    pub first_frame: u64,
+    /// Frames a second.
+    pub fps: f64,
+    /// Width, pixels.
+    pub width: u32,
+    /// Height, pixels.
+    pub height: u32,
+    /// `gpu` or `cpu`.
+    pub backend: String,
+    /// Name of the adapter that drew.
+    pub adapter: String,
+    /// Id of the shadow method.
+    pub shadow: String,
+    /// Id of the transparency mode.
+    pub transparency: String,
+    /// Strands drawn.
+    pub strands: u64,
+    /// Their segments.
+    pub segments: u64,
+    /// Median of the frames' whole times, milliseconds.
+    pub frame_ms: f64,
+    /// Medians of the stages, milliseconds.
+    pub stage_ms: StageMedians,
+    /// Largest relative change of a link's length in the frames.
+    pub max_stretch: f32,
+    /// Deepest point inside the body, metres.
+    pub max_penetration_m: f32,
+    /// Guides that were not finite and were put back.
+    pub recovered_guides: u64,
+    /// Fingerprint of the last simulated state: 16 hexadecimal digits.
+    #[serde(serialize_with = "as_hex")]
+    pub state_hash: u64,
+    /// Bytes written.
+    pub bytes: u64,
+    /// Steps of the simulation a frame.
+    pub steps_per_frame: u32,
+    /// What could not be loaded and other things to know, in sentences.
+    pub notes: Vec<String>,
+}
+
+fn as_text<S: Serializer>(path: &std::path::Path, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(&path.display())
+}
+
+fn as_hex<S: Serializer>(hash: &u64, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(&format_args!("{hash:016x}"))
+}

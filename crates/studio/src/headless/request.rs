@@ -1,0 +1,108 @@
+//! What to record, and how far it is.
+
+use std::fmt;
+use std::ops::Range;
+use std::path::PathBuf;
+use std::str::FromStr;
+use std::sync::Arc;
+
+use lovelock_render::{Gpu, ShadowMethod, Transparency};
+
+use crate::{Access, Problem};
+
+/// What draws.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Backend {
+    /// The best adapter that there is, a software one where there is nothing else.
+    #[default]
+    Auto,
+    /// A graphics card.
+    Gpu,
+    /// The processor.
+    Cpu,
+}
+
+impl Backend {
+    /// All of them, in the order of menus.
+    pub const ALL: [Self; 3] = [Self::Auto, Self::Gpu, Self::Cpu];
+
+    /// The stable name of the command line and of reports.
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Gpu => "gpu",
+            Self::Cpu => "cpu",
+        }
+    }
+}
+
+impl fmt::Display for Backend {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.id())
+    }
+}
+
+impl FromStr for Backend {
+    type Err = String;
+
+    fn from_str(id: &str) -> Result<Self, String> {
+        Self::ALL
+            .into_iter()
+            .find(|backend| backend.id() == id)
+            .ok_or_else(|| format!("unknown backend `{id}`: expected auto, gpu or cpu"))
+    }
+}
+
+/// What to record; where a field is none, the project says.
+#[derive(Clone, Debug, Default)]
+pub struct RecordRequest {
+    /// Where it goes: a name ending in `.mp4` is a film, a folder a PNG sequence.
+    pub out: PathBuf,
+    /// Frames, half open.
+    pub frames: Option<Range<u64>>,
+    /// Frames a second.
+    pub fps: Option<f64>,
+    /// Width and height, pixels.
+    pub size: Option<(u32, u32)>,
+    /// Shadow method.
+    pub shadow: Option<ShadowMethod>,
+    /// Transparency mode.
+    pub transparency: Option<Transparency>,
+    /// What draws.
+    pub backend: Backend,
+    /// What the project may read.
+    pub access: Access,
+    /// The device to draw on; one is opened where none.
+    pub gpu: Option<Arc<Gpu>>,
+}
+
+/// How far a recording is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Progress {
+    /// Files are read and hair grows.
+    Loading {
+        /// What is being done.
+        what: String,
+    },
+    /// The scene is loaded: what of it is missing.
+    Loaded {
+        /// What could not be loaded, and notes of the files.
+        problems: Vec<Problem>,
+    },
+    /// The hair lives through the frames before the first one that is drawn.
+    Simulating {
+        /// Steps done.
+        done: u64,
+        /// Steps in all.
+        total: u64,
+    },
+    /// A frame is done.
+    Frame {
+        /// Frames done.
+        done: u64,
+        /// Frames in all.
+        total: u64,
+    },
+    /// The file is made whole.
+    Finishing,
+}

@@ -1,0 +1,152 @@
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use super::*;
+use crate::StudioError;
+use crate::session::tests::small_project;
+
+fn request(out: &Path) -> RecordRequest {
+    RecordRequest {
+        out: out.to_owned(),
+        frames: Some(2..5),
+        size: Some((64, 48)),
+        ..RecordRequest::default()
+    }
+}
+
+/// Records, or skips where there is no adapter.
+fn try_record(
+    request: &RecordRequest,
+    progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+) -> Option<Result<RecordReport, StudioError>> {
+    let gpu = match lovelock_render::Gpu::open() {
+        Ok(gpu) => gpu,
+        Err(error) => {
+            lovelock_testkit::skip_without_adapter(&error);
+            return None;
+        }
+    };
+    let request = RecordRequest { gpu: Some(gpu), ..request.clone() };
+    Some(record(&small_project(), &request, progress))
+}
+
+#[test]
+fn wrong_requests_are_refused_before_any_work() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let film = dir.path().join("x.mp4");
+    let wrong: [(&str, RecordRequest); 5] = [
+        ("odd size", RecordRequest { size: Some((63, 48)), ..request(&film) }),
+        ("no rate", RecordRequest { fps: Some(0.0), ..request(&film) }),
+        ("no frames", RecordRequest { frames: Some(5..5), ..request(&film) }),
+        ("an unknown ending", request(&dir.path().join("x.gif"))),
+        ("no name", request(Path::new(""))),
+    ];
+    for (what, request) in wrong {
+        let mut told = 0;
+        let error = record(&small_project(), &request, &mut |_| {
+            told += 1;
+            ControlFlow::Continue(())
+        })
+        .expect_err(what);
+        assert_eq!(error.exit_code(), 2, "{what}: {error}");
+        assert_eq!(told, 0, "{what}");
+        assert_eq!(error.to_string().lines().count(), 1);
+    }
+    assert_eq!(std::fs::read_dir(dir.path()).expect("a folder").count(), 0, "nothing was written");
+}
+
+#[test]
+fn a_sequence_and_a_film_have_the_same_simulation() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let mut frames = Vec::new();
+    let mut progress = |what| {
+        if let Progress::Frame { done, total } = what {
+            frames.push((done, total));
+        }
+        ControlFlow::Continue(())
+    };
+    let Some(film) = try_record(&request(&dir.path().join("a.mp4")), &mut progress) else { return };
+    let film = film.expect("a film");
+    let sequence = try_record(&request(&dir.path().join("frames")), &mut |_| ControlFlow::Continue(()));
+    let sequence = sequence.expect("an adapter").expect("a sequence");
+    assert_eq!(film.state_hash, sequence.state_hash);
+    assert_eq!((film.frames, sequence.frames), (3, 3));
+    assert_eq!(frames, [(1, 3), (2, 3), (3, 3)]);
+    assert!(
+        dir.path().join("frames/frame_000002.png").is_file()
+            && dir.path().join("frames/frame_000004.png").is_file()
+    );
+    assert!(film.frame_ms > 0.0 && film.stage_ms.draw > 0.0 && film.max_stretch < 1e-3);
+    let later = RecordRequest { frames: Some(4..5), ..request(&dir.path().join("later")) };
+    let later = try_record(&later, &mut |_| ControlFlow::Continue(())).expect("an adapter").expect("a frame");
+    assert_eq!(later.state_hash, film.state_hash, "frame 4 is the same, recorded alone");
+    assert_eq!(
+        std::fs::read(dir.path().join("later/frame_000004.png")).expect("a picture"),
+        std::fs::read(dir.path().join("frames/frame_000004.png")).expect("a picture"),
+    );
+}
+
+#[test]
+fn a_cancelled_film_leaves_nothing() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let mut progress = |what| match what {
+        Progress::Frame { done: 2, .. } => ControlFlow::Break(()),
+        _ => ControlFlow::Continue(()),
+    };
+    let Some(result) = try_record(&request(&dir.path().join("a.mp4")), &mut progress) else { return };
+    assert!(matches!(result, Err(StudioError::Cancelled)));
+    assert_eq!(std::fs::read_dir(dir.path()).expect("a folder").count(), 0);
+}
+
+#[test]
+fn the_report_has_the_keys_that_were_promised() {
+    let report = RecordReport {
+        out: "a b/ü.mp4".into(),
+        frames: 1,
+        first_frame: 0,
+        fps: 30.0,
+        width: 2,
+        height: 2,
+        backend: "gpu".to_owned(),
+        adapter: "x".to_owned(),
+        shadow: "voxel-map".to_owned(),
+        transparency: "sorted".to_owned(),
+        strands: 1,
+        segments: 1,
+        frame_ms: 1.0,
+        stage_ms: StageMedians::default(),
+        max_stretch: 0.0,
+        max_penetration_m: 0.0,
+        recovered_guides: 0,
+        state_hash: 0xabc,
+        bytes: 1,
+        steps_per_frame: 2,
+        notes: Vec::new(),
+    };
+    let json = serde_json::to_value(&report).expect("JSON");
+    for key in [
+        "out",
+        "frames",
+        "fps",
+        "width",
+        "height",
+        "backend",
+        "adapter",
+        "shadow",
+        "transparency",
+        "strands",
+        "segments",
+        "frame_ms",
+        "stage_ms",
+        "max_stretch",
+        "max_penetration_m",
+        "recovered_guides",
+        "state_hash",
+    ] {
+        assert!(!json[key].is_null(), "no `{key}` in {json}");
+    }
+    for stage in ["motion", "simulate", "interpolate", "shadow", "draw", "encode"] {
+        assert!(json["stage_ms"][stage].is_number(), "{stage}");
+    }
+    assert_eq!((&json["out"], &json["state_hash"]), (&"a b/ü.mp4".into(), &"0000000000000abc".into()));
+}

@@ -1,0 +1,86 @@
+//! Information as lines for people.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use super::{Content, Info};
+
+impl fmt::Display for Info {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}", self.file)?;
+        match &self.content {
+            Content::Hair(hair) => {
+                line(f, "kind", format_args!("hair, {}", hair.format))?;
+                line(f, "strands", hair.strands)?;
+                line(f, "points", hair.points)?;
+                line(f, "segments", hair.segments)?;
+                let size = hair.bounds_m.size();
+                line(f, "size", format_args!("{:.3} x {:.3} x {:.3} m", size.x, size.y, size.z))?;
+                let guessed = if hair.unit_guessed { " (guessed)" } else { "" };
+                line(f, "unit", format_args!("{}{guessed}, {} m", hair.unit, hair.metres_per_unit))?;
+                line(f, "up, face", format_args!("{}, {}", hair.up, hair.facing))?;
+                remarks(f, &hair.dropped, &hair.notes)
+            }
+            Content::Character(character) => {
+                line(f, "kind", format_args!("character, {}", character.format))?;
+                line(f, "height", format_args!("{:.2} m", character.height_m))?;
+                line(f, "joints", format_args!("{}, {} skins", character.joints, character.skins))?;
+                line(f, "head", &character.head)?;
+                line(
+                    f,
+                    "surface",
+                    format_args!("{} vertices, {} triangles", character.vertices, character.triangles),
+                )?;
+                if character.morph_targets > 0 {
+                    line(f, "morphs", character.morph_targets)?;
+                }
+                for clip in &character.clips {
+                    let loops = if clip.loops { ", loops" } else { "" };
+                    let name = if clip.name.is_empty() { "(no name)" } else { &clip.name };
+                    line(f, "clip", format_args!("{name}, {:.2} s{loops}", clip.duration_secs))?;
+                }
+                remarks(f, &character.dropped, &character.notes)
+            }
+            Content::Motion(motion) => {
+                line(f, "kind", format_args!("motion, {}", motion.format))?;
+                line(f, "joints", motion.joints)?;
+                let duration = motion.frames as f64 * motion.frame_secs;
+                line(
+                    f,
+                    "frames",
+                    format_args!("{} of {:.5} s, {duration:.2} s in all", motion.frames, motion.frame_secs),
+                )?;
+                line(f, "unit", format_args!("{} m", motion.unit_metres))?;
+                remarks(f, &motion.dropped, &motion.notes)
+            }
+            Content::Project(project) => {
+                line(f, "kind", &project.format)?;
+                line(f, "body", &project.body)?;
+                line(f, "motion", &project.motion)?;
+                line(f, "hair", &project.hair)?;
+                line(f, "shadow", &project.shadow)?;
+                line(f, "lights", project.lights)?;
+                line(
+                    f,
+                    "film",
+                    format_args!("{}x{} at {} a second", project.width, project.height, project.fps),
+                )?;
+                remarks(f, &project.dropped, &project.notes)
+            }
+        }
+    }
+}
+
+fn line(f: &mut fmt::Formatter<'_>, name: &str, value: impl fmt::Display) -> fmt::Result {
+    writeln!(f, "  {name:<9} {value}")
+}
+
+fn remarks(f: &mut fmt::Formatter<'_>, dropped: &BTreeMap<String, u64>, notes: &[String]) -> fmt::Result {
+    for (what, count) in dropped {
+        line(f, "left out", format_args!("{count} {what}"))?;
+    }
+    for note in notes {
+        line(f, "note", note)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,161 @@
+//! The thread that loads, grows and imports, so that the dance goes on meanwhile.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::thread::JoinHandle;
+
+use super::worker::Outbox;
+use super::{Event, LoadControl, Scene, SceneLoader};
+use crate::{Access, Problem, Project, StudioError};
+
+/// How far a load is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoadProgress {
+    /// What is being done, such as `making the hair`.
+    pub what: String,
+    /// The fraction that is done, 0 to 1.
+    pub fraction: f32,
+}
+
+/// What the thread is to do next: the latest request wins.
+#[derive(Debug, Default)]
+struct Desk {
+    request: Option<(Arc<Project>, Access)>,
+    stop: bool,
+}
+
+/// The thread, and the way to it.
+#[derive(Debug)]
+pub(super) struct LoadThread {
+    desk: Arc<(Mutex<Desk>, Condvar)>,
+    cancelled: Arc<AtomicBool>,
+    progress: Arc<Mutex<Option<LoadProgress>>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+/// What the thread shares with the rest.
+struct Inside {
+    desk: Arc<(Mutex<Desk>, Condvar)>,
+    cancelled: Arc<AtomicBool>,
+    progress: Arc<Mutex<Option<LoadProgress>>>,
+    outbox: Outbox,
+}
+
+impl LoadThread {
+    /// Starts the thread; `deliver` is called on it with every scene.
+    pub(super) fn start(
+        outbox: Outbox,
+        deliver: impl Fn(Arc<Scene>) + Send + 'static,
+    ) -> Result<Self, StudioError> {
+        let desk = Arc::<(Mutex<Desk>, Condvar)>::default();
+        let cancelled = Arc::new(AtomicBool::new(false));
+        let progress = Arc::new(Mutex::new(None));
+        let inside = Inside {
+            desk: Arc::clone(&desk),
+            cancelled: Arc::clone(&cancelled),
+            progress: Arc::clone(&progress),
+            outbox,
+        };
+        let thread = std::thread::Builder::new()
+            .name("lovelock loader".to_owned())
+            .spawn(move || inside.run(&deliver))
+            .map_err(|error| StudioError::work(format!("the loader thread could not start: {error}")))?;
+        Ok(Self { desk, cancelled, progress, thread: Some(thread) })
+    }
+
+    /// Asks for the scene of a project. A request that has not begun is replaced, one that has is given up.
+    pub(super) fn request(&self, project: Arc<Project>, access: Access) {
+        let (desk, changed) = &*self.desk;
+        let mut desk = desk.lock().unwrap_or_else(PoisonError::into_inner);
+        desk.request = Some((project, access));
+        self.cancelled.store(true, Ordering::Relaxed);
+        changed.notify_one();
+    }
+
+    /// Gives up what is being loaded; the scene stays as it is.
+    pub(super) fn cancel(&self) {
+        self.desk.0.lock().unwrap_or_else(PoisonError::into_inner).request = None;
+        self.cancelled.store(true, Ordering::Relaxed);
+        // At once for the user's eyes, though the thread may need a moment to notice.
+        *self.progress.lock().unwrap_or_else(PoisonError::into_inner) = None;
+    }
+
+    /// How far the load is; none where nothing is loaded.
+    pub(super) fn progress(&self) -> Option<LoadProgress> {
+        self.progress.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+}
+
+impl Drop for LoadThread {
+    fn drop(&mut self) {
+        let (desk, changed) = &*self.desk;
+        desk.lock().unwrap_or_else(PoisonError::into_inner).stop = true;
+        self.cancelled.store(true, Ordering::Relaxed);
+        changed.notify_one();
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+impl Inside {
+    fn run(&self, deliver: &dyn Fn(Arc<Scene>)) {
+        let mut loader = SceneLoader::new();
+        while let Some((project, access)) = self.next() {
+            let loaded = catch_unwind(AssertUnwindSafe(|| self.load(&mut loader, &project, &access)));
+            self.show(None);
+            match loaded {
+                Ok(Ok((scene, problems))) => {
+                    deliver(Arc::clone(&scene));
+                    self.outbox.send(Event::Loaded { scene, problems });
+                }
+                Ok(Err(StudioError::Cancelled)) => self.outbox.send(Event::LoadCancelled),
+                Ok(Err(error)) => self.outbox.send(Event::LoadFailed { message: error.to_string() }),
+                Err(panic) => {
+                    // What it was in the middle of may be half made.
+                    loader = SceneLoader::new();
+                    self.outbox.panicked("loader", &*panic);
+                }
+            }
+        }
+    }
+
+    /// Waits for a request; none where the thread shall end.
+    fn next(&self) -> Option<(Arc<Project>, Access)> {
+        let (desk, changed) = &*self.desk;
+        let mut desk = desk.lock().unwrap_or_else(PoisonError::into_inner);
+        loop {
+            if desk.stop {
+                return None;
+            }
+            if let Some(request) = desk.request.take() {
+                // Under the lock: a cancel after this is meant for this request.
+                self.cancelled.store(false, Ordering::Relaxed);
+                return Some(request);
+            }
+            desk = changed.wait(desk).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+
+    fn load(
+        &self,
+        loader: &mut SceneLoader,
+        project: &Project,
+        access: &Access,
+    ) -> Result<(Arc<Scene>, Vec<Problem>), StudioError> {
+        let mut progress =
+            |what: &str, fraction: f32| self.show(Some(LoadProgress { what: what.to_owned(), fraction }));
+        let loaded = loader.load(
+            project,
+            access,
+            &mut LoadControl { cancelled: &self.cancelled, progress: &mut progress },
+        )?;
+        if self.cancelled.load(Ordering::Relaxed) { Err(StudioError::Cancelled) } else { Ok(loaded) }
+    }
+
+    fn show(&self, progress: Option<LoadProgress>) {
+        *self.progress.lock().unwrap_or_else(PoisonError::into_inner) = progress;
+        self.outbox.wake();
+    }
+}

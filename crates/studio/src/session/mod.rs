@@ -1,0 +1,28 @@
+//! What runs: the scene, the simulation and the threads that they live on.
+
+mod camera;
+mod dancer;
+mod engine;
+mod head_path;
+mod load_thread;
+mod loader;
+mod mailbox;
+mod parts;
+mod scene;
+mod snapshot;
+mod worker;
+
+pub use camera::{camera_at, frame_points};
+pub use dancer::dancer;
+pub use engine::{Engine, SETTLE_SECS, Totals};
+pub use head_path::HeadPath;
+pub use load_thread::LoadProgress;
+pub use loader::{LoadControl, SceneLoader};
+pub use scene::{BodyObstacle, Scene};
+pub use snapshot::FrameSnapshot;
+pub use worker::{Event, Wake, Worker};
+
+#[cfg(test)]
+pub(crate) mod tests;
+#[cfg(test)]
+mod worker_tests;

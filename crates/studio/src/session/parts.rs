@@ -1,0 +1,290 @@
+//! The parts of a scene, each loaded by itself.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::SystemTime;
+
+use lovelock_groom::{
+    GroomSettings, HairFile, HairLook, Hairstyle, ImportSettings, Scalp, grow, import_around, load_hair,
+};
+use lovelock_motion::{
+    Body, BodySettings, Character, Clip, Collider, MotionSettings, RestDistance, Skeleton, fit_colliders,
+    head_mesh, joint_paths, load_character_with, load_motion_with, retarget,
+};
+
+use super::{BodyObstacle, dancer};
+use crate::{
+    Access, BodySection, BodySource, HairSection, HairSource, MotionSection, MotionSource, Place, Problem,
+    ProblemKind,
+};
+
+/// A file as it was when it was read: read again where it has changed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Stamp {
+    path: PathBuf,
+    bytes: u64,
+    modified: Option<SystemTime>,
+}
+
+impl Stamp {
+    fn of(path: &Path) -> Self {
+        let data = std::fs::metadata(path).ok();
+        Self {
+            path: path.to_owned(),
+            bytes: data.as_ref().map_or(0, std::fs::Metadata::len),
+            modified: data.and_then(|data| data.modified().ok()),
+        }
+    }
+}
+
+/// What a body is loaded from.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct BodyKey {
+    file: Option<(Stamp, BodySettings)>,
+    head_joint: Option<String>,
+}
+
+/// A body with all that follows from it alone.
+#[derive(Debug)]
+pub(super) struct BodyPart {
+    pub(super) body: Arc<Body>,
+    pub(super) clips: Arc<[Arc<Clip>]>,
+    pub(super) colliders: Arc<[Collider]>,
+    pub(super) scalp: Arc<Scalp>,
+    pub(super) obstacle: Arc<BodyObstacle>,
+    pub(super) notes: Vec<Problem>,
+}
+
+impl BodyKey {
+    /// What `section` asks for; a problem where it may not be read.
+    pub(super) fn of(section: &BodySection, access: &Access) -> Result<Self, Problem> {
+        let file = match (section.source, &section.file) {
+            (BodySource::Dancer, _) => None,
+            (BodySource::File, Some(file)) => {
+                Some((Stamp::of(&access.read(Place::Body, file)?), section.settings))
+            }
+            (BodySource::File, None) => {
+                return Err(Problem::not_loaded(Place::Body, "no character file is set; pick one"));
+            }
+        };
+        Ok(Self { file, head_joint: section.head_joint.clone() })
+    }
+
+    /// The dancer, whatever a project says.
+    pub(super) fn dancer() -> Self {
+        Self { file: None, head_joint: None }
+    }
+
+    pub(super) fn load(&self) -> Result<BodyPart, Problem> {
+        let character = match &self.file {
+            None => dancer(),
+            Some((stamp, settings)) => load_character_with(&stamp.path, *settings),
+        };
+        let character = character.map_err(|error| Problem::not_loaded(Place::Body, error))?;
+        let mut notes = file_notes(Place::Body, &character.dropped, &character.notes);
+        let Character { mut body, clips, .. } = character;
+        if let Some(name) = &self.head_joint {
+            match find_joint(&body.skeleton, name) {
+                Some(joint) if joint != body.head_joint => {
+                    body = Arc::new(Body { head_joint: joint, ..(*body).clone() })
+                }
+                Some(_) => {}
+                None => notes.push(Problem::new(
+                    Place::Body,
+                    ProblemKind::Ignored,
+                    format!(
+                        "{} has no joint called `{name}`; the hair is on the joint that was guessed",
+                        body.name
+                    ),
+                )),
+            }
+        }
+        let head = head_mesh(&body);
+        if head.triangles.is_empty() {
+            let message =
+                format!("{}: the joint of the head moves no surface; pick another joint", body.name);
+            return Err(Problem::not_loaded(Place::Body, message));
+        }
+        if head.scalp_is_guessed {
+            let message =
+                "the file says nothing about the hairline; it is a guess from the shape of the head";
+            notes.push(Problem::new(Place::Body, ProblemKind::Note, message));
+        }
+        let scalp = Scalp {
+            positions: head.positions,
+            normals: head.normals,
+            triangles: head.triangles,
+            mask: head.scalp,
+        };
+        Ok(BodyPart {
+            colliders: fit_colliders(&body).into(),
+            obstacle: Arc::new(BodyObstacle(RestDistance::new(&body))),
+            scalp: Arc::new(scalp),
+            clips: clips.into(),
+            body,
+            notes,
+        })
+    }
+}
+
+/// A joint by its path (`hips/spine/head`) or its name; of several with one name the first.
+fn find_joint(skeleton: &Skeleton, name: &str) -> Option<usize> {
+    joint_paths(skeleton)
+        .iter()
+        .position(|path| path == name)
+        .or_else(|| skeleton.joints.iter().position(|joint| joint.name == name))
+}
+
+/// What was dropped from a file and what it had to say.
+fn file_notes(
+    place: Place,
+    dropped: &std::collections::BTreeMap<String, u64>,
+    notes: &[String],
+) -> Vec<Problem> {
+    let dropped = dropped.iter().map(|(what, count)| {
+        Problem::new(place, ProblemKind::Note, format!("left out of the file: {count} {what}"))
+    });
+    let notes = notes.iter().map(|note| Problem::new(place, ProblemKind::Note, note));
+    dropped.chain(notes).collect()
+}
+
+/// What a motion is loaded from, besides the body.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum MotionKey {
+    Rest,
+    Clip { name: String, blend_secs: f32 },
+    File { stamp: Stamp, settings: MotionSettings, blend_secs: f32 },
+}
+
+/// A motion of one body.
+#[derive(Debug)]
+pub(super) struct MotionPart {
+    pub(super) clip: Option<Arc<Clip>>,
+    pub(super) notes: Vec<Problem>,
+}
+
+impl MotionKey {
+    pub(super) fn of(section: &MotionSection, access: &Access) -> Result<Self, Problem> {
+        let blend_secs = if section.looping { section.loop_blend_secs } else { 0.0 };
+        match (section.source, &section.file) {
+            (MotionSource::Rest, _) => Ok(Self::Rest),
+            (MotionSource::Clip, _) => Ok(Self::Clip { name: section.clip.clone(), blend_secs }),
+            (MotionSource::File, Some(file)) => {
+                let stamp = Stamp::of(&access.read(Place::Motion, file)?);
+                Ok(Self::File { stamp, settings: section.settings, blend_secs })
+            }
+            (MotionSource::File, None) => {
+                Err(Problem::not_loaded(Place::Motion, "no motion file is set; pick one"))
+            }
+        }
+    }
+
+    /// The body's first clip, or rest where it has none.
+    pub(super) fn first_clip() -> Self {
+        Self::Clip { name: String::new(), blend_secs: 0.0 }
+    }
+
+    pub(super) fn load(&self, part: &BodyPart) -> Result<MotionPart, Problem> {
+        match self {
+            Self::Rest => Ok(MotionPart { clip: None, notes: Vec::new() }),
+            Self::Clip { name, blend_secs } => {
+                let clip = if name.is_empty() {
+                    part.clips.first()
+                } else {
+                    part.clips.iter().find(|clip| clip.name == *name)
+                };
+                match clip {
+                    None if !name.is_empty() => {
+                        let names: Vec<_> =
+                            part.clips.iter().map(|clip| format!("`{}`", clip.name)).collect();
+                        let has = if names.is_empty() { "no clips".to_owned() } else { names.join(", ") };
+                        Err(Problem::not_loaded(
+                            Place::Motion,
+                            format!("{} has no clip called `{name}`; it has {has}", part.body.name),
+                        ))
+                    }
+                    clip => Ok(MotionPart {
+                        clip: clip.map(|clip| blended(clip, *blend_secs)),
+                        notes: Vec::new(),
+                    }),
+                }
+            }
+            Self::File { stamp, settings, blend_secs } => {
+                let refuse = |error| Problem::not_loaded(Place::Motion, error);
+                let file = load_motion_with(&stamp.path, *settings).map_err(refuse)?;
+                let clip = retarget(&file, &part.body).map_err(refuse)?;
+                Ok(MotionPart {
+                    clip: Some(blended(&Arc::new(clip), *blend_secs)),
+                    notes: file_notes(Place::Motion, &file.dropped, &file.notes),
+                })
+            }
+        }
+    }
+}
+
+/// The clip with its end faded into its beginning, where it does not loop by itself.
+fn blended(clip: &Arc<Clip>, blend_secs: f32) -> Arc<Clip> {
+    if clip.loops || blend_secs <= 0.0 || clip.duration_secs <= 0.0 {
+        return Arc::clone(clip);
+    }
+    Arc::new((**clip).clone().with_loop_blend(f64::from(blend_secs)))
+}
+
+/// What a hairstyle is made from, besides the body.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum HairKey {
+    Grown(Box<GroomSettings>),
+    File { stamp: Stamp, import: ImportSettings },
+}
+
+/// A hairstyle on one head.
+#[derive(Debug)]
+pub(super) struct HairPart {
+    pub(super) style: Arc<Hairstyle>,
+    pub(super) notes: Vec<Problem>,
+}
+
+/// The hair file that was read last: other settings of import need not read it again.
+pub(super) type HairFileCache = Option<(Stamp, Arc<HairFile>)>;
+
+impl HairKey {
+    pub(super) fn of(section: &HairSection, access: &Access) -> Result<Self, Problem> {
+        match (section.source, &section.file) {
+            (HairSource::Grown, _) => Ok(Self::grown(section)),
+            (HairSource::File, Some(file)) => {
+                Ok(Self::File { stamp: Stamp::of(&access.read(Place::Hair, file)?), import: section.import })
+            }
+            (HairSource::File, None) => {
+                Err(Problem::not_loaded(Place::Hair, "no hair file is set; pick one"))
+            }
+        }
+    }
+
+    /// The grown style of a project, whatever its source says. Its look is the project's own and grows nothing.
+    pub(super) fn grown(section: &HairSection) -> Self {
+        Self::Grown(Box::new(GroomSettings { look: HairLook::default(), ..section.groom }))
+    }
+
+    pub(super) fn load(&self, part: &BodyPart, cache: &mut HairFileCache) -> Result<HairPart, Problem> {
+        let refuse = |error: &dyn std::fmt::Display| Problem::not_loaded(Place::Hair, error);
+        let (style, notes) = match self {
+            Self::Grown(settings) => {
+                let style = grow(settings, &part.scalp, &*part.obstacle).map_err(|error| refuse(&error))?;
+                (style, Vec::new())
+            }
+            Self::File { stamp, import } => {
+                let file = match cache {
+                    Some((kept, file)) if kept == stamp => Arc::clone(file),
+                    _ => Arc::new(load_hair(&stamp.path).map_err(|error| refuse(&error))?),
+                };
+                *cache = Some((stamp.clone(), Arc::clone(&file)));
+                let style = import_around(&file, import, &part.scalp, Some(&*part.obstacle))
+                    .map_err(|error| refuse(&error))?;
+                (style, file_notes(Place::Hair, &file.dropped, &file.notes))
+            }
+        };
+        // Everything after this relies on its indices.
+        style.check().map_err(|error| refuse(&error))?;
+        Ok(HairPart { style: Arc::new(style), notes })
+    }
+}

@@ -1,0 +1,102 @@
+//! One instant of the scene, for drawing.
+
+use std::sync::Arc;
+
+use lovelock_groom::{GuideFrame, Strands, interpolate};
+use lovelock_motion::{Pose, Skin};
+use lovelock_render::{Camera, FrameInput};
+use lovelock_wisp::StepReport;
+
+use super::{Scene, Totals, camera_at};
+use crate::{CameraSection, Project, StageTimes, Stopwatch};
+
+/// One instant of the scene: all that drawing needs, and how it came about.
+#[derive(Clone, Debug)]
+pub struct FrameSnapshot {
+    /// The scene that it is an instant of.
+    pub scene: Arc<Scene>,
+    /// Steps since the engine started: rises from snapshot to snapshot while time passes.
+    pub step: u64,
+    /// Time of the scene, seconds; goes on rising where the clip loops.
+    pub time_secs: f64,
+    /// Where the timeline stands, seconds from the clip's start.
+    pub position_secs: f64,
+    /// Where the joints are.
+    pub pose: Pose,
+    /// The surface of the body.
+    pub skin: Skin,
+    /// The guides, world space.
+    pub guides: GuideFrame,
+    /// Measured in the last step.
+    pub report: StepReport,
+    /// Measured since the hair was last settled.
+    pub totals: Totals,
+    /// Times of `motion` and `simulate` for this instant; the other stages are the drawer's.
+    pub times: StageTimes,
+}
+
+impl FrameSnapshot {
+    /// Makes the strands; returns the milliseconds that it took.
+    pub fn interpolate(&self, strands: &mut Strands) -> f64 {
+        let watch = Stopwatch::start();
+        interpolate(&self.scene.style, &self.guides, strands);
+        watch.ms()
+    }
+
+    /// The camera at this instant.
+    pub fn camera(&self, section: &CameraSection) -> Camera {
+        camera_at(section, &self.scene, self.time_secs)
+    }
+
+    /// Everything that the picture of this instant shows, by the settings of `project`.
+    pub fn frame_input<'a>(
+        &'a self,
+        project: &'a Project,
+        strands: &'a Strands,
+        camera: &'a Camera,
+    ) -> FrameInput<'a> {
+        FrameInput {
+            style: &self.scene.style,
+            strands,
+            look: &project.look,
+            body: Some((&self.scene.body, &self.skin)),
+            world_from_head: self.guides.world_from_head,
+            lights: &project.lights,
+            shadow: &project.shadow,
+            camera,
+            picture: &project.picture,
+        }
+    }
+}
+
+/// Snapshots that nobody looks at any more, so that frames do not allocate.
+#[derive(Debug, Default)]
+pub(super) struct SnapshotPool {
+    given_out: Vec<Arc<FrameSnapshot>>,
+}
+
+impl SnapshotPool {
+    /// As many as are looked at together: one in the slot, one or two on their way to the screen.
+    const MOST: usize = 6;
+
+    /// Fills a snapshot that is free, or a new one, and hands it out.
+    pub(super) fn make(
+        &mut self,
+        new: impl FnOnce() -> FrameSnapshot,
+        fill: impl FnOnce(&mut FrameSnapshot),
+    ) -> Arc<FrameSnapshot> {
+        let free = self.given_out.iter_mut().position(|held| Arc::get_mut(held).is_some());
+        let mut snapshot = match free {
+            Some(i) => self.given_out.swap_remove(i),
+            None => Arc::new(new()),
+        };
+        match Arc::get_mut(&mut snapshot) {
+            Some(inner) => fill(inner),
+            None => unreachable!("a snapshot that is new or that nobody else holds"),
+        }
+        if self.given_out.len() < Self::MOST {
+            self.given_out.push(Arc::clone(&snapshot));
+        }
+        snapshot
+    }
+}
