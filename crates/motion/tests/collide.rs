@@ -8,11 +8,23 @@ use lovelock_motion::{RestDistance, fit_colliders, head_mesh, load_character, si
 #[test]
 fn colliders_hug_head_neck_and_shoulders() {
     let Some(data) = common::data_dir() else { return };
-    let body = load_character(&data.join("characters/mh_body.glb")).unwrap().body;
-    let colliders = fit_colliders(&body);
-    for c in &colliders {
-        println!("{:20} {:?}", c.name, c.shape_at_rest);
+    hugs(&data.join("characters/mh_body.glb"));
+}
+
+#[test]
+fn colliders_hug_the_dancer() {
+    let dancer = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/dancer.glb");
+    if dancer.is_file() {
+        hugs(&dancer);
+    } else {
+        println!("skipped: no assets/dancer.glb");
     }
+}
+
+fn hugs(path: &std::path::Path) {
+    let body = load_character(path).unwrap().body;
+    println!("{} {:?}", body.name, body.skeleton.joints[body.head_joint].name);
+    let colliders = fit_colliders(&body);
     let union = |p: Vec3| colliders.iter().map(|c| signed_distance(&c.shape_at_rest, p)).fold(f32::MAX, f32::min);
     let head = body.skeleton.rest_position(body.head_joint);
     let mesh = head_mesh(&body);
@@ -31,6 +43,21 @@ fn colliders_hug_head_neck_and_shoulders() {
     let all: Vec<Vec3> = mesh.positions.iter().map(|p| *p + head).collect();
     let chest: Vec<Vec3> =
         body.mesh.positions.iter().copied().filter(|p| p.y > head.y - 0.35 && p.x.abs() < 0.25).collect();
+    let shoulders: Vec<Vec3> = body
+        .mesh
+        .positions
+        .iter()
+        .zip(&body.mesh.normals)
+        .filter(|(p, n)| n.y > 0.4 && (0.05..0.2).contains(&p.x.abs()) && (head.y - 0.25..head.y - 0.05).contains(&p.y))
+        .map(|(p, _)| *p)
+        .collect();
+    for p in shoulders.iter().step_by(6) {
+        let worst = colliders.iter().min_by(|a, b| {
+            signed_distance(&a.shape_at_rest, *p).total_cmp(&signed_distance(&b.shape_at_rest, *p))
+        });
+        println!("{p:.3} {:.1} mm {}", union(*p) * 1e3, worst.unwrap().name);
+    }
+    assert!(stats("tops of shoulders", &shoulders).abs() < 0.006);
     assert!((stats("scalp", &scalp) - 0.002).abs() < 0.004);
     assert!(stats("head and neck", &all).abs() < 0.005);
     assert!(stats("head to chest", &chest).abs() < 0.005);

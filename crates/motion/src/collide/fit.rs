@@ -45,7 +45,7 @@ pub fn fit_colliders(body: &Body) -> Vec<Collider> {
     let count: usize = parts.iter().map(|p| p.points.len()).sum();
     let step = count.div_ceil(POINTS).max(1);
     let points: Vec<Vec3> = parts.iter().flat_map(|p| &p.points).step_by(step).copied().collect();
-    refine(&mut fits, &points, 6);
+    refine(&mut fits, &points, 14);
     let named = labels.into_iter().zip(fits);
     named.map(|((name, joint), fit)| Collider { name, joint, shape_at_rest: fit.shape }).collect()
 }
@@ -161,6 +161,11 @@ fn trunk_shapes(part: &Part) -> Vec<(String, ColliderShape, f32)> {
 /// A tapered capsule along a bone; its radii are the median distances of the nearer and the farther half.
 fn limb(part: &Part) -> ColliderShape {
     let points = &part.points;
+    if let (Some(begin), Some(end)) = (part.begin, part.end) {
+        // A shoulder: across the slope from the neck to the arm, thin enough to start below the skin.
+        let length = begin.distance(end);
+        return capsule(begin.lerp(end, 0.3), begin.lerp(end, 0.85), 0.3 * length, 0.25 * length);
+    }
     let mean = points.iter().sum::<Vec3>() / points.len() as f32;
     let direction = part.end.map_or_else(|| principal_axis(points, mean), |end| (end - mean).normalize_or(Vec3::Y));
     let along = |p: &Vec3| (*p - mean).dot(direction);

@@ -29,6 +29,8 @@ pub(super) struct Part {
     pub(super) joint: usize,
     /// Where the bone ends, where that is known.
     pub(super) end: Option<Vec3>,
+    /// Where the bone begins, where that is not the joint: a shoulder begins at the neck.
+    pub(super) begin: Option<Vec3>,
     pub(super) points: Vec<Vec3>,
     /// How much of each point is scalp; only the head has it.
     pub(super) scalp: Vec<f32>,
@@ -77,7 +79,11 @@ pub(super) fn parts(body: &Body) -> Vec<Part> {
                 if let Some(j) = figure.get(role) {
                     let end = if role == next { None } else { at(next) };
                     let kind = if matches!(role, Role::Shin(_) | Role::Foot(_)) { Kind::Ignored } else { Kind::Limb };
-                    claim(&mut parts, j, part(&format!("{name} {word}"), kind, j, end));
+                    let mut new = part(&format!("{name} {word}"), kind, j, end);
+                    if let Role::Clavicle(_) = role {
+                        new.begin = neck.first().map(|&n| skeleton.rest_position(n)).or(at(Role::Head));
+                    }
+                    claim(&mut parts, j, new);
                 }
             }
         }
@@ -111,7 +117,7 @@ pub(super) fn parts(body: &Body) -> Vec<Part> {
 }
 
 fn part(name: &str, kind: Kind, joint: usize, end: Option<Vec3>) -> Part {
-    Part { name: name.to_owned(), kind, joint, end, points: Vec::new(), scalp: Vec::new() }
+    Part { name: name.to_owned(), kind, joint, end, begin: None, points: Vec::new(), scalp: Vec::new() }
 }
 
 impl Part {

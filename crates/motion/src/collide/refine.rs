@@ -19,7 +19,7 @@ pub(super) struct Fit {
 }
 
 /// Distances beyond this count less: ears, noses and fingers are no reason to swell, metres.
-const OUTLIER: f32 = 0.008;
+const OUTLIER: f32 = 0.015;
 /// Points farther than this from the first guess, on either side, belong to no shape, metres.
 const DEEP: f32 = 0.03;
 /// Smallest radius, metres.

@@ -230,8 +230,8 @@ fn rescale(body: &mut Body, clips: &mut [Clip], scale: f32) {
         bind.joint_from_bind.translation *= scale;
     }
     let morphs = body.skin.morphs.iter_mut().flat_map(|m| &mut m.positions);
-    let positions = body.mesh.positions.iter_mut().chain(&mut body.skin.positions).chain(morphs);
-    positions.for_each(|p| *p *= scale);
+    body.skin.positions.iter_mut().chain(morphs).for_each(|p| *p *= scale);
+    rest_surface(body);
     for track in clips.iter_mut().flat_map(|c| &mut c.joints).filter_map(|j| j.translation.as_mut()) {
         track.values.iter_mut().for_each(|v| *v *= scale);
     }

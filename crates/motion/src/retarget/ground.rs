@@ -18,7 +18,7 @@ struct Soles {
 
 impl Soles {
     /// Points of one foot that are followed: enough for heel, ball and toes.
-    const POINTS: usize = 24;
+    const POINTS: usize = 96;
 
     fn new(body: &Body, figure: &Humanoid) -> Self {
         let skeleton = &body.skeleton;
@@ -32,7 +32,7 @@ impl Soles {
             let height = skeleton.rest_position(foot).y - lowest;
             // The sole: what lies in the lowest part of the foot.
             let sole: Vec<usize> =
-                of_foot.into_iter().filter(|&v| body.mesh.positions[v].y < lowest + 0.2 * height.max(0.0)).collect();
+                of_foot.into_iter().filter(|&v| body.mesh.positions[v].y < lowest + 0.4 * height.max(0.0)).collect();
             if sole.is_empty() {
                 let p = skeleton.rest_position(foot);
                 points.push(Self::fixed(body, foot, Vec3::new(p.x, 0.0, p.z)));
