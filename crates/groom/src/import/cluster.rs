@@ -18,8 +18,8 @@ const DIMENSIONS: usize = 16;
 /// Centres side by side, for the processor's lanes.
 const LANES: usize = 8;
 /// Strands that the centres are made from.
-const SAMPLES: usize = 6144;
-const ITERATIONS: usize = 8;
+const SAMPLES: usize = 4096;
+const ITERATIONS: usize = 6;
 
 type Feature = [f32; DIMENSIONS];
 

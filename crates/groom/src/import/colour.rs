@@ -9,6 +9,10 @@ use crate::{HairFile, HairLook};
 /// Fraction of a strand's length at which it begins to taper, and its width at the tip.
 const TAPER: [f32; 2] = [0.7, 0.25];
 
+/// Length of the path through a fibre, in the unit of the absorption, that gives hair its colour when drawn:
+/// the diffuse term of the shading.
+const PATH: f32 = 1.55;
+
 /// Width of each point as a fraction of the widest: from the file where it varies there, else a tapering tip.
 pub(super) fn taper(file: &HairFile, groom: &PlacedGroom, order: &[u32]) -> Vec<f32> {
     let widths = file.thickness.as_deref().filter(|widths| varies(widths));
@@ -90,14 +94,9 @@ fn linear_from_srgb(colour: Vec3) -> Vec3 {
 
 /// Concentrations of eumelanin and pheomelanin whose hair has about this colour (linear sRGB).
 ///
-/// Absorption from colour by Chiang et al. 2016, equation 9, at their azimuthal roughness 0.3; then the two
-/// concentrations, not negative, of least squares.
+/// Absorption by Beer's law, then the two concentrations, not negative, of least squares.
 fn melanin_of(colour: Vec3) -> (f32, f32) {
-    let beta: f32 = 0.3;
-    let denominator = 5.969 - 0.215 * beta + 2.532 * beta.powi(2) - 10.73 * beta.powi(3)
-        + 5.574 * beta.powi(4)
-        + 0.245 * beta.powi(5);
-    let absorption = Vec3::from(colour.to_array().map(|c| (c.clamp(1e-4, 0.99).ln() / denominator).powi(2)));
+    let absorption = Vec3::from(colour.to_array().map(|c| -c.clamp(1e-4, 1.0).ln() / PATH));
     let only = |melanin: Vec3| (melanin.dot(absorption) / melanin.length_squared()).max(0.0);
     let basis =
         |eumelanin, pheomelanin| HairLook { eumelanin, pheomelanin, ..HairLook::default() }.absorption();
@@ -117,14 +116,9 @@ fn melanin_of(colour: Vec3) -> (f32, f32) {
 mod tests {
     use super::*;
 
-    /// The colour that Chiang's fit gives back for melanin.
     fn colour_of(eumelanin: f32, pheomelanin: f32) -> Vec3 {
         let absorption = HairLook { eumelanin, pheomelanin, ..HairLook::default() }.absorption();
-        let beta: f32 = 0.3;
-        let k = 5.969 - 0.215 * beta + 2.532 * beta * beta - 10.73 * beta.powi(3)
-            + 5.574 * beta.powi(4)
-            + 0.245 * beta.powi(5);
-        Vec3::from(absorption.to_array().map(|a| (-k * a.sqrt()).exp()))
+        absorption.map(|sigma| (-PATH * sigma).exp())
     }
 
     #[test]

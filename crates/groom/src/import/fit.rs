@@ -10,8 +10,8 @@ use rayon::prelude::*;
 use super::surface::Surface;
 use crate::io::RootShape;
 
-const ROOTS: usize = 600;
-const STEPS: usize = 16;
+const ROOTS: usize = 400;
+const STEPS: usize = 12;
 /// Fraction of the roots that a step trusts.
 const TRUSTED: f32 = 0.8;
 /// Weight of the starting scale against the fitted one.
@@ -19,9 +19,11 @@ const HOLD: f32 = 0.3;
 /// A gap beyond this does not count for more: the root is simply off the scalp, metres.
 const WORST_GAP: f32 = 0.03;
 /// What a change of size by the factor e costs, in metres of mean gap.
-const COST_OF_SCALE: f32 = 0.004;
+const COST_OF_SCALE: f32 = 0.015;
 /// A sphere is a fair picture of the roots where they lie within this fraction of its radius.
 const ROUND: f32 = 0.12;
+/// Roots whose mean is within this fraction of their width from the plane x = 0 lie about it.
+const CENTRED: f32 = 0.1;
 
 /// `head = scale * axes + shift`, where `axes` is the groom in metres and head axes.
 #[derive(Clone, Copy, Debug)]
@@ -35,9 +37,12 @@ pub(super) fn fit(roots: &[Vec3], skin: &Surface, may_scale: bool) -> Fit {
     let roots: Vec<Vec3> = roots.iter().step_by(roots.len().div_ceil(ROOTS).max(1)).copied().collect();
     let of_roots = RootShape::of_points(&roots);
     let of_skin = RootShape::of_points(&skin.corners().collect::<Vec<_>>());
+    // Grooms are made about the plane x = 0: roots that lie about it are fitted with it in the middle of the head.
+    let mean_x = roots.iter().map(|root| root.x).sum::<f32>() / roots.len() as f32;
+    let held_x = (mean_x.abs() < CENTRED * of_roots.bounds.size().x).then_some(of_skin.bounds.centre().x);
     let starts = starts(&of_roots, &of_skin, may_scale);
     let fits: Vec<(f32, Fit)> =
-        starts.into_par_iter().map(|start| improve(&roots, skin, start, may_scale)).collect();
+        starts.into_par_iter().map(|start| improve(&roots, skin, start, may_scale, held_x)).collect();
     let mut best = fits[0];
     for &(cost, fit) in &fits[1..] {
         if cost < best.0 {
@@ -75,8 +80,9 @@ fn starts(of_roots: &RootShape, of_skin: &RootShape, may_scale: bool) -> Vec<Fit
 }
 
 /// Iterates from one start; gives the cost with the result.
-fn improve(roots: &[Vec3], skin: &Surface, start: Fit, may_scale: bool) -> (f32, Fit) {
+fn improve(roots: &[Vec3], skin: &Surface, start: Fit, may_scale: bool, held_x: Option<f32>) -> (f32, Fit) {
     let mut fit = start;
+    fit.shift.x = held_x.unwrap_or(fit.shift.x);
     let mut gaps = vec![0.0; roots.len()];
     let mut targets = vec![Vec3::ZERO; roots.len()];
     let mut measure = |fit: &Fit, targets: &mut [Vec3]| {
@@ -110,6 +116,7 @@ fn improve(roots: &[Vec3], skin: &Surface, start: Fit, may_scale: bool) -> (f32,
                 .clamp(0.5 * start.scale, 2.0 * start.scale);
         }
         fit.shift = mean_target - fit.scale * mean_root;
+        fit.shift.x = held_x.unwrap_or(fit.shift.x);
     }
     let gaps = measure(&fit, &mut targets);
     let gap = gaps.iter().map(|gap| gap.min(WORST_GAP)).sum::<f32>() / gaps.len() as f32;

@@ -55,7 +55,7 @@ pub fn import(file: &HairFile, settings: &ImportSettings, scalp: &Scalp) -> Resu
     import_around(file, settings, scalp, None)
 }
 
-/// As [`import`], and pushes the parts of strands that would lie inside `body` out to its surface.
+/// As [`import`], and pushes the parts of strands that would lie in `body`, or touch it, clear of its surface.
 ///
 /// # Errors
 /// As [`import`].

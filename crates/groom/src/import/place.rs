@@ -37,7 +37,7 @@ impl PlacedGroom {
     }
 }
 
-/// Places the strands of a file on a scalp, each keeping its shape, except where it would lie inside `body`.
+/// Places the strands of a file on a scalp, each keeping its shape, except where it would lie in `body` or touch it.
 ///
 /// # Errors
 /// Where the scalp is empty, or the unit that was set makes the groom absurdly small or large.
@@ -116,16 +116,33 @@ fn check_size(file: &HairFile, metres_per_unit: f32) -> Result<(), ImportError> 
     }
 }
 
-/// Moves points that lie inside the body to its surface; roots stay where they are.
+/// How far a strand runs clear of the body, metres; near its root, a fraction of the way from there.
+const CLEARANCE: f32 = 0.002;
+const RISE: f32 = 0.25;
+/// Deep inside, the distance to a body's surface is approximate: so many pushes do.
+const PUSHES: usize = 4;
+
+/// Moves points that lie in the body, or too close to it, clear of it; roots stay where they are.
 fn push_out(groom: &mut PlacedGroom, body: &dyn Obstacle) {
-    let mut is_root = vec![false; groom.points.len()];
-    for &first in &groom.first_point[..groom.strands()] {
-        is_root[first as usize] = true;
+    let mut clearance = vec![0.0; groom.points.len()];
+    for &[start, end] in groom.first_point.array_windows() {
+        let mut run = 0.0;
+        for i in start as usize + 1..end as usize {
+            run += groom.points[i].distance(groom.points[i - 1]);
+            clearance[i] = CLEARANCE.min(RISE * run);
+        }
     }
-    groom.points.par_iter_mut().zip(is_root).with_min_len(1024).for_each(|(point, is_root)| {
-        let (distance, outward) = body.distance(*point);
-        if !is_root && distance < 0.0 && (distance * outward).is_finite() {
-            *point -= distance * outward;
+    groom.points.par_iter_mut().zip(clearance).with_min_len(1024).for_each(|(point, clearance)| {
+        if clearance == 0.0 {
+            return;
+        }
+        for _ in 0..PUSHES {
+            let (distance, outward) = body.distance(*point);
+            let push = (clearance - distance) * outward;
+            if distance >= clearance || !push.is_finite() {
+                break;
+            }
+            *point += push;
         }
     });
 }

@@ -20,7 +20,12 @@ pub(super) struct Skin {
 impl Skin {
     /// The point of the skin that belongs to a root. Continuous in `root`, up to the folds of the head.
     fn closest(&self, root: Vec3) -> Vec3 {
-        let (grows, whole) = (self.grows.closest(root), self.whole.closest(root));
+        let grows = self.grows.closest(root);
+        // The whole head is no further than this, so its closest point is within the edge as well.
+        if 2.0 * grows.distance(root) < EDGE[0] {
+            return grows;
+        }
+        let whole = self.whole.closest(root);
         let beyond = ((grows.distance(whole) - EDGE[0]) / (EDGE[1] - EDGE[0])).clamp(0.0, 1.0);
         let mixed = grows.lerp(whole, beyond * beyond * (3.0 - 2.0 * beyond));
         if beyond > 0.0 && beyond < 1.0 { self.whole.closest(mixed) } else { mixed }

@@ -170,13 +170,17 @@ fn drop_by_size(raw: &RawHair, faults: &mut [Option<Fault>]) {
             }
         }
     }
-    let [Some(x), Some(y), Some(z)] = roots.map(|mut values| median(&mut values)) else { return };
+    let [Some(x), Some(y), Some(z)] = roots.map(|mut values| median(&mut values)) else {
+        return;
+    };
     let centre = Vec3::new(x, y, z);
     let reach =
         |points: &[Vec3]| points.iter().map(|&p| (p - centre).abs().max_element()).fold(0.0_f32, f32::max);
     let kept = || spans().zip(faults.iter()).filter(|(_, fault)| fault.is_none());
     let mut reaches: Vec<f32> = kept().map(|(span, _)| reach(&raw.points[span])).collect();
-    let Some(median_reach) = median(&mut reaches.clone()) else { return };
+    let Some(median_reach) = median(&mut reaches.clone()) else {
+        return;
+    };
     let shortest = (SMALLEST_LENGTH * median_reach).max(SMALLEST_ABSOLUTE_LENGTH);
     let mut reaches = reaches.drain(..);
     for (span, fault) in spans().zip(faults.iter_mut()) {
