@@ -1,18 +1,19 @@
-//! Draws a hairstyle at rest from five sides, to judge a groom without the application.
+//! Draws a hairstyle at rest from six sides, to judge a groom without the application.
 //!
 //! `cargo run --release -p lovelock-groom --example preview -- smooth out.png [length=0.4 curl_radius=0.01 …]`
+//! `cargo run --release -p lovelock-groom --example preview -- some.hair out.png [wisps=200 …]`
 //!
 //! Opaque lines with a depth buffer, shaded after Kajiya and Kay 1989, with self-shadow from a coarse voxel grid.
 
 use std::error::Error;
-use std::time::Instant;
 
 use glam::{Affine3A, Vec3};
 use lovelock_groom::{
-    GroomSettings, GuideFrame, Hairstyle, Obstacle, PlainHead, Preset, Scalp, ScalpIndex, Strands, grow,
-    interpolate,
+    GroomSettings, GuideFrame, Hairstyle, ImportSettings, Obstacle, PlainHead, Preset, Scalp, ScalpIndex,
+    Strands, grow, hair_info, import_around, interpolate, load_hair, place,
 };
 use rayon::prelude::*;
+use serde::{Serialize, de::DeserializeOwned};
 
 /// Size of one view, pixels.
 const VIEW: [usize; 2] = [460, 600];
@@ -29,47 +30,65 @@ const EXTINCTION: f32 = 0.15;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut words = std::env::args().skip(1);
-    let usage = "usage: preview smooth|curly|long OUT.png [SETTING=VALUE ...]";
-    let preset = words.next().as_deref().and_then(Preset::from_id).ok_or(usage)?;
+    let usage = "usage: preview smooth|curly|long|FILE.hair|FILE.tfx OUT.png [SETTING=VALUE ...]";
+    let what = words.next().ok_or(usage)?;
     let path = words.next().ok_or(usage)?;
-    let mut settings = serde_json::to_value(GroomSettings::preset(preset))?;
-    for word in words {
-        let (name, value) = word.split_once('=').ok_or(usage)?;
-        let slot = settings.get_mut(name).ok_or_else(|| format!("no setting is called {name}"))?;
+    let changes: Vec<String> = words.collect();
+    let scalp = PlainHead.scalp(48);
+    let style = if let Some(preset) = Preset::from_id(&what) {
+        grow(&changed(GroomSettings::preset(preset), &changes)?, &scalp, &PlainHead)?
+    } else {
+        let settings: ImportSettings = changed(ImportSettings::default(), &changes)?;
+        let file = load_hair(std::path::Path::new(&what))?;
+        println!("{}", serde_json::to_string_pretty(&hair_info(&file, &settings))?);
+        let placed = place(&file, &settings, &scalp, Some(&PlainHead))?;
+        println!("scale {:.3}, roots moved by {:.4} m", placed.fitted_scale, placed.mean_root_gap_m);
+        import_around(&file, &settings, &scalp, Some(&PlainHead))?
+    };
+    let wisps = style.wisps.len();
+    println!("{} strands, {} segments, {wisps} wisps", style.strands.count(), style.strands.segments());
+    draw(&style, &scalp, &PlainHead, &path)
+}
+
+/// `settings` with the fields that `changes` name set to the JSON values that they give.
+fn changed<T: Serialize + DeserializeOwned>(settings: T, changes: &[String]) -> Result<T, Box<dyn Error>> {
+    let mut fields = serde_json::to_value(settings)?;
+    for change in changes {
+        let (name, value) = change.split_once('=').ok_or("a setting is NAME=VALUE")?;
+        let slot = fields.get_mut(name).ok_or_else(|| format!("no setting is called {name}"))?;
         *slot = serde_json::from_str(value)?;
     }
-    let scalp = PlainHead.scalp(48);
-    let started = Instant::now();
-    let style = grow(&serde_json::from_value(settings)?, &scalp, &PlainHead)?;
-    println!("{} strands in {:.1} ms", style.strands.count(), started.elapsed().as_secs_f64() * 1e3);
-    draw(&style, &scalp, &PlainHead, &path)
+    Ok(serde_json::from_value(fields)?)
 }
 
 /// Draws `style` over `body` and writes the picture.
 fn draw(style: &Hairstyle, scalp: &Scalp, body: &dyn Obstacle, path: &str) -> Result<(), Box<dyn Error>> {
     let mut strands = Strands::default();
     interpolate(style, &GuideFrame::at_rest(&style.guides, Affine3A::IDENTITY, 0.0), &mut strands);
-    // Front, three quarters, side, back, top: where the camera stands.
+    // Where the camera stands: front, three quarters, side; back, three quarters of the back, top.
     let views = [
         (Vec3::Z, Vec3::Y),
         (Vec3::new(0.75, 0.12, 0.65), Vec3::Y),
         (Vec3::X, Vec3::Y),
-        (Vec3::new(-0.2, 0.1, -1.0), Vec3::Y),
+        (Vec3::new(-0.1, 0.1, -1.0), Vec3::Y),
+        (Vec3::new(-0.8, 0.3, -0.6), Vec3::Y),
         (Vec3::new(0.0, 1.0, 0.25), Vec3::Z),
     ];
     let pictures: Vec<_> = views
         .par_iter()
         .map(|&(from, up)| View::new(from, up).picture(style, &strands, scalp, body))
         .collect();
-    let width = VIEW[0] * views.len();
-    let mut bytes = vec![0; width * VIEW[1] * 3];
+    let (columns, rows) = (views.len() / 2, 2);
+    let (width, height) = (VIEW[0] * columns, VIEW[1] * rows);
+    let mut bytes = vec![0; width * height * 3];
     for (v, picture) in pictures.iter().enumerate() {
         for (i, color) in picture.iter().enumerate() {
-            let at = ((i / VIEW[0]) * width + v * VIEW[0] + i % VIEW[0]) * 3;
+            let (x, y) = (v % columns * VIEW[0] + i % VIEW[0], v / columns * VIEW[1] + i / VIEW[0]);
+            let at = (y * width + x) * 3;
             bytes[at..at + 3].copy_from_slice(&to_srgb(*color));
         }
     }
-    image::save_buffer(path, &bytes, width as u32, VIEW[1] as u32, image::ColorType::Rgb8)?;
+    image::save_buffer(path, &bytes, width as u32, height as u32, image::ColorType::Rgb8)?;
     Ok(())
 }
 
@@ -104,7 +123,7 @@ impl View {
 
     fn picture(&self, style: &Hairstyle, strands: &Strands, scalp: &Scalp, body: &dyn Obstacle) -> Vec<Vec3> {
         let shadow = Shadow::new(style, strands);
-        let base = style.look.absorption().map(|a| (-2.6 * a.sqrt()).exp());
+        let base = style.look.absorption().map(|a| (-4.2 * a.sqrt()).exp());
         let mut canvas = self.body(scalp, body, base, &shadow);
         let width = style.look.shadow_width(strands.count()) * style.look.width_scale / PIXEL * FINE as f32;
         for s in 0..strands.count() {
