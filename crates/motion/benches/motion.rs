@@ -4,7 +4,8 @@ use std::{hint::black_box, path::Path};
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use lovelock_motion::{
-    Pose, RestDistance, Skin, fit_colliders, load_character, load_motion, place_colliders, pose_at, retarget, skin,
+    Pose, RestDistance, Skin, fit_colliders, load_character, load_motion, place_colliders, pose_at, retarget,
+    skin,
 };
 
 fn frame(c: &mut Criterion) {
@@ -16,7 +17,8 @@ fn frame(c: &mut Criterion) {
             continue;
         };
         let body = &character.body;
-        let motion = load_motion(&data.join("motion/jesse_dance.bvh")).ok().and_then(|m| retarget(&m, body).ok());
+        let motion =
+            load_motion(&data.join("motion/jesse_dance.bvh")).ok().and_then(|m| retarget(&m, body).ok());
         let clip = motion.as_ref().or(character.clips.first().map(|c| &**c));
         let name = format!("{} ({} vertices)", body.name, body.mesh.positions.len());
         let (mut pose, mut surface, mut placed) = (Pose::default(), Skin::default(), Vec::new());
@@ -38,7 +40,9 @@ fn frame(c: &mut Criterion) {
                 black_box(&surface);
             });
         });
-        group.bench_function("place colliders", |b| b.iter(|| place_colliders(&colliders, body, &pose, &mut placed)));
+        group.bench_function("place colliders", |b| {
+            b.iter(|| place_colliders(&colliders, body, &pose, &mut placed));
+        });
         group.bench_function("rest distance, one query", |b| {
             let mut k = 0.0_f32;
             b.iter(|| {

@@ -6,8 +6,8 @@ use std::path::Path;
 use glam::Vec3;
 use image::{Rgb, RgbImage};
 use lovelock_motion::{
-    Clip, ColliderShape, Pose, Skin, fit_colliders, load_character, load_motion, place_colliders, pose_at, retarget,
-    skin,
+    Clip, ColliderShape, Pose, Skin, fit_colliders, load_character, load_motion, place_colliders, pose_at,
+    retarget, skin,
 };
 
 const CELL: u32 = 300;
@@ -30,7 +30,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     println!("{:#?}", character.info());
     if let Some(clip) = &clip {
-        println!("{} {:.2} s, loops {}, seam {:?}", clip.name, clip.duration_secs, clip.loops, clip.seam(&character.body));
+        println!(
+            "{} {:.2} s, loops {}, seam {:?}",
+            clip.name,
+            clip.duration_secs,
+            clip.loops,
+            clip.seam(&character.body)
+        );
     }
     let colliders = fit_colliders(&character.body);
     let mut image = RgbImage::from_pixel(CELL * columns, CELL * 2, Rgb([24, 24, 28]));
@@ -53,12 +59,20 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             };
             let mut dot = |p: Vec3, color: [u8; 3]| {
                 let (x, y) = project(p);
-                if x >= (column * CELL) as f32 && x < ((column + 1) * CELL) as f32 && y >= 0.0 && y < (CELL * 2) as f32 {
+                if x >= (column * CELL) as f32
+                    && x < ((column + 1) * CELL) as f32
+                    && y >= 0.0
+                    && y < (CELL * 2) as f32
+                {
                     image.put_pixel(x as u32, y as u32, Rgb(color));
                 }
             };
             for k in 0..CELL {
-                dot(centre * Vec3::new(1.0, 0.0, 1.0) + Vec3::new(1.0, 0.0, 1.0) * (k as f32 / CELL as f32 - 0.5), [60, 60, 60]);
+                dot(
+                    centre * Vec3::new(1.0, 0.0, 1.0)
+                        + Vec3::new(1.0, 0.0, 1.0) * (k as f32 / CELL as f32 - 0.5),
+                    [60, 60, 60],
+                );
             }
             for (p, n) in surface.positions.iter().zip(&surface.normals) {
                 let shade = (110.0 + 100.0 * n.dot(Vec3::new(0.4, 0.6, 0.7))).clamp(20.0, 230.0) as u8;
@@ -68,7 +82,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             }
             for (j, joint) in character.body.skeleton.joints.iter().enumerate() {
                 if let Some(parent) = joint.parent {
-                    let (a, b) = (pose.world_from_joint[parent].translation, pose.world_from_joint[j].translation);
+                    let (a, b) =
+                        (pose.world_from_joint[parent].translation, pose.world_from_joint[j].translation);
                     for k in 0..80 {
                         dot(a.lerp(b, k as f32 / 80.0).into(), [230, 120, 40]);
                     }
@@ -78,7 +93,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 for k in 0..400 {
                     let golden = k as f32 * 2.399_963;
                     let z = 1.0 - 2.0 * (k as f32 + 0.5) / 400.0;
-                    let unit = Vec3::new((1.0 - z * z).sqrt() * golden.cos(), (1.0 - z * z).sqrt() * golden.sin(), z);
+                    let unit = Vec3::new(
+                        (1.0 - z * z).sqrt() * golden.cos(),
+                        (1.0 - z * z).sqrt() * golden.sin(),
+                        z,
+                    );
                     let p = match collider.shape {
                         ColliderShape::Ellipsoid { from_unit } => from_unit.transform_point3(unit),
                         ColliderShape::Capsule { a, b, radius_a, radius_b } => {

@@ -94,7 +94,11 @@ impl Clip {
             ]
         });
         let morphs = self.morphs.iter().map(|m| Some(&m.track.times));
-        joints.chain(morphs).flatten().filter_map(|times| times.last()).fold(0.0_f64, |end, &t| end.max(f64::from(t)))
+        joints
+            .chain(morphs)
+            .flatten()
+            .filter_map(|times| times.last())
+            .fold(0.0_f64, |end, &t| end.max(f64::from(t)))
     }
 
     /// Measures the jump from the last pose to the first.
@@ -107,7 +111,8 @@ impl Clip {
         let mut seam = Seam::default();
         for (a, b) in first.world_from_joint.iter().zip(&last.world_from_joint) {
             seam.distance = seam.distance.max(Vec3::from(a.translation - b.translation).length());
-            let turn = crate::pose::rotation_of(&b.matrix3) * crate::pose::rotation_of(&a.matrix3).conjugate();
+            let turn =
+                crate::pose::rotation_of(&b.matrix3) * crate::pose::rotation_of(&a.matrix3).conjugate();
             seam.angle = seam.angle.max(2.0 * turn.w.abs().min(1.0).acos());
         }
         seam

@@ -19,14 +19,16 @@ mod sample;
 mod settings;
 mod skinning;
 
-pub use body::{Bind, Body, Joint, Mesh, MorphTarget, SkinData, Skeleton};
+pub use body::{Bind, Body, Joint, Mesh, MorphTarget, Skeleton, SkinData};
 pub use bvh::{MotionFile, MotionJoint, load_motion, load_motion_bytes, load_motion_with};
 pub use clip::{Clip, Interpolation, JointTracks, MorphTrack, Seam, Track};
 pub use collide::{fit_colliders, place_colliders, signed_distance};
 pub use collider::{Collider, ColliderShape, PlacedCollider};
 pub use distance::RestDistance;
 pub use error::MotionError;
-pub use gltf::{Character, load_character, load_character_bytes, load_character_bytes_with, load_character_with};
+pub use gltf::{
+    Character, load_character, load_character_bytes, load_character_bytes_with, load_character_with,
+};
 pub use head::{HeadMesh, guess_head, head_mesh, joint_paths};
 pub use info::{CharacterInfo, ClipInfo, MotionInfo};
 pub use pose::Pose;

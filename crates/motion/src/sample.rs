@@ -60,14 +60,21 @@ fn value<T: Key>(track: &Track<T>, stride: usize, lane: usize, time: f64) -> T {
     let next = (key + 1).min(track.times.len() - 1);
     match track.interpolation {
         Interpolation::Step => track.values[if u >= 1.0 { next } else { key } * stride + lane],
-        Interpolation::Linear => T::linear(track.values[key * stride + lane], track.values[next * stride + lane], u),
+        Interpolation::Linear => {
+            T::linear(track.values[key * stride + lane], track.values[next * stride + lane], u)
+        }
         Interpolation::Cubic => {
             // glTF 2.0, appendix C.5: tangents are per second, so they are scaled by the key spacing.
             let at = |key: usize, part: usize| track.values[(key * 3 + part) * stride + lane];
             let (u2, u3) = (u * u, u * u * u);
             T::weighted(
                 [at(key, 1), at(key, 2), at(next, 1), at(next, 0)],
-                [2.0 * u3 - 3.0 * u2 + 1.0, spacing * (u3 - 2.0 * u2 + u), 3.0 * u2 - 2.0 * u3, spacing * (u3 - u2)],
+                [
+                    2.0 * u3 - 3.0 * u2 + 1.0,
+                    spacing * (u3 - 2.0 * u2 + u),
+                    3.0 * u2 - 2.0 * u3,
+                    spacing * (u3 - u2),
+                ],
             )
         }
     }
@@ -178,7 +185,8 @@ pub fn pose_at(body: &Body, clip: Option<&Clip>, time_secs: f64, pose: &mut Pose
         for lane in 0..morph.count {
             let Some(weight) = pose.morph_weights.get_mut(morph.first + lane) else { break };
             let main = morph.at(lane, instant.main);
-            *weight = instant.fade.map_or(main, |(tail, share)| f32::linear(morph.at(lane, tail), main, share));
+            *weight =
+                instant.fade.map_or(main, |(tail, share)| f32::linear(morph.at(lane, tail), main, share));
         }
     }
     pose.world_from_head = rigid_head(body, &pose.world_from_joint);

@@ -53,8 +53,7 @@ pub fn skin(body: &Body, pose: &Pose, out: &mut Skin) {
         |(chunk, (positions, normals))| {
             for (i, (position, normal)) in positions.iter_mut().zip(normals).enumerate() {
                 let v = chunk * CHUNK + i;
-                let (p, n) =
-                    if morphing { morphed[v] } else { (data.positions[v], data.normals[v]) };
+                let (p, n) = if morphing { morphed[v] } else { (data.positions[v], data.normals[v]) };
                 (*position, *normal) = skin_vertex(palette, &data.binds[v], &body.mesh.weights[v], p, n);
             }
         },

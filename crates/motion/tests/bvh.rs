@@ -43,7 +43,10 @@ fn rotations_multiply_in_listed_order() {
 
 #[test]
 fn tolerant_of_what_people_write() {
-    let motion = load(&arm("3 zrotation YROTATION Xrotation", "\t\t0 0 0 \r\n\r\n10 nan 0\n1 2\n0 0 360").replace('\n', "\r\n"));
+    let motion = load(
+        &arm("3 zrotation YROTATION Xrotation", "\t\t0 0 0 \r\n\r\n10 nan 0\n1 2\n0 0 360")
+            .replace('\n', "\r\n"),
+    );
     assert_eq!(motion.joints[0].name, "root of all");
     assert_eq!(motion.frames, 3);
     assert_eq!((motion.dropped["numbers"], motion.dropped["rows"]), (1, 1));
@@ -69,7 +72,8 @@ fn positions_replace_or_add() {
     let auto = |root: &str, limb: &str| {
         load_motion_bytes("x.bvh", text(root, limb).as_bytes(), MotionSettings::default()).unwrap()
     };
-    for (root, limb) in [("0 89 0", "10 0 0"), ("0 -1 0", "0 0 0"), ("0 89 0", "0 0 0"), ("0 -1 0", "10 0 0")] {
+    for (root, limb) in [("0 89 0", "10 0 0"), ("0 -1 0", "0 0 0"), ("0 89 0", "0 0 0"), ("0 -1 0", "10 0 0")]
+    {
         let motion = auto(root, limb);
         assert_eq!(motion.unit_metres, 0.01, "{:?}", motion.notes);
         assert!(place(&motion, 0, 0).distance(Vec3::Y * 0.89) < 1e-5, "{root}: {:?}", motion.notes);
@@ -90,7 +94,10 @@ fn refusals_name_the_line() {
         ("HIERARCHY\nROOT a\n{\n CHANNELS 1 Wrotation\n", "Wrotation"),
         ("HIERARCHY\nJOINT a\n{", "outside a joint"),
         ("HIERARCHY\nROOT a\n{\n OFFSET 0 0 0\nMOTION\n", "still open"),
-        ("HIERARCHY\nROOT a\n{ OFFSET 0 0 0 CHANNELS 1 Xrotation }\nMOTION\nFrames: 0\nFrame Time: 1\n", "no frame"),
+        (
+            "HIERARCHY\nROOT a\n{ OFFSET 0 0 0 CHANNELS 1 Xrotation }\nMOTION\nFrames: 0\nFrame Time: 1\n",
+            "no frame",
+        ),
         ("HIERARCHY\nROOT a\n{ OFFSET 0 0 0 }\n}\n", "brace too many"),
     ] {
         let error = load_motion_bytes("x.bvh", text.as_bytes(), plain()).expect_err(text).to_string();

@@ -11,7 +11,10 @@ use lovelock_motion::{
 };
 
 /// What each file holds: joints, skins, vertices, triangles, clips, morph targets, head, height in metres.
-const GOOD: [(&str, usize, usize, usize, usize, usize, usize, &str, f32); 10] = [
+type Row = (&'static str, usize, usize, usize, usize, usize, usize, &'static str, f32);
+
+/// See [`Row`]; counted in the files with another program.
+const GOOD: [Row; 10] = [
     ("CesiumMan.glb", 19, 1, 3273, 4672, 1, 0, "node 20", 1.51),
     ("CesiumMan_quantized.glb", 19, 1, 3273, 4672, 1, 0, "node 20", 1.51),
     ("Fox.glb", 24, 1, 1728, 576, 3, 0, "b_Head_05", 0.79),
@@ -31,7 +34,8 @@ fn real_characters_load_whole() {
         let character = load_character(&data.join("characters").join(file)).unwrap_or_else(|e| panic!("{e}"));
         let info = character.info();
         println!("{file}: {info:?}");
-        let counts = (info.joints, info.skins, info.vertices, info.triangles, info.clips.len(), info.morph_targets);
+        let counts =
+            (info.joints, info.skins, info.vertices, info.triangles, info.clips.len(), info.morph_targets);
         assert_eq!(counts, (joints, skins, vertices, triangles, clips, morphs), "{file}");
         assert_eq!(info.head, head, "{file}");
         assert!((info.height_m - height).abs() < 0.01 * height + 0.005, "{file}: {}", info.height_m);
@@ -47,7 +51,10 @@ fn check_invariants(file: &str, character: &Character) {
     assert_eq!(mesh.positions.len(), mesh.joints.len(), "{file}");
     assert!(mesh.normals.iter().all(|n| (n.length() - 1.0).abs() < 1e-3), "{file}");
     assert!(mesh.weights.iter().all(|w| (w.iter().sum::<f32>() - 1.0).abs() < 1e-4), "{file}");
-    assert!(body.skeleton.joints.iter().enumerate().all(|(j, joint)| joint.parent.is_none_or(|p| p < j)), "{file}");
+    assert!(
+        body.skeleton.joints.iter().enumerate().all(|(j, joint)| joint.parent.is_none_or(|p| p < j)),
+        "{file}"
+    );
     let (mut pose, mut rest) = (Pose::default(), Skin::default());
     pose_at(body, None, 0.0, &mut pose);
     skin(body, &pose, &mut rest);
@@ -64,7 +71,11 @@ fn check_invariants(file: &str, character: &Character) {
             skin(body, &pose, &mut rest);
             assert!(rest.positions.iter().all(|p| p.length() < 20.0), "{file} {}", clip.name);
             let turn = pose.world_from_head.matrix3;
-            assert!((turn * turn.transpose()).abs_diff_eq(glam::Mat3A::IDENTITY, 1e-4), "{file} {}", clip.name);
+            assert!(
+                (turn * turn.transpose()).abs_diff_eq(glam::Mat3A::IDENTITY, 1e-4),
+                "{file} {}",
+                clip.name
+            );
         }
     }
 }
@@ -154,7 +165,8 @@ fn unit_and_axis_can_be_chosen() {
     let metres = load_character_with(&path, settings).unwrap();
     assert!((metres.body.height() / auto.body.height() - 100.0).abs() < 0.01);
     assert!(difference(&auto, &auto) == 0.0);
-    let turned = load_character_with(&path, BodySettings { up: UpAxis::Z, ..BodySettings::default() }).unwrap();
+    let turned =
+        load_character_with(&path, BodySettings { up: UpAxis::Z, ..BodySettings::default() }).unwrap();
     let (p, q) = (auto.body.mesh.positions[100], turned.body.mesh.positions[100]);
     assert!(q.distance(Vec3::new(p.x, p.z, -p.y)) < 1e-5, "{p} {q}");
     check_invariants("Fox turned", &turned);

@@ -22,8 +22,10 @@ fn body() -> Body {
         rotation: Quat::IDENTITY,
         scale: Vec3::splat(scale),
     };
-    let mut skeleton =
-        Skeleton { joints: vec![joint("hips", None, 1.0, 1.0), joint("head", Some(0), 1.0, 3.0)], ..Skeleton::default() };
+    let mut skeleton = Skeleton {
+        joints: vec![joint("hips", None, 1.0, 1.0), joint("head", Some(0), 1.0, 3.0)],
+        ..Skeleton::default()
+    };
     skeleton.update_rest();
     Body { name: "two".into(), skeleton, head_joint: 1, ..Body::default() }
 }
@@ -44,7 +46,9 @@ fn place(clip: &Clip, time: f64) -> Vec3 {
 #[test]
 fn step_holds_and_linear_is_straight() {
     let step = moving(track(&[0.0, 1.0, 3.0], vec![Vec3::ZERO, Vec3::X, Vec3::Y], Interpolation::Step));
-    for (time, at) in [(0.0, Vec3::ZERO), (0.999, Vec3::ZERO), (1.0, Vec3::X), (2.999, Vec3::X), (3.0, Vec3::ZERO)] {
+    for (time, at) in
+        [(0.0, Vec3::ZERO), (0.999, Vec3::ZERO), (1.0, Vec3::X), (2.999, Vec3::X), (3.0, Vec3::ZERO)]
+    {
         assert_eq!(place(&step, time), at, "{time}");
     }
     let linear = moving(track(&[0.0, 1.0, 3.0], vec![Vec3::ZERO, Vec3::X, Vec3::Y], Interpolation::Linear));
@@ -100,7 +104,8 @@ fn a_pose_is_reused_without_allocation() {
 
 #[test]
 fn a_faded_clip_starts_again_without_a_jump() {
-    let open = moving(track(&[0.0, 1.0, 2.0], vec![Vec3::ZERO, Vec3::X, Vec3::X * 4.0], Interpolation::Linear));
+    let open =
+        moving(track(&[0.0, 1.0, 2.0], vec![Vec3::ZERO, Vec3::X, Vec3::X * 4.0], Interpolation::Linear));
     let jump = |clip: &Clip| {
         let end = clip.duration_secs;
         place(clip, end - 1e-4).distance(place(clip, end + 1e-4))

@@ -5,7 +5,9 @@ mod common;
 use std::path::Path;
 
 use glam::Vec3;
-use lovelock_motion::{Body, Clip, MotionError, Pose, Skin, load_character, load_motion, pose_at, retarget, skin};
+use lovelock_motion::{
+    Body, Clip, MotionError, Pose, Skin, load_character, load_motion, pose_at, retarget, skin,
+};
 
 /// What is measured over a clip.
 struct Measures {
@@ -153,5 +155,8 @@ fn what_does_not_correspond_is_refused() {
     let motion = load_motion(&data.join("motion/mh_walk1.bvh")).unwrap();
     let man = load_character(&data.join("characters/CesiumMan.glb")).unwrap();
     let error = retarget(&motion, &man.body).unwrap_err();
-    assert!(matches!(error, MotionError::Retarget { .. }) && error.to_string().contains("of the body"), "{error}");
+    assert!(
+        matches!(error, MotionError::Retarget { .. }) && error.to_string().contains("of the body"),
+        "{error}"
+    );
 }

@@ -24,8 +24,9 @@ enum Meaning {
 }
 
 /// Brings a parsed file to metres, Y up, and quaternions.
-pub(super) fn interpret(file: &str, raw: RawMotion, settings: MotionSettings) -> MotionFile {
-    let stem = Path::new(file).file_stem().map_or_else(|| file.to_owned(), |s| s.to_string_lossy().into_owned());
+pub(super) fn interpret(file: &str, raw: &RawMotion, settings: MotionSettings) -> MotionFile {
+    let stem =
+        Path::new(file).file_stem().map_or_else(|| file.to_owned(), |s| s.to_string_lossy().into_owned());
     let mut motion = MotionFile {
         name: stem,
         joints: raw.joints.iter().map(joint).collect(),
@@ -37,14 +38,14 @@ pub(super) fn interpret(file: &str, raw: RawMotion, settings: MotionSettings) ->
         up: UpAxis::Y,
         ..MotionFile::default()
     };
-    let rest = meaning_of_joints(&raw);
-    decode(&raw, rest, &mut motion);
+    let rest = meaning_of_joints(raw);
+    decode(raw, rest, &mut motion);
     let probe = Probe::new(&motion);
     motion.up = match settings.up {
         UpAxis::Auto => probe.up,
         chosen => chosen,
     };
-    choose_root(&raw, settings.root, &probe, &mut motion);
+    choose_root(raw, settings.root, &probe, &mut motion);
     choose_unit(settings.unit, probe.height, &mut motion);
     convert(&mut motion);
     motion
@@ -116,7 +117,13 @@ fn decode(raw: &RawMotion, below_root: Meaning, motion: &mut MotionFile) {
             let adds = joint.parent.is_some() && below_root == Meaning::Add;
             let missing = if adds { Vec3::ZERO } else { offset };
             let (position, given) = position(joint, numbers, missing);
-            motion.positions.push(if given && adds { offset + position } else if given { position } else { offset });
+            motion.positions.push(if given && adds {
+                offset + position
+            } else if given {
+                position
+            } else {
+                offset
+            });
             let mut q = rotation(joint, numbers).normalize();
             // The same side of the sphere as in the frame before, so that nothing jumps between them.
             if let Some(&before) = motion.rotations.len().checked_sub(count).map(|i| &motion.rotations[i])
@@ -206,7 +213,10 @@ fn choose_root(raw: &RawMotion, setting: RootPosition, probe: &Probe, motion: &m
                 let adds = added + 0.2 * probe.height < replaced;
                 if adds || replaced + 0.2 * probe.height < added {
                     let how = if adds { "were added to" } else { "replaced" };
-                    motion.notes.push(format!("positions of `{}` {how} its offset, which puts the feet on the ground", joint.name));
+                    motion.notes.push(format!(
+                        "positions of `{}` {how} its offset, which puts the feet on the ground",
+                        joint.name
+                    ));
                 }
                 adds
             }

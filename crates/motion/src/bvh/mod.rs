@@ -59,7 +59,8 @@ impl MotionFile {
         let first = frame.min(self.frames.saturating_sub(1)) * self.joints.len();
         world.clear();
         for (j, joint) in self.joints.iter().enumerate() {
-            let local = Affine3A::from_rotation_translation(self.rotations[first + j], self.positions[first + j]);
+            let local =
+                Affine3A::from_rotation_translation(self.rotations[first + j], self.positions[first + j]);
             let parent = joint.parent.map(|p| world[p]);
             world.push(parent.map_or(local, |p| p * local));
         }
@@ -96,7 +97,11 @@ pub fn load_motion_with(path: &Path, settings: MotionSettings) -> Result<MotionF
 ///
 /// # Errors
 /// As [`load_motion`].
-pub fn load_motion_bytes(name: &str, bytes: &[u8], settings: MotionSettings) -> Result<MotionFile, MotionError> {
+pub fn load_motion_bytes(
+    name: &str,
+    bytes: &[u8],
+    settings: MotionSettings,
+) -> Result<MotionFile, MotionError> {
     let raw = parse::parse(name, bytes)?;
-    Ok(interpret::interpret(name, raw, settings))
+    Ok(interpret::interpret(name, &raw, settings))
 }

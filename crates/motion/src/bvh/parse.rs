@@ -110,7 +110,8 @@ pub(super) fn parse(file: &str, bytes: &[u8]) -> Result<RawMotion, MotionError> 
     }
     // A joint without channels has no bytes in a row: a text of joints times a text of rows must not explode.
     if (raw.frames as u64) * (raw.joints.len() as u64) > (bytes.len() as u64).max(1 << 20) {
-        let problem = format!("{} frames of {} joints, nearly all without channels", raw.frames, raw.joints.len());
+        let problem =
+            format!("{} frames of {} joints, nearly all without channels", raw.frames, raw.joints.len());
         return Err(cursor.fault(problem));
     }
     Ok(raw)
@@ -164,7 +165,9 @@ fn parse_hierarchy(cursor: &mut Cursor, raw: &mut RawMotion) -> Result<(), Motio
                 }
             }
             Some("MOTION") if open.is_empty() && !raw.joints.is_empty() => return Ok(()),
-            Some("MOTION") => return Err(cursor.fault(format!("MOTION with {} joints still open", open.len()))),
+            Some("MOTION") => {
+                return Err(cursor.fault(format!("MOTION with {} joints still open", open.len())));
+            }
             _ => {
                 return Err(cursor.fault(format!("{}; wanted a joint, its end, or MOTION", quote(word))));
             }
@@ -229,7 +232,9 @@ fn parse_rows(cursor: &mut Cursor, raw: &mut RawMotion) -> Result<(), MotionErro
         match key.as_str() {
             "frames" => promised = value.parse::<u64>().ok(),
             "frame time" => frame_secs = value.parse::<f64>().ok(),
-            _ => return Err(cursor.fault(format!("{}; wanted `Frames:` or `Frame Time:`", quote(Some(&key))))),
+            _ => {
+                return Err(cursor.fault(format!("{}; wanted `Frames:` or `Frame Time:`", quote(Some(&key)))));
+            }
         }
         cursor.rest = rest;
     }
@@ -251,7 +256,10 @@ fn parse_rows(cursor: &mut Cursor, raw: &mut RawMotion) -> Result<(), MotionErro
     }
     raw.frames = raw.rows.len() / raw.channels;
     if let Some(promised) = promised.filter(|&n| n != raw.frames as u64) {
-        raw.notes.push(format!("the header says {promised} frames and {} were found; those were taken", raw.frames));
+        raw.notes.push(format!(
+            "the header says {promised} frames and {} were found; those were taken",
+            raw.frames
+        ));
     }
     Ok(())
 }

@@ -57,7 +57,9 @@ fn head_shapes(part: &Part) -> Vec<(String, ColliderShape, f32)> {
     let (low, high) = (percentile(&part.points, 0.05), percentile(&part.points, 0.95));
     let fitted = if scalp.len() < 24 { None } else { skull(&scalp) };
     // Heads of animals and machines: an ellipsoid about all of it.
-    let Some((centre, half)) = fitted.filter(|(c, half)| half.cmpge(0.25 * (high - low)).all() && part.holds(*c)) else {
+    let Some((centre, half)) =
+        fitted.filter(|(c, half)| half.cmpge(0.25 * (high - low)).all() && part.holds(*c))
+    else {
         return vec![("head".into(), ellipsoid(0.5 * (low + high), 0.5 * (high - low)), SKULL_INSET)];
     };
     let mut shapes = vec![(SKULL.into(), ellipsoid(centre, half), SKULL_INSET)];
@@ -87,7 +89,11 @@ fn head_shapes(part: &Part) -> Vec<(String, ColliderShape, f32)> {
         ));
         for (name, sign) in [("jaw left", 1.0), ("jaw right", -1.0)] {
             // From below the ear to the chin.
-            let back = Vec3::new(centre.x + sign * 0.55 * width, low.y + 0.5 * (centre.y - low.y), centre.z + 0.1 * half.z);
+            let back = Vec3::new(
+                centre.x + sign * 0.55 * width,
+                low.y + 0.5 * (centre.y - low.y),
+                centre.z + 0.1 * half.z,
+            );
             let tip = Vec3::new(centre.x + sign * 0.2 * width, low.y + chin, front - 1.3 * chin);
             shapes.push((name.into(), capsule(back, tip, 0.3 * width, 0.8 * chin), SKIN_INSET));
         }
@@ -125,7 +131,8 @@ fn skull(scalp: &[Vec3]) -> Option<(Vec3, Vec3)> {
         let radii = glam::DVec3::new(level / a, level / b, level / c).map(f64::sqrt);
         let (centre, radii) = (middle + centre.as_vec3() * size, radii.as_vec3() * size);
         // A scalp that is nearly flat may fit a giant.
-        (radii.is_finite() && radii.max_element() < 2.0 * size && centre.distance(middle) < size).then_some((centre, radii))
+        (radii.is_finite() && radii.max_element() < 2.0 * size && centre.distance(middle) < size)
+            .then_some((centre, radii))
     });
     let (centre, radii) = fitted?;
     // Below the scalp at all but its deepest twentieth.
@@ -143,7 +150,8 @@ fn trunk_shapes(part: &Part) -> Vec<(String, ColliderShape, f32)> {
         .filter_map(|i| {
             let bottom = low.y + (high.y - low.y) * i as f32 / slices as f32;
             let top = low.y + (high.y - low.y) * (i + 1) as f32 / slices as f32;
-            let slice: Vec<Vec3> = part.points.iter().copied().filter(|p| (bottom..=top).contains(&p.y)).collect();
+            let slice: Vec<Vec3> =
+                part.points.iter().copied().filter(|p| (bottom..=top).contains(&p.y)).collect();
             // A few stray vertices are no slice.
             if slice.len() < 12 || slice.len() * 12 < part.points.len() {
                 return None;
@@ -167,7 +175,8 @@ fn limb(part: &Part) -> ColliderShape {
         return capsule(begin.lerp(end, 0.3), begin.lerp(end, 0.85), 0.3 * length, 0.25 * length);
     }
     let mean = points.iter().sum::<Vec3>() / points.len() as f32;
-    let direction = part.end.map_or_else(|| principal_axis(points, mean), |end| (end - mean).normalize_or(Vec3::Y));
+    let direction =
+        part.end.map_or_else(|| principal_axis(points, mean), |end| (end - mean).normalize_or(Vec3::Y));
     let along = |p: &Vec3| (*p - mean).dot(direction);
     let mut places: Vec<f32> = points.iter().map(along).collect();
     places.sort_by(f32::total_cmp);
@@ -205,7 +214,11 @@ fn capsule(a: Vec3, b: Vec3, radius_a: f32, radius_b: f32) -> ColliderShape {
 
 fn ellipsoid(centre: Vec3, radii: Vec3) -> ColliderShape {
     ColliderShape::Ellipsoid {
-        from_unit: Affine3A::from_scale_rotation_translation(radii.max(Vec3::splat(1e-3)), glam::Quat::IDENTITY, centre),
+        from_unit: Affine3A::from_scale_rotation_translation(
+            radii.max(Vec3::splat(1e-3)),
+            glam::Quat::IDENTITY,
+            centre,
+        ),
     }
 }
 

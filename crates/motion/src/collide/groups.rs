@@ -78,7 +78,11 @@ pub(super) fn parts(body: &Body) -> Vec<Part> {
             for (role, next, name) in chain {
                 if let Some(j) = figure.get(role) {
                     let end = if role == next { None } else { at(next) };
-                    let kind = if matches!(role, Role::Shin(_) | Role::Foot(_)) { Kind::Ignored } else { Kind::Limb };
+                    let kind = if matches!(role, Role::Shin(_) | Role::Foot(_)) {
+                        Kind::Ignored
+                    } else {
+                        Kind::Limb
+                    };
                     let mut new = part(&format!("{name} {word}"), kind, j, end);
                     if let Role::Clavicle(_) = role {
                         new.begin = neck.first().map(|&n| skeleton.rest_position(n)).or(at(Role::Head));

@@ -31,8 +31,15 @@ fn moved(shape: &ColliderShape, transform: &Affine3A) -> ColliderShape {
         ColliderShape::Capsule { a, b, radius_a, radius_b } => {
             let scale = transform.matrix3.determinant().abs().cbrt();
             let at = |p: Vec3| transform.transform_point3(p);
-            ColliderShape::Capsule { a: at(a), b: at(b), radius_a: radius_a * scale, radius_b: radius_b * scale }
+            ColliderShape::Capsule {
+                a: at(a),
+                b: at(b),
+                radius_a: radius_a * scale,
+                radius_b: radius_b * scale,
+            }
         }
-        ColliderShape::Ellipsoid { from_unit } => ColliderShape::Ellipsoid { from_unit: *transform * from_unit },
+        ColliderShape::Ellipsoid { from_unit } => {
+            ColliderShape::Ellipsoid { from_unit: *transform * from_unit }
+        }
     }
 }

@@ -27,7 +27,9 @@ const THIN: f32 = 0.004;
 
 fn to_parameters(shape: &ColliderShape) -> [f32; PARAMETERS] {
     match *shape {
-        ColliderShape::Capsule { a, b, radius_a, radius_b } => [a.x, a.y, a.z, b.x, b.y, b.z, radius_a, radius_b],
+        ColliderShape::Capsule { a, b, radius_a, radius_b } => {
+            [a.x, a.y, a.z, b.x, b.y, b.z, radius_a, radius_b]
+        }
         ColliderShape::Ellipsoid { from_unit } => {
             let (m, c) = (from_unit.matrix3, from_unit.translation);
             [c.x, c.y, c.z, m.x_axis.length(), m.y_axis.length(), m.z_axis.length(), 0.0, 0.0]
@@ -48,7 +50,11 @@ fn from_parameters(like: &ColliderShape, p: &[f32; PARAMETERS]) -> ColliderShape
             let axis = |v: glam::Vec3A, length: f32| v.normalize_or_zero() * length.max(THIN);
             ColliderShape::Ellipsoid {
                 from_unit: Affine3A {
-                    matrix3: Mat3A::from_cols(axis(m.x_axis, p[3]), axis(m.y_axis, p[4]), axis(m.z_axis, p[5])),
+                    matrix3: Mat3A::from_cols(
+                        axis(m.x_axis, p[3]),
+                        axis(m.y_axis, p[4]),
+                        axis(m.z_axis, p[5]),
+                    ),
                     translation: glam::Vec3A::new(p[0], p[1], p[2]),
                 },
             }

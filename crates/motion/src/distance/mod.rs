@@ -25,7 +25,8 @@ pub struct RestDistance {
 impl RestDistance {
     /// Prepares the whole surface of a body; some milliseconds for ten thousand triangles.
     pub fn new(body: &Body) -> Self {
-        let origin = body.skeleton.world_at_rest.get(body.head_joint).map_or(Vec3::ZERO, |w| w.translation.into());
+        let origin =
+            body.skeleton.world_at_rest.get(body.head_joint).map_or(Vec3::ZERO, |w| w.translation.into());
         let positions: Vec<Vec3> = body.mesh.positions.iter().map(|&p| p - origin).collect();
         Self::of_triangles(&positions, &body.mesh.triangles)
     }

@@ -44,7 +44,8 @@ impl Topology {
         };
         for ((ids, corners), &normal) in kept.iter().zip(&topology.corners).zip(&topology.face_normals) {
             for k in 0..3 {
-                let (to_next, to_last) = (corners[(k + 1) % 3] - corners[k], corners[(k + 2) % 3] - corners[k]);
+                let (to_next, to_last) =
+                    (corners[(k + 1) % 3] - corners[k], corners[(k + 2) % 3] - corners[k]);
                 let angle = to_next.cross(to_last).length().atan2(to_next.dot(to_last));
                 at_vertex[ids[k] as usize] += normal * angle;
                 *at_edge.entry(edge(ids, k)).or_default() += normal;

@@ -100,7 +100,10 @@ impl<'a> Accessors<'a> {
 
     fn get(&self, index: usize) -> Result<&'a Accessor, MotionError> {
         let count = self.document.accessors.len();
-        self.document.accessors.get(index).ok_or_else(|| self.fault(index, format!("is not there; the file has {count}")))
+        self.document
+            .accessors
+            .get(index)
+            .ok_or_else(|| self.fault(index, format!("is not there; the file has {count}")))
     }
 
     /// Number of elements, not yet known to exist.
@@ -109,8 +112,16 @@ impl<'a> Accessors<'a> {
     }
 
     /// Bytes of `count` elements of `element` bytes in a view, checked in 64 bits.
-    fn run(&self, index: usize, view: usize, offset: u64, count: u64, element: usize) -> Result<Run<'a>, MotionError> {
-        let missing = |what: &str, i: usize| self.fault(index, format!("needs {what} {i}, which is not there"));
+    fn run(
+        &self,
+        index: usize,
+        view: usize,
+        offset: u64,
+        count: u64,
+        element: usize,
+    ) -> Result<Run<'a>, MotionError> {
+        let missing =
+            |what: &str, i: usize| self.fault(index, format!("needs {what} {i}, which is not there"));
         let v = self.document.buffer_views.get(view).ok_or_else(|| missing("bufferView", view))?;
         let buffer = self.buffers.get(v.buffer).ok_or_else(|| missing("buffer", v.buffer))?;
         // Zero is not allowed and means that elements are packed.
@@ -164,7 +175,8 @@ impl<'a> Accessors<'a> {
             sparse.count,
             component.size(),
         )?;
-        let values = self.run(index, sparse.values.buffer_view, sparse.values.byte_offset, sparse.count, element)?;
+        let values =
+            self.run(index, sparse.values.buffer_view, sparse.values.byte_offset, sparse.count, element)?;
         for k in 0..sparse.count as usize {
             let place = component
                 .decode_index(&places.bytes[k * places.stride..])
@@ -183,12 +195,17 @@ impl<'a> Accessors<'a> {
         let bytes: u64 = self.buffers.iter().map(|b| b.len() as u64).sum();
         // Where the file holds no bytes for the elements, their number must still be of the file's order.
         if accessor.buffer_view.is_none() && accessor.count > bytes.max(1 << 16) {
-            return Err(self.fault(index, format!("{} elements that the file holds no bytes for", accessor.count)));
+            return Err(
+                self.fault(index, format!("{} elements that the file holds no bytes for", accessor.count))
+            );
         }
         let wanted = accessor.count.saturating_mul(components as u64);
         let left = self.budget.get().checked_sub(wanted);
         let left = left.ok_or_else(|| {
-            self.fault(index, format!("{} elements: far more than a file of {bytes} bytes can mean", accessor.count))
+            self.fault(
+                index,
+                format!("{} elements: far more than a file of {bytes} bytes can mean", accessor.count),
+            )
         })?;
         self.budget.set(left);
         Ok(())
@@ -247,10 +264,12 @@ impl<'a> Accessors<'a> {
 
     fn shape(&self, index: usize) -> Result<(&'a Accessor, Component, usize), MotionError> {
         let accessor = self.get(index)?;
-        let component = Component::new(accessor.component_type)
-            .ok_or_else(|| self.fault(index, format!("unknown component type {}", accessor.component_type)))?;
-        let components = components_of(&accessor.kind)
-            .ok_or_else(|| self.fault(index, format!("type `{}`, which no attribute read here has", accessor.kind)))?;
+        let component = Component::new(accessor.component_type).ok_or_else(|| {
+            self.fault(index, format!("unknown component type {}", accessor.component_type))
+        })?;
+        let components = components_of(&accessor.kind).ok_or_else(|| {
+            self.fault(index, format!("type `{}`, which no attribute read here has", accessor.kind))
+        })?;
         Ok((accessor, component, components))
     }
 }

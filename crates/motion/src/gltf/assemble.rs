@@ -79,7 +79,11 @@ pub(super) fn assemble(accessors: &Accessors, settings: BodySettings) -> Result<
         let rigid = if node.skin.is_none() {
             let joint = joint_of_node[n].unwrap_or(0);
             palette.add(joint, Affine3A::IDENTITY).ok_or_else(|| {
-                MotionError::malformed(file, format!("node {n}"), "more nodes with meshes than can be told apart")
+                MotionError::malformed(
+                    file,
+                    format!("node {n}"),
+                    "more nodes with meshes than can be told apart",
+                )
             })?
         } else {
             0
@@ -95,7 +99,8 @@ pub(super) fn assemble(accessors: &Accessors, settings: BodySettings) -> Result<
         let found = found_instead(document, &dropped);
         return Err(MotionError::Empty { file: file.to_owned(), found, wanted: "a mesh of triangles" });
     }
-    let stem = Path::new(file).file_stem().map_or_else(|| file.to_owned(), |s| s.to_string_lossy().into_owned());
+    let stem =
+        Path::new(file).file_stem().map_or_else(|| file.to_owned(), |s| s.to_string_lossy().into_owned());
     let mut body = Body { name: stem, skeleton, mesh, skin: skin_data, head_joint: 0 };
     rest_surface(&mut body);
     if !body.mesh.positions.iter().all(|p| p.is_finite() && p.max_element() < 1e12) {
@@ -143,7 +148,11 @@ fn found_instead(document: &Document, dropped: &BTreeMap<String, u64>) -> String
         .iter()
         .filter_map(|&what| dropped.get(what).map(|n| format!("{n} {} dropped", what.replace('_', " "))))
         .collect();
-    let found = format!("{} nodes and {} meshes without a usable triangle", document.nodes.len(), document.meshes.len());
+    let found = format!(
+        "{} nodes and {} meshes without a usable triangle",
+        document.nodes.len(),
+        document.meshes.len()
+    );
     if lost.is_empty() { found } else { format!("{found} ({})", lost.join(", ")) }
 }
 

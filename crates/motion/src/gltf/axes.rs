@@ -12,7 +12,12 @@ use crate::{
 
 /// Turns the body as the settings say, else as the figure shows: glTF has Y up and the face toward +Z, and files
 /// keep the first more often than the second.
-pub(super) fn turn_to_face(body: &mut Body, clips: &mut [Clip], settings: BodySettings, notes: &mut Vec<String>) {
+pub(super) fn turn_to_face(
+    body: &mut Body,
+    clips: &mut [Clip],
+    settings: BodySettings,
+    notes: &mut Vec<String>,
+) {
     if settings.up == UpAxis::Z {
         insert_root(body, clips, "up axis", Quat::from_rotation_x(-FRAC_PI_2));
     }
@@ -55,7 +60,8 @@ fn toes(body: &Body) -> Option<Vec3> {
     let height = body.height();
     let low = body.mesh.positions.iter().map(|p| p.y).reduce(f32::min)?;
     let mean = |from: f32, to: f32| {
-        let band = body.mesh.positions.iter().filter(|p| (from..to).contains(&((p.y - low) / height.max(1e-6))));
+        let band =
+            body.mesh.positions.iter().filter(|p| (from..to).contains(&((p.y - low) / height.max(1e-6))));
         let (sum, count) = band.fold((Vec3::ZERO, 0), |(sum, count), p| (sum + *p, count + 1));
         (count > 8).then(|| sum / count as f32)
     };
@@ -69,8 +75,7 @@ fn insert_root(body: &mut Body, clips: &mut [Clip], name: &str, rotation: Quat) 
     for joint in &mut body.skeleton.joints {
         joint.parent = Some(joint.parent.map_or(0, |p| p + 1));
     }
-    let root =
-        Joint { name: name.into(), parent: None, translation: Vec3::ZERO, rotation, scale: Vec3::ONE };
+    let root = Joint { name: name.into(), parent: None, translation: Vec3::ZERO, rotation, scale: Vec3::ONE };
     body.skeleton.joints.insert(0, root);
     body.skeleton.update_rest();
     body.skin.palette.iter_mut().for_each(|bind| bind.joint += 1);

@@ -25,12 +25,20 @@ pub(super) fn open<'a>(file: &str, bytes: &'a [u8]) -> Result<Container<'a>, Mot
     let word = |at: usize| {
         let bytes = rest.get(at..at + 4).and_then(|b| <[u8; 4]>::try_from(b).ok());
         bytes.map(u32::from_le_bytes).ok_or_else(|| {
-            MotionError::malformed(file, format!("byte {}", at + 4), "the file ends inside the header of a chunk")
+            MotionError::malformed(
+                file,
+                format!("byte {}", at + 4),
+                "the file ends inside the header of a chunk",
+            )
         })
     };
     let version = word(0)?;
     if version != 2 {
-        return Err(MotionError::malformed(file, "byte 4", format!("glTF version {version}; version 2 is read")));
+        return Err(MotionError::malformed(
+            file,
+            "byte 4",
+            format!("glTF version {version}; version 2 is read"),
+        ));
     }
     let (mut json, mut bin, mut at) = (None, None, 8_usize);
     while at < rest.len() && (json.is_none() || bin.is_none()) {
@@ -54,7 +62,8 @@ pub(super) fn open<'a>(file: &str, bytes: &'a [u8]) -> Result<Container<'a>, Mot
         }
         at += 8 + length;
     }
-    let json = json.ok_or_else(|| MotionError::malformed(file, "byte 12", "no JSON chunk; the first must be one"))?;
+    let json =
+        json.ok_or_else(|| MotionError::malformed(file, "byte 12", "no JSON chunk; the first must be one"))?;
     Ok(Container { json, bin, format: "glTF 2.0 (binary)" })
 }
 
@@ -76,7 +85,11 @@ pub(super) fn load(
         }
         total += bytes.len() as u64;
         if total > super::FILE_LIMIT {
-            return Err(MotionError::malformed(file, place, format!("all buffers together pass {} bytes", super::FILE_LIMIT)));
+            return Err(MotionError::malformed(
+                file,
+                place,
+                format!("all buffers together pass {} bytes", super::FILE_LIMIT),
+            ));
         }
         buffers.push(bytes);
     }
@@ -95,14 +108,17 @@ fn fetch(
             Some(bin) => Ok(bin.to_vec()),
             // A meshopt fallback buffer has no bytes; whoever reads from it is told.
             None if buffer.byte_length == 0 => Ok(Vec::new()),
-            None => Err(MotionError::malformed(file, place, "neither a URI nor a binary chunk holds its bytes")),
+            None => {
+                Err(MotionError::malformed(file, place, "neither a URI nor a binary chunk holds its bytes"))
+            }
         };
     };
     if let Some(data) = uri.strip_prefix("data:") {
         let Some((_, text)) = data.split_once(";base64,") else {
             return Err(MotionError::malformed(file, place, "a data URI that is not base64"));
         };
-        return base64(text.as_bytes()).ok_or_else(|| MotionError::malformed(file, place, "broken base64 in its data URI"));
+        return base64(text.as_bytes())
+            .ok_or_else(|| MotionError::malformed(file, place, "broken base64 in its data URI"));
     }
     let path = resolve(file, uri, folder)?;
     let read = |source| MotionError::Read { file: format!("{file}: {place}: {}", path.display()), source };
@@ -182,7 +198,14 @@ mod tests {
 
     #[test]
     fn base64_of_rfc_4648() {
-        for (text, bytes) in [("", ""), ("Zg==", "f"), ("Zm8=", "fo"), ("Zm9v", "foo"), ("Zm9vYmE", "fooba"), ("Zm9vYmFy", "foobar")] {
+        for (text, bytes) in [
+            ("", ""),
+            ("Zg==", "f"),
+            ("Zm8=", "fo"),
+            ("Zm9v", "foo"),
+            ("Zm9vYmE", "fooba"),
+            ("Zm9vYmFy", "foobar"),
+        ] {
             assert_eq!(base64(text.as_bytes()).unwrap(), bytes.as_bytes());
         }
         assert!(base64(b"Zm9*").is_none());
@@ -192,7 +215,17 @@ mod tests {
     fn references_stay_in_the_folder() {
         let folder = Some(Path::new("models"));
         assert_eq!(resolve("f", "a%20b/c.bin", folder).unwrap(), Path::new("models/a b/c.bin"));
-        for uri in ["../x.bin", "a/../../x", "/etc/passwd", "%2e%2e/x", "http://a/b", "C:\\x", "file:///x", "a%00", "%zz"] {
+        for uri in [
+            "../x.bin",
+            "a/../../x",
+            "/etc/passwd",
+            "%2e%2e/x",
+            "http://a/b",
+            "C:\\x",
+            "file:///x",
+            "a%00",
+            "%zz",
+        ] {
             assert!(matches!(resolve("f", uri, folder), Err(MotionError::Outside { .. })), "{uri}");
         }
         assert!(matches!(resolve("f", "x.bin", None), Err(MotionError::Outside { .. })));

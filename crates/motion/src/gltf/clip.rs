@@ -1,7 +1,7 @@
 //! Animations of a glTF file as clips.
 
 use std::{
-    collections::{BTreeMap, HashMap},
+    collections::{BTreeMap, HashMap, hash_map::Entry},
     sync::Arc,
 };
 
@@ -35,7 +35,8 @@ pub(super) fn read_clip(
     for channel in &animation.channels {
         let Some(node) = channel.target.node else { continue };
         let joint = targets.joint_of_node.get(node).copied().flatten();
-        let entry = joint.map(|j| joints.entry(j).or_insert_with(|| JointTracks { joint: j, ..JointTracks::default() }));
+        let entry = joint
+            .map(|j| joints.entry(j).or_insert_with(|| JointTracks { joint: j, ..JointTracks::default() }));
         let morphs = targets.morphs_of_node.get(&node).copied();
         let source = Source::open(accessors, animation, channel.sampler, times)?;
         let followed = match (channel.target.path.as_str(), source, entry, morphs) {
@@ -97,14 +98,16 @@ impl<'a> Source<'a> {
             Some("CUBICSPLINE") => Interpolation::Cubic,
             Some(_) => return Ok(None),
         };
-        if !times.contains_key(&sampler.input) {
-            let keys: Vec<f32> = accessors.read::<1>(sampler.input)?.into_iter().map(|[t]| t).collect();
-            let usable = !keys.is_empty()
-                && keys.iter().all(|t| t.is_finite() && *t >= 0.0 && *t < 1e6)
-                && keys.is_sorted();
-            times.insert(sampler.input, usable.then(|| keys.into()));
-        }
-        let times = times[&sampler.input].clone();
+        let times = match times.entry(sampler.input) {
+            Entry::Occupied(known) => known.get().clone(),
+            Entry::Vacant(new) => {
+                let keys: Vec<f32> = accessors.read::<1>(sampler.input)?.into_iter().map(|[t]| t).collect();
+                let usable = !keys.is_empty()
+                    && keys.iter().all(|t| t.is_finite() && *t >= 0.0 && *t < 1e6)
+                    && keys.is_sorted();
+                new.insert(usable.then(|| keys.into())).clone()
+            }
+        };
         Ok(times.map(|times| Self { accessors, times, output: sampler.output, interpolation }))
     }
 

@@ -65,11 +65,13 @@ impl Surface {
             }
         };
         let mode = primitive.mode.unwrap_or(4);
-        let Some(&position_accessor) = primitive.attributes.get("POSITION").filter(|_| (4..=6).contains(&mode)) else {
+        let Some(&position_accessor) =
+            primitive.attributes.get("POSITION").filter(|_| (4..=6).contains(&mode))
+        else {
             drop("primitives_without_triangles", 1);
             return Ok(());
         };
-        self.refuse_draco(accessors, primitive, position_accessor)?;
+        refuse_draco(accessors, primitive, position_accessor)?;
         let positions = accessors.read::<3>(position_accessor)?;
         let count = positions.len();
         let same_count = |accessor: usize| match accessors.count(accessor)? {
@@ -109,9 +111,9 @@ impl Surface {
         let triangles = triangulate(&corners, mode);
         let before = triangles.len();
         let place = |corner: u32| slot.get(corner as usize).copied().flatten();
-        self.mesh.triangles.extend(
-            triangles.into_iter().filter_map(|[a, b, c]| Some([place(a)?, place(b)?, place(c)?])),
-        );
+        self.mesh
+            .triangles
+            .extend(triangles.into_iter().filter_map(|[a, b, c]| Some([place(a)?, place(b)?, place(c)?])));
         drop("triangles", before - (self.mesh.triangles.len() - triangles_before));
 
         let normals = attribute("NORMAL")?.map(|a| accessors.read::<3>(a)).transpose()?;
@@ -130,13 +132,22 @@ impl Surface {
             let normal = normals.as_ref().map_or(Vec3::ZERO, |n| Vec3::from(n[v]));
             self.skin.normals.push(if normal.is_finite() { normal.normalize_or_zero() } else { Vec3::ZERO });
             let color = colors.as_ref().map_or(Vec3::ONE, |c| Vec3::new(c[v][0], c[v][1], c[v][2])) * factor;
-            self.mesh.colors.push(if color.is_finite() { color.clamp(Vec3::ZERO, Vec3::ONE) } else { factor });
+            self.mesh.colors.push(if color.is_finite() {
+                color.clamp(Vec3::ZERO, Vec3::ONE)
+            } else {
+                factor
+            });
             self.mesh.scalp.push(scalp.as_ref().map_or(0.0, |s| s[v][0].clamp(0.0, 1.0)));
             self.skin.binds.push(influences[v].binds);
             self.mesh.weights.push(influences[v].weights);
         }
         self.has_scalp |= scalp.is_some();
-        fill_normals(&self.skin.positions, &self.mesh.triangles[triangles_before..], base, &mut self.skin.normals);
+        fill_normals(
+            &self.skin.positions,
+            &self.mesh.triangles[triangles_before..],
+            base,
+            &mut self.skin.normals,
+        );
         for (t, target) in primitive.targets.iter().enumerate() {
             let read = |name: &str| -> Result<Option<Vec<[f32; 3]>>, MotionError> {
                 target.get(name).map(|&a| accessors.read::<3>(same_count(a)?)).transpose()
@@ -144,7 +155,8 @@ impl Surface {
             let (moves, turns) = (read("POSITION")?, read("NORMAL")?);
             let Some(morph) = self.skin.morphs.get_mut(first_morph + t) else { break };
             for v in (0..count).filter(kept) {
-                let at = |deltas: &Option<Vec<[f32; 3]>>| deltas.as_ref().map_or(Vec3::ZERO, |d| Vec3::from(d[v]));
+                let at =
+                    |deltas: &Option<Vec<[f32; 3]>>| deltas.as_ref().map_or(Vec3::ZERO, |d| Vec3::from(d[v]));
                 let (dp, dn) = (at(&moves), at(&turns));
                 if (dp != Vec3::ZERO || dn != Vec3::ZERO) && dp.is_finite() && dn.is_finite() {
                     morph.vertices.push(slot[v].unwrap_or(0));
@@ -161,33 +173,44 @@ impl Surface {
         if !self.has_scalp {
             self.mesh.scalp = Vec::new();
         }
-        self.mesh.joints =
-            self.skin.binds.iter().map(|binds| binds.map(|b| self.skin.palette[usize::from(b)].joint)).collect();
+        self.mesh.joints = self
+            .skin
+            .binds
+            .iter()
+            .map(|binds| binds.map(|b| self.skin.palette[usize::from(b)].joint))
+            .collect();
         (self.mesh, self.skin)
     }
+}
 
-    /// A primitive whose positions exist only compressed would read as zeros.
-    fn refuse_draco(&self, accessors: &Accessors, primitive: &Primitive, positions: usize) -> Result<(), MotionError> {
-        let empty = |a: &super::document::Accessor| a.buffer_view.is_none() && a.sparse.is_none();
-        let name = super::DRACO;
-        if primitive.extensions.contains_key(name) && accessors.document.accessors.get(positions).is_some_and(empty) {
-            return Err(super::refuse(accessors.file, name));
-        }
-        Ok(())
+/// A primitive whose positions exist only compressed would read as zeros.
+fn refuse_draco(accessors: &Accessors, primitive: &Primitive, positions: usize) -> Result<(), MotionError> {
+    let empty = |a: &super::document::Accessor| a.buffer_view.is_none() && a.sparse.is_none();
+    let name = super::DRACO;
+    if primitive.extensions.contains_key(name)
+        && accessors.document.accessors.get(positions).is_some_and(empty)
+    {
+        return Err(super::refuse(accessors.file, name));
     }
+    Ok(())
 }
 
 fn base_color(document: &Document, material: Option<usize>, has_vertex_colors: bool) -> Vec3 {
     match material.and_then(|m| document.materials.get(m)) {
-        Some(material) => material.pbr_metallic_roughness.base_color_factor.map_or(Vec3::ONE, |[r, g, b, _]| {
-            Vec3::new(r, g, b)
-        }),
+        Some(material) => material
+            .pbr_metallic_roughness
+            .base_color_factor
+            .map_or(Vec3::ONE, |[r, g, b, _]| Vec3::new(r, g, b)),
         None if has_vertex_colors => Vec3::ONE,
         None => CLAY,
     }
 }
 
-fn read_corners(accessors: &Accessors, primitive: &Primitive, vertices: usize) -> Result<Vec<u32>, MotionError> {
+fn read_corners(
+    accessors: &Accessors,
+    primitive: &Primitive,
+    vertices: usize,
+) -> Result<Vec<u32>, MotionError> {
     match primitive.indices {
         Some(accessor) => Ok(accessors.read_indices::<1>(accessor)?.into_iter().map(|[i]| i).collect()),
         None => Ok((0..vertices as u32).collect()),

@@ -69,7 +69,11 @@ pub fn load_character_with(path: &Path, settings: BodySettings) -> Result<Charac
 ///
 /// # Errors
 /// As [`load_character`].
-pub fn load_character_bytes(name: &str, bytes: &[u8], base_dir: Option<&Path>) -> Result<Character, MotionError> {
+pub fn load_character_bytes(
+    name: &str,
+    bytes: &[u8],
+    base_dir: Option<&Path>,
+) -> Result<Character, MotionError> {
     load_character_bytes_with(name, bytes, base_dir, BodySettings::default())
 }
 
@@ -84,8 +88,9 @@ pub fn load_character_bytes_with(
     settings: BodySettings,
 ) -> Result<Character, MotionError> {
     let container = buffers::open(name, bytes)?;
-    let document: document::Document = serde_json::from_slice(container.json)
-        .map_err(|e| MotionError::malformed(name, "the JSON text", format!("{e}; wanted a glTF 2.0 document")))?;
+    let document: document::Document = serde_json::from_slice(container.json).map_err(|e| {
+        MotionError::malformed(name, "the JSON text", format!("{e}; wanted a glTF 2.0 document"))
+    })?;
     for extension in &document.extensions_required {
         if !is_harmless(extension) {
             return Err(refuse(name, extension));

@@ -33,14 +33,13 @@ impl Tree {
                 claimed[child].get_or_insert(n);
             }
         }
-        let mut roots: Vec<usize> = match document.scenes.get(document.scene.unwrap_or(0)) {
-            Some(scene) => scene.nodes.clone(),
-            None => {
-                if let Some(scene) = document.scene {
-                    notes.push(format!("scene {scene} is not there; all nodes were taken"));
-                }
-                (0..nodes.len()).filter(|&n| claimed[n].is_none()).collect()
+        let mut roots = if let Some(scene) = document.scenes.get(document.scene.unwrap_or(0)) {
+            scene.nodes.clone()
+        } else {
+            if let Some(scene) = document.scene {
+                notes.push(format!("scene {scene} is not there; all nodes were taken"));
             }
+            (0..nodes.len()).filter(|&n| claimed[n].is_none()).collect()
         };
         // Joints outside the scene belong to it all the same.
         for skin in &document.skins {

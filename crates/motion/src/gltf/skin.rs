@@ -44,11 +44,16 @@ pub(super) fn read_skin(
         None => Vec::new(),
     };
     if data.inverse_bind_matrices.is_some() && matrices.len() < data.joints.len() {
-        return Err(fault(format!("{} inverse bind matrices for {} joints", matrices.len(), data.joints.len())));
+        return Err(fault(format!(
+            "{} inverse bind matrices for {} joints",
+            matrices.len(),
+            data.joints.len()
+        )));
     }
     let mut binds = Vec::with_capacity(data.joints.len());
     for (k, &node) in data.joints.iter().enumerate() {
-        let joint = joint_of_node[node].ok_or_else(|| fault(format!("joint node {node} is not in the scene")))?;
+        let joint =
+            joint_of_node[node].ok_or_else(|| fault(format!("joint node {node} is not in the scene")))?;
         let matrix = matrices.get(k).map_or(Mat4::IDENTITY, Mat4::from_cols_array);
         let joint_from_bind = if matrix.is_finite() {
             Affine3A::from_mat4(matrix)
@@ -92,7 +97,8 @@ pub(super) fn read_influences(
     ) {
         for accessor in [joints, weights] {
             if accessors.count(accessor)? != vertices as u64 {
-                let problem = format!("{} elements; the mesh has {vertices} vertices", accessors.count(accessor)?);
+                let problem =
+                    format!("{} elements; the mesh has {vertices} vertices", accessors.count(accessor)?);
                 return Err(MotionError::malformed(accessors.file, format!("accessor {accessor}"), problem));
             }
         }

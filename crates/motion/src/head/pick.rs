@@ -1,6 +1,9 @@
 //! The joint that carries the hair: a guess, and paths to choose from.
 
-use crate::{Mesh, Skeleton, retarget::roles::{Role, role_of}};
+use crate::{
+    Mesh, Skeleton,
+    retarget::roles::{Role, role_of},
+};
 
 /// Guesses the joint that carries the head.
 ///
@@ -26,7 +29,8 @@ pub fn guess_head(skeleton: &Skeleton, mesh: &Mesh) -> usize {
             carried[p] += carried[j];
         }
     }
-    let heads = (0..count).filter(|&j| role_of(&skeleton.joints[j].name) == Some(Role::Head) && carried[j] > 0.0);
+    let heads =
+        (0..count).filter(|&j| role_of(&skeleton.joints[j].name) == Some(Role::Head) && carried[j] > 0.0);
     if let Some(head) = heads.max_by(|&a, &b| carried[a].total_cmp(&carried[b]).then(b.cmp(&a))) {
         return head;
     }

@@ -67,7 +67,11 @@ impl HeadFrame {
         let above = (height - hairline(angle)) / FADE;
         // Ears stand off the skull; insides of mouth and eyes look inward.
         let ring = Vec3::new(from_middle.x / self.half.x, 0.0, from_middle.z / self.half.z).length();
-        let ear = if height < 0.62 && (60.0..135.0).contains(&angle) { ((ring - 1.02) / 0.06).clamp(0.0, 1.0) } else { 0.0 };
+        let ear = if height < 0.62 && (60.0..135.0).contains(&angle) {
+            ((ring - 1.02) / 0.06).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
         let outward = if normal.dot(from_middle) > 0.0 { 1.0 } else { 0.0 };
         let u = above.clamp(0.0, 1.0);
         u * u * (3.0 - 2.0 * u) * (1.0 - ear) * outward

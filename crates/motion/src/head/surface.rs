@@ -31,13 +31,19 @@ pub fn head_mesh(body: &Body) -> HeadMesh {
     if body.skeleton.joints.is_empty() || count == 0 {
         return HeadMesh::default();
     }
-    let is_head: Vec<bool> = (0..body.skeleton.joints.len()).map(|j| body.skeleton.is_below(j, head)).collect();
+    let is_head: Vec<bool> =
+        (0..body.skeleton.joints.len()).map(|j| body.skeleton.is_below(j, head)).collect();
     let mut is_part = is_head.clone();
     for j in neck_joints(body) {
         is_part[j] = true;
     }
     let share = |v: usize, part: &[bool]| -> f32 {
-        mesh.joints[v].iter().zip(&mesh.weights[v]).filter(|(j, _)| part[usize::from(**j)]).map(|(_, w)| w).sum()
+        mesh.joints[v]
+            .iter()
+            .zip(&mesh.weights[v])
+            .filter(|(j, _)| part[usize::from(**j)])
+            .map(|(_, w)| w)
+            .sum()
     };
     let mut chosen: Vec<bool> = (0..count).map(|v| share(v, &is_part) >= 0.5).collect();
     if chosen.iter().filter(|c| **c).count() < 32 {
@@ -72,5 +78,9 @@ pub fn head_mesh(body: &Body) -> HeadMesh {
 /// Joints between the chest and the head.
 pub(crate) fn neck_joints(body: &Body) -> Vec<usize> {
     let figure = Humanoid::of_skeleton(&body.skeleton);
-    figure.neck.into_iter().filter(|&j| j != body.head_joint && body.skeleton.is_below(body.head_joint, j)).collect()
+    figure
+        .neck
+        .into_iter()
+        .filter(|&j| j != body.head_joint && body.skeleton.is_below(body.head_joint, j))
+        .collect()
 }

@@ -20,7 +20,12 @@ impl Alignment {
         self.turns[joint]
     }
 
-    pub(super) fn new(motion: &MotionFile, source: &Humanoid, skeleton: &Skeleton, target: &Humanoid) -> Self {
+    pub(super) fn new(
+        motion: &MotionFile,
+        source: &Humanoid,
+        skeleton: &Skeleton,
+        target: &Humanoid,
+    ) -> Self {
         let mut builder = Builder {
             motion,
             source,
@@ -75,7 +80,8 @@ impl Builder<'_> {
     /// True where the zero pose has the head above the hips and the feet below, legs nearly straight down.
     fn stands(&self) -> bool {
         let up = |from: Role, to: Role| self.source_bone(from, to).map_or(1.0, |d| d.y);
-        let legs = Side::BOTH.map(|s| up(Role::Shin(s), Role::Thigh(s)).min(up(Role::Foot(s), Role::Shin(s))));
+        let legs =
+            Side::BOTH.map(|s| up(Role::Shin(s), Role::Thigh(s)).min(up(Role::Foot(s), Role::Shin(s))));
         up(Role::Hips, Role::Head) > 0.7 && legs[0].min(legs[1]) > 0.6
     }
 
@@ -85,8 +91,9 @@ impl Builder<'_> {
         let [Some(left), Some(right)] = sides else { return Quat::IDENTITY };
         let Some(x) = (left - right).try_normalize() else { return Quat::IDENTITY };
         let hips = self.source_at(Role::Hips).unwrap_or_default();
-        let first_up = self.source.spine.iter().chain(&self.source.neck).map(|&j| self.source_rest[j] - hips);
-        let up = if stands { Vec3::Y } else { first_up.filter_map(Vec3::try_normalize).next().unwrap_or(Vec3::Y) };
+        let mut first_up =
+            self.source.spine.iter().chain(&self.source.neck).map(|&j| self.source_rest[j] - hips);
+        let up = if stands { Vec3::Y } else { first_up.find_map(Vec3::try_normalize).unwrap_or(Vec3::Y) };
         let Some(y) = (up - x * up.dot(x)).try_normalize() else { return Quat::IDENTITY };
         if stands {
             // Only the way that it faces: hips that hang askew in a file do so in no pose.
@@ -168,7 +175,8 @@ impl Builder<'_> {
         self.set(Role::Toe(side), foot);
         if let (Some(bone), false) = (self.target_bone(Role::Foot(side), Role::Toe(side)), stands)
             && let Some(end) = self.source.get(Role::Toe(side)).and_then(|j| self.motion.joints[j].end)
-            && let (Some(forward), Some(end)) = ((bone * Vec3::new(1.0, 0.0, 1.0)).try_normalize(), end.try_normalize())
+            && let (Some(forward), Some(end)) =
+                ((bone * Vec3::new(1.0, 0.0, 1.0)).try_normalize(), end.try_normalize())
         {
             // Toes lie flat at rest, though the bone of the foot slopes.
             self.set(Role::Toe(side), swing(foot, forward, end));
@@ -197,7 +205,8 @@ impl Builder<'_> {
         // Feet that never stand tell nothing.
         if up.y > 0.5 {
             for (side, foot) in feet {
-                self.turns[foot] *= Quat::from_rotation_arc(Vec3::Y, (mirror(side) * up).normalize_or(Vec3::Y));
+                self.turns[foot] *=
+                    Quat::from_rotation_arc(Vec3::Y, (mirror(side) * up).normalize_or(Vec3::Y));
             }
         }
     }
@@ -205,7 +214,9 @@ impl Builder<'_> {
     /// Chooses the alignment of the head. Its frame may follow the neck's or the hips', and its end site may point
     /// anywhere; people mostly hold their heads as they hold their chests.
     fn head(&mut self) {
-        let (Some(head), Some(hips)) = (self.source.get(Role::Head), self.source.get(Role::Hips)) else { return };
+        let (Some(head), Some(hips)) = (self.source.get(Role::Head), self.source.get(Role::Hips)) else {
+            return;
+        };
         let chest = self.source.spine.last().copied().unwrap_or(hips);
         let neck = self.source.neck.last().copied().unwrap_or(chest);
         let mut world = Vec::new();

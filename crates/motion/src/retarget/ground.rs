@@ -31,8 +31,10 @@ impl Soles {
             let lowest = of_foot.iter().map(|&v| body.mesh.positions[v].y).fold(f32::MAX, f32::min);
             let height = skeleton.rest_position(foot).y - lowest;
             // The sole: what lies in the lowest part of the foot.
-            let sole: Vec<usize> =
-                of_foot.into_iter().filter(|&v| body.mesh.positions[v].y < lowest + 0.4 * height.max(0.0)).collect();
+            let sole: Vec<usize> = of_foot
+                .into_iter()
+                .filter(|&v| body.mesh.positions[v].y < lowest + 0.4 * height.max(0.0))
+                .collect();
             if sole.is_empty() {
                 let p = skeleton.rest_position(foot);
                 points.push(Self::fixed(body, foot, Vec3::new(p.x, 0.0, p.z)));
@@ -71,7 +73,9 @@ impl Soles {
 pub(super) fn set_on_ground(body: &Body, figure: &Humanoid, clip: &mut Clip) {
     let soles = Soles::new(body, figure);
     let Some(hips) = figure.get(Role::Hips) else { return };
-    let Some(tracks) = clip.joints.iter().position(|t| t.joint == hips && t.translation.is_some()) else { return };
+    let Some(tracks) = clip.joints.iter().position(|t| t.joint == hips && t.translation.is_some()) else {
+        return;
+    };
     let times = match &clip.joints[tracks].translation {
         Some(path) if !soles.points.is_empty() => path.times.clone(),
         _ => return,
@@ -89,7 +93,8 @@ pub(super) fn set_on_ground(body: &Body, figure: &Humanoid, clip: &mut Clip) {
         .collect();
     let frame_secs = times.get(1).map_or(1.0, |t| t - times[0]);
     let lift = corrections(&heights, frame_secs, body.height());
-    let above = body.skeleton.joints[hips].parent.map_or(Affine3A::IDENTITY, |p| body.skeleton.world_at_rest[p]);
+    let above =
+        body.skeleton.joints[hips].parent.map_or(Affine3A::IDENTITY, |p| body.skeleton.world_at_rest[p]);
     let up_in_parent = above.inverse().transform_vector3(Vec3::Y);
     if let Some(path) = &mut clip.joints[tracks].translation {
         for (p, &lift) in path.values.iter_mut().zip(&lift) {
@@ -158,8 +163,11 @@ fn smoothed(values: &[f32], width: f32) -> Vec<f32> {
     let last = values.len() as isize - 1;
     (0..=last)
         .map(|i| {
-            let sum: f32 =
-                kernel.iter().enumerate().map(|(k, w)| w * values[(i + k as isize - reach).clamp(0, last) as usize]).sum();
+            let sum: f32 = kernel
+                .iter()
+                .enumerate()
+                .map(|(k, w)| w * values[(i + k as isize - reach).clamp(0, last) as usize])
+                .sum();
             sum / total
         })
         .collect()

@@ -9,12 +9,15 @@ mod align;
 mod ground;
 mod names;
 pub(crate) mod roles;
+mod twist;
 
 use std::sync::Arc;
 
 use glam::{Affine3A, Quat, Vec3};
 
-use crate::{Body, Clip, Interpolation, JointTracks, MotionError, MotionFile, Pose, Skeleton, Track, pose_at};
+use crate::{
+    Body, Clip, Interpolation, JointTracks, MotionError, MotionFile, Pose, Skeleton, Track, pose_at,
+};
 use align::Alignment;
 use roles::{Humanoid, Role, Side};
 
@@ -54,7 +57,11 @@ pub fn retarget(motion: &MotionFile, body: &Body) -> Result<Clip, MotionError> {
     let start = plan.start_turn(&turns);
     turns.iter_mut().flatten().for_each(|q| *q = start * *q);
     let hips = plan.hips_path(start, &turns);
-    let mut clip = plan.clip(&turns, &hips);
+    let mut driven: Vec<bool> = plan.sources.iter().map(Option::is_some).collect();
+    for joint in twist::drive(plan.skeleton, &plan.target, &driven, &mut turns) {
+        driven[joint] = true;
+    }
+    let mut clip = plan.clip(&driven, &turns, &hips);
     ground::set_on_ground(body, &plan.target, &mut clip);
     close_loop(body, &mut clip, motion.frame_secs);
     Ok(clip)
@@ -64,17 +71,25 @@ impl<'a> Plan<'a> {
     fn new(motion: &'a MotionFile, body: &'a Body) -> Result<Self, MotionError> {
         let skeleton = &body.skeleton;
         let (source, target) = (Humanoid::of_motion(motion), Humanoid::of_skeleton(skeleton));
-        let needed = Side::BOTH.iter().flat_map(|&s| [Role::Thigh(s), Role::Shin(s), Role::UpperArm(s), Role::Forearm(s)]);
+        let needed = Side::BOTH
+            .iter()
+            .flat_map(|&s| [Role::Thigh(s), Role::Shin(s), Role::UpperArm(s), Role::Forearm(s)]);
         let missing: Vec<String> = [Role::Hips, Role::Head]
             .into_iter()
             .chain(needed)
-            .flat_map(|role| [(&source, "the motion"), (&target, "the body")].map(|(f, of)| (role, f.get(role), of)))
+            .flat_map(|role| {
+                [(&source, "the motion"), (&target, "the body")].map(|(f, of)| (role, f.get(role), of))
+            })
             .filter(|(_, joint, _)| joint.is_none())
             .map(|(role, _, of)| format!("{} of {of}", role.label()))
             .collect();
         if !missing.is_empty() {
             let problem = format!("no joint is named like the {}", missing.join(", the "));
-            return Err(MotionError::Retarget { motion: motion.name.clone(), body: body.name.clone(), problem });
+            return Err(MotionError::Retarget {
+                motion: motion.name.clone(),
+                body: body.name.clone(),
+                problem,
+            });
         }
         let alignment = Alignment::new(motion, &source, skeleton, &target);
         let mut rest_rotations: Vec<Quat> = Vec::with_capacity(skeleton.joints.len());
@@ -82,10 +97,11 @@ impl<'a> Plan<'a> {
             let parent = joint.parent.map_or(Quat::IDENTITY, |p| rest_rotations[p]);
             rest_rotations.push((parent * joint.rotation).normalize());
         }
-        let scale = leg_length(&target, |j| skeleton.rest_position(j)) / leg_length(&source, {
-            let rest = motion.rest();
-            move |j| rest[j]
-        });
+        let scale = leg_length(&target, |j| skeleton.rest_position(j))
+            / leg_length(&source, {
+                let rest = motion.rest();
+                move |j| rest[j]
+            });
         let scale = if scale.is_finite() && scale > 0.0 { scale } else { 1.0 };
         let sources = sources(&source, &target, skeleton.joints.len());
         Ok(Self { motion, skeleton, source, target, sources, alignment, rest_rotations, scale })
@@ -151,18 +167,18 @@ impl<'a> Plan<'a> {
     }
 
     /// Local tracks of all mapped joints.
-    fn clip(&self, turns: &[Vec<Quat>], hips_path: &[Vec3]) -> Clip {
+    fn clip(&self, driven: &[bool], turns: &[Vec<Quat>], hips_path: &[Vec3]) -> Clip {
         let times: Arc<[f32]> =
             (0..self.motion.frames).map(|f| (f as f64 * self.motion.frame_secs) as f32).collect();
         let hips = self.target.get(Role::Hips).unwrap_or(0);
         let joints = &self.skeleton.joints;
         let mut world = vec![Quat::IDENTITY; joints.len()];
         let mut rotations: Vec<Vec<Quat>> =
-            self.sources.iter().map(|s| Vec::with_capacity(if s.is_some() { turns.len() } else { 0 })).collect();
+            driven.iter().map(|&d| Vec::with_capacity(if d { turns.len() } else { 0 })).collect();
         for frame in turns {
             for (j, joint) in joints.iter().enumerate() {
                 let parent = joint.parent.map_or(Quat::IDENTITY, |p| world[p]);
-                if self.sources[j].is_some() {
+                if driven[j] {
                     world[j] = (frame[j] * self.rest_rotations[j]).normalize();
                     rotations[j].push((parent.conjugate() * world[j]).normalize());
                 } else {
@@ -171,16 +187,19 @@ impl<'a> Plan<'a> {
             }
         }
         // Nothing above the hips moves.
-        let above = joints[hips].parent.map_or(Affine3A::IDENTITY, |p| self.skeleton.world_at_rest[p].inverse());
+        let above =
+            joints[hips].parent.map_or(Affine3A::IDENTITY, |p| self.skeleton.world_at_rest[p].inverse());
         let path = hips_path.iter().map(|&p| above.transform_point3(p)).collect();
         let track = |values| Track { times: times.clone(), values, interpolation: Interpolation::Linear };
-        let mut path = Some(Track { times: times.clone(), values: path, interpolation: Interpolation::Linear });
-        let tracks = rotations.into_iter().enumerate().filter(|(_, r)| !r.is_empty()).map(|(joint, r)| JointTracks {
-            joint,
-            translation: if joint == hips { path.take() } else { None },
-            rotation: Some(track(r)),
-            scale: None,
-        });
+        let mut path =
+            Some(Track { times: times.clone(), values: path, interpolation: Interpolation::Linear });
+        let tracks =
+            rotations.into_iter().enumerate().filter(|(_, r)| !r.is_empty()).map(|(joint, r)| JointTracks {
+                joint,
+                translation: if joint == hips { path.take() } else { None },
+                rotation: Some(track(r)),
+                scale: None,
+            });
         let mut clip = Clip { name: self.motion.name.clone(), joints: tracks.collect(), ..Clip::default() };
         clip.duration_secs = clip.keys_end_secs();
         clip
@@ -229,7 +248,8 @@ fn sources(source: &Humanoid, target: &Humanoid, joints: usize) -> Vec<Option<So
 /// Mean length of thigh and shin (and only of the thigh where there are no feet), metres.
 fn leg_length(figure: &Humanoid, rest: impl Fn(usize) -> Vec3) -> f32 {
     let length = |side: Side| {
-        let joints = [Role::Thigh(side), Role::Shin(side), Role::Foot(side)].map(|role| figure.get(role).map(&rest));
+        let joints =
+            [Role::Thigh(side), Role::Shin(side), Role::Foot(side)].map(|role| figure.get(role).map(&rest));
         joints.windows(2).filter_map(|pair| Some(pair[0]?.distance(pair[1]?))).sum::<f32>()
     };
     Side::BOTH.into_iter().map(length).sum::<f32>() * 0.5
@@ -256,7 +276,9 @@ fn close_loop(body: &Body, clip: &mut Clip, frame_secs: f64) {
     if seam.distance > 1.5 * step {
         return;
     }
-    let Some(times) = clip.joints.first().and_then(|j| j.rotation.as_ref()).map(|r| r.times.clone()) else { return };
+    let Some(times) = clip.joints.first().and_then(|j| j.rotation.as_ref()).map(|r| r.times.clone()) else {
+        return;
+    };
     let times: Arc<[f32]> = times.iter().copied().chain([(frames as f64 * frame_secs) as f32]).collect();
     for joint in &mut clip.joints {
         if let Some(track) = &mut joint.rotation {

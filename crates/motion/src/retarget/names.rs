@@ -51,15 +51,66 @@ pub(crate) struct Label {
 
 /// Words that say nothing about the part.
 const NOISE: [&str; 22] = [
-    "mixamorig", "bip", "biped", "valve", "valvebiped", "def", "org", "cc", "base", "joint", "jnt", "bone", "j", "b",
-    "c", "sk", "skel", "skeleton", "rig", "bn", "human", "character",
+    "mixamorig",
+    "bip",
+    "biped",
+    "valve",
+    "valvebiped",
+    "def",
+    "org",
+    "cc",
+    "base",
+    "joint",
+    "jnt",
+    "bone",
+    "j",
+    "b",
+    "c",
+    "sk",
+    "skel",
+    "skeleton",
+    "rig",
+    "bn",
+    "human",
+    "character",
 ];
 
 /// Words of joints that carry no limb.
 const OTHERS: [&str; 34] = [
-    "end", "nub", "tip", "ik", "pole", "target", "twist", "roll", "helper", "dummy", "socket", "breast", "finger",
-    "thumb", "index", "middle", "ring", "pinky", "little", "metacarpal", "metatarsal", "eye", "jaw", "tongue", "hair",
-    "ear", "tail", "skirt", "effector", "site", "prop", "top", "in", "fingers",
+    "end",
+    "nub",
+    "tip",
+    "ik",
+    "pole",
+    "target",
+    "twist",
+    "roll",
+    "helper",
+    "dummy",
+    "socket",
+    "breast",
+    "finger",
+    "thumb",
+    "index",
+    "middle",
+    "ring",
+    "pinky",
+    "little",
+    "metacarpal",
+    "metatarsal",
+    "eye",
+    "jaw",
+    "tongue",
+    "hair",
+    "ear",
+    "tail",
+    "skirt",
+    "effector",
+    "site",
+    "prop",
+    "top",
+    "in",
+    "fingers",
 ];
 
 /// Takes a name apart; `None` where it names no part of a limb, hips, neck or head.
@@ -82,7 +133,9 @@ pub(crate) fn label(name: &str) -> Option<Label> {
     let mut word = words.concat();
     if part(&word, side.is_some()).is_none() && side.is_none() {
         // `leftarm`, `lhand`: a side grown together with the word.
-        for (prefix, s) in [("left", Side::Left), ("right", Side::Right), ("l", Side::Left), ("r", Side::Right)] {
+        for (prefix, s) in
+            [("left", Side::Left), ("right", Side::Right), ("l", Side::Left), ("r", Side::Right)]
+        {
             if let Some(rest) = word.strip_prefix(prefix).filter(|rest| part(rest, true).is_some()) {
                 side = Some(s);
                 word = rest.to_owned();
@@ -92,6 +145,11 @@ pub(crate) fn label(name: &str) -> Option<Label> {
     }
     let part = part(&word, side.is_some())?;
     Some(Label { part, side, numbers, helper: local.starts_with("__") })
+}
+
+/// True for joints that spread a limb's roll, such as `forearm_twist_l` or `lThighTwist`.
+pub(crate) fn is_twist(name: &str) -> bool {
+    tokens(name).iter().any(|t| t == "twist" || t == "roll")
 }
 
 fn part(word: &str, sided: bool) -> Option<Part> {
@@ -173,8 +231,17 @@ mod tests {
             let found = label(name).unwrap_or_else(|| panic!("{name}"));
             assert_eq!((found.part, found.side), (part, side), "{name}");
         }
-        for name in ["HeadTop_End", "LeftHandThumb1", "lowerback", "pelvis.L", "root", "finger1-1.L", "node 3", "", "eye.L"]
-        {
+        for name in [
+            "HeadTop_End",
+            "LeftHandThumb1",
+            "lowerback",
+            "pelvis.L",
+            "root",
+            "finger1-1.L",
+            "node 3",
+            "",
+            "eye.L",
+        ] {
             assert_eq!(label(name), None, "{name}");
         }
     }

@@ -120,7 +120,14 @@ impl Humanoid {
             put(Role::UpperArm(side), best(&[Part::UpperArm, Part::Shoulder], s));
             put(
                 Role::Clavicle(side),
-                best(if shoulder == Part::Clavicle { &[Part::Clavicle, Part::Shoulder] } else { &[Part::Clavicle] }, s),
+                best(
+                    if shoulder == Part::Clavicle {
+                        &[Part::Clavicle, Part::Shoulder]
+                    } else {
+                        &[Part::Clavicle]
+                    },
+                    s,
+                ),
             );
             put(Role::Forearm(side), best(&[Part::Forearm], s));
             put(Role::Hand(side), best(&[Part::Hand], s));
@@ -133,7 +140,8 @@ impl Humanoid {
         let meet = |a: Option<usize>, b: Option<usize>| Some(common(parents, &depth, a?, b?)).flatten();
         let find = |joints: &BTreeMap<Role, usize>, role| joints.get(&role).copied();
         let legs = meet(find(&joints, Role::Thigh(Side::Left)), find(&joints, Role::Thigh(Side::Right)));
-        let arms = meet(find(&joints, Role::UpperArm(Side::Left)), find(&joints, Role::UpperArm(Side::Right)));
+        let arms =
+            meet(find(&joints, Role::UpperArm(Side::Left)), find(&joints, Role::UpperArm(Side::Right)));
         let head = find(&joints, Role::Head).or_else(|| best(&[Part::Neck], None));
         let hips = meet(legs, head).or_else(|| best(&[Part::Hips], None));
         let mut figure = Self { joints, ..Self::default() };
