@@ -91,7 +91,7 @@ pub fn record(
         max_stretch: totals.max_stretch,
         max_penetration_m: totals.max_penetration_m,
         recovered_guides: totals.recovered_guides,
-        state_hash: engine.state_hash(),
+        state_hash: format!("{:016x}", engine.state_hash()),
         bytes: written.bytes(),
         steps_per_frame: clock.steps_per_frame,
         notes: problems.iter().map(ToString::to_string).collect(),

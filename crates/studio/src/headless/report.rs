@@ -48,8 +48,7 @@ pub struct RecordReport {
     /// Guides that were not finite and were put back.
     pub recovered_guides: u64,
     /// Fingerprint of the last simulated state: 16 hexadecimal digits.
-    #[serde(serialize_with = "as_hex")]
-    pub state_hash: u64,
+    pub state_hash: String,
     /// Bytes written.
     pub bytes: u64,
     /// Steps of the simulation a frame.
@@ -60,8 +59,4 @@ pub struct RecordReport {
 
 fn as_text<S: Serializer>(path: &std::path::Path, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_str(&path.display())
-}
-
-fn as_hex<S: Serializer>(hash: &u64, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_str(&format_args!("{hash:016x}"))
 }

@@ -118,7 +118,7 @@ fn the_report_has_the_keys_that_were_promised() {
         max_stretch: 0.0,
         max_penetration_m: 0.0,
         recovered_guides: 0,
-        state_hash: 0xabc,
+        state_hash: "0000000000000abc".to_owned(),
         bytes: 1,
         steps_per_frame: 2,
         notes: Vec::new(),

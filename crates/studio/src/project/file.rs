@@ -23,7 +23,8 @@ const DEEPEST: usize = 32;
 /// Opens the project at `path`. Files in its folder and below may be reached, others not.
 ///
 /// A project with missing files, values out of range or fields that this version does not know opens with what
-/// is there; the problems say what is not.
+/// is there; the problems say what is not. Making the scene finds the missing files again, with what takes their
+/// place: whoever does both shows those of [`Problem::is_failure`] once.
 ///
 /// # Errors
 /// As [`parse_project`], and where the file cannot be read.
@@ -61,7 +62,7 @@ pub fn load_project_with(path: &Path, access: &mut Access) -> Result<(Project, V
     let (mut project, mut problems) = parse_project(path, &text)?;
     let folder = folder_of(path);
     for file in project.file_refs_mut() {
-        *file = file.from_disk(&folder);
+        *file = file.in_memory(&folder);
     }
     access.set_project(Some(path));
     for (place, file) in project.files() {

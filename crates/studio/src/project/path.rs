@@ -38,7 +38,7 @@ impl FileRef {
     }
 
     /// The path in memory of what a project in `folder` stores.
-    pub(super) fn from_disk(&self, folder: &Path) -> Self {
+    pub(super) fn in_memory(&self, folder: &Path) -> Self {
         let path = folder.join(&self.path);
         Self { path: normal(&path), outside: self.outside }
     }
@@ -204,10 +204,10 @@ mod tests {
         let file = FileRef::new(folder.path().join("sub/x.bvh"));
         let disk = file.for_disk(folder.path());
         assert_eq!(disk, FileRef { path: "sub/x.bvh".into(), outside: false });
-        assert_eq!(disk.from_disk(folder.path()), file);
+        assert_eq!(disk.in_memory(folder.path()), file);
         let far = FileRef::new(folder.path().parent().expect("a parent").join("y.bvh"));
         let disk = far.for_disk(folder.path());
         assert!(disk.outside && disk.path.is_absolute());
-        assert_eq!(disk.from_disk(folder.path()).path, far.path);
+        assert_eq!(disk.in_memory(folder.path()).path, far.path);
     }
 }

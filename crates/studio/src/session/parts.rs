@@ -85,10 +85,8 @@ impl BodyKey {
         let Character { mut body, clips, .. } = character;
         if let Some(name) = &self.head_joint {
             match find_joint(&body.skeleton, name) {
-                Some(joint) if joint != body.head_joint => {
-                    body = Arc::new(Body { head_joint: joint, ..(*body).clone() })
-                }
-                Some(_) => {}
+                Some(joint) if joint == body.head_joint => {}
+                Some(joint) => body = Arc::new(Body { head_joint: joint, ..(*body).clone() }),
                 None => notes.push(Problem::new(
                     Place::Body,
                     ProblemKind::Ignored,

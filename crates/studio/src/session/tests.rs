@@ -1,7 +1,7 @@
 //! The scene and its simulation. No test here needs a graphics adapter.
 
-use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, OnceLock};
 
 use glam::Vec3;
 use lovelock_motion::Clip;
@@ -26,8 +26,10 @@ fn load(project: &Project) -> (Arc<Scene>, Vec<Problem>) {
     SceneLoader::new().load_now(project, &Access::new()).expect("a scene")
 }
 
+/// The small project's scene, loaded once for all tests.
 fn scene() -> Arc<Scene> {
-    load(&small_project()).0
+    static SCENE: OnceLock<Arc<Scene>> = OnceLock::new();
+    Arc::clone(SCENE.get_or_init(|| load(&small_project()).0))
 }
 
 /// The guides' points relative to the head.
