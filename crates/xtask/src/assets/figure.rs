@@ -37,9 +37,9 @@ impl Figure {
             front: Vec3::Z,
             exponent: 2.3,
             sections: vec![
-                row(0.815, 0.085, 0.060, 0.000, -0.070),
-                row(0.850, 0.138, 0.084, -0.004, -0.092),
-                row(0.885, 0.156, 0.092, -0.006, -0.098),
+                row(0.820, 0.078, 0.046, -0.004, -0.062),
+                row(0.852, 0.134, 0.078, -0.004, -0.090),
+                row(0.890, 0.156, 0.089, -0.006, -0.098),
                 row(0.930, 0.151, 0.094, -0.004, -0.092),
                 row(0.985, 0.132, 0.090, 0.002, -0.078),
                 row(1.050, 0.1130, 0.084, 0.004, -0.068),
@@ -107,10 +107,10 @@ impl Figure {
             exponent: 2.0,
             sections: vec![
                 row(-0.010, 0.0700, 0.056, 0.0, -0.054),
-                row(0.030, 0.0540, 0.048, 0.0, -0.052),
-                row(0.070, 0.0485, 0.045, 0.0, -0.050),
-                row(0.115, 0.0490, 0.044, 0.0, -0.050),
-                row(0.150, 0.0510, 0.046, 0.0, -0.052),
+                row(0.030, 0.0510, 0.046, 0.0, -0.051),
+                row(0.070, 0.0455, 0.043, 0.0, -0.048),
+                row(0.115, 0.0460, 0.042, 0.0, -0.048),
+                row(0.150, 0.0490, 0.044, 0.0, -0.050),
             ],
         };
         let (upper, fore) = (rest::upper_arm_direction(), rest::forearm_direction());
@@ -201,15 +201,18 @@ impl Figure {
         // Bust: two soft forms that meet over the breastbone.
         let breast = |q: Vec3| ellipsoid(turn_x(q - v(0.066, 1.212, 0.060), 0.25), v(0.0560, 0.0570, 0.0520));
         d = smin(d, smin(breast(p), breast(across), 0.016), 0.030);
+        // The lower belly, down to between the thighs.
+        d = smin(d, ellipsoid(p - v(0.0, 0.852, 0.018), v(0.064, 0.060, 0.058)), 0.034);
         // Seat.
         let seat = |q: Vec3| ellipsoid(q - v(0.072, 0.868, -0.052), v(0.078, 0.080, 0.066));
         d = smin(d, smin(seat(p), seat(across), 0.014), 0.034);
         if p.y > 1.12 {
             d = smin(d, self.neck.distance(p), 0.030);
             // Trapezius, breast muscle and the back's broad muscle around the armpit.
-            d = smin(d, round_cone(p, v(0.020, 1.462, -0.050), v(0.135, 1.388, -0.032), 0.026, 0.020), 0.045);
+            d = smin(d, round_cone(p, v(0.020, 1.460, -0.050), v(0.140, 1.382, -0.030), 0.026, 0.026), 0.050);
             d = smin(d, round_cone(p, v(0.060, 1.300, 0.030), v(0.150, 1.340, -0.006), 0.036, 0.028), 0.035);
             d = smin(d, round_cone(p, v(0.090, 1.230, -0.058), v(0.150, 1.335, -0.040), 0.040, 0.030), 0.035);
+            d = smin(d, round_cone(p, v(0.050, 1.345, 0.012), v(0.130, 1.362, -0.006), 0.030, 0.028), 0.040);
             // Collar bones, and the muscles from behind the ears to the pit of the throat.
             d = smin(
                 d,
@@ -266,13 +269,13 @@ impl Figure {
             d = smin(d, finger, 0.0055);
         }
         let (root, joint, tip) =
-            (at(0.016, -0.006, 0.022), at(0.052, -0.013, 0.044), at(0.084, -0.018, 0.048));
+            (at(0.016, -0.006, 0.022), at(0.050, -0.014, 0.047), at(0.080, -0.020, 0.054));
         let thumb = smin(
             round_cone(p, root, joint, 0.0145, 0.0105),
             round_cone(p, joint, tip, 0.0105, 0.0078),
             0.004,
         );
-        smin(d, thumb, 0.012)
+        smin(d, thumb, 0.018)
     }
 
     fn lower_limb(&self, p: Vec3) -> f32 {
@@ -304,14 +307,14 @@ impl Figure {
 pub(super) fn edge_length(p: Vec3) -> f32 {
     let q = Vec3::new(p.x.abs(), p.y, p.z);
     let v = Vec3::new;
-    let mut size = 0.0130_f32;
+    let mut size = 0.0146_f32;
     // Each place: how far its fine region reaches, how fine, and how fast the edges grow away from it.
     let mut near = |distance: f32, reach: f32, fine: f32, growth: f32| {
         size = size.min(fine + growth * (distance - reach).max(0.0));
     };
-    near(round_cone(q, rest::WRIST, rest::WRIST + rest::forearm_direction() * 0.16, 0.0, 0.0), 0.055, 0.0052, 0.10);
+    near(round_cone(q, rest::WRIST, rest::WRIST + rest::forearm_direction() * 0.16, 0.0, 0.0), 0.055, 0.0055, 0.11);
     near(round_cone(q, v(rest::ANKLE.x, 0.02, -0.07), v(0.10, 0.01, 0.14), 0.0, 0.0), 0.045, 0.0080, 0.10);
-    near(paint::seam(q), 0.003, 0.0042, 0.32);
+    near(paint::seam(q).abs(), 0.0025, 0.0048, 0.36);
     if p.y > 1.30 {
         near(ellipsoid(q - v(0.0, 1.590, 0.0), v(0.085, 0.120, 0.110)).max(0.0), 0.0, 0.0056, 0.10);
         if p.z > 0.0 {

@@ -16,11 +16,11 @@ pub(super) const BROW_Y: f32 = 1.600;
 /// Centre of the left eyeball; the right one is its mirror image.
 pub(super) const EYE: Vec3 = Vec3::new(0.0315, 1.585, 0.0785);
 /// Radius of an eyeball.
-pub(super) const EYE_RADIUS: f32 = 0.0125;
+pub(super) const EYE_RADIUS: f32 = 0.0130;
 /// Centre of the left ear.
-pub(super) const EAR: Vec3 = Vec3::new(0.0765, 1.567, -0.012);
+pub(super) const EAR: Vec3 = Vec3::new(0.0690, 1.567, -0.010);
 /// Half width of the opening between the eyelids.
-const LID_HALF_WIDTH: f32 = 0.0145;
+const LID_HALF_WIDTH: f32 = 0.0153;
 
 /// The head's lofts, made once.
 pub(super) struct Head {
@@ -40,16 +40,16 @@ impl Head {
                 front: Vec3::Z,
                 exponent: 2.25,
                 sections: vec![
-                    row(1.4745, 0.0150, 0.0840, 0.070, 0.0560),
-                    row(1.4800, 0.0240, 0.0885, 0.060, 0.0400),
-                    row(1.4900, 0.0350, 0.0895, 0.048, 0.0150),
-                    row(1.5020, 0.0450, 0.0885, 0.036, -0.005),
-                    row(1.5170, 0.0530, 0.0900, 0.026, -0.025),
-                    row(1.5350, 0.0595, 0.0915, 0.020, -0.035),
-                    row(1.5550, 0.0650, 0.0915, 0.018, -0.045),
-                    row(1.5750, 0.0690, 0.0930, 0.015, -0.050),
-                    row(1.5950, 0.0710, 0.0975, 0.012, -0.055),
-                    row(1.6150, 0.0700, 0.0990, 0.010, -0.055),
+                    row(1.4830, 0.0165, 0.0845, 0.070, 0.0560),
+                    row(1.4900, 0.0305, 0.0872, 0.055, 0.0240),
+                    row(1.5000, 0.0415, 0.0880, 0.043, 0.0040),
+                    row(1.5120, 0.0490, 0.0890, 0.034, -0.010),
+                    row(1.5250, 0.0545, 0.0905, 0.027, -0.022),
+                    row(1.5400, 0.0590, 0.0920, 0.022, -0.035),
+                    row(1.5570, 0.0640, 0.0925, 0.018, -0.045),
+                    row(1.5750, 0.0680, 0.0935, 0.015, -0.050),
+                    row(1.5950, 0.0700, 0.0970, 0.012, -0.055),
+                    row(1.6150, 0.0690, 0.0985, 0.010, -0.055),
                     row(1.6400, 0.0600, 0.0850, 0.010, -0.050),
                 ],
             },
@@ -60,7 +60,7 @@ impl Head {
     pub(super) fn distance(&self, world: Vec3) -> f32 {
         // The mirror is rounded by 1.5 mm, so that halves meet smoothly at the middle.
         let p = Vec3::new((world.x * world.x + 2.3e-6).sqrt(), world.y, world.z);
-        let frontal = ellipsoid(p - Vec3::new(0.0, 1.6215, 0.020), Vec3::new(0.0690, 0.0755, 0.0805));
+        let frontal = ellipsoid(p - Vec3::new(0.0, 1.6185, 0.020), Vec3::new(0.0700, 0.0720, 0.0805));
         let parietal = ellipsoid(p - Vec3::new(0.0, 1.6240, -0.0180), Vec3::new(0.0775, 0.0760, 0.0745));
         let occiput = ellipsoid(p - Vec3::new(0.0, 1.5850, -0.0380), Vec3::new(0.058, 0.055, 0.0480));
         let mut d = smin(smin(frontal, parietal, 0.025), occiput, 0.030);
@@ -78,18 +78,16 @@ impl Head {
         }
         d = jaw(p, d);
         // Brow ridge, then the sockets below it.
-        d = smin(d, round_cone(p, v(0.012, 1.6015, 0.0935), v(0.045, 1.6040, 0.0775), 0.0075, 0.0065), 0.014);
-        d = smax(
-            d,
-            -ellipsoid(turn_y(p - v(0.0300, 1.5850, 0.1010), 0.25), v(0.0200, 0.0125, 0.0130)),
-            0.014,
-        );
+        d = smin(d, round_cone(p, v(0.010, 1.6015, 0.0920), v(0.044, 1.6045, 0.0770), 0.0070, 0.0060), 0.022);
+        d = smax(d, -ellipsoid(turn_y(p - v(0.0300, 1.5850, 0.1020), 0.25), v(0.0190, 0.0120, 0.0125)), 0.016);
         // Cheekbones and the soft cheek below.
-        d = smin(d, ellipsoid(turn_y(p - v(0.0470, 1.5560, 0.0600), -0.6), v(0.0200, 0.0135, 0.0200)), 0.022);
-        d = smin(d, ellipsoid(p - v(0.0330, 1.5260, 0.0640), v(0.0200, 0.0220, 0.0200)), 0.020);
+        d = smin(d, ellipsoid(turn_y(p - v(0.0410, 1.5570, 0.0560), -0.5), v(0.0210, 0.0150, 0.0210)), 0.028);
+        d = smin(d, ellipsoid(p - v(0.0330, 1.5320, 0.0600), v(0.0210, 0.0240, 0.0220)), 0.024);
         // The muzzle that carries the lips, and the chin.
-        d = smin(d, ellipsoid(p - v(0.0, 1.5160, 0.0740), v(0.0290, 0.0240, 0.0235)), 0.016);
-        d = smin(d, ellipsoid(p - v(0.0, 1.4830, 0.0800), v(0.0170, 0.0135, 0.0155)), 0.014);
+        d = smin(d, ellipsoid(p - v(0.0, 1.5150, 0.0700), v(0.0300, 0.0260, 0.0290)), 0.022);
+        d = smin(d, ellipsoid(p - v(0.0, 1.4840, 0.0800), v(0.0150, 0.0135, 0.0145)), 0.018);
+        // The floor of the mouth slopes from the chin to the throat.
+        d = smin(d, round_cone(p, v(0.0, 1.4865, 0.0680), v(0.0, 1.5080, 0.0250), 0.0125, 0.0200), 0.016);
         d = nose(p, d);
         d = lips(p, d);
         eye(p, d)
@@ -98,26 +96,27 @@ impl Head {
 
 fn jaw(p: Vec3, d: f32) -> f32 {
     let v = Vec3::new;
-    let ramus = round_cone(p, v(0.0560, 1.560, -0.004), v(0.0515, 1.5200, 0.0060), 0.008, 0.0100);
-    let body = round_cone(p, v(0.0515, 1.5200, 0.0060), v(0.0150, 1.4820, 0.0740), 0.0100, 0.0100);
-    smin(d, smin(ramus, body, 0.010), 0.020)
+    let ramus = round_cone(p, v(0.0520, 1.565, 0.002), v(0.0450, 1.5250, 0.0100), 0.007, 0.0085);
+    let body = round_cone(p, v(0.0450, 1.5250, 0.0100), v(0.0090, 1.4850, 0.0700), 0.0085, 0.0085);
+    smin(d, smin(ramus, body, 0.024), 0.030)
 }
 
 fn nose(p: Vec3, face: f32) -> f32 {
     let v = Vec3::new;
-    let bridge = round_cone(p, v(0.0, 1.5920, 0.0930), v(0.0, 1.5500, 0.1110), 0.0068, 0.0065);
-    let tip = ellipsoid(p - v(0.0, 1.5460, 0.1120), v(0.0082, 0.0076, 0.0088));
-    let wing = ellipsoid(turn_y(p - v(0.0098, 1.5420, 0.1020), -0.35), v(0.0058, 0.0062, 0.0092));
-    let mut n = smin(smin(bridge, tip, 0.008), wing, 0.006);
-    let nostril = ellipsoid(turn_y(p - v(0.0058, 1.5355, 0.1070), -0.30), v(0.0028, 0.0030, 0.0046));
-    n = smax(n, -nostril, 0.003);
-    smin(face, n, 0.009)
+    let bridge = round_cone(p, v(0.0, 1.5930, 0.0900), v(0.0, 1.5500, 0.1090), 0.0080, 0.0075);
+    let tip = ellipsoid(p - v(0.0, 1.5455, 0.1115), v(0.0085, 0.0078, 0.0090));
+    let wing = ellipsoid(turn_y(p - v(0.0090, 1.5420, 0.1020), -0.35), v(0.0056, 0.0062, 0.0082));
+    let root = round_cone(p, v(0.0, 1.5860, 0.0850), v(0.0, 1.5470, 0.0960), 0.0085, 0.0115);
+    let mut n = smin(smin(smin(bridge, root, 0.012), tip, 0.010), wing, 0.009);
+    let nostril = ellipsoid(turn_y(p - v(0.0054, 1.5350, 0.1060), -0.30), v(0.0026, 0.0030, 0.0046));
+    n = smax(n, -nostril, 0.004);
+    smin(face, n, 0.014)
 }
 
 /// The line between the lips: height and depth of the surface at a distance from the middle.
 fn mouth_line(x: f32) -> (f32, f32) {
     let [_, y, z] = curve(
-        &[[0.0, 1.5125, 0.0985], [0.006, 1.5118, 0.0980], [0.014, 1.5122, 0.0945], [0.023, 1.5130, 0.0870]],
+        &[[0.0, 1.5125, 0.1000], [0.006, 1.5118, 0.0990], [0.014, 1.5122, 0.0945], [0.023, 1.5130, 0.0860]],
         x,
     );
     (y, z)
@@ -125,11 +124,11 @@ fn mouth_line(x: f32) -> (f32, f32) {
 
 fn lips(p: Vec3, face: f32) -> f32 {
     let v = Vec3::new;
-    let mut upper = round_cone(p, v(0.0040, 1.5162, 0.0985), v(0.0205, 1.5132, 0.0875), 0.0042, 0.0018);
-    upper = smin(upper, ball(p, v(0.0, 1.5150, 0.0985), 0.0042), 0.004);
-    let lower = round_cone(p, v(0.0, 1.5070, 0.0965), v(0.0185, 1.5112, 0.0870), 0.0052, 0.0020);
-    let mut d = smin(face, upper, 0.005);
-    d = smin(d, lower, 0.005);
+    let mut upper = round_cone(p, v(0.0040, 1.5164, 0.0985), v(0.0205, 1.5132, 0.0865), 0.0040, 0.0018);
+    upper = smin(upper, ball(p, v(0.0, 1.5152, 0.0990), 0.0042), 0.004);
+    let lower = round_cone(p, v(0.0, 1.5070, 0.0970), v(0.0185, 1.5112, 0.0865), 0.0050, 0.0020);
+    let mut d = smin(face, upper, 0.007);
+    d = smin(d, lower, 0.007);
     let (line_y, line_z) = mouth_line(p.x);
     let reach = (p.x - 0.0225).max(0.0);
     let groove = v(p.y - line_y, (p.z - line_z - 0.0045) * 0.35, reach).length() - 0.0011;
@@ -145,8 +144,8 @@ pub(super) fn lid_opening(p: Vec3) -> f32 {
     // The outer corner is a little higher than the inner one.
     let y = p.y - EYE.y - 0.0010 * t - 0.0002;
     let arc = (1.0 - t * t).max(-0.5);
-    let upper = 0.0046 * arc.signum() * arc.abs().powf(0.75);
-    let lower = -0.0040 * arc.signum() * arc.abs().powf(0.90);
+    let upper = 0.0052 * arc.signum() * arc.abs().powf(0.75);
+    let lower = -0.0043 * arc.signum() * arc.abs().powf(0.90);
     let slope = 1.0 / (1.0 + (0.55 * t).powi(2)).sqrt();
     ((y - upper).max(lower - y)).max(x.abs() - LID_HALF_WIDTH) * slope
 }
@@ -180,7 +179,7 @@ pub(super) fn ear(p: Vec3) -> f32 {
         return q.length() - 0.05;
     }
     // Leans back and stands off the head.
-    let q = turn_y(turn_x(q, 0.20), -0.38);
+    let q = turn_y(turn_x(q, 0.20), -0.32);
     let q = turn_z(q, 0.10);
     let outline = ellipsoid(q - Vec3::new(0.0, 0.004, -0.002), Vec3::new(0.0058, 0.0275, 0.0180));
     let lobe = ellipsoid(q - Vec3::new(0.0, -0.0220, 0.0040), Vec3::new(0.0048, 0.0100, 0.0090));

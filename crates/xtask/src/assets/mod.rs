@@ -29,6 +29,7 @@ pub(crate) fn run(preview: Option<&Path>) -> anyhow::Result<()> {
     net.positions.par_iter_mut().for_each(|p| *p = mesh::project(&distance, *p));
     eprintln!("projected {:?}", t.elapsed());
     remesh::remesh(&mut net, &distance, &figure::edge_length, 6);
+    remesh::snap(&mut net, &distance, &paint::seam, &figure::edge_length);
     eprintln!("remeshed {} {:?}", net.positions.len(), t.elapsed());
     let normals = mesh::normals(&distance, &net.positions);
     eprintln!("projected {:?}", t.elapsed());
@@ -65,30 +66,51 @@ pub(crate) fn run(preview: Option<&Path>) -> anyhow::Result<()> {
             colours: &colours,
             triangles: &net.triangles,
         };
-        pictures(&view, folder)?;
+        pictures(&view, &dancer.scalp, folder)?;
         contact_sheet(&dancer, folder)?;
     }
     Ok(())
 }
 
-fn pictures(view: &preview::View, folder: &Path) -> anyhow::Result<()> {
+fn pictures(view: &preview::View, scalp: &[f32], folder: &Path) -> anyhow::Result<()> {
     let v = Vec3::new;
     let around = |angle: f32, distance: f32, centre: Vec3, up: f32| {
         centre + v(angle.to_radians().sin() * distance, up, angle.to_radians().cos() * distance)
     };
     let body = v(0.0, 0.86, 0.0);
-    let mut canvas = preview::Canvas::new(1600, 800);
+    let mut canvas = preview::Canvas::new(2000, 1000);
     for (i, angle) in [0.0, 45.0, 90.0, 180.0].into_iter().enumerate() {
-        canvas.draw(view, (around(angle, 5.0, body, 0.1), body, 0.36), [i * 400, 0, 400, 800]);
+        canvas.draw(view, (around(angle, 5.0, body, 0.1), body, 0.36), [i * 500, 0, 500, 1000]);
     }
     canvas.save(&folder.join("body.png"))?;
     let head = v(0.0, 1.58, 0.01);
-    let mut canvas = preview::Canvas::new(1500, 1000);
+    let mut canvas = preview::Canvas::new(1800, 1350);
     let shots = [(0.0, 0.0), (35.0, 0.02), (90.0, 0.0), (180.0, 0.0), (140.0, 0.1), (-25.0, -0.12)];
     for (i, (angle, up)) in shots.into_iter().enumerate() {
-        canvas.draw(view, (around(angle, 1.1, head, up), head, 0.26), [i % 3 * 500, i / 3 * 500, 500, 500]);
+        canvas.draw(view, (around(angle, 1.1, head, up), head, 0.25), [i % 3 * 600, i / 3 * 675, 600, 675]);
     }
     canvas.save(&folder.join("head.png"))?;
+    let painted: Vec<Vec3> =
+        view.colours.iter().zip(scalp).map(|(c, s)| c.lerp(Vec3::new(0.05, 0.03, 0.02), 0.9 * s)).collect();
+    let view = &preview::View { colours: &painted, ..*view };
+    let mut canvas = preview::Canvas::new(1800, 675);
+    for (i, (angle, up)) in [(20.0, 0.05), (80.0, 0.0), (165.0, 0.1)].into_iter().enumerate() {
+        canvas.draw(view, (around(angle, 1.1, head, up), head, 0.25), [i * 600, 0, 600, 675]);
+    }
+    canvas.save(&folder.join("scalp.png"))?;
+    let mut canvas = preview::Canvas::new(1800, 1200);
+    let details = [
+        (v(0.09, 1.36, 0.0), 20.0, 0.25, 0.9),
+        (v(0.09, 1.36, 0.0), 100.0, 0.15, 0.9),
+        (v(0.09, 1.36, 0.0), 180.0, 0.1, 0.9),
+        (v(0.60, 0.97, 0.02), 20.0, 0.1, 0.6),
+        (v(0.08, 0.06, 0.03), 50.0, 0.25, 0.8),
+        (v(0.0, 0.86, 0.0), 10.0, 0.0, 1.2),
+    ];
+    for (i, (centre, angle, up, distance)) in details.into_iter().enumerate() {
+        canvas.draw(view, (around(angle, distance, centre, up), centre, 0.42), [i % 3 * 600, i / 3 * 600, 600, 600]);
+    }
+    canvas.save(&folder.join("detail.png"))?;
     Ok(())
 }
 

@@ -18,7 +18,7 @@ const IRIS_RIM: Vec3 = Vec3::new(0.025, 0.032, 0.028);
 const PUPIL: Vec3 = Vec3::new(0.006, 0.006, 0.006);
 const TOP: Vec3 = Vec3::new(0.052, 0.108, 0.118);
 const LEGGINGS: Vec3 = Vec3::new(0.046, 0.056, 0.070);
-const SLIPPERS: Vec3 = Vec3::new(0.330, 0.220, 0.175);
+const SLIPPERS: Vec3 = Vec3::new(0.185, 0.125, 0.115);
 
 /// How far inside the edge of the top, along the surface, a point lies; negative on bare skin. Metres.
 fn inside_top(p: Vec3) -> f32 {
@@ -70,16 +70,16 @@ pub(super) fn inside_cloth(p: Vec3) -> f32 {
     inside_top(p)
 }
 
-/// Distance along the surface to the nearest edge between two colours of the clothes, metres.
+/// Distance along the surface to the nearest edge between two colours of the clothes, metres; its sign tells the side.
 pub(super) fn seam(p: Vec3) -> f32 {
-    if p.y > 1.46 || p.x.abs() > 0.22 {
+    if p.y > 1.46 || (p.x.abs() > 0.22 && p.y > 0.2) {
         return 1.0;
     }
+    let nearer = |a: f32, b: f32| if a.abs() < b.abs() { a } else { b };
     if p.y < 0.14 {
-        return (p.y - 0.118).abs().min(inside_slipper(p).abs());
+        return nearer(p.y - 0.118, inside_slipper(p));
     }
-    let leg = (p.y - leg_line(p)).abs() * 0.75;
-    leg.min(inside_top(p).abs())
+    nearer((p.y - leg_line(p)) * 0.75, inside_top(p))
 }
 
 /// Colour at a point of the surface, linear sRGB.
@@ -87,13 +87,13 @@ pub(super) fn colour(p: Vec3) -> Vec3 {
     if p.y > 1.44 {
         return face(p);
     }
-    let cloth = smoothstep(-0.0012, 0.0012, inside_cloth(p));
+    let cloth = smoothstep(-0.0004, -0.0001, inside_cloth(p));
     if p.y < 0.14 {
-        let shoe = smoothstep(-0.0012, 0.0012, inside_slipper(p));
-        let leg = smoothstep(-0.0012, 0.0012, p.y - 0.118);
+        let shoe = smoothstep(-0.0004, -0.0001, inside_slipper(p));
+        let leg = smoothstep(-0.0004, -0.0001, p.y - 0.118);
         return SKIN.lerp(LEGGINGS, leg).lerp(SLIPPERS, shoe);
     }
-    let top = smoothstep(-0.0012, 0.0012, p.y - leg_line(p));
+    let top = smoothstep(-0.0004, -0.0001, p.y - leg_line(p));
     SKIN.lerp(LEGGINGS.lerp(TOP, top), cloth)
 }
 

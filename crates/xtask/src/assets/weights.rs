@@ -32,8 +32,8 @@ fn part(p: Vec3) -> (usize, f32) {
     }
     let from_shoulder = q - rest::SHOULDER;
     let (upper, fore) = (rest::upper_arm_direction(), rest::forearm_direction());
-    // The cut of the shoulder leans: outside of the joint above, at the armpit's fold below.
-    let past_shoulder = from_shoulder.dot(Vec3::new(0.86, -0.30, 0.0));
+    // The cut of the shoulder leans outward below, so that the ribs under the armpit stay with the chest.
+    let past_shoulder = from_shoulder.dot(Vec3::new(0.93, 0.30, 0.0));
     if past_shoulder > 0.004 && q.x > if q.y > 1.2 { 0.14 } else { 0.22 } {
         let along = from_shoulder.dot(upper);
         if (q - rest::ELBOW).dot((upper + fore).normalize_or(Vec3::X)) < 0.0 {
