@@ -23,6 +23,7 @@ mod rate;
 mod reader;
 mod sequence;
 mod sink;
+mod still;
 mod yuv;
 
 pub use error::RecordError;
@@ -32,3 +33,4 @@ pub use rate::FrameRate;
 pub use reader::{FilmInfo, FilmReader, read_film};
 pub use sequence::{SequenceReport, SequenceSettings, SequenceWriter, frame_name};
 pub use sink::{OutputKind, PictureSink, SinkReport, SinkSettings};
+pub use still::write_png;

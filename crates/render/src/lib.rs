@@ -17,6 +17,7 @@ pub use frame::{FrameInput, FrameStats};
 pub use gpu::{Renderer, all_shaders};
 pub use light::{Light, MAX_LIGHTS};
 pub use lovelock_gpu::{Gpu, GpuError, Stopwatch, check_shader};
+pub use lovelock_shadow::voxel_map::{MapExtent, VoxelDeposit, VoxelFilter, VoxelMapSettings};
 pub use lovelock_shadow::{ShadowMethod, ShadowSettings};
 pub use picture::{Picture, PictureSettings};
 pub use transparency::Transparency;

@@ -1,0 +1,137 @@
+//! What the command line takes.
+
+use std::ops::Range;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::{Args, Parser, Subcommand};
+use lovelock_studio::render::{ShadowMethod, Transparency};
+
+/// Hair styled, simulated, shadowed and judged live. Opens the window where no command is given.
+#[derive(Debug, Parser)]
+#[command(name = "lovelock", version, args_conflicts_with_subcommands = true)]
+pub(crate) struct Arguments {
+    /// A project, hairstyle (.hair, .tfx), character (.glb, .gltf) or motion (.bvh) to open in the window.
+    pub(crate) project: Option<PathBuf>,
+    /// Print one JSON object on standard output and nothing else there.
+    #[arg(long, global = true)]
+    pub(crate) json: bool,
+    #[command(subcommand)]
+    pub(crate) task: Option<Task>,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Task {
+    /// Simulates and draws the dance into a film or a folder of pictures.
+    Record(Record),
+    /// Says what a hair, character, motion or project file holds.
+    Info(Info),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Record {
+    /// The project; the default project where none is given.
+    pub(crate) project: Option<PathBuf>,
+    /// Where it goes: a name ending in `.mp4` is a film, any other a folder of PNG files with a manifest.
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) out: PathBuf,
+    /// Frames to record, half open, such as 0..240; the whole clip where none are given.
+    #[arg(long, value_name = "A..B", value_parser = frames)]
+    pub(crate) frames: Option<Range<u64>>,
+    /// Frames a second.
+    #[arg(long, value_parser = rate)]
+    pub(crate) fps: Option<f64>,
+    /// Size in pixels, such as 1280x720.
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub(crate) size: Option<(u32, u32)>,
+    /// Shadow method.
+    #[arg(long, value_name = "ID")]
+    pub(crate) shadow: Option<ShadowMethod>,
+    /// How overlapping strands are put together.
+    #[arg(long, value_name = "ID")]
+    pub(crate) transparency: Option<Transparency>,
+    /// What draws: auto, gpu or cpu.
+    #[arg(long, value_name = "BACKEND", default_value = "auto")]
+    pub(crate) backend: lovelock_studio::Backend,
+    /// A shipped hairstyle instead of the project's: smooth, curly or long.
+    #[arg(long, value_name = "ID", conflicts_with = "hair")]
+    pub(crate) preset: Option<String>,
+    /// A hair file instead of the project's hairstyle.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) hair: Option<PathBuf>,
+    /// A character file instead of the project's body.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) body: Option<PathBuf>,
+    /// A motion file (BVH) instead of the project's motion.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) motion: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Info {
+    /// The file.
+    pub(crate) file: PathBuf,
+}
+
+/// `A..B`, half open and not empty.
+fn frames(text: &str) -> Result<Range<u64>, String> {
+    let wanted = || format!("`{text}` is no range of frames: expected A..B with A below B, such as 0..240");
+    let (start, end) = text.split_once("..").ok_or_else(wanted)?;
+    let number = |text: &str| u64::from_str(text.trim()).map_err(|_| wanted());
+    let range = number(start)?..number(end)?;
+    if range.is_empty() { Err(wanted()) } else { Ok(range) }
+}
+
+/// `WxH`, pixels.
+fn size(text: &str) -> Result<(u32, u32), String> {
+    let wanted = || format!("`{text}` is no size: expected WIDTHxHEIGHT in pixels, such as 1280x720");
+    let (width, height) = text.split_once(['x', 'X', '×']).ok_or_else(wanted)?;
+    let number = |text: &str| u32::from_str(text.trim()).ok().filter(|n| *n > 0).ok_or_else(wanted);
+    Ok((number(width)?, number(height)?))
+}
+
+fn rate(text: &str) -> Result<f64, String> {
+    f64::from_str(text)
+        .ok()
+        .filter(|fps| (1.0..=240.0).contains(fps))
+        .ok_or_else(|| format!("`{text}` is no rate: expected frames a second from 1 to 240"))
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn ranges_are_half_open() {
+        assert_eq!(frames("0..240"), Ok(0..240));
+        for wrong in ["", "5", "5..5", "9..3", "a..b", "-1..4", "0..99999999999999999999"] {
+            assert!(frames(wrong).is_err_and(|e| e.contains(wrong)), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn sizes_are_pixels() {
+        assert_eq!(size("1280x720"), Ok((1280, 720)));
+        for wrong in ["1280", "0x5", "x", "-1x2", "9999999999x1", "1.5x2"] {
+            assert!(size(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn unknown_methods_are_refused_with_the_known_ones() {
+        let error = Arguments::try_parse_from(["lovelock", "record", "-o", "x.mp4", "--shadow", "magic"])
+            .expect_err("no such method")
+            .to_string();
+        assert!(error.contains("voxel-map") && error.contains("magic"), "{error}");
+        assert!(Arguments::try_parse_from(["lovelock", "record"]).is_err(), "no output");
+        let window = Arguments::try_parse_from(["lovelock", "my project.ron"]).expect("a project");
+        assert_eq!(window.project, Some(PathBuf::from("my project.ron")));
+    }
+}

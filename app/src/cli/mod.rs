@@ -1,0 +1,48 @@
+//! The command line.
+
+mod args;
+mod info;
+mod output;
+mod record;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+pub(crate) use args::{Arguments, Task};
+use output::Output;
+
+/// Runs what the command line asks for; opens the window where it asks for nothing.
+pub(crate) fn run() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) if error.use_stderr() => {
+            let json = std::env::args().any(|argument| argument == "--json");
+            return Output { json }.refuse(&one_line(&error));
+        }
+        // Help and version.
+        Err(error) => {
+            let _ = error.print();
+            return ExitCode::SUCCESS;
+        }
+    };
+    let output = Output { json: arguments.json };
+    let result = match arguments.task {
+        None => crate::window::open(arguments.project.as_deref()),
+        Some(Task::Record(task)) => record::run(&task, output),
+        Some(Task::Info(task)) => info::run(&task, output),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => output.fail(&error),
+    }
+}
+
+/// What clap says in several lines, in one.
+fn one_line(error: &clap::Error) -> String {
+    let text = error.to_string();
+    let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
+    let told: Vec<&str> = lines.take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more")).collect();
+    let line = told.join(" ");
+    line.strip_prefix("error: ").unwrap_or(&line).to_owned()
+}

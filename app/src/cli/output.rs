@@ -1,0 +1,42 @@
+//! What goes to standard output and standard error.
+
+use std::process::ExitCode;
+
+use lovelock_studio::StudioError;
+use serde::Serialize;
+
+/// How results and errors are told.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Output {
+    /// One JSON object on standard output, and nothing else there.
+    pub(crate) json: bool,
+}
+
+impl Output {
+    /// Prints a result: as JSON, or as `text` says.
+    pub(crate) fn result<T: Serialize>(self, value: &T, text: impl FnOnce() -> String) -> Result<(), StudioError> {
+        use std::io::Write;
+        let text = if self.json {
+            serde_json::to_string_pretty(value).map_err(StudioError::work)?
+        } else {
+            text()
+        };
+        // A reader that closes the pipe early has seen what it wanted.
+        let _ = writeln!(std::io::stdout(), "{}", text.trim_end());
+        Ok(())
+    }
+
+    /// Tells an error, and the exit status that belongs to it.
+    pub(crate) fn fail(self, error: &StudioError) -> ExitCode {
+        eprintln!("lovelock: {error}");
+        if self.json {
+            println!("{}", error.to_json());
+        }
+        ExitCode::from(error.exit_code())
+    }
+
+    /// Tells that the command line is wrong.
+    pub(crate) fn refuse(self, message: &str) -> ExitCode {
+        self.fail(&StudioError::option(message))
+    }
+}

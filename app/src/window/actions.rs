@@ -1,0 +1,279 @@
+//! What commands do.
+
+use std::path::{Path, PathBuf};
+
+use lovelock_studio::groom::Preset;
+use lovelock_studio::{
+    Access, CameraMode, CameraSection, Command, PROJECT_EXTENSION, Problem, Project, StudioError, frame_points,
+    load_project_with, recording, save_project,
+};
+
+use super::path_dialog::Purpose;
+use super::{Pending, Window, copy, remember};
+
+/// A project to start with.
+#[derive(Debug)]
+pub(super) struct Opened {
+    pub(super) project: Project,
+    pub(super) project_path: Option<PathBuf>,
+    pub(super) picked: Vec<PathBuf>,
+    pub(super) problems: Vec<Problem>,
+}
+
+/// What a file changes in a project.
+enum Kind {
+    Project,
+    Hair,
+    Body,
+    Motion,
+}
+
+fn kind_of(path: &Path) -> Result<Kind, StudioError> {
+    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+    match extension.as_str() {
+        PROJECT_EXTENSION => Ok(Kind::Project),
+        "hair" | "tfx" => Ok(Kind::Hair),
+        "glb" | "gltf" => Ok(Kind::Body),
+        "bvh" => Ok(Kind::Motion),
+        _ => Err(StudioError::input(
+            path,
+            format!(
+                "{}: files of this kind are not read; expected .{PROJECT_EXTENSION}, .hair, .tfx, .glb, .gltf or .bvh",
+                path.display()
+            ),
+        )),
+    }
+}
+
+/// Opens what the command line names.
+pub(super) fn open_for_start(path: &Path) -> Result<Opened, StudioError> {
+    let kind = kind_of(path)?;
+    if !path.is_file() {
+        return Err(StudioError::input(path, format!("{}: there is no such file", path.display())));
+    }
+    let mut opened = Opened {
+        project: Project::default(),
+        project_path: None,
+        picked: vec![path.to_owned()],
+        problems: Vec::new(),
+    };
+    match kind {
+        Kind::Project => {
+            (opened.project, opened.problems) = load_project_with(path, &mut Access::for_project(path))?;
+            opened.project_path = Some(path.to_owned());
+        }
+        Kind::Hair => opened.project.set_hair_file(path),
+        Kind::Body => opened.project.set_body_file(path),
+        Kind::Motion => opened.project.set_motion_file(path),
+    }
+    Ok(opened)
+}
+
+impl Window {
+    /// Does a command.
+    pub(super) fn run(&mut self, command: Command, ctx: &egui::Context) {
+        if !self.can(command) {
+            return;
+        }
+        match command {
+            Command::PlayPause => self.session.set_playing(!self.session.playing),
+            Command::StepForward | Command::StepBack => {
+                self.session.set_playing(false);
+                self.session.worker().step(if command == Command::StepForward { 1 } else { -1 });
+            }
+            Command::JumpToStart => self.session.worker().restart(),
+            Command::JumpToEnd => {
+                let duration = self.session.scene.as_ref().map_or(0.0, |scene| scene.duration_secs());
+                self.session.worker().seek((duration - lovelock_studio::STEP_SECS).max(0.0));
+            }
+            Command::ToggleLoop => self.change("loop", |project| project.motion.looping = !project.motion.looping),
+            Command::SettleHair => self.session.worker().settle(),
+            Command::Record if self.recorder.is_running() => self.recorder.cancel(),
+            Command::Record => self.ask(Purpose::Film),
+            Command::SavePicture => self.ask(Purpose::Picture),
+            Command::FrameHair => self.frame_hair(),
+            Command::ToggleFollow => self.change("camera", |project| {
+                project.camera.mode = match project.camera.mode {
+                    CameraMode::Follow => CameraMode::Fixed,
+                    CameraMode::Fixed => CameraMode::Follow,
+                };
+            }),
+            Command::ResetCamera => self.change("camera", |project| project.camera = CameraSection::default()),
+            Command::Undo => {
+                self.history.undo();
+            }
+            Command::Redo => {
+                self.history.redo();
+            }
+            Command::NewProject => self.unless_modified(Pending::New, ctx),
+            Command::Open => self.ask(Purpose::Open),
+            Command::Save => match self.project_path.clone() {
+                Some(path) => self.save_to(&path),
+                None => self.ask(Purpose::SaveProject),
+            },
+            Command::SaveAs => self.ask(Purpose::SaveProject),
+            Command::PresetSmooth => self.change("hairstyle", |project| project.set_preset(Preset::Smooth)),
+            Command::PresetCurly => self.change("hairstyle", |project| project.set_preset(Preset::Curly)),
+            Command::PresetLong => self.change("hairstyle", |project| project.set_preset(Preset::Long)),
+            Command::Palette => self.palette.toggle(),
+            Command::TogglePanels => self.layout.panels_hidden = !self.layout.panels_hidden,
+            Command::ShowKeys => self.keys_shown = !self.keys_shown,
+            Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
+        }
+    }
+
+    /// A change that is a step of undo by itself.
+    fn change(&mut self, label: &str, change: impl FnOnce(&mut Project)) {
+        let mut project = copy(self.history.project());
+        change(&mut project);
+        self.gesture += 1;
+        self.edit(label, project);
+        self.gesture += 1;
+    }
+
+    fn frame_hair(&mut self) {
+        let Some(frame) = self.session.frame.clone() else { return };
+        let [width, height] = self.viewport.wanted;
+        let aspect = width as f32 / height.max(1) as f32;
+        let guides = &frame.guides.guides;
+        let points = (0..guides.x.len()).map(|i| glam::Vec3::new(guides.x[i], guides.y[i], guides.z[i]));
+        let camera = frame_points(&self.history.project().camera, &frame.scene, frame.time_secs, points, aspect);
+        self.change("camera", |project| project.camera = camera);
+    }
+
+    /// Opens a file of any kind that is read.
+    pub(super) fn open_any(&mut self, path: &Path) {
+        match kind_of(path) {
+            Ok(_) if !path.is_file() => self.tell([format!("{}: there is no such file", path.display())]),
+            Ok(Kind::Project) if self.history.is_modified() => self.pending = Some(Pending::Open(path.to_owned())),
+            Ok(Kind::Project) => self.open_project(path),
+            Ok(kind) => {
+                self.session.pick(path);
+                self.change("file", |project| match kind {
+                    Kind::Hair => project.set_hair_file(path),
+                    Kind::Body => project.set_body_file(path),
+                    Kind::Motion | Kind::Project => project.set_motion_file(path),
+                });
+                // The file may have been named before without being allowed.
+                let project = self.history.project().clone();
+                self.session.reload(&project);
+            }
+            Err(error) => self.tell([error.to_string()]),
+        }
+    }
+
+    fn open_project(&mut self, path: &Path) {
+        let mut access = self.session.access().clone();
+        access.set_project(Some(path));
+        match load_project_with(path, &mut access) {
+            Ok((project, problems)) => {
+                self.history = lovelock_studio::History::new(project);
+                self.project_path = Some(path.to_owned());
+                self.session.set_project_path(self.project_path.as_ref());
+                remember(&mut self.layout.recent, path);
+                self.tell(problems.into_iter().map(|problem| problem.message));
+            }
+            Err(error) => self.tell([error.to_string()]),
+        }
+    }
+
+    fn save_to(&mut self, path: &Path) {
+        match save_project(path, self.history.project()) {
+            Ok(()) => {
+                self.history.mark_saved();
+                self.project_path = Some(path.to_owned());
+                self.session.set_project_path(self.project_path.as_ref());
+                remember(&mut self.layout.recent, path);
+                self.toasts.success(format!("Saved {}", path.display()));
+            }
+            Err(error) => self.tell([error.to_string()]),
+        }
+    }
+
+    /// A path was given.
+    pub(super) fn answer(&mut self, purpose: Purpose, path: &Path, ctx: &egui::Context) {
+        match purpose {
+            Purpose::Open => self.open_any(path),
+            Purpose::SaveProject => self.save_to(path),
+            Purpose::Film | Purpose::Sequence => {
+                let access = self.session.access().clone();
+                self.recorder.start(self.history.project().clone(), access, path, ctx);
+            },
+            Purpose::Picture => {
+                let Some(painted) = self.session.painted.clone() else { return };
+                let picture = &painted.picture;
+                match recording::write_png(path, picture.width, picture.height, &picture.rgba) {
+                    Ok(()) => {
+                        self.toasts.success(format!("Saved {}", path.display()));
+                    }
+                    Err(error) => self.tell([error.to_string()]),
+                }
+            }
+        }
+    }
+
+    fn unless_modified(&mut self, pending: Pending, ctx: &egui::Context) {
+        if self.history.is_modified() {
+            self.pending = Some(pending);
+        } else {
+            self.go_on(pending, ctx);
+        }
+    }
+
+    fn go_on(&mut self, pending: Pending, ctx: &egui::Context) {
+        match pending {
+            Pending::Quit => {
+                self.quitting = true;
+                ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+            }
+            Pending::New => {
+                self.history = lovelock_studio::History::new(Project::default());
+                self.project_path = None;
+                self.session.set_project_path(None);
+            }
+            Pending::Open(path) => self.open_project(&path),
+        }
+    }
+
+    /// Before changes are lost, asks whether they may be.
+    pub(super) fn ask_before_losing(&mut self, ctx: &egui::Context) {
+        let Some(pending) = self.pending.clone() else { return };
+        let modal = egui::Modal::new(egui::Id::unique("unsaved")).show(ctx, |ui| {
+            ui.heading("The project has changes that are not saved.");
+            ui.horizontal(|ui| {
+                let save = ui.button("Save").clicked();
+                let lose = ui.button("Go on without saving").clicked();
+                let stay = ui.button("Stay").clicked();
+                (save, lose, stay)
+            })
+            .inner
+        });
+        let (save, lose, stay) = modal.inner;
+        if save {
+            self.pending = None;
+            match self.project_path.clone() {
+                Some(path) => {
+                    self.save_to(&path);
+                    if !self.history.is_modified() {
+                        self.go_on(pending, ctx);
+                    }
+                }
+                None => self.ask(Purpose::SaveProject),
+            }
+        } else if lose {
+            self.pending = None;
+            self.go_on(pending, ctx);
+        } else if stay || modal.should_close() {
+            self.pending = None;
+        }
+    }
+
+    /// The window is to close: asks first where changes would be lost.
+    pub(super) fn watch_close(&mut self, ctx: &egui::Context) {
+        let asked = ctx.input(|input| input.viewport().close_requested());
+        if asked && !self.quitting && self.history.is_modified() {
+            ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
+            self.pending = Some(Pending::Quit);
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! The rows of a panel: a label, a control with its unit, a tooltip; a mark where it differs from its default.
+
+use std::ops::RangeInclusive;
+
+use egui::{Response, RichText, Sense, Slider, Ui, Vec2, Widget};
+
+use super::theme;
+
+/// Width of the column of labels, points.
+const LABEL_WIDTH: f32 = 104.0;
+
+/// A number that a slider changes.
+#[derive(Clone, Debug)]
+pub(crate) struct Number {
+    label: &'static str,
+    tip: &'static str,
+    range: RangeInclusive<f32>,
+    unit: &'static str,
+    factor: f32,
+    decimals: usize,
+    logarithmic: bool,
+}
+
+impl Number {
+    /// A number of no unit in `range`; `tip` says what it changes in the picture.
+    pub(crate) fn new(label: &'static str, range: RangeInclusive<f32>, tip: &'static str) -> Self {
+        Self { label, tip, range, unit: "", factor: 1.0, decimals: 2, logarithmic: false }
+    }
+
+    /// Shown in `unit`, of which the value holds `factor` each.
+    pub(crate) fn unit(self, unit: &'static str, factor: f32) -> Self {
+        Self { unit, factor, ..self }
+    }
+
+    /// Metres, shown in millimetres.
+    pub(crate) fn millimetres(self) -> Self {
+        self.unit(" mm", 1e3).decimals(1)
+    }
+
+    /// Metres, shown in centimetres.
+    pub(crate) fn centimetres(self) -> Self {
+        self.unit(" cm", 1e2).decimals(1)
+    }
+
+    /// Radians, shown in degrees.
+    pub(crate) fn degrees(self) -> Self {
+        self.unit("°", 1_f32.to_degrees()).decimals(0)
+    }
+
+    /// A fraction, shown in per cent.
+    pub(crate) fn percent(self) -> Self {
+        self.unit(" %", 1e2).decimals(0)
+    }
+
+    /// Digits after the point.
+    pub(crate) fn decimals(self, decimals: usize) -> Self {
+        Self { decimals, ..self }
+    }
+
+    /// Even steps of the slider are even factors.
+    pub(crate) fn logarithmic(self) -> Self {
+        Self { logarithmic: true, ..self }
+    }
+
+    /// The row. Double-click restores `default`.
+    pub(crate) fn show(self, ui: &mut Ui, value: &mut f32, default: f32) -> Response {
+        let factor = f64::from(self.factor);
+        let range = f64::from(*self.range.start()) * factor..=f64::from(*self.range.end()) * factor;
+        let differs = (*value - default).abs() > 1e-6 * (1.0 + default.abs());
+        row(ui, self.label, self.tip, differs, value, default, |ui, value| {
+            ui.spacing_mut().slider_width = (ui.available_width() - 66.0).max(40.0);
+            Slider::from_get_set(range, |new| {
+                if let Some(new) = new.filter(|new| new.is_finite()) {
+                    *value = (new / factor) as f32;
+                }
+                f64::from(*value) * factor
+            })
+            .logarithmic(self.logarithmic)
+            .fixed_decimals(self.decimals)
+            .suffix(self.unit)
+            .ui(ui)
+        })
+    }
+}
+
+/// A whole number that a slider changes.
+pub(crate) fn count(
+    ui: &mut Ui,
+    label: &'static str,
+    range: RangeInclusive<u32>,
+    tip: &'static str,
+    value: &mut u32,
+    default: u32,
+) -> Response {
+    row(ui, label, tip, *value != default, value, default, |ui, value| {
+        ui.spacing_mut().slider_width = (ui.available_width() - 66.0).max(40.0);
+        let wide = range.end() / range.start().max(&1) > 50;
+        Slider::new(value, range).logarithmic(wide).ui(ui)
+    })
+}
+
+/// A choice among a few.
+pub(crate) fn choice<T: Copy + PartialEq>(
+    ui: &mut Ui,
+    label: &'static str,
+    tip: &'static str,
+    value: &mut T,
+    default: T,
+    options: &[(T, &str)],
+) -> Response {
+    row(ui, label, tip, *value != default, value, default, |ui, value| {
+        let chosen = options.iter().find(|(option, _)| option == value).map_or("", |(_, name)| name);
+        let width = ui.available_width() - 4.0;
+        egui::ComboBox::from_id_salt(label)
+            .selected_text(chosen)
+            .width(width)
+            .show_ui(ui, |ui| {
+                for (option, name) in options {
+                    ui.selectable_value(value, *option, *name);
+                }
+            })
+            .response
+    })
+}
+
+/// Something that is on or off.
+pub(crate) fn toggle(
+    ui: &mut Ui,
+    label: &'static str,
+    tip: &'static str,
+    value: &mut bool,
+    default: bool,
+) -> Response {
+    row(ui, label, tip, *value != default, value, default, |ui, value| ui.checkbox(value, ""))
+}
+
+/// A colour, linear sRGB.
+pub(crate) fn color(
+    ui: &mut Ui,
+    label: &'static str,
+    tip: &'static str,
+    value: &mut [f32; 3],
+    default: [f32; 3],
+) -> Response {
+    row(ui, label, tip, *value != default, value, default, |ui, value| ui.color_edit_button_rgb(value))
+}
+
+/// One row: the label with its mark, then what `add` draws, tied to the label for screen readers and tests.
+pub(crate) fn row<T>(
+    ui: &mut Ui,
+    label: &'static str,
+    tip: &str,
+    differs: bool,
+    value: &mut T,
+    default: T,
+    add: impl FnOnce(&mut Ui, &mut T) -> Response,
+) -> Response {
+    ui.horizontal(|ui| {
+        let text = RichText::new(label);
+        let text = if differs { text.color(theme::ACCENT) } else { text };
+        let size = Vec2::new(LABEL_WIDTH, ui.spacing().interact_size.y);
+        let name = ui
+            .allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                ui.set_min_width(LABEL_WIDTH);
+                ui.add(egui::Label::new(text).sense(Sense::click()).truncate())
+            })
+            .inner;
+        let tip = if differs { format!("{tip}\n\nChanged: double-click restores the default.") } else { tip.to_owned() };
+        let mut response = add(ui, value).labelled_by(name.id).on_hover_text(&tip);
+        let name = name.on_hover_text(&tip);
+        if differs && (name.double_clicked() || response.double_clicked()) {
+            *value = default;
+            response.mark_changed();
+        }
+        response
+    })
+    .inner
+}
+
+/// A titled part of a panel that folds.
+pub(crate) fn section<R>(ui: &mut Ui, title: &str, open: bool, add: impl FnOnce(&mut Ui) -> R) {
+    egui::CollapsingHeader::new(RichText::new(title).strong())
+        .default_open(open)
+        .show(ui, add);
+}
+
+/// A line of quiet text.
+pub(crate) fn note(ui: &mut Ui, text: impl Into<String>) {
+    ui.label(RichText::new(text.into()).small().color(theme::QUIET));
+}

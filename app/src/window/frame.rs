@@ -1,0 +1,283 @@
+//! One pass of the window, from top to bottom.
+
+use egui::{Align2, CentralPanel, Frame, Panel, ProgressBar, RichText, ScrollArea, Ui};
+use lovelock_studio::{Place, Project};
+
+use super::control::section;
+use super::path_dialog::{Answer, PathDialog, Purpose};
+use super::viewport::Viewport;
+use super::{Window, camera_control, copy, keys, panels, theme, timeline, title};
+
+impl Window {
+    /// One pass.
+    pub(super) fn pass(&mut self, ui: &mut Ui) {
+        let ctx = ui.ctx().clone();
+        let said = self.session.update();
+        self.tell(said);
+        if let Some(end) = self.recorder.update() {
+            match end {
+                panels::recording::State::Done(what) => {
+                    self.toasts.success(format!("Recorded: {what}"));
+                }
+                panels::recording::State::Failed(why) => {
+                    self.toasts.error(format!("Recording: {why}"));
+                }
+                panels::recording::State::Idle | panels::recording::State::Running { .. } => {}
+            }
+        }
+        for command in keys::pressed(&ctx) {
+            self.run(command, &ctx);
+        }
+        for file in ctx.input(|input| input.raw.dropped_files.clone()) {
+            self.open_any(file.path());
+        }
+
+        let mut project = copy(self.history.project());
+        self.menu_bar(ui);
+        let playback = self.timeline(ui);
+        if !self.layout.panels_hidden {
+            self.left_panel(ui, &mut project);
+            self.right_panel(ui, &mut project, &ctx);
+        }
+        self.picture(ui, &mut project);
+        let label = changed_part(self.history.project(), &project);
+        self.edit(label, project);
+        if let Some(ask) = playback {
+            match ask {
+                timeline::Ask::Run(command) => self.run(command, &ctx),
+                timeline::Ask::Seek(time_secs) => self.session.worker().seek(time_secs),
+            }
+        }
+        if let Some(command) = {
+            let Self { palette, history, session, .. } = self;
+            palette.show(&ctx, |command| match command {
+                lovelock_studio::Command::Undo => history.undo_len() > 0,
+                lovelock_studio::Command::Redo => history.redo_len() > 0,
+                _ => session.painted.is_some() || command != lovelock_studio::Command::FrameHair,
+            })
+        } {
+            self.run(command, &ctx);
+        }
+        self.windows(&ctx);
+        if ctx.input(|input| input.pointer.any_released()) || !ctx.input(|input| input.pointer.any_down()) {
+            // The pass in which the pointer is released still belongs to its drag.
+            self.gesture += 1;
+        }
+        self.session.send(self.history.project(), self.viewport.wanted);
+        let title = title(self.project_path.as_deref(), self.history.is_modified());
+        ctx.send_viewport_cmd(egui::ViewportCommand::Title(title));
+        self.toasts.show(&ctx);
+        self.watch_close(&ctx);
+    }
+
+    fn menu_bar(&mut self, ui: &mut Ui) {
+        let mut open_recent = None;
+        let chosen = Panel::top("menu")
+            .show(ui, |ui| {
+                egui::MenuBar::new()
+                    .ui(ui, |ui| {
+                        let chosen = keys::menus(ui, |command| self.can(command));
+                        ui.menu_button("Recent", |ui| {
+                            for path in &self.layout.recent {
+                                if ui.button(path.display().to_string()).clicked() {
+                                    open_recent = Some(path.clone());
+                                    ui.close();
+                                }
+                            }
+                            if self.layout.recent.is_empty() {
+                                ui.label(RichText::new("No project yet").color(theme::QUIET));
+                            }
+                        });
+                        ui.menu_button("Picture size", |ui| {
+                            for (scale, name) in [(0.0, "Choose by the device"), (1.0, "Every pixel"), (0.5, "Half"), (0.25, "Quarter")] {
+                                ui.radio_value(&mut self.layout.view_scale, scale, name);
+                            }
+                        });
+                        if let Some(label) = self.history.undo_label() {
+                            ui.label(RichText::new(format!("last change: {label}")).small().color(theme::QUIET));
+                        }
+                        chosen
+                    })
+                    .inner
+            })
+            .inner;
+        if let Some(path) = open_recent {
+            self.open_any(&path);
+        }
+        if let Some(command) = chosen {
+            let ctx = ui.ctx().clone();
+            self.run(command, &ctx);
+        }
+    }
+
+    fn timeline(&mut self, ui: &mut Ui) -> Option<timeline::Ask> {
+        let view = timeline::View {
+            time_secs: self.session.frame.as_ref().map_or(0.0, |frame| frame.position_secs),
+            duration_secs: self.session.scene.as_ref().map_or(0.0, |scene| scene.duration_secs()),
+            playing: self.session.playing,
+            looping: self.history.project().motion.looping,
+        };
+        Panel::bottom("timeline").exact_size(40.0).resizable(false).show(ui, |ui| timeline::ui(ui, view)).inner
+    }
+
+    fn left_panel(&mut self, ui: &mut Ui, project: &mut Project) {
+        let mut asked = None;
+        Panel::left("left").default_size(312.0).size_range(260.0..=460.0).show(ui, |ui| {
+            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                section(ui, "Hairstyle", true, |ui| {
+                    self.problems(ui, &[Place::Hair]);
+                    let ask = panels::hair::ui(ui, project, &self.session.hair);
+                    asked = asked.or(ask.map(|_| Purpose::Open));
+                });
+                section(ui, "Simulation", true, |ui| panels::simulation::ui(ui, &mut project.simulation));
+                section(ui, "Body and motion", false, |ui| {
+                    self.problems(ui, &[Place::Body, Place::Motion]);
+                    let ask = panels::body::ui(ui, project, &self.session.body);
+                    asked = asked.or(ask.map(|_| Purpose::Open));
+                });
+            });
+        });
+        if let Some(purpose) = asked {
+            self.ask(purpose);
+        }
+    }
+
+    fn right_panel(&mut self, ui: &mut Ui, project: &mut Project, ctx: &egui::Context) {
+        let mut recording = None;
+        let axes = camera_control::axes(&project.camera);
+        Panel::right("right").default_size(312.0).size_range(260.0..=460.0).show(ui, |ui| {
+            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                section(ui, "Shadow", true, |ui| {
+                    let bytes = self.session.painted.as_ref().map_or(0, |painted| painted.stats.shadow_bytes);
+                    panels::shadow::ui(ui, &mut project.shadow, bytes);
+                });
+                section(ui, "Light", true, |ui| {
+                    panels::light::ui(ui, &mut project.lights, &mut self.selected_light, axes);
+                });
+                section(ui, "Look", false, |ui| {
+                    let default = project.hair.groom.look;
+                    panels::look::hair(ui, &mut project.look, &default);
+                });
+                section(ui, "Picture", false, |ui| panels::look::picture(ui, &mut project.picture));
+                section(ui, "Recording", false, |ui| {
+                    let frames = self.session.scene.as_ref().map_or(1, |scene| scene.frames(project.recording.fps));
+                    recording = panels::recording::ui(ui, &mut project.recording, self.recorder.state(), frames);
+                });
+                section(ui, "Statistics", true, |ui| {
+                    panels::statistics::ui(ui, &self.session.stages, &self.facts());
+                });
+            });
+        });
+        match recording {
+            Some(panels::recording::Ask::Film) => self.ask(Purpose::Film),
+            Some(panels::recording::Ask::Sequence) => self.ask(Purpose::Sequence),
+            Some(panels::recording::Ask::Cancel) => self.run(lovelock_studio::Command::Record, ctx),
+            None => {}
+        }
+    }
+
+    fn picture(&mut self, ui: &mut Ui, project: &mut Project) {
+        CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
+            let software = self.session.painter().adapter().is_none_or(|adapter| adapter.software);
+            let response = self.viewport.show(ui, self.session.painted.as_ref(), software, self.layout.view_scale);
+            camera_control::apply(&mut project.camera, &response);
+            let rect = response.rect;
+            if let Some(error) = &self.session.draw_error {
+                Viewport::caption(ui, rect, Align2::LEFT_BOTTOM, error, theme::WRONG);
+            }
+            let ms = self.session.stages.median_total();
+            let adapter = self.session.painter().adapter();
+            let name = adapter.map_or_else(String::new, |adapter| adapter.name.clone());
+            Viewport::caption(ui, rect, Align2::RIGHT_TOP, &format!("{ms:.0} ms · {name}"), theme::QUIET);
+            if self.recorder.is_running() {
+                Viewport::caption(ui, rect, Align2::LEFT_TOP, "● recording", theme::RECORDING);
+            } else if let Some(progress) = self.session.worker().load_progress() {
+                let bar = egui::Rect::from_min_size(rect.left_top() + egui::vec2(10.0, 10.0), egui::vec2(260.0, 20.0));
+                ui.put(bar, ProgressBar::new(progress.fraction).text(progress.what));
+                let button = egui::Rect::from_min_size(bar.right_top() + egui::vec2(6.0, 0.0), egui::vec2(60.0, 20.0));
+                if ui.put(button, egui::Button::new("Cancel")).on_hover_text("Stops loading; the scene stays as it was.").clicked() {
+                    self.session.worker().cancel_load();
+                }
+            }
+        });
+    }
+
+    /// Errors of a part of the project, where that part is edited.
+    fn problems(&self, ui: &mut Ui, places: &[Place]) {
+        for problem in self.session.problems.iter().filter(|problem| places.contains(&problem.place)) {
+            ui.label(RichText::new(&problem.message).color(theme::WRONG));
+        }
+    }
+
+    fn facts(&self) -> Vec<panels::statistics::Fact> {
+        let mut facts = Vec::new();
+        if let Some(painted) = &self.session.painted {
+            facts.push(("Picture", format!("{} × {}", painted.picture.width, painted.picture.height)));
+            facts.push(("Segments drawn", painted.stats.segments.to_string()));
+            facts.push(("Mean transmittance", format!("{:.3}", painted.stats.mean_transmittance)));
+        }
+        if let Some(frame) = &self.session.frame {
+            facts.push(("Substeps", frame.report.substeps.to_string()));
+            facts.push(("Largest stretch", format!("{:.4} %", 100.0 * frame.totals.max_stretch)));
+            facts.push(("Deepest in the body", format!("{:.1} mm", 1e3 * frame.totals.max_penetration_m)));
+            facts.push(("Guides put back", frame.totals.recovered_guides.to_string()));
+        }
+        facts
+    }
+
+    /// Dialogs over everything.
+    fn windows(&mut self, ctx: &egui::Context) {
+        if let Some(dialog) = &mut self.dialog {
+            match dialog.show(ctx) {
+                Answer::Pending => {}
+                Answer::Closed => self.dialog = None,
+                Answer::Path(purpose, path) => {
+                    self.dialog = None;
+                    self.answer(purpose, &path, ctx);
+                }
+            }
+        }
+        if self.keys_shown {
+            let modal = egui::Modal::new(egui::Id::unique("keys")).show(ctx, |ui| {
+                ui.heading("Keys");
+                ScrollArea::vertical().max_height(ctx.content_rect().height() * 0.7).show(ui, keys::list);
+            });
+            self.keys_shown = !modal.should_close();
+        }
+        self.ask_before_losing(ctx);
+    }
+
+    /// Asks for a path.
+    pub(super) fn ask(&mut self, purpose: Purpose) {
+        let folder = self
+            .project_path
+            .as_deref()
+            .and_then(std::path::Path::parent)
+            .map_or_else(|| std::env::current_dir().unwrap_or_default(), std::path::Path::to_owned);
+        let suggestion = match purpose {
+            Purpose::Open => folder,
+            Purpose::SaveProject => self.project_path.clone().unwrap_or_else(|| folder.join("hair.ron")),
+            Purpose::Film => folder.join("out").join("dance.mp4"),
+            Purpose::Sequence => folder.join("out").join("frames"),
+            Purpose::Picture => folder.join("hair.png"),
+        };
+        self.dialog = Some(PathDialog::new(purpose, &suggestion));
+    }
+}
+
+/// The name of the part that differs, for undo.
+fn changed_part(before: &Project, after: &Project) -> &'static str {
+    let parts = [
+        (before.camera != after.camera, "camera"),
+        (before.hair != after.hair, "hairstyle"),
+        (before.look != after.look, "look"),
+        (before.simulation != after.simulation, "simulation"),
+        (before.shadow != after.shadow, "shadow"),
+        (before.lights != after.lights, "light"),
+        (before.picture != after.picture, "picture"),
+        (before.body != after.body, "body"),
+        (before.motion != after.motion, "motion"),
+        (before.recording != after.recording, "recording"),
+    ];
+    parts.iter().find(|(differs, _)| *differs).map_or("change", |(_, name)| name)
+}

@@ -1,0 +1,106 @@
+//! Keys and menus, made from the one table of commands.
+
+use egui::{Key, KeyboardShortcut, Modifiers, RichText, Ui};
+use lovelock_studio::{COMMANDS, Command, CommandGroup, CommandInfo, Shortcut};
+
+use super::theme;
+
+/// The commands whose keys were pressed in this pass, unless a text field takes the keys.
+pub(crate) fn pressed(ctx: &egui::Context) -> Vec<Command> {
+    let typing = ctx.egui_wants_keyboard_input();
+    let mut commands = Vec::new();
+    // Keys with more modifiers first: Ctrl+Shift+Z must not also be Ctrl+Z.
+    let mut bound: Vec<(KeyboardShortcut, Command)> = COMMANDS
+        .iter()
+        .flat_map(|info| info.shortcuts.iter().filter_map(|text| Some((shortcut(text)?, info.command))))
+        .collect();
+    bound.sort_by_key(|(shortcut, _)| std::cmp::Reverse(weight(shortcut.modifiers)));
+    for (shortcut, command) in bound {
+        if typing && !shortcut.modifiers.command {
+            continue;
+        }
+        if ctx.input_mut(|input| input.consume_shortcut(&shortcut)) {
+            commands.push(command);
+        }
+    }
+    commands
+}
+
+fn weight(modifiers: Modifiers) -> u32 {
+    u32::from(modifiers.command) + u32::from(modifiers.shift) + u32::from(modifiers.alt)
+}
+
+/// The key that egui knows by the table's words; none where the table names a key that egui has not.
+fn shortcut(text: &str) -> Option<KeyboardShortcut> {
+    let Shortcut { ctrl, shift, alt, key } = Shortcut::parse(text)?;
+    let logical = match key {
+        "Left" => Key::ArrowLeft,
+        "Right" => Key::ArrowRight,
+        "?" => Key::Questionmark,
+        name => Key::from_name(name)?,
+    };
+    let mut modifiers = Modifiers::NONE;
+    modifiers.command = ctrl;
+    modifiers.shift = shift;
+    modifiers.alt = alt;
+    Some(KeyboardShortcut::new(modifiers, logical))
+}
+
+/// The menus, each group of commands one. Returns what was chosen.
+pub(crate) fn menus(ui: &mut Ui, enabled: impl Fn(Command) -> bool) -> Option<Command> {
+    let mut chosen = None;
+    for group in CommandGroup::ALL {
+        ui.menu_button(group.label(), |ui| {
+            for info in COMMANDS.iter().filter(|info| info.group == group) {
+                if entry(ui, info, enabled(info.command)) {
+                    chosen = Some(info.command);
+                    ui.close();
+                }
+            }
+        });
+    }
+    chosen
+}
+
+fn entry(ui: &mut Ui, info: &CommandInfo, enabled: bool) -> bool {
+    let mut button = egui::Button::new(info.label);
+    if let Some(key) = info.shortcuts.first() {
+        button = button.shortcut_text(*key);
+    }
+    ui.add_enabled(enabled, button).on_hover_text(info.tooltip).clicked()
+}
+
+/// The list of keys.
+pub(crate) fn list(ui: &mut Ui) {
+    egui::Grid::new("keys").num_columns(2).spacing([24.0, 4.0]).striped(true).show(ui, |ui| {
+        for info in COMMANDS.iter().filter(|info| !info.shortcuts.is_empty()) {
+            ui.label(RichText::new(info.shortcuts.join("  ")).monospace().color(theme::ACCENT));
+            ui.label(info.tooltip);
+            ui.end_row();
+        }
+        for (keys, what) in [
+            ("Drag", "Turns the camera about the hair."),
+            ("Shift+drag, right drag", "Moves the camera aside."),
+            ("Wheel", "Moves the camera nearer and farther."),
+            ("Double-click a control", "Restores its default."),
+        ] {
+            ui.label(RichText::new(keys).monospace().color(theme::ACCENT));
+            ui.label(what);
+            ui.end_row();
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_key_of_the_table_exists() {
+        for info in COMMANDS {
+            for text in info.shortcuts {
+                assert!(shortcut(text).is_some(), "{}: {text}", info.id);
+            }
+        }
+    }
+}

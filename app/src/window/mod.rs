@@ -1,0 +1,207 @@
+//! The window.
+
+mod actions;
+mod camera_control;
+mod control;
+mod frame;
+mod keys;
+mod light_sphere;
+mod palette;
+mod panels;
+mod path_dialog;
+mod recorder;
+mod session;
+mod theme;
+mod timeline;
+mod viewport;
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use lovelock_studio::{Access, Command, GestureId, History, Project, StudioError};
+use serde::{Deserialize, Serialize};
+
+use palette::Palette;
+use path_dialog::PathDialog;
+use recorder::Recorder;
+use session::Session;
+use viewport::Viewport;
+
+/// Key under which the layout is kept; the number changes when its meaning does.
+const LAYOUT_KEY: &str = "layout 1";
+
+/// Projects that are remembered.
+const RECENT: usize = 10;
+
+/// What the interface remembers between runs.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+struct Layout {
+    panels_hidden: bool,
+    recent: Vec<PathBuf>,
+    /// Pixels drawn a pixel of the screen; 0 chooses by the device.
+    view_scale: f32,
+}
+
+/// What is asked before changes are lost.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Pending {
+    Quit,
+    New,
+    Open(PathBuf),
+}
+
+/// The window and everything behind it.
+pub(crate) struct Window {
+    history: History,
+    project_path: Option<PathBuf>,
+    session: Session,
+    viewport: Viewport,
+    recorder: Recorder,
+    palette: Palette,
+    layout: Layout,
+    dialog: Option<PathDialog>,
+    pending: Option<Pending>,
+    toasts: egui_notify::Toasts,
+    keys_shown: bool,
+    selected_light: usize,
+    /// Rises when the pointer is released: changes of one number are one step of undo.
+    gesture: GestureId,
+    quitting: bool,
+}
+
+/// Opens the window, on a file where one is given.
+pub(crate) fn open(path: Option<&Path>) -> Result<(), StudioError> {
+    // A file that cannot be opened is an error of the command line: no window is needed to say so.
+    let opened = path.map(actions::open_for_start).transpose()?;
+    let options = eframe::NativeOptions {
+        viewport: egui::ViewportBuilder::default()
+            .with_title("Lovelock")
+            .with_app_id("lovelock")
+            .with_inner_size([1440.0, 900.0])
+            .with_min_inner_size([640.0, 400.0])
+            .with_drag_and_drop(true),
+        ..Default::default()
+    };
+    eframe::run_native(
+        "lovelock",
+        options,
+        Box::new(move |creation| Ok(Box::new(Window::new(creation, opened)?))),
+    )
+    .map_err(|error| StudioError::work(format!("the window could not be opened: {error}; without a display use `lovelock record`")))
+}
+
+impl Window {
+    fn new(creation: &eframe::CreationContext, opened: Option<actions::Opened>) -> Result<Self, StudioError> {
+        let ctx = &creation.egui_ctx;
+        egui_material_icons::initialize(ctx);
+        theme::apply(ctx);
+        let layout = creation.storage.and_then(|storage| eframe::get_value(storage, LAYOUT_KEY)).unwrap_or_default();
+        let mut access = Access::new();
+        let (project, project_path, problems) = match opened {
+            Some(opened) => {
+                for path in &opened.picked {
+                    access.pick(path);
+                }
+                access.set_project(opened.project_path.as_deref());
+                (opened.project, opened.project_path, opened.problems)
+            }
+            None => (Project::default(), None, Vec::new()),
+        };
+        let history = History::new(project);
+        let session = Session::start(history.project(), access, ctx)?;
+        let mut window = Self {
+            history,
+            project_path,
+            session,
+            viewport: Viewport::default(),
+            recorder: Recorder::default(),
+            palette: Palette::default(),
+            layout,
+            dialog: None,
+            pending: None,
+            toasts: egui_notify::Toasts::default().with_anchor(egui_notify::Anchor::BottomRight),
+            keys_shown: false,
+            selected_light: 0,
+            gesture: 1,
+            quitting: false,
+        };
+        window.tell(problems.iter().map(|problem| problem.message.clone()));
+        Ok(window)
+    }
+
+    /// Shows sentences that the user should see.
+    fn tell(&mut self, sentences: impl IntoIterator<Item = String>) {
+        for sentence in sentences {
+            tracing::warn!("{sentence}");
+            let length = std::time::Duration::from_secs(12);
+            self.toasts.warning(sentence).duration(length);
+        }
+    }
+
+    /// Takes a changed project; changes between pressing and releasing the pointer are one step of undo.
+    fn edit(&mut self, label: &str, project: Project) {
+        if self.history.edit(label, Some(self.gesture), project) {
+            tracing::debug!(label, "edited");
+        }
+    }
+
+    /// Whether a command can be done now.
+    fn can(&self, command: Command) -> bool {
+        match command {
+            Command::Undo => self.history.undo_len() > 0,
+            Command::Redo => self.history.redo_len() > 0,
+            Command::FrameHair | Command::SavePicture => self.session.painted.is_some(),
+            _ => true,
+        }
+    }
+}
+
+impl eframe::App for Window {
+    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        self.pass(ui);
+    }
+
+    fn save(&mut self, storage: &mut dyn eframe::Storage) {
+        eframe::set_value(storage, LAYOUT_KEY, &self.layout);
+    }
+}
+
+/// A title that names the project and marks unsaved changes.
+fn title(path: Option<&Path>, modified: bool) -> String {
+    let name = path.and_then(Path::file_stem).map_or_else(|| "untitled".to_owned(), |s| s.to_string_lossy().into_owned());
+    format!("{}{name} · Lovelock", if modified { "● " } else { "" })
+}
+
+/// The newest first, each once.
+fn remember(recent: &mut Vec<PathBuf>, path: &Path) {
+    recent.retain(|known| known != path);
+    recent.insert(0, path.to_owned());
+    recent.truncate(RECENT);
+}
+
+/// The project as the panels edit it.
+fn copy(project: &Arc<Project>) -> Project {
+    (**project).clone()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_title_marks_what_is_not_saved() {
+        assert_eq!(title(None, false), "untitled · Lovelock");
+        assert_eq!(title(Some(Path::new("/a/my hair.ron")), true), "● my hair · Lovelock");
+    }
+
+    #[test]
+    fn recent_projects_are_few_and_newest_first() {
+        let mut recent = Vec::new();
+        for i in 0..20 {
+            remember(&mut recent, Path::new(&format!("{}.ron", i % 13)));
+        }
+        assert_eq!(recent.len(), RECENT);
+        assert_eq!(recent[0], Path::new("6.ron"));
+    }
+}

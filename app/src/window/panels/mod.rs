@@ -1,0 +1,10 @@
+//! The panels: each a function of the part of the project that it edits.
+
+pub(crate) mod body;
+pub(crate) mod hair;
+pub(crate) mod light;
+pub(crate) mod look;
+pub(crate) mod recording;
+pub(crate) mod shadow;
+pub(crate) mod simulation;
+pub(crate) mod statistics;

@@ -1,0 +1,96 @@
+//! What a recording is, and the one that runs.
+
+use egui::{ProgressBar, RichText, Ui};
+use lovelock_studio::RecordingSection;
+use lovelock_studio::recording::FilmQuality;
+
+use crate::window::control::{choice, note, row};
+use crate::window::theme;
+
+/// A recording that runs or has ended.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum State {
+    /// None has been made.
+    Idle,
+    /// Frames done and frames in all, and seconds left where that can be said.
+    Running {
+        /// What is being done.
+        what: String,
+        /// Frames that are done.
+        done: u64,
+        /// Frames in all.
+        total: u64,
+        /// Seconds left, about.
+        left_secs: Option<f64>,
+    },
+    /// The last one is finished: what was written.
+    Done(String),
+    /// The last one failed or was cancelled: why.
+    Failed(String),
+}
+
+/// What the panel asks for beyond a change of the project.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Ask {
+    /// Start recording to a place that a dialog picks: a film.
+    Film,
+    /// The same: a folder of pictures.
+    Sequence,
+    /// Stop the one that runs.
+    Cancel,
+}
+
+const SIZES: [((u32, u32), &str); 6] = [
+    ((640, 360), "640 × 360"),
+    ((1280, 720), "1280 × 720"),
+    ((1920, 1080), "1920 × 1080"),
+    ((2560, 1440), "2560 × 1440"),
+    ((3840, 2160), "3840 × 2160"),
+    ((1080, 1080), "1080 × 1080"),
+];
+
+/// The controls of `section`; `clip_frames` is the number of frames of the whole clip.
+pub(crate) fn ui(ui: &mut Ui, section: &mut RecordingSection, state: &State, clip_frames: u64) -> Option<Ask> {
+    let d = RecordingSection::default();
+    let mut ask = None;
+    let mut size = (section.width, section.height);
+    choice(ui, "Size", "Size of the film in pixels.", &mut size, (d.width, d.height), &SIZES);
+    (section.width, section.height) = size;
+    let rates = [(24.0, "24"), (25.0, "25"), (30.0, "30"), (50.0, "50"), (60.0, "60")];
+    choice(ui, "Frames a second", "Rate of the film.", &mut section.fps, d.fps, &rates);
+    let qualities = FilmQuality::ALL.map(|quality| (quality, quality.label()));
+    choice(ui, "Quality", "How finely the film is coded: finer keeps single hairs apart and takes more bytes.", &mut section.quality, d.quality, &qualities);
+    row(ui, "From frame", "First frame.", section.first_frame != d.first_frame, &mut section.first_frame, d.first_frame, |ui, first| {
+        ui.add(egui::DragValue::new(first).range(0..=1_000_000))
+    });
+    let mut end = section.end_frame.unwrap_or(clip_frames);
+    row(ui, "To frame", "One past the last frame; the default is the whole clip.", section.end_frame.is_some(), &mut end, clip_frames, |ui, end| {
+        ui.add(egui::DragValue::new(end).range(1..=1_000_000))
+    });
+    section.end_frame = (end != clip_frames).then_some(end.max(section.first_frame + 1));
+    if let State::Running { what, done, total, left_secs } = state {
+        let text = left_secs.map_or_else(String::new, |secs| format!(", {secs:.0} s left"));
+        ui.add(ProgressBar::new(*done as f32 / (*total).max(1) as f32).text(format!("{what} {done} of {total}{text}")));
+        if ui.button("Cancel").on_hover_text("Stops the recording; an unfinished film is removed.").clicked() {
+            ask = Some(Ask::Cancel);
+        }
+    } else {
+        ui.horizontal(|ui| {
+            let dot = RichText::new("Record film…").color(theme::RECORDING);
+            if ui.button(dot).on_hover_text("Records the dance as H.264 in MP4 (R).").clicked() {
+                ask = Some(Ask::Film);
+            }
+            if ui.button("Pictures…").on_hover_text("Records the dance as a folder of PNG files.").clicked() {
+                ask = Some(Ask::Sequence);
+            }
+        });
+    }
+    match state {
+        State::Done(what) => note(ui, what.as_str()),
+        State::Failed(why) => {
+            ui.label(RichText::new(why).color(theme::WRONG));
+        }
+        State::Idle | State::Running { .. } => {}
+    }
+    ask
+}

@@ -1,0 +1,187 @@
+//! Asks for a path: a field to type in, and the system's own dialog where there is one.
+
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, sync_channel};
+
+use egui::{Modal, RichText};
+
+use super::theme;
+
+/// What a path is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Purpose {
+    /// Open any file that the program reads.
+    Open,
+    /// Save the project.
+    SaveProject,
+    /// Record a film.
+    Film,
+    /// Record a folder of pictures.
+    Sequence,
+    /// Save the picture in the viewport.
+    Picture,
+}
+
+/// What the program reads, for the system's dialog.
+const READABLE: [&str; 6] = ["ron", "hair", "tfx", "glb", "gltf", "bvh"];
+
+impl Purpose {
+    fn title(self) -> &'static str {
+        match self {
+            Self::Open => "Open a project, hairstyle, character or motion",
+            Self::SaveProject => "Save the project",
+            Self::Film => "Record a film",
+            Self::Sequence => "Record pictures into a folder",
+            Self::Picture => "Save the picture",
+        }
+    }
+
+    fn button(self) -> &'static str {
+        match self {
+            Self::Open => "Open file",
+            Self::SaveProject | Self::Picture => "Save file",
+            Self::Film | Self::Sequence => "Start recording",
+        }
+    }
+
+    /// The extension that is added where none is given.
+    fn extension(self) -> Option<&'static str> {
+        match self {
+            Self::Open | Self::Sequence => None,
+            Self::SaveProject => Some("ron"),
+            Self::Film => Some("mp4"),
+            Self::Picture => Some("png"),
+        }
+    }
+}
+
+/// A question for a path that is on the screen.
+#[derive(Debug)]
+pub(crate) struct PathDialog {
+    purpose: Purpose,
+    typed: String,
+    /// What the system's dialog will send.
+    browsed: Option<Receiver<Option<PathBuf>>>,
+}
+
+/// What became of the question.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) enum Answer {
+    /// It is still asked.
+    Pending,
+    /// It was closed without an answer.
+    Closed,
+    /// This path.
+    Path(Purpose, PathBuf),
+}
+
+impl PathDialog {
+    /// Asks, with `suggestion` in the field.
+    pub(crate) fn new(purpose: Purpose, suggestion: &Path) -> Self {
+        Self { purpose, typed: suggestion.display().to_string(), browsed: None }
+    }
+
+    /// Shows it.
+    pub(crate) fn show(&mut self, ctx: &egui::Context) -> Answer {
+        if let Some(receiver) = &self.browsed {
+            match receiver.try_recv() {
+                Ok(Some(path)) => return Answer::Path(self.purpose, path),
+                Ok(None) | Err(std::sync::mpsc::TryRecvError::Disconnected) => self.browsed = None,
+                Err(std::sync::mpsc::TryRecvError::Empty) => {}
+            }
+        }
+        let mut answer = Answer::Pending;
+        let response = Modal::new(egui::Id::unique("path")).show(ctx, |ui| {
+            ui.set_width(520.0);
+            ui.heading(self.purpose.title());
+            let field = ui.horizontal(|ui| {
+                let label = ui.label("Path");
+                let edit = egui::TextEdit::singleline(&mut self.typed).desired_width(380.0);
+                let field = ui.add(edit).labelled_by(label.id);
+                let browse = ui.add_enabled(self.browsed.is_none(), egui::Button::new("Browse…"));
+                if browse.on_hover_text("Opens the system's file dialog.").clicked() {
+                    self.browse(ui.ctx());
+                }
+                field
+            });
+            if ui.memory(|memory| memory.focused().is_none()) {
+                field.inner.request_focus();
+            }
+            let path = self.path();
+            if self.purpose == Purpose::Film && path.as_ref().is_some_and(|path| path.exists()) {
+                ui.label(RichText::new("The film of this name will be replaced.").color(theme::ACCENT));
+            }
+            ui.horizontal(|ui| {
+                let go = ui.add_enabled(path.is_some(), egui::Button::new(self.purpose.button()));
+                let entered = field.inner.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
+                if let Some(path) = path.filter(|_| go.clicked() || entered) {
+                    answer = Answer::Path(self.purpose, path);
+                }
+                if ui.button("Cancel").clicked() {
+                    answer = Answer::Closed;
+                }
+            });
+        });
+        if response.should_close() && answer == Answer::Pending {
+            answer = Answer::Closed;
+        }
+        answer
+    }
+
+    /// What is typed, with the extension that its purpose wants.
+    fn path(&self) -> Option<PathBuf> {
+        let typed = self.typed.trim();
+        if typed.is_empty() {
+            return None;
+        }
+        let mut path = PathBuf::from(typed);
+        if let Some(extension) = self.purpose.extension().filter(|_| path.extension().is_none()) {
+            path.set_extension(extension);
+        }
+        Some(path)
+    }
+
+    /// Opens the system's dialog. Its answer is waited for on a thread, so that the window goes on.
+    fn browse(&mut self, ctx: &egui::Context) {
+        let mut dialog = rfd::AsyncFileDialog::new().set_title(self.purpose.title());
+        if let Some(path) = self.path() {
+            if let Some(folder) = path.parent().filter(|folder| folder.is_dir()) {
+                dialog = dialog.set_directory(folder);
+            }
+            if let Some(name) = path.file_name() {
+                dialog = dialog.set_file_name(name.to_string_lossy());
+            }
+        }
+        let (sender, receiver) = sync_channel(1);
+        let ctx = ctx.clone();
+        let purpose = self.purpose;
+        // The dialog is made here, on the window's thread, as some systems demand.
+        let future: std::pin::Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> = match purpose {
+            Purpose::Open => Box::pin(dialog.add_filter("Lovelock reads", &READABLE).pick_file()),
+            Purpose::Sequence => Box::pin(dialog.pick_folder()),
+            Purpose::SaveProject => Box::pin(dialog.add_filter("Project", &["ron"]).save_file()),
+            Purpose::Film => Box::pin(dialog.add_filter("Film", &["mp4"]).save_file()),
+            Purpose::Picture => Box::pin(dialog.add_filter("Picture", &["png"]).save_file()),
+        };
+        let spawned = std::thread::Builder::new().name("file dialog".to_owned()).spawn(move || {
+            let picked = pollster::block_on(future).map(|file| file.path().to_owned());
+            let _ = sender.send(picked);
+            ctx.request_repaint();
+        });
+        self.browsed = spawned.is_ok().then_some(receiver);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_without_extension_gets_one() {
+        let path = |purpose, text: &str| PathDialog::new(purpose, Path::new(text)).path();
+        assert_eq!(path(Purpose::Film, "a b/dance"), Some(PathBuf::from("a b/dance.mp4")));
+        assert_eq!(path(Purpose::Film, "dance.mp4"), Some(PathBuf::from("dance.mp4")));
+        assert_eq!(path(Purpose::Sequence, "frames"), Some(PathBuf::from("frames")));
+        assert_eq!(path(Purpose::Open, "  "), None);
+    }
+}

@@ -1,0 +1,84 @@
+//! A recording that runs beside the window.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use lovelock_studio::{Access, Progress, Project, RecordJob, RecordRequest, Stopwatch};
+
+use super::panels::recording::State;
+
+/// The recording that runs, if one does, and what became of the last one. Dropping it cancels.
+pub(crate) struct Recorder {
+    running: Option<(RecordJob, Stopwatch)>,
+    state: State,
+}
+
+impl Default for Recorder {
+    fn default() -> Self {
+        Self { running: None, state: State::Idle }
+    }
+}
+
+impl Recorder {
+    /// Starts to record `project` to `out`, unless one runs.
+    pub(crate) fn start(&mut self, project: Arc<Project>, access: Access, out: &Path, ctx: &egui::Context) {
+        if self.running.is_some() {
+            return;
+        }
+        let request = RecordRequest { out: out.to_owned(), access, ..RecordRequest::default() };
+        let ctx = ctx.clone();
+        match RecordJob::start(project, request, Arc::new(move || ctx.request_repaint())) {
+            Ok(job) => {
+                self.state = State::Running { what: "Loading".to_owned(), done: 0, total: 1, left_secs: None };
+                self.running = Some((job, Stopwatch::start()));
+            }
+            Err(error) => self.state = State::Failed(error.to_string()),
+        }
+    }
+
+    /// Asks the recording to stop.
+    pub(crate) fn cancel(&self) {
+        if let Some((job, _)) = &self.running {
+            job.cancel();
+        }
+    }
+
+    /// Whether a recording runs.
+    pub(crate) fn is_running(&self) -> bool {
+        self.running.is_some()
+    }
+
+    /// Takes note of what has happened since. Returns the end of a recording once.
+    pub(crate) fn update(&mut self) -> Option<&State> {
+        let (job, watch) = self.running.as_mut()?;
+        if let Some(progress) = job.progress() {
+            let (what, done, total) = match progress {
+                Progress::Loading { what } => (what, 0, 1),
+                Progress::Loaded { .. } => ("Loaded".to_owned(), 0, 1),
+                Progress::Simulating { done, total } => ("Simulating up to the first frame".to_owned(), done, total),
+                Progress::Frame { done, total } => ("Frame".to_owned(), done, total),
+                Progress::Finishing => ("Finishing".to_owned(), 1, 1),
+            };
+            if matches!(&self.state, State::Running { what: before, .. } if *before != what) {
+                // Time left is told from the frames alone, not from what came before them.
+                *watch = Stopwatch::start();
+            }
+            let left_secs = (done > 0).then(|| watch.secs() / done as f64 * (total - done) as f64);
+            self.state = State::Running { what, done, total, left_secs };
+        }
+        if !job.is_finished() {
+            return None;
+        }
+        let (job, _) = self.running.take()?;
+        self.state = match job.finish() {
+            Ok(report) => State::Done(format!("{} frames in {}", report.frames, report.out.display())),
+            Err(error) => State::Failed(error.to_string()),
+        };
+        Some(&self.state)
+    }
+
+    /// What the panel shows.
+    pub(crate) fn state(&self) -> &State {
+        &self.state
+    }
+}

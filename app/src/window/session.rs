@@ -1,0 +1,183 @@
+//! What runs behind the window: the simulation, the drawing, and what they said last.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use lovelock_studio::{
+    Access, Event, FrameSnapshot, PaintRequest, Painted, Painter, Place, Problem, Project, Scene, StageHistory,
+    StudioError, Worker,
+};
+
+use super::panels::{body, hair};
+
+/// Frames that the plot of stage times shows.
+const PLOTTED_FRAMES: usize = 240;
+
+/// The engine's threads, and what they left last.
+pub(crate) struct Session {
+    worker: Worker,
+    painter: Painter,
+    access: Access,
+    /// What was last handed to the simulation.
+    simulated: Arc<Project>,
+    /// What was last handed to the drawing: the project, the step and the size.
+    drawn: Option<(Arc<Project>, u64, [u32; 2])>,
+    seen_painted: u64,
+    seen_errors: u64,
+    pub(crate) scene: Option<Arc<Scene>>,
+    pub(crate) frame: Option<Arc<FrameSnapshot>>,
+    pub(crate) painted: Option<Arc<Painted>>,
+    pub(crate) problems: Vec<Problem>,
+    pub(crate) hair: hair::Loaded,
+    pub(crate) body: body::Loaded,
+    pub(crate) stages: StageHistory,
+    pub(crate) playing: bool,
+    pub(crate) draw_error: Option<String>,
+}
+
+impl Session {
+    /// Starts the threads on `project`; each asks `ctx` to repaint when it has something new.
+    pub(crate) fn start(project: &Arc<Project>, access: Access, ctx: &egui::Context) -> Result<Self, StudioError> {
+        let wake = ctx.clone();
+        let worker = Worker::start(Arc::clone(project), access.clone(), Arc::new(move || wake.request_repaint()))?;
+        let wake = ctx.clone();
+        let painter = Painter::start(move || wake.request_repaint())
+            .map_err(|error| StudioError::work(format!("no thread to draw on: {error}")))?;
+        Ok(Self {
+            worker,
+            painter,
+            access,
+            simulated: Arc::clone(project),
+            drawn: None,
+            seen_painted: 0,
+            seen_errors: 0,
+            scene: None,
+            frame: None,
+            painted: None,
+            problems: Vec::new(),
+            hair: hair::Loaded::default(),
+            body: body::Loaded::default(),
+            stages: StageHistory::new(PLOTTED_FRAMES),
+            playing: true,
+            draw_error: None,
+        })
+    }
+
+    /// The simulation.
+    pub(crate) fn worker(&self) -> &Worker {
+        &self.worker
+    }
+
+    /// What draws.
+    pub(crate) fn painter(&self) -> &Painter {
+        &self.painter
+    }
+
+    /// Which files the project may reach.
+    pub(crate) fn access(&self) -> &Access {
+        &self.access
+    }
+
+    /// The user named this file.
+    pub(crate) fn pick(&mut self, path: &std::path::Path) {
+        self.access.pick(path);
+    }
+
+    /// Another project file is open, or none.
+    pub(crate) fn set_project_path(&mut self, path: Option<&PathBuf>) {
+        self.access.set_project(path.map(PathBuf::as_path));
+    }
+
+    /// Plays or pauses.
+    pub(crate) fn set_playing(&mut self, playing: bool) {
+        self.playing = playing;
+        self.worker.set_playing(playing);
+    }
+
+    /// Takes what the threads left. Returns sentences that the user should see.
+    pub(crate) fn update(&mut self) -> Vec<String> {
+        let mut said = Vec::new();
+        while let Some(event) = self.worker.poll_event() {
+            match event {
+                Event::Loaded { scene, problems } => self.take_scene(scene, problems),
+                Event::LoadCancelled => said.push("Loading was cancelled; the scene stays as it was.".to_owned()),
+                Event::LoadFailed { message } => said.push(message),
+                Event::EndReached => self.playing = false,
+                Event::Panicked { thread, message } => {
+                    said.push(format!("The {thread} met an error and started again; save your project. ({message})"));
+                }
+            }
+        }
+        if let Some(frame) = self.worker.frame() {
+            self.frame = Some(frame);
+        }
+        if let Some(painted) = self.painter.painted().newer_than(&mut self.seen_painted) {
+            self.stages.push(painted.times);
+            self.painted = Some(painted);
+            self.draw_error = None;
+        }
+        if let Some(error) = self.painter.errors().newer_than(&mut self.seen_errors) {
+            self.draw_error = Some((*error).clone());
+        }
+        said
+    }
+
+    /// Hands on what has changed: the project to the simulation, the frame to the drawing.
+    pub(crate) fn send(&mut self, project: &Arc<Project>, size: [u32; 2]) {
+        if !Arc::ptr_eq(project, &self.simulated) {
+            self.simulated = Arc::clone(project);
+            self.worker.set_project(Arc::clone(project), self.access.clone());
+        }
+        let Some(frame) = &self.frame else { return };
+        let fresh = self.drawn.as_ref().is_some_and(|(drawn, step, drawn_size)| {
+            Arc::ptr_eq(drawn, project) && *step == frame.step && *drawn_size == size
+        });
+        if !fresh && size[0] > 0 && size[1] > 0 {
+            self.painter.request(PaintRequest {
+                project: Arc::clone(project),
+                snapshot: Arc::clone(frame),
+                width: size[0],
+                height: size[1],
+            });
+            self.drawn = Some((Arc::clone(project), frame.step, size));
+        }
+    }
+
+    /// Loads again although the project has not changed: a file was picked that it could not reach before.
+    pub(crate) fn reload(&mut self, project: &Arc<Project>) {
+        self.simulated = Arc::clone(project);
+        self.worker.set_project(Arc::clone(project), self.access.clone());
+    }
+
+    fn take_scene(&mut self, scene: Arc<Scene>, problems: Vec<Problem>) {
+        let notes = |places: &[Place]| {
+            let noted = scene.notes.iter().filter(|note| places.contains(&note.place));
+            noted.map(|note| note.message.clone()).collect()
+        };
+        let style = &scene.style;
+        let (low, high) = style.guides.x.iter().zip(&style.guides.y).zip(&style.guides.z).fold(
+            ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]),
+            |(mut low, mut high), ((&x, &y), &z)| {
+                for (axis, v) in [x, y, z].into_iter().enumerate() {
+                    low[axis] = low[axis].min(v);
+                    high[axis] = high[axis].max(v);
+                }
+                (low, high)
+            },
+        );
+        self.hair = hair::Loaded {
+            counts: [style.wisps.len(), style.strands.count(), style.strands.segments()],
+            size_m: std::array::from_fn(|axis| (high[axis] - low[axis]).max(0.0)),
+            notes: notes(&[Place::Hair]),
+        };
+        let joints = lovelock_studio::motion::joint_paths(&scene.body.skeleton);
+        self.body = body::Loaded {
+            clips: scene.clips.iter().map(|clip| clip.name.clone()).collect(),
+            head: joints.get(scene.body.head_joint).cloned().unwrap_or_default(),
+            joints,
+            notes: notes(&[Place::Body, Place::Motion]),
+        };
+        self.problems = problems;
+        self.scene = Some(scene);
+    }
+}

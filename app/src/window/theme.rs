@@ -1,0 +1,72 @@
+//! Colours and spacing of the interface: the only place that names a colour.
+
+use egui::{Color32, CornerRadius, FontId, Margin, Stroke, TextStyle, Theme, Vec2, Visuals};
+
+/// What differs from its default, what is chosen, what runs.
+pub(crate) const ACCENT: Color32 = Color32::from_rgb(232, 164, 92);
+/// Text that matters less.
+pub(crate) const QUIET: Color32 = Color32::from_rgb(142, 146, 154);
+/// Something is wrong.
+pub(crate) const WRONG: Color32 = Color32::from_rgb(236, 106, 94);
+/// A recording runs.
+pub(crate) const RECORDING: Color32 = Color32::from_rgb(226, 72, 62);
+/// Behind everything.
+pub(crate) const PAGE: Color32 = Color32::from_rgb(19, 20, 23);
+const PANEL: Color32 = Color32::from_rgb(28, 30, 34);
+const RAISED: Color32 = Color32::from_rgb(44, 47, 53);
+const HOVERED: Color32 = Color32::from_rgb(58, 62, 70);
+const TEXT: Color32 = Color32::from_rgb(214, 216, 221);
+const LINE: Color32 = Color32::from_rgb(46, 49, 55);
+
+/// Colours of the lines in plots, told apart by those who see no red or green too (after Okabe and Ito).
+pub(crate) const PLOT: [Color32; 6] = [
+    Color32::from_rgb(230, 159, 0),
+    Color32::from_rgb(86, 180, 233),
+    Color32::from_rgb(0, 158, 115),
+    Color32::from_rgb(240, 228, 66),
+    Color32::from_rgb(213, 94, 0),
+    Color32::from_rgb(204, 121, 167),
+];
+
+/// Dresses `ctx`.
+pub(crate) fn apply(ctx: &egui::Context) {
+    ctx.set_theme(Theme::Dark);
+    let mut visuals = Visuals::dark();
+    visuals.panel_fill = PANEL;
+    visuals.window_fill = PANEL;
+    visuals.extreme_bg_color = PAGE;
+    visuals.faint_bg_color = RAISED;
+    visuals.override_text_color = Some(TEXT);
+    visuals.selection.bg_fill = ACCENT.gamma_multiply(0.45);
+    visuals.selection.stroke = Stroke::new(1.0, ACCENT);
+    visuals.hyperlink_color = ACCENT;
+    visuals.slider_trailing_fill = true;
+    visuals.widgets.noninteractive.bg_stroke = Stroke::new(1.0, LINE);
+    visuals.widgets.inactive.bg_fill = RAISED;
+    visuals.widgets.inactive.weak_bg_fill = RAISED;
+    visuals.widgets.hovered.bg_fill = HOVERED;
+    visuals.widgets.hovered.weak_bg_fill = HOVERED;
+    let round = CornerRadius::same(4);
+    for widget in [
+        &mut visuals.widgets.noninteractive,
+        &mut visuals.widgets.inactive,
+        &mut visuals.widgets.hovered,
+        &mut visuals.widgets.active,
+        &mut visuals.widgets.open,
+    ] {
+        widget.corner_radius = round;
+        widget.expansion = 0.0;
+    }
+    ctx.set_visuals_of(Theme::Dark, visuals);
+    ctx.all_styles_mut(|style| {
+        style.spacing.item_spacing = Vec2::new(6.0, 5.0);
+        style.spacing.slider_width = 96.0;
+        style.spacing.button_padding = Vec2::new(8.0, 3.0);
+        style.spacing.window_margin = Margin::same(10);
+        style.spacing.interact_size.y = 20.0;
+        style.text_styles.insert(TextStyle::Body, FontId::proportional(12.5));
+        style.text_styles.insert(TextStyle::Button, FontId::proportional(12.5));
+        style.text_styles.insert(TextStyle::Small, FontId::proportional(10.5));
+        style.text_styles.insert(TextStyle::Heading, FontId::proportional(14.0));
+    });
+}

@@ -1,0 +1,108 @@
+//! The picture, and what lies over it.
+
+use egui::{Align2, Color32, ColorImage, FontId, Rect, Response, Sense, TextureHandle, TextureOptions, Ui, Vec2, pos2};
+use lovelock_studio::Painted;
+
+use super::theme;
+
+/// The most pixels that are drawn for the window where the processor draws: pictures still come often enough to
+/// style by. A real card draws every pixel.
+const SOFTWARE_PIXELS: f32 = 640.0 * 400.0;
+
+/// The picture as a texture of the window.
+#[derive(Default)]
+pub(crate) struct Viewport {
+    texture: Option<TextureHandle>,
+    shown_step: Option<(u64, usize)>,
+    /// Size that pictures should have, pixels.
+    pub(crate) wanted: [u32; 2],
+}
+
+impl Viewport {
+    /// Shows the newest picture over the whole of `ui`. `software` says whether the processor draws, `scale` how
+    /// many pixels a pixel of the screen gets (0 chooses).
+    pub(crate) fn show(&mut self, ui: &mut Ui, painted: Option<&std::sync::Arc<Painted>>, software: bool, scale: f32) -> Response {
+        let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Viewport"));
+        self.wanted = size_for(rect.size(), ui.ctx().pixels_per_point(), software, scale);
+        if let Some(painted) = painted {
+            let key = (painted.step, std::sync::Arc::as_ptr(painted) as usize);
+            if self.shown_step != Some(key) && !painted.picture.rgba.is_empty() {
+                let size = [painted.picture.width as usize, painted.picture.height as usize];
+                let image = ColorImage::from_rgba_unmultiplied(size, &painted.picture.rgba);
+                match &mut self.texture {
+                    Some(texture) => texture.set(image, TextureOptions::LINEAR),
+                    None => self.texture = Some(ui.ctx().load_texture("picture", image, TextureOptions::LINEAR)),
+                }
+                self.shown_step = Some(key);
+            }
+        }
+        let painter = ui.painter_at(rect);
+        painter.rect_filled(rect, 0.0, theme::PAGE);
+        if let Some(texture) = &self.texture {
+            let place = fit(texture.size_vec2(), rect);
+            painter.image(texture.id(), place, Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)), Color32::WHITE);
+        } else {
+            painter.text(rect.center(), Align2::CENTER_CENTER, "Getting ready…", FontId::proportional(15.0), theme::QUIET);
+        }
+        response
+    }
+
+    /// A line in a corner of the picture.
+    pub(crate) fn caption(ui: &Ui, rect: Rect, align: Align2, text: &str, color: Color32) {
+        if text.is_empty() {
+            return;
+        }
+        let at = match align {
+            Align2::LEFT_BOTTOM => rect.left_bottom() + Vec2::new(10.0, -8.0),
+            Align2::RIGHT_TOP => rect.right_top() + Vec2::new(-10.0, 8.0),
+            _ => rect.left_top() + Vec2::new(10.0, 8.0),
+        };
+        let painter = ui.painter_at(rect);
+        let galley = painter.layout(text.to_owned(), FontId::proportional(11.5), color, rect.width() - 24.0);
+        let place = align.anchor_size(at, galley.size());
+        painter.rect_filled(place.expand(4.0), 4.0, theme::PAGE.gamma_multiply(0.6));
+        painter.galley(place.min, galley, color);
+    }
+}
+
+/// Pixels for a viewport of `size` points.
+fn size_for(size: Vec2, pixels_per_point: f32, software: bool, scale: f32) -> [u32; 2] {
+    let pixels = size * pixels_per_point;
+    let scale = if scale > 0.0 {
+        scale
+    } else if software {
+        (SOFTWARE_PIXELS / (pixels.x * pixels.y).max(1.0)).sqrt().min(1.0)
+    } else {
+        1.0
+    };
+    let side = |v: f32| if v.is_finite() { (v * scale).round().clamp(16.0, 8192.0) as u32 } else { 16 };
+    [side(pixels.x), side(pixels.y)]
+}
+
+/// The largest place in `rect` of the proportions of `size`, in its middle.
+fn fit(size: Vec2, rect: Rect) -> Rect {
+    let scale = (rect.width() / size.x.max(1.0)).min(rect.height() / size.y.max(1.0));
+    Rect::from_center_size(rect.center(), size * scale)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_processor_draws_fewer_pixels_of_the_same_shape() {
+        let [w, h] = size_for(Vec2::new(1280.0, 800.0), 1.0, true, 0.0);
+        assert!((w * h) as f32 <= SOFTWARE_PIXELS * 1.01);
+        assert!((w as f32 / h as f32 - 1.6).abs() < 0.01);
+        assert_eq!(size_for(Vec2::new(1280.0, 800.0), 2.0, false, 0.0), [2560, 1600]);
+        assert_eq!(size_for(Vec2::new(100.0, 50.0), 1.0, true, 0.5), [50, 25]);
+        assert_eq!(size_for(Vec2::new(f32::NAN, 0.0), 1.0, false, 0.0)[1], 16);
+    }
+
+    #[test]
+    fn a_picture_keeps_its_proportions() {
+        let place = fit(Vec2::new(200.0, 100.0), Rect::from_min_size(pos2(0.0, 0.0), Vec2::new(400.0, 400.0)));
+        assert_eq!(place.size(), Vec2::new(400.0, 200.0));
+    }
+}
