@@ -82,7 +82,7 @@ impl SceneLoader {
         control.at("loading the motion", 0.3)?;
         let motion = self.motion(&project, access, &body, &mut problems)?;
         control.at("making the hair", 0.5)?;
-        let hair = self.hair(&project, access, &body, &mut problems)?;
+        let hair = self.hair(&project, access, &body, &mut problems);
         control.at("following the head", 0.9)?;
         let looping = project.motion.looping;
         let head_path = self.head_path(&body, &motion, looping);
@@ -177,13 +177,13 @@ impl SceneLoader {
         access: &Access,
         body: &Arc<BodyPart>,
         problems: &mut Vec<Problem>,
-    ) -> Result<Arc<HairPart>, StudioError> {
+    ) -> Arc<HairPart> {
         let wanted = HairKey::of(&project.hair, access);
         if let (Ok(key), Some(kept)) = (&wanted, &self.hair)
             && kept.key == *key
             && kept.body.as_ref().is_some_and(|of| Arc::ptr_eq(of, body))
         {
-            return Ok(Arc::clone(&kept.part));
+            return Arc::clone(&kept.part);
         }
         let mut cache = self.hair_file.take();
         let loaded = wanted.and_then(|key| key.load(body, &mut cache).map(|part| (key, part)));
@@ -192,18 +192,20 @@ impl SceneLoader {
             (Ok(loaded), _) => loaded,
             (Err(problem), Some(kept)) => {
                 problems.push(problem.but("the hair before stays"));
-                return Ok(Arc::clone(&kept.part));
+                return Arc::clone(&kept.part);
             }
             (Err(problem), None) => {
-                problems.push(problem.but("the grown hairstyle is shown instead"));
                 let key = HairKey::grown(&project.hair);
-                let part = key.load(body, &mut None).map_err(StudioError::work)?;
-                (key, part)
+                let grown = key.load(body, &mut None);
+                let instead =
+                    if grown.is_ok() { "the grown hairstyle is shown instead" } else { "no hair is shown" };
+                problems.push(problem.but(instead));
+                (key, grown.unwrap_or_else(|_| HairPart::bald(body)))
             }
         };
         let part = Arc::new(part);
         self.hair = Some(Kept { key, body: Some(Arc::clone(body)), part: Arc::clone(&part) });
-        Ok(part)
+        part
     }
 
     fn head_path(&mut self, body: &BodyPart, motion: &Arc<MotionPart>, looping: bool) -> Arc<HeadPath> {

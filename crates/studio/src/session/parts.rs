@@ -5,7 +5,8 @@ use std::sync::Arc;
 use std::time::SystemTime;
 
 use lovelock_groom::{
-    GroomSettings, HairFile, HairLook, Hairstyle, ImportSettings, Scalp, grow, import_around, load_hair,
+    GroomSettings, Guides, HairFile, HairLook, Hairstyle, ImportSettings, Scalp, StrandSet, grow,
+    import_around, load_hair,
 };
 use lovelock_motion::{
     Body, BodySettings, Character, Clip, Collider, MotionSettings, RestDistance, Skeleton, fit_colliders,
@@ -98,12 +99,7 @@ impl BodyKey {
             }
         }
         let head = head_mesh(&body);
-        if head.triangles.is_empty() {
-            let message =
-                format!("{}: the joint of the head moves no surface; pick another joint", body.name);
-            return Err(Problem::not_loaded(Place::Body, message));
-        }
-        if head.scalp_is_guessed {
+        if head.scalp_is_guessed && !head.triangles.is_empty() {
             let message =
                 "the file says nothing about the hairline; it is a guess from the shape of the head";
             notes.push(Problem::new(Place::Body, ProblemKind::Note, message));
@@ -242,6 +238,20 @@ pub(super) struct HairPart {
     pub(super) notes: Vec<Problem>,
 }
 
+impl HairPart {
+    /// No hair at all, where none can grow.
+    pub(super) fn bald(part: &BodyPart) -> Self {
+        let style = Hairstyle {
+            name: "none".to_owned(),
+            scalp: (*part.scalp).clone(),
+            guides: Guides { points_per_guide: 2, ..Guides::default() },
+            strands: StrandSet { first_point: vec![0], ..StrandSet::default() },
+            ..Hairstyle::default()
+        };
+        Self { style: Arc::new(style), notes: Vec::new() }
+    }
+}
+
 /// The hair file that was read last: other settings of import need not read it again.
 pub(super) type HairFileCache = Option<(Stamp, Arc<HairFile>)>;
 
@@ -265,6 +275,15 @@ impl HairKey {
 
     pub(super) fn load(&self, part: &BodyPart, cache: &mut HairFileCache) -> Result<HairPart, Problem> {
         let refuse = |error: &dyn std::fmt::Display| Problem::not_loaded(Place::Hair, error);
+        if part.scalp.triangles.is_empty() {
+            let body = &part.body;
+            let joint = body.skeleton.joints.get(body.head_joint).map_or("none", |joint| &joint.name);
+            let message = format!(
+                "the joint of the head (`{joint}`) moves no surface of {}, so no hair can grow there; pick another joint",
+                body.name
+            );
+            return Err(refuse(&message));
+        }
         let (style, notes) = match self {
             Self::Grown(settings) => {
                 let style = grow(settings, &part.scalp, &*part.obstacle).map_err(|error| refuse(&error))?;

@@ -259,6 +259,23 @@ fn a_project_whose_files_are_all_missing_still_dances() {
 }
 
 #[test]
+fn a_head_without_a_surface_stays_bald_and_says_why() {
+    let mut part = super::parts::BodyKey::dancer().load().expect("the dancer");
+    part.scalp = Arc::default();
+    let key = super::parts::HairKey::grown(&small_project().hair);
+    let problem = key.load(&part, &mut None).expect_err("nothing to grow on");
+    assert!(problem.message.contains("moves no surface"), "{problem}");
+    let style = super::parts::HairPart::bald(&part).style;
+    style.check().expect("whole");
+    let scene = Arc::new(Scene { style, ..(*scene()).clone() });
+    let mut engine = Engine::new(scene, SimulationSettings::default());
+    engine.advance_to_step(3);
+    let mut strands = lovelock_groom::Strands::default();
+    engine.snapshot().interpolate(&mut strands);
+    assert_eq!((strands.count(), strands.points()), (0, 0));
+}
+
+#[test]
 fn a_clip_that_is_not_there_is_named_with_those_that_are() {
     let mut project = small_project();
     project.motion.clip = "polka".to_owned();
