@@ -20,11 +20,21 @@ use crate::{Guides, Wisp};
 pub struct WispCurve {
     /// Control points of the three guides side by side, one a guide point.
     controls: Vec<[Vec3A; 3]>,
-    /// Unit normal of the frame, one a guide point.
-    pub(crate) normals: Vec<Vec3A>,
-    /// Unit tangent of the frame, one a guide point.
-    pub(crate) tangents: Vec<Vec3A>,
+    /// The frame along each link.
+    links: Vec<Link>,
 }
+
+/// The frame's tangent and normal at the root end of a link, and how they change to its tip end.
+#[derive(Clone, Copy, Debug)]
+struct Link {
+    tangent: [f32; 3],
+    tangent_change: [f32; 3],
+    normal: [f32; 3],
+    normal_change: [f32; 3],
+}
+
+/// One value a lane for each of x, y, z.
+pub(crate) type Lanes<const N: usize> = [[f32; N]; 3];
 
 impl WispCurve {
     /// The curve of `wisp` at rest, in head space.
@@ -43,31 +53,25 @@ impl WispCurve {
         assert!(points >= 2, "a guide needs at least 2 points");
         let guides = wisp.guides.map(|g| g as usize);
         self.controls.clear();
-        self.controls
-            .extend((0..points).map(|p| guides.map(|g| Vec3A::from(moved.point(g, p)))));
+        self.controls.extend((0..points).map(|p| guides.map(|g| Vec3A::from(moved.point(g, p)))));
 
         let mean = |p: usize| (self.controls[p][0] + self.controls[p][1] + self.controls[p][2]) / 3.0;
-        let rest_mean = |p: usize| {
-            guides
-                .iter()
-                .map(|&g| Vec3A::from(rest.point(g, p)))
-                .sum::<Vec3A>()
-                / 3.0
-        };
+        let rest_mean = |p: usize| guides.iter().map(|&g| Vec3A::from(rest.point(g, p))).sum::<Vec3A>() / 3.0;
         let root_tangent = (rest_mean(1) - rest_mean(0)).normalize_or(Vec3A::Y);
         let mut tangent = world_from_head.transform_vector3a(root_tangent);
         let mut normal = world_from_head.transform_vector3a(reference_normal(root_tangent));
-        self.tangents.clear();
-        self.normals.clear();
-        self.tangents.push(tangent);
-        self.normals.push(normal);
+        self.links.clear();
         for p in 1..points {
             let chord = mean((p + 1).min(points - 1)) - mean(p - 1);
             let next = chord.normalize_or(tangent);
-            normal = transport(normal, tangent, next);
-            tangent = next;
-            self.tangents.push(tangent);
-            self.normals.push(normal);
+            let turned = transport(normal, tangent, next);
+            self.links.push(Link {
+                tangent: tangent.to_array(),
+                tangent_change: (next - tangent).to_array(),
+                normal: normal.to_array(),
+                normal_change: (turned - normal).to_array(),
+            });
+            (tangent, normal) = (next, turned);
         }
     }
 
@@ -78,21 +82,23 @@ impl WispCurve {
 
     /// The guides' curves at `u` (in links, clamped to the curve), blended by `weights`; metres.
     pub fn blend(&self, weights: [f32; 3], u: f32) -> Vec3 {
-        let last = self.controls.len() - 1;
-        let (p, t) = locate(u, last);
+        let (p, t) = locate(u, self.links.len());
         let at = |i: usize| mix(&self.controls[i], weights);
         let (a, b) = (at(p), at(p + 1));
         let before = if p > 0 { at(p - 1) } else { 2.0 * a - b };
-        let after = if p + 2 <= last { at(p + 2) } else { 2.0 * b - a };
-        catmull_rom([before, a, b, after], t).into()
+        let after = if p + 1 < self.links.len() { at(p + 2) } else { 2.0 * b - a };
+        let four = [before, a, b, after].map(|c| c.to_array());
+        let [[x], [y], [z]] = catmull_rom(&four, [0], [t]);
+        Vec3::new(x, y, z)
     }
 
-    /// The frame at `u`: an exactly orthonormal, right-handed matrix of columns normal, binormal, tangent, whose
-    /// transpose turns a displacement into an offset.
+    /// The frame at `u`: an orthonormal, right-handed matrix of columns normal, binormal, tangent, whose transpose
+    /// turns a displacement into an offset.
     pub fn frame(&self, u: f32) -> Mat3 {
-        let (p, t) = locate(u, self.controls.len() - 1);
-        let (normal, binormal, tangent) = self.axes(p, t);
-        Mat3::from_cols(normal.into(), binormal.into(), tangent.into())
+        let (p, t) = locate(u, self.links.len());
+        let axes = self.axes([p], [t]);
+        let column = |[[x], [y], [z]]: Lanes<1>| Vec3::new(x, y, z);
+        Mat3::from_cols(column(axes[0]), column(axes[1]), column(axes[2]))
     }
 
     /// A strand's point: `blend(weights, u) + frame(u) * offset`.
@@ -105,42 +111,82 @@ impl WispCurve {
         self.frame(u).transpose() * (point - self.blend(weights, u))
     }
 
-    /// Control points blended by `weights` into `out`, with the phantom points before and after.
-    pub(crate) fn blend_controls(&self, weights: [f32; 3], out: &mut Vec<Vec3A>) {
+    /// Control points blended by `weights` into `out`, with the phantom points before and after: those of link `p`
+    /// are `p` to `p + 3`.
+    pub(crate) fn blend_controls(&self, weights: [f32; 3], out: &mut Vec<[f32; 3]>) {
+        let at = |i: usize| mix(&self.controls[i], weights);
+        let last = self.controls.len() - 1;
         out.clear();
-        out.push(Vec3A::ZERO);
-        out.extend(self.controls.iter().map(|c| mix(c, weights)));
-        let n = out.len();
-        out[0] = 2.0 * out[1] - out[2];
-        out.push(2.0 * out[n - 1] - out[n - 2]);
+        out.push((2.0 * at(0) - at(1)).to_array());
+        out.extend(self.controls.iter().map(|c| mix(c, weights).to_array()));
+        out.push((2.0 * at(last) - at(last - 1)).to_array());
     }
 
-    /// Normal, binormal, tangent at the fraction `t` of link `p`.
+    /// Normals, binormals and tangents at the fractions `t` of the links `p`.
     #[inline]
-    pub(crate) fn axes(&self, p: usize, t: f32) -> (Vec3A, Vec3A, Vec3A) {
-        orthonormal(
-            self.tangents[p] + (self.tangents[p + 1] - self.tangents[p]) * t,
-            self.normals[p] + (self.normals[p + 1] - self.normals[p]) * t,
-        )
+    pub(crate) fn axes<const N: usize>(&self, p: [usize; N], t: [f32; N]) -> [Lanes<N>; 3] {
+        let mut tangent = [[0.0; N]; 3];
+        let mut normal = [[0.0; N]; 3];
+        let mut tangent_change = [[0.0; N]; 3];
+        let mut normal_change = [[0.0; N]; 3];
+        for lane in 0..N {
+            let link = &self.links[p[lane]];
+            for axis in 0..3 {
+                tangent[axis][lane] = link.tangent[axis];
+                tangent_change[axis][lane] = link.tangent_change[axis];
+                normal[axis][lane] = link.normal[axis];
+                normal_change[axis][lane] = link.normal_change[axis];
+            }
+        }
+        for axis in 0..3 {
+            for lane in 0..N {
+                tangent[axis][lane] += tangent_change[axis][lane] * t[lane];
+                normal[axis][lane] += normal_change[axis][lane] * t[lane];
+            }
+        }
+        orthonormal(tangent, normal)
     }
 }
 
-/// The link and the fraction of it at parameter `u` of a curve of `last` links.
+/// The link and the fraction of it at parameter `u` of a curve of `links` links.
 #[inline]
-pub(crate) fn locate(u: f32, last: usize) -> (usize, f32) {
-    let u = u.max(0.0).min(last as f32);
-    let p = (u as usize).min(last - 1);
-    (p, u - p as f32)
+pub(crate) fn locate(u: f32, links: usize) -> (usize, f32) {
+    let u = u.max(0.0).min(links as f32);
+    let p = (u as i32).min(links as i32 - 1);
+    (p as usize, u - p as f32)
 }
 
-/// A point of the uniform Catmull-Rom segment between `c[1]` and `c[2]`.
+/// Points of the uniform Catmull-Rom segments between `controls[p + 1]` and `controls[p + 2]`, at the fractions `t`.
 #[inline]
-pub(crate) fn catmull_rom(c: [Vec3A; 4], t: f32) -> Vec3A {
-    let (t2, t3) = (t * t, t * t * t);
-    c[0] * (-0.5 * t + t2 - 0.5 * t3)
-        + c[1] * (1.0 - 2.5 * t2 + 1.5 * t3)
-        + c[2] * (0.5 * t + 2.0 * t2 - 1.5 * t3)
-        + c[3] * (0.5 * t3 - 0.5 * t2)
+pub(crate) fn catmull_rom<const N: usize>(controls: &[[f32; 3]], p: [usize; N], t: [f32; N]) -> Lanes<N> {
+    let mut c = [[[0.0; N]; 3]; 4];
+    for lane in 0..N {
+        let four = &controls[p[lane]..p[lane] + 4];
+        for (k, control) in four.iter().enumerate() {
+            for axis in 0..3 {
+                c[k][axis][lane] = control[axis];
+            }
+        }
+    }
+    let mut basis = [[0.0; N]; 4];
+    for lane in 0..N {
+        let t = t[lane];
+        let (t2, t3) = (t * t, t * t * t);
+        basis[0][lane] = -0.5 * t + t2 - 0.5 * t3;
+        basis[1][lane] = 1.0 - 2.5 * t2 + 1.5 * t3;
+        basis[2][lane] = 0.5 * t + 2.0 * t2 - 1.5 * t3;
+        basis[3][lane] = 0.5 * t3 - 0.5 * t2;
+    }
+    let mut point = [[0.0; N]; 3];
+    for axis in 0..3 {
+        for lane in 0..N {
+            point[axis][lane] = c[0][axis][lane] * basis[0][lane]
+                + c[1][axis][lane] * basis[1][lane]
+                + c[2][axis][lane] * basis[2][lane]
+                + c[3][axis][lane] * basis[3][lane];
+        }
+    }
+    point
 }
 
 #[inline]
@@ -148,30 +194,50 @@ fn mix(controls: &[Vec3A; 3], w: [f32; 3]) -> Vec3A {
     controls[0] * w[0] + controls[1] * w[1] + controls[2] * w[2]
 }
 
-/// Gram-Schmidt: unit normal, binormal and tangent. Interpolated tangents and normals of neighbouring guide
-/// points vanish only where a guide folds back on itself; the axes are finite even there.
+/// Gram-Schmidt: unit normals, binormals and tangents. What is interpolated between neighbouring guide points
+/// vanishes only where a guide folds back on itself; the axes are finite and orthonormal even there.
 #[inline]
-fn orthonormal(tangent: Vec3A, normal: Vec3A) -> (Vec3A, Vec3A, Vec3A) {
-    let tt = tangent.dot(tangent);
-    if tt < 1e-12 {
-        return folded(normal);
+fn orthonormal<const N: usize>(mut tangent: Lanes<N>, mut normal: Lanes<N>) -> [Lanes<N>; 3] {
+    let mut binormal = [[0.0; N]; 3];
+    let mut smallest = [0.0; N];
+    for lane in 0..N {
+        let [x, y, z] = [tangent[0][lane], tangent[1][lane], tangent[2][lane]];
+        let squared = x * x + y * y + z * z;
+        let scale = 1.0 / squared.sqrt();
+        let [x, y, z] = [x * scale, y * scale, z * scale];
+        let [nx, ny, nz] = [normal[0][lane], normal[1][lane], normal[2][lane]];
+        let along = nx * x + ny * y + nz * z;
+        let [nx, ny, nz] = [nx - along * x, ny - along * y, nz - along * z];
+        let across = nx * nx + ny * ny + nz * nz;
+        let scale = 1.0 / across.sqrt();
+        let [nx, ny, nz] = [nx * scale, ny * scale, nz * scale];
+        for (axis, value) in [x, y, z].into_iter().enumerate() {
+            tangent[axis][lane] = value;
+        }
+        for (axis, value) in [nx, ny, nz].into_iter().enumerate() {
+            normal[axis][lane] = value;
+        }
+        for (axis, value) in [y * nz - z * ny, z * nx - x * nz, x * ny - y * nx].into_iter().enumerate() {
+            binormal[axis][lane] = value;
+        }
+        smallest[lane] = squared.min(across);
     }
-    let tangent = tangent * (1.0 / tt.sqrt());
-    let across = normal - tangent * normal.dot(tangent);
-    let nn = across.dot(across);
-    if nn < 1e-12 {
-        return folded(tangent);
+    // Also true of a lane that is not a number.
+    if !smallest.iter().all(|&s| s > 1e-12) {
+        for lane in (0..N).filter(|&lane| smallest[lane].is_nan() || smallest[lane] <= 1e-12) {
+            let given = Vec3A::new(tangent[0][lane], tangent[1][lane], tangent[2][lane]);
+            let along = given.normalize_or(Vec3A::Y);
+            let across = reference_normal(along);
+            for (axes, made) in
+                [(&mut normal, across), (&mut binormal, along.cross(across)), (&mut tangent, along)]
+            {
+                for axis in 0..3 {
+                    axes[axis][lane] = made[axis];
+                }
+            }
+        }
     }
-    let normal = across * (1.0 / nn.sqrt());
-    (normal, tangent.cross(normal), tangent)
-}
-
-/// Any orthonormal axes for the degenerate middle of a fold, about `axis` where it has a length.
-#[cold]
-fn folded(axis: Vec3A) -> (Vec3A, Vec3A, Vec3A) {
-    let tangent = axis.normalize_or(Vec3A::Y);
-    let normal = reference_normal(tangent);
-    (normal, tangent.cross(normal), tangent)
+    [normal, binormal, tangent]
 }
 
 /// A unit vector square to the unit vector `tangent`, made from the axis least along it.
@@ -191,10 +257,7 @@ pub(crate) fn reference_normal(tangent: Vec3A) -> Vec3A {
 /// `to`. Where they oppose, the rotation is the half turn about the normal itself.
 pub(crate) fn transport(normal: Vec3A, from: Vec3A, to: Vec3A) -> Vec3A {
     let one_plus_cos = 1.0 + from.dot(to);
-    let turned = if one_plus_cos > 1e-6 {
-        normal - (from + to) * (normal.dot(to) / one_plus_cos)
-    } else {
-        normal
-    };
+    let turned =
+        if one_plus_cos > 1e-6 { normal - (from + to) * (normal.dot(to) / one_plus_cos) } else { normal };
     (turned - to * turned.dot(to)).normalize_or(reference_normal(to))
 }

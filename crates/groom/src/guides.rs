@@ -32,11 +32,7 @@ impl Guides {
 
     /// Appends one guide. `points` must hold `points_per_guide` points.
     pub fn push(&mut self, points: &[Vec3]) {
-        assert_eq!(
-            points.len(),
-            self.points_per_guide,
-            "a guide of the wrong number of points"
-        );
+        assert_eq!(points.len(), self.points_per_guide, "a guide of the wrong number of points");
         for p in points {
             self.x.push(p.x);
             self.y.push(p.y);
@@ -66,10 +62,6 @@ impl GuideFrame {
             let p = world_from_head.transform_point3(Vec3::new(guides.x[i], guides.y[i], guides.z[i]));
             (placed.x[i], placed.y[i], placed.z[i]) = (p.x, p.y, p.z);
         }
-        Self {
-            time_secs,
-            world_from_head,
-            guides: placed,
-        }
+        Self { time_secs, world_from_head, guides: placed }
     }
 }

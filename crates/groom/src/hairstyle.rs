@@ -124,11 +124,7 @@ impl Hairstyle {
         if set.first_point[0] != 0 || set.first_point[count] as usize != points {
             return Err(HairstyleError::Length("first_point"));
         }
-        if let Some(bad) = set
-            .first_point
-            .windows(2)
-            .position(|w| w[1] < w[0].saturating_add(2))
-        {
+        if let Some(bad) = set.first_point.windows(2).position(|w| w[1] < w[0].saturating_add(2)) {
             return Err(HairstyleError::Strand(bad));
         }
         let mut next = 0;
@@ -143,10 +139,6 @@ impl Hairstyle {
             }
             next = strands.end;
         }
-        if next == count {
-            Ok(())
-        } else {
-            Err(HairstyleError::Strand(next))
-        }
+        if next == count { Ok(()) } else { Err(HairstyleError::Strand(next)) }
     }
 }

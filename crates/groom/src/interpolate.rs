@@ -1,13 +1,14 @@
 //! From guides to strands: the stage of every frame between the simulator and the picture.
 
 use std::cell::RefCell;
+use std::ops::Range;
 use std::sync::Arc;
 
-use glam::Vec3A;
+use crate::frame::{Lanes, WispCurve, catmull_rom, locate};
+use crate::{GuideFrame, Hairstyle, StrandSet, Strands, Wisp};
 
-use crate::frame::{WispCurve, catmull_rom, locate};
-use crate::{GuideFrame, Hairstyle, Strands, Wisp};
-
+/// Points that are moved side by side, in the lanes of vector instructions.
+const LANES: usize = 8;
 /// Points below which a run of wisps is not worth handing to another thread.
 const POINTS_PER_TASK: usize = 4096;
 
@@ -16,7 +17,7 @@ const POINTS_PER_TASK: usize = 4096;
 struct Scratch {
     curve: WispCurve,
     /// Blended control points of the strand at hand, phantoms included.
-    controls: Vec<Vec3A>,
+    controls: Vec<[f32; 3]>,
 }
 
 thread_local! {
@@ -40,11 +41,7 @@ pub fn interpolate(style: &Hairstyle, frame: &GuideFrame, strands: &mut Strands)
     for axis in [&mut strands.x, &mut strands.y, &mut strands.z] {
         axis.resize(points, 0.0);
     }
-    let out = Slices {
-        x: &mut strands.x,
-        y: &mut strands.y,
-        z: &mut strands.z,
-    };
+    let out = Slices { x: &mut strands.x, y: &mut strands.y, z: &mut strands.z };
     run(style, frame, &style.wisps, 0, out);
 }
 
@@ -83,10 +80,7 @@ fn run(style: &Hairstyle, frame: &GuideFrame, wisps: &[Wisp], start: usize, out:
     let (left, right) = wisps.split_at(low);
     let cut = first_point_of(low);
     let (out_left, out_right) = out.split_at(cut - start);
-    rayon::join(
-        || run(style, frame, left, start, out_left),
-        || run(style, frame, right, cut, out_right),
-    );
+    rayon::join(|| run(style, frame, left, start, out_left), || run(style, frame, right, cut, out_right));
 }
 
 fn wisps_into(
@@ -99,35 +93,68 @@ fn wisps_into(
 ) {
     let set = &style.strands;
     let Slices { x, y, z } = out;
-    let last = style.guides.points_per_guide.saturating_sub(1);
     for wisp in wisps.iter().filter(|w| w.strand_count > 0) {
-        scratch
-            .curve
-            .place(&style.guides, wisp, &frame.guides, frame.world_from_head);
+        scratch.curve.place(&style.guides, wisp, &frame.guides, frame.world_from_head);
         let first = wisp.first_strand as usize;
         for strand in first..first + wisp.strand_count as usize {
-            scratch
-                .curve
-                .blend_controls(set.weights[strand], &mut scratch.controls);
-            let range = set.first_point[strand] as usize..set.first_point[strand + 1] as usize;
-            let placed = range.start - start..range.end - start;
-            let from = set.guide_param[range.clone()]
-                .iter()
-                .zip(&set.offset_normal[range.clone()])
-                .zip(&set.offset_binormal[range.clone()])
-                .zip(&set.offset_tangent[range]);
-            let to = x[placed.clone()]
-                .iter_mut()
-                .zip(&mut y[placed.clone()])
-                .zip(&mut z[placed]);
-            for ((((&u, &along_normal), &along_binormal), &along_tangent), ((x, y), z)) in from.zip(to) {
-                let (p, t) = locate(u, last);
-                let c: &[Vec3A; 4] = scratch.controls[p..p + 4].try_into().expect("four controls");
-                let (normal, binormal, tangent) = scratch.curve.axes(p, t);
-                let point = catmull_rom(*c, t)
-                    + (normal * along_normal + binormal * along_binormal + tangent * along_tangent);
-                (*x, *y, *z) = (point.x, point.y, point.z);
+            scratch.curve.blend_controls(set.weights[strand], &mut scratch.controls);
+            let (begin, end) = (set.first_point[strand] as usize, set.first_point[strand + 1] as usize);
+            let mut from = begin;
+            while from < end {
+                // The last block of a strand begins early enough to be whole, and makes some points again.
+                let block = if end - begin >= LANES { from.min(end - LANES) } else { from };
+                let range = block..end.min(block + LANES);
+                let points = block_of(&scratch.curve, &scratch.controls, set, range.clone());
+                let placed = range.start - start..range.end - start;
+                store(&mut x[placed.clone()], &points[0]);
+                store(&mut y[placed.clone()], &points[1]);
+                store(&mut z[placed], &points[2]);
+                from = block + LANES;
             }
         }
+    }
+}
+
+/// The points of `range`, at most [`LANES`] of one strand.
+#[inline]
+fn block_of(curve: &WispCurve, controls: &[[f32; 3]], set: &StrandSet, range: Range<usize>) -> Lanes<LANES> {
+    let links = curve.points_per_guide() - 1;
+    let u = load(&set.guide_param[range.clone()]);
+    let mut p = [0; LANES];
+    let mut t = [0.0; LANES];
+    for lane in 0..LANES {
+        (p[lane], t[lane]) = locate(u[lane], links);
+    }
+    let [normal, binormal, tangent] = curve.axes(p, t);
+    let mut point = catmull_rom(controls, p, t);
+    let along_normal = load(&set.offset_normal[range.clone()]);
+    let along_binormal = load(&set.offset_binormal[range.clone()]);
+    let along_tangent = load(&set.offset_tangent[range]);
+    for axis in 0..3 {
+        for lane in 0..LANES {
+            point[axis][lane] += normal[axis][lane] * along_normal[lane]
+                + binormal[axis][lane] * along_binormal[lane]
+                + tangent[axis][lane] * along_tangent[lane];
+        }
+    }
+    point
+}
+
+/// Up to [`LANES`] values, with zeros after them.
+#[inline]
+fn load(values: &[f32]) -> [f32; LANES] {
+    <[f32; LANES]>::try_from(values).unwrap_or_else(|_| {
+        let mut all = [0.0; LANES];
+        all[..values.len()].copy_from_slice(values);
+        all
+    })
+}
+
+/// The first of `values`, as many as fit.
+#[inline]
+fn store(to: &mut [f32], values: &[f32; LANES]) {
+    match <&mut [f32; LANES]>::try_from(&mut *to) {
+        Ok(whole) => *whole = *values,
+        Err(_) => to.copy_from_slice(&values[..to.len()]),
     }
 }

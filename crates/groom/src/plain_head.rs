@@ -40,11 +40,7 @@ impl PlainHead {
             let polar = (ring as f32 / rings as f32) * 2.35;
             for i in 0..across {
                 let azimuth = (i as f32 / across as f32) * std::f32::consts::TAU;
-                let out = Vec3::new(
-                    polar.sin() * azimuth.sin(),
-                    polar.cos(),
-                    polar.sin() * azimuth.cos(),
-                );
+                let out = Vec3::new(polar.sin() * azimuth.sin(), polar.cos(), polar.sin() * azimuth.cos());
                 let p = self.surface_along(out);
                 scalp.positions.push(p);
                 scalp.normals.push(self.distance(p).1);
@@ -88,11 +84,7 @@ impl PlainHead {
 fn hair_mask(p: Vec3) -> f32 {
     let from_centre = p - PlainHead::CENTRE;
     let degrees = from_centre.x.abs().atan2(from_centre.z).to_degrees();
-    let next = HAIRLINE
-        .iter()
-        .position(|&(angle, _)| angle >= degrees)
-        .unwrap_or(HAIRLINE.len() - 1)
-        .max(1);
+    let next = HAIRLINE.iter().position(|&(angle, _)| angle >= degrees).unwrap_or(HAIRLINE.len() - 1).max(1);
     let ((a0, y0), (a1, y1)) = (HAIRLINE[next - 1], HAIRLINE[next]);
     let line = y0 + (y1 - y0) * ((degrees - a0) / (a1 - a0)).clamp(0.0, 1.0);
     let t = ((p.y - line) / 0.008 + 0.5).clamp(0.0, 1.0);
@@ -103,40 +95,16 @@ impl Obstacle for PlainHead {
     fn distance(&self, p: Vec3) -> (f32, Vec3) {
         let mirrored = Vec3::new(p.x.abs(), p.y, p.z);
         let sign = if p.x < 0.0 { -1.0 } else { 1.0 };
-        let cranium = ellipsoid(
-            mirrored,
-            Vec3::new(0.0, 0.122, -0.005),
-            Vec3::new(0.0775, 0.093, 0.0975),
-        );
-        let face = ellipsoid(
-            mirrored,
-            Vec3::new(0.0, 0.062, 0.030),
-            Vec3::new(0.058, 0.077, 0.058),
-        );
-        let ear = ellipsoid(
-            mirrored,
-            Vec3::new(0.0745, 0.098, -0.008),
-            Vec3::new(0.010, 0.031, 0.018),
-        );
-        let neck = capsule(
-            mirrored,
-            Vec3::new(0.0, 0.05, -0.020),
-            Vec3::new(0.0, -0.10, -0.035),
-            0.054,
-        );
-        let shoulder = capsule(
-            mirrored,
-            Vec3::new(0.0, -0.135, -0.035),
-            Vec3::new(0.165, -0.165, -0.035),
-            0.055,
-        );
-        let chest = ellipsoid(
-            mirrored,
-            Vec3::new(0.0, -0.32, -0.02),
-            Vec3::new(0.165, 0.24, 0.115),
-        );
+        let cranium = ellipsoid(mirrored, Vec3::new(0.0, 0.122, -0.005), Vec3::new(0.0775, 0.093, 0.0975));
+        let face = ellipsoid(mirrored, Vec3::new(0.0, 0.062, 0.030), Vec3::new(0.058, 0.077, 0.058));
+        let ear = ellipsoid(mirrored, Vec3::new(0.0745, 0.098, -0.008), Vec3::new(0.010, 0.031, 0.018));
+        let neck = capsule(mirrored, Vec3::new(0.0, 0.05, -0.020), Vec3::new(0.0, -0.10, -0.035), 0.054);
+        let shoulder =
+            capsule(mirrored, Vec3::new(0.0, -0.135, -0.035), Vec3::new(0.165, -0.165, -0.035), 0.055);
+        let arm = capsule(mirrored, Vec3::new(0.165, -0.165, -0.035), Vec3::new(0.20, -0.45, -0.045), 0.046);
+        let chest = ellipsoid(mirrored, Vec3::new(0.0, -0.32, -0.02), Vec3::new(0.165, 0.24, 0.115));
         let head = blend(blend(cranium, face, 0.03), ear, 0.004);
-        let trunk = blend(shoulder, chest, 0.04);
+        let trunk = blend(blend(shoulder, arm, 0.02), chest, 0.04);
         let (distance, normal) = blend(blend(head, neck, 0.02), blend(trunk, neck, 0.05), 0.01);
         let normal = normal.normalize_or(Vec3::Y);
         (distance, Vec3::new(normal.x * sign, normal.y, normal.z))

@@ -63,25 +63,15 @@ impl Scalp {
     pub fn check(&self) -> Result<(), ScalpError> {
         let (positions, normals, mask) = (self.positions.len(), self.normals.len(), self.mask.len());
         if normals != positions || mask != positions {
-            return Err(ScalpError::Lengths {
-                positions,
-                normals,
-                mask,
-            });
+            return Err(ScalpError::Lengths { positions, normals, mask });
         }
-        if let Some(bad) = self
-            .triangles
-            .iter()
-            .position(|t| t.iter().any(|&v| v as usize >= positions))
-        {
+        if let Some(bad) = self.triangles.iter().position(|t| t.iter().any(|&v| v as usize >= positions)) {
             return Err(ScalpError::Index(bad));
         }
         let finite = |v: usize| {
             self.positions[v].is_finite() && self.normals[v].is_finite() && self.mask[v].is_finite()
         };
-        (0..positions)
-            .find(|&v| !finite(v))
-            .map_or(Ok(()), |v| Err(ScalpError::NotFinite(v)))
+        (0..positions).find(|&v| !finite(v)).map_or(Ok(()), |v| Err(ScalpError::NotFinite(v)))
     }
 
     /// The point of triangle `triangle` with barycentric coordinates `b`, which sum to 1.
@@ -104,9 +94,7 @@ impl Scalp {
 
     /// The area whose mask is at least `hairline`, square metres, to the precision of its triangles.
     pub fn hairy_area(&self, hairline: f32) -> f32 {
-        (0..self.triangles.len() as u32)
-            .map(|t| self.hairy_weight(t, hairline))
-            .sum()
+        (0..self.triangles.len() as u32).map(|t| self.hairy_weight(t, hairline)).sum()
     }
 
     /// `count` independent points, uniform over the area whose mask is at least `hairline`. The same for the same
@@ -142,14 +130,8 @@ impl Scalp {
 
     /// Area of a triangle that any of its vertices lifts over the hairline, else 0.
     fn hairy_weight(&self, triangle: u32, hairline: f32) -> f32 {
-        let hairy = self.triangles[triangle as usize]
-            .iter()
-            .any(|&v| self.mask[v as usize] >= hairline);
-        if hairy {
-            0.5 * self.twice_area(triangle).length()
-        } else {
-            0.0
-        }
+        let hairy = self.triangles[triangle as usize].iter().any(|&v| self.mask[v as usize] >= hairline);
+        if hairy { 0.5 * self.twice_area(triangle).length() } else { 0.0 }
     }
 
     fn twice_area(&self, triangle: u32) -> Vec3 {

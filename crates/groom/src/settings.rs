@@ -155,9 +155,5 @@ impl GroomSettings {
 
 /// `value` in `low..=high`, and `fallback` for what is not a number.
 pub(crate) fn within(value: f32, low: f32, high: f32, fallback: f32) -> f32 {
-    if value.is_nan() {
-        fallback
-    } else {
-        value.clamp(low, high)
-    }
+    if value.is_nan() { fallback } else { value.clamp(low, high) }
 }

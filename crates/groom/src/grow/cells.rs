@@ -8,9 +8,9 @@ use crate::rng::Rng;
 use crate::{GroomSettings, ScalpIndex, ScalpPoint};
 
 /// Samples of the scalp for each cell while the cells relax.
-const SAMPLES_PER_CELL: usize = 40;
+const SAMPLES_PER_CELL: usize = 32;
 /// Rounds of Lloyd's relaxation.
-const ROUNDS: usize = 10;
+const ROUNDS: usize = 8;
 /// Distance that the parting puts between its sides while the cells relax, so that no cell lies across; metres.
 const PART_GAP: f32 = 0.03;
 
@@ -35,14 +35,14 @@ pub(super) struct Cell {
 pub(super) fn divide(settings: &GroomSettings, index: &ScalpIndex<'_>, comb: &Comb) -> Vec<Cell> {
     let wisps = settings.wisps as usize;
     let each = settings.strands_per_wisp as usize;
-    let per_cell = SAMPLES_PER_CELL.max(each * if each <= 64 { 4 } else { 2 });
+    let per_cell = SAMPLES_PER_CELL.max(each * if each <= 64 { 3 } else { 2 });
     let samples = index.scalp().sample(wisps * per_cell, settings.hairline, settings.seed);
     if samples.is_empty() {
         return Vec::new();
     }
     let features: Vec<Vec4> = samples
         .par_iter()
-        .map(|s| s.position.extend(comb.side(s.position) * 0.5 * PART_GAP * comb.divides(s.position)))
+        .map(|s| s.position.extend(0.5 * PART_GAP * comb.divided_side(s.position)))
         .collect();
     // Samples are independent, so the first ones are as good a set as any.
     let few = &features[..features.len().min(wisps * SAMPLES_PER_CELL)];

@@ -109,14 +109,16 @@ impl Comb {
         }
     }
 
+    /// The side of `p` as [`Comb::side`], times how strongly a cell of roots is kept on it: 0 behind the whorl, else
+    /// up to 1.
+    pub(super) fn divided_side(&self, p: Vec3) -> f32 {
+        let on = self.on_part(p);
+        on.front * self.part_strength * if on.aside < 0.0 { -1.0 } else { 1.0 }
+    }
+
     /// The side of the parting on which `p` lies: 1 on the wearer's left, -1 on the right.
     pub(super) fn side(&self, p: Vec3) -> f32 {
         if self.on_part(p).aside < 0.0 { -1.0 } else { 1.0 }
-    }
-
-    /// How strongly a cell of roots is kept on one side of the parting at `p`: 0 behind the whorl, else up to 1.
-    pub(super) fn divides(&self, p: Vec3) -> f32 {
-        self.on_part(p).front * self.part_strength
     }
 
     /// The direction in which hair of `side` is combed at `p`, where the surface has the normal `n`: a unit vector
@@ -126,7 +128,10 @@ impl Comb {
         let away = on.normal.cross(on.along) * side;
         let combed = away * self.part_strength
             - on.along * (1.0 - self.part_strength)
-            - on.along * self.sweep * smoothstep(0.02, 0.09, p.z - self.whorl.z);
+            - on.along
+                * (self.sweep
+                    * smoothstep(0.02, 0.09, p.z - self.whorl.z)
+                    * smoothstep(-0.1, 0.4, (p.y - self.centre.y) / self.half.y));
         let fringed = combed.lerp(on.along + 0.35 * away, fringe);
         // Around the whorl hair turns as it leaves: a spiral that straightens within a few centimetres.
         let radial = p - self.whorl;

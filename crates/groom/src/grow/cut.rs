@@ -39,7 +39,7 @@ pub(super) fn lengths(settings: &GroomSettings, comb: &Comb, cells: &[Cell], pat
                 length = length.min(settings.fringe_length);
             }
             let chance = Rng::new(settings.seed, 0xc07_0000 + cell.stream).bell();
-            (length * (1.0 + 0.3 * settings.length_variation * chance)).max(0.012)
+            (length * (1.0 + 0.5 * settings.length_variation * chance)).max(0.012)
         })
         .collect()
 }

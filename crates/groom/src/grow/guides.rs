@@ -3,16 +3,21 @@
 use glam::Vec3;
 
 use super::cells::Cell;
+use super::comb::Comb;
 use super::path::Path;
 use super::{GUIDE_POINTS, smoothstep};
 use crate::frame::{reference_normal, transport};
 use crate::rng::Rng;
 use crate::{GroomSettings, Obstacle, ScalpIndex};
 
+/// Distance from the tips over which hair bends under or out, metres.
+const ENDS: f32 = 0.09;
+
 /// Three guides of equal links about `path`, `length` metres long, rooted on the scalp and outside `obstacle`.
 pub(super) fn around(
     settings: &GroomSettings,
     index: &ScalpIndex<'_>,
+    comb: &Comb,
     obstacle: &dyn Obstacle,
     cell: &Cell,
     path: &Path,
@@ -28,7 +33,11 @@ pub(super) fn around(
     let mut normals = Vec::with_capacity(GUIDE_POINTS);
     let mut middle = Vec::with_capacity(GUIDE_POINTS);
     for k in 0..GUIDE_POINTS {
-        let (p, t) = path.at(length * fraction(k));
+        let (mut p, t) = path.at(length * fraction(k));
+        // Ends turn under, or out, over the last centimetres.
+        let near_end = 1.0 - (length * (1.0 - fraction(k)) / ENDS.min(0.5 * length)).min(1.0);
+        let inward = Vec3::new(comb.centre.x - p.x, 0.0, comb.centre.z - p.z).normalize_or_zero();
+        p += inward * (settings.ends * 0.5 * ENDS.min(0.5 * length) * near_end * near_end);
         let normal = match k {
             0 => reference_normal(t.into()),
             _ => transport(normals[k - 1], tangents[k - 1], t.into()),
@@ -54,7 +63,7 @@ pub(super) fn around(
             let t = fraction(k);
             // Hair fans out a little above the roots, where it overlaps its neighbours, then gathers.
             let fan = 1.0 + 0.12 * smoothstep(0.0, 0.25, t);
-            let gather = 1.0 - settings.clump * smoothstep(0.1, 1.0, t);
+            let gather = 1.0 - settings.clump * smoothstep(0.05, 0.95 - 0.3 * settings.clump, t);
             let binormal: Vec3 = tangents[k].cross(normals[k]).into();
             let (normal, tangent): (Vec3, Vec3) = (normals[k].into(), tangents[k].into());
             middle[k] + (normal * local[0] + binormal * local[1] + tangent * local[2]) * (fan * gather)

@@ -59,7 +59,7 @@ pub fn grow(
     let grown: Vec<_> = (0..cells.len())
         .into_par_iter()
         .map(|w| {
-            let guides = guides::around(&settings, &index, obstacle, &cells[w], &paths[w], lengths[w]);
+            let guides = guides::around(&settings, &index, &comb, obstacle, &cells[w], &paths[w], lengths[w]);
             let strands = strands::of_wisp(&settings, &comb, obstacle, &cells[w], &guides);
             (guides, strands)
         })

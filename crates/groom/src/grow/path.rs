@@ -41,12 +41,14 @@ pub(super) fn height(settings: &GroomSettings, comb: &Comb, loft: f32, arc: f32,
     let arc = arc.max(0.0);
     let body = settings.volume * loft;
     // The first part rises at the root's angle, the second slowly, as more and more roots lie underneath.
-    let rise = (0.45 * body + 0.003).max(1e-4) / settings.root_lift.tan();
-    let near = (0.45 * body + 0.003) * (1.0 - (-arc / rise).exp());
-    let far = 0.55 * body * (1.0 - (-arc / 0.10).exp());
+    let lift = 0.2 * body + 0.003;
+    let near = lift * (1.0 - (-arc * settings.root_lift.tan() / lift).exp());
     let q = (p - comb.centre) / comb.half;
     let on_top = smoothstep(0.1, 0.9, q.y) * smoothstep(0.0, 0.8, n.y);
-    let crown = settings.crown_volume * on_top * (1.0 - (-arc / 0.02).exp());
+    let gain = 0.042 / settings.root_lift.tan();
+    let far = 0.8 * body * (1.0 - 0.75 * on_top) * (1.0 - (-arc / gain).exp());
+    let behind = 0.35 + 0.65 * smoothstep(0.5, -0.3, q.z);
+    let crown = settings.crown_volume * on_top * behind * (1.0 - (-arc / 0.02).exp());
     // On neck and shoulders hair lies flat.
     let on_head = smoothstep(-1.35, -0.6, q.y);
     near + (far + crown) * on_head + 0.002 * (1.0 - on_head)
@@ -56,11 +58,16 @@ pub(super) fn height(settings: &GroomSettings, comb: &Comb, loft: f32, arc: f32,
 pub(super) fn trace(settings: &GroomSettings, comb: &Comb, obstacle: &dyn Obstacle, cell: &Cell) -> Path {
     let mut rng = Rng::new(settings.seed, 0xfa7_0000 + cell.stream);
     let rank = comb.rank(cell.centre.position);
-    let loft = (0.45 + 0.55 * rank) * (1.0 + 0.18 * rng.bell().clamp(-2.0, 2.0));
+    let loft = (0.45 + 0.55 * rank) * (1.0 + 0.12 * rng.bell().clamp(-2.0, 2.0));
     let veer = 0.10 * rng.bell();
     let steps = (settings.length * 1.1 / STEP).ceil().max(4.0) as usize;
 
     let root = cell.centre;
+    let swept = settings.sweep * comb.frontness(root.position) * (1.0 - cell.fringe);
+    let falls = if root.position.z + 0.015 * rng.bell() > comb.centre.z - 0.01 { 1.0 } else { -1.0 };
+    let scatter = 0.45 * rng.signed();
+    // Hair crosses over where it turns, which covers the crown.
+    let veer = veer * (1.0 + 5.0 * (-root.position.distance(comb.whorl) / 0.02).exp());
     let flow = comb.flow(root.position, root.normal, cell.side, cell.fringe);
     let flow = (flow + veer * root.normal.cross(flow)).normalize_or(flow);
     let mut direction = flow * settings.root_lift.cos() + root.normal * settings.root_lift.sin();
@@ -80,10 +87,16 @@ pub(super) fn trace(settings: &GroomSettings, comb: &Comb, obstacle: &dyn Obstac
         let down = Vec3::NEG_Y;
         let pull = down - n * (down.dot(n) * (1.0 - free)).min(0.0);
         let mut wish = flow * (combed * (1.0 - free)) + pull * (1.05 - combed) + 0.35 * direction;
-        if settings.ends != 0.0 {
-            let inward = Vec3::new(comb.centre.x - p.x, 0.0, comb.centre.z - p.z).normalize_or_zero();
-            wish += inward * (settings.ends * 1.2 * smoothstep(settings.length - 0.07, settings.length, arc));
-        }
+        // Front hair that is swept keeps to its way past the temple.
+        wish += Vec3::NEG_Z * (swept * (-arc / 0.16).exp() * smoothstep(0.02, 0.06, arc));
+        // A hand presses loose hair to the head; on the body, it falls before or behind the shoulder.
+        let q = (p - comb.centre) / comb.half;
+        wish -= n * (0.8 * free * smoothstep(-0.9, -0.3, q.y));
+        let (ahead, slope) = obstacle.distance(p + direction * 0.06);
+        let lands =
+            smoothstep(-0.8, -1.2, q.y) * smoothstep(0.05, 0.01, ahead) * smoothstep(0.1, 0.5, slope.y);
+        let aside = Vec3::Z * falls + Vec3::X * scatter;
+        wish += (aside - slope * aside.dot(slope)) * (0.9 * lands);
         let wish = wish.normalize_or(direction);
         direction = direction.lerp(wish, 1.0 - (-STEP / BEND).exp()).normalize_or(wish);
         // Keep to the wanted height: rise where too low, and never go further in.

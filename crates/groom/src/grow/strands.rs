@@ -79,7 +79,8 @@ pub(super) fn of_wisp(
     let wisp_shade = rng.unit();
     let flat = Flat::new(cell, guides);
     let weights: Vec<[f32; 3]> = cell.roots.iter().map(|r| flat.weights(r.position)).collect();
-    let centres: Vec<[f32; 3]> = weights.iter().step_by(STRANDS_PER_LOCK).copied().collect();
+    let centres: Vec<([f32; 3], f32)> =
+        weights.iter().step_by(STRANDS_PER_LOCK).map(|&w| (w, settings.locks * rng.bell())).collect();
 
     let points = settings.segments_per_strand as usize + 1;
     let total = points * cell.roots.len();
@@ -92,8 +93,9 @@ pub(super) fn of_wisp(
         shade: Vec::with_capacity(cell.roots.len()),
     };
     for (strand_root, &w) in cell.roots.iter().zip(&weights) {
-        let nearest = centres.iter().copied().min_by(|a, b| apart(*a, w).total_cmp(&apart(*b, w)));
-        let own = Strand::new(settings, cell, strand_root, w, nearest.unwrap_or(w), &mut rng);
+        let nearest = centres.iter().min_by(|a, b| apart(a.0, w).total_cmp(&apart(b.0, w)));
+        let own =
+            Strand::new(settings, cell, &curve, strand_root, w, *nearest.unwrap_or(&(w, 0.0)), &mut rng);
         for k in 0..points {
             let t = k as f32 / (points - 1) as f32;
             let u = (GUIDE_POINTS - 1) as f32 * own.reach * t;
@@ -119,14 +121,17 @@ fn thickness(taper: f32, t: f32) -> f32 {
 
 /// What chance gave to one strand.
 struct Strand {
-    root: Vec3,
     weights: [f32; 3],
+    /// From the guides' curve to its own root on the scalp.
+    from_guides: Vec3,
     /// Weights of the smaller lock that it gathers to.
     gathers_to: [f32; 3],
     /// Share of the guides' length that it has.
     reach: f32,
     /// Direction and size of its way out of the wisp, in the frame; zero for most.
     stray: Vec3,
+    /// How much nearer to the skin than its guides it lies, as a fraction.
+    depth: f32,
     frizz: f32,
     phases: [f32; 6],
     curl_phase: f32,
@@ -137,9 +142,10 @@ impl Strand {
     fn new(
         settings: &GroomSettings,
         cell: &Cell,
+        curve: &WispCurve,
         root: &ScalpPoint,
         weights: [f32; 3],
-        gathers_to: [f32; 3],
+        (gathers_to, lock_phase): ([f32; 3], f32),
         rng: &mut Rng,
     ) -> Self {
         let from_middle = root.position.distance(cell.centre.position) / (2.0 * cell.spread);
@@ -149,14 +155,15 @@ impl Strand {
         let out = settings.stray_reach * (0.4 + 0.6 * rng.unit());
         let wander = settings.curl_wander;
         Self {
-            root: root.position,
             weights,
+            from_guides: root.position - curve.blend(weights, 0.0),
             gathers_to,
             reach: 1.0 - settings.length_variation * shorter - if strays { 0.15 * rng.unit() } else { 0.0 },
             stray: if strays { Vec3::new(angle.cos(), angle.sin(), 0.0) * out } else { Vec3::ZERO },
             frizz: settings.frizz * (0.6 + 0.8 * rng.unit()) * if strays { 2.0 } else { 1.0 },
+            depth: 0.5 * rng.unit().powi(2),
             phases: std::array::from_fn(|_| rng.angle()),
-            curl_phase: (0.35 + if strays { 2.0 } else { 0.0 }) * wander * rng.bell(),
+            curl_phase: lock_phase + (0.3 + if strays { 2.0 } else { 0.0 }) * wander * rng.bell(),
             curl_size: 1.0 + 0.3 * wander * rng.bell(),
         }
     }
@@ -174,16 +181,16 @@ impl Strand {
         let frame = curve.frame(u);
         let blended = curve.blend(self.weights, u);
         if u <= 0.0 {
-            return frame.transpose() * (self.root - blended);
+            return frame.transpose() * self.from_guides;
         }
         let t = u / (GUIDE_POINTS - 1) as f32;
         let arc = t * lock.length;
         let tau = std::f32::consts::TAU;
 
         let join = (1.0 - arc / ROOT_JOIN.min(lock.length)).max(0.0).powi(2);
-        let mut displaced = (self.root - curve.blend(self.weights, 0.0)) * join;
+        let mut displaced = self.from_guides * join;
         displaced +=
-            (curve.blend(self.gathers_to, u) - blended) * (settings.locks * smoothstep(0.15, 0.8, t));
+            (curve.blend(self.gathers_to, u) - blended) * (settings.locks * smoothstep(0.05, 0.6, t));
 
         // Curl: a helix about the wisp, whose radius and pitch wander, in step within the wisp.
         if settings.curl_radius > 0.0 {
@@ -215,18 +222,25 @@ impl Strand {
         // Frizz: two waves of unlike lengths on each axis.
         let bends = tau * arc / settings.frizz_scale;
         let size = self.frizz * (0.3 + 0.7 * t) * smoothstep(0.0, 0.03, arc);
-        let wobble = |a: f32, b: f32| 0.6 * (bends * 0.73 + a).sin() + 0.4 * (bends * 1.57 + b).sin();
-        displaced += frame.x_axis * (size * wobble(self.phases[0], self.phases[1]));
-        displaced += frame.y_axis * (size * wobble(self.phases[2], self.phases[3]));
-        displaced += frame * (self.stray * t * t.sqrt());
+        if size > 0.0 {
+            let wobble = |a: f32, b: f32| 0.6 * (bends * 0.73 + a).sin() + 0.4 * (bends * 1.57 + b).sin();
+            displaced += frame.x_axis * (size * wobble(self.phases[0], self.phases[1]));
+            displaced += frame.y_axis * (size * wobble(self.phases[2], self.phases[3]));
+        }
+        if self.stray != Vec3::ZERO {
+            displaced += frame * (self.stray * t * t.sqrt());
+        }
 
         let mut point = blended + displaced;
+        // Some strands lie deeper than others, so that hair is a body and not a shell; none lies in the skin.
+        let (distance, n) = obstacle.distance(point);
+        let near = smoothstep(0.06, 0.02, distance) * smoothstep(0.0, 0.02, arc);
+        let sunk = distance - self.depth * near * distance.max(0.0);
         let margin = (0.4 * arc).min(0.0015);
-        for _ in 0..2 {
+        point += n * (sunk.max(margin) - distance);
+        if sunk < margin {
             let (distance, n) = obstacle.distance(point);
-            if distance < margin {
-                point += n * (margin - distance);
-            }
+            point += n * (margin - distance).max(0.0);
         }
         frame.transpose() * (point - blended)
     }

@@ -1,0 +1,36 @@
+//! Interpolation of the two published hairstyles, and growing them.
+
+use std::hint::black_box;
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use glam::Affine3A;
+use lovelock_groom::{GroomSettings, GuideFrame, PlainHead, Preset, Strands, grow, interpolate};
+
+fn interpolation(c: &mut Criterion) {
+    let scalp = PlainHead.scalp(48);
+    for preset in [Preset::Smooth, Preset::Curly] {
+        let style = grow(&GroomSettings::preset(preset), &scalp, &PlainHead).expect("a preset grows");
+        let frame = GuideFrame::at_rest(&style.guides, Affine3A::IDENTITY, 0.0);
+        let mut strands = Strands::default();
+        c.bench_function(&format!("interpolate/{}/{}", preset.id(), style.strands.segments()), |b| {
+            b.iter(|| interpolate(&style, black_box(&frame), &mut strands));
+        });
+    }
+}
+
+fn growing(c: &mut Criterion) {
+    let scalp = PlainHead.scalp(48);
+    for preset in Preset::ALL {
+        let settings = GroomSettings::preset(preset);
+        c.bench_function(&format!("grow/{}", preset.id()), |b| {
+            b.iter(|| grow(black_box(&settings), &scalp, &PlainHead));
+        });
+    }
+}
+
+criterion_group! {
+    name = benches;
+    config = Criterion::default().sample_size(20);
+    targets = interpolation, growing
+}
+criterion_main!(benches);
