@@ -13,10 +13,10 @@ const HAIRLINE: [(f32, f32); 11] = [
     (70.0, 0.60),
     (84.0, 0.50),
     (96.0, 0.50),
-    (112.0, 0.42),
-    (130.0, 0.32),
-    (150.0, 0.25),
-    (180.0, 0.22),
+    (112.0, 0.40),
+    (130.0, 0.27),
+    (150.0, 0.17),
+    (180.0, 0.13),
 ];
 
 /// Length over which the mask fades at the hairline, as a fraction of the head's height: 12 mm.
