@@ -1,6 +1,7 @@
 //! The drawing thread: takes the newest frame when it is free, and leaves its picture in a slot.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
@@ -56,6 +57,7 @@ pub struct Painter {
     painted: Slot<Painted>,
     errors: Slot<String>,
     adapter: Slot<Adapter>,
+    busy: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -67,7 +69,9 @@ impl Painter {
     pub fn start(on_painted: impl Fn() + Send + 'static) -> std::io::Result<Self> {
         let mailbox = Mailbox::default();
         let (painted, errors, adapter) = (Slot::default(), Slot::default(), Slot::default());
+        let busy = Arc::new(AtomicBool::new(false));
         let worker = Worker {
+            busy: Arc::clone(&busy),
             mailbox: Arc::clone(&mailbox),
             painted: painted.clone(),
             errors: errors.clone(),
@@ -77,11 +81,12 @@ impl Painter {
             strands: Strands::default(),
         };
         let thread = std::thread::Builder::new().name("draw".to_owned()).spawn(move || worker.run())?;
-        Ok(Self { mailbox, painted, errors, adapter, thread: Some(thread) })
+        Ok(Self { mailbox, painted, errors, adapter, busy, thread: Some(thread) })
     }
 
     /// Asks for a picture; a request that still waits is forgotten.
     pub fn request(&self, request: PaintRequest) {
+        self.busy.store(true, Ordering::Relaxed);
         self.post(Some(request));
     }
 
@@ -98,6 +103,11 @@ impl Painter {
     /// What draws; empty until the first picture.
     pub fn adapter(&self) -> Option<Arc<Adapter>> {
         self.adapter.latest()
+    }
+
+    /// Whether a picture is being drawn or waits: its end will call `on_painted`.
+    pub fn busy(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.busy)
     }
 
     fn post(&self, request: Option<PaintRequest>) {
@@ -118,6 +128,7 @@ impl Drop for Painter {
 
 struct Worker {
     mailbox: Mailbox,
+    busy: Arc<AtomicBool>,
     painted: Slot<Painted>,
     errors: Slot<String>,
     adapter: Slot<Adapter>,
@@ -145,6 +156,7 @@ impl Worker {
                     self.errors.put(Arc::new(text));
                 }
             }
+            self.busy.store(false, Ordering::Relaxed);
             (self.on_painted)();
         }
     }

@@ -153,12 +153,12 @@ impl Default for CameraSection {
     fn default() -> Self {
         Self {
             mode: CameraMode::Follow,
-            follow_offset: Vec3::new(0.0, -0.06, 0.0),
+            follow_offset: Vec3::new(0.0, -0.02, 0.0),
             follow_secs: 1.2,
             fixed_target: Vec3::new(0.0, 1.45, 0.0),
             azimuth: 0.45,
             elevation: 0.03,
-            distance: 2.5,
+            distance: 2.0,
             fov_y: 2.0 * (12.0_f32 / 65.0).atan(),
         }
     }

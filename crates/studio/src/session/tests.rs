@@ -352,6 +352,24 @@ fn the_camera_follows_without_trembling() {
 }
 
 #[test]
+fn the_head_stays_in_the_picture_through_the_whole_dance() {
+    let scene = scene();
+    let mut pose = lovelock_motion::Pose::default();
+    for frame in 0..(scene.duration_secs() * 30.0) as u64 {
+        let time_secs = frame as f64 / 30.0;
+        lovelock_motion::pose_at(&scene.body, scene.clip.as_deref(), scene.clip_secs(time_secs), &mut pose);
+        let clip_from_world =
+            camera_at(&crate::CameraSection::default(), &scene, time_secs).clip_from_world(16.0 / 9.0);
+        // The chin's height, the crown, and the back of the head with its hair.
+        for part in [Vec3::new(0.0, -0.05, 0.08), Vec3::new(0.0, 0.2, 0.0), Vec3::new(0.0, 0.05, -0.15)] {
+            let p = clip_from_world * pose.world_from_head.transform_point3(part).extend(1.0);
+            let (x, y) = (p.x / p.w, p.y / p.w);
+            assert!(x.abs() < 0.97 && y.abs() < 0.97, "at {time_secs:.2} s the head is at {x:.2}, {y:.2}");
+        }
+    }
+}
+
+#[test]
 fn framing_puts_the_hair_in_the_picture() {
     let mut engine = Engine::new(scene(), SimulationSettings::default());
     engine.advance_to_step(50);
