@@ -68,9 +68,12 @@ impl Number {
         let range = f64::from(*self.range.start()) * factor..=f64::from(*self.range.end()) * factor;
         let differs = (*value - default).abs() > 1e-6 * (1.0 + default.abs());
         row(ui, self.label, self.tip, differs, value, default, |ui, value| {
-            ui.spacing_mut().slider_width = (ui.available_width() - 66.0).max(40.0);
+            ui.spacing_mut().slider_width = (ui.available_width() - 78.0).max(40.0);
             Slider::from_get_set(range, |new| {
-                if let Some(new) = new.filter(|new| new.is_finite()) {
+                // The slider rounds to what it shows; that alone is no change.
+                let shown = 0.5 * 0.1_f64.powi(self.decimals as i32);
+                let old = f64::from(*value) * factor;
+                if let Some(new) = new.filter(|new| new.is_finite() && (new - old).abs() > shown) {
                     *value = (new / factor) as f32;
                 }
                 f64::from(*value) * factor
@@ -93,7 +96,7 @@ pub(crate) fn count(
     default: u32,
 ) -> Response {
     row(ui, label, tip, *value != default, value, default, |ui, value| {
-        ui.spacing_mut().slider_width = (ui.available_width() - 66.0).max(40.0);
+        ui.spacing_mut().slider_width = (ui.available_width() - 78.0).max(40.0);
         let wide = range.end() / range.start().max(&1) > 50;
         Slider::new(value, range).logarithmic(wide).ui(ui)
     })

@@ -39,10 +39,17 @@ impl Session {
     /// Starts the threads on `project`; each asks `ctx` to repaint when it has something new.
     pub(crate) fn start(project: &Arc<Project>, access: Access, ctx: &egui::Context) -> Result<Self, StudioError> {
         let wake = ctx.clone();
-        let worker = Worker::start(Arc::clone(project), access.clone(), Arc::new(move || wake.request_repaint()))?;
-        let wake = ctx.clone();
         let painter = Painter::start(move || wake.request_repaint())
             .map_err(|error| StudioError::work(format!("no thread to draw on: {error}")))?;
+        // While a picture is drawn, its end will repaint the window: a repaint for every step of the simulation
+        // would take the processor from the drawing.
+        let (wake, busy) = (ctx.clone(), painter.busy());
+        let wake = move || {
+            if !busy.load(std::sync::atomic::Ordering::Relaxed) {
+                wake.request_repaint();
+            }
+        };
+        let worker = Worker::start(Arc::clone(project), access.clone(), Arc::new(wake))?;
         Ok(Self {
             worker,
             painter,

@@ -32,7 +32,7 @@ fn backdrop(in: Screen) -> @location(0) vec4f {
                 let light = frame.lights[k];
                 let share = light.radiance_blur.xyz * max(-light.direction_specular.y, 0.0);
                 full += share;
-                lit += share * body_light(k, p, 0.004, 12u) * columns_light(k, p);
+                lit += share * body_light(k, p, 0.004, 6u) * columns_light(k, p);
             }
             color *= lit / max(full, vec3f(1e-4));
         }

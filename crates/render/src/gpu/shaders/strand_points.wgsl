@@ -68,7 +68,7 @@ fn shade_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroup
         let lit = transmittance[k];
         open += sqrt(lit);
         // Roots lie on the skin: the bias keeps the skin under a strand from shadowing it.
-        let body = body_light(k, p, 0.006, 4u);
+        let body = body_light(k, p, 0.006, 3u);
         sum += light.radiance_blur.xyz * (lit * body)
             * strand_light(t, -light.direction_specular.xyz, v, color, light.direction_specular.w, lit);
     }

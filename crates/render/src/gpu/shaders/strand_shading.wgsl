@@ -15,7 +15,7 @@ struct StrandColor {
 
 // Colours of a strand that absorbs `sigma` per unit of path.
 fn strand_color(sigma: vec3f) -> StrandColor {
-    return StrandColor(exp(-1.55 * sigma), exp(-1.1 * sigma), exp(-0.75 * sigma));
+    return StrandColor(exp(-2.7 * sigma), exp(-1.9 * sigma), exp(-1.3 * sigma));
 }
 
 // Light that a strand with unit tangent `t` (root to tip) sends toward `v` per unit of light from `l`;

@@ -33,7 +33,7 @@ fn shade_surface(in: Surface) -> @location(0) vec4f {
     let v = normalize(frame.eye_lights.xyz - in.world);
     let n = normalize(in.normal);
     // Under hair the skin is painted with the colour of the roots, so that gaps never read as baldness.
-    let root = 0.35 * exp(-1.55 * frame.absorption_variation.xyz);
+    let root = 0.35 * exp(-2.7 * frame.absorption_variation.xyz);
     let albedo = mix(in.color_scalp.rgb, root, 0.88 * smoothstep(0.15, 0.75, in.color_scalp.w));
     let skin = 1.0 - in.color_scalp.w;
     var sum = vec3f(0.0);
@@ -50,9 +50,9 @@ fn shade_surface(in: Surface) -> @location(0) vec4f {
             continue;
         }
         let bias = 0.004 + 0.006 * (1.0 - clamp(facing, 0.0, 1.0));
-        let lit = body_light(k, in.world + n * 0.002, bias, 12u) * in.hair[k];
+        let lit = body_light(k, in.world + n * 0.002, bias, 6u) * in.hair[k];
         let h = normalize(l + v);
-        let gloss = 0.035 * skin * light.direction_specular.w
+        let gloss = 0.014 * skin * light.direction_specular.w
             * (pow(max(dot(n, h), 0.0), 24.0) + 0.6 * pow(1.0 - max(dot(n, v), 0.0), 4.0));
         sum += light.radiance_blur.xyz * lit * (albedo * wrapped * 0.318 + vec3f(gloss) * clamp(facing, 0.0, 1.0));
     }
