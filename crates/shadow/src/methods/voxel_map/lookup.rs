@@ -109,7 +109,7 @@ impl Lookup<'_> {
             places.across_y[lane] = fy;
             places.across_z[lane] = fz;
             places.slice[lane] = i;
-            let (near_j, far_j) = (layout.row(j) + (i << 6), layout.row(j + 1) + (i << 6));
+            let (near_j, far_j) = (layout.row(j) + Layout::slice(i), layout.row(j + 1) + Layout::slice(i));
             let (near_k, far_k) = (layout.column(k), layout.column(k + 1));
             places.addresses[0][lane] = near_j + near_k;
             places.addresses[1][lane] = near_j + far_k;
@@ -117,7 +117,7 @@ impl Lookup<'_> {
             places.addresses[3][lane] = far_j + far_k;
             let (_, j) = split(v, n, layout.resolution - 1);
             let (_, k) = split(w, n, layout.resolution - 1);
-            places.tile[lane] = (j >> 3) * layout.tiles_per_edge + (k >> 3);
+            places.tile[lane] = layout.tile(j, k);
         }
         places
     }

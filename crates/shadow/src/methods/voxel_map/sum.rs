@@ -44,7 +44,7 @@ pub(super) fn dilated(layout: &Layout, touched: &[u64], tile: usize) -> u64 {
 pub(super) fn sum_along_light(width: Width, layout: &Layout, grids: &mut [Grid], touched: &[u64]) {
     let Some((target, others)) = grids.split_first_mut() else { return };
     let tiles = target.cells.par_chunks_exact_mut(layout.tile_len()).zip(&mut target.used);
-    tiles.enumerate().with_min_len(16).for_each(|(tile, (cells, used))| {
+    tiles.enumerate().with_min_len(64).for_each(|(tile, (cells, used))| {
         *used = dilated(layout, touched, tile);
         if *used != 0 {
             simd::sum_tile(width, layout, tile, *used, cells, others);
@@ -70,7 +70,7 @@ pub(super) fn sum_tile(layout: &Layout, tile: usize, used: u64, cells: &mut [u32
     }
 }
 
-/// The state of 64 columns on the way from the light.
+/// The state of a tile's columns on the way from the light.
 struct Faces {
     sum: [u32; TILE_CELLS],
     front: [u32; TILE_CELLS],
@@ -126,7 +126,7 @@ mod tests {
 
     #[test]
     fn dilation_reaches_all_eight_neighbours() {
-        let layout = Layout::new(64);
+        let layout = Layout::new(32);
         let mut touched = vec![0; layout.tiles()];
         touched[3 * 8 + 4] = 0b0100;
         touched[3 * 8 + 6] = 0b1000;
