@@ -8,7 +8,7 @@
 //!    across it.
 //!
 //! `docs/shadow_methods.md` has the equations and says where and why they differ from the paper's print. The
-//! plain version is in [`reference`]; [`VoxelMap`] is the same map made quickly.
+//! plain version is in [`mod@reference`]; [`VoxelMap`] is the same map made quickly.
 
 mod cpu;
 mod deposit;
