@@ -119,27 +119,38 @@ fn check_size(file: &HairFile, metres_per_unit: f32) -> Result<(), ImportError> 
 /// How far a strand runs clear of the body, metres; near its root, a fraction of the way from there.
 const CLEARANCE: f32 = 0.002;
 const RISE: f32 = 0.25;
+/// The fastest that a distance is taken to change along a strand.
+const SLOPE: f32 = 1.5;
 /// Deep inside, the distance to a body's surface is approximate: so many pushes do.
 const PUSHES: usize = 4;
 
 /// Moves points that lie in the body, or too close to it, clear of it; roots stay where they are.
 fn push_out(groom: &mut PlacedGroom, body: &dyn Obstacle) {
+    let distances: Vec<f32> =
+        groom.points.par_iter().with_min_len(1024).map(|&point| body.distance(point).0).collect();
     let mut clearance = vec![0.0; groom.points.len()];
     for &[start, end] in groom.first_point.array_windows() {
-        let mut run = 0.0;
-        for i in start as usize + 1..end as usize {
-            run += groom.points[i].distance(groom.points[i - 1]);
-            clearance[i] = CLEARANCE.min(RISE * run);
+        let (start, end) = (start as usize, end as usize);
+        let step = |i: usize| groom.points[i].distance(groom.points[i - 1]);
+        let (mut run, mut least) = (0.0, distances[start]);
+        for i in start + 1..end {
+            run += step(i);
+            // A distance changes no faster than the place, give or take that it is approximate: a point that
+            // is suddenly deep inside is a wrong sign, such as open meshes have, and is left alone.
+            least -= SLOPE * step(i);
+            let after = if i + 1 < end { distances[i + 1] - SLOPE * step(i + 1) } else { least };
+            if distances[i] >= least.max(after) - CLEARANCE {
+                least = distances[i];
+                clearance[i] = CLEARANCE.min(RISE * run);
+            }
         }
     }
-    groom.points.par_iter_mut().zip(clearance).with_min_len(1024).for_each(|(point, clearance)| {
-        if clearance == 0.0 {
-            return;
-        }
+    let wanting = groom.points.par_iter_mut().zip(clearance).zip(distances).with_min_len(1024);
+    wanting.filter(|((_, clearance), distance)| distance < clearance).for_each(|((point, clearance), _)| {
         for _ in 0..PUSHES {
             let (distance, outward) = body.distance(*point);
             let push = (clearance - distance) * outward;
-            if distance >= clearance || !push.is_finite() {
+            if clearance == 0.0 || distance >= clearance || !push.is_finite() {
                 break;
             }
             *point += push;

@@ -253,6 +253,30 @@ fn a_body_pushes_strands_out_and_leaves_roots_alone() {
 }
 
 #[test]
+fn a_body_of_wrong_signs_tears_no_strand_away() {
+    // Specks about the head that count as deep inside it.
+    struct Faulty;
+    impl crate::Obstacle for Faulty {
+        fn distance(&self, p: Vec3) -> (f32, Vec3) {
+            let (distance, outward) = PlainHead.distance(p);
+            let wrong = distance > 0.004 && (p * 700.0).map(f32::sin).element_product() > 0.4;
+            if wrong { (-distance, -outward) } else { (distance, outward) }
+        }
+    }
+    // Hair that stands on end, so that it is well outside wherever it is not on the skin.
+    let spikes: Vec<Vec<Vec3>> = wavy_cap(400, 20.0)
+        .iter()
+        .map(|strand| (0..12).map(|k| strand[0] * (1.0 + 0.05 * k as f32)).collect())
+        .collect();
+    let (file, scalp, settings) = (hair(&spikes), PlainHead.scalp(24), ImportSettings::default());
+    let sound = place(&file, &settings, &scalp, Some(&PlainHead)).expect("a place on the head");
+    let faulty = place(&file, &settings, &scalp, Some(&Faulty)).expect("a place on the head");
+    let torn = sound.points.iter().zip(&faulty.points).filter(|(a, b)| a.distance(**b) > 0.01).count();
+    let met = sound.points.iter().filter(|&&p| crate::Obstacle::distance(&Faulty, p).0 < -0.01).count();
+    assert!(met > 20 && torn == 0, "{torn} of {met}");
+}
+
+#[test]
 fn the_same_file_gives_the_same_hairstyle_for_any_number_of_threads() {
     let file = hair(&wavy_cap(1500, 20.0));
     let scalp = PlainHead.scalp(24);
