@@ -12,7 +12,7 @@ use super::score::{ArmPose, Score, Step};
 use super::sdf::smoothstep;
 
 /// Keys a second in the file.
-const RATE: f32 = 60.0;
+pub(super) const RATE: f32 = 60.0;
 /// Width of the bell that rounds every curve, seconds: key poses are passed through, not stopped at.
 const ROUNDING_SECS: f32 = 0.055;
 /// How far the arms and the head trail the trunk, seconds.
@@ -20,6 +20,9 @@ const ARM_LAG_SECS: f32 = 0.05;
 const HEAD_LAG_SECS: f32 = 0.07;
 /// Largest stretch of a leg that a planted heel allows before it rises, as a part of the leg's length.
 const LEG_STRETCH: f32 = 0.988;
+
+/// From the ball of the foot to the end of the slipper, metres.
+const TOE_LENGTH: f32 = 0.10;
 
 /// One pose: rotations of the joints relative to their parents, and the place of the hips.
 #[derive(Clone)]
@@ -264,7 +267,8 @@ impl Score {
             Vec3::Y.cross(Vec3::new(-ankle_from_ball.x, 0.0, -ankle_from_ball.z)).normalize_or(Vec3::X);
         let foot = flat * Quat::from_axis_angle(across, heel + 0.75 * up);
         // A lifted foot is pointed to the toes' ends; a standing one keeps them flat.
-        let toes = flat * Quat::from_axis_angle(across, up * (heel + 1.05 * up));
+        let clearance = ((ball.y - rest::TOE.y) / TOE_LENGTH).clamp(0.0, 1.0).asin();
+        let toes = flat * Quat::from_axis_angle(across, (up * (heel + 1.05 * up)).min(clearance));
         (foot, toes, ball + foot * ankle_from_ball)
     }
 

@@ -1,5 +1,7 @@
 //! Surface nets (Gibson 1998) over a curvilinear grid, and the projection of vertices onto the surface.
 
+use std::collections::BTreeMap;
+
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -53,7 +55,7 @@ impl Grid {
     }
 }
 
-/// The zero set of `distance` as a mesh, one vertex a cell that it passes through.
+/// The zero set of `distance` as a mesh, one vertex for each sheet of it in a cell.
 pub(super) fn surface_nets(distance: &(dyn Fn(Vec3) -> f32 + Sync)) -> TriMesh {
     let grid = Grid::new();
     let (nx, ny, nz) = (grid.xs.len(), grid.ys.len(), grid.zs.len());
@@ -81,7 +83,7 @@ pub(super) fn surface_nets(distance: &(dyn Fn(Vec3) -> f32 + Sync)) -> TriMesh {
         .collect();
 
     let mut mesh = TriMesh::default();
-    let mut vertex_of = vec![u32::MAX; values.len()];
+    let mut vertices = CellVertices { first: vec![u32::MAX; values.len()], split: BTreeMap::new() };
     for j in 0..ny - 1 {
         for k in 0..nz - 1 {
             for i in 0..nx - 1 {
@@ -90,25 +92,26 @@ pub(super) fn surface_nets(distance: &(dyn Fn(Vec3) -> f32 + Sync)) -> TriMesh {
                     let (i, j, k) = corner(c);
                     values[index(i, j, k)]
                 });
-                let inside = value.iter().filter(|v| **v < 0.0).count();
-                if inside == 0 || inside == 8 {
+                let inside = value.map(|v| v < 0.0);
+                if inside == [false; 8] || inside == [true; 8] {
                     continue;
                 }
-                let (mut sum, mut crossings) = (Vec3::ZERO, 0.0);
-                for a in 0..8 {
-                    for bit in [1, 2, 4] {
-                        let b = a | bit;
-                        if b == a || (value[a] < 0.0) == (value[b] < 0.0) {
-                            continue;
-                        }
+                let (sheet, count) = sheets(inside);
+                let mut sums = [(Vec3::ZERO, 0.0); 4];
+                for (edge, (a, b)) in CELL_EDGES.into_iter().enumerate() {
+                    if inside[a] != inside[b] {
                         let (pa, pb) = (corner(a), corner(b));
                         let t = value[a] / (value[a] - value[b]);
-                        sum += grid.at(pa.0, pa.1, pa.2).lerp(grid.at(pb.0, pb.1, pb.2), t);
-                        crossings += 1.0;
+                        let crossing = grid.at(pa.0, pa.1, pa.2).lerp(grid.at(pb.0, pb.1, pb.2), t);
+                        let sum = &mut sums[usize::from(sheet[edge])];
+                        *sum = (sum.0 + crossing, sum.1 + 1.0);
                     }
                 }
-                vertex_of[index(i, j, k)] = mesh.positions.len() as u32;
-                mesh.positions.push(sum / crossings);
+                vertices.first[index(i, j, k)] = mesh.positions.len() as u32;
+                if count > 1 {
+                    vertices.split.insert(index(i, j, k), sheet);
+                }
+                mesh.positions.extend(sums[..count].iter().map(|(sum, crossings)| *sum / *crossings));
             }
         }
     }
@@ -129,7 +132,11 @@ pub(super) fn surface_nets(distance: &(dyn Fn(Vec3) -> f32 + Sync)) -> TriMesh {
                     if here == there {
                         continue;
                     }
-                    let mut quad = around[axis].map(|(a, b, c)| vertex_of[index(i - a, j - b, k - c)]);
+                    let mut quad = around[axis].map(|(a, b, c)| {
+                        // The grid edge starts at this corner of the cell.
+                        let start = a + 2 * b + 4 * c;
+                        vertices.at(index(i - a, j - b, k - c), (start, start | (1 << axis)))
+                    });
                     if there {
                         quad.reverse();
                     }
@@ -145,6 +152,71 @@ pub(super) fn surface_nets(distance: &(dyn Fn(Vec3) -> f32 + Sync)) -> TriMesh {
         }
     }
     mesh
+}
+
+/// The edges of a cell by their corners; bit 0 of a corner is x, bit 1 y, bit 2 z.
+const CELL_EDGES: [(usize, usize); 12] =
+    [(0, 1), (2, 3), (4, 5), (6, 7), (0, 2), (1, 3), (4, 6), (5, 7), (0, 4), (1, 5), (2, 6), (3, 7)];
+
+/// The corners of a cell's faces, in turn around each.
+const CELL_FACES: [[usize; 4]; 6] =
+    [[0, 1, 3, 2], [4, 5, 7, 6], [0, 1, 5, 4], [2, 3, 7, 6], [0, 2, 6, 4], [1, 3, 7, 5]];
+
+/// Index of the edge between two corners of a cell.
+fn cell_edge(a: usize, b: usize) -> usize {
+    CELL_EDGES.iter().position(|edge| *edge == (a.min(b), a.max(b))).unwrap_or(0)
+}
+
+/// Which sheet of the surface crosses each edge of a cell, and how many sheets there are (Nielson 2004): each gets a
+/// vertex of its own, so that thin gaps do not weld. On a face with two inside corners across, these stay apart.
+fn sheets(inside: [bool; 8]) -> ([u8; 12], usize) {
+    let mut label: [usize; 12] = std::array::from_fn(|edge| edge);
+    let mut join = |a: usize, b: usize| {
+        let (keep, drop) = (label[a].min(label[b]), label[a].max(label[b]));
+        for entry in &mut label {
+            if *entry == drop {
+                *entry = keep;
+            }
+        }
+    };
+    for face in CELL_FACES {
+        let edge = |i: usize| cell_edge(face[i % 4], face[(i + 1) % 4]);
+        let crossed: Vec<usize> = (0..4).filter(|i| inside[face[*i]] != inside[face[(*i + 1) % 4]]).collect();
+        match crossed[..] {
+            [a, b] => join(edge(a), edge(b)),
+            [_, _, _, _] => (0..4).filter(|i| inside[face[*i]]).for_each(|i| join(edge(i + 3), edge(i))),
+            _ => {}
+        }
+    }
+    let mut sheet = [0; 12];
+    let mut roots: Vec<usize> = Vec::new();
+    for (edge, (a, b)) in CELL_EDGES.into_iter().enumerate() {
+        if inside[a] == inside[b] {
+            continue;
+        }
+        let at = roots.iter().position(|root| *root == label[edge]).unwrap_or_else(|| {
+            roots.push(label[edge]);
+            roots.len() - 1
+        });
+        sheet[edge] = at as u8;
+    }
+    (sheet, roots.len())
+}
+
+/// The vertices of the cells.
+struct CellVertices {
+    /// The first vertex of each cell.
+    first: Vec<u32>,
+    /// The sheet at each edge, of the cells with more than one.
+    split: BTreeMap<usize, [u8; 12]>,
+}
+
+impl CellVertices {
+    /// The vertex of the sheet that crosses an edge of a cell.
+    fn at(&self, cell: usize, edge: (usize, usize)) -> u32 {
+        let sheet = self.split.get(&cell).map_or(0, |sheet| sheet[cell_edge(edge.0, edge.1)]);
+        self.first[cell] + u32::from(sheet)
+    }
 }
 
 /// Gradient of `distance` by central differences over `step` metres.

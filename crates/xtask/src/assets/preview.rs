@@ -5,6 +5,7 @@ use std::path::Path;
 use glam::{Vec3, Vec4};
 
 /// What to draw: a mesh with colours, as one surface.
+#[derive(Clone, Copy)]
 pub(super) struct View<'a> {
     /// World positions, metres.
     pub(super) positions: &'a [Vec3],
