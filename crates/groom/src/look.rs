@@ -74,6 +74,21 @@ impl HairLook {
             + self.pheomelanin.max(0.0) * Vec3::new(0.187, 0.4, 1.05)
     }
 
+    /// Colour that light has after many fibres, linear sRGB: what a head of hair with this absorption looks like.
+    ///
+    /// Absorption over the path through several fibres, and a grey part that only ever met their surfaces: without
+    /// it brown hair would be too saturated and black hair a hole. The drawing does the same in
+    /// `strand_shading.wgsl`.
+    pub fn body_color(absorption: Vec3) -> Vec3 {
+        absorption.map(|sigma| (-Self::BODY_PATH * sigma).exp() + Self::SURFACE_SHARE)
+    }
+
+    /// Path through fibres, in the unit of the absorption, after which light has the colour of the hair.
+    pub const BODY_PATH: f32 = 4.0;
+
+    /// Share of the light that leaves hair without ever having entered a fibre.
+    pub const SURFACE_SHARE: f32 = 0.03;
+
     /// Effective width in metres with which one of `strands` drawn strands shadows: diameter times the
     /// number of real hairs that it stands for.
     pub fn shadow_width(&self, strands: usize) -> f32 {

@@ -69,7 +69,7 @@ fn edit(ui: &mut Ui, label: &'static str, tip: &'static str, value: &mut Vec3, d
 
 /// About the colour that hair of this look has.
 fn swatch(look: &HairLook) -> Color32 {
-    let linear = look.absorption().map(|sigma| 0.6 * (-2.7 * sigma).exp());
+    let linear = 0.7 * HairLook::body_color(look.absorption());
     let byte = |v: f32| (v.clamp(0.0, 1.0).powf(1.0 / 2.2) * 255.0) as u8;
     Color32::from_rgb(byte(linear.x), byte(linear.y), byte(linear.z))
 }

@@ -9,10 +9,6 @@ use crate::{HairFile, HairLook};
 /// Fraction of a strand's length at which it begins to taper, and its width at the tip.
 const TAPER: [f32; 2] = [0.7, 0.25];
 
-/// Length of the path through a fibre, in the unit of the absorption, that gives hair its colour when drawn:
-/// the diffuse term of the shading.
-const PATH: f32 = 1.55;
-
 /// Width of each point as a fraction of the widest: from the file where it varies there, else a tapering tip.
 pub(super) fn taper(file: &HairFile, groom: &PlacedGroom, order: &[u32]) -> Vec<f32> {
     let widths = file.thickness.as_deref().filter(|widths| varies(widths));
@@ -96,7 +92,8 @@ fn linear_from_srgb(colour: Vec3) -> Vec3 {
 ///
 /// Absorption by Beer's law, then the two concentrations, not negative, of least squares.
 fn melanin_of(colour: Vec3) -> (f32, f32) {
-    let absorption = Vec3::from(colour.to_array().map(|c| -c.clamp(1e-4, 1.0).ln() / PATH));
+    let absorption =
+        colour.map(|c| -(c - HairLook::SURFACE_SHARE).clamp(1e-4, 1.0).ln() / HairLook::BODY_PATH);
     let only = |melanin: Vec3| (melanin.dot(absorption) / melanin.length_squared()).max(0.0);
     let basis =
         |eumelanin, pheomelanin| HairLook { eumelanin, pheomelanin, ..HairLook::default() }.absorption();
@@ -118,7 +115,7 @@ mod tests {
 
     fn colour_of(eumelanin: f32, pheomelanin: f32) -> Vec3 {
         let absorption = HairLook { eumelanin, pheomelanin, ..HairLook::default() }.absorption();
-        absorption.map(|sigma| (-PATH * sigma).exp())
+        HairLook::body_color(absorption)
     }
 
     #[test]

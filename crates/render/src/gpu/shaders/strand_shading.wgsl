@@ -15,7 +15,8 @@ struct StrandColor {
 
 // Colours of a strand that absorbs `sigma` per unit of path.
 fn strand_color(sigma: vec3f) -> StrandColor {
-    return StrandColor(exp(-2.7 * sigma), exp(-1.9 * sigma), exp(-1.3 * sigma));
+    // Part of the light only ever met surfaces, which take no colour: black hair is grey where it is lit.
+    return StrandColor(exp(-4.0 * sigma) + 0.03, exp(-2.4 * sigma), exp(-1.5 * sigma));
 }
 
 // Light that a strand with unit tangent `t` (root to tip) sends toward `v` per unit of light from `l`;
