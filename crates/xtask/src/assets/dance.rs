@@ -108,14 +108,12 @@ impl Score {
         let t = ((beat - step.lift) / (step.land - step.lift)).clamp(0.0, 1.0);
         let Some(held) = step.held else {
             let rise = step.height * (4.0 * t * (1.0 - t)).powi(2);
-            return (
-                on_ground(from).lerp(on_ground(step.to), ease(whole, beat)) + Vec3::Y * rise,
-                smoothstep(0.0, 0.3, t),
-            );
+            let up = smoothstep(0.0, 0.35, t) * smoothstep(1.0, 0.65, t);
+            return (on_ground(from).lerp(on_ground(step.to), ease(whole, beat)) + Vec3::Y * rise, 0.6 * up);
         };
         let up = (0.38 * (step.land - step.lift)).min(0.85);
-        let in_air =
-            ease([step.lift, step.lift + up], beat) * (1.0 - ease([step.land - up, step.land], beat));
+        let leave = ease([step.lift, step.lift + up], beat);
+        let in_air = (leave * (1.0 - ease([step.land - up, step.land], beat))).clamp(0.0, 1.0);
         let turned = Quat::from_rotation_y(self.heading(secs)) * held;
         let place = Vec3::new(under_hips.x, 0.0, under_hips.y) + turned;
         let ground = if t < 0.5 { from } else { step.to };

@@ -312,7 +312,12 @@ pub(super) fn edge_length(p: Vec3) -> f32 {
     let mut near = |distance: f32, reach: f32, fine: f32, growth: f32| {
         size = size.min(fine + growth * (distance - reach).max(0.0));
     };
-    near(round_cone(q, rest::WRIST, rest::WRIST + rest::forearm_direction() * 0.16, 0.0, 0.0), 0.055, 0.0055, 0.11);
+    near(
+        round_cone(q, rest::WRIST, rest::WRIST + rest::forearm_direction() * 0.16, 0.0, 0.0),
+        0.055,
+        0.0055,
+        0.11,
+    );
     near(round_cone(q, v(rest::ANKLE.x, 0.02, -0.07), v(0.10, 0.01, 0.14), 0.0, 0.0), 0.045, 0.0080, 0.10);
     near(paint::seam(q).abs(), 0.0025, 0.0048, 0.36);
     if p.y > 1.30 {
@@ -322,7 +327,12 @@ pub(super) fn edge_length(p: Vec3) -> f32 {
             near((q - super::head::EYE - v(0.0, 0.0, 0.010)).length(), 0.0165, 0.0012, 0.15);
             near(round_cone(q, v(0.0, 1.512, 0.100), v(0.018, 1.512, 0.092), 0.0, 0.0), 0.010, 0.0016, 0.15);
             near(round_cone(q, v(0.0, 1.548, 0.112), v(0.008, 1.540, 0.105), 0.0, 0.0), 0.010, 0.0021, 0.15);
-            near(round_cone(q, v(0.014, 1.602, 0.098), v(0.046, 1.604, 0.078), 0.0, 0.0), 0.006, 0.0019, 0.15);
+            near(
+                round_cone(q, v(0.014, 1.602, 0.098), v(0.046, 1.604, 0.078), 0.0, 0.0),
+                0.006,
+                0.0019,
+                0.15,
+            );
         }
         near((q - super::head::EAR).length(), 0.032, 0.0026, 0.12);
     }

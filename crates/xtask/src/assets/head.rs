@@ -79,7 +79,11 @@ impl Head {
         d = jaw(p, d);
         // Brow ridge, then the sockets below it.
         d = smin(d, round_cone(p, v(0.010, 1.6015, 0.0920), v(0.044, 1.6045, 0.0770), 0.0070, 0.0060), 0.022);
-        d = smax(d, -ellipsoid(turn_y(p - v(0.0300, 1.5850, 0.1020), 0.25), v(0.0190, 0.0120, 0.0125)), 0.016);
+        d = smax(
+            d,
+            -ellipsoid(turn_y(p - v(0.0300, 1.5850, 0.1020), 0.25), v(0.0190, 0.0120, 0.0125)),
+            0.016,
+        );
         // Cheekbones and the soft cheek below.
         d = smin(d, ellipsoid(turn_y(p - v(0.0410, 1.5570, 0.0560), -0.5), v(0.0210, 0.0150, 0.0210)), 0.028);
         d = smin(d, ellipsoid(p - v(0.0330, 1.5320, 0.0600), v(0.0210, 0.0240, 0.0220)), 0.024);

@@ -18,7 +18,13 @@ fn around(centre: Vec3, degrees: f32, distance: f32, up: f32, view_angle: f32) -
 }
 
 /// Several views of one pose in a row or a grid of `columns`, each `size` pixels.
-fn grid(view: &View, cameras: &[Camera], columns: usize, size: [usize; 2], path: &Path) -> anyhow::Result<()> {
+fn grid(
+    view: &View,
+    cameras: &[Camera],
+    columns: usize,
+    size: [usize; 2],
+    path: &Path,
+) -> anyhow::Result<()> {
     let rows = cameras.len().div_ceil(columns);
     let mut canvas = Canvas::new(size[0] * columns, size[1] * rows);
     for (i, camera) in cameras.iter().enumerate() {
@@ -55,11 +61,34 @@ pub(super) fn write(dancer: &Dancer, folder: &Path) -> anyhow::Result<()> {
     grid(&view, &details, 3, [600, 600], &folder.join("detail.png"))?;
 
     let root = v(0.05, 0.03, 0.02);
-    let painted: Vec<Vec3> = dancer.colours.iter().zip(&dancer.scalp).map(|(c, s)| c.lerp(root, 0.9 * s)).collect();
+    let painted: Vec<Vec3> =
+        dancer.colours.iter().zip(&dancer.scalp).map(|(c, s)| c.lerp(root, 0.9 * s)).collect();
     let painted = View { colours: &painted, ..view };
-    let scalp = [(20.0, 0.05), (80.0, 0.0), (165.0, 0.1)].map(|(angle, up)| around(head, angle, 1.1, up, 0.25));
+    let scalp =
+        [(20.0, 0.05), (80.0, 0.0), (165.0, 0.1)].map(|(angle, up)| around(head, angle, 1.1, up, 0.25));
     grid(&painted, &scalp, 3, [600, 675], &folder.join("scalp.png"))?;
 
+    // Where skin folds or stretches most.
+    let mut canvas = Canvas::new(2000, 1400);
+    for (i, (key, angle)) in [
+        (150, 0.0),
+        (228, 40.0),
+        (310, 60.0),
+        (318, -60.0),
+        (366, 10.0),
+        (366, 170.0),
+        (400, 10.0),
+        (455, 0.0),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let (positions, normals) = skinned(dancer, &dancer.clips[0], key);
+        let posed = View { positions: &positions, normals: &normals, ..painted };
+        let centre = dancer.clips[0].hips[key] + v(0.0, 0.12, 0.0);
+        canvas.draw(&posed, around(centre, angle, 4.6, 0.3, 0.30), [i % 4 * 500, i / 4 * 700, 500, 700]);
+    }
+    canvas.save(&folder.join("folds.png"))?;
     for clip in &dancer.clips {
         sheet(dancer, &painted, clip, folder)?;
     }

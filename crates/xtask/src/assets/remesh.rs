@@ -215,7 +215,8 @@ fn flip(mesh: &mut TriMesh) -> usize {
     let mut locked = vec![false; mesh.positions.len()];
     let mut count = 0;
     for ([a, b], [s, t]) in edges(mesh) {
-        let opposite = |triangle: u32| mesh.triangles[triangle as usize].into_iter().find(|v| *v != a && *v != b);
+        let opposite =
+            |triangle: u32| mesh.triangles[triangle as usize].into_iter().find(|v| *v != a && *v != b);
         let (Some(c), Some(d)) = (opposite(s), opposite(t)) else { continue };
         if [a, b, c, d].iter().any(|v| locked[*v as usize]) || c == d {
             continue;
@@ -234,7 +235,8 @@ fn flip(mesh: &mut TriMesh) -> usize {
         };
         let (c, d) = if forward { (c, d) } else { (d, c) };
         let at = |v: u32| mesh.positions[v as usize];
-        let old = face_normal([a, b, c].map(at)).normalize_or_zero() + face_normal([b, a, d].map(at)).normalize_or_zero();
+        let old = face_normal([a, b, c].map(at)).normalize_or_zero()
+            + face_normal([b, a, d].map(at)).normalize_or_zero();
         let new = [[c, d, b], [d, c, a]];
         if new.iter().any(|tri| {
             let normal = face_normal(tri.map(at));

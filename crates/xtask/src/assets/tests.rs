@@ -36,9 +36,12 @@ impl File {
         let primitive = self.document.meshes().next().unwrap().primitives().next().unwrap();
         let reader = primitive.reader(|_| Some(self.binary.as_slice()));
         let scalp = primitive.get(&gltf::Semantic::Extras("SCALP".into())).expect("the attribute _SCALP");
-        let scalp = gltf::accessor::Iter::<f32>::new(scalp, |_| Some(self.binary.as_slice())).unwrap().collect();
+        let scalp =
+            gltf::accessor::Iter::<f32>::new(scalp, |_| Some(self.binary.as_slice())).unwrap().collect();
         let indices: Vec<u32> = reader.read_indices().unwrap().into_u32().collect();
-        let gltf::mesh::util::ReadJoints::U8(joints) = reader.read_joints(0).unwrap() else { panic!("u8 joints") };
+        let gltf::mesh::util::ReadJoints::U8(joints) = reader.read_joints(0).unwrap() else {
+            panic!("u8 joints")
+        };
         let gltf::mesh::util::ReadWeights::U16(weights) = reader.read_weights(0).unwrap() else {
             panic!("u16 weights")
         };
@@ -69,7 +72,7 @@ fn open_edges(triangles: &[[u32; 3]]) -> usize {
             *count.entry((t[i], t[(i + 1) % 3])).or_default() += 1;
         }
     }
-    count.iter().filter(|((a, b), n)| **n != 1 || count.get(&(*b, *a)) != Some(&1)).inspect(|e| eprintln!("EDGE {e:?}")).count()
+    count.iter().filter(|((a, b), n)| **n != 1 || count.get(&(*b, *a)) != Some(&1)).count()
 }
 
 #[test]
@@ -127,7 +130,11 @@ fn weights_sum_to_one_and_the_scalp_is_rigid() {
     }
     for i in 0..vertices.scalp.len() {
         if vertices.scalp[i] > 0.0 {
-            assert_eq!((vertices.joints[i][0], vertices.weights[i][0]), (rig::HEAD as u8, 65535), "vertex {i}");
+            assert_eq!(
+                (vertices.joints[i][0], vertices.weights[i][0]),
+                (rig::HEAD as u8, 65535),
+                "vertex {i}"
+            );
         }
     }
 }
@@ -146,9 +153,8 @@ fn scalp_is_as_large_as_a_head_of_hair_wants() {
         .sum();
     // 600 to 700 cm² on an adult.
     assert!((0.055..0.072).contains(&area), "{} cm²", area * 1e4);
-    let hairline = extent(&vertices.positions, Vec3::Y, |p| {
-        p.z > 0.05 && p.x.abs() < 0.01 && super::scalp(*p) > 0.5
-    });
+    let hairline =
+        extent(&vertices.positions, Vec3::Y, |p| p.z > 0.05 && p.x.abs() < 0.01 && super::scalp(*p) > 0.5);
     assert!((hairline.0 - head::BROW_Y - 0.065).abs() < 0.006, "hairline at {} m", hairline.0);
     let at_face = vertices.positions.iter().zip(&vertices.scalp).filter(|(p, _)| p.z > 0.06 && p.y < 1.64);
     assert!(at_face.clone().count() > 1000 && at_face.clone().all(|(_, s)| *s == 0.0));
@@ -181,7 +187,13 @@ fn clips_close_in_place_and_speed() {
         for joint in 0..worlds[0].len() {
             let at = |key: usize| worlds[key][joint];
             assert!(at(0).1.distance(at(last).1) < 1e-5, "{}: joint {joint}", score.name);
-            assert!(angular_speed(at(0).0, at(last).0) < 1e-3, "{}: joint {joint} {:?} {:?}", score.name, at(0), at(last));
+            assert!(
+                angular_speed(at(0).0, at(last).0) < 1e-3,
+                "{}: joint {joint} {:?} {:?}",
+                score.name,
+                at(0),
+                at(last)
+            );
             // The speed over the seam differs no more than between neighbouring keys anywhere else.
             let jump = |a: usize, b: usize, c: usize| ((at(c).1 - at(b).1) - (at(b).1 - at(a).1)).length();
             let worst = (1..last).map(|k| jump(k - 1, k, k + 1)).fold(0.0_f32, f32::max);
@@ -230,7 +242,11 @@ fn planted_feet_stay_and_soles_stay_above_the_ground() {
             let at = world[toe].1;
             if planted(key) {
                 let start = *since.get_or_insert(at);
-                assert!(start.distance(at) < 0.005, "foot {side} slides {} m at key {key}", start.distance(at));
+                assert!(
+                    start.distance(at) < 0.005,
+                    "foot {side} slides {} m at key {key}",
+                    start.distance(at)
+                );
                 kept += 1;
             } else {
                 since = None;
@@ -244,7 +260,8 @@ fn planted_feet_stay_and_soles_stay_above_the_ground() {
             for c in 0..4 {
                 let joint = usize::from(vertices.joints[i][c]);
                 let (rotation, place) = world[joint];
-                height += f32::from(vertices.weights[i][c]) / 65535.0 * (rotation * (*p - joints[joint].rest) + place).y;
+                height += f32::from(vertices.weights[i][c]) / 65535.0
+                    * (rotation * (*p - joints[joint].rest) + place).y;
             }
             assert!(height > -0.005, "a sole is {height} m below the ground at key {key}");
         }
@@ -279,7 +296,10 @@ fn a_limb_reaches_where_it_is_told() {
         let bent = ik::reach(target, lengths, Vec3::Z);
         let end = bent.first * lengths[0] + bent.second * lengths[1];
         assert!(end.distance(target) < 1e-5);
-        assert!(bent.first.cross(bent.second).dot(bent.hinge) > 0.0, "the hinge turns the first bone to the second");
+        assert!(
+            bent.first.cross(bent.second).dot(bent.hinge) > 0.0,
+            "the hinge turns the first bone to the second"
+        );
         let turn = ik::align((Vec3::X, Vec3::Z), (bent.first, bent.hinge));
         assert!((turn * Vec3::X).distance(bent.first) < 1e-4 && (turn * Vec3::Z).distance(bent.hinge) < 1e-4);
     }
