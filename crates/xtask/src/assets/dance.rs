@@ -123,22 +123,31 @@ impl Score {
         (at, in_air)
     }
 
+    /// The pose of an arm and the speed of its wrist, in lengths of the arm a second.
     fn arm_at(&self, side: usize, secs: f32) -> (ArmPose, Vec3) {
-        let keys: Vec<(f32, [f32; 9])> = self.arms[side]
+        let keys: Vec<(f32, [f32; 10])> = self.arms[side]
             .iter()
             .map(|(beat, pose)| {
-                let mut row = [0.0; 9];
+                let mut row = [0.0; 10];
                 row[..3].copy_from_slice(&pose.wrist);
                 row[3..6].copy_from_slice(&pose.pole);
-                row[6..].copy_from_slice(&pose.palm);
+                row[6..9].copy_from_slice(&pose.palm);
+                row[9] = Vec3::from(pose.wrist).length();
                 (*beat, row)
             })
             .collect();
-        let part = |row: [f32; 9], at: usize| [row[at], row[at + 1], row[at + 2]];
+        let part = |row: [f32; 10], at: usize| Vec3::new(row[at], row[at + 1], row[at + 2]);
+        // The wrist travels on arcs about the shoulder: its distance is a curve of its own.
+        let wrist = |row: [f32; 10]| part(row, 0).normalize_or(-Vec3::Y) * row[9];
         let now = self.curve(&keys, secs - ARM_LAG_SECS);
         let (before, after) = (self.curve(&keys, secs - 0.13), self.curve(&keys, secs - 0.07));
-        let speed = (Vec3::from(part(after, 0)) - Vec3::from(part(before, 0))) / 0.06;
-        (ArmPose { wrist: part(now, 0), pole: part(now, 3), palm: part(now, 6) }, speed)
+        let speed = (wrist(after) - wrist(before)) / 0.06;
+        let pose = ArmPose {
+            wrist: wrist(now).to_array(),
+            pole: part(now, 3).to_array(),
+            palm: part(now, 6).to_array(),
+        };
+        (pose, speed)
     }
 
     /// The pose at a time.
@@ -162,9 +171,9 @@ impl Score {
         }
         follow(&mut world, &mut place, rig::NECK, bend(head, 0.45));
         follow(&mut world, &mut place, rig::HEAD, bend(head, 0.55));
-        for side in 0..2 {
+        for (side, heel) in heel_radians.into_iter().enumerate() {
             self.arm(joints, secs, side, &mut world, &mut place);
-            self.leg(joints, secs, side, heel_radians[side], &mut world, &mut place);
+            self.leg(joints, secs, side, heel, &mut world, &mut place);
         }
         let rotations = (0..joints.len())
             .map(|j| joints[j].parent.map_or(world[j], |p| world[p].inverse() * world[j]).normalize())

@@ -157,7 +157,7 @@ impl Figure {
     /// Distance to the clothed figure.
     pub(super) fn distance(&self, p: Vec3) -> f32 {
         let d = self.skin(p);
-        if d.abs() > 0.02 || p.y > 1.46 {
+        if d.abs() > 0.02 || p.y > paint::STRAPS_Y || p.distance(Vec3::new(0.0, 1.49, 0.0)) < 0.068 {
             return d;
         }
         d - CLOTH_THICKNESS * smoothstep(-0.0025, 0.0025, paint::inside_cloth(p))

@@ -161,10 +161,10 @@ pub(super) fn write(dancer: &Dancer) -> anyhow::Result<Vec<u8>> {
 
 fn primitive(dancer: &Dancer, buffer: &mut Buffer) -> Value {
     let count = dancer.positions.len();
-    let positions: Vec<[f32; 3]> = dancer.positions.iter().map(|p| p.to_array()).collect();
+    let positions: Vec<[f32; 3]> = dancer.positions.iter().map(Vec3::to_array).collect();
     let position = buffer.floats(&positions, "VEC3", Some(ARRAY_BUFFER));
     buffer.bound(position, &positions);
-    let normals: Vec<[f32; 3]> = dancer.normals.iter().map(|n| n.to_array()).collect();
+    let normals: Vec<[f32; 3]> = dancer.normals.iter().map(Vec3::to_array).collect();
     let normal = buffer.floats(&normals, "VEC3", Some(ARRAY_BUFFER));
     let colours: Vec<u8> = dancer
         .colours
@@ -210,7 +210,7 @@ fn animation(clip: &SampledClip, buffer: &mut Buffer) -> Value {
         channels.push(json!({"sampler": samplers.len(), "target": {"node": node, "path": path}}));
         samplers.push(json!({"input": input, "output": output, "interpolation": "LINEAR"}));
     };
-    let places: Vec<[f32; 3]> = clip.hips.iter().map(|p| p.to_array()).collect();
+    let places: Vec<[f32; 3]> = clip.hips.iter().map(Vec3::to_array).collect();
     let places = buffer.floats(&places, "VEC3", None);
     channel(places, 1, "translation");
     for (joint, rotations) in clip.rotations.iter().enumerate() {

@@ -9,8 +9,6 @@ use super::sdf::{Loft, ball, curve, ellipsoid, round_cone, smax, smin, turn_x, t
 
 /// Height of the chin's lowest point.
 pub(super) const CHIN_Y: f32 = 1.47;
-/// Height of the crown.
-pub(super) const CROWN_Y: f32 = 1.70;
 /// Height of the brow; the hairline at the middle is 65 mm above.
 pub(super) const BROW_Y: f32 = 1.600;
 /// Centre of the left eyeball; the right one is its mirror image.
@@ -40,8 +38,8 @@ impl Head {
                 front: Vec3::Z,
                 exponent: 2.25,
                 sections: vec![
-                    row(1.4830, 0.0165, 0.0845, 0.070, 0.0560),
-                    row(1.4900, 0.0305, 0.0872, 0.055, 0.0240),
+                    row(1.4830, 0.0175, 0.0845, 0.070, 0.0560),
+                    row(1.4900, 0.0325, 0.0872, 0.055, 0.0240),
                     row(1.5000, 0.0415, 0.0880, 0.043, 0.0040),
                     row(1.5120, 0.0490, 0.0890, 0.034, -0.010),
                     row(1.5250, 0.0545, 0.0905, 0.027, -0.022),
@@ -65,37 +63,33 @@ impl Head {
         let occiput = ellipsoid(p - Vec3::new(0.0, 1.5850, -0.0380), Vec3::new(0.058, 0.055, 0.0480));
         let mut d = smin(smin(frontal, parietal, 0.025), occiput, 0.030);
         d = smin(d, self.face.distance(p), 0.018);
-        d = self.features(p, d);
+        d = features(p, d);
         smin(d, ear(p), 0.006)
     }
+}
 
-    /// Everything of the face that is finer than the loft.
-    fn features(&self, p: Vec3, skull: f32) -> f32 {
-        let v = Vec3::new;
-        let mut d = skull;
-        if p.z < 0.0 {
-            return jaw(p, d);
-        }
-        d = jaw(p, d);
-        // Brow ridge, then the sockets below it.
-        d = smin(d, round_cone(p, v(0.010, 1.6015, 0.0920), v(0.044, 1.6045, 0.0770), 0.0070, 0.0060), 0.022);
-        d = smax(
-            d,
-            -ellipsoid(turn_y(p - v(0.0300, 1.5850, 0.1020), 0.25), v(0.0190, 0.0120, 0.0125)),
-            0.016,
-        );
-        // Cheekbones and the soft cheek below.
-        d = smin(d, ellipsoid(turn_y(p - v(0.0410, 1.5570, 0.0560), -0.5), v(0.0210, 0.0150, 0.0210)), 0.028);
-        d = smin(d, ellipsoid(p - v(0.0330, 1.5320, 0.0600), v(0.0210, 0.0240, 0.0220)), 0.024);
-        // The muzzle that carries the lips, and the chin.
-        d = smin(d, ellipsoid(p - v(0.0, 1.5150, 0.0700), v(0.0300, 0.0260, 0.0290)), 0.022);
-        d = smin(d, ellipsoid(p - v(0.0, 1.4840, 0.0800), v(0.0150, 0.0135, 0.0145)), 0.018);
-        // The floor of the mouth slopes from the chin to the throat.
-        d = smin(d, round_cone(p, v(0.0, 1.4865, 0.0680), v(0.0, 1.5080, 0.0250), 0.0125, 0.0200), 0.016);
-        d = nose(p, d);
-        d = lips(p, d);
-        eye(p, d)
+/// Everything of the face that is finer than the loft.
+fn features(p: Vec3, skull: f32) -> f32 {
+    let v = Vec3::new;
+    let mut d = skull;
+    if p.z < 0.0 {
+        return jaw(p, d);
     }
+    d = jaw(p, d);
+    // Brow ridge, then the sockets below it.
+    d = smin(d, round_cone(p, v(0.010, 1.6015, 0.0920), v(0.044, 1.6045, 0.0770), 0.0070, 0.0060), 0.022);
+    d = smax(d, -ellipsoid(turn_y(p - v(0.0300, 1.5850, 0.1020), 0.25), v(0.0190, 0.0120, 0.0125)), 0.016);
+    // Cheekbones and the soft cheek below.
+    d = smin(d, ellipsoid(turn_y(p - v(0.0410, 1.5570, 0.0560), -0.5), v(0.0210, 0.0150, 0.0210)), 0.028);
+    d = smin(d, ellipsoid(p - v(0.0330, 1.5320, 0.0600), v(0.0210, 0.0240, 0.0220)), 0.024);
+    // The muzzle that carries the lips, and the chin.
+    d = smin(d, ellipsoid(p - v(0.0, 1.5150, 0.0700), v(0.0300, 0.0260, 0.0290)), 0.022);
+    d = smin(d, ellipsoid(p - v(0.0, 1.4840, 0.0800), v(0.0150, 0.0135, 0.0145)), 0.018);
+    // The floor of the mouth slopes from the chin to the throat.
+    d = smin(d, round_cone(p, v(0.0, 1.4865, 0.0680), v(0.0, 1.5080, 0.0250), 0.0125, 0.0200), 0.016);
+    d = nose(p, d);
+    d = lips(p, d);
+    eye(p, d)
 }
 
 fn jaw(p: Vec3, d: f32) -> f32 {

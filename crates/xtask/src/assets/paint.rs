@@ -20,6 +20,9 @@ const TOP: Vec3 = Vec3::new(0.052, 0.108, 0.118);
 const LEGGINGS: Vec3 = Vec3::new(0.046, 0.056, 0.070);
 const SLIPPERS: Vec3 = Vec3::new(0.185, 0.125, 0.115);
 
+/// Above this height there is no cloth.
+pub(super) const STRAPS_Y: f32 = 1.475;
+
 /// How far inside the edge of the top, along the surface, a point lies; negative on bare skin. Metres.
 fn inside_top(p: Vec3) -> f32 {
     let x = p.x.abs();
@@ -72,7 +75,7 @@ pub(super) fn inside_cloth(p: Vec3) -> f32 {
 
 /// Distance along the surface to the nearest edge between two colours of the clothes, metres; its sign tells the side.
 pub(super) fn seam(p: Vec3) -> f32 {
-    if p.y > 1.46 || (p.x.abs() > 0.22 && p.y > 0.2) {
+    if p.y > STRAPS_Y || (p.x.abs() > 0.22 && p.y > 0.2) {
         return 1.0;
     }
     let nearer = |a: f32, b: f32| if a.abs() < b.abs() { a } else { b };
@@ -84,7 +87,7 @@ pub(super) fn seam(p: Vec3) -> f32 {
 
 /// Colour at a point of the surface, linear sRGB.
 pub(super) fn colour(p: Vec3) -> Vec3 {
-    if p.y > 1.44 {
+    if p.y > 1.44 && (p.y > STRAPS_Y || p.x.abs() < 0.072) {
         return face(p);
     }
     let cloth = smoothstep(-0.0004, -0.0001, inside_cloth(p));

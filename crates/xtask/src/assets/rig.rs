@@ -48,8 +48,6 @@ pub(super) struct RigJoint {
     pub(super) parent: Option<usize>,
     /// Its place at rest, world space, metres.
     pub(super) rest: Vec3,
-    /// Where the part that it moves ends, world space: [`super::weights`] measures distances to this segment.
-    pub(super) end: Vec3,
 }
 
 /// Index of the pelvis.
@@ -94,38 +92,35 @@ pub(super) const LEG_JOINTS: usize = 5;
 /// The joints, parents first.
 pub(super) fn joints() -> Vec<RigJoint> {
     let mut joints = Vec::new();
-    let mut add = |name: String, parent: Option<usize>, rest: Vec3, end: Vec3| {
-        joints.push(RigJoint { name, parent, rest, end });
+    let mut add = |name: String, parent: Option<usize>, rest: Vec3| {
+        joints.push(RigJoint { name, parent, rest });
         joints.len() - 1
     };
     let v = Vec3::new;
     let spine_y = [(0.930, 0.000), (1.020, -0.012), (1.120, -0.020), (1.230, -0.028)];
-    let hips = add("hips".into(), None, v(0.0, 0.930, 0.0), v(0.0, 0.900, 0.0));
-    let spine = add("spine".into(), Some(hips), v(0.0, spine_y[1].0, spine_y[1].1), v(0.0, 1.10, -0.015));
-    let spine_1 = add("spine_1".into(), Some(spine), v(0.0, spine_y[2].0, spine_y[2].1), v(0.0, 1.19, -0.02));
-    let chest = add("chest".into(), Some(spine_1), v(0.0, spine_y[3].0, spine_y[3].1), v(0.0, 1.36, -0.03));
-    let neck = add("neck".into(), Some(chest), v(0.0, 1.430, -0.032), v(0.0, 1.50, -0.022));
-    add("head".into(), Some(neck), v(0.0, 1.530, -0.010), v(0.0, 1.64, 0.0));
+    let hips = add("hips".into(), None, v(0.0, 0.930, 0.0));
+    let spine = add("spine".into(), Some(hips), v(0.0, spine_y[1].0, spine_y[1].1));
+    let spine_1 = add("spine_1".into(), Some(spine), v(0.0, spine_y[2].0, spine_y[2].1));
+    let chest = add("chest".into(), Some(spine_1), v(0.0, spine_y[3].0, spine_y[3].1));
+    let neck = add("neck".into(), Some(chest), v(0.0, 1.430, -0.032));
+    add("head".into(), Some(neck), v(0.0, 1.530, -0.010));
     for (side, sign) in [("l", 1.0), ("r", -1.0)] {
         let m = |p: Vec3| v(p.x * sign, p.y, p.z);
-        let collar = add(format!("clavicle_{side}"), Some(chest), m(v(0.020, 1.385, 0.0)), m(rest::SHOULDER));
-        let tip = rest::WRIST + rest::forearm_direction() * 0.15;
-        let upper = add(format!("upper_arm_{side}"), Some(collar), m(rest::SHOULDER), m(rest::ELBOW));
-        let half = rest::SHOULDER + (rest::ELBOW - rest::SHOULDER) * 0.3;
-        add(format!("upper_arm_twist_{side}"), Some(upper), m(rest::SHOULDER), m(half));
-        let fore = add(format!("forearm_{side}"), Some(upper), m(rest::ELBOW), m(rest::WRIST));
+        let collar = add(format!("clavicle_{side}"), Some(chest), m(v(0.020, 1.385, 0.0)));
+        let upper = add(format!("upper_arm_{side}"), Some(collar), m(rest::SHOULDER));
+        add(format!("upper_arm_twist_{side}"), Some(upper), m(rest::SHOULDER));
+        let fore = add(format!("forearm_{side}"), Some(upper), m(rest::ELBOW));
         let middle = rest::ELBOW + (rest::WRIST - rest::ELBOW) * 0.5;
-        add(format!("forearm_twist_{side}"), Some(fore), m(middle), m(rest::WRIST));
-        add(format!("hand_{side}"), Some(fore), m(rest::WRIST), m(tip));
+        add(format!("forearm_twist_{side}"), Some(fore), m(middle));
+        add(format!("hand_{side}"), Some(fore), m(rest::WRIST));
     }
     for (side, sign) in [("l", 1.0), ("r", -1.0)] {
         let m = |p: Vec3| v(p.x * sign, p.y, p.z);
-        let thigh = add(format!("thigh_{side}"), Some(hips), m(rest::HIP), m(rest::KNEE));
-        let half = rest::HIP + (rest::KNEE - rest::HIP) * 0.35;
-        add(format!("thigh_twist_{side}"), Some(thigh), m(rest::HIP), m(half));
-        let shin = add(format!("shin_{side}"), Some(thigh), m(rest::KNEE), m(rest::ANKLE));
-        let foot = add(format!("foot_{side}"), Some(shin), m(rest::ANKLE), m(rest::TOE));
-        add(format!("toe_{side}"), Some(foot), m(rest::TOE), m(rest::TOE + rest::foot_direction() * 0.06));
+        let thigh = add(format!("thigh_{side}"), Some(hips), m(rest::HIP));
+        add(format!("thigh_twist_{side}"), Some(thigh), m(rest::HIP));
+        let shin = add(format!("shin_{side}"), Some(thigh), m(rest::KNEE));
+        let foot = add(format!("foot_{side}"), Some(shin), m(rest::ANKLE));
+        add(format!("toe_{side}"), Some(foot), m(rest::TOE));
     }
     joints
 }

@@ -41,6 +41,8 @@ const HIGH: ArmPose = arm([0.52, 0.78, 0.10], [0.70, -0.20, -0.70], [-0.45, -0.2
 const BEHIND: ArmPose = arm([0.52, -0.66, -0.38], [0.60, 0.10, -0.80], [-0.40, -0.30, -0.85]);
 /// Let down to the floor out of a forward bend.
 const GATHER: ArmPose = arm([0.02, -0.42, 0.84], [0.95, 0.10, -0.20], [-0.50, 0.30, -0.80]);
+/// Open to the front and side.
+const OPEN: ArmPose = arm([0.48, -0.20, 0.78], [0.70, -0.55, -0.30], [-0.60, -0.10, -0.60]);
 /// Across the body to the other side.
 const ACROSS: ArmPose = arm([-0.42, -0.24, 0.62], [0.80, -0.45, 0.20], [-0.60, 0.20, -0.75]);
 
@@ -252,8 +254,9 @@ pub(super) fn dance() -> Score {
                 (9.35, FIRST),
                 (10.0, HIGH),
                 (11.2, FIFTH),
-                (12.0, ACROSS),
-                (12.9, WING),
+                (11.9, ACROSS),
+                (12.45, OPEN),
+                (13.05, WING),
                 (13.9, FIRST),
                 (14.8, LOW),
             ],
