@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use lovelock_studio::groom::Preset;
 use lovelock_studio::{
-    Access, CameraMode, CameraSection, Command, PROJECT_EXTENSION, Problem, Project, StudioError, frame_points,
+    Access, CameraMode, CameraSection, Command, FileKind, Problem, Project, StudioError, frame_points,
     load_project_with, recording, save_project,
 };
 
@@ -20,37 +20,9 @@ pub(super) struct Opened {
     pub(super) problems: Vec<Problem>,
 }
 
-/// What a file changes in a project.
-enum Kind {
-    Project,
-    Hair,
-    Body,
-    Motion,
-}
-
-fn kind_of(path: &Path) -> Result<Kind, StudioError> {
-    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-    match extension.as_str() {
-        PROJECT_EXTENSION => Ok(Kind::Project),
-        "hair" | "tfx" => Ok(Kind::Hair),
-        "glb" | "gltf" => Ok(Kind::Body),
-        "bvh" => Ok(Kind::Motion),
-        _ => Err(StudioError::input(
-            path,
-            format!(
-                "{}: files of this kind are not read; expected .{PROJECT_EXTENSION}, .hair, .tfx, .glb, .gltf or .bvh",
-                path.display()
-            ),
-        )),
-    }
-}
-
 /// Opens what the command line names.
 pub(super) fn open_for_start(path: &Path) -> Result<Opened, StudioError> {
-    let kind = kind_of(path)?;
-    if !path.is_file() {
-        return Err(StudioError::input(path, format!("{}: there is no such file", path.display())));
-    }
+    let kind = FileKind::of(path)?;
     let mut opened = Opened {
         project: Project::default(),
         project_path: None,
@@ -58,13 +30,13 @@ pub(super) fn open_for_start(path: &Path) -> Result<Opened, StudioError> {
         problems: Vec::new(),
     };
     match kind {
-        Kind::Project => {
+        FileKind::Project => {
             (opened.project, opened.problems) = load_project_with(path, &mut Access::for_project(path))?;
             opened.project_path = Some(path.to_owned());
         }
-        Kind::Hair => opened.project.set_hair_file(path),
-        Kind::Body => opened.project.set_body_file(path),
-        Kind::Motion => opened.project.set_motion_file(path),
+        FileKind::Hair => opened.project.set_hair_file(path),
+        FileKind::Character => opened.project.set_body_file(path),
+        FileKind::Motion => opened.project.set_motion_file(path),
     }
     Ok(opened)
 }
@@ -126,9 +98,9 @@ impl Window {
     fn change(&mut self, label: &str, change: impl FnOnce(&mut Project)) {
         let mut project = copy(self.history.project());
         change(&mut project);
-        self.gesture += 1;
+        self.gestures.next();
         self.edit(label, project);
-        self.gesture += 1;
+        self.gestures.next();
     }
 
     fn frame_hair(&mut self) {
@@ -143,16 +115,15 @@ impl Window {
 
     /// Opens a file of any kind that is read.
     pub(super) fn open_any(&mut self, path: &Path) {
-        match kind_of(path) {
-            Ok(_) if !path.is_file() => self.tell([format!("{}: there is no such file", path.display())]),
-            Ok(Kind::Project) if self.history.is_modified() => self.pending = Some(Pending::Open(path.to_owned())),
-            Ok(Kind::Project) => self.open_project(path),
+        match FileKind::of(path) {
+            Ok(FileKind::Project) if self.history.is_modified() => self.pending = Some(Pending::Open(path.to_owned())),
+            Ok(FileKind::Project) => self.open_project(path),
             Ok(kind) => {
                 self.session.pick(path);
                 self.change("file", |project| match kind {
-                    Kind::Hair => project.set_hair_file(path),
-                    Kind::Body => project.set_body_file(path),
-                    Kind::Motion | Kind::Project => project.set_motion_file(path),
+                    FileKind::Hair => project.set_hair_file(path),
+                    FileKind::Character => project.set_body_file(path),
+                    FileKind::Motion | FileKind::Project => project.set_motion_file(path),
                 });
                 // The file may have been named before without being allowed.
                 let project = self.history.project().clone();

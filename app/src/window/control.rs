@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use egui::{Response, RichText, Sense, Slider, Ui, Vec2, Widget};
+use egui::{PointerButton, Response, RichText, Sense, Slider, SliderClamping, Ui, Vec2, Widget};
 
 use super::theme;
 
@@ -66,7 +66,8 @@ impl Number {
     pub(crate) fn show(self, ui: &mut Ui, value: &mut f32, default: f32) -> Response {
         let factor = f64::from(self.factor);
         let range = f64::from(*self.range.start()) * factor..=f64::from(*self.range.end()) * factor;
-        let differs = (*value - default).abs() > 1e-6 * (1.0 + default.abs());
+        // Angles come and go through sines: what is not a millionth of the range is no difference.
+        let differs = (*value - default).abs() > 1e-6 * (*self.range.end() - *self.range.start());
         row(ui, self.label, self.tip, differs, value, default, |ui, value| {
             ui.spacing_mut().slider_width = (ui.available_width() - 78.0).max(40.0);
             Slider::from_get_set(range, |new| {
@@ -79,6 +80,8 @@ impl Number {
                 f64::from(*value) * factor
             })
             .logarithmic(self.logarithmic)
+            // A project may hold more than the slider offers: showing it must not change it.
+            .clamping(SliderClamping::Edits)
             .fixed_decimals(self.decimals)
             .suffix(self.unit)
             .ui(ui)
@@ -98,7 +101,17 @@ pub(crate) fn count(
     row(ui, label, tip, *value != default, value, default, |ui, value| {
         ui.spacing_mut().slider_width = (ui.available_width() - 78.0).max(40.0);
         let wide = range.end() / range.start().max(&1) > 50;
-        Slider::new(value, range).logarithmic(wide).ui(ui)
+        let bounds = f64::from(*range.start())..=f64::from(*range.end());
+        Slider::from_get_set(bounds, |new| {
+            if let Some(new) = new.filter(|new| new.is_finite()) {
+                *value = new.round() as u32;
+            }
+            f64::from(*value)
+        })
+        .integer()
+        .logarithmic(wide)
+        .clamping(SliderClamping::Edits)
+        .ui(ui)
     })
 }
 
@@ -145,7 +158,15 @@ pub(crate) fn color(
     value: &mut [f32; 3],
     default: [f32; 3],
 ) -> Response {
-    row(ui, label, tip, *value != default, value, default, |ui, value| ui.color_edit_button_rgb(value))
+    row(ui, label, tip, *value != default, value, default, |ui, value| {
+        // The button turns the colour to hue and back, which rounds: only what the user picks is taken.
+        let mut picked = *value;
+        let response = ui.color_edit_button_rgb(&mut picked);
+        if response.changed() {
+            *value = picked;
+        }
+        response
+    })
 }
 
 /// One row: the label with its mark, then what `add` draws, tied to the label for screen readers and tests.
@@ -171,7 +192,9 @@ pub(crate) fn row<T>(
         let tip = if differs { format!("{tip}\n\nChanged: double-click restores the default.") } else { tip.to_owned() };
         let mut response = add(ui, value).labelled_by(name.id).on_hover_text(&tip);
         let name = name.on_hover_text(&tip);
-        if differs && (name.double_clicked() || response.double_clicked()) {
+        // A slider's rail takes drags and no clicks, so what it says of a double-click is not enough.
+        let twice = ui.input(|input| input.pointer.button_double_clicked(PointerButton::Primary));
+        if differs && twice && (name.contains_pointer() || response.contains_pointer()) {
             *value = default;
             response.mark_changed();
         }

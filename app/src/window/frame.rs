@@ -1,7 +1,7 @@
 //! One pass of the window, from top to bottom.
 
 use egui::{Align2, CentralPanel, Frame, Panel, ProgressBar, RichText, ScrollArea, Ui};
-use lovelock_studio::{Place, Project};
+use lovelock_studio::{PROJECT_EXTENSION, Place, Project};
 
 use super::control::section;
 use super::path_dialog::{Answer, PathDialog, Purpose};
@@ -12,6 +12,7 @@ impl Window {
     /// One pass.
     pub(super) fn pass(&mut self, ui: &mut Ui) {
         let ctx = ui.ctx().clone();
+        self.gestures.begin_pass(&ctx);
         let said = self.session.update();
         self.tell(said);
         if let Some(end) = self.recorder.update() {
@@ -32,9 +33,10 @@ impl Window {
             self.open_any(file.path());
         }
 
-        let mut project = copy(self.history.project());
         self.menu_bar(ui);
         let playback = self.timeline(ui);
+        // Copied after the menus, which may have changed it: the panels must not put back what was there before.
+        let mut project = copy(self.history.project());
         if !self.layout.panels_hidden {
             self.left_panel(ui, &mut project);
             self.right_panel(ui, &mut project, &ctx);
@@ -59,10 +61,6 @@ impl Window {
             self.run(command, &ctx);
         }
         self.windows(&ctx);
-        if ctx.input(|input| input.pointer.any_released()) || !ctx.input(|input| input.pointer.any_down()) {
-            // The pass in which the pointer is released still belongs to its drag.
-            self.gesture += 1;
-        }
         self.session.send(self.history.project(), self.viewport.wanted);
         let title = title(self.project_path.as_deref(), self.history.is_modified());
         ctx.send_viewport_cmd(egui::ViewportCommand::Title(title));
@@ -256,7 +254,7 @@ impl Window {
             .map_or_else(|| std::env::current_dir().unwrap_or_default(), std::path::Path::to_owned);
         let suggestion = match purpose {
             Purpose::Open => folder,
-            Purpose::SaveProject => self.project_path.clone().unwrap_or_else(|| folder.join("hair.ron")),
+            Purpose::SaveProject => self.project_path.clone().unwrap_or_else(|| folder.join("hair").with_extension(PROJECT_EXTENSION)),
             Purpose::Film => folder.join("out").join("dance.mp4"),
             Purpose::Sequence => folder.join("out").join("frames"),
             Purpose::Picture => folder.join("hair.png"),

@@ -20,6 +20,8 @@ pub(crate) fn pressed(ctx: &egui::Context) -> Vec<Command> {
             continue;
         }
         if ctx.input_mut(|input| input.consume_shortcut(&shortcut)) {
+            // Tab moves the keyboard to the next control as well, which would then keep all other keys.
+            ctx.memory_mut(|memory| memory.move_focus(egui::FocusDirection::None));
             commands.push(command);
         }
     }

@@ -4,6 +4,7 @@ mod actions;
 mod camera_control;
 mod control;
 mod frame;
+mod gesture;
 mod keys;
 mod light_sphere;
 mod palette;
@@ -18,9 +19,10 @@ mod viewport;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use lovelock_studio::{Access, Command, GestureId, History, Project, StudioError};
+use lovelock_studio::{Access, Command, History, Project, StudioError};
 use serde::{Deserialize, Serialize};
 
+use gesture::Gestures;
 use palette::Palette;
 use path_dialog::PathDialog;
 use recorder::Recorder;
@@ -65,8 +67,7 @@ pub(crate) struct Window {
     toasts: egui_notify::Toasts,
     keys_shown: bool,
     selected_light: usize,
-    /// Rises when the pointer is released: changes of one number are one step of undo.
-    gesture: GestureId,
+    gestures: Gestures,
     quitting: bool,
 }
 
@@ -123,7 +124,7 @@ impl Window {
             toasts: egui_notify::Toasts::default().with_anchor(egui_notify::Anchor::BottomRight),
             keys_shown: false,
             selected_light: 0,
-            gesture: 1,
+            gestures: Gestures::default(),
             quitting: false,
         };
         window.tell(problems.iter().map(|problem| problem.message.clone()));
@@ -139,9 +140,9 @@ impl Window {
         }
     }
 
-    /// Takes a changed project; changes between pressing and releasing the pointer are one step of undo.
+    /// Takes a changed project; the changes of one gesture are one step of undo.
     fn edit(&mut self, label: &str, project: Project) {
-        if self.history.edit(label, Some(self.gesture), project) {
+        if self.history.edit(label, Some(self.gestures.id()), project) {
             tracing::debug!(label, "edited");
         }
     }

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, sync_channel};
 
 use egui::{Modal, RichText};
+use lovelock_studio::PROJECT_EXTENSION;
 
 use super::theme;
 
@@ -23,7 +24,7 @@ pub(crate) enum Purpose {
 }
 
 /// What the program reads, for the system's dialog.
-const READABLE: [&str; 6] = ["ron", "hair", "tfx", "glb", "gltf", "bvh"];
+const READABLE: [&str; 7] = [PROJECT_EXTENSION, "ron", "hair", "tfx", "glb", "gltf", "bvh"];
 
 impl Purpose {
     fn title(self) -> &'static str {
@@ -48,7 +49,7 @@ impl Purpose {
     fn extension(self) -> Option<&'static str> {
         match self {
             Self::Open | Self::Sequence => None,
-            Self::SaveProject => Some("ron"),
+            Self::SaveProject => Some(PROJECT_EXTENSION),
             Self::Film => Some("mp4"),
             Self::Picture => Some("png"),
         }
@@ -159,7 +160,7 @@ impl PathDialog {
         let future: std::pin::Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> = match purpose {
             Purpose::Open => Box::pin(dialog.add_filter("Lovelock reads", &READABLE).pick_file()),
             Purpose::Sequence => Box::pin(dialog.pick_folder()),
-            Purpose::SaveProject => Box::pin(dialog.add_filter("Project", &["ron"]).save_file()),
+            Purpose::SaveProject => Box::pin(dialog.add_filter("Project", &[PROJECT_EXTENSION]).save_file()),
             Purpose::Film => Box::pin(dialog.add_filter("Film", &["mp4"]).save_file()),
             Purpose::Picture => Box::pin(dialog.add_filter("Picture", &["png"]).save_file()),
         };

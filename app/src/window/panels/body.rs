@@ -2,7 +2,7 @@
 
 use egui::Ui;
 use lovelock_studio::motion::{LengthUnit, MotionSettings, RootPosition, UpAxis};
-use lovelock_studio::{BodySource, MotionSource, Project};
+use lovelock_studio::{BodySource, MotionSection, MotionSource, Project};
 
 use crate::window::control::{Number, choice, note, section, toggle};
 
@@ -78,6 +78,7 @@ pub(crate) fn ui(ui: &mut Ui, project: &mut Project, loaded: &Loaded) -> Option<
 
 fn motion(ui: &mut Ui, project: &mut Project, loaded: &Loaded) -> Option<Ask> {
     let mut ask = None;
+    let default = MotionSection::default();
     let motion = &mut project.motion;
     ui.horizontal_wrapped(|ui| {
         for clip in &loaded.clips {
@@ -113,10 +114,10 @@ fn motion(ui: &mut Ui, project: &mut Project, loaded: &Loaded) -> Option<Ask> {
         ];
         choice(ui, "Root position", "What the root's position channels mean: change it where the figure floats or sinks.", &mut motion.settings.root, d.root, &roots);
     }
-    Number::new("Tempo", 0.1..=4.0, "How fast the dance is; the hair feels it.").unit(" ×", 1.0).logarithmic().show(ui, &mut motion.speed, 1.0);
-    toggle(ui, "Loop", "Whether the dance starts again at its end.", &mut motion.looping, true);
+    Number::new("Tempo", 0.1..=4.0, "How fast the dance is; the hair feels it.").unit(" ×", 1.0).logarithmic().show(ui, &mut motion.speed, default.speed);
+    toggle(ui, "Loop", "Whether the dance starts again at its end.", &mut motion.looping, default.looping);
     if motion.looping {
-        Number::new("Loop blend", 0.0..=2.0, "How long the end of a clip that does not loop by itself is faded into its beginning.").unit(" s", 1.0).show(ui, &mut motion.loop_blend_secs, 0.0);
+        Number::new("Loop blend", 0.0..=2.0, "How long the end of a clip that does not loop by itself is faded into its beginning.").unit(" s", 1.0).show(ui, &mut motion.loop_blend_secs, default.loop_blend_secs);
     }
     ask
 }

@@ -116,7 +116,8 @@ fn file(ui: &mut Ui, hair: &mut HairSection) {
     }
     let d = ImportSettings::default();
     let s = &mut hair.import;
-    let units = [
+    let own = if let Unit::Custom(metres) = s.unit { format!("{metres} m") } else { String::new() };
+    let mut units = vec![
         (Unit::Auto, "Guess"),
         (Unit::Metre, "Metres"),
         (Unit::Centimetre, "Centimetres"),
@@ -124,6 +125,9 @@ fn file(ui: &mut Ui, hair: &mut HairSection) {
         (Unit::Inch, "Inches"),
         (Unit::Custom(0.00254), "Tenths of an inch"),
     ];
+    if units.iter().all(|(known, _)| *known != s.unit) {
+        units.push((s.unit, &own));
+    }
     choice(ui, "Unit", "What one unit of the file is; hair files do not say.", &mut s.unit, d.unit, &units);
     choice(ui, "Up", "The axis of the file that points up.", &mut s.up, d.up, &[(UpAxis::Auto, "Guess"), (UpAxis::Y, "Y"), (UpAxis::Z, "Z")]);
     let facings = [

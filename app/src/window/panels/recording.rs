@@ -54,20 +54,37 @@ pub(crate) fn ui(ui: &mut Ui, section: &mut RecordingSection, state: &State, cli
     let d = RecordingSection::default();
     let mut ask = None;
     let mut size = (section.width, section.height);
-    choice(ui, "Size", "Size of the film in pixels.", &mut size, (d.width, d.height), &SIZES);
+    let own = format!("{} × {}", size.0, size.1);
+    let mut sizes = SIZES.to_vec();
+    if SIZES.iter().all(|(known, _)| *known != size) {
+        sizes.push((size, &own));
+    }
+    choice(ui, "Size", "Size of the film in pixels.", &mut size, (d.width, d.height), &sizes);
     (section.width, section.height) = size;
-    let rates = [(24.0, "24"), (25.0, "25"), (30.0, "30"), (50.0, "50"), (60.0, "60")];
+    let own = section.fps.to_string();
+    let mut rates = vec![(24.0, "24"), (25.0, "25"), (30.0, "30"), (50.0, "50"), (60.0, "60")];
+    if rates.iter().all(|(known, _)| *known != section.fps) {
+        rates.push((section.fps, &own));
+    }
     choice(ui, "Frames a second", "Rate of the film.", &mut section.fps, d.fps, &rates);
     let qualities = FilmQuality::ALL.map(|quality| (quality, quality.label()));
     choice(ui, "Quality", "How finely the film is coded: finer keeps single hairs apart and takes more bytes.", &mut section.quality, d.quality, &qualities);
     row(ui, "From frame", "First frame.", section.first_frame != d.first_frame, &mut section.first_frame, d.first_frame, |ui, first| {
-        ui.add(egui::DragValue::new(first).range(0..=1_000_000))
+        ui.add(egui::DragValue::new(first).range(0..=1_000_000).clamp_existing_to_range(false))
     });
-    let mut end = section.end_frame.unwrap_or(clip_frames);
-    row(ui, "To frame", "One past the last frame; the default is the whole clip.", section.end_frame.is_some(), &mut end, clip_frames, |ui, end| {
-        ui.add(egui::DragValue::new(end).range(1..=1_000_000))
+    let end = &mut section.end_frame;
+    row(ui, "To frame", "One past the last frame; the default is the whole clip.", end.is_some(), end, None, |ui, end| {
+        let mut frame = end.unwrap_or(clip_frames);
+        let response = ui.add(egui::DragValue::new(&mut frame).range(1..=1_000_001).clamp_existing_to_range(false));
+        if response.changed() {
+            *end = Some(frame);
+        }
+        response
     });
-    section.end_frame = (end != clip_frames).then_some(end.max(section.first_frame + 1));
+    // A range is never empty, whichever end was moved.
+    if let Some(end) = &mut section.end_frame {
+        *end = (*end).max(section.first_frame + 1);
+    }
     if let State::Running { what, done, total, left_secs } = state {
         let text = left_secs.map_or_else(String::new, |secs| format!(", {secs:.0} s left"));
         ui.add(ProgressBar::new(*done as f32 / (*total).max(1) as f32).text(format!("{what} {done} of {total}{text}")));

@@ -19,8 +19,11 @@ pub(crate) fn ui(ui: &mut Ui, settings: &mut ShadowSettings, memory_bytes: u64) 
         ShadowMethod::None => note(ui, "Hair is lit as if no other hair were there."),
         ShadowMethod::VoxelMap => {
             let (v, d) = (&mut s.voxel_map, &d.voxel_map);
-            let sizes: Vec<(u32, String)> =
-                [32, 48, 64, 96, 128, 192, 256, 384, 512].map(|n| (n, format!("{n}³"))).into();
+            let mut sizes = vec![32, 48, 64, 96, 128, 192, 256, 384, 512];
+            if !sizes.contains(&v.resolution) {
+                sizes.push(v.resolution);
+            }
+            let sizes: Vec<(u32, String)> = sizes.into_iter().map(|n| (n, format!("{n}³"))).collect();
             let sizes: Vec<(u32, &str)> = sizes.iter().map(|(n, name)| (*n, name.as_str())).collect();
             choice(ui, "Map resolution", "Cells along each edge of the map: more show finer shadows and cost more; the brightness stays.", &mut v.resolution, d.resolution, &sizes);
             section(ui, "As published", false, |ui| {
