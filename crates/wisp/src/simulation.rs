@@ -2,50 +2,370 @@
 
 use std::sync::Arc;
 
-use glam::Affine3A;
+use glam::Vec3;
 use lovelock_groom::{GuideFrame, Hairstyle};
+use lovelock_motion::PlacedCollider;
+use rayon::prelude::*;
 
-use crate::{SimulationSettings, StepInput, StepReport};
+use crate::block::Block;
+use crate::colliders::contact::ContactRules;
+use crate::colliders::shape::Shape;
+use crate::colliders::{MovingShape, RestColliders, place};
+use crate::dispatch::step_block;
+use crate::grid::DensityGrid;
+use crate::hash::Hasher;
+use crate::lanes::{LANES, Map, ZERO, at, put};
+use crate::motion::{HeadPose, rigid_between, substep};
+use crate::rest::{RestShape, blocks_of};
+use crate::solver::{BendingKey, Plan, Substep};
+use crate::wind::WindField;
+use crate::{MAX_SUBSTEPS, SimulationSettings, StepInput, StepReport};
 
-/// Hair in motion: the guides of one hairstyle.
-#[derive(Debug)]
+/// Hair in motion: the guides of one hairstyle as chains of rigid links.
+///
+/// A step depends on the state, the input and the settings alone: not on a clock, and not on how many threads
+/// share the work.
+#[derive(Clone, Debug)]
 pub struct Simulation {
     style: Arc<Hairstyle>,
-    world_from_head: Affine3A,
+    blocks: Vec<Block>,
+    /// Block and lane of each guide.
+    slots: Vec<(u32, u32)>,
+    grid: DensityGrid,
+    /// The body at the end of the last step.
+    head: HeadPose,
     time_secs: f64,
+    colliders: Vec<PlacedCollider>,
+    rest_colliders: RestColliders,
+    /// Simulated since the last reset, for the wind.
+    elapsed_secs: f64,
+    /// The links at the root that the blocks are prepared for.
+    clamped_links: u32,
+    mean_link: f32,
+    substeps: Vec<Substep>,
+    shapes: Vec<MovingShape>,
 }
 
 impl Simulation {
-    /// Hair of `style` at rest on a head at the world's origin.
+    /// Hair of `style` at rest on a head at the world's origin. Call [`Simulation::reset`] before the first
+    /// step, or that step is taken for a jump.
     pub fn new(style: Arc<Hairstyle>) -> Self {
-        Self { style, world_from_head: Affine3A::IDENTITY, time_secs: 0.0 }
+        let clamped_links = SimulationSettings::default().clamped_links;
+        let guides = &style.guides;
+        let usable = guides.points_per_guide >= 2;
+        let cut = if usable { blocks_of(guides) } else { Vec::new() };
+        let first_free = first_free(clamped_links, guides.points_per_guide);
+        let mut slots = vec![(0, 0); if usable { guides.count() } else { 0 }];
+        let mut blocks = Vec::with_capacity(cut.len());
+        for (b, (lanes, used)) in cut.into_iter().enumerate() {
+            for (lane, &guide) in lanes[..used].iter().enumerate() {
+                slots[guide as usize] = (b as u32, lane as u32);
+            }
+            let mut block = Block::new(guides, lanes, used, first_free);
+            block.place_at_rest(&Map::IDENTITY);
+            blocks.push(block);
+        }
+        let links: f32 = blocks.iter().map(|b| b.rest.mean_link[..b.used].iter().sum::<f32>()).sum();
+        let mean_link = links / slots.len().max(1) as f32;
+        let grid = DensityGrid::new(&blocks);
+        Self {
+            style,
+            blocks,
+            slots,
+            grid,
+            head: HeadPose::IDENTITY,
+            time_secs: 0.0,
+            colliders: Vec::new(),
+            rest_colliders: RestColliders::default(),
+            elapsed_secs: 0.0,
+            clamped_links,
+            mean_link,
+            substeps: Vec::new(),
+            shapes: Vec::new(),
+        }
+    }
+
+    /// The hairstyle that is simulated.
+    pub fn style(&self) -> &Arc<Hairstyle> {
+        &self.style
     }
 
     /// Carries the rest shape to the head of `input`, without motion.
     pub fn reset(&mut self, input: &StepInput) {
-        self.world_from_head = input.world_from_head;
+        self.head = HeadPose::new(&input.world_from_head).unwrap_or(self.head);
         self.time_secs = input.time_secs;
+        self.elapsed_secs = 0.0;
+        self.colliders.clear();
+        self.colliders.extend_from_slice(input.colliders);
+        self.learn_colliders();
+        let from_head = self.head.map_from_head(self.head.place);
+        self.blocks.par_iter_mut().for_each(|block| block.place_at_rest(&from_head));
     }
 
     /// Moves on by `dt_secs`, while the body moves from where it was to `input`.
+    ///
+    /// Roots, frames and colliders are taken through the substeps in between. Where the motion jumps (see
+    /// [`StepInput`]) hair is carried along with the head, velocities and all, and time stands still.
     pub fn step(&mut self, input: &StepInput, settings: &SimulationSettings, dt_secs: f32) -> StepReport {
-        let _ = (settings, dt_secs);
-        self.reset(input);
-        StepReport::default()
+        let settings = settings.clamped();
+        let head = HeadPose::new(&input.world_from_head).unwrap_or(self.head);
+        let jumped = self.head.jumps_to(&head, self.time_secs, input.time_secs, dt_secs);
+        self.time_secs = input.time_secs;
+        if self.colliders.len() != input.colliders.len() {
+            self.colliders.clear();
+            self.colliders.extend_from_slice(input.colliders);
+            let before = std::mem::replace(&mut self.head, head);
+            self.learn_colliders();
+            self.head = before;
+        }
+        if self.clamped_links != settings.clamped_links {
+            self.clamp_links(settings.clamped_links);
+        }
+        if jumped || !(dt_secs > 0.0 && dt_secs.is_finite()) {
+            return self.carry_to(head, input.colliders, jumped);
+        }
+        let report = self.simulate(&head, input.colliders, &settings, dt_secs.min(0.1));
+        self.head = head;
+        self.colliders.copy_from_slice(input.colliders);
+        self.elapsed_secs += f64::from(dt_secs);
+        report
+    }
+
+    fn simulate(
+        &mut self,
+        head: &HeadPose,
+        colliders: &[PlacedCollider],
+        settings: &SimulationSettings,
+        dt_secs: f32,
+    ) -> StepReport {
+        let origin = head.place;
+        let rebase = self.head.place - origin;
+        let count = self.substeps_for(head, settings.substeps);
+        let h = dt_secs / count as f32;
+        self.substeps.clear();
+        self.shapes.clear();
+        let mut before = self.head;
+        for s in 0..count {
+            let t = (s + 1) as f32 / count as f32;
+            let now = self.head.toward(head, t);
+            self.substeps.push(substep(&before, &now, origin, h));
+            place(
+                &self.rest_colliders,
+                &self.colliders,
+                colliders,
+                t,
+                dt_secs,
+                origin,
+                &now.affine(),
+                &mut self.shapes,
+            );
+            before = now;
+        }
+        let head_from_last = head_from(&self.head, self.head.place);
+        let over_dense_cells = self.grid.update(&self.blocks, &head_from_last, settings.repulsion);
+        let wind = WindField::new(&settings.wind, self.elapsed_secs, origin);
+        let first_free = first_free(self.clamped_links, self.style.guides.points_per_guide);
+        let plan = Plan {
+            settings: *settings,
+            h,
+            first_free,
+            rebase,
+            carry_all: rigid_between(&self.head, head, origin),
+            head_from_last,
+            last_head: self.head.map_from_head(self.head.place),
+            substeps: &self.substeps,
+            shapes: &self.shapes,
+            shapes_per_substep: colliders.len(),
+            rules: ContactRules {
+                margin: settings.skin_margin,
+                layering: settings.layering,
+                friction: settings.friction,
+                h,
+            },
+            bending: BendingKey {
+                h,
+                stiffness_root: settings.stiffness_root,
+                stiffness_tip: settings.stiffness_tip,
+                damping_secs: settings.bend_damping,
+                hold: settings.hold,
+                first_free,
+            },
+            grid: &self.grid,
+            wind: &wind,
+        };
+        self.blocks.par_iter_mut().for_each(|block| step_block(block, &plan));
+        StepReport { substeps: count, over_dense_cells, ..self.outcome(first_free) }
+    }
+
+    /// Sums up the blocks, always in the same order.
+    fn outcome(&self, first_free: usize) -> StepReport {
+        let mut report = StepReport::default();
+        let (mut energy, mut fastest) = (0.0, 0.0_f32);
+        for block in &self.blocks {
+            let out = &block.outcome;
+            report.max_stretch = report.max_stretch.max(out.max_stretch);
+            report.max_penetration_m = report.max_penetration_m.max(out.max_penetration_m);
+            report.recovered_guides += out.recovered;
+            energy += out.energy;
+            fastest = fastest.max(out.max_speed_squared);
+        }
+        let free = self.slots.len() * self.style.guides.points_per_guide.saturating_sub(first_free);
+        report.kinetic_energy = (energy / free.max(1) as f64) as f32;
+        report.max_speed = fastest.sqrt();
+        report
+    }
+
+    /// Moves the hair rigidly with the head.
+    fn carry_to(&mut self, head: HeadPose, colliders: &[PlacedCollider], jumped: bool) -> StepReport {
+        let turn = rigid_between(&self.head, &head, self.head.place).turn;
+        // Both working spaces have their origin at the head.
+        let by = Map { turn, shift: Vec3::ZERO };
+        self.blocks.par_iter_mut().for_each(|block| block.carry(&by));
+        self.head = head;
+        self.colliders.copy_from_slice(colliders);
+        StepReport { jumped, ..StepReport::default() }
+    }
+
+    /// No root may move further in a substep than half a link.
+    fn substeps_for(&self, head: &HeadPose, asked: u32) -> u32 {
+        let (turn, there) = (self.head.affine(), head.affine());
+        let mut furthest = 0.0_f32;
+        for block in &self.blocks {
+            for k in 0..block.used {
+                let root = at(&block.rest.position[0], k);
+                let moved = there.transform_point3(root) - turn.transform_point3(root);
+                furthest = furthest.max(moved.length_squared());
+            }
+        }
+        let half_links = 2.0 * furthest.sqrt() / self.mean_link.max(1e-4);
+        asked.max(half_links.ceil().min(MAX_SUBSTEPS as f32) as u32)
+    }
+
+    /// Fills `block` with the rest shape and the motion of its guides, wherever they are here.
+    fn gather(&self, block: &mut Block) {
+        for k in 0..LANES {
+            let (from, lane) = self.slots[block.guides[k] as usize];
+            let (from, lane) = (&self.blocks[from as usize], lane as usize);
+            for i in 0..block.points() {
+                put(&mut block.rest.direction[i], k, at(&from.rest.direction[i], lane));
+                put(&mut block.position[i], k, at(&from.position[i], lane));
+                put(&mut block.velocity[i], k, at(&from.velocity[i], lane));
+            }
+        }
+    }
+
+    /// Prepares the blocks for another number of carried links.
+    fn clamp_links(&mut self, clamped_links: u32) {
+        self.clamped_links = clamped_links;
+        let guides = &self.style.guides;
+        let first_free = first_free(clamped_links, guides.points_per_guide);
+        for block in &mut self.blocks {
+            block.rest = RestShape::new(guides, &block.guides, first_free);
+        }
+    }
+
+    /// Finds how the colliders lie around the hair at rest.
+    fn learn_colliders(&mut self) {
+        self.rest_colliders.find(self.head.affine(), &self.colliders);
+        self.learn_rest_distances();
+    }
+
+    /// Measures how far every point at rest is from every collider at rest.
+    fn learn_rest_distances(&mut self) {
+        let shapes: Vec<Option<Shape>> = self.rest_colliders.shapes.iter().map(Shape::new).collect();
+        self.blocks.par_iter_mut().for_each(|block| {
+            let points = block.points();
+            block.rest_distance.clear();
+            block.rest_distance.resize(shapes.len() * points, ZERO);
+            for (c, shape) in shapes.iter().enumerate() {
+                for i in 0..points {
+                    let row = block.rest.position[i];
+                    let distance = shape.as_ref().map(|s| s.nearest(&row, &crate::lanes::ZERO3).distance);
+                    block.rest_distance[c * points + i] = distance.unwrap_or([f32::MAX; LANES]);
+                }
+            }
+            block.active.reserve(shapes.len());
+        });
     }
 
     /// Writes the guides as they are now into `frame`, without allocating where it already fits.
     pub fn frame(&self, frame: &mut GuideFrame) {
-        *frame = GuideFrame::at_rest(&self.style.guides, self.world_from_head, self.time_secs);
+        frame.time_secs = self.time_secs;
+        frame.world_from_head = self.head.affine();
+        let points = self.style.guides.points_per_guide;
+        frame.guides.points_per_guide = points;
+        let total = self.style.guides.x.len();
+        for axis in [&mut frame.guides.x, &mut frame.guides.y, &mut frame.guides.z] {
+            axis.resize(total, 0.0);
+        }
+        for (guide, &(block, lane)) in self.slots.iter().enumerate() {
+            let rows = &self.blocks[block as usize].position;
+            for (i, row) in rows.iter().enumerate() {
+                let p = at(row, lane as usize) + self.head.place;
+                let to = guide * points + i;
+                (frame.guides.x[to], frame.guides.y[to], frame.guides.z[to]) = (p.x, p.y, p.z);
+            }
+        }
     }
 
-    /// A fingerprint of the state: equal states have equal ones.
+    /// A fingerprint of positions and velocities: equal states have equal ones.
     pub fn state_hash(&self) -> u64 {
-        0
+        let mut hasher = Hasher::default();
+        for v in self.head.place.to_array() {
+            hasher.add(v.to_bits());
+        }
+        for &(block, lane) in &self.slots {
+            let block = &self.blocks[block as usize];
+            for row in block.position.iter().chain(&block.velocity) {
+                for axis in row {
+                    hasher.add(axis[lane as usize].to_bits());
+                }
+            }
+        }
+        hasher.finish()
     }
 
-    /// Changes the hairstyle and carries the motion over where the guides' layout is the same.
+    /// Changes the hairstyle. Where the guides are as many and as finely cut as before, the motion is carried
+    /// over: every lock keeps its turns and velocities. Otherwise the new style starts at rest.
     pub fn set_style(&mut self, style: Arc<Hairstyle>) {
-        self.style = style;
+        let same = style.guides.points_per_guide == self.style.guides.points_per_guide
+            && style.guides.count() == self.style.guides.count();
+        let mut next = Self::new(style);
+        if next.clamped_links != self.clamped_links {
+            next.clamp_links(self.clamped_links);
+        }
+        next.head = self.head;
+        next.time_secs = self.time_secs;
+        next.elapsed_secs = self.elapsed_secs;
+        next.colliders = std::mem::take(&mut self.colliders);
+        next.rest_colliders = std::mem::take(&mut self.rest_colliders);
+        let from_head = next.head.map_from_head(next.head.place);
+        for block in &mut next.blocks {
+            block.place_at_rest(&from_head);
+        }
+        if same {
+            // The blocks are cut along a curve through the roots, so another style may order them otherwise:
+            // each new block first gathers its guides' old state.
+            let mut gathered = next.blocks.clone();
+            for block in &mut gathered {
+                self.gather(block);
+            }
+            for (block, old) in next.blocks.iter_mut().zip(&gathered) {
+                block.adopt(old, &from_head);
+            }
+        }
+        next.learn_rest_distances();
+        *self = next;
     }
+}
+
+/// The first point that the scalp does not carry.
+fn first_free(clamped_links: u32, points: usize) -> usize {
+    (1 + clamped_links as usize).min(points)
+}
+
+/// From the space whose origin is at `origin` to head space.
+fn head_from(head: &HeadPose, origin: Vec3) -> Map {
+    let turn = glam::Mat3::from_quat(head.turn.inverse());
+    Map { turn, shift: turn * (origin - head.place) }
 }

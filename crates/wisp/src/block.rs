@@ -1,0 +1,132 @@
+//! Guides side by side: their state and the working memory of a step.
+
+use glam::Vec3;
+use lovelock_groom::Guides;
+
+use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, put};
+use crate::rest::RestShape;
+use crate::solver::{Bending, LengthScratch};
+
+/// `LANES` guides. Rows are points, root first. Positions are in working space: the axes of the world, the
+/// origin where the head was at the end of the last step, so that single precision is spent on hair and not
+/// on the way to the dancer.
+#[derive(Clone, Debug)]
+pub(crate) struct Block {
+    /// The guide of each lane; lanes from `used` on repeat the last.
+    pub(crate) guides: [u32; LANES],
+    pub(crate) used: usize,
+    pub(crate) rest: RestShape,
+    /// Signed distance at rest of point `i` to collider `c` at `c * points + i`, metres.
+    pub(crate) rest_distance: Vec<Lane>,
+
+    pub(crate) position: Vec<Lane3>,
+    pub(crate) velocity: Vec<Lane3>,
+    /// The bend at rest in the frame of the last substep.
+    pub(crate) bend: Vec<Lane3>,
+    /// The pose after the last step in which all was finite.
+    pub(crate) good: Vec<Lane3>,
+
+    /// What forces add to velocities in a substep, and what they leave of them.
+    pub(crate) push: Vec<Lane3>,
+    pub(crate) keep: Vec<Lane>,
+    pub(crate) next: Vec<Lane3>,
+    pub(crate) next_bend: Vec<Lane3>,
+    pub(crate) residual: Vec<Lane3>,
+    pub(crate) lengths: LengthScratch,
+    pub(crate) bending: Bending,
+    pub(crate) active: Vec<u32>,
+    pub(crate) outcome: Outcome,
+}
+
+/// What a block has to report of a step.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Outcome {
+    pub(crate) max_stretch: f32,
+    pub(crate) max_penetration_m: f32,
+    pub(crate) recovered: u32,
+    /// Sum of `v^2 / 2` over the free points.
+    pub(crate) energy: f64,
+    pub(crate) max_speed_squared: f32,
+}
+
+impl Block {
+    pub(crate) fn new(guides: &Guides, lanes: [u32; LANES], used: usize, first_free: usize) -> Self {
+        let points = guides.points_per_guide;
+        Self {
+            guides: lanes,
+            used,
+            rest: RestShape::new(guides, &lanes, first_free),
+            rest_distance: Vec::new(),
+            position: vec![ZERO3; points],
+            velocity: vec![ZERO3; points],
+            bend: vec![ZERO3; points],
+            good: vec![ZERO3; points],
+            push: vec![ZERO3; points],
+            keep: vec![ZERO; points],
+            next: vec![ZERO3; points],
+            next_bend: vec![ZERO3; points],
+            residual: vec![ZERO3; points],
+            lengths: LengthScratch::new(points),
+            bending: Bending::new(points),
+            active: Vec::new(),
+            outcome: Outcome::default(),
+        }
+    }
+
+    pub(crate) fn points(&self) -> usize {
+        self.position.len()
+    }
+
+    /// Puts the rest shape, without motion, where `from_head` carries it.
+    pub(crate) fn place_at_rest(&mut self, from_head: &Map) {
+        for i in 0..self.points() {
+            for k in 0..LANES {
+                put(&mut self.position[i], k, from_head.apply(at(&self.rest.position[i], k)));
+                put(&mut self.bend[i], k, from_head.rotate(at(&self.rest.bend[i], k)));
+            }
+        }
+        self.velocity.fill(ZERO3);
+        self.good.copy_from_slice(&self.position);
+    }
+
+    /// Moves everything rigidly, velocities included.
+    pub(crate) fn carry(&mut self, by: &Map) {
+        for i in 0..self.points() {
+            for k in 0..LANES {
+                for row in [&mut self.position[i], &mut self.good[i]] {
+                    let p = by.apply(at(row, k));
+                    put(row, k, p);
+                }
+                for row in [&mut self.velocity[i], &mut self.bend[i]] {
+                    let v = by.rotate(at(row, k));
+                    put(row, k, v);
+                }
+            }
+        }
+    }
+
+    /// Takes the motion of `old`, a block of the same guides in another style: each link keeps the turn that
+    /// it has from its rest direction, and the lock is laid anew with its own lengths from its own root.
+    pub(crate) fn adopt(&mut self, old: &Block, from_head: &Map) {
+        use crate::lanes::{Turn, direction_or};
+        let head = Turn::new(glam::Quat::from_mat3(&from_head.turn));
+        for k in 0..LANES {
+            let mut turn = head;
+            let mut end = Vec3::ZERO;
+            for i in 0..self.points() {
+                if i == 0 {
+                    end = from_head.apply(at(&self.rest.position[0], k));
+                } else {
+                    let was = turn.apply(at(&old.rest.direction[i], k));
+                    let link = at(&old.position[i], k) - at(&old.position[i - 1], k);
+                    turn = turn.then_least(was, direction_or(link, was).0);
+                    end += turn.apply(at(&self.rest.direction[i], k)) * self.rest.length[i][k];
+                }
+                put(&mut self.position[i], k, end);
+                put(&mut self.bend[i], k, turn.apply(at(&self.rest.bend[i], k)));
+            }
+        }
+        self.velocity.copy_from_slice(&old.velocity);
+        self.good.copy_from_slice(&self.position);
+    }
+}

@@ -1,0 +1,213 @@
+//! Follow the leader over obstacles: the clean-up pass that makes every link exactly as long as it is and
+//! keeps every point outside every collider.
+
+use glam::Vec3;
+
+use super::MovingShape;
+use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, direction_or, greater, lesser, put};
+
+/// How contacts behave in one step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ContactRules {
+    /// Distance at which hair stays off surfaces, metres.
+    pub(crate) margin: f32,
+    /// How much of its height at rest a point keeps above the head's colliders.
+    pub(crate) layering: f32,
+    /// Friction coefficient.
+    pub(crate) friction: f32,
+    /// Time step of the substep, seconds.
+    pub(crate) h: f32,
+}
+
+/// Height above the head up to which layers keep their order, metres.
+const LAYER_HEIGHT: f32 = 0.025;
+
+/// A point's own clearance at rest is undercut by this, so that rounding makes no contact of it, metres.
+const SLACK: f32 = 1e-4;
+
+/// Rounds over the colliders of a point. The second sees what the first one's push-outs did to each other.
+const ROUNDS: usize = 2;
+
+impl ContactRules {
+    /// The most that any point stays away from a surface, metres.
+    pub(crate) fn reach(&self) -> f32 {
+        self.margin + self.layering * LAYER_HEIGHT
+    }
+
+    /// How near to the surface each lane may come whose distance at rest is `rest`.
+    #[inline(always)]
+    fn allowed(&self, on_head: bool, rest: &Lane) -> Lane {
+        let keep = if on_head { self.layering } else { 0.0 };
+        let mut out = ZERO;
+        for k in 0..LANES {
+            let height = lesser(greater(rest[k], 0.0), LAYER_HEIGHT);
+            out[k] = lesser(rest[k] - SLACK, self.margin + keep * height);
+        }
+        out
+    }
+}
+
+/// The colliders that a block may touch in a substep, and each point's distance to them at rest.
+#[derive(Clone, Copy)]
+pub(crate) struct Near<'a> {
+    pub(crate) shapes: &'a [MovingShape],
+    /// Which of them, in order.
+    pub(crate) active: &'a [u32],
+    /// Signed distance at rest of point `i` to collider `c` at `c * points + i`.
+    pub(crate) rest_distance: &'a [Lane],
+    pub(crate) points: usize,
+}
+
+impl Near<'_> {
+    fn rest(&self, collider: u32, point: usize) -> &Lane {
+        &self.rest_distance[collider as usize * self.points + point]
+    }
+}
+
+/// Lays point `i` at its link's length from `before` toward `wanted` and outside the colliders.
+///
+/// `was` is where it was at the start of the substep, for friction; `fallback` is the link's direction then.
+#[inline(always)]
+pub(crate) fn lay_point(
+    point: usize,
+    before: &Lane3,
+    wanted: &Lane3,
+    was: &Lane3,
+    fallback: &Lane3,
+    length: &Lane,
+    near: &Near,
+    rules: &ContactRules,
+) -> Lane3 {
+    let mut placed = ZERO3;
+    for k in 0..LANES {
+        let from = at(before, k);
+        let (d, _) = direction_or(at(wanted, k) - from, at(fallback, k));
+        put(&mut placed, k, from + d * length[k]);
+    }
+    if near.active.is_empty() {
+        return placed;
+    }
+    for round in 0..ROUNDS {
+        let (min, max) = bounds(&placed);
+        let mut pushed = false;
+        for &c in near.active {
+            let mover = &near.shapes[c as usize];
+            let reach = rules.reach();
+            if apart(min, max, mover, reach) {
+                continue;
+            }
+            let Some(shape) = mover.shape else { continue };
+            let mut along = ZERO3;
+            for k in 0..LANES {
+                put(&mut along, k, at(&placed, k) - at(before, k));
+            }
+            let nearest = shape.nearest(&placed, &along);
+            let allowed = rules.allowed(mover.on_head, near.rest(c, point));
+            let mut deepest = 0.0;
+            for k in 0..LANES {
+                deepest = greater(deepest, allowed[k] - nearest.distance[k]);
+            }
+            if deepest <= 0.0 {
+                continue;
+            }
+            pushed = true;
+            let friction = if round == 0 { rules.friction } else { 0.0 };
+            for k in 0..LANES {
+                let depth = allowed[k] - nearest.distance[k];
+                let (p, from, l) = (at(&placed, k), at(before, k), length[k]);
+                let centre = at(&nearest.centre, k);
+                let slid = slide(p, at(was, k), centre, depth, friction, mover, rules.h);
+                let out = push_out(from, slid, l, centre, nearest.radius[k] + allowed[k]);
+                let touching = depth > 0.0;
+                let pick = |a: f32, b: f32| if touching { a } else { b };
+                put(&mut placed, k, Vec3::new(pick(out.x, p.x), pick(out.y, p.y), pick(out.z, p.z)));
+            }
+        }
+        if !pushed {
+            break;
+        }
+    }
+    placed
+}
+
+/// Coulomb friction: the velocity along the surface, relative to it, loses `friction` times the velocity that
+/// the push-out takes away across it, and at most all.
+#[inline(always)]
+fn slide(p: Vec3, was: Vec3, centre: Vec3, depth: f32, friction: f32, mover: &MovingShape, h: f32) -> Vec3 {
+    let (normal, _) = direction_or(p - centre, Vec3::Y);
+    let relative = p - was - mover.velocity_at.apply(p) * h;
+    let tangential = relative - normal * relative.dot(normal);
+    let size = tangential.length_squared().sqrt();
+    let lost = lesser(1.0, friction * greater(depth, 0.0) / (size + 1e-9));
+    p - tangential * lost
+}
+
+/// The point at distance `length` from `from` and on the sphere, nearest in direction to `p`.
+///
+/// With `D = |c - from|` and `e = (c - from) / D` the angle at `from` in the triangle of the three lengths is
+/// `cos g = (l^2 + D^2 - R^2) / (2 l D)`. Where the triangle does not close, `from` is so deep inside that the
+/// link cannot reach the surface, and it points straight out.
+#[inline(always)]
+pub(crate) fn push_out(from: Vec3, p: Vec3, length: f32, centre: Vec3, radius: f32) -> Vec3 {
+    let to_centre = centre - from;
+    let (e, distance) = direction_or(to_centre, Vec3::NEG_Y);
+    let (d, _) = direction_or(p - from, -e);
+    let across = d - e * d.dot(e);
+    let aside = if e.x * e.x < 0.5 { Vec3::X } else { Vec3::Y };
+    let aside = aside - e * aside.dot(e);
+    let (across, _) = direction_or(across, aside);
+    let cos = (length * length + distance * distance - radius * radius) / (2.0 * length * distance + 1e-20);
+    let cos = lesser(greater(cos, -1.0), 1.0);
+    let sin = greater(1.0 - cos * cos, 0.0).sqrt();
+    let (turned, _) = direction_or(e * cos + across * sin, d);
+    from + turned * length
+}
+
+/// The deepest that any lane of point `i` is inside what it may touch, metres; 0 outside.
+#[inline(always)]
+pub(crate) fn penetration(point: usize, placed: &Lane3, near: &Near, rules: &ContactRules) -> Lane {
+    let mut worst = ZERO;
+    let (min, max) = bounds(placed);
+    for &c in near.active {
+        let mover = &near.shapes[c as usize];
+        if apart(min, max, mover, rules.reach()) {
+            continue;
+        }
+        let Some(shape) = mover.shape else { continue };
+        let nearest = shape.nearest(placed, &ZERO3);
+        // The margin is for comfort: what counts is the surface, or the distance at rest where that is less.
+        let bare = ContactRules { margin: 0.0, layering: 0.0, ..*rules };
+        let allowed = bare.allowed(mover.on_head, near.rest(c, point));
+        for k in 0..LANES {
+            worst[k] = greater(worst[k], allowed[k] - nearest.distance[k]);
+        }
+    }
+    worst
+}
+
+/// The box around a row of points.
+#[inline(always)]
+pub(crate) fn bounds(row: &Lane3) -> (Vec3, Vec3) {
+    let (mut min, mut max) = (at(row, 0), at(row, 0));
+    for k in 1..LANES {
+        let p = at(row, k);
+        min = Vec3::new(lesser(min.x, p.x), lesser(min.y, p.y), lesser(min.z, p.z));
+        max = Vec3::new(greater(max.x, p.x), greater(max.y, p.y), greater(max.z, p.z));
+    }
+    (min, max)
+}
+
+/// Whether a box is further than `reach` from a collider's box.
+#[inline(always)]
+pub(crate) fn apart(min: Vec3, max: Vec3, mover: &MovingShape, reach: f32) -> bool {
+    let (a, b) = (mover.min, mover.max);
+    min.x > b.x + reach
+        || min.y > b.y + reach
+        || min.z > b.z + reach
+        || max.x < a.x - reach
+        || max.y < a.y - reach
+        || max.z < a.z - reach
+}
+
+#[cfg(test)]
+mod tests;

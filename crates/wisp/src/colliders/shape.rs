@@ -1,0 +1,257 @@
+//! The nearest point of a collider, for a row of points at once.
+//!
+//! Every surface answers with a sphere that touches it at the nearest point, so one push-out serves all.
+
+use glam::Vec3;
+use lovelock_motion::ColliderShape;
+
+use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, greater, lesser, put};
+
+/// A collider prepared for queries.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Shape {
+    /// The hull of two spheres.
+    Capsule {
+        a: Vec3,
+        axis: Vec3,
+        inv_axis_squared: f32,
+        /// Tangent of the cone's half angle over the axis' length: the surface's normal leans by it.
+        lean: f32,
+        radius_a: f32,
+        radius_change: f32,
+    },
+    /// An ellipsoid with its unit axes and radii.
+    Ellipsoid { centre: Vec3, axes: [Vec3; 3], radii: Vec3 },
+}
+
+/// What a row of points learns from a collider.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Nearest {
+    /// Centre of the touching sphere.
+    pub(crate) centre: Lane3,
+    /// Its radius.
+    pub(crate) radius: Lane,
+    /// Signed distance to the surface, negative inside.
+    pub(crate) distance: Lane,
+}
+
+/// Rounds of Newton's iteration for the nearest point of an ellipsoid. It converges quadratically from the
+/// surface, where hair is; far away only the sign matters.
+const ELLIPSOID_ROUNDS: usize = 4;
+
+impl Shape {
+    /// Prepares `shape`; one that is not finite or has no size gives `None`, and then nothing touches it.
+    pub(crate) fn new(shape: &ColliderShape) -> Option<Self> {
+        match *shape {
+            ColliderShape::Capsule { a, b, radius_a, radius_b } => {
+                if !(a.is_finite() && b.is_finite() && radius_a >= 0.0 && radius_b >= 0.0) {
+                    return None;
+                }
+                if !(radius_a + radius_b).is_finite() || greater(radius_a, radius_b) <= 0.0 {
+                    return None;
+                }
+                let length = (b - a).length();
+                let change = radius_b - radius_a;
+                if length <= change.abs() * 1.0001 + 1e-6 {
+                    // One sphere holds the other.
+                    let (a, radius_a) = if change > 0.0 { (b, radius_b) } else { (a, radius_a) };
+                    return Some(Self::Capsule {
+                        a,
+                        axis: Vec3::ZERO,
+                        inv_axis_squared: 0.0,
+                        lean: 0.0,
+                        radius_a,
+                        radius_change: 0.0,
+                    });
+                }
+                let sine = -change / length;
+                Some(Self::Capsule {
+                    a,
+                    axis: b - a,
+                    inv_axis_squared: 1.0 / (length * length),
+                    lean: sine / (1.0 - sine * sine).sqrt() / length,
+                    radius_a,
+                    radius_change: change,
+                })
+            }
+            ColliderShape::Ellipsoid { from_unit } => {
+                let columns = [from_unit.x_axis, from_unit.y_axis, from_unit.z_axis].map(Vec3::from);
+                let radii = Vec3::from(columns.map(Vec3::length));
+                if !(from_unit.is_finite() && radii.is_finite() && radii.min_element() > 1e-5) {
+                    return None;
+                }
+                let axes = [columns[0] / radii.x, columns[1] / radii.y, columns[2] / radii.z];
+                Some(Self::Ellipsoid { centre: from_unit.translation.into(), axes, radii })
+            }
+        }
+    }
+
+    /// The box around it.
+    pub(crate) fn bounds(&self) -> (Vec3, Vec3) {
+        match *self {
+            Self::Capsule { a, axis, radius_a, radius_change, .. } => {
+                let (b, radius_b) = (a + axis, radius_a + radius_change);
+                let (ra, rb) = (Vec3::splat(radius_a), Vec3::splat(radius_b));
+                ((a - ra).min(b - rb), (a + ra).max(b + rb))
+            }
+            Self::Ellipsoid { centre, axes, radii } => {
+                let [x, y, z] = axes;
+                let (x, y, z) = (x * radii.x, y * radii.y, z * radii.z);
+                let half = (x * x + y * y + z * z).map(f32::sqrt);
+                (centre - half, centre + half)
+            }
+        }
+    }
+
+    /// The nearest point for every lane of `points`. `along` is the direction in which a push-out may move
+    /// each point; the touching sphere of an ellipsoid is curved as its surface is in that direction.
+    #[inline(always)]
+    pub(crate) fn nearest(&self, points: &Lane3, along: &Lane3) -> Nearest {
+        let mut out = Nearest { centre: ZERO3, radius: ZERO, distance: ZERO };
+        match *self {
+            Self::Capsule { a, axis, inv_axis_squared, lean, radius_a, radius_change } => {
+                for k in 0..LANES {
+                    let q = at(points, k) - a;
+                    let t = q.dot(axis) * inv_axis_squared;
+                    let across = (q - t * axis).length_squared().sqrt();
+                    let t = lesser(greater(t - across * lean, 0.0), 1.0);
+                    let centre = t * axis;
+                    let radius = radius_a + t * radius_change;
+                    out.distance[k] = (q - centre).length_squared().sqrt() - radius;
+                    out.radius[k] = radius;
+                    put(&mut out.centre, k, centre + a);
+                }
+            }
+            Self::Ellipsoid { centre, axes: [ax, ay, az], radii } => {
+                let squared = radii * radii;
+                let inv_squared = 1.0 / squared;
+                let least = -0.98 * lesser(squared.x, lesser(squared.y, squared.z));
+                for k in 0..LANES {
+                    let world = at(points, k) - centre;
+                    let q = Vec3::new(world.dot(ax), world.dot(ay), world.dot(az));
+                    // The nearest point is s = r^2 q / (r^2 + t) with sum (s / r)^2 = 1.
+                    let mut t = 0.0;
+                    for _ in 0..ELLIPSOID_ROUNDS {
+                        let g = 1.0 / (squared + t);
+                        let s = q * g;
+                        let terms = s * s * squared;
+                        let value = terms.x + terms.y + terms.z - 1.0;
+                        let slope = 2.0 * terms.dot(g);
+                        t = greater(t + value / (slope + 1e-12), least);
+                    }
+                    let s = q * squared * (1.0 / (squared + t));
+                    let gradient = s * inv_squared;
+                    let steepness = gradient.length_squared().sqrt();
+                    let normal = gradient * (1.0 / (steepness + 1e-20));
+                    let distance = (q - s).dot(normal);
+                    // Curvature of the surface in the direction of motion (Euler's formula).
+                    let d = at(along, k);
+                    let d = Vec3::new(d.dot(ax), d.dot(ay), d.dot(az));
+                    let tangent = d - normal * d.dot(normal);
+                    let size = tangent.length_squared();
+                    let bend = (tangent * tangent).dot(inv_squared);
+                    let sure = size > 1e-8;
+                    let curvature =
+                        if sure { bend } else { inv_squared.x } / (steepness * if sure { size } else { 1.0 } + 1e-20);
+                    let radius = lesser(1.0 / (curvature + 1e-6), 10.0);
+                    let c = q - normal * (distance + radius);
+                    out.distance[k] = distance;
+                    out.radius[k] = radius;
+                    put(&mut out.centre, k, centre + c.x * ax + c.y * ay + c.z * az);
+                }
+            }
+        }
+        out
+    }
+
+    #[cfg(test)]
+    /// Signed distance of one point.
+    pub(crate) fn distance(&self, p: Vec3) -> f32 {
+        let row = [[p.x; LANES], [p.y; LANES], [p.z; LANES]];
+        self.nearest(&row, &ZERO3).distance[0]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{Affine3A, Quat};
+
+    use super::*;
+
+    fn capsule(radius_a: f32, radius_b: f32) -> Shape {
+        let (a, b) = (Vec3::new(0.1, 0.0, 0.0), Vec3::new(0.1, 0.5, 0.0));
+        Shape::new(&ColliderShape::Capsule { a, b, radius_a, radius_b }).expect("a capsule")
+    }
+
+    #[test]
+    fn a_capsule_measures_from_its_axis() {
+        let c = capsule(0.1, 0.1);
+        assert!((c.distance(Vec3::new(0.4, 0.25, 0.0)) - 0.2).abs() < 1e-6);
+        assert!((c.distance(Vec3::new(0.1, 0.8, 0.0)) - 0.2).abs() < 1e-6);
+        assert!((c.distance(Vec3::new(0.13, 0.25, 0.0)) + 0.07).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_tapered_capsule_is_the_hull_of_its_spheres() {
+        // The distance to the hull is the smallest distance to any of the spheres between its ends.
+        let c = capsule(0.15, 0.05);
+        for p in [Vec3::new(0.5, 0.2, 0.1), Vec3::new(0.2, 0.45, 0.0), Vec3::new(0.0, -0.3, 0.2)] {
+            let brute = (0..=10_000)
+                .map(|i| {
+                    let t = i as f32 / 10_000.0;
+                    (p - Vec3::new(0.1, 0.5 * t, 0.0)).length() - (0.15 - 0.1 * t)
+                })
+                .fold(f32::INFINITY, f32::min);
+            assert!((c.distance(p) - brute).abs() < 1e-6, "{} against {brute}", c.distance(p));
+        }
+    }
+
+    #[test]
+    fn one_sphere_inside_the_other_is_a_sphere() {
+        let (a, b) = (Vec3::ZERO, Vec3::new(0.01, 0.0, 0.0));
+        let c = Shape::new(&ColliderShape::Capsule { a, b, radius_a: 0.2, radius_b: 0.05 }).expect("a sphere");
+        assert!((c.distance(Vec3::new(0.0, 0.5, 0.0)) - 0.3).abs() < 1e-6);
+    }
+
+    fn ellipsoid() -> Shape {
+        let from_unit = Affine3A::from_scale_rotation_translation(
+            Vec3::new(0.078, 0.115, 0.098),
+            Quat::from_rotation_z(0.4),
+            Vec3::new(0.0, 0.1, 0.02),
+        );
+        Shape::new(&ColliderShape::Ellipsoid { from_unit }).expect("an ellipsoid")
+    }
+
+    #[test]
+    fn an_ellipsoid_is_met_along_its_normal() {
+        // Points at a known distance: from the surface along its normal.
+        let Shape::Ellipsoid { centre, axes, radii } = ellipsoid() else { unreachable!() };
+        for i in 0..200 {
+            let (u, v) = (i as f32 * 0.37, i as f32 * 0.73);
+            let unit = Vec3::new(u.sin() * v.cos(), u.sin() * v.sin(), u.cos());
+            let normal = (unit / radii).normalize_or_zero();
+            for distance in [-0.01, 0.0, 0.003, 0.02] {
+                let q = unit * radii + normal * distance;
+                let p = centre + axes[0] * q.x + axes[1] * q.y + axes[2] * q.z;
+                let found = ellipsoid().distance(p);
+                assert!((found - distance).abs() < 1e-5, "{found} where {distance} is right");
+            }
+        }
+    }
+
+    #[test]
+    fn the_centre_of_an_ellipsoid_is_inside() {
+        assert!(ellipsoid().distance(Vec3::new(0.0, 0.1, 0.02)) < 0.0 || {
+            // Exactly at the centre every direction is as near; only not-a-number would be wrong.
+            ellipsoid().distance(Vec3::new(0.0, 0.1, 0.02)).is_finite()
+        });
+        assert!(ellipsoid().distance(Vec3::new(0.01, 0.1, 0.03)) < -0.03);
+    }
+
+    #[test]
+    fn shapes_without_size_or_with_nonsense_are_refused() {
+        let nan = Vec3::new(f32::NAN, 0.0, 0.0);
+        assert!(Shape::new(&ColliderShape::Capsule { a: nan, b: Vec3::X, radius_a: 0.1, radius_b: 0.1 }).is_none());
+        assert!(Shape::new(&ColliderShape::Ellipsoid { from_unit: Affine3A::ZERO }).is_none());
+    }
+}

@@ -1,0 +1,332 @@
+//! The density grid: how much hair is where, so that hair keeps hair away and moves with it.
+//!
+//! Bertails, Ménier and Cani (2005, section 4.1) read over-dense cells from the shadow map. This grid is of
+//! its own and turns with the head, so that no light changes the motion, and so that hair at rest lies still
+//! in its cells. Sums are in integers: the order of the guides does not matter.
+
+use glam::{IVec3, Mat3, Vec3};
+
+use crate::block::Block;
+use crate::lanes::{LANES, Lane3, ZERO3, at, put};
+use crate::settings::{Repulsion, RepulsionMode};
+use crate::solver::Plan;
+
+/// Cells along each axis.
+const SIDE: i32 = 48;
+
+/// Smallest and largest cell, metres.
+const CELL: (f32, f32) = (0.012, 0.02);
+
+/// Fixed point: the whole hairstyle in one cell stays below this.
+const FULL: f32 = (1 << 29) as f32;
+
+/// Momentum is stored in units coarser than mass by this factor, so that 20 m/s still fits.
+const MOMENTUM: f32 = 1.0 / 32.0;
+
+/// Speeds above this count as this, metres per second.
+const FASTEST: f32 = 20.0;
+
+/// A push may not carry hair further than this part of a cell in one substep.
+const MOST_OF_A_CELL: f32 = 0.25;
+
+/// What one point learns from the grid, in head space.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Sample {
+    /// Away from over-dense places, 1/m: to be multiplied by the strength.
+    pub(crate) push: Vec3,
+    /// Mean velocity of the hair around, metres per second, in the axes that were deposited.
+    pub(crate) mean_velocity: Vec3,
+}
+
+/// Hair density and momentum on a lattice in head space.
+#[derive(Clone, Debug)]
+pub(crate) struct DensityGrid {
+    min: Vec3,
+    cell: f32,
+    /// Every `stride`-th point of a guide stands for its neighbours.
+    stride: usize,
+    /// Fixed-point units of one metre of a guide.
+    units: f32,
+    /// Mass, and momentum along each axis.
+    cells: Vec<[i32; 4]>,
+    /// One over the density at rest, where there is some, and over a typical one elsewhere.
+    inv_rest: Vec<f32>,
+    /// The box of cells that hold hair, inclusive; empty where `low > high`.
+    low: IVec3,
+    high: IVec3,
+    repulsion: Repulsion,
+}
+
+impl DensityGrid {
+    /// A grid around the guides of `blocks` at rest.
+    pub(crate) fn new(blocks: &[Block]) -> Self {
+        let (mut centre, mut count, mut total, mut links) = (Vec3::ZERO, 0.0_f32, 0.0_f32, 0.0_f32);
+        let mut longest = 0.0_f32;
+        let lanes = || blocks.iter().flat_map(|b| (0..b.used).map(move |k| (b, k)));
+        for (block, k) in lanes() {
+            centre += at(&block.rest.position[0], k);
+            count += 1.0;
+            let length = block.rest.mean_link[k] * (block.points() - 1) as f32;
+            total += length;
+            links += block.rest.mean_link[k];
+            longest = longest.max(length);
+        }
+        centre /= count.max(1.0);
+        let radius =
+            lanes().map(|(b, k)| (at(&b.rest.position[0], k) - centre).length()).fold(0.0, f32::max);
+        let cell = (2.0 * (radius + longest) / SIDE as f32).clamp(CELL.0, CELL.1);
+        let link = (links / count.max(1.0)).max(1e-4);
+        let size = (SIDE * SIDE * SIDE) as usize;
+        let mut grid = Self {
+            min: centre - Vec3::splat(0.5 * cell * SIDE as f32),
+            cell,
+            stride: ((1.4 * cell / link) as usize).clamp(1, 8),
+            units: FULL / total.max(1e-3),
+            cells: vec![[0; 4]; size],
+            inv_rest: vec![0.0; size],
+            low: IVec3::MAX,
+            high: IVec3::MIN,
+            repulsion: Repulsion::default(),
+        };
+        grid.fill(blocks, |block, i, k| (at(&block.rest.position[i], k), Vec3::ZERO));
+        grid.learn_rest();
+        grid
+    }
+
+    /// Takes the density that is in the grid for the one at rest.
+    fn learn_rest(&mut self) {
+        // The density that a piece of hair typically finds around itself stands in where none is at rest.
+        let (mut sum, mut squares) = (0.0_f64, 0.0_f64);
+        for c in &self.cells {
+            sum += f64::from(c[0]);
+            squares += f64::from(c[0]) * f64::from(c[0]);
+        }
+        let typical = if sum > 0.0 { (squares / sum) as f32 } else { FULL };
+        for (inv, c) in self.inv_rest.iter_mut().zip(&self.cells) {
+            *inv = 1.0 / (c[0] as f32).max(typical);
+        }
+    }
+
+    /// Deposits all blocks anew, with positions in head space by `head_from_last` and velocities as they are.
+    /// Gives the number of over-dense cells.
+    pub(crate) fn update(
+        &mut self,
+        blocks: &[Block],
+        head_from_last: &crate::lanes::Map,
+        repulsion: Repulsion,
+    ) -> u32 {
+        self.repulsion = repulsion;
+        if repulsion.strength == 0.0 && repulsion.cohesion == 0.0 {
+            self.clear();
+            return 0;
+        }
+        self.fill(blocks, |block, i, k| {
+            (head_from_last.apply(at(&block.position[i], k)), at(&block.velocity[i], k))
+        });
+        self.over_dense()
+    }
+
+    fn clear(&mut self) {
+        if self.low.cmple(self.high).all() {
+            for z in self.low.z..=self.high.z {
+                for y in self.low.y..=self.high.y {
+                    let row = index(IVec3::new(self.low.x, y, z));
+                    self.cells[row..=row + (self.high.x - self.low.x) as usize].fill([0; 4]);
+                }
+            }
+        }
+        (self.low, self.high) = (IVec3::MAX, IVec3::MIN);
+    }
+
+    fn over_dense(&self) -> u32 {
+        let mut count = 0;
+        if self.low.cmple(self.high).all() {
+            let inv_threshold = 1.0 / self.repulsion.threshold;
+            for z in self.low.z..=self.high.z {
+                for y in self.low.y..=self.high.y {
+                    let row = index(IVec3::new(self.low.x, y, z));
+                    for i in row..=row + (self.high.x - self.low.x) as usize {
+                        count += u32::from(self.cells[i][0] as f32 * self.inv_rest[i] * inv_threshold > 1.0);
+                    }
+                }
+            }
+        }
+        count
+    }
+
+    fn fill(&mut self, blocks: &[Block], mut state: impl FnMut(&Block, usize, usize) -> (Vec3, Vec3)) {
+        self.clear();
+        for block in blocks {
+            // The middle of each run of points, so that the whole chain is covered evenly.
+            for i in (1 + (self.stride - 1) / 2..block.points()).step_by(self.stride) {
+                for k in 0..block.used {
+                    let (p, v) = state(block, i, k);
+                    self.deposit(p, v, block.rest.mean_link[k] * self.stride as f32);
+                }
+            }
+        }
+    }
+
+    /// The corner of the eight cells around `p`, and the fractions in between; `None` outside the grid.
+    #[inline]
+    fn around(&self, p: Vec3) -> Option<(IVec3, Vec3)> {
+        let q = (p - self.min) / self.cell - 0.5;
+        // Written so that what is not a number is outside.
+        let inside = q.min_element() >= 0.0 && q.max_element() < (SIDE - 1) as f32 && q.is_finite();
+        if !inside {
+            return None;
+        }
+        let corner = q.as_ivec3();
+        Some((corner, q - corner.as_vec3()))
+    }
+
+    #[inline]
+    fn deposit(&mut self, p: Vec3, v: Vec3, length: f32) {
+        let Some((corner, f)) = self.around(p) else { return };
+        let v = v.clamp(Vec3::splat(-FASTEST), Vec3::splat(FASTEST)) * MOMENTUM;
+        if !v.is_finite() {
+            return;
+        }
+        self.low = self.low.min(corner);
+        self.high = self.high.max(corner + 1);
+        let mass = length * self.units;
+        let base = index(corner);
+        for (offset, weight) in OFFSETS.iter().zip(weights(f)) {
+            let m = mass * weight;
+            let add = [m as i32, (m * v.x) as i32, (m * v.y) as i32, (m * v.z) as i32];
+            let cell = &mut self.cells[base + offset];
+            for (sum, add) in cell.iter_mut().zip(add) {
+                *sum = sum.wrapping_add(add);
+            }
+        }
+    }
+
+    /// What hair at `p`, head space, learns from the grid; `None` where there is none around.
+    #[inline]
+    pub(crate) fn sample(&self, p: Vec3) -> Option<Sample> {
+        let (corner, f) = self.around(p)?;
+        let base = index(corner);
+        let inv_threshold = 1.0 / self.repulsion.threshold;
+        let mut sums = [0.0_f32; 4];
+        let mut excess = [0.0_f32; 8];
+        let mut crowded = false;
+        for (n, (offset, weight)) in OFFSETS.iter().zip(weights(f)).enumerate() {
+            let cell = &self.cells[base + offset];
+            for (sum, value) in sums.iter_mut().zip(cell) {
+                *sum += weight * *value as f32;
+            }
+            let over = cell[0] as f32 * self.inv_rest[base + offset] * inv_threshold - 1.0;
+            excess[n] = over.max(0.0);
+            crowded |= over > 0.0;
+        }
+        if sums[0] < 1.0 {
+            return None;
+        }
+        let mean_velocity = Vec3::new(sums[1], sums[2], sums[3]) / (sums[0] * MOMENTUM);
+        let push = if !crowded {
+            Vec3::ZERO
+        } else {
+            match self.repulsion.mode {
+                RepulsionMode::Pressure => -gradient(&excess, f) / self.cell,
+                RepulsionMode::Centre => self.from_centre(p),
+            }
+        };
+        Some(Sample { push, mean_velocity })
+    }
+
+    /// The published force: away from the centre of the cell that `p` is in, where that cell is over-dense;
+    /// faded at the centre, where it would be singular, and at the faces, where it would jump.
+    fn from_centre(&self, p: Vec3) -> Vec3 {
+        let cell = ((p - self.min) / self.cell).as_ivec3().clamp(IVec3::ZERO, IVec3::splat(SIDE - 1));
+        let i = index(cell);
+        let excess = self.cells[i][0] as f32 * self.inv_rest[i] / self.repulsion.threshold - 1.0;
+        let out = p - (self.min + (cell.as_vec3() + 0.5) * self.cell);
+        let fade = (1.0 - 2.0 * out.abs().max_element() / self.cell).max(0.0);
+        out * (excess.max(0.0) * fade / (out.length().max(0.1 * self.cell) * self.cell))
+    }
+
+    /// Adds the grid's part to the forces of a block, whose positions are still those of the last step.
+    pub(crate) fn act(&self, block: &mut Block, plan: &Plan, cohesion: f32) {
+        for keep in &mut block.keep {
+            *keep = [1.0; LANES];
+        }
+        if self.low.cmpgt(self.high).any() {
+            return;
+        }
+        let count = block.points();
+        let mut from = 0;
+        let mut row = self.sample_row(block, plan, 0);
+        while from + 1 < count {
+            let to = (from + self.stride).min(count - 1);
+            let next = self.sample_row(block, plan, to);
+            for i in from..if to + 1 == count { count } else { to } {
+                let t = (i - from) as f32 / (to - from) as f32;
+                let (mut push, mut keep) = (block.push[i], block.keep[i]);
+                for k in 0..LANES {
+                    let dv = at(&row.dv, k).lerp(at(&next.dv, k), t);
+                    let mean = at(&row.mean, k).lerp(at(&next.mean, k), t);
+                    let relaxed = (at(&push, k) + dv) * (1.0 - cohesion) + mean * cohesion;
+                    put(&mut push, k, relaxed);
+                    keep[k] = 1.0 - cohesion;
+                }
+                block.push[i] = push;
+                block.keep[i] = keep;
+            }
+            (row, from) = (next, to);
+        }
+    }
+
+    fn sample_row(&self, block: &Block, plan: &Plan, i: usize) -> SampleRow {
+        let mut out = SampleRow { dv: ZERO3, mean: block.velocity[i] };
+        let most = MOST_OF_A_CELL * self.cell / plan.h;
+        let turn: Mat3 = plan.last_head.turn;
+        for k in 0..LANES {
+            let p = plan.head_from_last.apply(at(&block.position[i], k));
+            if let Some(sample) = self.sample(p) {
+                let dv = turn * (sample.push * (self.repulsion.strength * plan.h));
+                put(&mut out.dv, k, dv.clamp_length_max(most));
+                put(&mut out.mean, k, sample.mean_velocity);
+            }
+        }
+        out
+    }
+}
+
+/// What a row of points learns from the grid: the change of velocity a substep, and the neighbours' mean.
+struct SampleRow {
+    dv: Lane3,
+    mean: Lane3,
+}
+
+/// Where the eight cells of a corner are from the first, x fastest.
+const OFFSETS: [usize; 8] = {
+    let (y, z) = (SIDE as usize, (SIDE * SIDE) as usize);
+    [0, 1, y, y + 1, z, z + 1, z + y, z + y + 1]
+};
+
+fn index(cell: IVec3) -> usize {
+    ((cell.z * SIDE + cell.y) * SIDE + cell.x) as usize
+}
+
+/// Trilinear weights in the order of `OFFSETS`.
+#[inline]
+fn weights(f: Vec3) -> [f32; 8] {
+    let g = Vec3::ONE - f;
+    let (a, b, c, d) = (g.y * g.z, f.y * g.z, g.y * f.z, f.y * f.z);
+    [g.x * a, f.x * a, g.x * b, f.x * b, g.x * c, f.x * c, g.x * d, f.x * d]
+}
+
+/// Gradient of the trilinear interpolant of eight values, per cell.
+#[inline]
+fn gradient(v: &[f32; 8], f: Vec3) -> Vec3 {
+    let mix = |a: f32, b: f32, t: f32| a + (b - a) * t;
+    let square = |a: f32, b: f32, c: f32, d: f32, s: f32, t: f32| mix(mix(a, b, s), mix(c, d, s), t);
+    Vec3::new(
+        square(v[1] - v[0], v[3] - v[2], v[5] - v[4], v[7] - v[6], f.y, f.z),
+        square(v[2] - v[0], v[3] - v[1], v[6] - v[4], v[7] - v[5], f.x, f.z),
+        square(v[4] - v[0], v[5] - v[1], v[6] - v[2], v[7] - v[3], f.x, f.y),
+    )
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,171 @@
+//! Rows of guides side by side.
+//!
+//! The hot loops are written for one guide, over `0..LANES`, on rows copied into locals: the compiler turns
+//! each such loop into vector instructions, whatever their width, and no lane ever looks at another.
+
+use glam::{Mat3, Quat, Vec3};
+
+/// How many guides a block holds side by side.
+pub(crate) const LANES: usize = 16;
+
+/// One number of each guide of a block.
+pub(crate) type Lane = [f32; LANES];
+
+/// One vector of each guide of a block, component by component.
+pub(crate) type Lane3 = [Lane; 3];
+
+/// Zero in every lane.
+pub(crate) const ZERO: Lane = [0.0; LANES];
+
+/// The zero vector in every lane.
+pub(crate) const ZERO3: Lane3 = [ZERO; 3];
+
+/// The vector of lane `k`.
+#[inline(always)]
+pub(crate) fn at(row: &Lane3, k: usize) -> Vec3 {
+    Vec3::new(row[0][k], row[1][k], row[2][k])
+}
+
+/// Writes the vector of lane `k`.
+#[inline(always)]
+pub(crate) fn put(row: &mut Lane3, k: usize, v: Vec3) {
+    row[0][k] = v.x;
+    row[1][k] = v.y;
+    row[2][k] = v.z;
+}
+
+/// The smaller number; the first where one is not a number. Unlike `f32::min` it is one instruction.
+#[inline(always)]
+pub(crate) fn lesser(a: f32, b: f32) -> f32 {
+    if b < a { b } else { a }
+}
+
+/// The greater number; the first where one is not a number.
+#[inline(always)]
+pub(crate) fn greater(a: f32, b: f32) -> f32 {
+    if b > a { b } else { a }
+}
+
+/// `v` with length 1, and its length; a vector too short to have a direction gives `fallback`.
+#[inline(always)]
+pub(crate) fn direction_or(v: Vec3, fallback: Vec3) -> (Vec3, f32) {
+    let length = v.length_squared().sqrt();
+    let ok = length > 1e-12;
+    let scale = 1.0 / if ok { length } else { 1.0 };
+    let pick = |a: f32, b: f32| if ok { a * scale } else { b };
+    (Vec3::new(pick(v.x, fallback.x), pick(v.y, fallback.y), pick(v.z, fallback.z)), length)
+}
+
+/// A rotation as a unit quaternion of plain numbers, since `glam::Quat` is itself a vector register and would
+/// keep the loops over lanes from becoming one.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Turn {
+    v: Vec3,
+    w: f32,
+}
+
+impl Turn {
+    pub(crate) fn new(q: Quat) -> Self {
+        Self { v: Vec3::new(q.x, q.y, q.z), w: q.w }
+    }
+
+    /// Turns `a` (by q a q*).
+    #[inline(always)]
+    pub(crate) fn apply(self, a: Vec3) -> Vec3 {
+        let t = 2.0 * self.v.cross(a);
+        a + self.w * t + self.v.cross(t)
+    }
+
+    /// This turn followed by the smallest turn that carries the unit vector `from` to the unit vector `to`.
+    #[inline(always)]
+    pub(crate) fn then_least(self, from: Vec3, to: Vec3) -> Self {
+        // The half-vector form; opposite vectors have no smallest turn and get one close to half a turn.
+        let (v, w) = (from.cross(to), greater(1.0 + from.dot(to), 1e-4));
+        let turned_w = w * self.w - v.dot(self.v);
+        let turned_v = w * self.v + self.w * v + v.cross(self.v);
+        let scale = 1.0 / (turned_w * turned_w + turned_v.length_squared()).sqrt();
+        Self { v: turned_v * scale, w: turned_w * scale }
+    }
+}
+
+/// A row of turns.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Turns {
+    v: Lane3,
+    w: Lane,
+}
+
+impl Turns {
+    pub(crate) fn splat(turn: Turn) -> Self {
+        Self { v: [[turn.v.x; LANES], [turn.v.y; LANES], [turn.v.z; LANES]], w: [turn.w; LANES] }
+    }
+
+    #[inline(always)]
+    pub(crate) fn at(&self, k: usize) -> Turn {
+        Turn { v: at(&self.v, k), w: self.w[k] }
+    }
+
+    #[inline(always)]
+    pub(crate) fn put(&mut self, k: usize, turn: Turn) {
+        put(&mut self.v, k, turn.v);
+        self.w[k] = turn.w;
+    }
+}
+
+/// A rigid or affine map in plain numbers, for loops over lanes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Map {
+    pub(crate) turn: Mat3,
+    pub(crate) shift: Vec3,
+}
+
+impl Map {
+    pub(crate) const IDENTITY: Self = Self { turn: Mat3::IDENTITY, shift: Vec3::ZERO };
+
+    #[inline(always)]
+    pub(crate) fn apply(&self, p: Vec3) -> Vec3 {
+        self.turn.x_axis * p.x + self.turn.y_axis * p.y + self.turn.z_axis * p.z + self.shift
+    }
+
+    #[inline(always)]
+    pub(crate) fn rotate(&self, v: Vec3) -> Vec3 {
+        self.turn.x_axis * v.x + self.turn.y_axis * v.y + self.turn.z_axis * v.z
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_least_turn_carries_one_direction_to_the_other_and_leaves_their_axis() {
+        let (from, to) = (Vec3::new(0.6, 0.0, 0.8), Vec3::new(0.0, 1.0, 0.0));
+        let turn = Turn::new(Quat::IDENTITY).then_least(from, to);
+        // Unit vectors in f32: a few roundings of 6e-8.
+        assert!((turn.apply(from) - to).length() < 1e-6);
+        let axis = from.cross(to);
+        assert!((turn.apply(axis) - axis).length() < 1e-6);
+        assert!((turn.apply(to) - to).length() > 0.1, "a turn that does nothing would pass the lines above");
+    }
+
+    #[test]
+    fn turns_compose_in_the_order_of_their_names() {
+        let q = Quat::from_euler(glam::EulerRot::XYZ, 0.3, -0.8, 1.1);
+        let (a, to) = (Vec3::new(0.0, 0.6, -0.8), Vec3::new(1.0, 0.0, 0.0));
+        let both = Turn::new(q).then_least(q * a, to);
+        assert!((both.apply(a) - to).length() < 1e-6);
+    }
+
+    #[test]
+    fn opposite_directions_give_a_finite_turn() {
+        let turn = Turn::new(Quat::IDENTITY).then_least(Vec3::X, Vec3::NEG_X);
+        assert!(turn.apply(Vec3::new(1.0, 2.0, 3.0)).is_finite());
+    }
+
+    #[test]
+    fn a_vector_without_a_direction_takes_the_fallback() {
+        assert_eq!(direction_or(Vec3::ZERO, Vec3::Y), (Vec3::Y, 0.0));
+        let (d, length) = direction_or(Vec3::new(0.0, 0.0, 5.0), Vec3::Y);
+        assert_eq!((d, length), (Vec3::Z, 5.0));
+    }
+}

@@ -1,0 +1,173 @@
+//! What never changes about the guides of one hairstyle: lengths, directions, bends, and how each lock
+//! carries its own weight at rest.
+
+use glam::Vec3;
+use lovelock_groom::Guides;
+
+use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, put};
+
+/// The rest shape of the guides of one block. Rows are points, root first; head space.
+#[derive(Clone, Debug)]
+pub(crate) struct RestShape {
+    pub(crate) position: Vec<Lane3>,
+    /// Unit direction of the link that ends at each point; the first row repeats the second.
+    pub(crate) direction: Vec<Lane3>,
+    /// Second difference around each point, metres; zero at both ends.
+    pub(crate) bend: Vec<Lane3>,
+    /// Acceleration with which a lock carries its own weight under a gravity of 1 m/s^2 along -Y.
+    pub(crate) support: Vec<Lane3>,
+    /// Length of the link that ends at each point, metres.
+    pub(crate) length: Vec<Lane>,
+    pub(crate) inv_length: Vec<Lane>,
+    /// Mean link of each guide, metres.
+    pub(crate) mean_link: Lane,
+}
+
+impl RestShape {
+    /// The rest shape of `guides[lane]` for every lane.
+    pub(crate) fn new(guides: &Guides, lanes: &[u32; LANES], first_free: usize) -> Self {
+        let count = guides.points_per_guide;
+        let mut rest = Self {
+            position: vec![ZERO3; count],
+            direction: vec![ZERO3; count],
+            bend: vec![ZERO3; count],
+            support: vec![ZERO3; count],
+            length: vec![ZERO; count],
+            inv_length: vec![ZERO; count],
+            mean_link: ZERO,
+        };
+        for (k, &guide) in lanes.iter().enumerate() {
+            let points: Vec<Vec3> = (0..count).map(|i| guides.point(guide as usize, i)).collect();
+            let directions = directions(&points);
+            for (i, &p) in points.iter().enumerate() {
+                put(&mut rest.position[i], k, p);
+                put(&mut rest.direction[i], k, directions[i]);
+                if i > 0 {
+                    let length = (p - points[i - 1]).length();
+                    rest.length[i][k] = length;
+                    rest.inv_length[i][k] = if length > 1e-9 { 1.0 / length } else { 0.0 };
+                    rest.mean_link[k] += length / (count - 1) as f32;
+                    if i + 1 < count {
+                        put(&mut rest.bend[i], k, points[i - 1] - 2.0 * p + points[i + 1]);
+                    }
+                }
+            }
+            for (i, support) in support(&directions, first_free).into_iter().enumerate() {
+                put(&mut rest.support[i], k, support);
+            }
+        }
+        rest
+    }
+}
+
+/// Unit directions of the links; a link of no length takes the direction before it.
+fn directions(points: &[Vec3]) -> Vec<Vec3> {
+    let mut last = points.windows(2).find_map(|w| (w[1] - w[0]).try_normalize()).unwrap_or(Vec3::NEG_Y);
+    let mut out = vec![last; points.len()];
+    for (i, pair) in points.windows(2).enumerate() {
+        last = (pair[1] - pair[0]).normalize_or(last);
+        out[i + 1] = last;
+    }
+    out
+}
+
+/// What a lock must add to unit gravity so that it rests in the shape it was drawn in.
+///
+/// The links carry what pulls them, as a hanging chain does: their tensions solve the system of the length
+/// constraint, and a link that would be pressed carries nothing. All that tension does not carry, the lock
+/// carries by its stiffness, as if it had been set in this shape while it hung ("sag-free" initial states:
+/// the force is that of the unloaded shape's bends, taken as constant in head space). A lock that hangs
+/// straight gets nothing; one that stands out from the head is held in full.
+fn support(direction: &[Vec3], first_free: usize) -> Vec<Vec3> {
+    let (count, gravity) = (direction.len(), Vec3::NEG_Y);
+    let first = first_free.max(1);
+    let mut multiplier = vec![0.0_f64; count + 1];
+    let mut upper = vec![0.0_f64; count + 1];
+    let (mut off, mut above, mut rhs) = (0.0_f64, 0.0_f64, 0.0_f64);
+    for i in first..count {
+        let diagonal = if i == first_free { 1.0 } else { 2.0 };
+        let r = if i == first_free { -f64::from(direction[i].dot(gravity)) } else { 0.0 };
+        let pivot = 1.0 / (diagonal - off * above);
+        rhs = (r - off * rhs) * pivot;
+        off = if i + 1 < count { -f64::from(direction[i].dot(direction[i + 1])) } else { 0.0 };
+        above = off * pivot;
+        multiplier[i] = rhs;
+        upper[i] = above;
+    }
+    for i in (first..count).rev() {
+        multiplier[i] -= upper[i] * multiplier[i + 1];
+    }
+    // A pulled link has a negative multiplier.
+    let pull = |i: usize| multiplier[i].min(0.0) as f32;
+    (0..count)
+        .map(|i| {
+            if i < first_free {
+                return Vec3::ZERO;
+            }
+            let next = if i + 1 < count { direction[i + 1] * pull(i + 1) } else { Vec3::ZERO };
+            let here = if i > 0 { direction[i] * pull(i) } else { Vec3::ZERO };
+            -gravity - (here - next)
+        })
+        .collect()
+}
+
+/// The guides in an order in which neighbours on the scalp are neighbours in memory (along a Morton curve of
+/// their roots), cut into blocks; the last block repeats its last guide.
+pub(crate) fn blocks_of(guides: &Guides) -> Vec<([u32; LANES], usize)> {
+    let roots: Vec<Vec3> = (0..guides.count()).map(|g| guides.point(g, 0)).collect();
+    let min = roots.iter().fold(Vec3::INFINITY, |m, p| m.min(*p));
+    let max = roots.iter().fold(Vec3::NEG_INFINITY, |m, p| m.max(*p));
+    let scale = 1023.0 / (max - min).max_element().max(1e-6);
+    let mut order: Vec<(u32, u32)> =
+        roots.iter().enumerate().map(|(g, p)| (morton((*p - min) * scale), g as u32)).collect();
+    order.sort_unstable();
+    order
+        .chunks(LANES)
+        .map(|chunk| {
+            let mut lanes = [chunk[chunk.len() - 1].1; LANES];
+            for (lane, (_, guide)) in lanes.iter_mut().zip(chunk) {
+                *lane = *guide;
+            }
+            (lanes, chunk.len())
+        })
+        .collect()
+}
+
+/// Interleaves ten bits of each coordinate.
+fn morton(p: Vec3) -> u32 {
+    let spread = |v: f32| (0..10).fold(0_u32, |m, bit| m | (((v as u32 >> bit) & 1) << (3 * bit)));
+    spread(p.x) | (spread(p.y) << 1) | (spread(p.z) << 2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_lock_that_hangs_needs_no_support_and_one_that_stands_out_needs_all() {
+        let hanging = support(&[Vec3::NEG_Y; 6], 1);
+        assert!(hanging.iter().all(|s| s.length() < 1e-6), "{hanging:?}");
+        let level = support(&[Vec3::X; 6], 1);
+        assert!(level[1..].iter().all(|s| (*s - Vec3::Y).length() < 1e-6), "{level:?}");
+    }
+
+    #[test]
+    fn a_lock_that_stands_up_is_not_left_to_press_on_its_links() {
+        let standing = support(&[Vec3::Y; 6], 1);
+        assert!(standing[1..].iter().all(|s| (*s - Vec3::Y).length() < 1e-6), "{standing:?}");
+    }
+
+    #[test]
+    fn every_guide_is_in_one_block_and_the_rest_repeats() {
+        let mut guides = Guides { points_per_guide: 2, ..Guides::default() };
+        for g in 0..37 {
+            let p = Vec3::new((g * 7 % 37) as f32, (g * 11 % 37) as f32, 0.0);
+            guides.push(&[p, p + Vec3::Y]);
+        }
+        let blocks = blocks_of(&guides);
+        let mut seen: Vec<u32> = blocks.iter().flat_map(|(lanes, used)| lanes[..*used].to_vec()).collect();
+        seen.sort_unstable();
+        assert_eq!(seen, (0..37).collect::<Vec<_>>());
+        assert_eq!(blocks.len(), 37_usize.div_ceil(LANES));
+    }
+}

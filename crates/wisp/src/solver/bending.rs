@@ -1,0 +1,228 @@
+//! Shape memory: bending stiffness toward the rest shape, implicit and damped.
+//!
+//! The bend at a point is the second difference of the chain, `b_i = x_(i-1) - 2 x_i + x_(i+1)`; at rest, in
+//! the frame carried along the chain by least rotations, it is `b*_i`. Energy `1/2 c |b - b*|^2` and damping
+//! of its change are taken implicitly (backward Euler), which is stable for any stiffness. The matrix is
+//! pentadiagonal and depends on stiffness, link length and time step alone, so it is factorised once and a
+//! substep only substitutes: a whole chain responds at once, where local corrections from link to link would
+//! need many rounds and would change their stiffness with the number of substeps.
+//!
+//! The coefficient is `c = h^2 B / l^4` with `B = EI / (rho A)`, the bending stiffness per mass of a fibre
+//! (Euler and Bernoulli's beam).
+
+use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, lesser, put};
+
+/// The largest `c (1 + gamma)`: beyond it single precision loses the answer and hair is a wire anyway.
+const STIFFEST: f32 = 2e4;
+
+/// Length of the lock that the settings' angular frequency speaks of, metres.
+const REFERENCE_LENGTH: f32 = 0.2;
+
+/// `(beta_1 L)^2` of the slowest sway of a beam held at one end.
+const CANTILEVER: f32 = 3.516;
+
+/// What the matrix is made from, beside the link lengths.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct BendingKey {
+    pub(crate) h: f32,
+    pub(crate) stiffness_root: f32,
+    pub(crate) stiffness_tip: f32,
+    pub(crate) damping_secs: f32,
+    pub(crate) hold: f32,
+    pub(crate) first_free: usize,
+}
+
+impl BendingKey {
+    /// How much stronger the damping is than the stiffness in one substep.
+    pub(crate) fn gamma(&self) -> f32 {
+        self.damping_secs / self.h
+    }
+}
+
+/// The factorised matrix of each lane: rows are points.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Bending {
+    key: Option<BendingKey>,
+    /// `c` of the bend around each point.
+    stiffness: Vec<Lane>,
+    /// Weight of the pull toward the style: `(h omega)^2`.
+    hold: Vec<Lane>,
+    inv_pivot: Vec<Lane>,
+    below: Vec<Lane>,
+    below2: Vec<Lane>,
+}
+
+impl Bending {
+    pub(crate) fn new(points: usize) -> Self {
+        Self {
+            key: None,
+            stiffness: vec![ZERO; points],
+            hold: vec![ZERO; points],
+            inv_pivot: vec![ZERO; points],
+            below: vec![ZERO; points],
+            below2: vec![ZERO; points],
+        }
+    }
+
+    pub(crate) fn stiffness(&self, point: usize) -> &Lane {
+        &self.stiffness[point]
+    }
+
+    pub(crate) fn hold(&self, point: usize) -> &Lane {
+        &self.hold[point]
+    }
+
+    /// Factorises anew where the settings or the time step have changed. `link` is each guide's mean link.
+    #[inline(always)]
+    pub(crate) fn prepare(&mut self, key: BendingKey, link: &Lane) {
+        if self.key == Some(key) {
+            return;
+        }
+        self.key = Some(key);
+        let count = self.stiffness.len();
+        let gain = 1.0 + key.gamma();
+        for i in 0..count {
+            let along = i as f32 / (count - 1).max(1) as f32;
+            let omega = key.stiffness_root + (key.stiffness_tip - key.stiffness_root) * along;
+            let root_b = omega * REFERENCE_LENGTH * REFERENCE_LENGTH / CANTILEVER;
+            let pull = key.h * key.hold * (1.0 - along) * (1.0 - along);
+            let bends = i > 0 && i + 1 < count;
+            for k in 0..LANES {
+                let c = key.h * root_b / (link[k] * link[k] + 1e-12);
+                self.stiffness[i][k] = if bends { lesser(c * c, STIFFEST / gain) } else { 0.0 };
+                self.hold[i][k] = pull * pull;
+            }
+        }
+        self.factorise(key.first_free, gain);
+    }
+
+    /// `L D L^T` of `1 + hold + gain * D2^T c D2` on the free points.
+    #[inline(always)]
+    fn factorise(&mut self, first_free: usize, gain: f32) {
+        let count = self.stiffness.len();
+        let e = |c: &[Lane], i: usize, k: usize| if i < count { gain * c[i][k] } else { 0.0 };
+        for i in first_free..count {
+            for k in 0..LANES {
+                let c = &self.stiffness;
+                let left = if i > 0 { e(c, i - 1, k) } else { 0.0 };
+                let diagonal = 1.0 + self.hold[i][k] + left + 4.0 * e(c, i, k) + e(c, i + 1, k);
+                let (mut l1, mut l2) = (0.0, 0.0);
+                let mut pivot = diagonal;
+                if i >= first_free + 2 {
+                    l2 = left * self.inv_pivot[i - 2][k];
+                    pivot -= l2 * left;
+                }
+                if i > first_free {
+                    let mut off = -2.0 * (left + e(c, i, k));
+                    if i >= first_free + 2 {
+                        off -= left * self.below[i - 1][k];
+                    }
+                    l1 = off * self.inv_pivot[i - 1][k];
+                    pivot -= l1 * off;
+                }
+                self.below[i][k] = l1;
+                self.below2[i][k] = l2;
+                self.inv_pivot[i][k] = 1.0 / pivot;
+            }
+        }
+    }
+
+    /// Solves for the displacement that the force `rhs` gives, in place.
+    #[inline(always)]
+    pub(crate) fn solve(&self, first_free: usize, rhs: &mut [Lane3]) {
+        let count = rhs.len();
+        let (mut one, mut two) = (ZERO3, ZERO3);
+        for i in first_free..count {
+            let (mut y, l1, l2) = (rhs[i], self.below[i], self.below2[i]);
+            for k in 0..LANES {
+                let v = at(&y, k) - at(&one, k) * l1[k] - at(&two, k) * l2[k];
+                put(&mut y, k, v);
+            }
+            rhs[i] = y;
+            (two, one) = (one, y);
+        }
+        (one, two) = (ZERO3, ZERO3);
+        for i in (first_free..count).rev() {
+            let (mut y, inv) = (rhs[i], self.inv_pivot[i]);
+            let l1 = if i + 1 < count { self.below[i + 1] } else { ZERO };
+            let l2 = if i + 2 < count { self.below2[i + 2] } else { ZERO };
+            for k in 0..LANES {
+                let v = at(&y, k) * inv[k] - at(&one, k) * l1[k] - at(&two, k) * l2[k];
+                put(&mut y, k, v);
+            }
+            rhs[i] = y;
+            (two, one) = (one, y);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+
+    fn key(first_free: usize) -> BendingKey {
+        BendingKey {
+            h: 1.0 / 240.0,
+            stiffness_root: 14.0,
+            stiffness_tip: 5.0,
+            damping_secs: 0.02,
+            hold: 4.0,
+            first_free,
+        }
+    }
+
+    /// `(1 + hold + gain D2^T c D2) x`, written out from the definition.
+    fn multiply(b: &Bending, gain: f32, first_free: usize, x: &[Vec3]) -> Vec<Vec3> {
+        let mut out: Vec<Vec3> = (0..x.len()).map(|i| x[i] * (1.0 + b.hold(i)[0])).collect();
+        for i in 1..x.len() - 1 {
+            let bend = (x[i - 1] - 2.0 * x[i] + x[i + 1]) * gain * b.stiffness(i)[0];
+            out[i - 1] += bend;
+            out[i] -= 2.0 * bend;
+            out[i + 1] += bend;
+        }
+        out.drain(..first_free);
+        out
+    }
+
+    #[test]
+    fn the_solution_solves_the_system() {
+        for first_free in 0..3 {
+            let mut b = Bending::new(9);
+            b.prepare(key(first_free), &[0.01; LANES]);
+            let mut x: Vec<Vec3> =
+                (0..9).map(|i| Vec3::new((i as f32).sin(), (i as f32 * 2.0).cos(), 0.1 * i as f32)).collect();
+            x[..first_free].fill(Vec3::ZERO);
+            let f = multiply(&b, 1.0 + key(0).gamma(), first_free, &x);
+            let mut rows = vec![ZERO3; 9];
+            for (row, f) in rows[first_free..].iter_mut().zip(&f) {
+                for k in 0..LANES {
+                    put(row, k, *f);
+                }
+            }
+            b.solve(first_free, &mut rows);
+            for (row, want) in rows.iter().zip(&x).skip(first_free) {
+                // The matrix' condition is about a thousand; f32 leaves four digits of a value near 1.
+                assert!((at(row, 5) - *want).length() < 1e-3, "{} against {want}", at(row, 5));
+            }
+        }
+    }
+
+    #[test]
+    fn without_stiffness_it_is_the_identity() {
+        let mut b = Bending::new(5);
+        let soft = BendingKey { stiffness_root: 0.0, stiffness_tip: 0.0, hold: 0.0, ..key(1) };
+        b.prepare(soft, &[0.01; LANES]);
+        let mut rows = vec![[[0.25; LANES]; 3]; 5];
+        b.solve(1, &mut rows);
+        assert!(rows[1..].iter().all(|r| *r == [[0.25; LANES]; 3]));
+    }
+
+    #[test]
+    fn links_of_no_length_give_finite_factors() {
+        let mut b = Bending::new(5);
+        b.prepare(key(1), &ZERO);
+        assert!(b.inv_pivot[1..].iter().flatten().all(|v| v.is_finite()));
+    }
+}

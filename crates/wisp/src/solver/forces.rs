@@ -1,0 +1,52 @@
+//! The forces of a step, worked out once and applied in every substep.
+
+use glam::Vec3;
+
+use super::Plan;
+use crate::block::Block;
+use crate::lanes::{LANES, ZERO3, at, put};
+
+/// Moves the block into this step's working space and gathers what acts on each point.
+///
+/// In a substep of `h` seconds drag, cohesion and friction against the hair around relax the velocity toward
+/// the wind, the mean of the neighbours and the head at their rates, exactly (`1 - e^(-rate h)`).
+#[inline(always)]
+pub(crate) fn prepare(block: &mut Block, plan: &Plan) {
+    let settings = &plan.settings;
+    let take = |rate: f32| 1.0 - (-rate * plan.h).exp();
+    let (drag, cohesion) = (take(settings.drag), take(settings.repulsion.cohesion));
+    block.bending.prepare(plan.bending, &block.rest.mean_link);
+    let gravity = Vec3::new(0.0, -settings.gravity, 0.0);
+    let carried = settings.style_support * settings.gravity;
+    let windy = plan.wind.blows();
+    for i in 0..block.points() {
+        let support = block.rest.support[i];
+        let mut push = ZERO3;
+        for k in 0..LANES {
+            let a = gravity + plan.last_head.rotate(at(&support, k)) * carried;
+            put(&mut push, k, a * plan.h);
+        }
+        block.push[i] = push;
+    }
+    plan.grid.act(block, plan, cohesion);
+    for i in 0..block.points() {
+        let mut position = block.position[i];
+        for row in [&mut position, &mut block.good[i]] {
+            for (axis, shift) in row.iter_mut().zip(plan.rebase.to_array()) {
+                for v in axis {
+                    *v += shift;
+                }
+            }
+        }
+        block.position[i] = position;
+        let (mut push, mut keep) = (block.push[i], block.keep[i]);
+        let air = if windy { plan.wind.velocity(&position) } else { ZERO3 };
+        for k in 0..LANES {
+            let relaxed = at(&push, k) * (1.0 - drag) + at(&air, k) * drag;
+            put(&mut push, k, relaxed);
+            keep[k] *= 1.0 - drag;
+        }
+        block.push[i] = push;
+        block.keep[i] = keep;
+    }
+}

@@ -1,0 +1,82 @@
+//! One block of guides through one step.
+//!
+//! A substep is: forces on velocities; velocities projected so that no link stretches; a step of positions;
+//! shape memory, implicit; one Newton step of the lengths; and the clean-up pass from root to tip that makes
+//! lengths exact and keeps points out of the body. Velocities then are what positions did.
+
+mod bending;
+mod forces;
+mod lengths;
+mod plan;
+mod substep;
+
+pub(crate) use bending::{Bending, BendingKey};
+pub(crate) use lengths::LengthScratch;
+pub(crate) use plan::{Plan, Substep};
+
+use crate::block::{Block, Outcome};
+use crate::lanes::{LANES, at, greater, put};
+
+/// Takes `block` through the step of `plan`.
+#[inline(always)]
+pub(crate) fn advance(block: &mut Block, plan: &Plan) {
+    block.outcome = Outcome::default();
+    forces::prepare(block, plan);
+    for i in 0..plan.substeps.len() {
+        substep::run(block, plan, i);
+    }
+    measure(block, plan);
+}
+
+/// Puts back guides that are not finite and reports on the others.
+#[inline(always)]
+fn measure(block: &mut Block, plan: &Plan) {
+    let count = block.points();
+    let mut size = [0.0_f32; LANES];
+    for i in 0..count {
+        let (p, v) = (block.position[i], block.velocity[i]);
+        for k in 0..LANES {
+            size[k] += at(&p, k).length_squared() + at(&v, k).length_squared();
+        }
+    }
+    for k in 0..LANES {
+        // Hair further than 300 m from its head has been lost as surely as one at infinity.
+        if !(size[k] < 1e5 * count as f32) {
+            restore(block, plan, k);
+            block.outcome.recovered += u32::from(k < block.used);
+        }
+    }
+    let (mut stretch, mut energy, mut fastest) = ([0.0_f32; LANES], [0.0_f32; LANES], [0.0_f32; LANES]);
+    for i in plan.first_free.max(1)..count {
+        let (a, b, v, inv) =
+            (block.position[i - 1], block.position[i], block.velocity[i], block.rest.inv_length[i]);
+        for k in 0..LANES {
+            let ratio = (at(&b, k) - at(&a, k)).length_squared().sqrt() * inv[k];
+            stretch[k] = greater(stretch[k], if inv[k] > 0.0 { (ratio - 1.0).abs() } else { 0.0 });
+            let speed = at(&v, k).length_squared();
+            energy[k] += 0.5 * speed;
+            fastest[k] = greater(fastest[k], speed);
+        }
+    }
+    let out = &mut block.outcome;
+    for k in 0..block.used {
+        out.max_stretch = greater(out.max_stretch, stretch[k]);
+        out.max_speed_squared = greater(out.max_speed_squared, fastest[k]);
+        out.energy += f64::from(energy[k]);
+    }
+    block.good.copy_from_slice(&block.position);
+}
+
+/// Puts lane `k` back to its last good pose, carried with the head and moving with it.
+#[cold]
+fn restore(block: &mut Block, plan: &Plan, k: usize) {
+    let last = plan.substeps.last();
+    for i in 0..block.points() {
+        let p = plan.carry_all.apply(at(&block.good[i], k));
+        put(&mut block.position[i], k, p);
+        let v = last.map_or(glam::Vec3::ZERO, |s| s.rigid_velocity(p));
+        put(&mut block.velocity[i], k, v);
+        let bend = last.map_or(at(&block.rest.bend[i], k), |s| s.head.rotate(at(&block.rest.bend[i], k)));
+        put(&mut block.bend[i], k, bend);
+    }
+}

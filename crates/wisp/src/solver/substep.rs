@@ -1,0 +1,184 @@
+//! One substep of one block.
+
+use super::lengths::{project_position, project_velocity};
+use super::Plan;
+use crate::block::Block;
+use crate::colliders::contact::{Near, apart, bounds, lay_point, penetration};
+use crate::lanes::{LANES, Turns, ZERO3, at, direction_or, greater, lesser, put};
+
+/// Takes the block through substep `s`.
+#[inline(always)]
+pub(crate) fn run(block: &mut Block, plan: &Plan, s: usize) {
+    velocities(block, plan, s);
+    shape_memory(block, plan, s);
+    project_position(plan.first_free, &block.rest.length, &mut block.next, &mut block.lengths);
+    find_near(block, plan, s);
+    lay_out(block, plan, s);
+}
+
+/// Forces, the projection of velocities, and the step of positions into `next`.
+#[inline(always)]
+fn velocities(block: &mut Block, plan: &Plan, s: usize) {
+    let (substep, h, inv_h) = (&plan.substeps[s], plan.h, 1.0 / plan.h);
+    let settle = 1.0 - (-plan.settings.settle * h).exp();
+    for i in 0..plan.first_free {
+        let (rest, x) = (block.rest.position[i], block.position[i]);
+        let mut v = ZERO3;
+        for k in 0..LANES {
+            put(&mut v, k, (substep.head.apply(at(&rest, k)) - at(&x, k)) * inv_h);
+        }
+        block.velocity[i] = v;
+    }
+    for i in plan.first_free..block.points() {
+        let (x, push, keep) = (block.position[i], block.push[i], block.keep[i]);
+        let mut v = block.velocity[i];
+        for k in 0..LANES {
+            let pushed = at(&v, k) * keep[k] + at(&push, k);
+            let settled = pushed + (substep.rigid_velocity(at(&x, k)) - pushed) * settle;
+            put(&mut v, k, settled);
+        }
+        block.velocity[i] = v;
+    }
+    project_velocity(
+        plan.first_free,
+        &block.position,
+        &block.rest.inv_length,
+        &mut block.velocity,
+        &mut block.lengths,
+    );
+    for i in 0..block.points() {
+        let (x, v) = (block.position[i], block.velocity[i]);
+        let mut next = ZERO3;
+        for k in 0..LANES {
+            put(&mut next, k, at(&x, k) + at(&v, k) * h);
+        }
+        block.next[i] = next;
+    }
+}
+
+/// Pulls `next` toward the rest bends in the frames carried along it, and toward the style near the roots.
+#[inline(always)]
+fn shape_memory(block: &mut Block, plan: &Plan, s: usize) {
+    let (substep, gamma, count) = (&plan.substeps[s], plan.bending.gamma(), block.points());
+    let mut frames = Turns::splat(substep.head_turn);
+    // c [(1 + gamma) (D p - b*) - gamma (D x - b*_old)] at every inner point.
+    for i in 1..count.saturating_sub(1) {
+        let (p0, p1, p2) = (block.next[i - 1], block.next[i], block.next[i + 1]);
+        let (x0, x1, x2) = (block.position[i - 1], block.position[i], block.position[i + 1]);
+        let (rest_direction, rest_bend) = (block.rest.direction[i], block.rest.bend[i]);
+        let (old, c) = (block.bend[i], *block.bending.stiffness(i));
+        let (mut bend, mut residual) = (ZERO3, ZERO3);
+        for k in 0..LANES {
+            let link = at(&p1, k) - at(&p0, k);
+            let expected = frames.at(k).apply(at(&rest_direction, k));
+            let frame = frames.at(k).then_least(expected, direction_or(link, expected).0);
+            frames.put(k, frame);
+            let wanted = frame.apply(at(&rest_bend, k));
+            let now = at(&p0, k) - 2.0 * at(&p1, k) + at(&p2, k);
+            let before = at(&x0, k) - 2.0 * at(&x1, k) + at(&x2, k);
+            let r = (now - wanted) * (1.0 + gamma) - (before - at(&old, k)) * gamma;
+            put(&mut bend, k, wanted);
+            put(&mut residual, k, r * c[k]);
+        }
+        block.next_bend[i] = bend;
+        block.residual[i] = residual;
+    }
+    block.residual[0] = ZERO3;
+    block.residual[count - 1] = ZERO3;
+    // -D^T r, and the pull toward the style, in place.
+    let mut left = if plan.first_free > 0 { block.residual[plan.first_free - 1] } else { ZERO3 };
+    for i in plan.first_free..count {
+        let middle = block.residual[i];
+        let right = if i + 1 < count { block.residual[i + 1] } else { ZERO3 };
+        let (rest, p, hold) = (block.rest.position[i], block.next[i], *block.bending.hold(i));
+        let mut force = ZERO3;
+        for k in 0..LANES {
+            let styled = substep.head.apply(at(&rest, k)) - at(&p, k);
+            let f = 2.0 * at(&middle, k) - at(&left, k) - at(&right, k) + styled * hold[k];
+            put(&mut force, k, f);
+        }
+        left = middle;
+        block.residual[i] = force;
+    }
+    block.bending.solve(plan.first_free, &mut block.residual);
+    for i in plan.first_free..count {
+        let (d, mut p) = (block.residual[i], block.next[i]);
+        for k in 0..LANES {
+            let moved = at(&p, k) + at(&d, k);
+            put(&mut p, k, moved);
+        }
+        block.next[i] = p;
+    }
+}
+
+/// Lists the colliders whose boxes the block may reach.
+#[inline(always)]
+fn find_near(block: &mut Block, plan: &Plan, s: usize) {
+    block.active.clear();
+    let shapes = &plan.shapes[s * plan.shapes_per_substep..][..plan.shapes_per_substep];
+    if shapes.is_empty() {
+        return;
+    }
+    let (mut low, mut high) = (block.next[0], block.next[0]);
+    for row in &block.next[1..] {
+        for axis in 0..3 {
+            for k in 0..LANES {
+                low[axis][k] = lesser(low[axis][k], row[axis][k]);
+                high[axis][k] = greater(high[axis][k], row[axis][k]);
+            }
+        }
+    }
+    let ((min, _), (_, max)) = (bounds(&low), bounds(&high));
+    // The clean-up pass may lay points a little outside the box of where they want to be.
+    let reach = plan.rules.reach() + 0.03;
+    for (c, mover) in shapes.iter().enumerate() {
+        if mover.shape.is_some() && !apart(min, max, mover, reach) {
+            block.active.push(c as u32);
+        }
+    }
+}
+
+/// The clean-up pass, and the velocities that follow from it.
+#[inline(always)]
+fn lay_out(block: &mut Block, plan: &Plan, s: usize) {
+    let (count, inv_h) = (block.points(), 1.0 / plan.h);
+    let near = Near {
+        shapes: &plan.shapes[s * plan.shapes_per_substep..][..plan.shapes_per_substep],
+        active: &block.active,
+        rest_distance: &block.rest_distance,
+        points: count,
+    };
+    let last = s + 1 == plan.substeps.len();
+    let mut deepest = [0.0_f32; LANES];
+    let mut before = ZERO3;
+    let mut was_before = ZERO3;
+    for i in 0..count {
+        let was = block.position[i];
+        let mut placed = block.next[i];
+        if i >= plan.first_free.max(1) {
+            let (inv, length) = (block.rest.inv_length[i], block.rest.length[i]);
+            let mut fallback = ZERO3;
+            for k in 0..LANES {
+                put(&mut fallback, k, (at(&was, k) - at(&was_before, k)) * inv[k]);
+            }
+            placed = lay_point(i, &before, &placed, &was, &fallback, &length, &near, &plan.rules);
+            if last && !near.active.is_empty() {
+                let depth = penetration(i, &placed, &near, &plan.rules);
+                for k in 0..LANES {
+                    deepest[k] = greater(deepest[k], depth[k]);
+                }
+            }
+        }
+        let mut velocity = ZERO3;
+        for k in 0..LANES {
+            put(&mut velocity, k, (at(&placed, k) - at(&was, k)) * inv_h);
+        }
+        block.position[i] = placed;
+        block.velocity[i] = velocity;
+        (before, was_before) = (placed, was);
+    }
+    std::mem::swap(&mut block.bend, &mut block.next_bend);
+    for depth in &deepest[..block.used] {
+        block.outcome.max_penetration_m = greater(block.outcome.max_penetration_m, *depth);
+    }
+}
