@@ -19,7 +19,7 @@ pub struct HairLook {
     pub tip_lightening: f32,
     /// Diameter of one real hair, metres: 17e-6 to 100e-6.
     pub diameter: f32,
-    /// Number of real hairs that all drawn strands together stand for.
+    /// Number of real hairs that all drawn strands together stand for: 1 to 10 million.
     pub real_hairs: f32,
     /// Width of a drawn strand as a multiple of what its real hairs would cover: 0.05 to 2.
     pub width_scale: f32,

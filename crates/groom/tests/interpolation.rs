@@ -55,7 +55,7 @@ fn twin(style: &Hairstyle, frame: &GuideFrame, wisp: &Wisp, strand: usize, point
     let blend: DVec3 = (0..3).map(|k| f64::from(set.weights[strand][k]) * curve(wisp.guides[k], u)).sum();
 
     let mean = |guides: &Guides, p: usize| wisp.guides.iter().map(|&g| of(guides, g, p)).sum::<DVec3>() / 3.0;
-    let root = (mean(&style.guides, 1) - mean(&style.guides, 0)).normalize();
+    let root = (mean(&style.guides, 1) - mean(&style.guides, 0)).normalize_or(DVec3::Y);
     let size = root.abs();
     let axis = if size.x <= size.y && size.x <= size.z {
         DVec3::X
@@ -64,20 +64,22 @@ fn twin(style: &Hairstyle, frame: &GuideFrame, wisp: &Wisp, strand: usize, point
     } else {
         DVec3::Z
     };
-    let turn = |v: DVec3| frame.world_from_head.transform_vector3(v.as_vec3()).as_dvec3().normalize();
-    let (mut tangent, mut normal) = (turn(root), turn((axis - root * axis.dot(root)).normalize()));
+    let turn =
+        |v: DVec3| frame.world_from_head.transform_vector3(v.as_vec3()).as_dvec3().normalize_or(DVec3::Y);
+    let (mut tangent, mut normal) = (turn(root), turn((axis - root * axis.dot(root)).normalize_or(DVec3::Y)));
     let last = (u.floor() as usize).min(n - 2);
     let mut ends = [(tangent, normal); 2];
     for p in 1..=last + 1 {
-        let next = (mean(&frame.guides, (p + 1).min(n - 1)) - mean(&frame.guides, p - 1)).normalize();
+        let next =
+            (mean(&frame.guides, (p + 1).min(n - 1)) - mean(&frame.guides, p - 1)).normalize_or(DVec3::Y);
         normal = glam::DQuat::from_rotation_arc(tangent, next) * normal;
         tangent = next;
         ends = [ends[1], (tangent, normal)];
     }
     let t = u - last as f64;
-    let along = ends[0].0.lerp(ends[1].0, t).normalize();
+    let along = ends[0].0.lerp(ends[1].0, t).normalize_or(DVec3::Y);
     let side = ends[0].1.lerp(ends[1].1, t);
-    let side = (side - along * side.dot(along)).normalize();
+    let side = (side - along * side.dot(along)).normalize_or(DVec3::Y);
     blend
         + side * f64::from(set.offset_normal[point])
         + along.cross(side) * f64::from(set.offset_binormal[point])

@@ -138,6 +138,9 @@ impl Comb {
         let turn = 0.9 * (-radial.length() / 0.025).exp();
         let spiral = radial.normalize_or(-on.along) + turn * on.normal.cross(radial.normalize_or(-on.along));
         let flow = spiral.lerp(fringed, on.front.max(fringe));
+        // Before and behind the ears hair simply grows down, and a little back.
+        let low = smoothstep(0.1, -0.4, (p.y - self.centre.y) / self.half.y);
+        let flow = flow.lerp(Vec3::new(0.0, -1.0, -0.35), low);
         (flow - n * flow.dot(n)).normalize_or((away - n * away.dot(n)).normalize_or(Vec3::X))
     }
 

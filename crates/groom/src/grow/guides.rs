@@ -37,7 +37,11 @@ pub(super) fn around(
         // Ends turn under, or out, over the last centimetres.
         let near_end = 1.0 - (length * (1.0 - fraction(k)) / ENDS.min(0.5 * length)).min(1.0);
         let inward = Vec3::new(comb.centre.x - p.x, 0.0, comb.centre.z - p.z).normalize_or_zero();
-        p += inward * (settings.ends * 0.5 * ENDS.min(0.5 * length) * near_end * near_end);
+        if near_end > 0.0 && settings.ends != 0.0 {
+            // Hair that lies on the neck has nowhere to turn.
+            let room = smoothstep(0.01, 0.05, obstacle.distance(p).0);
+            p += inward * (settings.ends * room * 0.5 * ENDS.min(0.5 * length) * near_end * near_end);
+        }
         let normal = match k {
             0 => reference_normal(t.into()),
             _ => transport(normals[k - 1], tangents[k - 1], t.into()),

@@ -73,9 +73,9 @@ pub(super) fn trace(settings: &GroomSettings, comb: &Comb, obstacle: &dyn Obstac
     let mut direction = flow * settings.root_lift.cos() + root.normal * settings.root_lift.sin();
     let mut p = root.position;
     let mut path = Path { step: STEP, points: vec![p], directions: vec![direction] };
+    let (mut distance, mut n) = obstacle.distance(p);
     for step in 1..=steps {
         let arc = step as f32 * STEP;
-        let (distance, n) = obstacle.distance(p);
         let wanted = height(settings, comb, loft, arc, p, n);
         let above = distance - wanted;
 
@@ -92,11 +92,16 @@ pub(super) fn trace(settings: &GroomSettings, comb: &Comb, obstacle: &dyn Obstac
         // A hand presses loose hair to the head; on the body, it falls before or behind the shoulder.
         let q = (p - comb.centre) / comb.half;
         wish -= n * (0.8 * free * smoothstep(-0.9, -0.3, q.y));
-        let (ahead, slope) = obstacle.distance(p + direction * 0.06);
-        let lands =
-            smoothstep(-0.8, -1.2, q.y) * smoothstep(0.05, 0.01, ahead) * smoothstep(0.1, 0.5, slope.y);
-        let aside = Vec3::Z * falls + Vec3::X * scatter;
-        wish += (aside - slope * aside.dot(slope)) * (0.9 * lands);
+        if q.y < -0.8 {
+            let (ahead, slope) = obstacle.distance(p + direction * 0.06);
+            let lands =
+                smoothstep(-0.8, -1.2, q.y) * smoothstep(0.05, 0.01, ahead) * smoothstep(0.1, 0.5, slope.y);
+            let aside = Vec3::Z * falls + Vec3::X * scatter;
+            wish += (aside - slope * aside.dot(slope)) * (0.9 * lands);
+        }
+        // What is swept keeps out of the face.
+        let before_face = (q.z - 0.3).max(0.0) * smoothstep(0.6, 0.1, q.y) * smoothstep(-1.4, -0.9, q.y);
+        wish += Vec3::NEG_Z * (2.5 * before_face * settings.sweep.max(0.0) * (1.0 - cell.fringe));
         let wish = wish.normalize_or(direction);
         direction = direction.lerp(wish, 1.0 - (-STEP / BEND).exp()).normalize_or(wish);
         // Keep to the wanted height: rise where too low, and never go further in.
@@ -106,10 +111,11 @@ pub(super) fn trace(settings: &GroomSettings, comb: &Comb, obstacle: &dyn Obstac
             direction = (direction - n * inward + n * rise * 0.35).normalize_or(direction);
         }
         p += direction * STEP;
-        let (distance, n) = obstacle.distance(p);
+        (distance, n) = obstacle.distance(p);
         let least = 0.5 * height(settings, comb, loft, arc, p, n).min(arc * 0.6);
         if distance < least {
             p += n * (least - distance);
+            (distance, n) = obstacle.distance(p);
         }
         path.points.push(p);
         path.directions.push(direction);

@@ -10,6 +10,9 @@ use crate::{GroomSettings, Guides, Obstacle, ScalpPoint, StrandSet, Wisp, WispCu
 
 /// Distance over which a strand's root, which lies on the scalp, joins the curve of its guides; metres.
 const ROOT_JOIN: f32 = 0.03;
+/// Estimated distance from the body below which it is asked for exactly, metres: a wisp is a centimetre or two wide,
+/// and over that width a head's surface leaves its tangent plane by 2 mm.
+const NEAR: f32 = 0.008;
 /// Strands of one of the smaller locks of a wisp, about.
 const STRANDS_PER_LOCK: usize = 6;
 
@@ -51,6 +54,30 @@ struct Lock {
     wave_phase: f32,
     /// Length of the wisp, metres.
     length: f32,
+    skin: Skin,
+}
+
+/// The distance to the body along a wisp's middle, from which that of its strands is estimated: asking a mesh is
+/// slow, and strands are many.
+struct Skin([(Vec3, f32, Vec3); GUIDE_POINTS]);
+
+impl Skin {
+    fn new(obstacle: &dyn Obstacle, guides: &[[Vec3; GUIDE_POINTS]; 3]) -> Self {
+        Self(std::array::from_fn(|k| {
+            let middle = (guides[0][k] + guides[1][k] + guides[2][k]) / 3.0;
+            let (distance, n) = obstacle.distance(middle);
+            (middle, distance, n)
+        }))
+    }
+
+    /// Distance and normal at `point` beside the guides' parameter `u`, to first order.
+    fn estimate(&self, u: f32, point: Vec3) -> (f32, Vec3) {
+        let k = (u as usize).min(GUIDE_POINTS - 2);
+        let ((m0, d0, n0), (m1, d1, n1)) = (self.0[k], self.0[k + 1]);
+        let t = u - k as f32;
+        let n = n0.lerp(n1, t).normalize_or(n0);
+        (d0 + (d1 - d0) * t + n.dot(point - m0.lerp(m1, t)), n)
+    }
 }
 
 /// Makes the strands of the wisp of `cell` along its `guides`.
@@ -75,6 +102,7 @@ pub(super) fn of_wisp(
         hand: if rng.unit() < 0.5 { -1.0 } else { 1.0 },
         wave_phase: 2.0 * around + 25.0 * root.y + settings.curl_wander * 1.5 * rng.signed(),
         length: guides[0][0].distance(guides[0][1]) * (GUIDE_POINTS - 1) as f32,
+        skin: Skin::new(obstacle, guides),
     };
     let wisp_shade = rng.unit();
     let flat = Flat::new(cell, guides);
@@ -233,7 +261,10 @@ impl Strand {
 
         let mut point = blended + displaced;
         // Some strands lie deeper than others, so that hair is a body and not a shell; none lies in the skin.
-        let (distance, n) = obstacle.distance(point);
+        let (mut distance, mut n) = lock.skin.estimate(u, point);
+        if distance < NEAR {
+            (distance, n) = obstacle.distance(point);
+        }
         let near = smoothstep(0.06, 0.02, distance) * smoothstep(0.0, 0.02, arc);
         let sunk = distance - self.depth * near * distance.max(0.0);
         let margin = (0.4 * arc).min(0.0015);
