@@ -38,7 +38,7 @@ impl Head {
                 front: Vec3::Z,
                 exponent: 2.25,
                 sections: vec![
-                    row(1.4830, 0.0185, 0.0845, 0.070, 0.0560),
+                    row(1.4850, 0.0190, 0.0845, 0.070, 0.0560),
                     row(1.4900, 0.0285, 0.0872, 0.055, 0.0240),
                     row(1.5000, 0.0370, 0.0880, 0.043, 0.0040),
                     row(1.5120, 0.0455, 0.0890, 0.034, -0.010),
@@ -84,9 +84,9 @@ fn features(p: Vec3, skull: f32) -> f32 {
     d = smin(d, ellipsoid(p - v(0.0330, 1.5320, 0.0600), v(0.0210, 0.0240, 0.0220)), 0.024);
     // The muzzle that carries the lips, and the chin.
     d = smin(d, ellipsoid(p - v(0.0, 1.5150, 0.0700), v(0.0300, 0.0260, 0.0290)), 0.022);
-    d = smin(d, ellipsoid(p - v(0.0, 1.4845, 0.0790), v(0.0165, 0.0135, 0.0150)), 0.020);
+    d = smin(d, ellipsoid(p - v(0.0, 1.4870, 0.0790), v(0.0165, 0.0135, 0.0150)), 0.020);
     // The floor of the mouth slopes from the chin to the throat.
-    d = smin(d, round_cone(p, v(0.0, 1.4870, 0.0680), v(0.0, 1.5080, 0.0250), 0.0140, 0.0210), 0.024);
+    d = smin(d, round_cone(p, v(0.0, 1.4895, 0.0680), v(0.0, 1.5080, 0.0250), 0.0140, 0.0210), 0.024);
     d = nose(p, d);
     d = lips(p, d);
     eye(p, d)
@@ -95,7 +95,7 @@ fn features(p: Vec3, skull: f32) -> f32 {
 fn jaw(p: Vec3, d: f32) -> f32 {
     let v = Vec3::new;
     let ramus = round_cone(p, v(0.0520, 1.565, 0.002), v(0.0430, 1.5265, 0.0100), 0.007, 0.0085);
-    let body = round_cone(p, v(0.0430, 1.5265, 0.0100), v(0.0080, 1.4880, 0.0680), 0.0085, 0.0085);
+    let body = round_cone(p, v(0.0430, 1.5265, 0.0100), v(0.0080, 1.4895, 0.0680), 0.0085, 0.0085);
     smin(d, smin(ramus, body, 0.024), 0.030)
 }
 
@@ -208,9 +208,9 @@ pub(super) fn inside_hairline(p: Vec3) -> f32 {
         [100.0, 1.6080],
         [112.0, 1.6060],
         [122.0, 1.5820],
-        [132.0, 1.5480],
-        [150.0, 1.5180],
-        [180.0, 1.5090],
+        [132.0, 1.5440],
+        [150.0, 1.5110],
+        [180.0, 1.5030],
     ];
     let azimuth = p.x.abs().atan2(p.z - 0.002).to_degrees();
     let at = |a: f32| curve(&LINE, a.clamp(0.0, 180.0))[1];
