@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::Plan;
 use crate::block::Block;
-use crate::lanes::{LANES, ZERO3, at, put};
+use crate::lanes::{LANES, ZERO3, at, greater, lesser, put};
 
 /// Moves the block into this step's working space and gathers what acts on each point.
 ///
@@ -19,13 +19,21 @@ pub(crate) fn prepare(block: &mut Block, plan: &Plan) {
     let gravity = Vec3::new(0.0, -settings.gravity, 0.0);
     let carried = settings.style_support * settings.gravity;
     let windy = plan.wind.blows();
+    let mut before = block.position[0];
     for i in 0..block.points() {
-        let support = block.rest.support[i];
+        let (support, direction, here) = (block.rest.support[i], block.rest.direction[i], block.position[i]);
+        let inv = block.rest.inv_length[i];
         let mut push = ZERO3;
         for k in 0..LANES {
-            let a = gravity + plan.last_head.rotate(at(&support, k)) * carried;
+            // The bends that carry a lock at rest carry it no more once it has left its shape: flung hair falls
+            // with its whole weight. Support fades from 37 to 66 degrees off the direction of rest.
+            let link = (at(&here, k) - at(&before, k)) * inv[k];
+            let along = link.dot(plan.last_head.rotate(at(&direction, k)));
+            let share = if i == 0 { 1.0 } else { lesser(greater((along - 0.4) * 2.5, 0.0), 1.0) };
+            let a = gravity + plan.last_head.rotate(at(&support, k)) * (carried * share);
             put(&mut push, k, a * plan.h);
         }
+        before = here;
         block.push[i] = push;
     }
     plan.grid.act(block, plan, cohesion);
