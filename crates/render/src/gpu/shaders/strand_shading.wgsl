@@ -16,7 +16,7 @@ struct StrandColor {
 // Colours of a strand that absorbs `sigma` per unit of path.
 fn strand_color(sigma: vec3f) -> StrandColor {
     // Part of the light only ever met surfaces, which take no colour: black hair is grey where it is lit.
-    return StrandColor(exp(-4.0 * sigma) + 0.03, exp(-2.4 * sigma), exp(-1.5 * sigma));
+    return StrandColor(exp(-4.0 * sigma) + 0.03, exp(-3.4 * sigma) + 0.02, exp(-2.4 * sigma) + 0.02);
 }
 
 // Light that a strand with unit tangent `t` (root to tip) sends toward `v` per unit of light from `l`;
@@ -42,7 +42,7 @@ fn strand_light(t: vec3f, l: vec3f, v: vec3f, color: StrandColor, specular: f32,
     // Light that has passed other hair is the more coloured, the deeper it comes.
     let deep = pow(color.body, vec3f(1.0 + 0.45 * (1.0 - lit)));
     let diffuse = 0.32 * cos_l * deep;
-    let reflected = 0.25 * frame.highlights.x * first * front * vec3f(1.0)
+    let reflected = 0.19 * frame.highlights.x * first * front * vec3f(1.0)
         + 0.40 * frame.highlights.y * second * front * color.second;
     let passed = 0.50 * behind * pow(max(cos_sum, 0.0), 4.0) * color.through;
     return diffuse + specular * (reflected + passed);
