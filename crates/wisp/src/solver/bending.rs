@@ -15,6 +15,10 @@ use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, lesser, put};
 /// The largest `c (1 + gamma)`: beyond it single precision loses the answer and hair is a wire anyway.
 const STIFFEST: f32 = 2e4;
 
+/// The sharpness at which a bend follows the head and the lock in equal parts; see [`Bending::fixed`]. The
+/// shipped styles flutter from about ten times this.
+const SHARP: f32 = 4.0;
+
 /// Length of the lock that the settings' angular frequency speaks of, metres.
 const REFERENCE_LENGTH: f32 = 0.2;
 
@@ -47,6 +51,13 @@ pub(crate) struct Bending {
     stiffness: Vec<Lane>,
     /// Weight of the pull toward the style: `(h omega)^2`.
     hold: Vec<Lane>,
+    /// How far the bend at rest around each point turns with the head, 0 to 1; else it turns with the lock.
+    ///
+    /// A bend that turns with the lock pushes like a thruster: its force has no potential, and where it is
+    /// sharp and stiff it makes the lock flutter. But what is that stiff hardly turns against the head, so
+    /// there the head's frame is as good, and with it the force is conservative. The more `c (1 + gamma)`
+    /// times the bend per link, the more of it is the head's.
+    fixed: Vec<Lane>,
     inv_pivot: Vec<Lane>,
     below: Vec<Lane>,
     below2: Vec<Lane>,
@@ -58,6 +69,7 @@ impl Bending {
             key: None,
             stiffness: vec![ZERO; points],
             hold: vec![ZERO; points],
+            fixed: vec![ZERO; points],
             inv_pivot: vec![ZERO; points],
             below: vec![ZERO; points],
             below2: vec![ZERO; points],
@@ -72,9 +84,14 @@ impl Bending {
         &self.hold[point]
     }
 
-    /// Factorises anew where the settings or the time step have changed. `link` is each guide's mean link.
+    pub(crate) fn fixed(&self, point: usize) -> &Lane {
+        &self.fixed[point]
+    }
+
+    /// Factorises anew where the settings or the time step have changed. `link` is each guide's mean link and
+    /// `rest_bend` the bends at rest.
     #[inline(always)]
-    pub(crate) fn prepare(&mut self, key: BendingKey, link: &Lane) {
+    pub(crate) fn prepare(&mut self, key: BendingKey, link: &Lane, rest_bend: &[Lane3]) {
         if self.key == Some(key) {
             return;
         }
@@ -91,6 +108,9 @@ impl Bending {
                 let c = key.h * root_b / (link[k] * link[k] + 1e-12);
                 self.stiffness[i][k] = if bends { lesser(c * c, STIFFEST / gain) } else { 0.0 };
                 self.hold[i][k] = pull * pull;
+                let bend = at(&rest_bend[i], k).length_squared().sqrt() / (link[k] + 1e-9);
+                let sharpness = self.stiffness[i][k] * gain * bend;
+                self.fixed[i][k] = sharpness / (sharpness + SHARP);
             }
         }
         self.factorise(key.first_free, gain);
@@ -190,7 +210,7 @@ mod tests {
     fn the_solution_solves_the_system() {
         for first_free in 0..3 {
             let mut b = Bending::new(9);
-            b.prepare(key(first_free), &[0.01; LANES]);
+            b.prepare(key(first_free), &[0.01; LANES], &[ZERO3; 9]);
             let mut x: Vec<Vec3> =
                 (0..9).map(|i| Vec3::new((i as f32).sin(), (i as f32 * 2.0).cos(), 0.1 * i as f32)).collect();
             x[..first_free].fill(Vec3::ZERO);
@@ -213,7 +233,7 @@ mod tests {
     fn without_stiffness_it_is_the_identity() {
         let mut b = Bending::new(5);
         let soft = BendingKey { stiffness_root: 0.0, stiffness_tip: 0.0, hold: 0.0, ..key(1) };
-        b.prepare(soft, &[0.01; LANES]);
+        b.prepare(soft, &[0.01; LANES], &[ZERO3; 5]);
         let mut rows = vec![[[0.25; LANES]; 3]; 5];
         b.solve(1, &mut rows);
         assert!(rows[1..].iter().all(|r| *r == [[0.25; LANES]; 3]));
@@ -222,7 +242,7 @@ mod tests {
     #[test]
     fn links_of_no_length_give_finite_factors() {
         let mut b = Bending::new(5);
-        b.prepare(key(1), &ZERO);
+        b.prepare(key(1), &ZERO, &[ZERO3; 5]);
         assert!(b.inv_pivot[1..].iter().flatten().all(|v| v.is_finite()));
     }
 }

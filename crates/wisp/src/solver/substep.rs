@@ -66,14 +66,16 @@ fn shape_memory(block: &mut Block, plan: &Plan, s: usize) {
         let (p0, p1, p2) = (block.next[i - 1], block.next[i], block.next[i + 1]);
         let (x0, x1, x2) = (block.position[i - 1], block.position[i], block.position[i + 1]);
         let (rest_direction, rest_bend) = (block.rest.direction[i], block.rest.bend[i]);
-        let (old, c) = (block.bend[i], *block.bending.stiffness(i));
+        let (old, c, fixed) = (block.bend[i], *block.bending.stiffness(i), *block.bending.fixed(i));
         let (mut bend, mut residual) = (ZERO3, ZERO3);
         for k in 0..LANES {
             let link = at(&p1, k) - at(&p0, k);
             let expected = frames.at(k).apply(at(&rest_direction, k));
             let frame = frames.at(k).then_least(expected, direction_or(link, expected).0);
             frames.put(k, frame);
-            let wanted = frame.apply(at(&rest_bend, k));
+            let (with_lock, with_head) =
+                (frame.apply(at(&rest_bend, k)), substep.head.rotate(at(&rest_bend, k)));
+            let wanted = with_lock + (with_head - with_lock) * fixed[k];
             let now = at(&p0, k) - 2.0 * at(&p1, k) + at(&p2, k);
             let before = at(&x0, k) - 2.0 * at(&x1, k) + at(&x2, k);
             let r = (now - wanted) * (1.0 + gamma) - (before - at(&old, k)) * gamma;

@@ -1,0 +1,167 @@
+//! What tests, the benchmark and the example share: the dancer with hair on, and hairstyles of plain chains.
+#![allow(dead_code, missing_docs, reason = "every user takes its part")]
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use glam::{Affine3A, Vec3};
+use lovelock_groom::{GroomSettings, GuideFrame, Guides, Hairstyle, Obstacle, Preset, Scalp, StrandSet, grow};
+use lovelock_motion::{
+    Body, Clip, Collider, PlacedCollider, Pose, RestDistance, fit_colliders, head_mesh, load_character,
+    place_colliders, pose_at,
+};
+use lovelock_wisp::{Simulation, SimulationSettings, StepInput, StepReport};
+
+/// The step of the product, seconds.
+pub const STEP_SECS: f32 = 1.0 / 60.0;
+
+/// The dancer, her dance and her hair.
+pub struct Stage {
+    pub body: Arc<Body>,
+    pub dance: Arc<Clip>,
+    pub colliders: Vec<Collider>,
+    pub style: Arc<Hairstyle>,
+    pub pose: Pose,
+    pub placed: Vec<PlacedCollider>,
+}
+
+struct RestBody(RestDistance);
+
+impl Obstacle for RestBody {
+    fn distance(&self, p: Vec3) -> (f32, Vec3) {
+        self.0.distance(p)
+    }
+}
+
+impl Stage {
+    pub fn new(preset: Preset) -> Self {
+        Self::grown(&GroomSettings::preset(preset))
+    }
+
+    pub fn grown(groom: &GroomSettings) -> Self {
+        let file = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../assets/dancer.glb");
+        let character = load_character(&file).expect("the shipped dancer loads");
+        let dance = character.clips.iter().find(|c| c.name == "dance").expect("the shipped dancer dances");
+        let head = head_mesh(&character.body);
+        let scalp = Scalp {
+            positions: head.positions,
+            normals: head.normals,
+            triangles: head.triangles,
+            mask: head.scalp,
+        };
+        let obstacle = RestBody(RestDistance::new(&character.body));
+        let style = grow(groom, &scalp, &obstacle).expect("the preset grows");
+        Self {
+            dance: Arc::clone(dance),
+            colliders: fit_colliders(&character.body),
+            style: Arc::new(style),
+            body: character.body,
+            pose: Pose::default(),
+            placed: Vec::new(),
+        }
+    }
+
+    /// The body at a time of the dance, or at rest.
+    pub fn at(&mut self, time_secs: Option<f64>) -> StepInput<'_> {
+        let clip = time_secs.map(|_| &*self.dance);
+        let time_secs = time_secs.unwrap_or_default();
+        pose_at(&self.body, clip, time_secs, &mut self.pose);
+        place_colliders(&self.colliders, &self.body, &self.pose, &mut self.placed);
+        StepInput { time_secs, world_from_head: self.pose.world_from_head, colliders: &self.placed }
+    }
+
+    /// Hair at rest on the body at that time.
+    pub fn simulation(&mut self, time_secs: Option<f64>) -> Simulation {
+        let mut simulation = Simulation::new(Arc::clone(&self.style));
+        simulation.reset(&self.at(time_secs));
+        simulation
+    }
+}
+
+/// A hairstyle of bare guides.
+pub fn style(guides: &[Vec<Vec3>]) -> Arc<Hairstyle> {
+    let mut all =
+        Guides { points_per_guide: guides.first().map_or(2, Vec::len), ..Guides::default() };
+    for guide in guides {
+        all.push(guide);
+    }
+    let strands = StrandSet { first_point: vec![0], ..StrandSet::default() };
+    Arc::new(Hairstyle { guides: all, strands, ..Hairstyle::default() })
+}
+
+/// A straight guide of `links` links from `root` along `direction`.
+pub fn straight(root: Vec3, direction: Vec3, links: usize, length: f32) -> Vec<Vec3> {
+    (0..=links).map(|i| root + direction * (length * i as f32 / links as f32)).collect()
+}
+
+/// A chain and nothing else: no stiffness, no drag, no neighbours.
+pub fn bare() -> SimulationSettings {
+    let mut s = SimulationSettings {
+        style_support: 0.0,
+        stiffness_root: 0.0,
+        stiffness_tip: 0.0,
+        bend_damping: 0.0,
+        hold: 0.0,
+        settle: 0.0,
+        drag: 0.0,
+        clamped_links: 0,
+        ..SimulationSettings::default()
+    };
+    s.repulsion.strength = 0.0;
+    s.repulsion.cohesion = 0.0;
+    s
+}
+
+/// A head without a body.
+pub fn head(time_secs: f64, world_from_head: Affine3A) -> StepInput<'static> {
+    StepInput { time_secs, world_from_head, colliders: &[] }
+}
+
+/// Where the guides are.
+pub fn frame(simulation: &Simulation) -> GuideFrame {
+    let mut frame = GuideFrame::at_rest(&Guides::default(), Affine3A::IDENTITY, 0.0);
+    simulation.frame(&mut frame);
+    frame
+}
+
+/// Distance of every point from the style carried with the head, as a fraction of its guide's length.
+pub fn away_from_style(simulation: &Simulation) -> Vec<f32> {
+    let now = frame(simulation);
+    let rest = GuideFrame::at_rest(&simulation.style().guides, now.world_from_head, 0.0).guides;
+    let n = rest.points_per_guide;
+    let mut out = Vec::new();
+    for g in 0..rest.count() {
+        let length: f32 = (1..n).map(|i| (rest.point(g, i) - rest.point(g, i - 1)).length()).sum();
+        out.extend((0..n).map(|i| (now.guides.point(g, i) - rest.point(g, i)).length() / length));
+    }
+    out
+}
+
+/// Largest relative error of a link's length, from the positions themselves.
+pub fn stretch(simulation: &Simulation) -> f32 {
+    let (now, rest) = (frame(simulation).guides, &simulation.style().guides);
+    let n = rest.points_per_guide;
+    let mut worst = 0.0_f32;
+    for g in 0..rest.count() {
+        for i in 1..n {
+            let wanted = (rest.point(g, i) - rest.point(g, i - 1)).length();
+            let got = (now.point(g, i) - now.point(g, i - 1)).length();
+            worst = worst.max((got / wanted - 1.0).abs());
+        }
+    }
+    worst
+}
+
+/// The worst of two reports.
+pub fn worse(a: StepReport, b: StepReport) -> StepReport {
+    StepReport {
+        substeps: a.substeps.max(b.substeps),
+        max_stretch: a.max_stretch.max(b.max_stretch),
+        max_penetration_m: a.max_penetration_m.max(b.max_penetration_m),
+        recovered_guides: a.recovered_guides + b.recovered_guides,
+        over_dense_cells: a.over_dense_cells.max(b.over_dense_cells),
+        kinetic_energy: a.kinetic_energy.max(b.kinetic_energy),
+        max_speed: a.max_speed.max(b.max_speed),
+        jumped: a.jumped || b.jumped,
+    }
+}
