@@ -16,6 +16,12 @@ pub(crate) struct Arguments {
     /// Print one JSON object on standard output and nothing else there.
     #[arg(long, global = true)]
     pub(crate) json: bool,
+    /// Save a picture of the window as a PNG file and leave.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) screenshot: Option<PathBuf>,
+    /// Seconds between the first hair on the screen and that picture.
+    #[arg(long, value_name = "SECONDS", default_value_t = 6.0, requires = "screenshot")]
+    pub(crate) after: f64,
     #[command(subcommand)]
     pub(crate) task: Option<Task>,
 }

@@ -28,7 +28,10 @@ pub(crate) fn run() -> ExitCode {
     };
     let output = Output { json: arguments.json };
     let result = match arguments.task {
-        None => crate::window::open(arguments.project.as_deref()),
+        None => {
+            let screenshot = arguments.screenshot.map(|out| (out, arguments.after));
+            crate::window::open(arguments.project.as_deref(), screenshot)
+        }
         Some(Task::Record(task)) => record::run(&task, output),
         Some(Task::Info(task)) => info::run(&task, output),
     };

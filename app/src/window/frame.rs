@@ -65,6 +65,9 @@ impl Window {
         let title = title(self.project_path.as_deref(), self.history.is_modified());
         ctx.send_viewport_cmd(egui::ViewportCommand::Title(title));
         self.toasts.show(&ctx);
+        if let Some(screenshot) = &mut self.screenshot {
+            screenshot.update(&ctx, self.session.painted.is_some());
+        }
         self.watch_close(&ctx);
     }
 

@@ -11,7 +11,10 @@ mod palette;
 mod panels;
 mod path_dialog;
 mod recorder;
+mod screenshot;
 mod session;
+#[cfg(test)]
+mod testing;
 mod theme;
 mod timeline;
 mod viewport;
@@ -26,6 +29,7 @@ use gesture::Gestures;
 use palette::Palette;
 use path_dialog::PathDialog;
 use recorder::Recorder;
+use screenshot::Screenshot;
 use session::Session;
 use viewport::Viewport;
 
@@ -69,10 +73,11 @@ pub(crate) struct Window {
     selected_light: usize,
     gestures: Gestures,
     quitting: bool,
+    screenshot: Option<Screenshot>,
 }
 
 /// Opens the window, on a file where one is given.
-pub(crate) fn open(path: Option<&Path>) -> Result<(), StudioError> {
+pub(crate) fn open(path: Option<&Path>, screenshot: Option<(PathBuf, f64)>) -> Result<(), StudioError> {
     // A file that cannot be opened is an error of the command line: no window is needed to say so.
     let opened = path.map(actions::open_for_start).transpose()?;
     let options = eframe::NativeOptions {
@@ -87,17 +92,28 @@ pub(crate) fn open(path: Option<&Path>) -> Result<(), StudioError> {
     eframe::run_native(
         "lovelock",
         options,
-        Box::new(move |creation| Ok(Box::new(Window::new(creation, opened)?))),
+        Box::new(move |creation| Ok(Box::new(Window::new(creation, opened, screenshot)?))),
     )
     .map_err(|error| StudioError::work(format!("the window could not be opened: {error}; without a display use `lovelock record`")))
 }
 
 impl Window {
-    fn new(creation: &eframe::CreationContext, opened: Option<actions::Opened>) -> Result<Self, StudioError> {
+    fn new(
+        creation: &eframe::CreationContext,
+        opened: Option<actions::Opened>,
+        picture: Option<(PathBuf, f64)>,
+    ) -> Result<Self, StudioError> {
         let ctx = &creation.egui_ctx;
         egui_material_icons::initialize(ctx);
         theme::apply(ctx);
         let layout = creation.storage.and_then(|storage| eframe::get_value(storage, LAYOUT_KEY)).unwrap_or_default();
+        let mut window = Self::start(ctx, layout, opened)?;
+        window.screenshot = picture.map(|(out, after_secs)| Screenshot::new(out, after_secs));
+        Ok(window)
+    }
+
+    /// Starts what runs behind the window.
+    fn start(ctx: &egui::Context, layout: Layout, opened: Option<actions::Opened>) -> Result<Self, StudioError> {
         let mut access = Access::new();
         let (project, project_path, problems) = match opened {
             Some(opened) => {
@@ -126,6 +142,7 @@ impl Window {
             selected_light: 0,
             gestures: Gestures::default(),
             quitting: false,
+            screenshot: None,
         };
         window.tell(problems.iter().map(|problem| problem.message.clone()));
         Ok(window)

@@ -84,10 +84,10 @@ impl HairLook {
     }
 
     /// Path through fibres, in the unit of the absorption, after which light has the colour of the hair.
-    pub const BODY_PATH: f32 = 4.0;
+    pub const BODY_PATH: f32 = 3.6;
 
     /// Share of the light that leaves hair without ever having entered a fibre.
-    pub const SURFACE_SHARE: f32 = 0.03;
+    pub const SURFACE_SHARE: f32 = 0.045;
 
     /// Effective width in metres with which one of `strands` drawn strands shadows: diameter times the
     /// number of real hairs that it stands for.

@@ -16,7 +16,7 @@ struct StrandColor {
 // Colours of a strand that absorbs `sigma` per unit of path.
 fn strand_color(sigma: vec3f) -> StrandColor {
     // Part of the light only ever met surfaces, which take no colour: black hair is grey where it is lit.
-    return StrandColor(exp(-4.0 * sigma) + 0.03, exp(-3.4 * sigma) + 0.02, exp(-2.4 * sigma) + 0.02);
+    return StrandColor(exp(-3.6 * sigma) + 0.045, exp(-3.0 * sigma) + 0.05, exp(-2.2 * sigma) + 0.05);
 }
 
 // Light that a strand with unit tangent `t` (root to tip) sends toward `v` per unit of light from `l`;

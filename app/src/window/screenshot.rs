@@ -1,0 +1,40 @@
+//! A picture of the window itself, for documents.
+
+use std::path::PathBuf;
+
+use egui::ViewportCommand;
+use lovelock_studio::{Stopwatch, recording};
+
+/// Takes a picture of the window some seconds after the first hair is on the screen, and closes it.
+pub(crate) struct Screenshot {
+    out: Option<PathBuf>,
+    after_secs: f64,
+    since: Option<Stopwatch>,
+}
+
+impl Screenshot {
+    /// A picture to be saved as `out`.
+    pub(crate) fn new(out: PathBuf, after_secs: f64) -> Self {
+        Self { out: Some(out), after_secs, since: None }
+    }
+
+    /// Call once a pass; `ready` says whether hair is on the screen.
+    pub(crate) fn update(&mut self, ctx: &egui::Context, ready: bool) {
+        if ready && self.since.is_none() {
+            self.since = Some(Stopwatch::start());
+        }
+        let due = self.since.is_some_and(|since| since.secs() >= self.after_secs);
+        if let Some(out) = self.out.take_if(|_| due) {
+            let closing = ctx.clone();
+            ctx.request_screenshot(move |image| {
+                let [width, height] = image.size.map(|side| side as u32);
+                let rgba: Vec<u8> = image.pixels.iter().flat_map(|pixel| pixel.to_array()).collect();
+                if let Err(error) = recording::write_png(&out, width, height, &rgba) {
+                    eprintln!("lovelock: {error}");
+                }
+                closing.send_viewport_cmd(ViewportCommand::Close);
+            });
+        }
+        ctx.request_repaint_after(std::time::Duration::from_millis(200));
+    }
+}
