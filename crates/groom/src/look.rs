@@ -76,18 +76,21 @@ impl HairLook {
 
     /// Colour that light has after many fibres, linear sRGB: what a head of hair with this absorption looks like.
     ///
-    /// Absorption over the path through several fibres, and a grey part that only ever met their surfaces: without
-    /// it brown hair would be too saturated and black hair a hole. The drawing does the same in
-    /// `strand_shading.wgsl`.
+    /// Paths through hair are of many lengths, and the mean of `exp(-sigma * length)` over them falls more slowly
+    /// than any one of them: a stretched exponential, `exp(-(path * sigma^0.7))`. A small grey part only ever met
+    /// surfaces. With one path length brown hair would be red. The drawing does the same in `strand_shading.wgsl`.
     pub fn body_color(absorption: Vec3) -> Vec3 {
-        absorption.map(|sigma| (-Self::BODY_PATH * sigma).exp() + Self::SURFACE_SHARE)
+        absorption.map(|sigma| (-Self::BODY_PATH * sigma.powf(Self::STRETCH)).exp() + Self::SURFACE_SHARE)
     }
 
-    /// Path through fibres, in the unit of the absorption, after which light has the colour of the hair.
-    pub const BODY_PATH: f32 = 3.6;
+    /// Factor on the stretched absorption after which light has the colour of the hair.
+    pub const BODY_PATH: f32 = 2.8;
+
+    /// Exponent of the absorption: 1 would be one length of path for all light.
+    pub const STRETCH: f32 = 0.7;
 
     /// Share of the light that leaves hair without ever having entered a fibre.
-    pub const SURFACE_SHARE: f32 = 0.045;
+    pub const SURFACE_SHARE: f32 = 0.012;
 
     /// Effective width in metres with which one of `strands` drawn strands shadows: diameter times the
     /// number of real hairs that it stands for.

@@ -89,8 +89,8 @@ const SMOOTH: GroomSettings = GroomSettings {
     wave_length: 0.12,
     taper: 0.25,
     look: HairLook {
-        eumelanin: 1.7,
-        pheomelanin: 0.0,
+        eumelanin: 1.4,
+        pheomelanin: 0.05,
         variation: 0.25,
         tip_lightening: 0.15,
         diameter: 80e-6,
@@ -128,7 +128,7 @@ const CURLY: GroomSettings = GroomSettings {
     curl_wander: 0.6,
     wave: 0.0,
     taper: 0.3,
-    look: HairLook { eumelanin: 0.3, pheomelanin: 0.9, roughness: 0.35, ..SMOOTH.look },
+    look: HairLook { eumelanin: 0.15, pheomelanin: 1.5, roughness: 0.35, ..SMOOTH.look },
     ..SMOOTH
 };
 
@@ -154,6 +154,6 @@ const LONG: GroomSettings = GroomSettings {
     curl_wander: 0.5,
     wave: 0.009,
     wave_length: 0.10,
-    look: HairLook { eumelanin: 0.35, pheomelanin: 0.15, ..SMOOTH.look },
+    look: HairLook { eumelanin: 0.35, pheomelanin: 0.1, ..SMOOTH.look },
     ..SMOOTH
 };

@@ -15,8 +15,9 @@ struct StrandColor {
 
 // Colours of a strand that absorbs `sigma` per unit of path.
 fn strand_color(sigma: vec3f) -> StrandColor {
-    // Part of the light only ever met surfaces, which take no colour: black hair is grey where it is lit.
-    return StrandColor(exp(-3.6 * sigma) + 0.045, exp(-3.0 * sigma) + 0.05, exp(-2.2 * sigma) + 0.05);
+    // Twin of `HairLook::body_color` in groom: paths of many lengths, and a grey part that only met surfaces.
+    let s = pow(max(sigma, vec3f(0.0)), vec3f(0.7));
+    return StrandColor(exp(-2.8 * s) + 0.012, exp(-2.2 * s) + 0.02, exp(-1.7 * s) + 0.02);
 }
 
 // Light that a strand with unit tangent `t` (root to tip) sends toward `v` per unit of light from `l`;

@@ -33,7 +33,7 @@ fn shade_surface(in: Surface) -> @location(0) vec4f {
     let v = normalize(frame.eye_lights.xyz - in.world);
     let n = normalize(in.normal);
     // Under hair the skin is painted with the colour of the roots, so that gaps never read as baldness.
-    let root = 0.3 * (exp(-3.6 * frame.absorption_variation.xyz) + 0.045);
+    let root = 0.3 * (exp(-2.8 * pow(max(frame.absorption_variation.xyz, vec3f(0.0)), vec3f(0.7))) + 0.012);
     let albedo = mix(in.color_scalp.rgb, root, 0.88 * smoothstep(0.15, 0.75, in.color_scalp.w));
     let skin = 1.0 - in.color_scalp.w;
     var sum = vec3f(0.0);
