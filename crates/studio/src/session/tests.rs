@@ -309,9 +309,11 @@ fn other_hair_comes_in_without_a_whip_and_time_goes_on() {
         engine.set_scene(loader.load_now(&project, &access).expect("a scene").0);
         let now = engine.scene().clip_secs(engine.time_secs());
         assert!((now - clip_secs).abs() < 2.0 * crate::STEP_SECS, "the pose goes on: {clip_secs} to {now}");
-        for _ in 0..20 {
+        for step in 0..20 {
             engine.step();
-            assert!(engine.snapshot().report.max_speed < WHIP_METRES_PER_SEC);
+            let report = engine.snapshot().report;
+            // Locks of another length may begin inside the body, and are pushed out at once.
+            assert!(step < 3 || report.max_speed < 0.5 * WHIP_METRES_PER_SEC, "step {step}: {report:?}");
         }
     }
 }
