@@ -89,7 +89,7 @@ const SMOOTH: GroomSettings = GroomSettings {
     wave_length: 0.12,
     taper: 0.25,
     look: HairLook {
-        eumelanin: 1.4,
+        eumelanin: 2.6,
         pheomelanin: 0.05,
         variation: 0.25,
         tip_lightening: 0.15,
@@ -128,7 +128,7 @@ const CURLY: GroomSettings = GroomSettings {
     curl_wander: 0.6,
     wave: 0.0,
     taper: 0.3,
-    look: HairLook { eumelanin: 0.15, pheomelanin: 1.5, roughness: 0.35, ..SMOOTH.look },
+    look: HairLook { eumelanin: 0.2, pheomelanin: 2.6, roughness: 0.35, ..SMOOTH.look },
     ..SMOOTH
 };
 
