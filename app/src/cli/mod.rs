@@ -45,7 +45,8 @@ pub(crate) fn run() -> ExitCode {
 fn one_line(error: &clap::Error) -> String {
     let text = error.to_string();
     let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
-    let told: Vec<&str> = lines.take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more")).collect();
+    let told: Vec<&str> =
+        lines.take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more")).collect();
     let line = told.join(" ");
     line.strip_prefix("error: ").unwrap_or(&line).to_owned()
 }

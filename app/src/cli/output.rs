@@ -14,13 +14,14 @@ pub(crate) struct Output {
 
 impl Output {
     /// Prints a result: as JSON, or as `text` says.
-    pub(crate) fn result<T: Serialize>(self, value: &T, text: impl FnOnce() -> String) -> Result<(), StudioError> {
+    pub(crate) fn result<T: Serialize>(
+        self,
+        value: &T,
+        text: impl FnOnce() -> String,
+    ) -> Result<(), StudioError> {
         use std::io::Write;
-        let text = if self.json {
-            serde_json::to_string_pretty(value).map_err(StudioError::work)?
-        } else {
-            text()
-        };
+        let text =
+            if self.json { serde_json::to_string_pretty(value).map_err(StudioError::work)? } else { text() };
         // A reader that closes the pipe early has seen what it wanted.
         let _ = writeln!(std::io::stdout(), "{}", text.trim_end());
         Ok(())

@@ -82,7 +82,10 @@ pub(crate) fn run(task: &Record, output: Output) -> Result<(), StudioError> {
 fn preset(id: &str) -> Result<Preset, StudioError> {
     Preset::from_id(id).ok_or_else(|| {
         let known: Vec<_> = Preset::ALL.iter().map(|preset| preset.id()).collect();
-        StudioError::option(format!("--preset: unknown hairstyle `{id}`: expected one of {}", known.join(", ")))
+        StudioError::option(format!(
+            "--preset: unknown hairstyle `{id}`: expected one of {}",
+            known.join(", ")
+        ))
     })
 }
 

@@ -17,13 +17,7 @@ impl<T: Pod> GrowBuffer<T> {
     pub fn new(device: &wgpu::Device, label: &'static str, usage: wgpu::BufferUsages) -> Self {
         let usage = usage | wgpu::BufferUsages::COPY_DST;
         let buffer = make(device, label, usage, size_of::<T>().max(16) as u64);
-        Self {
-            label,
-            usage,
-            buffer,
-            len: 0,
-            _of: std::marker::PhantomData,
-        }
+        Self { label, usage, buffer, len: 0, _of: std::marker::PhantomData }
     }
 
     /// Makes room for `len` items without writing any. Returns whether the buffer is a new one, so that bind

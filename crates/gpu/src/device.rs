@@ -77,10 +77,7 @@ impl Gpu {
             required_limits,
             ..Default::default()
         }))
-        .map_err(|error| GpuError::NoDevice {
-            adapter: info.name.clone(),
-            reason: error.to_string(),
-        })?;
+        .map_err(|error| GpuError::NoDevice { adapter: info.name.clone(), reason: error.to_string() })?;
         tracing::info!(adapter = %info.name, backend = %info.backend, "graphics device");
         Ok(Arc::new(Self { device, queue, info }))
     }

@@ -22,10 +22,7 @@ impl ShaderSource {
     /// Joins `parts` in their order.
     pub fn new(parts: &[ShaderPart]) -> Self {
         let text = parts.iter().flat_map(|part| [part.text, "\n"]).collect();
-        Self {
-            parts: parts.to_vec(),
-            text,
-        }
+        Self { parts: parts.to_vec(), text }
     }
 
     /// The whole text.
@@ -53,9 +50,7 @@ impl ShaderSource {
 /// The part, the line and the reason.
 pub fn check_shader(source: &ShaderSource) -> Result<naga::Module, GpuError> {
     let module = naga::front::wgsl::parse_str(&source.text).map_err(|error| {
-        let line = error
-            .location(&source.text)
-            .map_or(1, |at| at.line_number as usize);
+        let line = error.location(&source.text).map_or(1, |at| at.line_number as usize);
         let (name, line) = source.locate(line);
         GpuError::Shader(format!("{name}, line {line}: {}", error.message()))
     })?;
@@ -64,10 +59,8 @@ pub fn check_shader(source: &ShaderSource) -> Result<naga::Module, GpuError> {
         naga::valid::Capabilities::default() | naga::valid::Capabilities::SHADER_FLOAT16_IN_FLOAT32;
     let mut validator = naga::valid::Validator::new(naga::valid::ValidationFlags::all(), capabilities);
     validator.validate(&module).map_err(|error| {
-        let span = error
-            .spans()
-            .next()
-            .map_or(1, |(span, _)| span.location(&source.text).line_number as usize);
+        let span =
+            error.spans().next().map_or(1, |(span, _)| span.location(&source.text).line_number as usize);
         let (name, line) = source.locate(span);
         let mut reason = error.as_inner().to_string();
         let mut cause = std::error::Error::source(error.as_inner());
@@ -84,10 +77,8 @@ pub fn check_shader(source: &ShaderSource) -> Result<naga::Module, GpuError> {
 mod tests {
     use super::*;
 
-    const GOOD: ShaderPart = ShaderPart {
-        name: "good.wgsl",
-        text: "const A: f32 = 1.0;\nconst B: f32 = 2.0;\n",
-    };
+    const GOOD: ShaderPart =
+        ShaderPart { name: "good.wgsl", text: "const A: f32 = 1.0;\nconst B: f32 = 2.0;\n" };
 
     #[test]
     fn a_good_shader_passes() {
@@ -97,25 +88,15 @@ mod tests {
 
     #[test]
     fn an_error_names_the_part_and_its_own_line() {
-        let bad = ShaderPart {
-            name: "bad.wgsl",
-            text: "const C: f32 = A;\n\nconst D: f32 = Missing;\n",
-        };
-        let error = check_shader(&ShaderSource::new(&[GOOD, bad]))
-            .expect_err("unknown name")
-            .to_string();
+        let bad = ShaderPart { name: "bad.wgsl", text: "const C: f32 = A;\n\nconst D: f32 = Missing;\n" };
+        let error = check_shader(&ShaderSource::new(&[GOOD, bad])).expect_err("unknown name").to_string();
         assert!(error.starts_with("bad.wgsl, line 3:"), "{error}");
     }
 
     #[test]
     fn a_validation_error_names_the_part_too() {
-        let bad = ShaderPart {
-            name: "types.wgsl",
-            text: "fn f() -> f32 {\n    return 1u;\n}\n",
-        };
-        let error = check_shader(&ShaderSource::new(&[GOOD, bad]))
-            .expect_err("wrong type")
-            .to_string();
+        let bad = ShaderPart { name: "types.wgsl", text: "fn f() -> f32 {\n    return 1u;\n}\n" };
+        let error = check_shader(&ShaderSource::new(&[GOOD, bad])).expect_err("wrong type").to_string();
         assert!(error.starts_with("types.wgsl, line"), "{error}");
     }
 }

@@ -8,10 +8,7 @@ pub struct Stopwatch(Instant);
 
 impl Stopwatch {
     /// Starts to measure.
-    #[allow(
-        clippy::disallowed_methods,
-        reason = "this is the clock that stages are timed with"
-    )]
+    #[allow(clippy::disallowed_methods, reason = "this is the clock that stages are timed with")]
     pub fn start() -> Self {
         Self(Instant::now())
     }

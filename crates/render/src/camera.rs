@@ -43,11 +43,7 @@ mod tests {
 
     #[test]
     fn depth_is_one_at_the_near_plane_and_falls() {
-        let camera = Camera {
-            eye: Vec3::new(0.0, 1.0, 2.0),
-            target: Vec3::new(0.0, 1.0, 0.0),
-            fov_y: 0.6,
-        };
+        let camera = Camera { eye: Vec3::new(0.0, 1.0, 2.0), target: Vec3::new(0.0, 1.0, 0.0), fov_y: 0.6 };
         let clip = camera.clip_from_world(1.5);
         let depth = |z: f32| {
             let p = clip * Vec3::new(0.0, 1.0, 2.0 - z).extend(1.0);
@@ -59,22 +55,11 @@ mod tests {
 
     #[test]
     fn the_target_is_in_the_middle_and_the_fov_is_vertical() {
-        let camera = Camera {
-            eye: Vec3::new(1.0, 1.0, 2.0),
-            target: Vec3::ZERO,
-            fov_y: 0.5,
-        };
+        let camera = Camera { eye: Vec3::new(1.0, 1.0, 2.0), target: Vec3::ZERO, fov_y: 0.5 };
         let clip = camera.clip_from_world(2.0) * Vec3::ZERO.extend(1.0);
         assert!(clip.x.abs() < 1e-5 && clip.y.abs() < 1e-5);
-        let level = Camera {
-            eye: Vec3::Z,
-            target: Vec3::ZERO,
-            fov_y: 0.5,
-        };
+        let level = Camera { eye: Vec3::Z, target: Vec3::ZERO, fov_y: 0.5 };
         let top = level.clip_from_world(2.0) * Vec3::new(0.0, 0.25_f32.tan(), 0.0).extend(1.0);
-        assert!(
-            (top.y / top.w - 1.0).abs() < 1e-5,
-            "half the angle reaches the upper edge"
-        );
+        assert!((top.y / top.w - 1.0).abs() < 1e-5, "half the angle reaches the upper edge");
     }
 }

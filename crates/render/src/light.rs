@@ -78,17 +78,9 @@ impl Light {
     /// A copy whose every value is finite and in range; a zero or non-finite direction becomes straight down.
     pub fn clamped(&self) -> Self {
         let finite = |v: f32, low: f32, high: f32, default: f32| {
-            if v.is_finite() {
-                v.clamp(low, high)
-            } else {
-                default
-            }
+            if v.is_finite() { v.clamp(low, high) } else { default }
         };
-        let direction = if self.direction.is_finite() {
-            self.direction
-        } else {
-            Vec3::NEG_Y
-        };
+        let direction = if self.direction.is_finite() { self.direction } else { Vec3::NEG_Y };
         Self {
             name: self.name.clone(),
             enabled: self.enabled,

@@ -44,18 +44,10 @@ impl PictureSettings {
     pub fn clamped(&self) -> Self {
         let default = Self::default();
         let finite = |v: f32, low: f32, high: f32, default: f32| {
-            if v.is_finite() {
-                v.clamp(low, high)
-            } else {
-                default
-            }
+            if v.is_finite() { v.clamp(low, high) } else { default }
         };
         let color = |v: Vec3, d: Vec3| {
-            if v.is_finite() {
-                v.clamp(Vec3::ZERO, Vec3::splat(4.0))
-            } else {
-                d
-            }
+            if v.is_finite() { v.clamp(Vec3::ZERO, Vec3::splat(4.0)) } else { d }
         };
         Self {
             exposure_stops: finite(self.exposure_stops, -6.0, 6.0, 0.0),

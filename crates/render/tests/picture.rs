@@ -14,9 +14,7 @@ fn curtain(count: usize, height: f32, z: f32) -> Vec<Vec<Vec3>> {
     (0..count)
         .map(|i| {
             let y = height * ((i as f32 + 0.5) / count as f32 - 0.5);
-            (0..11)
-                .map(|j| Vec3::new((j as f32 / 10.0 - 0.5) * 0.2, y, z))
-                .collect()
+            (0..11).map(|j| Vec3::new((j as f32 / 10.0 - 0.5) * 0.2, y, z)).collect()
         })
         .collect()
 }
@@ -37,11 +35,7 @@ fn an_empty_scene_is_background_and_a_strand_is_not() {
     one.look.width_scale = 1.0;
     let picture = one.draw(64, 64).expect("an adapter");
     assert_ne!(pixel(&empty, 32, 32), pixel(&picture, 32, 32));
-    assert_eq!(
-        pixel(&empty, 32, 2),
-        pixel(&picture, 32, 2),
-        "the strand is in the middle alone"
-    );
+    assert_eq!(pixel(&empty, 32, 2), pixel(&picture, 32, 2), "the strand is in the middle alone");
 }
 
 #[test]
@@ -70,10 +64,7 @@ fn a_receding_tuft_keeps_its_brightness() {
     assert!((at_64 / at_256 - 1.0).abs() < 0.12, "{at_64} against {at_256}");
     near.look.diameter *= 0.5;
     let thin = energy(&near, 64).expect("an adapter");
-    assert!(
-        (thin / at_256 - 1.0).abs() > 0.2,
-        "half the hair must be seen: {thin} against {at_256}"
-    );
+    assert!((thin / at_256 - 1.0).abs() > 0.2, "half the hair must be seen: {thin} against {at_256}");
 }
 
 #[test]
@@ -92,10 +83,7 @@ fn the_body_hides_strands_behind_it_and_not_those_before() {
     for transparency in Transparency::ALL {
         let behind = picture(-0.05, transparency).expect("an adapter");
         let before = picture(0.05, transparency).expect("an adapter");
-        assert!(
-            behind.iter().zip(without).all(|(&a, b)| a.abs_diff(b) <= 12),
-            "{behind:?} {without:?}"
-        );
+        assert!(behind.iter().zip(without).all(|(&a, b)| a.abs_diff(b) <= 12), "{behind:?} {without:?}");
         assert!(
             before[0] > without[0] + 30,
             "{transparency}: red hair before a blue wall: {before:?} {without:?}"
@@ -131,22 +119,11 @@ fn hair_shadows_the_body_and_the_body_shadows_hair() {
         let mut s = scene(&lines);
         s.body = Some(quad(0.0, 0.4, Vec3::splat(0.5)));
         s.look.real_hairs = 100_000.0;
-        s.lights = vec![Light {
-            direction: Vec3::new(0.0, -0.5, -0.5),
-            softness: 0.0,
-            ..Light::default()
-        }];
-        s.shadow = ShadowSettings {
-            method,
-            ..ShadowSettings::default()
-        };
+        s.lights = vec![Light { direction: Vec3::new(0.0, -0.5, -0.5), softness: 0.0, ..Light::default() }];
+        s.shadow = ShadowSettings { method, ..ShadowSettings::default() };
         s.picture.ambient = 0.0;
         // The light falls at 45 degrees: the shadow of hair 0.1 m before the wall lies 0.1 m lower.
-        s.camera = Camera {
-            eye: Vec3::new(0.0, -0.1, 1.0),
-            target: Vec3::new(0.0, -0.1, 0.0),
-            fov_y: 0.3,
-        };
+        s.camera = Camera { eye: Vec3::new(0.0, -0.1, 1.0), target: Vec3::new(0.0, -0.1, 0.0), fov_y: 0.3 };
         s.draw(96, 96)
     };
     let Some(free) = wall(false, ShadowMethod::VoxelMap) else {
@@ -154,26 +131,15 @@ fn hair_shadows_the_body_and_the_body_shadows_hair() {
     };
     // The four corners of the wall are its only vertices, and the shadow of hair is asked at vertices: move one
     // under the hair by making the wall small.
-    assert!(
-        sum(pixel(&free, 48, 48)) > 120,
-        "a lit wall: {:?}",
-        pixel(&free, 48, 48)
-    );
+    assert!(sum(pixel(&free, 48, 48)) > 120, "a lit wall: {:?}", pixel(&free, 48, 48));
 
     let behind = |blocker: bool| {
         let mut s = scene(&curtain(100, 0.05, 0.0));
         if blocker {
             s.body = Some(quad(0.3, 0.1, Vec3::splat(0.5)));
         }
-        s.lights = vec![Light {
-            direction: Vec3::NEG_Z,
-            ..Light::default()
-        }];
-        s.camera = Camera {
-            eye: Vec3::new(0.6, 0.0, 0.25),
-            target: Vec3::ZERO,
-            fov_y: 0.2,
-        };
+        s.lights = vec![Light { direction: Vec3::NEG_Z, ..Light::default() }];
+        s.camera = Camera { eye: Vec3::new(0.6, 0.0, 0.25), target: Vec3::ZERO, fov_y: 0.2 };
         s.picture.ambient = 0.1;
         s.look.diameter = 0.002;
         s.look.width_scale = 1.0;
@@ -193,15 +159,8 @@ fn self_shadow_darkens_the_inside() {
     let mean = |method, extinction_scale| {
         let mut s = scene(&lines);
         s.look.real_hairs = 20_000.0;
-        s.shadow = ShadowSettings {
-            method,
-            extinction_scale,
-            ..ShadowSettings::default()
-        };
-        s.lights = vec![Light {
-            direction: Vec3::new(0.0, 0.0, 1.0),
-            ..Light::default()
-        }];
+        s.shadow = ShadowSettings { method, extinction_scale, ..ShadowSettings::default() };
+        s.lights = vec![Light { direction: Vec3::new(0.0, 0.0, 1.0), ..Light::default() }];
         s.draw(96, 96).map(|p| mean_color(&p.rgba)[0])
     };
     // The light comes from behind: what the camera sees is the last layer.
@@ -210,10 +169,7 @@ fn self_shadow_darkens_the_inside() {
     };
     let shadowed = mean(ShadowMethod::VoxelMap, 0.15).expect("an adapter");
     let darker = mean(ShadowMethod::VoxelMap, 1.0).expect("an adapter");
-    assert!(
-        shadowed < none * 0.98 && darker < shadowed,
-        "{none} {shadowed} {darker}"
-    );
+    assert!(shadowed < none * 0.98 && darker < shadowed, "{none} {shadowed} {darker}");
 }
 
 #[test]
@@ -221,14 +177,7 @@ fn hostile_settings_give_a_picture_without_holes() {
     let mut s = scene(&curtain(50, 0.1, 0.0));
     s.strands.x[5] = f32::NAN;
     s.strands.y[40] = f32::INFINITY;
-    s.lights = vec![
-        Light {
-            direction: Vec3::ZERO,
-            intensity: f32::NAN,
-            ..Light::default()
-        };
-        9
-    ];
+    s.lights = vec![Light { direction: Vec3::ZERO, intensity: f32::NAN, ..Light::default() }; 9];
     s.picture.exposure_stops = f32::NAN;
     s.picture.strand_opacity = f32::NAN;
     s.shadow.extinction_scale = f32::NAN;
@@ -249,11 +198,7 @@ fn a_size_out_of_range_is_refused_in_words() {
         return;
     };
     let scene = scene(&[]);
-    let mut picture = lovelock_render::Picture {
-        width: 0,
-        height: 0,
-        rgba: Vec::new(),
-    };
+    let mut picture = lovelock_render::Picture { width: 0, height: 0, rgba: Vec::new() };
     let error = renderer
         .lock()
         .unwrap_or_else(std::sync::PoisonError::into_inner)

@@ -21,20 +21,13 @@ pub fn flip(reference: &[u8], test: &[u8], width: u32, height: u32) -> Flip {
     let map = nv_flip::flip(image(reference), image(test), DEFAULT_PIXELS_PER_DEGREE);
     let pool = FlipPool::from_image(&map);
     let mut pool = pool;
-    Flip {
-        mean: pool.mean(),
-        p99: pool.get_percentile(0.99, true),
-    }
+    Flip { mean: pool.mean(), p99: pool.get_percentile(0.99, true) }
 }
 
 /// Peak signal to noise ratio of two pictures of equal size, decibels; infinite where they are equal.
 pub fn psnr_db(reference: &[u8], test: &[u8]) -> f64 {
     assert_eq!(reference.len(), test.len(), "pictures of different size");
-    let sum: f64 = reference
-        .iter()
-        .zip(test)
-        .map(|(&a, &b)| (f64::from(a) - f64::from(b)).powi(2))
-        .sum();
+    let sum: f64 = reference.iter().zip(test).map(|(&a, &b)| (f64::from(a) - f64::from(b)).powi(2)).sum();
     10.0 * (255.0 * 255.0 * reference.len() as f64 / sum).log10()
 }
 
@@ -54,9 +47,7 @@ mod tests {
     use super::*;
 
     fn gradient(shift: u8) -> Vec<u8> {
-        (0..32 * 32)
-            .flat_map(|i| [(i % 32 * 8) as u8, shift, 90, 255])
-            .collect()
+        (0..32 * 32).flat_map(|i| [(i % 32 * 8) as u8, shift, 90, 255]).collect()
     }
 
     #[test]

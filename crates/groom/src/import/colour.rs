@@ -92,11 +92,10 @@ fn linear_from_srgb(colour: Vec3) -> Vec3 {
 ///
 /// Absorption by Beer's law, then the two concentrations, not negative, of least squares.
 fn melanin_of(colour: Vec3) -> (f32, f32) {
-    let absorption =
-        colour.map(|c| {
-            let through = (c - HairLook::SURFACE_SHARE).clamp(1e-4, 1.0);
-            (-through.ln() / HairLook::BODY_PATH).powf(1.0 / HairLook::STRETCH)
-        });
+    let absorption = colour.map(|c| {
+        let through = (c - HairLook::SURFACE_SHARE).clamp(1e-4, 1.0);
+        (-through.ln() / HairLook::BODY_PATH).powf(1.0 / HairLook::STRETCH)
+    });
     let only = |melanin: Vec3| (melanin.dot(absorption) / melanin.length_squared()).max(0.0);
     let basis =
         |eumelanin, pheomelanin| HairLook { eumelanin, pheomelanin, ..HairLook::default() }.absorption();

@@ -56,12 +56,7 @@ impl HairBuffers {
 
     /// Writes one frame. `transmittance` holds one packed word a point.
     pub fn write(&mut self, gpu: &Gpu, pipelines: &Pipelines, input: &FrameInput, transmittance: &[u32]) {
-        let FrameInput {
-            style,
-            strands,
-            camera,
-            ..
-        } = *input;
+        let FrameInput { style, strands, camera, .. } = *input;
         let transparency = input.picture.transparency;
         let (device, queue) = (&gpu.device, &gpu.queue);
         let mut remade = false;
@@ -123,10 +118,7 @@ impl HairBuffers {
             let entries: Vec<_> = resources
                 .into_iter()
                 .enumerate()
-                .map(|(binding, resource)| wgpu::BindGroupEntry {
-                    binding: binding as u32,
-                    resource,
-                })
+                .map(|(binding, resource)| wgpu::BindGroupEntry { binding: binding as u32, resource })
                 .collect();
             device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some(label),
@@ -135,20 +127,10 @@ impl HairBuffers {
             })
         };
         let order = self.order.raw().as_entire_binding();
-        let (points, shaded) = (
-            self.points.raw().as_entire_binding(),
-            self.shaded.raw().as_entire_binding(),
-        );
-        self.points_group = Some(group(
-            "strand points",
-            &pipelines.points_layout,
-            vec![points, details, shaded.clone()],
-        ));
-        self.ribbons_group = Some(group(
-            "strand ribbons",
-            &pipelines.ribbons_layout,
-            vec![shaded, order],
-        ));
+        let (points, shaded) = (self.points.raw().as_entire_binding(), self.shaded.raw().as_entire_binding());
+        self.points_group =
+            Some(group("strand points", &pipelines.points_layout, vec![points, details, shaded.clone()]));
+        self.ribbons_group = Some(group("strand ribbons", &pipelines.ribbons_layout, vec![shaded, order]));
     }
 
     /// Segments of the last frame.

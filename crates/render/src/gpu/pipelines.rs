@@ -67,9 +67,7 @@ impl Pipelines {
             modules.push(gpu.shader(label, &source)?);
         }
         let [points, ribbons, surface, depth, backdrop, tone]: [wgpu::ShaderModule; 6] =
-            modules
-                .try_into()
-                .map_err(|_| GpuError::Shader("the list of shaders changed".to_owned()))?;
+            modules.try_into().map_err(|_| GpuError::Shader("the list of shaders changed".to_owned()))?;
 
         let stages = wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE;
         let frame_layout = layout(
@@ -77,17 +75,8 @@ impl Pipelines {
             "frame",
             &[
                 (stages, uniform()),
-                (
-                    stages,
-                    texture(
-                        wgpu::TextureSampleType::Depth,
-                        wgpu::TextureViewDimension::D2Array,
-                    ),
-                ),
-                (
-                    stages,
-                    wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison),
-                ),
+                (stages, texture(wgpu::TextureSampleType::Depth, wgpu::TextureViewDimension::D2Array)),
+                (stages, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison)),
                 (
                     stages,
                     texture(
@@ -95,38 +84,25 @@ impl Pipelines {
                         wgpu::TextureViewDimension::D2Array,
                     ),
                 ),
-                (
-                    stages,
-                    wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
-                ),
+                (stages, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
             ],
         );
         let compute = wgpu::ShaderStages::COMPUTE;
         let points_layout = layout(
             device,
             "strand points",
-            &[
-                (compute, storage(true)),
-                (compute, storage(true)),
-                (compute, storage(false)),
-            ],
+            &[(compute, storage(true)), (compute, storage(true)), (compute, storage(false))],
         );
         let vertex = wgpu::ShaderStages::VERTEX;
-        let ribbons_layout = layout(
-            device,
-            "strand ribbons",
-            &[(vertex, storage(true)), (vertex, storage(true))],
-        );
+        let ribbons_layout =
+            layout(device, "strand ribbons", &[(vertex, storage(true)), (vertex, storage(true))]);
         let depth_layout = layout(device, "depth", &[(vertex, uniform())]);
         let tone_layout = layout(
             device,
             "tone map",
             &[(
                 wgpu::ShaderStages::FRAGMENT,
-                texture(
-                    wgpu::TextureSampleType::Float { filterable: false },
-                    wgpu::TextureViewDimension::D2,
-                ),
+                texture(wgpu::TextureSampleType::Float { filterable: false }, wgpu::TextureViewDimension::D2),
             )],
         );
 
@@ -140,10 +116,7 @@ impl Pipelines {
         };
         let shade_points = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some("strand points"),
-            layout: Some(&pipeline_layout(
-                "strand points",
-                &[&frame_layout, &points_layout],
-            )),
+            layout: Some(&pipeline_layout("strand points", &[&frame_layout, &points_layout])),
             module: &points,
             entry_point: Some("shade_points"),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
@@ -153,12 +126,9 @@ impl Pipelines {
         let ribbon_pipeline = |mode: Transparency| {
             let (entry, blend, writes_depth, to_coverage) = match mode {
                 Transparency::Opaque => ("opaque", None, true, true),
-                Transparency::Sorted => (
-                    "blended",
-                    Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
-                    false,
-                    false,
-                ),
+                Transparency::Sorted => {
+                    ("blended", Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING), false, false)
+                }
             };
             raster(
                 device,
@@ -198,10 +168,7 @@ impl Pipelines {
             &surface,
             ["surface", "shade_surface"],
             &[moving, fixed],
-            Draw {
-                depth: Some((wgpu::CompareFunction::Greater, true)),
-                ..Draw::default()
-            },
+            Draw { depth: Some((wgpu::CompareFunction::Greater, true)), ..Draw::default() },
         );
         let backdrop = raster(
             device,
@@ -210,10 +177,7 @@ impl Pipelines {
             &backdrop,
             ["screen", "backdrop"],
             &[],
-            Draw {
-                depth: Some((wgpu::CompareFunction::Always, false)),
-                ..Draw::default()
-            },
+            Draw { depth: Some((wgpu::CompareFunction::Always, false)), ..Draw::default() },
         );
         let tone_map = raster(
             device,
@@ -222,11 +186,7 @@ impl Pipelines {
             &tone,
             ["screen", "tone_map"],
             &[],
-            Draw {
-                format: OUT_FORMAT,
-                samples: 1,
-                ..Draw::default()
-            },
+            Draw { format: OUT_FORMAT, samples: 1, ..Draw::default() },
         );
         let depth = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some("depth"),
@@ -281,13 +241,7 @@ struct Draw {
 
 impl Default for Draw {
     fn default() -> Self {
-        Self {
-            format: HDR_FORMAT,
-            samples: SAMPLES,
-            blend: None,
-            depth: None,
-            alpha_to_coverage: false,
-        }
+        Self { format: HDR_FORMAT, samples: SAMPLES, blend: None, depth: None, alpha_to_coverage: false }
     }
 }
 
@@ -362,11 +316,7 @@ fn texture(
     sample_type: wgpu::TextureSampleType,
     view_dimension: wgpu::TextureViewDimension,
 ) -> wgpu::BindingType {
-    wgpu::BindingType::Texture {
-        sample_type,
-        view_dimension,
-        multisampled: false,
-    }
+    wgpu::BindingType::Texture { sample_type, view_dimension, multisampled: false }
 }
 
 fn layout(
@@ -384,8 +334,6 @@ fn layout(
             count: None,
         })
         .collect();
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some(label),
-        entries: &entries,
-    })
+    device
+        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
 }

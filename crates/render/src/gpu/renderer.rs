@@ -101,32 +101,22 @@ impl Renderer {
         let watch = Stopwatch::start();
         let (device, queue) = (&self.gpu.device, &self.gpu.queue);
         let transparency = input.picture.transparency;
-        self.hair
-            .write(&self.gpu, &self.pipelines, input, &self.shadow.at_points);
-        self.surface
-            .write(&self.gpu, input.body, &self.shadow.at_vertices);
+        self.hair.write(&self.gpu, &self.pipelines, input, &self.shadow.at_points);
+        self.surface.write(&self.gpu, input.body, &self.shadow.at_vertices);
         self.columns.write(&self.gpu, &self.shadow);
 
         let (center, radius) = bounding_sphere(input.body.map_or(&[], |(_, skin)| &skin.positions));
         let mut maps = Vec::with_capacity(MAX_LIGHTS);
         for light in input.lights.iter().filter(|light| light.enabled).take(MAX_LIGHTS) {
             let view = light_view(light.clamped().direction, center, radius, self.surface.texels);
-            let columns_from_world = self
-                .columns
-                .scale(self.shadow.columns_from_world(maps.len()), maps.len());
-            maps.push(LightMaps {
-                columns_from_world,
-                ..view
-            });
+            let columns_from_world =
+                self.columns.scale(self.shadow.columns_from_world(maps.len()), maps.len());
+            maps.push(LightMaps { columns_from_world, ..view });
         }
         let uniform = FrameUniform::new(input, width, height, &maps, self.surface.texels);
         queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
 
-        if !self
-            .targets
-            .as_ref()
-            .is_some_and(|t| (t.width, t.height) == (width, height))
-        {
+        if !self.targets.as_ref().is_some_and(|t| (t.width, t.height) == (width, height)) {
             self.targets = Some(Targets::new(device, width, height));
         }
         let Some(targets) = &self.targets else {
@@ -145,8 +135,7 @@ impl Renderer {
         let mut encoder =
             device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
         for (k, map) in maps.iter().enumerate() {
-            self.surface
-                .draw_depth(&self.gpu, &self.pipelines, &mut encoder, k, map.shadow_from_world);
+            self.surface.draw_depth(&self.gpu, &self.pipelines, &mut encoder, k, map.shadow_from_world);
         }
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
@@ -223,10 +212,7 @@ impl Renderer {
         let entries: Vec<_> = resources
             .into_iter()
             .enumerate()
-            .map(|(binding, resource)| wgpu::BindGroupEntry {
-                binding: binding as u32,
-                resource,
-            })
+            .map(|(binding, resource)| wgpu::BindGroupEntry { binding: binding as u32, resource })
             .collect();
         self.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("frame"),
@@ -248,11 +234,7 @@ impl Columns {
     fn new(device: &wgpu::Device, size: u32) -> Self {
         let texture = device.create_texture(&wgpu::TextureDescriptor {
             label: Some("hair columns"),
-            size: wgpu::Extent3d {
-                width: size,
-                height: size,
-                depth_or_array_layers: MAX_LIGHTS as u32,
-            },
+            size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: MAX_LIGHTS as u32 },
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
@@ -264,40 +246,22 @@ impl Columns {
             dimension: Some(wgpu::TextureViewDimension::D2Array),
             ..Default::default()
         });
-        Self {
-            texture,
-            view,
-            sizes: [0; MAX_LIGHTS],
-        }
+        Self { texture, view, sizes: [0; MAX_LIGHTS] }
     }
 
     fn write(&mut self, gpu: &Gpu, shadow: &ShadowStage) {
-        let most = shadow
-            .columns
-            .iter()
-            .flatten()
-            .map(|map| map.size)
-            .max()
-            .unwrap_or(1)
-            .max(1);
+        let most = shadow.columns.iter().flatten().map(|map| map.size).max().unwrap_or(1).max(1);
         if most > self.texture.width() {
             *self = Self::new(&gpu.device, most);
         }
         self.sizes = [0; MAX_LIGHTS];
         for (k, map) in shadow.columns.iter().enumerate() {
             let Some(map) = map else { continue };
-            let bytes: Vec<u8> = map
-                .transmittance
-                .iter()
-                .map(|t| (t.clamp(0.0, 1.0) * 255.0 + 0.5) as u8)
-                .collect();
+            let bytes: Vec<u8> =
+                map.transmittance.iter().map(|t| (t.clamp(0.0, 1.0) * 255.0 + 0.5) as u8).collect();
             gpu.queue.write_texture(
                 wgpu::TexelCopyTextureInfo {
-                    origin: wgpu::Origin3d {
-                        x: 0,
-                        y: 0,
-                        z: k as u32,
-                    },
+                    origin: wgpu::Origin3d { x: 0, y: 0, z: k as u32 },
                     ..self.texture.as_image_copy()
                 },
                 &bytes,
@@ -306,11 +270,7 @@ impl Columns {
                     bytes_per_row: Some(map.size),
                     rows_per_image: None,
                 },
-                wgpu::Extent3d {
-                    width: map.size,
-                    height: map.size,
-                    depth_or_array_layers: 1,
-                },
+                wgpu::Extent3d { width: map.size, height: map.size, depth_or_array_layers: 1 },
             );
             self.sizes[k] = map.size;
         }

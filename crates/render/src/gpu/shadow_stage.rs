@@ -42,13 +42,8 @@ impl std::fmt::Debug for ShadowStage {
 impl ShadowStage {
     /// Builds the maps and looks them up everywhere that they are needed.
     pub fn run(&mut self, input: &FrameInput) {
-        let lights: Vec<Light> = input
-            .lights
-            .iter()
-            .filter(|light| light.enabled)
-            .take(MAX_LIGHTS)
-            .map(Light::clamped)
-            .collect();
+        let lights: Vec<Light> =
+            input.lights.iter().filter(|light| light.enabled).take(MAX_LIGHTS).map(Light::clamped).collect();
         if self.method != Some(input.shadow.method) {
             self.lights.clear();
             self.method = Some(input.shadow.method);
@@ -110,10 +105,7 @@ impl ShadowStage {
         const OUTSIDE: Mat4 = Mat4::from_cols_array(&[
             0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0, -1.0, 0.0, 1.0,
         ]);
-        self.columns
-            .get(k)
-            .and_then(Option::as_ref)
-            .map_or(OUTSIDE, |map| map.uv_from_world)
+        self.columns.get(k).and_then(Option::as_ref).map_or(OUTSIDE, |map| map.uv_from_world)
     }
 }
 

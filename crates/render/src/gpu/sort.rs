@@ -28,14 +28,9 @@ impl DepthSort {
         let (near, far) = self
             .depths
             .iter()
-            .fold((f32::INFINITY, f32::NEG_INFINITY), |(near, far), &d| {
-                (near.min(d), far.max(d))
-            });
+            .fold((f32::INFINITY, f32::NEG_INFINITY), |(near, far), &d| (near.min(d), far.max(d)));
         let scale = if far > near { 65535.0 / (far - near) } else { 0.0 };
-        self.depths
-            .par_iter()
-            .map(|&d| ((far - d) * scale) as u16)
-            .collect_into_vec(&mut self.keys);
+        self.depths.par_iter().map(|&d| ((far - d) * scale) as u16).collect_into_vec(&mut self.keys);
 
         self.counts.clear();
         self.counts.resize(1 << 16, 0);
@@ -70,11 +65,7 @@ mod tests {
         let order = sort.sort(&firsts, |i| z[i]).to_vec();
         let middle = |i: u32| 0.5 * (z[i as usize] + z[i as usize + 1]);
         // One key is the 65,535th part of the range: nothing may be out of order by more.
-        assert!(
-            order
-                .windows(2)
-                .all(|w| middle(w[0]) >= middle(w[1]) - 10.0 / 65535.0)
-        );
+        assert!(order.windows(2).all(|w| middle(w[0]) >= middle(w[1]) - 10.0 / 65535.0));
         let mut all = order;
         all.sort_unstable();
         assert_eq!(all, firsts, "every segment is drawn once");
@@ -85,9 +76,7 @@ mod tests {
         let mut sort = DepthSort::default();
         let firsts = [4, 8, 15];
         assert_eq!(sort.sort(&firsts, |_| 1.0), firsts);
-        let mut order = sort
-            .sort(&firsts, |i| if i == 8 { f32::NAN } else { i as f32 })
-            .to_vec();
+        let mut order = sort.sort(&firsts, |i| if i == 8 { f32::NAN } else { i as f32 }).to_vec();
         order.sort_unstable();
         assert_eq!(order, firsts);
         assert!(sort.sort(&[], |_| 0.0).is_empty());

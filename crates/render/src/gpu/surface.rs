@@ -51,11 +51,7 @@ impl SurfaceBuffers {
         let texels = if gpu.is_software() { 1024 } else { 2048 };
         let texture = device.create_texture(&wgpu::TextureDescriptor {
             label: Some("body depth"),
-            size: wgpu::Extent3d {
-                width: texels,
-                height: texels,
-                depth_or_array_layers: MAX_LIGHTS as u32,
-            },
+            size: wgpu::Extent3d { width: texels, height: texels, depth_or_array_layers: MAX_LIGHTS as u32 },
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
@@ -88,10 +84,7 @@ impl SurfaceBuffers {
                 let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
                     label: Some("depth pass"),
                     layout: &pipelines.depth_layout,
-                    entries: &[wgpu::BindGroupEntry {
-                        binding: 0,
-                        resource: buffer.as_entire_binding(),
-                    }],
+                    entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
                 });
                 (buffer, group)
             })
@@ -123,12 +116,7 @@ impl SurfaceBuffers {
             let fixed: Vec<_> = (0..mesh.positions.len())
                 .map(|i| {
                     let color = mesh.colors.get(i).copied().unwrap_or(Vec3::splat(0.5));
-                    Fixed([
-                        color.x,
-                        color.y,
-                        color.z,
-                        mesh.scalp.get(i).copied().unwrap_or(0.0),
-                    ])
+                    Fixed([color.x, color.y, color.z, mesh.scalp.get(i).copied().unwrap_or(0.0)])
                 })
                 .collect();
             self.fixed.write(device, queue, &fixed);
@@ -139,12 +127,7 @@ impl SurfaceBuffers {
             .par_iter()
             .zip(&skin.normals)
             .zip(hair)
-            .map(|((p, n), &hair)| Moving {
-                position: p.to_array(),
-                hair,
-                normal: n.to_array(),
-                pad: 0,
-            })
+            .map(|((p, n), &hair)| Moving { position: p.to_array(), hair, normal: n.to_array(), pad: 0 })
             .collect_into_vec(&mut self.staging);
         self.moving.write(device, queue, &self.staging);
     }
@@ -159,8 +142,7 @@ impl SurfaceBuffers {
         shadow_from_world: Mat4,
     ) {
         let (buffer, group) = &self.uniforms[k];
-        gpu.queue
-            .write_buffer(buffer, 0, bytemuck::bytes_of(&shadow_from_world));
+        gpu.queue.write_buffer(buffer, 0, bytemuck::bytes_of(&shadow_from_world));
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("body depth"),
             color_attachments: &[],
@@ -201,11 +183,7 @@ impl SurfaceBuffers {
 /// The orthographic view of a light that travels along `direction` over a sphere, and its texels' size.
 pub(super) fn light_view(direction: Vec3, center: Vec3, radius: f32, texels: u32) -> LightMaps {
     let radius = radius.max(0.01);
-    let up = if direction.y.abs() > 0.99 {
-        Vec3::Z
-    } else {
-        Vec3::Y
-    };
+    let up = if direction.y.abs() > 0.99 { Vec3::Z } else { Vec3::Y };
     let view = glam::camera::rh::view::look_at_mat4(center - direction * radius, center, up);
     let project =
         glam::camera::rh::proj::directx::orthographic(-radius, radius, -radius, radius, 0.0, 2.0 * radius);
@@ -221,9 +199,7 @@ pub(super) fn bounding_sphere(points: &[Vec3]) -> (Vec3, f32) {
     let (low, high) = points
         .iter()
         .filter(|p| p.is_finite())
-        .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), &p| {
-            (low.min(p), high.max(p))
-        });
+        .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)));
     if low.x > high.x {
         return (Vec3::ZERO, 1.0);
     }

@@ -29,11 +29,7 @@ impl Targets {
         let make = |label, format, sample_count, usage| {
             device.create_texture(&wgpu::TextureDescriptor {
                 label: Some(label),
-                size: wgpu::Extent3d {
-                    width,
-                    height,
-                    depth_or_array_layers: 1,
-                },
+                size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
                 mip_level_count: 1,
                 sample_count,
                 dimension: wgpu::TextureDimension::D2,
@@ -46,12 +42,7 @@ impl Targets {
         let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
         let color = make("linear samples", HDR_FORMAT, SAMPLES, attachment);
         let depth = make("depth samples", DEPTH_FORMAT, SAMPLES, attachment);
-        let resolved = make(
-            "linear",
-            HDR_FORMAT,
-            1,
-            attachment | wgpu::TextureUsages::TEXTURE_BINDING,
-        );
+        let resolved = make("linear", HDR_FORMAT, 1, attachment | wgpu::TextureUsages::TEXTURE_BINDING);
         let out = make(
             "picture",
             OUT_FORMAT,

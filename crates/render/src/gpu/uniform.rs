@@ -53,13 +53,7 @@ impl FrameUniform {
         let clip_from_world = input.camera.clip_from_world(width as f32 / height as f32);
         let mut lights = [LightUniform::default(); MAX_LIGHTS];
         let mut count = 0;
-        for (light, map) in input
-            .lights
-            .iter()
-            .filter(|light| light.enabled)
-            .take(MAX_LIGHTS)
-            .zip(maps)
-        {
+        for (light, map) in input.lights.iter().filter(|light| light.enabled).take(MAX_LIGHTS).zip(maps) {
             let light = light.clamped();
             lights[count] = LightUniform {
                 direction_specular: light.direction.extend(light.specular),
@@ -126,14 +120,8 @@ mod tests {
             .iter()
             .find(|(_, ty)| ty.name.as_deref() == Some(name))
             .unwrap_or_else(|| panic!("no structure {name}"));
-        let TypeInner::Struct { members, span } = &ty.inner else {
-            panic!("{name} is no structure")
-        };
-        members
-            .iter()
-            .map(|m| m.offset as usize)
-            .chain([*span as usize])
-            .collect()
+        let TypeInner::Struct { members, span } = &ty.inner else { panic!("{name} is no structure") };
+        members.iter().map(|m| m.offset as usize).chain([*span as usize]).collect()
     }
 
     #[test]

@@ -38,17 +38,9 @@ pub struct Scene {
 impl Scene {
     /// Draws it.
     pub fn draw(&self, width: u32, height: u32) -> Option<Picture> {
-        let mut renderer = renderer()?
-            .lock()
-            .unwrap_or_else(std::sync::PoisonError::into_inner);
-        let mut picture = Picture {
-            width: 0,
-            height: 0,
-            rgba: Vec::new(),
-        };
-        renderer
-            .picture(&self.input(), width, height, &mut picture)
-            .expect("a picture");
+        let mut renderer = renderer()?.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let mut picture = Picture { width: 0, height: 0, rgba: Vec::new() };
+        renderer.picture(&self.input(), width, height, &mut picture).expect("a picture");
         Some(picture)
     }
 
@@ -94,30 +86,13 @@ pub fn scene(lines: &[Vec<Vec3>]) -> Scene {
         shade: vec![0.5; lines.len()],
     };
     Scene {
-        style: Arc::new(Hairstyle {
-            strands: set,
-            ..Hairstyle::default()
-        }),
+        style: Arc::new(Hairstyle { strands: set, ..Hairstyle::default() }),
         strands,
-        look: HairLook {
-            real_hairs: lines.len() as f32,
-            variation: 0.0,
-            ..HairLook::default()
-        },
+        look: HairLook { real_hairs: lines.len() as f32, variation: 0.0, ..HairLook::default() },
         body: None,
-        lights: vec![Light {
-            direction: Vec3::new(0.0, -0.6, -0.8),
-            ..Light::default()
-        }],
-        shadow: ShadowSettings {
-            method: ShadowMethod::None,
-            ..ShadowSettings::default()
-        },
-        camera: Camera {
-            eye: Vec3::Z,
-            target: Vec3::ZERO,
-            fov_y: 0.5,
-        },
+        lights: vec![Light { direction: Vec3::new(0.0, -0.6, -0.8), ..Light::default() }],
+        shadow: ShadowSettings { method: ShadowMethod::None, ..ShadowSettings::default() },
+        camera: Camera { eye: Vec3::Z, target: Vec3::ZERO, fov_y: 0.5 },
         picture: PictureSettings {
             background_top: Vec3::ZERO,
             background_bottom: Vec3::ZERO,
@@ -131,10 +106,7 @@ pub fn scene(lines: &[Vec<Vec3>]) -> Scene {
 /// A square in the plane `z`, `half` metres to each side, facing +Z.
 pub fn quad(z: f32, half: f32, color: Vec3) -> (Arc<Body>, Skin) {
     let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
-    let positions: Vec<Vec3> = corners
-        .iter()
-        .map(|&(x, y)| Vec3::new(x * half, y * half, z))
-        .collect();
+    let positions: Vec<Vec3> = corners.iter().map(|&(x, y)| Vec3::new(x * half, y * half, z)).collect();
     let normals = vec![Vec3::Z; 4];
     let mesh = Mesh {
         positions: positions.clone(),
@@ -146,13 +118,7 @@ pub fn quad(z: f32, half: f32, color: Vec3) -> (Arc<Body>, Skin) {
     let mut skin = Skin::default();
     skin.positions = positions;
     skin.normals = normals;
-    (
-        Arc::new(Body {
-            mesh,
-            ..Body::default()
-        }),
-        skin,
-    )
+    (Arc::new(Body { mesh, ..Body::default() }), skin)
 }
 
 /// The bytes of the pixel at `x`, `y` from the top left.
