@@ -9,7 +9,7 @@ use lovelock_studio::render::{ShadowMethod, Transparency};
 
 /// Hair styled, simulated, shadowed and judged live. Opens the window where no command is given.
 #[derive(Debug, Parser)]
-#[command(name = "lovelock", version, args_conflicts_with_subcommands = true)]
+#[command(name = "lovelock", version, subcommand_precedence_over_arg = true)]
 pub(crate) struct Arguments {
     /// A project, hairstyle (.hair, .tfx), character (.glb, .gltf) or motion (.bvh) to open in the window.
     pub(crate) project: Option<PathBuf>,

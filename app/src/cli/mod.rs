@@ -27,6 +27,9 @@ pub(crate) fn run() -> ExitCode {
         }
     };
     let output = Output { json: arguments.json };
+    if let (Some(project), Some(_)) = (&arguments.project, &arguments.task) {
+        return output.refuse(&format!("{}: a file before the command; expected it after", project.display()));
+    }
     let result = match arguments.task {
         None => {
             let screenshot = arguments.screenshot.map(|out| (out, arguments.after));

@@ -60,7 +60,8 @@ pub(crate) fn run(task: &Record, output: Output) -> Result<(), StudioError> {
         if let Progress::Loaded { problems } = &progress {
             let failure = problems.iter().find(|problem| problem.is_failure());
             if let Some(problem) = failure.filter(|_| !named.is_empty()) {
-                refused = Some(problem.message.clone());
+                // Nothing takes its place here, whatever the loader did about it.
+                refused = Some(problem.cause.clone());
                 return ControlFlow::Break(());
             }
         }
@@ -69,7 +70,8 @@ pub(crate) fn run(task: &Record, output: Output) -> Result<(), StudioError> {
     });
     bar.done();
     if let Some(message) = refused {
-        let file = named.iter().find(|path| message.contains(&*path.to_string_lossy()));
+        let named_in_it = named.iter().find(|path| message.contains(&*path.to_string_lossy()));
+        let file = named_in_it.or(if named.len() == 1 { named.first() } else { None });
         return Err(match file {
             Some(path) => StudioError::input(path, message),
             None => StudioError::option(message),

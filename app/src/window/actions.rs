@@ -9,7 +9,7 @@ use lovelock_studio::{
 };
 
 use super::path_dialog::Purpose;
-use super::{Pending, Window, copy, remember};
+use super::{Pending, Window, copy, notices, remember};
 
 /// A project to start with.
 #[derive(Debug)]
@@ -155,7 +155,7 @@ impl Window {
                 self.project_path = Some(path.to_owned());
                 self.session.set_project_path(self.project_path.as_ref());
                 remember(&mut self.layout.recent, path);
-                self.toasts.success(format!("Saved {}", path.display()));
+                self.notices.tell(notices::Kind::Done, format!("Saved {}", path.display()));
             }
             Err(error) => self.tell([error.to_string()]),
         }
@@ -175,7 +175,7 @@ impl Window {
                 let picture = &painted.picture;
                 match recording::write_png(path, picture.width, picture.height, &picture.rgba) {
                     Ok(()) => {
-                        self.toasts.success(format!("Saved {}", path.display()));
+                        self.notices.tell(notices::Kind::Done, format!("Saved {}", path.display()));
                     }
                     Err(error) => self.tell([error.to_string()]),
                 }

@@ -84,9 +84,18 @@ impl Number {
             .clamping(SliderClamping::Edits)
             .fixed_decimals(self.decimals)
             .suffix(self.unit)
+            .custom_parser(|text| typed(text, self.unit))
             .ui(ui)
         })
     }
+}
+
+/// The number in what was typed, with or without its unit; none where it is no finite number.
+fn typed(text: &str, unit: &str) -> Option<f64> {
+    let text = text.trim();
+    let text = text.strip_suffix(unit.trim()).unwrap_or(text);
+    let plain: String = text.chars().filter(|c| !c.is_whitespace()).map(|c| if c == '−' { '-' } else { c }).collect();
+    plain.parse().ok().filter(|number: &f64| number.is_finite())
 }
 
 /// A whole number that a slider changes.
@@ -109,6 +118,7 @@ pub(crate) fn count(
             f64::from(*value)
         })
         .integer()
+        .custom_parser(|text| typed(text, ""))
         .logarithmic(wide)
         .clamping(SliderClamping::Edits)
         .ui(ui)

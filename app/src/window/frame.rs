@@ -6,7 +6,7 @@ use lovelock_studio::{PROJECT_EXTENSION, Place, Project};
 use super::control::section;
 use super::path_dialog::{Answer, PathDialog, Purpose};
 use super::viewport::Viewport;
-use super::{Window, camera_control, copy, keys, panels, theme, timeline, title};
+use super::{Window, camera_control, copy, keys, notices, panels, theme, timeline, title};
 
 impl Window {
     /// One pass.
@@ -18,10 +18,10 @@ impl Window {
         if let Some(end) = self.recorder.update() {
             match end {
                 panels::recording::State::Done(what) => {
-                    self.toasts.success(format!("Recorded: {what}"));
+                    self.notices.tell(notices::Kind::Done, format!("Recorded: {what}"));
                 }
                 panels::recording::State::Failed(why) => {
-                    self.toasts.error(format!("Recording: {why}"));
+                    self.notices.tell(notices::Kind::Failed, format!("Recording: {why}"));
                 }
                 panels::recording::State::Idle | panels::recording::State::Running { .. } => {}
             }
@@ -64,7 +64,7 @@ impl Window {
         self.session.send(self.history.project(), self.viewport.wanted);
         let title = title(self.project_path.as_deref(), self.history.is_modified());
         ctx.send_viewport_cmd(egui::ViewportCommand::Title(title));
-        self.toasts.show(&ctx);
+        self.notices.show(&ctx);
         if let Some(screenshot) = &mut self.screenshot {
             screenshot.update(&ctx, self.session.painted.is_some());
         }

@@ -64,6 +64,3 @@ impl Gestures {
         self.pressed = pressed.or(self.pressed);
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -7,6 +7,7 @@ mod frame;
 mod gesture;
 mod keys;
 mod light_sphere;
+mod notices;
 mod palette;
 mod panels;
 mod path_dialog;
@@ -26,6 +27,7 @@ use lovelock_studio::{Access, Command, History, Project, StudioError};
 use serde::{Deserialize, Serialize};
 
 use gesture::Gestures;
+use notices::Notices;
 use palette::Palette;
 use path_dialog::PathDialog;
 use recorder::Recorder;
@@ -68,7 +70,7 @@ pub(crate) struct Window {
     layout: Layout,
     dialog: Option<PathDialog>,
     pending: Option<Pending>,
-    toasts: egui_notify::Toasts,
+    notices: Notices,
     keys_shown: bool,
     selected_light: usize,
     gestures: Gestures,
@@ -137,7 +139,7 @@ impl Window {
             layout,
             dialog: None,
             pending: None,
-            toasts: egui_notify::Toasts::default().with_anchor(egui_notify::Anchor::BottomRight),
+            notices: Notices::default(),
             keys_shown: false,
             selected_light: 0,
             gestures: Gestures::default(),
@@ -152,8 +154,7 @@ impl Window {
     fn tell(&mut self, sentences: impl IntoIterator<Item = String>) {
         for sentence in sentences {
             tracing::warn!("{sentence}");
-            let length = std::time::Duration::from_secs(12);
-            self.toasts.warning(sentence).duration(length);
+            self.notices.tell(notices::Kind::Warning, sentence);
         }
     }
 

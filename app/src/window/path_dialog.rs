@@ -105,6 +105,8 @@ impl PathDialog {
                 }
                 field
             });
+            // Enter takes the keyboard from the field: asked before the field takes it back.
+            let entered = field.inner.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
             if ui.memory(|memory| memory.focused().is_none()) {
                 field.inner.request_focus();
             }
@@ -114,7 +116,6 @@ impl PathDialog {
             }
             ui.horizontal(|ui| {
                 let go = ui.add_enabled(path.is_some(), egui::Button::new(self.purpose.button()));
-                let entered = field.inner.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
                 if let Some(path) = path.filter(|_| go.clicked() || entered) {
                     answer = Answer::Path(self.purpose, path);
                 }

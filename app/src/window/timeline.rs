@@ -91,7 +91,7 @@ fn bar(ui: &mut Ui, view: View) -> Option<f64> {
     let x = x_of(view.time_secs);
     painter.line_segment([pos2(x, rect.top()), pos2(x, rect.bottom())], Stroke::new(2.0, theme::ACCENT));
     painter.circle_filled(pos2(x, rect.center().y), 5.0, Color32::WHITE);
+    let response = response.on_hover_text("Drag to move through the dance; the hair is carried along.");
     let at = response.interact_pointer_pos().filter(|_| response.dragged() || response.clicked())?;
-    response.on_hover_text("Drag to move through the dance; the hair is carried along.");
     Some(f64::from(((at.x - rect.left()) / rect.width()).clamp(0.0, 1.0)) * duration)
 }

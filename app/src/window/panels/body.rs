@@ -67,7 +67,8 @@ pub(crate) fn ui(ui: &mut Ui, project: &mut Project, loaded: &Loaded) -> Option<
                 }
             })
             .response
-            .labelled_by(label.id);
+            .labelled_by(label.id)
+            .on_hover_text("The joint that carries the hair.");
     });
     section(ui, "Motion", true, |ui| ask = motion(ui, project, loaded).or(ask));
     for text in &loaded.notes {

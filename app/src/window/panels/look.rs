@@ -41,7 +41,7 @@ pub(crate) fn hair(ui: &mut Ui, look: &mut HairLook, default: &HairLook) {
     Number::new("First highlight", 0.0..=2.0, "Strength of the highlight in the light's colour.").show(ui, &mut look.primary_strength, default.primary_strength);
     Number::new("Second highlight", 0.0..=2.0, "Strength of the highlight in the hair's colour.").show(ui, &mut look.secondary_strength, default.secondary_strength);
     Number::new("Roughness", 0.05..=1.0, "Width of the highlights: silky hair has narrow ones, dull hair broad ones.").show(ui, &mut look.roughness, default.roughness);
-    Number::new("Strand width", 0.01..=2.0, "Width of a drawn strand, as a share of all the hairs that it stands for.").logarithmic().show(ui, &mut look.width_scale, default.width_scale);
+    Number::new("Strand width", 0.05..=2.0, "Width of a drawn strand, as a share of all the hairs that it stands for.").logarithmic().show(ui, &mut look.width_scale, default.width_scale);
     Number::new("Hair diameter", 17e-6..=100e-6, "Thickness of one real hair: thicker hair is denser to light.").unit(" µm", 1e6).decimals(0).show(ui, &mut look.diameter, default.diameter);
     Number::new("Number of hairs", 10_000.0..=200_000.0, "Real hairs that all drawn strands together stand for: more is denser to light.").unit(" k", 1e-3).decimals(0).show(ui, &mut look.real_hairs, default.real_hairs);
 }

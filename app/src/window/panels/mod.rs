@@ -8,3 +8,6 @@ pub(crate) mod recording;
 pub(crate) mod shadow;
 pub(crate) mod simulation;
 pub(crate) mod statistics;
+
+#[cfg(test)]
+mod tests;

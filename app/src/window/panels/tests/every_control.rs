@@ -1,0 +1,171 @@
+//! What holds for every control of every panel.
+
+use egui::accesskit::Role;
+use egui::pos2;
+
+use super::{PANELS, panel, projects};
+use crate::window::testing::{WIDTH, control, controls, double_click, drag, is_marked, texts, tooltip_at, type_at};
+
+/// What a user can change a value with.
+const ROLES: [Role; 7] = [
+    Role::Slider,
+    Role::SpinButton,
+    Role::ComboBox,
+    Role::CheckBox,
+    Role::ColorWell,
+    Role::Button,
+    Role::TextInput,
+];
+
+#[test]
+fn every_control_has_a_name_and_a_tooltip() {
+    for (title, _) in PANELS {
+        for (name, project) in [&projects()[0], &projects()[3]] {
+            let mut harness = panel(title, project.clone());
+            for role in ROLES {
+                for (label, rect) in controls(&harness, role) {
+                    assert!(!label.trim().is_empty(), "{title}, {name}: a {role:?} without a name at {rect:?}");
+                    let said = tooltip_at(&mut harness, rect.center());
+                    let said = said.unwrap_or_else(|| panic!("{title}, {name}: no tooltip on {role:?} {label}"));
+                    assert!(said.trim().len() > 2, "{title}: {label}: {said:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn panels_fit_the_width() {
+    for (title, _) in PANELS {
+        for (name, project) in projects() {
+            let harness = panel(title, project);
+            let right = harness.state().taken.right();
+            assert!(right <= WIDTH, "{title}, {name}: reaches {right}");
+            for role in ROLES {
+                for (label, rect) in controls(&harness, role) {
+                    assert!(rect.right() <= WIDTH && rect.left() >= 0.0, "{title}, {name}: {label} at {rect:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn no_number_that_is_typed_leaves_its_range() {
+    for (title, _) in PANELS {
+        for (name, project) in [&projects()[0], &projects()[3]] {
+            let mut harness = panel(title, project.clone());
+            let count = controls(&harness, Role::SpinButton).len();
+            for i in 0..count {
+                for text in ["1e300", "-1e300", "nan", "-inf", "0", "words"] {
+                    harness.state_mut().state.project = project.clone();
+                    harness.run();
+                    let (label, rect) = controls(&harness, Role::SpinButton)[i].clone();
+                    type_at(&mut harness, rect.center(), text);
+                    let after = &harness.state().state.project;
+                    let (sanitised, problems) = after.sanitised();
+                    assert!(problems.is_empty(), "{title}, {name}: {label} from `{text}`: {problems:?}");
+                    assert!(*after == sanitised, "{title}, {name}: {label} from `{text}` is not finite");
+                    if matches!(text, "nan" | "-inf" | "words") {
+                        assert!(after == project, "{title}, {name}: {label} took `{text}`");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn no_slider_that_is_dragged_leaves_its_range() {
+    for (title, _) in PANELS {
+        for (name, project) in [&projects()[0], &projects()[3]] {
+            let mut harness = panel(title, project.clone());
+            let count = controls(&harness, Role::Slider).len();
+            for i in 0..count {
+                for x in [-1e5, 1e5] {
+                    harness.state_mut().state.project = project.clone();
+                    harness.run();
+                    let (label, rect) = controls(&harness, Role::Slider)[i].clone();
+                    drag(&mut harness, rect.center(), pos2(x, rect.center().y));
+                    let after = &harness.state().state.project;
+                    let (sanitised, problems) = after.sanitised();
+                    assert!(problems.is_empty(), "{title}, {name}: {label} dragged to {x}: {problems:?}");
+                    assert!(*after == sanitised, "{title}, {name}: {label} dragged to {x}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn what_differs_is_marked_and_a_double_click_restores_it() {
+    for (title, _) in PANELS {
+        for (name, project) in [&projects()[0], &projects()[1], &projects()[3]] {
+            let mut harness = panel(title, project.clone());
+            let sliders = controls(&harness, Role::Slider);
+            for i in 0..sliders.len() {
+                // Three places to double-click: the rail, the number, the name.
+                for place in 0..3 {
+                    harness.state_mut().state.project = project.clone();
+                    harness.run();
+                    let (label, rail) = controls(&harness, Role::Slider)[i].clone();
+                    let number = controls(&harness, Role::SpinButton)
+                        .into_iter()
+                        .find(|(_, number)| number.intersects(rail.translate(egui::vec2(rail.width() + 10.0, 0.0))));
+                    // The sphere of lights has no number.
+                    let Some((_, number)) = number else { continue };
+                    let marked_before = is_marked(&harness, &label);
+                    let x = if rail.center().x < rail.left() + 1.0 { rail.right() } else { rail.left() + 0.77 * rail.width() };
+                    drag(&mut harness, rail.center(), pos2(x, rail.center().y));
+                    let changed = harness.state().state.project.clone();
+                    assert!(changed != *project, "{title}, {name}: {label} changes nothing");
+                    assert!(is_marked(&harness, &label), "{title}, {name}: {label} differs and is not marked");
+                    let name_at = texts(&harness)
+                        .into_iter()
+                        .find(|(text, rect, _)| *text == label && rect.y_range().contains(rail.center().y))
+                        .expect("the name")
+                        .1;
+                    let at = [rail.center(), number.center(), name_at.center()][place];
+                    if place == 2 {
+                        let said = tooltip_at(&mut harness, at).unwrap_or_default();
+                        assert!(said.contains("double-click"), "{title}: {label}: {said:?}");
+                    }
+                    double_click(&mut harness, at);
+                    let after = &harness.state().state.project;
+                    assert!(!is_marked(&harness, &label), "{title}, {name}: {label} stays marked, place {place}");
+                    if !marked_before && title != "Light" {
+                        assert!(after == project, "{title}, {name}: {label} is not restored, place {place}");
+                    }
+                    // The number may have kept the keyboard.
+                    harness.key_press(egui::Key::Escape);
+                    harness.run();
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn nothing_of_the_default_project_is_marked() {
+    let project = projects()[0].1.clone();
+    assert!(project == lovelock_studio::Project::default());
+    for (title, _) in PANELS {
+        let harness = panel(title, project.clone());
+        let sliders = controls(&harness, Role::Slider);
+        let boxes = controls(&harness, Role::CheckBox);
+        let combos = controls(&harness, Role::ComboBox);
+        for (label, _) in sliders.iter().chain(&boxes).chain(&combos) {
+            assert!(!is_marked(&harness, label), "{title}: {label} is marked");
+        }
+    }
+}
+
+#[test]
+fn a_control_says_its_unit() {
+    let harness = panel("Hairstyle", projects()[0].1.clone());
+    let length = control(&harness, Role::SpinButton, "Length").value().expect("a number");
+    assert!(length.ends_with(" cm"), "{length}");
+    let harness = panel("Light", projects()[0].1.clone());
+    let azimuth = control(&harness, Role::SpinButton, "Azimuth").value().expect("a number");
+    assert!(azimuth.ends_with('°'), "{azimuth}");
+}

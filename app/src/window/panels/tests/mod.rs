@@ -1,0 +1,106 @@
+mod every_control;
+mod one_by_one;
+mod undo;
+mod untouched;
+
+use egui::Ui;
+use egui_kittest::Harness;
+use glam::Vec3;
+use lovelock_studio::groom::Preset;
+use lovelock_studio::render::VoxelDeposit;
+use lovelock_studio::{HairSource, Project, StageHistory, StageTimes};
+
+use super::recording::State;
+use crate::window::control::section;
+use crate::window::testing::{Shown, screen, unfold};
+
+/// A project with what the panels show beside it.
+#[derive(Clone)]
+pub(super) struct Bench {
+    pub(super) project: Project,
+    pub(super) selected_light: usize,
+    pub(super) hair: super::hair::Loaded,
+    pub(super) body: super::body::Loaded,
+    pub(super) stages: StageHistory,
+    pub(super) clip_frames: u64,
+}
+
+impl Bench {
+    pub(super) fn new(project: Project) -> Self {
+        let mut stages = StageHistory::new(8);
+        stages.push(StageTimes { draw: 3.25, ..StageTimes::default() });
+        Self {
+            project,
+            selected_light: 0,
+            hair: super::hair::Loaded {
+                counts: [134, 3350, 100_500],
+                size_m: [0.2, 0.4, 0.3],
+                notes: vec!["A note on the hair that is long enough to need a second line.".to_owned()],
+            },
+            body: super::body::Loaded {
+                clips: vec!["dance".to_owned(), "walk".to_owned()],
+                joints: vec!["hips".to_owned(), "hips/spine/neck/head".to_owned()],
+                head: "hips/spine/neck/head".to_owned(),
+                notes: Vec::new(),
+            },
+            stages,
+            clip_frames: 480,
+        }
+    }
+}
+
+pub(super) type Show = fn(&mut Ui, &mut Bench);
+
+/// Every panel, inside its section as the window has it.
+pub(super) const PANELS: [(&str, Show); 9] = [
+    ("Hairstyle", |ui, b| {
+        super::hair::ui(ui, &mut b.project, &b.hair);
+    }),
+    ("Simulation", |ui, b| super::simulation::ui(ui, &mut b.project.simulation)),
+    ("Body and motion", |ui, b| {
+        super::body::ui(ui, &mut b.project, &b.body);
+    }),
+    ("Shadow", |ui, b| super::shadow::ui(ui, &mut b.project.shadow, 1 << 21)),
+    ("Light", |ui, b| {
+        super::light::ui(ui, &mut b.project.lights, &mut b.selected_light, [Vec3::X, Vec3::Y, Vec3::Z]);
+    }),
+    ("Look", |ui, b| {
+        let default = b.project.hair.groom.look;
+        super::look::hair(ui, &mut b.project.look, &default);
+    }),
+    ("Picture", |ui, b| super::look::picture(ui, &mut b.project.picture)),
+    ("Recording", |ui, b| {
+        super::recording::ui(ui, &mut b.project.recording, &State::Idle, b.clip_frames);
+    }),
+    ("Statistics", |ui, b| {
+        super::statistics::ui(ui, &b.stages, &[("Picture", "1280 × 720".to_owned())]);
+    }),
+];
+
+/// A panel with all its sections unfolded.
+pub(super) fn panel(title: &'static str, project: Project) -> Harness<'static, Shown<Bench>> {
+    let show = PANELS.iter().find(|(name, _)| *name == title).expect("a panel of that title").1;
+    let mut harness = screen(Bench::new(project), move |ui, bench: &mut Bench| section(ui, title, true, |ui| show(ui, bench)));
+    unfold(&mut harness);
+    harness
+}
+
+/// Projects that between them show every control.
+pub(super) fn projects() -> Vec<(&'static str, Project)> {
+    let mut projects: Vec<_> = Preset::ALL
+        .into_iter()
+        .map(|preset| {
+            let mut project = Project::default();
+            project.set_preset(preset);
+            (preset.id(), project)
+        })
+        .collect();
+    let mut files = Project::default();
+    files.set_hair_file("/a/b c/straight.hair");
+    files.set_body_file("/a/b c/a character of a rather long name that says much.glb");
+    files.set_motion_file("/a/b c/ü.bvh");
+    files.shadow.voxel_map.deposit = VoxelDeposit::PointCount;
+    assert_eq!(files.hair.source, HairSource::File);
+    projects.push(("files", files));
+    projects
+}

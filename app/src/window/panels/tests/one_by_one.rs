@@ -1,0 +1,286 @@
+//! What single panels do.
+
+use egui::accesskit::Role;
+use egui_kittest::kittest::Queryable;
+use glam::Vec3;
+use lovelock_studio::groom::{GroomSettings, Preset, Unit};
+use lovelock_studio::render::{MAX_LIGHTS, ShadowMethod, VoxelDeposit};
+use lovelock_studio::wisp::SimulationSettings;
+use lovelock_studio::{BodySource, HairSource, MotionSource, Project, RecordingSection, Stage};
+
+use super::panel;
+use crate::window::panels::recording::{Ask, State};
+use crate::window::panels::{body, hair, recording};
+use crate::window::testing::{control, drag, is_on, screen, tooltip_at, type_at};
+
+/// Chooses an entry of a box that opens.
+fn choose<S>(harness: &mut egui_kittest::Harness<'_, S>, name: &str, entry: &str) {
+    control(harness, Role::ComboBox, name).click();
+    harness.run();
+    control(harness, Role::Button, entry).click();
+    harness.run();
+}
+
+#[test]
+fn hair_takes_presets_with_their_colours() {
+    let mut harness = panel("Hairstyle", Project::default());
+    harness.get_by_label(Preset::Curly.label()).click();
+    harness.run();
+    let project = &harness.state().state.project;
+    assert_eq!(project.hair.preset, Preset::Curly);
+    assert_eq!(project.hair.groom, GroomSettings::preset(Preset::Curly));
+    assert_eq!(project.look, GroomSettings::preset(Preset::Curly).look);
+    let length = control(&harness, Role::SpinButton, "Length").rect().center();
+    type_at(&mut harness, length, "12.5");
+    assert_eq!(harness.state().state.project.hair.groom.length, 0.125, "centimetres are shown, metres are kept");
+    control(&harness, Role::Button, "Defaults").click();
+    harness.run();
+    assert_eq!(harness.state().state.project.hair.groom, GroomSettings::preset(Preset::Curly));
+}
+
+#[test]
+fn hair_asks_for_a_file_only_where_it_has_none() {
+    let state = (Project::default(), None);
+    let mut harness = screen(state, |ui, (project, asked)| {
+        *asked = hair::ui(ui, project, &hair::Loaded::default()).or(*asked);
+    });
+    harness.get_by_label("From file…").click();
+    harness.run();
+    assert_eq!(harness.state().state.1, Some(hair::Ask::PickFile));
+    let mut project = Project::default();
+    project.set_hair_file("/x.hair");
+    project.hair.source = HairSource::Grown;
+    harness.state_mut().state = (project, None);
+    harness.run();
+    harness.get_by_label("From file…").click();
+    harness.run();
+    assert_eq!(harness.state().state.1, None);
+    assert_eq!(harness.state().state.0.hair.source, HairSource::File);
+    choose(&mut harness, "Unit", "Inches");
+    assert_eq!(harness.state().state.0.hair.import.unit, Unit::Inch);
+    harness.state_mut().state.0.hair.import.unit = Unit::Custom(0.5);
+    harness.run();
+    assert_eq!(control(&harness, Role::ComboBox, "Unit").value().as_deref(), Some("0.5 m"), "not left empty");
+}
+
+#[test]
+fn body_takes_clips_files_and_joints() {
+    let state = (Project::default(), None);
+    let loaded = body::Loaded {
+        clips: vec!["dance".to_owned(), "walk".to_owned()],
+        joints: vec!["hips".to_owned(), "hips/head".to_owned()],
+        head: "hips/head".to_owned(),
+        notes: vec!["one note".to_owned()],
+    };
+    let mut harness = screen(state, move |ui, (project, asked)| *asked = body::ui(ui, project, &loaded).or(*asked));
+    assert!(harness.query_by_label("one note").is_some());
+    harness.get_by_label("walk").click();
+    harness.run();
+    assert_eq!(harness.state().state.0.motion.clip, "walk");
+    harness.get_by_label("Rest").click();
+    harness.run();
+    assert_eq!(harness.state().state.0.motion.source, MotionSource::Rest);
+    harness.get_by_label("Motion file…").click();
+    harness.run();
+    assert_eq!(harness.state().state.1, Some(body::Ask::PickMotion));
+    harness.get_by_label("Character file…").click();
+    harness.run();
+    assert_eq!(harness.state().state.1, Some(body::Ask::PickBody));
+    assert_eq!(harness.state().state.0.body.source, BodySource::Dancer, "no file yet");
+    choose(&mut harness, "Head joint", "hips");
+    assert_eq!(harness.state().state.0.body.head_joint.as_deref(), Some("hips"));
+    choose(&mut harness, "Head joint", "Guess");
+    assert_eq!(harness.state().state.0.body.head_joint, None);
+    let on = is_on(&control(&harness, Role::CheckBox, "Loop"));
+    control(&harness, Role::CheckBox, "Loop").click();
+    harness.run();
+    assert_eq!(harness.state().state.0.motion.looping, !on);
+    assert!(harness.query_by_label("Loop blend").is_none(), "it says nothing where nothing loops");
+}
+
+#[test]
+fn simulation_sets_numbers_and_restores_them() {
+    let mut harness = panel("Simulation", Project::default());
+    let at = control(&harness, Role::SpinButton, "Bend damping").rect().center();
+    type_at(&mut harness, at, "150");
+    assert_eq!(harness.state().state.project.simulation.bend_damping, 0.15, "milliseconds are shown");
+    let at = control(&harness, Role::SpinButton, "Substeps").rect().center();
+    type_at(&mut harness, at, "5");
+    assert_eq!(harness.state().state.project.simulation.substeps, 5);
+    let at = control(&harness, Role::SpinButton, "Wind toward").rect().center();
+    type_at(&mut harness, at, "90");
+    let [x, y, z] = harness.state().state.project.simulation.wind.direction;
+    assert!((x - 1.0).abs() < 1e-6 && y == 0.0 && z.abs() < 1e-6, "90 degrees is the dancer's left, +X");
+    control(&harness, Role::Button, "Defaults").click();
+    harness.run();
+    assert_eq!(harness.state().state.project.simulation, SimulationSettings::default());
+}
+
+#[test]
+fn shadow_shows_what_its_method_has() {
+    let mut harness = panel("Shadow", Project::default());
+    choose(&mut harness, "Map resolution", "64³");
+    assert_eq!(harness.state().state.project.shadow.voxel_map.resolution, 64);
+    assert!(harness.query_by_label("Point extinction").is_none());
+    choose(&mut harness, "Density", "By points, as printed");
+    assert_eq!(harness.state().state.project.shadow.voxel_map.deposit, VoxelDeposit::PointCount);
+    assert!(harness.query_all_by_label("Point extinction").count() > 0);
+    choose(&mut harness, "Method", ShadowMethod::None.label());
+    assert_eq!(harness.state().state.project.shadow.method, ShadowMethod::None);
+    assert!(harness.query_by_label("Map resolution").is_none());
+    assert!(harness.query_by_label_contains("2.0 MiB").is_some());
+}
+
+#[test]
+fn lights_come_and_go() {
+    let mut harness = panel("Light", Project::default());
+    let few = harness.state().state.project.lights.len();
+    while let Some(add) = harness.query_by_label("+") {
+        add.click();
+        harness.run();
+    }
+    let bench = &harness.state().state;
+    assert_eq!(bench.project.lights.len(), MAX_LIGHTS);
+    assert!(MAX_LIGHTS > few && bench.selected_light == MAX_LIGHTS - 1, "the new one is selected");
+    for left in (0..MAX_LIGHTS).rev() {
+        harness.get_by_label("Remove").click();
+        harness.run();
+        assert_eq!(harness.state().state.project.lights.len(), left);
+    }
+    assert!(harness.query_by_label_contains("No light").is_some());
+    harness.get_by_label("+").click();
+    harness.run();
+    assert_eq!(harness.state().state.project.lights.len(), 1);
+}
+
+#[test]
+fn removing_a_light_removes_that_one() {
+    let mut harness = panel("Light", Project::default());
+    let names: Vec<String> = harness.state().state.project.lights.iter().map(|light| light.name.clone()).collect();
+    assert!(names.len() > 2, "{names:?}");
+    control(&harness, Role::Button, &names[1]).click();
+    harness.run();
+    harness.get_by_label("Remove").click();
+    harness.run();
+    let left: Vec<String> = harness.state().state.project.lights.iter().map(|light| light.name.clone()).collect();
+    assert_eq!(left.len(), names.len() - 1);
+    assert!(!left.contains(&names[1]) && left[0] == names[0]);
+}
+
+#[test]
+fn the_sphere_turns_the_light() {
+    let mut harness = panel("Light", Project::default());
+    let rect = control(&harness, Role::Slider, "Light direction").rect();
+    // The camera looks along -Z here: the middle is a light from the front, the right rim one from +X.
+    drag(&mut harness, rect.center() + egui::vec2(3.0, 0.0), rect.center());
+    let light = harness.state().state.project.lights[0].direction;
+    assert!((light - Vec3::NEG_Z).length() < 0.05, "{light}");
+    drag(&mut harness, rect.center(), rect.right_center() + egui::vec2(200.0, 0.0));
+    let light = harness.state().state.project.lights[0].direction;
+    assert!((light - Vec3::NEG_X).length() < 0.05, "{light}");
+    for to in [rect.left_top(), rect.center(), egui::pos2(1e6, -1e6)] {
+        drag(&mut harness, rect.center(), to);
+        let light = harness.state().state.project.lights[0].direction;
+        assert!((light.length() - 1.0).abs() < 1e-5, "{light} after a drag to {to}");
+    }
+}
+
+#[test]
+fn look_takes_natural_colours() {
+    let mut harness = panel("Look", Project::default());
+    let at = control(&harness, Role::Button, "Black").rect().center();
+    assert!(tooltip_at(&mut harness, at).is_some_and(|said| said.contains("Black")));
+    control(&harness, Role::Button, "Black").click();
+    harness.run();
+    let black = harness.state().state.project.look;
+    control(&harness, Role::Button, "Blond").click();
+    harness.run();
+    let blond = harness.state().state.project.look;
+    assert!(blond.eumelanin < black.eumelanin);
+    assert_eq!(blond.roughness, black.roughness, "only the pigments change");
+}
+
+#[test]
+fn picture_switches() {
+    let mut harness = panel("Picture", Project::default());
+    let ground = harness.state().state.project.picture.ground;
+    control(&harness, Role::CheckBox, "Ground").click();
+    harness.run();
+    assert_eq!(harness.state().state.project.picture.ground, !ground);
+    let exposure = control(&harness, Role::SpinButton, "Exposure").rect().center();
+    type_at(&mut harness, exposure, "-1.5");
+    assert_eq!(harness.state().state.project.picture.exposure_stops, -1.5);
+}
+
+#[test]
+fn recording_keeps_a_range_that_is_not_empty() {
+    let mut harness = panel("Recording", Project::default());
+    let (first, end) = ("From frame", "To frame");
+    let place = |harness: &egui_kittest::Harness<'_, _>, name| control(harness, Role::SpinButton, name).rect().center();
+    let at = place(&harness, end);
+    type_at(&mut harness, at, "20");
+    assert_eq!(harness.state().state.project.recording.end_frame, Some(20));
+    let at = place(&harness, first);
+    type_at(&mut harness, at, "50");
+    let recording = &harness.state().state.project.recording;
+    assert_eq!((recording.first_frame, recording.end_frame), (50, Some(51)));
+    let at = place(&harness, end);
+    type_at(&mut harness, at, "3");
+    let recording = &harness.state().state.project.recording;
+    assert_eq!((recording.first_frame, recording.end_frame), (50, Some(51)));
+    choose(&mut harness, "Size", "640 × 360");
+    choose(&mut harness, "Frames a second", "60");
+    let recording = &harness.state().state.project.recording;
+    assert_eq!((recording.width, recording.height, recording.fps), (640, 360, 60.0));
+}
+
+#[test]
+fn recording_names_a_size_that_is_in_no_list() {
+    let mut project = Project::default();
+    (project.recording.width, project.recording.height, project.recording.fps) = (96, 64, 29.97);
+    let harness = panel("Recording", project);
+    assert_eq!(control(&harness, Role::ComboBox, "Size").value().as_deref(), Some("96 × 64"));
+    assert_eq!(control(&harness, Role::ComboBox, "Frames a second").value().as_deref(), Some("29.97"));
+}
+
+#[test]
+fn recording_starts_shows_progress_and_stops() {
+    let state = (State::Idle, None);
+    let mut harness = screen(state, |ui, (state, asked)| {
+        let mut section = RecordingSection::default();
+        *asked = recording::ui(ui, &mut section, state, 480).or(*asked);
+    });
+    for (button, ask) in [("Record film…", Ask::Film), ("Pictures…", Ask::Sequence)] {
+        harness.get_by_label(button).click();
+        harness.run();
+        assert_eq!(harness.state().state.1, Some(ask));
+    }
+    let running = State::Running { what: "Frame".to_owned(), done: 12, total: 48, left_secs: Some(30.0) };
+    harness.state_mut().state = (running, None);
+    // The bar of progress never rests.
+    harness.run_steps(3);
+    assert!(harness.query_by_label("Record film…").is_none(), "one at a time");
+    let bar = harness.get_by_role(Role::ProgressIndicator);
+    assert!(format!("{bar:?}").contains("25"), "a quarter is done: {bar:?}");
+    harness.get_by_label("Cancel").click();
+    harness.run_steps(5);
+    assert_eq!(harness.state().state.1, Some(Ask::Cancel));
+    for (state, text) in [
+        (State::Done("48 frames in a b.mp4".to_owned()), "48 frames"),
+        (State::Failed("out.mp4: the disk is full".to_owned()), "disk is full"),
+    ] {
+        harness.state_mut().state = (state, None);
+        harness.run();
+        assert!(harness.query_by_label_contains(text).is_some(), "{text}");
+    }
+}
+
+#[test]
+fn statistics_name_every_stage_and_fact() {
+    let harness = panel("Statistics", Project::default());
+    for stage in Stage::ALL.into_iter().filter(|stage| *stage != Stage::Encode) {
+        assert!(harness.query_all_by_label(stage.label()).count() > 0, "{stage:?}");
+    }
+    assert!(harness.query_by_label("3.25 ms").is_some());
+    assert!(harness.query_by_label("1280 × 720").is_some());
+}

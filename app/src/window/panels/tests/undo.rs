@@ -1,0 +1,138 @@
+//! One drag is one step of undo.
+
+use egui::accesskit::Role;
+use egui::{Event, Key, Modifiers, MouseWheelUnit, TouchPhase, vec2};
+use egui_kittest::Harness;
+use lovelock_studio::{History, Project};
+
+use crate::window::camera_control;
+use crate::window::gesture::Gestures;
+use crate::window::panels::simulation;
+use crate::window::testing::{Shown, control, double_click, drag, press, screen};
+
+/// What the window keeps of a project.
+struct Edited {
+    history: History,
+    gestures: Gestures,
+}
+
+/// The simulation's panel above a viewport, edited in passes as the window's.
+fn editor() -> Harness<'static, Shown<Edited>> {
+    let state = Edited { history: History::new(Project::default()), gestures: Gestures::default() };
+    screen(state, |ui, edited: &mut Edited| {
+        edited.gestures.begin_pass(ui.ctx());
+        let mut project = (**edited.history.project()).clone();
+        simulation::ui(ui, &mut project.simulation);
+        let (_, viewport) = ui.allocate_exact_size(vec2(200.0, 200.0), egui::Sense::click_and_drag());
+        viewport.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Viewport"));
+        camera_control::apply(&mut project.camera, &viewport);
+        edited.history.edit("change", Some(edited.gestures.id()), project);
+    })
+}
+
+fn steps(harness: &Harness<'_, Shown<Edited>>) -> usize {
+    harness.state().state.history.undo_len()
+}
+
+#[test]
+fn one_drag_is_one_step() {
+    let mut harness = editor();
+    let before = harness.state().state.history.project().clone();
+    let rail = control(&harness, Role::Slider, "Stiffness, roots").rect();
+    drag(&mut harness, rail.left_center(), rail.right_center());
+    assert_eq!(steps(&harness), 1);
+    let rail = control(&harness, Role::Slider, "Settle").rect();
+    drag(&mut harness, rail.right_center(), rail.left_center());
+    assert_eq!(steps(&harness), 2, "another drag is another step");
+    let history = &mut harness.state_mut().state.history;
+    history.undo();
+    history.undo();
+    assert_eq!(*history.project(), before);
+}
+
+#[test]
+fn a_rest_in_a_drag_does_not_end_it() {
+    let mut harness = editor();
+    let rail = control(&harness, Role::Slider, "Stiffness, roots").rect();
+    harness.hover_at(rail.left_center());
+    press(&harness, rail.left_center(), true);
+    harness.run_steps(40);
+    harness.hover_at(rail.center());
+    harness.run_steps(40);
+    harness.hover_at(rail.right_center());
+    press(&harness, rail.right_center(), false);
+    harness.run();
+    assert_eq!(steps(&harness), 1);
+}
+
+#[test]
+fn a_number_that_is_typed_is_one_step() {
+    let mut harness = editor();
+    control(&harness, Role::SpinButton, "Settle").click();
+    harness.run();
+    for letter in ["1", "2", ".", "5"] {
+        harness.event(Event::Text(letter.to_owned()));
+        harness.run();
+    }
+    harness.key_press(Key::Enter);
+    harness.run();
+    assert_eq!(harness.state().state.history.project().simulation.settle, 12.5);
+    assert_eq!(steps(&harness), 1);
+    control(&harness, Role::SpinButton, "Hold").click();
+    harness.run();
+    harness.event(Event::Text("7".to_owned()));
+    harness.key_press(Key::Enter);
+    harness.run();
+    assert_eq!(steps(&harness), 2, "another number is another step");
+}
+
+#[test]
+fn a_turn_of_the_wheel_is_one_step() {
+    let mut harness = editor();
+    let before = harness.state().state.history.project().camera.distance;
+    let at = control(&harness, Role::Image, "Viewport").rect().center();
+    harness.hover_at(at);
+    harness.run();
+    for turn in 1..=2 {
+        harness.event(Event::MouseWheel {
+            unit: MouseWheelUnit::Line,
+            delta: vec2(0.0, 3.0),
+            phase: TouchPhase::Move,
+            source: egui::MouseWheelSource::Wheel,
+            modifiers: Modifiers::NONE,
+        });
+        harness.step();
+        harness.run();
+        harness.run_steps(20);
+        assert_eq!(steps(&harness), turn);
+    }
+    let after = harness.state().state.history.project().camera.distance;
+    assert!(after < before, "{after} is nearer than {before}");
+}
+
+#[test]
+fn an_orbit_is_one_step_and_turns_the_camera() {
+    let mut harness = editor();
+    let before = harness.state().state.history.project().camera.azimuth;
+    let rect = control(&harness, Role::Image, "Viewport").rect();
+    drag(&mut harness, rect.center(), rect.right_center());
+    assert_eq!(steps(&harness), 1);
+    assert_ne!(harness.state().state.history.project().camera.azimuth, before);
+}
+
+#[test]
+fn a_double_click_takes_back_its_own_first_click() {
+    let mut harness = editor();
+    let rail = control(&harness, Role::Slider, "Settle").rect();
+    double_click(&mut harness, rail.right_center() - vec2(4.0, 0.0));
+    assert_eq!(**harness.state().state.history.project(), Project::default());
+    assert_eq!(steps(&harness), 0, "nothing has changed");
+    drag(&mut harness, rail.left_center(), rail.right_center());
+    harness.run_steps(20);
+    double_click(&mut harness, rail.center());
+    assert_eq!(**harness.state().state.history.project(), Project::default());
+    assert_eq!(steps(&harness), 2, "the drag, and the double-click");
+    harness.state_mut().state.history.undo();
+    let dragged = harness.state().state.history.project().simulation.settle;
+    assert_eq!(dragged, 20.0, "undo goes back to the end of the drag");
+}

@@ -1,0 +1,113 @@
+//! Showing a panel is no change of the project.
+
+use serde_json::Value;
+
+use super::{Bench, PANELS, projects};
+use crate::window::control::section;
+use crate::window::testing::{screen, unfold};
+use lovelock_studio::{BodySource, HairSource, MotionSource, Project};
+
+/// A small generator of numbers (Steele, Lea, Flood 2014, "splitmix64").
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    fn unit(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// Anything: near the value, far from it, tiny, huge, of either sign.
+    fn number(&mut self, near: f64) -> f64 {
+        match self.next() % 6 {
+            0 => near,
+            1 => near * (0.5 + self.unit()),
+            2 => self.unit(),
+            3 => 20.0 * self.unit() - 10.0,
+            4 => 10_f64.powf(12.0 * self.unit() - 6.0),
+            _ => -(10_f64.powf(6.0 * self.unit() - 3.0)),
+        }
+    }
+}
+
+/// Other numbers and switches everywhere in a tree; names, choices and files stay.
+fn shake(value: &mut Value, random: &mut Random) {
+    match value {
+        Value::Bool(on) => *on = random.next().is_multiple_of(2),
+        Value::Number(number) if number.is_u64() => {
+            *value = Value::from(random.number(number.as_f64().unwrap_or(1.0)).abs().min(4e9) as u64);
+        }
+        Value::Number(number) => *value = Value::from(random.number(number.as_f64().unwrap_or(1.0)) as f32),
+        Value::Array(items) => items.iter_mut().for_each(|item| shake(item, random)),
+        Value::Object(fields) => fields.values_mut().for_each(|field| shake(field, random)),
+        Value::Null | Value::String(_) => {}
+    }
+}
+
+/// A project that a file may hold: any numbers, brought into their ranges as loading does.
+fn random_project(base: &Project, random: &mut Random) -> Project {
+    let mut tree = serde_json::to_value(base).expect("a project is plain data");
+    shake(&mut tree, random);
+    let mut project: Project = serde_json::from_value(tree).expect("the same shape");
+    project.recording.end_frame = random.next().is_multiple_of(2).then(|| random.next() % 100_000);
+    project.hair.source = if random.next().is_multiple_of(2) { HairSource::Grown } else { HairSource::File };
+    project.body.source = if random.next().is_multiple_of(2) { BodySource::Dancer } else { BodySource::File };
+    project.motion.source =
+        [MotionSource::Clip, MotionSource::File, MotionSource::Rest][(random.next() % 3) as usize];
+    project.sanitised().0
+}
+
+#[test]
+fn showing_a_panel_changes_nothing() {
+    let mut random = Random(7);
+    let mut shown = projects();
+    for i in 0..48 {
+        let base = shown[i % 4].1.clone();
+        shown.push(("random", random_project(&base, &mut random)));
+    }
+    let all = |ui: &mut egui::Ui, bench: &mut Bench| {
+        for (title, show) in PANELS {
+            section(ui, title, true, |ui| show(ui, bench));
+        }
+    };
+    let mut harness = screen(Bench::new(Project::default()), all);
+    harness.set_size(egui::vec2(300.0, 6000.0));
+    for (i, (name, project)) in shown.iter().enumerate() {
+        assert!(project.sanitised().1.is_empty(), "{name} {i} is no valid project");
+        harness.state_mut().state = Bench::new(project.clone());
+        harness.run();
+        unfold(&mut harness);
+        for light in 0..project.lights.len() {
+            harness.state_mut().state.selected_light = light;
+            harness.run();
+        }
+        // The clip may be as long as the recording is.
+        harness.state_mut().state.clip_frames = project.recording.end_frame.unwrap_or(1);
+        harness.run();
+        let (before, after) = (describe(project), describe(&harness.state().state.project));
+        assert_eq!(before, after, "{name} {i}");
+        assert!(*project == harness.state().state.project, "{name} {i}: a change that text does not show");
+    }
+}
+
+/// Line by line, so that a failure names the field.
+fn describe(project: &Project) -> String {
+    serde_json::to_string_pretty(project).expect("a project is plain data")
+}
+
+#[test]
+fn the_test_would_see_a_control_that_rounds() {
+    // What a plain slider does: it keeps no more digits than it shows.
+    let mut harness = screen(0.123_456_f64, |ui, value| {
+        let response = ui.add(egui::Slider::new(value, 0.0..=0.1).fixed_decimals(2));
+        response.on_hover_text("plain");
+    });
+    harness.run();
+    assert_ne!(harness.state().state, 0.123_456);
+}

@@ -1,0 +1,151 @@
+//! The palette and the question for a path.
+
+use std::path::{Path, PathBuf};
+
+use egui::{Event, Key, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use lovelock_studio::{COMMANDS, Command};
+
+use super::{Shown, screen_of};
+use crate::window::palette::Palette;
+use crate::window::path_dialog::{Answer, PathDialog, Purpose};
+
+fn palette() -> Harness<'static, Shown<(Palette, Vec<Command>)>> {
+    let mut state = (Palette::default(), Vec::new());
+    state.0.toggle();
+    screen_of(vec2(800.0, 600.0), state, |ui, (palette, chosen): &mut (Palette, Vec<Command>)| {
+        chosen.extend(palette.show(ui.ctx(), |command| command != Command::Undo));
+    })
+}
+
+#[test]
+fn the_palette_finds_a_command_by_its_words() {
+    let mut harness = palette();
+    harness.run();
+    assert!(harness.query_by_label("Undo").is_none(), "what cannot be done is not offered");
+    harness.event(Event::Text("hair fra".to_owned()));
+    harness.run();
+    assert!(harness.query_by_label(Command::Save.info().label).is_none());
+    harness.key_press(Key::Enter);
+    harness.run();
+    assert_eq!(harness.state().state.1, [Command::FrameHair]);
+    assert!(harness.query_by_label(Command::FrameHair.info().label).is_none(), "it closes");
+}
+
+#[test]
+fn the_palette_is_moved_through_by_keys_and_clicks() {
+    let listed: Vec<_> =
+        COMMANDS.iter().filter(|info| info.in_palette && info.command != Command::Undo).collect();
+    let mut harness = palette();
+    harness.run();
+    for _ in 0..3 {
+        harness.key_press(Key::ArrowDown);
+    }
+    harness.key_press(Key::ArrowUp);
+    harness.key_press(Key::Enter);
+    harness.run();
+    assert_eq!(harness.state().state.1, [listed[2].command]);
+    let mut harness = palette();
+    harness.run();
+    harness.get_by_label(listed[1].label).click();
+    harness.run();
+    assert_eq!(harness.state().state.1, [listed[1].command]);
+}
+
+#[test]
+fn the_palette_closes_without_a_command() {
+    let mut harness = palette();
+    harness.run();
+    harness.event(Event::Text("no such thing".to_owned()));
+    harness.key_press(Key::Enter);
+    harness.run();
+    assert!(harness.query_by_label("No command of that name").is_some(), "Enter finds nothing and stays");
+    harness.key_press(Key::Escape);
+    harness.run();
+    assert!(harness.query_by_label("No command of that name").is_none());
+    assert!(harness.state().state.1.is_empty());
+}
+
+fn dialog(purpose: Purpose, suggestion: &Path) -> Harness<'static, Shown<(PathDialog, Option<Answer>)>> {
+    let state = (PathDialog::new(purpose, suggestion), None);
+    screen_of(vec2(800.0, 600.0), state, |ui, (dialog, answer): &mut (PathDialog, Option<Answer>)| {
+        if answer.is_none() {
+            let now = dialog.show(ui.ctx());
+            *answer = (now != Answer::Pending).then_some(now);
+        }
+    })
+}
+
+/// Replaces what the field holds.
+fn retype<S>(harness: &mut Harness<'_, S>, text: &str) {
+    harness.get_by_label("Path").click();
+    harness.run();
+    harness.key_press_modifiers(egui::Modifiers::COMMAND | egui::Modifiers::CTRL, Key::A);
+    harness.key_press(Key::Backspace);
+    if !text.is_empty() {
+        harness.event(Event::Text(text.to_owned()));
+    }
+    harness.run();
+}
+
+#[test]
+fn a_path_is_typed_and_entered() {
+    let mut harness = dialog(Purpose::Film, Path::new("out/dance.mp4"));
+    harness.run();
+    retype(&mut harness, "a b/ü");
+    harness.key_press(Key::Enter);
+    harness.run();
+    let answer = harness.state().state.1.as_ref();
+    assert_eq!(answer, Some(&Answer::Path(Purpose::Film, PathBuf::from("a b/ü.mp4"))));
+}
+
+#[test]
+fn a_suggestion_is_taken_by_the_button() {
+    let mut harness = dialog(Purpose::SaveProject, Path::new("/somewhere/my hair"));
+    harness.run();
+    harness.get_by_label("Save file").click();
+    harness.run();
+    let wanted = PathBuf::from(format!("/somewhere/my hair.{}", lovelock_studio::PROJECT_EXTENSION));
+    assert_eq!(harness.state().state.1, Some(Answer::Path(Purpose::SaveProject, wanted)));
+}
+
+#[test]
+fn a_saved_project_can_be_opened_again() {
+    // What the dialog adds to a name is what the program knows as a project.
+    let path = Path::new("x").with_extension(lovelock_studio::PROJECT_EXTENSION);
+    assert_eq!(lovelock_studio::FileKind::by_extension(&path), Some(lovelock_studio::FileKind::Project));
+}
+
+#[test]
+fn a_question_can_be_left() {
+    for escape in [true, false] {
+        let mut harness = dialog(Purpose::Open, Path::new("/"));
+        harness.run();
+        if escape {
+            harness.key_press(Key::Escape);
+        } else {
+            harness.get_by_label("Cancel").click();
+        }
+        harness.run();
+        assert_eq!(harness.state().state.1, Some(Answer::Closed), "escape: {escape}");
+    }
+}
+
+#[test]
+fn no_path_is_no_answer_and_a_film_that_exists_is_told() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let film = dir.path().join("here.mp4");
+    std::fs::write(&film, b"x").expect("a file");
+    let mut harness = dialog(Purpose::Film, &film);
+    harness.run();
+    assert!(harness.query_by_label_contains("will be replaced").is_some());
+    retype(&mut harness, "");
+    assert!(harness.query_by_label_contains("will be replaced").is_none());
+    harness.get_by_label("Start recording").click();
+    harness.run();
+    harness.get_by_label("Path").click();
+    harness.key_press(Key::Enter);
+    harness.run();
+    assert_eq!(harness.state().state.1, None);
+}

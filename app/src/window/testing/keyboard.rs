@@ -1,0 +1,126 @@
+//! Keys, menus and the list of keys.
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers, vec2};
+use egui_kittest::kittest::{NodeT, Queryable};
+use egui_kittest::{Harness, Node};
+use lovelock_studio::{COMMANDS, Command, CommandGroup, CommandInfo};
+
+use super::{Shown, screen_of};
+use crate::window::keys;
+
+/// A field to type in and a button, and the commands that keys asked for.
+fn screen() -> Harness<'static, Shown<(String, Vec<Command>)>> {
+    screen_of(vec2(400.0, 300.0), (String::new(), Vec::new()), |ui, (typed, asked): &mut (String, Vec<Command>)| {
+        asked.extend(keys::pressed(ui.ctx()));
+        let _ = ui.button("A button");
+        let label = ui.label("Name");
+        ui.text_edit_singleline(typed).labelled_by(label.id);
+    })
+}
+
+fn key(text: &str) -> (Modifiers, Key) {
+    let mut modifiers = Modifiers::NONE;
+    let mut parts: Vec<&str> = text.split('+').collect();
+    let name = parts.pop().expect("a key");
+    for part in parts {
+        match part {
+            "Ctrl" => modifiers |= Modifiers::COMMAND | Modifiers::CTRL,
+            "Shift" => modifiers |= Modifiers::SHIFT,
+            "Alt" => modifiers |= Modifiers::ALT,
+            other => panic!("no modifier is called {other}"),
+        }
+    }
+    // A question mark is typed with Shift on most keyboards.
+    if name == "?" {
+        return (modifiers | Modifiers::SHIFT, Key::Questionmark);
+    }
+    (modifiers, Key::from_name(name).expect("egui knows the key"))
+}
+
+#[test]
+fn every_key_runs_its_command_and_no_other() {
+    let mut harness = screen();
+    for info in COMMANDS {
+        for text in info.shortcuts {
+            let (modifiers, key) = key(text);
+            harness.state_mut().state.1.clear();
+            harness.key_press_modifiers(modifiers, key);
+            harness.run();
+            assert_eq!(harness.state().state.1, [info.command], "{text}");
+        }
+    }
+}
+
+#[test]
+fn a_text_field_keeps_the_letters() {
+    let mut harness = screen();
+    harness.get_by_label("Name").click();
+    harness.run();
+    harness.key_press(Key::R);
+    harness.key_press(Key::Space);
+    harness.run();
+    assert!(harness.state().state.1.is_empty());
+    harness.key_press_modifiers(Modifiers::COMMAND | Modifiers::CTRL, Key::S);
+    harness.run();
+    assert_eq!(harness.state().state.1, [Command::Save], "Ctrl+S saves from anywhere");
+}
+
+#[test]
+fn tab_hides_the_panels_and_leaves_the_other_keys_alone() {
+    let mut harness = screen();
+    for _ in 0..3 {
+        harness.state_mut().state.1.clear();
+        harness.key_press(Key::Tab);
+        harness.run();
+        harness.key_press(Key::Space);
+        harness.run();
+        assert_eq!(harness.state().state.1, [Command::TogglePanels, Command::PlayPause]);
+    }
+}
+
+#[test]
+fn the_list_names_every_key() {
+    let harness = screen_of(vec2(700.0, 900.0), (), |ui, ()| keys::list(ui));
+    for info in COMMANDS.iter().filter(|info| !info.shortcuts.is_empty()) {
+        assert!(harness.query_by_label(&info.shortcuts.join("  ")).is_some(), "{}", info.id);
+        assert!(harness.query_by_label(info.tooltip).is_some(), "{}", info.id);
+    }
+    assert!(harness.query_by_label_contains("Double-click").is_some());
+    assert!(harness.state().taken.right() <= 700.0);
+}
+
+/// The entry of an open menu: its label, and its key where it has one.
+pub(super) fn entry<'t, S>(harness: &'t Harness<'_, S>, info: &CommandInfo) -> Node<'t> {
+    let label = info.label;
+    let with_key = info.shortcuts.first().map(|key| format!("{label} {key}"));
+    harness
+        .query_all_by_role(Role::Button)
+        .find(|node| {
+            let name = node.accesskit_node().label().unwrap_or_default();
+            name == label || Some(name) == with_key
+        })
+        .unwrap_or_else(|| panic!("no entry `{label}`"))
+}
+
+#[test]
+fn menus_hold_every_command_once_and_grey_out_what_cannot_be_done() {
+    let mut harness = screen_of(vec2(900.0, 700.0), None, |ui, chosen: &mut Option<Command>| {
+        let enabled = |command| command != Command::Undo;
+        let asked = egui::MenuBar::new().ui(ui, |ui| keys::menus(ui, enabled)).inner;
+        *chosen = asked.or(*chosen);
+    });
+    for group in CommandGroup::ALL {
+        for info in COMMANDS.iter().filter(|info| info.group == group) {
+            harness.state_mut().state = None;
+            harness.get_by_label(group.label()).click();
+            harness.run();
+            entry(&harness, info).click();
+            harness.run();
+            let wanted = (info.command != Command::Undo).then_some(info.command);
+            assert_eq!(harness.state().state, wanted, "{}", info.id);
+            harness.key_press(Key::Escape);
+            harness.run();
+        }
+    }
+}

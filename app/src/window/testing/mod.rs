@@ -1,0 +1,192 @@
+//! Parts of the window on a screen that is not there, for tests.
+
+mod dialogs;
+mod keyboard;
+mod playback;
+mod whole;
+
+use egui::accesskit::{Role, Toggled};
+use egui::epaint::Shape;
+use egui::{Color32, Event, Modifiers, Order, PointerButton, Pos2, Rect, Ui, Vec2};
+use egui_kittest::kittest::{AccessKitNode, NodeT, Queryable};
+use egui_kittest::{Harness, Node};
+
+use super::theme;
+
+/// Width in points that every panel must do with.
+pub(crate) const WIDTH: f32 = 300.0;
+
+/// Something shown, with the room that it took.
+pub(crate) struct Shown<S> {
+    pub(crate) state: S,
+    pub(crate) taken: Rect,
+}
+
+/// A screen of [`WIDTH`] and of any height, dressed as the window is; tooltips come at once.
+pub(crate) fn screen<'a, S: 'a>(state: S, show: impl FnMut(&mut Ui, &mut S) + 'a) -> Harness<'a, Shown<S>> {
+    screen_of(Vec2::new(WIDTH, 2400.0), state, show)
+}
+
+/// As [`screen`], of another size.
+pub(crate) fn screen_of<'a, S: 'a>(
+    size: Vec2,
+    state: S,
+    mut show: impl FnMut(&mut Ui, &mut S) + 'a,
+) -> Harness<'a, Shown<S>> {
+    let shown = Shown { state, taken: Rect::NOTHING };
+    Harness::builder()
+        .with_size(size)
+        .with_max_steps(64)
+        // Short enough that four events in a row are a double-click.
+        .with_step_dt(1.0 / 30.0)
+        .with_context_setup(dress)
+        .build_ui_state(
+            move |ui, shown| {
+                show(ui, &mut shown.state);
+                shown.taken = ui.min_rect();
+            },
+            shown,
+        )
+}
+
+/// Fonts, colours and spacing of the window, and tooltips without delay.
+pub(crate) fn dress(ctx: &egui::Context) {
+    egui_material_icons::initialize(ctx);
+    theme::apply(ctx);
+    ctx.all_styles_mut(|style| {
+        style.interaction.tooltip_delay = 0.0;
+        style.interaction.show_tooltips_only_when_still = false;
+    });
+}
+
+/// Unfolds every section, and those inside them.
+pub(crate) fn unfold<S>(harness: &mut Harness<'_, S>) {
+    let folded = |node: &AccessKitNode<'_>| {
+        node.role() == Role::DisclosureTriangle && node.data().is_expanded() == Some(false)
+    };
+    while harness.query_all_by(folded).next().is_some_and(|node| {
+        node.click();
+        true
+    }) {
+        harness.run();
+    }
+    harness.remove_cursor();
+    harness.run();
+}
+
+/// The one control of that role and name.
+pub(crate) fn control<'t, S>(harness: &'t Harness<'_, S>, role: Role, name: &'t str) -> Node<'t> {
+    harness.get_by_role_and_label(role, name)
+}
+
+/// Middles of all controls of a role, top to bottom, with their names.
+pub(crate) fn controls<S>(harness: &Harness<'_, S>, role: Role) -> Vec<(String, Rect)> {
+    harness
+        .query_all_by_role(role)
+        .map(|node| (node.accesskit_node().label().unwrap_or_default(), node.rect()))
+        .collect()
+}
+
+/// Whether a check box is on.
+pub(crate) fn is_on(node: &Node<'_>) -> bool {
+    node.accesskit_node().toggled() == Some(Toggled::True)
+}
+
+/// The pointer's main button goes down or up.
+pub(crate) fn press<S>(harness: &Harness<'_, S>, pos: Pos2, pressed: bool) {
+    let modifiers = Modifiers::NONE;
+    harness.event(Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers });
+}
+
+/// One click.
+pub(crate) fn click<S>(harness: &mut Harness<'_, S>, at: Pos2) {
+    harness.hover_at(at);
+    press(harness, at, true);
+    press(harness, at, false);
+    harness.run_ok();
+}
+
+/// Two clicks, quick enough.
+pub(crate) fn double_click<S>(harness: &mut Harness<'_, S>, at: Pos2) {
+    harness.hover_at(at);
+    for _ in 0..2 {
+        press(harness, at, true);
+        press(harness, at, false);
+    }
+    harness.run_ok();
+}
+
+/// A drag in a few moves, over many passes.
+pub(crate) fn drag<S>(harness: &mut Harness<'_, S>, from: Pos2, to: Pos2) {
+    harness.hover_at(from);
+    press(harness, from, true);
+    for i in 1..=8 {
+        harness.hover_at(from + (to - from) * (i as f32 / 8.0));
+    }
+    press(harness, to, false);
+    harness.run_ok();
+}
+
+/// Types a number into the field at a place, as a user does: click, type, Enter.
+pub(crate) fn type_at<S>(harness: &mut Harness<'_, S>, at: Pos2, text: &str) {
+    click(harness, at);
+    harness.event(Event::Text(text.to_owned()));
+    harness.run_ok();
+    harness.key_press(egui::Key::Enter);
+    harness.run_ok();
+}
+
+/// What the tooltip says that is on the screen.
+pub(crate) fn tooltip<S>(harness: &Harness<'_, S>) -> Option<String> {
+    let layers: Vec<_> = harness.ctx.memory(|memory| {
+        memory.areas().visible_layer_ids().into_iter().filter(|layer| layer.order == Order::Tooltip).collect()
+    });
+    let rects: Vec<Rect> =
+        harness.ctx.memory(|memory| layers.iter().filter_map(|layer| memory.area_rect(layer.id)).collect());
+    let texts = texts(harness);
+    let said: Vec<String> = texts
+        .into_iter()
+        .filter(|(_, rect, _)| rects.iter().any(|tip| tip.contains_rect(rect.shrink(1.0))))
+        .map(|(text, ..)| text)
+        .collect();
+    (!rects.is_empty()).then(|| said.join("\n"))
+}
+
+/// The tooltip of what lies at a place.
+pub(crate) fn tooltip_at<S>(harness: &mut Harness<'_, S>, at: Pos2) -> Option<String> {
+    harness.remove_cursor();
+    harness.run();
+    harness.hover_at(at);
+    harness.run();
+    harness.run_steps(2);
+    let said = tooltip(harness);
+    harness.remove_cursor();
+    harness.run();
+    said
+}
+
+/// Every text on the screen, where it is, and the colour of its first letter.
+pub(crate) fn texts<S>(harness: &Harness<'_, S>) -> Vec<(String, Rect, Color32)> {
+    let mut found = Vec::new();
+    for clipped in &harness.output().shapes {
+        collect(&clipped.shape, &mut found);
+    }
+    found
+}
+
+fn collect(shape: &Shape, found: &mut Vec<(String, Rect, Color32)>) {
+    match shape {
+        Shape::Vec(shapes) => shapes.iter().for_each(|shape| collect(shape, found)),
+        Shape::Text(text) => {
+            let format = text.galley.job.sections.first().map_or(Color32::PLACEHOLDER, |s| s.format.color);
+            let color = text.override_text_color.unwrap_or(format);
+            found.push((text.galley.text().to_owned(), text.visual_bounding_rect(), color));
+        }
+        _ => {}
+    }
+}
+
+/// Whether a text on the screen has the colour of what differs from its default.
+pub(crate) fn is_marked<S>(harness: &Harness<'_, S>, name: &str) -> bool {
+    texts(harness).iter().any(|(text, _, color)| text == name && *color == theme::ACCENT)
+}

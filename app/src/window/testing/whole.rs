@@ -1,0 +1,235 @@
+//! The whole window, with the simulation and the drawing behind it. It needs no display and no graphics card:
+//! without one it shows why there is no picture.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use egui::accesskit::Role;
+use egui::{Event, Key, Modifiers, ViewportCommand, ViewportEvent, ViewportId, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use lovelock_studio::groom::Preset;
+use lovelock_studio::{Command, PROJECT_EXTENSION, Place, Project, load_project};
+
+use super::keyboard::entry;
+use super::{Shown, control, controls, drag, screen_of};
+use crate::window::actions::Opened;
+use crate::window::{Layout, Window};
+
+const CTRL: Modifiers = Modifiers { ctrl: true, command: true, ..Modifiers::NONE };
+
+/// The window on a project of few strands, once its scene is loaded.
+fn window() -> Harness<'static, Shown<Option<Window>>> {
+    let mut project = Project::default();
+    project.hair.groom.wisps = 16;
+    project.hair.groom.strands_per_wisp = 8;
+    project.shadow.voxel_map.resolution = 32;
+    let mut opened = Some(Opened { project, project_path: None, picked: Vec::new(), problems: Vec::new() });
+    let mut harness = screen_of(vec2(1200.0, 900.0), None, move |ui, window: &mut Option<Window>| {
+        let window = window.get_or_insert_with(|| {
+            Window::start(ui.ctx(), Layout::default(), opened.take()).expect("the threads start")
+        });
+        window.pass(ui);
+    });
+    wait(&mut harness, "the scene", |window| window.session.scene.is_some());
+    harness
+}
+
+fn of<'h>(harness: &'h Harness<'_, Shown<Option<Window>>>) -> &'h Window {
+    harness.state().state.as_ref().expect("a window")
+}
+
+fn project(harness: &Harness<'_, Shown<Option<Window>>>) -> Arc<Project> {
+    Arc::clone(of(harness).history.project())
+}
+
+/// Passes until something is so.
+fn wait(harness: &mut Harness<'_, Shown<Option<Window>>>, what: &str, is_so: impl Fn(&Window) -> bool) {
+    let start = Instant::now();
+    while !is_so(of(harness)) {
+        // A guard against waiting for ever; loading takes a second or so.
+        assert!(start.elapsed() < Duration::from_mins(1), "waited too long for {what}");
+        harness.step();
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    harness.run_steps(2);
+}
+
+/// Some passes: this window never rests while it plays.
+fn go(harness: &mut Harness<'_, Shown<Option<Window>>>) {
+    harness.run_steps(6);
+}
+
+fn key(harness: &mut Harness<'_, Shown<Option<Window>>>, modifiers: Modifiers, key: Key) {
+    harness.key_press_modifiers(modifiers, key);
+    go(harness);
+}
+
+fn press_button(harness: &mut Harness<'_, Shown<Option<Window>>>, name: &str) {
+    control(harness, Role::Button, name).click();
+    go(harness);
+}
+
+/// Chooses a command from its menu.
+fn menu(harness: &mut Harness<'_, Shown<Option<Window>>>, command: Command) {
+    let info = command.info();
+    press_button(harness, info.group.label());
+    entry(harness, info).click();
+    go(harness);
+}
+
+/// Answers the question for a path.
+fn answer(harness: &mut Harness<'_, Shown<Option<Window>>>, path: &Path) {
+    harness.get_by_label("Path").click();
+    go(harness);
+    harness.key_press_modifiers(CTRL, Key::A);
+    harness.event(Event::Text(path.display().to_string()));
+    harness.key_press(Key::Enter);
+    go(harness);
+}
+
+/// A file that is dropped on the window.
+#[derive(Debug)]
+struct Dropped(PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        Err("the window reads by path".to_owned())
+    }
+}
+
+#[test]
+fn menus_and_keys_change_the_project_and_undo_takes_it_back() {
+    let mut harness = window();
+    harness.check_accessibility();
+    let before = project(&harness);
+    menu(&mut harness, Command::PresetCurly);
+    assert_eq!(project(&harness).hair.preset, Preset::Curly, "the menu's change stays");
+    assert_eq!(of(&harness).history.undo_len(), 1);
+    menu(&mut harness, Command::Undo);
+    assert_eq!(project(&harness), before);
+    assert_eq!(of(&harness).history.redo_len(), 1, "what was undone can be done again");
+    key(&mut harness, CTRL | Modifiers::SHIFT, Key::Z);
+    assert_eq!(project(&harness).hair.preset, Preset::Curly);
+    key(&mut harness, CTRL, Key::Z);
+    assert_eq!(project(&harness), before);
+
+    // A drag on a slider of a panel, in the window with everything around it.
+    let rail = control(&harness, Role::Slider, "Stiffness, roots").rect();
+    drag(&mut harness, rail.left_center(), rail.right_center());
+    go(&mut harness);
+    assert_ne!(project(&harness).simulation, before.simulation);
+    assert_eq!(of(&harness).history.undo_len(), 1);
+    assert_eq!(of(&harness).history.undo_label(), Some("simulation"));
+    key(&mut harness, CTRL, Key::Z);
+    assert_eq!(project(&harness), before);
+
+    // The palette does what the menu does.
+    key(&mut harness, CTRL, Key::K);
+    harness.event(Event::Text("long waves".to_owned()));
+    harness.key_press(Key::Enter);
+    go(&mut harness);
+    assert_eq!(project(&harness).hair.preset, Preset::Long);
+    go(&mut harness);
+    assert_eq!(of(&harness).history.undo_len(), 1, "passes alone change nothing");
+}
+
+#[test]
+fn keys_play_and_hide_the_panels() {
+    let mut harness = window();
+    let names = |harness: &Harness<'_, _>| controls(harness, Role::Slider).len();
+    assert!(of(&harness).session.playing && names(&harness) > 10);
+    key(&mut harness, Modifiers::NONE, Key::Tab);
+    assert!(names(&harness) <= 1, "only the timeline is left");
+    key(&mut harness, Modifiers::NONE, Key::Space);
+    assert!(!of(&harness).session.playing, "Space pauses with the panels hidden");
+    key(&mut harness, Modifiers::NONE, Key::Tab);
+    assert!(names(&harness) > 10);
+    let step = of(&harness).session.frame.as_ref().map(|frame| frame.position_secs);
+    key(&mut harness, Modifiers::NONE, Key::ArrowRight);
+    wait(&mut harness, "the next frame", |window| window.session.frame.as_ref().map(|frame| frame.position_secs) > step);
+    key(&mut harness, Modifiers::SHIFT, Key::Questionmark);
+    assert!(harness.query_by_label_contains("Double-click a control").is_some());
+    key(&mut harness, Modifiers::NONE, Key::Escape);
+    assert!(harness.query_by_label_contains("Double-click a control").is_none());
+    let looping = project(&harness).motion.looping;
+    press_button(&mut harness, Command::PlayPause.info().label);
+    assert!(of(&harness).session.playing);
+    key(&mut harness, Modifiers::NONE, Key::L);
+    assert_eq!(project(&harness).motion.looping, !looping);
+}
+
+#[test]
+fn projects_are_saved_opened_and_not_lost() {
+    let mut harness = window();
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = dir.path().join("mein Projekt ü").with_extension(PROJECT_EXTENSION);
+    key(&mut harness, Modifiers::ALT, Key::Num2);
+    assert!(of(&harness).history.is_modified());
+    key(&mut harness, CTRL, Key::S);
+    answer(&mut harness, &path.with_extension(""));
+    assert!(path.is_file(), "the ending was added");
+    assert!(!of(&harness).history.is_modified());
+    assert_eq!(of(&harness).layout.recent, [path.clone()]);
+    let (saved, problems) = load_project(&path).expect("a project");
+    assert!(problems.is_empty() && saved == *project(&harness), "{problems:?}");
+
+    key(&mut harness, Modifiers::ALT, Key::Num3);
+    let changed = project(&harness);
+    key(&mut harness, CTRL, Key::N);
+    press_button(&mut harness, "Stay");
+    assert_eq!(project(&harness), changed);
+    // Closing asks too.
+    let viewport = harness.input_mut().viewports.entry(ViewportId::ROOT).or_default();
+    viewport.events.push(ViewportEvent::Close);
+    harness.step();
+    let commands = &harness.output().viewport_output[&ViewportId::ROOT].commands;
+    assert!(commands.contains(&ViewportCommand::CancelClose), "{commands:?}");
+    harness.input_mut().viewports.entry(ViewportId::ROOT).or_default().events.clear();
+    go(&mut harness);
+    press_button(&mut harness, "Stay");
+    key(&mut harness, CTRL, Key::N);
+    press_button(&mut harness, "Go on without saving");
+    assert_eq!(*project(&harness), Project::default());
+
+    key(&mut harness, CTRL, Key::O);
+    answer(&mut harness, &path);
+    assert_eq!(*project(&harness), saved);
+    assert_eq!(of(&harness).project_path.as_deref(), Some(path.as_path()));
+    assert_eq!(of(&harness).history.undo_len(), 0);
+}
+
+#[test]
+fn a_broken_file_is_told_where_hair_is_edited_and_the_scene_stays() {
+    let mut harness = window();
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = dir.path().join("cut.hair");
+    std::fs::write(&path, b"HAIR and nothing of it").expect("a file");
+    let strands = of(&harness).session.scene.as_ref().map(|scene| scene.style.strands.count());
+    let before = project(&harness);
+    harness.input_mut().dropped_files.push(Arc::new(Dropped(path.clone())));
+    go(&mut harness);
+    wait(&mut harness, "the error", |window| !window.session.problems.is_empty());
+    let problem = of(&harness).session.problems[0].clone();
+    assert_eq!(problem.place, Place::Hair);
+    assert!(problem.message.contains("cut.hair"), "{}", problem.message);
+    assert!(harness.query_by_label(&problem.message).is_some(), "shown in the panel");
+    assert_eq!(of(&harness).session.scene.as_ref().map(|scene| scene.style.strands.count()), strands);
+    key(&mut harness, CTRL, Key::Z);
+    assert_eq!(project(&harness), before);
+    wait(&mut harness, "the end of the error", |window| window.session.problems.is_empty());
+
+    // What is no file of any kind changes nothing.
+    let note = dir.path().join("notes.txt");
+    std::fs::write(&note, b"words").expect("a file");
+    for path in [note, dir.path().join("no such.hair"), dir.path().to_owned()] {
+        harness.input_mut().dropped_files.push(Arc::new(Dropped(path)));
+        go(&mut harness);
+        assert_eq!(project(&harness), before);
+    }
+}

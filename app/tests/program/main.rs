@@ -1,0 +1,7 @@
+//! The whole program, run as a user runs it.
+
+mod info;
+mod projects;
+mod record;
+mod refusals;
+mod tool;

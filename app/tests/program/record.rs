@@ -1,0 +1,258 @@
+//! `lovelock record`.
+
+use std::path::Path;
+use std::sync::OnceLock;
+
+use lovelock_studio::recording::read_film;
+use lovelock_studio::{HairSource, MotionSource};
+use serde_json::Value;
+use tempfile::TempDir;
+
+use crate::tool::{Ran, can_draw, lovelock, names, run, run_command, saved, small_project};
+
+/// The keys that scripts may rely on.
+const KEYS: [&str; 17] = [
+    "out",
+    "frames",
+    "fps",
+    "width",
+    "height",
+    "backend",
+    "adapter",
+    "shadow",
+    "transparency",
+    "strands",
+    "segments",
+    "frame_ms",
+    "stage_ms",
+    "max_stretch",
+    "max_penetration_m",
+    "recovered_guides",
+    "state_hash",
+];
+
+/// The same four frames as a film and as pictures, with other numbers of threads: recorded once, looked at by many.
+struct Takes {
+    dir: TempDir,
+    film: Ran,
+    /// By 1, 2 and 8 threads.
+    pictures: Vec<Ran>,
+}
+
+const FILM: &str = "films of mine/größe & ü.mp4";
+
+fn takes() -> Option<&'static Takes> {
+    static TAKES: OnceLock<Option<Takes>> = OnceLock::new();
+    let make = || {
+        if !can_draw() {
+            return None;
+        }
+        let dir = tempfile::tempdir().expect("a folder");
+        saved(dir.path(), "ein Projekt ü.lovelock", &small_project());
+        let record = |threads: &str, out: &str| {
+            let args = ["record", "ein Projekt ü.lovelock", "--frames", "3..7", "--json", "-o", out];
+            run_command(lovelock().current_dir(dir.path()).args(args).env("RAYON_NUM_THREADS", threads))
+        };
+        let film = record("2", FILM);
+        let pictures = ["1", "2", "8"].map(|threads| record(threads, &format!("frames {threads}"))).into();
+        Some(Takes { dir, film, pictures })
+    };
+    TAKES.get_or_init(make).as_ref()
+}
+
+#[test]
+fn a_film_is_whole_and_can_be_read() {
+    let Some(takes) = takes() else { return };
+    takes.film.done();
+    let film = read_film(&takes.dir.path().join(FILM)).expect("a film");
+    assert_eq!((film.width, film.height, film.frames), (96, 64, 4));
+    assert_eq!(film.codec, "avc1");
+    // Four frames at 30 a second; ticks of the file may round it by less than a thousandth.
+    assert!((film.duration_secs - 4.0 / 30.0).abs() < 1e-3, "{}", film.duration_secs);
+    assert_eq!(names(&takes.dir.path().join("films of mine")), ["größe & ü.mp4"], "nothing beside it");
+}
+
+#[test]
+fn the_json_has_the_keys_that_are_promised() {
+    let Some(takes) = takes() else { return };
+    for ran in takes.pictures.iter().chain([&takes.film]) {
+        let json = ran.done().json();
+        for key in KEYS {
+            assert!(!json[key].is_null(), "no `{key}` in {json}");
+        }
+        for stage in ["motion", "simulate", "interpolate", "shadow", "draw", "encode"] {
+            assert!(json["stage_ms"][stage].as_f64().is_some_and(|ms| ms >= 0.0), "{stage}: {json}");
+        }
+        assert_eq!((&json["frames"], &json["width"], &json["height"]), (&4.into(), &96.into(), &64.into()));
+        assert_eq!((&json["fps"], &json["shadow"]), (&30.0.into(), &"voxel-map".into()));
+        assert_eq!((&json["strands"], &json["segments"]), (&128.into(), &1280.into()), "16 wisps of 8, each of 10");
+        assert_eq!(json["recovered_guides"], 0);
+        assert!(json["max_stretch"].as_f64().is_some_and(|v| v < 1e-3), "{json}");
+        assert!(json["frame_ms"].as_f64().is_some_and(|v| v > 0.0), "{json}");
+        let hash = json["state_hash"].as_str().expect("text");
+        assert!(hash.len() == 16 && hash.bytes().all(|b| b.is_ascii_hexdigit()), "{hash}");
+        for line in ran.stderr.lines() {
+            assert!(!line.starts_with('{') && !line.contains('\r'), "plain lines of progress: {line:?}");
+        }
+    }
+    assert_eq!(takes.film.json()["out"], FILM);
+}
+
+#[test]
+fn the_number_of_threads_changes_no_byte() {
+    let Some(takes) = takes() else { return };
+    let hash = takes.film.done().json()["state_hash"].clone();
+    let pictures = |threads: &str| -> Vec<(String, Vec<u8>)> {
+        let folder = takes.dir.path().join(format!("frames {threads}"));
+        let pngs = names(&folder).into_iter().filter(|name| Path::new(name).extension().is_some_and(|e| e == "png"));
+        pngs.map(|name| (name.clone(), std::fs::read(folder.join(name)).expect("a picture"))).collect()
+    };
+    for ran in &takes.pictures {
+        assert_eq!(ran.done().json()["state_hash"], hash);
+    }
+    let one = pictures("1");
+    let found: Vec<&str> = one.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(found, ["frame_000003.png", "frame_000004.png", "frame_000005.png", "frame_000006.png"]);
+    assert!(one == pictures("2") && one == pictures("8"));
+    assert_ne!(one[0].1, one[3].1, "it dances: the test would see frames that never change");
+}
+
+#[test]
+fn a_folder_of_pictures_has_a_manifest_and_nothing_unfinished() {
+    let Some(takes) = takes() else { return };
+    let folder = takes.dir.path().join("frames 1");
+    let found = names(&folder);
+    assert_eq!(found.len(), 5, "{found:?}");
+    let manifest = found.iter().find(|name| name.ends_with(".json")).expect("a manifest");
+    let text = std::fs::read_to_string(folder.join(manifest)).expect("a manifest");
+    let manifest: Value = serde_json::from_str(&text).expect("JSON");
+    assert_eq!(manifest["complete"], true);
+    assert_eq!(manifest["frames"].as_array().map(Vec::len), Some(4));
+}
+
+#[test]
+fn options_go_before_the_project() {
+    if !can_draw() {
+        return;
+    }
+    let dir = tempfile::tempdir().expect("a folder");
+    saved(dir.path(), "p.lovelock", &small_project());
+    let args = [
+        "--json", "record", "p.lovelock", "-o", "a.mp4", "--frames", "0..2", "--fps", "24", "--size", "64x48",
+        "--shadow", "none", "--backend", "cpu",
+    ];
+    let ran = run(dir.path(), args);
+    let json = ran.done().json();
+    assert_eq!((&json["fps"], &json["width"], &json["height"]), (&24.0.into(), &64.into(), &48.into()));
+    assert_eq!((&json["shadow"], &json["backend"]), (&"none".into(), &"cpu".into()));
+    let film = read_film(&dir.path().join("a.mp4")).expect("a film");
+    assert_eq!((film.width, film.height, film.frames), (64, 48, 2));
+    // Without --json: sentences for people, the same facts.
+    let ran = run(dir.path(), ["record", "p.lovelock", "-o", "a.mp4", "--frames", "0..1"]);
+    assert!(ran.done().stdout.contains("a.mp4: 1 frames of 96x64"), "{ran:?}");
+    assert_eq!(read_film(&dir.path().join("a.mp4")).expect("the new film").frames, 1, "it replaced the old one");
+}
+
+#[test]
+fn a_project_with_missing_files_records_and_says_what_is_missing() {
+    if !can_draw() {
+        return;
+    }
+    let dir = tempfile::tempdir().expect("a folder");
+    let mut project = small_project();
+    project.set_hair_file(dir.path().join("no such hair.hair"));
+    project.set_motion_file(dir.path().join("no such dance.bvh"));
+    project.set_body_file(dir.path().join("no such body.glb"));
+    assert_eq!((project.hair.source, project.motion.source), (HairSource::File, MotionSource::File));
+    saved(dir.path(), "p.lovelock", &project);
+    let ran = run(dir.path(), ["record", "p.lovelock", "-o", "a.mp4", "--frames", "0..2", "--json"]);
+    let json = ran.done().json();
+    let notes = json["notes"].to_string();
+    for file in ["no such hair.hair", "no such dance.bvh", "no such body.glb"] {
+        assert!(ran.stderr.contains(file), "{file} is not told: {}", ran.stderr);
+        assert!(notes.contains(file), "{file} is not in {notes}");
+    }
+    assert_eq!(read_film(&dir.path().join("a.mp4")).expect("a film").frames, 2);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_full_disk_stops_the_recording_and_leaves_nothing() {
+    if !can_draw() {
+        return;
+    }
+    let dir = tempfile::tempdir().expect("a folder");
+    saved(dir.path(), "p.lovelock", &small_project());
+    for (out, limit) in [("a.mp4", 4), ("frames", 2)] {
+        // No file may grow past some kilobytes: writing fails as on a full disk, without a signal.
+        let script = format!("trap '' XFSZ; ulimit -f {limit}; exec \"$0\" record p.lovelock -o {out} --frames 0..12 --size 256x192 --json");
+        let mut shell = std::process::Command::new("sh");
+        shell.current_dir(dir.path()).arg("-c").arg(script).arg(env!("CARGO_BIN_EXE_lovelock"));
+        // Drivers keep compiled shaders in files, which are not what is tested here.
+        shell.env("MESA_SHADER_CACHE_DISABLE", "true");
+        let ran = run_command(&mut shell);
+        assert_eq!(ran.code, Some(1), "{ran:?}");
+        let told: Vec<&str> = ran.stderr.lines().filter(|line| line.starts_with("lovelock:")).collect();
+        assert!(matches!(told[..], [line] if line.contains(out)), "one line that names the file: {ran:?}");
+        let error = &ran.json()["error"];
+        assert!(error["file"].as_str().is_some_and(|file| file.contains(out)), "{error}");
+        let left = names(dir.path());
+        assert!(left.iter().all(|name| name == "p.lovelock" || name == "frames"), "{left:?}");
+    }
+    let frames = dir.path().join("frames");
+    if frames.is_dir() {
+        for name in names(&frames) {
+            assert!(!name.contains("partial"), "{name}");
+            if Path::new(&name).extension().is_some_and(|ending| ending == "png") {
+                let bytes = std::fs::read(frames.join(&name)).expect("a picture");
+                assert!(bytes.ends_with(b"IEND\xae\x42\x60\x82"), "{name} is cut");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_place_that_cannot_be_written_is_named() {
+    if !can_draw() {
+        return;
+    }
+    let dir = tempfile::tempdir().expect("a folder");
+    saved(dir.path(), "p.lovelock", &small_project());
+    std::fs::write(dir.path().join("a file"), b"x").expect("a file");
+    for out in ["a file/film.mp4", "a file/frames"] {
+        let ran = run(dir.path(), ["record", "p.lovelock", "-o", out, "--frames", "0..1"]);
+        assert!(matches!(ran.code, Some(1 | 2)), "{ran:?}");
+        let last = ran.stderr.lines().last().unwrap_or_default();
+        assert!(last.starts_with("lovelock:") && last.contains(out), "{ran:?}");
+        assert_eq!(ran.stdout, "");
+    }
+    assert_eq!(names(dir.path()), ["a file", "p.lovelock"]);
+}
+
+#[test]
+fn files_are_taken_instead_of_the_projects() {
+    let Some(data) = lovelock_testkit::data_dir() else { return };
+    if !can_draw() {
+        return;
+    }
+    let dir = tempfile::tempdir().expect("a folder");
+    let hair = data.join("hair/tressfx/sintel_vk.tfx");
+    let motion = data.join("motion/cmu1_jumping_jacks.bvh");
+    let ran = run_command(lovelock().current_dir(dir.path()).args([
+        "record".as_ref(),
+        "-o".as_ref(),
+        "a.mp4".as_ref(),
+        "--frames".as_ref(),
+        "0..2".as_ref(),
+        "--size".as_ref(),
+        "96x64".as_ref(),
+        "--json".as_ref(),
+        "--hair".as_ref(),
+        hair.as_os_str(),
+        "--motion".as_ref(),
+        motion.as_os_str(),
+    ]));
+    let json = ran.done().json();
+    assert_eq!(json["strands"], 228, "every strand of the file is drawn");
+    assert_eq!(read_film(&dir.path().join("a.mp4")).expect("a film").frames, 2);
+}

@@ -1,0 +1,100 @@
+//! Wrong requests: exit status 2, one line that names what is wrong, and nothing written.
+
+use crate::tool::{names, run, saved, small_project};
+
+#[test]
+fn wrong_options_are_refused_in_one_line() {
+    let dir = tempfile::tempdir().expect("a folder");
+    saved(dir.path(), "p.lovelock", &small_project());
+    std::fs::create_dir(dir.path().join("folder")).expect("a folder");
+    let before = names(dir.path());
+    let film = ["record", "-o", "a.mp4"];
+    let with = |more: &[&'static str]| -> Vec<&'static str> { film.iter().chain(more).copied().collect() };
+    let wrong: Vec<(Vec<&str>, &str)> = vec![
+        (with(&["--shadow", "magic"]), "magic"),
+        (with(&["--shadow", "magic"]), "voxel-map"),
+        (with(&["--transparency", "magic"]), "magic"),
+        (with(&["--backend", "magic"]), "cpu"),
+        (with(&["--preset", "magic"]), "curly"),
+        (with(&["--frames", "5..5"]), "5..5"),
+        (with(&["--frames", "9..3"]), "9..3"),
+        (with(&["--frames", "ten"]), "ten"),
+        (with(&["--frames", "0..99999999999999999999"]), "--frames"),
+        (with(&["--frames=-4..4"]), "-4..4"),
+        (with(&["--fps", "0"]), "0"),
+        (with(&["--fps", "nan"]), "nan"),
+        (with(&["--fps", "1e9"]), "1e9"),
+        (with(&["--size", "1280"]), "1280"),
+        (with(&["--size", "0x64"]), "0x64"),
+        (with(&["--size", "96x-64"]), "96x-64"),
+        (with(&["--size", "95x64"]), "95x64"),
+        (with(&["--size", "96x63"]), "96x63"),
+        (with(&["--size", "100000x100000"]), "100000x100000"),
+        (with(&["no such project.lovelock"]), "no such project.lovelock"),
+        (with(&["folder"]), "folder"),
+        (with(&["--hair", "no such.hair"]), "no such.hair"),
+        (with(&["--body", "no such.glb"]), "no such.glb"),
+        (with(&["--motion", "no such.bvh"]), "no such.bvh"),
+        (with(&["--preset", "curly", "--hair", "x.hair"]), "--hair"),
+        (with(&["--sparkle"]), "--sparkle"),
+        (vec!["record", "-o", "a.gif"], "a.gif"),
+        (vec!["record", "-o", ""], ""),
+        (vec!["record"], "--out"),
+        (vec!["p.lovelock", "record", "-o", "a.mp4"], "p.lovelock"),
+        (vec!["sparkle", "twice"], "twice"),
+        (vec!["no such project.lovelock"], "no such project.lovelock"),
+        (vec!["info"], "FILE"),
+        (vec!["info", "no such.hair"], "no such.hair"),
+        (vec!["info", "folder"], "folder"),
+    ];
+    for (args, named) in wrong {
+        for json in [false, true] {
+            let mut args = args.clone();
+            if json {
+                args.push("--json");
+            }
+            let ran = run(dir.path(), &args);
+            let line = ran.refused(2);
+            assert!(line.contains(named), "{args:?}: `{named}` is not named: {line}");
+            if json {
+                let error = &ran.json()["error"];
+                assert!(error["message"].as_str().is_some_and(|m| line.contains(m)), "{args:?}: {error}");
+                assert!(error.as_object().is_some_and(|error| error.contains_key("file")), "{args:?}");
+            } else {
+                assert_eq!(ran.stdout, "", "{args:?}");
+            }
+        }
+    }
+    assert_eq!(names(dir.path()), before, "nothing was written");
+}
+
+#[test]
+fn an_error_in_json_names_its_file() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let ran = run(dir.path(), ["info", "--json", "ü no.hair"]);
+    ran.refused(2);
+    assert_eq!(ran.json()["error"]["file"], "ü no.hair");
+    let ran = run(dir.path(), ["record", "--json", "-o", "a.mp4", "--fps", "0"]);
+    ran.refused(2);
+    assert!(ran.json()["error"]["file"].is_null());
+}
+
+#[test]
+fn help_and_version_are_no_errors() {
+    let dir = tempfile::tempdir().expect("a folder");
+    for args in [&["--help"][..], &["--version"], &["record", "--help"], &["help", "info"]] {
+        let ran = run(dir.path(), args);
+        assert!(!ran.done().stdout.is_empty() && ran.stderr.is_empty(), "{ran:?}");
+    }
+}
+
+#[test]
+fn a_window_without_a_display_is_an_error_and_no_crash() {
+    let dir = tempfile::tempdir().expect("a folder");
+    // What macOS and Windows open needs no variable, so the program would stay open there.
+    if cfg!(all(unix, not(target_os = "macos"))) {
+        let ran = run(dir.path(), Vec::<&str>::new());
+        let line = ran.refused(1);
+        assert!(line.contains("lovelock record"), "what works without a display: {line}");
+    }
+}

@@ -1,0 +1,140 @@
+//! Runs the program and looks at what it left.
+
+use std::ffi::OsStr;
+use std::fs::File;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::sync::OnceLock;
+use std::time::{Duration, Instant};
+
+use lovelock_studio::groom::Preset;
+use lovelock_studio::{Project, save_project};
+use serde_json::Value;
+
+/// No run of these tests takes a tenth of it; what takes longer hangs.
+const HANGS: Duration = Duration::from_mins(2);
+
+/// How a run of the program ended.
+#[derive(Debug)]
+pub struct Ran {
+    pub code: Option<i32>,
+    pub stdout: String,
+    pub stderr: String,
+    pub took: Duration,
+}
+
+impl Ran {
+    /// The one JSON object on standard output.
+    #[track_caller]
+    pub fn json(&self) -> Value {
+        let value: Value = serde_json::from_str(&self.stdout)
+            .unwrap_or_else(|error| panic!("no single JSON value on standard output ({error}): {self:?}"));
+        assert!(value.is_object(), "{self:?}");
+        value
+    }
+
+    /// The one line on standard error of a run that must end with `code`.
+    #[track_caller]
+    pub fn refused(&self, code: i32) -> &str {
+        assert_eq!(self.code, Some(code), "{self:?}");
+        let line = self.stderr.trim_end_matches('\n');
+        assert!(!line.is_empty() && line.lines().count() == 1, "one line: {self:?}");
+        assert!(line.len() < 700, "a sentence: {self:?}");
+        assert!(!line.contains("panicked"), "{self:?}");
+        line
+    }
+
+    /// Whether it ended well.
+    #[track_caller]
+    pub fn done(&self) -> &Self {
+        assert_eq!(self.code, Some(0), "{self:?}");
+        self
+    }
+}
+
+/// The program, with nothing of a display.
+pub fn lovelock() -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lovelock"));
+    command.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").env_remove("LOVELOCK_LOG");
+    command
+}
+
+/// Runs it to its end.
+#[track_caller]
+pub fn run<A: AsRef<OsStr>>(folder: &Path, args: impl IntoIterator<Item = A>) -> Ran {
+    run_command(lovelock().current_dir(folder).args(args))
+}
+
+/// Runs a command to its end, and kills it where it hangs.
+#[track_caller]
+pub fn run_command(command: &mut Command) -> Ran {
+    // Files rather than pipes: nothing waits for a reader.
+    let dir = tempfile::tempdir().expect("a folder");
+    let (out, err) = (dir.path().join("out"), dir.path().join("err"));
+    let start = Instant::now();
+    let mut child = command
+        .stdin(Stdio::null())
+        .stdout(File::create(&out).expect("a file"))
+        .stderr(File::create(&err).expect("a file"))
+        .spawn()
+        .expect("the program starts");
+    let status = loop {
+        if let Some(status) = child.try_wait().expect("its state") {
+            break status;
+        }
+        if start.elapsed() > HANGS {
+            let _ = child.kill();
+            let _ = child.wait();
+            panic!("hangs: {command:?}");
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    };
+    let read = |path| String::from_utf8(std::fs::read(path).expect("a file")).expect("UTF-8");
+    Ran { code: status.code(), stdout: read(out), stderr: read(err), took: start.elapsed() }
+}
+
+/// A project with few strands and small maps, so that a frame of it is soon drawn.
+pub fn small_project() -> Project {
+    let mut project = Project::default();
+    project.set_preset(Preset::Smooth);
+    project.hair.groom.wisps = 16;
+    project.hair.groom.strands_per_wisp = 8;
+    project.hair.groom.segments_per_strand = 10;
+    project.shadow.voxel_map.resolution = 32;
+    (project.recording.width, project.recording.height) = (96, 64);
+    project
+}
+
+/// Saves a project and names it.
+pub fn saved(folder: &Path, name: &str, project: &Project) -> std::path::PathBuf {
+    let path = folder.join(name);
+    save_project(&path, project).expect("the project is saved");
+    path
+}
+
+/// Whether pictures can be drawn here; says so where not, and fails on a machine that tests for others.
+pub fn can_draw() -> bool {
+    static CAN: OnceLock<Result<(), String>> = OnceLock::new();
+    let can = CAN.get_or_init(|| {
+        let dir = tempfile::tempdir().expect("a folder");
+        saved(dir.path(), "small.lovelock", &small_project());
+        let args = ["record", "small.lovelock", "-o", "frames", "--frames", "0..1", "--size", "32x32"];
+        let ran = run(dir.path(), args);
+        // Only a missing adapter excuses: every other failure is one of the tests that follow.
+        if ran.code == Some(1) && ran.stderr.contains("adapter") { Err(ran.stderr) } else { Ok(()) }
+    });
+    if let Err(error) = can {
+        lovelock_testkit::skip_without_adapter(error);
+    }
+    can.is_ok()
+}
+
+/// Names of everything in a folder, sorted.
+pub fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> = std::fs::read_dir(folder)
+        .expect("a folder")
+        .map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    names
+}
