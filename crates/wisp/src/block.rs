@@ -34,7 +34,9 @@ pub(crate) struct Block {
     pub(crate) residual: Vec<Lane3>,
     pub(crate) lengths: LengthScratch,
     pub(crate) bending: Bending,
+    /// The colliders near the block, and how deep they have closed over the roots.
     pub(crate) active: Vec<u32>,
+    pub(crate) buried: Vec<Lane>,
     pub(crate) outcome: Outcome,
 }
 
@@ -69,6 +71,7 @@ impl Block {
             lengths: LengthScratch::new(points),
             bending: Bending::new(points),
             active: Vec::new(),
+            buried: Vec::new(),
             outcome: Outcome::default(),
         }
     }

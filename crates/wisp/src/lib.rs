@@ -1,4 +1,8 @@
 //! The wisp simulator: rigid links, shape memory, collisions, density-grid repulsion and wind.
+//!
+//! Each guide strand is a chain of rigid links rooted in the moving scalp (Bertails, Ménier, Cani 2005). A
+//! [`Simulation`] holds the guides of one hairstyle; [`Simulation::step`] moves them on while the body moves
+//! from its last place to a new one, and [`Simulation::frame`] hands out what interpolation reads.
 
 mod block;
 mod colliders;

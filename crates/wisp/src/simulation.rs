@@ -285,6 +285,7 @@ impl Simulation {
                 }
             }
             block.active.reserve(shapes.len());
+            block.buried.reserve(shapes.len());
         });
     }
 

@@ -56,11 +56,47 @@ pub(crate) struct Near<'a> {
     /// Signed distance at rest of point `i` to collider `c` at `c * points + i`.
     pub(crate) rest_distance: &'a [Lane],
     pub(crate) points: usize,
+    /// The last point that the scalp carries.
+    pub(crate) carried: usize,
+    /// How much deeper than at rest that point is inside each of the active colliders, metres; see [`buried`].
+    pub(crate) buried: &'a [Lane],
+    /// Mean link of each guide, metres.
+    pub(crate) link: &'a Lane,
+}
+
+/// How steeply a lock leaves a collider that its root has been carried into: the sine of its angle.
+const WAY_OUT: f32 = 0.5;
+
+/// How much deeper than at rest points that the scalp carries are inside a collider, metres.
+///
+/// The scalp is carried by the head alone, so where the head bends over the neck, the body's own shapes close
+/// over roots. Hair there cannot be outside; it is let out along a slope instead of being bent straight up.
+#[inline(always)]
+pub(crate) fn buried(carried: &Lane3, mover: &MovingShape, rest: &Lane) -> Lane {
+    let mut out = ZERO;
+    if let (Some(shape), false) = (mover.shape, mover.on_head) {
+        let now = shape.nearest(carried, &ZERO3).distance;
+        for k in 0..LANES {
+            out[k] = greater(lesser(rest[k], 0.0) - now[k], 0.0);
+        }
+    }
+    out
 }
 
 impl Near<'_> {
     fn rest(&self, collider: u32, point: usize) -> &Lane {
         &self.rest_distance[collider as usize * self.points + point]
+    }
+
+    /// How near to the surface of the `n`-th active collider each lane of a point may come.
+    #[inline(always)]
+    fn allowed(&self, n: usize, point: usize, rules: &ContactRules) -> Lane {
+        let c = self.active[n];
+        let mut out = rules.allowed(self.shapes[c as usize].on_head, self.rest(c, point));
+        for k in 0..LANES {
+            out[k] -= greater(self.buried[n][k] - WAY_OUT * self.link[k] * (point - self.carried) as f32, 0.0);
+        }
+        out
     }
 }
 
@@ -90,7 +126,7 @@ pub(crate) fn lay_point(
     for round in 0..ROUNDS {
         let (min, max) = bounds(&placed);
         let mut pushed = false;
-        for &c in near.active {
+        for (n, &c) in near.active.iter().enumerate() {
             let mover = &near.shapes[c as usize];
             let reach = rules.reach();
             if apart(min, max, mover, reach) {
@@ -102,7 +138,7 @@ pub(crate) fn lay_point(
                 put(&mut along, k, at(&placed, k) - at(before, k));
             }
             let nearest = shape.nearest(&placed, &along);
-            let allowed = rules.allowed(mover.on_head, near.rest(c, point));
+            let allowed = near.allowed(n, point, rules);
             let mut deepest = 0.0;
             for k in 0..LANES {
                 deepest = greater(deepest, allowed[k] - nearest.distance[k]);
@@ -168,7 +204,7 @@ pub(crate) fn push_out(from: Vec3, p: Vec3, length: f32, centre: Vec3, radius: f
 pub(crate) fn penetration(point: usize, placed: &Lane3, near: &Near, rules: &ContactRules) -> Lane {
     let mut worst = ZERO;
     let (min, max) = bounds(placed);
-    for &c in near.active {
+    for (n, &c) in near.active.iter().enumerate() {
         let mover = &near.shapes[c as usize];
         if apart(min, max, mover, rules.reach()) {
             continue;
@@ -177,7 +213,7 @@ pub(crate) fn penetration(point: usize, placed: &Lane3, near: &Near, rules: &Con
         let nearest = shape.nearest(placed, &ZERO3);
         // The margin is for comfort: what counts is the surface, or the distance at rest where that is less.
         let bare = ContactRules { margin: 0.0, layering: 0.0, ..*rules };
-        let allowed = bare.allowed(mover.on_head, near.rest(c, point));
+        let allowed = near.allowed(n, point, &bare);
         for k in 0..LANES {
             worst[k] = greater(worst[k], allowed[k] - nearest.distance[k]);
         }

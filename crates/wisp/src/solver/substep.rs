@@ -3,7 +3,7 @@
 use super::lengths::{project_position, project_velocity};
 use super::Plan;
 use crate::block::Block;
-use crate::colliders::contact::{Near, apart, bounds, lay_point, penetration};
+use crate::colliders::contact::{Near, apart, bounds, buried, lay_point, penetration};
 use crate::lanes::{LANES, Turns, ZERO3, at, direction_or, greater, lesser, put};
 
 /// Takes the block through substep `s`.
@@ -117,6 +117,7 @@ fn shape_memory(block: &mut Block, plan: &Plan, s: usize) {
 #[inline(always)]
 fn find_near(block: &mut Block, plan: &Plan, s: usize) {
     block.active.clear();
+    block.buried.clear();
     let shapes = &plan.shapes[s * plan.shapes_per_substep..][..plan.shapes_per_substep];
     if shapes.is_empty() {
         return;
@@ -133,9 +134,11 @@ fn find_near(block: &mut Block, plan: &Plan, s: usize) {
     let ((min, _), (_, max)) = (bounds(&low), bounds(&high));
     // The clean-up pass may lay points a little outside the box of where they want to be.
     let reach = plan.rules.reach() + 0.03;
+    let carried = plan.first_free.saturating_sub(1);
     for (c, mover) in shapes.iter().enumerate() {
         if mover.shape.is_some() && !apart(min, max, mover, reach) {
             block.active.push(c as u32);
+            block.buried.push(buried(&block.next[carried], mover, &block.rest_distance[c * block.points() + carried]));
         }
     }
 }
@@ -149,6 +152,9 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize) {
         active: &block.active,
         rest_distance: &block.rest_distance,
         points: count,
+        carried: plan.first_free.saturating_sub(1),
+        buried: &block.buried,
+        link: &block.rest.mean_link,
     };
     let last = s + 1 == plan.substeps.len();
     let mut deepest = [0.0_f32; LANES];
