@@ -142,14 +142,17 @@ pub struct Problem {
     pub place: Place,
     /// What kind of problem.
     pub kind: ProblemKind,
-    /// A sentence that says what happened and what to do.
+    /// What happened, in one sentence.
+    pub cause: String,
+    /// The cause, and what was done about it.
     pub message: String,
 }
 
 impl Problem {
     /// A problem.
     pub fn new(place: Place, kind: ProblemKind, message: impl fmt::Display) -> Self {
-        Self { place, kind, message: message.to_string() }
+        let cause = message.to_string();
+        Self { place, kind, message: cause.clone(), cause }
     }
 
     /// A file that could not be loaded.

@@ -42,6 +42,17 @@ impl Unit {
         }
     }
 
+    /// The word for it in sentences.
+    fn word(self) -> &'static str {
+        match self {
+            Self::Metre => "metre",
+            Self::Centimetre => "centimetre",
+            Self::Millimetre => "millimetre",
+            Self::Inch => "inch",
+            Self::Auto | Self::Custom(_) => "unit of its own",
+        }
+    }
+
     /// The unit of that [`Self::id`], except for custom ones.
     pub fn from_id(id: &str) -> Option<Self> {
         Self::NAMED.into_iter().chain([Self::Auto]).find(|unit| unit.id() == id)
@@ -191,7 +202,10 @@ pub fn guess_units(file: &HairFile) -> UnitGuess {
             Some((unit, metres)) => (
                 metres,
                 Some(unit),
-                format!("The roots span {span:.3} units; in {} that is a scalp, {across}.", unit.id()),
+                format!(
+                    "The roots span {span:.3} units; at one {} a unit that is a scalp, {across}.",
+                    unit.word()
+                ),
             ),
             None => (
                 0.15 / span,

@@ -1,5 +1,6 @@
 //! The parts of a scene, each loaded by itself.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::SystemTime;
@@ -130,13 +131,13 @@ fn find_joint(skeleton: &Skeleton, name: &str) -> Option<usize> {
 }
 
 /// What was dropped from a file and what it had to say.
-fn file_notes(
-    place: Place,
-    dropped: &std::collections::BTreeMap<String, u64>,
-    notes: &[String],
-) -> Vec<Problem> {
+fn file_notes(place: Place, dropped: &BTreeMap<String, u64>, notes: &[String]) -> Vec<Problem> {
     let dropped = dropped.iter().map(|(what, count)| {
-        Problem::new(place, ProblemKind::Note, format!("left out of the file: {count} {what}"))
+        Problem::new(
+            place,
+            ProblemKind::Note,
+            format!("left out of the file: {count} {}", what.replace('_', " ")),
+        )
     });
     let notes = notes.iter().map(|note| Problem::new(place, ProblemKind::Note, note));
     dropped.chain(notes).collect()
@@ -286,7 +287,8 @@ impl HairKey {
         }
         let (style, notes) = match self {
             Self::Grown(settings) => {
-                let style = grow(settings, &part.scalp, &*part.obstacle).map_err(|error| refuse(&error))?;
+                let style = grow(settings, &part.scalp, &*part.obstacle)
+                    .map_err(|error| refuse(&format!("{}: {error}", part.body.name)))?;
                 (style, Vec::new())
             }
             Self::File { stamp, import } => {
@@ -297,7 +299,8 @@ impl HairKey {
                 *cache = Some((stamp.clone(), Arc::clone(&file)));
                 let style = import_around(&file, import, &part.scalp, Some(&*part.obstacle))
                     .map_err(|error| refuse(&error))?;
-                (style, file_notes(Place::Hair, &file.dropped, &file.notes))
+                // The file's own notes say in words what was dropped.
+                (style, file_notes(Place::Hair, &BTreeMap::new(), &file.notes))
             }
         };
         // Everything after this relies on its indices.
