@@ -166,7 +166,8 @@ impl Engine {
         };
         self.at_step = (self.scene.position_secs(time_secs) / self.step_secs).round() as i64;
         if !same_layout || !same_body {
-            self.settle();
+            // Briefly: a slider that is dragged brings many such scenes, and the rest of the fall may be seen.
+            self.fall_into_place(0.2, 0.0);
         } else if !same_clip {
             self.jump();
         }
@@ -181,12 +182,16 @@ impl Engine {
     /// Puts the hair to its style and lets it fall into place. Where the clip loops, it then lives through the
     /// dance before this time, so that the first frame moves like all others.
     pub fn settle(&mut self) {
-        let here = self.at_step;
+        let lead_secs =
+            if self.scene.loops_smoothly() && self.scene.clip.is_some() { LEAD_SECS } else { 0.0 };
+        self.fall_into_place(SETTLE_SECS, lead_secs);
+    }
+
+    /// From the style at rest: `fall_secs` in the pose `lead_secs` before now, then the motion until now.
+    fn fall_into_place(&mut self, fall_secs: f64, lead_secs: f64) {
         let steps = |secs: f64| (secs / self.step_secs).round() as i64;
-        let lead =
-            if self.scene.loops_smoothly() && self.scene.clip.is_some() { steps(LEAD_SECS) } else { 0 };
-        let fall = steps(SETTLE_SECS);
-        self.at_step = here - lead;
+        let (fall, lead) = (steps(fall_secs), steps(lead_secs));
+        self.at_step -= lead;
         self.simulated_secs += JUMP_SECS;
         self.place_body();
         self.simulation.reset(&Self::input(self.simulated_secs, self.pose.world_from_head, &self.colliders));
