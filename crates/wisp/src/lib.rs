@@ -4,6 +4,14 @@
 //! [`Simulation`] holds the guides of one hairstyle; [`Simulation::step`] moves them on while the body moves
 //! from its last place to a new one, and [`Simulation::frame`] hands out what interpolation reads.
 
+#![allow(
+    clippy::inline_always,
+    clippy::needless_range_loop,
+    clippy::too_many_arguments,
+    reason = "hot loops over lanes index several rows at once and must be inlined into the functions that are \
+              compiled for wider instructions; what they share goes by argument, not through memory"
+)]
+
 mod block;
 mod colliders;
 mod dispatch;
