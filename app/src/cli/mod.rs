@@ -28,7 +28,8 @@ pub(crate) fn run() -> ExitCode {
     };
     let output = Output { json: arguments.json };
     if let (Some(project), Some(_)) = (&arguments.project, &arguments.task) {
-        return output.refuse(&format!("{}: a file before the command; expected it after", project.display()));
+        return output
+            .refuse(&format!("{}: a file before the command; expected it after", project.display()));
     }
     let result = match arguments.task {
         None => {

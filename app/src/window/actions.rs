@@ -58,7 +58,9 @@ impl Window {
                 let duration = self.session.scene.as_ref().map_or(0.0, |scene| scene.duration_secs());
                 self.session.worker().seek((duration - lovelock_studio::STEP_SECS).max(0.0));
             }
-            Command::ToggleLoop => self.change("loop", |project| project.motion.looping = !project.motion.looping),
+            Command::ToggleLoop => {
+                self.change("loop", |project| project.motion.looping = !project.motion.looping)
+            }
             Command::SettleHair => self.session.worker().settle(),
             Command::Record if self.recorder.is_running() => self.recorder.cancel(),
             Command::Record => self.ask(Purpose::Film),
@@ -70,7 +72,9 @@ impl Window {
                     CameraMode::Fixed => CameraMode::Follow,
                 };
             }),
-            Command::ResetCamera => self.change("camera", |project| project.camera = CameraSection::default()),
+            Command::ResetCamera => {
+                self.change("camera", |project| project.camera = CameraSection::default())
+            }
             Command::Undo => {
                 self.history.undo();
             }
@@ -109,14 +113,17 @@ impl Window {
         let aspect = width as f32 / height.max(1) as f32;
         let guides = &frame.guides.guides;
         let points = (0..guides.x.len()).map(|i| glam::Vec3::new(guides.x[i], guides.y[i], guides.z[i]));
-        let camera = frame_points(&self.history.project().camera, &frame.scene, frame.time_secs, points, aspect);
+        let camera =
+            frame_points(&self.history.project().camera, &frame.scene, frame.time_secs, points, aspect);
         self.change("camera", |project| project.camera = camera);
     }
 
     /// Opens a file of any kind that is read.
     pub(super) fn open_any(&mut self, path: &Path) {
         match FileKind::of(path) {
-            Ok(FileKind::Project) if self.history.is_modified() => self.pending = Some(Pending::Open(path.to_owned())),
+            Ok(FileKind::Project) if self.history.is_modified() => {
+                self.pending = Some(Pending::Open(path.to_owned()))
+            }
             Ok(FileKind::Project) => self.open_project(path),
             Ok(kind) => {
                 self.session.pick(path);
@@ -169,7 +176,7 @@ impl Window {
             Purpose::Film | Purpose::Sequence => {
                 let access = self.session.access().clone();
                 self.recorder.start(self.history.project().clone(), access, path, ctx);
-            },
+            }
             Purpose::Picture => {
                 let Some(painted) = self.session.painted.clone() else { return };
                 let picture = &painted.picture;

@@ -91,10 +91,11 @@ impl Number {
 }
 
 /// The number in what was typed, with or without its unit; none where it is no finite number.
-fn typed(text: &str, unit: &str) -> Option<f64> {
+pub(crate) fn typed(text: &str, unit: &str) -> Option<f64> {
     let text = text.trim();
     let text = text.strip_suffix(unit.trim()).unwrap_or(text);
-    let plain: String = text.chars().filter(|c| !c.is_whitespace()).map(|c| if c == '−' { '-' } else { c }).collect();
+    let plain: String =
+        text.chars().filter(|c| !c.is_whitespace()).map(|c| if c == '−' { '-' } else { c }).collect();
     plain.parse().ok().filter(|number: &f64| number.is_finite())
 }
 
@@ -140,6 +141,7 @@ pub(crate) fn choice<T: Copy + PartialEq>(
         egui::ComboBox::from_id_salt(label)
             .selected_text(chosen)
             .width(width)
+            .truncate()
             .show_ui(ui, |ui| {
                 for (option, name) in options {
                     ui.selectable_value(value, *option, *name);
@@ -199,7 +201,11 @@ pub(crate) fn row<T>(
                 ui.add(egui::Label::new(text).sense(Sense::click()).truncate())
             })
             .inner;
-        let tip = if differs { format!("{tip}\n\nChanged: double-click restores the default.") } else { tip.to_owned() };
+        let tip = if differs {
+            format!("{tip}\n\nChanged: double-click restores the default.")
+        } else {
+            tip.to_owned()
+        };
         let mut response = add(ui, value).labelled_by(name.id).on_hover_text(&tip);
         let name = name.on_hover_text(&tip);
         // A slider's rail takes drags and no clicks, so what it says of a double-click is not enough.
@@ -215,9 +221,7 @@ pub(crate) fn row<T>(
 
 /// A titled part of a panel that folds.
 pub(crate) fn section<R>(ui: &mut Ui, title: &str, open: bool, add: impl FnOnce(&mut Ui) -> R) {
-    egui::CollapsingHeader::new(RichText::new(title).strong())
-        .default_open(open)
-        .show(ui, add);
+    egui::CollapsingHeader::new(RichText::new(title).strong()).default_open(open).show(ui, add);
 }
 
 /// A line of quiet text.

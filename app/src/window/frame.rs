@@ -90,12 +90,19 @@ impl Window {
                             }
                         });
                         ui.menu_button("Picture size", |ui| {
-                            for (scale, name) in [(0.0, "Choose by the device"), (1.0, "Every pixel"), (0.5, "Half"), (0.25, "Quarter")] {
+                            for (scale, name) in [
+                                (0.0, "Choose by the device"),
+                                (1.0, "Every pixel"),
+                                (0.5, "Half"),
+                                (0.25, "Quarter"),
+                            ] {
                                 ui.radio_value(&mut self.layout.view_scale, scale, name);
                             }
                         });
                         if let Some(label) = self.history.undo_label() {
-                            ui.label(RichText::new(format!("last change: {label}")).small().color(theme::QUIET));
+                            ui.label(
+                                RichText::new(format!("last change: {label}")).small().color(theme::QUIET),
+                            );
                         }
                         chosen
                     })
@@ -118,7 +125,11 @@ impl Window {
             playing: self.session.playing,
             looping: self.history.project().motion.looping,
         };
-        Panel::bottom("timeline").exact_size(40.0).resizable(false).show(ui, |ui| timeline::ui(ui, view)).inner
+        Panel::bottom("timeline")
+            .exact_size(40.0)
+            .resizable(false)
+            .show(ui, |ui| timeline::ui(ui, view))
+            .inner
     }
 
     fn left_panel(&mut self, ui: &mut Ui, project: &mut Project) {
@@ -161,8 +172,10 @@ impl Window {
                 });
                 section(ui, "Picture", false, |ui| panels::look::picture(ui, &mut project.picture));
                 section(ui, "Recording", false, |ui| {
-                    let frames = self.session.scene.as_ref().map_or(1, |scene| scene.frames(project.recording.fps));
-                    recording = panels::recording::ui(ui, &mut project.recording, self.recorder.state(), frames);
+                    let frames =
+                        self.session.scene.as_ref().map_or(1, |scene| scene.frames(project.recording.fps));
+                    recording =
+                        panels::recording::ui(ui, &mut project.recording, self.recorder.state(), frames);
                 });
                 section(ui, "Statistics", true, |ui| {
                     panels::statistics::ui(ui, &self.session.stages, &self.facts());
@@ -180,7 +193,8 @@ impl Window {
     fn picture(&mut self, ui: &mut Ui, project: &mut Project) {
         CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
             let software = self.session.painter().adapter().is_none_or(|adapter| adapter.software);
-            let response = self.viewport.show(ui, self.session.painted.as_ref(), software, self.layout.view_scale);
+            let response =
+                self.viewport.show(ui, self.session.painted.as_ref(), software, self.layout.view_scale);
             camera_control::apply(&mut project.camera, &response);
             let rect = response.rect;
             if let Some(error) = &self.session.draw_error {
@@ -193,10 +207,18 @@ impl Window {
             if self.recorder.is_running() {
                 Viewport::caption(ui, rect, Align2::LEFT_TOP, "● recording", theme::RECORDING);
             } else if let Some(progress) = self.session.worker().load_progress() {
-                let bar = egui::Rect::from_min_size(rect.left_top() + egui::vec2(10.0, 10.0), egui::vec2(260.0, 20.0));
+                let bar = egui::Rect::from_min_size(
+                    rect.left_top() + egui::vec2(10.0, 10.0),
+                    egui::vec2(260.0, 20.0),
+                );
                 ui.put(bar, ProgressBar::new(progress.fraction).text(progress.what));
-                let button = egui::Rect::from_min_size(bar.right_top() + egui::vec2(6.0, 0.0), egui::vec2(60.0, 20.0));
-                if ui.put(button, egui::Button::new("Cancel")).on_hover_text("Stops loading; the scene stays as it was.").clicked() {
+                let button =
+                    egui::Rect::from_min_size(bar.right_top() + egui::vec2(6.0, 0.0), egui::vec2(60.0, 20.0));
+                if ui
+                    .put(button, egui::Button::new("Cancel"))
+                    .on_hover_text("Stops loading; the scene stays as it was.")
+                    .clicked()
+                {
                     self.session.worker().cancel_load();
                 }
             }
@@ -257,7 +279,10 @@ impl Window {
             .map_or_else(|| std::env::current_dir().unwrap_or_default(), std::path::Path::to_owned);
         let suggestion = match purpose {
             Purpose::Open => folder,
-            Purpose::SaveProject => self.project_path.clone().unwrap_or_else(|| folder.join("hair").with_extension(PROJECT_EXTENSION)),
+            Purpose::SaveProject => self
+                .project_path
+                .clone()
+                .unwrap_or_else(|| folder.join("hair").with_extension(PROJECT_EXTENSION)),
             Purpose::Film => folder.join("out").join("dance.mp4"),
             Purpose::Sequence => folder.join("out").join("frames"),
             Purpose::Picture => folder.join("hair.png"),

@@ -43,7 +43,8 @@ impl Gestures {
         let focused = ctx.memory(egui::Memory::focused);
         let (pressed, held, scrolled) = ctx.input(|input| {
             let pointer = &input.pointer;
-            let pressed = pointer.any_pressed().then(|| (input.time, pointer.interact_pos().unwrap_or_default()));
+            let pressed =
+                pointer.any_pressed().then(|| (input.time, pointer.interact_pos().unwrap_or_default()));
             // The pass in which the pointer is released still belongs to its drag.
             let held = pointer.any_down() || pointer.any_released();
             (pressed, held, input.smooth_scroll_delta != Vec2::ZERO || input.zoom_delta() != 1.0)
@@ -54,7 +55,9 @@ impl Gestures {
                 now - before <= DOUBLE_CLICK_SECS && at.distance(there) <= DOUBLE_CLICK_REACH
             }
             (Some(_), None) => false,
-            (None, _) => held || (scrolled && self.scrolled) || (focused.is_some() && focused == self.focused),
+            (None, _) => {
+                held || (scrolled && self.scrolled) || (focused.is_some() && focused == self.focused)
+            }
         };
         if !lasts {
             self.next();

@@ -37,7 +37,9 @@ pub(crate) fn light_sphere(ui: &mut Ui, direction: &mut Vec3, [right, up, back]:
         painter.circle_stroke(handle, 6.0, Stroke::new(2.0, theme::ACCENT));
     }
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "Light direction"));
-    response.on_hover_text("Drag to say where the light comes from, as the camera sees it. A hollow handle is behind.")
+    response.on_hover_text(
+        "Drag to say where the light comes from, as the camera sees it. A hollow handle is behind.",
+    )
 }
 
 /// The point of the unit sphere under `x`, `y`: before it, or behind it where `behind`; on its rim outside.

@@ -96,7 +96,11 @@ pub(crate) fn open(path: Option<&Path>, screenshot: Option<(PathBuf, f64)>) -> R
         options,
         Box::new(move |creation| Ok(Box::new(Window::new(creation, opened, screenshot)?))),
     )
-    .map_err(|error| StudioError::work(format!("the window could not be opened: {error}; without a display use `lovelock record`")))
+    .map_err(|error| {
+        StudioError::work(format!(
+            "the window could not be opened: {error}; without a display use `lovelock record`"
+        ))
+    })
 }
 
 impl Window {
@@ -108,14 +112,19 @@ impl Window {
         let ctx = &creation.egui_ctx;
         egui_material_icons::initialize(ctx);
         theme::apply(ctx);
-        let layout = creation.storage.and_then(|storage| eframe::get_value(storage, LAYOUT_KEY)).unwrap_or_default();
+        let layout =
+            creation.storage.and_then(|storage| eframe::get_value(storage, LAYOUT_KEY)).unwrap_or_default();
         let mut window = Self::start(ctx, layout, opened)?;
         window.screenshot = picture.map(|(out, after_secs)| Screenshot::new(out, after_secs));
         Ok(window)
     }
 
     /// Starts what runs behind the window.
-    fn start(ctx: &egui::Context, layout: Layout, opened: Option<actions::Opened>) -> Result<Self, StudioError> {
+    fn start(
+        ctx: &egui::Context,
+        layout: Layout,
+        opened: Option<actions::Opened>,
+    ) -> Result<Self, StudioError> {
         let mut access = Access::new();
         let (project, project_path, problems) = match opened {
             Some(opened) => {
@@ -188,7 +197,9 @@ impl eframe::App for Window {
 
 /// A title that names the project and marks unsaved changes.
 fn title(path: Option<&Path>, modified: bool) -> String {
-    let name = path.and_then(Path::file_stem).map_or_else(|| "untitled".to_owned(), |s| s.to_string_lossy().into_owned());
+    let name = path
+        .and_then(Path::file_stem)
+        .map_or_else(|| "untitled".to_owned(), |s| s.to_string_lossy().into_owned());
     format!("{}{name} · Lovelock", if modified { "● " } else { "" })
 }
 

@@ -71,7 +71,9 @@ impl Notices {
             notice.until_secs.get_or_insert(now + stays);
         }
         self.list.retain(|notice| notice.until_secs.is_none_or(|until| until > now));
-        let Some(first) = self.list.iter().filter_map(|notice| notice.until_secs).reduce(f64::min) else { return };
+        let Some(first) = self.list.iter().filter_map(|notice| notice.until_secs).reduce(f64::min) else {
+            return;
+        };
         ctx.request_repaint_after(std::time::Duration::from_secs_f64((first - now).max(0.0)));
         let mut closed = None;
         Area::new(Id::unique("notices"))
@@ -87,7 +89,9 @@ impl Notices {
                             let text = egui::Label::new(&notice.text).wrap();
                             ui.add_sized([WIDTH - 72.0, 0.0], text);
                             let close = ui.small_button(ICON_CLOSE).on_hover_text("Closes this message.");
-                            close.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Close message"));
+                            close.widget_info(|| {
+                                egui::WidgetInfo::labeled(egui::Role::Button, true, "Close message")
+                            });
                             if close.clicked() {
                                 closed = Some(notice.id);
                             }

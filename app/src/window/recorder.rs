@@ -29,7 +29,8 @@ impl Recorder {
         let ctx = ctx.clone();
         match RecordJob::start(project, request, Arc::new(move || ctx.request_repaint())) {
             Ok(job) => {
-                self.state = State::Running { what: "Loading".to_owned(), done: 0, total: 1, left_secs: None };
+                self.state =
+                    State::Running { what: "Loading".to_owned(), done: 0, total: 1, left_secs: None };
                 self.running = Some((job, Stopwatch::start()));
             }
             Err(error) => self.state = State::Failed(error.to_string()),
@@ -55,7 +56,9 @@ impl Recorder {
             let (what, done, total) = match progress {
                 Progress::Loading { what } => (what, 0, 1),
                 Progress::Loaded { .. } => ("Loaded".to_owned(), 0, 1),
-                Progress::Simulating { done, total } => ("Simulating up to the first frame".to_owned(), done, total),
+                Progress::Simulating { done, total } => {
+                    ("Simulating up to the first frame".to_owned(), done, total)
+                }
                 Progress::Frame { done, total } => ("Frame".to_owned(), done, total),
                 Progress::Finishing => ("Finishing".to_owned(), 1, 1),
             };

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use lovelock_studio::{
-    Access, Event, FrameSnapshot, PaintRequest, Painted, Painter, Place, Problem, Project, Scene, StageHistory,
-    StudioError, Worker,
+    Access, Event, FrameSnapshot, PaintRequest, Painted, Painter, Place, Problem, Project, Scene,
+    StageHistory, StudioError, Worker,
 };
 
 use super::panels::{body, hair};
@@ -37,7 +37,11 @@ pub(crate) struct Session {
 
 impl Session {
     /// Starts the threads on `project`; each asks `ctx` to repaint when it has something new.
-    pub(crate) fn start(project: &Arc<Project>, access: Access, ctx: &egui::Context) -> Result<Self, StudioError> {
+    pub(crate) fn start(
+        project: &Arc<Project>,
+        access: Access,
+        ctx: &egui::Context,
+    ) -> Result<Self, StudioError> {
         let wake = ctx.clone();
         let painter = Painter::start(move || wake.request_repaint())
             .map_err(|error| StudioError::work(format!("no thread to draw on: {error}")))?;
@@ -107,11 +111,15 @@ impl Session {
         while let Some(event) = self.worker.poll_event() {
             match event {
                 Event::Loaded { scene, problems } => self.take_scene(scene, problems),
-                Event::LoadCancelled => said.push("Loading was cancelled; the scene stays as it was.".to_owned()),
+                Event::LoadCancelled => {
+                    said.push("Loading was cancelled; the scene stays as it was.".to_owned())
+                }
                 Event::LoadFailed { message } => said.push(message),
                 Event::EndReached => self.playing = false,
                 Event::Panicked { thread, message } => {
-                    said.push(format!("The {thread} met an error and started again; save your project. ({message})"));
+                    said.push(format!(
+                        "The {thread} met an error and started again; save your project. ({message})"
+                    ));
                 }
             }
         }

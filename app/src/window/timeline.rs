@@ -72,7 +72,10 @@ fn bar(ui: &mut Ui, view: View) -> Option<f64> {
     let duration = view.duration_secs.max(1e-3);
     let x_of = |secs: f64| rect.left() + rect.width() * (secs / duration).clamp(0.0, 1.0) as f32;
     let painter = ui.painter_at(rect);
-    let track = Rect::from_min_max(pos2(rect.left(), rect.center().y - 3.0), pos2(rect.right(), rect.center().y + 3.0));
+    let track = Rect::from_min_max(
+        pos2(rect.left(), rect.center().y - 3.0),
+        pos2(rect.right(), rect.center().y + 3.0),
+    );
     painter.rect_filled(track, 3.0, theme::PAGE);
     let played = Rect::from_min_max(track.min, pos2(x_of(view.time_secs), track.max.y));
     painter.rect_filled(played, 3.0, theme::ACCENT.gamma_multiply(0.5));
@@ -85,7 +88,13 @@ fn bar(ui: &mut Ui, view: View) -> Option<f64> {
         painter.line_segment([pos2(x, top), pos2(x, rect.bottom() - 2.0)], Stroke::new(1.0, theme::QUIET));
         if long {
             let font = egui::FontId::proportional(9.0);
-            painter.text(pos2(x + 2.0, rect.top()), egui::Align2::LEFT_TOP, format!("{second}"), font, theme::QUIET);
+            painter.text(
+                pos2(x + 2.0, rect.top()),
+                egui::Align2::LEFT_TOP,
+                format!("{second}"),
+                font,
+                theme::QUIET,
+            );
         }
     }
     let x = x_of(view.time_secs);

@@ -1,6 +1,8 @@
 //! The picture, and what lies over it.
 
-use egui::{Align2, Color32, ColorImage, FontId, Rect, Response, Sense, TextureHandle, TextureOptions, Ui, Vec2, pos2};
+use egui::{
+    Align2, Color32, ColorImage, FontId, Rect, Response, Sense, TextureHandle, TextureOptions, Ui, Vec2, pos2,
+};
 use lovelock_studio::Painted;
 
 use super::theme;
@@ -21,7 +23,13 @@ pub(crate) struct Viewport {
 impl Viewport {
     /// Shows the newest picture over the whole of `ui`. `software` says whether the processor draws, `scale` how
     /// many pixels a pixel of the screen gets (0 chooses).
-    pub(crate) fn show(&mut self, ui: &mut Ui, painted: Option<&std::sync::Arc<Painted>>, software: bool, scale: f32) -> Response {
+    pub(crate) fn show(
+        &mut self,
+        ui: &mut Ui,
+        painted: Option<&std::sync::Arc<Painted>>,
+        software: bool,
+        scale: f32,
+    ) -> Response {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Viewport"));
         self.wanted = size_for(rect.size(), ui.ctx().pixels_per_point(), software, scale);
@@ -32,7 +40,9 @@ impl Viewport {
                 let image = ColorImage::from_rgba_unmultiplied(size, &painted.picture.rgba);
                 match &mut self.texture {
                     Some(texture) => texture.set(image, TextureOptions::LINEAR),
-                    None => self.texture = Some(ui.ctx().load_texture("picture", image, TextureOptions::LINEAR)),
+                    None => {
+                        self.texture = Some(ui.ctx().load_texture("picture", image, TextureOptions::LINEAR))
+                    }
                 }
                 self.shown_step = Some(key);
             }
@@ -41,9 +51,20 @@ impl Viewport {
         painter.rect_filled(rect, 0.0, theme::PAGE);
         if let Some(texture) = &self.texture {
             let place = fit(texture.size_vec2(), rect);
-            painter.image(texture.id(), place, Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)), Color32::WHITE);
+            painter.image(
+                texture.id(),
+                place,
+                Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)),
+                Color32::WHITE,
+            );
         } else {
-            painter.text(rect.center(), Align2::CENTER_CENTER, "Getting ready…", FontId::proportional(15.0), theme::QUIET);
+            painter.text(
+                rect.center(),
+                Align2::CENTER_CENTER,
+                "Getting ready…",
+                FontId::proportional(15.0),
+                theme::QUIET,
+            );
         }
         response
     }
@@ -102,7 +123,8 @@ mod tests {
 
     #[test]
     fn a_picture_keeps_its_proportions() {
-        let place = fit(Vec2::new(200.0, 100.0), Rect::from_min_size(pos2(0.0, 0.0), Vec2::new(400.0, 400.0)));
+        let place =
+            fit(Vec2::new(200.0, 100.0), Rect::from_min_size(pos2(0.0, 0.0), Vec2::new(400.0, 400.0)));
         assert_eq!(place.size(), Vec2::new(400.0, 200.0));
     }
 }

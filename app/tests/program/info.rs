@@ -52,7 +52,8 @@ fn hair_files() {
         holds(file, &said, &facts);
         assert_eq!(said["dropped"], json!({}), "{file}");
         let size = |axis: usize| {
-            said["bounds_m"]["max"][axis].as_f64().expect("metres") - said["bounds_m"]["min"][axis].as_f64().expect("metres")
+            said["bounds_m"]["max"][axis].as_f64().expect("metres")
+                - said["bounds_m"]["min"][axis].as_f64().expect("metres")
         };
         // Hair of a head, whatever its unit was: from a hand's breadth to a long mane.
         assert!((0..3).all(|axis| (0.05..1.5).contains(&size(axis))), "{file}: {}", said["bounds_m"]);
@@ -60,7 +61,11 @@ fn hair_files() {
     let straight = said(&data, "hair/yuksel/straight.hair");
     holds("straight.hair", &straight, &json!({"up": "z", "facing": "+y", "unit_guessed": true}));
     assert_eq!(said(&data, "hair/tressfx/Ratboy_mohawk.tfx")["unit"], "m");
-    assert_eq!(said(&data, "hair/tressfx/Ratboy_mohawk_v40.tfx")["unit"], "cm", "the same groom a hundred times larger");
+    assert_eq!(
+        said(&data, "hair/tressfx/Ratboy_mohawk_v40.tfx")["unit"],
+        "cm",
+        "the same groom a hundred times larger"
+    );
 }
 
 #[test]
@@ -86,12 +91,23 @@ fn characters() {
     let clips = |file| {
         let said = said(&data, file);
         let clips = said["clips"].as_array().expect("clips").clone();
-        clips.into_iter().map(|clip| (clip["name"].as_str().unwrap_or("").to_owned(), clip["duration_secs"].as_f64().unwrap_or(0.0))).collect::<Vec<_>>()
+        clips
+            .into_iter()
+            .map(|clip| {
+                (
+                    clip["name"].as_str().unwrap_or("").to_owned(),
+                    clip["duration_secs"].as_f64().unwrap_or(0.0),
+                )
+            })
+            .collect::<Vec<_>>()
     };
     let robot = clips("characters/robot.glb");
     assert_eq!(robot.len(), 14);
     // 3.33 s, as its makers say.
-    assert!(robot.iter().any(|(name, secs)| name == "Robot_Dance" && (secs - 3.333).abs() < 1e-3), "{robot:?}");
+    assert!(
+        robot.iter().any(|(name, secs)| name == "Robot_Dance" && (secs - 3.333).abs() < 1e-3),
+        "{robot:?}"
+    );
     assert_eq!(clips("characters/Fox.glb").len(), 3);
     assert_eq!(clips("characters/Fox_cubicspline_step.glb").len(), 5);
     assert_eq!(clips("characters/MorphStressTest.gltf").len(), 3);
@@ -178,7 +194,10 @@ fn the_dancer_and_names_that_are_not_ascii() {
     let name = "eine Tänzerin – 舞.glb";
     std::fs::copy(dancer, dir.path().join(name)).expect("a copy");
     let json = run(dir.path(), ["info", "--json", name]).done().json();
-    assert_eq!((&json["file"], &json["kind"], &json["dropped"]), (&name.into(), &"character".into(), &json!({})));
+    assert_eq!(
+        (&json["file"], &json["kind"], &json["dropped"]),
+        (&name.into(), &"character".into(), &json!({}))
+    );
     assert!(json["joints"].as_u64().is_some_and(|joints| joints >= 20), "{json}");
     let dance = &json["clips"][0];
     assert_eq!(dance["name"], "dance");

@@ -69,7 +69,10 @@ fn a_project_with_fields_of_others_opens_and_says_so() {
     std::fs::write(dir.path().join("p.lovelock"), text).expect("a file");
     let ran = run(dir.path(), ["info", "p.lovelock", "--json"]);
     let json = ran.done().json();
-    assert_eq!((&json["kind"], &json["hair"], &json["width"]), (&"project".into(), &"smooth".into(), &96.into()));
+    assert_eq!(
+        (&json["kind"], &json["hair"], &json["width"]),
+        (&"project".into(), &"smooth".into(), &96.into())
+    );
     assert_eq!(json["fps"], 240.0, "brought into its range");
     assert_eq!(json["dropped"].as_object().and_then(|d| d.values().next()), Some(&2.into()), "{json}");
     let notes = json["notes"].to_string();

@@ -85,7 +85,11 @@ fn the_json_has_the_keys_that_are_promised() {
         }
         assert_eq!((&json["frames"], &json["width"], &json["height"]), (&4.into(), &96.into(), &64.into()));
         assert_eq!((&json["fps"], &json["shadow"]), (&30.0.into(), &"voxel-map".into()));
-        assert_eq!((&json["strands"], &json["segments"]), (&128.into(), &1280.into()), "16 wisps of 8, each of 10");
+        assert_eq!(
+            (&json["strands"], &json["segments"]),
+            (&128.into(), &1280.into()),
+            "16 wisps of 8, each of 10"
+        );
         assert_eq!(json["recovered_guides"], 0);
         assert!(json["max_stretch"].as_f64().is_some_and(|v| v < 1e-3), "{json}");
         assert!(json["frame_ms"].as_f64().is_some_and(|v| v > 0.0), "{json}");
@@ -104,7 +108,8 @@ fn the_number_of_threads_changes_no_byte() {
     let hash = takes.film.done().json()["state_hash"].clone();
     let pictures = |threads: &str| -> Vec<(String, Vec<u8>)> {
         let folder = takes.dir.path().join(format!("frames {threads}"));
-        let pngs = names(&folder).into_iter().filter(|name| Path::new(name).extension().is_some_and(|e| e == "png"));
+        let pngs =
+            names(&folder).into_iter().filter(|name| Path::new(name).extension().is_some_and(|e| e == "png"));
         pngs.map(|name| (name.clone(), std::fs::read(folder.join(name)).expect("a picture"))).collect()
     };
     for ran in &takes.pictures {
@@ -138,8 +143,21 @@ fn options_go_before_the_project() {
     let dir = tempfile::tempdir().expect("a folder");
     saved(dir.path(), "p.lovelock", &small_project());
     let args = [
-        "--json", "record", "p.lovelock", "-o", "a.mp4", "--frames", "0..2", "--fps", "24", "--size", "64x48",
-        "--shadow", "none", "--backend", "cpu",
+        "--json",
+        "record",
+        "p.lovelock",
+        "-o",
+        "a.mp4",
+        "--frames",
+        "0..2",
+        "--fps",
+        "24",
+        "--size",
+        "64x48",
+        "--shadow",
+        "none",
+        "--backend",
+        "cpu",
     ];
     let ran = run(dir.path(), args);
     let json = ran.done().json();
@@ -150,7 +168,11 @@ fn options_go_before_the_project() {
     // Without --json: sentences for people, the same facts.
     let ran = run(dir.path(), ["record", "p.lovelock", "-o", "a.mp4", "--frames", "0..1"]);
     assert!(ran.done().stdout.contains("a.mp4: 1 frames of 96x64"), "{ran:?}");
-    assert_eq!(read_film(&dir.path().join("a.mp4")).expect("the new film").frames, 1, "it replaced the old one");
+    assert_eq!(
+        read_film(&dir.path().join("a.mp4")).expect("the new film").frames,
+        1,
+        "it replaced the old one"
+    );
 }
 
 #[test]
@@ -185,7 +207,9 @@ fn a_full_disk_stops_the_recording_and_leaves_nothing() {
     saved(dir.path(), "p.lovelock", &small_project());
     for (out, limit) in [("a.mp4", 4), ("frames", 2)] {
         // No file may grow past some kilobytes: writing fails as on a full disk, without a signal.
-        let script = format!("trap '' XFSZ; ulimit -f {limit}; exec \"$0\" record p.lovelock -o {out} --frames 0..12 --size 256x192 --json");
+        let script = format!(
+            "trap '' XFSZ; ulimit -f {limit}; exec \"$0\" record p.lovelock -o {out} --frames 0..12 --size 256x192 --json"
+        );
         let mut shell = std::process::Command::new("sh");
         shell.current_dir(dir.path()).arg("-c").arg(script).arg(env!("CARGO_BIN_EXE_lovelock"));
         // Drivers keep compiled shaders in files, which are not what is tested here.

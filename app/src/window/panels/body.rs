@@ -33,12 +33,20 @@ pub(crate) fn ui(ui: &mut Ui, project: &mut Project, loaded: &Loaded) -> Option<
     let mut ask = None;
     ui.horizontal_wrapped(|ui| {
         let body = &mut project.body;
-        if ui.selectable_label(body.source == BodySource::Dancer, "Dancer").on_hover_text("Takes the shipped dancer.").clicked() {
+        if ui
+            .selectable_label(body.source == BodySource::Dancer, "Dancer")
+            .on_hover_text("Takes the shipped dancer.")
+            .clicked()
+        {
             body.source = BodySource::Dancer;
             body.head_joint = None;
         }
         let on = body.source == BodySource::File;
-        if ui.selectable_label(on, "Character file…").on_hover_text("Takes a glTF 2 character: .glb or .gltf.").clicked() {
+        if ui
+            .selectable_label(on, "Character file…")
+            .on_hover_text("Takes a glTF 2 character: .glb or .gltf.")
+            .clicked()
+        {
             if body.file.is_some() && !on {
                 body.source = BodySource::File;
             } else {
@@ -60,6 +68,7 @@ pub(crate) fn ui(ui: &mut Ui, project: &mut Project, loaded: &Loaded) -> Option<
         egui::ComboBox::from_id_salt("head joint")
             .selected_text(chosen)
             .width(ui.available_width() - 4.0)
+            .truncate()
             .show_ui(ui, |ui| {
                 ui.selectable_value(&mut project.body.head_joint, None, "Guess");
                 for joint in &loaded.joints {
@@ -90,14 +99,22 @@ fn motion(ui: &mut Ui, project: &mut Project, loaded: &Loaded) -> Option<Ask> {
             }
         }
         let on = motion.source == MotionSource::File;
-        if ui.selectable_label(on, "Motion file…").on_hover_text("Takes a BVH motion, put on this body.").clicked() {
+        if ui
+            .selectable_label(on, "Motion file…")
+            .on_hover_text("Takes a BVH motion, put on this body.")
+            .clicked()
+        {
             if motion.file.is_some() && !on {
                 motion.source = MotionSource::File;
             } else {
                 ask = Some(Ask::PickMotion);
             }
         }
-        if ui.selectable_label(motion.source == MotionSource::Rest, "Rest").on_hover_text("Stands still in the rest pose.").clicked() {
+        if ui
+            .selectable_label(motion.source == MotionSource::Rest, "Rest")
+            .on_hover_text("Stands still in the rest pose.")
+            .clicked()
+        {
             motion.source = MotionSource::Rest;
         }
     });
@@ -113,12 +130,28 @@ fn motion(ui: &mut Ui, project: &mut Project, loaded: &Loaded) -> Option<Ask> {
             (RootPosition::Absolute, "Absolute"),
             (RootPosition::Added, "Added to the offset"),
         ];
-        choice(ui, "Root position", "What the root's position channels mean: change it where the figure floats or sinks.", &mut motion.settings.root, d.root, &roots);
+        choice(
+            ui,
+            "Root position",
+            "What the root's position channels mean: change it where the figure floats or sinks.",
+            &mut motion.settings.root,
+            d.root,
+            &roots,
+        );
     }
-    Number::new("Tempo", 0.1..=4.0, "How fast the dance is; the hair feels it.").unit(" ×", 1.0).logarithmic().show(ui, &mut motion.speed, default.speed);
+    Number::new("Tempo", 0.1..=4.0, "How fast the dance is; the hair feels it.")
+        .unit(" ×", 1.0)
+        .logarithmic()
+        .show(ui, &mut motion.speed, default.speed);
     toggle(ui, "Loop", "Whether the dance starts again at its end.", &mut motion.looping, default.looping);
     if motion.looping {
-        Number::new("Loop blend", 0.0..=2.0, "How long the end of a clip that does not loop by itself is faded into its beginning.").unit(" s", 1.0).show(ui, &mut motion.loop_blend_secs, default.loop_blend_secs);
+        Number::new(
+            "Loop blend",
+            0.0..=2.0,
+            "How long the end of a clip that does not loop by itself is faded into its beginning.",
+        )
+        .unit(" s", 1.0)
+        .show(ui, &mut motion.loop_blend_secs, default.loop_blend_secs);
     }
     ask
 }

@@ -62,43 +62,165 @@ fn grown(ui: &mut Ui, hair: &mut HairSection) {
     let d = GroomSettings::preset(hair.preset);
     let g = &mut hair.groom;
     section(ui, "Cut", true, |ui| {
-        Number::new("Length", 0.02..=0.7, "Length of the longest hair.").centimetres().show(ui, &mut g.length, d.length);
-        Number::new("Layers", 0.0..=1.0, "How much shorter the top layers are than the lowest; none cuts all tips at one height.").percent().show(ui, &mut g.layering, d.layering);
-        Number::new("Uneven lengths", 0.0..=0.5, "How much shorter than its wisp a strand may end.").percent().show(ui, &mut g.length_variation, d.length_variation);
-        Number::new("Face framing", 0.0..=1.0, "How much shorter the hair beside the face is.").percent().show(ui, &mut g.face_framing, d.face_framing);
-        Number::new("Fringe", 0.0..=1.0, "How much of the front hair falls over the forehead.").percent().show(ui, &mut g.fringe, d.fringe);
-        Number::new("Fringe length", 0.02..=0.3, "Length of the fringe.").centimetres().show(ui, &mut g.fringe_length, d.fringe_length);
-        Number::new("Tapered tips", 0.0..=1.0, "Share of each strand over which it thins to its tip.").percent().show(ui, &mut g.taper, d.taper);
+        Number::new("Length", 0.02..=0.7, "Length of the longest hair.").centimetres().show(
+            ui,
+            &mut g.length,
+            d.length,
+        );
+        Number::new(
+            "Layers",
+            0.0..=1.0,
+            "How much shorter the top layers are than the lowest; none cuts all tips at one height.",
+        )
+        .percent()
+        .show(ui, &mut g.layering, d.layering);
+        Number::new("Uneven lengths", 0.0..=0.5, "How much shorter than its wisp a strand may end.")
+            .percent()
+            .show(ui, &mut g.length_variation, d.length_variation);
+        Number::new("Face framing", 0.0..=1.0, "How much shorter the hair beside the face is.")
+            .percent()
+            .show(ui, &mut g.face_framing, d.face_framing);
+        Number::new("Fringe", 0.0..=1.0, "How much of the front hair falls over the forehead.")
+            .percent()
+            .show(ui, &mut g.fringe, d.fringe);
+        Number::new("Fringe length", 0.02..=0.3, "Length of the fringe.").centimetres().show(
+            ui,
+            &mut g.fringe_length,
+            d.fringe_length,
+        );
+        Number::new("Tapered tips", 0.0..=1.0, "Share of each strand over which it thins to its tip.")
+            .percent()
+            .show(ui, &mut g.taper, d.taper);
     });
     section(ui, "Shape", true, |ui| {
-        Number::new("Parting", -0.06..=0.06, "Where the parting meets the forehead: 0 is the middle, positive the wearer's left.").centimetres().show(ui, &mut g.part_position, d.part_position);
-        Number::new("Parted", 0.0..=1.0, "How clean the parting is; none combs the hair back.").percent().show(ui, &mut g.part_strength, d.part_strength);
-        Number::new("Sweep", -1.0..=1.0, "How far the front hair is combed back, or toward the face.").show(ui, &mut g.sweep, d.sweep);
-        Number::new("Volume", 0.0..=0.06, "Thickness of the hair over the skull.").centimetres().show(ui, &mut g.volume, d.volume);
-        Number::new("Crown", 0.0..=0.05, "Height that the hair gains at the crown.").centimetres().show(ui, &mut g.crown_volume, d.crown_volume);
-        Number::new("Root lift", 0.1..=1.4, "Angle between the scalp and a hair that leaves it.").degrees().show(ui, &mut g.root_lift, d.root_lift);
-        Number::new("Stand", 0.01..=0.5, "How far hair stands before it gives in to gravity.").centimetres().show(ui, &mut g.hold, d.hold);
-        Number::new("Ends", -1.0..=1.0, "Bends the ends under (positive) or out (negative).").show(ui, &mut g.ends, d.ends);
-        Number::new("Hairline", 0.05..=0.95, "How far back on the forehead hair begins.").show(ui, &mut g.hairline, d.hairline);
+        Number::new(
+            "Parting",
+            -0.06..=0.06,
+            "Where the parting meets the forehead: 0 is the middle, positive the wearer's left.",
+        )
+        .centimetres()
+        .show(ui, &mut g.part_position, d.part_position);
+        Number::new("Parted", 0.0..=1.0, "How clean the parting is; none combs the hair back.")
+            .percent()
+            .show(ui, &mut g.part_strength, d.part_strength);
+        Number::new("Sweep", -1.0..=1.0, "How far the front hair is combed back, or toward the face.").show(
+            ui,
+            &mut g.sweep,
+            d.sweep,
+        );
+        Number::new("Volume", 0.0..=0.06, "Thickness of the hair over the skull.").centimetres().show(
+            ui,
+            &mut g.volume,
+            d.volume,
+        );
+        Number::new("Crown", 0.0..=0.05, "Height that the hair gains at the crown.").centimetres().show(
+            ui,
+            &mut g.crown_volume,
+            d.crown_volume,
+        );
+        Number::new("Root lift", 0.1..=1.4, "Angle between the scalp and a hair that leaves it.")
+            .degrees()
+            .show(ui, &mut g.root_lift, d.root_lift);
+        Number::new("Stand", 0.01..=0.5, "How far hair stands before it gives in to gravity.")
+            .centimetres()
+            .show(ui, &mut g.hold, d.hold);
+        Number::new("Ends", -1.0..=1.0, "Bends the ends under (positive) or out (negative).").show(
+            ui,
+            &mut g.ends,
+            d.ends,
+        );
+        Number::new("Hairline", 0.05..=0.95, "How far back on the forehead hair begins.").show(
+            ui,
+            &mut g.hairline,
+            d.hairline,
+        );
     });
     section(ui, "Texture", true, |ui| {
-        Number::new("Clumping", 0.0..=0.95, "How much a wisp narrows toward its tip: much for wet or styled hair, little for brushed hair.").percent().show(ui, &mut g.clump, d.clump);
-        Number::new("Locks", 0.0..=1.0, "How much strands gather in smaller locks.").percent().show(ui, &mut g.locks, d.locks);
-        Number::new("Curl radius", 0.0..=0.02, "Radius of the curls; 0 is straight.").millimetres().show(ui, &mut g.curl_radius, d.curl_radius);
-        Number::new("Curl pitch", 0.006..=0.3, "Length of one turn of a curl: coils under 10 mm, curls 10 to 25, waves 20 to 60.").logarithmic().millimetres().show(ui, &mut g.curl_pitch, d.curl_pitch);
-        Number::new("Curl onset", 0.0..=0.4, "Distance from the root over which curls reach their radius.").centimetres().show(ui, &mut g.curl_onset, d.curl_onset);
-        Number::new("Curl wander", 0.0..=1.0, "How much curls and waves differ along and between strands.").percent().show(ui, &mut g.curl_wander, d.curl_wander);
-        Number::new("Wave", 0.0..=0.03, "Height of the waves that swing whole wisps aside.").millimetres().show(ui, &mut g.wave, d.wave);
-        Number::new("Wave length", 0.02..=0.4, "Length of one wave.").centimetres().show(ui, &mut g.wave_length, d.wave_length);
-        Number::new("Frizz", 0.0..=0.02, "Size of the small bends of each strand.").millimetres().show(ui, &mut g.frizz, d.frizz);
-        Number::new("Frizz length", 0.005..=0.2, "Length of those bends.").logarithmic().millimetres().show(ui, &mut g.frizz_scale, d.frizz_scale);
-        Number::new("Strays", 0.0..=0.5, "Share of strands that leave their wisp.").percent().show(ui, &mut g.strays, d.strays);
-        Number::new("Stray reach", 0.0..=0.06, "How far strays leave it at the tip.").millimetres().show(ui, &mut g.stray_reach, d.stray_reach);
+        Number::new(
+            "Clumping",
+            0.0..=0.95,
+            "How much a wisp narrows toward its tip: much for wet or styled hair, little for brushed hair.",
+        )
+        .percent()
+        .show(ui, &mut g.clump, d.clump);
+        Number::new("Locks", 0.0..=1.0, "How much strands gather in smaller locks.").percent().show(
+            ui,
+            &mut g.locks,
+            d.locks,
+        );
+        Number::new("Curl radius", 0.0..=0.02, "Radius of the curls; 0 is straight.").millimetres().show(
+            ui,
+            &mut g.curl_radius,
+            d.curl_radius,
+        );
+        Number::new(
+            "Curl pitch",
+            0.006..=0.3,
+            "Length of one turn of a curl: coils under 10 mm, curls 10 to 25, waves 20 to 60.",
+        )
+        .logarithmic()
+        .millimetres()
+        .show(ui, &mut g.curl_pitch, d.curl_pitch);
+        Number::new("Curl onset", 0.0..=0.4, "Distance from the root over which curls reach their radius.")
+            .centimetres()
+            .show(ui, &mut g.curl_onset, d.curl_onset);
+        Number::new("Curl wander", 0.0..=1.0, "How much curls and waves differ along and between strands.")
+            .percent()
+            .show(ui, &mut g.curl_wander, d.curl_wander);
+        Number::new("Wave", 0.0..=0.03, "Height of the waves that swing whole wisps aside.")
+            .millimetres()
+            .show(ui, &mut g.wave, d.wave);
+        Number::new("Wave length", 0.02..=0.4, "Length of one wave.").centimetres().show(
+            ui,
+            &mut g.wave_length,
+            d.wave_length,
+        );
+        Number::new("Frizz", 0.0..=0.02, "Size of the small bends of each strand.").millimetres().show(
+            ui,
+            &mut g.frizz,
+            d.frizz,
+        );
+        Number::new("Frizz length", 0.005..=0.2, "Length of those bends.").logarithmic().millimetres().show(
+            ui,
+            &mut g.frizz_scale,
+            d.frizz_scale,
+        );
+        Number::new("Strays", 0.0..=0.5, "Share of strands that leave their wisp.").percent().show(
+            ui,
+            &mut g.strays,
+            d.strays,
+        );
+        Number::new("Stray reach", 0.0..=0.06, "How far strays leave it at the tip.").millimetres().show(
+            ui,
+            &mut g.stray_reach,
+            d.stray_reach,
+        );
     });
     section(ui, "Numbers", false, |ui| {
-        count(ui, "Wisps", 8..=1000, "Locks that move together; each is three guide strands.", &mut g.wisps, d.wisps);
-        count(ui, "Strands a wisp", 1..=400, "Strands that are drawn in each wisp: more is finer and slower.", &mut g.strands_per_wisp, d.strands_per_wisp);
-        count(ui, "Segments a strand", 2..=200, "Pieces of each strand: curls need more than straight hair.", &mut g.segments_per_strand, d.segments_per_strand);
+        count(
+            ui,
+            "Wisps",
+            8..=1000,
+            "Locks that move together; each is three guide strands.",
+            &mut g.wisps,
+            d.wisps,
+        );
+        count(
+            ui,
+            "Strands a wisp",
+            1..=400,
+            "Strands that are drawn in each wisp: more is finer and slower.",
+            &mut g.strands_per_wisp,
+            d.strands_per_wisp,
+        );
+        count(
+            ui,
+            "Segments a strand",
+            2..=200,
+            "Pieces of each strand: curls need more than straight hair.",
+            &mut g.segments_per_strand,
+            d.segments_per_strand,
+        );
         count(ui, "Seed", 0..=999, "Chooses among styles that differ by chance alone.", &mut g.seed, d.seed);
     });
     row(ui, "Defaults", "Restores every control of this hairstyle.", false, g, d, |ui, g| {
@@ -129,7 +251,14 @@ fn file(ui: &mut Ui, hair: &mut HairSection) {
         units.push((s.unit, &own));
     }
     choice(ui, "Unit", "What one unit of the file is; hair files do not say.", &mut s.unit, d.unit, &units);
-    choice(ui, "Up", "The axis of the file that points up.", &mut s.up, d.up, &[(UpAxis::Auto, "Guess"), (UpAxis::Y, "Y"), (UpAxis::Z, "Z")]);
+    choice(
+        ui,
+        "Up",
+        "The axis of the file that points up.",
+        &mut s.up,
+        d.up,
+        &[(UpAxis::Auto, "Guess"), (UpAxis::Y, "Y"), (UpAxis::Z, "Z")],
+    );
     let facings = [
         (Facing::Auto, "Guess"),
         (Facing::PlusX, "+X"),
@@ -139,19 +268,55 @@ fn file(ui: &mut Ui, hair: &mut HairSection) {
         (Facing::PlusZ, "+Z"),
         (Facing::MinusZ, "-Z"),
     ];
-    choice(ui, "Face toward", "The axis of the file that the face looks along.", &mut s.facing, d.facing, &facings);
-    toggle(ui, "Fit size", "Scales the hair so that its roots fit this scalp.", &mut s.fit_scale, d.fit_scale);
-    toggle(ui, "Roots on skin", "Moves each strand as a whole so that its root lies on the skin.", &mut s.snap_roots, d.snap_roots);
-    count(ui, "Wisps", 0..=4096, "Groups of strands that move together; 0 takes one for every 25 strands.", &mut s.wisps, d.wisps);
+    choice(
+        ui,
+        "Face toward",
+        "The axis of the file that the face looks along.",
+        &mut s.facing,
+        d.facing,
+        &facings,
+    );
+    toggle(
+        ui,
+        "Fit size",
+        "Scales the hair so that its roots fit this scalp.",
+        &mut s.fit_scale,
+        d.fit_scale,
+    );
+    toggle(
+        ui,
+        "Roots on skin",
+        "Moves each strand as a whole so that its root lies on the skin.",
+        &mut s.snap_roots,
+        d.snap_roots,
+    );
+    count(
+        ui,
+        "Wisps",
+        0..=4096,
+        "Groups of strands that move together; 0 takes one for every 25 strands.",
+        &mut s.wisps,
+        d.wisps,
+    );
     section(ui, "Placement", false, |ui| {
         let p = &mut s.placement;
         let d = Placement::default();
-        Number::new("Scale", Placement::SCALE, "Size after the fit.").logarithmic().show(ui, &mut p.scale, d.scale);
+        Number::new("Scale", Placement::SCALE, "Size after the fit.").logarithmic().show(
+            ui,
+            &mut p.scale,
+            d.scale,
+        );
         for (axis, label) in ["Nod", "Shake", "Tilt"].into_iter().enumerate() {
-            Number::new(label, Placement::TURN, "Turns the hair about the middle of the scalp.").degrees().show(ui, &mut p.turn[axis], d.turn[axis]);
+            Number::new(label, Placement::TURN, "Turns the hair about the middle of the scalp.")
+                .degrees()
+                .show(ui, &mut p.turn[axis], d.turn[axis]);
         }
         for (axis, label) in ["Left", "Up", "Forward"].into_iter().enumerate() {
-            Number::new(label, Placement::OFFSET_M, "Moves the hair.").centimetres().show(ui, &mut p.offset_m[axis], d.offset_m[axis]);
+            Number::new(label, Placement::OFFSET_M, "Moves the hair.").centimetres().show(
+                ui,
+                &mut p.offset_m[axis],
+                d.offset_m[axis],
+            );
         }
     });
 }

@@ -4,7 +4,7 @@ use egui::{ProgressBar, RichText, Ui};
 use lovelock_studio::RecordingSection;
 use lovelock_studio::recording::FilmQuality;
 
-use crate::window::control::{choice, note, row};
+use crate::window::control::{choice, note, row, typed};
 use crate::window::theme;
 
 /// A recording that runs or has ended.
@@ -49,8 +49,21 @@ const SIZES: [((u32, u32), &str); 6] = [
     ((1080, 1080), "1080 × 1080"),
 ];
 
+/// A field for the number of a frame. What a project holds beyond its range is shown, not changed.
+fn frame_number(frame: &mut u64) -> egui::DragValue<'_> {
+    egui::DragValue::new(frame)
+        .range(0..=1_000_000)
+        .clamp_existing_to_range(false)
+        .custom_parser(|text| typed(text, ""))
+}
+
 /// The controls of `section`; `clip_frames` is the number of frames of the whole clip.
-pub(crate) fn ui(ui: &mut Ui, section: &mut RecordingSection, state: &State, clip_frames: u64) -> Option<Ask> {
+pub(crate) fn ui(
+    ui: &mut Ui,
+    section: &mut RecordingSection,
+    state: &State,
+    clip_frames: u64,
+) -> Option<Ask> {
     let d = RecordingSection::default();
     let mut ask = None;
     let mut size = (section.width, section.height);
@@ -68,27 +81,52 @@ pub(crate) fn ui(ui: &mut Ui, section: &mut RecordingSection, state: &State, cli
     }
     choice(ui, "Frames a second", "Rate of the film.", &mut section.fps, d.fps, &rates);
     let qualities = FilmQuality::ALL.map(|quality| (quality, quality.label()));
-    choice(ui, "Quality", "How finely the film is coded: finer keeps single hairs apart and takes more bytes.", &mut section.quality, d.quality, &qualities);
-    row(ui, "From frame", "First frame.", section.first_frame != d.first_frame, &mut section.first_frame, d.first_frame, |ui, first| {
-        ui.add(egui::DragValue::new(first).range(0..=1_000_000).clamp_existing_to_range(false))
-    });
+    choice(
+        ui,
+        "Quality",
+        "How finely the film is coded: finer keeps single hairs apart and takes more bytes.",
+        &mut section.quality,
+        d.quality,
+        &qualities,
+    );
+    row(
+        ui,
+        "From frame",
+        "First frame.",
+        section.first_frame != d.first_frame,
+        &mut section.first_frame,
+        d.first_frame,
+        |ui, first| ui.add(frame_number(first)),
+    );
     let end = &mut section.end_frame;
-    row(ui, "To frame", "One past the last frame; the default is the whole clip.", end.is_some(), end, None, |ui, end| {
-        let mut frame = end.unwrap_or(clip_frames);
-        let response = ui.add(egui::DragValue::new(&mut frame).range(1..=1_000_001).clamp_existing_to_range(false));
-        if response.changed() {
-            *end = Some(frame);
-        }
-        response
-    });
+    row(
+        ui,
+        "To frame",
+        "One past the last frame; the default is the whole clip.",
+        end.is_some(),
+        end,
+        None,
+        |ui, end| {
+            let mut frame = end.unwrap_or(clip_frames);
+            let response = ui.add(frame_number(&mut frame));
+            if response.changed() {
+                *end = Some(frame);
+            }
+            response
+        },
+    );
     // A range is never empty, whichever end was moved.
     if let Some(end) = &mut section.end_frame {
         *end = (*end).max(section.first_frame + 1);
     }
     if let State::Running { what, done, total, left_secs } = state {
         let text = left_secs.map_or_else(String::new, |secs| format!(", {secs:.0} s left"));
-        ui.add(ProgressBar::new(*done as f32 / (*total).max(1) as f32).text(format!("{what} {done} of {total}{text}")));
-        if ui.button("Cancel").on_hover_text("Stops the recording; an unfinished film is removed.").clicked() {
+        ui.add(
+            ProgressBar::new(*done as f32 / (*total).max(1) as f32)
+                .text(format!("{what} {done} of {total}{text}")),
+        );
+        if ui.button("Cancel").on_hover_text("Stops the recording; an unfinished film is removed.").clicked()
+        {
             ask = Some(Ask::Cancel);
         }
     } else {
@@ -97,7 +135,8 @@ pub(crate) fn ui(ui: &mut Ui, section: &mut RecordingSection, state: &State, cli
             if ui.button(dot).on_hover_text("Records the dance as H.264 in MP4 (R).").clicked() {
                 ask = Some(Ask::Film);
             }
-            if ui.button("Pictures…").on_hover_text("Records the dance as a folder of PNG files.").clicked() {
+            if ui.button("Pictures…").on_hover_text("Records the dance as a folder of PNG files.").clicked()
+            {
                 ask = Some(Ask::Sequence);
             }
         });

@@ -11,12 +11,16 @@ use crate::window::keys;
 
 /// A field to type in and a button, and the commands that keys asked for.
 fn screen() -> Harness<'static, Shown<(String, Vec<Command>)>> {
-    screen_of(vec2(400.0, 300.0), (String::new(), Vec::new()), |ui, (typed, asked): &mut (String, Vec<Command>)| {
-        asked.extend(keys::pressed(ui.ctx()));
-        let _ = ui.button("A button");
-        let label = ui.label("Name");
-        ui.text_edit_singleline(typed).labelled_by(label.id);
-    })
+    screen_of(
+        vec2(400.0, 300.0),
+        (String::new(), Vec::new()),
+        |ui, (typed, asked): &mut (String, Vec<Command>)| {
+            asked.extend(keys::pressed(ui.ctx()));
+            let _ = ui.button("A button");
+            let label = ui.label("Name");
+            ui.text_edit_singleline(typed).labelled_by(label.id);
+        },
+    )
 }
 
 fn key(text: &str) -> (Modifiers, Key) {

@@ -44,7 +44,9 @@ fn a_click_goes_to_its_time_and_a_drag_stays_inside() {
     let mut harness = bar(VIEW);
     let rect: Rect = control(&harness, Role::Slider, "Time").rect();
     click(&mut harness, rect.center());
-    let Some(Ask::Seek(secs)) = harness.state().state.1.last().copied() else { panic!("no time was asked for") };
+    let Some(Ask::Seek(secs)) = harness.state().state.1.last().copied() else {
+        panic!("no time was asked for")
+    };
     // A point of the bar is a hundredth of a second here.
     assert!((secs - 4.0).abs() < 0.02, "{secs}");
     drag(&mut harness, rect.center(), pos2(1e6, rect.center().y));
@@ -57,7 +59,9 @@ fn a_click_goes_to_its_time_and_a_drag_stays_inside() {
 
 #[test]
 fn a_dance_of_no_length_and_one_of_days_are_shown() {
-    for (time_secs, duration_secs) in [(0.0, 0.0), (5.0, 0.0), (1e6, 3e5), (f64::NAN, f64::NAN), (0.5, 1.0 / 60.0)] {
+    for (time_secs, duration_secs) in
+        [(0.0, 0.0), (5.0, 0.0), (1e6, 3e5), (f64::NAN, f64::NAN), (0.5, 1.0 / 60.0)]
+    {
         let mut harness = bar(View { time_secs, duration_secs, ..VIEW });
         let rect = control(&harness, Role::Slider, "Time").rect();
         click(&mut harness, rect.center());

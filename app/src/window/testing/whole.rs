@@ -120,12 +120,12 @@ fn menus_and_keys_change_the_project_and_undo_takes_it_back() {
     assert_eq!(project(&harness), before);
 
     // A drag on a slider of a panel, in the window with everything around it.
-    let rail = control(&harness, Role::Slider, "Stiffness, roots").rect();
+    let rail = control(&harness, Role::Slider, "Length").rect();
     drag(&mut harness, rail.left_center(), rail.right_center());
     go(&mut harness);
-    assert_ne!(project(&harness).simulation, before.simulation);
+    assert_ne!(project(&harness).hair, before.hair);
     assert_eq!(of(&harness).history.undo_len(), 1);
-    assert_eq!(of(&harness).history.undo_label(), Some("simulation"));
+    assert_eq!(of(&harness).history.undo_label(), Some("hairstyle"));
     key(&mut harness, CTRL, Key::Z);
     assert_eq!(project(&harness), before);
 
@@ -152,7 +152,9 @@ fn keys_play_and_hide_the_panels() {
     assert!(names(&harness) > 10);
     let step = of(&harness).session.frame.as_ref().map(|frame| frame.position_secs);
     key(&mut harness, Modifiers::NONE, Key::ArrowRight);
-    wait(&mut harness, "the next frame", |window| window.session.frame.as_ref().map(|frame| frame.position_secs) > step);
+    wait(&mut harness, "the next frame", |window| {
+        window.session.frame.as_ref().map(|frame| frame.position_secs) > step
+    });
     key(&mut harness, Modifiers::SHIFT, Key::Questionmark);
     assert!(harness.query_by_label_contains("Double-click a control").is_some());
     key(&mut harness, Modifiers::NONE, Key::Escape);

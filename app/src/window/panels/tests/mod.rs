@@ -80,7 +80,9 @@ pub(super) const PANELS: [(&str, Show); 9] = [
 /// A panel with all its sections unfolded.
 pub(super) fn panel(title: &'static str, project: Project) -> Harness<'static, Shown<Bench>> {
     let show = PANELS.iter().find(|(name, _)| *name == title).expect("a panel of that title").1;
-    let mut harness = screen(Bench::new(project), move |ui, bench: &mut Bench| section(ui, title, true, |ui| show(ui, bench)));
+    let mut harness = screen(Bench::new(project), move |ui, bench: &mut Bench| {
+        section(ui, title, true, |ui| show(ui, bench))
+    });
     unfold(&mut harness);
     harness
 }

@@ -32,7 +32,11 @@ fn hair_takes_presets_with_their_colours() {
     assert_eq!(project.look, GroomSettings::preset(Preset::Curly).look);
     let length = control(&harness, Role::SpinButton, "Length").rect().center();
     type_at(&mut harness, length, "12.5");
-    assert_eq!(harness.state().state.project.hair.groom.length, 0.125, "centimetres are shown, metres are kept");
+    assert_eq!(
+        harness.state().state.project.hair.groom.length,
+        0.125,
+        "centimetres are shown, metres are kept"
+    );
     control(&harness, Role::Button, "Defaults").click();
     harness.run();
     assert_eq!(harness.state().state.project.hair.groom, GroomSettings::preset(Preset::Curly));
@@ -72,7 +76,8 @@ fn body_takes_clips_files_and_joints() {
         head: "hips/head".to_owned(),
         notes: vec!["one note".to_owned()],
     };
-    let mut harness = screen(state, move |ui, (project, asked)| *asked = body::ui(ui, project, &loaded).or(*asked));
+    let mut harness =
+        screen(state, move |ui, (project, asked)| *asked = body::ui(ui, project, &loaded).or(*asked));
     assert!(harness.query_by_label("one note").is_some());
     harness.get_by_label("walk").click();
     harness.run();
@@ -156,13 +161,15 @@ fn lights_come_and_go() {
 #[test]
 fn removing_a_light_removes_that_one() {
     let mut harness = panel("Light", Project::default());
-    let names: Vec<String> = harness.state().state.project.lights.iter().map(|light| light.name.clone()).collect();
+    let names: Vec<String> =
+        harness.state().state.project.lights.iter().map(|light| light.name.clone()).collect();
     assert!(names.len() > 2, "{names:?}");
     control(&harness, Role::Button, &names[1]).click();
     harness.run();
     harness.get_by_label("Remove").click();
     harness.run();
-    let left: Vec<String> = harness.state().state.project.lights.iter().map(|light| light.name.clone()).collect();
+    let left: Vec<String> =
+        harness.state().state.project.lights.iter().map(|light| light.name.clone()).collect();
     assert_eq!(left.len(), names.len() - 1);
     assert!(!left.contains(&names[1]) && left[0] == names[0]);
 }
@@ -216,7 +223,9 @@ fn picture_switches() {
 fn recording_keeps_a_range_that_is_not_empty() {
     let mut harness = panel("Recording", Project::default());
     let (first, end) = ("From frame", "To frame");
-    let place = |harness: &egui_kittest::Harness<'_, _>, name| control(harness, Role::SpinButton, name).rect().center();
+    let place = |harness: &egui_kittest::Harness<'_, _>, name| {
+        control(harness, Role::SpinButton, name).rect().center()
+    };
     let at = place(&harness, end);
     type_at(&mut harness, at, "20");
     assert_eq!(harness.state().state.project.recording.end_frame, Some(20));
