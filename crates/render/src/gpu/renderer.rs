@@ -116,7 +116,7 @@ impl Renderer {
         let uniform = FrameUniform::new(input, width, height, &maps, self.surface.texels);
         queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
 
-        if !self.targets.as_ref().is_some_and(|t| (t.width, t.height) == (width, height)) {
+        if self.targets.as_ref().is_none_or(|t| (t.width, t.height) != (width, height)) {
             self.targets = Some(Targets::new(device, width, height));
         }
         let Some(targets) = &self.targets else {

@@ -35,7 +35,7 @@ impl std::fmt::Debug for ShadowStage {
         f.debug_struct("ShadowStage")
             .field("method", &self.method)
             .field("lights", &self.lights.len())
-            .finish()
+            .finish_non_exhaustive()
     }
 }
 
