@@ -91,8 +91,9 @@ fn preset(id: &str) -> Result<Preset, StudioError> {
     })
 }
 
+/// Tells what the project's text had wrong. Files that are missing are told by the loader, with what takes their place.
 fn tell(problems: &[Problem]) {
-    for problem in problems {
+    for problem in problems.iter().filter(|problem| !problem.is_failure()) {
         eprintln!("lovelock: {}", problem.message);
     }
 }
@@ -158,7 +159,7 @@ impl Bar {
             return;
         }
         // Some twenty lines for a whole recording, however long.
-        let tenth = if total > 0 { 20 * done / total } else { 0 };
+        let tenth = (20 * done).checked_div(total).unwrap_or(0);
         if matches!(progress, Progress::Frame { .. }) && tenth != self.said {
             self.said = tenth;
             eprintln!("{what} {done} of {total}");

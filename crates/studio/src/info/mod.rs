@@ -95,7 +95,7 @@ fn project_info(path: &Path) -> Result<ProjectInfo, StudioError> {
     };
     let ignored = problems.iter().filter(|p| p.kind == crate::ProblemKind::Ignored).count() as u64;
     let dropped =
-        if ignored > 0 { BTreeMap::from([("unknown fields".to_owned(), ignored)]) } else { BTreeMap::new() };
+        if ignored > 0 { BTreeMap::from([("unknown_fields".to_owned(), ignored)]) } else { BTreeMap::new() };
     Ok(ProjectInfo {
         format: format!("Lovelock project {PROJECT_VERSION}"),
         dropped,
