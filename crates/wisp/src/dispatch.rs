@@ -9,7 +9,7 @@ use crate::solver::{Plan, advance};
 /// Takes `block` through the step of `plan`.
 pub(crate) fn step_block(block: &mut Block, plan: &Plan) {
     #[cfg(target_arch = "x86_64")]
-    if std::arch::is_x86_feature_detected!("avx2") {
+    if plan.wide && std::arch::is_x86_feature_detected!("avx2") {
         // SAFETY: the processor has AVX2, which is all that the function asks for.
         #[expect(unsafe_code, reason = "a function with target features can only be called this way")]
         unsafe {

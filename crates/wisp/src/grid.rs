@@ -62,7 +62,11 @@ impl DensityGrid {
     pub(crate) fn new(blocks: &[Block]) -> Self {
         let (mut centre, mut count, mut total, mut links) = (Vec3::ZERO, 0.0_f32, 0.0_f32, 0.0_f32);
         let mut longest = 0.0_f32;
-        let lanes = || blocks.iter().flat_map(|b| (0..b.used).map(move |k| (b, k)));
+        // A guide that is not a number says nothing about the others.
+        let sound =
+            |b: &Block, k: usize| b.rest.mean_link[k].is_finite() && at(&b.rest.position[0], k).is_finite();
+        let lanes =
+            || blocks.iter().flat_map(|b| (0..b.used).map(move |k| (b, k))).filter(|&(b, k)| sound(b, k));
         for (block, k) in lanes() {
             centre += at(&block.rest.position[0], k);
             count += 1.0;
@@ -72,8 +76,7 @@ impl DensityGrid {
             longest = longest.max(length);
         }
         centre /= count.max(1.0);
-        let radius =
-            lanes().map(|(b, k)| (at(&b.rest.position[0], k) - centre).length()).fold(0.0, f32::max);
+        let radius = lanes().map(|(b, k)| (at(&b.rest.position[0], k) - centre).length()).fold(0.0, f32::max);
         let cell = (2.0 * (radius + longest) / SIDE as f32).clamp(CELL.0, CELL.1);
         let link = (links / count.max(1.0)).max(1e-4);
         let size = (SIDE * SIDE * SIDE) as usize;
@@ -223,20 +226,17 @@ impl DensityGrid {
             return None;
         }
         let mean_velocity = Vec3::new(sums[1], sums[2], sums[3]) / (sums[0] * MOMENTUM);
-        let push = if !crowded {
-            Vec3::ZERO
-        } else {
-            match self.repulsion.mode {
-                RepulsionMode::Pressure => -gradient(&excess, f) / self.cell,
-                RepulsionMode::Centre => self.from_centre(p),
-            }
+        let push = match self.repulsion.mode {
+            _ if !crowded => Vec3::ZERO,
+            RepulsionMode::Pressure => -gradient(&excess, f) / self.cell,
+            RepulsionMode::Centre => self.away_from_centre(p),
         };
         Some(Sample { push, mean_velocity })
     }
 
     /// The published force: away from the centre of the cell that `p` is in, where that cell is over-dense;
     /// faded at the centre, where it would be singular, and at the faces, where it would jump.
-    fn from_centre(&self, p: Vec3) -> Vec3 {
+    fn away_from_centre(&self, p: Vec3) -> Vec3 {
         let cell = ((p - self.min) / self.cell).as_ivec3().clamp(IVec3::ZERO, IVec3::splat(SIDE - 1));
         let i = index(cell);
         let excess = self.cells[i][0] as f32 * self.inv_rest[i] / self.repulsion.threshold - 1.0;

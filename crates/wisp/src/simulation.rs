@@ -42,6 +42,8 @@ pub struct Simulation {
     /// The links at the root that the blocks are prepared for.
     clamped_links: u32,
     mean_link: f32,
+    /// Whether to use the instructions of this processor and not those of every one; the bits are the same.
+    wide: bool,
     substeps: Vec<Substep>,
     shapes: Vec<MovingShape>,
 }
@@ -65,8 +67,9 @@ impl Simulation {
             block.place_at_rest(&Map::IDENTITY);
             blocks.push(block);
         }
-        let links: f32 = blocks.iter().map(|b| b.rest.mean_link[..b.used].iter().sum::<f32>()).sum();
-        let mean_link = links / slots.len().max(1) as f32;
+        // A guide that is not a number says nothing about the others.
+        let known = || blocks.iter().flat_map(|b| &b.rest.mean_link[..b.used]).filter(|l| l.is_finite());
+        let mean_link = known().sum::<f32>() / known().count().max(1) as f32;
         let grid = DensityGrid::new(&blocks);
         Self {
             style,
@@ -80,6 +83,7 @@ impl Simulation {
             elapsed_secs: 0.0,
             clamped_links,
             mean_link,
+            wide: true,
             substeps: Vec::new(),
             shapes: Vec::new(),
         }
@@ -166,6 +170,7 @@ impl Simulation {
         let wind = WindField::new(&settings.wind, self.elapsed_secs, origin);
         let first_free = first_free(self.clamped_links, self.style.guides.points_per_guide);
         let plan = Plan {
+            wide: self.wide,
             settings: *settings,
             h,
             first_free,
@@ -370,3 +375,6 @@ fn head_from(head: &HeadPose, origin: Vec3) -> Map {
     let turn = glam::Mat3::from_quat(head.turn.inverse());
     Map { turn, shift: turn * (origin - head.place) }
 }
+
+#[cfg(test)]
+mod tests;

@@ -3,7 +3,7 @@
 //! A sum of waves is smooth in time and space, costs a few multiplications, and is the same on every run.
 //! Eddies move air across their waves' direction, so that they have no sources (solenoidal).
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 
 use crate::lanes::{LANES, Lane3, ZERO3, at, put};
 use crate::settings::Wind;
@@ -24,7 +24,7 @@ pub(crate) struct WindField {
 struct Wave {
     amplitude: Vec3,
     /// Turns a metre along each axis.
-    wave: Vec3,
+    turns: Vec3,
     /// Phase at the origin, in turns.
     phase: f32,
 }
@@ -53,12 +53,13 @@ impl WindField {
                 wave = direction / length;
                 // Carried by the wind, and turning over slowly by themselves.
                 hertz = wave.dot(mean) + 0.3 * (random.unit() - 0.5);
-                let across = direction.cross(random.direction()).normalize_or(direction.any_orthonormal_vector());
+                let across =
+                    direction.cross(random.direction()).normalize_or(direction.any_orthonormal_vector());
                 amplitude = across * (wind.speed * wind.turbulence * (2.0 / EDDIES as f32).sqrt());
             }
-            let world = DVec3::from(origin.as_dvec3()).dot(wave.as_dvec3());
-            let turns = f64::from(start) + world - elapsed_secs * f64::from(hertz);
-            *out = Wave { amplitude, wave, phase: (turns - turns.floor()) as f32 };
+            let world = origin.as_dvec3().dot(wave.as_dvec3());
+            let shift = f64::from(start) + world - elapsed_secs * f64::from(hertz);
+            *out = Wave { amplitude, turns: wave, phase: (shift - shift.floor()) as f32 };
         }
         field
     }
@@ -77,7 +78,7 @@ impl WindField {
         }
         for wave in &self.waves {
             for k in 0..LANES {
-                let turns = at(points, k).dot(wave.wave) + wave.phase;
+                let turns = at(points, k).dot(wave.turns) + wave.phase;
                 let v = at(&out, k) + wave.amplitude * sine_of_turns(turns);
                 put(&mut out, k, v);
             }

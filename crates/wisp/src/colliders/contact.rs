@@ -94,7 +94,8 @@ impl Near<'_> {
         let c = self.active[n];
         let mut out = rules.allowed(self.shapes[c as usize].on_head, self.rest(c, point));
         for k in 0..LANES {
-            out[k] -= greater(self.buried[n][k] - WAY_OUT * self.link[k] * (point - self.carried) as f32, 0.0);
+            out[k] -=
+                greater(self.buried[n][k] - WAY_OUT * self.link[k] * (point - self.carried) as f32, 0.0);
         }
         out
     }

@@ -151,8 +151,8 @@ impl Shape {
                     let size = tangent.length_squared();
                     let bend = (tangent * tangent).dot(inv_squared);
                     let sure = size > 1e-8;
-                    let curvature =
-                        if sure { bend } else { inv_squared.x } / (steepness * if sure { size } else { 1.0 } + 1e-20);
+                    let curvature = if sure { bend } else { inv_squared.x }
+                        / (steepness * if sure { size } else { 1.0 } + 1e-20);
                     let radius = lesser(1.0 / (curvature + 1e-6), 10.0);
                     let c = q - normal * (distance + radius);
                     out.distance[k] = distance;
@@ -209,7 +209,8 @@ mod tests {
     #[test]
     fn one_sphere_inside_the_other_is_a_sphere() {
         let (a, b) = (Vec3::ZERO, Vec3::new(0.01, 0.0, 0.0));
-        let c = Shape::new(&ColliderShape::Capsule { a, b, radius_a: 0.2, radius_b: 0.05 }).expect("a sphere");
+        let c =
+            Shape::new(&ColliderShape::Capsule { a, b, radius_a: 0.2, radius_b: 0.05 }).expect("a sphere");
         assert!((c.distance(Vec3::new(0.0, 0.5, 0.0)) - 0.3).abs() < 1e-6);
     }
 
@@ -241,17 +242,22 @@ mod tests {
 
     #[test]
     fn the_centre_of_an_ellipsoid_is_inside() {
-        assert!(ellipsoid().distance(Vec3::new(0.0, 0.1, 0.02)) < 0.0 || {
-            // Exactly at the centre every direction is as near; only not-a-number would be wrong.
-            ellipsoid().distance(Vec3::new(0.0, 0.1, 0.02)).is_finite()
-        });
+        assert!(
+            ellipsoid().distance(Vec3::new(0.0, 0.1, 0.02)) < 0.0 || {
+                // Exactly at the centre every direction is as near; only not-a-number would be wrong.
+                ellipsoid().distance(Vec3::new(0.0, 0.1, 0.02)).is_finite()
+            }
+        );
         assert!(ellipsoid().distance(Vec3::new(0.01, 0.1, 0.03)) < -0.03);
     }
 
     #[test]
     fn shapes_without_size_or_with_nonsense_are_refused() {
         let nan = Vec3::new(f32::NAN, 0.0, 0.0);
-        assert!(Shape::new(&ColliderShape::Capsule { a: nan, b: Vec3::X, radius_a: 0.1, radius_b: 0.1 }).is_none());
+        assert!(
+            Shape::new(&ColliderShape::Capsule { a: nan, b: Vec3::X, radius_a: 0.1, radius_b: 0.1 })
+                .is_none()
+        );
         assert!(Shape::new(&ColliderShape::Ellipsoid { from_unit: Affine3A::ZERO }).is_none());
     }
 }

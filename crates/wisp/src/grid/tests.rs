@@ -12,7 +12,8 @@ fn lattice(side: usize, gap: f32) -> Vec<Block> {
         let points: Vec<Vec3> = (0..21).map(|i| root + Vec3::NEG_Y * (0.01 * i as f32)).collect();
         guides.push(&points);
     }
-    let mut blocks: Vec<Block> = blocks_of(&guides).into_iter().map(|(l, u)| Block::new(&guides, l, u, 1)).collect();
+    let mut blocks: Vec<Block> =
+        blocks_of(&guides).into_iter().map(|(l, u)| Block::new(&guides, l, u, 1)).collect();
     for block in &mut blocks {
         block.place_at_rest(&Map::IDENTITY);
     }

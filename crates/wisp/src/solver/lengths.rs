@@ -20,11 +20,7 @@ pub(crate) struct LengthScratch {
 
 impl LengthScratch {
     pub(crate) fn new(points: usize) -> Self {
-        Self {
-            multiplier: vec![ZERO; points],
-            upper: vec![ZERO; points],
-            direction: vec![ZERO3; points],
-        }
+        Self { multiplier: vec![ZERO; points], upper: vec![ZERO; points], direction: vec![ZERO3; points] }
     }
 }
 
@@ -40,8 +36,7 @@ pub(crate) fn project_velocity(
     scratch: &mut LengthScratch,
 ) {
     for i in first_free.max(1)..position.len() {
-        let (a, b, va, vb, inv) =
-            (position[i - 1], position[i], velocity[i - 1], velocity[i], inv_length[i]);
+        let (a, b, va, vb, inv) = (position[i - 1], position[i], velocity[i - 1], velocity[i], inv_length[i]);
         let (mut direction, mut rhs) = (ZERO3, ZERO);
         for k in 0..LANES {
             let n = (at(&b, k) - at(&a, k)) * inv[k];
@@ -206,7 +201,9 @@ mod tests {
         let mut x = zigzag(12);
         let length = [[0.01; LANES]; 12];
         let worst = |x: &[Lane3]| {
-            (1..12).map(|i| ((at(&x[i], 0) - at(&x[i - 1], 0)).length() / 0.01 - 1.0).abs()).fold(0.0, f32::max)
+            (1..12)
+                .map(|i| ((at(&x[i], 0) - at(&x[i - 1], 0)).length() / 0.01 - 1.0).abs())
+                .fold(0.0, f32::max)
         };
         for (i, row) in x.iter_mut().enumerate().skip(1) {
             for k in 0..LANES {

@@ -41,7 +41,7 @@ fn measure(block: &mut Block, plan: &Plan) {
     }
     for k in 0..LANES {
         // Hair further than 300 m from its head has been lost as surely as one at infinity.
-        if !(size[k] < 1e5 * count as f32) {
+        if size[k].is_nan() || size[k] > 1e5 * count as f32 {
             restore(block, plan, k);
             block.outcome.recovered += u32::from(k < block.used);
         }

@@ -3,12 +3,12 @@
 use glam::Vec3;
 
 use super::BendingKey;
+use crate::SimulationSettings;
 use crate::colliders::MovingShape;
 use crate::colliders::contact::ContactRules;
 use crate::grid::DensityGrid;
 use crate::lanes::{Map, Turn};
 use crate::wind::WindField;
-use crate::SimulationSettings;
 
 /// The head at one substep, in working space.
 #[derive(Clone, Copy, Debug)]
@@ -29,6 +29,8 @@ impl Substep {
 
 /// One step, worked out once and read by every block.
 pub(crate) struct Plan<'a> {
+    /// Whether to use the instructions of this processor.
+    pub(crate) wide: bool,
     pub(crate) settings: SimulationSettings,
     pub(crate) h: f32,
     /// The first point that the scalp does not carry.

@@ -1,7 +1,7 @@
 //! One substep of one block.
 
-use super::lengths::{project_position, project_velocity};
 use super::Plan;
+use super::lengths::{project_position, project_velocity};
 use crate::block::Block;
 use crate::colliders::contact::{Near, apart, bounds, buried, lay_point, penetration};
 use crate::lanes::{LANES, Turns, ZERO3, at, direction_or, greater, lesser, put};
@@ -138,7 +138,11 @@ fn find_near(block: &mut Block, plan: &Plan, s: usize) {
     for (c, mover) in shapes.iter().enumerate() {
         if mover.shape.is_some() && !apart(min, max, mover, reach) {
             block.active.push(c as u32);
-            block.buried.push(buried(&block.next[carried], mover, &block.rest_distance[c * block.points() + carried]));
+            block.buried.push(buried(
+                &block.next[carried],
+                mover,
+                &block.rest_distance[c * block.points() + carried],
+            ));
         }
     }
 }

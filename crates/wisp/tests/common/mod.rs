@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::{Affine3A, Vec3};
-use lovelock_groom::{GroomSettings, GuideFrame, Guides, Hairstyle, Obstacle, Preset, Scalp, StrandSet, grow};
+use lovelock_groom::{
+    GroomSettings, GuideFrame, Guides, Hairstyle, Obstacle, Preset, Scalp, StrandSet, grow,
+};
 use lovelock_motion::{
     Body, Clip, Collider, PlacedCollider, Pose, RestDistance, fit_colliders, head_mesh, load_character,
     place_colliders, pose_at,
@@ -80,8 +82,7 @@ impl Stage {
 
 /// A hairstyle of bare guides.
 pub fn style(guides: &[Vec<Vec3>]) -> Arc<Hairstyle> {
-    let mut all =
-        Guides { points_per_guide: guides.first().map_or(2, Vec::len), ..Guides::default() };
+    let mut all = Guides { points_per_guide: guides.first().map_or(2, Vec::len), ..Guides::default() };
     for guide in guides {
         all.push(guide);
     }

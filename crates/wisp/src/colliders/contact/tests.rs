@@ -8,7 +8,13 @@ use crate::lanes::Map;
 fn still(shape: ColliderShape) -> MovingShape {
     let shape = Shape::new(&shape);
     let (min, max) = shape.expect("a shape").bounds();
-    MovingShape { shape, min, max, velocity_at: Map { turn: glam::Mat3::ZERO, shift: Vec3::ZERO }, on_head: false }
+    MovingShape {
+        shape,
+        min,
+        max,
+        velocity_at: Map { turn: glam::Mat3::ZERO, shift: Vec3::ZERO },
+        on_head: false,
+    }
 }
 
 fn splat(p: Vec3) -> Lane3 {
@@ -20,7 +26,15 @@ const RULES: ContactRules = ContactRules { margin: 0.0, layering: 0.0, friction:
 /// Lays a point next to `from` toward `wanted`, over one collider, without friction.
 fn lay(shape: ColliderShape, from: Vec3, wanted: Vec3, length: f32) -> Vec3 {
     let shapes = [still(shape)];
-    let near = Near { shapes: &shapes, active: &[0], rest_distance: &[[1.0; LANES]], points: 1, carried: 0, buried: &[ZERO], link: &ZERO };
+    let near = Near {
+        shapes: &shapes,
+        active: &[0],
+        rest_distance: &[[1.0; LANES]],
+        points: 1,
+        carried: 0,
+        buried: &[ZERO],
+        link: &ZERO,
+    };
     let placed = lay_point(
         0,
         &splat(from),
@@ -105,7 +119,15 @@ fn a_link_that_cannot_reach_the_surface_points_out() {
 fn a_point_that_rests_inside_is_left_there() {
     let c = Vec3::ZERO;
     let shapes = [still(ColliderShape::Capsule { a: c, b: c, radius_a: 0.1, radius_b: 0.1 })];
-    let near = Near { shapes: &shapes, active: &[0], rest_distance: &[[-0.02; LANES]], points: 1, carried: 0, buried: &[ZERO], link: &ZERO };
+    let near = Near {
+        shapes: &shapes,
+        active: &[0],
+        rest_distance: &[[-0.02; LANES]],
+        points: 1,
+        carried: 0,
+        buried: &[ZERO],
+        link: &ZERO,
+    };
     let rules = ContactRules { margin: 0.003, ..RULES };
     let (from, wanted) = (splat(Vec3::new(0.0, 0.07, 0.0)), splat(Vec3::new(0.0, 0.08, 0.0)));
     let placed = lay_point(0, &from, &wanted, &wanted, &from, &[0.01; LANES], &near, &rules);
@@ -138,14 +160,26 @@ fn hair_whose_root_is_buried_comes_out_along_a_slope() {
     let root = splat(Vec3::new(0.0, 0.08, 0.0));
     let deep = [buried(&root, &shapes[0], &rest[0])];
     assert!((deep[0][0] - 0.02).abs() < 1e-6);
-    let near = Near { shapes: &shapes, active: &[0], rest_distance: &rest, points: 12, carried: 0, buried: &deep, link: &length };
+    let near = Near {
+        shapes: &shapes,
+        active: &[0],
+        rest_distance: &rest,
+        points: 12,
+        carried: 0,
+        buried: &deep,
+        link: &length,
+    };
     let mut before = root;
     for i in 1..12 {
         // It wants to run on inside.
         let wanted = splat(at(&before, 0) + Vec3::new(0.01, -0.002, 0.0));
         let placed = lay_point(i, &before, &wanted, &wanted, &root, &length, &near, &RULES);
         let least = (0.1 - 0.02 + 0.005 * i as f32).min(0.1);
-        assert!(at(&placed, 0).length() > least - 2e-4, "point {i} is {} from the centre", at(&placed, 0).length());
+        assert!(
+            at(&placed, 0).length() > least - 2e-4,
+            "point {i} is {} from the centre",
+            at(&placed, 0).length()
+        );
         // Straight up would be 1 cm a link; the slope is half of that.
         if i == 1 {
             assert!(at(&placed, 0).length() < 0.0865, "point {i} stands up: {}", at(&placed, 0));

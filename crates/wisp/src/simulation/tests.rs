@@ -1,0 +1,93 @@
+use glam::{Affine3A, Quat};
+use lovelock_groom::Guides;
+use lovelock_motion::ColliderShape;
+
+use super::*;
+
+/// Thirty locks around a head of 8 cm, and what they collide with.
+fn head_of_hair() -> (Simulation, PlacedCollider) {
+    let mut guides = Guides { points_per_guide: 16, ..Guides::default() };
+    for g in 0..30 {
+        let out = Vec3::new((g as f32).cos(), -0.3 + 0.03 * g as f32, (g as f32).sin()).normalize_or(Vec3::Y);
+        let points: Vec<Vec3> = (0..16).map(|i| out * (0.08 + 0.015 * i as f32)).collect();
+        guides.push(&points);
+    }
+    let shape = ColliderShape::Capsule { a: Vec3::ZERO, b: Vec3::ZERO, radius_a: 0.08, radius_b: 0.08 };
+    let skull = PlacedCollider { shape, world_from_rest: Affine3A::IDENTITY };
+    let mut simulation = Simulation::new(Arc::new(Hairstyle { guides, ..Hairstyle::default() }));
+    simulation.reset(&input(0, &[skull]));
+    (simulation, skull)
+}
+
+fn input(step: i32, colliders: &[PlacedCollider]) -> StepInput<'_> {
+    let turn = Quat::from_rotation_y((step as f32 * 0.1).sin());
+    StepInput { time_secs: f64::from(step) / 60.0, world_from_head: Affine3A::from_quat(turn), colliders }
+}
+
+fn settings() -> SimulationSettings {
+    let mut settings = SimulationSettings::default();
+    settings.wind.speed = 3.0;
+    settings
+}
+
+#[test]
+fn the_processor_s_own_instructions_and_everyone_s_give_the_same_bits() {
+    let (mut wide, skull) = head_of_hair();
+    let mut portable = Simulation { wide: false, ..wide.clone() };
+    for step in 1..90 {
+        wide.step(&input(step, &[skull]), &settings(), 1.0 / 60.0);
+        portable.step(&input(step, &[skull]), &settings(), 1.0 / 60.0);
+        assert_eq!(wide.state_hash(), portable.state_hash(), "step {step}");
+    }
+}
+
+#[test]
+fn a_guide_gone_non_finite_is_put_back_counted_and_moves_on() {
+    let (mut hurt, skull) = head_of_hair();
+    for step in 1..20 {
+        hurt.step(&input(step, &[skull]), &settings(), 1.0 / 60.0);
+    }
+    let mut sound = hurt.clone();
+    let (block, lane) = hurt.slots[17];
+    for axis in &mut hurt.blocks[block as usize].position[7] {
+        axis[lane as usize] = f32::NAN;
+    }
+    let report = hurt.step(&input(20, &[skull]), &settings(), 1.0 / 60.0);
+    sound.step(&input(20, &[skull]), &settings(), 1.0 / 60.0);
+    assert_eq!(report.recovered_guides, 1);
+    let tip = |s: &Simulation, guide: usize| {
+        let (block, lane) = s.slots[guide];
+        at(&s.blocks[block as usize].position[15], lane as usize)
+    };
+    // It is where it was, carried with the head: near where it would have been.
+    assert!(
+        (tip(&hurt, 17) - tip(&sound, 17)).length() < 0.05,
+        "{} against {}",
+        tip(&hurt, 17),
+        tip(&sound, 17)
+    );
+    let before = tip(&hurt, 17);
+    for step in 21..60 {
+        let report = hurt.step(&input(step, &[skull]), &settings(), 1.0 / 60.0);
+        sound.step(&input(step, &[skull]), &settings(), 1.0 / 60.0);
+        assert_eq!(report.recovered_guides, 0);
+        assert!(report.max_stretch < 1e-5);
+    }
+    assert!((tip(&hurt, 17) - before).length() > 0.01, "it must move on");
+    // After half a second it has found back to what it would have done.
+    assert!((tip(&hurt, 17) - tip(&sound, 17)).length() < 0.02);
+}
+
+#[test]
+fn links_that_are_too_many_for_a_guide_hold_it_whole() {
+    let mut guides = Guides { points_per_guide: 2, ..Guides::default() };
+    guides.push(&[Vec3::ZERO, Vec3::X * 0.1]);
+    let mut simulation = Simulation::new(Arc::new(Hairstyle { guides, ..Hairstyle::default() }));
+    simulation.reset(&input(0, &[]));
+    let stiff = SimulationSettings { clamped_links: 2, ..settings() };
+    for step in 1..20 {
+        simulation.step(&input(step, &[]), &stiff, 1.0 / 60.0);
+    }
+    let tip = input(19, &[]).world_from_head.transform_point3(Vec3::X * 0.1);
+    assert!((at(&simulation.blocks[0].position[1], 0) - tip).length() < 1e-6);
+}

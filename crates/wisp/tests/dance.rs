@@ -1,0 +1,116 @@
+//! The shipped hairstyles on the shipped dancer.
+
+use glam::Vec3;
+use lovelock_groom::{GroomSettings, Preset};
+use lovelock_motion::signed_distance;
+use lovelock_wisp::{SimulationSettings, StepReport};
+
+mod common;
+use common::{STEP_SECS, Stage, away_from_style, frame, worse};
+
+#[test]
+fn over_the_whole_dance_lengths_hold_and_nothing_enters_the_body() {
+    for preset in Preset::ALL {
+        let mut stage = Stage::new(preset);
+        let mut simulation = stage.simulation(Some(0.0));
+        let settings = SimulationSettings::default();
+        let mut all = StepReport::default();
+        let steps = (stage.dance.duration_secs * 60.0) as u32;
+        for step in 1..=steps {
+            let report = simulation.step(&stage.at(Some(f64::from(step) / 60.0)), &settings, STEP_SECS);
+            assert!(report.max_stretch < 1e-5, "{preset:?} at step {step}: stretch {}", report.max_stretch);
+            // Between two colliders, and in front of one that moves at 5 m/s, a point may be 1 mm late.
+            assert!(
+                report.max_penetration_m < 1e-3,
+                "{preset:?} at step {step}: {} m",
+                report.max_penetration_m
+            );
+            all = worse(all, report);
+        }
+        println!("{preset:?}: {all:?}");
+        assert_eq!(all.recovered_guides, 0);
+        assert!(all.max_speed > 2.0 && all.max_speed < 20.0, "{preset:?}: {} m/s", all.max_speed);
+    }
+}
+
+#[test]
+fn without_colliders_the_same_dance_does_enter_the_body() {
+    let mut stage = Stage::new(Preset::Long);
+    let mut simulation = stage.simulation(Some(0.0));
+    let (mut deepest, settings) = (0.0_f32, SimulationSettings::default());
+    for step in 1..=180 {
+        let mut input = stage.at(Some(f64::from(step) / 60.0));
+        input.colliders = &[];
+        simulation.step(&input, &settings, STEP_SECS);
+        let guides = frame(&simulation).guides;
+        for g in 0..guides.count() {
+            let tip: Vec3 = guides.point(g, guides.points_per_guide - 1);
+            for collider in &stage.placed {
+                deepest = deepest.max(-signed_distance(&collider.shape, tip));
+            }
+        }
+    }
+    assert!(deepest > 0.01, "only {deepest} m: the test above shows nothing");
+}
+
+#[test]
+fn standing_still_hair_stays_as_it_was_drawn() {
+    for preset in Preset::ALL {
+        let mut stage = Stage::new(preset);
+        let mut simulation = stage.simulation(None);
+        let settings = SimulationSettings::default();
+        let mut report = StepReport::default();
+        for _ in 0..300 {
+            report = simulation.step(&stage.at(None), &settings, STEP_SECS);
+        }
+        let most = away_from_style(&simulation).into_iter().fold(0.0, f32::max);
+        assert!(most < 0.02, "{preset:?}: moved by {most} of its length");
+        assert!(report.max_speed < 1e-3, "{preset:?}: jitters at {} m/s", report.max_speed);
+        // The style is held by what it carries of its weight: without it, it sags.
+        let limp = SimulationSettings { style_support: 0.0, ..settings };
+        for _ in 0..120 {
+            simulation.step(&stage.at(None), &limp, STEP_SECS);
+        }
+        assert!(away_from_style(&simulation).into_iter().fold(0.0, f32::max) > 0.03);
+    }
+}
+
+#[test]
+fn after_a_turn_hair_settles_within_two_seconds() {
+    let mut stage = Stage::new(Preset::Long);
+    let mut simulation = stage.simulation(Some(0.0));
+    let settings = SimulationSettings::default();
+    for step in 1..=90 {
+        simulation.step(&stage.at(Some(f64::from(step) / 60.0)), &settings, STEP_SECS);
+    }
+    // The dancer freezes in her pose.
+    let mut speeds = Vec::new();
+    for _ in 0..180 {
+        let report = simulation.step(&stage.at(Some(1.5)), &settings, STEP_SECS);
+        speeds.push(report.kinetic_energy);
+    }
+    assert!(speeds[0] > 0.05, "the hair was not moving: {} J/kg", speeds[0]);
+    assert!(speeds[119] < 0.02 * speeds[0], "{} of {} J/kg is left after 2 s", speeds[119], speeds[0]);
+}
+
+#[test]
+fn one_two_and_eight_threads_give_the_same_bytes() {
+    let groom = GroomSettings { wisps: 60, ..GroomSettings::preset(Preset::Long) };
+    let run = |threads: usize, last: u32| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+        pool.install(|| {
+            let mut stage = Stage::grown(&groom);
+            let mut simulation = stage.simulation(Some(0.0));
+            let mut settings = SimulationSettings::default();
+            settings.wind.speed = 3.0;
+            for step in 1..=last {
+                simulation.step(&stage.at(Some(f64::from(step) / 60.0)), &settings, STEP_SECS);
+            }
+            simulation.state_hash()
+        })
+    };
+    let one = run(1, 120);
+    assert_eq!(one, run(2, 120));
+    assert_eq!(one, run(8, 120));
+    assert_ne!(one, run(1, 119), "the hash does not see the state");
+}
