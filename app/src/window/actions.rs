@@ -59,7 +59,7 @@ impl Window {
                 self.session.worker().seek((duration - lovelock_studio::STEP_SECS).max(0.0));
             }
             Command::ToggleLoop => {
-                self.change("loop", |project| project.motion.looping = !project.motion.looping)
+                self.change("loop", |project| project.motion.looping = !project.motion.looping);
             }
             Command::SettleHair => self.session.worker().settle(),
             Command::Record if self.recorder.is_running() => self.recorder.cancel(),
@@ -73,7 +73,7 @@ impl Window {
                 };
             }),
             Command::ResetCamera => {
-                self.change("camera", |project| project.camera = CameraSection::default())
+                self.change("camera", |project| project.camera = CameraSection::default());
             }
             Command::Undo => {
                 self.history.undo();
@@ -122,7 +122,7 @@ impl Window {
     pub(super) fn open_any(&mut self, path: &Path) {
         match FileKind::of(path) {
             Ok(FileKind::Project) if self.history.is_modified() => {
-                self.pending = Some(Pending::Open(path.to_owned()))
+                self.pending = Some(Pending::Open(path.to_owned()));
             }
             Ok(FileKind::Project) => self.open_project(path),
             Ok(kind) => {

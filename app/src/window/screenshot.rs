@@ -28,7 +28,7 @@ impl Screenshot {
             let closing = ctx.clone();
             ctx.request_screenshot(move |image| {
                 let [width, height] = image.size.map(|side| side as u32);
-                let rgba: Vec<u8> = image.pixels.iter().flat_map(|pixel| pixel.to_array()).collect();
+                let rgba: Vec<u8> = image.pixels.iter().flat_map(egui::Color32::to_array).collect();
                 if let Err(error) = recording::write_png(&out, width, height, &rgba) {
                     eprintln!("lovelock: {error}");
                 }

@@ -112,7 +112,7 @@ impl Session {
             match event {
                 Event::Loaded { scene, problems } => self.take_scene(scene, problems),
                 Event::LoadCancelled => {
-                    said.push("Loading was cancelled; the scene stays as it was.".to_owned())
+                    said.push("Loading was cancelled; the scene stays as it was.".to_owned());
                 }
                 Event::LoadFailed { message } => said.push(message),
                 Event::EndReached => self.playing = false,

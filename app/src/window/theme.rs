@@ -1,5 +1,7 @@
 //! Colours and spacing of the interface: the only place that names a colour.
 
+#![expect(clippy::disallowed_methods, reason = "colours come from here")]
+
 use egui::{Color32, CornerRadius, FontId, Margin, Stroke, TextStyle, Theme, Vec2, Visuals};
 
 /// What differs from its default, what is chosen, what runs.
@@ -27,6 +29,12 @@ pub(crate) const PLOT: [Color32; 6] = [
     Color32::from_rgb(213, 94, 0),
     Color32::from_rgb(204, 121, 167),
 ];
+
+/// A linear colour on the screen.
+pub(crate) fn from_linear(linear: [f32; 3]) -> Color32 {
+    let [r, g, b] = linear.map(|v| (v.clamp(0.0, 1.0).powf(1.0 / 2.2) * 255.0) as u8);
+    Color32::from_rgb(r, g, b)
+}
 
 /// Dresses `ctx`.
 pub(crate) fn apply(ctx: &egui::Context) {

@@ -41,7 +41,7 @@ impl Viewport {
                 match &mut self.texture {
                     Some(texture) => texture.set(image, TextureOptions::LINEAR),
                     None => {
-                        self.texture = Some(ui.ctx().load_texture("picture", image, TextureOptions::LINEAR))
+                        self.texture = Some(ui.ctx().load_texture("picture", image, TextureOptions::LINEAR));
                     }
                 }
                 self.shown_step = Some(key);

@@ -128,7 +128,10 @@ fn a_folder_of_pictures_has_a_manifest_and_nothing_unfinished() {
     let folder = takes.dir.path().join("frames 1");
     let found = names(&folder);
     assert_eq!(found.len(), 5, "{found:?}");
-    let manifest = found.iter().find(|name| name.ends_with(".json")).expect("a manifest");
+    let manifest = found
+        .iter()
+        .find(|name| Path::new(name).extension().is_some_and(|ending| ending == "json"))
+        .expect("a manifest");
     let text = std::fs::read_to_string(folder.join(manifest)).expect("a manifest");
     let manifest: Value = serde_json::from_str(&text).expect("JSON");
     assert_eq!(manifest["complete"], true);

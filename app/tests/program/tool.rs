@@ -5,14 +5,14 @@ use std::fs::File;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::sync::OnceLock;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use lovelock_studio::groom::Preset;
-use lovelock_studio::{Project, save_project};
+use lovelock_studio::{Project, Stopwatch, save_project};
 use serde_json::Value;
 
 /// No run of these tests takes a tenth of it; what takes longer hangs.
-const HANGS: Duration = Duration::from_mins(2);
+const HANGS_SECS: f64 = 120.0;
 
 /// How a run of the program ended.
 #[derive(Debug)]
@@ -20,7 +20,7 @@ pub struct Ran {
     pub code: Option<i32>,
     pub stdout: String,
     pub stderr: String,
-    pub took: Duration,
+    pub took_secs: f64,
 }
 
 impl Ran {
@@ -71,7 +71,7 @@ pub fn run_command(command: &mut Command) -> Ran {
     // Files rather than pipes: nothing waits for a reader.
     let dir = tempfile::tempdir().expect("a folder");
     let (out, err) = (dir.path().join("out"), dir.path().join("err"));
-    let start = Instant::now();
+    let watch = Stopwatch::start();
     let mut child = command
         .stdin(Stdio::null())
         .stdout(File::create(&out).expect("a file"))
@@ -82,7 +82,7 @@ pub fn run_command(command: &mut Command) -> Ran {
         if let Some(status) = child.try_wait().expect("its state") {
             break status;
         }
-        if start.elapsed() > HANGS {
+        if watch.secs() > HANGS_SECS {
             let _ = child.kill();
             let _ = child.wait();
             panic!("hangs: {command:?}");
@@ -90,7 +90,7 @@ pub fn run_command(command: &mut Command) -> Ran {
         std::thread::sleep(Duration::from_millis(5));
     };
     let read = |path| String::from_utf8(std::fs::read(path).expect("a file")).expect("UTF-8");
-    Ran { code: status.code(), stdout: read(out), stderr: read(err), took: start.elapsed() }
+    Ran { code: status.code(), stdout: read(out), stderr: read(err), took_secs: watch.secs() }
 }
 
 /// A project with few strands and small maps, so that a frame of it is soon drawn.

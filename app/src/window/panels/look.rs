@@ -6,6 +6,7 @@ use lovelock_studio::groom::HairLook;
 use lovelock_studio::render::{PictureSettings, Transparency};
 
 use crate::window::control::{Number, choice, color, row, section, toggle};
+use crate::window::theme;
 
 /// Natural colours: name, eumelanin, pheomelanin.
 const COLORS: [(&str, f32, f32); 6] = [
@@ -147,7 +148,5 @@ fn edit(ui: &mut Ui, label: &'static str, tip: &'static str, value: &mut Vec3, d
 
 /// About the colour that hair of this look has.
 fn swatch(look: &HairLook) -> Color32 {
-    let linear = 0.7 * HairLook::body_color(look.absorption());
-    let byte = |v: f32| (v.clamp(0.0, 1.0).powf(1.0 / 2.2) * 255.0) as u8;
-    Color32::from_rgb(byte(linear.x), byte(linear.y), byte(linear.z))
+    theme::from_linear((0.7 * HairLook::body_color(look.absorption())).to_array())
 }

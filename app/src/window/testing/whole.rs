@@ -3,14 +3,14 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, ViewportCommand, ViewportEvent, ViewportId, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use lovelock_studio::groom::Preset;
-use lovelock_studio::{Command, PROJECT_EXTENSION, Place, Project, load_project};
+use lovelock_studio::{Command, PROJECT_EXTENSION, Place, Project, Stopwatch, load_project};
 
 use super::keyboard::entry;
 use super::{Shown, control, controls, drag, screen_of};
@@ -46,10 +46,10 @@ fn project(harness: &Harness<'_, Shown<Option<Window>>>) -> Arc<Project> {
 
 /// Passes until something is so.
 fn wait(harness: &mut Harness<'_, Shown<Option<Window>>>, what: &str, is_so: impl Fn(&Window) -> bool) {
-    let start = Instant::now();
+    let watch = Stopwatch::start();
     while !is_so(of(harness)) {
         // A guard against waiting for ever; loading takes a second or so.
-        assert!(start.elapsed() < Duration::from_mins(1), "waited too long for {what}");
+        assert!(watch.secs() < 60.0, "waited too long for {what}");
         harness.step();
         std::thread::sleep(Duration::from_millis(5));
     }
@@ -177,7 +177,7 @@ fn projects_are_saved_opened_and_not_lost() {
     answer(&mut harness, &path.with_extension(""));
     assert!(path.is_file(), "the ending was added");
     assert!(!of(&harness).history.is_modified());
-    assert_eq!(of(&harness).layout.recent, [path.clone()]);
+    assert_eq!(of(&harness).layout.recent, std::slice::from_ref(&path));
     let (saved, problems) = load_project(&path).expect("a project");
     assert!(problems.is_empty() && saved == *project(&harness), "{problems:?}");
 

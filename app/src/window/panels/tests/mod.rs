@@ -81,7 +81,7 @@ pub(super) const PANELS: [(&str, Show); 9] = [
 pub(super) fn panel(title: &'static str, project: Project) -> Harness<'static, Shown<Bench>> {
     let show = PANELS.iter().find(|(name, _)| *name == title).expect("a panel of that title").1;
     let mut harness = screen(Bench::new(project), move |ui, bench: &mut Bench| {
-        section(ui, title, true, |ui| show(ui, bench))
+        section(ui, title, true, |ui| show(ui, bench));
     });
     unfold(&mut harness);
     harness
