@@ -2,43 +2,103 @@
 
 use glam::Vec3;
 
-/// The part of a triangle on which a point lies. Edge `k` runs from corner `k` to the next.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Feature {
-    Face,
-    Edge(usize),
-    Vertex(usize),
-}
-
-/// Closest point of a triangle (Ericson 2004, "Real-Time Collision Detection", section 5.1.5).
-pub(super) fn closest_on_triangle([a, b, c]: [Vec3; 3], p: Vec3) -> (Vec3, Feature) {
+/// Closest point of a triangle (Ericson 2004, "Real-Time Collision Detection", section 5.1.5). Rounding moves it
+/// within the triangle, never off it.
+pub(super) fn closest_on_triangle([a, b, c]: [Vec3; 3], p: Vec3) -> Vec3 {
     let (ab, ac, ap) = (b - a, c - a, p - a);
     let (d1, d2) = (ab.dot(ap), ac.dot(ap));
     if d1 <= 0.0 && d2 <= 0.0 {
-        return (a, Feature::Vertex(0));
+        return a;
     }
     let bp = p - b;
     let (d3, d4) = (ab.dot(bp), ac.dot(bp));
     if d3 >= 0.0 && d4 <= d3 {
-        return (b, Feature::Vertex(1));
+        return b;
     }
     let vc = d1 * d4 - d3 * d2;
     if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        return (a + ab * (d1 / (d1 - d3)), Feature::Edge(0));
+        return a + ab * (d1 / (d1 - d3));
     }
     let cp = p - c;
     let (d5, d6) = (ab.dot(cp), ac.dot(cp));
     if d6 >= 0.0 && d5 <= d6 {
-        return (c, Feature::Vertex(2));
+        return c;
     }
     let vb = d5 * d2 - d1 * d6;
     if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        return (a + ac * (d2 / (d2 - d6)), Feature::Edge(2));
+        return a + ac * (d2 / (d2 - d6));
     }
     let va = d3 * d6 - d5 * d4;
     if va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0 {
-        return (b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6))), Feature::Edge(1));
+        return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
     }
     let scale = 1.0 / (va + vb + vc);
-    (a + ab * (vb * scale) + ac * (vc * scale), Feature::Face)
+    a + ab * (vb * scale) + ac * (vc * scale)
+}
+
+/// So many triangles are measured to at once.
+pub(super) const LANES: usize = 8;
+
+/// Triangles side by side, for vector instructions: one corner of each, and the edges from it.
+#[derive(Clone, Debug)]
+pub(super) struct Pack {
+    corner: [[f32; LANES]; 3],
+    edges: [[[f32; LANES]; 3]; 2],
+}
+
+impl Pack {
+    /// Up to [`LANES`] triangles, at least one; the last one fills what is left.
+    pub(super) fn new(triangles: &[[Vec3; 3]]) -> Self {
+        let lanes: [[Vec3; 3]; LANES] = std::array::from_fn(|lane| triangles[lane.min(triangles.len() - 1)]);
+        let apart =
+            |of: fn(&[Vec3; 3]) -> Vec3| [0, 1, 2].map(|axis| lanes.map(|corners| of(&corners)[axis]));
+        Self { corner: apart(|[a, ..]| *a), edges: [apart(|[a, b, _]| b - a), apart(|[a, _, c]| c - a)] }
+    }
+
+    /// The lane of the triangle closest to a point, and the square of its distance, by the formulas of
+    /// [`closest_on_triangle`] without branches: the least over the edges, or the face where the point is above it.
+    pub(super) fn closest(&self, p: Vec3) -> (usize, f32) {
+        let mut squares = [0.0_f32; LANES];
+        let [[abx, aby, abz], [acx, acy, acz]] = &self.edges;
+        for k in 0..LANES {
+            let ap = [p.x - self.corner[0][k], p.y - self.corner[1][k], p.z - self.corner[2][k]];
+            let (ab, ac) = ([abx[k], aby[k], abz[k]], [acx[k], acy[k], acz[k]]);
+            let (bb, bc, cc) = (dot(ab, ab), dot(ab, ac), dot(ac, ac));
+            let (d1, d2) = (dot(ab, ap), dot(ac, ap));
+            let (d3, d4, d5, d6) = (d1 - bb, d2 - bc, d1 - bc, d2 - cc);
+            let (va, vb, vc) = (d3 * d6 - d5 * d4, d5 * d2 - d1 * d6, d1 * d4 - d3 * d2);
+            // How much farther or nearer than the corner: a quadratic form of the weights of the edges.
+            let beside =
+                |v: f32, w: f32| v * (v * bb - 2.0 * d1) + w * (w * cc - 2.0 * d2) + 2.0 * v * w * bc;
+            let (along_ab, along_ac) = (unit(d1 / bb), unit(d2 / cc));
+            let along_bc = unit((d4 - d3) / ((d4 - d3) + (d5 - d6)));
+            let edge = least(beside(along_ab, 0.0), beside(0.0, along_ac));
+            let edge = least(edge, beside(1.0 - along_bc, along_bc));
+            let scale = 1.0 / (va + vb + vc);
+            let face = beside(vb * scale, vc * scale);
+            let above = least(va, least(vb, vc)) > 0.0;
+            squares[k] = dot(ap, ap) + if above { face } else { edge };
+        }
+        let mut best = (0, f32::INFINITY);
+        for (lane, &square) in squares.iter().enumerate() {
+            if square < best.1 {
+                best = (lane, square);
+            }
+        }
+        best
+    }
+}
+
+fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// Unlike [`f32::min`], one instruction; not a number gives `b`.
+fn least(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// Clamps to 0..=1.
+fn unit(x: f32) -> f32 {
+    least(if x > 0.0 { x } else { 0.0 }, 1.0)
 }

@@ -1,59 +1,112 @@
-//! Signed distance of the resting body: exact, from the closest point of its triangles.
+//! Signed distance of the resting body: a grid near the hair, exact elsewhere.
 
+mod bricks;
 mod closest;
-mod topology;
+mod grid;
+mod signs;
+mod surface;
+#[cfg(test)]
+mod tests;
 mod tree;
+mod winding;
 
 use glam::Vec3;
 
 use crate::Body;
-use closest::Feature;
-use topology::Topology;
+use grid::Grid;
 use tree::Tree;
+use winding::Winding;
+
+/// Where hair can reach around the head of a body of [`TALL`] metres, in head space, metres.
+const REACH: [Vec3; 2] = [Vec3::new(-0.32, -0.75, -0.34), Vec3::new(0.32, 0.32, 0.32)];
+/// The longest side of a body of a usual size, metres; for others the reach grows and shrinks.
+const TALL: f32 = 1.7;
+/// Beyond the surface the grid goes on for so much of the body's longest side.
+const MARGIN: f32 = 0.18;
+/// Smaller and larger surfaces, metres, are left to the search: squares of lengths overflow.
+const SIZES: std::ops::Range<f32> = 1e-5..1e6;
 
 /// Signed distance and outward normal of the resting body, in head space (see [`crate::Pose::world_from_head`]).
 ///
-/// A bounding volume tree finds the closest point of the surface; the sign comes from the angle-weighted
-/// pseudonormal of the face, edge or vertex there (Bærentzen and Aanæs 2005, "Signed distance computation using the
-/// angle weighted pseudonormal"), which is right for closed surfaces and sensible near open ones.
+/// Which side of the surface a point is on is told by the winding number, so that bodies with holes, overlaps and
+/// folds have an inside too. Where hair can reach, distances come from a grid by trilinear interpolation. For a body
+/// of usual size its cells are 5 mm near the surface, where it is off by 0.1 mm on smooth skin and by some 0.5 mm
+/// on sharp edges, and 20 mm elsewhere, where it is off by a millimetre, and by some more halfway between two parts
+/// of the body. Outside of the grid, a bounding volume tree finds the closest point of the surface, in
+/// microseconds.
 #[derive(Clone, Debug, Default)]
 pub struct RestDistance {
-    topology: Topology,
-    tree: Tree,
+    exact: Exact,
+    grid: Option<Grid>,
 }
 
 impl RestDistance {
-    /// Prepares the whole surface of a body; some milliseconds for ten thousand triangles.
+    /// Prepares the whole surface of a body, with the grid around its head, neck and upper torso; a quarter
+    /// of a second on two cores for fifty thousand triangles.
     pub fn new(body: &Body) -> Self {
         let origin =
             body.skeleton.world_at_rest.get(body.head_joint).map_or(Vec3::ZERO, |w| w.translation.into());
         let positions: Vec<Vec3> = body.mesh.positions.iter().map(|&p| p - origin).collect();
-        Self::of_triangles(&positions, &body.mesh.triangles)
+        Self::within(&positions, &body.mesh.triangles, Some(REACH))
     }
 
-    /// Prepares any surface of counter-clockwise triangles; distances are in the space of its positions.
+    /// Prepares any surface of counter-clockwise triangles, with the grid around all of it; distances are in the
+    /// space of its positions. Triangles without an area, or with corners that are missing or not finite, do not
+    /// count.
     pub fn of_triangles(positions: &[Vec3], triangles: &[[u32; 3]]) -> Self {
-        let topology = Topology::new(positions, triangles);
-        let tree = Tree::new(&topology.corners);
-        Self { topology, tree }
+        Self::within(positions, triangles, None)
+    }
+
+    fn within(positions: &[Vec3], triangles: &[[u32; 3]], reach: Option<[Vec3; 2]>) -> Self {
+        let exact = Exact::new(&surface::corners(positions, triangles));
+        let grid = exact.tree.bounds().and_then(|(low, high)| {
+            let size = (high - low).max_element();
+            let margin = Vec3::splat(MARGIN * size);
+            let (mut low, mut high) = (low - margin, high + margin);
+            if let Some(reach) = reach {
+                let [reach_low, reach_high] = reach.map(|corner| corner * (size / TALL));
+                (low, high) = (low.max(reach_low), high.min(reach_high));
+            }
+            (SIZES.contains(&size) && low.cmplt(high).all()).then(|| Grid::new(&exact, low, high))
+        });
+        Self { exact, grid }
     }
 
     /// Distance in metres, negative inside, and the outward unit normal there: the direction in which the distance
     /// grows. An empty surface is infinitely far.
     pub fn distance(&self, p: Vec3) -> (f32, Vec3) {
-        let Some((triangle, at, feature)) = self.tree.closest(&self.topology.corners, p) else {
+        self.grid.as_ref().and_then(|grid| grid.sample(p)).unwrap_or_else(|| self.exact.distance(p))
+    }
+}
+
+/// Distances by search: microseconds each.
+#[derive(Clone, Debug, Default)]
+struct Exact {
+    tree: Tree,
+    winding: Winding,
+    /// Whether the surface has no border.
+    closed: bool,
+}
+
+impl Exact {
+    fn new(corners: &[[Vec3; 3]]) -> Self {
+        let tree = Tree::new(corners);
+        Self { winding: Winding::new(&tree), closed: surface::is_closed(corners), tree }
+    }
+
+    fn inside(&self, p: Vec3) -> bool {
+        self.winding.inside(&self.tree, p)
+    }
+
+    fn distance(&self, p: Vec3) -> (f32, Vec3) {
+        let Some(hit) = self.tree.closest(p, None) else {
             return (f32::INFINITY, Vec3::Y);
         };
-        let pseudonormal = match feature {
-            Feature::Face => self.topology.face_normals[triangle],
-            Feature::Edge(k) => self.topology.edge_normals[triangle][k],
-            Feature::Vertex(k) => self.topology.vertex_normals[triangle][k],
-        };
-        let away = p - at;
-        let length = away.length();
-        let sign = if away.dot(pseudonormal) < 0.0 { -1.0 } else { 1.0 };
+        let length = hit.distance_squared.sqrt();
+        let sign = if self.inside(p) { -1.0 } else { 1.0 };
+        let face = self.tree.normal(hit.triangle);
         // On the surface itself the direction is lost in rounding: a tenth of a micrometre.
-        let normal = if length > 1e-7 { away * (sign / length) } else { pseudonormal };
-        (sign * length, normal.normalize_or(Vec3::Y))
+        let normal = if length > 1e-7 { (p - hit.at) * (sign / length) } else { face };
+        (sign * length, normal.normalize_or(face))
     }
 }
