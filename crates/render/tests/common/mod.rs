@@ -121,6 +121,32 @@ pub fn quad(z: f32, half: f32, color: Vec3) -> (Arc<Body>, Skin) {
     (Arc::new(Body { mesh, ..Body::default() }), skin)
 }
 
+/// As [`quad`], cut into `cells` by `cells` squares.
+pub fn grid(z: f32, half: f32, cells: u32, color: Vec3) -> (Arc<Body>, Skin) {
+    let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+    for row in 0..=cells {
+        for column in 0..=cells {
+            let at = |i: u32| (i as f32 / cells as f32 * 2.0 - 1.0) * half;
+            positions.push(Vec3::new(at(column), at(row), z));
+            if row < cells && column < cells {
+                let i = row * (cells + 1) + column;
+                triangles.extend([[i, i + 1, i + cells + 2], [i, i + cells + 2, i + cells + 1]]);
+            }
+        }
+    }
+    let normals = vec![Vec3::Z; positions.len()];
+    let mesh = Mesh {
+        positions: positions.clone(),
+        normals: normals.clone(),
+        colors: vec![color; positions.len()],
+        triangles,
+        ..Mesh::default()
+    };
+    let mut skin = Skin::default();
+    (skin.positions, skin.normals) = (positions, normals);
+    (Arc::new(Body { mesh, ..Body::default() }), skin)
+}
+
 /// The bytes of the pixel at `x`, `y` from the top left.
 pub fn pixel(picture: &Picture, x: u32, y: u32) -> [u8; 4] {
     let i = ((y * picture.width + x) * 4) as usize;
