@@ -134,6 +134,9 @@ pub(crate) fn lay_point(
                 continue;
             }
             let Some(shape) = mover.shape else { continue };
+            if shape.surely_beyond(&placed, reach) {
+                continue;
+            }
             let mut along = ZERO3;
             for k in 0..LANES {
                 put(&mut along, k, at(&placed, k) - at(before, k));
@@ -211,6 +214,9 @@ pub(crate) fn penetration(point: usize, placed: &Lane3, near: &Near, rules: &Con
             continue;
         }
         let Some(shape) = mover.shape else { continue };
+        if shape.surely_beyond(placed, rules.reach()) {
+            continue;
+        }
         let nearest = shape.nearest(placed, &ZERO3);
         // The margin is for comfort: what counts is the surface, or the distance at rest where that is less.
         let bare = ContactRules { margin: 0.0, layering: 0.0, ..*rules };

@@ -103,6 +103,24 @@ impl Shape {
         }
     }
 
+    /// Whether every lane of `points` is surely further away than `reach`: cheaper than to ask how far. Next to a
+    /// capsule, where that is as cheap, the answer is no.
+    #[inline(always)]
+    pub(crate) fn surely_beyond(&self, points: &Lane3, reach: f32) -> bool {
+        let Self::Ellipsoid { centre, axes: [ax, ay, az], radii } = *self else { return false };
+        // Seen from outside, the ellipsoid grown by a factor of 1 + reach / (smallest radius) holds all within reach.
+        let inv = 1.0 / radii;
+        let (ax, ay, az) = (ax * inv.x, ay * inv.y, az * inv.z);
+        let mut nearest = f32::MAX;
+        for k in 0..LANES {
+            let q = at(points, k) - centre;
+            let q = Vec3::new(q.dot(ax), q.dot(ay), q.dot(az));
+            nearest = lesser(nearest, q.length_squared());
+        }
+        let factor = 1.0 + reach / lesser(radii.x, lesser(radii.y, radii.z));
+        nearest > factor * factor
+    }
+
     /// The nearest point for every lane of `points`. `along` is the direction in which a push-out may move
     /// each point; the touching sphere of an ellipsoid is curved as its surface is in that direction.
     #[inline(always)]
@@ -238,6 +256,25 @@ mod tests {
                 assert!((found - distance).abs() < 1e-5, "{found} where {distance} is right");
             }
         }
+    }
+
+    #[test]
+    fn what_is_surely_beyond_reach_is_so() {
+        let (e, reach) = (ellipsoid(), 0.012);
+        let (mut sure, mut near) = (0, 0);
+        for i in 0..3000 {
+            let (u, v) = (i as f32 * 0.37, i as f32 * 0.73);
+            let out = Vec3::new(u.sin() * v.cos(), u.sin() * v.sin(), u.cos());
+            let p = Vec3::new(0.0, 0.1, 0.02) + out * (0.07 + 0.00003 * i as f32);
+            let row = [[p.x; LANES], [p.y; LANES], [p.z; LANES]];
+            if e.surely_beyond(&row, reach) {
+                sure += 1;
+                assert!(e.distance(p) > reach);
+            } else if e.distance(p) < reach {
+                near += 1;
+            }
+        }
+        assert!(sure > 500 && near > 500, "{sure} beyond, {near} within: too few to show anything");
     }
 
     #[test]
