@@ -43,7 +43,7 @@ fn strand_light(t: vec3f, l: vec3f, v: vec3f, color: StrandColor, specular: f32,
     // Light that has passed other hair is the more coloured, the deeper it comes.
     let deep = pow(color.body, vec3f(1.0 + 0.45 * (1.0 - lit)));
     let diffuse = 0.32 * cos_l * deep;
-    let reflected = 0.19 * frame.highlights.x * first * front * vec3f(1.0)
+    let reflected = 0.13 * frame.highlights.x * first * front * vec3f(1.0)
         + 0.40 * frame.highlights.y * second * front * color.second;
     let passed = 0.50 * behind * pow(max(cos_sum, 0.0), 4.0) * color.through;
     return diffuse + specular * (reflected + passed);
