@@ -2,6 +2,7 @@
 
 mod dialogs;
 mod keyboard;
+mod notices;
 mod playback;
 mod whole;
 

@@ -1,0 +1,52 @@
+//! Sentences that come and go.
+
+use egui::accesskit::Role;
+use egui::vec2;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+
+use super::{Shown, screen_of, texts};
+use crate::window::notices::{Kind, Notices};
+
+fn corner(sentences: &[&str]) -> Harness<'static, Shown<Notices>> {
+    let mut notices = Notices::default();
+    for sentence in sentences {
+        notices.tell(Kind::Warning, *sentence);
+    }
+    let mut harness = screen_of(vec2(640.0, 400.0), notices, |ui, notices| notices.show(ui.ctx()));
+    harness.run_steps(2);
+    harness
+}
+
+#[test]
+fn a_long_sentence_stays_in_the_window() {
+    let path = "/a/folder/of/a/long/name".repeat(12);
+    let harness = corner(&[&format!("{path}: there is no such file; pick another one")]);
+    let told =
+        texts(&harness).into_iter().find(|(text, ..)| text.contains("no such file")).expect("the sentence");
+    assert!(told.1.left() >= 0.0 && told.1.right() <= 640.0 && told.1.bottom() <= 400.0, "{:?}", told.1);
+    assert!(told.1.height() > 30.0, "it takes several lines");
+}
+
+#[test]
+fn a_sentence_goes_by_itself_or_is_closed() {
+    let mut harness = corner(&["one", "two", "one"]);
+    assert_eq!(harness.query_all_by_label("one").count(), 1, "said twice, shown once");
+    harness.query_all_by_role(Role::Button).next().expect("a button").click();
+    harness.run_steps(6);
+    assert!(harness.query_by_label("two").is_none() && harness.query_by_label("one").is_some());
+    // Passes of a thirtieth of a second, far beyond the time that three letters stay.
+    harness.run_steps(30 * 20);
+    assert!(harness.query_by_label("one").is_none());
+}
+
+#[test]
+fn the_corner_does_not_fill_the_window() {
+    let sentences: Vec<String> = (0..20).map(|i| format!("sentence {i}")).collect();
+    let sentences: Vec<&str> = sentences.iter().map(String::as_str).collect();
+    let harness = corner(&sentences);
+    assert!(harness.query_all_by_label_contains("sentence").count() <= 5);
+    assert!(harness.query_by_label("sentence 19").is_some(), "the newest is there");
+    harness.check_accessibility();
+    assert!(harness.query_all_by_role_and_label(Role::Button, "Close message").count() > 0);
+}
