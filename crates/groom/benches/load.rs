@@ -33,7 +33,7 @@ fn real_files(c: &mut Criterion) {
         group.bench_function("load", |b| b.iter(|| load_hair(black_box(&path)).expect("a sound file")));
         let file = load_hair(&path).expect("a sound file");
         group.bench_function("import", |b| {
-            b.iter(|| import(black_box(&file), &settings, &scalp).expect("hair"))
+            b.iter(|| import(black_box(&file), &settings, &scalp).expect("hair"));
         });
         group.bench_function("load and import", |b| {
             b.iter(|| {
@@ -55,7 +55,7 @@ fn many_strands(c: &mut Criterion) {
         let bytes = cap(strands);
         let file = load_hair_bytes("cap.hair", &bytes).expect("a sound file");
         group.bench_function(strands.to_string(), |b| {
-            b.iter(|| import(black_box(&file), &settings, &scalp).expect("hair"));
+            b.iter(|| import(black_box(&file), &settings, &scalp).expect("hair"));;
         });
     }
     group.finish();

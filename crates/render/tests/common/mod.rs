@@ -77,7 +77,7 @@ pub fn scene(lines: &[Vec<Vec3>]) -> Scene {
     let set = StrandSet {
         wisp: vec![0; lines.len()],
         weights: vec![[1.0, 0.0, 0.0]; lines.len()],
-        first_point: first_point,
+        first_point,
         guide_param: vec![0.0; points],
         offset_normal: vec![0.0; points],
         offset_binormal: vec![0.0; points],
