@@ -86,8 +86,10 @@ impl Notices {
                         ui.horizontal_top(|ui| {
                             let (icon, color) = notice.kind.icon();
                             ui.label(RichText::from(icon).color(color));
-                            let text = egui::Label::new(&notice.text).wrap();
-                            ui.add_sized([WIDTH - 72.0, 0.0], text);
+                            ui.vertical(|ui| {
+                                ui.set_width(WIDTH - 72.0);
+                                ui.add(egui::Label::new(&notice.text).wrap());
+                            });
                             let close = ui.small_button(ICON_CLOSE).on_hover_text("Closes this message.");
                             close.widget_info(|| {
                                 egui::WidgetInfo::labeled(egui::Role::Button, true, "Close message")
