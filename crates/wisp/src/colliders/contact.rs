@@ -25,13 +25,26 @@ const LAYER_HEIGHT: f32 = 0.025;
 /// A point's own clearance at rest is undercut by this, so that rounding makes no contact of it, metres.
 const SLACK: f32 = 1e-4;
 
-/// Rounds over the colliders of a point. The second sees what the first one's push-outs did to each other.
-const ROUNDS: usize = 2;
+/// Rounds over the colliders of a point: the later ones see what the push-outs of the earlier did to each other.
+const ROUNDS: usize = 4;
+
+/// From this round on a point that is still pushed to and fro lies between two colliders: comfort gives way
+/// there, so that the surfaces need not.
+const TIGHT: usize = 2;
+
+/// After the first round, what is less deep than this is left, metres.
+const CLOSE_ENOUGH: f32 = 1e-5;
 
 impl ContactRules {
     /// The most that any point stays away from a surface, metres.
     pub(crate) fn reach(&self) -> f32 {
         self.margin + self.layering * LAYER_HEIGHT
+    }
+
+    /// The same without what is for comfort: the margin and the layers.
+    #[inline(always)]
+    fn bare(&self) -> Self {
+        Self { margin: 0.0, layering: 0.0, ..*self }
     }
 
     /// How near to the surface each lane may come whose distance at rest is `rest`.
@@ -125,6 +138,8 @@ pub(crate) fn lay_point(
         return placed;
     }
     for round in 0..ROUNDS {
+        let rules = if round < TIGHT { *rules } else { rules.bare() };
+        let enough = if round == 0 { 0.0 } else { CLOSE_ENOUGH };
         let (min, max) = bounds(&placed);
         let mut pushed = false;
         for (n, &c) in near.active.iter().enumerate() {
@@ -142,12 +157,12 @@ pub(crate) fn lay_point(
                 put(&mut along, k, at(&placed, k) - at(before, k));
             }
             let nearest = shape.nearest(&placed, &along);
-            let allowed = near.allowed(n, point, rules);
+            let allowed = near.allowed(n, point, &rules);
             let mut deepest = 0.0;
             for k in 0..LANES {
                 deepest = greater(deepest, allowed[k] - nearest.distance[k]);
             }
-            if deepest <= 0.0 {
+            if deepest <= enough {
                 continue;
             }
             pushed = true;
@@ -218,9 +233,8 @@ pub(crate) fn penetration(point: usize, placed: &Lane3, near: &Near, rules: &Con
             continue;
         }
         let nearest = shape.nearest(placed, &ZERO3);
-        // The margin is for comfort: what counts is the surface, or the distance at rest where that is less.
-        let bare = ContactRules { margin: 0.0, layering: 0.0, ..*rules };
-        let allowed = near.allowed(n, point, &bare);
+        // What counts is the surface, or the distance at rest where that is less.
+        let allowed = near.allowed(n, point, &rules.bare());
         for k in 0..LANES {
             worst[k] = greater(worst[k], allowed[k] - nearest.distance[k]);
         }
