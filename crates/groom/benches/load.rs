@@ -55,7 +55,7 @@ fn many_strands(c: &mut Criterion) {
         let bytes = cap(strands);
         let file = load_hair_bytes("cap.hair", &bytes).expect("a sound file");
         group.bench_function(strands.to_string(), |b| {
-            b.iter(|| import(black_box(&file), &settings, &scalp).expect("hair"));;
+            b.iter(|| import(black_box(&file), &settings, &scalp).expect("hair"));
         });
     }
     group.finish();
