@@ -4,7 +4,7 @@ use glam::{Mat4, Vec3};
 use lovelock_groom::Strands;
 
 use crate::methods::{none, voxel_map};
-use crate::{LightFrame, ShadowMethod, ShadowSettings};
+use crate::{LightFrame, ShadowError, ShadowMethod, ShadowSettings};
 
 /// What a map is built from.
 #[derive(Clone, Copy, Debug)]
@@ -36,6 +36,8 @@ pub struct ShadowReport {
     pub samples: u64,
     /// Points left out because they are not finite or too far from the anchor.
     pub points_ignored: u64,
+    /// Memory beside the map that builds alone use, kept from build to build, bytes.
+    pub scratch_bytes: u64,
 }
 
 /// What lies behind the whole hair, for surfaces far behind it (the ground): transmittance a light column.
@@ -54,7 +56,11 @@ pub struct ColumnMap {
 /// A shadow method on the processor: the definition of the method.
 pub trait CpuShadow {
     /// Makes the map of the strands as they lie now. Memory is reused from build to build.
-    fn build(&mut self, input: &ShadowInput, settings: &ShadowSettings);
+    ///
+    /// # Errors
+    /// [`ShadowError::TooLarge`] where the map would take more memory than the method may use; nothing of that
+    /// size is allocated, and everything is lit then.
+    fn build(&mut self, input: &ShadowInput, settings: &ShadowSettings) -> Result<(), ShadowError>;
 
     /// How much light reaches `p` (world space, metres) through the hair, `0..=1`. Points before the hair or
     /// beside it get 1; a point that is not finite gets 1.
@@ -75,5 +81,10 @@ pub fn cpu_shadow(method: ShadowMethod) -> Box<dyn CpuShadow + Send + Sync> {
     match method {
         ShadowMethod::None => Box::new(none::NoShadow),
         ShadowMethod::VoxelMap => Box::new(voxel_map::VoxelMap::default()),
+        ShadowMethod::OpacityMaps
+        | ShadowMethod::DeepOpacityMaps
+        | ShadowMethod::DensityClustering
+        | ShadowMethod::OccupancyMaps
+        | ShadowMethod::Exact => Box::new(none::NoShadow),
     }
 }

@@ -8,6 +8,7 @@
 //! then asks for.
 
 mod cpu;
+mod error;
 mod light;
 mod method;
 mod settings;
@@ -15,8 +16,15 @@ mod settings;
 pub mod methods;
 
 pub use cpu::{ColumnMap, CpuShadow, ShadowInput, ShadowReport, cpu_shadow};
+pub use error::ShadowError;
 pub use light::LightFrame;
 pub use method::{ShadowMethod, UnknownShadowMethod};
+pub use methods::deep_opacity_maps::{DeepOpacityMapsSettings, LayerGrowth};
+pub use methods::density_clustering::{ClusterDeviation, ClusterSeeds, DensityClusteringSettings};
+pub use methods::exact::ExactSettings;
+pub use methods::occupancy_maps::OccupancyMapsSettings;
+pub use methods::opacity_maps::OpacityMapsSettings;
+pub use methods::texels::{TEXEL_RESOLUTIONS, TexelFilter};
 pub use methods::voxel_map;
 pub use methods::voxel_map::VoxelMapSettings;
 pub use settings::ShadowSettings;

@@ -16,17 +16,40 @@ pub enum ShadowMethod {
     /// Light-oriented map of density and transmittance (Bertails, Ménier, Cani 2005).
     #[default]
     VoxelMap,
+    /// Optical depth at uniform slices along the light (Kim, Neumann 2001).
+    OpacityMaps,
+    /// A few layers that begin at the first hair (Yuksel, Keyser 2008).
+    DeepOpacityMaps,
+    /// A few bins of even density where the hair is (Mertens, Kautz, Bekaert, Van Reeth 2004).
+    DensityClustering,
+    /// Bits for slices with hair and counts for slabs of them (Sintorn, Assarsson 2009).
+    OccupancyMaps,
+    /// Every fragment, sorted: what the other methods are judged by.
+    Exact,
 }
 
 impl ShadowMethod {
     /// Every method, in the order of menus and reports.
-    pub const ALL: &'static [Self] = &[Self::None, Self::VoxelMap];
+    pub const ALL: &'static [Self] = &[
+        Self::None,
+        Self::VoxelMap,
+        Self::OpacityMaps,
+        Self::DeepOpacityMaps,
+        Self::DensityClustering,
+        Self::OccupancyMaps,
+        Self::Exact,
+    ];
 
     /// The stable name of the command line, of projects and of reports.
     pub const fn id(self) -> &'static str {
         match self {
             Self::None => "none",
             Self::VoxelMap => "voxel-map",
+            Self::OpacityMaps => "opacity-maps",
+            Self::DeepOpacityMaps => "deep-opacity-maps",
+            Self::DensityClustering => "density-clustering",
+            Self::OccupancyMaps => "occupancy-maps",
+            Self::Exact => "exact",
         }
     }
 
@@ -35,6 +58,11 @@ impl ShadowMethod {
         match self {
             Self::None => "None",
             Self::VoxelMap => "Voxel map",
+            Self::OpacityMaps => "Opacity maps",
+            Self::DeepOpacityMaps => "Deep opacity maps",
+            Self::DensityClustering => "Density clustering",
+            Self::OccupancyMaps => "Occupancy maps",
+            Self::Exact => "Exact",
         }
     }
 
@@ -45,6 +73,40 @@ impl ShadowMethod {
             Self::VoxelMap => {
                 "Density of hair in a grid along the light, summed slice by slice (Bertails, Ménier, Cani 2005)."
             }
+            Self::OpacityMaps => {
+                "Optical depth at equal slices along the light, for each light texel (Kim, Neumann 2001)."
+            }
+            Self::DeepOpacityMaps => {
+                "A few layers for each light texel that begin at its first hair (Yuksel, Keyser 2008)."
+            }
+            Self::DensityClustering => {
+                "A few bins of even density for each light texel, placed where its hair is (Mertens and others 2004)."
+            }
+            Self::OccupancyMaps => {
+                "Bits for slices with hair and counts for slabs of them, for each light texel (Sintorn, Assarsson 2009)."
+            }
+            Self::Exact => {
+                "Every fragment of each light texel, sorted by depth: what the others are judged by."
+            }
+        }
+    }
+
+    /// The publication that the method comes from; `None` where there is none.
+    pub const fn source(self) -> Option<&'static str> {
+        match self {
+            Self::None | Self::Exact => None,
+            Self::VoxelMap => Some(
+                "Bertails, Ménier, Cani 2005, A Practical Self-Shadowing Algorithm for Interactive Hair Animation",
+            ),
+            Self::OpacityMaps => Some("Kim, Neumann 2001, Opacity Shadow Maps"),
+            Self::DeepOpacityMaps => Some("Yuksel, Keyser 2008, Deep Opacity Maps"),
+            Self::DensityClustering => Some(
+                "Mertens, Kautz, Bekaert, Van Reeth 2004, A Self-Shadow Algorithm for Dynamic Hair using Density \
+                 Clustering",
+            ),
+            Self::OccupancyMaps => Some(
+                "Sintorn, Assarsson 2009, Hair Self Shadowing and Transparency Depth Ordering Using Occupancy Maps",
+            ),
         }
     }
 }
@@ -120,6 +182,10 @@ mod tests {
     #[test]
     fn an_unknown_name_lists_the_known_ones() {
         let error = "Voxel map".parse::<ShadowMethod>().unwrap_err().to_string();
-        assert_eq!(error, "no shadow method is called \"Voxel map\"; use one of: none, voxel-map");
+        assert_eq!(
+            error,
+            "no shadow method is called \"Voxel map\"; use one of: none, voxel-map, opacity-maps, deep-opacity-maps, \
+             density-clustering, occupancy-maps, exact"
+        );
     }
 }

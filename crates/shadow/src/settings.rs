@@ -4,7 +4,10 @@ use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{ShadowMethod, VoxelMapSettings};
+use crate::{
+    DeepOpacityMapsSettings, DensityClusteringSettings, ExactSettings, OccupancyMapsSettings,
+    OpacityMapsSettings, ShadowMethod, VoxelMapSettings,
+};
 
 /// The method in use, what all methods share, and the values of each: switching loses nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -19,6 +22,16 @@ pub struct ShadowSettings {
     pub extinction_scale: f32,
     /// Values of [`ShadowMethod::VoxelMap`].
     pub voxel_map: VoxelMapSettings,
+    /// Values of [`ShadowMethod::OpacityMaps`].
+    pub opacity_maps: OpacityMapsSettings,
+    /// Values of [`ShadowMethod::DeepOpacityMaps`].
+    pub deep_opacity_maps: DeepOpacityMapsSettings,
+    /// Values of [`ShadowMethod::DensityClustering`].
+    pub density_clustering: DensityClusteringSettings,
+    /// Values of [`ShadowMethod::OccupancyMaps`].
+    pub occupancy_maps: OccupancyMapsSettings,
+    /// Values of [`ShadowMethod::Exact`].
+    pub exact: ExactSettings,
 }
 
 impl ShadowSettings {
@@ -37,6 +50,11 @@ impl Default for ShadowSettings {
             method: ShadowMethod::default(),
             extinction_scale: 0.15,
             voxel_map: VoxelMapSettings::default(),
+            opacity_maps: OpacityMapsSettings::default(),
+            deep_opacity_maps: DeepOpacityMapsSettings::default(),
+            density_clustering: DensityClusteringSettings::default(),
+            occupancy_maps: OccupancyMapsSettings::default(),
+            exact: ExactSettings::default(),
         }
     }
 }

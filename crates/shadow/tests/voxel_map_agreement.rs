@@ -29,7 +29,7 @@ fn settings(resolution: u32) -> ShadowSettings {
 
 fn built(input: &ShadowInput, settings: &ShadowSettings) -> VoxelMap {
     let mut map = VoxelMap::default();
-    map.build(input, settings);
+    map.build(input, settings).expect("fits");
     map
 }
 
@@ -219,7 +219,7 @@ fn a_map_that_is_reused_forgets_what_it_held() {
         for hair in [&smooth, &curly] {
             for threads in [8, 1, 2] {
                 let input = input(hair, direction);
-                with_threads(threads, || map.build(&input, &settings(resolution)));
+                with_threads(threads, || map.build(&input, &settings(resolution))).expect("fits");
                 let fresh = built(&input, &settings(resolution));
                 assert!(at_points(&map, hair) == at_points(&fresh, hair));
                 assert!(map.column_map() == fresh.column_map());

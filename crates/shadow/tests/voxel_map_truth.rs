@@ -22,7 +22,7 @@ fn settings(resolution: u32) -> ShadowSettings {
 
 fn built(input: &ShadowInput, settings: &ShadowSettings) -> VoxelMap {
     let mut map = VoxelMap::default();
-    map.build(input, settings);
+    map.build(input, settings).expect("fits");
     map
 }
 

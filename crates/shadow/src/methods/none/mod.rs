@@ -2,14 +2,16 @@
 
 use glam::Vec3;
 
-use crate::{ColumnMap, CpuShadow, ShadowInput, ShadowReport, ShadowSettings};
+use crate::{ColumnMap, CpuShadow, ShadowError, ShadowInput, ShadowReport, ShadowSettings};
 
 /// Every point receives all light.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoShadow;
 
 impl CpuShadow for NoShadow {
-    fn build(&mut self, _input: &ShadowInput, _settings: &ShadowSettings) {}
+    fn build(&mut self, _input: &ShadowInput, _settings: &ShadowSettings) -> Result<(), ShadowError> {
+        Ok(())
+    }
 
     fn transmittance(&self, _p: Vec3) -> f32 {
         1.0

@@ -11,7 +11,7 @@ use super::layout::Layout;
 use super::lookup::{Lookup, behind_all};
 use super::simd::{self, Width};
 use super::{VoxelDeposit, VoxelFilter, VoxelMapSettings, sum};
-use crate::{ColumnMap, CpuShadow, ShadowInput, ShadowReport, ShadowSettings};
+use crate::{ColumnMap, CpuShadow, ShadowError, ShadowInput, ShadowReport, ShadowSettings};
 
 /// Points that are worth a worker of their own.
 const POINTS_PER_WORKER: usize = 4096;
@@ -85,6 +85,7 @@ impl VoxelMap {
             cell_size: lattice.cell_size,
             samples,
             points_ignored: bounds.ignored,
+            scratch_bytes: 0,
         };
     }
 }
@@ -184,8 +185,9 @@ fn first_strand(strands: &Strands, piece: usize, pieces: usize) -> usize {
 }
 
 impl CpuShadow for VoxelMap {
-    fn build(&mut self, input: &ShadowInput, settings: &ShadowSettings) {
+    fn build(&mut self, input: &ShadowInput, settings: &ShadowSettings) -> Result<(), ShadowError> {
         self.build_with(input, settings, Width::widest());
+        Ok(())
     }
 
     fn transmittance(&self, p: Vec3) -> f32 {

@@ -1,0 +1,89 @@
+//! Why a shadow could not be built.
+
+use std::fmt;
+
+use crate::ShadowMethod;
+
+/// Why a shadow could not be built. What was built before is gone: everything is lit until the next build.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ShadowError {
+    /// The map of this hair would take more memory than the method may use.
+    #[error(
+        "{method} needs {} for this hair, more than its limit of {}: {}",
+        Bytes(*.needed_bytes), Bytes(*.limit_bytes), advice(*.method)
+    )]
+    TooLarge {
+        /// The method that was asked.
+        method: ShadowMethod,
+        /// What it would have needed.
+        needed_bytes: u64,
+        /// What it may use.
+        limit_bytes: u64,
+    },
+}
+
+/// What to change when a map does not fit.
+const fn advice(method: ShadowMethod) -> &'static str {
+    match method {
+        ShadowMethod::None | ShadowMethod::VoxelMap | ShadowMethod::DeepOpacityMaps => {
+            "lower the map's resolution or the number of strands"
+        }
+        ShadowMethod::OpacityMaps | ShadowMethod::OccupancyMaps => {
+            "lower the map's resolution, the slices or the number of strands"
+        }
+        ShadowMethod::DensityClustering => {
+            "lower the map's resolution, the clusters or the number of strands"
+        }
+        ShadowMethod::Exact => "lower the map's resolution or the number of strands, or raise the limit",
+    }
+}
+
+/// A number of bytes as people read it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Bytes(u64);
+
+impl fmt::Display for Bytes {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let units = ["KiB", "MiB", "GiB", "TiB", "PiB", "EiB"];
+        if self.0 < 1024 {
+            return write!(f, "{} bytes", self.0);
+        }
+        let at = (self.0.ilog2() / 10).min(units.len() as u32);
+        let value = self.0 as f64 / (1_u64 << (10 * at)) as f64;
+        write!(f, "{value:.1} {}", units[at as usize - 1])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_are_readable() {
+        let cases = [
+            (0, "0 bytes"),
+            (1023, "1023 bytes"),
+            (1024, "1.0 KiB"),
+            (10 << 20, "10.0 MiB"),
+            (3 << 29, "1.5 GiB"),
+            (u64::MAX, "16.0 EiB"),
+        ];
+        for (bytes, text) in cases {
+            assert_eq!(Bytes(bytes).to_string(), text);
+        }
+    }
+
+    #[test]
+    fn the_message_has_both_numbers_and_a_way_out() {
+        let error = ShadowError::TooLarge {
+            method: ShadowMethod::Exact,
+            needed_bytes: 12 << 30,
+            limit_bytes: 8 << 30,
+        };
+        assert_eq!(
+            error.to_string(),
+            "exact needs 12.0 GiB for this hair, more than its limit of 8.0 GiB: lower the map's resolution or the \
+             number of strands, or raise the limit"
+        );
+    }
+}

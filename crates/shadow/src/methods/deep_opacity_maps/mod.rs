@@ -1,0 +1,76 @@
+//! `deep-opacity-maps`: a few layers that begin at the first hair (Yuksel, Keyser 2008, "Deep Opacity Maps").
+//!
+//! Layers follow the hair's lit surface, so that no boundary cuts it where the eye would see it. Everything
+//! behind the last boundary counts to the last layer. A single hair before the rest moves all layers forward.
+
+use std::ops::RangeInclusive;
+
+use serde::{Deserialize, Serialize};
+
+use super::texels::{self, TexelFilter};
+
+/// How thick layers are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LayerGrowth {
+    /// All alike.
+    Even,
+    /// The k-th is k times as thick as the first: fine where light falls off fastest.
+    #[default]
+    Linear,
+}
+
+/// What a user sets about deep opacity maps.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct DeepOpacityMapsSettings {
+    /// Texels along each edge; see [`TEXEL_RESOLUTIONS`](crate::TEXEL_RESOLUTIONS).
+    pub resolution: u32,
+    /// How a point reads the texels around it.
+    pub filter: TexelFilter,
+    /// Layers a texel; see [`DeepOpacityMapsSettings::LAYERS`].
+    pub layers: u32,
+    /// How thick layers are.
+    pub growth: LayerGrowth,
+    /// Thickness of all layers together, a share of the hair's depth range; see
+    /// [`DeepOpacityMapsSettings::DEPTH_SHARES`].
+    pub depth_share: f32,
+}
+
+impl DeepOpacityMapsSettings {
+    /// Layers that the map can have.
+    pub const LAYERS: RangeInclusive<u32> = 3..=16;
+    /// Shares of the depth range that layers can cover.
+    pub const DEPTH_SHARES: RangeInclusive<f32> = 0.05..=1.0;
+
+    /// The resolution that is used.
+    pub fn safe_resolution(&self) -> u32 {
+        texels::safe_resolution(self.resolution)
+    }
+
+    /// The number of layers that is used: the nearest one in [`DeepOpacityMapsSettings::LAYERS`].
+    pub fn safe_layers(&self) -> u32 {
+        self.layers.clamp(*Self::LAYERS.start(), *Self::LAYERS.end())
+    }
+
+    /// The share of the depth range that is used: within [`DeepOpacityMapsSettings::DEPTH_SHARES`], and the
+    /// usual one where it is no number.
+    pub fn safe_depth_share(&self) -> f32 {
+        if self.depth_share.is_nan() {
+            return Self::default().depth_share;
+        }
+        self.depth_share.clamp(*Self::DEPTH_SHARES.start(), *Self::DEPTH_SHARES.end())
+    }
+}
+
+impl Default for DeepOpacityMapsSettings {
+    fn default() -> Self {
+        Self {
+            resolution: texels::DEFAULT_RESOLUTION,
+            filter: TexelFilter::default(),
+            layers: 4,
+            growth: LayerGrowth::default(),
+            depth_share: 0.5,
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! `density-clustering`: a few bins of even density a texel, placed where its hair is (Mertens, Kautz, Bekaert,
+//! Van Reeth 2004, "A Self-Shadow Algorithm for Dynamic Hair using Density Clustering").
+//!
+//! The fragments of a texel are divided into clusters along the light. Each becomes a bin of even density as wide
+//! as its spread, and optical depth rises evenly through a bin.
+
+use std::ops::RangeInclusive;
+
+use serde::{Deserialize, Serialize};
+
+use super::texels::{self, TexelFilter};
+
+/// Where clusters start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ClusterSeeds {
+    /// Evenly between the nearest and the farthest hair of the texel.
+    Uniform,
+    /// The same, drawn to three quarters of the distance from the nearest hair, as in the paper's last figure:
+    /// light falls off fastest there.
+    #[default]
+    TowardLight,
+    /// Half way between the even ones and those that divide the light lost in the texel evenly, read from a
+    /// histogram of 32 bins.
+    Histogram,
+}
+
+/// How the spread of a cluster is found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ClusterDeviation {
+    /// About the centres that were found, in a pass of its own, as the paper has it.
+    #[default]
+    Exact,
+    /// In the pass that finds the centres: differs by the hair that changes its cluster.
+    Merged,
+}
+
+/// What a user sets about density clustering.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct DensityClusteringSettings {
+    /// Texels along each edge; see [`TEXEL_RESOLUTIONS`](crate::TEXEL_RESOLUTIONS).
+    pub resolution: u32,
+    /// How a point reads the texels around it.
+    pub filter: TexelFilter,
+    /// Clusters a texel (the paper's *K*); see [`DensityClusteringSettings::CLUSTERS`].
+    pub clusters: u32,
+    /// Where clusters start.
+    pub seeds: ClusterSeeds,
+    /// How often clusters are moved to the mean of their hair; see [`DensityClusteringSettings::STEPS`].
+    pub steps: u32,
+    /// How the spread of a cluster is found.
+    pub deviation: ClusterDeviation,
+}
+
+impl DensityClusteringSettings {
+    /// Clusters that a texel can have.
+    pub const CLUSTERS: RangeInclusive<u32> = 1..=8;
+    /// How often clusters can be moved.
+    pub const STEPS: RangeInclusive<u32> = 1..=8;
+
+    /// The resolution that is used.
+    pub fn safe_resolution(&self) -> u32 {
+        texels::safe_resolution(self.resolution)
+    }
+
+    /// The number of clusters that is used: the nearest one in [`DensityClusteringSettings::CLUSTERS`].
+    pub fn safe_clusters(&self) -> u32 {
+        self.clusters.clamp(*Self::CLUSTERS.start(), *Self::CLUSTERS.end())
+    }
+
+    /// The number of steps that is used: the nearest one in [`DensityClusteringSettings::STEPS`].
+    pub fn safe_steps(&self) -> u32 {
+        self.steps.clamp(*Self::STEPS.start(), *Self::STEPS.end())
+    }
+}
+
+impl Default for DensityClusteringSettings {
+    fn default() -> Self {
+        Self {
+            resolution: texels::DEFAULT_RESOLUTION,
+            filter: TexelFilter::default(),
+            clusters: 4,
+            seeds: ClusterSeeds::default(),
+            steps: 1,
+            deviation: ClusterDeviation::default(),
+        }
+    }
+}

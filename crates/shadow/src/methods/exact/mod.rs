@@ -1,0 +1,47 @@
+//! `exact`: every fragment that the strands leave in a light texel, sorted by depth. The other methods are judged
+//! by it.
+//!
+//! A point receives what the fragments before it let through; its own does not count.
+
+use std::ops::RangeInclusive;
+
+use serde::{Deserialize, Serialize};
+
+use super::texels::{self, TexelFilter};
+
+/// What a user sets about the exact shadow.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct ExactSettings {
+    /// Texels along each edge; see [`TEXEL_RESOLUTIONS`](crate::TEXEL_RESOLUTIONS).
+    pub resolution: u32,
+    /// How a point reads the texels around it.
+    pub filter: TexelFilter,
+    /// Memory that a build may take, bytes; see [`ExactSettings::MEMORY_LIMITS`]. Hair that needs more is refused.
+    pub memory_limit_bytes: u64,
+}
+
+impl ExactSettings {
+    /// Limits of memory that can be set, bytes.
+    pub const MEMORY_LIMITS: RangeInclusive<u64> = 16 << 20..=32 << 30;
+
+    /// The resolution that is used.
+    pub fn safe_resolution(&self) -> u32 {
+        texels::safe_resolution(self.resolution)
+    }
+
+    /// The limit that is used: the nearest one in [`ExactSettings::MEMORY_LIMITS`].
+    pub fn safe_memory_limit_bytes(&self) -> u64 {
+        self.memory_limit_bytes.clamp(*Self::MEMORY_LIMITS.start(), *Self::MEMORY_LIMITS.end())
+    }
+}
+
+impl Default for ExactSettings {
+    fn default() -> Self {
+        Self {
+            resolution: texels::DEFAULT_RESOLUTION,
+            filter: TexelFilter::default(),
+            memory_limit_bytes: 8 << 30,
+        }
+    }
+}

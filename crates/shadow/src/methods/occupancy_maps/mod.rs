@@ -1,0 +1,73 @@
+//! `occupancy-maps`: a bit for each slice with hair in it, and the amount of hair a slab of slices (Sintorn,
+//! Assarsson 2009, "Hair Self Shadowing and Transparency Depth Ordering Using Occupancy Maps").
+//!
+//! Slices divide the depth range of each texel by itself. A point counts the hair of the slabs before its own, and
+//! of its own the share of occupied slices before it.
+
+use serde::{Deserialize, Serialize};
+
+use super::texels::{self, TexelFilter};
+
+/// What a user sets about occupancy maps.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct OccupancyMapsSettings {
+    /// Texels along each edge; see [`TEXEL_RESOLUTIONS`](crate::TEXEL_RESOLUTIONS).
+    pub resolution: u32,
+    /// How a point reads the texels around it.
+    pub filter: TexelFilter,
+    /// Slices, a bit each: one of [`OccupancyMapsSettings::SLICES`].
+    pub slices: u32,
+    /// Slabs, a count each: one of [`OccupancyMapsSettings::SLABS`].
+    pub slabs: u32,
+}
+
+impl OccupancyMapsSettings {
+    /// Numbers of slices that the map can have.
+    pub const SLICES: [u32; 3] = [128, 256, 512];
+    /// Numbers of slabs that the map can have. The paper's is 4.
+    pub const SLABS: [u32; 3] = [4, 8, 16];
+
+    /// The resolution that is used.
+    pub fn safe_resolution(&self) -> u32 {
+        texels::safe_resolution(self.resolution)
+    }
+
+    /// The number of slices that is used: the nearest of [`OccupancyMapsSettings::SLICES`].
+    pub fn safe_slices(&self) -> u32 {
+        nearest(Self::SLICES, self.slices)
+    }
+
+    /// The number of slabs that is used: the nearest of [`OccupancyMapsSettings::SLABS`].
+    pub fn safe_slabs(&self) -> u32 {
+        nearest(Self::SLABS, self.slabs)
+    }
+}
+
+fn nearest(choices: [u32; 3], asked: u32) -> u32 {
+    let [first, mut best, last] = choices;
+    for choice in [first, last] {
+        if choice.abs_diff(asked) < best.abs_diff(asked) {
+            best = choice;
+        }
+    }
+    best
+}
+
+impl Default for OccupancyMapsSettings {
+    fn default() -> Self {
+        Self { resolution: texels::DEFAULT_RESOLUTION, filter: TexelFilter::default(), slices: 128, slabs: 8 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_choice_is_used() {
+        for (asked, used) in [(0, 128), (128, 128), (200, 256), (256, 256), (511, 512), (u32::MAX, 512)] {
+            assert_eq!(nearest(OccupancyMapsSettings::SLICES, asked), used);
+        }
+    }
+}

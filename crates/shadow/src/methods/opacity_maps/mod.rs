@@ -1,0 +1,43 @@
+//! `opacity-maps`: optical depth at uniform slices along the light (Kim, Neumann 2001, "Opacity Shadow Maps").
+//!
+//! The depth range of the whole hair is cut into equal slices. A texel holds the optical depth before the end of
+//! each slice, and a point between two ends interpolates optical depth.
+
+use std::ops::RangeInclusive;
+
+use serde::{Deserialize, Serialize};
+
+use super::texels::{self, TexelFilter};
+
+/// What a user sets about opacity maps.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct OpacityMapsSettings {
+    /// Texels along each edge; see [`TEXEL_RESOLUTIONS`](crate::TEXEL_RESOLUTIONS).
+    pub resolution: u32,
+    /// How a point reads the texels around it.
+    pub filter: TexelFilter,
+    /// Slices of equal depth; see [`OpacityMapsSettings::SLICES`].
+    pub slices: u32,
+}
+
+impl OpacityMapsSettings {
+    /// Slices that the map can have.
+    pub const SLICES: RangeInclusive<u32> = 8..=256;
+
+    /// The resolution that is used.
+    pub fn safe_resolution(&self) -> u32 {
+        texels::safe_resolution(self.resolution)
+    }
+
+    /// The number of slices that is used: the nearest one in [`OpacityMapsSettings::SLICES`].
+    pub fn safe_slices(&self) -> u32 {
+        self.slices.clamp(*Self::SLICES.start(), *Self::SLICES.end())
+    }
+}
+
+impl Default for OpacityMapsSettings {
+    fn default() -> Self {
+        Self { resolution: texels::DEFAULT_RESOLUTION, filter: TexelFilter::default(), slices: 128 }
+    }
+}

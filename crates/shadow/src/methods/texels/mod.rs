@@ -1,0 +1,42 @@
+//! What the methods with a record for each light texel share.
+
+use std::ops::RangeInclusive;
+
+use serde::{Deserialize, Serialize};
+
+/// Texels along each edge that a map can have; multiples of 16.
+pub const TEXEL_RESOLUTIONS: RangeInclusive<u32> = 64..=2048;
+
+/// Texels along each edge to begin with.
+pub(crate) const DEFAULT_RESOLUTION: u32 = 512;
+
+/// How a point reads the texels around it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum TexelFilter {
+    /// The texel that it lies in alone.
+    Nearest,
+    /// The bilinear mean of the transmittances of the four texels around it, each at the point's depth
+    /// (percentage-closer filtering over 2 × 2 texels).
+    #[default]
+    Bilinear,
+}
+
+/// The resolution that is used: the nearest multiple of 16 in [`TEXEL_RESOLUTIONS`].
+pub(crate) fn safe_resolution(resolution: u32) -> u32 {
+    (resolution.clamp(*TEXEL_RESOLUTIONS.start(), *TEXEL_RESOLUTIONS.end()) + 8) / 16 * 16
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_resolution_is_brought_into_range() {
+        for (asked, used) in
+            [(0, 64), (1, 64), (64, 64), (71, 64), (72, 80), (500, 496), (512, 512), (u32::MAX, 2048)]
+        {
+            assert_eq!(safe_resolution(asked), used);
+        }
+    }
+}
