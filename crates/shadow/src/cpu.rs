@@ -3,6 +3,11 @@
 use glam::{Mat4, Vec3};
 use lovelock_groom::Strands;
 
+use crate::methods::deep_opacity_maps::DeepOpacityMaps;
+use crate::methods::density_clustering::DensityClustering;
+use crate::methods::exact::ExactMap;
+use crate::methods::occupancy_maps::OccupancyMaps;
+use crate::methods::opacity_maps::OpacityMaps;
 use crate::methods::{none, voxel_map};
 use crate::{LightFrame, ShadowError, ShadowMethod, ShadowSettings};
 
@@ -81,10 +86,10 @@ pub fn cpu_shadow(method: ShadowMethod) -> Box<dyn CpuShadow + Send + Sync> {
     match method {
         ShadowMethod::None => Box::new(none::NoShadow),
         ShadowMethod::VoxelMap => Box::new(voxel_map::VoxelMap::default()),
-        ShadowMethod::OpacityMaps
-        | ShadowMethod::DeepOpacityMaps
-        | ShadowMethod::DensityClustering
-        | ShadowMethod::OccupancyMaps
-        | ShadowMethod::Exact => Box::new(none::NoShadow),
+        ShadowMethod::OpacityMaps => Box::new(OpacityMaps::default()),
+        ShadowMethod::DeepOpacityMaps => Box::new(DeepOpacityMaps::default()),
+        ShadowMethod::DensityClustering => Box::new(DensityClustering::default()),
+        ShadowMethod::OccupancyMaps => Box::new(OccupancyMaps::default()),
+        ShadowMethod::Exact => Box::new(ExactMap::default()),
     }
 }

@@ -7,11 +7,14 @@
 //! Adding a method is a folder in `methods/`, a variant of [`ShadowMethod`], and the lines that the compiler
 //! then asks for.
 
+mod bounds;
 mod cpu;
 mod error;
+mod exp;
 mod light;
 mod method;
 mod settings;
+mod whole_part;
 
 pub mod methods;
 

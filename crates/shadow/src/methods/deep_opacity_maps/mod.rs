@@ -3,6 +3,10 @@
 //! Layers follow the hair's lit surface, so that no boundary cuts it where the eye would see it. Everything
 //! behind the last boundary counts to the last layer. A single hair before the rest moves all layers forward.
 
+mod cpu;
+
+pub use cpu::{DeepOpacityMaps, Layers};
+
 use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};

@@ -4,6 +4,11 @@
 //! The fragments of a texel are divided into clusters along the light. Each becomes a bin of even density as wide
 //! as its spread, and optical depth rises evenly through a bin.
 
+mod cpu;
+mod seeds;
+
+pub use cpu::{Bin, Clustering, DensityClustering};
+
 use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};

@@ -3,6 +3,10 @@
 //!
 //! A point receives what the fragments before it let through; its own does not count.
 
+pub(crate) mod cpu;
+
+pub use cpu::{ExactMap, Sorted};
+
 use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};

@@ -4,6 +4,10 @@
 //! Slices divide the depth range of each texel by itself. A point counts the hair of the slabs before its own, and
 //! of its own the share of occupied slices before it.
 
+mod cpu;
+
+pub use cpu::{Occupancy, OccupancyMaps};
+
 use serde::{Deserialize, Serialize};
 
 use super::texels::{self, TexelFilter};

@@ -3,6 +3,10 @@
 //! The depth range of the whole hair is cut into equal slices. A texel holds the optical depth before the end of
 //! each slice, and a point between two ends interpolates optical depth.
 
+mod cpu;
+
+pub use cpu::{OpacityMaps, Slices};
+
 use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};

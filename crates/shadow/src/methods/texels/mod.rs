@@ -1,4 +1,17 @@
 //! What the methods with a record for each light texel share.
+//!
+//! Strands are drawn into the texels of a light ([`TexelFrame`]) as fragments, each with a depth and an optical
+//! depth. A method is then a function from the fragments of one texel to a record, and one from a record and a depth
+//! to the optical depth before it ([`TexelMethod`]); [`TexelMap`] does the rest.
+
+pub(crate) mod fragments;
+pub(crate) mod frame;
+pub(crate) mod lines;
+mod map;
+
+pub use fragments::Fragment;
+pub use frame::TexelFrame;
+pub use map::{TexelMap, TexelMethod};
 
 use std::ops::RangeInclusive;
 
@@ -9,6 +22,9 @@ pub const TEXEL_RESOLUTIONS: RangeInclusive<u32> = 64..=2048;
 
 /// Texels along each edge to begin with.
 pub(crate) const DEFAULT_RESOLUTION: u32 = 512;
+
+/// Memory that a map and its build may take together, bytes; `exact` has a limit of its own.
+pub const MAP_MEMORY_LIMIT_BYTES: u64 = 2 << 30;
 
 /// How a point reads the texels around it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

@@ -6,11 +6,12 @@ use rayon::prelude::*;
 
 use super::deposit::Deposit;
 use super::grid::{DEPTH_ONE, Grid};
-use super::lattice::{Bounds, Lattice};
+use super::lattice::Lattice;
 use super::layout::Layout;
 use super::lookup::{Lookup, behind_all};
 use super::simd::{self, Width};
 use super::{VoxelDeposit, VoxelFilter, VoxelMapSettings, sum};
+use crate::bounds::Bounds;
 use crate::{ColumnMap, CpuShadow, ShadowError, ShadowInput, ShadowReport, ShadowSettings};
 
 /// Points that are worth a worker of their own.

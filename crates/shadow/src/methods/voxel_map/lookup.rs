@@ -4,10 +4,10 @@
 
 use glam::Vec3;
 
-use super::exp::exp_of_minus_steps;
 use super::lattice::Lattice;
 use super::layout::{Layout, TILE_CELLS};
-use super::simd::whole_part;
+use crate::exp::exp_of_minus_steps;
+use crate::whole_part::whole_part;
 
 /// Points that are looked up together.
 pub(super) const BLOCK: usize = 64;

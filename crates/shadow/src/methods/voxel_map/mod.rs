@@ -12,7 +12,6 @@
 
 mod cpu;
 mod deposit;
-mod exp;
 mod grid;
 mod lattice;
 mod layout;
@@ -23,7 +22,9 @@ mod simd;
 mod sum;
 
 pub use cpu::VoxelMap;
-pub use lattice::{Bounds, Lattice};
+pub use lattice::Lattice;
+
+pub use crate::bounds::Bounds;
 
 use std::ops::RangeInclusive;
 

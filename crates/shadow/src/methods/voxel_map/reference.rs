@@ -6,9 +6,10 @@
 use glam::{IVec3, Vec3};
 use lovelock_groom::Strands;
 
-use super::lattice::{Bounds, Lattice};
+use super::lattice::Lattice;
 use super::samples::{sample_at, sample_count};
 use super::{VoxelDeposit, VoxelFilter};
+use crate::bounds::Bounds;
 use crate::{ShadowInput, ShadowSettings};
 
 /// How cells are addressed. Both give the same shadow.

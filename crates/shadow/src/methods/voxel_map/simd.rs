@@ -3,8 +3,7 @@
 //! The source is the same safe code; only the instruction set differs. Nothing in it is reordered or fused by
 //! the compiler, so that all versions give the same bits, which a test checks.
 //!
-//! Unsafe for two reasons: a function compiled for features of the processor may only be called where they were
-//! found, and the conversion of a float to an integer that vectorises is undefined out of range.
+//! Unsafe since a function compiled for features of the processor may only be called where they were found.
 #![allow(unsafe_code, clippy::inline_always)]
 
 use glam::Vec3;
@@ -12,23 +11,11 @@ use lovelock_groom::Strands;
 
 use super::deposit::Deposit;
 use super::grid::Grid;
-use super::lattice::Bounds;
 use super::layout::Layout;
 use super::lookup::Lookup;
 use super::sum;
 use crate::LightFrame;
-
-/// The whole part of `c`, held within 0 and 2^26; 0 for what is no number.
-///
-/// `as` would be compiled to a branch or two for each number, since it must saturate at the integers' ends.
-#[inline(always)]
-pub(super) fn whole_part(c: f32) -> i32 {
-    const MOST: f32 = (1 << 26) as f32;
-    let c = if c > 0.0 { c } else { 0.0 };
-    let c = if c < MOST { c } else { MOST };
-    // SAFETY: `c` is a number between 0 and 2^26: the comparison above turns NaN into 0.
-    unsafe { c.to_int_unchecked() }
-}
+use crate::bounds::Bounds;
 
 /// Which version runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -129,20 +116,5 @@ versions! {
     /// [`Lookup::run`].
     fn lookup(lookup: &Lookup, x: &[f32], y: &[f32], z: &[f32], out: &mut [f32]) -> () {
         lookup.run(x, y, z, out)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn whole_parts() {
-        let cases = [(0.0, 0), (0.999_999_94, 0), (1.0, 1), (511.999, 511), (8_388_607.0, 8_388_607)];
-        let beyond =
-            [(-1.0, 0), (f32::NAN, 0), (f32::NEG_INFINITY, 0), (f32::INFINITY, 1 << 26), (1e9, 1 << 26)];
-        for (c, whole) in cases.into_iter().chain(beyond) {
-            assert_eq!(whole_part(c), whole, "{c}");
-        }
     }
 }

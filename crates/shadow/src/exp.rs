@@ -1,18 +1,18 @@
 //! `e^(−τ)` in a form that vectorises and gives the same bits on every processor.
-// Compiled within the versions of `simd`.
+// Compiled within the versions of the voxel map's `simd`.
 #![allow(clippy::inline_always)]
 
-use super::simd::whole_part;
+use crate::whole_part::whole_part;
 
 /// One optical depth in the 16-bit steps of a cell.
-pub(super) const DEPTH_STEPS: f32 = 4096.0;
+pub(crate) const DEPTH_STEPS: f32 = 4096.0;
 
 /// `e^(−depth / 4096)` for `0 <= depth <= 65535`: exactly 1 at 0, relative error below 3e-7.
 ///
 /// The exponent is split into a whole power of two and a rest `g` in `0..1`; `2^(−g)` is a minimax polynomial of
 /// degree 5 whose constant term is held at 1. No fused operations, so that no processor rounds otherwise.
 #[inline(always)]
-pub(super) fn exp_of_minus_steps(depth: f32) -> f32 {
+pub(crate) fn exp_of_minus_steps(depth: f32) -> f32 {
     let octaves = depth * (std::f32::consts::LOG2_E / DEPTH_STEPS);
     let whole = whole_part(octaves);
     let g = octaves - whole as f32;
@@ -24,6 +24,15 @@ pub(super) fn exp_of_minus_steps(depth: f32) -> f32 {
     let p = p * g + 1.0;
     // Lowering the exponent's bits divides by 2^whole; at most 24 here, far from the smallest float.
     f32::from_bits((p.to_bits() as i32 - (whole << 23)) as u32)
+}
+
+/// `e^(−depth)` for any optical depth: 1 at 0 and for what is no number, 10⁻²⁸ from 64 on, always within 0 and 1.
+#[inline]
+pub(crate) fn exp_of_minus(depth: f32) -> f32 {
+    let depth = if depth > 0.0 { depth } else { 0.0 };
+    let depth = if depth < 64.0 { depth } else { 64.0 };
+    let t = exp_of_minus_steps(depth * DEPTH_STEPS);
+    if t < 1.0 { t } else { 1.0 }
 }
 
 #[cfg(test)]
@@ -40,6 +49,26 @@ mod tests {
         }
         // Polynomial 0.9e-7, rounding of the polynomial 1.6e-7, and of `octaves` (up to 23) 24 · 2^-24 · ln 2.
         assert!(worst < 1.3e-6, "relative error {worst:e}");
+    }
+
+    #[test]
+    fn every_depth_has_a_transmittance() {
+        for depth in [0.0, -1.0, f32::NAN, f32::NEG_INFINITY] {
+            assert_eq!(exp_of_minus(depth), 1.0);
+        }
+        for depth in [64.0, 1e30, f32::INFINITY] {
+            assert!((0.0..1e-27).contains(&exp_of_minus(depth)));
+        }
+        let mut last = 1.0;
+        for step in 1..10_000 {
+            let depth = step as f32 * 0.004;
+            let t = exp_of_minus(depth);
+            let truth = (-f64::from(depth)).exp();
+            // As above, with octaves up to 58 of 2^-24 each.
+            assert!((f64::from(t) / truth - 1.0).abs() < 3e-6, "{depth}: {t}");
+            assert!(t < last);
+            last = t;
+        }
     }
 
     #[test]

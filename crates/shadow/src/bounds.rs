@@ -1,0 +1,157 @@
+//! How far the hair reaches along the axes of a light, and sizes of cells that stay from frame to frame.
+// Bounds are compiled within the versions of the voxel map's `simd`.
+#![allow(clippy::inline_always)]
+
+use glam::Vec3;
+use lovelock_groom::Strands;
+use rayon::prelude::*;
+
+use crate::{LightFrame, ShadowInput};
+
+/// Points farther from the anchor than this on any axis are left out, metres.
+pub(crate) const FARTHEST: f32 = 1e4;
+
+/// Smallest cell, metres: hair that has collapsed to a point must not make cells of no size.
+pub(crate) const SMALLEST_CELL: f32 = 1e-5;
+
+/// Points of one parallel piece.
+const POINTS_PER_PIECE: usize = 1 << 14;
+
+/// The hair's extent along the light's axes, relative to the anchor, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// Smallest coordinates; above `max` where there is no point.
+    pub min: Vec3,
+    /// Largest coordinates.
+    pub max: Vec3,
+    /// Points left out because they are not finite or too far away.
+    pub ignored: u64,
+}
+
+impl Bounds {
+    /// Bounds of nothing.
+    pub const EMPTY: Self =
+        Self { min: Vec3::splat(f32::INFINITY), max: Vec3::splat(f32::NEG_INFINITY), ignored: 0 };
+
+    /// Bounds of points; slices of one length.
+    #[inline(always)]
+    pub(crate) fn of_points(x: &[f32], y: &[f32], z: &[f32], light: &LightFrame, anchor: Vec3) -> Self {
+        let mut running = Running::default();
+        let (xs, x_rest) = x.as_chunks::<LANES>();
+        let (ys, y_rest) = y.as_chunks::<LANES>();
+        let (zs, z_rest) = z.as_chunks::<LANES>();
+        for ((x, y), z) in xs.iter().zip(ys).zip(zs) {
+            running.add([x, y, z], light, anchor);
+        }
+        // The rest, filled up with points that are ignored.
+        let fill = |rest: &[f32]| {
+            let mut lanes = [f32::NAN; LANES];
+            lanes[..rest.len()].copy_from_slice(rest);
+            lanes
+        };
+        running.add([&fill(x_rest), &fill(y_rest), &fill(z_rest)], light, anchor);
+        let mut bounds = running.bounds();
+        bounds.ignored -= (LANES - x_rest.len()) as u64;
+        bounds
+    }
+
+    /// Bounds of all points of `input`, in parallel.
+    pub(crate) fn of_strands(input: &ShadowInput) -> Self {
+        let Strands { x, y, z, .. } = input.strands;
+        let pieces = x
+            .par_chunks(POINTS_PER_PIECE)
+            .zip(y.par_chunks(POINTS_PER_PIECE))
+            .zip(z.par_chunks(POINTS_PER_PIECE));
+        pieces
+            .map(|((x, y), z)| Self::of_points(x, y, z, &input.light, input.anchor))
+            .reduce(|| Self::EMPTY, Self::join)
+    }
+
+    /// The bounds of both.
+    pub fn join(self, other: Self) -> Self {
+        Self {
+            min: self.min.min(other.min),
+            max: self.max.max(other.max),
+            ignored: self.ignored + other.ignored,
+        }
+    }
+}
+
+/// Points that are bounded together.
+const LANES: usize = 16;
+
+/// Bounds on the way, one for each lane.
+struct Running {
+    min: [[f32; LANES]; 3],
+    max: [[f32; LANES]; 3],
+    ignored: [u32; LANES],
+}
+
+impl Default for Running {
+    fn default() -> Self {
+        Self { min: [[f32::INFINITY; LANES]; 3], max: [[f32::NEG_INFINITY; LANES]; 3], ignored: [0; LANES] }
+    }
+}
+
+impl Running {
+    #[inline(always)]
+    fn add(&mut self, points: [&[f32; LANES]; 3], light: &LightFrame, anchor: Vec3) {
+        let mut along = [[0.0; LANES]; 3];
+        let mut near = [true; LANES];
+        for (along, axis) in along.iter_mut().zip([light.x, light.y, light.z]) {
+            for lane in 0..LANES {
+                let d = [points[0][lane] - anchor.x, points[1][lane] - anchor.y, points[2][lane] - anchor.z];
+                along[lane] = d[0] * axis.x + d[1] * axis.y + d[2] * axis.z;
+                near[lane] &= along[lane].abs() <= FARTHEST;
+            }
+        }
+        for ((along, min), max) in along.iter().zip(&mut self.min).zip(&mut self.max) {
+            for lane in 0..LANES {
+                let low = if near[lane] { along[lane] } else { f32::INFINITY };
+                let high = if near[lane] { along[lane] } else { f32::NEG_INFINITY };
+                min[lane] = if low < min[lane] { low } else { min[lane] };
+                max[lane] = if high > max[lane] { high } else { max[lane] };
+            }
+        }
+        for (ignored, near) in self.ignored.iter_mut().zip(near) {
+            *ignored += u32::from(!near);
+        }
+    }
+
+    fn bounds(&self) -> Bounds {
+        let least = self.min.map(|lanes| lanes.into_iter().fold(f32::INFINITY, f32::min));
+        let most = self.max.map(|lanes| lanes.into_iter().fold(f32::NEG_INFINITY, f32::max));
+        Bounds {
+            min: Vec3::from(least),
+            max: Vec3::from(most),
+            ignored: self.ignored.iter().map(|ignored| u64::from(*ignored)).sum(),
+        }
+    }
+}
+
+/// The next sixteenth of an octave at or above `size`, which must be positive and finite.
+pub(crate) fn round_up_to_step(size: f32) -> f32 {
+    // 2^(k/16), so that the result is the same wherever this runs.
+    const STEPS: [f32; 17] = [
+        1.0,
+        1.044_273_8,
+        1.090_507_7,
+        1.138_788_6,
+        1.189_207_1,
+        1.241_857_8,
+        1.296_839_6,
+        1.354_255_5,
+        std::f32::consts::SQRT_2,
+        1.476_826_1,
+        1.542_210_8,
+        1.610_490_3,
+        1.681_792_9,
+        1.756_252_2,
+        1.834_008_1,
+        1.915_206_6,
+        2.0,
+    ];
+    let octave = f32::from_bits(size.to_bits() & 0x7f80_0000);
+    let step = STEPS.iter().find(|step| octave * **step >= size);
+    octave * step.copied().unwrap_or(2.0)
+}

@@ -1,0 +1,206 @@
+//! Clusters of fragments, and the bins that they become.
+
+use super::super::texels::{Fragment, TexelFilter, TexelMap, TexelMethod};
+use super::seeds::seeds;
+use super::{ClusterDeviation, DensityClusteringSettings};
+use crate::{ShadowMethod, ShadowSettings};
+
+/// The map of [`ShadowMethod::DensityClustering`].
+pub type DensityClustering = TexelMap<Clustering>;
+
+/// Most clusters of a texel.
+pub(super) const MOST: usize = *DensityClusteringSettings::CLUSTERS.end() as usize;
+
+/// Half the width of an even distribution over its standard deviation (the paper's γ).
+const GAMMA: f64 = 1.732_050_807_568_877_2;
+
+/// Least width of a bin, a part of the texel's range: a cluster at one depth has no spread.
+const LEAST_WIDTH: f64 = 1.0 / 256.0;
+
+/// A range of depths with even density.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Bin {
+    /// Depth at which it begins.
+    pub start: f32,
+    /// One over its width.
+    pub per_depth: f32,
+    /// Its optical depth; 0 for a bin that is not there.
+    pub optical_depth: f32,
+}
+
+/// A record has a bin for each cluster.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Clustering {
+    settings: DensityClusteringSettings,
+    count: usize,
+}
+
+/// Sums over the fragments of a cluster: optical depth, and its products with the offset from the seed and with the
+/// square of that.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    weight: f64,
+    offset: f64,
+    square: f64,
+}
+
+/// The borders between clusters: half way between neighbouring centres. Those beyond the last are never passed.
+fn borders(centres: &[f32; MOST], count: usize) -> [f32; MOST - 1] {
+    let mut borders = [f32::INFINITY; MOST - 1];
+    for j in 1..count {
+        borders[j - 1] = 0.5 * (centres[j - 1] + centres[j]);
+    }
+    borders
+}
+
+/// The cluster of a depth; a tie goes to the nearer one. Centres are in order, and one step of clustering keeps them so.
+#[inline]
+fn cluster(borders: &[f32; MOST - 1], depth: f32) -> usize {
+    borders.iter().map(|border| usize::from(depth > *border)).sum()
+}
+
+/// Sums by cluster, about the centres.
+fn sums(fragments: &[Fragment], centres: &[f32; MOST], count: usize) -> [Sums; MOST] {
+    let borders = borders(centres, count);
+    let mut sums = [Sums::default(); MOST];
+    for fragment in fragments {
+        let j = cluster(&borders, fragment.depth());
+        let weight = f64::from(fragment.optical_depth());
+        let offset = f64::from(fragment.depth() - centres[j]);
+        sums[j].weight += weight;
+        sums[j].offset += weight * offset;
+        sums[j].square += weight * offset * offset;
+    }
+    sums
+}
+
+impl Clustering {
+    /// Centres and standard deviations of the clusters, and which of them have hair.
+    fn clusters(
+        &self,
+        fragments: &[Fragment],
+        near: f32,
+        far: f32,
+    ) -> ([f32; MOST], [f64; MOST], [bool; MOST]) {
+        let count = self.count;
+        let mut centres = seeds(self.settings.seeds, fragments, near, far, count);
+        let mut found = [Sums::default(); MOST];
+        for _ in 0..self.settings.safe_steps() {
+            found = sums(fragments, &centres, count);
+            for j in 0..count {
+                if found[j].weight > 0.0 {
+                    centres[j] += (found[j].offset / found[j].weight) as f32;
+                }
+            }
+        }
+        let mut deviations = [0.0; MOST];
+        match self.settings.deviation {
+            ClusterDeviation::Merged => {
+                for (deviation, sums) in deviations.iter_mut().zip(&found) {
+                    if sums.weight > 0.0 {
+                        let mean = sums.offset / sums.weight;
+                        *deviation = (sums.square / sums.weight - mean * mean).max(0.0).sqrt();
+                    }
+                }
+            }
+            ClusterDeviation::Exact => {
+                found = sums(fragments, &centres, count);
+                for (deviation, sums) in deviations.iter_mut().zip(&found) {
+                    if sums.weight > 0.0 {
+                        *deviation = (sums.square / sums.weight).sqrt();
+                    }
+                }
+            }
+        }
+        (centres, deviations, found.map(|sums| sums.weight > 0.0))
+    }
+}
+
+/// Start and end of the bins: ±√3 standard deviations about their centres, where two overlap up to the middle of the
+/// overlap. Only the first `count` of `bins` are there.
+fn ranges(centres: &[f32], deviations: &[f64], least_width: f64, count: usize) -> [(f64, f64); MOST] {
+    let mut ranges = [(0.0, 0.0); MOST];
+    for j in 0..count {
+        let half = (GAMMA * deviations[j]).max(0.5 * least_width);
+        ranges[j] = (f64::from(centres[j]) - half, f64::from(centres[j]) + half);
+    }
+    for j in 1..count {
+        let (end, start) = (ranges[j - 1].1, ranges[j].0);
+        if end > start {
+            // A bin holds its own centre, however far a neighbour reaches.
+            let border = (0.5 * (end + start)).clamp(f64::from(centres[j - 1]), f64::from(centres[j]));
+            ranges[j - 1].1 = border;
+            ranges[j].0 = border;
+        }
+    }
+    ranges
+}
+
+impl TexelMethod for Clustering {
+    type Cell = Bin;
+
+    const METHOD: ShadowMethod = ShadowMethod::DensityClustering;
+
+    fn new(settings: &ShadowSettings) -> Self {
+        let settings = settings.density_clustering;
+        Self { settings, count: settings.safe_clusters() as usize }
+    }
+
+    fn resolution(&self) -> u32 {
+        self.settings.safe_resolution()
+    }
+
+    fn filter(&self) -> TexelFilter {
+        self.settings.filter
+    }
+
+    fn cells(&self) -> usize {
+        self.count
+    }
+
+    fn fill(&self, fragments: &mut [Fragment], record: &mut [Bin]) {
+        let (mut near, mut far) = (1.0_f32, 0.0_f32);
+        for fragment in fragments.iter() {
+            near = near.min(fragment.depth());
+            far = far.max(fragment.depth());
+        }
+        let (centres, deviations, has_hair) = self.clusters(fragments, near, far);
+        // Those without hair go before anything is compared with its neighbour.
+        let (mut kept_centres, mut kept_deviations, mut kept) = ([0.0; MOST], [0.0; MOST], 0);
+        for j in (0..self.count).filter(|j| has_hair[*j]) {
+            (kept_centres[kept], kept_deviations[kept]) = (centres[j], deviations[j]);
+            kept += 1;
+        }
+        if kept == 0 {
+            return;
+        }
+        let least_width = f64::from(far - near) * LEAST_WIDTH;
+        let ranges = ranges(&kept_centres, &kept_deviations, least_width, kept);
+
+        let borders = borders(&kept_centres, kept);
+        let mut depths = [0.0_f64; MOST];
+        for fragment in fragments.iter() {
+            // The nearest centre, but for a bin that holds the fragment.
+            let mut j = cluster(&borders, fragment.depth());
+            let depth = f64::from(fragment.depth());
+            if depth < ranges[j].0 && j > 0 && depth <= ranges[j - 1].1 {
+                j -= 1;
+            } else if depth > ranges[j].1 && j + 1 < kept && depth >= ranges[j + 1].0 {
+                j += 1;
+            }
+            depths[j] += f64::from(fragment.optical_depth());
+        }
+        for (j, bin) in record.iter_mut().enumerate().take(kept) {
+            let (start, end) = ranges[j];
+            // Without width it is a step.
+            let per_depth = if end > start { (1.0 / (end - start)).min(1e30) } else { 1e30 };
+            *bin = Bin { start: start as f32, per_depth: per_depth as f32, optical_depth: depths[j] as f32 };
+        }
+    }
+
+    #[inline]
+    fn depth_before(&self, _fragments: &[Fragment], record: &[Bin], depth: f32) -> f32 {
+        let part = |bin: &Bin| ((depth - bin.start) * bin.per_depth).clamp(0.0, 1.0);
+        record.iter().map(|bin| bin.optical_depth * part(bin)).sum()
+    }
+}

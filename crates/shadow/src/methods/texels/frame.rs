@@ -1,0 +1,243 @@
+//! Where the texels of a map lie in the world.
+//!
+//! Texels are a window of `N × N` on an infinite lattice across the light, one corner of which is the anchor: hair
+//! that moves along with the head keeps its texels. Depth along the light is divided by a range, so that it lies
+//! within 0 and 1.
+
+use glam::{IVec2, Mat4, Vec3, Vec4};
+
+use crate::bounds::{Bounds, SMALLEST_CELL, round_up_to_step};
+use crate::{LightFrame, ShadowInput};
+
+/// Texels of the window that hair cannot use: an empty one on each side, and one that hair's bounds may cut where
+/// they begin between two corners of the lattice.
+const SPARE_TEXELS: u32 = 3;
+
+/// The start of the depth range lies on multiples of this part of it, so that it stays as it is while the hair's
+/// extent changes little.
+const DEPTH_STEPS: f32 = 64.0;
+
+/// The window of texels and the depth range, and the way from the world into them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TexelFrame {
+    /// Texels along each edge.
+    pub resolution: u32,
+    /// Edge of a texel, metres.
+    pub texel_size: f32,
+    /// Length of the depth range, metres.
+    pub depth_range: f32,
+    /// The corner of the lattice that is fixed, world space.
+    pub anchor: Vec3,
+    /// The light's axes; columns run along `y`, rows along `z`.
+    pub light: LightFrame,
+    /// Lattice coordinates of the window's first texel: column, row.
+    pub first: IVec2,
+    /// Depth of the anchor, a part of the range.
+    pub anchor_depth: f32,
+}
+
+impl TexelFrame {
+    /// The window for hair within `bounds` with `resolution` texels along each edge.
+    pub(crate) fn new(input: &ShadowInput, resolution: u32, bounds: &Bounds) -> Self {
+        let (min, max) = extent(bounds);
+        let size = (max - min).truncate_along().max_element() / (resolution - SPARE_TEXELS) as f32;
+        // Lattice coordinates stay below 2^16, where f32 still resolves a hundredth of a texel.
+        let farthest = min.abs().max(max.abs()).max_element();
+        let texel_size = round_up_to_step(size.max(SMALLEST_CELL).max(farthest / 65_536.0));
+        Self::with_texel_size(input, resolution, texel_size, bounds)
+    }
+
+    /// The same with texels of a given size, which must be large enough.
+    pub(crate) fn with_texel_size(
+        input: &ShadowInput,
+        resolution: u32,
+        texel_size: f32,
+        bounds: &Bounds,
+    ) -> Self {
+        let (min, max) = extent(bounds);
+        let per_texel = 1.0 / texel_size;
+        let (low, high) = (
+            (min.truncate_along() * per_texel).floor().as_ivec2(),
+            (max.truncate_along() * per_texel).floor().as_ivec2(),
+        );
+        // What the hair does not need lies half on each side.
+        let spare = (IVec2::splat(resolution as i32) - (high - low + 1)).max(IVec2::ZERO);
+        // A step for the start, and a little more for rounding.
+        let depth_range = round_up_to_step(((max.x - min.x) * (1.0 + 2.0 / DEPTH_STEPS)).max(SMALLEST_CELL));
+        let start_steps = (min.x / depth_range * DEPTH_STEPS).floor();
+        Self {
+            resolution,
+            texel_size,
+            depth_range,
+            anchor: input.anchor,
+            light: input.light,
+            first: low - spare / 2,
+            anchor_depth: -start_steps / DEPTH_STEPS,
+        }
+    }
+
+    /// Column and row in texels (the texel is their whole part; its centre is at a half) and depth along the light
+    /// as a part of the range, 0 to 1 for the hair.
+    pub fn texel_from_world(&self, p: Vec3) -> Vec3 {
+        self.axes().transform(p)
+    }
+
+    /// A point in the world, of column, row and depth.
+    pub fn world_from_texel(&self, p: Vec3) -> Vec3 {
+        let first = self.first.as_vec2();
+        let along = (p.z - self.anchor_depth) * self.depth_range;
+        let across = Vec3::new(along, (p.x + first.x) * self.texel_size, (p.y + first.y) * self.texel_size);
+        self.anchor + self.light.world_from_light(across)
+    }
+
+    /// World position to `(u, v, depth)` of a [`ColumnMap`](crate::ColumnMap).
+    pub(crate) fn uv_from_world(&self) -> Mat4 {
+        let axes = self.axes();
+        let n = self.resolution as f32;
+        let row = |axis: Vec3, offset: f32, scale: f32| {
+            let axis = axis * scale;
+            axis.extend(offset * scale - axis.dot(self.anchor))
+        };
+        Mat4::from_cols(
+            row(axes.column, axes.offset.x, 1.0 / n),
+            row(axes.row, axes.offset.y, 1.0 / n),
+            row(axes.depth, axes.offset.z, 1.0),
+            Vec4::W,
+        )
+        .transpose()
+    }
+
+    /// The axes as scalar products want them.
+    pub(crate) fn axes(&self) -> TexelAxes {
+        let first = self.first.as_vec2();
+        TexelAxes {
+            anchor: self.anchor,
+            column: self.light.y / self.texel_size,
+            row: self.light.z / self.texel_size,
+            depth: self.light.x / self.depth_range,
+            offset: Vec3::new(-first.x, -first.y, self.anchor_depth),
+        }
+    }
+
+    /// Whether a point in texel coordinates is one of those that the window was made for: finite, and not one that
+    /// was left out for its distance.
+    pub(crate) fn holds(&self, p: Vec3) -> bool {
+        let far = 2.0 * self.resolution as f32;
+        p.x.abs() <= far && p.y.abs() <= far && p.z.abs() <= 2.0
+    }
+
+    /// A point that the window was made for, held within it: rounding must not put hair into the empty texels at
+    /// the border.
+    pub(crate) fn held(&self, p: Vec3) -> Vec3 {
+        let highest = (self.resolution - 1) as f32 * (1.0 - f32::EPSILON);
+        Vec3::new(p.x.clamp(1.0, highest), p.y.clamp(1.0, highest), p.z.clamp(0.0, 1.0))
+    }
+}
+
+/// The affine map into texels, ready for many points.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TexelAxes {
+    anchor: Vec3,
+    column: Vec3,
+    row: Vec3,
+    depth: Vec3,
+    offset: Vec3,
+}
+
+impl TexelAxes {
+    #[inline]
+    pub(crate) fn transform(&self, p: Vec3) -> Vec3 {
+        let d = p - self.anchor;
+        Vec3::new(d.dot(self.column), d.dot(self.row), d.dot(self.depth)) + self.offset
+    }
+}
+
+/// Corners of the bounds; both 0 where there is nothing.
+fn extent(bounds: &Bounds) -> (Vec3, Vec3) {
+    if bounds.min.x <= bounds.max.x { (bounds.min, bounds.max) } else { (Vec3::ZERO, Vec3::ZERO) }
+}
+
+/// The part across the light of a vector in the light's axes.
+trait AcrossTheLight {
+    fn truncate_along(self) -> glam::Vec2;
+}
+
+impl AcrossTheLight for Vec3 {
+    fn truncate_along(self) -> glam::Vec2 {
+        glam::Vec2::new(self.y, self.z)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use lovelock_groom::Strands;
+
+    use super::*;
+
+    fn frame(points: &[Vec3], anchor: Vec3) -> TexelFrame {
+        let strands = Strands {
+            x: points.iter().map(|p| p.x).collect(),
+            y: points.iter().map(|p| p.y).collect(),
+            z: points.iter().map(|p| p.z).collect(),
+            ..Strands::default()
+        };
+        let light = LightFrame::new(Vec3::new(0.3, -1.0, 0.2));
+        let input = ShadowInput { strands: &strands, strand_width: 1e-3, light, anchor };
+        TexelFrame::new(&input, 64, &Bounds::of_strands(&input))
+    }
+
+    fn cloud(at: Vec3) -> Vec<Vec3> {
+        (0..200)
+            .map(|i| {
+                let i = i as f32;
+                at + 0.2 * Vec3::new((1.3 * i).sin(), (0.7 * i).cos(), (2.1 * i).sin())
+            })
+            .collect()
+    }
+
+    #[test]
+    fn hair_lies_inside_with_a_texel_to_spare() {
+        for at in [Vec3::ZERO, Vec3::new(0.0, 1.6, 0.0), Vec3::new(-300.0, 20.0, 7.0)] {
+            let points = cloud(at);
+            let frame = frame(&points, at + 0.01);
+            for p in &points {
+                let t = frame.texel_from_world(*p);
+                // Rounding of positions of some metres, in texels of 6 mm.
+                assert!(t.x > 0.99 && t.x < 63.01 && t.y > 0.99 && t.y < 63.01, "{t}");
+                assert!((-1e-3..1.001).contains(&t.z), "{t}");
+                assert!(frame.holds(t) && frame.held(t).distance(t) < 0.01);
+                // f32 at 300 m resolves 3e-5.
+                assert!(frame.world_from_texel(t).distance(*p) < 1e-6 * (1.0 + at.length() * 50.0));
+            }
+        }
+    }
+
+    #[test]
+    fn hair_that_moves_with_the_anchor_keeps_its_texels() {
+        let step = Vec3::new(0.5, 0.25, -1.0);
+        let (a, b) = (frame(&cloud(Vec3::ZERO), Vec3::ZERO), frame(&cloud(step), step));
+        assert_eq!((a.first, a.texel_size, a.anchor_depth), (b.first, b.texel_size, b.anchor_depth));
+        // Control: with the anchor left behind, it does not.
+        let c = frame(&cloud(step), Vec3::ZERO);
+        assert_ne!(a.first, c.first);
+    }
+
+    #[test]
+    fn the_matrix_is_the_same_map() {
+        let frame = frame(&cloud(Vec3::Y), Vec3::new(0.1, 0.9, 0.0));
+        for p in cloud(Vec3::Y) {
+            let t = frame.texel_from_world(p);
+            let uv = frame.uv_from_world().transform_point3(p);
+            assert!((uv - Vec3::new(t.x / 64.0, t.y / 64.0, t.z)).length() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn nothing_and_a_point_make_a_frame_of_finite_size() {
+        for points in [vec![], vec![Vec3::ONE], vec![Vec3::NAN; 3]] {
+            let frame = frame(&points, Vec3::ONE);
+            assert!(frame.texel_size > 0.0 && frame.depth_range > 0.0);
+            assert!(frame.texel_from_world(Vec3::ONE).is_finite());
+        }
+    }
+}

@@ -1,0 +1,175 @@
+//! Segments to the fragments that they leave in texels.
+
+use glam::Vec3;
+
+/// Draws segments into texels.
+pub(crate) trait Draw: Sync {
+    /// The fragments of the segment between two points, given as column, row and a depth within 0 and 1: each as
+    /// column, row, depth and optical depth.
+    fn draw(&self, from: Vec3, to: Vec3, put: &mut impl FnMut(u32, u32, f32, f32));
+}
+
+/// A segment as steps along the axis on which it is longer, from its lower end to its higher.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Steps {
+    /// Whether rows are the longer axis.
+    pub by_row: bool,
+    /// The first texel on the longer axis whose centre lies between the ends, the lower end included.
+    pub first: i32,
+    /// After the last one.
+    pub end: i32,
+    /// Length of the segment across the light for each step, texels: 1 to √2.
+    pub length: f32,
+    /// The lower end: on the longer axis, on the shorter, and in depth.
+    start: [f32; 3],
+    /// From the lower end to the higher, on the shorter axis and in depth.
+    rise: [f32; 2],
+    per_texel: f32,
+}
+
+impl Steps {
+    /// The steps of a segment within coordinates that are not negative; none where it passes no centre.
+    ///
+    /// The interval is half open, so that a vertex that two segments share is counted once.
+    #[inline]
+    pub(crate) fn new(from: Vec3, to: Vec3) -> Self {
+        let d = to - from;
+        let by_row = d.y.abs() > d.x.abs();
+        let turned = |p: Vec3| if by_row { [p.y, p.x, p.z] } else { [p.x, p.y, p.z] };
+        let (a, b) = (turned(from), turned(to));
+        let (low, high) = if a[0] <= b[0] { (a, b) } else { (b, a) };
+        let long = high[0] - low[0];
+        // Without length, no centre lies between the ends and nothing of this is used.
+        let per_texel = 1.0 / long;
+        Self {
+            by_row,
+            first: centres_below(low[0]),
+            end: centres_below(high[0]),
+            length: (d.x * d.x + d.y * d.y).sqrt() * per_texel,
+            start: low,
+            rise: [high[1] - low[1], high[2] - low[2]],
+            per_texel,
+        }
+    }
+
+    /// Number of steps.
+    pub(crate) fn count(&self) -> u64 {
+        (self.end - self.first) as u64
+    }
+
+    /// Coordinate on the shorter axis, and depth, at the centre of texel `at` of the longer.
+    #[inline]
+    pub(crate) fn at(&self, at: i32) -> (f32, f32) {
+        let t = (at as f32 + 0.5 - self.start[0]) * self.per_texel;
+        // Rounding must not lead out of the range of depths.
+        (self.start[1] + t * self.rise[0], (self.start[2] + t * self.rise[1]).clamp(0.0, 1.0))
+    }
+}
+
+/// How many centres of texels lie below `c`, which is not negative: `⌈c − ½⌉`.
+#[inline]
+fn centres_below(c: f32) -> i32 {
+    let whole = c as i32;
+    whole + i32::from(c - whole as f32 > 0.5)
+}
+
+/// One texel wide lines: a step along the longer axis is one fragment, which takes all of the step's optical depth.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lines {
+    /// Texels along each edge; those at the border stay empty.
+    pub resolution: u32,
+    /// Optical depth of a piece that is one texel long across the light.
+    pub depth_per_texel: f32,
+}
+
+impl Draw for Lines {
+    #[inline]
+    fn draw(&self, from: Vec3, to: Vec3, put: &mut impl FnMut(u32, u32, f32, f32)) {
+        let steps = Steps::new(from, to);
+        let beta = self.depth_per_texel * steps.length;
+        let last = self.resolution as i32 - 2;
+        for major in steps.first..steps.end {
+            let (minor, depth) = steps.at(major);
+            let minor = (minor as i32).clamp(1, last) as u32;
+            let major = major as u32;
+            let (column, row) = if steps.by_row { (minor, major) } else { (major, minor) };
+            put(column, row, depth, beta);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LINES: Lines = Lines { resolution: 64, depth_per_texel: 0.1 };
+
+    fn fragments(of: &[Vec3]) -> Vec<(u32, u32, f32, f32)> {
+        let mut found = Vec::new();
+        for ends in of.windows(2) {
+            LINES.draw(ends[0], ends[1], &mut |c, r, d, b| found.push((c, r, d, b)));
+        }
+        found
+    }
+
+    #[test]
+    fn a_row_of_texels_is_filled_in_both_directions() {
+        let (a, b) = (Vec3::new(3.0, 7.3, 0.2), Vec3::new(9.0, 7.3, 0.8));
+        for ends in [[a, b], [b, a]] {
+            let mut found = fragments(&ends);
+            found.sort_by_key(|f| f.0);
+            assert_eq!(
+                found.iter().map(|f| (f.0, f.1)).collect::<Vec<_>>(),
+                [3, 4, 5, 6, 7, 8].map(|c| (c, 7))
+            );
+            for f in found {
+                assert!((f.2 - (0.2 + 0.1 * (f.0 as f32 + 0.5 - 3.0))).abs() < 1e-6, "depth at the centre");
+                assert_eq!(f.3, 0.1);
+            }
+        }
+    }
+
+    #[test]
+    fn shared_vertices_are_counted_once() {
+        // Vertices on centres, on borders, and anywhere.
+        for offset in [0.0, 0.5, 0.37] {
+            let whole = fragments(&[Vec3::new(2.0 + offset, 5.2, 0.1), Vec3::new(32.0 + offset, 11.2, 0.7)]);
+            let parts: Vec<_> = (0..=30)
+                .map(|i| Vec3::new(2.0 + offset + i as f32, 5.2 + 0.2 * i as f32, 0.1 + 0.02 * i as f32))
+                .collect();
+            let found = fragments(&parts);
+            assert_eq!((whole.len(), found.len()), (30, 30));
+            let back: Vec<_> = parts.into_iter().rev().collect();
+            assert_eq!(fragments(&back).len(), 30);
+        }
+    }
+
+    #[test]
+    fn optical_depth_is_that_of_the_length() {
+        for turn in 0..64 {
+            let angle = turn as f32 * 0.0981;
+            let d = 25.0 * Vec3::new(angle.cos(), angle.sin(), 0.0);
+            let found = fragments(&[Vec3::new(32.1, 31.7, 0.5) - d, Vec3::new(32.1, 31.7, 0.5) + d]);
+            let sum: f32 = found.iter().map(|f| f.3).sum();
+            // A step more or less at the ends, of about 40.
+            assert!((sum - 5.0).abs() < 0.15, "{angle}: {sum}");
+        }
+    }
+
+    #[test]
+    fn segments_without_extent_leave_nothing() {
+        let p = Vec3::new(8.5, 8.5, 0.1);
+        assert!(fragments(&[p, p]).is_empty());
+        assert!(fragments(&[p, p + Vec3::Z]).is_empty(), "along the light");
+    }
+
+    #[test]
+    fn the_border_stays_empty() {
+        let (low, high) = (1.0, 63.0 * (1.0 - f32::EPSILON));
+        let corners = [(low, low), (high, low), (high, high), (low, high), (low, low), (high, high)];
+        let corners = corners.map(|(x, y)| Vec3::new(x, y, 0.5));
+        for f in fragments(&corners) {
+            assert!((1..=62).contains(&f.0) && (1..=62).contains(&f.1), "{f:?}");
+        }
+    }
+}

@@ -1,0 +1,32 @@
+//! The whole part of a float in a form that vectorises.
+//!
+//! Unsafe since the conversion of a float to an integer that vectorises is undefined out of range.
+// Compiled within the versions of the voxel map's `simd`.
+#![allow(unsafe_code, clippy::inline_always)]
+
+/// The whole part of `c`, held within 0 and 2^26; 0 for what is no number.
+///
+/// `as` would be compiled to a branch or two for each number, since it must saturate at the integers' ends.
+#[inline(always)]
+pub(crate) fn whole_part(c: f32) -> i32 {
+    const MOST: f32 = (1 << 26) as f32;
+    let c = if c > 0.0 { c } else { 0.0 };
+    let c = if c < MOST { c } else { MOST };
+    // SAFETY: `c` is a number between 0 and 2^26: the comparison above turns NaN into 0.
+    unsafe { c.to_int_unchecked() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whole_parts() {
+        let cases = [(0.0, 0), (0.999_999_94, 0), (1.0, 1), (511.999, 511), (8_388_607.0, 8_388_607)];
+        let beyond =
+            [(-1.0, 0), (f32::NAN, 0), (f32::NEG_INFINITY, 0), (f32::INFINITY, 1 << 26), (1e9, 1 << 26)];
+        for (c, whole) in cases.into_iter().chain(beyond) {
+            assert_eq!(whole_part(c), whole, "{c}");
+        }
+    }
+}
