@@ -67,6 +67,7 @@ impl TexelMethod for Layers {
         let near = fragments.iter().map(|fragment| fragment.depth()).fold(1.0, f32::min);
         let (first, sums) = record.split_at_mut(1);
         first[0] = near;
+        sums.fill(0.0);
         for fragment in fragments {
             sums[self.layer(fragment.depth() - near)] += fragment.optical_depth();
         }

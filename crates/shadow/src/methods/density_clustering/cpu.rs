@@ -17,6 +17,9 @@ const GAMMA: f64 = 1.732_050_807_568_877_2;
 /// Least width of a bin, a part of the texel's range: a cluster at one depth has no spread.
 const LEAST_WIDTH: f64 = 1.0 / 256.0;
 
+/// One over the width of a bin without: a step.
+const STEEPEST: f64 = 1e30;
+
 /// A range of depths with even density.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bin {
@@ -45,8 +48,8 @@ struct Sums {
 }
 
 /// The borders between clusters: half way between neighbouring centres. Those beyond the last are never passed.
-fn borders(centres: &[f32; MOST], count: usize) -> [f32; MOST - 1] {
-    let mut borders = [f32::INFINITY; MOST - 1];
+fn borders<const K: usize>(centres: &[f32; K], count: usize) -> [f32; K] {
+    let mut borders = [f32::INFINITY; K];
     for j in 1..count {
         borders[j - 1] = 0.5 * (centres[j - 1] + centres[j]);
     }
@@ -55,14 +58,14 @@ fn borders(centres: &[f32; MOST], count: usize) -> [f32; MOST - 1] {
 
 /// The cluster of a depth; a tie goes to the nearer one. Centres are in order, and one step of clustering keeps them so.
 #[inline]
-fn cluster(borders: &[f32; MOST - 1], depth: f32) -> usize {
+fn cluster<const K: usize>(borders: &[f32; K], depth: f32) -> usize {
     borders.iter().map(|border| usize::from(depth > *border)).sum()
 }
 
 /// Sums by cluster, about the centres.
-fn sums(fragments: &[Fragment], centres: &[f32; MOST], count: usize) -> [Sums; MOST] {
-    let borders = borders(centres, count);
-    let mut sums = [Sums::default(); MOST];
+fn sums<const K: usize>(fragments: &[Fragment], centres: &[f32; K]) -> [Sums; K] {
+    let borders = borders(centres, K);
+    let mut sums = [Sums::default(); K];
     for fragment in fragments {
         let j = cluster(&borders, fragment.depth());
         let weight = f64::from(fragment.optical_depth());
@@ -76,24 +79,23 @@ fn sums(fragments: &[Fragment], centres: &[f32; MOST], count: usize) -> [Sums; M
 
 impl Clustering {
     /// Centres and standard deviations of the clusters, and which of them have hair.
-    fn clusters(
+    fn clusters<const K: usize>(
         &self,
         fragments: &[Fragment],
         near: f32,
         far: f32,
-    ) -> ([f32; MOST], [f64; MOST], [bool; MOST]) {
-        let count = self.count;
-        let mut centres = seeds(self.settings.seeds, fragments, near, far, count);
-        let mut found = [Sums::default(); MOST];
+    ) -> ([f32; K], [f64; K], [bool; K]) {
+        let mut centres = seeds(self.settings.seeds, fragments, near, far);
+        let mut found = [Sums::default(); K];
         for _ in 0..self.settings.safe_steps() {
-            found = sums(fragments, &centres, count);
-            for j in 0..count {
-                if found[j].weight > 0.0 {
-                    centres[j] += (found[j].offset / found[j].weight) as f32;
+            found = sums(fragments, &centres);
+            for (centre, sums) in centres.iter_mut().zip(&found) {
+                if sums.weight > 0.0 {
+                    *centre += (sums.offset / sums.weight) as f32;
                 }
             }
         }
-        let mut deviations = [0.0; MOST];
+        let mut deviations = [0.0; K];
         match self.settings.deviation {
             ClusterDeviation::Merged => {
                 for (deviation, sums) in deviations.iter_mut().zip(&found) {
@@ -104,7 +106,7 @@ impl Clustering {
                 }
             }
             ClusterDeviation::Exact => {
-                found = sums(fragments, &centres, count);
+                found = sums(fragments, &centres);
                 for (deviation, sums) in deviations.iter_mut().zip(&found) {
                     if sums.weight > 0.0 {
                         *deviation = (sums.square / sums.weight).sqrt();
@@ -114,12 +116,68 @@ impl Clustering {
         }
         (centres, deviations, found.map(|sums| sums.weight > 0.0))
     }
+
+    /// [`TexelMethod::fill`] for *K* clusters.
+    fn fill_bins<const K: usize>(&self, fragments: &[Fragment], record: &mut [Bin]) {
+        record.fill(Bin::default());
+        if let [fragment] = fragments {
+            // A step: all that the rest would come to.
+            record[0] = Bin {
+                start: fragment.depth(),
+                per_depth: STEEPEST as f32,
+                optical_depth: fragment.optical_depth(),
+            };
+            return;
+        }
+        let (mut near, mut far) = (1.0_f32, 0.0_f32);
+        for fragment in fragments.iter() {
+            near = near.min(fragment.depth());
+            far = far.max(fragment.depth());
+        }
+        let (centres, deviations, has_hair) = self.clusters::<K>(fragments, near, far);
+        // Those without hair go before anything is compared with its neighbour.
+        let (mut kept_centres, mut kept_deviations, mut kept) = ([0.0; K], [0.0; K], 0);
+        for j in (0..K).filter(|j| has_hair[*j]) {
+            (kept_centres[kept], kept_deviations[kept]) = (centres[j], deviations[j]);
+            kept += 1;
+        }
+        if kept == 0 {
+            return;
+        }
+        let least_width = f64::from(far - near) * LEAST_WIDTH;
+        let ranges = ranges(&kept_centres, &kept_deviations, least_width, kept);
+
+        let borders = borders(&kept_centres, kept);
+        let mut depths = [0.0_f64; K];
+        for fragment in fragments.iter() {
+            // The nearest centre, but for a bin that holds the fragment.
+            let mut j = cluster(&borders, fragment.depth());
+            let depth = f64::from(fragment.depth());
+            if depth < ranges[j].0 && j > 0 && depth <= ranges[j - 1].1 {
+                j -= 1;
+            } else if depth > ranges[j].1 && j + 1 < kept && depth >= ranges[j + 1].0 {
+                j += 1;
+            }
+            depths[j] += f64::from(fragment.optical_depth());
+        }
+        for (j, bin) in record.iter_mut().enumerate().take(kept) {
+            let (start, end) = ranges[j];
+            // Without width it is a step.
+            let per_depth = if end > start { (1.0 / (end - start)).min(STEEPEST) } else { STEEPEST };
+            *bin = Bin { start: start as f32, per_depth: per_depth as f32, optical_depth: depths[j] as f32 };
+        }
+    }
 }
 
 /// Start and end of the bins: ±√3 standard deviations about their centres, where two overlap up to the middle of the
 /// overlap. Only the first `count` of `bins` are there.
-fn ranges(centres: &[f32], deviations: &[f64], least_width: f64, count: usize) -> [(f64, f64); MOST] {
-    let mut ranges = [(0.0, 0.0); MOST];
+fn ranges<const K: usize>(
+    centres: &[f32; K],
+    deviations: &[f64; K],
+    least_width: f64,
+    count: usize,
+) -> [(f64, f64); K] {
+    let mut ranges = [(0.0, 0.0); K];
     for j in 0..count {
         let half = (GAMMA * deviations[j]).max(0.5 * least_width);
         ranges[j] = (f64::from(centres[j]) - half, f64::from(centres[j]) + half);
@@ -159,42 +217,15 @@ impl TexelMethod for Clustering {
     }
 
     fn fill(&self, fragments: &mut [Fragment], record: &mut [Bin]) {
-        let (mut near, mut far) = (1.0_f32, 0.0_f32);
-        for fragment in fragments.iter() {
-            near = near.min(fragment.depth());
-            far = far.max(fragment.depth());
-        }
-        let (centres, deviations, has_hair) = self.clusters(fragments, near, far);
-        // Those without hair go before anything is compared with its neighbour.
-        let (mut kept_centres, mut kept_deviations, mut kept) = ([0.0; MOST], [0.0; MOST], 0);
-        for j in (0..self.count).filter(|j| has_hair[*j]) {
-            (kept_centres[kept], kept_deviations[kept]) = (centres[j], deviations[j]);
-            kept += 1;
-        }
-        if kept == 0 {
-            return;
-        }
-        let least_width = f64::from(far - near) * LEAST_WIDTH;
-        let ranges = ranges(&kept_centres, &kept_deviations, least_width, kept);
-
-        let borders = borders(&kept_centres, kept);
-        let mut depths = [0.0_f64; MOST];
-        for fragment in fragments.iter() {
-            // The nearest centre, but for a bin that holds the fragment.
-            let mut j = cluster(&borders, fragment.depth());
-            let depth = f64::from(fragment.depth());
-            if depth < ranges[j].0 && j > 0 && depth <= ranges[j - 1].1 {
-                j -= 1;
-            } else if depth > ranges[j].1 && j + 1 < kept && depth >= ranges[j + 1].0 {
-                j += 1;
-            }
-            depths[j] += f64::from(fragment.optical_depth());
-        }
-        for (j, bin) in record.iter_mut().enumerate().take(kept) {
-            let (start, end) = ranges[j];
-            // Without width it is a step.
-            let per_depth = if end > start { (1.0 / (end - start)).min(1e30) } else { 1e30 };
-            *bin = Bin { start: start as f32, per_depth: per_depth as f32, optical_depth: depths[j] as f32 };
+        match *record {
+            [_] => self.fill_bins::<1>(fragments, record),
+            [_, _] => self.fill_bins::<2>(fragments, record),
+            [_, _, _] => self.fill_bins::<3>(fragments, record),
+            [_, _, _, _] => self.fill_bins::<4>(fragments, record),
+            [_, _, _, _, _] => self.fill_bins::<5>(fragments, record),
+            [_, _, _, _, _, _] => self.fill_bins::<6>(fragments, record),
+            [_, _, _, _, _, _, _] => self.fill_bins::<7>(fragments, record),
+            _ => self.fill_bins::<MOST>(fragments, record),
         }
     }
 

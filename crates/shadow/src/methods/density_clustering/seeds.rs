@@ -2,7 +2,6 @@
 
 use super::super::texels::Fragment;
 use super::ClusterSeeds;
-use super::cpu::MOST;
 use crate::exp::exp_of_minus;
 
 /// Bins of the histogram of [`ClusterSeeds::Histogram`].
@@ -11,17 +10,16 @@ const BINS: usize = 32;
 /// The paper's "75 % towards the left": seeds lie at three quarters of their distance from the nearest hair.
 const TOWARD_LIGHT: f32 = 0.75;
 
-/// The first `count` centres, in order, for hair from `near` to `far`.
-pub(super) fn seeds(
+/// The first centres, in order, for hair from `near` to `far`.
+pub(super) fn seeds<const K: usize>(
     of: ClusterSeeds,
     fragments: &[Fragment],
     near: f32,
     far: f32,
-    count: usize,
-) -> [f32; MOST] {
-    let mut seeds = [far; MOST];
-    let even = |j: usize| (j as f32 + 0.5) / count as f32;
-    for (j, seed) in seeds.iter_mut().enumerate().take(count) {
+) -> [f32; K] {
+    let mut seeds = [far; K];
+    let even = |j: usize| (j as f32 + 0.5) / K as f32;
+    for (j, seed) in seeds.iter_mut().enumerate() {
         *seed = match of {
             ClusterSeeds::Uniform => near + (far - near) * even(j),
             ClusterSeeds::TowardLight => near + (far - near) * even(j) * TOWARD_LIGHT,
@@ -29,16 +27,16 @@ pub(super) fn seeds(
         };
     }
     if of == ClusterSeeds::Histogram && far > near {
-        let at = quantiles_of_lost_light(fragments, near, far, count);
-        for (seed, at) in seeds.iter_mut().zip(at).take(count) {
+        let at = quantiles_of_lost_light::<K>(fragments, near, far);
+        for (seed, at) in seeds.iter_mut().zip(at) {
             *seed += (far - near) * at * 0.5;
         }
     }
     seeds
 }
 
-/// The depths, as parts of the range, at which (j + ½) / count of the light that the texel takes is lost.
-fn quantiles_of_lost_light(fragments: &[Fragment], near: f32, far: f32, count: usize) -> [f32; MOST] {
+/// The depths, as parts of the range, at which (j + ½) / K of the light that the texel takes is lost.
+fn quantiles_of_lost_light<const K: usize>(fragments: &[Fragment], near: f32, far: f32) -> [f32; K] {
     let mut histogram = [0.0_f64; BINS];
     let per_depth = BINS as f32 / (far - near);
     for fragment in fragments {
@@ -51,10 +49,10 @@ fn quantiles_of_lost_light(fragments: &[Fragment], near: f32, far: f32, count: u
         sum += depth;
         lost[bin + 1] = 1.0 - exp_of_minus(sum as f32);
     }
-    let mut at = [0.0; MOST];
+    let mut at = [0.0; K];
     let mut bin = 0;
-    for (j, at) in at.iter_mut().enumerate().take(count) {
-        let wanted = lost[BINS] * (j as f32 + 0.5) / count as f32;
+    for (j, at) in at.iter_mut().enumerate() {
+        let wanted = lost[BINS] * (j as f32 + 0.5) / K as f32;
         while bin + 1 < BINS && lost[bin + 1] < wanted {
             bin += 1;
         }
@@ -71,7 +69,7 @@ mod tests {
 
     #[test]
     fn even_seeds_are_interior_and_pulled_ones_keep_the_nearest_hair() {
-        let of = |seeds_of| seeds(seeds_of, &[], 0.2, 0.6, 4);
+        let of = |seeds_of| seeds::<4>(seeds_of, &[], 0.2, 0.6);
         for (found, expected) in of(ClusterSeeds::Uniform).iter().zip([0.25, 0.35, 0.45, 0.55]) {
             assert!((found - expected).abs() < 1e-6);
         }
@@ -85,8 +83,8 @@ mod tests {
         // τ = 2 spread evenly: 1 − e^(−2x) = q (1 − e^−2).
         let fragments: Vec<_> =
             (0..3200).map(|i| Fragment::new((i as f32 + 0.5) / 3200.0, 2.0 / 3200.0)).collect();
-        let at = quantiles_of_lost_light(&fragments, 0.0, 1.0, 4);
-        for (j, at) in at.iter().enumerate().take(4) {
+        let at = quantiles_of_lost_light::<4>(&fragments, 0.0, 1.0);
+        for (j, at) in at.iter().enumerate() {
             let q = (j as f64 + 0.5) / 4.0;
             let truth = -0.5 * (1.0 - q * (1.0 - (-2.0_f64).exp())).ln();
             // Light falls off a little within a bin of 1/32, where the quantile is linear.
@@ -98,7 +96,7 @@ mod tests {
     fn hair_without_optical_depth_has_seeds_in_order() {
         let fragments = [Fragment::new(0.1, 0.0), Fragment::new(0.9, 0.0)];
         for of in [ClusterSeeds::Uniform, ClusterSeeds::TowardLight, ClusterSeeds::Histogram] {
-            let seeds = seeds(of, &fragments, 0.1, 0.9, 8);
+            let seeds = seeds::<8>(of, &fragments, 0.1, 0.9);
             assert!(seeds.is_sorted() && seeds.iter().all(|s| (0.1..=0.9).contains(s)), "{seeds:?}");
         }
     }

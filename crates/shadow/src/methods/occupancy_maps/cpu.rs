@@ -50,17 +50,37 @@ fn count(counts: &[u32], slab: usize) -> u32 {
     counts[slab / 2] >> (slab % 2 * 16) & 0xffff
 }
 
-/// Bits `from..to` that are set.
+/// The bits of a slab that are set, and those of them that lie before `slice`, which is one of the slab's.
 #[inline]
-fn ones(bits: &[u32], from: u32, to: u32) -> u32 {
-    let (first, last) = ((from / 32) as usize, (to / 32) as usize);
-    let below = |bit: u32| (1_u32 << (bit % 32)) - 1;
-    if first == last {
-        return (bits[first] & below(to) & !below(from)).count_ones();
+fn occupied(bits: &[u32], first: u32, per_slab: u32, slice: u32) -> (u32, u32) {
+    if per_slab <= 32 {
+        // A slab lies within one word.
+        let slab = bits[(first / 32) as usize] >> (first % 32) & (u32::MAX >> (32 - per_slab));
+        return (slab.count_ones(), (slab & ((1 << (slice - first)) - 1)).count_ones());
     }
-    let whole: u32 = bits[first + 1..last].iter().map(|word| word.count_ones()).sum();
-    let end = if to.is_multiple_of(32) { 0 } else { (bits[last] & below(to)).count_ones() };
-    (bits[first] & !below(from)).count_ones() + whole + end
+    let (mut all, mut before) = (0, 0);
+    for word in first / 32..(first + per_slab) / 32 {
+        let slab = bits[word as usize];
+        let mask = (1_u64 << slice.saturating_sub(word * 32).min(32)) - 1;
+        all += slab.count_ones();
+        before += (slab & mask as u32).count_ones();
+    }
+    (all, before)
+}
+
+/// Fragments of the slabs before `slab`, of itself, and of all.
+#[inline]
+fn counts_around<const WORDS: usize>(counts: &[u32], slab: u32) -> (u32, u32, u32) {
+    let (mut before, mut own, mut all) = (0, 0, 0);
+    for (word, packed) in counts[..WORDS].iter().enumerate() {
+        for half in 0..2 {
+            let (at, count) = (2 * word as u32 + half, packed >> (16 * half) & 0xffff);
+            before += if at < slab { count } else { 0 };
+            own += if at == slab { count } else { 0 };
+            all += count;
+        }
+    }
+    (before, own, all)
 }
 
 impl TexelMethod for Occupancy {
@@ -98,6 +118,7 @@ impl TexelMethod for Occupancy {
             sum += f64::from(fragment.optical_depth());
         }
         let (header, rest) = record.split_at_mut(HEADER);
+        rest.fill(0);
         let (bits, counts) = rest.split_at_mut(self.bit_words());
         let per_slab = self.slices_per_slab();
         let mut counted = 0_u32;
@@ -117,26 +138,26 @@ impl TexelMethod for Occupancy {
     #[inline]
     fn depth_before(&self, _fragments: &[Fragment], record: &[u32], depth: f32) -> f32 {
         let [near, far, mean] = [record[0], record[1], record[2]].map(f32::from_bits);
-        let (bits, counts) = record[HEADER..].split_at(self.bit_words());
-        // These two come first: where all fragments lie at one depth, the rest has no meaning.
+        // This and the end of the range come first: where all fragments lie at one depth, the rest has no meaning.
         if depth <= near {
             return 0.0;
         }
-        if depth >= far {
-            return (0..self.slabs as usize).map(|slab| count(counts, slab)).sum::<u32>() as f32 * mean;
-        }
+        let (bits, counts) = record[HEADER..].split_at(self.bit_words());
         let (slice, part) = self.slice(near, far, depth);
         let per_slab = self.slices_per_slab();
         let slab = slice / per_slab;
-        let before: u32 = (0..slab as usize).map(|slab| count(counts, slab)).sum();
-        let first = slab * per_slab;
-        let occupied = ones(bits, first, first + per_slab);
-        if occupied == 0 {
-            return before as f32 * mean;
+        let (before, own, all) = match self.slabs {
+            4 => counts_around::<2>(counts, slab),
+            8 => counts_around::<4>(counts, slab),
+            _ => counts_around::<8>(counts, slab),
+        };
+        if depth >= far {
+            return all as f32 * mean;
         }
-        let own = (bits[(slice / 32) as usize] >> (slice % 32) & 1) as f32;
-        let share = (ones(bits, first, slice) as f32 + part * own) / occupied as f32;
-        (before as f32 + share * count(counts, slab as usize) as f32) * mean
+        let (occupied, passed) = occupied(bits, slab * per_slab, per_slab, slice);
+        let own_bit = (bits[(slice / 32) as usize] >> (slice % 32) & 1) as f32;
+        let share = (passed as f32 + part * own_bit) / occupied.max(1) as f32;
+        (before as f32 + share * own as f32) * mean
     }
 }
 
@@ -160,21 +181,28 @@ mod tests {
     const ALL: [(u32, u32); 9] =
         [(128, 4), (128, 8), (128, 16), (256, 4), (256, 8), (256, 16), (512, 4), (512, 8), (512, 16)];
 
+    fn ones(bits: &[u32]) -> u32 {
+        bits.iter().map(|word| word.count_ones()).sum()
+    }
+
     #[test]
-    fn bits_between_are_counted() {
+    fn bits_of_a_slab_are_counted() {
         let bits = [0x8000_0001, 0xffff_ffff, 0, 0x0000_0003];
-        for (from, to, expected) in [
-            (0, 0, 0),
-            (0, 1, 1),
-            (1, 31, 0),
-            (1, 32, 1),
-            (0, 32, 2),
-            (31, 33, 2),
-            (32, 64, 32),
-            (0, 128, 36),
-            (40, 98, 26),
-        ] {
-            assert_eq!(ones(&bits, from, to), expected, "{from}..{to}");
+        let cases = [
+            (0, 16, 0, (1, 0)),
+            (0, 16, 15, (1, 1)),
+            (16, 16, 31, (1, 0)),
+            (32, 32, 32, (32, 0)),
+            (32, 32, 63, (32, 31)),
+            (40, 8, 44, (8, 4)),
+            (0, 64, 33, (34, 3)),
+            (64, 64, 64, (2, 0)),
+            (64, 64, 97, (2, 1)),
+            (0, 128, 127, (36, 36)),
+            (0, 128, 31, (36, 1)),
+        ];
+        for (first, per_slab, slice, expected) in cases {
+            assert_eq!(occupied(&bits, first, per_slab, slice), expected, "{first}, {per_slab}, {slice}");
         }
     }
 
@@ -205,7 +233,7 @@ mod tests {
             let method = method(slices, slabs);
             let record = filled(&method, &[(0.25, 1.0), (0.75, 1.0)]);
             let bits = &record[HEADER..HEADER + method.bit_words()];
-            assert_eq!(ones(bits, 0, slices), 2);
+            assert_eq!(ones(bits), 2);
             assert_eq!(bits[bits.len() - 1] >> 31, 1);
         }
     }

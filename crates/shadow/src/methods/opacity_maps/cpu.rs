@@ -48,14 +48,22 @@ impl TexelMethod for Slices {
     }
 
     fn fill(&self, fragments: &mut [Fragment], record: &mut [f32]) {
-        for fragment in fragments {
+        // Nothing before the first slice with hair, and the same from the last one on.
+        let (mut first, mut last) = (self.count - 1, 0);
+        for fragment in fragments.iter() {
+            let (slice, _) = self.slice(fragment.depth());
+            (first, last) = (first.min(slice), last.max(slice));
+        }
+        record[..=last].fill(0.0);
+        for fragment in fragments.iter() {
             record[self.slice(fragment.depth()).0] += fragment.optical_depth();
         }
         let mut sum = 0.0;
-        for cell in record {
+        for cell in &mut record[first..=last] {
             sum += *cell;
             *cell = sum;
         }
+        record[last + 1..].fill(sum);
     }
 
     #[inline]

@@ -3,6 +3,7 @@
 //! Every worker draws strands of its own and puts their fragments into bands of rows. Each band is then sorted by
 //! texel, by counting. Within a texel, fragments lie in the order of the strands, whatever the number of workers.
 
+use glam::Vec3;
 use rayon::prelude::*;
 
 use super::frame::TexelFrame;
@@ -53,66 +54,53 @@ struct Loose {
     optical_depth: f32,
 }
 
-/// Rows of texels with their fragments.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Band {
-    /// Where the fragments of each texel begin, and one more: where the last ones end.
-    starts: Vec<u32>,
-    fragments: Vec<Fragment>,
+/// The texels of one band and their fragments, which [`Fragments::bands`] hands out.
+#[derive(Debug)]
+pub(crate) struct Band<'a> {
+    /// Where each texel's fragments end in the whole list.
+    ends: &'a [u32],
+    /// Where those of the first one begin.
+    start: u32,
+    fragments: &'a mut [Fragment],
 }
 
-impl Band {
-    /// The texels of the band.
-    pub(crate) fn texels(&self) -> usize {
-        self.starts.len().saturating_sub(1)
-    }
-
-    /// The fragments of a texel.
-    #[inline]
-    pub(crate) fn texel(&self, texel: usize) -> &[Fragment] {
-        &self.fragments[self.starts[texel] as usize..self.starts[texel + 1] as usize]
-    }
-
-    /// Calls `with` for each texel that has fragments, in order.
+impl Band<'_> {
+    /// Calls `with` for each texel that has fragments, in order, with its number in the band.
     pub(crate) fn for_each_texel(&mut self, mut with: impl FnMut(usize, &mut [Fragment])) {
-        let mut rest = &mut self.fragments[..];
-        for (texel, ends) in self.starts.windows(2).enumerate() {
-            if ends[0] != ends[1] {
-                let (fragments, after) = rest.split_at_mut((ends[1] - ends[0]) as usize);
-                rest = after;
-                with(texel, fragments);
+        let (mut rest, mut start) = (&mut *self.fragments, self.start);
+        for (at, &end) in self.ends.iter().enumerate() {
+            if end != start {
+                let (fragments, after) = rest.split_at_mut((end - start) as usize);
+                (rest, start) = (after, end);
+                with(at, fragments);
             }
         }
     }
+}
 
-    /// Texels with fragments.
-    pub(crate) fn texels_in_use(&self) -> u64 {
-        self.starts.windows(2).filter(|ends| ends[0] != ends[1]).count() as u64
+/// Sorts the fragments that pieces have for band `band` by texel, keeping their order, and says how many texels have
+/// any. `ends` becomes where each texel's fragments end, counted from `start` on.
+fn gather(pieces: &[Piece], band: usize, start: u32, ends: &mut [u32], fragments: &mut [Fragment]) -> u64 {
+    let loose = || pieces.iter().flat_map(|piece| &piece.bands[band]);
+    ends.fill(0);
+    for fragment in loose() {
+        ends[fragment.texel as usize] += 1;
     }
-
-    /// Takes the fragments that pieces have for this band and sorts them by texel, keeping their order.
-    fn gather(&mut self, texels: usize, pieces: &[Piece], band: usize) {
-        self.starts.clear();
-        self.starts.resize(texels + 1, 0);
-        let loose = || pieces.iter().flat_map(|piece| &piece.bands[band]);
-        for fragment in loose() {
-            self.starts[fragment.texel as usize] += 1;
-        }
-        let mut sum = 0;
-        for start in &mut self.starts {
-            sum += std::mem::replace(start, sum);
-        }
-        self.fragments.clear();
-        self.fragments.resize(sum as usize, Fragment::default());
-        for fragment in loose() {
-            let at = &mut self.starts[fragment.texel as usize];
-            self.fragments[*at as usize] = Fragment::new(fragment.depth, fragment.optical_depth);
-            *at += 1;
-        }
-        // Each start has moved to the end of its texel, which is the next one's start.
-        self.starts.copy_within(..texels, 1);
-        self.starts[0] = 0;
+    let (mut sum, mut in_use) = (0, 0);
+    for end in &mut *ends {
+        in_use += u64::from(*end != 0);
+        sum += std::mem::replace(end, sum);
     }
+    // Beginnings become ends as fragments are put there.
+    for fragment in loose() {
+        let at = &mut ends[fragment.texel as usize];
+        fragments[*at as usize] = Fragment::new(fragment.depth, fragment.optical_depth);
+        *at += 1;
+    }
+    for end in ends {
+        *end += start;
+    }
+    in_use
 }
 
 /// One worker's fragments by band.
@@ -124,11 +112,13 @@ struct Piece {
 /// The fragments of a map, or of a part of one.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Fragments {
-    pub(crate) bands: Vec<Band>,
     columns: u32,
+    /// Where the fragments of each texel end, row after row.
+    ends: Vec<u32>,
+    fragments: Vec<Fragment>,
+    /// Texels with fragments in each band.
+    in_use: Vec<u64>,
     pieces: Vec<Piece>,
-    /// Segments that were drawn.
-    pub(crate) segments: u64,
 }
 
 impl Fragments {
@@ -146,57 +136,95 @@ impl Fragments {
         let pieces = piece_count(input.strands.points());
         self.columns = columns;
         self.pieces.resize_with(pieces, Piece::default);
-        self.segments = self
-            .pieces
-            .par_iter_mut()
-            .enumerate()
-            .with_max_len(1)
-            .map(|(at, piece)| {
-                piece.bands.resize_with(bands, Vec::new);
-                piece.bands.iter_mut().for_each(Vec::clear);
-                let strands = first_strand(input, at, pieces)..first_strand(input, at + 1, pieces);
-                let mut put = |column: u32, row: u32, depth: f32, optical_depth: f32| {
-                    let texel = (row % BAND_ROWS) * columns + column;
-                    piece.bands[(row / BAND_ROWS) as usize].push(Loose { texel, depth, optical_depth });
-                };
-                for_each_segment(input, frame, strands, |from, to| draw.draw(from, to, &mut put))
-            })
-            .sum();
-        self.bands.resize_with(bands, Band::default);
+        self.pieces.par_iter_mut().enumerate().with_max_len(1).for_each(|(at, piece)| {
+            piece.bands.resize_with(bands, Vec::new);
+            piece.bands.iter_mut().for_each(Vec::clear);
+            let strands = first_strand(input, at, pieces)..first_strand(input, at + 1, pieces);
+            let mut put = |column: u32, row: u32, depth: f32, optical_depth: f32| {
+                let texel = (row % BAND_ROWS) * columns + column;
+                piece.bands[(row / BAND_ROWS) as usize].push(Loose { texel, depth, optical_depth });
+            };
+            for_each_segment(input, frame, strands, |from, to| draw.draw(from, to, &mut put));
+        });
         let pieces = &self.pieces[..];
-        let texels = (BAND_ROWS * columns) as usize;
-        self.bands
-            .par_iter_mut()
-            .enumerate()
-            .with_max_len(1)
-            .for_each(|(at, band)| band.gather(texels, pieces, at));
+        let count = |band: usize| pieces.iter().map(|piece| piece.bands[band].len()).sum::<usize>();
+        self.ends.resize(bands * (BAND_ROWS * columns) as usize, 0);
+        self.fragments.resize((0..bands).map(count).sum(), Fragment::default());
+        let (mut rest, mut start) = (&mut self.fragments[..], 0);
+        let ends = self.ends.chunks_exact_mut((BAND_ROWS * columns) as usize);
+        let mut work = Vec::with_capacity(bands);
+        for (band, ends) in ends.enumerate() {
+            let (fragments, after) = std::mem::take(&mut rest).split_at_mut(count(band));
+            rest = after;
+            work.push((band, start, ends, fragments));
+            start += count(band) as u32;
+        }
+        let gathered = work.into_par_iter().with_max_len(1);
+        gathered
+            .map(|(band, start, ends, fragments)| gather(pieces, band, start, ends, fragments))
+            .collect_into_vec(&mut self.in_use);
     }
 
-    /// Band and texel within it of a column and a row.
+    /// The number of texels.
+    pub(crate) fn texels(&self) -> usize {
+        self.ends.len()
+    }
+
+    /// Texels with fragments in each band.
+    pub(crate) fn in_use(&self) -> &[u64] {
+        &self.in_use
+    }
+
+    /// Texels of one band.
+    pub(crate) fn band_texels(&self) -> usize {
+        (BAND_ROWS * self.columns) as usize
+    }
+
+    /// The number of a texel.
     #[inline]
-    pub(crate) fn place(&self, column: u32, row: u32) -> (usize, usize) {
-        ((row / BAND_ROWS) as usize, ((row % BAND_ROWS) * self.columns + column) as usize)
+    pub(crate) fn place(&self, column: u32, row: u32) -> usize {
+        (row * self.columns + column) as usize
+    }
+
+    /// The fragments of a texel.
+    #[inline]
+    pub(crate) fn texel(&self, texel: usize) -> &[Fragment] {
+        let start = texel.checked_sub(1).map_or(0, |last| self.ends[last]);
+        &self.fragments[start as usize..self.ends[texel] as usize]
+    }
+
+    /// The bands, to be worked on side by side.
+    pub(crate) fn bands(&mut self) -> Vec<Band<'_>> {
+        let texels = self.band_texels();
+        let (mut rest, mut start) = (&mut self.fragments[..], 0);
+        let mut bands = Vec::with_capacity(self.in_use.len());
+        for ends in self.ends.chunks_exact(texels) {
+            let end = ends.last().copied().unwrap_or(start);
+            let (fragments, after) = std::mem::take(&mut rest).split_at_mut((end - start) as usize);
+            rest = after;
+            bands.push(Band { ends, start, fragments });
+            start = end;
+        }
+        bands
     }
 
     /// Memory of the sorted fragments, and of what only sorting needs, bytes.
     pub(crate) fn memory_bytes(&self) -> (u64, u64) {
-        let bands = self.bands.iter().map(|band| 4 * band.starts.capacity() + 8 * band.fragments.capacity());
+        let sorted = 4 * self.ends.capacity() + 8 * self.fragments.capacity();
         let loose = self.pieces.iter().flat_map(|piece| &piece.bands);
-        let loose = loose.map(|loose| size_of::<Loose>() * loose.capacity());
-        (bands.sum::<usize>() as u64, loose.sum::<usize>() as u64)
+        let loose = loose.map(|loose| size_of::<Loose>() * loose.capacity()).sum::<usize>();
+        (sorted as u64, loose as u64)
     }
 }
 
-/// Calls `with` for both ends, in texel coordinates, of each segment of the strands `strands` that is whole. Says how
-/// many these are.
+/// Calls `with` for both ends, in texel coordinates, of each segment of the strands `strands` that is whole.
 pub(crate) fn for_each_segment(
     input: &ShadowInput,
     frame: &TexelFrame,
     strands: std::ops::Range<usize>,
-    mut with: impl FnMut(glam::Vec3, glam::Vec3),
-) -> u64 {
+    mut with: impl FnMut(Vec3, Vec3),
+) {
     let axes = frame.axes();
-    let mut count = 0;
     for strand in strands {
         let points =
             input.strands.first_point[strand] as usize..input.strands.first_point[strand + 1] as usize;
@@ -205,20 +233,18 @@ pub(crate) fn for_each_segment(
             let p = axes.transform(input.strands.point(point));
             let p = frame.holds(p).then(|| frame.held(p));
             if let (Some(from), Some(to)) = (last, p) {
-                count += 1;
                 with(from, to);
             }
             last = p;
         }
     }
-    count
 }
 
 /// The sum over all segments of what `of` makes of their ends.
 pub(crate) fn sum_over_segments(
     input: &ShadowInput,
     frame: &TexelFrame,
-    of: impl Fn(glam::Vec3, glam::Vec3) -> u64 + Sync,
+    of: impl Fn(Vec3, Vec3) -> u64 + Sync,
 ) -> u64 {
     let pieces = piece_count(input.strands.points());
     let sum = |piece: usize| {
@@ -269,18 +295,14 @@ mod tests {
                     .collect(),
             ],
         };
-        let mut band = Band::default();
-        for _ in 0..2 {
-            band.gather(5, &[piece(&[3, 0, 3, 4], 0.0), piece(&[0, 3, 3], 10.0)], 0);
-            let depths = |texel| band.texel(texel).iter().map(|f| f.depth()).collect::<Vec<_>>();
-            assert_eq!(depths(0), [1.0, 10.0]);
-            assert_eq!(depths(3), [0.0, 2.0, 11.0, 12.0]);
-            assert_eq!(depths(4), [3.0]);
-            assert!(depths(1).is_empty() && depths(2).is_empty());
-            assert_eq!((band.texels(), band.texels_in_use()), (5, 3));
-            let mut seen = Vec::new();
-            band.for_each_texel(|texel, fragments| seen.push((texel, fragments.len())));
-            assert_eq!(seen, [(0, 2), (3, 4), (4, 1)]);
-        }
+        let pieces = [piece(&[3, 0, 3, 4], 0.0), piece(&[0, 3, 3], 10.0)];
+        let (mut ends, mut fragments) = ([9; 5], [Fragment::new(7.0, 7.0); 7]);
+        assert_eq!(gather(&pieces, 0, 100, &mut ends, &mut fragments), 3);
+        assert_eq!(ends, [102, 102, 102, 106, 107]);
+        assert_eq!(fragments.map(Fragment::depth), [1.0, 10.0, 0.0, 2.0, 11.0, 12.0, 3.0]);
+        let mut band = Band { ends: &ends, start: 100, fragments: &mut fragments };
+        let mut seen = Vec::new();
+        band.for_each_texel(|texel, fragments| seen.push((texel, fragments.len())));
+        assert_eq!(seen, [(0, 2), (3, 4), (4, 1)]);
     }
 }

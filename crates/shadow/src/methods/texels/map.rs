@@ -8,9 +8,9 @@ use rayon::prelude::*;
 use super::fragments::{BYTES_PER_FRAGMENT, Fragment, Fragments, sum_over_segments};
 use super::frame::TexelFrame;
 use super::lines::{Lines, Steps};
+use super::lookup::Lookup;
 use super::{MAP_MEMORY_LIMIT_BYTES, TexelFilter};
 use crate::bounds::Bounds;
-use crate::exp::exp_of_minus;
 use crate::{ColumnMap, CpuShadow, ShadowError, ShadowInput, ShadowMethod, ShadowReport, ShadowSettings};
 
 /// Points of one parallel piece of a lookup.
@@ -18,9 +18,6 @@ const POINTS_PER_LOOKUP: usize = 2048;
 
 /// Fragments are no darker than this, so that sums of them stay finite; e^−10⁴ is 0 in any float.
 const MOST_DEPTH_PER_FRAGMENT: f32 = 1e4;
-
-/// A depth behind all hair.
-const BEHIND: f32 = 2.0;
 
 /// What sets a method with a record for each texel apart. The value holds the method's settings, made safe.
 pub trait TexelMethod: Copy + Debug + Send + Sync {
@@ -51,7 +48,7 @@ pub trait TexelMethod: Copy + Debug + Send + Sync {
     fn cells(&self) -> usize;
 
     /// Makes the record of a texel from its fragments, of which there is at least one. They come in the order of the
-    /// strands and may be put into another. `record` has [`TexelMethod::cells`] cells, all as by default.
+    /// strands and may be put into another. `record` has [`TexelMethod::cells`] cells with anything in them.
     fn fill(&self, fragments: &mut [Fragment], record: &mut [Self::Cell]);
 
     /// Optical depth of the texel's hair before `depth`: 0 to 1 within the hair's range, more behind it.
@@ -64,7 +61,9 @@ pub trait TexelMethod: Copy + Debug + Send + Sync {
 #[derive(Clone, Debug)]
 pub struct TexelMap<M: TexelMethod> {
     fragments: Fragments,
-    records: Vec<Records<M::Cell>>,
+    /// One more than the number of each texel's record; 0 where it has none.
+    slots: Vec<u32>,
+    cells: Vec<M::Cell>,
     built: Option<Built<M>>,
 }
 
@@ -75,23 +74,9 @@ struct Built<M> {
     report: ShadowReport,
 }
 
-/// The records of one band of rows.
-#[derive(Clone, Debug)]
-struct Records<C> {
-    /// One more than the number of each texel's record; 0 where it has none.
-    slots: Vec<u32>,
-    cells: Vec<C>,
-}
-
-impl<C> Default for Records<C> {
-    fn default() -> Self {
-        Self { slots: Vec::new(), cells: Vec::new() }
-    }
-}
-
 impl<M: TexelMethod> Default for TexelMap<M> {
     fn default() -> Self {
-        Self { fragments: Fragments::default(), records: Vec::new(), built: None }
+        Self { fragments: Fragments::default(), slots: Vec::new(), cells: Vec::new(), built: None }
     }
 }
 
@@ -107,8 +92,9 @@ impl<M: TexelMethod> TexelMap<M> {
         if column >= built.frame.resolution || row >= built.frame.resolution {
             return None;
         }
-        let (band, texel) = self.fragments.place(column, row);
-        self.records[band].of(texel, built.method.cells())
+        let slot = (self.slots[self.fragments.place(column, row)] as usize).checked_sub(1)?;
+        let cells = built.method.cells();
+        Some(&self.cells[slot * cells..(slot + 1) * cells])
     }
 
     /// Refuses what would not fit, without allocating it.
@@ -137,21 +123,15 @@ impl<M: TexelMethod> TexelMap<M> {
 
         let lines = Lines { resolution, depth_per_texel: depth_per_texel(input, settings, &frame) };
         self.fragments.draw(input, &frame, (resolution, resolution), &lines);
-        let in_use: u64 = self.fragments.bands.par_iter().map(super::fragments::Band::texels_in_use).sum();
+        let in_use: u64 = self.fragments.in_use().iter().sum();
         let cell_bytes = size_of::<M::Cell>() as u64 * method.cells() as u64;
         Self::check(sorting + in_use * cell_bytes, &method)?;
-
-        self.records.resize_with(self.fragments.bands.len(), Records::default);
-        let bands = self.fragments.bands.par_iter_mut().zip(&mut self.records);
-        bands.with_max_len(1).for_each(|(band, records)| records.fill(&method, band));
+        self.fill(&method, in_use as usize);
 
         let (sorted, loose) = self.fragments.memory_bytes();
-        let records: usize = self.records.iter().map(Records::bytes).sum();
-        let (map, scratch) = if M::READS_FRAGMENTS {
-            (records as u64 + sorted, loose)
-        } else {
-            (records as u64, sorted + loose)
-        };
+        let records = (4 * self.slots.len() + size_of::<M::Cell>() * self.cells.len()) as u64;
+        let (map, scratch) =
+            if M::READS_FRAGMENTS { (records + sorted, loose) } else { (records, sorted + loose) };
         let report = ShadowReport {
             memory_bytes: map,
             cells_touched: in_use,
@@ -163,6 +143,33 @@ impl<M: TexelMethod> TexelMap<M> {
         };
         Ok(Built { method, frame, report })
     }
+
+    /// Makes the records of all texels with fragments, `in_use` of them.
+    fn fill(&mut self, method: &M, in_use: usize) {
+        let cells = method.cells();
+        self.slots.clear();
+        self.slots.resize(self.fragments.texels(), 0);
+        self.cells.resize(in_use * cells, M::Cell::default());
+        let in_band = self.fragments.in_use().to_vec();
+        let slots = self.slots.chunks_exact_mut(self.fragments.band_texels());
+        let (mut rest, mut slot) = (&mut self.cells[..], 0);
+        let mut work = Vec::with_capacity(in_band.len());
+        for ((band, slots), in_band) in self.fragments.bands().into_iter().zip(slots).zip(in_band) {
+            let (records, after) = std::mem::take(&mut rest).split_at_mut(in_band as usize * cells);
+            rest = after;
+            work.push((band, slots, slot, records));
+            slot += in_band as u32;
+        }
+        work.into_par_iter().with_max_len(1).for_each(|(mut band, slots, mut slot, mut records)| {
+            band.for_each_texel(|texel, fragments| {
+                let (record, after) = std::mem::take(&mut records).split_at_mut(cells);
+                records = after;
+                slot += 1;
+                slots[texel] = slot;
+                method.fill(fragments, record);
+            });
+        });
+    }
 }
 
 /// Optical depth of a piece of strand that is a texel long across the light: `s w ℓ sinθ / A` with ℓ sinθ = t and
@@ -172,107 +179,14 @@ pub(crate) fn depth_per_texel(input: &ShadowInput, settings: &ShadowSettings, fr
     if depth > 0.0 { depth.min(MOST_DEPTH_PER_FRAGMENT) } else { 0.0 }
 }
 
-impl<C: Copy + Default> Records<C> {
-    fn fill<M: TexelMethod<Cell = C>>(&mut self, method: &M, band: &mut super::fragments::Band) {
-        let cells = method.cells();
-        self.slots.clear();
-        self.slots.resize(band.texels(), 0);
-        self.cells.clear();
-        self.cells.resize(band.texels_in_use() as usize * cells, C::default());
-        let mut rest = &mut self.cells[..];
-        let mut slot = 0;
-        band.for_each_texel(|texel, fragments| {
-            let (record, after) = std::mem::take(&mut rest).split_at_mut(cells);
-            rest = after;
-            slot += 1;
-            self.slots[texel] = slot;
-            method.fill(fragments, record);
-        });
-    }
-
-    #[inline]
-    fn of(&self, texel: usize, cells: usize) -> Option<&[C]> {
-        let slot = (self.slots[texel] as usize).checked_sub(1)?;
-        Some(&self.cells[slot * cells..(slot + 1) * cells])
-    }
-
-    fn bytes(&self) -> usize {
-        4 * self.slots.len() + size_of::<C>() * self.cells.len()
-    }
-}
-
-/// A map that is ready to be read.
-struct Lookup<'a, M: TexelMethod> {
-    method: &'a M,
-    frame: &'a TexelFrame,
-    cells: usize,
-    fragments: &'a Fragments,
-    records: &'a [Records<M::Cell>],
-}
-
-impl<M: TexelMethod> Lookup<'_, M> {
-    /// Transmittance of a texel at a depth; a texel outside is lit.
-    #[inline]
-    fn texel(&self, column: i32, row: i32, depth: f32) -> f32 {
-        let n = self.frame.resolution;
-        let (column, row) = (column as u32, row as u32);
-        if column >= n || row >= n {
-            return 1.0;
-        }
-        let (band, texel) = self.fragments.place(column, row);
-        let Some(record) = self.records[band].of(texel, self.cells) else { return 1.0 };
-        let fragments = if M::READS_FRAGMENTS { self.fragments.bands[band].texel(texel) } else { &[] };
-        exp_of_minus(self.method.depth_before(fragments, record, depth))
-    }
-
-    /// Transmittance at a point in texel coordinates.
-    #[inline]
-    fn at<const BILINEAR: bool>(&self, p: Vec3) -> f32 {
-        // False for what is no number. Before all hair everything is lit.
-        let n = self.frame.resolution as f32;
-        if !(p.x > -1.0 && p.x < n + 1.0 && p.y > -1.0 && p.y < n + 1.0 && p.z > 0.0) {
-            return 1.0;
-        }
-        let depth = p.z.min(BEHIND);
-        if !BILINEAR {
-            return self.texel(floor(p.x), floor(p.y), depth);
-        }
-        let (x, y) = (p.x - 0.5, p.y - 0.5);
-        let (column, row) = (floor(x), floor(y));
-        let (u, v) = (x - column as f32, y - row as f32);
-        let near = mix(self.texel(column, row, depth), self.texel(column + 1, row, depth), u);
-        let far = mix(self.texel(column, row + 1, depth), self.texel(column + 1, row + 1, depth), u);
-        let t = mix(near, far, v);
-        if t < 1.0 { t } else { 1.0 }
-    }
-
-    fn run<const BILINEAR: bool>(&self, x: &[f32], y: &[f32], z: &[f32], out: &mut [f32]) {
-        let axes = self.frame.axes();
-        for (((x, y), z), out) in x.iter().zip(y).zip(z).zip(out) {
-            *out = self.at::<BILINEAR>(axes.transform(Vec3::new(*x, *y, *z)));
-        }
-    }
-}
-
-/// The whole number at or below `c`, which is above −2.
-#[inline]
-fn floor(c: f32) -> i32 {
-    (c + 2.0) as i32 - 2
-}
-
-#[inline]
-fn mix(a: f32, b: f32, t: f32) -> f32 {
-    a + (b - a) * t
-}
-
 impl<M: TexelMethod> TexelMap<M> {
     fn lookup<'a>(&'a self, built: &'a Built<M>) -> Lookup<'a, M> {
         Lookup {
             method: &built.method,
             frame: &built.frame,
-            cells: built.method.cells(),
             fragments: &self.fragments,
-            records: &self.records,
+            slots: &self.slots,
+            cells: &self.cells,
         }
     }
 }
@@ -305,7 +219,7 @@ impl<M: TexelMethod> CpuShadow for TexelMap<M> {
         let lookup = self.lookup(built);
         let bilinear = built.method.filter() == TexelFilter::Bilinear;
         let run = |x: &[f32], y: &[f32], z: &[f32], out: &mut [f32]| {
-            if bilinear { lookup.run::<true>(x, y, z, out) } else { lookup.run::<false>(x, y, z, out) }
+            if bilinear { lookup.bilinear(x, y, z, out) } else { lookup.nearest(x, y, z, out) }
         };
         if out.len() <= POINTS_PER_LOOKUP {
             run(x, y, z, out);
@@ -325,12 +239,8 @@ impl<M: TexelMethod> CpuShadow for TexelMap<M> {
         let lookup = self.lookup(built);
         let size = built.frame.resolution;
         let mut transmittance = vec![1.0; (size * size) as usize];
-        let rows = transmittance.par_chunks_exact_mut(size as usize).enumerate();
-        rows.for_each(|(row, out)| {
-            for (column, out) in out.iter_mut().enumerate() {
-                *out = lookup.texel(column as i32, row as i32, BEHIND);
-            }
-        });
+        let texels = transmittance.par_iter_mut().enumerate().with_min_len(4096);
+        texels.for_each(|(texel, out)| *out = lookup.behind(texel));
         Some(ColumnMap { size, transmittance, uv_from_world: built.frame.uv_from_world() })
     }
 }

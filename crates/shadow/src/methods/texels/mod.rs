@@ -7,6 +7,7 @@
 pub(crate) mod fragments;
 pub(crate) mod frame;
 pub(crate) mod lines;
+mod lookup;
 mod map;
 
 pub use fragments::Fragment;
