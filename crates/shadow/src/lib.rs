@@ -8,6 +8,7 @@
 //! then asks for.
 
 mod bounds;
+mod converged;
 mod cpu;
 mod error;
 mod exp;
@@ -18,6 +19,7 @@ mod whole_part;
 
 pub mod methods;
 
+pub use converged::{CONVERGED_CHANGE, Converged, MOST_CONVERGED_SAMPLES, converged};
 pub use cpu::{ColumnMap, CpuShadow, ShadowInput, ShadowReport, cpu_shadow};
 pub use error::ShadowError;
 pub use light::LightFrame;

@@ -1,0 +1,127 @@
+//! The truth that resolution itself is judged by.
+//!
+//! Strands are ribbons as wide as the width with which they block light, of which every point has the same optical
+//! depth. A point receives the mean of the light over the footprint of one texel around it. Both are cut into
+//! subtexels, twice as many along each edge in every round, until that changes nothing to speak of.
+
+mod footprint;
+mod ribbons;
+mod strips;
+
+use crate::bounds::Bounds;
+use crate::methods::exact::cpu::{sort_and_sum, sum_before};
+use crate::methods::texels::TexelFrame;
+use crate::methods::texels::fragments::Fragments;
+use crate::methods::voxel_map::Lattice;
+use crate::{ShadowError, ShadowInput, ShadowMethod, ShadowSettings};
+use footprint::Footprint;
+use rayon::prelude::*;
+use ribbons::Ribbons;
+use strips::Strips;
+
+/// Transmittance changes by less than this, root mean square over the points that are asked, when the samples of the
+/// last round are doubled. Subtexels of a quarter texel change it by about a hundredth.
+pub const CONVERGED_CHANGE: f32 = 4e-3;
+
+/// Subtexels along the edge of a texel at which doubling ends at the latest.
+pub const MOST_CONVERGED_SAMPLES: u32 = 32;
+
+/// Rounds before this one do not end it: features smaller than all of their subtexels could be missed by two alike.
+const LEAST_SAMPLES: u32 = 4;
+
+/// Transmittance averaged over footprints.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Converged {
+    /// Transmittance of each point that was asked, 0 to 1.
+    pub transmittance: Vec<f32>,
+    /// Subtexels along the edge of a texel in the last round.
+    pub samples: u32,
+    /// Root mean square change in the last round. Above [`CONVERGED_CHANGE`] only where
+    /// [`MOST_CONVERGED_SAMPLES`] ended it.
+    pub change: f32,
+}
+
+/// The mean of the light over the box of one texel around each of the points `x`, `y`, `z` (world space, metres;
+/// slices of one length) to within [`CONVERGED_CHANGE`]. A point that is not finite gets 1.
+///
+/// The texel is that of the map of the method in `settings`: of the voxel map its cell, and of `none` the texel of
+/// `exact`. Only what strands are (their width, `extinction_scale`) enters beside it. The result is the same for any
+/// number of threads. Time grows with the square of the samples, and with the area around the points alone; memory is
+/// bounded, as the light plane is worked on in strips.
+///
+/// # Errors
+/// [`ShadowError::TooLarge`] of [`ShadowMethod::Exact`] where even one row of subtexels needs more than the memory
+/// limit in the settings of `exact`.
+pub fn converged(
+    input: &ShadowInput,
+    settings: &ShadowSettings,
+    [x, y, z]: [&[f32]; 3],
+) -> Result<Converged, ShadowError> {
+    assert!(x.len() == y.len() && y.len() == z.len(), "slices of one length");
+    let bounds = Bounds::of_strands(input);
+    let frame = frame_in_use(input, settings, &bounds);
+    let axes = frame.axes();
+    let place = |((x, y), z): ((&f32, &f32), &f32)| axes.transform(glam::Vec3::new(*x, *y, *z));
+    let places: Vec<_> = x.par_iter().zip(y).zip(z).map(place).collect();
+
+    let mut scratch = Fragments::default();
+    let mut samples = 1;
+    let mut last = round(input, settings, &frame, &places, samples, &mut scratch)?;
+    let mut change = f32::INFINITY;
+    while samples < LEAST_SAMPLES || (change > CONVERGED_CHANGE && samples < MOST_CONVERGED_SAMPLES) {
+        samples *= 2;
+        let next = round(input, settings, &frame, &places, samples, &mut scratch)?;
+        let squares: f64 = last.iter().zip(&next).map(|(a, b)| (f64::from(*a) - f64::from(*b)).powi(2)).sum();
+        change = (squares / next.len().max(1) as f64).sqrt() as f32;
+        last = next;
+    }
+    Ok(Converged { transmittance: last, samples, change })
+}
+
+/// The texels of the method in use.
+fn frame_in_use(input: &ShadowInput, settings: &ShadowSettings, bounds: &Bounds) -> TexelFrame {
+    let resolution = match settings.method {
+        ShadowMethod::VoxelMap => {
+            let lattice = Lattice::new(input, &settings.voxel_map, bounds);
+            return TexelFrame::with_texel_size(input, lattice.resolution, lattice.cell_size, bounds);
+        }
+        ShadowMethod::None | ShadowMethod::Exact => settings.exact.safe_resolution(),
+        ShadowMethod::OpacityMaps => settings.opacity_maps.safe_resolution(),
+        ShadowMethod::DeepOpacityMaps => settings.deep_opacity_maps.safe_resolution(),
+        ShadowMethod::DensityClustering => settings.density_clustering.safe_resolution(),
+        ShadowMethod::OccupancyMaps => settings.occupancy_maps.safe_resolution(),
+    };
+    TexelFrame::new(input, resolution, bounds)
+}
+
+/// Transmittance with `samples` subtexels along the edge of a texel.
+fn round(
+    input: &ShadowInput,
+    settings: &ShadowSettings,
+    frame: &TexelFrame,
+    places: &[glam::Vec3],
+    samples: u32,
+    scratch: &mut Fragments,
+) -> Result<Vec<f32>, ShadowError> {
+    let ribbons = Ribbons::new(input, settings, frame, samples, places);
+    let strips = Strips::new(input, settings, frame, &ribbons)?;
+    // What each footprint loses, in subtexels.
+    let mut lost = vec![0.0_f64; places.len()];
+    for rows in strips.rows {
+        let strip = ribbons.within(&rows);
+        scratch.draw(input, frame, (strip.columns(), rows.len() as u32), &strip);
+        scratch.bands().into_par_iter().with_max_len(1).for_each(|mut band| {
+            band.for_each_texel(|_, fragments| sort_and_sum(fragments));
+        });
+        lost.par_iter_mut().zip(places).with_min_len(64).for_each(|(lost, place)| {
+            let Some(footprint) = Footprint::new(*place, samples) else { return };
+            let light = |column, row| {
+                let texel = scratch.place(column, row - rows.start);
+                crate::exp::exp_of_minus(sum_before(scratch.texel(texel), place.z))
+            };
+            *lost += footprint.lost(&rows, strip.columns(), light);
+        });
+    }
+    let area = f64::from(samples).powi(2);
+    Ok(lost.into_iter().map(|lost| (1.0 - lost / area).clamp(0.0, 1.0) as f32).collect())
+}

@@ -1,0 +1,126 @@
+//! Strands as ribbons that cover subtexels by area.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use glam::Vec3;
+
+use crate::methods::texels::TexelFrame;
+use crate::methods::texels::lines::{Draw, Steps};
+use crate::{ShadowInput, ShadowSettings};
+
+/// Ribbons are no darker than this where they lie; e^−10⁴ is 0 in any float.
+const MOST_DEPTH: f32 = 1e4;
+
+/// Draws ribbons into rows of subtexels.
+///
+/// A step along the longer axis is one subtexel long. On the shorter axis the ribbon covers the interval of its width
+/// over the cosine of its slope; each subtexel there receives the part of it that is covered.
+#[derive(Clone, Debug)]
+pub(super) struct Ribbons {
+    /// Subtexels along the edge of a texel.
+    pub samples: u32,
+    /// Texels along the edge of the map.
+    resolution: u32,
+    /// Rows of subtexels that are drawn.
+    pub rows: Range<u32>,
+    /// Width of a ribbon, subtexels.
+    width: f32,
+    /// Optical depth where it lies.
+    depth: f32,
+    /// Texels that a footprint touches, row after row.
+    wanted: Arc<[bool]>,
+}
+
+impl Ribbons {
+    /// Ribbons over all rows, for the footprints around `places` (in texel coordinates).
+    pub(super) fn new(
+        input: &ShadowInput,
+        settings: &ShadowSettings,
+        frame: &TexelFrame,
+        samples: u32,
+        places: &[Vec3],
+    ) -> Self {
+        let resolution = frame.resolution;
+        let width = input.strand_width / frame.texel_size * samples as f32;
+        let depth = settings.safe_extinction_scale().min(MOST_DEPTH);
+        // Nothing is wider than the map.
+        let width = if width > 0.0 { width.min((resolution * samples) as f32) } else { 0.0 };
+        let mut wanted = vec![false; (resolution * resolution) as usize];
+        let end = resolution as f32 + 1.0;
+        for p in places {
+            if !(p.x > -1.0 && p.x < end && p.y > -1.0 && p.y < end && p.z > 0.0) {
+                continue;
+            }
+            let (column, row) = ((p.x - 0.5).floor() as i32, (p.y - 0.5).floor() as i32);
+            for (column, row) in [(column, row), (column + 1, row), (column, row + 1), (column + 1, row + 1)]
+            {
+                if (0..resolution as i32).contains(&column) && (0..resolution as i32).contains(&row) {
+                    wanted[row as usize * resolution as usize + column as usize] = true;
+                }
+            }
+        }
+        Self { samples, resolution, rows: 0..resolution * samples, width, depth, wanted: wanted.into() }
+    }
+
+    /// The same within `rows` alone.
+    pub(super) fn within(&self, rows: &Range<u32>) -> Self {
+        Self { rows: rows.clone(), ..self.clone() }
+    }
+
+    /// Subtexels in a row.
+    pub(super) fn columns(&self) -> u32 {
+        self.resolution * self.samples
+    }
+
+    /// Calls `with` for the rows of texels that a segment may reach, each with a bound on its fragments there.
+    pub(super) fn bound(&self, from: Vec3, to: Vec3, mut with: impl FnMut(u32, u64)) {
+        let steps = self.steps(from, to);
+        let across = f64::from(self.width * steps.length) + 2.0;
+        let reach = if steps.by_row { 0.0 } else { (across / f64::from(self.samples)) as f32 };
+        let last = self.resolution - 1;
+        let low = ((from.y.min(to.y) - reach).max(0.0) as u32).min(last);
+        let high = ((from.y.max(to.y) + reach).max(0.0) as u32).min(last);
+        let rows = f64::from(high - low + 1);
+        // Fragments spread over the rows evenly, but never more than fit.
+        let all = steps.count() as f64 * across;
+        let most = f64::from(self.samples) * if steps.by_row { across } else { steps.count() as f64 };
+        let each = (2.0 * all / rows).min(most).ceil() as u64;
+        (low..=high).for_each(|row| with(row, each));
+    }
+
+    fn steps(&self, from: Vec3, to: Vec3) -> Steps {
+        let scale = Vec3::new(self.samples as f32, self.samples as f32, 1.0);
+        Steps::new(from * scale, to * scale)
+    }
+
+    #[inline]
+    fn wants(&self, column: u32, row: u32) -> bool {
+        self.wanted[(row / self.samples * self.resolution + column / self.samples) as usize]
+    }
+}
+
+impl Draw for Ribbons {
+    fn draw(&self, from: Vec3, to: Vec3, put: &mut impl FnMut(u32, u32, f32, f32)) {
+        let steps = self.steps(from, to);
+        let half = 0.5 * self.width * steps.length;
+        let columns = self.columns();
+        let (long, wide) =
+            if steps.by_row { (&self.rows, 0..columns) } else { (&(0..columns), self.rows.clone()) };
+        let first = steps.first.max(long.start as i32);
+        let end = steps.end.min(long.end as i32);
+        for major in first..end {
+            let (middle, depth) = steps.at(major);
+            let (low, high) = (middle - half, middle + half);
+            let start = low.max(wide.start as f32) as u32;
+            let end = (high.min(wide.end as f32).ceil().max(0.0)) as u32;
+            for minor in start.max(wide.start)..end {
+                let covered = high.min(minor as f32 + 1.0) - low.max(minor as f32);
+                let (column, row) = if steps.by_row { (minor, major as u32) } else { (major as u32, minor) };
+                if covered > 0.0 && self.wants(column, row) {
+                    put(column, row - self.rows.start, depth, self.depth * covered.min(1.0));
+                }
+            }
+        }
+    }
+}

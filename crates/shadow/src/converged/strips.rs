@@ -1,0 +1,60 @@
+//! The light plane in strips, so that memory is bounded.
+
+use std::ops::Range;
+
+use super::ribbons::Ribbons;
+use crate::methods::texels::TexelFrame;
+use crate::methods::texels::fragments::{BYTES_PER_FRAGMENT, for_each_segment};
+use crate::{ShadowError, ShadowInput, ShadowMethod, ShadowSettings};
+
+/// Memory that a strip is meant to take, bytes, where the limit allows.
+const STRIP_BYTES: u64 = 512 << 20;
+
+/// Rows of subtexels that are worked on one after the other.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Strips {
+    pub rows: Vec<Range<u32>>,
+}
+
+impl Strips {
+    /// Strips of about equal memory.
+    pub(super) fn new(
+        input: &ShadowInput,
+        settings: &ShadowSettings,
+        frame: &TexelFrame,
+        ribbons: &Ribbons,
+    ) -> Result<Self, ShadowError> {
+        let mut fragments = vec![0_u64; frame.resolution as usize];
+        for_each_segment(input, frame, 0..input.strands.count(), |from, to| {
+            ribbons.bound(from, to, |row, count| {
+                let sum = &mut fragments[row as usize];
+                *sum = sum.saturating_add(count);
+            });
+        });
+        let limit = settings.exact.safe_memory_limit_bytes();
+        // An index of two numbers a subtexel, and the fragments.
+        let row_bytes = |texel_row: usize| {
+            let fragments = fragments[texel_row].div_ceil(u64::from(ribbons.samples));
+            fragments.saturating_mul(BYTES_PER_FRAGMENT).saturating_add(u64::from(ribbons.columns()) * 8)
+        };
+        let mut rows = Vec::new();
+        let (mut start, mut bytes) = (0, 0_u64);
+        for row in 0..frame.resolution * ribbons.samples {
+            let more = row_bytes((row / ribbons.samples) as usize);
+            if more > limit {
+                return Err(ShadowError::TooLarge {
+                    method: ShadowMethod::Exact,
+                    needed_bytes: more,
+                    limit_bytes: limit,
+                });
+            }
+            if row > start && bytes + more > STRIP_BYTES.min(limit) {
+                rows.push(start..row);
+                (start, bytes) = (row, 0);
+            }
+            bytes += more;
+        }
+        rows.push(start..frame.resolution * ribbons.samples);
+        Ok(Self { rows })
+    }
+}
