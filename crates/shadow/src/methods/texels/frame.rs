@@ -13,6 +13,9 @@ use crate::{LightFrame, ShadowInput};
 /// they begin between two corners of the lattice.
 const SPARE_TEXELS: u32 = 3;
 
+/// Texels along each edge of the smallest map.
+const LEAST_RESOLUTION: u32 = *super::TEXEL_RESOLUTIONS.start();
+
 /// The start of the depth range lies on multiples of this part of it, so that it stays as it is while the hair's
 /// extent changes little.
 const DEPTH_STEPS: f32 = 64.0;
@@ -37,13 +40,21 @@ pub struct TexelFrame {
 }
 
 impl TexelFrame {
-    /// The window for hair within `bounds` with `resolution` texels along each edge.
+    /// The window for hair within `bounds` with at most `resolution` texels along each edge.
+    ///
+    /// Texels are no narrower than a strand is wide, as long as there are [`LEAST_RESOLUTION`] of them: a strand is
+    /// drawn one texel wide, and in narrower ones it would be too thin and too dark.
     pub(crate) fn new(input: &ShadowInput, resolution: u32, bounds: &Bounds) -> Self {
         let (min, max) = extent(bounds);
-        let size = (max - min).truncate_along().max_element() / (resolution - SPARE_TEXELS) as f32;
+        let across = (max - min).truncate_along().max_element();
+        let size_for = |resolution: u32| across / (resolution - SPARE_TEXELS) as f32;
+        let strand = if input.strand_width > 0.0 { input.strand_width } else { 0.0 };
+        let size = size_for(resolution).max(strand.min(size_for(LEAST_RESOLUTION)));
         // Lattice coordinates stay below 2^16, where f32 still resolves a hundredth of a texel.
         let farthest = min.abs().max(max.abs()).max_element();
         let texel_size = round_up_to_step(size.max(SMALLEST_CELL).max(farthest / 65_536.0));
+        let needed = (across / texel_size).ceil() as u32 + SPARE_TEXELS;
+        let resolution = needed.next_multiple_of(16).clamp(LEAST_RESOLUTION, resolution);
         Self::with_texel_size(input, resolution, texel_size, bounds)
     }
 
@@ -229,6 +240,40 @@ mod tests {
             let t = frame.texel_from_world(p);
             let uv = frame.uv_from_world().transform_point3(p);
             assert!((uv - Vec3::new(t.x / 64.0, t.y / 64.0, t.z)).length() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn texels_are_as_wide_as_strands_or_as_fine_as_asked() {
+        let points = cloud(Vec3::ZERO);
+        let strands = Strands {
+            x: points.iter().map(|p| p.x).collect(),
+            y: points.iter().map(|p| p.y).collect(),
+            z: points.iter().map(|p| p.z).collect(),
+            ..Strands::default()
+        };
+        let light = LightFrame::new(Vec3::NEG_Y);
+        let frame = |strand_width: f32| {
+            let input = ShadowInput { strands: &strands, strand_width, light, anchor: Vec3::ZERO };
+            TexelFrame::new(&input, 512, &Bounds::of_strands(&input))
+        };
+        // 0.4 m across: 0.8 mm at 512. Sizes are rounded up to a sixteenth of an octave.
+        for fine in [0.0, 1e-4, -1.0, f32::NAN] {
+            assert_eq!(frame(fine).resolution, 512);
+            assert!((0.4 / 509.0..0.4 / 509.0 * 1.05).contains(&frame(fine).texel_size));
+        }
+        for wide in [2e-3, 4e-3] {
+            let frame = frame(wide);
+            assert!((wide..1.05 * wide).contains(&frame.texel_size));
+            assert!(frame.resolution.is_multiple_of(16) && frame.resolution < 256);
+            for p in &points {
+                let t = frame.texel_from_world(*p);
+                assert!(frame.held(t).distance(t) < 1e-3, "{t} of {}", frame.resolution);
+            }
+        }
+        for huge in [1.0, 1e30, f32::INFINITY] {
+            assert_eq!(frame(huge).resolution, 64);
+            assert!(frame(huge).texel_size < 0.4 / 61.0 * 1.05);
         }
     }
 

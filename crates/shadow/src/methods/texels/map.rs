@@ -33,7 +33,7 @@ pub trait TexelMethod: Copy + Debug + Send + Sync {
     /// The method with its part of `settings`.
     fn new(settings: &ShadowSettings) -> Self;
 
-    /// Texels along each edge, one of [`TEXEL_RESOLUTIONS`](super::TEXEL_RESOLUTIONS).
+    /// Most texels along each edge, one of [`TEXEL_RESOLUTIONS`](super::TEXEL_RESOLUTIONS).
     fn resolution(&self) -> u32;
 
     /// How a point reads the texels around it.
@@ -113,8 +113,8 @@ impl<M: TexelMethod> TexelMap<M> {
     ) -> Result<Built<M>, ShadowError> {
         let method = M::new(settings);
         let bounds = Bounds::of_strands(input);
-        let resolution = method.resolution();
-        let frame = TexelFrame::new(input, resolution, &bounds);
+        let frame = TexelFrame::new(input, method.resolution(), &bounds);
+        let resolution = frame.resolution;
         let texels = u64::from(resolution).pow(2);
         let index = texels * 8;
         let count = sum_over_segments(input, &frame, |from, to| Steps::new(from, to).count());

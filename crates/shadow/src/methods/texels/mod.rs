@@ -19,6 +19,9 @@ use std::ops::RangeInclusive;
 use serde::{Deserialize, Serialize};
 
 /// Texels along each edge that a map can have; multiples of 16.
+///
+/// A setting is the most that a map has: texels are no narrower than strands are wide, so that hair of few, wide
+/// strands has fewer.
 pub const TEXEL_RESOLUTIONS: RangeInclusive<u32> = 64..=2048;
 
 /// Texels along each edge to begin with.

@@ -1,0 +1,95 @@
+//! The hairstyles that methods are measured on.
+
+use glam::{Affine3A, Vec3};
+use lovelock_groom::{
+    GroomSettings, GuideFrame, HairLook, Hairstyle, ImportSettings, PlainHead, Preset, Strands, import,
+    interpolate, load_hair,
+};
+use lovelock_shadow::{LightFrame, ShadowInput};
+
+use super::{Random, strands};
+
+/// Strands, and what they are blocked with.
+pub struct Groom {
+    pub name: &'static str,
+    pub strands: Strands,
+    pub width: f32,
+}
+
+/// Light from above and before, as the default project has it or nearly so.
+pub const LIGHT: Vec3 = Vec3::new(0.4, -1.0, -0.5);
+
+impl Groom {
+    pub fn input(&self) -> ShadowInput<'_> {
+        ShadowInput {
+            strands: &self.strands,
+            strand_width: self.width,
+            light: LightFrame::new(LIGHT),
+            anchor: Vec3::new(0.0, 0.11, 0.0),
+        }
+    }
+
+    fn of(name: &'static str, strands: Strands) -> Self {
+        let width = HairLook::default().shadow_width(strands.count());
+        Self { name, strands, width }
+    }
+
+    fn at_rest(name: &'static str, style: &Hairstyle) -> Self {
+        let mut strands = Strands::default();
+        interpolate(style, &GuideFrame::at_rest(&style.guides, Affine3A::IDENTITY, 0.0), &mut strands);
+        Self::of(name, strands)
+    }
+
+    /// Straight strands across the light, evenly spread in a box: 0.1 m along it, 0.1 m across.
+    pub fn slab() -> Self {
+        let light = LightFrame::new(LIGHT);
+        let mut random = Random(3);
+        let strand = |i: usize| {
+            let middle = 0.05 * random.cube();
+            let along = if i.is_multiple_of(2) { Vec3::Y } else { Vec3::Z };
+            let at = |part: i32| light.world_from_light(middle + 0.004 * part as f32 * along);
+            (-2..=2).map(at).collect::<Vec<_>>()
+        };
+        let made: Vec<_> = (0..12_000).map(strand).collect();
+        Self { width: 4e-4, ..Self::of("slab", strands(&made)) }
+    }
+
+    /// A bundle that hangs slantwise and opens toward its tips.
+    pub fn tuft() -> Self {
+        let mut random = Random(8);
+        let strand = |_| {
+            let offset = Vec3::new(random.signed(), 0.0, random.signed()) * random.unit();
+            let turn = 6.0 * random.unit();
+            let at = |part: usize| {
+                let t = part as f32 / 40.0;
+                let curl = 0.003 * Vec3::new((turn + 12.0 * t).cos(), 0.0, (turn + 12.0 * t).sin());
+                Vec3::new(0.08 * t, 0.1 - 0.16 * t, 0.02 * t) + (0.006 + 0.014 * t) * offset + curl
+            };
+            (0..=40).map(at).collect::<Vec<_>>()
+        };
+        let made: Vec<_> = (0..1200).map(strand).collect();
+        Self { width: 3e-4, ..Self::of("tuft", strands(&made)) }
+    }
+
+    /// A preset as the default project grows it.
+    pub fn preset(preset: Preset) -> Self {
+        let scalp = PlainHead.scalp(40);
+        let style = lovelock_groom::grow(&GroomSettings::preset(preset), &scalp, &PlainHead);
+        Self::at_rest(preset.id(), &style.expect("a preset grows"))
+    }
+
+    /// The groom that is published as a file; `None` where there is none.
+    pub fn straight() -> Option<Self> {
+        let path = lovelock_testkit::data_dir()?.join("hair/yuksel/straight.hair");
+        let file = load_hair(&path).expect("straight.hair is read");
+        let style = import(&file, &ImportSettings::default(), &PlainHead.scalp(40)).expect("it is imported");
+        Some(Self::at_rest("straight.hair", &style))
+    }
+
+    pub fn all() -> Vec<Self> {
+        let mut all =
+            vec![Self::slab(), Self::tuft(), Self::preset(Preset::Smooth), Self::preset(Preset::Curly)];
+        all.extend(Self::straight());
+        all
+    }
+}
