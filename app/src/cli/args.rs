@@ -56,9 +56,10 @@ pub(crate) struct Record {
     /// How overlapping strands are put together.
     #[arg(long, value_name = "ID")]
     pub(crate) transparency: Option<Transparency>,
-    /// What draws: auto, gpu or cpu.
-    #[arg(long, value_name = "BACKEND", default_value = "auto")]
-    pub(crate) backend: lovelock_studio::Backend,
+    /// What draws: auto (the graphics card where there is a real one), gpu (by wgpu, software or not) or cpu (the
+    /// processor, without any driver); the project's choice where none is given.
+    #[arg(long, value_name = "BACKEND")]
+    pub(crate) backend: Option<lovelock_studio::render::Backend>,
     /// A shipped hairstyle instead of the project's: smooth, curly or long.
     #[arg(long, value_name = "ID", conflicts_with = "hair")]
     pub(crate) preset: Option<String>,

@@ -5,7 +5,7 @@ use lovelock_studio::{PROJECT_EXTENSION, Place, Project};
 
 use super::control::section;
 use super::path_dialog::{Answer, PathDialog, Purpose};
-use super::viewport::Viewport;
+use super::viewport::{self, Viewport};
 use super::{Window, camera_control, copy, keys, notices, panels, theme, timeline, title};
 
 impl Window {
@@ -192,9 +192,9 @@ impl Window {
 
     fn picture(&mut self, ui: &mut Ui, project: &mut Project) {
         CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
-            let software = self.session.painter().adapter().is_none_or(|adapter| adapter.software);
-            let response =
-                self.viewport.show(ui, self.session.painted.as_ref(), software, self.layout.view_scale);
+            let most_pixels = viewport::most_pixels(self.session.painter().adapter().as_deref());
+            let painted = self.session.painted.as_ref();
+            let response = self.viewport.show(ui, painted, most_pixels, self.layout.view_scale);
             camera_control::apply(&mut project.camera, &response);
             let rect = response.rect;
             if let Some(error) = &self.session.draw_error {

@@ -3,13 +3,20 @@
 use egui::{
     Align2, Color32, ColorImage, FontId, Rect, Response, Sense, TextureHandle, TextureOptions, Ui, Vec2, pos2,
 };
-use lovelock_studio::Painted;
+use lovelock_studio::render::Backend;
+use lovelock_studio::{Adapter, Painted};
 
 use super::theme;
 
-/// The most pixels that are drawn for the window where the processor draws: pictures still come often enough to
-/// style by. A real card draws every pixel.
-const SOFTWARE_PIXELS: f32 = 640.0 * 400.0;
+/// The most pixels that are drawn for the window, so that pictures come often enough to style by: a real card draws
+/// every pixel, the processor fewer, and a software adapter fewer still.
+pub(crate) fn most_pixels(adapter: Option<&Adapter>) -> f32 {
+    match adapter {
+        Some(adapter) if !adapter.software => f32::INFINITY,
+        Some(adapter) if adapter.backend == Backend::Gpu => 640.0 * 400.0,
+        _ => 1280.0 * 720.0,
+    }
+}
 
 /// The picture as a texture of the window.
 #[derive(Default)]
@@ -21,18 +28,18 @@ pub(crate) struct Viewport {
 }
 
 impl Viewport {
-    /// Shows the newest picture over the whole of `ui`. `software` says whether the processor draws, `scale` how
+    /// Shows the newest picture over the whole of `ui`. `most_pixels` is what the adapter draws quickly, `scale` how
     /// many pixels a pixel of the screen gets (0 chooses).
     pub(crate) fn show(
         &mut self,
         ui: &mut Ui,
         painted: Option<&std::sync::Arc<Painted>>,
-        software: bool,
+        most_pixels: f32,
         scale: f32,
     ) -> Response {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Viewport"));
-        self.wanted = size_for(rect.size(), ui.ctx().pixels_per_point(), software, scale);
+        self.wanted = size_for(rect.size(), ui.ctx().pixels_per_point(), most_pixels, scale);
         if let Some(painted) = painted {
             let key = (painted.step, std::sync::Arc::as_ptr(painted) as usize);
             if self.shown_step != Some(key) && !painted.picture.rgba.is_empty() {
@@ -88,14 +95,12 @@ impl Viewport {
 }
 
 /// Pixels for a viewport of `size` points.
-fn size_for(size: Vec2, pixels_per_point: f32, software: bool, scale: f32) -> [u32; 2] {
+fn size_for(size: Vec2, pixels_per_point: f32, most_pixels: f32, scale: f32) -> [u32; 2] {
     let pixels = size * pixels_per_point;
     let scale = if scale > 0.0 {
         scale
-    } else if software {
-        (SOFTWARE_PIXELS / (pixels.x * pixels.y).max(1.0)).sqrt().min(1.0)
     } else {
-        1.0
+        (most_pixels / (pixels.x * pixels.y).max(1.0)).sqrt().min(1.0)
     };
     let side = |v: f32| if v.is_finite() { (v * scale).round().clamp(16.0, 8192.0) as u32 } else { 16 };
     [side(pixels.x), side(pixels.y)]
@@ -113,12 +118,14 @@ mod tests {
 
     #[test]
     fn the_processor_draws_fewer_pixels_of_the_same_shape() {
-        let [w, h] = size_for(Vec2::new(1280.0, 800.0), 1.0, true, 0.0);
-        assert!((w * h) as f32 <= SOFTWARE_PIXELS * 1.01);
+        let software = Adapter { name: String::new(), backend: Backend::Gpu, software: true };
+        let [w, h] = size_for(Vec2::new(1280.0, 800.0), 1.0, most_pixels(Some(&software)), 0.0);
+        assert!((w * h) as f32 <= 640.0 * 400.0 * 1.01);
+        let card = most_pixels(Some(&Adapter { software: false, ..software }));
         assert!((w as f32 / h as f32 - 1.6).abs() < 0.01);
-        assert_eq!(size_for(Vec2::new(1280.0, 800.0), 2.0, false, 0.0), [2560, 1600]);
-        assert_eq!(size_for(Vec2::new(100.0, 50.0), 1.0, true, 0.5), [50, 25]);
-        assert_eq!(size_for(Vec2::new(f32::NAN, 0.0), 1.0, false, 0.0)[1], 16);
+        assert_eq!(size_for(Vec2::new(1280.0, 800.0), 2.0, card, 0.0), [2560, 1600]);
+        assert_eq!(size_for(Vec2::new(100.0, 50.0), 1.0, card, 0.5), [50, 25]);
+        assert_eq!(size_for(Vec2::new(f32::NAN, 0.0), 1.0, card, 0.0)[1], 16);
     }
 
     #[test]

@@ -22,6 +22,8 @@ mod scalp_index;
 mod settings;
 mod strands;
 
+pub mod simd;
+
 pub use frame::WispCurve;
 pub use grow::{GUIDE_POINTS, GrowError, grow};
 pub use guides::{GuideFrame, Guides};

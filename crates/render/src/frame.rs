@@ -38,10 +38,25 @@ pub struct FrameStats {
     pub shadow_ms: f64,
     /// Time to draw, milliseconds: until the commands were handed over, or until the picture was read back.
     pub draw_ms: f64,
+    /// What the time to draw is made of, where the backend knows.
+    pub draw: Option<DrawTimes>,
     /// Segments that were drawn.
     pub segments: u64,
     /// Bytes of the shadow maps.
     pub shadow_bytes: u64,
     /// Mean transmittance of the first light over the strands' points.
     pub mean_transmittance: f32,
+}
+
+/// The parts of the time to draw, milliseconds.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DrawTimes {
+    /// The body as each light sees it.
+    pub body_depth: f64,
+    /// Strand points projected and shaded.
+    pub points: f64,
+    /// Segments and triangles sorted into tiles.
+    pub sort: f64,
+    /// Tiles drawn and put together.
+    pub tiles: f64,
 }

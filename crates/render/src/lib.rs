@@ -3,21 +3,36 @@
 //! A [`FrameInput`] is everything that a picture shows at one instant; a [`Renderer`] makes a [`Picture`] of it.
 //! Shadow methods run here, between the strands and their shading.
 
+mod backend;
 mod camera;
+mod cpu;
 mod error;
 mod frame;
 mod gpu;
 mod light;
+mod light_view;
 mod picture;
+mod renderer;
+mod shadow_stage;
+mod sort;
+mod strand_details;
 mod transparency;
+mod uniform;
 
+pub use backend::{Backend, UnknownBackend};
 pub use camera::Camera;
+pub use cpu::CpuRenderer;
 pub use error::RenderError;
-pub use frame::{FrameInput, FrameStats};
-pub use gpu::{Renderer, all_shaders};
+pub use frame::{DrawTimes, FrameInput, FrameStats};
+pub use gpu::{GpuRenderer, all_shaders};
 pub use light::{Light, MAX_LIGHTS};
 pub use lovelock_gpu::{Gpu, GpuError, Stopwatch, check_shader};
 pub use lovelock_shadow::voxel_map::{MapExtent, VoxelDeposit, VoxelFilter, VoxelMapSettings};
-pub use lovelock_shadow::{ShadowMethod, ShadowSettings};
-pub use picture::{Picture, PictureSettings};
+pub use lovelock_shadow::{
+    ClusterDeviation, ClusterSeeds, DeepOpacityMapsSettings, DensityClusteringSettings, ExactSettings,
+    LayerGrowth, OccupancyMapsSettings, OpacityMapsSettings, ShadowError, ShadowMethod, ShadowSettings,
+    TEXEL_RESOLUTIONS, TexelFilter,
+};
+pub use picture::{MOST_PIXELS, MOST_SIDE, Picture, PictureSettings};
+pub use renderer::Renderer;
 pub use transparency::Transparency;

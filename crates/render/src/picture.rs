@@ -3,7 +3,24 @@
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-use crate::Transparency;
+use crate::{Backend, RenderError, Transparency};
+
+/// The longest side of a picture, pixels.
+pub const MOST_SIDE: u32 = 8192;
+
+/// The most pixels of a picture: 8192 by 4320, a little more than 8K video.
+pub const MOST_PIXELS: u64 = 8192 * 4320;
+
+/// Refuses sizes that cannot be drawn; `limit` is the longest side of the backend.
+pub(crate) fn check_size(width: u32, height: u32, limit: u32) -> Result<(), RenderError> {
+    let limit = limit.min(MOST_SIDE);
+    let fits = (1..=limit).contains(&width) && (1..=limit).contains(&height);
+    if fits && u64::from(width) * u64::from(height) <= MOST_PIXELS {
+        Ok(())
+    } else {
+        Err(RenderError::Size { width, height, limit })
+    }
+}
 
 /// Settings of the picture as a whole.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -23,6 +40,8 @@ pub struct PictureSettings {
     pub transparency: Transparency,
     /// Opacity of a strand where it covers a pixel wholly: 0.05 to 1.
     pub strand_opacity: f32,
+    /// What draws.
+    pub backend: Backend,
 }
 
 impl Default for PictureSettings {
@@ -35,6 +54,7 @@ impl Default for PictureSettings {
             ground: true,
             transparency: Transparency::default(),
             strand_opacity: 0.85,
+            backend: Backend::default(),
         }
     }
 }
@@ -57,12 +77,13 @@ impl PictureSettings {
             ground: self.ground,
             transparency: self.transparency,
             strand_opacity: finite(self.strand_opacity, 0.05, 1.0, default.strand_opacity),
+            backend: self.backend,
         }
     }
 }
 
 /// A finished picture in the memory of the processor.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Picture {
     /// Width, pixels.
     pub width: u32,

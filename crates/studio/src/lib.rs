@@ -19,7 +19,7 @@ mod stats;
 pub use clock::{FrameClock, MAX_STEPS_PER_TICK, Playback, STEP_SECS, Stopwatch};
 pub use command::{COMMANDS, Command, CommandGroup, CommandInfo, Shortcut};
 pub use error::{Place, Problem, ProblemKind, StudioError};
-pub use headless::{Backend, Progress, RecordJob, RecordReport, RecordRequest, StageMedians, record};
+pub use headless::{Progress, RecordJob, RecordReport, RecordRequest, StageMedians, record};
 pub use history::{GestureId, History};
 pub use info::{Content, FileKind, Info, ProjectInfo, info};
 pub use painter::{Adapter, PaintRequest, Painted, Painter};

@@ -6,7 +6,7 @@ use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
 use lovelock_groom::Strands;
-use lovelock_render::{Camera, FrameStats, Gpu, Picture, RenderError, Renderer};
+use lovelock_render::{Backend, Camera, FrameStats, Picture, RenderError, Renderer};
 
 use crate::{FrameSnapshot, Project, Slot, StageTimes};
 
@@ -43,6 +43,8 @@ pub struct Painted {
 pub struct Adapter {
     /// Its name, as the driver gives it.
     pub name: String,
+    /// Which backend it serves: the graphics card's or the processor's own.
+    pub backend: Backend,
     /// Whether it runs on the processor.
     pub software: bool,
 }
@@ -174,13 +176,16 @@ impl Worker {
     }
 
     fn paint(&mut self, request: &PaintRequest) -> Result<Painted, RenderError> {
+        let choice = request.project.picture.backend;
+        if self.renderer.as_ref().is_some_and(|renderer| renderer.choice() != choice) {
+            self.renderer = None;
+        }
         let renderer = match &mut self.renderer {
             Some(renderer) => renderer,
             none => {
-                let renderer = Renderer::new(Gpu::open()?)?;
-                let gpu = renderer.gpu();
-                let adapter = Adapter { name: gpu.info.name.clone(), software: gpu.is_software() };
-                self.adapter.put(Arc::new(adapter));
+                let renderer = Renderer::open(choice)?;
+                let (name, backend) = (renderer.adapter().to_owned(), renderer.backend());
+                self.adapter.put(Arc::new(Adapter { name, backend, software: renderer.is_software() }));
                 none.insert(renderer)
             }
         };
@@ -188,7 +193,7 @@ impl Worker {
         let mut times = snapshot.times;
         times.interpolate = snapshot.interpolate(&mut self.strands);
         let camera = snapshot.camera(&project.camera);
-        let mut picture = Picture { width: 0, height: 0, rgba: Vec::new() };
+        let mut picture = Picture::default();
         let input = snapshot.frame_input(project, &self.strands, &camera);
         let stats = renderer.picture(&input, *width, *height, &mut picture)?;
         (times.shadow, times.draw) = (stats.shadow_ms, stats.draw_ms);

@@ -3,7 +3,7 @@
 use egui::{Color32, Ui};
 use glam::Vec3;
 use lovelock_studio::groom::HairLook;
-use lovelock_studio::render::{PictureSettings, Transparency};
+use lovelock_studio::render::{Backend, PictureSettings, Transparency};
 
 use crate::window::control::{Number, choice, color, row, section, toggle};
 use crate::window::theme;
@@ -113,10 +113,19 @@ pub(crate) fn picture(ui: &mut Ui, picture: &mut PictureSettings) {
     choice(
         ui,
         "Transparency",
-        "How strands that overlap in a pixel are put together: blended from far to near, or each hiding what is behind it.",
+        "How strands that overlap in a pixel are put together: each hiding what is behind it, averaged, weighted by an estimated order, blended segment by segment, or sorted exactly.",
         &mut picture.transparency,
         d.transparency,
         &modes,
+    );
+    let backends = Backend::ALL.map(|backend| (backend, backend.label()));
+    choice(
+        ui,
+        "Drawn by",
+        "What draws the picture: the graphics card, or the processor alone. Automatic takes the card where there is a real one.",
+        &mut picture.backend,
+        d.backend,
+        &backends,
     );
     Number::new("Strand opacity", 0.05..=1.0, "How much a strand hides of what is behind it.")
         .percent()

@@ -1,14 +1,12 @@
 //! The strands on the GPU: their buffers and bind groups.
 
-use std::sync::Arc;
-
 use bytemuck::{Pod, Zeroable};
 use lovelock_gpu::{Gpu, GrowBuffer, wgpu};
-use lovelock_groom::Hairstyle;
 use rayon::prelude::*;
 
 use super::pipelines::Pipelines;
-use super::sort::DepthSort;
+use crate::sort::DepthSort;
+use crate::strand_details::StrandDetails;
 use crate::{FrameInput, Transparency};
 
 /// A position and, in the bits of `w`, four 8-bit transmittances.
@@ -24,13 +22,11 @@ struct ShadedPoint([u32; 8]);
 /// The strands' buffers. What belongs to the hairstyle is written when it changes, the rest every frame.
 #[derive(Debug)]
 pub(super) struct HairBuffers {
-    style: Option<Arc<Hairstyle>>,
+    style: StrandDetails,
     points: GrowBuffer<Point>,
     details: GrowBuffer<u32>,
     shaded: GrowBuffer<ShadedPoint>,
     order: GrowBuffer<u32>,
-    /// First point of each segment, in the order of strands.
-    segments: Vec<u32>,
     staging: Vec<Point>,
     sort: DepthSort,
     points_group: Option<wgpu::BindGroup>,
@@ -41,12 +37,11 @@ impl HairBuffers {
     pub fn new(gpu: &Gpu) -> Self {
         let storage = wgpu::BufferUsages::STORAGE;
         Self {
-            style: None,
+            style: StrandDetails::default(),
             points: GrowBuffer::new(&gpu.device, "strand points", storage),
             details: GrowBuffer::new(&gpu.device, "strand details", storage),
             shaded: GrowBuffer::new(&gpu.device, "shaded points", storage),
             order: GrowBuffer::new(&gpu.device, "segment order", storage),
-            segments: Vec::new(),
             staging: Vec::new(),
             sort: DepthSort::default(),
             points_group: None,
@@ -60,25 +55,9 @@ impl HairBuffers {
         let transparency = input.picture.transparency;
         let (device, queue) = (&gpu.device, &gpu.queue);
         let mut remade = false;
-        let style_is_new = !self.style.as_ref().is_some_and(|old| Arc::ptr_eq(old, style));
+        let style_is_new = self.style.follow(style);
         if style_is_new {
-            self.segments.clear();
-            let mut details = vec![0; style.strands.points()];
-            for (s, ends) in style.strands.first_point.windows(2).enumerate() {
-                let (first, end) = (ends[0], ends[1]);
-                self.segments.extend(first..end.saturating_sub(1).max(first));
-                for i in first..end {
-                    details[i as usize] = pack_detail(
-                        style.strands.taper[i as usize],
-                        (i - first) as f32 / (end - first - 1).max(1) as f32,
-                        style.strands.shade[s],
-                        i == first,
-                        i + 1 == end,
-                    );
-                }
-            }
-            remade |= self.details.write(device, queue, &details);
-            self.style = Some(Arc::clone(style));
+            remade |= self.details.write(device, queue, &self.style.words);
         }
         strands
             .x
@@ -91,11 +70,15 @@ impl HairBuffers {
         remade |= self.points.write(device, queue, &self.staging);
         remade |= self.shaded.reserve(device, strands.points());
         match transparency {
-            Transparency::Opaque => remade |= self.order.write(device, queue, &self.segments),
-            Transparency::Sorted => {
+            Transparency::Opaque => remade |= self.order.write(device, queue, &self.style.segments),
+            // What the graphics card does not draw, its renderer refuses before it comes here.
+            Transparency::Sorted
+            | Transparency::WeightedAverage
+            | Transparency::OccupancyOrder
+            | Transparency::Exact => {
                 let forward = (camera.target - camera.eye).normalize_or_zero();
                 let staging = &self.staging;
-                let order = self.sort.sort(&self.segments, |i| {
+                let order = self.sort.sort(&self.style.segments, |i| {
                     let [x, y, z, _] = staging[i].0;
                     x * forward.x + y * forward.y + z * forward.z
                 });
@@ -172,11 +155,4 @@ impl HairBuffers {
         pass.set_bind_group(1, group, &[]);
         pass.draw(0..self.segment_count() * 6, 0..1);
     }
-}
-
-/// Taper, place along the strand (0 root, 1 tip) and shade in 8 bits each, then whether the point is the first
-/// and whether it is the last of its strand.
-fn pack_detail(taper: f32, along: f32, shade: f32, first: bool, last: bool) -> u32 {
-    let byte = |v: f32| (v.clamp(0.0, 1.0) * 255.0 + 0.5) as u32;
-    byte(taper) | byte(along) << 8 | byte(shade) << 16 | u32::from(first) << 24 | u32::from(last) << 25
 }

@@ -126,7 +126,11 @@ impl Pipelines {
         let ribbon_pipeline = |mode: Transparency| {
             let (entry, blend, writes_depth, to_coverage) = match mode {
                 Transparency::Opaque => ("opaque", None, true, true),
-                Transparency::Sorted => {
+                // The others are refused before they come here.
+                Transparency::Sorted
+                | Transparency::WeightedAverage
+                | Transparency::OccupancyOrder
+                | Transparency::Exact => {
                     ("blended", Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING), false, false)
                 }
             };
@@ -224,7 +228,10 @@ impl Pipelines {
     pub fn ribbons(&self, mode: Transparency) -> &wgpu::RenderPipeline {
         match mode {
             Transparency::Opaque => &self.ribbons_opaque,
-            Transparency::Sorted => &self.ribbons_sorted,
+            Transparency::Sorted
+            | Transparency::WeightedAverage
+            | Transparency::OccupancyOrder
+            | Transparency::Exact => &self.ribbons_sorted,
         }
     }
 }

@@ -6,15 +6,17 @@ use lovelock_gpu::{Gpu, Stopwatch, read_texture_rgba8, wgpu};
 
 use super::hair::HairBuffers;
 use super::pipelines::Pipelines;
-use super::shadow_stage::ShadowStage;
-use super::surface::{SurfaceBuffers, bounding_sphere, light_view};
+use super::surface::SurfaceBuffers;
 use super::targets::Targets;
-use super::uniform::{FrameUniform, LightMaps};
+use crate::light_view::{bounding_sphere, light_view};
+use crate::picture::check_size;
+use crate::shadow_stage::ShadowStage;
+use crate::uniform::{FrameUniform, LightMaps};
 use crate::{FrameInput, FrameStats, MAX_LIGHTS, Picture, RenderError};
 
 /// Draws pictures on a GPU, and keeps what it needs for the next one.
 #[derive(Debug)]
-pub struct Renderer {
+pub struct GpuRenderer {
     gpu: Arc<Gpu>,
     pipelines: Pipelines,
     shadow: ShadowStage,
@@ -27,7 +29,7 @@ pub struct Renderer {
     targets: Option<Targets>,
 }
 
-impl Renderer {
+impl GpuRenderer {
     /// Compiles what drawing needs.
     ///
     /// # Errors
@@ -90,12 +92,12 @@ impl Renderer {
 
     /// Draws `input` at `width` by `height` pixels into a texture that stays on the device.
     fn draw(&mut self, input: &FrameInput, width: u32, height: u32) -> Result<FrameStats, RenderError> {
-        let limit = self.gpu.max_picture_side();
-        if width == 0 || height == 0 || width > limit || height > limit {
-            return Err(RenderError::Size { width, height, limit });
+        check_size(width, height, self.gpu.max_picture_side())?;
+        if !input.picture.transparency.is_on_gpu() {
+            return Err(RenderError::Transparency(input.picture.transparency));
         }
         let watch = Stopwatch::start();
-        self.shadow.run(input);
+        self.shadow.run(input)?;
         let shadow_ms = watch.ms();
 
         let watch = Stopwatch::start();
@@ -195,6 +197,7 @@ impl Renderer {
         Ok(FrameStats {
             shadow_ms,
             draw_ms: watch.ms(),
+            draw: None,
             segments: u64::from(self.hair.segment_count()),
             shadow_bytes: self.shadow.bytes,
             mean_transmittance: self.shadow.mean,

@@ -6,15 +6,15 @@ use glam::{Affine3A, Vec3};
 use lovelock_groom::{HairLook, Hairstyle, StrandSet, Strands};
 use lovelock_motion::{Body, Mesh, Skin};
 use lovelock_render::{
-    Camera, FrameInput, Gpu, Light, Picture, PictureSettings, Renderer, ShadowMethod, ShadowSettings,
+    Camera, FrameInput, Gpu, GpuRenderer, Light, Picture, PictureSettings, ShadowMethod, ShadowSettings,
 };
 
 /// The renderer that all tests of a binary share: making one takes seconds where the processor draws.
-pub fn renderer() -> Option<&'static Mutex<Renderer>> {
-    static RENDERER: OnceLock<Option<Mutex<Renderer>>> = OnceLock::new();
+pub fn renderer() -> Option<&'static Mutex<GpuRenderer>> {
+    static RENDERER: OnceLock<Option<Mutex<GpuRenderer>>> = OnceLock::new();
     RENDERER
         .get_or_init(|| match Gpu::open() {
-            Ok(gpu) => Some(Mutex::new(Renderer::new(gpu).expect("the shaders compile"))),
+            Ok(gpu) => Some(Mutex::new(GpuRenderer::new(gpu).expect("the shaders compile"))),
             Err(error) => {
                 lovelock_testkit::skip_without_adapter(&error);
                 None

@@ -8,7 +8,7 @@ mod request;
 pub use job::RecordJob;
 pub use record::record;
 pub use report::{RecordReport, StageMedians};
-pub use request::{Backend, Progress, RecordRequest};
+pub use request::{Progress, RecordRequest};
 
 #[cfg(test)]
 mod tests;

@@ -7,9 +7,9 @@ use std::sync::atomic::AtomicBool;
 
 use lovelock_groom::Strands;
 use lovelock_record::{FrameRate, OutputKind, PictureSink, RecordError, SinkSettings};
-use lovelock_render::{Gpu, GpuError, Picture, RenderError, Renderer};
+use lovelock_render::{Backend, GpuError, Picture, RenderError, Renderer};
 
-use super::{Backend, Progress, RecordReport, RecordRequest};
+use super::{Progress, RecordReport, RecordRequest};
 use crate::{
     Engine, FrameClock, LoadControl, Problem, Project, Scene, SceneLoader, StageHistory, StageTimes,
     Stopwatch, StudioError,
@@ -32,8 +32,7 @@ pub fn record(
     progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<RecordReport, StudioError> {
     let job = Job::new(project, request)?;
-    let gpu = open(request)?;
-    let mut renderer = Renderer::new(Arc::clone(&gpu))?;
+    let mut renderer = open(&job.project, request)?;
     let (scene, problems) = load(&job.project, request, progress)?;
     tell(progress, Progress::Loaded { problems: problems.clone() })?;
 
@@ -45,7 +44,7 @@ pub fn record(
 
     let refused = |error: RecordError| job.refused(&error);
     let mut sink = PictureSink::for_path(&request.out, job.sink_settings(frames.start)).map_err(refused)?;
-    let (mut strands, mut picture) = (Strands::default(), Picture { width: 0, height: 0, rgba: Vec::new() });
+    let (mut strands, mut picture) = (Strands::default(), Picture::default());
     let mut history = StageHistory::new(((frames.end - frames.start) as usize).min(MOST_TIMES));
     let mut whole = Vec::new();
     for frame in frames.clone() {
@@ -80,8 +79,8 @@ pub fn record(
         fps: job.fps,
         width: job.width,
         height: job.height,
-        backend: if request.backend == Backend::Cpu { "cpu" } else { "gpu" }.to_owned(),
-        adapter: gpu.info.name.clone(),
+        backend: renderer.backend().to_string(),
+        adapter: renderer.adapter().to_owned(),
         shadow: job.project.shadow.method.to_string(),
         transparency: job.project.picture.transparency.to_string(),
         strands: strands.count() as u64,
@@ -176,15 +175,17 @@ impl<'a> Job<'a> {
 }
 
 /// Opens what draws.
-fn open(request: &RecordRequest) -> Result<Arc<Gpu>, StudioError> {
-    let gpu = match (&request.gpu, request.backend) {
-        (Some(gpu), _) => Ok(Arc::clone(gpu)),
-        (None, Backend::Auto | Backend::Gpu) => Gpu::open(),
-        (None, Backend::Cpu) => Gpu::open_software(),
+fn open(project: &Project, request: &RecordRequest) -> Result<Renderer, StudioError> {
+    let choice = request.backend.unwrap_or(project.picture.backend);
+    let renderer = match &request.gpu {
+        Some(gpu) => Renderer::on_device(Arc::clone(gpu)),
+        None => Renderer::open(choice),
     };
-    gpu.map_err(|error| match (&error, request.backend) {
-        (GpuError::NoAdapter(_), Backend::Gpu) => StudioError::work(format!("--backend gpu: {error}")),
-        _ => StudioError::work(error),
+    renderer.map_err(|error| match (&error, choice) {
+        (RenderError::Gpu(GpuError::NoAdapter(_)), Backend::Gpu) => {
+            StudioError::work(format!("--backend gpu: {error}"))
+        }
+        _ => error.into(),
     })
 }
 
@@ -231,8 +232,8 @@ fn tell(progress: &mut dyn FnMut(Progress) -> ControlFlow<()>, what: Progress) -
 impl From<RenderError> for StudioError {
     fn from(error: RenderError) -> Self {
         match error {
-            RenderError::Size { .. } => Self::option(error),
-            RenderError::Gpu(_) => Self::work(error),
+            RenderError::Size { .. } | RenderError::Transparency(_) => Self::option(error),
+            RenderError::Gpu(_) | RenderError::Shadow(_) => Self::work(error),
         }
     }
 }

@@ -1,57 +1,12 @@
 //! What to record, and how far it is.
 
-use std::fmt;
 use std::ops::Range;
 use std::path::PathBuf;
-use std::str::FromStr;
 use std::sync::Arc;
 
-use lovelock_render::{Gpu, ShadowMethod, Transparency};
+use lovelock_render::{Backend, Gpu, ShadowMethod, Transparency};
 
 use crate::{Access, Problem};
-
-/// What draws.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Backend {
-    /// The best adapter that there is, a software one where there is nothing else.
-    #[default]
-    Auto,
-    /// A graphics card.
-    Gpu,
-    /// The processor.
-    Cpu,
-}
-
-impl Backend {
-    /// All of them, in the order of menus.
-    pub const ALL: [Self; 3] = [Self::Auto, Self::Gpu, Self::Cpu];
-
-    /// The stable name of the command line and of reports.
-    pub fn id(self) -> &'static str {
-        match self {
-            Self::Auto => "auto",
-            Self::Gpu => "gpu",
-            Self::Cpu => "cpu",
-        }
-    }
-}
-
-impl fmt::Display for Backend {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.id())
-    }
-}
-
-impl FromStr for Backend {
-    type Err = String;
-
-    fn from_str(id: &str) -> Result<Self, String> {
-        Self::ALL
-            .into_iter()
-            .find(|backend| backend.id() == id)
-            .ok_or_else(|| format!("unknown backend `{id}`: expected auto, gpu or cpu"))
-    }
-}
 
 /// What to record; where a field is none, the project says.
 #[derive(Clone, Debug, Default)]
@@ -68,8 +23,8 @@ pub struct RecordRequest {
     pub shadow: Option<ShadowMethod>,
     /// Transparency mode.
     pub transparency: Option<Transparency>,
-    /// What draws.
-    pub backend: Backend,
+    /// What draws; the project says where none.
+    pub backend: Option<Backend>,
     /// What the project may read.
     pub access: Access,
     /// The device to draw on; one is opened where none.

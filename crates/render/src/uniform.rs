@@ -8,7 +8,7 @@ use crate::{FrameInput, MAX_LIGHTS};
 /// Twin of `LightUniform` in `frame.wgsl`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub(super) struct LightUniform {
+pub(crate) struct LightUniform {
     pub direction_specular: Vec4,
     pub radiance_blur: Vec4,
     pub shadow_from_world: Mat4,
@@ -18,7 +18,7 @@ pub(super) struct LightUniform {
 /// Twin of `FrameUniform` in `frame.wgsl`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub(super) struct FrameUniform {
+pub(crate) struct FrameUniform {
     pub clip_from_world: Mat4,
     pub world_from_clip: Mat4,
     pub eye_lights: Vec4,
@@ -35,7 +35,7 @@ pub(super) struct FrameUniform {
 
 /// Where one light's maps lie.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct LightMaps {
+pub(crate) struct LightMaps {
     pub shadow_from_world: Mat4,
     pub columns_from_world: Mat4,
     pub metres_per_texel: f32,

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 /// Buffers are kept from frame to frame. The order of segments of equal depth is that of their index, so that
 /// the same frame always gives the same picture.
 #[derive(Debug, Default)]
-pub(super) struct DepthSort {
+pub(crate) struct DepthSort {
     depths: Vec<f32>,
     keys: Vec<u16>,
     counts: Vec<u32>,

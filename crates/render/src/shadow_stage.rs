@@ -2,13 +2,13 @@
 
 use glam::{Mat4, Vec3};
 use lovelock_groom::Strands;
-use lovelock_shadow::{ColumnMap, CpuShadow, LightFrame, ShadowInput, ShadowMethod, cpu_shadow};
+use lovelock_shadow::{ColumnMap, CpuShadow, LightFrame, ShadowError, ShadowInput, ShadowMethod, cpu_shadow};
 
 use crate::{FrameInput, Light, MAX_LIGHTS};
 
 /// The shadow of every light, kept from frame to frame.
 #[derive(Default)]
-pub(super) struct ShadowStage {
+pub(crate) struct ShadowStage {
     method: Option<ShadowMethod>,
     lights: Vec<LightShadow>,
     /// Four 8-bit transmittances a strand point, the first light in the lowest byte.
@@ -41,7 +41,10 @@ impl std::fmt::Debug for ShadowStage {
 
 impl ShadowStage {
     /// Builds the maps and looks them up everywhere that they are needed.
-    pub fn run(&mut self, input: &FrameInput) {
+    ///
+    /// # Errors
+    /// The map would need more memory than its limit.
+    pub fn run(&mut self, input: &FrameInput) -> Result<(), ShadowError> {
         let lights: Vec<Light> =
             input.lights.iter().filter(|light| light.enabled).take(MAX_LIGHTS).map(Light::clamped).collect();
         if self.method != Some(input.shadow.method) {
@@ -82,7 +85,7 @@ impl ShadowStage {
                     anchor: input.world_from_head.translation.into(),
                 },
                 input.shadow,
-            );
+            )?;
             let Strands { x, y, z, .. } = input.strands;
             this.values.resize(x.len(), 1.0);
             this.shadow.transmittance_at(x, y, z, &mut this.values);
@@ -98,6 +101,7 @@ impl ShadowStage {
             self.columns.push(this.shadow.column_map());
             self.bytes += this.shadow.report().memory_bytes;
         }
+        Ok(())
     }
 
     /// Carries world space to the texture of light `k`'s column map; far outside where it has none.

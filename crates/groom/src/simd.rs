@@ -1,0 +1,94 @@
+//! The same source compiled for several widths of vectors, chosen while the program runs.
+//!
+//! Inner loops are plain safe code on fixed-size arrays, which the compiler turns into vector instructions.
+//! Nothing in it is reordered or fused, so that all versions give the same bits.
+
+/// Which version of a function runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Width {
+    /// What every processor of this architecture has.
+    Baseline,
+    /// 256-bit vectors.
+    #[cfg(target_arch = "x86_64")]
+    Avx2,
+    /// 512-bit registers and masks.
+    #[cfg(target_arch = "x86_64")]
+    Avx512,
+}
+
+impl Width {
+    /// Every version, narrow to wide.
+    pub const ALL: &'static [Self] = &[
+        Self::Baseline,
+        #[cfg(target_arch = "x86_64")]
+        Self::Avx2,
+        #[cfg(target_arch = "x86_64")]
+        Self::Avx512,
+    ];
+
+    /// Whether this processor has it.
+    pub fn is_available(self) -> bool {
+        match self {
+            Self::Baseline => true,
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2 => is_x86_feature_detected!("avx2"),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => {
+                is_x86_feature_detected!("avx512f")
+                    && is_x86_feature_detected!("avx512bw")
+                    && is_x86_feature_detected!("avx512dq")
+                    && is_x86_feature_detected!("avx512vl")
+            }
+        }
+    }
+
+    /// The widest that this processor has.
+    pub fn widest() -> Self {
+        Self::ALL.iter().rev().copied().find(|width| width.is_available()).unwrap_or(Self::Baseline)
+    }
+}
+
+/// A function in every version of [`Width`]: its first argument says which, and that must be available.
+///
+/// The body should call functions that are always inlined: what is not keeps the baseline's instructions. The
+/// module that uses this must allow `unsafe_code`, for calls of functions that ask for features.
+#[macro_export]
+macro_rules! simd_versions {
+    ($(#[$doc:meta])* $vis:vis fn $name:ident($($argument:ident: $of:ty),* $(,)?) -> $result:ty { $body:expr }) => {
+        $(#[$doc])*
+        $vis fn $name(width: $crate::simd::Width, $($argument: $of),*) -> $result {
+            #[cfg(target_arch = "x86_64")]
+            #[target_feature(enable = "avx2")]
+            fn avx2($($argument: $of),*) -> $result {
+                $body
+            }
+            #[cfg(target_arch = "x86_64")]
+            #[target_feature(enable = "avx2,avx512f,avx512bw,avx512dq,avx512vl")]
+            fn avx512($($argument: $of),*) -> $result {
+                $body
+            }
+            assert!(width.is_available(), "{width:?} on a processor without");
+            match width {
+                $crate::simd::Width::Baseline => $body,
+                // SAFETY: the processor has the features, as asserted above.
+                #[cfg(target_arch = "x86_64")]
+                $crate::simd::Width::Avx2 => unsafe { avx2($($argument),*) },
+                // SAFETY: the processor has the features, as asserted above.
+                #[cfg(target_arch = "x86_64")]
+                $crate::simd::Width::Avx512 => unsafe { avx512($($argument),*) },
+            }
+        }
+    };
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_widest_is_available_and_the_baseline_always_is() {
+        assert!(Width::widest().is_available());
+        assert!(Width::Baseline.is_available());
+        assert_eq!(Width::ALL[0], Width::Baseline);
+    }
+}

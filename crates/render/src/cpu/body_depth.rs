@@ -1,0 +1,356 @@
+//! The body's depth as a light sees it.
+// Compiled within the versions of `dispatch`.
+#![allow(clippy::inline_always)]
+
+use glam::{Mat4, Vec2, Vec3};
+use rayon::prelude::*;
+
+use super::dispatch;
+use super::math::{floor, index_of, max, min};
+use lovelock_groom::simd::Width;
+
+/// Texels along each edge of a map: two millimetres of a standing figure each.
+pub(super) const SIZE: usize = 1024;
+/// Texels of a row that are drawn together.
+const LANES: usize = 8;
+
+/// Rows that one task draws.
+const BAND_ROWS: usize = 64;
+/// Texels along each edge of a block that keeps its nearest and farthest depth.
+const BLOCK: usize = 32;
+
+/// Depth along a light, 0 to 1 over its view, and 1 where there is no body.
+#[derive(Clone, Debug)]
+pub(super) struct DepthMap {
+    depth: Box<[f32; SIZE * SIZE]>,
+    /// Nearest and farthest depth of each block of texels, a row of blocks after the other.
+    blocks: Vec<[f32; 2]>,
+    placed: Vec<Vec3>,
+    /// Triangles by band: where each band's begin, and their indices.
+    starts: Vec<u32>,
+    sorted: Vec<u32>,
+}
+
+impl Default for DepthMap {
+    fn default() -> Self {
+        let Ok(depth) = vec![1.0; SIZE * SIZE].into_boxed_slice().try_into() else {
+            unreachable!("as long as it was made")
+        };
+        Self {
+            depth,
+            blocks: vec![[1.0; 2]; (SIZE / BLOCK) * (SIZE / BLOCK)],
+            placed: Vec::new(),
+            starts: Vec::new(),
+            sorted: Vec::new(),
+        }
+    }
+}
+
+/// What to draw into a band of rows.
+pub(super) struct Band<'a> {
+    pub first_row: usize,
+    /// Texels from the left and top, and depth.
+    pub placed: &'a [Vec3],
+    pub triangles: &'a [[u32; 3]],
+    pub list: &'a [u32],
+}
+
+impl DepthMap {
+    /// Draws the triangles over `vertices`.
+    pub fn draw(&mut self, width: Width, shadow_from_world: Mat4, vertices: &[Vec3], triangles: &[[u32; 3]]) {
+        let half = 0.5 * SIZE as f32;
+        vertices
+            .par_iter()
+            .with_min_len(4096)
+            .map(|&p| {
+                let at = shadow_from_world * p.extend(1.0);
+                Vec3::new((at.x + 1.0) * half, (1.0 - at.y) * half, at.z)
+            })
+            .collect_into_vec(&mut self.placed);
+        self.sort_by_band(triangles);
+        let (placed, starts, sorted) = (&self.placed, &self.starts, &self.sorted);
+        self.depth
+            .par_chunks_mut(BAND_ROWS * SIZE)
+            .zip(self.blocks.par_chunks_mut(BAND_ROWS / BLOCK * (SIZE / BLOCK)))
+            .enumerate()
+            .for_each(|(band, (rows, blocks))| {
+                let list = &sorted[starts[band] as usize..starts[band + 1] as usize];
+                let input = Band { first_row: band * BAND_ROWS, placed, triangles, list };
+                dispatch::depth_band(width, &input, rows, blocks);
+            });
+    }
+
+    /// Lists the triangles that touch each band of rows.
+    fn sort_by_band(&mut self, triangles: &[[u32; 3]]) {
+        let bands = SIZE / BAND_ROWS;
+        let placed = &self.placed;
+        let last = (SIZE - 1) as f32;
+        let range = |corners: &[u32; 3]| {
+            let [a, b, c] = corners.map(|i| placed.get(i as usize).map_or(f32::NAN, |p| p.y));
+            let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+            // Comparisons that a number that is none fails.
+            let seen = low <= last && high >= 0.0 && (a + b + c).is_finite();
+            let band = |y: f32| y.clamp(0.0, last) as usize / BAND_ROWS;
+            seen.then(|| (band(low), band(high)))
+        };
+        self.starts.clear();
+        self.starts.resize(bands + 1, 0);
+        for (low, high) in triangles.iter().filter_map(range) {
+            for band in low..=high {
+                self.starts[band + 1] += 1;
+            }
+        }
+        for band in 0..bands {
+            self.starts[band + 1] += self.starts[band];
+        }
+        self.sorted.resize(self.starts[bands] as usize, 0);
+        let mut next = self.starts.clone();
+        for (i, triangle) in triangles.iter().enumerate() {
+            if let Some((low, high)) = range(triangle) {
+                for slot in &mut next[low..=high] {
+                    self.sorted[*slot as usize] = i as u32;
+                    *slot += 1;
+                }
+            }
+        }
+    }
+
+    /// Adds, for some places at `u`, `v` and depth `z`, the share of the four texels around them, moved by `tap`,
+    /// that are not nearer to the light.
+    #[inline(always)]
+    pub fn add_compared<const N: usize>(
+        &self,
+        u: &[f32; N],
+        v: &[f32; N],
+        z: &[f32; N],
+        tap: Vec2,
+        sum: &mut [f32; N],
+    ) {
+        // One texel is left to the right and below for the neighbours.
+        const LAST: f32 = (SIZE - 1) as f32 - 1e-3;
+        let size = SIZE as f32;
+        let mut at = [0_u32; N];
+        let mut right = [0.0; N];
+        let mut below = [0.0; N];
+        for lane in 0..N {
+            let x = min(max((u[lane] + tap.x) * size - 0.5, 0.0), LAST);
+            let y = min(max((v[lane] + tap.y) * size - 0.5, 0.0), LAST);
+            let (x0, y0) = (floor(x), floor(y));
+            (right[lane], below[lane]) = (x - x0, y - y0);
+            at[lane] = index_of(y0) * SIZE as u32 + index_of(x0);
+        }
+        let mut lit = [[0.0; N]; 4];
+        for (corner, lit) in [0, 1, SIZE as u32, SIZE as u32 + 1].into_iter().zip(&mut lit) {
+            for lane in 0..N {
+                // The size is a power of two: the compiler sees that no index is out of bounds.
+                let depth = self.depth[(at[lane] + corner) as usize % (SIZE * SIZE)];
+                lit[lane] = if z[lane] <= depth { 1.0 } else { 0.0 };
+            }
+        }
+        for lane in 0..N {
+            let upper = lit[0][lane] + (lit[1][lane] - lit[0][lane]) * right[lane];
+            let lower = lit[2][lane] + (lit[3][lane] - lit[2][lane]) * right[lane];
+            sum[lane] += upper + (lower - upper) * below[lane];
+        }
+    }
+
+    /// What each of [`DepthMap::add_compared`] adds for taps within `radius`, where the blocks around all of the
+    /// places tell it.
+    #[inline(always)]
+    pub fn all_alike<const N: usize>(
+        &self,
+        u: &[f32; N],
+        v: &[f32; N],
+        z: &[f32; N],
+        radius: f32,
+    ) -> Option<f32> {
+        let (size, last) = (SIZE as f32, (SIZE - 1) as f32);
+        let range = |of: &[f32; N]| {
+            let (mut low, mut high) = (of[0], of[0]);
+            for &c in of {
+                (low, high) = (min(c, low), max(c, high));
+            }
+            (low, high)
+        };
+        let ((left, right), (top, bottom), (near, far)) = (range(u), range(v), range(z));
+        // Half a texel to the neighbour that is interpolated, and one for rounding.
+        let reach = radius * size + 1.5;
+        let block = |c: f32| index_of(floor(min(max(c, 0.0), last))) as usize / BLOCK;
+        let (left, right) = (block(left * size - 0.5 - reach), block(right * size - 0.5 + reach));
+        let (top, bottom) = (block(top * size - 0.5 - reach), block(bottom * size - 0.5 + reach));
+        const ROW: usize = SIZE / BLOCK;
+        if (right - left) * (bottom - top) > 16 {
+            return None;
+        }
+        let (mut nearest, mut farthest) = (1.0, 0.0);
+        for j in top..=bottom {
+            for [near, far] in &self.blocks[j * ROW + left..=j * ROW + right] {
+                nearest = min(*near, nearest);
+                farthest = max(*far, farthest);
+            }
+        }
+        if far <= nearest {
+            Some(1.0)
+        } else if near > farthest {
+            Some(0.0)
+        } else {
+            None
+        }
+    }
+}
+
+/// Draws the triangles of a band and bounds its blocks.
+#[inline(always)]
+pub(super) fn draw_band(input: &Band, rows: &mut [f32], blocks: &mut [[f32; 2]]) {
+    rows.fill(1.0);
+    for &triangle in input.list {
+        let [i, j, k] = input.triangles[triangle as usize];
+        let corners = [input.placed[i as usize], input.placed[j as usize], input.placed[k as usize]];
+        draw_triangle(corners, input.first_row, rows);
+    }
+    bound_blocks(rows, blocks);
+}
+
+/// Draws one triangle into rows from `first_row` on: the texels whose centres it covers, whichever way it
+/// faces.
+#[inline(always)]
+fn draw_triangle([a, b, c]: [Vec3; 3], first_row: usize, rows: &mut [f32]) {
+    let area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+    let is_some = area.abs() > 0.0 && area.abs() < f32::INFINITY;
+    if !is_some {
+        return;
+    }
+    let (low_x, high_x) = (min(a.x, min(b.x, c.x)), max(a.x, max(b.x, c.x)));
+    let (low_y, high_y) = (min(a.y, min(b.y, c.y)), max(a.y, max(b.y, c.y)));
+    let rows_here = rows.len() / SIZE;
+    // The first centre at or after, and the one past the last before.
+    let centre = |v: f32, most: f32| min(max(v + 0.5, 0.0), most) as usize;
+    let (x0, x1) = (centre(low_x, SIZE as f32), centre(high_x, SIZE as f32));
+    let from_row = |v: f32| centre(v - first_row as f32, rows_here as f32);
+    let (y0, y1) = (from_row(low_y), from_row(high_y));
+    if x0 >= x1 {
+        return;
+    }
+    let inverse = 1.0 / area;
+    // Depth and the shares of b and c are planes over the texels.
+    let (bx, by) = ((c.y - a.y) * inverse, (a.x - c.x) * inverse);
+    let (cx, cy) = ((a.y - b.y) * inverse, (b.x - a.x) * inverse);
+    let (zx, zy) = (bx * (b.z - a.z) + cx * (c.z - a.z), by * (b.z - a.z) + cy * (c.z - a.z));
+    for y in y0..y1 {
+        let dy = (first_row + y) as f32 + 0.5 - a.y;
+        for x in (x0..x1).step_by(LANES) {
+            // The last run of a row begins early rather than pass its end.
+            let x = x.min(SIZE - LANES);
+            let dx = x as f32 + 0.5 - a.x;
+            let (share_b, share_c) = (bx * dx + by * dy, cx * dx + cy * dy);
+            let z = a.z + zx * dx + zy * dy;
+            let Some((depth, _)) = rows[y * SIZE + x..].split_first_chunk_mut::<LANES>() else { return };
+            for lane in 0..LANES {
+                let step = lane as f32;
+                let (b, c, z) = (share_b + bx * step, share_c + cx * step, z + zx * step);
+                let nearer = (b >= 0.0) & (c >= 0.0) & (b + c <= 1.0) & (z < depth[lane]);
+                depth[lane] = if nearer { z } else { depth[lane] };
+            }
+        }
+    }
+}
+
+/// The nearest and farthest depth of each block in some rows.
+#[inline(always)]
+fn bound_blocks(rows: &[f32], blocks: &mut [[f32; 2]]) {
+    for (rows, blocks) in rows.chunks_exact(BLOCK * SIZE).zip(blocks.chunks_exact_mut(SIZE / BLOCK)) {
+        for (column, block) in blocks.iter_mut().enumerate() {
+            let (mut near, mut far) = ([1.0; LANES], [0.0; LANES]);
+            for row in rows.chunks_exact(SIZE) {
+                for texels in row[column * BLOCK..(column + 1) * BLOCK].as_chunks::<LANES>().0 {
+                    for lane in 0..LANES {
+                        near[lane] = min(texels[lane], near[lane]);
+                        far[lane] = max(texels[lane], far[lane]);
+                    }
+                }
+            }
+            *block = [1.0, 0.0];
+            for lane in 0..LANES {
+                block[0] = min(near[lane], block[0]);
+                block[1] = max(far[lane], block[1]);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn drawn(vertices: &[Vec3], triangles: &[[u32; 3]]) -> DepthMap {
+        let mut map = DepthMap::default();
+        map.draw(Width::widest(), Mat4::IDENTITY, vertices, triangles);
+        map
+    }
+
+    /// A square in the middle of the view at depth 0.5, of a quarter of the map's edge.
+    fn map() -> DepthMap {
+        let corners = [(-0.25, -0.25), (0.25, -0.25), (0.25, 0.25), (-0.25, 0.25)];
+        let vertices: Vec<_> = corners.iter().map(|&(x, y)| Vec3::new(x, y, 0.5)).collect();
+        drawn(&vertices, &[[0, 1, 2], [0, 3, 2]])
+    }
+
+    fn compare(map: &DepthMap, uv: Vec2, z: f32) -> f32 {
+        let mut sum = [0.0];
+        map.add_compared(&[uv.x], &[uv.y], &[z], Vec2::ZERO, &mut sum);
+        sum[0]
+    }
+
+    #[test]
+    fn a_square_covers_its_texels_and_no_others() {
+        let map = map();
+        let covered = map.depth.iter().filter(|z| **z == 0.5).count();
+        assert_eq!(covered, 256 * 256, "both windings, shared edge once or twice");
+        assert_eq!(map.depth.iter().filter(|z| **z == 1.0).count(), SIZE * SIZE - 256 * 256);
+        assert_eq!(map.depth[512 * SIZE + 512], 0.5);
+    }
+
+    #[test]
+    fn triangles_at_the_borders_are_drawn_whole() {
+        let vertices = [(-3.0, -1.0), (3.0, -1.0), (0.0, 5.0)].map(|(x, y)| Vec3::new(x, y, 0.25));
+        let map = drawn(&vertices, &[[0, 1, 2]]);
+        assert!(map.depth.iter().all(|z| *z == 0.25), "the view lies within the triangle");
+    }
+
+    #[test]
+    fn behind_is_dark_before_and_beside_are_lit() {
+        let map = map();
+        let (middle, beside, edge) = (Vec2::splat(0.5), Vec2::splat(0.2), Vec2::new(0.375, 0.5));
+        assert_eq!(compare(&map, middle, 0.6), 0.0);
+        assert_eq!(compare(&map, middle, 0.4), 1.0);
+        assert_eq!(compare(&map, beside, 0.6), 1.0);
+        assert!((compare(&map, edge, 0.6) - 0.5).abs() < 1e-3, "half of the texels at the edge");
+    }
+
+    #[test]
+    fn blocks_agree_with_texels() {
+        let map = map();
+        let mut told = 0;
+        for i in 0..64 {
+            for (j, z) in [(10, 0.2), (31, 0.55), (33, 0.9), (60, 0.5), (62, 0.51)] {
+                let (u, v) = ([i as f32 / 64.0; 2], [j as f32 / 64.0, j as f32 / 64.0 + 0.01]);
+                if let Some(all) = map.all_alike(&u, &v, &[z; 2], 0.01) {
+                    told += 1;
+                    for tap in [Vec2::ZERO, Vec2::X, Vec2::NEG_Y, Vec2::splat(-0.7)] {
+                        let mut sum = [0.0; 2];
+                        map.add_compared(&u, &v, &[z; 2], tap * 0.01, &mut sum);
+                        assert_eq!(sum, [all; 2], "{u:?} {z}");
+                    }
+                }
+            }
+        }
+        assert!(told > 100, "the blocks must tell something: {told}");
+    }
+
+    #[test]
+    fn nonsense_is_left_out() {
+        let vertices = [Vec3::NAN, Vec3::INFINITY, Vec3::ZERO, Vec3::X];
+        let map = drawn(&vertices, &[[0, 1, 2], [2, 2, 3], [2, 3, 1]]);
+        assert!(map.depth.iter().all(|z| *z == 1.0));
+    }
+}

@@ -1,0 +1,82 @@
+//! The order of segments: which is nearer.
+
+use lovelock_groom::Strands;
+use rayon::prelude::*;
+
+/// A segment with its depth in one number: smaller is nearer; of equal depth, what has the larger index is.
+///
+/// The far to near order of `DepthSort`, reversed: the same 16 bits of depth, and ties the other way round.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SegmentKeys {
+    keys: Vec<u16>,
+}
+
+/// Fewest segments that are worth a task.
+const PIECE: usize = 8192;
+
+impl SegmentKeys {
+    /// Measures the segments along `forward`; `first_points` names the first point of each.
+    pub fn measure(&mut self, strands: &Strands, first_points: &[u32], forward: glam::Vec3) {
+        let depth_of =
+            |i: usize| strands.x[i] * forward.x + strands.y[i] * forward.y + strands.z[i] * forward.z;
+        let middle = |&first: &u32| {
+            let depth = 0.5 * (depth_of(first as usize) + depth_of(first as usize + 1));
+            if depth.is_finite() { depth } else { 0.0 }
+        };
+        let (near, far) = first_points
+            .par_chunks(PIECE)
+            .map(|piece| {
+                piece.iter().map(middle).fold((f32::INFINITY, f32::NEG_INFINITY), |(near, far), d| {
+                    (if d < near { d } else { near }, if d > far { d } else { far })
+                })
+            })
+            .reduce(|| (f32::INFINITY, f32::NEG_INFINITY), |a, b| (a.0.min(b.0), a.1.max(b.1)));
+        let scale = if far > near { 65535.0 / (far - near) } else { 0.0 };
+        first_points
+            .par_iter()
+            .with_min_len(PIECE)
+            .map(|first| u16::MAX - ((far - middle(first)) * scale) as u16)
+            .collect_into_vec(&mut self.keys);
+    }
+
+    /// The segments of a tile from near to far, each as its first point below its key. `segments` are indices
+    /// into `first_points`.
+    pub fn sort(&self, segments: &[u32], first_points: &[u32], out: &mut Vec<u64>) {
+        out.clear();
+        out.extend(segments.iter().map(|&segment| {
+            let (key, first) = (self.keys[segment as usize], first_points[segment as usize]);
+            // The index reversed puts the later one first among equals; undone below.
+            u64::from(key) << 32 | u64::from(u32::MAX - first)
+        }));
+        out.sort_unstable();
+        for entry in out {
+            *entry = u64::from(u32::MAX - *entry as u32);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sort::DepthSort;
+
+    #[test]
+    fn near_to_far_is_far_to_near_reversed() {
+        let mut strands = Strands::default();
+        for i in 0..2000 {
+            strands.x.push(0.0);
+            strands.y.push(0.0);
+            strands.z.push(((i * 7919) % 300) as f32 * 0.01);
+        }
+        let firsts: Vec<u32> = (0..1999).collect();
+        let forward = glam::Vec3::Z;
+        let mut sort = DepthSort::default();
+        let mut far_to_near = sort.sort(&firsts, |i| strands.z[i]).to_vec();
+        far_to_near.reverse();
+        let mut keys = SegmentKeys::default();
+        keys.measure(&strands, &firsts, forward);
+        let mut order = Vec::new();
+        keys.sort(&firsts, &firsts, &mut order);
+        assert_eq!(order.iter().map(|&entry| entry as u32).collect::<Vec<_>>(), far_to_near);
+    }
+}

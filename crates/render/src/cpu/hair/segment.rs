@@ -1,0 +1,155 @@
+//! One segment as a ribbon over the pixels of a tile: the twin of `strand_ribbons.wgsl`.
+//!
+//! Below a pixel, width becomes coverage: a strand of 0.2 pixels is drawn one pixel wide at a fifth of its
+//! opacity, so it neither breaks up nor gains weight as it recedes.
+// Compiled within the versions of `dispatch`.
+#![allow(clippy::inline_always)]
+
+use crate::cpu::math::{max, min, saturate, sin, smoothstep};
+use crate::cpu::points::ShadedPoint;
+use crate::cpu::tile::{STRIDE, TILE};
+
+/// Pixels of a row that are drawn together.
+pub(crate) const LANES: usize = 8;
+type Lane = [f32; LANES];
+
+/// A run of pixels that a segment may cover.
+pub(crate) struct Span {
+    /// The first of them in the planes of the tile.
+    pub at: usize,
+    /// The first of them in its row.
+    pub x: usize,
+    /// Opacity times coverage; 0 beside the segment.
+    pub alpha: Lane,
+    /// Depth, 1 at the near plane.
+    pub depth: Lane,
+    /// Place along the segment, 0 to 1.
+    pub along: Lane,
+    /// Factor on the colour.
+    pub gain: Lane,
+}
+
+/// Whether a segment is drawn at all.
+#[inline(always)]
+pub(crate) fn is_drawn(a: &ShadedPoint, b: &ShadedPoint) -> bool {
+    a.half_width >= 0.0 && b.half_width >= 0.0
+}
+
+/// The widest that a segment is drawn to each side of its middle, pixels.
+#[inline(always)]
+fn reach(a: &ShadedPoint, b: &ShadedPoint) -> f32 {
+    max(max(a.half_width, b.half_width), 0.5) + 0.5
+}
+
+/// Left, top, right and bottom of the ribbon, pixels: its corners lie across the strand from its ends.
+#[inline(always)]
+pub(crate) fn bounds(a: &ShadedPoint, b: &ShadedPoint) -> [f32; 4] {
+    let reach = reach(a, b);
+    let (ax, ay) = (a.run_y.abs() * reach, a.run_x.abs() * reach);
+    let (bx, by) = (b.run_y.abs() * reach, b.run_x.abs() * reach);
+    [min(a.x - ax, b.x - bx), min(a.y - ay, b.y - by), max(a.x + ax, b.x + bx), max(a.y + ay, b.y + by)]
+}
+
+/// What becomes of the runs of a segment. A trait and no closure, which would not always be inlined.
+pub(crate) trait SpanSink {
+    /// Whether anything can be seen in the run of pixels that begins at `at`.
+    fn is_open(&self, at: usize) -> bool;
+    /// Takes a run of the segment from `a` to `b`.
+    fn take(&mut self, a: &ShadedPoint, b: &ShadedPoint, span: &Span);
+}
+
+/// Hands `sink` each run of pixels of a tile that the segment from `a` to `b` may cover.
+///
+/// A pixel belongs to the segment between the lines across the strand through its two ends. Neighbouring
+/// segments share those lines, so that no pixel is drawn by both or by none.
+#[inline(always)]
+pub(crate) fn each_span(
+    a: &ShadedPoint,
+    b: &ShadedPoint,
+    origin: [f32; 2],
+    opacity: f32,
+    sink: &mut impl SpanSink,
+) {
+    let (ax, ay) = (a.x - origin[0], a.y - origin[1]);
+    let (bx, by) = (b.x - origin[0], b.y - origin[1]);
+    let (dx, dy) = (bx - ax, by - ay);
+    let length = (dx * dx + dy * dy).sqrt();
+    if length < 1e-4 {
+        return;
+    }
+    let inverse = 1.0 / length;
+    let (nx, ny) = (-dy * inverse, dx * inverse);
+    let reach = reach(a, b);
+    let [left, top, right, bottom] = bounds(a, b);
+    let (left, right) = (left - origin[0], right - origin[0]);
+    // Rows whose centres may lie within.
+    let (top, bottom) = (max(top - origin[1] - 0.5, 0.0), min(bottom - origin[1] + 0.5, TILE as f32 - 0.5));
+    if top > bottom || left >= TILE as f32 || right < 0.0 {
+        return;
+    }
+    let (half_a, half_b) = (max(a.half_width, 0.5), max(b.half_width, 0.5));
+    let (opacity_a, opacity_b) =
+        (opacity * min(a.half_width * 2.0, 1.0), opacity * min(b.half_width * 2.0, 1.0));
+    let streaked = max(half_a, half_b) > 0.8;
+    let (y0, y1) = (top as usize, bottom as usize);
+    // Where a row crosses the ribbon: a middle that moves from row to row, and half a width.
+    let steep = nx.abs() > 0.05;
+    let (slope, half_run) = if steep { (ny / nx, reach / nx.abs()) } else { (0.0, f32::INFINITY) };
+    for y in y0..=y1 {
+        let cy = y as f32 + 0.5;
+        let middle = ax - slope * (cy - ay);
+        let (from, to) = (max(left, middle - half_run), min(right, middle + half_run));
+        let (from, to) = (max(from - 0.5, 0.0), min(to + 0.5, TILE as f32 - 0.5));
+        if from > to {
+            continue;
+        }
+        // Runs begin at multiples of their length: what the last segment stored is loaded as it was stored, which
+        // processors wait for otherwise.
+        for x in (from as usize / LANES * LANES..=to as usize).step_by(LANES) {
+            if !sink.is_open(y * STRIDE + x) {
+                continue;
+            }
+            let mut span = Span {
+                at: y * STRIDE + x,
+                x,
+                alpha: [0.0; LANES],
+                depth: [0.0; LANES],
+                along: [0.0; LANES],
+                gain: [1.0; LANES],
+            };
+            for lane in 0..LANES {
+                let cx = (x + lane) as f32 + 0.5;
+                let (px, py) = (cx - ax, cy - ay);
+                let after_a = px * a.run_x + py * a.run_y;
+                let after_b = (cx - bx) * b.run_x + (cy - by) * b.run_y;
+                let inside = (after_a >= 0.0) & (after_b < 0.0);
+                let along = after_a / max(after_a - after_b, 1e-6);
+                let along = saturate(along);
+                let offset = px * nx + py * ny;
+                let half = half_a + (half_b - half_a) * along;
+                let coverage = saturate(half + 0.5 - offset.abs());
+                let opacity = opacity_a + (opacity_b - opacity_a) * along;
+                span.alpha[lane] = if inside { opacity * coverage } else { 0.0 };
+                span.depth[lane] = a.depth + (b.depth - a.depth) * along;
+                span.along[lane] = along;
+                span.gain[lane] = offset / half;
+            }
+            if streaked {
+                // A drawn strand stands for many hairs: where it is wide enough to show them, it is streaked.
+                for lane in 0..LANES {
+                    let across = span.gain[lane];
+                    let half = half_a + (half_b - half_a) * span.along[lane];
+                    let wide = smoothstep(0.8, 2.0, half);
+                    let wave = wide
+                        * (sin(across * 5.0 + a.hash * 41.0) * 0.6
+                            + sin(across * 11.0 - a.hash * 73.0) * 0.4);
+                    span.alpha[lane] = saturate(span.alpha[lane] * (1.0 + 0.22 * wave));
+                    span.gain[lane] = 1.0 + 0.18 * wave;
+                }
+            } else {
+                span.gain = [1.0; LANES];
+            }
+            sink.take(a, b, &span);
+        }
+    }
+}

@@ -1,0 +1,23 @@
+//! The CPU backend: the whole picture on the processor, without a graphics driver.
+//!
+//! What the shaders of the GPU backend say is said here once more, in loops over fixed-size arrays that the
+//! compiler turns into vector instructions. The picture is cut into tiles, and each tile is drawn whole by one
+//! thread: the body's visible samples, then the hair before them from near to far, then the light of what is
+//! still seen behind it, then tone mapping. No tile's result depends on another's, and every sum is taken in a
+//! fixed order: the same bytes for any number of threads and any width of vectors.
+
+mod backdrop;
+mod bins;
+mod body_depth;
+mod dispatch;
+mod hair;
+mod math;
+mod points;
+mod renderer;
+mod surface;
+mod tile;
+mod tone;
+mod transparency;
+mod view;
+
+pub use renderer::CpuRenderer;

@@ -1,0 +1,307 @@
+//! One picture from top to bottom, on the processor.
+
+use std::sync::{Mutex, PoisonError};
+
+use glam::Vec3;
+use lovelock_gpu::Stopwatch;
+use lovelock_groom::simd::Width;
+use lovelock_motion::{Body, Skin};
+use rayon::prelude::*;
+
+use super::bins::Bins;
+use super::body_depth::{self, DepthMap};
+use super::dispatch;
+use super::hair::blend::BlendTile;
+use super::hair::list::{Fragments, ListTile};
+use super::hair::order::SegmentKeys;
+use super::hair::segment::{bounds, is_drawn};
+use super::points::{PointsIn, ShadedPoint, shade_all};
+use super::surface::PlacedSurface;
+use super::surface::light::SurfaceLight;
+use super::surface::raster::{Occlusion, SurfaceSamples, TriangleTile};
+use super::tile::{Grid, HairPlanes, PixelsIn, SurfacePlanes, TILE, TILE_BYTES};
+use super::transparency::resolve_tile;
+use super::view::View;
+use crate::light_view::{bounding_sphere, light_view};
+use crate::picture::check_size;
+use crate::shadow_stage::ShadowStage;
+use crate::strand_details::StrandDetails;
+use crate::uniform::{FrameUniform, LightMaps};
+use crate::{DrawTimes, FrameInput, FrameStats, MAX_LIGHTS, MOST_SIDE, Picture, RenderError, Transparency};
+
+/// Texels along each edge of the body's depth maps.
+const DEPTH_TEXELS: u32 = body_depth::SIZE as u32;
+
+/// Draws pictures on the processor, and keeps what it needs for the next one.
+#[derive(Debug)]
+pub struct CpuRenderer {
+    width: Width,
+    shadow: ShadowStage,
+    details: StrandDetails,
+    points: Vec<ShadedPoint>,
+    keys: SegmentKeys,
+    segment_bins: Bins,
+    surface: PlacedSurface,
+    depth: Vec<DepthMap>,
+    tiles: Vec<u8>,
+    scratch: Mutex<Vec<Box<Scratch>>>,
+}
+
+/// What a thread needs to draw a tile.
+#[derive(Debug, Default)]
+struct Scratch {
+    samples: SurfaceSamples,
+    hidden: Occlusion,
+    hair: HairPlanes,
+    surface: SurfacePlanes,
+    light: SurfaceLight,
+    order: Vec<u64>,
+    segments: Vec<[ShadedPoint; 2]>,
+    fragments: Fragments,
+}
+
+impl Default for CpuRenderer {
+    fn default() -> Self {
+        Self {
+            width: Width::widest(),
+            shadow: ShadowStage::default(),
+            details: StrandDetails::default(),
+            points: Vec::new(),
+            keys: SegmentKeys::default(),
+            segment_bins: Bins::default(),
+            surface: PlacedSurface::default(),
+            depth: Vec::new(),
+            tiles: Vec::new(),
+            scratch: Mutex::default(),
+        }
+    }
+}
+
+impl CpuRenderer {
+    /// A renderer whose loops are compiled for `width`, which the processor must have: for tests of equality.
+    ///
+    /// # Panics
+    /// Where the processor has no such vectors.
+    pub fn with_width(width: Width) -> Self {
+        assert!(width.is_available(), "{width:?} on a processor without");
+        Self { width, ..Self::default() }
+    }
+
+    /// What draws, in words: the vectors that are used.
+    pub fn adapter() -> String {
+        let threads = rayon::current_num_threads();
+        format!("processor ({:?}, {threads} threads)", Width::widest())
+    }
+
+    /// Draws `input` at `width` by `height` pixels.
+    ///
+    /// # Errors
+    /// A size out of range, or a shadow that needs too much memory.
+    pub fn picture(
+        &mut self,
+        input: &FrameInput,
+        width: u32,
+        height: u32,
+        picture: &mut Picture,
+    ) -> Result<FrameStats, RenderError> {
+        check_size(width, height, MOST_SIDE)?;
+        let watch = Stopwatch::start();
+        self.shadow.run(input)?;
+        let shadow_ms = watch.ms();
+
+        let watch = Stopwatch::start();
+        let mut times = DrawTimes::default();
+        let body = input.body.map(|(body, skin)| (&**body, skin));
+        let maps = self.draw_depth(input, body);
+        let uniform = FrameUniform::new(input, width, height, &maps, DEPTH_TEXELS);
+        let view = View::new(&uniform, &self.depth, &self.shadow.columns, DEPTH_TEXELS);
+        times.body_depth = watch.ms();
+
+        let part = Stopwatch::start();
+        self.details.follow(input.style);
+        let points_in = PointsIn {
+            strands: input.strands,
+            details: &self.details.words,
+            transmittance: &self.shadow.at_points,
+        };
+        shade_all(self.width, &view, &points_in, &mut self.points);
+        times.points = part.ms();
+
+        let part = Stopwatch::start();
+        let grid = Grid::new(width, height);
+        self.surface.place(uniform.clip_from_world, &grid, body);
+        let (points, segments) = (&self.points, &self.details.segments);
+        self.segment_bins.fill(segments.len(), grid.columns, grid.rows, |i| {
+            let first = segments[i] as usize;
+            let (a, b) = (points.get(first)?, points.get(first + 1)?);
+            if is_drawn(a, b) { grid.range(bounds(a, b)) } else { None }
+        });
+        if input.picture.transparency == Transparency::Sorted {
+            let forward = (input.camera.target - input.camera.eye).normalize_or_zero();
+            self.keys.measure(input.strands, segments, forward);
+        }
+        times.sort = part.ms();
+
+        let part = Stopwatch::start();
+        self.tiles.resize(grid.columns * grid.rows * TILE_BYTES, 0);
+        let mut tiles = std::mem::take(&mut self.tiles);
+        tiles.par_chunks_mut(TILE_BYTES).enumerate().for_each_init(
+            || Lease::take(&self.scratch),
+            |lease, (tile, out)| self.draw_tile(&view, &grid, input, body, tile, lease.get(), out),
+        );
+        copy_rows(&tiles, &grid, picture);
+        self.tiles = tiles;
+        times.tiles = part.ms();
+        Ok(FrameStats {
+            shadow_ms,
+            draw_ms: watch.ms(),
+            draw: Some(times),
+            segments: self.details.segments.len() as u64,
+            shadow_bytes: self.shadow.bytes,
+            mean_transmittance: self.shadow.mean,
+        })
+    }
+
+    /// Draws the body as each light sees it.
+    fn draw_depth(&mut self, input: &FrameInput, body: Option<(&Body, &Skin)>) -> Vec<LightMaps> {
+        let positions: &[Vec3] = body.map_or(&[], |(_, skin)| &skin.positions);
+        let triangles: &[[u32; 3]] = body.map_or(&[], |(body, _)| &body.mesh.triangles);
+        let (center, radius) = bounding_sphere(positions);
+        let lights: Vec<_> = input.lights.iter().filter(|light| light.enabled).take(MAX_LIGHTS).collect();
+        self.depth.resize_with(lights.len(), DepthMap::default);
+        let mut maps = Vec::with_capacity(lights.len());
+        for ((k, light), depth) in lights.into_iter().enumerate().zip(&mut self.depth) {
+            let view = light_view(light.clamped().direction, center, radius, DEPTH_TEXELS);
+            depth.draw(self.width, view.shadow_from_world, positions, triangles);
+            maps.push(LightMaps { columns_from_world: self.shadow.columns_from_world(k), ..view });
+        }
+        maps
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "what a tile is drawn from, once")]
+    fn draw_tile(
+        &self,
+        view: &View,
+        grid: &Grid,
+        input: &FrameInput,
+        body: Option<(&Body, &Skin)>,
+        tile: usize,
+        scratch: &mut Scratch,
+        out: &mut [u8],
+    ) {
+        let origin = grid.origin(tile);
+        scratch.samples.clear();
+        scratch.hidden.clear();
+        scratch.hair.clear();
+        scratch.surface.clear();
+        let triangles = self.surface.bins.of(tile);
+        if let Some((body, _)) = body
+            && !triangles.is_empty()
+        {
+            let input = TriangleTile {
+                origin,
+                vertices: &self.surface.vertices,
+                triangles: &body.mesh.triangles,
+                list: triangles,
+            };
+            dispatch::triangles(self.width, &input, &mut scratch.samples, &mut scratch.hidden);
+        }
+        let segments = self.segment_bins.of(tile);
+        if !segments.is_empty() {
+            self.draw_hair(view, input.picture.transparency, origin, segments, scratch);
+        }
+        if let Some((body, skin)) = body
+            && !triangles.is_empty()
+        {
+            let surface = (&self.surface, body, skin, &self.shadow.at_vertices[..]);
+            scratch.light.shade_tile(
+                self.width,
+                view,
+                origin,
+                surface,
+                (&scratch.samples, &scratch.hair),
+                &mut scratch.surface,
+            );
+        }
+        let pixels = PixelsIn { origin, hair: &scratch.hair, surface: &scratch.surface };
+        dispatch::finish(self.width, view, &pixels, out);
+    }
+
+    fn draw_hair(
+        &self,
+        view: &View,
+        transparency: Transparency,
+        origin: [f32; 2],
+        segments: &[u32],
+        scratch: &mut Scratch,
+    ) {
+        let opacity = view.uniform.width_opacity_tip_scalp.y;
+        match transparency {
+            Transparency::Sorted => {
+                self.keys.sort(segments, &self.details.segments, &mut scratch.order);
+                scratch.segments.clear();
+                scratch.segments.extend(scratch.order.iter().map(|&first| {
+                    let first = first as u32 as usize;
+                    [self.points[first], self.points[first + 1]]
+                }));
+                let input =
+                    BlendTile { origin, segments: &scratch.segments, hidden: &scratch.hidden, opacity };
+                dispatch::blend(self.width, &input, &mut scratch.hair);
+            }
+            Transparency::Opaque
+            | Transparency::WeightedAverage
+            | Transparency::OccupancyOrder
+            | Transparency::Exact => {
+                let input = ListTile {
+                    origin,
+                    points: &self.points,
+                    segments,
+                    first_points: &self.details.segments,
+                    samples: &scratch.samples,
+                    opacity,
+                };
+                dispatch::list(self.width, &input, &mut scratch.fragments);
+                resolve_tile(transparency, &mut scratch.fragments, &mut scratch.hair);
+            }
+        }
+    }
+}
+
+/// Scratch memory that goes back when the task is done.
+struct Lease<'a> {
+    pool: &'a Mutex<Vec<Box<Scratch>>>,
+    scratch: Option<Box<Scratch>>,
+}
+
+impl<'a> Lease<'a> {
+    fn take(pool: &'a Mutex<Vec<Box<Scratch>>>) -> Self {
+        let scratch = pool.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        Self { pool, scratch }
+    }
+
+    fn get(&mut self) -> &mut Scratch {
+        self.scratch.get_or_insert_default()
+    }
+}
+
+impl Drop for Lease<'_> {
+    fn drop(&mut self) {
+        if let Some(scratch) = self.scratch.take() {
+            self.pool.lock().unwrap_or_else(PoisonError::into_inner).push(scratch);
+        }
+    }
+}
+
+/// Puts finished tiles into the rows of a picture.
+fn copy_rows(tiles: &[u8], grid: &Grid, picture: &mut Picture) {
+    (picture.width, picture.height) = (grid.width, grid.height);
+    let row_bytes = grid.width as usize * 4;
+    picture.rgba.resize(row_bytes * grid.height as usize, 0);
+    picture.rgba.par_chunks_mut(row_bytes).with_min_len(TILE).enumerate().for_each(|(y, row)| {
+        let first = y / TILE * grid.columns;
+        for (column, out) in row.chunks_mut(TILE * 4).enumerate() {
+            let start = (first + column) * TILE_BYTES + y % TILE * TILE * 4;
+            out.copy_from_slice(&tiles[start..start + out.len()]);
+        }
+    });
+}

@@ -1,0 +1,131 @@
+//! The body's light in a tile: which places of it are seen, and their attributes.
+
+use lovelock_groom::simd::Width;
+use lovelock_motion::{Body, Skin};
+
+use super::PlacedSurface;
+use super::raster::{Edges, NOTHING, SurfaceSamples};
+use super::shade::{LANES, SurfaceBatch};
+use crate::cpu::dispatch;
+use crate::cpu::tile::{HairPlanes, STRIDE, SurfacePlanes, TILE, UNSEEN};
+use crate::cpu::view::View;
+
+/// Two samples of a pixel that are nearer to each other than this part of their distance show the same surface.
+const SAME_SURFACE: f32 = 0.004;
+
+/// The places of a tile that wait for their light.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SurfaceLight {
+    batch: SurfaceBatch,
+}
+
+/// The body: where it lies in the picture, its mesh, where it is, and one word of transmittances a vertex.
+type Surface<'a> = (&'a PlacedSurface, &'a Body, &'a Skin, &'a [u32]);
+
+impl SurfaceLight {
+    /// Shades every place of the body that is seen in a tile.
+    pub fn shade_tile(
+        &mut self,
+        width: Width,
+        view: &View,
+        origin: [f32; 2],
+        surface: Surface,
+        (samples, hair): (&SurfaceSamples, &HairPlanes),
+        out: &mut SurfacePlanes,
+    ) {
+        self.batch.count = 0;
+        let mut last: Option<(u32, Edges)> = None;
+        for y in 0..TILE {
+            for x in 0..TILE {
+                let at = y * STRIDE + x;
+                if hair.through[at] <= UNSEEN {
+                    continue;
+                }
+                let ids = samples.triangles(at);
+                let depths = samples.depths(at);
+                let mut left = ids.map(|id| id != NOTHING);
+                out.cover[at] = 0.25 * left.iter().filter(|left| **left).count() as f32;
+                for s in 0..4 {
+                    if !left[s] {
+                        continue;
+                    }
+                    let mut weight = 0.0;
+                    for other in s..4 {
+                        let same = ids[other] == ids[s]
+                            || (depths[other] - depths[s]).abs() <= SAME_SURFACE * depths[s];
+                        if left[other] && same {
+                            left[other] = false;
+                            weight += 0.25;
+                        }
+                    }
+                    let edges = match last {
+                        Some((id, edges)) if id == ids[s] => edges,
+                        _ => {
+                            let (placed, body, ..) = surface;
+                            let corners =
+                                body.mesh.triangles[ids[s] as usize].map(|i| placed.vertices[i as usize]);
+                            let Some(edges) = Edges::new(corners, origin) else { continue };
+                            last = Some((ids[s], edges));
+                            edges
+                        }
+                    };
+                    let shares = edges.shares(x as f32 + 0.5, y as f32 + 0.5);
+                    self.push(surface, ids[s], shares, at, weight);
+                    if self.batch.count == LANES {
+                        self.flush(width, view, out);
+                    }
+                }
+            }
+        }
+        if self.batch.count > 0 {
+            self.flush(width, view, out);
+        }
+    }
+
+    fn push(&mut self, surface: Surface, triangle: u32, shares: [f32; 3], pixel: usize, weight: f32) {
+        let (_, body, skin, hair) = surface;
+        let batch = &mut self.batch;
+        let lane = batch.count;
+        let corners = body.mesh.triangles[triangle as usize].map(|i| i as usize);
+        let mut position = [0.0; 3];
+        let mut normal = [0.0; 3];
+        let mut albedo = [0.0; 3];
+        let mut scalp = 0.0;
+        let mut through = [0.0; 4];
+        for (&i, share) in corners.iter().zip(shares) {
+            let (p, n) = (skin.positions[i], skin.normals[i]);
+            let color = body.mesh.colors.get(i).copied().unwrap_or(glam::Vec3::splat(0.5));
+            for c in 0..3 {
+                position[c] += share * p[c];
+                normal[c] += share * n[c];
+                albedo[c] += share * color[c];
+            }
+            scalp += share * body.mesh.scalp.get(i).copied().unwrap_or(0.0);
+            let word = hair.get(i).copied().unwrap_or(u32::MAX);
+            for (k, through) in through.iter_mut().enumerate() {
+                *through += share * (word >> (8 * k) & 0xff) as f32 * (1.0 / 255.0);
+            }
+        }
+        for c in 0..3 {
+            batch.position[c][lane] = position[c];
+            batch.normal[c][lane] = normal[c];
+            batch.albedo[c][lane] = albedo[c];
+        }
+        batch.scalp[lane] = scalp;
+        for (plane, through) in batch.hair.iter_mut().zip(through) {
+            plane[lane] = through;
+        }
+        (batch.pixel[lane], batch.weight[lane]) = (pixel, weight);
+        batch.count += 1;
+    }
+
+    fn flush(&mut self, width: Width, view: &View, out: &mut SurfacePlanes) {
+        dispatch::surface(width, view, &mut self.batch);
+        for lane in 0..self.batch.count {
+            for (plane, color) in out.color.iter_mut().zip(&self.batch.color) {
+                plane[self.batch.pixel[lane]] += self.batch.weight[lane] * color[lane];
+            }
+        }
+        self.batch.count = 0;
+    }
+}

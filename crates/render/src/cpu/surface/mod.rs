@@ -1,0 +1,75 @@
+//! The body on the processor: placed once a frame, drawn tile by tile, shaded where it is seen.
+
+pub(super) mod light;
+pub(super) mod raster;
+pub(super) mod shade;
+
+use glam::{Mat4, Vec3};
+use lovelock_motion::{Body, Skin};
+use rayon::prelude::*;
+
+use super::bins::{Bins, TileRange};
+use super::tile::{Grid, TILE};
+use crate::camera::NEAR_METRES;
+
+/// The body as the camera sees it.
+#[derive(Clone, Debug, Default)]
+pub(super) struct PlacedSurface {
+    /// Pixels from the left and top times w, and w.
+    pub vertices: Vec<[f32; 3]>,
+    /// Triangles that touch each tile.
+    pub bins: Bins,
+}
+
+impl PlacedSurface {
+    /// Places the vertices and sorts the triangles into tiles.
+    pub fn place(&mut self, clip_from_world: Mat4, grid: &Grid, body: Option<(&Body, &Skin)>) {
+        let none: (&[Vec3], &[[u32; 3]]) = (&[], &[]);
+        let (positions, triangles) =
+            body.map_or(none, |(body, skin)| (&skin.positions[..], &body.mesh.triangles[..]));
+        let (width, height) = (grid.width as f32, grid.height as f32);
+        positions
+            .par_iter()
+            .with_min_len(4096)
+            .map(|p| {
+                let at = clip_from_world * p.extend(1.0);
+                [(at.x + at.w) * (0.5 * width), (at.w - at.y) * (0.5 * height), at.w]
+            })
+            .collect_into_vec(&mut self.vertices);
+        let vertices = &self.vertices;
+        self.bins.fill(triangles.len(), grid.columns, grid.rows, |i| {
+            let mut corners = [[0.0; 3]; 3];
+            for (corner, &at) in corners.iter_mut().zip(&triangles[i]) {
+                *corner = *vertices.get(at as usize)?;
+            }
+            tiles_of(corners, grid)
+        });
+    }
+}
+
+/// The tiles that a triangle may touch.
+fn tiles_of(corners: [[f32; 3]; 3], grid: &Grid) -> Option<TileRange> {
+    if !corners.as_flattened().iter().all(|c| c.is_finite()) || corners.iter().all(|c| c[2] <= NEAR_METRES) {
+        return None;
+    }
+    let bounds = pixel_bounds(corners);
+    grid.range(bounds.unwrap_or([0.0, 0.0, grid.width as f32, grid.height as f32]))
+}
+
+/// Left, top, right and bottom of a triangle in pixels; none where it passes the near plane and may reach
+/// anywhere.
+#[inline(always)]
+pub(super) fn pixel_bounds(corners: [[f32; 3]; 3]) -> Option<[f32; 4]> {
+    let mut bounds = [f32::INFINITY, f32::INFINITY, f32::NEG_INFINITY, f32::NEG_INFINITY];
+    for [x, y, w] in corners {
+        if w <= NEAR_METRES {
+            return None;
+        }
+        let inverse = 1.0 / w;
+        let (x, y) = (x * inverse, y * inverse);
+        bounds = [bounds[0].min(x), bounds[1].min(y), bounds[2].max(x), bounds[3].max(y)];
+    }
+    Some(bounds)
+}
+
+const _: () = assert!(TILE.is_multiple_of(8), "rows of a tile are drawn eight pixels at a time");

@@ -1,0 +1,318 @@
+//! Which triangle each sample of a tile shows.
+//!
+//! Edges are planes in the homogeneous coordinates of the picture (Olano, Greer 1997, "Triangle Scan
+//! Conversion using 2D Homogeneous Coordinates"), so that a triangle through the near plane needs no clipping.
+// Compiled within the versions of `dispatch`.
+#![allow(clippy::inline_always)]
+
+use super::pixel_bounds;
+use crate::camera::NEAR_METRES;
+use crate::cpu::math::{max, min, three};
+use crate::cpu::tile::{Plane, STRIDE, TILE};
+
+/// Samples of a pixel and where they lie in it: the usual pattern of graphics cards.
+pub(crate) const SAMPLES: [[f32; 2]; 4] = [[0.375, 0.125], [0.875, 0.375], [0.125, 0.625], [0.625, 0.875]];
+/// No triangle.
+pub(crate) const NOTHING: u32 = u32::MAX;
+/// Pixels that are drawn together, and their samples.
+const PIXELS: usize = 4;
+const LANES: usize = PIXELS * SAMPLES.len();
+
+/// Depth and triangle of each sample of a tile, the samples of a pixel side by side; a row has [`STRIDE`] pixels.
+#[derive(Clone, Debug)]
+pub(crate) struct SurfaceSamples {
+    /// 1 at the near plane, 0 where there is nothing.
+    pub depth: [f32; TILE * STRIDE * SAMPLES.len()],
+    pub triangle: [u32; TILE * STRIDE * SAMPLES.len()],
+}
+
+impl Default for SurfaceSamples {
+    fn default() -> Self {
+        Self {
+            depth: [0.0; TILE * STRIDE * SAMPLES.len()],
+            triangle: [NOTHING; TILE * STRIDE * SAMPLES.len()],
+        }
+    }
+}
+
+impl SurfaceSamples {
+    pub fn clear(&mut self) {
+        self.depth.fill(0.0);
+        self.triangle.fill(NOTHING);
+    }
+
+    /// Depths of the samples of the pixel at `at`.
+    #[inline(always)]
+    pub fn depths(&self, at: usize) -> [f32; SAMPLES.len()] {
+        let at = at * SAMPLES.len();
+        [self.depth[at], self.depth[at + 1], self.depth[at + 2], self.depth[at + 3]]
+    }
+
+    /// Triangles of the samples of the pixel at `at`.
+    pub fn triangles(&self, at: usize) -> [u32; SAMPLES.len()] {
+        let at = at * SAMPLES.len();
+        [self.triangle[at], self.triangle[at + 1], self.triangle[at + 2], self.triangle[at + 3]]
+    }
+}
+
+/// What the body hides of each pixel of a tile: what lies behind `near` is hidden in the part `share` of the
+/// pixel, and what lies behind `far` wholly.
+#[derive(Clone, Debug)]
+pub(crate) struct Occlusion {
+    pub near: Plane,
+    pub far: Plane,
+    pub share: Plane,
+}
+
+impl Default for Occlusion {
+    fn default() -> Self {
+        Self { near: [0.0; TILE * STRIDE], far: [0.0; TILE * STRIDE], share: [0.0; TILE * STRIDE] }
+    }
+}
+
+impl Occlusion {
+    pub fn clear(&mut self) {
+        self.near.fill(0.0);
+        self.far.fill(0.0);
+        self.share.fill(0.0);
+    }
+
+    /// Gathers the samples of each pixel: the nearest, the farthest, and how many are with the nearest.
+    #[inline(always)]
+    pub fn gather(&mut self, samples: &SurfaceSamples) {
+        for at in 0..TILE * STRIDE {
+            let d = samples.depths(at);
+            let near = max(max(d[0], d[1]), max(d[2], d[3]));
+            let far = min(min(d[0], d[1]), min(d[2], d[3]));
+            let middle = 0.5 * (near + far);
+            let with = |d: f32| if d >= middle { 0.25 } else { 0.0 };
+            (self.near[at], self.far[at]) = (near, far);
+            self.share[at] = with(d[0]) + with(d[1]) + with(d[2]) + with(d[3]);
+        }
+    }
+}
+
+/// What to draw into a tile.
+pub(crate) struct TriangleTile<'a> {
+    /// Pixels of the tile's corner.
+    pub origin: [f32; 2],
+    /// Pixels from the left and top times w, and w.
+    pub vertices: &'a [[f32; 3]],
+    pub triangles: &'a [[u32; 3]],
+    /// The triangles that touch the tile.
+    pub list: &'a [u32],
+}
+
+/// The three edges of a triangle as planes over a tile.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Edges {
+    /// Each edge's share of its opposite corner is `a x + b y + c`, up to a common factor; not below 0 inside.
+    pub planes: [[f32; 3]; 3],
+    /// Their sum times this is 1/w.
+    pub scale: f32,
+}
+
+impl Edges {
+    /// None where the triangle has no area or is not finite.
+    #[inline(always)]
+    pub fn new(corners: [[f32; 3]; 3], origin: [f32; 2]) -> Option<Self> {
+        let local = |[x, y, w]: [f32; 3]| [x - origin[0] * w, y - origin[1] * w, w];
+        let [p, q, r] = [local(corners[0]), local(corners[1]), local(corners[2])];
+        let cross = |a: [f32; 3], b: [f32; 3]| {
+            [a[1] * b[2] - b[1] * a[2], b[0] * a[2] - a[0] * b[2], a[0] * b[1] - b[0] * a[1]]
+        };
+        let planes = [cross(q, r), cross(r, p), cross(p, q)];
+        let volume = p[0] * planes[0][0] + p[1] * planes[0][1] + p[2] * planes[0][2];
+        if !volume.is_finite() || volume == 0.0 {
+            return None;
+        }
+        let sign = 1.0_f32.copysign(volume);
+        Some(Self {
+            planes: [scaled(planes[0], sign), scaled(planes[1], sign), scaled(planes[2], sign)],
+            scale: sign / volume,
+        })
+    }
+
+    /// The shares of the corners at a point of the tile, perspective undone; they sum to 1.
+    #[inline(always)]
+    pub fn shares(&self, x: f32, y: f32) -> [f32; 3] {
+        // A pixel that is covered in part may have its centre outside: the nearest point inside will do.
+        let e = three(|i| max(at(self.planes[i], x, y), 0.0));
+        let sum = e[0] + e[1] + e[2];
+        if sum > 0.0 { [e[0] / sum, e[1] / sum, e[2] / sum] } else { [1.0, 0.0, 0.0] }
+    }
+}
+
+#[inline(always)]
+fn at([a, b, c]: [f32; 3], x: f32, y: f32) -> f32 {
+    a * x + b * y + c
+}
+
+#[inline(always)]
+fn scaled([a, b, c]: [f32; 3], by: f32) -> [f32; 3] {
+    [a * by, b * by, c * by]
+}
+
+/// Draws triangles into a tile, the nearest one in front.
+#[inline(always)]
+pub(crate) fn raster_triangles(input: &TriangleTile, out: &mut SurfaceSamples, hidden: &mut Occlusion) {
+    raster(input, out);
+    hidden.gather(out);
+}
+
+#[inline(always)]
+fn raster(input: &TriangleTile, out: &mut SurfaceSamples) {
+    for &id in input.list {
+        let [i, j, k] = input.triangles[id as usize];
+        let corners = [input.vertices[i as usize], input.vertices[j as usize], input.vertices[k as usize]];
+        let Some(edges) = Edges::new(corners, input.origin) else { continue };
+        let tile = TILE as f32;
+        let [left, top, right, bottom] = match pixel_bounds(corners) {
+            Some([l, t, r, b]) => {
+                [l - input.origin[0], t - input.origin[1], r - input.origin[0], b - input.origin[1]]
+            }
+            None => [0.0, 0.0, tile, tile],
+        };
+        if right < 0.0 || bottom < 0.0 || left >= tile || top >= tile {
+            continue;
+        }
+        let (x0, x1) = (left.max(0.0) as usize, right.min(tile - 1.0) as usize);
+        let (y0, y1) = (top.max(0.0) as usize, bottom.min(tile - 1.0) as usize);
+        let near = edges.scale * NEAR_METRES;
+        // Each plane from the first sample of a run to the others.
+        let mut steps = [[0.0; LANES]; 3];
+        for (steps, [a, b, _]) in steps.iter_mut().zip(edges.planes) {
+            for lane in 0..LANES {
+                steps[lane] = a * OFFSETS[0][lane] + b * OFFSETS[1][lane];
+            }
+        }
+        for y in y0..=y1 {
+            for x in (x0..=x1).step_by(PIXELS) {
+                let (fx, fy) = (x as f32, y as f32);
+                let start = three(|i| at(edges.planes[i], fx, fy));
+                raster_run(start, &steps, near, id, (y * STRIDE + x) * SAMPLES.len(), out);
+            }
+        }
+    }
+}
+
+/// Where the samples of a run of pixels lie, from its corner.
+const OFFSETS: [[f32; LANES]; 2] = {
+    let mut offsets = [[0.0; LANES]; 2];
+    let mut lane = 0;
+    while lane < LANES {
+        let sample = SAMPLES[lane % SAMPLES.len()];
+        offsets[0][lane] = (lane / SAMPLES.len()) as f32 + sample[0];
+        offsets[1][lane] = sample[1];
+        lane += 1;
+    }
+    offsets
+};
+
+#[inline(always)]
+fn raster_run(
+    start: [f32; 3],
+    steps: &[[f32; LANES]; 3],
+    near: f32,
+    id: u32,
+    place: usize,
+    out: &mut SurfaceSamples,
+) {
+    // Runs are copied, worked on and put back whole: the compiler cannot know that planes do not overlap.
+    let mut depth = [0.0; LANES];
+    let mut shown = [0; LANES];
+    depth.copy_from_slice(&out.depth[place..place + LANES]);
+    shown.copy_from_slice(&out.triangle[place..place + LANES]);
+    let mut nearer = [0.0; LANES];
+    for lane in 0..LANES {
+        let e = [start[0] + steps[0][lane], start[1] + steps[1][lane], start[2] + steps[2][lane]];
+        let z = (e[0] + e[1] + e[2]) * near;
+        let inside = min(min(e[0], e[1]), e[2]) >= 0.0;
+        nearer[lane] = if inside & (z <= 1.0) { z } else { 0.0 };
+    }
+    for lane in 0..LANES {
+        shown[lane] = if nearer[lane] > depth[lane] { id } else { shown[lane] };
+    }
+    for lane in 0..LANES {
+        depth[lane] = max(nearer[lane], depth[lane]);
+    }
+    out.depth[place..place + LANES].copy_from_slice(&depth);
+    out.triangle[place..place + LANES].copy_from_slice(&shown);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn draw(triangles: &[[[f32; 3]; 3]]) -> Box<SurfaceSamples> {
+        let vertices: Vec<[f32; 3]> =
+            triangles.iter().flatten().map(|&[x, y, w]| [x * w, y * w, w]).collect();
+        let indices: Vec<[u32; 3]> =
+            (0..triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        let list: Vec<u32> = (0..triangles.len() as u32).collect();
+        let mut out = Box::<SurfaceSamples>::default();
+        let input =
+            TriangleTile { origin: [0.0, 0.0], vertices: &vertices, triangles: &indices, list: &list };
+        raster(&input, &mut out);
+        out
+    }
+
+    fn covered(out: &SurfaceSamples) -> usize {
+        let inside = |(i, id): &(usize, &u32)| i / SAMPLES.len() % STRIDE < TILE && **id != NOTHING;
+        out.triangle.iter().enumerate().filter(inside).count()
+    }
+
+    #[test]
+    fn two_halves_of_a_square_cover_it_whole_with_the_right_depth() {
+        let (a, b, c, d) = ([4.0, 4.0, 2.0], [20.0, 4.0, 2.0], [20.0, 28.0, 2.0], [4.0, 28.0, 2.0]);
+        let out = draw(&[[a, b, c], [a, d, c]]);
+        assert_eq!(covered(&out), 16 * 24 * 4);
+        assert!((out.depths(10 * STRIDE + 10)[0] - NEAR_METRES / 2.0).abs() < 1e-6);
+        assert_eq!(out.triangles(10 * STRIDE + 3), [NOTHING; 4]);
+    }
+
+    #[test]
+    fn the_nearer_one_is_seen_whatever_the_order() {
+        let far = [[0.0, 0.0, 3.0], [31.0, 0.0, 3.0], [0.0, 31.0, 3.0]];
+        let near = far.map(|[x, y, _]| [x, y, 1.0]);
+        let id = |triangles: &[_]| draw(triangles).triangles(5 * STRIDE + 5)[2];
+        assert_eq!(id(&[far, near]), 1);
+        assert_eq!(id(&[near, far]), 0);
+    }
+
+    #[test]
+    fn a_triangle_through_the_near_plane_is_cut_there() {
+        // A floor from far before the eye to behind it: w grows upward in the picture.
+        let corners = [[-400.0, 80.0, 5.0], [400.0, 80.0, 5.0], [16.0, 160.0, -1.0]];
+        let vertices: Vec<[f32; 3]> = corners.iter().map(|&[x, y, w]| [x, y, w]).collect();
+        let mut out = Box::<SurfaceSamples>::default();
+        let input =
+            TriangleTile { origin: [0.0, 0.0], vertices: &vertices, triangles: &[[0, 1, 2]], list: &[0] };
+        raster(&input, &mut out);
+        assert!(covered(&out) > 0, "what is before the eye is drawn");
+        assert!(out.depth.iter().all(|z| (0.0..=1.0).contains(z)));
+    }
+
+    #[test]
+    fn nonsense_draws_nothing() {
+        let out = draw(&[
+            [[f32::NAN, 0.0, 1.0], [9.0, 0.0, 1.0], [0.0, 9.0, 1.0]],
+            [[1.0, 1.0, 1.0], [9.0, 9.0, 1.0], [5.0, 5.0, 1.0]],
+            [[f32::INFINITY, 0.0, 1.0], [9.0, 0.0, 1.0], [0.0, 9.0, 1.0]],
+        ]);
+        assert_eq!(covered(&out), 0);
+    }
+
+    #[test]
+    fn shares_of_the_corners() {
+        let corners = [[0.0, 0.0, 1.0], [20.0, 0.0, 2.0], [0.0, 30.0, 3.0]];
+        let edges = Edges::new(corners, [0.0, 0.0]).expect("an area");
+        // Homogeneous: the corners lie at (0, 0), (10, 0) and (0, 10).
+        for (corner, at) in [(0, [0.0, 0.0]), (1, [10.0, 0.0]), (2, [0.0, 10.0])] {
+            assert!((edges.shares(at[0], at[1])[corner] - 1.0).abs() < 1e-5);
+        }
+        // Halfway on the screen is nearer to the near corner in space: shares 2/3 and 1/3 for w of 1 and 2.
+        let [a, b, _] = edges.shares(5.0, 0.0);
+        assert!((a - 2.0 / 3.0).abs() < 1e-5 && (b - 1.0 / 3.0).abs() < 1e-5, "{a} {b}");
+    }
+}

@@ -1,0 +1,138 @@
+//! Light on the body: the twin of `surface.wgsl`, some pixels at a time.
+// Compiled within the versions of `dispatch`.
+#![allow(clippy::inline_always)]
+
+use crate::cpu::math::{exp, exp2, log2, max, mix, pow, saturate, smoothstep};
+use crate::cpu::view::View;
+
+/// Places of the body that are shaded together.
+pub(crate) const LANES: usize = 16;
+type Lane = [f32; LANES];
+
+/// Places to shade, and the light that comes from them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SurfaceBatch {
+    /// Places that are used.
+    pub count: usize,
+    /// Which pixel of the tile each belongs to, and which part of it it fills.
+    pub pixel: [usize; LANES],
+    pub weight: Lane,
+    pub position: [Lane; 3],
+    pub normal: [Lane; 3],
+    pub albedo: [Lane; 3],
+    /// 1 where hair grows.
+    pub scalp: Lane,
+    /// Transmittance of hair toward each light.
+    pub hair: [Lane; 4],
+    /// The result, linear.
+    pub color: [Lane; 3],
+}
+
+/// Shades the places of `batch`.
+#[inline(always)]
+pub(crate) fn shade_batch(view: &View, batch: &mut SurfaceBatch) {
+    let uniform = view.uniform;
+    let eye = uniform.eye_lights.to_array();
+    // Under hair the skin is painted with the colour of the roots, so that gaps never read as baldness.
+    let absorption = uniform.absorption_variation.to_array();
+    let mut paint = [0.0; LANES];
+    for lane in 0..LANES {
+        paint[lane] = 0.88 * smoothstep(0.15, 0.75, batch.scalp[lane]);
+    }
+    let mut albedo = [[0.0; LANES]; 3];
+    for c in 0..3 {
+        let root = 0.3 * (exp(-2.8 * pow(max(absorption[c], 0.0), 0.7)) + 0.012);
+        for lane in 0..LANES {
+            albedo[c][lane] = mix(batch.albedo[c][lane], root, paint[lane]);
+        }
+    }
+    let mut toward_eye = [[0.0; LANES]; 3];
+    let mut normal = [[0.0; LANES]; 3];
+    let mut eye_length = [0.0; LANES];
+    let mut normal_length = [0.0; LANES];
+    for c in 0..3 {
+        for lane in 0..LANES {
+            let (v, n) = (eye[c] - batch.position[c][lane], batch.normal[c][lane]);
+            eye_length[lane] += v * v;
+            normal_length[lane] += n * n;
+            (toward_eye[c][lane], normal[c][lane]) = (v, n);
+        }
+    }
+    for lane in 0..LANES {
+        eye_length[lane] = 1.0 / max(eye_length[lane].sqrt(), 1e-6);
+        normal_length[lane] = 1.0 / max(normal_length[lane].sqrt(), 1e-6);
+    }
+    let mut facing_eye = [0.0; LANES];
+    for c in 0..3 {
+        for lane in 0..LANES {
+            toward_eye[c][lane] *= eye_length[lane];
+            normal[c][lane] *= normal_length[lane];
+            facing_eye[lane] += toward_eye[c][lane] * normal[c][lane];
+        }
+    }
+    let mut rim = [0.0; LANES];
+    for lane in 0..LANES {
+        let grazing = 1.0 - max(facing_eye[lane], 0.0);
+        rim[lane] = 0.6 * (grazing * grazing) * (grazing * grazing);
+    }
+
+    let mut sum = [[0.0; LANES]; 3];
+    let mut open = [0.0; LANES];
+    for (light, hair) in view.lights.iter().zip(&batch.hair) {
+        let l = (-light.direction).to_array();
+        let (radiance, specular) = (light.radiance.to_array(), light.specular);
+        let mut facing = [0.0; LANES];
+        let mut bias = [0.0; LANES];
+        // Light wraps a little round skin; the shadow map is asked only where light can come.
+        let mut reached = f32::NEG_INFINITY;
+        for lane in 0..LANES {
+            facing[lane] = normal[0][lane] * l[0] + normal[1][lane] * l[1] + normal[2][lane] * l[2];
+            open[lane] += hair[lane];
+            bias[lane] = 0.004 + 0.006 * (1.0 - saturate(facing[lane]));
+            reached = max(facing[lane], reached);
+        }
+        if reached <= -0.12 {
+            continue;
+        }
+        let mut place = [[0.0; LANES]; 3];
+        for c in 0..3 {
+            for lane in 0..LANES {
+                place[c][lane] = batch.position[c][lane] + normal[c][lane] * 0.002;
+            }
+        }
+        let lit = light.body_light(&place, &bias, &view.disc6);
+        let mut matt = [0.0; LANES];
+        let mut gloss = [0.0; LANES];
+        for lane in 0..LANES {
+            let (hx, hy, hz) =
+                (l[0] + toward_eye[0][lane], l[1] + toward_eye[1][lane], l[2] + toward_eye[2][lane]);
+            let inverse = 1.0 / max((hx * hx + hy * hy + hz * hz).sqrt(), 1e-6);
+            let nh = (normal[0][lane] * hx + normal[1][lane] * hy + normal[2][lane] * hz) * inverse;
+            let shine = exp2(24.0 * log2(max(nh, 1e-12)));
+            let share = lit[lane] * hair[lane];
+            matt[lane] = share * saturate((facing[lane] + 0.12) / 1.12) * 0.318;
+            gloss[lane] = share
+                * saturate(facing[lane])
+                * (0.014 * (1.0 - batch.scalp[lane]) * specular * (shine + rim[lane]));
+        }
+        for c in 0..3 {
+            let radiance = radiance[c];
+            for lane in 0..LANES {
+                sum[c][lane] += radiance * (albedo[c][lane] * matt[lane] + gloss[lane]);
+            }
+        }
+    }
+
+    let lights = view.lights.len();
+    let each = if lights > 0 { 1.0 / lights as f32 } else { 0.0 };
+    let closed = if lights > 0 { 0.0 } else { 1.0 };
+    let (below, above) = (view.ambient(-1.0), view.ambient(1.0));
+    for c in 0..3 {
+        let (below, above) = (below[c], above[c]);
+        for lane in 0..LANES {
+            let ambient = mix(below, above, 0.5 + 0.5 * normal[1][lane]);
+            let inside = 0.35 + 0.65 * (open[lane] * each + closed);
+            batch.color[c][lane] = sum[c][lane] + 0.5 * ambient * albedo[c][lane] * inside;
+        }
+    }
+}

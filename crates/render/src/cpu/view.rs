@@ -1,0 +1,146 @@
+//! What every stage knows of the picture: the same numbers that the shaders read, and the lights' maps.
+// Compiled within the versions of `dispatch`.
+#![allow(clippy::inline_always)]
+
+use glam::{Mat4, Vec2, Vec3};
+use lovelock_shadow::ColumnMap;
+
+use super::body_depth::DepthMap;
+use super::math::{floor, index_of, max, min, three};
+use crate::MAX_LIGHTS;
+use crate::uniform::FrameUniform;
+
+/// Most taps of a soft shadow's edge.
+pub(super) const MOST_TAPS: usize = 6;
+
+/// The picture's settings with the maps of its lights.
+pub(super) struct View<'a> {
+    pub uniform: &'a FrameUniform,
+    pub lights: Vec<LightView<'a>>,
+    /// Golden-angle discs of 3 and of 6 taps, as the shader has them.
+    pub disc3: [Vec2; 3],
+    pub disc6: [Vec2; MOST_TAPS],
+}
+
+/// One light.
+pub(super) struct LightView<'a> {
+    /// The way the light travels.
+    pub direction: Vec3,
+    /// How much of it makes highlights.
+    pub specular: f32,
+    pub radiance: Vec3,
+    /// Blur of the body's shadow, part of the map's edge.
+    blur: f32,
+    shadow_from_world: Mat4,
+    depth: &'a DepthMap,
+    columns: Option<&'a ColumnMap>,
+}
+
+impl<'a> View<'a> {
+    /// Joins what the shaders would read.
+    pub fn new(
+        uniform: &'a FrameUniform,
+        depth: &'a [DepthMap],
+        columns: &'a [Option<ColumnMap>],
+        texels: u32,
+    ) -> Self {
+        let count = (uniform.eye_lights.w as usize).min(MAX_LIGHTS);
+        let lights = uniform.lights[..count]
+            .iter()
+            .zip(depth)
+            .enumerate()
+            .map(|(k, (light, depth))| LightView {
+                direction: light.direction_specular.truncate(),
+                specular: light.direction_specular.w,
+                radiance: light.radiance_blur.truncate(),
+                blur: light.radiance_blur.w.max(1.0) / texels as f32,
+                shadow_from_world: light.shadow_from_world,
+                depth,
+                columns: columns.get(k).and_then(Option::as_ref),
+            })
+            .collect();
+        Self { uniform, lights, disc3: disc(), disc6: disc() }
+    }
+
+    /// Light from everywhere that reaches a surface whose normal has the height `up`.
+    #[inline(always)]
+    pub fn ambient(&self, up: f32) -> [f32; 3] {
+        let (below, above) = (self.uniform.ambient_down_texels, self.uniform.ambient_up_ground);
+        let t = 0.5 + 0.5 * up;
+        three(|c| below[c] + (above[c] - below[c]) * t)
+    }
+}
+
+/// A golden-angle disc: even at any number of taps, and the same for every pixel, so it never shimmers.
+fn disc<const N: usize>() -> [Vec2; N] {
+    std::array::from_fn(|k| {
+        let angle = 2.399_963_2 * k as f32;
+        Vec2::new(angle.cos(), angle.sin()) * ((k as f32 + 0.5) / N as f32).sqrt()
+    })
+}
+
+impl LightView<'_> {
+    /// Share of the light that the body lets through to some places, each of which is moved `bias` metres toward
+    /// the light first: the mean over the taps of `disc`.
+    #[inline(always)]
+    pub fn body_light<const N: usize>(&self, p: &[[f32; N]; 3], bias: &[f32; N], disc: &[Vec2]) -> [f32; N] {
+        let m = &self.shadow_from_world;
+        let (rx, ry, rz) = (m.row(0), m.row(1), m.row(2));
+        let toward = self.direction;
+        let mut u = [0.0; N];
+        let mut v = [0.0; N];
+        let mut z = [0.0; N];
+        let mut inside = [0.0; N];
+        for lane in 0..N {
+            let (x, y, w) = (
+                p[0][lane] - toward.x * bias[lane],
+                p[1][lane] - toward.y * bias[lane],
+                p[2][lane] - toward.z * bias[lane],
+            );
+            u[lane] = (rx.x * x + rx.y * y + rx.z * w + rx.w) * 0.5 + 0.5;
+            v[lane] = 0.5 - (ry.x * x + ry.y * y + ry.z * w + ry.w) * 0.5;
+            z[lane] = rz.x * x + rz.y * y + rz.z * w + rz.w;
+            let seen = (u[lane] >= 0.0) & (v[lane] >= 0.0) & (u[lane] <= 1.0) & (v[lane] <= 1.0);
+            inside[lane] = if seen { 1.0 } else { 0.0 };
+        }
+        if let Some(all) = self.depth.all_alike(&u, &v, &z, self.blur) {
+            let mut out = [1.0; N];
+            for lane in 0..N {
+                out[lane] = if inside[lane] > 0.0 { all } else { 1.0 };
+            }
+            return out;
+        }
+        let mut sum = [0.0; N];
+        for tap in disc {
+            self.depth.add_compared(&u, &v, &z, *tap * self.blur, &mut sum);
+        }
+        let share = 1.0 / disc.len() as f32;
+        for lane in 0..N {
+            sum[lane] = if inside[lane] > 0.0 { sum[lane] * share } else { 1.0 };
+        }
+        sum
+    }
+
+    /// Share of the light that all hair on the way lets through, for a point behind all of it.
+    pub fn columns_light(&self, p: Vec3) -> f32 {
+        let Some(map) = self.columns else { return 1.0 };
+        let m = &map.uv_from_world;
+        let at = m.x_axis * p.x + m.y_axis * p.y + m.z_axis * p.z + m.w_axis;
+        let inside = at.x >= 0.0 && at.y >= 0.0 && at.x <= 1.0 && at.y <= 1.0;
+        if !inside || map.size == 0 {
+            return 1.0;
+        }
+        let last = (map.size - 1) as f32;
+        let texel = |c: f32| {
+            let c = c * map.size as f32 - 0.5;
+            let low = floor(c);
+            let clamped = |c: f32| index_of(min(max(c, 0.0), last)) as usize;
+            (clamped(low), clamped(low + 1.0), c - low)
+        };
+        let ((x0, x1, fx), (y0, y1, fy)) = (texel(at.x), texel(at.y));
+        let size = map.size as usize;
+        let t = |x: usize, y: usize| map.transmittance.get(y * size + x).copied().unwrap_or(1.0);
+        let row = |y| t(x0, y) + (t(x1, y) - t(x0, y)) * fx;
+        row(y0) + (row(y1) - row(y0)) * fy
+    }
+}

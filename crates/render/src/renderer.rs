@@ -1,0 +1,94 @@
+//! One way to a picture, whatever draws it.
+
+use std::sync::Arc;
+
+use lovelock_gpu::{Gpu, GpuError};
+
+use crate::{Backend, CpuRenderer, FrameInput, FrameStats, GpuRenderer, Picture, RenderError};
+
+/// Draws pictures on the backend that was chosen, and keeps what it needs for the next one.
+#[derive(Debug)]
+pub struct Renderer {
+    choice: Backend,
+    gpu: Option<GpuRenderer>,
+    cpu: Option<Box<CpuRenderer>>,
+    adapter: String,
+}
+
+impl Renderer {
+    /// Opens what draws. [`Backend::Auto`] takes the graphics card where there is a real one.
+    ///
+    /// # Errors
+    /// No adapter for [`Backend::Gpu`], or one that cannot be used.
+    pub fn open(choice: Backend) -> Result<Self, RenderError> {
+        match choice {
+            Backend::Cpu => Ok(Self::on_processor(choice)),
+            Backend::Gpu => Self::on(Gpu::open()?, choice),
+            Backend::Auto => match Gpu::open() {
+                Ok(gpu) if !gpu.is_software() => Self::on(gpu, choice),
+                // What emulates a graphics card on the processor is slower than using the processor.
+                Ok(_) | Err(GpuError::NoAdapter(_) | GpuError::NoDevice { .. }) => {
+                    Ok(Self::on_processor(choice))
+                }
+                Err(error) => Err(error.into()),
+            },
+        }
+    }
+
+    /// Draws on a device that is open.
+    ///
+    /// # Errors
+    /// A shader that does not compile, by file and line.
+    pub fn on_device(gpu: Arc<Gpu>) -> Result<Self, RenderError> {
+        Self::on(gpu, Backend::Gpu)
+    }
+
+    fn on(gpu: Arc<Gpu>, choice: Backend) -> Result<Self, RenderError> {
+        let adapter = gpu.info.name.clone();
+        Ok(Self { choice, gpu: Some(GpuRenderer::new(gpu)?), cpu: None, adapter })
+    }
+
+    fn on_processor(choice: Backend) -> Self {
+        Self { choice, gpu: None, cpu: Some(Box::default()), adapter: CpuRenderer::adapter() }
+    }
+
+    /// What was asked for.
+    pub fn choice(&self) -> Backend {
+        self.choice
+    }
+
+    /// What draws: the graphics card or the processor.
+    pub fn backend(&self) -> Backend {
+        if self.gpu.is_some() { Backend::Gpu } else { Backend::Cpu }
+    }
+
+    /// The name of what draws: the adapter, or the processor's way.
+    pub fn adapter(&self) -> &str {
+        &self.adapter
+    }
+
+    /// Whether the processor does the drawing, by itself or as a software adapter.
+    pub fn is_software(&self) -> bool {
+        self.gpu.as_ref().is_none_or(|gpu| gpu.gpu().is_software())
+    }
+
+    /// Draws `input` at `width` by `height` pixels.
+    ///
+    /// # Errors
+    /// A size out of range, a shadow that needs too much memory, or a device that is lost.
+    pub fn picture(
+        &mut self,
+        input: &FrameInput,
+        width: u32,
+        height: u32,
+        picture: &mut Picture,
+    ) -> Result<FrameStats, RenderError> {
+        match &mut self.gpu {
+            // Where the choice is ours, what the card does not draw is drawn by the processor.
+            Some(gpu) if self.choice != Backend::Auto || input.picture.transparency.is_on_gpu() => {
+                gpu.picture(input, width, height, picture)
+            }
+            _ => self.cpu.get_or_insert_default().picture(input, width, height, picture),
+        }
+    }
+}

@@ -1,0 +1,49 @@
+//! What a hairstyle says of its strand points, whatever the instant.
+
+use std::sync::Arc;
+
+use lovelock_groom::Hairstyle;
+
+/// One packed word a point, and the list of segments; made anew when the hairstyle changes.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct StrandDetails {
+    style: Option<Arc<Hairstyle>>,
+    /// See [`pack_detail`].
+    pub words: Vec<u32>,
+    /// First point of each segment, in the order of strands.
+    pub segments: Vec<u32>,
+}
+
+impl StrandDetails {
+    /// Follows the hairstyle; says whether it is another one.
+    pub fn follow(&mut self, style: &Arc<Hairstyle>) -> bool {
+        if self.style.as_ref().is_some_and(|old| Arc::ptr_eq(old, style)) {
+            return false;
+        }
+        self.segments.clear();
+        self.words.clear();
+        self.words.resize(style.strands.points(), 0);
+        for (s, ends) in style.strands.first_point.windows(2).enumerate() {
+            let (first, end) = (ends[0], ends[1]);
+            self.segments.extend(first..end.saturating_sub(1).max(first));
+            for i in first..end {
+                self.words[i as usize] = pack_detail(
+                    style.strands.taper[i as usize],
+                    (i - first) as f32 / (end - first - 1).max(1) as f32,
+                    style.strands.shade[s],
+                    i == first,
+                    i + 1 == end,
+                );
+            }
+        }
+        self.style = Some(Arc::clone(style));
+        true
+    }
+}
+
+/// Taper, place along the strand (0 root, 1 tip) and shade in 8 bits each, then whether the point is the first
+/// and whether it is the last of its strand.
+fn pack_detail(taper: f32, along: f32, shade: f32, first: bool, last: bool) -> u32 {
+    let byte = |v: f32| (v.clamp(0.0, 1.0) * 255.0 + 0.5) as u32;
+    byte(taper) | byte(along) << 8 | byte(shade) << 16 | u32::from(first) << 24 | u32::from(last) << 25
+}
