@@ -124,14 +124,14 @@ impl Pipelines {
         });
         let ribbon_layout = pipeline_layout("strand ribbons", &[&frame_layout, &ribbons_layout]);
         let ribbon_pipeline = |mode: Transparency| {
-            let (entry, blend, writes_depth, to_coverage) = match mode {
-                Transparency::Opaque => ("opaque", None, true, true),
+            let (entry, blend, writes_depth) = match mode {
+                Transparency::Opaque => ("opaque", None, true),
                 // The others are refused before they come here.
                 Transparency::Sorted
                 | Transparency::WeightedAverage
                 | Transparency::OccupancyOrder
                 | Transparency::Exact => {
-                    ("blended", Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING), false, false)
+                    ("blended", Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING), false)
                 }
             };
             raster(
@@ -144,7 +144,6 @@ impl Pipelines {
                 Draw {
                     blend,
                     depth: Some((wgpu::CompareFunction::Greater, writes_depth)),
-                    alpha_to_coverage: to_coverage,
                     ..Draw::default()
                 },
             )
@@ -243,12 +242,11 @@ struct Draw {
     samples: u32,
     blend: Option<wgpu::BlendState>,
     depth: Option<(wgpu::CompareFunction, bool)>,
-    alpha_to_coverage: bool,
 }
 
 impl Default for Draw {
     fn default() -> Self {
-        Self { format: HDR_FORMAT, samples: SAMPLES, blend: None, depth: None, alpha_to_coverage: false }
+        Self { format: HDR_FORMAT, samples: SAMPLES, blend: None, depth: None }
     }
 }
 
@@ -285,7 +283,7 @@ fn raster(
         depth_stencil: draw.depth.map(|(compare, write)| depth_state(compare, write)),
         multisample: wgpu::MultisampleState {
             count: draw.samples,
-            alpha_to_coverage_enabled: draw.alpha_to_coverage,
+            alpha_to_coverage_enabled: false,
             ..Default::default()
         },
         fragment: Some(wgpu::FragmentState {

@@ -1,4 +1,5 @@
-//! Tiny scenes, and the device that the tests share.
+//! Tiny scenes, and the renderers that the tests share.
+#![allow(dead_code)] // A module of each test, which uses its part.
 
 use std::sync::{Arc, Mutex, OnceLock};
 
@@ -6,21 +7,27 @@ use glam::{Affine3A, Vec3};
 use lovelock_groom::{HairLook, Hairstyle, StrandSet, Strands};
 use lovelock_motion::{Body, Mesh, Skin};
 use lovelock_render::{
-    Camera, FrameInput, Gpu, GpuRenderer, Light, Picture, PictureSettings, ShadowMethod, ShadowSettings,
+    Backend, Camera, FrameInput, Light, Picture, PictureSettings, RenderError, Renderer, ShadowMethod,
+    ShadowSettings, Transparency,
 };
 
-/// The renderer that all tests of a binary share: making one takes seconds where the processor draws.
-pub fn renderer() -> Option<&'static Mutex<GpuRenderer>> {
-    static RENDERER: OnceLock<Option<Mutex<GpuRenderer>>> = OnceLock::new();
-    RENDERER
-        .get_or_init(|| match Gpu::open() {
-            Ok(gpu) => Some(Mutex::new(GpuRenderer::new(gpu).expect("the shaders compile"))),
+/// The renderer that all tests of a binary share: making one takes seconds where a software adapter draws.
+fn renderer(backend: Backend) -> Option<&'static Mutex<Renderer>> {
+    static RENDERERS: [OnceLock<Option<Mutex<Renderer>>>; 2] = [OnceLock::new(), OnceLock::new()];
+    RENDERERS[usize::from(backend == Backend::Cpu)]
+        .get_or_init(|| match Renderer::open(backend) {
+            Ok(renderer) => Some(Mutex::new(renderer)),
             Err(error) => {
                 lovelock_testkit::skip_without_adapter(&error);
                 None
             }
         })
         .as_ref()
+}
+
+/// Whether the backend of the test draws this transparency.
+pub fn draws(transparency: Transparency) -> bool {
+    crate::BACKEND == Backend::Cpu || transparency.is_on_gpu()
 }
 
 /// A scene of some strands before a camera that looks at the origin from one metre along +Z.
@@ -36,12 +43,25 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Draws it.
+    /// Draws it by the backend of the test.
     pub fn draw(&self, width: u32, height: u32) -> Option<Picture> {
-        let mut renderer = renderer()?.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        let mut picture = Picture { width: 0, height: 0, rgba: Vec::new() };
-        renderer.picture(&self.input(), width, height, &mut picture).expect("a picture");
-        Some(picture)
+        self.draw_by(crate::BACKEND, width, height)
+    }
+
+    /// Draws it by `backend`.
+    pub fn draw_by(&self, backend: Backend, width: u32, height: u32) -> Option<Picture> {
+        Some(self.attempt(backend, width, height)?.expect("a picture"))
+    }
+
+    /// Draws it by the backend of the test, or says why not.
+    pub fn try_draw(&self, width: u32, height: u32) -> Option<Result<Picture, RenderError>> {
+        self.attempt(crate::BACKEND, width, height)
+    }
+
+    fn attempt(&self, backend: Backend, width: u32, height: u32) -> Option<Result<Picture, RenderError>> {
+        let mut renderer = renderer(backend)?.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let mut picture = Picture::default();
+        Some(renderer.picture(&self.input(), width, height, &mut picture).map(|_| picture))
     }
 
     /// What the renderer takes.
@@ -151,4 +171,33 @@ pub fn grid(z: f32, half: f32, cells: u32, color: Vec3) -> (Arc<Body>, Skin) {
 pub fn pixel(picture: &Picture, x: u32, y: u32) -> [u8; 4] {
     let i = ((y * picture.width + x) * 4) as usize;
     picture.rgba[i..i + 4].try_into().expect("four bytes")
+}
+
+/// A tuft that hangs and curls before the origin: `strands` of 40 segments, the same every time.
+pub fn tuft(strands: u32) -> Vec<Vec<Vec3>> {
+    (0..strands)
+        .map(|i| {
+            let (turn, out) = (i as f32 * 2.399_963, 0.03 * ((i as f32 + 0.5) / strands as f32).sqrt());
+            let root = Vec3::new(out * turn.cos(), 0.12, out * turn.sin());
+            (0..41)
+                .map(|j| {
+                    let t = j as f32 / 40.0;
+                    let curl = 0.006 * t * Vec3::new((18.0 * t + turn).cos(), 0.0, (18.0 * t + turn).sin());
+                    root * Vec3::new(1.0 + t, 1.0, 1.0 + t) + Vec3::new(0.0, -0.22 * t, 0.0) + curl
+                })
+                .collect()
+        })
+        .collect()
+}
+
+/// A tuft before a wall on which its shadow falls, under the lights of the default scene.
+pub fn tuft_scene(strands: u32) -> Scene {
+    let mut s = scene(&tuft(strands));
+    s.body = Some(grid(-0.08, 0.3, 48, Vec3::new(0.35, 0.25, 0.2)));
+    s.look = HairLook::default();
+    s.look.real_hairs = 8000.0;
+    s.lights = Light::default_rig();
+    s.shadow = ShadowSettings::default();
+    s.picture = PictureSettings::default();
+    s
 }

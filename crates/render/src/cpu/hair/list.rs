@@ -3,7 +3,7 @@
 #![allow(clippy::inline_always)]
 
 use super::segment::{LANES, Span, SpanSink, each_span};
-use crate::cpu::math::three;
+use crate::cpu::math::{clamp, floor, three};
 use crate::cpu::points::ShadedPoint;
 use crate::cpu::surface::raster::SurfaceSamples;
 use crate::cpu::tile::{STRIDE, TILE};
@@ -19,6 +19,22 @@ pub(crate) struct Fragment {
     pub color: [f32; 3],
     /// One bit for each sample of the pixel in which it lies before the body.
     pub seen: u32,
+    /// The samples that it takes where strands are opaque; see [`covered_samples`].
+    pub covered: u32,
+}
+
+/// Samples of a pixel that an opacity takes: as many as its fourths, rounded up or down by a noise of the pixel, from
+/// one on that is the strand's own. Strands of a pixel take different samples, so that many thin ones add up. Twin
+/// of `covered_samples` in `strand_ribbons.wgsl`.
+#[inline(always)]
+fn covered_samples(alpha: f32, [x, y]: [f32; 2], hash: f32) -> u32 {
+    let inner = x * 0.067_110_56 + y * 0.005_837_15;
+    let inner = (inner - floor(inner)) * 52.982_918_9;
+    let noise = inner - floor(inner);
+    let count = clamp(floor(alpha * 4.0 + noise), 0.0, 4.0) as u32;
+    let first = (hash * 4.0) as u32 & 3;
+    let samples = ((1 << count) - 1) << first;
+    (samples | samples >> 4) & 15
 }
 
 impl Fragment {
@@ -54,7 +70,7 @@ pub(crate) struct ListTile<'a> {
 #[inline(always)]
 pub(crate) fn list_segments(input: &ListTile, out: &mut Fragments) {
     out.found.clear();
-    let mut sink = List { samples: input.samples, found: &mut out.found };
+    let mut sink = List { origin: input.origin, samples: input.samples, found: &mut out.found };
     for &segment in input.segments {
         let first = input.first_points[segment as usize] as usize;
         let (a, b) = (&input.points[first], &input.points[first + 1]);
@@ -63,6 +79,7 @@ pub(crate) fn list_segments(input: &ListTile, out: &mut Fragments) {
 }
 
 struct List<'a> {
+    origin: [f32; 2],
     samples: &'a SurfaceSamples,
     found: &'a mut Vec<(u32, Fragment)>,
 }
@@ -88,7 +105,9 @@ impl SpanSink for List<'_> {
             if seen != 0 {
                 let (t, gain) = (span.along[lane], span.gain[lane]);
                 let color = three(|c| (a.color[c] + (b.color[c] - a.color[c]) * t) * gain);
-                self.found.push((at as u32, Fragment { depth, alpha, color, seen }));
+                let pixel = [self.origin[0] + (at % STRIDE) as f32, self.origin[1] + (at / STRIDE) as f32];
+                let covered = covered_samples(alpha, pixel, a.hash);
+                self.found.push((at as u32, Fragment { depth, alpha, color, seen, covered }));
             }
         }
     }
@@ -125,5 +144,31 @@ impl Fragments {
             }
             start = end;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_opacity_takes_its_share_of_the_samples_and_strands_take_different_ones() {
+        for alpha in [0.05, 0.3, 0.5, 0.97] {
+            let (mut sum, mut taken) = (0, [0_u32; 4]);
+            for i in 0..64_000_u32 {
+                let pixel = [(i % 80) as f32, (i / 80) as f32];
+                let samples = covered_samples(alpha, pixel, (i % 7) as f32 / 7.0);
+                sum += samples.count_ones();
+                for (sample, taken) in taken.iter_mut().enumerate() {
+                    *taken += samples >> sample & 1;
+                }
+            }
+            let share = sum as f32 / (4.0 * 64_000.0);
+            // The noise is even to about a per cent over this many pixels.
+            assert!((share - alpha).abs() < 0.01, "{alpha}: {share}");
+            assert!(taken.iter().all(|&count| count > 0), "{alpha}: {taken:?}");
+        }
+        assert_eq!(covered_samples(1.0, [3.0, 5.0], 0.4), 15);
+        assert_eq!(covered_samples(0.0, [3.0, 5.0], 0.4), 0);
     }
 }

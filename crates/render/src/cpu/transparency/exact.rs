@@ -26,8 +26,9 @@ mod tests {
 
     #[test]
     fn the_nearer_layer_hides_the_farther() {
-        let near = Fragment { depth: 0.9, alpha: 0.75, color: [1.0, 0.0, 0.0], seen: 0b1111 };
-        let far = Fragment { depth: 0.1, alpha: 0.5, color: [0.0, 1.0, 0.0], seen: 0b1111 };
+        let near =
+            Fragment { depth: 0.9, alpha: 0.75, color: [1.0, 0.0, 0.0], seen: 0b1111, covered: 0b1111 };
+        let far = Fragment { depth: 0.1, alpha: 0.5, color: [0.0, 1.0, 0.0], seen: 0b1111, covered: 0b1111 };
         for order in [[near, far], [far, near]] {
             let layer = resolve(&mut order.clone());
             // 0.75 red, half of the rest green, half of that behind.

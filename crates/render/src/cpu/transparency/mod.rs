@@ -50,7 +50,8 @@ mod tests {
     const ALL_SEEN: u32 = 0b1111;
 
     fn fragment(depth: f32, alpha: f32, grey: f32) -> Fragment {
-        Fragment { depth, alpha, color: [grey; 3], seen: ALL_SEEN }
+        let covered = (1 << (alpha * 4.0 + 0.5) as u32) - 1;
+        Fragment { depth, alpha, color: [grey; 3], seen: ALL_SEEN, covered }
     }
 
     fn modes() -> impl Iterator<Item = Transparency> {

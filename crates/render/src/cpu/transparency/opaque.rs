@@ -9,7 +9,7 @@ pub(super) fn resolve(fragments: &mut [Fragment]) -> Layer {
     for sample in 0..4 {
         let nearest = fragments
             .iter()
-            .filter(|fragment| fragment.seen & covered(fragment.alpha) & 1 << sample != 0)
+            .filter(|fragment| fragment.seen & fragment.covered & 1 << sample != 0)
             .max_by(|a, b| a.depth.total_cmp(&b.depth).then_with(|| a.color[0].total_cmp(&b.color[0])));
         match nearest {
             Some(fragment) => {
@@ -23,26 +23,15 @@ pub(super) fn resolve(fragments: &mut [Fragment]) -> Layer {
     Layer { color, through }
 }
 
-/// The samples that an opacity covers: as many as its fourths, from the first on.
-fn covered(alpha: f32) -> u32 {
-    let count = (alpha * 4.0 + 0.5).clamp(0.0, 4.0) as u32;
-    (1 << count) - 1
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn the_nearest_strand_takes_its_samples() {
-        let near = Fragment { depth: 0.9, alpha: 0.5, color: [1.0, 0.0, 0.0], seen: 0b1111 };
-        let far = Fragment { depth: 0.1, alpha: 0.75, color: [0.0, 1.0, 0.0], seen: 0b1111 };
+        let near = Fragment { depth: 0.9, alpha: 0.5, color: [1.0, 0.0, 0.0], seen: 0b1111, covered: 0b0011 };
+        let far = Fragment { depth: 0.1, alpha: 0.75, color: [0.0, 1.0, 0.0], seen: 0b1111, covered: 0b0111 };
         let layer = resolve(&mut [far, near]);
         assert_eq!(layer, Layer { color: [0.5, 0.25, 0.0], through: 0.25 });
-    }
-
-    #[test]
-    fn coverage_is_rounded() {
-        assert_eq!([0.0, 0.12, 0.13, 0.5, 0.88, 1.0].map(covered), [0, 0, 1, 0b11, 0b1111, 0b1111]);
     }
 }

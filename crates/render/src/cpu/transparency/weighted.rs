@@ -28,8 +28,8 @@ mod tests {
 
     #[test]
     fn colors_are_averaged_whatever_the_order() {
-        let near = Fragment { depth: 0.9, alpha: 0.5, color: [1.0, 0.0, 0.0], seen: 0b1111 };
-        let far = Fragment { depth: 0.1, alpha: 0.5, color: [0.0, 1.0, 0.0], seen: 0b1111 };
+        let near = Fragment { depth: 0.9, alpha: 0.5, color: [1.0, 0.0, 0.0], seen: 0b1111, covered: 0b1111 };
+        let far = Fragment { depth: 0.1, alpha: 0.5, color: [0.0, 1.0, 0.0], seen: 0b1111, covered: 0b1111 };
         let layer = resolve(&mut [near, far]);
         assert_eq!(layer, Layer { color: [0.375, 0.375, 0.0], through: 0.25 });
     }

@@ -74,9 +74,27 @@ fn blended(in: Ribbon) -> @location(0) vec4f {
     return vec4f(in.color * (1.0 + 0.18 * wave) * alpha, alpha);
 }
 
+struct Opaque {
+    @location(0) color: vec4f,
+    @builtin(sample_mask) samples: u32,
+}
+
+// Samples of a pixel that an opacity takes: as many as its fourths, rounded up or down by a noise of the pixel, from
+// one on that is the strand's own. Strands of a pixel take different samples, so that many thin ones add up. Twin of
+// `covered_samples` in cpu/hair/list.rs.
+fn covered_samples(alpha: f32, pixel: vec2f, hash: f32) -> u32 {
+    let noise = fract(52.9829189 * fract(dot(pixel, vec2f(0.06711056, 0.00583715))));
+    let count = u32(clamp(floor(alpha * 4.0 + noise), 0.0, 4.0));
+    let first = u32(hash * 4.0) & 3u;
+    let samples = ((1u << count) - 1u) << first;
+    return (samples | (samples >> 4u)) & 15u;
+}
+
 // Hides what is behind; the share of samples that a strand takes is its coverage.
 @fragment
-fn opaque(in: Ribbon) -> @location(0) vec4f {
+fn opaque(in: Ribbon) -> Opaque {
     let wave = streaks(in);
-    return vec4f(in.color * (1.0 + 0.18 * wave), clamp(in.opacity * coverage(in), 0.0, 1.0));
+    let alpha = clamp(in.opacity * coverage(in) * (1.0 + 0.22 * wave), 0.0, 1.0);
+    let samples = covered_samples(alpha, floor(in.position.xy), in.hash);
+    return Opaque(vec4f(in.color * (1.0 + 0.18 * wave), 1.0), samples);
 }

@@ -1,10 +1,8 @@
-//! Pictures of tiny scenes whose answer is known.
-
-mod common;
+//! Pictures of tiny scenes whose answer is known, for whichever backend the test is for.
 
 use std::sync::Arc;
 
-use common::{Scene, pixel, quad, scene};
+use crate::common::{self, Scene, pixel, quad, scene};
 use glam::Vec3;
 use lovelock_render::{Camera, Light, ShadowMethod, ShadowSettings, Transparency};
 use lovelock_testkit::{flip, mean_color};
@@ -80,7 +78,7 @@ fn the_body_hides_strands_behind_it_and_not_those_before() {
     let Some(without) = picture(-5.0, Transparency::Sorted) else {
         return;
     };
-    for transparency in Transparency::ALL {
+    for transparency in Transparency::ALL.into_iter().filter(|&mode| common::draws(mode)) {
         let behind = picture(-0.05, transparency).expect("an adapter");
         let before = picture(0.05, transparency).expect("an adapter");
         assert!(behind.iter().zip(without).all(|(&a, b)| a.abs_diff(b) <= 12), "{behind:?} {without:?}");
@@ -199,18 +197,44 @@ fn hostile_settings_give_a_picture_without_holes() {
 }
 
 #[test]
-fn a_size_out_of_range_is_refused_in_words() {
-    let Some(renderer) = common::renderer() else {
-        return;
-    };
+fn sizes_out_of_range_are_refused_with_the_limit() {
     let scene = scene(&[]);
-    let mut picture = lovelock_render::Picture { width: 0, height: 0, rgba: Vec::new() };
-    let error = renderer
-        .lock()
-        .unwrap_or_else(std::sync::PoisonError::into_inner)
-        .picture(&scene.input(), 0, 100_000, &mut picture)
-        .expect_err("out of range");
-    assert!(error.to_string().contains("0x100000"), "{error}");
+    for (width, height) in [(0, 64), (64, 0), (100_000, 1), (8192, 8192)] {
+        let Some(error) = scene.try_draw(width, height) else { return };
+        let error = error.expect_err("out of range").to_string();
+        assert!(
+            error.contains(&format!("{width}x{height}")) && error.contains("at most 35 million"),
+            "{error}"
+        );
+    }
+}
+
+#[test]
+fn odd_hair_in_every_combination_is_a_picture() {
+    let point = Vec3::new(0.01, 0.0, 0.0);
+    let along_light = (0..11).map(|i| Vec3::new(0.0, -0.006, -0.008) * i as f32).collect();
+    let odd: [(&str, Vec<Vec<Vec3>>); 5] = [
+        ("no strand", vec![]),
+        ("a strand of one point", vec![vec![point]]),
+        ("points in one place", vec![vec![point; 5]; 3]),
+        ("a strand along the light", vec![along_light]),
+        ("no numbers", vec![vec![Vec3::NAN, point, Vec3::INFINITY, -point]]),
+    ];
+    for (name, lines) in odd {
+        let mut s = scene(&lines);
+        (s.picture.background_top, s.picture.background_bottom) = (Vec3::splat(0.2), Vec3::splat(0.2));
+        for &method in ShadowMethod::ALL {
+            for transparency in Transparency::ALL.into_iter().filter(|&mode| common::draws(mode)) {
+                for extinction_scale in [0.0, 0.15, 1e9] {
+                    s.shadow = ShadowSettings { method, extinction_scale, ..ShadowSettings::default() };
+                    s.picture.transparency = transparency;
+                    let Some(picture) = s.draw(24, 16) else { return };
+                    // Nothing that is no number reaches the background, which would be black.
+                    assert!(sum(pixel(&picture, 1, 1)) > 60, "{name}, {method}, {transparency}");
+                }
+            }
+        }
+    }
 }
 
 #[test]
