@@ -30,6 +30,8 @@ pub(crate) struct Arguments {
 pub(crate) enum Task {
     /// Simulates and draws the dance into a film or a folder of pictures.
     Record(Record),
+    /// Measures frames of known scenes, stage by stage, on each backend, beside what was published.
+    Bench(Bench),
     /// Says what a hair, character, motion or project file holds.
     Info(Info),
 }
@@ -72,6 +74,24 @@ pub(crate) struct Record {
     /// A motion file (BVH) instead of the project's motion.
     #[arg(long, value_name = "FILE")]
     pub(crate) motion: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Bench {
+    /// The scenes: smooth, curly, smooth-500k, smooth-1m, smooth-2m; all of them where none is named.
+    pub(crate) scenes: Vec<lovelock_studio::BenchScene>,
+    /// A file for the numbers, comma-separated.
+    #[arg(short, long, value_name = "FILE.csv")]
+    pub(crate) out: Option<PathBuf>,
+    /// Frames to measure, 1 to 1000.
+    #[arg(long, default_value_t = 15, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(crate) frames: u32,
+    /// Size in pixels.
+    #[arg(long, value_name = "WxH", value_parser = size, default_value = "1280x720")]
+    pub(crate) size: (u32, u32),
+    /// The backend to measure; both where none is given.
+    #[arg(long, value_name = "BACKEND")]
+    pub(crate) backend: Option<lovelock_studio::render::Backend>,
 }
 
 #[derive(Debug, Args)]

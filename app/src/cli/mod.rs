@@ -1,6 +1,7 @@
 //! The command line.
 
 mod args;
+mod bench;
 mod info;
 mod output;
 mod record;
@@ -37,6 +38,7 @@ pub(crate) fn run() -> ExitCode {
             crate::window::open(arguments.project.as_deref(), screenshot)
         }
         Some(Task::Record(task)) => record::run(&task, output),
+        Some(Task::Bench(task)) => bench::run(&task, output),
         Some(Task::Info(task)) => info::run(&task, output),
     };
     match result {

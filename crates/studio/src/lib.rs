@@ -4,6 +4,7 @@
 //! a [`Project`] is what is saved and undone, a session ([`Scene`], [`Engine`], [`Worker`]) is what runs, and the
 //! state of the interface lives in the interface.
 
+mod bench;
 mod clock;
 mod command;
 mod error;
@@ -16,6 +17,7 @@ mod session;
 mod slot;
 mod stats;
 
+pub use bench::{BenchReport, BenchRequest, BenchScene, SceneReport, StageReport, bench};
 pub use clock::{FrameClock, MAX_STEPS_PER_TICK, Playback, STEP_SECS, Stopwatch};
 pub use command::{COMMANDS, Command, CommandGroup, CommandInfo, Shortcut};
 pub use error::{Place, Problem, ProblemKind, StudioError};
@@ -26,7 +28,7 @@ pub use painter::{Adapter, PaintRequest, Painted, Painter};
 pub use project::{
     Access, BodySection, BodySource, CameraMode, CameraSection, FileRef, HairSection, HairSource,
     MotionSection, MotionSource, PROJECT_EXTENSION, PROJECT_VERSION, Project, RecordingSection, load_project,
-    load_project_with, parse_project, save_project,
+    load_project_with, parse_project, save_project, write_whole,
 };
 pub use session::{
     BodyObstacle, Engine, Event, FrameSnapshot, HeadPath, LoadControl, LoadProgress, SETTLE_SECS, Scene,

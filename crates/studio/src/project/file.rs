@@ -136,18 +136,24 @@ pub fn save_project(path: &Path, project: &Project) -> Result<(), StudioError> {
     let pretty = ron::ser::PrettyConfig::new().struct_names(false).depth_limit(4);
     let text =
         ron::ser::to_string_pretty(&project, pretty).map_err(|error| fail("be written as text", &error))?;
+    write_whole(path, format!("{text}\n").as_bytes())
+}
+
+/// Writes a file beside `path`, flushes it to the disk, then renames it: never a part of it under the final name.
+///
+/// # Errors
+/// Where the folder cannot be written or the disk is full.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), StudioError> {
     let partial = partial_name(path);
     let written = File::create(&partial).and_then(|mut file| {
-        file.write_all(text.as_bytes())?;
-        file.write_all(b"\n")?;
+        file.write_all(bytes)?;
         file.sync_all()
     });
-    if let Err(error) = written.and_then(|()| std::fs::rename(&partial, path)) {
+    written.and_then(|()| std::fs::rename(&partial, path)).map_err(|error| {
         // The error that matters is the first one.
         let _ = std::fs::remove_file(&partial);
-        return Err(fail("be saved", &error));
-    }
-    Ok(())
+        StudioError::output(path, format!("{}: could not be saved: {error}", path.display()))
+    })
 }
 
 /// `NAME.partial` beside `NAME`.

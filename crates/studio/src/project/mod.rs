@@ -14,7 +14,9 @@ use lovelock_render::{Light, PictureSettings, ShadowSettings};
 use lovelock_wisp::SimulationSettings;
 use serde::{Deserialize, Serialize};
 
-pub use file::{PROJECT_EXTENSION, load_project, load_project_with, parse_project, save_project};
+pub use file::{
+    PROJECT_EXTENSION, load_project, load_project_with, parse_project, save_project, write_whole,
+};
 pub use path::{Access, FileRef};
 pub use sections::{
     BodySection, BodySource, CameraMode, CameraSection, HairSection, HairSource, MotionSection, MotionSource,

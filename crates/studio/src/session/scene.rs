@@ -86,6 +86,31 @@ impl Scene {
 
     /// Frames that the motion lasts at `fps` frames a second, at least one.
     pub fn frames(&self, fps: f64) -> u64 {
-        ((self.duration_secs() * fps - 1e-6).ceil().max(1.0)) as u64
+        frames_in(self.duration_secs(), fps)
+    }
+}
+
+/// Frames that begin before `duration_secs` is over, at least one.
+fn frames_in(duration_secs: f64, fps: f64) -> u64 {
+    // Files hold times in single precision: 9.6 s is some 4e-7 s more there, which is no frame of its own.
+    let rounding = duration_secs * f64::from(f32::EPSILON) + 1e-6 / fps;
+    ((duration_secs - rounding) * fps).ceil().max(1.0) as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::frames_in;
+
+    #[test]
+    fn a_time_in_single_precision_makes_no_frame_of_its_own() {
+        for secs in [9.6_f32, 0.1, 59.7, 1234.5] {
+            for fps in [24.0, 30.0, 60.0, 240.0] {
+                // The decimal that was meant, in whole frames.
+                let meant = (f64::from(secs) * 10.0).round() * fps / 10.0;
+                assert_eq!(frames_in(f64::from(secs), fps), meant.ceil() as u64, "{secs} s at {fps}");
+            }
+        }
+        assert_eq!(frames_in(9.61, 30.0), 289, "a part of a frame is one");
+        assert_eq!(frames_in(0.0, 30.0), 1);
     }
 }

@@ -1,0 +1,35 @@
+//! `lovelock bench`.
+
+use std::ops::ControlFlow;
+
+use lovelock_studio::{BenchRequest, StudioError, bench, write_whole};
+
+use super::args::Bench;
+use super::output::Output;
+
+/// Measures, and tells the numbers.
+pub(crate) fn run(task: &Bench, output: Output) -> Result<(), StudioError> {
+    let mut request = BenchRequest { frames: task.frames, size: task.size, ..BenchRequest::default() };
+    if !task.scenes.is_empty() {
+        request.scenes.clone_from(&task.scenes);
+    }
+    if let Some(backend) = task.backend {
+        request.backends = vec![backend];
+    }
+    // Better told now than after minutes of measuring.
+    if let Some(out) = &task.out {
+        let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty());
+        if out.is_dir() || folder.is_some_and(|folder| !folder.is_dir()) {
+            let message = format!("{}: expected a file in a folder that is there", out.display());
+            return Err(StudioError::input(out, message));
+        }
+    }
+    let report = bench(&request, &mut |what| {
+        eprintln!("measuring {what}");
+        ControlFlow::Continue(())
+    })?;
+    if let Some(out) = &task.out {
+        write_whole(out, report.csv().as_bytes())?;
+    }
+    output.result(&report, || report.to_string())
+}

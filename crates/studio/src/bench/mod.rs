@@ -1,0 +1,121 @@
+//! Measures whole frames of known scenes, stage by stage, beside what was published of them.
+
+mod report;
+mod scenes;
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use lovelock_groom::Strands;
+use lovelock_render::{Backend, GpuError, Picture, RenderError, Renderer};
+
+pub use report::{BenchReport, SceneReport, StageReport};
+pub use scenes::BenchScene;
+
+use crate::{
+    Access, Engine, FrameClock, LoadControl, Project, Scene, SceneLoader, StageTimes, Stopwatch, StudioError,
+};
+
+/// What to measure.
+#[derive(Clone, Debug)]
+pub struct BenchRequest {
+    /// The scenes, in order.
+    pub scenes: Vec<BenchScene>,
+    /// The backends, in order; one that this machine has not is left out with a note.
+    pub backends: Vec<Backend>,
+    /// Frames to measure, after one that is not counted.
+    pub frames: u32,
+    /// Width and height, pixels.
+    pub size: (u32, u32),
+}
+
+impl Default for BenchRequest {
+    fn default() -> Self {
+        Self {
+            scenes: BenchScene::ALL.to_vec(),
+            backends: vec![Backend::Cpu, Backend::Gpu],
+            frames: 15,
+            size: (1280, 720),
+        }
+    }
+}
+
+/// The frame of the dance at which measuring begins: the hair is in full swing.
+const FIRST_FRAME: u64 = 40;
+
+/// Measures; `progress` is told each scene and backend before it begins, and may stop it.
+///
+/// # Errors
+/// A size out of range, hair that cannot be grown, or [`StudioError::Cancelled`].
+pub fn bench(
+    request: &BenchRequest,
+    progress: &mut dyn FnMut(&str) -> ControlFlow<()>,
+) -> Result<BenchReport, StudioError> {
+    let mut notes = Vec::new();
+    let mut renderers = Vec::new();
+    for &backend in &request.backends {
+        match Renderer::open(backend) {
+            Ok(renderer) => renderers.push(renderer),
+            Err(error @ RenderError::Gpu(GpuError::NoAdapter(_))) => {
+                notes.push(format!("{backend}: {error}"));
+            }
+            Err(error) => return Err(error.into()),
+        }
+    }
+    let mut scenes = Vec::new();
+    for &scene in &request.scenes {
+        let project = scene.project();
+        let loaded = load(&project)?;
+        for renderer in &mut renderers {
+            let what = format!("{} on {}", scene.id(), renderer.adapter());
+            if progress(&what).is_break() {
+                return Err(StudioError::Cancelled);
+            }
+            scenes.push(measure(scene, &project, &loaded, renderer, request)?);
+        }
+    }
+    Ok(BenchReport { machine: report::machine(), scenes, notes })
+}
+
+fn load(project: &Project) -> Result<Arc<Scene>, StudioError> {
+    let cancelled = AtomicBool::new(false);
+    let mut silent = |_: &str, _: f32| {};
+    let mut control = LoadControl { cancelled: &cancelled, progress: &mut silent };
+    let (scene, problems) = SceneLoader::new().load(project, &Access::default(), &mut control)?;
+    match problems.first() {
+        Some(problem) => Err(StudioError::work(problem)),
+        None => Ok(scene),
+    }
+}
+
+fn measure(
+    scene: BenchScene,
+    project: &Project,
+    loaded: &Arc<Scene>,
+    renderer: &mut Renderer,
+    request: &BenchRequest,
+) -> Result<SceneReport, StudioError> {
+    let (width, height) = request.size;
+    let clock = FrameClock::new(30.0);
+    let mut engine = Engine::with_step(Arc::clone(loaded), project.simulation, clock.step_secs);
+    engine.advance_to_step(clock.step_of_frame(FIRST_FRAME));
+    let (mut strands, mut picture) = (Strands::default(), Picture::default());
+    let mut frames = Vec::new();
+    for frame in 0..=u64::from(request.frames.max(1)) {
+        let watch = Stopwatch::start();
+        engine.advance_to_step(clock.step_of_frame(FIRST_FRAME + 1 + frame));
+        let snapshot = engine.snapshot();
+        let interpolate = snapshot.interpolate(&mut strands);
+        let camera = snapshot.camera(&project.camera);
+        let input = snapshot.frame_input(project, &strands, &camera);
+        let stats = renderer.picture(&input, width, height, &mut picture)?;
+        let times =
+            StageTimes { interpolate, shadow: stats.shadow_ms, draw: stats.draw_ms, ..snapshot.times };
+        // The first one makes buffers.
+        if frame > 0 {
+            frames.push((watch.ms(), times, stats));
+        }
+    }
+    Ok(SceneReport::new(scene, project, renderer, request, &strands, &frames))
+}
