@@ -20,8 +20,8 @@ use ribbons::Ribbons;
 use strips::Strips;
 
 /// Transmittance changes by less than this, root mean square over the points that are asked, when the samples of the
-/// last round are doubled. Subtexels of a quarter texel change it by about a hundredth.
-pub const CONVERGED_CHANGE: f32 = 4e-3;
+/// last round are doubled. From four subtexels to eight it is some 3e-3 on hair.
+pub const CONVERGED_CHANGE: f32 = 2e-3;
 
 /// Subtexels along the edge of a texel at which doubling ends at the latest.
 pub const MOST_CONVERGED_SAMPLES: u32 = 32;

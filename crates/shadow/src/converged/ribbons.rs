@@ -14,8 +14,9 @@ const MOST_DEPTH: f32 = 1e4;
 
 /// Draws ribbons into rows of subtexels.
 ///
-/// A step along the longer axis is one subtexel long. On the shorter axis the ribbon covers the interval of its width
-/// over the cosine of its slope; each subtexel there receives the part of it that is covered.
+/// Along the longer axis a segment goes subtexel by subtexel, and covers a part of the first and the last. On the shorter
+/// axis the ribbon covers the interval of its width over the cosine of its slope. Each subtexel receives the part of it
+/// that is covered.
 #[derive(Clone, Debug)]
 pub(super) struct Ribbons {
     /// Subtexels along the edge of a texel.
@@ -83,8 +84,9 @@ impl Ribbons {
         let high = ((from.y.max(to.y) + reach).max(0.0) as u32).min(last);
         let rows = f64::from(high - low + 1);
         // Fragments spread over the rows evenly, but never more than fit.
-        let all = steps.count() as f64 * across;
-        let most = f64::from(self.samples) * if steps.by_row { across } else { steps.count() as f64 };
+        let count = f64::from(steps.touched().len() as u32);
+        let all = count * across;
+        let most = f64::from(self.samples) * if steps.by_row { across } else { count };
         let each = (2.0 * all / rows).min(most).ceil() as u64;
         (low..=high).for_each(|row| with(row, each));
     }
@@ -107,10 +109,13 @@ impl Draw for Ribbons {
         let columns = self.columns();
         let (long, wide) =
             if steps.by_row { (&self.rows, 0..columns) } else { (&(0..columns), self.rows.clone()) };
-        let first = steps.first.max(long.start as i32);
-        let end = steps.end.min(long.end as i32);
-        for major in first..end {
-            let (middle, depth) = steps.at(major);
+        let touched = steps.touched();
+        for major in touched.start.max(long.start as i32)..touched.end.min(long.end as i32) {
+            let (part, middle, depth) = steps.covered(major);
+            // False for a segment without length across the light.
+            if !(part > 0.0 && half >= 0.0) {
+                continue;
+            }
             let (low, high) = (middle - half, middle + half);
             let start = low.max(wide.start as f32) as u32;
             let end = (high.min(wide.end as f32).ceil().max(0.0)) as u32;
@@ -118,7 +123,7 @@ impl Draw for Ribbons {
                 let covered = high.min(minor as f32 + 1.0) - low.max(minor as f32);
                 let (column, row) = if steps.by_row { (minor, major as u32) } else { (major as u32, minor) };
                 if covered > 0.0 && self.wants(column, row) {
-                    put(column, row - self.rows.start, depth, self.depth * covered.min(1.0));
+                    put(column, row - self.rows.start, depth, self.depth * part * covered.min(1.0));
                 }
             }
         }

@@ -138,10 +138,6 @@ impl TexelMethod for Occupancy {
     #[inline]
     fn depth_before(&self, _fragments: &[Fragment], record: &[u32], depth: f32) -> f32 {
         let [near, far, mean] = [record[0], record[1], record[2]].map(f32::from_bits);
-        // This and the end of the range come first: where all fragments lie at one depth, the rest has no meaning.
-        if depth <= near {
-            return 0.0;
-        }
         let (bits, counts) = record[HEADER..].split_at(self.bit_words());
         let (slice, part) = self.slice(near, far, depth);
         let per_slab = self.slices_per_slab();
@@ -151,13 +147,14 @@ impl TexelMethod for Occupancy {
             8 => counts_around::<4>(counts, slab),
             _ => counts_around::<8>(counts, slab),
         };
-        if depth >= far {
-            return all as f32 * mean;
-        }
         let (occupied, passed) = occupied(bits, slab * per_slab, per_slab, slice);
         let own_bit = (bits[(slice / 32) as usize] >> (slice % 32) & 1) as f32;
         let share = (passed as f32 + part * own_bit) / occupied.max(1) as f32;
-        (before as f32 + share * own as f32) * mean
+        let within = before as f32 + share * own as f32;
+        // These two come before all else: where all fragments lie at one depth, slices have no meaning. Chosen rather
+        // than returned early, as no branch could be foretold here.
+        let count = if depth >= far { all as f32 } else { within };
+        if depth <= near { 0.0 } else { count * mean }
     }
 }
 

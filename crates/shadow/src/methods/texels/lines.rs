@@ -22,6 +22,8 @@ pub(crate) struct Steps {
     pub length: f32,
     /// The lower end: on the longer axis, on the shorter, and in depth.
     start: [f32; 3],
+    /// The higher end on the longer axis.
+    high: f32,
     /// From the lower end to the higher, on the shorter axis and in depth.
     rise: [f32; 2],
     per_texel: f32,
@@ -47,6 +49,7 @@ impl Steps {
             end: centres_below(high[0]),
             length: (d.x * d.x + d.y * d.y).sqrt() * per_texel,
             start: low,
+            high: high[0],
             rise: [high[1] - low[1], high[2] - low[2]],
             per_texel,
         }
@@ -55,6 +58,20 @@ impl Steps {
     /// Number of steps.
     pub(crate) fn count(&self) -> u64 {
         (self.end - self.first) as u64
+    }
+
+    /// The texels of the longer axis that the segment touches at all.
+    pub(crate) fn touched(&self) -> std::ops::Range<i32> {
+        self.start[0].floor() as i32..self.high.ceil() as i32
+    }
+
+    /// The part of texel `at` of the longer axis that lies between the ends, 0 to 1, and in the middle of it the
+    /// coordinate on the shorter axis and depth. Only where the part is above 0 do these mean anything.
+    #[inline]
+    pub(crate) fn covered(&self, at: i32) -> (f32, f32, f32) {
+        let (low, high) = (self.start[0].max(at as f32), self.high.min(at as f32 + 1.0));
+        let t = (0.5 * (low + high) - self.start[0]) * self.per_texel;
+        (high - low, self.start[1] + t * self.rise[0], (self.start[2] + t * self.rise[1]).clamp(0.0, 1.0))
     }
 
     /// Coordinate on the shorter axis, and depth, at the centre of texel `at` of the longer.
