@@ -26,8 +26,8 @@ pub(super) struct Ground {
 const ALIKE: f32 = 1.0 / 512.0;
 
 impl Ground {
-    /// Asks for the light at the corners of the cells of the tile at `origin`; none where there is no ground.
-    #[inline(always)]
+    /// Asks for the light at the corners of the cells of the tile at `origin`; none where there is no ground or all of
+    /// it lies in full light.
     pub fn new(view: &View, origin: [f32; 2]) -> Option<Self> {
         if view.uniform.ambient_up_ground.w <= 0.5 {
             return None;
@@ -38,7 +38,7 @@ impl Ground {
             for (i, corner) in row.iter_mut().enumerate() {
                 let (x, y) = (origin[0] + (i * CELL) as f32, origin[1] + (j * CELL) as f32);
                 *corner = ground_light(view, x, y);
-                any |= corner.is_some();
+                any |= corner.is_some_and(|light| light != [1.0; 3]);
             }
         }
         any.then_some(Self { origin, corners })

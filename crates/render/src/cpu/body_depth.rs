@@ -141,10 +141,14 @@ impl DepthMap {
         }
         let mut lit = [[0.0; N]; 4];
         for (corner, lit) in [0, 1, SIZE as u32, SIZE as u32 + 1].into_iter().zip(&mut lit) {
+            // Loads in a loop of their own: with them in it, a loop does not become vectors.
+            let mut depth = [0.0; N];
             for lane in 0..N {
                 // The size is a power of two: the compiler sees that no index is out of bounds.
-                let depth = self.depth[(at[lane] + corner) as usize % (SIZE * SIZE)];
-                lit[lane] = if z[lane] <= depth { 1.0 } else { 0.0 };
+                depth[lane] = self.depth[(at[lane] + corner) as usize % (SIZE * SIZE)];
+            }
+            for lane in 0..N {
+                lit[lane] = if z[lane] <= depth[lane] { 1.0 } else { 0.0 };
             }
         }
         for lane in 0..N {

@@ -2,12 +2,13 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 use lovelock_gpu::Stopwatch;
 use lovelock_groom::simd::Width;
 use lovelock_motion::{Body, Skin};
 use rayon::prelude::*;
 
+use super::backdrop::Ground;
 use super::bins::Bins;
 use super::body_depth::{self, DepthMap};
 use super::dispatch;
@@ -44,6 +45,7 @@ pub struct CpuRenderer {
     surface: PlacedSurface,
     depth: Vec<DepthMap>,
     tiles: Vec<u8>,
+    plain: PlainTiles,
     scratch: Mutex<Vec<Box<Scratch>>>,
 }
 
@@ -72,6 +74,7 @@ impl Default for CpuRenderer {
             surface: PlacedSurface::default(),
             depth: Vec::new(),
             tiles: Vec::new(),
+            plain: PlainTiles::default(),
             scratch: Mutex::default(),
         }
     }
@@ -129,7 +132,7 @@ impl CpuRenderer {
 
         let part = Stopwatch::start();
         let grid = Grid::new(width, height);
-        self.surface.place(uniform.clip_from_world, &grid, body);
+        self.surface.place(uniform.clip_from_world, &grid, body, &self.shadow.at_vertices);
         let (points, segments) = (&self.points, &self.details.segments);
         self.segment_bins.fill(segments.len(), grid.columns, grid.rows, |i| {
             let first = segments[i] as usize;
@@ -145,10 +148,32 @@ impl CpuRenderer {
         let part = Stopwatch::start();
         self.tiles.resize(grid.columns * grid.rows * TILE_BYTES, 0);
         let mut tiles = std::mem::take(&mut self.tiles);
-        tiles.par_chunks_mut(TILE_BYTES).enumerate().for_each_init(
-            || Lease::take(&self.scratch),
-            |lease, (tile, out)| self.draw_tile(&view, &grid, input, body, tile, lease.get(), out),
-        );
+        let mut plain = std::mem::take(&mut self.plain);
+        plain.follow(&uniform, &grid);
+        tiles
+            .par_chunks_mut(TILE_BYTES)
+            .zip(plain.bytes.par_chunks_mut(TILE_BYTES))
+            .zip(&mut plain.known)
+            .enumerate()
+            .for_each_init(
+                || Lease::take(&self.scratch),
+                |lease, (tile, ((out, plain), known))| {
+                    let ground = Ground::new(&view, grid.origin(tile));
+                    let is_plain = ground.is_none()
+                        && self.surface.bins.of(tile).is_empty()
+                        && self.segment_bins.of(tile).is_empty();
+                    if is_plain && *known {
+                        out.copy_from_slice(plain);
+                        return;
+                    }
+                    self.draw_tile(&view, &grid, input, body, (tile, ground.as_ref()), lease.get(), out);
+                    if is_plain {
+                        plain.copy_from_slice(out);
+                        *known = true;
+                    }
+                },
+            );
+        self.plain = plain;
         copy_rows(&tiles, &grid, picture);
         self.tiles = tiles;
         times.tiles = part.ms();
@@ -169,13 +194,17 @@ impl CpuRenderer {
         let (center, radius) = bounding_sphere(positions);
         let lights: Vec<_> = input.lights.iter().filter(|light| light.enabled).take(MAX_LIGHTS).collect();
         self.depth.resize_with(lights.len(), DepthMap::default);
-        let mut maps = Vec::with_capacity(lights.len());
-        for ((k, light), depth) in lights.into_iter().enumerate().zip(&mut self.depth) {
-            let view = light_view(light.clamped().direction, center, radius, DEPTH_TEXELS);
-            depth.draw(self.width, view.shadow_from_world, positions, triangles);
-            maps.push(LightMaps { columns_from_world: self.shadow.columns_from_world(k), ..view });
-        }
-        maps
+        let (width, shadow) = (self.width, &self.shadow);
+        lights
+            .into_par_iter()
+            .zip(&mut self.depth)
+            .enumerate()
+            .map(|(k, (light, depth))| {
+                let view = light_view(light.clamped().direction, center, radius, DEPTH_TEXELS);
+                depth.draw(width, view.shadow_from_world, positions, triangles);
+                LightMaps { columns_from_world: shadow.columns_from_world(k), ..view }
+            })
+            .collect()
     }
 
     #[expect(clippy::too_many_arguments, reason = "what a tile is drawn from, once")]
@@ -185,7 +214,7 @@ impl CpuRenderer {
         grid: &Grid,
         input: &FrameInput,
         body: Option<(&Body, &Skin)>,
-        tile: usize,
+        (tile, ground): (usize, Option<&Ground>),
         scratch: &mut Scratch,
         out: &mut [u8],
     ) {
@@ -210,10 +239,10 @@ impl CpuRenderer {
         if !segments.is_empty() {
             self.draw_hair(view, input.picture.transparency, origin, segments, scratch);
         }
-        if let Some((body, skin)) = body
+        if let Some((body, _)) = body
             && !triangles.is_empty()
         {
-            let surface = (&self.surface, body, skin, &self.shadow.at_vertices[..]);
+            let surface = (&self.surface, body);
             scratch.light.shade_tile(
                 self.width,
                 view,
@@ -223,7 +252,7 @@ impl CpuRenderer {
                 &mut scratch.surface,
             );
         }
-        let pixels = PixelsIn { origin, hair: &scratch.hair, surface: &scratch.surface };
+        let pixels = PixelsIn { origin, hair: &scratch.hair, surface: &scratch.surface, ground };
         dispatch::finish(self.width, view, &pixels, out);
     }
 
@@ -263,6 +292,30 @@ impl CpuRenderer {
                 dispatch::list(self.width, &input, &mut scratch.fragments);
                 resolve_tile(transparency, &mut scratch.fragments, &mut scratch.hair);
             }
+        }
+    }
+}
+
+/// Tiles that show the background alone: the same in every frame until it or the size changes.
+#[derive(Debug, Default)]
+struct PlainTiles {
+    /// What they depend on.
+    of: Option<([Vec4; 3], Grid)>,
+    bytes: Vec<u8>,
+    /// Which of them have been drawn.
+    known: Vec<bool>,
+}
+
+impl PlainTiles {
+    /// Forgets them where the background or the size is another one.
+    fn follow(&mut self, uniform: &FrameUniform, grid: &Grid) {
+        let exposure = Vec4::splat(uniform.size_scale_exposure.w);
+        let of = Some(([uniform.background_top, uniform.background_bottom, exposure], *grid));
+        if self.of != of {
+            self.of = of;
+            self.known.clear();
+            self.known.resize(grid.columns * grid.rows, false);
+            self.bytes.resize(grid.columns * grid.rows * TILE_BYTES, 0);
         }
     }
 }

@@ -104,14 +104,15 @@ pub(super) struct PixelsIn<'a> {
     pub origin: [f32; 2],
     pub hair: &'a HairPlanes,
     pub surface: &'a SurfacePlanes,
+    /// The shadows on the ground, where there are any.
+    pub ground: Option<&'a Ground>,
 }
 
 /// Puts a tile together and writes its bytes, [`TILE_BYTES`] of them.
 #[inline(always)]
 pub(super) fn finish_pixels(view: &View, input: &PixelsIn, out: &mut [u8]) {
     let exposure = view.uniform.size_scale_exposure.w;
-    let PixelsIn { origin, hair, surface } = *input;
-    let ground = Ground::new(view, origin);
+    let PixelsIn { origin, hair, surface, ground } = *input;
     for y in 0..TILE {
         let at = y * STRIDE;
         let mut row = [[0.0_f32; TILE]; 3];
@@ -123,7 +124,7 @@ pub(super) fn finish_pixels(view: &View, input: &PixelsIn, out: &mut [u8]) {
         }
         if most > UNSEEN {
             backdrop(view, origin[0] + 0.5, origin[1] + y as f32 + 0.5, &mut row);
-            if let Some(ground) = &ground {
+            if let Some(ground) = ground {
                 for x in 0..TILE {
                     if open[x] > UNSEEN {
                         let light = ground.light(view, x, y);

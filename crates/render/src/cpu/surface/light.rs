@@ -1,7 +1,7 @@
 //! The body's light in a tile: which places of it are seen, and their attributes.
 
 use lovelock_groom::simd::Width;
-use lovelock_motion::{Body, Skin};
+use lovelock_motion::Body;
 
 use super::PlacedSurface;
 use super::raster::{Edges, NOTHING, SurfaceSamples};
@@ -19,8 +19,8 @@ pub(crate) struct SurfaceLight {
     batch: SurfaceBatch,
 }
 
-/// The body: where it lies in the picture, its mesh, where it is, and one word of transmittances a vertex.
-type Surface<'a> = (&'a PlacedSurface, &'a Body, &'a Skin, &'a [u32]);
+/// The body: where it lies in the picture, and its mesh.
+type Surface<'a> = (&'a PlacedSurface, &'a Body);
 
 impl SurfaceLight {
     /// Shades every place of the body that is seen in a tile.
@@ -61,7 +61,7 @@ impl SurfaceLight {
                     let edges = match last {
                         Some((id, edges)) if id == ids[s] => edges,
                         _ => {
-                            let (placed, body, ..) = surface;
+                            let (placed, body) = surface;
                             let corners =
                                 body.mesh.triangles[ids[s] as usize].map(|i| placed.vertices[i as usize]);
                             let Some(edges) = Edges::new(corners, origin) else { continue };
@@ -83,37 +83,22 @@ impl SurfaceLight {
     }
 
     fn push(&mut self, surface: Surface, triangle: u32, shares: [f32; 3], pixel: usize, weight: f32) {
-        let (_, body, skin, hair) = surface;
+        let (placed, body) = surface;
         let batch = &mut self.batch;
         let lane = batch.count;
-        let corners = body.mesh.triangles[triangle as usize].map(|i| i as usize);
-        let mut position = [0.0; 3];
-        let mut normal = [0.0; 3];
-        let mut albedo = [0.0; 3];
-        let mut scalp = 0.0;
-        let mut through = [0.0; 4];
-        for (&i, share) in corners.iter().zip(shares) {
-            let (p, n) = (skin.positions[i], skin.normals[i]);
-            let color = body.mesh.colors.get(i).copied().unwrap_or(glam::Vec3::splat(0.5));
-            for c in 0..3 {
-                position[c] += share * p[c];
-                normal[c] += share * n[c];
-                albedo[c] += share * color[c];
-            }
-            scalp += share * body.mesh.scalp.get(i).copied().unwrap_or(0.0);
-            let word = hair.get(i).copied().unwrap_or(u32::MAX);
-            for (k, through) in through.iter_mut().enumerate() {
-                *through += share * (word >> (8 * k) & 0xff) as f32 * (1.0 / 255.0);
-            }
+        let [a, b, c] = body.mesh.triangles[triangle as usize].map(|i| &placed.attributes[i as usize]);
+        let mut mixed = [0.0; 16];
+        for (i, mixed) in mixed.iter_mut().enumerate() {
+            *mixed = a[i] * shares[0] + b[i] * shares[1] + c[i] * shares[2];
         }
-        for c in 0..3 {
-            batch.position[c][lane] = position[c];
-            batch.normal[c][lane] = normal[c];
-            batch.albedo[c][lane] = albedo[c];
+        for axis in 0..3 {
+            batch.position[axis][lane] = mixed[axis];
+            batch.normal[axis][lane] = mixed[3 + axis];
+            batch.albedo[axis][lane] = mixed[6 + axis];
         }
-        batch.scalp[lane] = scalp;
-        for (plane, through) in batch.hair.iter_mut().zip(through) {
-            plane[lane] = through;
+        batch.scalp[lane] = mixed[9];
+        for (k, plane) in batch.hair.iter_mut().enumerate() {
+            plane[lane] = mixed[10 + k];
         }
         (batch.pixel[lane], batch.weight[lane]) = (pixel, weight);
         batch.count += 1;

@@ -12,9 +12,15 @@ use super::bins::{Bins, TileRange};
 use super::tile::{Grid, TILE};
 use crate::camera::NEAR_METRES;
 
+/// What a vertex gives to the places around it, side by side in memory: position, normal, colour, 1 where hair grows,
+/// transmittance of hair toward four lights, two spare.
+pub(super) type Attributes = [f32; 16];
+
 /// The body as the camera sees it.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PlacedSurface {
+    /// What each vertex gives to its surroundings.
+    pub attributes: Vec<Attributes>,
     /// Pixels from the left and top times w, and w.
     pub vertices: Vec<[f32; 3]>,
     /// Triangles that touch each tile.
@@ -23,7 +29,9 @@ pub(super) struct PlacedSurface {
 
 impl PlacedSurface {
     /// Places the vertices and sorts the triangles into tiles.
-    pub fn place(&mut self, clip_from_world: Mat4, grid: &Grid, body: Option<(&Body, &Skin)>) {
+    /// `hair` holds one packed word of transmittances a vertex.
+    pub fn place(&mut self, clip_from_world: Mat4, grid: &Grid, body: Option<(&Body, &Skin)>, hair: &[u32]) {
+        self.gather(body, hair);
         let none: (&[Vec3], &[[u32; 3]]) = (&[], &[]);
         let (positions, triangles) =
             body.map_or(none, |(body, skin)| (&skin.positions[..], &body.mesh.triangles[..]));
@@ -44,6 +52,24 @@ impl PlacedSurface {
             }
             tiles_of(corners, grid)
         });
+    }
+
+    fn gather(&mut self, body: Option<(&Body, &Skin)>, hair: &[u32]) {
+        self.attributes.clear();
+        let Some((body, skin)) = body else { return };
+        let mesh = &body.mesh;
+        let positions = skin.positions.par_iter().with_min_len(4096);
+        positions
+            .zip(&skin.normals)
+            .enumerate()
+            .map(|(i, (p, n))| {
+                let color = mesh.colors.get(i).copied().unwrap_or(Vec3::splat(0.5));
+                let scalp = mesh.scalp.get(i).copied().unwrap_or(0.0);
+                let word = hair.get(i).copied().unwrap_or(u32::MAX);
+                let [a, b, c, d] = word.to_le_bytes().map(|byte| f32::from(byte) * (1.0 / 255.0));
+                [p.x, p.y, p.z, n.x, n.y, n.z, color.x, color.y, color.z, scalp, a, b, c, d, 0.0, 0.0]
+            })
+            .collect_into_vec(&mut self.attributes);
     }
 }
 
