@@ -6,7 +6,8 @@ use std::ops::ControlFlow;
 use indicatif::{ProgressBar, ProgressStyle};
 use lovelock_studio::groom::Preset;
 use lovelock_studio::{
-    Access, Problem, Progress, Project, RecordReport, RecordRequest, Stage, StudioError, load_project_with,
+    Access, Place, Problem, Progress, Project, RecordReport, RecordRequest, Stage, StudioError,
+    load_project_with,
 };
 
 use super::args::Record;
@@ -42,7 +43,10 @@ pub(crate) fn run(task: &Record, output: Output) -> Result<(), StudioError> {
     if let Some(path) = &task.motion {
         project.set_motion_file(path);
     }
-    let named: Vec<_> = [&task.hair, &task.body, &task.motion].into_iter().flatten().collect();
+    let named: Vec<_> = [(Place::Hair, &task.hair), (Place::Body, &task.body), (Place::Motion, &task.motion)]
+        .into_iter()
+        .filter_map(|(place, path)| Some((place, path.as_ref()?)))
+        .collect();
     let request = RecordRequest {
         out: task.out.clone(),
         frames: task.frames.clone(),
@@ -58,24 +62,20 @@ pub(crate) fn run(task: &Record, output: Output) -> Result<(), StudioError> {
     let mut refused = None;
     let result = lovelock_studio::record(&project, &request, &mut |progress| {
         if let Progress::Loaded { problems } = &progress {
-            let failure = problems.iter().find(|problem| problem.is_failure());
-            if let Some(problem) = failure.filter(|_| !named.is_empty()) {
-                // Nothing takes its place here, whatever the loader did about it.
-                refused = Some(problem.cause.clone());
-                return ControlFlow::Break(());
+            // A file that the project names is replaced, and said so; one that is named here is not.
+            for problem in problems.iter().filter(|problem| problem.is_failure()) {
+                if let Some((_, path)) = named.iter().find(|(place, _)| *place == problem.place) {
+                    refused = Some(StudioError::input(path, problem.cause.clone()));
+                    return ControlFlow::Break(());
+                }
             }
         }
         bar.show(&progress);
         ControlFlow::Continue(())
     });
     bar.done();
-    if let Some(message) = refused {
-        let named_in_it = named.iter().find(|path| message.contains(&*path.to_string_lossy()));
-        let file = named_in_it.or(if named.len() == 1 { named.first() } else { None });
-        return Err(match file {
-            Some(path) => StudioError::input(path, message),
-            None => StudioError::option(message),
-        });
+    if let Some(error) = refused {
+        return Err(error);
     }
     let report = result?;
     output.result(&report, || summary(&report))

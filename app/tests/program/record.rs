@@ -257,6 +257,36 @@ fn a_place_that_cannot_be_written_is_named() {
 }
 
 #[test]
+fn only_the_files_of_the_command_line_must_be_there() {
+    let Some(data) = lovelock_testkit::data_dir() else { return };
+    if !can_draw() {
+        return;
+    }
+    let dir = tempfile::tempdir().expect("a folder");
+    let mut project = small_project();
+    project.set_hair_file(dir.path().join("no such hair.hair"));
+    saved(dir.path(), "p.lovelock", &project);
+    let record = |option: &str, file: &str| {
+        let file = data.join(file);
+        let args = ["record", "p.lovelock", "-o", "a.mp4", "--frames", "0..1", option];
+        run(dir.path(), args.iter().map(std::ffi::OsStr::new).chain([file.as_os_str()]))
+    };
+    // What the project lacks is replaced, whatever else is named here.
+    let ran = record("--motion", "motion/cmu1_jumping_jacks.bvh");
+    assert!(ran.done().stderr.contains("no such hair.hair"), "{}", ran.stderr);
+    std::fs::remove_file(dir.path().join("a.mp4")).expect("the film");
+    // What is named here is not.
+    for (option, file) in
+        [("--hair", "hair/broken/truncated.hair"), ("--body", "characters/broken/badArray.gltf")]
+    {
+        let ran = record(option, file);
+        let line = ran.refused(2);
+        assert!(line.contains(file), "{line}");
+        assert_eq!(names(dir.path()), ["p.lovelock"]);
+    }
+}
+
+#[test]
 fn files_are_taken_instead_of_the_projects() {
     let Some(data) = lovelock_testkit::data_dir() else { return };
     if !can_draw() {
