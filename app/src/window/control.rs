@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use egui::{PointerButton, Response, RichText, Sense, Slider, SliderClamping, Ui, Vec2, Widget};
+use egui::{Id, Key, PointerButton, Response, RichText, Sense, Slider, SliderClamping, Ui, Vec2, Widget};
 
 use super::theme;
 
@@ -69,6 +69,7 @@ impl Number {
         // Angles come and go through sines: what is not a millionth of the range is no difference.
         let differs = (*value - default).abs() > 1e-6 * (*self.range.end() - *self.range.start());
         row(ui, self.label, self.tip, differs, value, default, |ui, value| {
+            let left = is_left(ui);
             ui.spacing_mut().slider_width = (ui.available_width() - 78.0).max(40.0);
             Slider::from_get_set(range, |new| {
                 // The slider rounds to what it shows; that alone is no change.
@@ -82,12 +83,24 @@ impl Number {
             .logarithmic(self.logarithmic)
             // A project may hold more than the slider offers: showing it must not change it.
             .clamping(SliderClamping::Edits)
+            // A number counts when it is entered: half of it is no wish, and Escape leaves what was there.
+            .update_while_editing(false)
             .fixed_decimals(self.decimals)
             .suffix(self.unit)
-            .custom_parser(|text| typed(text, self.unit))
+            .custom_parser(|text| typed(text, self.unit).filter(|_| !left))
             .ui(ui)
         })
     }
+}
+
+/// Whether Escape was pressed in this pass or the one before, so that what a field holds is not meant. The field
+/// itself knows for one pass only, and takes its text in the next one.
+pub(crate) fn is_left(ui: &Ui) -> bool {
+    let (id, now) = (Id::unique("escape"), ui.ctx().cumulative_pass_nr());
+    if ui.input(|input| input.key_pressed(Key::Escape)) {
+        ui.data_mut(|data| data.insert_temp(id, now));
+    }
+    ui.data(|data| data.get_temp::<u64>(id)).is_some_and(|pressed| now <= pressed + 1)
 }
 
 /// The number in what was typed, with or without its unit; none where it is no finite number.
@@ -109,6 +122,7 @@ pub(crate) fn count(
     default: u32,
 ) -> Response {
     row(ui, label, tip, *value != default, value, default, |ui, value| {
+        let left = is_left(ui);
         ui.spacing_mut().slider_width = (ui.available_width() - 78.0).max(40.0);
         let wide = range.end() / range.start().max(&1) > 50;
         let bounds = f64::from(*range.start())..=f64::from(*range.end());
@@ -119,9 +133,10 @@ pub(crate) fn count(
             f64::from(*value)
         })
         .integer()
-        .custom_parser(|text| typed(text, ""))
+        .custom_parser(|text| typed(text, "").filter(|_| !left))
         .logarithmic(wide)
         .clamping(SliderClamping::Edits)
+        .update_while_editing(false)
         .ui(ui)
     })
 }
@@ -141,6 +156,8 @@ pub(crate) fn choice<T: Copy + PartialEq>(
         egui::ComboBox::from_id_salt(label)
             .selected_text(chosen)
             .width(width)
+            // Room for a dozen options without scrolling.
+            .height(320.0)
             .truncate()
             .show_ui(ui, |ui| {
                 for (option, name) in options {
@@ -206,8 +223,13 @@ pub(crate) fn row<T>(
         } else {
             tip.to_owned()
         };
-        let mut response = add(ui, value).labelled_by(name.id).on_hover_text(&tip);
-        let name = name.on_hover_text(&tip);
+        let mut response = add(ui, value).labelled_by(name.id);
+        let mut name = name;
+        // A tooltip that is open stays while the pointer rests: a dialog that comes over it must end it.
+        if ui.memory(|memory| memory.is_above_modal_layer(ui.layer_id())) {
+            response = response.on_hover_text(&tip);
+            name = name.on_hover_text(&tip);
+        }
         // A slider's rail takes drags and no clicks, so what it says of a double-click is not enough.
         let twice = ui.input(|input| input.pointer.button_double_clicked(PointerButton::Primary));
         if differs && twice && (name.contains_pointer() || response.contains_pointer()) {

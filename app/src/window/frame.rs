@@ -1,6 +1,6 @@
 //! One pass of the window, from top to bottom.
 
-use egui::{Align2, CentralPanel, Frame, Panel, ProgressBar, RichText, ScrollArea, Ui};
+use egui::{Align2, CentralPanel, Frame, Panel, ProgressBar, Rect, RichText, ScrollArea, Ui, vec2};
 use lovelock_studio::{PROJECT_EXTENSION, Place, Project};
 
 use super::control::section;
@@ -22,6 +22,10 @@ impl Window {
                 }
                 panels::recording::State::Failed(why) => {
                     self.notices.tell(notices::Kind::Failed, format!("Recording: {why}"));
+                }
+                panels::recording::State::Cancelled => {
+                    self.notices
+                        .tell(notices::Kind::Done, "The recording was cancelled; nothing of it is left.");
                 }
                 panels::recording::State::Idle | panels::recording::State::Running { .. } => {}
             }
@@ -50,14 +54,10 @@ impl Window {
                 timeline::Ask::Seek(time_secs) => self.session.worker().seek(time_secs),
             }
         }
-        if let Some(command) = {
-            let Self { palette, history, session, .. } = self;
-            palette.show(&ctx, |command| match command {
-                lovelock_studio::Command::Undo => history.undo_len() > 0,
-                lovelock_studio::Command::Redo => history.redo_len() > 0,
-                _ => session.painted.is_some() || command != lovelock_studio::Command::FrameHair,
-            })
-        } {
+        let mut palette = std::mem::take(&mut self.palette);
+        let chosen = palette.show(&ctx, |command| self.can(command));
+        self.palette = palette;
+        if let Some(command) = chosen {
             self.run(command, &ctx);
         }
         self.windows(&ctx);
@@ -204,21 +204,18 @@ impl Window {
             let adapter = self.session.painter().adapter();
             let name = adapter.map_or_else(String::new, |adapter| adapter.name.clone());
             Viewport::caption(ui, rect, Align2::RIGHT_TOP, &format!("{ms:.0} ms · {name}"), theme::QUIET);
-            if self.recorder.is_running() {
-                Viewport::caption(ui, rect, Align2::LEFT_TOP, "● recording", theme::RECORDING);
-            } else if let Some(progress) = self.session.worker().load_progress() {
-                let bar = egui::Rect::from_min_size(
-                    rect.left_top() + egui::vec2(10.0, 10.0),
-                    egui::vec2(260.0, 20.0),
-                );
-                ui.put(bar, ProgressBar::new(progress.fraction).text(progress.what));
-                let button =
-                    egui::Rect::from_min_size(bar.right_top() + egui::vec2(6.0, 0.0), egui::vec2(60.0, 20.0));
-                if ui
-                    .put(button, egui::Button::new("Cancel"))
-                    .on_hover_text("Stops loading; the scene stays as it was.")
-                    .clicked()
-                {
+            // What runs aside is told over the picture too: the panels may be hidden.
+            let mut row = 0;
+            if let Some((fraction, text)) = self.recorder.state().progress() {
+                let tip = "Stops the recording; an unfinished film is removed.";
+                if over_picture(ui, rect, row, fraction, &format!("Recording · {text}"), tip) {
+                    self.recorder.cancel();
+                }
+                row += 1;
+            }
+            if let Some(progress) = self.session.worker().load_progress() {
+                let tip = "Stops loading; the scene stays as it was.";
+                if over_picture(ui, rect, row, progress.fraction, &progress.what, tip) {
                     self.session.worker().cancel_load();
                 }
             }
@@ -263,7 +260,8 @@ impl Window {
         if self.keys_shown {
             let modal = egui::Modal::new(egui::Id::unique("keys")).show(ctx, |ui| {
                 ui.heading("Keys");
-                ScrollArea::vertical().max_height(ctx.content_rect().height() * 0.7).show(ui, keys::list);
+                let most = ctx.content_rect().height() * 0.75;
+                ScrollArea::vertical().min_scrolled_height(most).max_height(most).show(ui, keys::list);
             });
             self.keys_shown = !modal.should_close();
         }
@@ -287,8 +285,39 @@ impl Window {
             Purpose::Sequence => folder.join("out").join("frames"),
             Purpose::Picture => folder.join("hair.png"),
         };
-        self.dialog = Some(PathDialog::new(purpose, &suggestion));
+        let dialog = PathDialog::new(purpose, &suggestion);
+        self.dialog = Some(match purpose {
+            Purpose::Film | Purpose::Sequence => dialog.about(self.recording_in_words()),
+            Purpose::Open | Purpose::SaveProject | Purpose::Picture => dialog,
+        });
     }
+
+    /// What a recording that starts now would hold.
+    fn recording_in_words(&self) -> String {
+        let recording = &self.history.project().recording;
+        let clip = self.session.scene.as_ref().map_or(1, |scene| scene.frames(recording.fps));
+        let first = recording.first_frame;
+        let frames = recording.end_frame.unwrap_or(clip.max(first + 1)).saturating_sub(first);
+        format!(
+            "{frames} frames of {} × {}, {} a second: {:.1} s. The Recording panel sets them.",
+            recording.width,
+            recording.height,
+            recording.fps,
+            frames as f64 / recording.fps,
+        )
+    }
+}
+
+/// A bar of progress in the corner of the picture, `row` from the top, and a button that stops the work. Returns
+/// whether it was clicked.
+fn over_picture(ui: &mut Ui, picture: Rect, row: u8, fraction: f32, text: &str, tip: &str) -> bool {
+    let button_width = 60.0;
+    let width = (picture.width() - button_width - 26.0).clamp(60.0, 300.0);
+    let corner = picture.left_top() + vec2(10.0, 10.0 + 26.0 * f32::from(row));
+    let bar = Rect::from_min_size(corner, vec2(width, 20.0));
+    ui.put(bar, ProgressBar::new(fraction).text(text).corner_radius(4));
+    let button = Rect::from_min_size(bar.right_top() + vec2(6.0, 0.0), vec2(button_width, 20.0));
+    ui.put(button, egui::Button::new("Cancel")).on_hover_text(tip).clicked()
 }
 
 /// The name of the part that differs, for undo.

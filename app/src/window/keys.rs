@@ -8,6 +8,7 @@ use super::theme;
 /// The commands whose keys were pressed in this pass, unless a text field takes the keys.
 pub(crate) fn pressed(ctx: &egui::Context) -> Vec<Command> {
     let typing = ctx.egui_wants_keyboard_input();
+    let editing = ctx.text_edit_focused();
     let mut commands = Vec::new();
     // Keys with more modifiers first: Ctrl+Shift+Z must not also be Ctrl+Z.
     let mut bound: Vec<(KeyboardShortcut, Command)> = COMMANDS
@@ -17,6 +18,10 @@ pub(crate) fn pressed(ctx: &egui::Context) -> Vec<Command> {
     bound.sort_by_key(|(shortcut, _)| std::cmp::Reverse(weight(shortcut.modifiers)));
     for (shortcut, command) in bound {
         if typing && !shortcut.modifiers.command {
+            continue;
+        }
+        // A text takes back and does again what was typed into it.
+        if editing && matches!(command, Command::Undo | Command::Redo) {
             continue;
         }
         if ctx.input_mut(|input| input.consume_shortcut(&shortcut)) {
@@ -53,7 +58,12 @@ pub(crate) fn menus(ui: &mut Ui, enabled: impl Fn(Command) -> bool) -> Option<Co
     let mut chosen = None;
     for group in CommandGroup::ALL {
         ui.menu_button(group.label(), |ui| {
-            for info in COMMANDS.iter().filter(|info| info.group == group) {
+            let mut part = None;
+            for info in in_order(group) {
+                if part.is_some_and(|part| part != part_of(info.command)) {
+                    ui.separator();
+                }
+                part = Some(part_of(info.command));
                 if entry(ui, info, enabled(info.command)) {
                     chosen = Some(info.command);
                     ui.close();
@@ -62,6 +72,26 @@ pub(crate) fn menus(ui: &mut Ui, enabled: impl Fn(Command) -> bool) -> Option<Co
         });
     }
     chosen
+}
+
+/// The commands of a group as its menu has them, part by part.
+fn in_order(group: CommandGroup) -> Vec<&'static CommandInfo> {
+    let mut infos: Vec<_> = COMMANDS.iter().filter(|info| info.group == group).collect();
+    infos.sort_by_key(|info| part_of(info.command));
+    infos
+}
+
+/// The part of its menu that a command stands in: parts are set off by lines.
+fn part_of(command: Command) -> u8 {
+    match command {
+        Command::NewProject | Command::Open => 0,
+        Command::Save | Command::SaveAs => 1,
+        Command::Record | Command::SavePicture => 2,
+        Command::Quit => 3,
+        Command::ToggleLoop => 1,
+        Command::Palette | Command::TogglePanels => 1,
+        _ => 0,
+    }
 }
 
 fn entry(ui: &mut Ui, info: &CommandInfo, enabled: bool) -> bool {

@@ -87,7 +87,8 @@ pub(crate) fn open(path: Option<&Path>, screenshot: Option<(PathBuf, f64)>) -> R
             .with_title("Lovelock")
             .with_app_id("lovelock")
             .with_inner_size([1440.0, 900.0])
-            .with_min_inner_size([640.0, 400.0])
+            // The panels, and as much room again for the picture as one of them takes.
+            .with_min_inner_size([960.0, 540.0])
             .with_drag_and_drop(true),
         ..Default::default()
     };

@@ -1,10 +1,10 @@
 //! Asks for a path: a field to type in, and the system's own dialog where there is one.
 
 use std::path::{Path, PathBuf};
-use std::sync::mpsc::{Receiver, sync_channel};
+use std::sync::mpsc::{Receiver, TryRecvError, sync_channel};
 
 use egui::{Modal, RichText};
-use lovelock_studio::PROJECT_EXTENSION;
+use lovelock_studio::{PROJECT_EXTENSION, Stopwatch};
 
 use super::theme;
 
@@ -25,6 +25,10 @@ pub(crate) enum Purpose {
 
 /// What the program reads, for the system's dialog.
 const READABLE: [&str; 7] = [PROJECT_EXTENSION, "ron", "hair", "tfx", "glb", "gltf", "bvh"];
+
+/// Nobody leaves a dialog sooner than this after asking for it: one that does so never came up. The system's
+/// answer does not tell the two apart.
+const NO_DIALOG_SECS: f64 = 0.5;
 
 impl Purpose {
     fn title(self) -> &'static str {
@@ -61,8 +65,12 @@ impl Purpose {
 pub(crate) struct PathDialog {
     purpose: Purpose,
     typed: String,
-    /// What the system's dialog will send.
-    browsed: Option<Receiver<Option<PathBuf>>>,
+    /// What will be at the path.
+    about: Option<String>,
+    /// What the system's dialog will send, and since when it is asked.
+    browsed: Option<(Receiver<Option<PathBuf>>, Stopwatch)>,
+    /// Whether the system seems to have no dialog.
+    no_dialog: bool,
 }
 
 /// What became of the question.
@@ -79,16 +87,25 @@ pub(crate) enum Answer {
 impl PathDialog {
     /// Asks, with `suggestion` in the field.
     pub(crate) fn new(purpose: Purpose, suggestion: &Path) -> Self {
-        Self { purpose, typed: suggestion.display().to_string(), browsed: None }
+        let typed = suggestion.display().to_string();
+        Self { purpose, typed, about: None, browsed: None, no_dialog: false }
+    }
+
+    /// Says in a line what will be at the path.
+    pub(crate) fn about(self, text: String) -> Self {
+        Self { about: Some(text), ..self }
     }
 
     /// Shows it.
     pub(crate) fn show(&mut self, ctx: &egui::Context) -> Answer {
-        if let Some(receiver) = &self.browsed {
+        if let Some((receiver, since)) = &self.browsed {
             match receiver.try_recv() {
                 Ok(Some(path)) => return Answer::Path(self.purpose, path),
-                Ok(None) | Err(std::sync::mpsc::TryRecvError::Disconnected) => self.browsed = None,
-                Err(std::sync::mpsc::TryRecvError::Empty) => {}
+                Ok(None) | Err(TryRecvError::Disconnected) => {
+                    self.no_dialog = since.secs() < NO_DIALOG_SECS;
+                    self.browsed = None;
+                }
+                Err(TryRecvError::Empty) => {}
             }
         }
         let mut answer = Answer::Pending;
@@ -109,6 +126,13 @@ impl PathDialog {
             let entered = field.inner.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
             if ui.memory(|memory| memory.focused().is_none()) {
                 field.inner.request_focus();
+            }
+            if self.no_dialog {
+                let text = "The system has no file dialog to show: type the path above.";
+                ui.label(RichText::new(text).color(theme::WRONG));
+            }
+            if let Some(about) = &self.about {
+                ui.label(RichText::new(about).color(theme::QUIET));
             }
             let path = self.path();
             if self.purpose == Purpose::Film && path.as_ref().is_some_and(|path| path.exists()) {
@@ -170,7 +194,8 @@ impl PathDialog {
             let _ = sender.send(picked);
             ctx.request_repaint();
         });
-        self.browsed = spawned.is_ok().then_some(receiver);
+        self.no_dialog = spawned.is_err();
+        self.browsed = spawned.is_ok().then_some((receiver, Stopwatch::start()));
     }
 }
 

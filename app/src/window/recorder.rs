@@ -10,12 +10,14 @@ use super::panels::recording::State;
 /// The recording that runs, if one does, and what became of the last one. Dropping it cancels.
 pub(crate) struct Recorder {
     running: Option<(RecordJob, Stopwatch)>,
+    /// Whether the one that runs was asked to stop.
+    cancelled: bool,
     state: State,
 }
 
 impl Default for Recorder {
     fn default() -> Self {
-        Self { running: None, state: State::Idle }
+        Self { running: None, cancelled: false, state: State::Idle }
     }
 }
 
@@ -31,6 +33,7 @@ impl Recorder {
             Ok(job) => {
                 self.state =
                     State::Running { what: "Loading".to_owned(), done: 0, total: 1, left_secs: None };
+                self.cancelled = false;
                 self.running = Some((job, Stopwatch::start()));
             }
             Err(error) => self.state = State::Failed(error.to_string()),
@@ -38,9 +41,10 @@ impl Recorder {
     }
 
     /// Asks the recording to stop.
-    pub(crate) fn cancel(&self) {
+    pub(crate) fn cancel(&mut self) {
         if let Some((job, _)) = &self.running {
             job.cancel();
+            self.cancelled = true;
         }
     }
 
@@ -75,6 +79,7 @@ impl Recorder {
         let (job, _) = self.running.take()?;
         self.state = match job.finish() {
             Ok(report) => State::Done(format!("{} frames in {}", report.frames, report.out.display())),
+            Err(_) if self.cancelled => State::Cancelled,
             Err(error) => State::Failed(error.to_string()),
         };
         Some(&self.state)

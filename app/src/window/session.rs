@@ -20,8 +20,8 @@ pub(crate) struct Session {
     access: Access,
     /// What was last handed to the simulation.
     simulated: Arc<Project>,
-    /// What was last handed to the drawing: the project, the step and the size.
-    drawn: Option<(Arc<Project>, u64, [u32; 2])>,
+    /// What was last handed to the drawing: the project, the frame and the size.
+    pub(crate) drawn: Option<(Arc<Project>, Arc<FrameSnapshot>, [u32; 2])>,
     seen_painted: u64,
     seen_errors: u64,
     pub(crate) scene: Option<Arc<Scene>>,
@@ -144,8 +144,10 @@ impl Session {
             self.worker.set_project(Arc::clone(project), self.access.clone());
         }
         let Some(frame) = &self.frame else { return };
-        let fresh = self.drawn.as_ref().is_some_and(|(drawn, step, drawn_size)| {
-            Arc::ptr_eq(drawn, project) && *step == frame.step && *drawn_size == size
+        // Frames are told apart by what they are and not by their step, which only passing time raises: going to
+        // another time, settling and other hair make new frames of the same step.
+        let fresh = self.drawn.as_ref().is_some_and(|(drawn, drawn_frame, drawn_size)| {
+            Arc::ptr_eq(drawn, project) && Arc::ptr_eq(drawn_frame, frame) && *drawn_size == size
         });
         if !fresh && size[0] > 0 && size[1] > 0 {
             self.painter.request(PaintRequest {
@@ -154,7 +156,7 @@ impl Session {
                 width: size[0],
                 height: size[1],
             });
-            self.drawn = Some((Arc::clone(project), frame.step, size));
+            self.drawn = Some((Arc::clone(project), Arc::clone(frame), size));
         }
     }
 

@@ -97,11 +97,8 @@ impl Viewport {
 /// Pixels for a viewport of `size` points.
 fn size_for(size: Vec2, pixels_per_point: f32, most_pixels: f32, scale: f32) -> [u32; 2] {
     let pixels = size * pixels_per_point;
-    let scale = if scale > 0.0 {
-        scale
-    } else {
-        (most_pixels / (pixels.x * pixels.y).max(1.0)).sqrt().min(1.0)
-    };
+    let scale =
+        if scale > 0.0 { scale } else { (most_pixels / (pixels.x * pixels.y).max(1.0)).sqrt().min(1.0) };
     let side = |v: f32| if v.is_finite() { (v * scale).round().clamp(16.0, 8192.0) as u32 } else { 16 };
     [side(pixels.x), side(pixels.y)]
 }

@@ -4,7 +4,7 @@ use egui::{ProgressBar, RichText, Ui};
 use lovelock_studio::RecordingSection;
 use lovelock_studio::recording::FilmQuality;
 
-use crate::window::control::{choice, note, row, typed};
+use crate::window::control::{choice, is_left, note, row, typed};
 use crate::window::theme;
 
 /// A recording that runs or has ended.
@@ -25,8 +25,32 @@ pub(crate) enum State {
     },
     /// The last one is finished: what was written.
     Done(String),
-    /// The last one failed or was cancelled: why.
+    /// The last one failed: why.
     Failed(String),
+    /// The user stopped the last one.
+    Cancelled,
+}
+
+impl State {
+    /// How far the one that runs is, 0 to 1, and in words; none where none runs.
+    pub(crate) fn progress(&self) -> Option<(f32, String)> {
+        let Self::Running { what, done, total, left_secs } = self else { return None };
+        let fraction = *done as f32 / (*total).max(1) as f32;
+        // What has no parts to count is said in its own words.
+        let count = if *total > 1 { format!(" {done} of {total}") } else { String::new() };
+        let left = left_secs.map_or_else(String::new, |secs| format!(", {} left", duration(secs)));
+        Some((fraction, format!("{what}{count}{left}")))
+    }
+}
+
+/// Seconds as people say them.
+fn duration(secs: f64) -> String {
+    let secs = secs.clamp(0.0, 1e9).round() as u64;
+    match secs {
+        0..=99 => format!("{secs} s"),
+        100..=5999 => format!("{} min", secs.div_ceil(60)),
+        _ => format!("{} h {} min", secs / 3600, secs % 3600 / 60),
+    }
 }
 
 /// What the panel asks for beyond a change of the project.
@@ -50,11 +74,14 @@ const SIZES: [((u32, u32), &str); 6] = [
 ];
 
 /// A field for the number of a frame. What a project holds beyond its range is shown, not changed.
-fn frame_number(frame: &mut u64) -> egui::DragValue<'_> {
-    egui::DragValue::new(frame)
+fn frame_number(ui: &mut Ui, frame: &mut u64) -> egui::Response {
+    let left = is_left(ui);
+    let field = egui::DragValue::new(frame)
         .range(0..=1_000_000)
         .clamp_existing_to_range(false)
-        .custom_parser(|text| typed(text, ""))
+        .update_while_editing(false)
+        .custom_parser(move |text| typed(text, "").filter(|_| !left));
+    ui.add(field)
 }
 
 /// The controls of `section`; `clip_frames` is the number of frames of the whole clip.
@@ -96,7 +123,7 @@ pub(crate) fn ui(
         section.first_frame != d.first_frame,
         &mut section.first_frame,
         d.first_frame,
-        |ui, first| ui.add(frame_number(first)),
+        |ui, first| frame_number(ui, first),
     );
     let end = &mut section.end_frame;
     row(
@@ -108,7 +135,7 @@ pub(crate) fn ui(
         None,
         |ui, end| {
             let mut frame = end.unwrap_or(clip_frames);
-            let response = ui.add(frame_number(&mut frame));
+            let response = frame_number(ui, &mut frame);
             if response.changed() {
                 *end = Some(frame);
             }
@@ -119,12 +146,8 @@ pub(crate) fn ui(
     if let Some(end) = &mut section.end_frame {
         *end = (*end).max(section.first_frame + 1);
     }
-    if let State::Running { what, done, total, left_secs } = state {
-        let text = left_secs.map_or_else(String::new, |secs| format!(", {secs:.0} s left"));
-        ui.add(
-            ProgressBar::new(*done as f32 / (*total).max(1) as f32)
-                .text(format!("{what} {done} of {total}{text}")),
-        );
+    if let Some((fraction, text)) = state.progress() {
+        ui.add(ProgressBar::new(fraction).text(text).corner_radius(4));
         if ui.button("Cancel").on_hover_text("Stops the recording; an unfinished film is removed.").clicked()
         {
             ask = Some(Ask::Cancel);
@@ -146,6 +169,7 @@ pub(crate) fn ui(
         State::Failed(why) => {
             ui.label(RichText::new(why).color(theme::WRONG));
         }
+        State::Cancelled => note(ui, "Cancelled; nothing of it is left."),
         State::Idle | State::Running { .. } => {}
     }
     ask

@@ -1,7 +1,7 @@
 //! What frames cost, and how the hair is.
 
 use egui::{RichText, Ui};
-use egui_plot::{Legend, Line, Plot, PlotPoints};
+use egui_plot::{Line, Plot, PlotPoints};
 use lovelock_studio::{Stage, StageHistory};
 
 use crate::window::theme;
@@ -21,7 +21,6 @@ pub(crate) fn ui(ui: &mut Ui, history: &StageHistory, facts: &[Fact]) {
         .include_y(0.0)
         .y_axis_label("ms")
         .show_axes([false, true])
-        .legend(Legend::default().text_style(egui::TextStyle::Small))
         .show(ui, |plot| {
             for (stage, color) in Stage::ALL.into_iter().zip(theme::PLOT) {
                 if stage == Stage::Encode {
@@ -34,9 +33,11 @@ pub(crate) fn ui(ui: &mut Ui, history: &StageHistory, facts: &[Fact]) {
         });
     let medians = history.medians();
     egui::Grid::new("stages").num_columns(4).spacing([10.0, 2.0]).show(ui, |ui| {
-        for pair in Stage::ALL[..5].chunks(2) {
-            for &stage in pair {
-                ui.label(RichText::new(stage.label()).small().color(theme::QUIET));
+        // The names are the key to the plot's colours: a legend over it would hide the newest times.
+        let stages: Vec<_> = Stage::ALL.into_iter().zip(theme::PLOT).take(5).collect();
+        for pair in stages.chunks(2) {
+            for &(stage, color) in pair {
+                ui.label(RichText::new(stage.label()).small().color(color));
                 ui.label(RichText::new(format!("{:.2} ms", medians.get(stage))).small());
             }
             ui.end_row();

@@ -71,6 +71,27 @@ fn a_text_field_keeps_the_letters() {
 }
 
 #[test]
+fn a_text_takes_back_its_own_typing() {
+    let mut harness = screen();
+    harness.get_by_label("Name").click();
+    harness.run();
+    harness.event(egui::Event::Text("hair".to_owned()));
+    harness.run();
+    let ctrl = Modifiers::COMMAND | Modifiers::CTRL;
+    for (modifiers, key) in [(ctrl, Key::Z), (ctrl | Modifiers::SHIFT, Key::Z), (ctrl, Key::Y)] {
+        harness.key_press_modifiers(modifiers, key);
+        harness.run();
+        assert!(harness.state().state.1.is_empty(), "{key:?} is the text's: {:?}", harness.state().state.1);
+    }
+    // Elsewhere the same keys are the project's.
+    harness.get_by_label("A button").click();
+    harness.run();
+    harness.key_press_modifiers(ctrl, Key::Z);
+    harness.run();
+    assert_eq!(harness.state().state.1, [Command::Undo]);
+}
+
+#[test]
 fn tab_hides_the_panels_and_leaves_the_other_keys_alone() {
     let mut harness = screen();
     for _ in 0..3 {

@@ -4,6 +4,7 @@ mod dialogs;
 mod keyboard;
 mod notices;
 mod playback;
+mod rows;
 mod whole;
 
 use egui::accesskit::{Role, Toggled};

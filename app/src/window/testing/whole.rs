@@ -167,6 +167,38 @@ fn keys_play_and_hide_the_panels() {
 }
 
 #[test]
+fn a_paused_picture_follows_the_timeline_and_the_hair() {
+    let mut harness = window();
+    key(&mut harness, Modifiers::NONE, Key::Space);
+    // Time has stopped when two frames in a row are the same.
+    let position = |window: &Window| window.session.frame.as_ref().map_or(-1.0, |frame| frame.position_secs);
+    let drawn = |window: &Window| match (&window.session.drawn, &window.session.frame) {
+        (Some((_, drawn, _)), Some(frame)) => Arc::ptr_eq(drawn, frame),
+        _ => false,
+    };
+    wait(&mut harness, "the pause", |window| {
+        let before = position(window);
+        std::thread::sleep(Duration::from_millis(50));
+        window.session.worker().frame().is_some_and(|frame| frame.position_secs.to_bits() == before.to_bits())
+    });
+    let step = |window: &Window| window.session.frame.as_ref().map(|frame| frame.step);
+    let before = step(of(&harness));
+    for to in [Key::End, Key::ArrowLeft, Key::Home] {
+        let there = position(of(&harness));
+        key(&mut harness, Modifiers::NONE, to);
+        wait(&mut harness, "the jump", |window| position(window).to_bits() != there.to_bits());
+        assert!(drawn(of(&harness)), "{to:?}: the picture is of another time than the timeline");
+    }
+    assert_eq!(step(of(&harness)), before, "none of these lets time pass");
+    let style = of(&harness).session.frame.as_ref().map(|frame| Arc::as_ptr(&frame.scene));
+    key(&mut harness, Modifiers::ALT, Key::Num2);
+    wait(&mut harness, "other hair", |window| {
+        window.session.frame.as_ref().map(|frame| Arc::as_ptr(&frame.scene)) != style
+    });
+    assert!(drawn(of(&harness)), "the picture has the hair of before");
+}
+
+#[test]
 fn projects_are_saved_opened_and_not_lost() {
     let mut harness = window();
     let dir = tempfile::tempdir().expect("a folder");

@@ -21,7 +21,7 @@ const ROLES: [Role; 7] = [
 
 #[test]
 fn every_control_has_a_name_and_a_tooltip() {
-    // The legend of the plot of statistics is made by the plot's library, and says what it is.
+    // Statistics have nothing to control.
     for (title, _) in PANELS.into_iter().filter(|(title, _)| *title != "Statistics") {
         for (name, project) in [&projects()[0], &projects()[3]] {
             let mut harness = panel(title, project.clone());

@@ -277,11 +277,26 @@ fn recording_starts_shows_progress_and_stops() {
     for (state, text) in [
         (State::Done("48 frames in a b.mp4".to_owned()), "48 frames"),
         (State::Failed("out.mp4: the disk is full".to_owned()), "disk is full"),
+        (State::Cancelled, "Cancelled"),
     ] {
         harness.state_mut().state = (state, None);
         harness.run();
         assert!(harness.query_by_label_contains(text).is_some(), "{text}");
     }
+}
+
+#[test]
+fn progress_is_said_in_words_that_fit() {
+    let said = |what: &str, done, total, left_secs| {
+        let state = State::Running { what: what.to_owned(), done, total, left_secs };
+        state.progress().expect("it runs").1
+    };
+    assert_eq!(said("Loading", 0, 1, None), "Loading", "nothing to count");
+    assert_eq!(said("Frame", 12, 48, Some(30.4)), "Frame 12 of 48, 30 s left");
+    assert_eq!(said("Frame", 1, 288, Some(340.0)), "Frame 1 of 288, 6 min left");
+    assert_eq!(said("Frame", 1, 9000, Some(9000.0)), "Frame 1 of 9000, 2 h 30 min left");
+    assert!(said("Frame", 1, 2, Some(f64::INFINITY)).ends_with("left"));
+    assert_eq!(State::Cancelled.progress(), None);
 }
 
 #[test]

@@ -1,0 +1,52 @@
+//! The rows of panels.
+
+use egui::accesskit::Role;
+use egui::{Event, Key, vec2};
+use egui_kittest::Harness;
+
+use super::{Shown, click, controls, screen, tooltip_at, type_at};
+use crate::window::control::Number;
+
+/// A row, and whether a dialog is over it.
+fn row() -> Harness<'static, Shown<(f32, bool)>> {
+    screen((0.27, false), |ui, (value, dialog): &mut (f32, bool)| {
+        let number = Number::new("Length", 0.02..=0.7, "Length of the longest hair.");
+        number.centimetres().show(ui, value, 0.27);
+        if *dialog {
+            egui::Modal::new(egui::Id::unique("over")).show(ui.ctx(), |ui| {
+                ui.set_width(20.0);
+                ui.label("!");
+            });
+        }
+    })
+}
+
+#[test]
+fn a_number_counts_when_it_is_entered() {
+    let mut harness = row();
+    let field = controls(&harness, Role::SpinButton)[0].1.center();
+    click(&mut harness, field);
+    harness.event(Event::Text("3".to_owned()));
+    harness.run_ok();
+    assert_eq!(harness.state().state.0.to_bits(), 0.27_f32.to_bits(), "3 may be the start of 30");
+    harness.key_press(Key::Escape);
+    harness.run_ok();
+    assert_eq!(harness.state().state.0.to_bits(), 0.27_f32.to_bits(), "Escape leaves what was there");
+    type_at(&mut harness, field, "30 cm");
+    assert!((harness.state().state.0 - 0.3).abs() < 1e-6, "{}", harness.state().state.0);
+}
+
+#[test]
+fn a_dialog_ends_the_tooltip_under_it() {
+    let mut harness = row();
+    let rail = controls(&harness, Role::Slider)[0].1;
+    // Away from the middle of the screen, where the dialog is.
+    let at = rail.left_center() + vec2(4.0, 0.0);
+    assert!(tooltip_at(&mut harness, at).is_some());
+    harness.hover_at(at);
+    harness.run_steps(4);
+    assert!(super::tooltip(&harness).is_some());
+    harness.state_mut().state.1 = true;
+    harness.run_steps(4);
+    assert_eq!(super::tooltip(&harness), None);
+}
