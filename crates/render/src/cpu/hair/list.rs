@@ -23,13 +23,13 @@ pub(crate) struct Fragment {
     pub covered: u32,
 }
 
-/// Samples of a pixel that an opacity takes: as many as its fourths, rounded up or down by a noise of the pixel, from
-/// one on that is the strand's own. Strands of a pixel take different samples, so that many thin ones add up. Twin
+/// Samples of a pixel that an opacity takes: as many as its fourths, rounded up or down by a noise of the pixel and the
+/// strand, from one on that is the strand's own. Strands of a pixel take different samples, so that many thin ones add up. Twin
 /// of `covered_samples` in `strand_ribbons.wgsl`.
 #[inline(always)]
 fn covered_samples(alpha: f32, [x, y]: [f32; 2], hash: f32) -> u32 {
     let inner = x * 0.067_110_56 + y * 0.005_837_15;
-    let inner = (inner - floor(inner)) * 52.982_918_9;
+    let inner = (inner - floor(inner)) * 52.982_918_9 + 13.7 * hash;
     let noise = inner - floor(inner);
     let count = clamp(floor(alpha * 4.0 + noise), 0.0, 4.0) as u32;
     let first = (hash * 4.0) as u32 & 3;

@@ -79,11 +79,11 @@ struct Opaque {
     @builtin(sample_mask) samples: u32,
 }
 
-// Samples of a pixel that an opacity takes: as many as its fourths, rounded up or down by a noise of the pixel, from
-// one on that is the strand's own. Strands of a pixel take different samples, so that many thin ones add up. Twin of
+// Samples of a pixel that an opacity takes: as many as its fourths, rounded up or down by a noise of the pixel and the
+// strand, from one on that is the strand's own. Strands of a pixel take different samples, so that many thin ones add up. Twin of
 // `covered_samples` in cpu/hair/list.rs.
 fn covered_samples(alpha: f32, pixel: vec2f, hash: f32) -> u32 {
-    let noise = fract(52.9829189 * fract(dot(pixel, vec2f(0.06711056, 0.00583715))));
+    let noise = fract(52.9829189 * fract(dot(pixel, vec2f(0.06711056, 0.00583715))) + 13.7 * hash);
     let count = u32(clamp(floor(alpha * 4.0 + noise), 0.0, 4.0));
     let first = u32(hash * 4.0) & 3u;
     let samples = ((1u << count) - 1u) << first;
