@@ -37,7 +37,7 @@ fn stages(c: &mut Criterion, name: &str, style: Style) {
         let mut map = VoxelMap::default();
         let mut group = c.benchmark_group(format!("{name}/{resolution}"));
         group.bench_function("build", |b| {
-            b.iter(|| map.build(black_box(&input(&hair)), &settings).expect("fits"))
+            b.iter(|| map.build(black_box(&input(&hair)), &settings).expect("fits"));
         });
         group.bench_function("lookup", |b| {
             b.iter(|| map.transmittance_at(&hair.x, &hair.y, &hair.z, black_box(&mut out)));

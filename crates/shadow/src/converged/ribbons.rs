@@ -96,6 +96,26 @@ impl Ribbons {
         Steps::new(from * scale, to * scale)
     }
 
+    /// Whether a segment may touch a texel that is wanted: a quick look at those around it.
+    fn may_touch_wanted(&self, from: Vec3, to: Vec3) -> bool {
+        /// A segment over more texels than this is surely worth drawing.
+        const MOST: u32 = 1024;
+        // Half the width over the cosine of at most 45 degrees.
+        let reach = Vec3::splat(0.71 * self.width / self.samples as f32);
+        let last = (self.resolution - 1) as f32;
+        let low = (from.min(to) - reach).clamp(Vec3::ZERO, Vec3::splat(last));
+        let high = (from.max(to) + reach).clamp(Vec3::ZERO, Vec3::splat(last));
+        let columns = low.x as usize..high.x as usize + 1;
+        let rows = low.y as u32..high.y as u32 + 1;
+        if rows.len() as u32 * columns.len() as u32 > MOST {
+            return true;
+        }
+        rows.into_iter().any(|row| {
+            let start = (row * self.resolution) as usize;
+            self.wanted[start + columns.start..start + columns.end].contains(&true)
+        })
+    }
+
     #[inline]
     fn wants(&self, column: u32, row: u32) -> bool {
         self.wanted[(row / self.samples * self.resolution + column / self.samples) as usize]
@@ -104,6 +124,9 @@ impl Ribbons {
 
 impl Draw for Ribbons {
     fn draw(&self, from: Vec3, to: Vec3, put: &mut impl FnMut(u32, u32, f32, f32)) {
+        if !self.may_touch_wanted(from, to) {
+            return;
+        }
         let steps = self.steps(from, to);
         let half = 0.5 * self.width * steps.length;
         let columns = self.columns();

@@ -1,4 +1,5 @@
 //! The hairstyles that methods are measured on.
+#![allow(dead_code, unreachable_pub, missing_docs)] // A module of tests and benchmarks, each of which uses its part.
 
 use glam::{Affine3A, Vec3};
 use lovelock_groom::{
@@ -7,7 +8,7 @@ use lovelock_groom::{
 };
 use lovelock_shadow::{LightFrame, ShadowInput};
 
-use super::{Random, strands};
+use crate::common::{Random, strands};
 
 /// Strands, and what they are blocked with.
 pub struct Groom {

@@ -130,7 +130,7 @@ impl Clustering {
             return;
         }
         let (mut near, mut far) = (1.0_f32, 0.0_f32);
-        for fragment in fragments.iter() {
+        for fragment in fragments {
             near = near.min(fragment.depth());
             far = far.max(fragment.depth());
         }
@@ -149,7 +149,7 @@ impl Clustering {
 
         let borders = borders(&kept_centres, kept);
         let mut depths = [0.0_f64; K];
-        for fragment in fragments.iter() {
+        for fragment in fragments {
             // The nearest centre, but for a bin that holds the fragment.
             let mut j = cluster(&borders, fragment.depth());
             let depth = f64::from(fragment.depth());
@@ -235,3 +235,6 @@ impl TexelMethod for Clustering {
         record.iter().map(|bin| bin.optical_depth * part(bin)).sum()
     }
 }
+
+#[cfg(test)]
+mod tests;

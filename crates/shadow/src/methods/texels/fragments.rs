@@ -115,7 +115,7 @@ pub(crate) struct Fragments {
     columns: u32,
     /// Where the fragments of each texel end, row after row.
     ends: Vec<u32>,
-    fragments: Vec<Fragment>,
+    sorted: Vec<Fragment>,
     /// Texels with fragments in each band.
     in_use: Vec<u64>,
     pieces: Vec<Piece>,
@@ -149,8 +149,8 @@ impl Fragments {
         let pieces = &self.pieces[..];
         let count = |band: usize| pieces.iter().map(|piece| piece.bands[band].len()).sum::<usize>();
         self.ends.resize(bands * (BAND_ROWS * columns) as usize, 0);
-        self.fragments.resize((0..bands).map(count).sum(), Fragment::default());
-        let (mut rest, mut start) = (&mut self.fragments[..], 0);
+        self.sorted.resize((0..bands).map(count).sum(), Fragment::default());
+        let (mut rest, mut start) = (&mut self.sorted[..], 0);
         let ends = self.ends.chunks_exact_mut((BAND_ROWS * columns) as usize);
         let mut work = Vec::with_capacity(bands);
         for (band, ends) in ends.enumerate() {
@@ -190,13 +190,13 @@ impl Fragments {
     #[inline]
     pub(crate) fn texel(&self, texel: usize) -> &[Fragment] {
         let start = texel.checked_sub(1).map_or(0, |last| self.ends[last]);
-        &self.fragments[start as usize..self.ends[texel] as usize]
+        &self.sorted[start as usize..self.ends[texel] as usize]
     }
 
     /// The bands, to be worked on side by side.
     pub(crate) fn bands(&mut self) -> Vec<Band<'_>> {
         let texels = self.band_texels();
-        let (mut rest, mut start) = (&mut self.fragments[..], 0);
+        let (mut rest, mut start) = (&mut self.sorted[..], 0);
         let mut bands = Vec::with_capacity(self.in_use.len());
         for ends in self.ends.chunks_exact(texels) {
             let end = ends.last().copied().unwrap_or(start);
@@ -210,7 +210,7 @@ impl Fragments {
 
     /// Memory of the sorted fragments, and of what only sorting needs, bytes.
     pub(crate) fn memory_bytes(&self) -> (u64, u64) {
-        let sorted = 4 * self.ends.capacity() + 8 * self.fragments.capacity();
+        let sorted = 4 * self.ends.capacity() + 8 * self.sorted.capacity();
         let loose = self.pieces.iter().flat_map(|piece| &piece.bands);
         let loose = loose.map(|loose| size_of::<Loose>() * loose.capacity()).sum::<usize>();
         (sorted as u64, loose as u64)
