@@ -28,19 +28,9 @@ impl Occupancy {
         self.slices as usize / 32
     }
 
-    /// The slice of a depth within a texel's range, and where in it the depth lies, 0 to 1.
-    #[inline]
-    fn slice(&self, near: f32, far: f32, depth: f32) -> (u32, f32) {
-        // With one fragment, or all at one depth, there is no range.
-        let part = if far > near { ((depth - near) / (far - near)).clamp(0.0, 1.0) } else { 0.0 };
-        let slices = part * self.slices as f32;
-        // The end of the range belongs to the last slice.
-        let slice = (slices as u32).min(self.slices - 1);
-        (slice, slices - slice as f32)
-    }
-
-    fn slices_per_slab(&self) -> u32 {
-        self.slices / self.slabs
+    /// Slices of a slab as a power of two.
+    fn slab_shift(&self) -> u32 {
+        self.slices.trailing_zeros() - self.slabs.trailing_zeros()
     }
 }
 
@@ -50,37 +40,68 @@ fn count(counts: &[u32], slab: usize) -> u32 {
     counts[slab / 2] >> (slab % 2 * 16) & 0xffff
 }
 
-/// The bits of a slab that are set, and those of them that lie before `slice`, which is one of the slab's.
+/// The bits of the slab of `slice` that are set, and those of them that lie before it; slabs have `1 << shift` bits.
 #[inline]
-fn occupied(bits: &[u32], first: u32, per_slab: u32, slice: u32) -> (u32, u32) {
-    if per_slab <= 32 {
+fn occupied<const BITS: usize>(bits: &[u32; BITS], slice: u32, shift: u32) -> (u32, u32) {
+    let word = (slice / 32) as usize % BITS;
+    let before = bits[word] & ((1 << (slice % 32)) - 1);
+    if shift <= 5 {
         // A slab lies within one word.
-        let slab = bits[(first / 32) as usize] >> (first % 32) & (u32::MAX >> (32 - per_slab));
-        return (slab.count_ones(), (slab & ((1 << (slice - first)) - 1)).count_ones());
+        let first = slice >> shift << shift;
+        let slab = (u32::MAX >> (32 - (1 << shift))) << (first % 32);
+        return ((bits[word] & slab).count_ones(), (before & slab).count_ones());
     }
-    let (mut all, mut before) = (0, 0);
-    for word in first / 32..(first + per_slab) / 32 {
-        let slab = bits[word as usize];
-        let mask = (1_u64 << slice.saturating_sub(word * 32).min(32)) - 1;
-        all += slab.count_ones();
-        before += (slab & mask as u32).count_ones();
+    let first = slice >> shift << (shift - 5);
+    let (mut all, mut passed) = (0, before.count_ones());
+    for (at, bits) in bits.iter().enumerate() {
+        let ones = bits.count_ones();
+        all += if at as u32 >> (shift - 5) == slice >> shift { ones } else { 0 };
+        passed += if at >= first as usize && at < word { ones } else { 0 };
     }
-    (all, before)
+    (all, passed)
 }
 
 /// Fragments of the slabs before `slab`, of itself, and of all.
 #[inline]
-fn counts_around<const WORDS: usize>(counts: &[u32], slab: u32) -> (u32, u32, u32) {
-    let (mut before, mut own, mut all) = (0, 0, 0);
-    for (word, packed) in counts[..WORDS].iter().enumerate() {
-        for half in 0..2 {
-            let (at, count) = (2 * word as u32 + half, packed >> (16 * half) & 0xffff);
-            before += if at < slab { count } else { 0 };
-            own += if at == slab { count } else { 0 };
-            all += count;
-        }
+fn counts_around<const WORDS: usize>(counts: &[u32; WORDS], slab: u32) -> (u32, u32, u32) {
+    let (mut before, mut all) = (0, 0);
+    for (word, packed) in counts.iter().enumerate() {
+        let (low, high, at) = (packed & 0xffff, packed >> 16, 2 * word as u32);
+        before += if at < slab { low } else { 0 } + if at + 1 < slab { high } else { 0 };
+        all += low + high;
     }
-    (before, own, all)
+    (before, count(counts, slab as usize % (2 * WORDS)), all)
+}
+
+/// [`TexelMethod::depth_before`] for a record of so many words: known lengths leave neither loops nor checks.
+#[inline]
+fn depth_before<const BITS: usize, const WORDS: usize>(record: &[u32], depth: f32) -> f32 {
+    let Some((header, rest)) = record.split_first_chunk::<HEADER>() else { return 0.0 };
+    let Some((bits, rest)) = rest.split_first_chunk::<BITS>() else { return 0.0 };
+    let Some((counts, _)) = rest.split_first_chunk::<WORDS>() else { return 0.0 };
+    let [near, far, mean] = header.map(f32::from_bits);
+    let (slice, part) = slice_of(32 * BITS as u32, near, far, depth);
+    let shift = (32 * BITS / (2 * WORDS)).trailing_zeros();
+    let (before, own, all) = counts_around(counts, slice >> shift);
+    let (occupied, passed) = occupied(bits, slice, shift);
+    let own_bit = (bits[(slice / 32) as usize % BITS] >> (slice % 32) & 1) as f32;
+    let share = (passed as f32 + part * own_bit) / occupied.max(1) as f32;
+    let within = before as f32 + share * own as f32;
+    // These two come before all else: where all fragments lie at one depth, slices have no meaning. Chosen rather than
+    // returned early, as no branch could be foretold here.
+    let count = if depth >= far { all as f32 } else { within };
+    if depth <= near { 0.0 } else { count * mean }
+}
+
+/// The slice, of `slices`, of a depth within a texel's range, and where in it the depth lies, 0 to 1.
+#[inline]
+fn slice_of(slices: u32, near: f32, far: f32, depth: f32) -> (u32, f32) {
+    // With one fragment, or all at one depth, there is no range.
+    let part = if far > near { ((depth - near) / (far - near)).clamp(0.0, 1.0) } else { 0.0 };
+    let part = part * slices as f32;
+    // The end of the range belongs to the last slice.
+    let slice = (part as u32).min(slices - 1);
+    (slice, part - slice as f32)
 }
 
 impl TexelMethod for Occupancy {
@@ -120,12 +141,11 @@ impl TexelMethod for Occupancy {
         let (header, rest) = record.split_at_mut(HEADER);
         rest.fill(0);
         let (bits, counts) = rest.split_at_mut(self.bit_words());
-        let per_slab = self.slices_per_slab();
         let mut counted = 0_u32;
         for fragment in fragments.iter() {
-            let (slice, _) = self.slice(near, far, fragment.depth());
+            let (slice, _) = slice_of(self.slices, near, far, fragment.depth());
             bits[(slice / 32) as usize] |= 1 << (slice % 32);
-            let slab = (slice / per_slab) as usize;
+            let slab = (slice >> self.slab_shift()) as usize;
             if count(counts, slab) < 0xffff {
                 counts[slab / 2] += 1 << (slab % 2 * 16);
                 counted += 1;
@@ -137,24 +157,17 @@ impl TexelMethod for Occupancy {
 
     #[inline]
     fn depth_before(&self, _fragments: &[Fragment], record: &[u32], depth: f32) -> f32 {
-        let [near, far, mean] = [record[0], record[1], record[2]].map(f32::from_bits);
-        let (bits, counts) = record[HEADER..].split_at(self.bit_words());
-        let (slice, part) = self.slice(near, far, depth);
-        let per_slab = self.slices_per_slab();
-        let slab = slice / per_slab;
-        let (before, own, all) = match self.slabs {
-            4 => counts_around::<2>(counts, slab),
-            8 => counts_around::<4>(counts, slab),
-            _ => counts_around::<8>(counts, slab),
-        };
-        let (occupied, passed) = occupied(bits, slab * per_slab, per_slab, slice);
-        let own_bit = (bits[(slice / 32) as usize] >> (slice % 32) & 1) as f32;
-        let share = (passed as f32 + part * own_bit) / occupied.max(1) as f32;
-        let within = before as f32 + share * own as f32;
-        // These two come before all else: where all fragments lie at one depth, slices have no meaning. Chosen rather
-        // than returned early, as no branch could be foretold here.
-        let count = if depth >= far { all as f32 } else { within };
-        if depth <= near { 0.0 } else { count * mean }
+        match (self.slices, self.slabs) {
+            (128, 4) => depth_before::<4, 2>(record, depth),
+            (128, 8) => depth_before::<4, 4>(record, depth),
+            (128, _) => depth_before::<4, 8>(record, depth),
+            (256, 4) => depth_before::<8, 2>(record, depth),
+            (256, 8) => depth_before::<8, 4>(record, depth),
+            (256, _) => depth_before::<8, 8>(record, depth),
+            (_, 4) => depth_before::<16, 2>(record, depth),
+            (_, 8) => depth_before::<16, 4>(record, depth),
+            _ => depth_before::<16, 8>(record, depth),
+        }
     }
 }
 
@@ -186,20 +199,21 @@ mod tests {
     fn bits_of_a_slab_are_counted() {
         let bits = [0x8000_0001, 0xffff_ffff, 0, 0x0000_0003];
         let cases = [
-            (0, 16, 0, (1, 0)),
-            (0, 16, 15, (1, 1)),
-            (16, 16, 31, (1, 0)),
-            (32, 32, 32, (32, 0)),
-            (32, 32, 63, (32, 31)),
-            (40, 8, 44, (8, 4)),
-            (0, 64, 33, (34, 3)),
-            (64, 64, 64, (2, 0)),
-            (64, 64, 97, (2, 1)),
-            (0, 128, 127, (36, 36)),
-            (0, 128, 31, (36, 1)),
+            (0, 4, (1, 0)),
+            (15, 4, (1, 1)),
+            (31, 4, (1, 0)),
+            (32, 5, (32, 0)),
+            (63, 5, (32, 31)),
+            (44, 3, (8, 4)),
+            (33, 6, (34, 3)),
+            (64, 6, (2, 0)),
+            (97, 6, (2, 1)),
+            (127, 7, (36, 36)),
+            (31, 7, (36, 1)),
+            (127, 5, (2, 2)),
         ];
-        for (first, per_slab, slice, expected) in cases {
-            assert_eq!(occupied(&bits, first, per_slab, slice), expected, "{first}, {per_slab}, {slice}");
+        for (slice, shift, expected) in cases {
+            assert_eq!(occupied(&bits, slice, shift), expected, "{slice} of {}", 1 << shift);
         }
     }
 
