@@ -260,7 +260,7 @@ impl Window {
         if self.keys_shown {
             let modal = egui::Modal::new(egui::Id::unique("keys")).show(ctx, |ui| {
                 ui.heading("Keys");
-                let most = ctx.content_rect().height() * 0.75;
+                let most = ctx.content_rect().height() * 0.85;
                 ScrollArea::vertical().min_scrolled_height(most).max_height(most).show(ui, keys::list);
             });
             self.keys_shown = !modal.should_close();

@@ -1,7 +1,7 @@
 //! What frames cost, and how the hair is.
 
 use egui::{RichText, Ui};
-use egui_plot::{Line, Plot, PlotPoints};
+use egui_plot::{GridInput, GridMark, Line, Plot, PlotPoints};
 use lovelock_studio::{Stage, StageHistory};
 
 use crate::window::theme;
@@ -21,6 +21,7 @@ pub(crate) fn ui(ui: &mut Ui, history: &StageHistory, facts: &[Fact]) {
         .include_y(0.0)
         .y_axis_label("ms")
         .show_axes([false, true])
+        .y_grid_spacer(round_steps)
         .show(ui, |plot| {
             for (stage, color) in Stage::ALL.into_iter().zip(theme::PLOT) {
                 if stage == Stage::Encode {
@@ -51,4 +52,43 @@ pub(crate) fn ui(ui: &mut Ui, history: &StageHistory, facts: &[Fact]) {
             ui.end_row();
         }
     });
+}
+
+/// Lines of the grid at 1, 2 or 5 times a power of ten, few enough that each has room for its number.
+fn round_steps(input: GridInput) -> Vec<GridMark> {
+    let (low, high) = input.bounds;
+    let step_size = round_step((high - low) / 4.0);
+    // Bounds that are no numbers, or too far from zero for the step, have no lines.
+    let (first, last) = ((low / step_size).ceil(), (high / step_size).floor());
+    if !(first.abs() < 1e9 && last - first < 100.0) {
+        return Vec::new();
+    }
+    (first as i64..=last as i64).map(|i| GridMark { value: i as f64 * step_size, step_size }).collect()
+}
+
+/// The smallest of 1, 2 and 5 times a power of ten that is no less than `least`.
+fn round_step(least: f64) -> f64 {
+    let ten = 10_f64.powf(least.log10().floor());
+    [1.0, 2.0, 5.0].into_iter().map(|times| times * ten).find(|step| *step >= least).unwrap_or(10.0 * ten)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn grid_lines_are_few_and_round() {
+        for (least, step) in [(0.9, 1.0), (1.0, 1.0), (1.1, 2.0), (4.0, 5.0), (75.0, 100.0), (700.0, 1000.0)]
+        {
+            // A power of ten is rounded once or twice.
+            assert!((round_step(least) / step - 1.0).abs() < 1e-12, "{least}");
+        }
+        for bounds in
+            [(-5.0, 310.0), (0.0, 0.004), (0.0, 9e5), (f64::NAN, 1.0), (0.0, f64::INFINITY), (1.0, 1.0)]
+        {
+            let marks = round_steps(GridInput { bounds, base_step_size: 1.0 });
+            assert!(marks.len() <= 6, "{bounds:?}: {}", marks.len());
+        }
+        assert_eq!(round_steps(GridInput { bounds: (-5.0, 310.0), base_step_size: 1.0 }).len(), 4);
+    }
 }
