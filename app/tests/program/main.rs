@@ -1,5 +1,6 @@
 //! The whole program, run as a user runs it.
 
+mod bench;
 mod info;
 mod projects;
 mod record;

@@ -8,7 +8,7 @@ use lovelock_studio::{HairSource, MotionSource};
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::tool::{Ran, can_draw, lovelock, names, run, run_command, saved, small_project};
+use crate::tool::{Ran, lovelock, names, run, run_command, saved, small_project};
 
 /// The keys that scripts may rely on.
 const KEYS: [&str; 17] = [
@@ -44,9 +44,6 @@ const FILM: &str = "films of mine/größe & ü.mp4";
 fn takes() -> Option<&'static Takes> {
     static TAKES: OnceLock<Option<Takes>> = OnceLock::new();
     let make = || {
-        if !can_draw() {
-            return None;
-        }
         let dir = tempfile::tempdir().expect("a folder");
         saved(dir.path(), "ein Projekt ü.lovelock", &small_project());
         let record = |threads: &str, out: &str| {
@@ -140,9 +137,6 @@ fn a_folder_of_pictures_has_a_manifest_and_nothing_unfinished() {
 
 #[test]
 fn options_go_before_the_project() {
-    if !can_draw() {
-        return;
-    }
     let dir = tempfile::tempdir().expect("a folder");
     saved(dir.path(), "p.lovelock", &small_project());
     let args = [
@@ -180,9 +174,6 @@ fn options_go_before_the_project() {
 
 #[test]
 fn a_project_with_missing_files_records_and_says_what_is_missing() {
-    if !can_draw() {
-        return;
-    }
     let dir = tempfile::tempdir().expect("a folder");
     let mut project = small_project();
     project.set_hair_file(dir.path().join("no such hair.hair"));
@@ -203,9 +194,6 @@ fn a_project_with_missing_files_records_and_says_what_is_missing() {
 #[cfg(unix)]
 #[test]
 fn a_full_disk_stops_the_recording_and_leaves_nothing() {
-    if !can_draw() {
-        return;
-    }
     let dir = tempfile::tempdir().expect("a folder");
     saved(dir.path(), "p.lovelock", &small_project());
     for (out, limit) in [("a.mp4", 4), ("frames", 2)] {
@@ -240,9 +228,6 @@ fn a_full_disk_stops_the_recording_and_leaves_nothing() {
 
 #[test]
 fn a_place_that_cannot_be_written_is_named() {
-    if !can_draw() {
-        return;
-    }
     let dir = tempfile::tempdir().expect("a folder");
     saved(dir.path(), "p.lovelock", &small_project());
     std::fs::write(dir.path().join("a file"), b"x").expect("a file");
@@ -259,9 +244,6 @@ fn a_place_that_cannot_be_written_is_named() {
 #[test]
 fn only_the_files_of_the_command_line_must_be_there() {
     let Some(data) = lovelock_testkit::data_dir() else { return };
-    if !can_draw() {
-        return;
-    }
     let dir = tempfile::tempdir().expect("a folder");
     let mut project = small_project();
     project.set_hair_file(dir.path().join("no such hair.hair"));
@@ -289,9 +271,6 @@ fn only_the_files_of_the_command_line_must_be_there() {
 #[test]
 fn files_are_taken_instead_of_the_projects() {
     let Some(data) = lovelock_testkit::data_dir() else { return };
-    if !can_draw() {
-        return;
-    }
     let dir = tempfile::tempdir().expect("a folder");
     let hair = data.join("hair/tressfx/sintel_vk.tfx");
     let motion = data.join("motion/cmu1_jumping_jacks.bvh");

@@ -112,23 +112,6 @@ pub fn saved(folder: &Path, name: &str, project: &Project) -> std::path::PathBuf
     path
 }
 
-/// Whether pictures can be drawn here; says so where not, and fails on a machine that tests for others.
-pub fn can_draw() -> bool {
-    static CAN: OnceLock<Result<(), String>> = OnceLock::new();
-    let can = CAN.get_or_init(|| {
-        let dir = tempfile::tempdir().expect("a folder");
-        saved(dir.path(), "small.lovelock", &small_project());
-        let args = ["record", "small.lovelock", "-o", "frames", "--frames", "0..1", "--size", "32x32"];
-        let ran = run(dir.path(), args);
-        // Only a missing adapter excuses: every other failure is one of the tests that follow.
-        if ran.code == Some(1) && ran.stderr.contains("adapter") { Err(ran.stderr) } else { Ok(()) }
-    });
-    if let Err(error) = can {
-        lovelock_testkit::skip_without_adapter(error);
-    }
-    can.is_ok()
-}
-
 /// Names of everything in a folder, sorted.
 pub fn names(folder: &Path) -> Vec<String> {
     let mut names: Vec<String> = std::fs::read_dir(folder)

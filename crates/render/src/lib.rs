@@ -33,6 +33,6 @@ pub use lovelock_shadow::{
     LayerGrowth, OccupancyMapsSettings, OpacityMapsSettings, ShadowError, ShadowMethod, ShadowSettings,
     TEXEL_RESOLUTIONS, TexelFilter,
 };
-pub use picture::{MOST_PIXELS, MOST_SIDE, Picture, PictureSettings};
+pub use picture::{MOST_PIXELS, MOST_SIDE, Picture, PictureSettings, check_size};
 pub use renderer::Renderer;
 pub use transparency::Transparency;

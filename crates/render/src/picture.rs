@@ -11,8 +11,16 @@ pub const MOST_SIDE: u32 = 8192;
 /// The most pixels of a picture: 8192 by 4320, a little more than 8K video.
 pub const MOST_PIXELS: u64 = 8192 * 4320;
 
+/// Refuses sizes that no backend draws.
+///
+/// # Errors
+/// The size with the limit.
+pub fn check_size(width: u32, height: u32) -> Result<(), RenderError> {
+    check_size_for(width, height, MOST_SIDE)
+}
+
 /// Refuses sizes that cannot be drawn; `limit` is the longest side of the backend.
-pub(crate) fn check_size(width: u32, height: u32, limit: u32) -> Result<(), RenderError> {
+pub(crate) fn check_size_for(width: u32, height: u32, limit: u32) -> Result<(), RenderError> {
     let limit = limit.min(MOST_SIDE);
     let fits = (1..=limit).contains(&width) && (1..=limit).contains(&height);
     if fits && u64::from(width) * u64::from(height) <= MOST_PIXELS {

@@ -28,7 +28,7 @@ use crate::picture::check_size;
 use crate::shadow_stage::ShadowStage;
 use crate::strand_details::StrandDetails;
 use crate::uniform::{FrameUniform, LightMaps};
-use crate::{DrawTimes, FrameInput, FrameStats, MAX_LIGHTS, MOST_SIDE, Picture, RenderError, Transparency};
+use crate::{DrawTimes, FrameInput, FrameStats, MAX_LIGHTS, Picture, RenderError, Transparency};
 
 /// Texels along each edge of the body's depth maps.
 const DEPTH_TEXELS: u32 = body_depth::SIZE as u32;
@@ -107,7 +107,7 @@ impl CpuRenderer {
         height: u32,
         picture: &mut Picture,
     ) -> Result<FrameStats, RenderError> {
-        check_size(width, height, MOST_SIDE)?;
+        check_size(width, height)?;
         let watch = Stopwatch::start();
         self.shadow.run(input)?;
         let shadow_ms = watch.ms();

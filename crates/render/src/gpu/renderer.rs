@@ -9,7 +9,7 @@ use super::pipelines::Pipelines;
 use super::surface::SurfaceBuffers;
 use super::targets::Targets;
 use crate::light_view::{bounding_sphere, light_view};
-use crate::picture::check_size;
+use crate::picture::check_size_for;
 use crate::shadow_stage::ShadowStage;
 use crate::uniform::{FrameUniform, LightMaps};
 use crate::{FrameInput, FrameStats, MAX_LIGHTS, Picture, RenderError};
@@ -92,7 +92,7 @@ impl GpuRenderer {
 
     /// Draws `input` at `width` by `height` pixels into a texture that stays on the device.
     fn draw(&mut self, input: &FrameInput, width: u32, height: u32) -> Result<FrameStats, RenderError> {
-        check_size(width, height, self.gpu.max_picture_side())?;
+        check_size_for(width, height, self.gpu.max_picture_side())?;
         if !input.picture.transparency.is_on_gpu() {
             return Err(RenderError::Transparency(input.picture.transparency));
         }

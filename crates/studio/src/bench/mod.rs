@@ -52,6 +52,7 @@ pub fn bench(
     request: &BenchRequest,
     progress: &mut dyn FnMut(&str) -> ControlFlow<()>,
 ) -> Result<BenchReport, StudioError> {
+    lovelock_render::check_size(request.size.0, request.size.1)?;
     let mut notes = Vec::new();
     let mut renderers = Vec::new();
     for &backend in &request.backends {
