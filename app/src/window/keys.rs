@@ -84,12 +84,9 @@ fn in_order(group: CommandGroup) -> Vec<&'static CommandInfo> {
 /// The part of its menu that a command stands in: parts are set off by lines.
 fn part_of(command: Command) -> u8 {
     match command {
-        Command::NewProject | Command::Open => 0,
-        Command::Save | Command::SaveAs => 1,
+        Command::Save | Command::SaveAs | Command::ToggleLoop | Command::Palette | Command::TogglePanels => 1,
         Command::Record | Command::SavePicture => 2,
         Command::Quit => 3,
-        Command::ToggleLoop => 1,
-        Command::Palette | Command::TogglePanels => 1,
         _ => 0,
     }
 }

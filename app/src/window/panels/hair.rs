@@ -51,7 +51,8 @@ pub(crate) fn ui(ui: &mut Ui, project: &mut Project, loaded: &Loaded) -> Option<
     }
     let [wisps, strands, segments] = loaded.counts;
     let [x, y, z] = loaded.size_m.map(|v| v * 100.0);
-    note(ui, format!("{wisps} wisps, {strands} strands, {segments} segments; {x:.0} × {y:.0} × {z:.0} cm"));
+    note(ui, format!("{wisps} wisps, {strands} strands, {segments} segments"));
+    note(ui, format!("{x:.0} × {y:.0} × {z:.0} cm"));
     for text in &loaded.notes {
         note(ui, text.as_str());
     }

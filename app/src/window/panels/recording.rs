@@ -123,7 +123,7 @@ pub(crate) fn ui(
         section.first_frame != d.first_frame,
         &mut section.first_frame,
         d.first_frame,
-        |ui, first| frame_number(ui, first),
+        frame_number,
     );
     let end = &mut section.end_frame;
     row(

@@ -1,7 +1,7 @@
 //! What frames cost, and how the hair is.
 
 use egui::{RichText, Ui};
-use egui_plot::{GridInput, GridMark, Line, Plot, PlotPoints};
+use egui_plot::{GridMark, Line, Plot, PlotPoints};
 use lovelock_studio::{Stage, StageHistory};
 
 use crate::window::theme;
@@ -21,7 +21,7 @@ pub(crate) fn ui(ui: &mut Ui, history: &StageHistory, facts: &[Fact]) {
         .include_y(0.0)
         .y_axis_label("ms")
         .show_axes([false, true])
-        .y_grid_spacer(round_steps)
+        .y_grid_spacer(|input| round_steps(input.bounds))
         .show(ui, |plot| {
             for (stage, color) in Stage::ALL.into_iter().zip(theme::PLOT) {
                 if stage == Stage::Encode {
@@ -55,8 +55,7 @@ pub(crate) fn ui(ui: &mut Ui, history: &StageHistory, facts: &[Fact]) {
 }
 
 /// Lines of the grid at 1, 2 or 5 times a power of ten, few enough that each has room for its number.
-fn round_steps(input: GridInput) -> Vec<GridMark> {
-    let (low, high) = input.bounds;
+fn round_steps((low, high): (f64, f64)) -> Vec<GridMark> {
     let step_size = round_step((high - low) / 4.0);
     // Bounds that are no numbers, or too far from zero for the step, have no lines.
     let (first, last) = ((low / step_size).ceil(), (high / step_size).floor());
@@ -86,9 +85,9 @@ mod tests {
         for bounds in
             [(-5.0, 310.0), (0.0, 0.004), (0.0, 9e5), (f64::NAN, 1.0), (0.0, f64::INFINITY), (1.0, 1.0)]
         {
-            let marks = round_steps(GridInput { bounds, base_step_size: 1.0 });
+            let marks = round_steps(bounds);
             assert!(marks.len() <= 6, "{bounds:?}: {}", marks.len());
         }
-        assert_eq!(round_steps(GridInput { bounds: (-5.0, 310.0), base_step_size: 1.0 }).len(), 4);
+        assert_eq!(round_steps((-5.0, 310.0)).len(), 4);
     }
 }
