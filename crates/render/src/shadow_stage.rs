@@ -3,6 +3,7 @@
 use glam::{Mat4, Vec3};
 use lovelock_groom::Strands;
 use lovelock_shadow::{ColumnMap, CpuShadow, LightFrame, ShadowError, ShadowInput, ShadowMethod, cpu_shadow};
+use rayon::prelude::*;
 
 use crate::{FrameInput, Light, MAX_LIGHTS};
 
@@ -27,7 +28,33 @@ pub(crate) struct ShadowStage {
 struct LightShadow {
     frame: LightFrame,
     shadow: Box<dyn CpuShadow + Send + Sync>,
-    values: Vec<f32>,
+    /// Transmittance at the strands' points and at the body's vertices.
+    at_points: Vec<f32>,
+    at_vertices: Vec<f32>,
+}
+
+impl LightShadow {
+    /// Builds the map and asks it everywhere.
+    fn run(
+        &mut self,
+        direction: Vec3,
+        input: &FrameInput,
+        vertices: &[Vec<f32>; 3],
+    ) -> Result<(), ShadowError> {
+        // Carried along rather than made anew, so that the map does not roll while the light is dragged.
+        self.frame = self.frame.transported(direction);
+        let strand_width = input.look.shadow_width(input.style.strands.count());
+        let anchor = input.world_from_head.translation.into();
+        let from = ShadowInput { strands: input.strands, strand_width, light: self.frame, anchor };
+        self.shadow.build(&from, input.shadow)?;
+        let Strands { x, y, z, .. } = input.strands;
+        self.at_points.resize(x.len(), 1.0);
+        self.shadow.transmittance_at(x, y, z, &mut self.at_points);
+        let [x, y, z] = vertices;
+        self.at_vertices.resize(x.len(), 1.0);
+        self.shadow.transmittance_at(x, y, z, &mut self.at_vertices);
+        Ok(())
+    }
 }
 
 impl std::fmt::Debug for ShadowStage {
@@ -54,53 +81,31 @@ impl ShadowStage {
         self.lights.truncate(lights.len());
         let empty: &[Vec3] = &[];
         let positions = input.body.map_or(empty, |(_, skin)| &skin.positions[..]);
-        for (axis, values) in self.vertices.iter_mut().enumerate() {
+        self.vertices.par_iter_mut().enumerate().for_each(|(axis, values)| {
             values.clear();
             values.extend(positions.iter().map(|p| p[axis]));
+        });
+        while self.lights.len() < lights.len() {
+            self.lights.push(LightShadow {
+                frame: LightFrame::new(lights[self.lights.len()].direction),
+                shadow: cpu_shadow(input.shadow.method),
+                at_points: Vec::new(),
+                at_vertices: Vec::new(),
+            });
         }
-        self.at_points.clear();
-        self.at_points.resize(input.strands.points(), u32::MAX);
-        self.at_vertices.clear();
-        self.at_vertices.resize(positions.len(), u32::MAX);
+        let vertices = &self.vertices;
+        self.lights
+            .par_iter_mut()
+            .zip(&lights)
+            .try_for_each(|(shadow, light)| shadow.run(light.direction, input, vertices))?;
+        let at_points: Vec<&[f32]> = self.lights.iter().map(|light| &light.at_points[..]).collect();
+        pack(&at_points, input.strands.points(), &mut self.at_points);
+        let at_vertices: Vec<&[f32]> = self.lights.iter().map(|light| &light.at_vertices[..]).collect();
+        pack(&at_vertices, positions.len(), &mut self.at_vertices);
+        self.mean = at_points.first().map_or(1.0, |values| mean(values));
         self.columns.clear();
-        self.bytes = 0;
-        self.mean = 1.0;
-        for (k, light) in lights.iter().enumerate() {
-            if k == self.lights.len() {
-                self.lights.push(LightShadow {
-                    frame: LightFrame::new(light.direction),
-                    shadow: cpu_shadow(input.shadow.method),
-                    values: Vec::new(),
-                });
-            }
-            let this = &mut self.lights[k];
-            // Carried along rather than made anew, so that the map does not roll while the light is dragged.
-            this.frame = this.frame.transported(light.direction);
-            let strand_width = input.look.shadow_width(input.style.strands.count());
-            this.shadow.build(
-                &ShadowInput {
-                    strands: input.strands,
-                    strand_width,
-                    light: this.frame,
-                    anchor: input.world_from_head.translation.into(),
-                },
-                input.shadow,
-            )?;
-            let Strands { x, y, z, .. } = input.strands;
-            this.values.resize(x.len(), 1.0);
-            this.shadow.transmittance_at(x, y, z, &mut this.values);
-            if k == 0 && !this.values.is_empty() {
-                let sum: f64 = this.values.iter().map(|&t| f64::from(t)).sum();
-                self.mean = (sum / this.values.len() as f64) as f32;
-            }
-            pack(&this.values, k, &mut self.at_points);
-            let [vx, vy, vz] = &self.vertices;
-            this.values.resize(vx.len(), 1.0);
-            this.shadow.transmittance_at(vx, vy, vz, &mut this.values);
-            pack(&this.values, k, &mut self.at_vertices);
-            self.columns.push(this.shadow.column_map());
-            self.bytes += this.shadow.report().memory_bytes;
-        }
+        self.columns.extend(self.lights.iter().map(|light| light.shadow.column_map()));
+        self.bytes = self.lights.iter().map(|light| light.shadow.report().memory_bytes).sum();
         Ok(())
     }
 
@@ -113,13 +118,30 @@ impl ShadowStage {
     }
 }
 
-/// Writes byte `k` of each packed value.
-fn pack(values: &[f32], k: usize, packed: &mut [u32]) {
-    let shift = 8 * k as u32;
-    for (word, &value) in packed.iter_mut().zip(values) {
-        let byte = (value.clamp(0.0, 1.0) * 255.0 + 0.5) as u32;
-        *word = (*word & !(0xff << shift)) | (byte << shift);
-    }
+/// Points that are packed or summed together.
+const PIECE: usize = 8192;
+
+/// Packs the values of up to four lights into one word each, the first in the lowest byte; bytes without a light are
+/// full.
+fn pack(values: &[&[f32]], count: usize, packed: &mut Vec<u32>) {
+    packed.clear();
+    packed.resize(count, u32::MAX);
+    packed.par_chunks_mut(PIECE).enumerate().for_each(|(piece, words)| {
+        for (k, values) in values.iter().enumerate().take(MAX_LIGHTS) {
+            let shift = 8 * k as u32;
+            for (word, &value) in words.iter_mut().zip(&values[piece * PIECE..]) {
+                let byte = (value.clamp(0.0, 1.0) * 255.0 + 0.5) as u32;
+                *word = (*word & !(0xff << shift)) | (byte << shift);
+            }
+        }
+    });
+}
+
+/// The mean of some values, summed in an order that does not depend on the number of threads; 1 where there are none.
+fn mean(values: &[f32]) -> f32 {
+    let sums: Vec<f64> =
+        values.par_chunks(PIECE).map(|piece| piece.iter().map(|&t| f64::from(t)).sum()).collect();
+    if values.is_empty() { 1.0 } else { (sums.iter().sum::<f64>() / values.len() as f64) as f32 }
 }
 
 #[cfg(test)]
@@ -127,9 +149,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn packing_writes_one_byte_and_keeps_the_others() {
-        let mut packed = [u32::MAX; 3];
-        pack(&[0.0, 0.5, f32::NAN], 1, &mut packed);
+    fn packing_writes_a_byte_a_light_and_fills_the_others() {
+        let mut packed = vec![7; 9];
+        pack(&[&[1.0, 1.0, 1.0], &[0.0, 0.5, f32::NAN]], 3, &mut packed);
         assert_eq!(packed, [0xffff_00ff, 0xffff_80ff, 0xffff_00ff]);
+        pack(&[], 2, &mut packed);
+        assert_eq!(packed, [u32::MAX; 2]);
+    }
+
+    #[test]
+    fn means() {
+        assert_eq!(mean(&[]), 1.0);
+        let values: Vec<f32> = (0..20_000).map(|i| (i % 2) as f32).collect();
+        assert_eq!(mean(&values), 0.5);
     }
 }

@@ -4,13 +4,15 @@
 
 use glam::Vec3;
 
-use super::math::{mix, smoothstep};
+use super::math::{max, mix, smoothstep, three};
 use super::tile::TILE;
 use super::view::View;
 
 /// Pixels along each edge of a cell of ground: where its corners agree, so does what is between them.
 const CELL: usize = 4;
 const CORNERS: usize = TILE / CELL + 1;
+/// Places that are asked together.
+const LANES: usize = 16;
 
 /// The share of the light that is left on the ground of a tile.
 ///
@@ -28,17 +30,35 @@ const ALIKE: f32 = 1.0 / 512.0;
 impl Ground {
     /// Asks for the light at the corners of the cells of the tile at `origin`; none where there is no ground or all of
     /// it lies in full light.
+    #[inline(always)]
     pub fn new(view: &View, origin: [f32; 2]) -> Option<Self> {
         if view.uniform.ambient_up_ground.w <= 0.5 {
+            return None;
+        }
+        let size = view.uniform.size_scale_exposure;
+        let (x0, y0) = (2.0 * origin[0] / size.x - 1.0, 1.0 - 2.0 * origin[1] / size.y);
+        let (x1, y1) = (x0 + 2.0 * TILE as f32 / size.x, y0 - 2.0 * TILE as f32 / size.y);
+        let (outline, is_ground) = ground_place(view, &[[x0, x1, x0, x1], [y0, y0, y1, y1]]);
+        // The ground of a tile has straight edges: it lies within the bounds of its corners.
+        let lit = is_ground == [1.0; 4] && view.lights.iter().all(|light| light.is_beside(&outline));
+        if lit || is_ground == [0.0; 4] {
             return None;
         }
         let mut corners = [[None; CORNERS]; CORNERS];
         let mut any = false;
         for (j, row) in corners.iter_mut().enumerate() {
+            let mut ndc = [[2.0; LANES]; 2];
+            for i in 0..CORNERS {
+                ndc[0][i] = 2.0 * (origin[0] + (i * CELL) as f32) / size.x - 1.0;
+                ndc[1][i] = 1.0 - 2.0 * (origin[1] + (j * CELL) as f32) / size.y;
+            }
+            let light = ground_light(view, &ndc);
             for (i, corner) in row.iter_mut().enumerate() {
-                let (x, y) = (origin[0] + (i * CELL) as f32, origin[1] + (j * CELL) as f32);
-                *corner = ground_light(view, x, y);
-                any |= corner.is_some_and(|light| light != [1.0; 3]);
+                if light[3][i] > 0.0 {
+                    let here = [light[0][i], light[1][i], light[2][i]];
+                    any |= here != [1.0; 3];
+                    *corner = Some(here);
+                }
             }
         }
         any.then_some(Self { origin, corners })
@@ -58,8 +78,10 @@ impl Ground {
                 return a;
             }
         }
+        let size = view.uniform.size_scale_exposure;
         let (x, y) = (self.origin[0] + x as f32 + 0.5, self.origin[1] + y as f32 + 0.5);
-        ground_light(view, x, y).unwrap_or([1.0; 3])
+        let light = ground_light(view, &[[2.0 * x / size.x - 1.0], [1.0 - 2.0 * y / size.y]]);
+        [light[0][0], light[1][0], light[2][0]]
     }
 }
 
@@ -86,28 +108,62 @@ pub(super) fn backdrop(view: &View, x: f32, y: f32, out: &mut [[f32; TILE]; 3]) 
     }
 }
 
-/// The share of the light that is left on the ground behind a place of the picture; none above the horizon.
-fn ground_light(view: &View, x: f32, y: f32) -> Option<[f32; 3]> {
-    let uniform = view.uniform;
-    let eye = uniform.eye_lights.truncate();
-    let size = uniform.size_scale_exposure;
-    let m = &uniform.world_from_clip;
-    let near =
-        m.x_axis * (2.0 * x / size.x - 1.0) + m.y_axis * (1.0 - 2.0 * y / size.y) + m.z_axis + m.w_axis;
-    let ray = (near.truncate() / near.w - eye).normalize_or_zero();
-    if ray.y >= -1e-3 || eye.y <= 0.0 {
-        return None;
-    }
-    let p = eye - ray * (eye.y / ray.y);
-    let mut full = Vec3::from(view.ambient(1.0)) * (0.5 * 3.141_59);
-    let mut lit = full;
-    for light in &view.lights {
-        let share = light.radiance * (-light.direction.y).max(0.0);
-        full += share;
-        if share.max_element() > 0.0 {
-            let [body] = light.body_light(&[[p.x], [p.y], [p.z]], &[0.004], &view.disc6);
-            lit += share * (body * light.columns_light(p));
+/// The ground behind some places of the picture, and whether there is any: 1 or 0.
+#[inline(always)]
+fn ground_place<const N: usize>(view: &View, ndc: &[[f32; N]; 2]) -> ([[f32; N]; 3], [f32; N]) {
+    let eye = view.uniform.eye_lights.to_array();
+    let m = view.uniform.world_from_clip.to_cols_array_2d();
+    let mut place = [[0.0; N]; 3];
+    let mut is_ground = [0.0; N];
+    for lane in 0..N {
+        let near = |row: usize| m[0][row] * ndc[0][lane] + m[1][row] * ndc[1][lane] + m[2][row] + m[3][row];
+        let inverse = 1.0 / near(3);
+        let ray = three(|axis| near(axis) * inverse - eye[axis]);
+        let length = (ray[0] * ray[0] + ray[1] * ray[1] + ray[2] * ray[2]).sqrt();
+        let seen = (ray[1] < -1e-3 * length) & (eye[1] > 0.0);
+        is_ground[lane] = if seen { 1.0 } else { 0.0 };
+        let far = if seen { eye[1] / ray[1] } else { 0.0 };
+        for axis in 0..3 {
+            place[axis][lane] = eye[axis] - ray[axis] * far;
         }
     }
-    Some((lit / full.max(Vec3::splat(1e-4))).to_array())
+    (place, is_ground)
+}
+
+/// The share of the light that is left on the ground behind some places of the picture, and whether there is ground: 1
+/// or 0. Above the horizon the share is 1.
+#[inline(always)]
+fn ground_light<const N: usize>(view: &View, ndc: &[[f32; N]; 2]) -> [[f32; N]; 4] {
+    let mut out = [[1.0; N]; 4];
+    let (place, is_ground) = ground_place(view, ndc);
+    out[3] = is_ground;
+    if is_ground == [0.0; N] {
+        return out;
+    }
+    let ambient = view.ambient(1.0);
+    let mut full = three(|c| ambient[c] * (0.5 * 3.141_59));
+    let mut lit = [[full[0]; N], [full[1]; N], [full[2]; N]];
+    for light in &view.lights {
+        let facing = max(-light.direction.y, 0.0);
+        let share = (light.radiance * facing).to_array();
+        for c in 0..3 {
+            full[c] += share[c];
+        }
+        if facing <= 0.0 {
+            continue;
+        }
+        let body = light.body_light(&place, &[0.004; N], &view.disc6);
+        for lane in 0..N {
+            let hair = light.columns_light(Vec3::new(place[0][lane], place[1][lane], place[2][lane]));
+            for c in 0..3 {
+                lit[c][lane] += share[c] * (body[lane] * hair);
+            }
+        }
+    }
+    for c in 0..3 {
+        for lane in 0..N {
+            out[c][lane] = if out[3][lane] > 0.0 { lit[c][lane] / max(full[c], 1e-4) } else { 1.0 };
+        }
+    }
+    out
 }

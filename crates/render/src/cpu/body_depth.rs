@@ -56,8 +56,13 @@ pub(super) struct Band<'a> {
 }
 
 impl DepthMap {
-    /// Draws the triangles over `vertices`.
-    pub fn draw(&mut self, width: Width, shadow_from_world: Mat4, vertices: &[Vec3], triangles: &[[u32; 3]]) {
+    /// Draws the triangles over `vertices`; `closed` says that those that face away from the light lie behind others.
+    pub fn draw(
+        &mut self,
+        width: Width,
+        shadow_from_world: Mat4,
+        (vertices, triangles, closed): (&[Vec3], &[[u32; 3]], bool),
+    ) {
         let half = 0.5 * SIZE as f32;
         vertices
             .par_iter()
@@ -67,7 +72,7 @@ impl DepthMap {
                 Vec3::new((at.x + 1.0) * half, (1.0 - at.y) * half, at.z)
             })
             .collect_into_vec(&mut self.placed);
-        self.sort_by_band(triangles);
+        self.sort_by_band(triangles, closed);
         let (placed, starts, sorted) = (&self.placed, &self.starts, &self.sorted);
         self.depth
             .par_chunks_mut(BAND_ROWS * SIZE)
@@ -81,15 +86,19 @@ impl DepthMap {
     }
 
     /// Lists the triangles that touch each band of rows.
-    fn sort_by_band(&mut self, triangles: &[[u32; 3]]) {
+    fn sort_by_band(&mut self, triangles: &[[u32; 3]], closed: bool) {
         let bands = SIZE / BAND_ROWS;
         let placed = &self.placed;
         let last = (SIZE - 1) as f32;
         let range = |corners: &[u32; 3]| {
-            let [a, b, c] = corners.map(|i| placed.get(i as usize).map_or(f32::NAN, |p| p.y));
-            let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+            let [a, b, c] = corners.map(|i| placed.get(i as usize).copied().unwrap_or(Vec3::NAN));
+            // Rows count downward, which turns the counter-clockwise front round.
+            if closed && (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) > 0.0 {
+                return None;
+            }
+            let (low, high) = (a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y));
             // Comparisons that a number that is none fails.
-            let seen = low <= last && high >= 0.0 && (a + b + c).is_finite();
+            let seen = low <= last && high >= 0.0 && (a.y + b.y + c.y).is_finite();
             let band = |y: f32| y.clamp(0.0, last) as usize / BAND_ROWS;
             seen.then(|| (band(low), band(high)))
         };
@@ -183,7 +192,8 @@ impl DepthMap {
         let (left, right) = (block(left * size - 0.5 - reach), block(right * size - 0.5 + reach));
         let (top, bottom) = (block(top * size - 0.5 - reach), block(bottom * size - 0.5 + reach));
         const ROW: usize = SIZE / BLOCK;
-        if (right - left) * (bottom - top) > 16 {
+        // More blocks than that take longer than the taps.
+        if (right - left + 1) * (bottom - top + 1) > 36 {
             return None;
         }
         let (mut nearest, mut farthest) = (1.0, 0.0);
@@ -288,7 +298,7 @@ mod tests {
 
     fn drawn(vertices: &[Vec3], triangles: &[[u32; 3]]) -> DepthMap {
         let mut map = DepthMap::default();
-        map.draw(Width::widest(), Mat4::IDENTITY, vertices, triangles);
+        map.draw(Width::widest(), Mat4::IDENTITY, (vertices, triangles, false));
         map
     }
 

@@ -4,8 +4,9 @@
 
 use lovelock_groom::simd_versions;
 
+use super::backdrop::Ground;
 use super::body_depth::{Band, draw_band};
-use super::hair::blend::{BlendTile, blend_segments};
+use super::hair::blend::{BlendState, BlendTile, blend_segments};
 use super::hair::list::{ListTile, list_segments};
 use super::points::{PointsIn, ShadedPoint, shade_points};
 use super::surface::raster::{Occlusion, SurfaceSamples, TriangleTile, raster_triangles};
@@ -43,7 +44,7 @@ simd_versions! {
 
 simd_versions! {
     /// [`blend_segments`].
-    pub(super) fn blend(input: &BlendTile, out: &mut super::tile::HairPlanes) -> () {
+    pub(super) fn blend(input: &BlendTile, out: &mut BlendState) -> () {
         blend_segments(input, out)
     }
 }
@@ -52,6 +53,13 @@ simd_versions! {
     /// [`list_segments`].
     pub(super) fn list(input: &ListTile, out: &mut super::hair::list::Fragments) -> () {
         list_segments(input, out)
+    }
+}
+
+simd_versions! {
+    /// [`Ground::new`].
+    pub(super) fn ground(view: &View, origin: [f32; 2]) -> Option<Ground> {
+        Ground::new(view, origin)
     }
 }
 

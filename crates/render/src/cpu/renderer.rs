@@ -12,12 +12,13 @@ use super::backdrop::Ground;
 use super::bins::Bins;
 use super::body_depth::{self, DepthMap};
 use super::dispatch;
-use super::hair::blend::BlendTile;
+use super::hair::blend::{BlendState, BlendTile};
 use super::hair::list::{Fragments, ListTile};
 use super::hair::order::SegmentKeys;
 use super::hair::segment::{bounds, is_drawn};
 use super::points::{PointsIn, ShadedPoint, shade_all};
 use super::surface::PlacedSurface;
+use super::surface::closed::Closedness;
 use super::surface::light::SurfaceLight;
 use super::surface::raster::{Occlusion, SurfaceSamples, TriangleTile};
 use super::tile::{Grid, HairPlanes, PixelsIn, SurfacePlanes, TILE, TILE_BYTES};
@@ -33,6 +34,9 @@ use crate::{DrawTimes, FrameInput, FrameStats, MAX_LIGHTS, Picture, RenderError,
 /// Texels along each edge of the body's depth maps.
 const DEPTH_TEXELS: u32 = body_depth::SIZE as u32;
 
+/// Segments of a tile that are fetched and drawn together.
+const SEGMENTS_AT_ONCE: usize = 128;
+
 /// Draws pictures on the processor, and keeps what it needs for the next one.
 #[derive(Debug)]
 pub struct CpuRenderer {
@@ -43,6 +47,7 @@ pub struct CpuRenderer {
     keys: SegmentKeys,
     segment_bins: Bins,
     surface: PlacedSurface,
+    closed: Closedness,
     depth: Vec<DepthMap>,
     tiles: Vec<u8>,
     plain: PlainTiles,
@@ -54,6 +59,7 @@ pub struct CpuRenderer {
 struct Scratch {
     samples: SurfaceSamples,
     hidden: Occlusion,
+    blend: BlendState,
     hair: HairPlanes,
     surface: SurfacePlanes,
     light: SurfaceLight,
@@ -72,6 +78,7 @@ impl Default for CpuRenderer {
             keys: SegmentKeys::default(),
             segment_bins: Bins::default(),
             surface: PlacedSurface::default(),
+            closed: Closedness::default(),
             depth: Vec::new(),
             tiles: Vec::new(),
             plain: PlainTiles::default(),
@@ -115,7 +122,8 @@ impl CpuRenderer {
         let watch = Stopwatch::start();
         let mut times = DrawTimes::default();
         let body = input.body.map(|(body, skin)| (&**body, skin));
-        let maps = self.draw_depth(input, body);
+        let closed = input.body.is_some_and(|(body, _)| self.closed.of(body));
+        let maps = self.draw_depth(input, body, closed);
         let uniform = FrameUniform::new(input, width, height, &maps, DEPTH_TEXELS);
         let view = View::new(&uniform, &self.depth, &self.shadow.columns, DEPTH_TEXELS);
         times.body_depth = watch.ms();
@@ -132,17 +140,23 @@ impl CpuRenderer {
 
         let part = Stopwatch::start();
         let grid = Grid::new(width, height);
-        self.surface.place(uniform.clip_from_world, &grid, body, &self.shadow.at_vertices);
         let (points, segments) = (&self.points, &self.details.segments);
-        self.segment_bins.fill(segments.len(), grid.columns, grid.rows, |i| {
-            let first = segments[i] as usize;
-            let (a, b) = (points.get(first)?, points.get(first + 1)?);
-            if is_drawn(a, b) { grid.range(bounds(a, b)) } else { None }
-        });
-        if input.picture.transparency == Transparency::Sorted {
-            let forward = (input.camera.target - input.camera.eye).normalize_or_zero();
-            self.keys.measure(input.strands, segments, forward);
-        }
+        let (surface, bins, keys) = (&mut self.surface, &mut self.segment_bins, &mut self.keys);
+        let hair_on_body = &self.shadow.at_vertices;
+        rayon::join(
+            || surface.place(uniform.clip_from_world, &grid, body, hair_on_body, closed),
+            || {
+                bins.fill(segments.len(), grid.columns, grid.rows, |i| {
+                    let first = segments[i] as usize;
+                    let (a, b) = (points.get(first)?, points.get(first + 1)?);
+                    if is_drawn(a, b) { grid.range(bounds(a, b)) } else { None }
+                });
+                if input.picture.transparency == Transparency::Sorted {
+                    let forward = (input.camera.target - input.camera.eye).normalize_or_zero();
+                    keys.measure(input.strands, segments, forward);
+                }
+            },
+        );
         times.sort = part.ms();
 
         let part = Stopwatch::start();
@@ -158,7 +172,7 @@ impl CpuRenderer {
             .for_each_init(
                 || Lease::take(&self.scratch),
                 |lease, (tile, ((out, plain), known))| {
-                    let ground = Ground::new(&view, grid.origin(tile));
+                    let ground = dispatch::ground(self.width, &view, grid.origin(tile));
                     let is_plain = ground.is_none()
                         && self.surface.bins.of(tile).is_empty()
                         && self.segment_bins.of(tile).is_empty();
@@ -188,7 +202,12 @@ impl CpuRenderer {
     }
 
     /// Draws the body as each light sees it.
-    fn draw_depth(&mut self, input: &FrameInput, body: Option<(&Body, &Skin)>) -> Vec<LightMaps> {
+    fn draw_depth(
+        &mut self,
+        input: &FrameInput,
+        body: Option<(&Body, &Skin)>,
+        closed: bool,
+    ) -> Vec<LightMaps> {
         let positions: &[Vec3] = body.map_or(&[], |(_, skin)| &skin.positions);
         let triangles: &[[u32; 3]] = body.map_or(&[], |(body, _)| &body.mesh.triangles);
         let (center, radius) = bounding_sphere(positions);
@@ -201,7 +220,7 @@ impl CpuRenderer {
             .enumerate()
             .map(|(k, (light, depth))| {
                 let view = light_view(light.clamped().direction, center, radius, DEPTH_TEXELS);
-                depth.draw(width, view.shadow_from_world, positions, triangles);
+                depth.draw(width, view.shadow_from_world, (positions, triangles, closed));
                 LightMaps { columns_from_world: shadow.columns_from_world(k), ..view }
             })
             .collect()
@@ -268,14 +287,24 @@ impl CpuRenderer {
         match transparency {
             Transparency::Sorted => {
                 self.keys.sort(segments, &self.details.segments, &mut scratch.order);
-                scratch.segments.clear();
-                scratch.segments.extend(scratch.order.iter().map(|&first| {
-                    let first = first as u32 as usize;
-                    [self.points[first], self.points[first + 1]]
-                }));
-                let input =
-                    BlendTile { origin, segments: &scratch.segments, hidden: &scratch.hidden, opacity };
-                dispatch::blend(self.width, &input, &mut scratch.hair);
+                let order = std::mem::take(&mut scratch.order);
+                scratch.blend.clear();
+                // Some at a time: what comes after the tile is full is not even fetched.
+                for order in order.chunks(SEGMENTS_AT_ONCE) {
+                    scratch.segments.clear();
+                    scratch.segments.extend(order.iter().map(|&first| {
+                        let first = first as u32 as usize;
+                        [self.points[first], self.points[first + 1]]
+                    }));
+                    let input =
+                        BlendTile { origin, segments: &scratch.segments, hidden: &scratch.hidden, opacity };
+                    dispatch::blend(self.width, &input, &mut scratch.blend);
+                    if scratch.blend.is_full() {
+                        break;
+                    }
+                }
+                scratch.order = order;
+                scratch.blend.write(&mut scratch.hair);
             }
             Transparency::Opaque
             | Transparency::WeightedAverage

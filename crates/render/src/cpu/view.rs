@@ -91,6 +91,7 @@ impl LightView<'_> {
         let mut v = [0.0; N];
         let mut z = [0.0; N];
         let mut inside = [0.0; N];
+        let mut any = 0.0;
         for lane in 0..N {
             let (x, y, w) = (
                 p[0][lane] - toward.x * bias[lane],
@@ -102,6 +103,10 @@ impl LightView<'_> {
             z[lane] = rz.x * x + rz.y * y + rz.z * w + rz.w;
             let seen = (u[lane] >= 0.0) & (v[lane] >= 0.0) & (u[lane] <= 1.0) & (v[lane] <= 1.0);
             inside[lane] = if seen { 1.0 } else { 0.0 };
+            any = max(inside[lane], any);
+        }
+        if any <= 0.0 {
+            return [1.0; N];
         }
         if let Some(all) = self.depth.all_alike(&u, &v, &z, self.blur) {
             let mut out = [1.0; N];
@@ -119,6 +124,19 @@ impl LightView<'_> {
             sum[lane] = if inside[lane] > 0.0 { sum[lane] * share } else { 1.0 };
         }
         sum
+    }
+
+    /// Whether the map does not reach what lies within the bounds of some places.
+    pub fn is_beside<const N: usize>(&self, p: &[[f32; N]; 3]) -> bool {
+        let m = &self.shadow_from_world;
+        let columns = self.columns.map(|map| &map.uv_from_world);
+        let beside = |m: &Mat4, low: f32, high: f32| {
+            [m.row(0), m.row(1)].into_iter().any(|row| {
+                let at = |i: usize| row.x * p[0][i] + row.y * p[1][i] + row.z * p[2][i] + row.w;
+                (0..N).all(|i| at(i) < low) || (0..N).all(|i| at(i) > high)
+            })
+        };
+        beside(m, -1.0, 1.0) && columns.is_none_or(|m| beside(m, 0.0, 1.0))
     }
 
     /// Share of the light that all hair on the way lets through, for a point behind all of it.

@@ -2,11 +2,11 @@
 // Compiled within the versions of `dispatch`.
 #![allow(clippy::inline_always)]
 
-use super::segment::{LANES, Span, SpanSink, each_span};
+use super::segment::{BLOCK_WIDTH, BLOCKS, BLOCKS_IN_ROW, LANES, Span, SpanSink, each_span, pixel_of};
 use crate::cpu::math::max;
 use crate::cpu::points::ShadedPoint;
 use crate::cpu::surface::raster::Occlusion;
-use crate::cpu::tile::{HairPlanes, Plane, STRIDE, TILE, UNSEEN};
+use crate::cpu::tile::{HairPlanes, STRIDE, UNSEEN};
 
 /// What to draw into a tile.
 pub(crate) struct BlendTile<'a> {
@@ -20,12 +20,66 @@ pub(crate) struct BlendTile<'a> {
     pub opacity: f32,
 }
 
+/// A tile on its way: by blocks, and how full it is.
+#[derive(Clone, Debug)]
+pub(crate) struct BlendState {
+    color: [[[f32; LANES]; BLOCKS]; 3],
+    through: [[f32; LANES]; BLOCKS],
+    /// Blocks behind which nothing can be seen any more.
+    closed: [bool; BLOCKS],
+    /// How many others each row of blocks has, and the whole tile.
+    open_in_row: [usize; BLOCKS / BLOCKS_IN_ROW],
+    open: usize,
+}
+
+impl Default for BlendState {
+    fn default() -> Self {
+        Self {
+            color: [[[0.0; LANES]; BLOCKS]; 3],
+            through: [[1.0; LANES]; BLOCKS],
+            closed: [false; BLOCKS],
+            open_in_row: [BLOCKS_IN_ROW; BLOCKS / BLOCKS_IN_ROW],
+            open: BLOCKS,
+        }
+    }
+}
+
+impl BlendState {
+    /// Begins another tile.
+    pub fn clear(&mut self) {
+        self.color.iter_mut().for_each(|plane| plane.fill([0.0; LANES]));
+        self.through.fill([1.0; LANES]);
+        self.closed.fill(false);
+        self.open_in_row.fill(BLOCKS_IN_ROW);
+        self.open = BLOCKS;
+    }
+
+    /// Whether nothing more can be seen.
+    pub fn is_full(&self) -> bool {
+        self.open == 0
+    }
+
+    /// Lays the blocks out in rows of pixels.
+    pub fn write(&self, out: &mut HairPlanes) {
+        let planes = out.color.iter_mut().zip(&self.color).chain([(&mut out.through, &self.through)]);
+        for (plane, blocks) in planes {
+            for (block, lanes) in blocks.iter().enumerate() {
+                let (x, y) = pixel_of(block, 0);
+                for (row, lanes) in lanes.as_chunks::<BLOCK_WIDTH>().0.iter().enumerate() {
+                    let at = (y + row) * STRIDE + x;
+                    plane[at..at + BLOCK_WIDTH].copy_from_slice(lanes);
+                }
+            }
+        }
+    }
+}
+
 /// Draws segments into a tile.
 #[inline(always)]
-pub(crate) fn blend_segments(input: &BlendTile, out: &mut HairPlanes) {
-    let mut sink = Blend { hidden: input.hidden, out, closed: [false; RUNS], open: TILE * TILE / LANES };
+pub(crate) fn blend_segments(input: &BlendTile, out: &mut BlendState) {
+    let mut sink = Blend { hidden: input.hidden, out };
     for [a, b] in input.segments {
-        if sink.open == 0 {
+        if sink.out.is_full() {
             break;
         }
         each_span(a, b, input.origin, input.opacity, &mut sink);
@@ -34,27 +88,27 @@ pub(crate) fn blend_segments(input: &BlendTile, out: &mut HairPlanes) {
 
 struct Blend<'a> {
     hidden: &'a Occlusion,
-    out: &'a mut HairPlanes,
-    /// Runs of pixels behind which nothing can be seen any more, and how many others the tile has.
-    closed: [bool; RUNS],
-    open: usize,
+    out: &'a mut BlendState,
 }
-
-const RUNS: usize = TILE * STRIDE / LANES;
 
 impl SpanSink for Blend<'_> {
     #[inline(always)]
-    fn is_open(&self, at: usize) -> bool {
-        !self.closed[at / LANES]
+    fn is_row_open(&self, row: usize) -> bool {
+        self.out.open_in_row[row] > 0
+    }
+
+    #[inline(always)]
+    fn is_open(&self, block: usize) -> bool {
+        !self.out.closed[block]
     }
 
     #[inline(always)]
     fn take(&mut self, a: &ShadedPoint, b: &ShadedPoint, span: &Span) {
-        // Runs are copied, worked on and put back whole: the compiler cannot know that planes do not overlap.
-        let at = span.at;
+        // Blocks are copied, worked on and put back whole: the compiler cannot know that planes do not overlap.
+        let at = span.block;
         let Occlusion { near, far, share: hidden } = self.hidden;
-        let (near, far, hidden) = (run_of(near, at), run_of(far, at), run_of(hidden, at));
-        let mut through = run_of(&self.out.through, at);
+        let (near, far, hidden) = (near[at], far[at], hidden[at]);
+        let mut through = self.out.through[at];
         let mut share = [0.0; LANES];
         for lane in 0..LANES {
             let z = span.depth[lane];
@@ -63,29 +117,23 @@ impl SpanSink for Blend<'_> {
             share[lane] = alpha * through[lane] * span.gain[lane];
             through[lane] -= alpha * through[lane];
         }
-        self.out.through[at..at + LANES].copy_from_slice(&through);
+        self.out.through[at] = through;
         for (c, plane) in self.out.color.iter_mut().enumerate() {
-            let mut color = run_of(plane, at);
+            let mut color = plane[at];
             let (from, to) = (a.color[c], b.color[c]);
             for lane in 0..LANES {
                 color[lane] += share[lane] * (from + (to - from) * span.along[lane]);
             }
-            plane[at..at + LANES].copy_from_slice(&color);
+            plane[at] = color;
         }
         let mut most = 0.0;
         for lane in 0..LANES {
             most = max(through[lane], most);
         }
         if most <= UNSEEN {
-            self.closed[at / LANES] = true;
-            self.open -= 1;
+            self.out.closed[at] = true;
+            self.out.open_in_row[at / BLOCKS_IN_ROW] -= 1;
+            self.out.open -= 1;
         }
     }
-}
-
-#[inline(always)]
-fn run_of(plane: &Plane, at: usize) -> [f32; LANES] {
-    let mut run = [0.0; LANES];
-    run.copy_from_slice(&plane[at..at + LANES]);
-    run
 }

@@ -2,7 +2,7 @@
 // Compiled within the versions of `dispatch`.
 #![allow(clippy::inline_always)]
 
-use super::segment::{LANES, Span, SpanSink, each_span};
+use super::segment::{LANES, Span, SpanSink, each_span, pixel_of};
 use crate::cpu::math::{clamp, floor, three};
 use crate::cpu::points::ShadedPoint;
 use crate::cpu::surface::raster::SurfaceSamples;
@@ -86,18 +86,24 @@ struct List<'a> {
 
 impl SpanSink for List<'_> {
     #[inline(always)]
-    fn is_open(&self, _at: usize) -> bool {
+    fn is_row_open(&self, _row: usize) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn is_open(&self, _block: usize) -> bool {
         true
     }
 
     #[inline(always)]
     fn take(&mut self, a: &ShadedPoint, b: &ShadedPoint, span: &Span) {
-        for lane in 0..LANES.min(TILE - span.x) {
+        for lane in 0..LANES {
             let alpha = span.alpha[lane];
             if alpha <= 0.0 {
                 continue;
             }
-            let (at, depth) = (span.at + lane, span.depth[lane]);
+            let (x, y) = pixel_of(span.block, lane);
+            let (at, depth) = (y * STRIDE + x, span.depth[lane]);
             let mut seen = 0;
             for (sample, body) in self.samples.depths(at).into_iter().enumerate() {
                 seen |= u32::from(depth >= body) << sample;
@@ -105,7 +111,7 @@ impl SpanSink for List<'_> {
             if seen != 0 {
                 let (t, gain) = (span.along[lane], span.gain[lane]);
                 let color = three(|c| (a.color[c] + (b.color[c] - a.color[c]) * t) * gain);
-                let pixel = [self.origin[0] + (at % STRIDE) as f32, self.origin[1] + (at / STRIDE) as f32];
+                let pixel = [self.origin[0] + x as f32, self.origin[1] + y as f32];
                 let covered = covered_samples(alpha, pixel, a.hash);
                 self.found.push((at as u32, Fragment { depth, alpha, color, seen, covered }));
             }

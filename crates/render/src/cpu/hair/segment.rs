@@ -7,19 +7,22 @@
 
 use crate::cpu::math::{max, min, saturate, sin, smoothstep};
 use crate::cpu::points::ShadedPoint;
-use crate::cpu::tile::{STRIDE, TILE};
+use crate::cpu::tile::TILE;
 
-/// Pixels of a row that are drawn together.
-pub(crate) const LANES: usize = 8;
+/// Pixels that are drawn together: a block of two columns and four rows, since hair falls more than it lies.
+pub(crate) const LANES: usize = BLOCK_WIDTH * BLOCK_HEIGHT;
+pub(crate) const BLOCK_WIDTH: usize = 2;
+pub(crate) const BLOCK_HEIGHT: usize = 4;
+/// Blocks in a row of them, and in a tile.
+pub(crate) const BLOCKS_IN_ROW: usize = TILE / BLOCK_WIDTH;
+pub(crate) const BLOCKS: usize = BLOCKS_IN_ROW * (TILE / BLOCK_HEIGHT);
 type Lane = [f32; LANES];
 
-/// A run of pixels that a segment may cover.
+/// A block of pixels that a segment may cover.
 pub(crate) struct Span {
-    /// The first of them in the planes of the tile.
-    pub at: usize,
-    /// The first of them in its row.
-    pub x: usize,
-    /// Opacity times coverage; 0 beside the segment.
+    /// Which block of the tile it is, row after row.
+    pub block: usize,
+    /// Opacity times coverage; 0 beside the segment. Lanes run along the rows of the block.
     pub alpha: Lane,
     /// Depth, 1 at the near plane.
     pub depth: Lane,
@@ -27,6 +30,13 @@ pub(crate) struct Span {
     pub along: Lane,
     /// Factor on the colour.
     pub gain: Lane,
+}
+
+/// Column and row in the tile of a lane of a block.
+#[inline(always)]
+pub(crate) fn pixel_of(block: usize, lane: usize) -> (usize, usize) {
+    let (x, y) = (block % BLOCKS_IN_ROW * BLOCK_WIDTH, block / BLOCKS_IN_ROW * BLOCK_HEIGHT);
+    (x + lane % BLOCK_WIDTH, y + lane / BLOCK_WIDTH)
 }
 
 /// Whether a segment is drawn at all.
@@ -50,15 +60,17 @@ pub(crate) fn bounds(a: &ShadedPoint, b: &ShadedPoint) -> [f32; 4] {
     [min(a.x - ax, b.x - bx), min(a.y - ay, b.y - by), max(a.x + ax, b.x + bx), max(a.y + ay, b.y + by)]
 }
 
-/// What becomes of the runs of a segment. A trait and no closure, which would not always be inlined.
+/// What becomes of the blocks of a segment. A trait and no closure, which would not always be inlined.
 pub(crate) trait SpanSink {
-    /// Whether anything can be seen in the run of pixels that begins at `at`.
-    fn is_open(&self, at: usize) -> bool;
-    /// Takes a run of the segment from `a` to `b`.
+    /// Whether anything can be seen in a row of blocks.
+    fn is_row_open(&self, row: usize) -> bool;
+    /// Whether anything can be seen in a block.
+    fn is_open(&self, block: usize) -> bool;
+    /// Takes a block of the segment from `a` to `b`.
     fn take(&mut self, a: &ShadedPoint, b: &ShadedPoint, span: &Span);
 }
 
-/// Hands `sink` each run of pixels of a tile that the segment from `a` to `b` may cover.
+/// Hands `sink` each block of a tile that the segment from `a` to `b` may cover.
 ///
 /// A pixel belongs to the segment between the lines across the strand through its two ends. Neighbouring
 /// segments share those lines, so that no pixel is drawn by both or by none.
@@ -91,40 +103,41 @@ pub(crate) fn each_span(
     let (opacity_a, opacity_b) =
         (opacity * min(a.half_width * 2.0, 1.0), opacity * min(b.half_width * 2.0, 1.0));
     let streaked = max(half_a, half_b) > 0.8;
-    let (y0, y1) = (top as usize, bottom as usize);
     // Where a row crosses the ribbon: a middle that moves from row to row, and half a width.
     let steep = nx.abs() > 0.05;
     let (slope, half_run) = if steep { (ny / nx, reach / nx.abs()) } else { (0.0, f32::INFINITY) };
-    for y in y0..=y1 {
-        let cy = y as f32 + 0.5;
-        let middle = ax - slope * (cy - ay);
-        let (from, to) = (max(left, middle - half_run), min(right, middle + half_run));
+    let wander = slope.abs() * (0.5 * (BLOCK_HEIGHT - 1) as f32);
+    for row in top as usize / BLOCK_HEIGHT..=bottom as usize / BLOCK_HEIGHT {
+        if !sink.is_row_open(row) {
+            continue;
+        }
+        let y = row * BLOCK_HEIGHT;
+        let middle = ax - slope * (y as f32 + 0.5 * BLOCK_HEIGHT as f32 - ay);
+        let (from, to) = (max(left, middle - wander - half_run), min(right, middle + wander + half_run));
         let (from, to) = (max(from - 0.5, 0.0), min(to + 0.5, TILE as f32 - 0.5));
         if from > to {
             continue;
         }
-        // Runs begin at multiples of their length: what the last segment stored is loaded as it was stored, which
-        // processors wait for otherwise.
-        for x in (from as usize / LANES * LANES..=to as usize).step_by(LANES) {
-            if !sink.is_open(y * STRIDE + x) {
+        for column in from as usize / BLOCK_WIDTH..=to as usize / BLOCK_WIDTH {
+            let block = row * BLOCKS_IN_ROW + column;
+            if !sink.is_open(block) {
                 continue;
             }
+            let (x, y) = ((column * BLOCK_WIDTH) as f32, y as f32);
             let mut span = Span {
-                at: y * STRIDE + x,
-                x,
+                block,
                 alpha: [0.0; LANES],
                 depth: [0.0; LANES],
                 along: [0.0; LANES],
                 gain: [1.0; LANES],
             };
             for lane in 0..LANES {
-                let cx = (x + lane) as f32 + 0.5;
+                let (cx, cy) = (x + CENTRES[0][lane], y + CENTRES[1][lane]);
                 let (px, py) = (cx - ax, cy - ay);
                 let after_a = px * a.run_x + py * a.run_y;
                 let after_b = (cx - bx) * b.run_x + (cy - by) * b.run_y;
                 let inside = (after_a >= 0.0) & (after_b < 0.0);
-                let along = after_a / max(after_a - after_b, 1e-6);
-                let along = saturate(along);
+                let along = saturate(after_a / max(after_a - after_b, 1e-6));
                 let offset = px * nx + py * ny;
                 let half = half_a + (half_b - half_a) * along;
                 let coverage = saturate(half + 0.5 - offset.abs());
@@ -132,13 +145,13 @@ pub(crate) fn each_span(
                 span.alpha[lane] = if inside { opacity * coverage } else { 0.0 };
                 span.depth[lane] = a.depth + (b.depth - a.depth) * along;
                 span.along[lane] = along;
-                span.gain[lane] = offset / half;
             }
             if streaked {
                 // A drawn strand stands for many hairs: where it is wide enough to show them, it is streaked.
                 for lane in 0..LANES {
-                    let across = span.gain[lane];
+                    let (px, py) = (x + CENTRES[0][lane] - ax, y + CENTRES[1][lane] - ay);
                     let half = half_a + (half_b - half_a) * span.along[lane];
+                    let across = (px * nx + py * ny) / half;
                     let wide = smoothstep(0.8, 2.0, half);
                     let wave = wide
                         * (sin(across * 5.0 + a.hash * 41.0) * 0.6
@@ -146,10 +159,20 @@ pub(crate) fn each_span(
                     span.alpha[lane] = saturate(span.alpha[lane] * (1.0 + 0.22 * wave));
                     span.gain[lane] = 1.0 + 0.18 * wave;
                 }
-            } else {
-                span.gain = [1.0; LANES];
             }
             sink.take(a, b, &span);
         }
     }
 }
+
+/// Centres of the pixels of a block, from its corner.
+const CENTRES: [Lane; 2] = {
+    let mut centres = [[0.0; LANES]; 2];
+    let mut lane = 0;
+    while lane < LANES {
+        centres[0][lane] = (lane % BLOCK_WIDTH) as f32 + 0.5;
+        centres[1][lane] = (lane / BLOCK_WIDTH) as f32 + 0.5;
+        lane += 1;
+    }
+    centres
+};

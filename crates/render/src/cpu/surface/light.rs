@@ -17,6 +17,8 @@ const SAME_SURFACE: f32 = 0.004;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SurfaceLight {
     batch: SurfaceBatch,
+    /// The triangle that was asked for last, with its edges in this tile.
+    last: Option<(u32, Edges)>,
 }
 
 /// The body: where it lies in the picture, and its mesh.
@@ -34,7 +36,7 @@ impl SurfaceLight {
         out: &mut SurfacePlanes,
     ) {
         self.batch.count = 0;
-        let mut last: Option<(u32, Edges)> = None;
+        self.last = None;
         for y in 0..TILE {
             for x in 0..TILE {
                 let at = y * STRIDE + x;
@@ -42,6 +44,11 @@ impl SurfaceLight {
                     continue;
                 }
                 let ids = samples.triangles(at);
+                if ids[0] != NOTHING && ids == [ids[0]; 4] {
+                    out.cover[at] = 1.0;
+                    self.shade(width, view, surface, (ids[0], origin, x, y), 1.0, out);
+                    continue;
+                }
                 let depths = samples.depths(at);
                 let mut left = ids.map(|id| id != NOTHING);
                 out.cover[at] = 0.25 * left.iter().filter(|left| **left).count() as f32;
@@ -58,26 +65,38 @@ impl SurfaceLight {
                             weight += 0.25;
                         }
                     }
-                    let edges = match last {
-                        Some((id, edges)) if id == ids[s] => edges,
-                        _ => {
-                            let (placed, body) = surface;
-                            let corners =
-                                body.mesh.triangles[ids[s] as usize].map(|i| placed.vertices[i as usize]);
-                            let Some(edges) = Edges::new(corners, origin) else { continue };
-                            last = Some((ids[s], edges));
-                            edges
-                        }
-                    };
-                    let shares = edges.shares(x as f32 + 0.5, y as f32 + 0.5);
-                    self.push(surface, ids[s], shares, at, weight);
-                    if self.batch.count == LANES {
-                        self.flush(width, view, out);
-                    }
+                    self.shade(width, view, surface, (ids[s], origin, x, y), weight, out);
                 }
             }
         }
         if self.batch.count > 0 {
+            self.flush(width, view, out);
+        }
+    }
+
+    /// Puts the place of a triangle at the centre of a pixel on the list of those to shade.
+    fn shade(
+        &mut self,
+        width: Width,
+        view: &View,
+        surface: Surface,
+        (triangle, origin, x, y): (u32, [f32; 2], usize, usize),
+        weight: f32,
+        out: &mut SurfacePlanes,
+    ) {
+        let edges = match self.last {
+            Some((id, edges)) if id == triangle => edges,
+            _ => {
+                let (placed, body) = surface;
+                let corners = body.mesh.triangles[triangle as usize].map(|i| placed.vertices[i as usize]);
+                let Some(edges) = Edges::new(corners, origin) else { return };
+                self.last = Some((triangle, edges));
+                edges
+            }
+        };
+        let shares = edges.shares(x as f32 + 0.5, y as f32 + 0.5);
+        self.push(surface, triangle, shares, y * STRIDE + x, weight);
+        if self.batch.count == LANES {
             self.flush(width, view, out);
         }
     }

@@ -1,5 +1,8 @@
 //! The body on the processor: placed once a frame, drawn tile by tile, shaded where it is seen.
+// Compiled within the versions of `dispatch`.
+#![allow(clippy::inline_always)]
 
+pub(super) mod closed;
 pub(super) mod light;
 pub(super) mod raster;
 pub(super) mod shade;
@@ -29,8 +32,15 @@ pub(super) struct PlacedSurface {
 
 impl PlacedSurface {
     /// Places the vertices and sorts the triangles into tiles.
-    /// `hair` holds one packed word of transmittances a vertex.
-    pub fn place(&mut self, clip_from_world: Mat4, grid: &Grid, body: Option<(&Body, &Skin)>, hair: &[u32]) {
+    /// `hair` holds one packed word of transmittances a vertex; `closed` says that what faces away need not be drawn.
+    pub fn place(
+        &mut self,
+        clip_from_world: Mat4,
+        grid: &Grid,
+        body: Option<(&Body, &Skin)>,
+        hair: &[u32],
+        closed: bool,
+    ) {
         self.gather(body, hair);
         let none: (&[Vec3], &[[u32; 3]]) = (&[], &[]);
         let (positions, triangles) =
@@ -50,7 +60,7 @@ impl PlacedSurface {
             for (corner, &at) in corners.iter_mut().zip(&triangles[i]) {
                 *corner = *vertices.get(at as usize)?;
             }
-            tiles_of(corners, grid)
+            if closed && faces_away(corners) { None } else { tiles_of(corners, grid) }
         });
     }
 
@@ -71,6 +81,16 @@ impl PlacedSurface {
             })
             .collect_into_vec(&mut self.attributes);
     }
+}
+
+/// Whether the camera sees the back of a triangle, whose corners are given as pixels times w and w. Pixels count
+/// downward, which turns the counter-clockwise front round.
+#[inline(always)]
+fn faces_away([p, q, r]: [[f32; 3]; 3]) -> bool {
+    let volume = p[0] * (q[1] * r[2] - r[1] * q[2])
+        + p[1] * (r[0] * q[2] - q[0] * r[2])
+        + p[2] * (q[0] * r[1] - r[0] * q[1]);
+    volume > 0.0
 }
 
 /// The tiles that a triangle may touch.

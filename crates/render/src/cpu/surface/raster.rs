@@ -7,8 +7,9 @@
 
 use super::pixel_bounds;
 use crate::camera::NEAR_METRES;
+use crate::cpu::hair::segment::{BLOCKS, LANES as BLOCK, pixel_of};
 use crate::cpu::math::{max, min, three};
-use crate::cpu::tile::{Plane, STRIDE, TILE};
+use crate::cpu::tile::{STRIDE, TILE};
 
 /// Samples of a pixel and where they lie in it: the usual pattern of graphics cards.
 pub(crate) const SAMPLES: [[f32; 2]; 4] = [[0.375, 0.125], [0.875, 0.375], [0.125, 0.625], [0.625, 0.875]];
@@ -56,38 +57,42 @@ impl SurfaceSamples {
 }
 
 /// What the body hides of each pixel of a tile: what lies behind `near` is hidden in the part `share` of the
-/// pixel, and what lies behind `far` wholly.
+/// pixel, and what lies behind `far` wholly. By blocks, as hair is drawn.
 #[derive(Clone, Debug)]
 pub(crate) struct Occlusion {
-    pub near: Plane,
-    pub far: Plane,
-    pub share: Plane,
+    pub near: [[f32; BLOCK]; BLOCKS],
+    pub far: [[f32; BLOCK]; BLOCKS],
+    pub share: [[f32; BLOCK]; BLOCKS],
 }
 
 impl Default for Occlusion {
     fn default() -> Self {
-        Self { near: [0.0; TILE * STRIDE], far: [0.0; TILE * STRIDE], share: [0.0; TILE * STRIDE] }
+        let nothing = [[0.0; BLOCK]; BLOCKS];
+        Self { near: nothing, far: nothing, share: nothing }
     }
 }
 
 impl Occlusion {
     pub fn clear(&mut self) {
-        self.near.fill(0.0);
-        self.far.fill(0.0);
-        self.share.fill(0.0);
+        self.near.fill([0.0; BLOCK]);
+        self.far.fill([0.0; BLOCK]);
+        self.share.fill([0.0; BLOCK]);
     }
 
     /// Gathers the samples of each pixel: the nearest, the farthest, and how many are with the nearest.
     #[inline(always)]
     pub fn gather(&mut self, samples: &SurfaceSamples) {
-        for at in 0..TILE * STRIDE {
-            let d = samples.depths(at);
-            let near = max(max(d[0], d[1]), max(d[2], d[3]));
-            let far = min(min(d[0], d[1]), min(d[2], d[3]));
-            let middle = 0.5 * (near + far);
-            let with = |d: f32| if d >= middle { 0.25 } else { 0.0 };
-            (self.near[at], self.far[at]) = (near, far);
-            self.share[at] = with(d[0]) + with(d[1]) + with(d[2]) + with(d[3]);
+        for block in 0..BLOCKS {
+            for lane in 0..BLOCK {
+                let (x, y) = pixel_of(block, lane);
+                let d = samples.depths(y * STRIDE + x);
+                let near = max(max(d[0], d[1]), max(d[2], d[3]));
+                let far = min(min(d[0], d[1]), min(d[2], d[3]));
+                let middle = 0.5 * (near + far);
+                let with = |d: f32| if d >= middle { 0.25 } else { 0.0 };
+                (self.near[block][lane], self.far[block][lane]) = (near, far);
+                self.share[block][lane] = with(d[0]) + with(d[1]) + with(d[2]) + with(d[3]);
+            }
         }
     }
 }
