@@ -8,7 +8,7 @@
 pub enum Width {
     /// What every processor of this architecture has.
     Baseline,
-    /// 256-bit vectors.
+    /// 256-bit vectors, and the instructions on bits that came with them.
     #[cfg(target_arch = "x86_64")]
     Avx2,
     /// 512-bit registers and masks.
@@ -31,10 +31,16 @@ impl Width {
         match self {
             Self::Baseline => true,
             #[cfg(target_arch = "x86_64")]
-            Self::Avx2 => is_x86_feature_detected!("avx2"),
+            Self::Avx2 => {
+                is_x86_feature_detected!("avx2")
+                    && is_x86_feature_detected!("popcnt")
+                    && is_x86_feature_detected!("bmi1")
+                    && is_x86_feature_detected!("bmi2")
+            }
             #[cfg(target_arch = "x86_64")]
             Self::Avx512 => {
-                is_x86_feature_detected!("avx512f")
+                Self::Avx2.is_available()
+                    && is_x86_feature_detected!("avx512f")
                     && is_x86_feature_detected!("avx512bw")
                     && is_x86_feature_detected!("avx512dq")
                     && is_x86_feature_detected!("avx512vl")
@@ -54,17 +60,22 @@ impl Width {
 /// module that uses this must allow `unsafe_code`, for calls of functions that ask for features.
 #[macro_export]
 macro_rules! simd_versions {
-    ($(#[$doc:meta])* $vis:vis fn $name:ident($($argument:ident: $of:ty),* $(,)?) -> $result:ty { $body:expr }) => {
+    (
+        $(#[$doc:meta])*
+        $vis:vis fn $name:ident $(<$generic:ident: $bound:path>)? ($($argument:ident: $of:ty),* $(,)?) -> $result:ty {
+            $body:expr
+        }
+    ) => {
         $(#[$doc])*
-        $vis fn $name(width: $crate::simd::Width, $($argument: $of),*) -> $result {
+        $vis fn $name $(<$generic: $bound>)? (width: $crate::simd::Width, $($argument: $of),*) -> $result {
             #[cfg(target_arch = "x86_64")]
-            #[target_feature(enable = "avx2")]
-            fn avx2($($argument: $of),*) -> $result {
+            #[target_feature(enable = "avx2,popcnt,bmi1,bmi2")]
+            fn avx2 $(<$generic: $bound>)? ($($argument: $of),*) -> $result {
                 $body
             }
             #[cfg(target_arch = "x86_64")]
-            #[target_feature(enable = "avx2,avx512f,avx512bw,avx512dq,avx512vl")]
-            fn avx512($($argument: $of),*) -> $result {
+            #[target_feature(enable = "avx2,popcnt,bmi1,bmi2,avx512f,avx512bw,avx512dq,avx512vl")]
+            fn avx512 $(<$generic: $bound>)? ($($argument: $of),*) -> $result {
                 $body
             }
             assert!(width.is_available(), "{width:?} on a processor without");

@@ -27,7 +27,7 @@ pub(crate) fn exp_of_minus_steps(depth: f32) -> f32 {
 }
 
 /// `e^(−depth)` for any optical depth: 1 at 0 and for what is no number, 10⁻²⁸ from 64 on, always within 0 and 1.
-#[inline]
+#[inline(always)]
 pub(crate) fn exp_of_minus(depth: f32) -> f32 {
     let depth = if depth > 0.0 { depth } else { 0.0 };
     let depth = if depth < 64.0 { depth } else { 64.0 };

@@ -1,32 +1,23 @@
 //! The step of a block, compiled for the processor that runs it.
 //!
-//! The loops over lanes become wider instructions where the processor has them. Rust never contracts a
-//! product and a sum, so both versions give the same bits.
+//! The loops over lanes become wider instructions where the processor has them, and all versions give the same bits.
+// Calls of functions that ask for features of the processor, made by the macro after it has asked for them.
+#![allow(unsafe_code)]
+
+use lovelock_groom::simd::Width;
+use lovelock_groom::simd_versions;
 
 use crate::block::Block;
 use crate::solver::{Plan, advance};
 
 /// Takes `block` through the step of `plan`.
 pub(crate) fn step_block(block: &mut Block, plan: &Plan) {
-    #[cfg(target_arch = "x86_64")]
-    if plan.wide && std::arch::is_x86_feature_detected!("avx2") {
-        // SAFETY: the processor has AVX2, which is all that the function asks for.
-        #[expect(unsafe_code, reason = "a function with target features can only be called this way")]
-        unsafe {
-            advance_avx2(block, plan);
-        }
-        return;
+    step(if plan.wide { Width::widest() } else { Width::Baseline }, block, plan);
+}
+
+simd_versions! {
+    /// [`advance`].
+    fn step(block: &mut Block, plan: &Plan) -> () {
+        advance(block, plan)
     }
-    advance_portable(block, plan);
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn advance_avx2(block: &mut Block, plan: &Plan) {
-    advance(block, plan);
-}
-
-/// The same with the instructions that every processor of this kind has.
-pub(crate) fn advance_portable(block: &mut Block, plan: &Plan) {
-    advance(block, plan);
 }

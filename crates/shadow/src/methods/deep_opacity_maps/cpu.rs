@@ -1,4 +1,6 @@
 //! Optical depth at the ends of layers that begin at the first fragment.
+// Compiled within the versions of `texels::lookup`.
+#![allow(clippy::inline_always)]
 
 use super::super::texels::{Fragment, TexelFilter, TexelMap, TexelMethod};
 use super::{DeepOpacityMapsSettings, LayerGrowth};
@@ -22,7 +24,7 @@ pub struct Layers {
 
 impl Layers {
     /// The layer that lies `depth` behind the first fragment, which is not negative; the last one reaches on.
-    #[inline]
+    #[inline(always)]
     fn layer(&self, depth: f32) -> usize {
         self.starts[1..self.count].iter().filter(|start| **start <= depth).count()
     }
@@ -78,7 +80,7 @@ impl TexelMethod for Layers {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn depth_before(&self, _fragments: &[Fragment], record: &[f32], depth: f32) -> f32 {
         let behind = depth - record[0];
         if behind <= 0.0 {

@@ -1,4 +1,6 @@
 //! Clusters of fragments, and the bins that they become.
+// Compiled within the versions of `texels::lookup`.
+#![allow(clippy::inline_always)]
 
 use super::super::texels::{Fragment, TexelFilter, TexelMap, TexelMethod};
 use super::seeds::seeds;
@@ -229,7 +231,7 @@ impl TexelMethod for Clustering {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn depth_before(&self, _fragments: &[Fragment], record: &[Bin], depth: f32) -> f32 {
         let part = |bin: &Bin| ((depth - bin.start) * bin.per_depth).clamp(0.0, 1.0);
         record.iter().map(|bin| bin.optical_depth * part(bin)).sum()

@@ -1,4 +1,6 @@
 //! Sorted fragments with running sums.
+// Compiled within the versions of `texels::lookup`.
+#![allow(clippy::inline_always)]
 
 use super::super::texels::{Fragment, TexelFilter, TexelMap, TexelMethod};
 use super::ExactSettings;
@@ -23,7 +25,7 @@ pub(crate) fn sort_and_sum(fragments: &mut [Fragment]) {
 
 /// Optical depth of the fragments before `depth`, as [`sort_and_sum`] left them. Those at the depth itself do not
 /// count.
-#[inline]
+#[inline(always)]
 pub(crate) fn sum_before(fragments: &[Fragment], depth: f32) -> f32 {
     let before = fragments.partition_point(|fragment| fragment.depth() < depth);
     before.checked_sub(1).map_or(0.0, |last| fragments[last].optical_depth())
@@ -60,7 +62,7 @@ impl TexelMethod for Sorted {
         sort_and_sum(fragments);
     }
 
-    #[inline]
+    #[inline(always)]
     fn depth_before(&self, fragments: &[Fragment], _record: &[()], depth: f32) -> f32 {
         sum_before(fragments, depth)
     }

@@ -1,4 +1,6 @@
 //! Occupied slices as bits, and counts of fragments a slab.
+// Compiled within the versions of `texels::lookup`.
+#![allow(clippy::inline_always)]
 
 use super::super::texels::{Fragment, TexelFilter, TexelMap, TexelMethod};
 use super::OccupancyMapsSettings;
@@ -35,13 +37,13 @@ impl Occupancy {
 }
 
 /// The number in slab `slab` of packed counts.
-#[inline]
+#[inline(always)]
 fn count(counts: &[u32], slab: usize) -> u32 {
     counts[slab / 2] >> (slab % 2 * 16) & 0xffff
 }
 
 /// The bits of the slab of `slice` that are set, and those of them that lie before it; slabs have `1 << shift` bits.
-#[inline]
+#[inline(always)]
 fn occupied<const BITS: usize>(bits: &[u32; BITS], slice: u32, shift: u32) -> (u32, u32) {
     let word = (slice / 32) as usize % BITS;
     let before = bits[word] & ((1 << (slice % 32)) - 1);
@@ -62,7 +64,7 @@ fn occupied<const BITS: usize>(bits: &[u32; BITS], slice: u32, shift: u32) -> (u
 }
 
 /// Fragments of the slabs before `slab`, of itself, and of all.
-#[inline]
+#[inline(always)]
 fn counts_around<const WORDS: usize>(counts: &[u32; WORDS], slab: u32) -> (u32, u32, u32) {
     let (mut before, mut all) = (0, 0);
     for (word, packed) in counts.iter().enumerate() {
@@ -74,7 +76,7 @@ fn counts_around<const WORDS: usize>(counts: &[u32; WORDS], slab: u32) -> (u32, 
 }
 
 /// [`TexelMethod::depth_before`] for a record of so many words: known lengths leave neither loops nor checks.
-#[inline]
+#[inline(always)]
 fn depth_before<const BITS: usize, const WORDS: usize>(record: &[u32], depth: f32) -> f32 {
     let Some((header, rest)) = record.split_first_chunk::<HEADER>() else { return 0.0 };
     let Some((bits, rest)) = rest.split_first_chunk::<BITS>() else { return 0.0 };
@@ -94,7 +96,7 @@ fn depth_before<const BITS: usize, const WORDS: usize>(record: &[u32], depth: f3
 }
 
 /// The slice, of `slices`, of a depth within a texel's range, and where in it the depth lies, 0 to 1.
-#[inline]
+#[inline(always)]
 fn slice_of(slices: u32, near: f32, far: f32, depth: f32) -> (u32, f32) {
     // With one fragment, or all at one depth, there is no range.
     let part = if far > near { ((depth - near) / (far - near)).clamp(0.0, 1.0) } else { 0.0 };
@@ -155,7 +157,7 @@ impl TexelMethod for Occupancy {
         header.copy_from_slice(&[near.to_bits(), far.to_bits(), mean.to_bits()]);
     }
 
-    #[inline]
+    #[inline(always)]
     fn depth_before(&self, _fragments: &[Fragment], record: &[u32], depth: f32) -> f32 {
         match (self.slices, self.slabs) {
             (128, 4) => depth_before::<4, 2>(record, depth),

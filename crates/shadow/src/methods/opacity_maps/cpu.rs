@@ -1,4 +1,6 @@
 //! Optical depth at the ends of uniform slices.
+// Compiled within the versions of `texels::lookup`.
+#![allow(clippy::inline_always)]
 
 use super::super::texels::{Fragment, TexelFilter, TexelMap, TexelMethod};
 use super::OpacityMapsSettings;
@@ -17,7 +19,7 @@ pub struct Slices {
 
 impl Slices {
     /// The slice of a depth, and where in it the depth lies, 0 to 1; more than that for depths behind all slices.
-    #[inline]
+    #[inline(always)]
     fn slice(&self, depth: f32) -> (usize, f32) {
         let slices = depth * self.count as f32;
         let slice = (slices as usize).min(self.count - 1);
@@ -66,7 +68,7 @@ impl TexelMethod for Slices {
         record[last + 1..].fill(sum);
     }
 
-    #[inline]
+    #[inline(always)]
     fn depth_before(&self, _fragments: &[Fragment], record: &[f32], depth: f32) -> f32 {
         let (slice, part) = self.slice(depth);
         let before = slice.checked_sub(1).map_or(0.0, |last| record[last]);

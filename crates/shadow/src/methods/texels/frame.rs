@@ -3,6 +3,8 @@
 //! Texels are a window of `N × N` on an infinite lattice across the light, one corner of which is the anchor: hair
 //! that moves along with the head keeps its texels. Depth along the light is divided by a range, so that it lies
 //! within 0 and 1.
+// Compiled within the versions of `texels::lookup`.
+#![allow(clippy::inline_always)]
 
 use glam::{IVec2, Mat4, Vec3, Vec4};
 
@@ -156,7 +158,7 @@ pub(crate) struct TexelAxes {
 }
 
 impl TexelAxes {
-    #[inline]
+    #[inline(always)]
     pub(crate) fn transform(&self, p: Vec3) -> Vec3 {
         let d = p - self.anchor;
         Vec3::new(d.dot(self.column), d.dot(self.row), d.dot(self.depth)) + self.offset

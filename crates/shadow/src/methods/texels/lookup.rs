@@ -2,13 +2,18 @@
 //!
 //! Points go through in blocks, stage by stage: where they lie, which records they read, what these say, and
 //! exponentials. Loads of one stage do not wait for each other, and most of the time goes to waiting for them.
+// Calls of functions that ask for features of the processor, made by the macro after it has asked for them; and every
+// loop must be compiled within the version that calls it.
+#![allow(unsafe_code, clippy::inline_always, clippy::needless_range_loop)]
 
 use glam::Vec3;
+use lovelock_groom::simd_versions;
 
 use super::fragments::Fragments;
 use super::frame::TexelFrame;
 use super::map::TexelMethod;
 use crate::exp::exp_of_minus;
+use crate::whole_part::whole_part;
 
 /// Points that are looked up together.
 const BLOCK: usize = 64;
@@ -43,7 +48,7 @@ const OUTSIDE: u32 = u32::MAX;
 
 impl<M: TexelMethod> Lookup<'_, M> {
     /// Optical depth of a texel before a depth.
-    #[inline]
+    #[inline(always)]
     fn depth_before(&self, texel: usize, slot: usize, depth: f32) -> f32 {
         let cells = self.method.cells();
         let record = &self.cells[slot * cells..(slot + 1) * cells];
@@ -57,60 +62,49 @@ impl<M: TexelMethod> Lookup<'_, M> {
         slot.map_or(1.0, |slot| exp_of_minus(self.depth_before(texel, slot, BEHIND)))
     }
 
-    /// Transmittance of many points, by the texel that each lies in; slices of one length.
-    pub(super) fn nearest(&self, x: &[f32], y: &[f32], z: &[f32], out: &mut [f32]) {
-        self.run(x, y, z, out, |p, taps: &mut Taps<1>, lane| {
-            taps.texels[0][lane] = self.texel(floor(p.x), floor(p.y));
-        });
-    }
-
-    /// Transmittance of many points, the bilinear mean of four texels each; slices of one length.
-    pub(super) fn bilinear(&self, x: &[f32], y: &[f32], z: &[f32], out: &mut [f32]) {
-        self.run(x, y, z, out, |p, taps: &mut Taps<4>, lane| {
-            let (x, y) = (p.x - 0.5, p.y - 0.5);
-            let (column, row) = (floor(x), floor(y));
-            (taps.u[lane], taps.v[lane]) = (x - column as f32, y - row as f32);
-            let around = [(column, row), (column + 1, row), (column, row + 1), (column + 1, row + 1)];
-            for (texels, (column, row)) in taps.texels.iter_mut().zip(around) {
-                texels[lane] = self.texel(column, row);
-            }
-        });
-    }
-
     /// The number of a texel, or [`OUTSIDE`].
-    #[inline]
+    #[inline(always)]
     fn texel(&self, column: i32, row: i32) -> u32 {
         let n = self.frame.resolution;
         let (column, row) = (column as u32, row as u32);
-        if column < n && row < n { row * n + column } else { OUTSIDE }
+        // Both are compared: a branch would keep the loop from becoming vectors.
+        if (column < n) & (row < n) { row.wrapping_mul(n).wrapping_add(column) } else { OUTSIDE }
     }
 
-    fn run<const TAPS: usize>(
-        &self,
-        x: &[f32],
-        y: &[f32],
-        z: &[f32],
-        out: &mut [f32],
-        place: impl Fn(Vec3, &mut Taps<TAPS>, usize),
-    ) {
+    /// Transmittance of many points, by the texel that each lies in (one tap) or as the bilinear mean of the four
+    /// around it; slices of one length.
+    #[inline(always)]
+    fn run<const TAPS: usize>(&self, x: &[f32], y: &[f32], z: &[f32], out: &mut [f32]) {
         let axes = self.frame.axes();
         let end = self.frame.resolution as f32 + 1.0;
         let mut taps =
             Taps { texels: [[OUTSIDE; BLOCK]; TAPS], depths: [0.0; BLOCK], u: [0.0; BLOCK], v: [0.0; BLOCK] };
         let blocks = x.chunks(BLOCK).zip(y.chunks(BLOCK)).zip(z.chunks(BLOCK)).zip(out.chunks_mut(BLOCK));
         for (((x, y), z), out) in blocks {
-            for (lane, ((x, y), z)) in x.iter().zip(y).zip(z).enumerate() {
-                let p = axes.transform(Vec3::new(*x, *y, *z));
+            let (x, y, z) = (block_of(x), block_of(y), block_of(z));
+            for lane in 0..BLOCK {
+                let p = axes.transform(Vec3::new(x[lane], y[lane], z[lane]));
                 // False for what is no number. Before all hair everything is lit.
-                let inside = p.x > -1.0 && p.x < end && p.y > -1.0 && p.y < end && p.z > 0.0;
-                taps.depths[lane] = if inside { p.z.min(BEHIND) } else { 0.0 };
-                place(if inside { p } else { Vec3::ZERO }, &mut taps, lane);
+                let inside = (p.x > -1.0) & (p.x < end) & (p.y > -1.0) & (p.y < end) & (p.z > 0.0);
+                let depth = if p.z < BEHIND { p.z } else { BEHIND };
+                taps.depths[lane] = if inside { depth } else { 0.0 };
+                let (x, y) = if inside { (p.x, p.y) } else { (0.0, 0.0) };
+                if TAPS == 1 {
+                    taps.texels[0][lane] = self.texel(floor(x), floor(y));
+                    continue;
+                }
+                let (x, y) = (x - 0.5, y - 0.5);
+                let (column, row) = (floor(x), floor(y));
+                (taps.u[lane], taps.v[lane]) = (x - column as f32, y - row as f32);
+                for (tap, texels) in taps.texels.iter_mut().enumerate() {
+                    texels[lane] = self.texel(column + (tap % 2) as i32, row + (tap / 2) as i32);
+                }
             }
             self.block(&taps, out);
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn block<const TAPS: usize>(&self, taps: &Taps<TAPS>, out: &mut [f32]) {
         let mut light = [[1.0; BLOCK]; TAPS];
         for (texels, light) in taps.texels.iter().zip(&mut light) {
@@ -119,7 +113,7 @@ impl<M: TexelMethod> Lookup<'_, M> {
                 *slot = self.slots.get(*texel as usize).copied().unwrap_or(0);
             }
             let mut before = [0.0; BLOCK];
-            for lane in 0..out.len() {
+            for lane in 0..out.len().min(BLOCK) {
                 if let Some(slot) = (slots[lane] as usize).checked_sub(1) {
                     before[lane] = self.depth_before(texels[lane] as usize, slot, taps.depths[lane]);
                 }
@@ -128,25 +122,54 @@ impl<M: TexelMethod> Lookup<'_, M> {
                 *light = exp_of_minus(*before);
             }
         }
-        for (lane, out) in out.iter_mut().enumerate() {
-            let t = if let [a, b, c, d] = light.each_ref().map(|light| light[lane])[..] {
-                let (near, far) = (mix(a, b, taps.u[lane]), mix(c, d, taps.u[lane]));
-                mix(near, far, taps.v[lane])
-            } else {
-                light[0][lane]
-            };
-            *out = if t < 1.0 { t } else { 1.0 };
+        let mut mean = light[0];
+        if let [a, b, c, d] = &light[..] {
+            for lane in 0..BLOCK {
+                let (near, far) = (mix(a[lane], b[lane], taps.u[lane]), mix(c[lane], d[lane], taps.u[lane]));
+                mean[lane] = mix(near, far, taps.v[lane]);
+            }
+        }
+        for (out, t) in out.iter_mut().zip(&mean) {
+            *out = if *t < 1.0 { *t } else { 1.0 };
         }
     }
 }
 
-/// The whole number at or below `c`, which is above −2.
-#[inline]
-fn floor(c: f32) -> i32 {
-    (c + 2.0) as i32 - 2
+/// A block of coordinates; the last one of a list is filled up with zeros.
+#[inline(always)]
+fn block_of(axis: &[f32]) -> [f32; BLOCK] {
+    axis.try_into().unwrap_or_else(|_| {
+        let mut lanes = [0.0; BLOCK];
+        lanes[..axis.len()].copy_from_slice(axis);
+        lanes
+    })
 }
 
-#[inline]
+simd_versions! {
+    /// Transmittance of many points, by the texel that each lies in.
+    pub(super) fn nearest<M: TexelMethod>(
+        lookup: &Lookup<M>, x: &[f32], y: &[f32], z: &[f32], out: &mut [f32],
+    ) -> () {
+        lookup.run::<1>(x, y, z, out)
+    }
+}
+
+simd_versions! {
+    /// Transmittance of many points, the bilinear mean of four texels each.
+    pub(super) fn bilinear<M: TexelMethod>(
+        lookup: &Lookup<M>, x: &[f32], y: &[f32], z: &[f32], out: &mut [f32],
+    ) -> () {
+        lookup.run::<4>(x, y, z, out)
+    }
+}
+
+/// The whole number at or below `c`, which is above −2 and below 2^26.
+#[inline(always)]
+fn floor(c: f32) -> i32 {
+    whole_part(c + 2.0) - 2
+}
+
+#[inline(always)]
 fn mix(a: f32, b: f32, t: f32) -> f32 {
     a + (b - a) * t
 }

@@ -3,12 +3,13 @@
 use std::fmt::Debug;
 
 use glam::Vec3;
+use lovelock_groom::simd::Width;
 use rayon::prelude::*;
 
 use super::fragments::{BYTES_PER_FRAGMENT, Fragment, Fragments, sum_over_segments};
 use super::frame::TexelFrame;
 use super::lines::{Lines, Steps};
-use super::lookup::Lookup;
+use super::lookup::{self, Lookup};
 use super::{MAP_MEMORY_LIMIT_BYTES, TexelFilter};
 use crate::bounds::Bounds;
 use crate::{ColumnMap, CpuShadow, ShadowError, ShadowInput, ShadowMethod, ShadowReport, ShadowSettings};
@@ -64,6 +65,7 @@ pub struct TexelMap<M: TexelMethod> {
     /// One more than the number of each texel's record; 0 where it has none.
     slots: Vec<u32>,
     cells: Vec<M::Cell>,
+    width: Width,
     built: Option<Built<M>>,
 }
 
@@ -76,7 +78,13 @@ struct Built<M> {
 
 impl<M: TexelMethod> Default for TexelMap<M> {
     fn default() -> Self {
-        Self { fragments: Fragments::default(), slots: Vec::new(), cells: Vec::new(), built: None }
+        Self {
+            fragments: Fragments::default(),
+            slots: Vec::new(),
+            cells: Vec::new(),
+            width: Width::widest(),
+            built: None,
+        }
     }
 }
 
@@ -219,7 +227,8 @@ impl<M: TexelMethod> CpuShadow for TexelMap<M> {
         let lookup = self.lookup(built);
         let bilinear = built.method.filter() == TexelFilter::Bilinear;
         let run = |x: &[f32], y: &[f32], z: &[f32], out: &mut [f32]| {
-            if bilinear { lookup.bilinear(x, y, z, out) } else { lookup.nearest(x, y, z, out) }
+            let read = if bilinear { lookup::bilinear } else { lookup::nearest };
+            read(self.width, &lookup, x, y, z, out);
         };
         if out.len() <= POINTS_PER_LOOKUP {
             run(x, y, z, out);
@@ -242,5 +251,75 @@ impl<M: TexelMethod> CpuShadow for TexelMap<M> {
         let texels = transmittance.par_iter_mut().enumerate().with_min_len(4096);
         texels.for_each(|(texel, out)| *out = lookup.behind(texel));
         Some(ColumnMap { size, transmittance, uv_from_world: built.frame.uv_from_world() })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use lovelock_groom::Strands;
+
+    use super::*;
+    use crate::LightFrame;
+    use crate::methods::{deep_opacity_maps, density_clustering, exact, occupancy_maps, opacity_maps};
+
+    /// Strands that wind through a box, with a broken point.
+    fn strands() -> Strands {
+        let mut made = Strands::default();
+        let mut first_point = vec![0];
+        for strand in 0..200_u32 {
+            for point in 0..=20_u32 {
+                let (s, p) = (strand as f32, point as f32);
+                made.x.push(0.1 * (0.7 * s + 0.2 * p).sin());
+                made.y.push(1.5 - 0.01 * p + 0.02 * (1.3 * s).cos());
+                made.z.push(0.1 * (1.1 * s + 0.3 * p).cos());
+            }
+            first_point.push(made.x.len() as u32);
+        }
+        made.z[150] = f32::NAN;
+        made.first_point = Arc::from(first_point);
+        made
+    }
+
+    fn same_bits<M: TexelMethod>(settings: &ShadowSettings) {
+        let strands = strands();
+        let light = LightFrame::new(Vec3::new(0.2, -1.0, 0.3));
+        let input = ShadowInput { strands: &strands, strand_width: 2e-3, light, anchor: Vec3::Y };
+        let mut map = TexelMap::<M>::default();
+        map.build(&input, settings).expect("fits");
+        let mut bits = |width| {
+            map.width = width;
+            // One point more than whole blocks, and points beside the hair.
+            let ends = [0.0, 3.0, f32::INFINITY];
+            let [x, y, z] = [&strands.x, &strands.y, &strands.z]
+                .map(|axis| axis.iter().copied().chain(ends).collect::<Vec<_>>());
+            let mut out = vec![f32::NAN; x.len()];
+            map.transmittance_at(&x, &y, &z, &mut out);
+            let alone = map.transmittance(Vec3::new(x[9], y[9], z[9]));
+            assert_eq!(alone, out[9]);
+            out.iter().map(|t| t.to_bits()).collect::<Vec<_>>()
+        };
+        let baseline = bits(Width::Baseline);
+        for &width in Width::ALL.iter().filter(|width| width.is_available()) {
+            assert!(bits(width) == baseline, "{} with {width:?}", M::METHOD);
+        }
+    }
+
+    #[test]
+    fn every_instruction_set_gives_the_same_bits() {
+        for filter in [TexelFilter::Nearest, TexelFilter::Bilinear] {
+            let mut settings = ShadowSettings::default();
+            settings.opacity_maps.filter = filter;
+            settings.deep_opacity_maps.filter = filter;
+            settings.density_clustering.filter = filter;
+            settings.occupancy_maps.filter = filter;
+            settings.exact.filter = filter;
+            same_bits::<opacity_maps::Slices>(&settings);
+            same_bits::<deep_opacity_maps::Layers>(&settings);
+            same_bits::<density_clustering::Clustering>(&settings);
+            same_bits::<occupancy_maps::Occupancy>(&settings);
+            same_bits::<exact::Sorted>(&settings);
+        }
     }
 }

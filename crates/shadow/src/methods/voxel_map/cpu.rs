@@ -2,6 +2,7 @@
 
 use glam::{Mat4, Vec3, Vec4};
 use lovelock_groom::Strands;
+use lovelock_groom::simd::Width;
 use rayon::prelude::*;
 
 use super::deposit::Deposit;
@@ -9,8 +10,7 @@ use super::grid::{DEPTH_ONE, Grid};
 use super::lattice::Lattice;
 use super::layout::Layout;
 use super::lookup::{Lookup, behind_all};
-use super::simd::{self, Width};
-use super::{VoxelDeposit, VoxelFilter, VoxelMapSettings, sum};
+use super::{VoxelDeposit, VoxelFilter, VoxelMapSettings, simd, sum};
 use crate::bounds::Bounds;
 use crate::{ColumnMap, CpuShadow, ShadowError, ShadowInput, ShadowReport, ShadowSettings};
 

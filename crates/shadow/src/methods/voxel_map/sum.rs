@@ -6,11 +6,12 @@
 // Compiled within the versions of `simd`.
 #![allow(clippy::inline_always)]
 
+use lovelock_groom::simd::Width;
 use rayon::prelude::*;
 
 use super::grid::{Grid, bits};
 use super::layout::{Layout, TILE_CELLS};
-use super::simd::{self, Width};
+use super::simd;
 
 /// Where sums stop: above 16 in fixed point, the largest depth that a cell can hold, and far from overflow.
 const MOST: u32 = 1 << 25;
