@@ -2,6 +2,8 @@
 // Compiled within the versions of `texels::lookup`.
 #![allow(clippy::inline_always)]
 
+use glam::Vec3;
+
 use super::super::texels::{Fragment, TexelFilter, TexelMap, TexelMethod};
 use super::ExactSettings;
 use crate::{ShadowMethod, ShadowSettings};
@@ -27,8 +29,22 @@ pub(crate) fn sort_and_sum(fragments: &mut [Fragment]) {
 /// count.
 #[inline(always)]
 pub(crate) fn sum_before(fragments: &[Fragment], depth: f32) -> f32 {
-    let before = fragments.partition_point(|fragment| fragment.depth() < depth);
-    before.checked_sub(1).map_or(0.0, |last| fragments[last].optical_depth())
+    count_before(fragments, depth).checked_sub(1).map_or(0.0, |last| fragments[last].optical_depth())
+}
+
+/// How many of them lie before `depth`.
+#[inline(always)]
+fn count_before(fragments: &[Fragment], depth: f32) -> usize {
+    fragments.partition_point(|fragment| fragment.depth() < depth)
+}
+
+impl ExactMap {
+    /// Fragments before a point (world space, metres) in the texel that it lies in: how deep in the hair it is. 0 beside
+    /// the map and before the first build.
+    pub fn fragments_before(&self, p: Vec3) -> usize {
+        let (fragments, depth) = self.fragments_at(p);
+        count_before(fragments, depth)
+    }
 }
 
 impl TexelMethod for Sorted {

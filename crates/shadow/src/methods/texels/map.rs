@@ -105,6 +105,20 @@ impl<M: TexelMethod> TexelMap<M> {
         Some(&self.cells[slot * cells..(slot + 1) * cells])
     }
 
+    /// The fragments, as [`TexelMethod::fill`] left them, of the texel that a point lies in, and the point's depth; none
+    /// beside the map.
+    pub(crate) fn fragments_at(&self, p: Vec3) -> (&[Fragment], f32) {
+        let Some(built) = &self.built else { return (&[], 0.0) };
+        let p = built.frame.texel_from_world(p);
+        let end = built.frame.resolution as f32;
+        // False for what is no number.
+        if p.x >= 0.0 && p.x < end && p.y >= 0.0 && p.y < end {
+            let texel = self.fragments.place(p.x as u32, p.y as u32);
+            return (self.fragments.texel(texel), p.z);
+        }
+        (&[], 0.0)
+    }
+
     /// Refuses what would not fit, without allocating it.
     fn check(needed_bytes: u64, method: &M) -> Result<(), ShadowError> {
         let limit_bytes = method.memory_limit_bytes();

@@ -1,0 +1,182 @@
+//! Error, time and memory of the methods on one hairstyle.
+
+use std::time::Instant;
+
+use glam::Vec3;
+use lovelock_shadow::{
+    CpuShadow, ExactMap, ShadowMethod, ShadowReport, ShadowSettings, converged, cpu_shadow,
+};
+
+use crate::common::Random;
+use crate::grooms::Groom;
+
+/// Runs of which the median is taken.
+pub(crate) const RUNS: usize = 15;
+/// Points of the comparison with the converged shadow, drawn by chance.
+pub(crate) const CONVERGED_POINTS: usize = 2000;
+/// A point with fewer fragments than this before it belongs to the first ten.
+pub(crate) const FIRST: usize = 10;
+
+/// Errors are differences of transmittance, 0 to 1.
+pub(crate) struct Errors {
+    /// Root mean square against `exact` in texels of the same number.
+    pub(crate) exact: f64,
+    /// The same over points among the first ten fragments.
+    pub(crate) first: f64,
+    /// Mean difference from `exact`: above 0 where the method is too bright.
+    pub(crate) bias: f64,
+    /// Which 99 of 100 points stay below, without sign.
+    pub(crate) percentile: f64,
+    /// Root mean square against the converged shadow.
+    pub(crate) converged: f64,
+}
+
+/// Milliseconds of many runs.
+pub(crate) struct Time {
+    pub(crate) median: f64,
+    /// The quartiles: half of the runs lie between.
+    pub(crate) low: f64,
+    pub(crate) high: f64,
+}
+
+pub(crate) struct Measured {
+    pub(crate) method: ShadowMethod,
+    /// Texels or cells along the edge of the map that was asked for.
+    pub(crate) resolution: u32,
+    pub(crate) errors: Errors,
+    pub(crate) build: Time,
+    pub(crate) lookup: Time,
+    pub(crate) report: ShadowReport,
+    /// Points among the first ten fragments.
+    pub(crate) first_points: usize,
+}
+
+/// Every method with its usual settings.
+pub(crate) fn all_methods(groom: &Groom) -> Vec<Measured> {
+    let truth = Converged::new(groom);
+    let mut exact: Vec<Exact> = Vec::new();
+    let measured = ShadowMethod::ALL.iter().map(|&method| {
+        let resolution = resolution(method);
+        if exact.iter().all(|exact| exact.resolution != resolution) {
+            exact.push(Exact::new(groom, resolution));
+        }
+        let exact = exact.iter().find(|exact| exact.resolution == resolution).expect("made above");
+        one(method, groom, exact, &truth)
+    });
+    measured.collect()
+}
+
+/// Texels or cells along the edge of the map, by usual settings. `none` has no map and is compared with `exact`.
+fn resolution(method: ShadowMethod) -> u32 {
+    let settings = ShadowSettings::default();
+    match method {
+        ShadowMethod::VoxelMap => settings.voxel_map.safe_resolution(),
+        ShadowMethod::OpacityMaps => settings.opacity_maps.safe_resolution(),
+        ShadowMethod::DeepOpacityMaps => settings.deep_opacity_maps.safe_resolution(),
+        ShadowMethod::DensityClustering => settings.density_clustering.safe_resolution(),
+        ShadowMethod::OccupancyMaps => settings.occupancy_maps.safe_resolution(),
+        ShadowMethod::None | ShadowMethod::Exact => settings.exact.safe_resolution(),
+    }
+}
+
+/// The sorted shadow at every point.
+struct Exact {
+    resolution: u32,
+    light: Vec<f32>,
+    /// Whether each point lies among the first ten fragments.
+    first: Vec<bool>,
+}
+
+impl Exact {
+    fn new(groom: &Groom, resolution: u32) -> Self {
+        let mut settings = ShadowSettings::default();
+        settings.exact.resolution = resolution;
+        let mut map = ExactMap::default();
+        map.build(&groom.input(), &settings).expect("hair fits");
+        let hair = &groom.strands;
+        let first = |point| map.fragments_before(hair.point(point)) < FIRST;
+        Self { resolution, light: look_up(&map, groom), first: (0..hair.points()).map(first).collect() }
+    }
+}
+
+/// The converged shadow at some of the points, over texels of the usual map of `exact`.
+struct Converged {
+    points: Vec<usize>,
+    light: Vec<f32>,
+}
+
+impl Converged {
+    fn new(groom: &Groom) -> Self {
+        let hair = &groom.strands;
+        let mut random = Random(12);
+        let draw = |_| (random.unit() * hair.points() as f32) as usize % hair.points();
+        let points: Vec<_> = (0..CONVERGED_POINTS).map(draw).collect();
+        let axis = |of: fn(Vec3) -> f32| points.iter().map(|at| of(hair.point(*at))).collect::<Vec<_>>();
+        let (x, y, z) = (axis(|p| p.x), axis(|p| p.y), axis(|p| p.z));
+        let settings = ShadowSettings { method: ShadowMethod::Exact, ..ShadowSettings::default() };
+        let found = converged(&groom.input(), &settings, [&x, &y, &z]).expect("hair fits");
+        eprintln!("  {} samples an edge, change {:.4}", found.samples, found.change);
+        Self { points, light: found.transmittance }
+    }
+}
+
+fn one(method: ShadowMethod, groom: &Groom, exact: &Exact, truth: &Converged) -> Measured {
+    let settings = ShadowSettings { method, ..ShadowSettings::default() };
+    let mut map = cpu_shadow(method);
+    // Memory is kept from build to build: the first one is no measure of the others.
+    map.build(&groom.input(), &settings).expect("hair fits");
+    let build = time(|| map.build(&groom.input(), &settings).expect("hair fits"));
+    let mut light = look_up(&*map, groom);
+    let hair = &groom.strands;
+    let lookup = time(|| map.transmittance_at(&hair.x, &hair.y, &hair.z, &mut light));
+    let first = exact.first.iter().enumerate().filter(|(_, first)| **first).map(|(point, _)| point);
+    let pairs = |point: usize| (light[point], exact.light[point]);
+    Measured {
+        method,
+        resolution: exact.resolution,
+        errors: Errors {
+            exact: rmse((0..light.len()).map(pairs)),
+            first: rmse(first.clone().map(pairs)),
+            bias: mean((0..light.len()).map(pairs).map(|(a, b)| f64::from(a) - f64::from(b))),
+            percentile: percentile(&light, &exact.light),
+            converged: rmse(truth.points.iter().zip(&truth.light).map(|(point, t)| (light[*point], *t))),
+        },
+        build,
+        lookup,
+        report: map.report(),
+        first_points: first.count(),
+    }
+}
+
+fn look_up(map: &dyn CpuShadow, groom: &Groom) -> Vec<f32> {
+    let hair = &groom.strands;
+    let mut light = vec![f32::NAN; hair.points()];
+    map.transmittance_at(&hair.x, &hair.y, &hair.z, &mut light);
+    light
+}
+
+fn time(mut run: impl FnMut()) -> Time {
+    let once = |_| {
+        let start = Instant::now();
+        run();
+        start.elapsed().as_secs_f64() * 1e3
+    };
+    let mut times: Vec<_> = (0..RUNS).map(once).collect();
+    times.sort_by(f64::total_cmp);
+    Time { median: times[RUNS / 2], low: times[RUNS / 4], high: times[RUNS - 1 - RUNS / 4] }
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = values.fold((0.0, 0_usize), |(sum, count), value| (sum + value, count + 1));
+    if count == 0 { 0.0 } else { sum / count as f64 }
+}
+
+fn rmse(pairs: impl Iterator<Item = (f32, f32)>) -> f64 {
+    mean(pairs.map(|(a, b)| (f64::from(a) - f64::from(b)).powi(2))).sqrt()
+}
+
+fn percentile(a: &[f32], b: &[f32]) -> f64 {
+    let mut errors: Vec<_> = a.iter().zip(b).map(|(a, b)| (a - b).abs()).collect();
+    errors.sort_by(f32::total_cmp);
+    errors.get(errors.len() * 99 / 100).copied().map_or(0.0, f64::from)
+}

@@ -1,0 +1,123 @@
+//! Markdown.
+
+use std::fmt::Write as _;
+
+use lovelock_shadow::{CONVERGED_CHANGE, SettingInfo, ShadowMethod, ShadowSettings};
+
+use crate::grooms::Groom;
+use crate::machine;
+use crate::measure::{CONVERGED_POINTS, FIRST, Measured, RUNS, Time};
+
+/// The methods, and what can be set about each.
+pub(crate) fn registry() -> String {
+    let mut text = String::from("\n| id | label | what | source |\n|---|---|---|---|\n");
+    for method in ShadowMethod::ALL {
+        // What is in parentheses is the source once more.
+        let what = method.description().split(" (").next().unwrap_or_default().trim_end_matches('.');
+        let source = method.source().unwrap_or_default();
+        let _ = writeln!(text, "| `{}` | {} | {what} | {source} |", method.id(), method.label());
+    }
+    text.push_str("\n| method | setting | values | usual |\n|---|---|---|---|\n");
+    let mut rows = |of: &str, settings: &[SettingInfo]| {
+        for (at, SettingInfo { name, values, usual }) in settings.iter().enumerate() {
+            let of = if at == 0 { of } else { "" };
+            let _ = writeln!(text, "| {of} | `{name}` | {values} | {usual} |");
+        }
+    };
+    rows("all", &ShadowSettings::shared_settings());
+    for method in ShadowMethod::ALL {
+        rows(&format!("`{method}`"), &method.settings());
+    }
+    text
+}
+
+/// What the columns are, and where times are from.
+pub(crate) fn how_measured() -> String {
+    format!(
+        "\n\
+         Measured on: {machine}. This part is written by\n\n\
+         \x20   cargo run --release -p lovelock-shadow --example measure_methods -- docs/shadow_methods.md\n\n\
+         Every method with its usual settings, at every point of the strands. Errors are differences of transmittance:\n\n\
+         - *exact*: root mean square against `exact` with as many texels along the edge of the map.\n\
+         - *converged*: root mean square against the converged shadow over texels of the usual map of `exact`, at\n\
+         \x20 {CONVERGED_POINTS} points drawn by chance. It changes by less than {CONVERGED_CHANGE} where its samples double.\n\
+         - *bias*: mean difference from `exact`, above 0 where a method is too bright.\n\
+         - *99 %*: 99 of 100 points are nearer to `exact`.\n\
+         - *first ten*: root mean square against `exact` over points with fewer than {FIRST} fragments before them.\n\n\
+         Times are medians of {RUNS} runs, with the quartiles, on a machine that may have had other work. *Map* is what a\n\
+         map holds, of the voxel map in address space; *building* is what builds use beside it and keep.\n",
+        machine = machine::line(),
+    )
+}
+
+/// The methods on one hairstyle.
+pub(crate) fn hairstyle(groom: &Groom, measured: &[Measured]) -> String {
+    let hair = &groom.strands;
+    let segments = hair.points() - hair.count();
+    let mut text = format!(
+        "\n### Measured on {}\n\n{} strands, {} segments, each {:.2} mm wide to the light. ",
+        groom.name,
+        thousands(hair.count()),
+        thousands(segments),
+        groom.width * 1e3
+    );
+    if let Some(exact) = measured.iter().find(|row| row.method == ShadowMethod::Exact) {
+        let share = 100.0 * exact.first_points as f64 / hair.points().max(1) as f64;
+        let _ = write!(
+            text,
+            "Texels of {:.2} mm with {} fragments; {share:.0} % of the points are among the first ten.",
+            exact.report.cell_size * 1e3,
+            thousands(exact.report.samples as usize),
+        );
+    }
+    text.push_str(
+        "\n\n| method | edge | exact | converged | bias | 99 % | first ten | build, ms | lookups, ms | map | building |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|\n",
+    );
+    for row in measured {
+        let errors = &row.errors;
+        let edge = if row.method == ShadowMethod::None { String::new() } else { row.resolution.to_string() };
+        let _ = writeln!(
+            text,
+            "| `{}` | {edge} | {:.4} | {:.4} | {:+.4} | {:.3} | {:.4} | {} | {} | {} | {} |",
+            row.method,
+            errors.exact,
+            errors.converged,
+            errors.bias,
+            errors.percentile,
+            errors.first,
+            milliseconds(&row.build),
+            milliseconds(&row.lookup),
+            bytes(row.report.memory_bytes),
+            bytes(row.report.scratch_bytes),
+        );
+    }
+    text
+}
+
+/// Three digits that mean something, or fewer where time is short.
+fn milliseconds(time: &Time) -> String {
+    let digits = if time.median < 10.0 { 2 } else { 1 };
+    format!("{:.digits$} ({:.digits$}–{:.digits$})", time.median, time.low, time.high)
+}
+
+fn bytes(bytes: u64) -> String {
+    match bytes {
+        0 => String::from("0"),
+        1..0x10_0000 => format!("{:.0} KiB", bytes as f64 / 1024.0),
+        _ => format!("{:.1} MiB", bytes as f64 / f64::from(1 << 20)),
+    }
+}
+
+/// A number with commas.
+fn thousands(number: usize) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (at, digit) in digits.chars().enumerate() {
+        if at > 0 && (digits.len() - at).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
