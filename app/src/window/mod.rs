@@ -90,6 +90,8 @@ pub(crate) fn open(path: Option<&Path>, screenshot: Option<(PathBuf, f64)>) -> R
             // The panels, and as much room again for the picture as one of them takes.
             .with_min_inner_size([960.0, 540.0])
             .with_drag_and_drop(true),
+        // Pictures come dithered, panels are flat; without a graphics card every pixel of the window costs.
+        dithering: false,
         ..Default::default()
     };
     eframe::run_native(
@@ -189,6 +191,12 @@ impl Window {
 impl eframe::App for Window {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         self.pass(ui);
+    }
+
+    /// The panels' colour: cleared once instead of painted under each of them, since without a graphics card every pixel
+    /// of the window costs.
+    fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
+        theme::PANEL.to_normalized_gamma_f32()
     }
 
     fn save(&mut self, storage: &mut dyn eframe::Storage) {

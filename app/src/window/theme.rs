@@ -14,7 +14,7 @@ pub(crate) const WRONG: Color32 = Color32::from_rgb(236, 106, 94);
 pub(crate) const RECORDING: Color32 = Color32::from_rgb(226, 72, 62);
 /// Behind everything.
 pub(crate) const PAGE: Color32 = Color32::from_rgb(19, 20, 23);
-const PANEL: Color32 = Color32::from_rgb(28, 30, 34);
+pub(crate) const PANEL: Color32 = Color32::from_rgb(28, 30, 34);
 const RAISED: Color32 = Color32::from_rgb(44, 47, 53);
 const HOVERED: Color32 = Color32::from_rgb(58, 62, 70);
 const TEXT: Color32 = Color32::from_rgb(214, 216, 221);
@@ -40,7 +40,8 @@ pub(crate) fn from_linear(linear: [f32; 3]) -> Color32 {
 pub(crate) fn apply(ctx: &egui::Context) {
     ctx.set_theme(Theme::Dark);
     let mut visuals = Visuals::dark();
-    visuals.panel_fill = PANEL;
+    // The window is cleared to the panels' colour.
+    visuals.panel_fill = Color32::TRANSPARENT;
     visuals.window_fill = PANEL;
     visuals.extreme_bg_color = PAGE;
     visuals.faint_bg_color = RAISED;

@@ -55,9 +55,12 @@ impl Viewport {
             }
         }
         let painter = ui.painter_at(rect);
-        painter.rect_filled(rect, 0.0, theme::PAGE);
-        if let Some(texture) = &self.texture {
-            let place = fit(texture.size_vec2(), rect);
+        let place = self.texture.as_ref().map(|texture| fit(texture.size_vec2(), rect));
+        // Nothing is painted under the picture where it fills the page.
+        if place.is_none_or(|place| !place.expand(1.0).contains_rect(rect)) {
+            painter.rect_filled(rect, 0.0, theme::PAGE);
+        }
+        if let (Some(texture), Some(place)) = (&self.texture, place) {
             painter.image(
                 texture.id(),
                 place,

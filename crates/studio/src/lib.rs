@@ -37,6 +37,14 @@ pub use session::{
 pub use slot::Slot;
 pub use stats::{Stage, StageHistory, StageTimes, median};
 
+/// Gives the threads that share parallel work their names; without it they bear that of whoever came first.
+///
+/// Their number is that of the processor's threads, or `RAYON_NUM_THREADS`.
+pub fn name_workers() {
+    // An error says that the threads are there already, which changes nothing but their names.
+    let _ = rayon::ThreadPoolBuilder::new().thread_name(|i| format!("worker {i}")).build_global();
+}
+
 // What the interface edits and shows, so that it needs no other crate of the engine.
 pub use lovelock_groom as groom;
 pub use lovelock_motion as motion;
