@@ -41,8 +41,8 @@ pub(crate) struct Time {
 
 pub(crate) struct Measured {
     pub(crate) method: ShadowMethod,
-    /// Texels or cells along the edge of the map that was asked for.
-    pub(crate) resolution: u32,
+    /// Texels or cells along the edge of the map.
+    pub(crate) edge: u32,
     pub(crate) errors: Errors,
     pub(crate) build: Time,
     pub(crate) lookup: Time,
@@ -77,6 +77,14 @@ fn resolution(method: ShadowMethod) -> u32 {
         ShadowMethod::OccupancyMaps => settings.occupancy_maps.safe_resolution(),
         ShadowMethod::None | ShadowMethod::Exact => settings.exact.safe_resolution(),
     }
+}
+
+/// Texels or cells along the edge of the map that was made: texels are no narrower than strands, so that there may be
+/// fewer of them than asked for.
+fn edge(report: &ShadowReport, method: ShadowMethod) -> u32 {
+    let cells = report.cells_total as f64;
+    let edge = if method == ShadowMethod::VoxelMap { cells.cbrt() } else { cells.sqrt() };
+    edge.round() as u32
 }
 
 /// The sorted shadow at every point.
@@ -133,7 +141,7 @@ fn one(method: ShadowMethod, groom: &Groom, exact: &Exact, truth: &Converged) ->
     let pairs = |point: usize| (light[point], exact.light[point]);
     Measured {
         method,
-        resolution: exact.resolution,
+        edge: edge(&map.report(), method),
         errors: Errors {
             exact: rmse((0..light.len()).map(pairs)),
             first: rmse(first.clone().map(pairs)),
@@ -155,6 +163,7 @@ fn look_up(map: &dyn CpuShadow, groom: &Groom) -> Vec<f32> {
     light
 }
 
+#[expect(clippy::disallowed_methods, reason = "time is what is measured; no result depends on it")]
 fn time(mut run: impl FnMut()) -> Time {
     let once = |_| {
         let start = Instant::now();

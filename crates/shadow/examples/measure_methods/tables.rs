@@ -38,7 +38,8 @@ pub(crate) fn how_measured() -> String {
          Measured on: {machine}. This part is written by\n\n\
          \x20   cargo run --release -p lovelock-shadow --example measure_methods -- docs/shadow_methods.md\n\n\
          Every method with its usual settings, at every point of the strands. Errors are differences of transmittance:\n\n\
-         - *exact*: root mean square against `exact` with as many texels along the edge of the map.\n\
+         - *edge*: texels or cells along the edge of the map. Texels are no narrower than strands, so that few strands have few.\n\
+         - *exact*: root mean square against `exact` with as many texels along the edge.\n\
          - *converged*: root mean square against the converged shadow over texels of the usual map of `exact`, at\n\
          \x20 {CONVERGED_POINTS} points drawn by chance. It changes by less than {CONVERGED_CHANGE} where its samples double.\n\
          - *bias*: mean difference from `exact`, above 0 where a method is too bright.\n\
@@ -76,7 +77,7 @@ pub(crate) fn hairstyle(groom: &Groom, measured: &[Measured]) -> String {
     );
     for row in measured {
         let errors = &row.errors;
-        let edge = if row.method == ShadowMethod::None { String::new() } else { row.resolution.to_string() };
+        let edge = if row.method == ShadowMethod::None { String::new() } else { row.edge.to_string() };
         let _ = writeln!(
             text,
             "| `{}` | {edge} | {:.4} | {:.4} | {:+.4} | {:.3} | {:.4} | {} | {} | {} | {} |",

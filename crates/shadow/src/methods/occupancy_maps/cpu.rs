@@ -4,6 +4,7 @@
 
 use super::super::texels::{Fragment, TexelFilter, TexelMap, TexelMethod};
 use super::OccupancyMapsSettings;
+use crate::whole_part::whole_part;
 use crate::{ShadowMethod, ShadowSettings};
 
 /// The map of [`ShadowMethod::OccupancyMaps`].
@@ -67,10 +68,13 @@ fn occupied<const BITS: usize>(bits: &[u32; BITS], slice: u32, shift: u32) -> (u
 #[inline(always)]
 fn counts_around<const WORDS: usize>(counts: &[u32; WORDS], slab: u32) -> (u32, u32, u32) {
     let (mut before, mut all) = (0, 0);
+    let bits_before = 16 * slab;
     for (word, packed) in counts.iter().enumerate() {
-        let (low, high, at) = (packed & 0xffff, packed >> 16, 2 * word as u32);
-        before += if at < slab { low } else { 0 } + if at + 1 < slab { high } else { 0 };
-        all += low + high;
+        // By shifts: of comparisons the compiler would make branches that no processor foretells.
+        let bits = bits_before.saturating_sub(32 * word as u32).min(32);
+        let passed = packed & ((1_u64 << bits) - 1) as u32;
+        before += (passed & 0xffff) + (passed >> 16);
+        all += (packed & 0xffff) + (packed >> 16);
     }
     (before, count(counts, slab as usize % (2 * WORDS)), all)
 }
@@ -89,20 +93,21 @@ fn depth_before<const BITS: usize, const WORDS: usize>(record: &[u32], depth: f3
     let own_bit = (bits[(slice / 32) as usize % BITS] >> (slice % 32) & 1) as f32;
     let share = (passed as f32 + part * own_bit) / occupied.max(1) as f32;
     let within = before as f32 + share * own as f32;
-    // These two come before all else: where all fragments lie at one depth, slices have no meaning. Chosen rather than
-    // returned early, as no branch could be foretold here.
+    // These two come before all else: where all fragments lie at one depth, slices have no meaning. Masked, as no branch
+    // could be foretold here.
     let count = if depth >= far { all as f32 } else { within };
-    if depth <= near { 0.0 } else { count * mean }
+    f32::from_bits((count * mean).to_bits() & 0_u32.wrapping_sub(u32::from(depth > near)))
 }
 
 /// The slice, of `slices`, of a depth within a texel's range, and where in it the depth lies, 0 to 1.
 #[inline(always)]
 fn slice_of(slices: u32, near: f32, far: f32, depth: f32) -> (u32, f32) {
-    // With one fragment, or all at one depth, there is no range.
-    let part = if far > near { ((depth - near) / (far - near)).clamp(0.0, 1.0) } else { 0.0 };
-    let part = part * slices as f32;
+    // With one fragment, or all at one depth, there is no range and this is no number, or infinite: any slice will do.
+    let part = (depth - near) / (far - near);
+    let part = if part > 0.0 { part } else { 0.0 };
+    let part = if part < 1.0 { part } else { 1.0 } * slices as f32;
     // The end of the range belongs to the last slice.
-    let slice = (part as u32).min(slices - 1);
+    let slice = (whole_part(part) as u32).min(slices - 1);
     (slice, part - slice as f32)
 }
 

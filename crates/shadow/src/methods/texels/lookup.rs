@@ -4,7 +4,7 @@
 //! exponentials. Loads of one stage do not wait for each other, and most of the time goes to waiting for them.
 // Calls of functions that ask for features of the processor, made by the macro after it has asked for them; and every
 // loop must be compiled within the version that calls it.
-#![allow(unsafe_code, clippy::inline_always, clippy::needless_range_loop)]
+#![allow(unsafe_code, clippy::inline_always, clippy::needless_range_loop, clippy::needless_bitwise_bool)]
 
 use glam::Vec3;
 use lovelock_groom::simd_versions;
