@@ -69,6 +69,12 @@ impl TexelMethod for Slices {
     }
 
     #[inline(always)]
+    fn reads(&self, depth: f32) -> [usize; 2] {
+        let (slice, _) = self.slice(depth);
+        [slice.saturating_sub(1), slice]
+    }
+
+    #[inline(always)]
     fn depth_before(&self, _fragments: &[Fragment], record: &[f32], depth: f32) -> f32 {
         let (slice, part) = self.slice(depth);
         let before = slice.checked_sub(1).map_or(0.0, |last| record[last]);

@@ -112,6 +112,14 @@ impl<M: TexelMethod> Lookup<'_, M> {
             for (slot, texel) in slots.iter_mut().zip(texels).take(out.len()) {
                 *slot = self.slots.get(*texel as usize).copied().unwrap_or(0);
             }
+            // Records lie anywhere in memory: all of a block are asked for before the first one is read.
+            let cells = self.method.cells();
+            for (slot, depth) in slots.iter().zip(&taps.depths) {
+                let first = (*slot as usize).wrapping_sub(1).wrapping_mul(cells);
+                for cell in self.method.reads(*depth) {
+                    prefetch(self.cells, first.wrapping_add(cell));
+                }
+            }
             let mut before = [0.0; BLOCK];
             for lane in 0..out.len().min(BLOCK) {
                 if let Some(slot) = (slots[lane] as usize).checked_sub(1) {
@@ -133,6 +141,19 @@ impl<M: TexelMethod> Lookup<'_, M> {
             *out = if *t < 1.0 { *t } else { 1.0 };
         }
     }
+}
+
+/// Asks for the memory of an item, if there is one, to be at hand soon.
+#[inline(always)]
+fn prefetch<T>(of: &[T], at: usize) {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(item) = of.get(at) {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        // SAFETY: a prefetch is a hint: it reads nothing, and the address is that of an item.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(item).cast()) };
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = (of, at);
 }
 
 /// A block of coordinates; the last one of a list is filled up with zeros.

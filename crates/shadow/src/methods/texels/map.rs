@@ -1,4 +1,6 @@
 //! The map of any method with a record for each texel.
+// Compiled within the versions of `lookup`.
+#![allow(clippy::inline_always)]
 
 use std::fmt::Debug;
 
@@ -51,6 +53,13 @@ pub trait TexelMethod: Copy + Debug + Send + Sync {
     /// Makes the record of a texel from its fragments, of which there is at least one. They come in the order of the
     /// strands and may be put into another. `record` has [`TexelMethod::cells`] cells with anything in them.
     fn fill(&self, fragments: &mut [Fragment], record: &mut [Self::Cell]);
+
+    /// The first and the last cell of a record that [`TexelMethod::depth_before`] reads for `depth`. Only speed depends
+    /// on it.
+    #[inline(always)]
+    fn reads(&self, _depth: f32) -> [usize; 2] {
+        [0, self.cells().saturating_sub(1)]
+    }
 
     /// Optical depth of the texel's hair before `depth`: 0 to 1 within the hair's range, more behind it.
     fn depth_before(&self, fragments: &[Fragment], record: &[Self::Cell], depth: f32) -> f32;
