@@ -34,10 +34,11 @@ struct LightShadow {
 }
 
 impl LightShadow {
-    /// Builds the map and asks it everywhere.
+    /// Builds the map, one of `maps` that share the limit of memory, and asks it everywhere.
     fn run(
         &mut self,
         direction: Vec3,
+        maps: u32,
         input: &FrameInput,
         vertices: &[Vec<f32>; 3],
     ) -> Result<(), ShadowError> {
@@ -45,7 +46,7 @@ impl LightShadow {
         self.frame = self.frame.transported(direction);
         let strand_width = input.look.shadow_width(input.style.strands.count());
         let anchor = input.world_from_head.translation.into();
-        let from = ShadowInput { strands: input.strands, strand_width, light: self.frame, anchor };
+        let from = ShadowInput { strands: input.strands, strand_width, light: self.frame, anchor, maps };
         self.shadow.build(&from, input.shadow)?;
         let Strands { x, y, z, .. } = input.strands;
         self.at_points.resize(x.len(), 1.0);
@@ -93,11 +94,11 @@ impl ShadowStage {
                 at_vertices: Vec::new(),
             });
         }
-        let vertices = &self.vertices;
+        let (vertices, maps) = (&self.vertices, lights.len() as u32);
         self.lights
             .par_iter_mut()
             .zip(&lights)
-            .try_for_each(|(shadow, light)| shadow.run(light.direction, input, vertices))?;
+            .try_for_each(|(shadow, light)| shadow.run(light.direction, maps, input, vertices))?;
         let at_points: Vec<&[f32]> = self.lights.iter().map(|light| &light.at_points[..]).collect();
         pack(&at_points, input.strands.points(), &mut self.at_points);
         let at_vertices: Vec<&[f32]> = self.lights.iter().map(|light| &light.at_vertices[..]).collect();

@@ -18,6 +18,7 @@ fn input(strands: &Strands) -> ShadowInput<'_> {
         strand_width: 80e-6 * 100_000.0 / strands.count() as f32,
         light: LightFrame::new(Vec3::new(0.4, -1.0, -0.5)),
         anchor: HEAD,
+        maps: 1,
     }
 }
 

@@ -24,6 +24,15 @@ pub struct ShadowInput<'a> {
     /// The point that the map's lattice is locked to, world space: the head. Hair that moves along with it
     /// keeps its cells, so its shadow does not swim.
     pub anchor: Vec3,
+    /// How many maps are built together, one a light: the memory limit is shared between them evenly. 0 is as 1.
+    pub maps: u32,
+}
+
+impl ShadowInput<'_> {
+    /// What one of the maps may take of a limit for all of them.
+    pub(crate) fn share_of(&self, limit_bytes: u64) -> u64 {
+        limit_bytes / u64::from(self.maps.max(1))
+    }
 }
 
 /// What a build cost and met. Times are the caller's to take.
@@ -43,6 +52,9 @@ pub struct ShadowReport {
     pub points_ignored: u64,
     /// Memory beside the map that builds alone use, kept from build to build, bytes.
     pub scratch_bytes: u64,
+    /// Most memory that the map and its build may need, as counted before any was taken and held against the limit,
+    /// bytes; 0 where the method has no limit.
+    pub needed_bytes: u64,
 }
 
 /// What lies behind the whole hair, for surfaces far behind it (the ground): transmittance a light column.

@@ -9,16 +9,18 @@ use crate::ShadowMethod;
 pub enum ShadowError {
     /// The map of this hair would take more memory than the method may use.
     #[error(
-        "{method} needs {} for this hair, more than its limit of {}: {}",
-        Bytes(*.needed_bytes), Bytes(*.limit_bytes), advice(*.method)
+        "{method} needs {} for this hair, more than its limit of {}{}: {}",
+        Bytes(*.needed_bytes), Bytes(*.limit_bytes), Share(*.maps), advice(*.method)
     )]
     TooLarge {
         /// The method that was asked.
         method: ShadowMethod,
         /// What it would have needed.
         needed_bytes: u64,
-        /// What it may use.
+        /// What it may use: its share of the limit of all maps.
         limit_bytes: u64,
+        /// How many maps share that limit; 1 or more.
+        maps: u32,
     },
 }
 
@@ -35,6 +37,16 @@ const fn advice(method: ShadowMethod) -> &'static str {
             "lower the map's resolution, the clusters or the number of strands"
         }
         ShadowMethod::Exact => "lower the map's resolution or the number of strands, or raise the limit",
+    }
+}
+
+/// Says how many maps share a limit, where it is shared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Share(u32);
+
+impl fmt::Display for Share {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.0 > 1 { write!(f, " as one of {} lights", self.0) } else { Ok(()) }
     }
 }
 
@@ -75,13 +87,17 @@ mod tests {
 
     #[test]
     fn the_message_has_both_numbers_and_a_way_out() {
-        let error = ShadowError::TooLarge {
-            method: ShadowMethod::Exact,
-            needed_bytes: 12 << 30,
-            limit_bytes: 8 << 30,
+        let error = |limit_bytes, maps| {
+            let (method, needed_bytes) = (ShadowMethod::Exact, 12 << 30);
+            ShadowError::TooLarge { method, needed_bytes, limit_bytes, maps }.to_string()
         };
         assert_eq!(
-            error.to_string(),
+            error(2 << 30, 4),
+            "exact needs 12.0 GiB for this hair, more than its limit of 2.0 GiB as one of 4 lights: lower the map's \
+             resolution or the number of strands, or raise the limit"
+        );
+        assert_eq!(
+            error(8 << 30, 1),
             "exact needs 12.0 GiB for this hair, more than its limit of 8.0 GiB: lower the map's resolution or the \
              number of strands, or raise the limit"
         );

@@ -26,7 +26,7 @@ const METHODS: [ShadowMethod; 5] = [
 ];
 
 fn input(strands: &Strands, direction: Vec3, strand_width: f32) -> ShadowInput<'_> {
-    ShadowInput { strands, strand_width, light: LightFrame::new(direction), anchor: HEAD }
+    ShadowInput { strands, strand_width, light: LightFrame::new(direction), anchor: HEAD, maps: 1 }
 }
 
 /// 64 texels along each edge for every method.

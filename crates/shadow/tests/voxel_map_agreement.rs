@@ -18,7 +18,7 @@ const MOST_DIFFERENCE: f64 = 1.5e-4;
 
 fn input(strands: &Strands, direction: Vec3) -> ShadowInput<'_> {
     let strand_width = 80e-6 * 100_000.0 / strands.count().max(1) as f32;
-    ShadowInput { strands, strand_width, light: LightFrame::new(direction), anchor: HEAD }
+    ShadowInput { strands, strand_width, light: LightFrame::new(direction), anchor: HEAD, maps: 1 }
 }
 
 fn settings(resolution: u32) -> ShadowSettings {

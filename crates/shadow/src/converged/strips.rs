@@ -31,7 +31,7 @@ impl Strips {
                 *sum = sum.saturating_add(count);
             });
         });
-        let limit = settings.exact.safe_memory_limit_bytes();
+        let limit = input.share_of(settings.exact.safe_memory_limit_bytes());
         // An index of two numbers a subtexel, and the fragments.
         let row_bytes = |texel_row: usize| {
             let fragments = fragments[texel_row].div_ceil(u64::from(ribbons.samples));
@@ -46,6 +46,7 @@ impl Strips {
                     method: ShadowMethod::Exact,
                     needed_bytes: more,
                     limit_bytes: limit,
+                    maps: input.maps.max(1),
                 });
             }
             if row > start && bytes + more > STRIP_BYTES.min(limit) {

@@ -27,6 +27,7 @@ impl Groom {
             strand_width: self.width,
             light: LightFrame::new(LIGHT),
             anchor: Vec3::new(0.0, 0.11, 0.0),
+            maps: 1,
         }
     }
 

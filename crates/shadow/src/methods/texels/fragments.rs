@@ -17,8 +17,34 @@ const POINTS_PER_PIECE: usize = 4096;
 /// Most pieces that strands are cut into.
 const MOST_PIECES: usize = 16;
 
-/// Bytes that one fragment takes while it is sorted and after.
-pub(crate) const BYTES_PER_FRAGMENT: u64 = (size_of::<Loose>() + size_of::<Fragment>()) as u64;
+/// Loose fragments of a block. A list that doubled as it grows would hold up to twice what it needs, and three times
+/// while it is moved; with blocks only the last one of a piece and band is partly empty.
+const BLOCK: usize = 256;
+/// Bytes of a block, with the list that it is in, which doubles.
+const BLOCK_BYTES: u64 = (BLOCK * size_of::<Loose>() + 2 * size_of::<Vec<Loose>>()) as u64;
+
+/// Bytes that one fragment takes while it is sorted and after, with its part of a block.
+pub(crate) const BYTES_PER_FRAGMENT: u64 = BLOCK_BYTES.div_ceil(BLOCK as u64) + size_of::<Fragment>() as u64;
+
+/// The most memory that [`Fragments`] of `resolution`² texels hold when `count` fragments of `input` are drawn, bytes.
+pub(crate) fn needed_bytes(input: &ShadowInput, resolution: u32, count: u64) -> u64 {
+    let bands = u64::from(resolution.div_ceil(BAND_ROWS));
+    let pieces = piece_count(input.strands.points()) as u64;
+    let ends = 4 * bands * u64::from(BAND_ROWS * resolution);
+    let begun = (pieces * bands).min(count).saturating_mul(BLOCK_BYTES);
+    // A list has room for four blocks from the first one on.
+    let lists = pieces * bands * 4 * size_of::<Vec<Loose>>() as u64;
+    count.saturating_mul(BYTES_PER_FRAGMENT).saturating_add(ends + begun + lists)
+}
+
+/// Makes a list `len` long and takes no more for it. What it held is gone before more is taken.
+pub(crate) fn refit<T: Copy + Default>(list: &mut Vec<T>, len: usize) {
+    if list.capacity() < len {
+        *list = Vec::new();
+        list.reserve_exact(len);
+    }
+    list.resize(len, T::default());
+}
 
 /// What a strand leaves in a texel. Ordered by depth first, then by optical depth, so that sorting leaves no choice.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -81,10 +107,12 @@ impl Band<'_> {
 /// Sorts the fragments that pieces have for band `band` by texel, keeping their order, and says how many texels have
 /// any. `ends` becomes where each texel's fragments end, counted from `start` on.
 fn gather(pieces: &[Piece], band: usize, start: u32, ends: &mut [u32], fragments: &mut [Fragment]) -> u64 {
-    let loose = || pieces.iter().flat_map(|piece| &piece.bands[band]);
+    let blocks = || pieces.iter().flat_map(|piece| piece.bands[band].blocks());
     ends.fill(0);
-    for fragment in loose() {
-        ends[fragment.texel as usize] += 1;
+    for block in blocks() {
+        for fragment in block {
+            ends[fragment.texel as usize] += 1;
+        }
     }
     let (mut sum, mut in_use) = (0, 0);
     for end in &mut *ends {
@@ -92,10 +120,12 @@ fn gather(pieces: &[Piece], band: usize, start: u32, ends: &mut [u32], fragments
         sum += std::mem::replace(end, sum);
     }
     // Beginnings become ends as fragments are put there.
-    for fragment in loose() {
-        let at = &mut ends[fragment.texel as usize];
-        fragments[*at as usize] = Fragment::new(fragment.depth, fragment.optical_depth);
-        *at += 1;
+    for block in blocks() {
+        for fragment in block {
+            let at = &mut ends[fragment.texel as usize];
+            fragments[*at as usize] = Fragment::new(fragment.depth, fragment.optical_depth);
+            *at += 1;
+        }
     }
     for end in ends {
         *end += start;
@@ -103,10 +133,61 @@ fn gather(pieces: &[Piece], band: usize, start: u32, ends: &mut [u32], fragments
     in_use
 }
 
+/// One worker's fragments of one band, in blocks.
+#[derive(Clone, Debug, Default)]
+struct Blocks {
+    full: Vec<Vec<Loose>>,
+    /// The last one, which is filled.
+    open: Vec<Loose>,
+}
+
+impl Blocks {
+    /// Adds a fragment; a new block is one of `spare` where there is one.
+    #[inline]
+    fn push(&mut self, fragment: Loose, spare: &mut Vec<Vec<Loose>>) {
+        if self.open.len() == self.open.capacity() {
+            self.next(spare);
+        }
+        self.open.push(fragment);
+    }
+
+    #[cold]
+    fn next(&mut self, spare: &mut Vec<Vec<Loose>>) {
+        let next = spare.pop().unwrap_or_else(|| Vec::with_capacity(BLOCK));
+        let last = std::mem::replace(&mut self.open, next);
+        if !last.is_empty() {
+            self.full.push(last);
+        }
+    }
+
+    /// Lets all blocks go to `spare`.
+    fn clear(&mut self, spare: &mut Vec<Vec<Loose>>) {
+        let open = std::mem::take(&mut self.open);
+        for mut block in self.full.drain(..).chain((open.capacity() > 0).then_some(open)) {
+            block.clear();
+            spare.push(block);
+        }
+    }
+
+    /// All of them, in the order in which they came.
+    fn blocks(&self) -> impl Iterator<Item = &[Loose]> {
+        self.full.iter().chain([&self.open]).map(Vec::as_slice)
+    }
+
+    fn len(&self) -> usize {
+        self.blocks().map(<[_]>::len).sum()
+    }
+
+    fn memory_bytes(&self) -> usize {
+        let blocks = self.full.iter().chain([&self.open]).map(Vec::capacity).sum::<usize>();
+        blocks * size_of::<Loose>() + self.full.capacity() * size_of::<Vec<Loose>>()
+    }
+}
+
 /// One worker's fragments by band.
 #[derive(Clone, Debug, Default)]
 struct Piece {
-    bands: Vec<Vec<Loose>>,
+    bands: Vec<Blocks>,
 }
 
 /// The fragments of a map, or of a part of one.
@@ -137,19 +218,22 @@ impl Fragments {
         self.columns = columns;
         self.pieces.resize_with(pieces, Piece::default);
         self.pieces.par_iter_mut().enumerate().with_max_len(1).for_each(|(at, piece)| {
-            piece.bands.resize_with(bands, Vec::new);
-            piece.bands.iter_mut().for_each(Vec::clear);
+            // Blocks of the last time, whichever band they were of. What is left of them at the end goes.
+            let mut spare = Vec::new();
+            piece.bands.iter_mut().for_each(|blocks| blocks.clear(&mut spare));
+            piece.bands.resize_with(bands, Blocks::default);
             let strands = first_strand(input, at, pieces)..first_strand(input, at + 1, pieces);
             let mut put = |column: u32, row: u32, depth: f32, optical_depth: f32| {
                 let texel = (row % BAND_ROWS) * columns + column;
-                piece.bands[(row / BAND_ROWS) as usize].push(Loose { texel, depth, optical_depth });
+                piece.bands[(row / BAND_ROWS) as usize]
+                    .push(Loose { texel, depth, optical_depth }, &mut spare);
             };
             for_each_segment(input, frame, strands, |from, to| draw.draw(from, to, &mut put));
         });
         let pieces = &self.pieces[..];
         let count = |band: usize| pieces.iter().map(|piece| piece.bands[band].len()).sum::<usize>();
-        self.ends.resize(bands * (BAND_ROWS * columns) as usize, 0);
-        self.sorted.resize((0..bands).map(count).sum(), Fragment::default());
+        refit(&mut self.ends, bands * (BAND_ROWS * columns) as usize);
+        refit(&mut self.sorted, (0..bands).map(count).sum());
         let (mut rest, mut start) = (&mut self.sorted[..], 0);
         let ends = self.ends.chunks_exact_mut((BAND_ROWS * columns) as usize);
         let mut work = Vec::with_capacity(bands);
@@ -211,8 +295,8 @@ impl Fragments {
     /// Memory of the sorted fragments, and of what only sorting needs, bytes.
     pub(crate) fn memory_bytes(&self) -> (u64, u64) {
         let sorted = 4 * self.ends.capacity() + 8 * self.sorted.capacity();
-        let loose = self.pieces.iter().flat_map(|piece| &piece.bands);
-        let loose = loose.map(|loose| size_of::<Loose>() * loose.capacity()).sum::<usize>();
+        let loose =
+            self.pieces.iter().flat_map(|piece| &piece.bands).map(Blocks::memory_bytes).sum::<usize>();
         (sorted as u64, loose as u64)
     }
 }
@@ -287,13 +371,14 @@ mod tests {
     #[test]
     fn gathering_sorts_by_texel_and_keeps_the_order() {
         let piece = |texels: &[u32], base: f32| Piece {
-            bands: vec![
-                texels
+            bands: vec![Blocks {
+                full: Vec::new(),
+                open: texels
                     .iter()
                     .enumerate()
                     .map(|(i, t)| Loose { texel: *t, depth: base + i as f32, optical_depth: 1.0 })
                     .collect(),
-            ],
+            }],
         };
         let pieces = [piece(&[3, 0, 3, 4], 0.0), piece(&[0, 3, 3], 10.0)];
         let (mut ends, mut fragments) = ([9; 5], [Fragment::new(7.0, 7.0); 7]);

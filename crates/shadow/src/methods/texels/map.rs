@@ -8,7 +8,7 @@ use glam::Vec3;
 use lovelock_groom::simd::Width;
 use rayon::prelude::*;
 
-use super::fragments::{BYTES_PER_FRAGMENT, Fragment, Fragments, sum_over_segments};
+use super::fragments::{Fragment, Fragments, needed_bytes, refit, sum_over_segments};
 use super::frame::TexelFrame;
 use super::lines::{Lines, Steps};
 use super::lookup::{self, Lookup};
@@ -129,12 +129,20 @@ impl<M: TexelMethod> TexelMap<M> {
     }
 
     /// Refuses what would not fit, without allocating it.
-    fn check(needed_bytes: u64, method: &M) -> Result<(), ShadowError> {
-        let limit_bytes = method.memory_limit_bytes();
+    fn check(needed_bytes: u64, method: &M, input: &ShadowInput) -> Result<(), ShadowError> {
+        let limit_bytes = input.share_of(method.memory_limit_bytes());
         if needed_bytes > limit_bytes {
-            return Err(ShadowError::TooLarge { method: M::METHOD, needed_bytes, limit_bytes });
+            let maps = input.maps.max(1);
+            return Err(ShadowError::TooLarge { method: M::METHOD, needed_bytes, limit_bytes, maps });
         }
         Ok(())
+    }
+
+    /// Memory of the records, of the sorted fragments, and of what only sorting needs, bytes.
+    fn memory_bytes(&self) -> (u64, u64, u64) {
+        let (sorted, loose) = self.fragments.memory_bytes();
+        let records = 4 * self.slots.capacity() + size_of::<M::Cell>() * self.cells.capacity();
+        (records as u64, sorted, loose)
     }
 
     fn build_into(
@@ -147,20 +155,26 @@ impl<M: TexelMethod> TexelMap<M> {
         let frame = TexelFrame::new(input, method.resolution(), &bounds);
         let resolution = frame.resolution;
         let texels = u64::from(resolution).pow(2);
-        let index = texels * 8;
         let count = sum_over_segments(input, &frame, |from, to| Steps::new(from, to).count());
-        let sorting = index.saturating_add(count.saturating_mul(BYTES_PER_FRAGMENT));
-        Self::check(sorting, &method)?;
+        // Slots, and all that sorting takes.
+        let sorting = needed_bytes(input, resolution, count).saturating_add(4 * texels);
+        Self::check(sorting, &method, input)?;
+        let cell_bytes = size_of::<M::Cell>() as u64 * method.cells() as u64;
+        // What is kept from the last build goes where the limit has no room for both.
+        let (records, sorted, loose) = self.memory_bytes();
+        let most = sorting + texels.min(count) * cell_bytes;
+        if records + sorted + loose + most > input.share_of(method.memory_limit_bytes()) {
+            *self = Self { width: self.width, ..Self::default() };
+        }
 
         let lines = Lines { resolution, depth_per_texel: depth_per_texel(input, settings, &frame) };
         self.fragments.draw(input, &frame, (resolution, resolution), &lines);
         let in_use: u64 = self.fragments.in_use().iter().sum();
-        let cell_bytes = size_of::<M::Cell>() as u64 * method.cells() as u64;
-        Self::check(sorting + in_use * cell_bytes, &method)?;
+        let needed_bytes = sorting + in_use * cell_bytes;
+        Self::check(needed_bytes, &method, input)?;
         self.fill(&method, in_use as usize);
 
-        let (sorted, loose) = self.fragments.memory_bytes();
-        let records = (4 * self.slots.len() + size_of::<M::Cell>() * self.cells.len()) as u64;
+        let (records, sorted, loose) = self.memory_bytes();
         let (map, scratch) =
             if M::READS_FRAGMENTS { (records + sorted, loose) } else { (records, sorted + loose) };
         let report = ShadowReport {
@@ -171,6 +185,7 @@ impl<M: TexelMethod> TexelMap<M> {
             samples: count,
             points_ignored: bounds.ignored,
             scratch_bytes: scratch,
+            needed_bytes,
         };
         Ok(Built { method, frame, report })
     }
@@ -179,8 +194,8 @@ impl<M: TexelMethod> TexelMap<M> {
     fn fill(&mut self, method: &M, in_use: usize) {
         let cells = method.cells();
         self.slots.clear();
-        self.slots.resize(self.fragments.texels(), 0);
-        self.cells.resize(in_use * cells, M::Cell::default());
+        refit(&mut self.slots, self.fragments.texels());
+        refit(&mut self.cells, in_use * cells);
         let in_band = self.fragments.in_use().to_vec();
         let slots = self.slots.chunks_exact_mut(self.fragments.band_texels());
         let (mut rest, mut slot) = (&mut self.cells[..], 0);
@@ -308,7 +323,7 @@ mod tests {
     fn same_bits<M: TexelMethod>(settings: &ShadowSettings) {
         let strands = strands();
         let light = LightFrame::new(Vec3::new(0.2, -1.0, 0.3));
-        let input = ShadowInput { strands: &strands, strand_width: 2e-3, light, anchor: Vec3::Y };
+        let input = ShadowInput { strands: &strands, strand_width: 2e-3, light, anchor: Vec3::Y, maps: 1 };
         let mut map = TexelMap::<M>::default();
         map.build(&input, settings).expect("fits");
         let mut bits = |width| {

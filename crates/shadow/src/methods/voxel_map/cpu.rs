@@ -87,6 +87,7 @@ impl VoxelMap {
             samples,
             points_ignored: bounds.ignored,
             scratch_bytes: 0,
+            needed_bytes: 0,
         };
     }
 }
@@ -271,7 +272,7 @@ mod tests {
     fn every_instruction_set_gives_the_same_bits() {
         let strands = strands();
         let light = LightFrame::new(Vec3::new(0.2, -1.0, 0.3));
-        let input = ShadowInput { strands: &strands, strand_width: 2e-3, light, anchor: Vec3::Y };
+        let input = ShadowInput { strands: &strands, strand_width: 2e-3, light, anchor: Vec3::Y, maps: 1 };
         for filter in [VoxelFilter::Centred, VoxelFilter::Paper] {
             let mut settings = ShadowSettings::default();
             settings.voxel_map.filter = filter;
