@@ -53,7 +53,9 @@ impl Gpu {
     }
 
     fn open_adapter(force_fallback_adapter: bool) -> Result<Arc<Self>, GpuError> {
-        let descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
+        let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
+        // OpenGL lacks what the shaders use (a mask of samples, storage in vertices): it counts as no adapter.
+        descriptor.backends &= wgpu::Backends::PRIMARY;
         let instance = wgpu::Instance::new(descriptor);
         let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions {
             power_preference: wgpu::PowerPreference::HighPerformance,
@@ -90,6 +92,19 @@ impl Gpu {
     /// Longest side of a picture, pixels.
     pub fn max_picture_side(&self) -> u32 {
         self.device.limits().max_texture_dimension_2d
+    }
+
+    /// Makes things on the device, and says why where it refuses.
+    ///
+    /// # Errors
+    /// What the driver says of the first thing that it does not take.
+    pub fn checked<T>(&self, make: impl FnOnce() -> T) -> Result<T, GpuError> {
+        let scope = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let made = make();
+        match pollster::block_on(scope.pop()) {
+            None => Ok(made),
+            Some(error) => Err(GpuError::Shader(format!("{}: {error}", self.info.name))),
+        }
     }
 
     /// Compiles a composed shader.

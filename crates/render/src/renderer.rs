@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use lovelock_gpu::{Gpu, GpuError};
+use lovelock_gpu::Gpu;
 
 use crate::{Backend, CpuRenderer, FrameInput, FrameStats, GpuRenderer, Picture, RenderError};
 
@@ -12,7 +12,10 @@ pub struct Renderer {
     choice: Backend,
     gpu: Option<GpuRenderer>,
     cpu: Option<Box<CpuRenderer>>,
-    adapter: String,
+    /// Names of the graphics card and of the processor's way.
+    adapters: [String; 2],
+    /// Whether the last picture was drawn by the processor though there is a card.
+    stood_in: bool,
 }
 
 impl Renderer {
@@ -24,13 +27,14 @@ impl Renderer {
         match choice {
             Backend::Cpu => Ok(Self::on_processor(choice)),
             Backend::Gpu => Self::on(Gpu::open()?, choice),
+            // What emulates a graphics card on the processor is slower than using the processor; and a card that cannot
+            // be used is none.
             Backend::Auto => match Gpu::open() {
-                Ok(gpu) if !gpu.is_software() => Self::on(gpu, choice),
-                // What emulates a graphics card on the processor is slower than using the processor.
-                Ok(_) | Err(GpuError::NoAdapter(_) | GpuError::NoDevice { .. }) => {
-                    Ok(Self::on_processor(choice))
-                }
-                Err(error) => Err(error.into()),
+                Ok(gpu) if !gpu.is_software() => Ok(Self::on(gpu, choice).unwrap_or_else(|error| {
+                    tracing::warn!(%error, "the graphics card cannot be used");
+                    Self::on_processor(choice)
+                })),
+                _ => Ok(Self::on_processor(choice)),
             },
         }
     }
@@ -45,11 +49,13 @@ impl Renderer {
 
     fn on(gpu: Arc<Gpu>, choice: Backend) -> Result<Self, RenderError> {
         let adapter = gpu.info.name.clone();
-        Ok(Self { choice, gpu: Some(GpuRenderer::new(gpu)?), cpu: None, adapter })
+        let adapters = [adapter, CpuRenderer::adapter()];
+        Ok(Self { choice, gpu: Some(GpuRenderer::new(gpu)?), cpu: None, adapters, stood_in: false })
     }
 
     fn on_processor(choice: Backend) -> Self {
-        Self { choice, gpu: None, cpu: Some(Box::default()), adapter: CpuRenderer::adapter() }
+        let adapters = [String::new(), CpuRenderer::adapter()];
+        Self { choice, gpu: None, cpu: Some(Box::default()), adapters, stood_in: false }
     }
 
     /// What was asked for.
@@ -57,19 +63,19 @@ impl Renderer {
         self.choice
     }
 
-    /// What draws: the graphics card or the processor.
+    /// What drew the last picture, and draws the next one by all that is known: the graphics card or the processor.
     pub fn backend(&self) -> Backend {
-        if self.gpu.is_some() { Backend::Gpu } else { Backend::Cpu }
+        if self.gpu.is_some() && !self.stood_in { Backend::Gpu } else { Backend::Cpu }
     }
 
     /// The name of what draws: the adapter, or the processor's way.
     pub fn adapter(&self) -> &str {
-        &self.adapter
+        &self.adapters[usize::from(self.backend() == Backend::Cpu)]
     }
 
     /// Whether the processor does the drawing, by itself or as a software adapter.
     pub fn is_software(&self) -> bool {
-        self.gpu.as_ref().is_none_or(|gpu| gpu.gpu().is_software())
+        self.stood_in || self.gpu.as_ref().is_none_or(|gpu| gpu.gpu().is_software())
     }
 
     /// Draws `input` at `width` by `height` pixels.
@@ -83,11 +89,10 @@ impl Renderer {
         height: u32,
         picture: &mut Picture,
     ) -> Result<FrameStats, RenderError> {
+        self.stood_in = self.choice == Backend::Auto && !input.picture.transparency.is_on_gpu();
         match &mut self.gpu {
             // Where the choice is ours, what the card does not draw is drawn by the processor.
-            Some(gpu) if self.choice != Backend::Auto || input.picture.transparency.is_on_gpu() => {
-                gpu.picture(input, width, height, picture)
-            }
+            Some(gpu) if !self.stood_in => gpu.picture(input, width, height, picture),
             _ => self.cpu.get_or_insert_default().picture(input, width, height, picture),
         }
     }

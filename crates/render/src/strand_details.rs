@@ -28,9 +28,9 @@ impl StrandDetails {
             self.segments.extend(first..end.saturating_sub(1).max(first));
             for i in first..end {
                 self.words[i as usize] = pack_detail(
-                    style.strands.taper[i as usize],
+                    style.strands.taper.get(i as usize).copied().unwrap_or(1.0),
                     (i - first) as f32 / (end - first - 1).max(1) as f32,
-                    style.strands.shade[s],
+                    style.strands.shade.get(s).copied().unwrap_or(0.5),
                     i == first,
                     i + 1 == end,
                 );

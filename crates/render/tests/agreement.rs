@@ -46,15 +46,35 @@ fn every_shadow_method_looks_the_same_on_both() {
     }
 }
 
+#[test]
+fn closed_bodies_look_the_same_from_without_from_within_and_inside_out() {
+    for outward in [true, false] {
+        for (name, eye) in [("without", Vec3::new(0.25, 0.2, 0.5)), ("within", Vec3::new(0.02, 0.01, 0.05))] {
+            let mut s = tuft_scene(40);
+            s.body = Some(common::closed_box(outward));
+            s.camera.eye = eye;
+            s.camera.fov_y = 0.9;
+            let Some(difference) = compared(&s, &s) else { return };
+            println!("outward {outward}, {name}: {difference:?}");
+            // Measured mean 0.003 to 0.008 and 99th percentile up to 0.13: large faces with hard edges, whose shading each
+            // backend continues differently past the last sample. Where the wrong faces are left out it is the whole box.
+            assert!(
+                difference.mean < 0.02 && difference.p99 < 0.3,
+                "outward {outward}, {name}: {difference:?}"
+            );
+        }
+    }
+}
+
 /// What the comparison must find: each of these is a small defect of one backend.
 #[test]
 fn small_differences_of_the_scene_are_found() {
     let scene = tuft_scene(400);
     let spoiled: [(&str, fn(&mut Scene)); 4] = [
-        ("a light turned by 10 degrees", |s| s.lights[0].direction = Vec3::new(-0.62, -0.45, -0.6)),
+        ("a light turned by 12 degrees", |s| s.lights[0].direction = Vec3::new(-0.62, -0.45, -0.6)),
         ("no shadow inside hair", |s| s.shadow.method = ShadowMethod::None),
         ("strands half as wide", |s| s.look.width_scale *= 0.5),
-        ("the camera moved by two pixels", |s| s.camera.target.x += 0.003),
+        ("the camera moved by a pixel and a half", |s| s.camera.target.x += 0.003),
     ];
     for (name, spoil) in spoiled {
         let mut other = tuft_scene(400);

@@ -1,7 +1,8 @@
 //! Elementary functions without branches, so that loops that call them become vector instructions.
 //!
-//! Only additions, products and bits are used, never a library's function and never a fused product: every
-//! processor and every width of vectors gives the same bits.
+//! Only additions, products, roots and bits are used, never a library's function and never a fused product: every
+//! processor and every width of vectors gives the same bits. (A few numbers of the whole frame, such as the tangent
+//! of the field of view, come from the system's library.)
 // Compiled within the versions of `dispatch`; a call would keep the loop around it from becoming vectors.
 #![allow(clippy::inline_always)]
 

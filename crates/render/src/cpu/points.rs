@@ -49,13 +49,19 @@ pub(super) struct PointsIn<'a> {
 
 /// Shades all points, in parallel.
 pub(super) fn shade_all(width: Width, view: &View, input: &PointsIn, out: &mut Vec<ShadedPoint>) {
-    out.resize(input.strands.points().min(input.details.len()), ShadedPoint::default());
+    out.resize(out_of(input), ShadedPoint::default());
     out.par_chunks_mut(PIECE)
         .enumerate()
         .for_each(|(piece, out)| dispatch::points(width, view, input, piece * PIECE, out));
 }
 
 type Lane = [f32; LANES];
+
+/// Points that are whole: strands and hairstyle should be of one size, but what is not is left out.
+fn out_of(input: &PointsIn) -> usize {
+    let Strands { x, y, z, .. } = input.strands;
+    x.len().min(y.len()).min(z.len()).min(input.details.len()).min(input.transmittance.len())
+}
 
 /// Shades the points from `first` on.
 #[inline(always)]
@@ -68,7 +74,7 @@ pub(super) fn shade_points(view: &View, input: &PointsIn, first: usize, out: &mu
 #[inline(always)]
 fn shade_group(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoint]) {
     let Strands { x, y, z, .. } = input.strands;
-    let last = input.details.len().min(x.len()) - 1;
+    let last = out_of(input) - 1;
     let mut here = [[0.0; LANES]; 3];
     let mut before = [[0.0; LANES]; 3];
     let mut after = [[0.0; LANES]; 3];
@@ -77,7 +83,8 @@ fn shade_group(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoi
     for lane in 0..LANES {
         let i = (first + lane).min(last);
         let word = input.details[i];
-        let (a, b) = (i - (1 - (word >> 24 & 1)) as usize, i + (1 - (word >> 25 & 1)) as usize);
+        let (a, b) =
+            (i.saturating_sub(1 - (word >> 24 & 1) as usize), (i + 1 - (word >> 25 & 1) as usize).min(last));
         detail[lane] = word as i32;
         packed[lane] = input.transmittance[i] as i32;
         for (axis, from) in [x, y, z].into_iter().enumerate() {

@@ -18,7 +18,7 @@ use super::hair::order::SegmentKeys;
 use super::hair::segment::{bounds, is_drawn};
 use super::points::{PointsIn, ShadedPoint, shade_all};
 use super::surface::PlacedSurface;
-use super::surface::closed::Closedness;
+use super::surface::closed::{Closedness, encloses};
 use super::surface::light::SurfaceLight;
 use super::surface::raster::{Occlusion, SurfaceSamples, TriangleTile};
 use super::tile::{Grid, HairPlanes, PixelsIn, SurfacePlanes, TILE, TILE_BYTES};
@@ -123,6 +123,11 @@ impl CpuRenderer {
         let mut times = DrawTimes::default();
         let body = input.body.map(|(body, skin)| (&**body, skin));
         let closed = input.body.is_some_and(|(body, _)| self.closed.of(body));
+        // From within, the faces that look away from the eye are those behind the wall.
+        let seen_from_without = closed
+            && body.is_some_and(|(body, skin)| {
+                !encloses(input.camera.eye, &skin.positions, &body.mesh.triangles)
+            });
         let maps = self.draw_depth(input, body, closed);
         let uniform = FrameUniform::new(input, width, height, &maps, DEPTH_TEXELS);
         let view = View::new(&uniform, &self.depth, &self.shadow.columns, DEPTH_TEXELS);
@@ -140,11 +145,14 @@ impl CpuRenderer {
 
         let part = Stopwatch::start();
         let grid = Grid::new(width, height);
-        let (points, segments) = (&self.points, &self.details.segments);
+        let points = &self.points;
+        // In the order of their points: those whose points are all there.
+        let whole = self.details.segments.partition_point(|&first| (first as usize + 1) < points.len());
+        let segments = &self.details.segments[..whole];
         let (surface, bins, keys) = (&mut self.surface, &mut self.segment_bins, &mut self.keys);
         let hair_on_body = &self.shadow.at_vertices;
         rayon::join(
-            || surface.place(uniform.clip_from_world, &grid, body, hair_on_body, closed),
+            || surface.place(uniform.clip_from_world, &grid, body, hair_on_body, seen_from_without),
             || {
                 bins.fill(segments.len(), grid.columns, grid.rows, |i| {
                     let first = segments[i] as usize;

@@ -35,7 +35,7 @@ impl GpuRenderer {
     /// # Errors
     /// A shader that does not compile, by file and line.
     pub fn new(gpu: Arc<Gpu>) -> Result<Self, RenderError> {
-        let pipelines = Pipelines::new(&gpu)?;
+        let pipelines = gpu.checked(|| Pipelines::new(&gpu))??;
         let device = &gpu.device;
         let linear = wgpu::SamplerDescriptor {
             mag_filter: wgpu::FilterMode::Linear,

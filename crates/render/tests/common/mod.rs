@@ -201,3 +201,26 @@ pub fn tuft_scene(strands: u32) -> Scene {
     s.picture = PictureSettings::default();
     s
 }
+
+/// A closed box of 16 cm that faces outward, or inward.
+pub fn closed_box(outward: bool) -> (Arc<Body>, Skin) {
+    let corner = |i: u32| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32) * 0.16 - 0.08;
+    let positions: Vec<Vec3> = (0..8).map(corner).collect();
+    let sides = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    let mut triangles: Vec<[u32; 3]> =
+        sides.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    if !outward {
+        triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+    }
+    let normals: Vec<Vec3> = positions.iter().map(|p| p.normalize_or_zero()).collect();
+    let mesh = Mesh {
+        positions: positions.clone(),
+        normals: normals.clone(),
+        colors: (0..8).map(|i| 0.2 + 0.6 * (corner(i) + 0.08) / 0.16).collect(),
+        triangles,
+        ..Mesh::default()
+    };
+    let mut skin = Skin::default();
+    (skin.positions, skin.normals) = (positions, normals);
+    (Arc::new(Body { mesh, ..Body::default() }), skin)
+}

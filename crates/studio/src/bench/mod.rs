@@ -8,7 +8,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use lovelock_groom::Strands;
-use lovelock_render::{Backend, GpuError, Picture, RenderError, Renderer};
+use lovelock_render::{Backend, Picture, RenderError, Renderer};
 
 pub use report::{BenchReport, SceneReport, StageReport};
 pub use scenes::BenchScene;
@@ -58,7 +58,8 @@ pub fn bench(
     for &backend in &request.backends {
         match Renderer::open(backend) {
             Ok(renderer) => renderers.push(renderer),
-            Err(error @ RenderError::Gpu(GpuError::NoAdapter(_))) => {
+            // What this machine has not costs its own numbers alone.
+            Err(error @ RenderError::Gpu(_)) => {
                 notes.push(format!("{backend}: {error}"));
             }
             Err(error) => return Err(error.into()),
@@ -98,6 +99,7 @@ fn measure(
     request: &BenchRequest,
 ) -> Result<SceneReport, StudioError> {
     let (width, height) = request.size;
+    report::reset_peak_memory();
     let clock = FrameClock::new(30.0);
     let mut engine = Engine::with_step(Arc::clone(loaded), project.simulation, clock.step_secs);
     engine.advance_to_step(clock.step_of_frame(FIRST_FRAME));

@@ -1,8 +1,10 @@
-//! Whether a surface has an inside: then what faces away is never seen and need not be drawn.
+//! Whether a surface has an inside: then what faces away is never seen from without and need not be drawn.
 
 use std::sync::Arc;
 
+use glam::Vec3;
 use lovelock_motion::{Body, Mesh};
+use rayon::prelude::*;
 
 /// Remembers the answer for the body that was asked for last.
 #[derive(Clone, Debug, Default)]
@@ -12,10 +14,10 @@ pub(crate) struct Closedness {
 }
 
 impl Closedness {
-    /// Whether the body's surface is closed.
+    /// Whether the body's surface is closed and faces outward.
     pub fn of(&mut self, body: &Arc<Body>) -> bool {
         if !self.body.as_ref().is_some_and(|old| Arc::ptr_eq(old, body)) {
-            self.closed = is_closed(&body.mesh);
+            self.closed = is_closed(&body.mesh) && volume(&body.mesh) > 0.0;
             self.body = Some(Arc::clone(body));
         }
         self.closed
@@ -32,6 +34,27 @@ fn is_closed(mesh: &Mesh) -> bool {
     !there.is_empty() && there == back && there.windows(2).all(|pair| pair[0] != pair[1])
 }
 
+/// Six times the volume that a closed surface encloses; below 0 where it faces inward.
+fn volume(mesh: &Mesh) -> f64 {
+    let at = |i: u32| mesh.positions.get(i as usize).copied().unwrap_or(Vec3::NAN).as_dvec3();
+    mesh.triangles.iter().map(|&[a, b, c]| at(a).dot(at(b).cross(at(c)))).sum()
+}
+
+/// Whether `eye` lies within a closed surface: the crossings of a ray toward +X, each by the way it faces.
+pub(crate) fn encloses(eye: Vec3, positions: &[Vec3], triangles: &[[u32; 3]]) -> bool {
+    let crossing = |triangle: &[u32; 3]| -> i32 {
+        let [a, b, c] = triangle.map(|i| positions.get(i as usize).map_or(Vec3::NAN, |&p| p - eye));
+        // Shares of the corners, where the ray passes through the triangle: all of one sign.
+        let side = |p: Vec3, q: Vec3| p.y * q.z - p.z * q.y;
+        let (of_a, of_b, of_c) = (side(b, c), side(c, a), side(a, b));
+        let front = of_a > 0.0 && of_b > 0.0 && of_c > 0.0;
+        let back = of_a < 0.0 && of_b < 0.0 && of_c < 0.0;
+        let ahead = (a.x * of_a + b.x * of_b + c.x * of_c) / (of_a + of_b + of_c) > 0.0;
+        i32::from(front && ahead) - i32::from(back && ahead)
+    };
+    triangles.par_chunks(8192).map(|piece| piece.iter().map(crossing).sum::<i32>()).sum::<i32>() != 0
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -46,5 +69,22 @@ mod tests {
         mesh.triangles.truncate(3);
         assert!(!is_closed(&mesh), "one left out");
         assert!(!is_closed(&Mesh::default()));
+    }
+
+    #[test]
+    fn inside_and_outside_of_a_tetrahedron() {
+        let positions = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+        let triangles = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+        assert!(encloses(Vec3::splat(0.2), &positions, &triangles));
+        for outside in
+            [Vec3::splat(-0.2), Vec3::splat(0.5), Vec3::new(-1.0, 0.2, 0.2), Vec3::new(2.0, 0.2, 0.2)]
+        {
+            assert!(!encloses(outside, &positions, &triangles), "{outside}");
+        }
+        assert!(!encloses(Vec3::ZERO, &[], &[]));
+        let mut mesh = Mesh { positions: positions.into(), triangles: triangles.into(), ..Mesh::default() };
+        assert!((volume(&mesh) - 1.0).abs() < 1e-12);
+        mesh.triangles.iter_mut().for_each(|triangle| triangle.swap(0, 1));
+        assert!(volume(&mesh) < 0.0, "inside out");
     }
 }

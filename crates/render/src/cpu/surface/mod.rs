@@ -70,9 +70,9 @@ impl PlacedSurface {
         let mesh = &body.mesh;
         let positions = skin.positions.par_iter().with_min_len(4096);
         positions
-            .zip(&skin.normals)
             .enumerate()
-            .map(|(i, (p, n))| {
+            .map(|(i, p)| {
+                let n = skin.normals.get(i).copied().unwrap_or(Vec3::Y);
                 let color = mesh.colors.get(i).copied().unwrap_or(Vec3::splat(0.5));
                 let scalp = mesh.scalp.get(i).copied().unwrap_or(0.0);
                 let word = hair.get(i).copied().unwrap_or(u32::MAX);

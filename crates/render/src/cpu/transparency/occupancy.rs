@@ -11,7 +11,10 @@
 //! Within a slice fragments are estimated to lie half a slice deep on average, which dims the sum; the factor
 //! Λ / out.a undoes it.
 
+use std::f32::consts::LN_2;
+
 use super::{Fragment, Layer};
+use crate::cpu::math::{exp, log2};
 
 const SLICES: f32 = 128.0;
 const SLABS: usize = 8;
@@ -62,7 +65,7 @@ impl Record {
 }
 
 fn optical_depth(alpha: f32) -> f32 {
-    if alpha < 1.0 { (-(1.0 - alpha).ln()).min(MOST) } else { MOST }
+    if alpha < 1.0 { (-LN_2 * log2(1.0 - alpha)).min(MOST) } else { MOST }
 }
 
 /// Weights by the estimated order, and the correction of opacity.
@@ -80,12 +83,12 @@ pub(super) fn resolve(fragments: &mut [Fragment]) -> Layer {
     let mut out = [0.0; 4];
     for fragment in fragments.iter() {
         let before = record.before(slice_of(distance(fragment), near, far));
-        let weight = (-before).exp() * fragment.opacity();
+        let weight = exp(-before) * fragment.opacity();
         for (sum, c) in out.iter_mut().zip(fragment.color.into_iter().chain([1.0])) {
             *sum += weight * c;
         }
     }
-    let through = (-record.total()).exp();
+    let through = exp(-record.total());
     let factor = if out[3] > 1e-6 { (1.0 - through) / out[3] } else { 0.0 };
     Layer { color: [out[0] * factor, out[1] * factor, out[2] * factor], through }
 }
