@@ -240,6 +240,8 @@ struct Inside {
 
 impl Inside {
     fn run(mut self) {
+        // Threads of its own: a step takes a millisecond, and would wait for the tiles of a picture in the common ones.
+        let threads = rayon::ThreadPoolBuilder::new().thread_name(|i| format!("simulate {i}")).build().ok();
         let mut watch = Stopwatch::start();
         loop {
             let timeout = if self.engine.is_some() { self.playback.until_next_step() } else { None };
@@ -249,7 +251,10 @@ impl Inside {
             }
             let elapsed_secs = watch.secs();
             watch = Stopwatch::start();
-            let done = catch_unwind(AssertUnwindSafe(|| self.turn(wishes, elapsed_secs)));
+            let done = catch_unwind(AssertUnwindSafe(|| match &threads {
+                Some(threads) => threads.install(|| self.turn(wishes, elapsed_secs)),
+                None => self.turn(wishes, elapsed_secs),
+            }));
             match done {
                 Ok(()) => self.panics = 0,
                 Err(panic) => self.recover(&*panic),
