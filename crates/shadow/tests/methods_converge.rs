@@ -8,7 +8,7 @@ use std::sync::OnceLock;
 
 use common::Random;
 use grooms::Groom;
-use lovelock_shadow::{ShadowMethod, ShadowSettings, converged, cpu_shadow};
+use lovelock_shadow::{Converged, ShadowMethod, ShadowSettings, converged, cpu_shadow};
 
 /// Grown and loaded once for all tests.
 fn grooms() -> &'static [Groom] {
@@ -110,13 +110,15 @@ const METHODS: [ShadowMethod; 4] = [
     ShadowMethod::OccupancyMaps,
 ];
 
-/// Whether an error is the one in the table: presets may change a little, and no method comes near another's by that.
+/// Whether an error is the one in the table: presets may change a little, and no method comes near another's by that
+/// on every hairstyle. Below it there is a bound too, or the best method would pass for all.
 fn as_measured(error: f64, measured: f64) -> bool {
-    error < 1.15 * measured
+    (0.85 * measured..1.15 * measured).contains(&error)
 }
 
 #[test]
 fn errors_are_those_measured_and_swapped_methods_are_found_out() {
+    let mut all = Vec::new();
     for groom in grooms() {
         let (_, measured) = MEASURED.iter().find(|(name, _)| *name == groom.name).expect("measured");
         let errors = METHODS.map(|method| error(method, groom, &ShadowSettings::default()));
@@ -124,12 +126,20 @@ fn errors_are_those_measured_and_swapped_methods_are_found_out() {
         for ((method, error), measured) in METHODS.iter().zip(errors).zip(measured) {
             assert!(as_measured(error, *measured), "{}: {method}: {error}, measured {measured}", groom.name);
         }
-        // Control: deep opacity maps in the place of any other, and the other way round. Others may not be
-        // swapped unnoticed with them, by bound or by how far they stay below it.
-        for other in [0, 2, 3] {
-            assert!(!as_measured(errors[1], measured[other]), "{}: {} hides", groom.name, METHODS[other]);
-            assert!(errors[other] < 0.7 * measured[1]);
+        all.push((groom.name, errors, measured));
+    }
+    // Control: each method in the place of each other.
+    for (at, instead) in (0..4).flat_map(|at| (0..4).map(move |instead| (at, instead))) {
+        if at == instead {
+            continue;
         }
+        let rejects = all.iter().filter(|(_, errors, measured)| !as_measured(errors[instead], measured[at]));
+        let rejects: Vec<_> = rejects.map(|(name, ..)| *name).collect();
+        println!("{} in the place of {}: rejected by {rejects:?}", METHODS[instead], METHODS[at]);
+        // `curly` alone tells all of them apart.
+        assert!(rejects.contains(&"curly"), "{} hides as {}", METHODS[instead], METHODS[at]);
+        // Nothing passes for deep opacity maps on any hairstyle, nor they for anything.
+        assert!(at != 1 && instead != 1 || rejects.len() == all.len(), "{rejects:?}");
     }
 }
 
@@ -139,27 +149,45 @@ fn some(values: &[f32]) -> Vec<f32> {
     (0..500).map(|_| values[(random.unit() * values.len() as f32) as usize % values.len()]).collect()
 }
 
+/// The shadow as it is at [`some`] points, averaged over the texels that the method in `settings` has.
+fn truth(groom: &Groom, settings: &ShadowSettings) -> Converged {
+    let hair = &groom.strands;
+    let points = [&hair.x, &hair.y, &hair.z].map(|axis| some(axis));
+    converged(&groom.input(), settings, [&points[0], &points[1], &points[2]]).expect("fits")
+}
+
+/// Hairstyles of few strands, each 2.4 mm wide; those of the others are 0.3 to 0.8 mm wide.
+const WIDE: [&str; 2] = ["smooth", "curly"];
+
 #[test]
 fn errors_against_the_converged_shadow_fall_with_resolution() {
     for groom in grooms() {
         // The footprint of the finest map, which stands for the shadow as it is.
         let mut settings = ShadowSettings { method: ShadowMethod::Exact, ..ShadowSettings::default() };
-        let hair = &groom.strands;
-        let points = [&hair.x, &hair.y, &hair.z].map(|axis| some(axis));
-        let truth = converged(&groom.input(), &settings, [&points[0], &points[1], &points[2]]).expect("fits");
-        for method in [ShadowMethod::Exact, ShadowMethod::OccupancyMaps] {
-            let errors = [64, 128, 256, 512].map(|resolution| {
-                settings.exact.resolution = resolution;
+        let truth = truth(groom, &settings);
+        let mut errors = |method: ShadowMethod, steps: [u32; 4]| {
+            let errors = steps.map(|resolution| {
+                settings.voxel_map.resolution = resolution;
+                settings.opacity_maps.resolution = resolution;
+                settings.density_clustering.resolution = resolution;
                 settings.occupancy_maps.resolution = resolution;
+                settings.exact.resolution = resolution;
                 rmse(&some(&at_points(method, groom, &settings)), &truth.transmittance)
             });
-            println!(
-                "{}: {method}: {errors:.4?}, {} samples, change {:.4}",
-                groom.name, truth.samples, truth.change
-            );
+            let (samples, change) = (truth.samples, truth.change);
+            println!("{}: {method}: {errors:.4?}, {samples} samples, change {change:.4}", groom.name);
+            errors
+        };
+        for method in [
+            ShadowMethod::Exact,
+            ShadowMethod::OpacityMaps,
+            ShadowMethod::DensityClustering,
+            ShadowMethod::OccupancyMaps,
+        ] {
+            let errors = errors(method, [64, 128, 256, 512]);
             // What is left is a strand one texel wide in the place of one that lies between two.
             assert!(errors[3] < 0.07, "{}: {method}: {errors:?}", groom.name);
-            if ["smooth", "curly"].contains(&groom.name) {
+            if WIDE.contains(&groom.name) {
                 // Texels are no narrower than strands: of these few, wide ones some 90 across the hair, so that there
                 // is little to gain. Which of 64 and 90 is ahead is the chance of 500 points.
                 assert!(errors[3] < 1.1 * errors[0], "{}: {method}: {errors:?}", groom.name);
@@ -169,6 +197,17 @@ fn errors_against_the_converged_shadow_fall_with_resolution() {
                 assert!(errors[3] < 0.7 * errors[0], "{}: {method}: {errors:?}", groom.name);
             }
         }
+        let errors = errors(ShadowMethod::VoxelMap, [32, 64, 128, 256]);
+        if WIDE.contains(&groom.name) {
+            // To where cells, 4 mm at 128, are still wider than strands. Beyond, a strand in a row of cells narrower than
+            // itself is too dark: 0.024 rises to 0.042 (`smooth`) and 0.025 to 0.035 (`curly`), which is back at 64, give or
+            // take a tenth for the chance of 500 points.
+            assert!(errors[..3].is_sorted_by(|more, less| 0.75 * more > *less), "{}: {errors:?}", groom.name);
+            assert!(errors[2] < 0.03 && errors[3] < 1.1 * errors[1], "{}: {errors:?}", groom.name);
+        } else {
+            assert!(errors.is_sorted_by(|more, less| 0.95 * more > *less), "{}: {errors:?}", groom.name);
+            assert!(errors[3] < 0.6 * errors[0] && errors[3] < 0.07, "{}: {errors:?}", groom.name);
+        }
     }
 }
 
@@ -177,8 +216,7 @@ fn errors_against_the_converged_shadow_fall_with_resolution() {
 fn strands_thinner_than_they_are_cast_a_wrong_shadow() {
     for groom in grooms().iter().filter(|groom| groom.name == "smooth") {
         let mut settings = ShadowSettings { method: ShadowMethod::Exact, ..ShadowSettings::default() };
-        let points = [&groom.strands.x, &groom.strands.y, &groom.strands.z].map(|axis| some(axis));
-        let truth = converged(&groom.input(), &settings, [&points[0], &points[1], &points[2]]).expect("fits");
+        let truth = truth(groom, &settings);
         // As dark strands of a tenth of the width in texels as narrow.
         let thin = Groom { name: groom.name, strands: groom.strands.clone(), width: groom.width * 0.1 };
         let wide = rmse(&some(&at_points(ShadowMethod::Exact, groom, &settings)), &truth.transmittance);

@@ -139,33 +139,37 @@ struct Blocks {
     full: Vec<Vec<Loose>>,
     /// The last one, which is filled.
     open: Vec<Loose>,
+    /// Empty ones of the last build, the next one last. None between builds.
+    spare: Vec<Vec<Loose>>,
 }
 
 impl Blocks {
-    /// Adds a fragment; a new block is one of `spare` where there is one.
     #[inline]
-    fn push(&mut self, fragment: Loose, spare: &mut Vec<Vec<Loose>>) {
+    fn push(&mut self, fragment: Loose) {
         if self.open.len() == self.open.capacity() {
-            self.next(spare);
+            self.next();
         }
         self.open.push(fragment);
     }
 
     #[cold]
-    fn next(&mut self, spare: &mut Vec<Vec<Loose>>) {
-        let next = spare.pop().unwrap_or_else(|| Vec::with_capacity(BLOCK));
+    fn next(&mut self) {
+        let next = self.spare.pop().unwrap_or_else(|| Vec::with_capacity(BLOCK));
         let last = std::mem::replace(&mut self.open, next);
         if !last.is_empty() {
             self.full.push(last);
         }
     }
 
-    /// Lets all blocks go to `spare`.
-    fn clear(&mut self, spare: &mut Vec<Vec<Loose>>) {
-        let open = std::mem::take(&mut self.open);
-        for mut block in self.full.drain(..).chain((open.capacity() > 0).then_some(open)) {
-            block.clear();
-            spare.push(block);
+    /// Empties it and keeps the blocks, each for the place in the list that it had.
+    fn clear(&mut self) {
+        self.open.clear();
+        if !self.full.is_empty() {
+            self.spare = std::mem::take(&mut self.full);
+            let last = std::mem::take(&mut self.open);
+            self.spare.push(last);
+            self.spare.iter_mut().for_each(Vec::clear);
+            self.spare.reverse();
         }
     }
 
@@ -218,17 +222,15 @@ impl Fragments {
         self.columns = columns;
         self.pieces.resize_with(pieces, Piece::default);
         self.pieces.par_iter_mut().enumerate().with_max_len(1).for_each(|(at, piece)| {
-            // Blocks of the last time, whichever band they were of. What is left of them at the end goes.
-            let mut spare = Vec::new();
-            piece.bands.iter_mut().for_each(|blocks| blocks.clear(&mut spare));
             piece.bands.resize_with(bands, Blocks::default);
+            piece.bands.iter_mut().for_each(Blocks::clear);
             let strands = first_strand(input, at, pieces)..first_strand(input, at + 1, pieces);
             let mut put = |column: u32, row: u32, depth: f32, optical_depth: f32| {
                 let texel = (row % BAND_ROWS) * columns + column;
-                piece.bands[(row / BAND_ROWS) as usize]
-                    .push(Loose { texel, depth, optical_depth }, &mut spare);
+                piece.bands[(row / BAND_ROWS) as usize].push(Loose { texel, depth, optical_depth });
             };
             for_each_segment(input, frame, strands, |from, to| draw.draw(from, to, &mut put));
+            piece.bands.iter_mut().for_each(|blocks| blocks.spare = Vec::new());
         });
         let pieces = &self.pieces[..];
         let count = |band: usize| pieces.iter().map(|piece| piece.bands[band].len()).sum::<usize>();
@@ -373,6 +375,7 @@ mod tests {
         let piece = |texels: &[u32], base: f32| Piece {
             bands: vec![Blocks {
                 full: Vec::new(),
+                spare: Vec::new(),
                 open: texels
                     .iter()
                     .enumerate()
