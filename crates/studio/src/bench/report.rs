@@ -47,7 +47,8 @@ pub struct SceneReport {
     pub frames: u64,
     /// The stages, the whole frame, and the parts of drawing where the backend tells them (`draw/…`).
     pub stages: Vec<StageReport>,
-    /// The most memory that the process has held so far, bytes; null where the system does not say.
+    /// The most memory that the process held while this was measured, bytes, with what it kept from before; on
+    /// Linux, null elsewhere.
     pub peak_memory_bytes: Option<u64>,
 }
 
@@ -224,7 +225,15 @@ pub(super) fn machine() -> String {
     format!("{}, {threads} threads", name.map_or(std::env::consts::ARCH, str::trim))
 }
 
-/// The most memory that this process has held, bytes.
+/// Lets [`peak_memory_bytes`] begin anew at what the process holds now.
+pub(super) fn reset_peak_memory() {
+    // Of Linux alone (man 5 proc). Where it cannot be written, the peak is that of the process so far.
+    if cfg!(target_os = "linux") {
+        let _ = std::fs::write("/proc/self/clear_refs", "5");
+    }
+}
+
+/// The most memory that this process has held since [`reset_peak_memory`], bytes.
 fn peak_memory_bytes() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
