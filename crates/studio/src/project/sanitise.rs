@@ -3,7 +3,7 @@
 use std::f32::consts::PI;
 
 use glam::Vec3;
-use lovelock_render::{Light, MAX_LIGHTS, ShadowSettings};
+use lovelock_render::{Light, MAX_LIGHTS, MOST_PIXELS, MOST_SIDE, ShadowSettings};
 
 use super::generic::differences;
 use super::{CameraSection, MotionSection, PROJECT_VERSION, Project, RecordingSection};
@@ -76,14 +76,43 @@ fn motion(motion: &MotionSection) -> MotionSection {
 }
 
 fn shadow(shadow: &ShadowSettings) -> ShadowSettings {
-    let range = ShadowSettings::EXTINCTION_SCALES;
+    let scales = ShadowSettings::EXTINCTION_SCALES;
     let d = ShadowSettings::default();
     let mut shadow = *shadow;
-    shadow.extinction_scale = within(shadow.extinction_scale, 0.0, *range.end(), d.extinction_scale);
-    let map = &mut shadow.voxel_map;
-    map.resolution = map.safe_resolution();
-    map.head_size = within(map.head_size, 0.05, 1.0, d.voxel_map.head_size);
-    map.point_extinction = within(map.point_extinction, 0.0, 1e4, d.voxel_map.point_extinction);
+    shadow.extinction_scale =
+        within(shadow.extinction_scale, *scales.start(), *scales.end(), d.extinction_scale);
+    let ShadowSettings {
+        method: _,
+        extinction_scale: _,
+        voxel_map,
+        opacity_maps,
+        deep_opacity_maps,
+        density_clustering,
+        occupancy_maps,
+        exact,
+    } = &mut shadow;
+
+    voxel_map.resolution = voxel_map.safe_resolution();
+    voxel_map.head_size = within(voxel_map.head_size, 0.05, 1.0, d.voxel_map.head_size);
+    voxel_map.point_extinction = within(voxel_map.point_extinction, 0.0, 1e4, d.voxel_map.point_extinction);
+
+    opacity_maps.resolution = opacity_maps.safe_resolution();
+    opacity_maps.slices = opacity_maps.safe_slices();
+
+    deep_opacity_maps.resolution = deep_opacity_maps.safe_resolution();
+    deep_opacity_maps.layers = deep_opacity_maps.safe_layers();
+    deep_opacity_maps.depth_share = deep_opacity_maps.safe_depth_share();
+
+    density_clustering.resolution = density_clustering.safe_resolution();
+    density_clustering.clusters = density_clustering.safe_clusters();
+    density_clustering.steps = density_clustering.safe_steps();
+
+    occupancy_maps.resolution = occupancy_maps.safe_resolution();
+    occupancy_maps.slices = occupancy_maps.safe_slices();
+    occupancy_maps.slabs = occupancy_maps.safe_slabs();
+
+    exact.resolution = exact.safe_resolution();
+    exact.memory_limit_bytes = exact.safe_memory_limit_bytes();
     shadow
 }
 
@@ -120,9 +149,15 @@ fn camera(camera: &CameraSection) -> CameraSection {
 fn recording(recording: &RecordingSection) -> RecordingSection {
     let fps = if recording.fps.is_nan() { 30.0 } else { recording.fps.clamp(1.0, 240.0) };
     let first_frame = recording.first_frame.min(10_000_000);
+    let width = recording.width.clamp(16, MOST_SIDE);
+    let mut height = recording.height.clamp(16, MOST_SIDE);
+    if u64::from(width) * u64::from(height) > MOST_PIXELS {
+        // Even, as films need it.
+        height = (MOST_PIXELS / u64::from(width)) as u32 & !1;
+    }
     RecordingSection {
-        width: recording.width.clamp(16, 8192),
-        height: recording.height.clamp(16, 8192),
+        width,
+        height,
         fps,
         first_frame,
         end_frame: recording.end_frame.map(|end| end.clamp(first_frame + 1, 20_000_000)),

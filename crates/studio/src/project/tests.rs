@@ -4,7 +4,7 @@ use glam::Vec3;
 use proptest::prelude::*;
 
 use super::*;
-use crate::ProblemKind;
+use crate::{Place, ProblemKind};
 
 fn round_trip(project: &Project) -> (Project, Vec<crate::Problem>) {
     let dir = tempfile::tempdir().expect("a folder");
@@ -160,6 +160,76 @@ fn a_failed_save_keeps_what_was_there() {
     assert!(!dir.path().join("folder.lovelock.partial").exists());
 }
 
+#[test]
+fn the_values_of_every_shadow_method_are_moved_and_told() {
+    let text = "(version: 1, shadow: (extinction_scale: 0.0, voxel_map: (resolution: 0), \
+                opacity_maps: (resolution: 3, slices: 4000000000), \
+                deep_opacity_maps: (layers: 0, depth_share: NaN), density_clustering: (clusters: 99, steps: 0), \
+                occupancy_maps: (slices: 4000000000, slabs: 0), exact: (memory_limit_bytes: 1)))";
+    let (project, problems) = parse_project(Path::new("p"), text).expect("reads");
+    let s = project.shadow;
+    assert_eq!((s.extinction_scale, s.voxel_map.resolution), (0.01, 32));
+    assert_eq!((s.opacity_maps.resolution, s.opacity_maps.slices), (64, 256));
+    assert_eq!((s.deep_opacity_maps.layers, s.deep_opacity_maps.depth_share), (3, 0.5));
+    assert_eq!((s.density_clustering.clusters, s.density_clustering.steps), (8, 1));
+    assert_eq!((s.occupancy_maps.slices, s.occupancy_maps.slabs), (512, 4));
+    assert_eq!(s.exact.memory_limit_bytes, 16 << 20);
+    assert_eq!(problems.len(), 11, "{problems:?}");
+    assert!(problems.iter().all(|p| p.kind == ProblemKind::Adjusted && p.place == Place::Shadow));
+    assert!(problems.iter().any(|p| p.message.contains("deep_opacity_maps.depth_share")), "{problems:?}");
+    assert_eq!(project.sanitised(), (project.clone(), Vec::new()), "once is enough");
+}
+
+#[test]
+fn a_recording_has_a_size_that_is_drawn() {
+    for (size, kept) in [
+        ((8192, 8192), (8192, 4320)),
+        ((u32::MAX, u32::MAX), (8192, 4320)),
+        ((6000, 8000), (6000, 5898)),
+        ((4320, 8192), (4320, 8192)),
+        ((1920, 1080), (1920, 1080)),
+    ] {
+        let mut project = Project::default();
+        (project.recording.width, project.recording.height) = size;
+        let (clean, problems) = project.sanitised();
+        assert_eq!((clean.recording.width, clean.recording.height), kept);
+        lovelock_render::check_size(kept.0, kept.1).expect("a size that is drawn");
+        assert_eq!(problems.is_empty(), size == kept, "{problems:?}");
+    }
+}
+
+/// Settings of shadow with any numbers.
+fn any_shadow() -> impl Strategy<Value = ShadowSettings> {
+    (prop::array::uniform4(prop::num::f32::ANY), prop::array::uniform16(any::<u32>()), any::<u64>()).prop_map(
+        |(floats, counts, bytes)| {
+            let mut s = ShadowSettings::default();
+            s.extinction_scale = floats[0];
+            s.voxel_map.head_size = floats[1];
+            s.voxel_map.point_extinction = floats[2];
+            s.deep_opacity_maps.depth_share = floats[3];
+            let fields = [
+                &mut s.voxel_map.resolution,
+                &mut s.opacity_maps.resolution,
+                &mut s.opacity_maps.slices,
+                &mut s.deep_opacity_maps.resolution,
+                &mut s.deep_opacity_maps.layers,
+                &mut s.density_clustering.resolution,
+                &mut s.density_clustering.clusters,
+                &mut s.density_clustering.steps,
+                &mut s.occupancy_maps.resolution,
+                &mut s.occupancy_maps.slices,
+                &mut s.occupancy_maps.slabs,
+                &mut s.exact.resolution,
+            ];
+            for (field, count) in fields.into_iter().zip(counts) {
+                *field = count;
+            }
+            s.exact.memory_limit_bytes = bytes;
+            s
+        },
+    )
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
@@ -173,12 +243,12 @@ proptest! {
         length in prop::num::f32::ANY,
         melanin in prop::num::f32::ANY,
         exposure in prop::num::f32::ANY,
-        extinction in prop::num::f32::ANY,
+        shadow in any_shadow(),
         direction in prop::array::uniform3(prop::num::f32::ANY),
         fps in prop::num::f64::ANY,
         first in any::<u64>(),
         end in prop::option::of(any::<u64>()),
-        width in any::<u32>(),
+        (width, height) in any::<(u32, u32)>(),
         clip in "\\PC{0,12}",
         preset in prop::sample::select(Preset::ALL.to_vec()),
     ) {
@@ -192,13 +262,15 @@ proptest! {
         project.hair.groom.length = length;
         project.look.eumelanin = melanin;
         project.picture.exposure_stops = exposure;
-        project.shadow.extinction_scale = extinction;
+        project.shadow = shadow;
         project.lights[0].direction = Vec3::from_array(direction);
         project.recording.fps = fps;
         project.recording.first_frame = first;
         project.recording.end_frame = end;
         project.recording.width = width;
+        project.recording.height = height;
         let (clean, _) = project.sanitised();
+        prop_assert!(lovelock_render::check_size(clean.recording.width, clean.recording.height).is_ok());
         prop_assert_eq!(round_trip(&clean), (clean.clone(), Vec::new()));
     }
 
