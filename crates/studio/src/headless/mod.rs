@@ -1,6 +1,7 @@
 //! Recording without a window.
 
 mod job;
+mod new_folders;
 mod record;
 mod report;
 mod request;

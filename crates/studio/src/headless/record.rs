@@ -9,6 +9,7 @@ use lovelock_groom::Strands;
 use lovelock_record::{FrameRate, OutputKind, PictureSink, RecordError, SinkSettings};
 use lovelock_render::{Backend, GpuError, Picture, RenderError, Renderer};
 
+use super::new_folders::NewFolders;
 use super::{Progress, RecordReport, RecordRequest};
 use crate::{
     Engine, FrameClock, LoadControl, Problem, Project, Scene, SceneLoader, StageHistory, StageTimes,
@@ -25,7 +26,8 @@ const MOST_TIMES: usize = 1 << 20;
 ///
 /// # Errors
 /// [`StudioError::exit_code`] 2 for a wrong request, 1 where the work fails (no adapter, a full disk). Nothing is
-/// left under the final name of a film then; of a sequence the frames that are whole are.
+/// left under the final name of a film then; of a sequence the frames that are whole are. Folders that were made
+/// for it and hold nothing go.
 pub fn record(
     project: &Project,
     request: &RecordRequest,
@@ -43,6 +45,8 @@ pub fn record(
     engine.clear_totals();
 
     let refused = |error: RecordError| job.refused(&error);
+    // Before the sink, to be dropped after it.
+    let _new_folders = NewFolders::missing_on(&request.out);
     let mut sink = PictureSink::for_path(&request.out, job.sink_settings(frames.start)).map_err(refused)?;
     let (mut strands, mut picture) = (Strands::default(), Picture::default());
     let mut history = StageHistory::new(((frames.end - frames.start) as usize).min(MOST_TIMES));
@@ -119,6 +123,11 @@ impl<'a> Job<'a> {
         let fps = request.fps.unwrap_or(project.recording.fps);
         let (width, height) = request.size.unwrap_or((project.recording.width, project.recording.height));
         let job = Self { project, request, fps, width, height };
+        lovelock_render::check_size(width, height)?;
+        let transparency = job.project.picture.transparency;
+        if job.is_on_gpu_only() && !transparency.is_on_gpu() {
+            return Err(RenderError::Transparency(transparency).into());
+        }
         FrameRate::from_fps(fps).map_err(|error| job.refused(&error))?;
         if let Some(frames) = &request.frames
             && frames.is_empty()
@@ -136,6 +145,13 @@ impl<'a> Job<'a> {
                 .map_err(|error| job.refused(&error))?;
         }
         Ok(job)
+    }
+
+    /// Whether nothing but the graphics card may draw: the processor draws what it cannot where the choice is
+    /// [`Backend::Auto`].
+    fn is_on_gpu_only(&self) -> bool {
+        self.request.gpu.is_some()
+            || self.request.backend.unwrap_or(self.project.picture.backend) == Backend::Gpu
     }
 
     /// The frames to draw: as asked for, else as the project says, else the whole clip.

@@ -1,6 +1,8 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 
+use lovelock_render::{Backend, ShadowMethod, Transparency};
+
 use super::*;
 use crate::StudioError;
 use crate::session::tests::small_project;
@@ -34,12 +36,22 @@ fn try_record(
 fn wrong_requests_are_refused_before_any_work() {
     let dir = tempfile::tempdir().expect("a folder");
     let film = dir.path().join("x.mp4");
-    let wrong: [(&str, RecordRequest); 5] = [
+    let sequence = dir.path().join("frames");
+    let wrong = [
         ("odd size", RecordRequest { size: Some((63, 48)), ..request(&film) }),
         ("no rate", RecordRequest { fps: Some(0.0), ..request(&film) }),
         ("no frames", RecordRequest { frames: Some(5..5), ..request(&film) }),
         ("an unknown ending", request(&dir.path().join("x.gif"))),
         ("no name", request(Path::new(""))),
+        ("too large", RecordRequest { size: Some((8192, 8192)), ..request(&sequence) }),
+        (
+            "a transparency that the gpu does not draw",
+            RecordRequest {
+                backend: Some(Backend::Gpu),
+                transparency: Some(Transparency::Exact),
+                ..request(&sequence)
+            },
+        ),
     ];
     for (what, request) in wrong {
         let mut told = 0;
@@ -53,6 +65,25 @@ fn wrong_requests_are_refused_before_any_work() {
         assert_eq!(error.to_string().lines().count(), 1);
     }
     assert_eq!(std::fs::read_dir(dir.path()).expect("a folder").count(), 0, "nothing was written");
+}
+
+#[test]
+fn a_shadow_that_is_refused_leaves_no_folder() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let mut project = small_project();
+    // The smallest limit that can be set is 16 MiB for all lights; this hair needs more.
+    (project.hair.groom.wisps, project.hair.groom.strands_per_wisp) = (300, 40);
+    project.shadow.exact.memory_limit_bytes = 0;
+    let request = RecordRequest {
+        frames: Some(0..1),
+        shadow: Some(ShadowMethod::Exact),
+        backend: Some(Backend::Cpu),
+        ..request(&dir.path().join("new/frames"))
+    };
+    let error = record(&project, &request, &mut |_| ControlFlow::Continue(())).expect_err("too little memory");
+    assert_eq!(error.exit_code(), 1, "{error}");
+    assert!(error.to_string().contains("exact needs"), "{error}");
+    assert_eq!(std::fs::read_dir(dir.path()).expect("a folder").count(), 0, "nothing is left");
 }
 
 #[test]
