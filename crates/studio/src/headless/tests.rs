@@ -80,7 +80,8 @@ fn a_shadow_that_is_refused_leaves_no_folder() {
         backend: Some(Backend::Cpu),
         ..request(&dir.path().join("new/frames"))
     };
-    let error = record(&project, &request, &mut |_| ControlFlow::Continue(())).expect_err("too little memory");
+    let error =
+        record(&project, &request, &mut |_| ControlFlow::Continue(())).expect_err("too little memory");
     assert_eq!(error.exit_code(), 1, "{error}");
     assert!(error.to_string().contains("exact needs"), "{error}");
     assert_eq!(std::fs::read_dir(dir.path()).expect("a folder").count(), 0, "nothing is left");

@@ -202,8 +202,7 @@ fn a_recording_has_a_size_that_is_drawn() {
 fn any_shadow() -> impl Strategy<Value = ShadowSettings> {
     (prop::array::uniform4(prop::num::f32::ANY), prop::array::uniform16(any::<u32>()), any::<u64>()).prop_map(
         |(floats, counts, bytes)| {
-            let mut s = ShadowSettings::default();
-            s.extinction_scale = floats[0];
+            let mut s = ShadowSettings { extinction_scale: floats[0], ..ShadowSettings::default() };
             s.voxel_map.head_size = floats[1];
             s.voxel_map.point_extinction = floats[2];
             s.deep_opacity_maps.depth_share = floats[3];
