@@ -3,7 +3,7 @@
 use std::fmt::{self, Write};
 
 use lovelock_groom::Strands;
-use lovelock_render::{FrameStats, Renderer};
+use lovelock_render::{DrawTimes, FrameStats, Renderer};
 use serde::Serialize;
 
 use super::{BenchRequest, BenchScene};
@@ -79,6 +79,9 @@ impl StageReport {
     }
 }
 
+/// One of the times of drawing, milliseconds.
+type PartOfDraw = fn(&DrawTimes) -> f64;
+
 impl SceneReport {
     pub(super) fn new(
         scene: BenchScene,
@@ -97,7 +100,7 @@ impl SceneReport {
             })
             .collect();
         if frames.iter().all(|frame| frame.2.draw.is_some()) {
-            let parts: [(&str, fn(&lovelock_render::DrawTimes) -> f64); 4] = [
+            let parts: [(&str, PartOfDraw); 4] = [
                 ("draw/body-depth", |times| times.body_depth),
                 ("draw/points", |times| times.points),
                 ("draw/sort", |times| times.sort),

@@ -59,6 +59,7 @@ impl BenchScene {
     ///
     /// Animation and collisions are our simulation with the interpolation of strands in it; density and transmittance
     /// our shadow; filtering and drawing our drawing.
+    #[expect(clippy::match_same_arms, reason = "the table's figures, which are equal by chance")]
     pub const fn published_ms(self, stage: Stage) -> Option<f64> {
         match (self, stage) {
             (Self::Smooth, Stage::Simulate) => Some(67.0 + 3.0),
