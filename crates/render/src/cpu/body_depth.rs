@@ -18,6 +18,8 @@ const LANES: usize = 8;
 const BAND_ROWS: usize = 64;
 /// Texels along each edge of a block that keeps its nearest and farthest depth.
 const BLOCK: usize = 32;
+/// Blocks along each edge of a map.
+const BLOCKS_IN_ROW: usize = SIZE / BLOCK;
 
 /// Depth along a light, 0 to 1 over its view, and 1 where there is no body.
 #[derive(Clone, Debug)]
@@ -191,14 +193,13 @@ impl DepthMap {
         let block = |c: f32| index_of(floor(min(max(c, 0.0), last))) as usize / BLOCK;
         let (left, right) = (block(left * size - 0.5 - reach), block(right * size - 0.5 + reach));
         let (top, bottom) = (block(top * size - 0.5 - reach), block(bottom * size - 0.5 + reach));
-        const ROW: usize = SIZE / BLOCK;
         // More blocks than that take longer than the taps.
         if (right - left + 1) * (bottom - top + 1) > 36 {
             return None;
         }
         let (mut nearest, mut farthest) = (1.0, 0.0);
         for j in top..=bottom {
-            for [near, far] in &self.blocks[j * ROW + left..=j * ROW + right] {
+            for [near, far] in &self.blocks[j * BLOCKS_IN_ROW + left..=j * BLOCKS_IN_ROW + right] {
                 nearest = min(*near, nearest);
                 farthest = max(*far, farthest);
             }

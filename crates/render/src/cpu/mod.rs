@@ -5,6 +5,16 @@
 //! thread: the body's visible samples, then the hair before them from near to far, then the light of what is
 //! still seen behind it, then tone mapping. No tile's result depends on another's, and every sum is taken in a
 //! fixed order: the same bytes for any number of threads and any width of vectors.
+#![allow(
+    clippy::needless_range_loop,
+    clippy::needless_bitwise_bool,
+    reason = "loops over lanes by index and tests without branches are what becomes vectors"
+)]
+#![allow(
+    clippy::approx_constant,
+    clippy::excessive_precision,
+    reason = "constants are those of the shaders and of fitted polynomials, digit for digit"
+)]
 
 mod backdrop;
 mod bins;

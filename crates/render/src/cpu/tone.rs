@@ -1,6 +1,6 @@
 //! Linear light to the screen: the twin of `tone_map.wgsl`.
 //!
-//! AgX is Troy Sobotka's; the polynomial for its curve and the matrices are Benjamin Wrensch's fit (2023).
+//! `AgX` is Troy Sobotka's; the polynomial for its curve and the matrices are Benjamin Wrensch's fit (2023).
 // Compiled within the versions of `dispatch`.
 #![allow(clippy::inline_always)]
 

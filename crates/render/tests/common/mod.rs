@@ -210,7 +210,9 @@ pub fn closed_box(outward: bool) -> (Arc<Body>, Skin) {
     let mut triangles: Vec<[u32; 3]> =
         sides.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
     if !outward {
-        triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+        for triangle in &mut triangles {
+            triangle.swap(1, 2);
+        }
     }
     let normals: Vec<Vec3> = positions.iter().map(|p| p.normalize_or_zero()).collect();
     let mesh = Mesh {

@@ -28,6 +28,7 @@ pub(crate) struct SurfaceSamples {
 }
 
 impl Default for SurfaceSamples {
+    #[expect(clippy::large_stack_arrays, reason = "made once a thread, and boxed at once")]
     fn default() -> Self {
         Self {
             depth: [0.0; TILE * STRIDE * SAMPLES.len()],
