@@ -66,11 +66,13 @@ fn closed_bodies_look_the_same_from_without_from_within_and_inside_out() {
     }
 }
 
+/// A small defect.
+type Spoil = fn(&mut Scene);
+
 /// What the comparison must find: each of these is a small defect of one backend.
 #[test]
 fn small_differences_of_the_scene_are_found() {
     let scene = tuft_scene(400);
-    type Spoil = fn(&mut Scene);
     let spoiled: [(&str, Spoil); 4] = [
         ("a light turned by 12 degrees", |s| s.lights[0].direction = Vec3::new(-0.62, -0.45, -0.6)),
         ("no shadow inside hair", |s| s.shadow.method = ShadowMethod::None),

@@ -95,7 +95,7 @@ mod tests {
     fn every_tile_lists_what_touches_it_in_order() {
         let range_of = |i: usize| {
             let (x, y) = ((i * 7 % 5) as u16, (i * 3 % 4) as u16);
-            (i % 11 != 0).then_some(TileRange { x0: x, x1: (x + 1).min(4), y0: y, y1: y })
+            (!i.is_multiple_of(11)).then_some(TileRange { x0: x, x1: (x + 1).min(4), y0: y, y1: y })
         };
         let mut bins = Bins::default();
         for count in [0, 1, 100, 10_000] {

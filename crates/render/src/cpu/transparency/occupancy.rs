@@ -6,7 +6,9 @@
 //! 8 slabs of 16 slices. The optical depth before a place is that of the slabs before it and a share of its own
 //! slab's: the share of that slab's occupied slices that lie before. With β = −ln(1 − α),
 //!
-//!     out = Σ e^(−B) α (c, 1)      Λ = 1 − e^(−Σβ)      out.rgb Λ / out.a + behind (1 − Λ)
+//! ```text
+//! out = Σ e^(−B) α (c, 1)      Λ = 1 − e^(−Σβ)      out.rgb Λ / out.a + behind (1 − Λ)
+//! ```
 //!
 //! Within a slice fragments are estimated to lie half a slice deep on average, which dims the sum; the factor
 //! Λ / out.a undoes it.
@@ -132,7 +134,9 @@ mod tests {
             let places: Vec<f32> =
                 (0..count).map(|i| SLICES * ((set * count + i) as f32 * 0.618_034).fract()).collect();
             let mut record = Record::default();
-            places.iter().for_each(|&slice| record.add(slice, optical_depth(alpha)));
+            for &slice in &places {
+                record.add(slice, optical_depth(alpha));
+            }
             let raw: f32 = places.iter().map(|&slice| (-record.before(slice)).exp() * alpha).sum();
             mean += raw / (1.0 - (-record.total()).exp()) / sets as f32;
         }

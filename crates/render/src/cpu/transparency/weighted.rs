@@ -1,7 +1,9 @@
 //! `weighted-average`: colours averaged by their opacity, without any order (Bavoil, Meyers 2008, "Order
 //! Independent Transparency with Dual Depth Peeling").
 //!
-//!     C = Σ α c / Σ α      ᾱ = Σ α / n      C (1 − (1 − ᾱ)ⁿ) + behind (1 − ᾱ)ⁿ
+//! ```text
+//! C = Σ α c / Σ α      ᾱ = Σ α / n      C (1 − (1 − ᾱ)ⁿ) + behind (1 − ᾱ)ⁿ
+//! ```
 
 use super::{Fragment, Layer};
 
