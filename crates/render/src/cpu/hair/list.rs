@@ -156,6 +156,8 @@ impl Fragments {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Transparency;
+    use crate::cpu::transparency::resolve;
 
     #[test]
     fn an_opacity_takes_its_share_of_the_samples_and_strands_take_different_ones() {
@@ -176,5 +178,93 @@ mod tests {
         }
         assert_eq!(covered_samples(1.0, [3.0, 5.0], 0.4), 15);
         assert_eq!(covered_samples(0.0, [3.0, 5.0], 0.4), 0);
+    }
+
+    /// Strands along x at the heights `ys`, each 40 pixels long from x = -4 and of the given half width.
+    fn strands(ys: &[f32], half_width: f32) -> (Vec<ShadedPoint>, Vec<u32>) {
+        let point = |x: f32, y: f32, depth: f32| ShadedPoint {
+            x,
+            y,
+            depth,
+            half_width,
+            run_x: 1.0,
+            run_y: 0.0,
+            color: [0.5; 3],
+            hash: 0.0,
+        };
+        let points = ys
+            .iter()
+            .enumerate()
+            .flat_map(|(i, &y)| {
+                let depth = 0.5 - 0.001 * i as f32;
+                [point(-4.0, y, depth), point(36.0, y, depth)]
+            })
+            .collect();
+        (points, (0..ys.len() as u32).map(|i| 2 * i).collect())
+    }
+
+    /// What the exact blend of the tile at `origin` lets through at each pixel of column `x`, from the top.
+    fn through(ys: &[f32], half_width: f32, opacity: f32, origin: [f32; 2], x: usize) -> [f32; TILE] {
+        let (points, first_points) = strands(ys, half_width);
+        let segments: Vec<u32> = (0..ys.len() as u32).collect();
+        let samples = Box::<SurfaceSamples>::default();
+        let input = ListTile {
+            origin,
+            points: &points,
+            segments: &segments,
+            first_points: &first_points,
+            samples: &samples,
+            opacity,
+        };
+        let mut fragments = Fragments::default();
+        list_segments(&input, &mut fragments);
+        let mut column = [1.0; TILE];
+        fragments.each_pixel(|at, fragments| {
+            if at % STRIDE == x {
+                column[at / STRIDE] = resolve(Transparency::Exact, fragments).through;
+            }
+        });
+        column
+    }
+
+    #[test]
+    fn one_cylinder_hides_its_width_and_nothing_hides_nothing() {
+        // A pixel and a half wide between two rows: three quarters of each, at an opacity of 0.8. (Strands that are wide
+        // enough to show their hairs are streaked.)
+        let column = through(&[16.0], 0.75, 0.8, [0.0, 0.0], 10);
+        for (y, t) in column.into_iter().enumerate() {
+            let expected = if (15..17).contains(&y) { 0.4 } else { 1.0 };
+            assert!((t - expected).abs() < 1e-5, "row {y}: {t}");
+        }
+        assert_eq!(through(&[], 3.0, 0.8, [0.0, 0.0], 10), [1.0; TILE]);
+    }
+
+    #[test]
+    fn a_strand_thinner_than_a_pixel_hides_its_width() {
+        for y in [16.5, 16.2, 16.0] {
+            let hidden: f32 = through(&[y], 0.1, 0.8, [0.0, 0.0], 10).iter().map(|t| 1.0 - t).sum();
+            // A fifth of a pixel at an opacity of 0.8, wherever it lies between the pixels.
+            assert!((hidden - 0.16).abs() < 1e-4, "{y}: {hidden}");
+        }
+    }
+
+    #[test]
+    fn a_slab_of_strands_lets_through_the_power_of_its_layers() {
+        for count in [1, 5, 30] {
+            let t = through(&vec![16.5; count], 2.0, 0.25, [0.0, 0.0], 10)[16];
+            let expected = 0.75_f32.powi(count as i32);
+            assert!((t - expected).abs() < 1e-5, "{count} layers: {t}");
+        }
+    }
+
+    #[test]
+    fn a_strand_on_the_border_of_two_tiles_is_drawn_once() {
+        for y in [31.0, 31.8, 32.0, 32.4] {
+            let above = through(&[y], 0.75, 0.8, [0.0, 0.0], 10);
+            let below = through(&[y], 0.75, 0.8, [0.0, 32.0], 10);
+            let hidden: f32 = above.iter().chain(&below).map(|t| 1.0 - t).sum();
+            // A pixel and a half wide at an opacity of 0.8, on both sides together.
+            assert!((hidden - 1.2).abs() < 1e-4, "{y}: {hidden}");
+        }
     }
 }

@@ -14,7 +14,7 @@ use crate::Transparency;
 
 /// The hair of one pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Layer {
+pub(crate) struct Layer {
     /// Light that comes from it, times what it covers.
     pub color: [f32; 3],
     /// Share of the light behind that comes through.
@@ -22,7 +22,7 @@ pub(super) struct Layer {
 }
 
 /// Puts together the fragments of one pixel, in any order and with an opacity above 0 and up to 1.
-pub(super) fn resolve(transparency: Transparency, fragments: &mut [Fragment]) -> Layer {
+pub(crate) fn resolve(transparency: Transparency, fragments: &mut [Fragment]) -> Layer {
     match transparency {
         Transparency::Opaque => opaque::resolve(fragments),
         Transparency::WeightedAverage => weighted::resolve(fragments),
