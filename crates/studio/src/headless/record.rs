@@ -34,11 +34,12 @@ pub fn record(
     progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<RecordReport, StudioError> {
     let job = Job::new(project, request)?;
-    let mut renderer = open(&job.project, request)?;
     let (scene, problems) = load(&job.project, request, progress)?;
     tell(progress, Progress::Loaded { problems: problems.clone() })?;
 
     let frames = job.frames(&scene)?;
+    // After what the request may get wrong: drivers speak on standard error while they are tried.
+    let mut renderer = open(&job.project, request)?;
     let clock = FrameClock::new(job.fps);
     let mut engine = Engine::with_step(Arc::clone(&scene), job.project.simulation, clock.step_secs);
     simulate_to(&mut engine, clock.step_of_frame(frames.start), progress)?;
