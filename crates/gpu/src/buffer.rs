@@ -13,9 +13,9 @@ pub struct GrowBuffer<T> {
 }
 
 impl<T: Pod> GrowBuffer<T> {
-    /// An empty buffer that can be used as `usage` says; it can always be written.
+    /// An empty buffer that can be used as `usage` says; it can always be written and copied from.
     pub fn new(device: &wgpu::Device, label: &'static str, usage: wgpu::BufferUsages) -> Self {
-        let usage = usage | wgpu::BufferUsages::COPY_DST;
+        let usage = usage | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
         let buffer = make(device, label, usage, size_of::<T>().max(16) as u64);
         Self { label, usage, buffer, len: 0, _of: std::marker::PhantomData }
     }

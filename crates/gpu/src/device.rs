@@ -1,6 +1,8 @@
 //! The device that pictures are made on.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use crate::{ShaderSource, check_shader};
 
 /// What can go wrong with the graphics device.
 #[derive(Debug, thiserror::Error)]
@@ -19,6 +21,12 @@ pub enum GpuError {
     /// A shader does not compile.
     #[error("{0}")]
     Shader(String),
+    /// The driver takes no more work as it was asked.
+    #[error("the graphics device refused: {0}")]
+    Refused(String),
+    /// The device is gone: reset, unplugged or updated. It must be opened again.
+    #[error("the graphics device was lost: {0}")]
+    Lost(String),
     /// A buffer could not be read back.
     #[error("a picture could not be read back from the graphics device: {0}")]
     Readback(String),
@@ -33,6 +41,15 @@ pub struct Gpu {
     pub queue: wgpu::Queue,
     /// What the adapter says of itself.
     pub info: wgpu::AdapterInfo,
+    /// The first thing that went wrong and that nobody has heard of yet.
+    fault: Fault,
+}
+
+type Fault = Arc<Mutex<Option<GpuError>>>;
+
+fn note(fault: &Fault, error: GpuError) {
+    tracing::error!(%error, "graphics device");
+    fault.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
 }
 
 impl Gpu {
@@ -73,15 +90,43 @@ impl Gpu {
             max_buffer_size: has.max_buffer_size,
             ..wgpu::Limits::default()
         };
+        // Timers are of use wherever they are; nothing else that is optional is needed.
+        let required_features = adapter.features() & wgpu::Features::TIMESTAMP_QUERY;
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("lovelock"),
-            required_features: wgpu::Features::empty(),
+            required_features,
             required_limits,
             ..Default::default()
         }))
         .map_err(|error| GpuError::NoDevice { adapter: info.name.clone(), reason: error.to_string() })?;
         tracing::info!(adapter = %info.name, backend = %info.backend, "graphics device");
-        Ok(Arc::new(Self { device, queue, info }))
+        let fault = Fault::default();
+        let noted = Arc::clone(&fault);
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            note(&noted, GpuError::Refused(error.to_string()));
+        }));
+        let noted = Arc::clone(&fault);
+        device.set_device_lost_callback(move |_, reason| note(&noted, GpuError::Lost(reason)));
+        Ok(Arc::new(Self { device, queue, info, fault }))
+    }
+
+    /// Hears of what went wrong since the last time.
+    ///
+    /// # Errors
+    /// The first thing that the driver refused, or that the device is lost.
+    pub fn check(&self) -> Result<(), GpuError> {
+        self.fault.lock().unwrap_or_else(PoisonError::into_inner).take().map_or(Ok(()), Err)
+    }
+
+    /// Whether the device measures the time of passes.
+    pub fn has_timestamps(&self) -> bool {
+        self.device.features().contains(wgpu::Features::TIMESTAMP_QUERY)
+    }
+
+    /// The most bytes of one buffer that a shader reads or writes.
+    pub fn most_storage_bytes(&self) -> u64 {
+        let limits = self.device.limits();
+        limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
     }
 
     /// Whether the adapter runs on the processor.
@@ -113,11 +158,13 @@ impl Gpu {
     /// The file and line that do not compile, and why. The device is not disturbed.
     pub fn shader(&self, label: &str, source: &ShaderSource) -> Result<wgpu::ShaderModule, GpuError> {
         check_shader(source)?;
-        Ok(self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        Ok(self.module(label, source))
+    }
+
+    pub(crate) fn module(&self, label: &str, source: &ShaderSource) -> wgpu::ShaderModule {
+        self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(label),
             source: wgpu::ShaderSource::Wgsl(source.text().into()),
-        }))
+        })
     }
 }
-
-use crate::{ShaderSource, check_shader};

@@ -1,14 +1,18 @@
 //! The wgpu device, shader composition, typed buffers, readback and timers.
 
 mod buffer;
+mod commands;
 mod device;
+mod kernel;
 mod readback;
 mod shader;
 mod timer;
 
 pub use buffer::GrowBuffer;
+pub use commands::{Commands, PassTime, PassTimer};
 pub use device::{Gpu, GpuError};
-pub use readback::read_texture_rgba8;
+pub use kernel::{Kernel, THREADS};
+pub use readback::{read_buffer, read_texture_rgba8};
 pub use shader::{ShaderPart, ShaderSource, check_shader};
 pub use timer::Stopwatch;
 pub use wgpu;

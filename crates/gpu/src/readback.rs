@@ -1,5 +1,7 @@
 //! Reading textures back.
 
+use bytemuck::Pod;
+
 use crate::{Gpu, GpuError};
 
 /// Reads a texture of four bytes a pixel back; rows from the top, tightly packed, into `out`.
@@ -30,20 +32,49 @@ pub fn read_texture_rgba8(gpu: &Gpu, texture: &wgpu::Texture, out: &mut Vec<u8>)
         texture.size(),
     );
     gpu.queue.submit([encoder.finish()]);
-    let (sender, receiver) = std::sync::mpsc::sync_channel(1);
-    buffer.map_async(wgpu::MapMode::Read, .., move |result| {
-        let _ = sender.send(result);
-    });
-    let failed = |reason: String| GpuError::Readback(reason);
-    gpu.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|error| failed(error.to_string()))?;
-    receiver.recv().map_err(|error| failed(error.to_string()))?.map_err(|error| failed(error.to_string()))?;
+    map(gpu, &buffer)?;
     out.clear();
     {
-        let bytes = buffer.get_mapped_range(..).map_err(|error| failed(error.to_string()))?;
+        let bytes = buffer.get_mapped_range(..).map_err(|error| GpuError::Readback(error.to_string()))?;
         for line in bytes.chunks_exact(padded_row as usize) {
             out.extend_from_slice(&line[..row as usize]);
         }
     }
     buffer.unmap();
     Ok(())
+}
+
+/// Reads the first `out.len()` items of a buffer back, which must be usable as the source of a copy.
+///
+/// # Errors
+/// The device is lost or the buffer cannot be mapped.
+pub fn read_buffer<T: Pod>(gpu: &Gpu, from: &wgpu::Buffer, out: &mut [T]) -> Result<(), GpuError> {
+    let size = size_of_val(out) as u64;
+    if size == 0 {
+        return Ok(());
+    }
+    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("readback"),
+        size,
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    encoder.copy_buffer_to_buffer(from, 0, &buffer, 0, size);
+    gpu.queue.submit([encoder.finish()]);
+    map(gpu, &buffer)?;
+    let bytes = buffer.get_mapped_range(..).map_err(|error| GpuError::Readback(error.to_string()))?;
+    bytemuck::cast_slice_mut(out).copy_from_slice(&bytes);
+    Ok(())
+}
+
+/// Waits until the device is done, and maps a buffer.
+fn map(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<(), GpuError> {
+    let failed = |reason: String| GpuError::Readback(reason);
+    let (sender, receiver) = std::sync::mpsc::sync_channel(1);
+    buffer.map_async(wgpu::MapMode::Read, .., move |result| {
+        let _ = sender.send(result);
+    });
+    gpu.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|error| failed(error.to_string()))?;
+    receiver.recv().map_err(|error| failed(error.to_string()))?.map_err(|error| failed(error.to_string()))
 }

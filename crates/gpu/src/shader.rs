@@ -1,5 +1,7 @@
 //! Shaders composed of parts, with errors that name the part and its line.
 
+use std::collections::BTreeSet;
+
 use crate::GpuError;
 
 /// One file of WGSL.
@@ -49,6 +51,30 @@ impl ShaderSource {
 /// # Errors
 /// The part, the line and the reason.
 pub fn check_shader(source: &ShaderSource) -> Result<naga::Module, GpuError> {
+    check(source).map(|checked| checked.module)
+}
+
+/// A shader that is valid, with what is known of it.
+pub(crate) struct Checked {
+    module: naga::Module,
+    info: naga::valid::ModuleInfo,
+}
+
+impl Checked {
+    /// The bindings of group 0 that an entry point uses.
+    pub(crate) fn bindings_of(&self, entry: &str) -> BTreeSet<u32> {
+        let Some(at) = self.module.entry_points.iter().position(|point| point.name == entry) else {
+            return BTreeSet::new();
+        };
+        let used = self.info.get_entry_point(at);
+        let variables = self.module.global_variables.iter();
+        let used = variables.filter(|(handle, _)| !used[*handle].is_empty());
+        used.filter_map(|(_, variable)| variable.binding.filter(|at| at.group == 0).map(|at| at.binding))
+            .collect()
+    }
+}
+
+pub(crate) fn check(source: &ShaderSource) -> Result<Checked, GpuError> {
     let module = naga::front::wgsl::parse_str(&source.text).map_err(|error| {
         let line = error.location(&source.text).map_or(1, |at| at.line_number as usize);
         let (name, line) = source.locate(line);
@@ -58,7 +84,7 @@ pub fn check_shader(source: &ShaderSource) -> Result<naga::Module, GpuError> {
     let capabilities =
         naga::valid::Capabilities::default() | naga::valid::Capabilities::SHADER_FLOAT16_IN_FLOAT32;
     let mut validator = naga::valid::Validator::new(naga::valid::ValidationFlags::all(), capabilities);
-    validator.validate(&module).map_err(|error| {
+    let info = validator.validate(&module).map_err(|error| {
         let span =
             error.spans().next().map_or(1, |(span, _)| span.location(&source.text).line_number as usize);
         let (name, line) = source.locate(span);
@@ -70,7 +96,7 @@ pub fn check_shader(source: &ShaderSource) -> Result<naga::Module, GpuError> {
         }
         GpuError::Shader(format!("{name}, line {line}: {reason}"))
     })?;
-    Ok(module)
+    Ok(Checked { module, info })
 }
 
 #[cfg(test)]
@@ -91,6 +117,18 @@ mod tests {
         let bad = ShaderPart { name: "bad.wgsl", text: "const C: f32 = A;\n\nconst D: f32 = Missing;\n" };
         let error = check_shader(&ShaderSource::new(&[GOOD, bad])).expect_err("unknown name").to_string();
         assert!(error.starts_with("bad.wgsl, line 3:"), "{error}");
+    }
+
+    #[test]
+    fn an_entry_point_is_bound_to_what_it_uses() {
+        let text = "@group(0) @binding(0) var<storage, read_write> a: array<u32>;\n\
+            @group(0) @binding(3) var<storage, read_write> b: array<u32>;\n\
+            fn deep() { b[0] = 1u; }\n\
+            @compute @workgroup_size(1) fn both() { a[0] = 1u; deep(); }\n\
+            @compute @workgroup_size(1) fn second() { deep(); }\n";
+        let checked = check(&ShaderSource::new(&[ShaderPart { name: "a.wgsl", text }])).expect("valid");
+        assert_eq!(checked.bindings_of("both"), BTreeSet::from([0, 3]));
+        assert_eq!(checked.bindings_of("second"), BTreeSet::from([3]));
     }
 
     #[test]
