@@ -56,7 +56,7 @@ impl Bounds {
     }
 
     /// Bounds of all points of `input`, in parallel.
-    pub(crate) fn of_strands(input: &ShadowInput) -> Self {
+    pub fn of_strands(input: &ShadowInput) -> Self {
         let Strands { x, y, z, .. } = input.strands;
         let pieces = x
             .par_chunks(POINTS_PER_PIECE)

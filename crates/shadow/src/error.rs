@@ -22,6 +22,20 @@ pub enum ShadowError {
         /// How many maps share that limit; 1 or more.
         maps: u32,
     },
+    /// The graphics device gives no buffer of that size.
+    #[error(
+        "{method} needs a buffer of {} for this hair, and this graphics device takes at most {}: {}, or draw by the \
+         processor",
+        Bytes(*.needed_bytes), Bytes(*.limit_bytes), advice(*.method)
+    )]
+    Device {
+        /// The method that was asked.
+        method: ShadowMethod,
+        /// What it would have needed.
+        needed_bytes: u64,
+        /// The device's limit.
+        limit_bytes: u64,
+    },
 }
 
 /// What to change when a map does not fit.

@@ -12,6 +12,7 @@ mod converged;
 mod cpu;
 mod error;
 mod exp;
+mod gpu;
 mod light;
 mod method;
 mod setting_info;
@@ -20,9 +21,13 @@ mod whole_part;
 
 pub mod methods;
 
+pub use bounds::Bounds;
 pub use converged::{CONVERGED_CHANGE, Converged, MOST_CONVERGED_SAMPLES, converged};
 pub use cpu::{ColumnMap, CpuShadow, ShadowInput, ShadowReport, cpu_shadow};
 pub use error::ShadowError;
+pub use gpu::{
+    GpuColumns, GpuShadow, GpuShadowError, GpuShadowInput, GpuStrands, GpuTargets, all_shaders, gpu_shadow,
+};
 pub use light::LightFrame;
 pub use method::{ShadowMethod, UnknownShadowMethod};
 pub use methods::deep_opacity_maps::{DeepOpacityMapsSettings, LayerGrowth};

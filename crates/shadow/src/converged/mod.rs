@@ -83,7 +83,12 @@ fn frame_in_use(input: &ShadowInput, settings: &ShadowSettings, bounds: &Bounds)
     let resolution = match settings.method {
         ShadowMethod::VoxelMap => {
             let lattice = Lattice::new(input, &settings.voxel_map, bounds);
-            return TexelFrame::with_texel_size(input, lattice.resolution, lattice.cell_size, bounds);
+            return TexelFrame::with_texel_size(
+                (input.light, input.anchor),
+                lattice.resolution,
+                lattice.cell_size,
+                bounds,
+            );
         }
         ShadowMethod::None | ShadowMethod::Exact => settings.exact.safe_resolution(),
         ShadowMethod::OpacityMaps => settings.opacity_maps.safe_resolution(),

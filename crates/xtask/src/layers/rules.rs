@@ -7,7 +7,7 @@ const ARROWS: [(&str, &[&str]); 11] = [
     ("app", &["studio"]),
     ("studio", &["render", "wisp", "motion", "groom", "record"]),
     ("render", &["shadow", "gpu", "groom", "motion"]),
-    ("shadow", &["groom"]),
+    ("shadow", &["gpu", "groom"]),
     ("wisp", &["groom", "motion"]),
     ("record", &["groom"]),
     ("motion", &[]),
@@ -21,7 +21,7 @@ const ARROWS: [(&str, &[&str]); 11] = [
 const FOR_TESTS: &str = "testkit";
 
 /// Crates that build and test without a graphics library, so that their tests stay quick on a small machine.
-const WITHOUT_WGPU: [&str; 7] = ["groom", "motion", "wisp", "shadow", "record", "testkit", "xtask"];
+const WITHOUT_WGPU: [&str; 6] = ["groom", "motion", "wisp", "record", "testkit", "xtask"];
 
 /// Libraries that only some crates may name: how their packages' names start, and who may.
 const LIBRARIES: [(&[&str], &[&str]); 3] = [

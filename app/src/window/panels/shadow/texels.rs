@@ -26,7 +26,11 @@ fn map(ui: &mut Ui, (resolution, filter): (&mut u32, &mut TexelFilter), default:
         "How a point reads the texels around it: the nearest alone, with hard steps, or the mean of four.",
         filter,
         default.1,
-        &[(TexelFilter::Nearest, "Nearest"), (TexelFilter::Bilinear, "Bilinear")],
+        &[
+            (TexelFilter::Nearest, "Nearest"),
+            (TexelFilter::Bilinear, "Bilinear"),
+            (TexelFilter::Jitter, "Jitter"),
+        ],
     );
 }
 

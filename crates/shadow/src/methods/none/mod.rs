@@ -1,7 +1,9 @@
 //! `none`: no shadow inside hair.
 
 use glam::Vec3;
+use lovelock_gpu::{Commands, Gpu, GpuError, ShaderPart, ShaderSource, wgpu};
 
+use crate::gpu::{Ask, GpuColumns, GpuShadow, GpuShadowInput, GpuTargets, wgsl};
 use crate::{ColumnMap, CpuShadow, ShadowError, ShadowInput, ShadowReport, ShadowSettings};
 
 /// Every point receives all light.
@@ -27,5 +29,60 @@ impl CpuShadow for NoShadow {
 
     fn column_map(&self) -> Option<ColumnMap> {
         None
+    }
+}
+
+const QUERY: ShaderPart = wgsl!("methods/none/", "query.wgsl");
+
+/// The same on the GPU.
+#[derive(Debug)]
+pub(crate) struct GpuNoShadow(Ask);
+
+impl GpuNoShadow {
+    pub(crate) fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Ask::new(gpu, &[QUERY], false).map(Self)
+    }
+
+    pub(crate) fn shaders() -> Vec<(String, ShaderSource)> {
+        Ask::shaders(&[QUERY], false)
+    }
+}
+
+impl GpuShadow for GpuNoShadow {
+    fn build(
+        &mut self,
+        _slot: usize,
+        _gpu: &Gpu,
+        _commands: &mut Commands,
+        _input: &GpuShadowInput,
+        _settings: &ShadowSettings,
+    ) -> Result<(), ShadowError> {
+        Ok(())
+    }
+
+    fn ask(&mut self, slot: usize, gpu: &Gpu, commands: &mut Commands, targets: &GpuTargets) {
+        self.0.run(gpu, commands, slot, &[], targets);
+    }
+
+    fn columns_size(&self, _slot: usize) -> u32 {
+        0
+    }
+
+    fn columns(
+        &mut self,
+        _slot: usize,
+        _gpu: &Gpu,
+        _commands: &mut Commands,
+        _into: &wgpu::TextureView,
+    ) -> Option<GpuColumns> {
+        None
+    }
+
+    fn report(&self, _slot: usize) -> ShadowReport {
+        ShadowReport::default()
+    }
+
+    fn map_words(&self, _slot: usize, _gpu: &Gpu) -> Result<Vec<u32>, GpuError> {
+        Ok(Vec::new())
     }
 }

@@ -19,20 +19,20 @@ pub type OccupancyMaps = TexelMap<Occupancy>;
 pub struct Occupancy {
     resolution: u32,
     filter: TexelFilter,
-    slices: u32,
-    slabs: u32,
+    pub(super) slices: u32,
+    pub(super) slabs: u32,
 }
 
 /// Words before the bits.
 const HEADER: usize = 3;
 
 impl Occupancy {
-    fn bit_words(&self) -> usize {
+    pub(super) fn bit_words(&self) -> usize {
         self.slices as usize / 32
     }
 
     /// Slices of a slab as a power of two.
-    fn slab_shift(&self) -> u32 {
+    pub(super) fn slab_shift(&self) -> u32 {
         self.slices.trailing_zeros() - self.slabs.trailing_zeros()
     }
 }
@@ -103,7 +103,8 @@ fn depth_before<const BITS: usize, const WORDS: usize>(record: &[u32], depth: f3
 #[inline(always)]
 fn slice_of(slices: u32, near: f32, far: f32, depth: f32) -> (u32, f32) {
     // With one fragment, or all at one depth, there is no range and this is no number, or infinite: any slice will do.
-    let part = (depth - near) / (far - near);
+    // The GPU divides by the inverse too.
+    let part = (depth - near) * (1.0 / (far - near));
     let part = if part > 0.0 { part } else { 0.0 };
     let part = if part < 1.0 { part } else { 1.0 } * slices as f32;
     // The end of the range belongs to the last slice.

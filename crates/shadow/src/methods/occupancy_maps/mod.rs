@@ -5,6 +5,7 @@
 //! of its own the share of occupied slices before it.
 
 mod cpu;
+mod gpu;
 
 pub use cpu::{Occupancy, OccupancyMaps};
 

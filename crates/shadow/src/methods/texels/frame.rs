@@ -47,22 +47,32 @@ impl TexelFrame {
     /// Texels are no narrower than a strand is wide, as long as there are [`LEAST_RESOLUTION`] of them: a strand is
     /// drawn one texel wide, and in narrower ones it would be too thin and too dark.
     pub(crate) fn new(input: &ShadowInput, resolution: u32, bounds: &Bounds) -> Self {
+        Self::place((input.light, input.anchor), input.strand_width, resolution, bounds)
+    }
+
+    /// [`TexelFrame::new`] for strands that are elsewhere.
+    pub(crate) fn place(
+        locked_to: (LightFrame, Vec3),
+        strand_width: f32,
+        resolution: u32,
+        bounds: &Bounds,
+    ) -> Self {
         let (min, max) = extent(bounds);
         let across = (max - min).truncate_along().max_element();
         let size_for = |resolution: u32| across / (resolution - SPARE_TEXELS) as f32;
-        let strand = if input.strand_width > 0.0 { input.strand_width } else { 0.0 };
+        let strand = if strand_width > 0.0 { strand_width } else { 0.0 };
         let size = size_for(resolution).max(strand.min(size_for(LEAST_RESOLUTION)));
         // Lattice coordinates stay below 2^16, where f32 still resolves a hundredth of a texel.
         let farthest = min.abs().max(max.abs()).max_element();
         let texel_size = round_up_to_step(size.max(SMALLEST_CELL).max(farthest / 65_536.0));
         let needed = (across / texel_size).ceil() as u32 + SPARE_TEXELS;
         let resolution = needed.next_multiple_of(16).clamp(LEAST_RESOLUTION, resolution);
-        Self::with_texel_size(input, resolution, texel_size, bounds)
+        Self::with_texel_size(locked_to, resolution, texel_size, bounds)
     }
 
     /// The same with texels of a given size, which must be large enough.
     pub(crate) fn with_texel_size(
-        input: &ShadowInput,
+        (light, anchor): (LightFrame, Vec3),
         resolution: u32,
         texel_size: f32,
         bounds: &Bounds,
@@ -82,8 +92,8 @@ impl TexelFrame {
             resolution,
             texel_size,
             depth_range,
-            anchor: input.anchor,
-            light: input.light,
+            anchor,
+            light,
             first: low - spare / 2,
             anchor_depth: -start_steps / DEPTH_STEPS,
         }
@@ -150,11 +160,11 @@ impl TexelFrame {
 /// The affine map into texels, ready for many points.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TexelAxes {
-    anchor: Vec3,
-    column: Vec3,
-    row: Vec3,
-    depth: Vec3,
-    offset: Vec3,
+    pub anchor: Vec3,
+    pub column: Vec3,
+    pub row: Vec3,
+    pub depth: Vec3,
+    pub offset: Vec3,
 }
 
 impl TexelAxes {

@@ -72,9 +72,9 @@ impl<M: TexelMethod> Lookup<'_, M> {
     }
 
     /// Transmittance of many points, by the texel that each lies in (one tap) or as the bilinear mean of the four
-    /// around it; slices of one length.
+    /// around it; slices of one length. With `JITTER`, points are moved by up to half a texel first.
     #[inline(always)]
-    fn run<const TAPS: usize>(&self, x: &[f32], y: &[f32], z: &[f32], out: &mut [f32]) {
+    fn run<const TAPS: usize, const JITTER: bool>(&self, x: &[f32], y: &[f32], z: &[f32], out: &mut [f32]) {
         let axes = self.frame.axes();
         let end = self.frame.resolution as f32 + 1.0;
         let mut taps =
@@ -88,7 +88,8 @@ impl<M: TexelMethod> Lookup<'_, M> {
                 let inside = (p.x > -1.0) & (p.x < end) & (p.y > -1.0) & (p.y < end) & (p.z > 0.0);
                 let depth = if p.z < BEHIND { p.z } else { BEHIND };
                 taps.depths[lane] = if inside { depth } else { 0.0 };
-                let (x, y) = if inside { (p.x, p.y) } else { (0.0, 0.0) };
+                let [u, v] = if JITTER { place_hash([x[lane], y[lane], z[lane]]) } else { [0.5; 2] };
+                let (x, y) = if inside { (p.x + (u - 0.5), p.y + (v - 0.5)) } else { (0.0, 0.0) };
                 if TAPS == 1 {
                     taps.texels[0][lane] = self.texel(floor(x), floor(y));
                     continue;
@@ -171,7 +172,16 @@ simd_versions! {
     pub(super) fn nearest<M: TexelMethod>(
         lookup: &Lookup<M>, x: &[f32], y: &[f32], z: &[f32], out: &mut [f32],
     ) -> () {
-        lookup.run::<1>(x, y, z, out)
+        lookup.run::<1, false>(x, y, z, out)
+    }
+}
+
+simd_versions! {
+    /// Transmittance of many points, by the texel that each lies in after it was moved by up to half a texel.
+    pub(super) fn jittered<M: TexelMethod>(
+        lookup: &Lookup<M>, x: &[f32], y: &[f32], z: &[f32], out: &mut [f32],
+    ) -> () {
+        lookup.run::<1, true>(x, y, z, out)
     }
 }
 
@@ -180,8 +190,26 @@ simd_versions! {
     pub(super) fn bilinear<M: TexelMethod>(
         lookup: &Lookup<M>, x: &[f32], y: &[f32], z: &[f32], out: &mut [f32],
     ) -> () {
-        lookup.run::<4>(x, y, z, out)
+        lookup.run::<4, false>(x, y, z, out)
     }
+}
+
+/// A hash of a place in two numbers of 0 to 1, the same for all places of an eighth of a millimetre: PCG in three
+/// dimensions (Jarzynski, Olano 2020, "Hash Functions for GPU Rendering"). Twin of `place_hash` in lookup.wgsl.
+#[inline(always)]
+fn place_hash(p: [f32; 3]) -> [f32; 2] {
+    // Conversion saturates, and what is no number becomes 0.
+    let cell = |c: f32| (c * 8192.0).floor() as i32 as u32;
+    let scatter = |c: u32| c.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+    let [mut x, mut y, mut z] = [scatter(cell(p[0])), scatter(cell(p[1])), scatter(cell(p[2]))];
+    x = x.wrapping_add(y.wrapping_mul(z));
+    y = y.wrapping_add(z.wrapping_mul(x));
+    z = z.wrapping_add(x.wrapping_mul(y));
+    [x, y, z] = [x ^ (x >> 16), y ^ (y >> 16), z ^ (z >> 16)];
+    x = x.wrapping_add(y.wrapping_mul(z));
+    y = y.wrapping_add(z.wrapping_mul(x));
+    let part = |c: u32| (c >> 8) as f32 * (1.0 / 16_777_216.0);
+    [part(x), part(y)]
 }
 
 /// The whole number at or below `c`, which is above −2 and below 2^26.

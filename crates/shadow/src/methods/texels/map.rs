@@ -167,7 +167,8 @@ impl<M: TexelMethod> TexelMap<M> {
             *self = Self { width: self.width, ..Self::default() };
         }
 
-        let lines = Lines { resolution, depth_per_texel: depth_per_texel(input, settings, &frame) };
+        let lines =
+            Lines { resolution, depth_per_texel: depth_per_texel(settings, input.strand_width, &frame) };
         self.fragments.draw(input, &frame, (resolution, resolution), &lines);
         let in_use: u64 = self.fragments.in_use().iter().sum();
         let needed_bytes = sorting + in_use * cell_bytes;
@@ -220,8 +221,8 @@ impl<M: TexelMethod> TexelMap<M> {
 
 /// Optical depth of a piece of strand that is a texel long across the light: `s w ℓ sinθ / A` with ℓ sinθ = t and
 /// A = t², for texels of edge t.
-pub(crate) fn depth_per_texel(input: &ShadowInput, settings: &ShadowSettings, frame: &TexelFrame) -> f32 {
-    let depth = settings.safe_extinction_scale() * input.strand_width / frame.texel_size;
+pub(crate) fn depth_per_texel(settings: &ShadowSettings, strand_width: f32, frame: &TexelFrame) -> f32 {
+    let depth = settings.safe_extinction_scale() * strand_width / frame.texel_size;
     if depth > 0.0 { depth.min(MOST_DEPTH_PER_FRAGMENT) } else { 0.0 }
 }
 
@@ -263,9 +264,13 @@ impl<M: TexelMethod> CpuShadow for TexelMap<M> {
             return;
         };
         let lookup = self.lookup(built);
-        let bilinear = built.method.filter() == TexelFilter::Bilinear;
+        let filter = built.method.filter();
         let run = |x: &[f32], y: &[f32], z: &[f32], out: &mut [f32]| {
-            let read = if bilinear { lookup::bilinear } else { lookup::nearest };
+            let read = match filter {
+                TexelFilter::Nearest => lookup::nearest,
+                TexelFilter::Bilinear => lookup::bilinear,
+                TexelFilter::Jitter => lookup::jittered,
+            };
             read(self.width, &lookup, x, y, z, out);
         };
         if out.len() <= POINTS_PER_LOOKUP {
@@ -346,7 +351,7 @@ mod tests {
 
     #[test]
     fn every_instruction_set_gives_the_same_bits() {
-        for filter in [TexelFilter::Nearest, TexelFilter::Bilinear] {
+        for filter in TexelFilter::ALL {
             let mut settings = ShadowSettings::default();
             settings.opacity_maps.filter = filter;
             settings.deep_opacity_maps.filter = filter;

@@ -6,12 +6,14 @@
 
 pub(crate) mod fragments;
 pub(crate) mod frame;
+pub(crate) mod gpu;
 pub(crate) mod lines;
 mod lookup;
-mod map;
+pub(crate) mod map;
 
 pub use fragments::Fragment;
 pub use frame::TexelFrame;
+pub(crate) use gpu::TexelShadow;
 pub use map::{TexelMap, TexelMethod};
 
 use std::ops::RangeInclusive;
@@ -40,6 +42,14 @@ pub enum TexelFilter {
     /// (percentage-closer filtering over 2 × 2 texels).
     #[default]
     Bilinear,
+    /// One texel, after the point was moved by up to half a texel on each axis, by chance but the same for a place: noise
+    /// that many blended strands even out, as Sintorn and Assarsson 2009 have it.
+    Jitter,
+}
+
+impl TexelFilter {
+    /// Every filter, in the order of menus.
+    pub const ALL: [Self; 3] = [Self::Nearest, Self::Bilinear, Self::Jitter];
 }
 
 /// The resolution that is used: the nearest multiple of 16 in [`TEXEL_RESOLUTIONS`].

@@ -1,0 +1,113 @@
+//! Asking a map at many points, whatever its method.
+
+use bytemuck::{Pod, Zeroable};
+use lovelock_gpu::{Commands, Gpu, GpuError, Kernel, ShaderPart, ShaderSource, wgpu};
+
+use super::{EXP, GpuTargets, wgsl};
+
+const ASK: ShaderPart = wgsl!("gpu/", "ask.wgsl");
+const COLUMNS: ShaderPart = wgsl!("gpu/", "columns.wgsl");
+
+/// Twin of `Ask` in ask.wgsl.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+struct AskUniform {
+    count: u32,
+    stride: u32,
+    slot: u32,
+    sums: u32,
+}
+
+/// The two kernels that read a method's map: at points, and behind the whole hair.
+#[derive(Debug)]
+pub(crate) struct Ask {
+    points: Kernel,
+    columns: Option<Kernel>,
+    /// Stands in where no sum is wanted.
+    no_sum: wgpu::Buffer,
+}
+
+/// What composes [`Ask`]'s shaders from the query of a method.
+fn source(query: &[ShaderPart], last: ShaderPart) -> ShaderSource {
+    let parts: Vec<_> = [EXP].iter().chain(query).copied().chain([last]).collect();
+    ShaderSource::new(&parts)
+}
+
+impl Ask {
+    /// `query` defines `hair_transmittance` and, where `columns` is set, `behind_column` and `column_count`.
+    pub fn new(gpu: &Gpu, query: &[ShaderPart], columns: bool) -> Result<Self, GpuError> {
+        let points = Kernel::new(gpu, "ask", &source(query, ASK), "ask_points")?;
+        let columns = columns
+            .then(|| Kernel::new(gpu, "columns", &source(query, COLUMNS), "write_columns"))
+            .transpose()?;
+        let no_sum = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("no sum"),
+            size: 16,
+            usage: wgpu::BufferUsages::STORAGE,
+            mapped_at_creation: false,
+        });
+        Ok(Self { points, columns, no_sum })
+    }
+
+    /// The composed shaders with their labels.
+    pub fn shaders(query: &[ShaderPart], columns: bool) -> Vec<(String, ShaderSource)> {
+        let mut all = vec![("ask".to_owned(), source(query, ASK))];
+        if columns {
+            all.push(("columns".to_owned(), source(query, COLUMNS)));
+        }
+        all
+    }
+
+    /// Asks at the targets; `map` holds what the query binds.
+    pub fn run(
+        &self,
+        gpu: &Gpu,
+        commands: &mut Commands,
+        slot: usize,
+        map: &[(u32, wgpu::BindingResource)],
+        targets: &GpuTargets,
+    ) {
+        let sum = targets.sum.filter(|_| slot == 0);
+        let uniform = AskUniform {
+            count: targets.count,
+            stride: targets.stride,
+            slot: slot as u32,
+            sums: u32::from(sum.is_some()),
+        };
+        let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("ask"),
+            size: size_of::<AskUniform>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM,
+            mapped_at_creation: true,
+        });
+        if let Ok(mut bytes) = buffer.get_mapped_range_mut(..) {
+            bytes.copy_from_slice(bytemuck::bytes_of(&uniform));
+        }
+        buffer.unmap();
+        let mut resources = map.to_vec();
+        resources.extend([
+            (10, buffer.as_entire_binding()),
+            (11, targets.points.as_entire_binding()),
+            (12, targets.out.as_entire_binding()),
+            (13, sum.unwrap_or(&self.no_sum).as_entire_binding()),
+        ]);
+        let group = self.points.bind(gpu, &resources);
+        commands.compute("shadow/ask", |pass| self.points.run(pass, &group, u64::from(targets.count)));
+    }
+
+    /// Writes what lies behind all hair into a texture, of `size` by `size` texels.
+    pub fn write_columns(
+        &self,
+        gpu: &Gpu,
+        commands: &mut Commands,
+        map: &[(u32, wgpu::BindingResource)],
+        size: u32,
+        into: &wgpu::TextureView,
+    ) {
+        let Some(kernel) = &self.columns else { return };
+        let mut resources = map.to_vec();
+        resources.push((14, wgpu::BindingResource::TextureView(into)));
+        let group = kernel.bind(gpu, &resources);
+        commands.compute("shadow/columns", |pass| kernel.run(pass, &group, u64::from(size).pow(2)));
+    }
+}

@@ -1,0 +1,19 @@
+// Bits and counts in one pass.
+
+fn put(texel: u32, depth: f32, weight: u32) {
+    let slice = u32(slice_of(near_of(texel), far_of(texel), depth).x);
+    let record = record_of(texel);
+    let word = record + 2u + (slice >> 5u);
+    let bit = 1u << (slice & 31u);
+    if ((atomicLoad(&map[word]) & bit) == 0u) {
+        atomicOr(&map[word], bit);
+    }
+    let slab = slice >> texels.whole.z;
+    let counts = record + 2u + (texels.whole.x >> 5u) + (slab >> 1u);
+    let shift = 16u * (slab & 1u);
+    let before = atomicAdd(&map[counts], 1u << shift);
+    if (((before >> shift) & 0xffffu) == 0xffffu) {
+        // Full: counts stop there.
+        atomicSub(&map[counts], 1u << shift);
+    }
+}

@@ -1,0 +1,33 @@
+//! Occupancy maps on the GPU: range; bits and counts in one pass; then range and mean are put into the record.
+//!
+//! A record of 128 slices and 8 slabs has 40 bytes, as published: 10 MiB at 512².
+
+use lovelock_gpu::ShaderPart;
+
+use super::Occupancy;
+use crate::gpu::wgsl;
+use crate::methods::texels::gpu::{GpuTexelMethod, Needs, Over, Pass, RANGE, RANGE_READ, RANGE_WORDS};
+
+const RECORD: ShaderPart = wgsl!("methods/occupancy_maps/gpu/", "record.wgsl");
+const BITS: ShaderPart = wgsl!("methods/occupancy_maps/gpu/", "bits.wgsl");
+const SEAL: ShaderPart = wgsl!("methods/occupancy_maps/gpu/", "seal.wgsl");
+const QUERY: ShaderPart = wgsl!("methods/occupancy_maps/gpu/", "query.wgsl");
+
+impl GpuTexelMethod for Occupancy {
+    const PASSES: &'static [Pass] = &[
+        Pass { name: "shadow/range", over: Over::Segments, parts: &[RANGE] },
+        Pass { name: "shadow/occupancy", over: Over::Segments, parts: &[RANGE_READ, RECORD, BITS] },
+        Pass { name: "shadow/seal", over: Over::Texels, parts: &[RANGE_READ, RECORD, SEAL] },
+    ];
+    const QUERY: &'static [ShaderPart] = &[RECORD, QUERY];
+
+    fn needs(&self) -> Needs {
+        let words = 2 + self.bit_words() as u32 + self.slabs / 2;
+        Needs {
+            map_words: u64::from(words),
+            scratch_words: RANGE_WORDS,
+            whole: [self.slices, self.slabs, self.slab_shift(), words],
+            ..Needs::default()
+        }
+    }
+}

@@ -1,0 +1,59 @@
+// Draws segments into texels, one texel wide: a step along the longer axis is one fragment. Twin of lines.rs.
+// A pass defines `put(texel, depth, weight)`.
+
+@group(0) @binding(1) var<storage, read> points: array<vec4f>;
+@group(0) @binding(2) var<storage, read> segments: array<u32>;
+
+// Whether a point is one of those that the window was made for. False for what is no number.
+fn holds(p: vec3f) -> bool {
+    let far = 2.0 * f32(texels.size.x);
+    return abs(p.x) <= far && abs(p.y) <= far && abs(p.z) <= 2.0;
+}
+
+// Held within the window: rounding must not put hair into the empty texels at the border.
+fn held(p: vec3f) -> vec3f {
+    let highest = f32(texels.size.x - 1u) * (1.0 - 1.1920929e-7);
+    return clamp(p, vec3f(1.0, 1.0, 0.0), vec3f(highest, highest, 1.0));
+}
+
+// How many centres of texels lie below `c`, which is not negative.
+fn centres_below(c: f32) -> i32 {
+    let whole = i32(c);
+    return whole + select(0, 1, c - f32(whole) > 0.5);
+}
+
+@compute @workgroup_size(64)
+fn draw(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    let i = id.x + id.y * groups.x * 64u;
+    if (i >= texels.size.y) {
+        return;
+    }
+    let first = segments[i];
+    let from_free = texel_from_world(points[first].xyz);
+    let to_free = texel_from_world(points[first + 1u].xyz);
+    if (!holds(from_free) || !holds(to_free)) {
+        return;
+    }
+    let a = held(from_free);
+    let b = held(to_free);
+    let d = b - a;
+    let by_row = abs(d.y) > abs(d.x);
+    let turned_a = select(a, a.yxz, by_row);
+    let turned_b = select(b, b.yxz, by_row);
+    let forward = turned_a.x <= turned_b.x;
+    let low = select(turned_b, turned_a, forward);
+    let high = select(turned_a, turned_b, forward);
+    let per_texel = 1.0 / (high.x - low.x);
+    let end = centres_below(high.x);
+    let length = sqrt(d.x * d.x + d.y * d.y) * per_texel;
+    let weight = u32(length * WEIGHT_ONE + 0.5);
+    let rise = high - low;
+    let last = i32(texels.size.x) - 2;
+    for (var major = centres_below(low.x); major < end; major++) {
+        let t = (f32(major) + 0.5 - low.x) * per_texel;
+        let minor = u32(clamp(i32(low.y + t * rise.y), 1, last));
+        let depth = clamp(low.z + t * rise.z, 0.0, 1.0);
+        let at = select(vec2u(u32(major), minor), vec2u(minor, u32(major)), by_row);
+        put(at.y * texels.size.x + at.x, depth, weight);
+    }
+}

@@ -1,0 +1,68 @@
+// Filtered lookups: transmittance of the texel that a point lies in, or the bilinear mean of the four around it. Twin of
+// lookup.rs. A method's query defines `depth_before(texel, depth)`.
+
+@group(0) @binding(3) var<storage, read> map: array<u32>;
+
+// A depth behind all hair.
+const BEHIND: f32 = 2.0;
+
+fn texel_light(column: i32, row: i32, depth: f32) -> f32 {
+    let n = i32(texels.size.x);
+    if (column < 0 || column >= n || row < 0 || row >= n) {
+        return 1.0;
+    }
+    return exp_of_minus(depth_before(u32(row * n + column), depth));
+}
+
+// A hash of a place, the same on every device as long as it is not within a rounding of an eighth of a millimetre's
+// border: PCG in three dimensions (Jarzynski, Olano 2020, "Hash Functions for GPU Rendering").
+fn place_hash(p: vec3f) -> vec2f {
+    var v = bitcast<vec3u>(vec3i(floor(p * 8192.0))) * 1664525u + 1013904223u;
+    v.x += v.y * v.z;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    v ^= v >> vec3u(16u);
+    v.x += v.y * v.z;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    return vec2f(v.xy >> vec2u(8u)) * (1.0 / 16777216.0);
+}
+
+// Share of the light that reaches a point through the hair.
+fn hair_transmittance(world_position: vec3f) -> f32 {
+    let p = texel_from_world(world_position);
+    let end = f32(texels.size.x) + 1.0;
+    // False for what is no number. Before all hair everything is lit.
+    if (!(p.x > -1.0 && p.x < end && p.y > -1.0 && p.y < end && p.z > 0.0)) {
+        return 1.0;
+    }
+    let depth = min(p.z, BEHIND);
+    if (texels.size.z != 1u) {
+        var at = p.xy;
+        if (texels.size.z == 2u) {
+            at += place_hash(world_position) - 0.5;
+        }
+        let texel = vec2i(floor(at));
+        return texel_light(texel.x, texel.y, depth);
+    }
+    let at = p.xy - 0.5;
+    let low = floor(at);
+    let part = at - low;
+    let texel = vec2i(low);
+    let a = texel_light(texel.x, texel.y, depth);
+    let b = texel_light(texel.x + 1, texel.y, depth);
+    let c = texel_light(texel.x, texel.y + 1, depth);
+    let d = texel_light(texel.x + 1, texel.y + 1, depth);
+    let near = a + (b - a) * part.x;
+    let far = c + (d - c) * part.x;
+    return min(near + (far - near) * part.y, 1.0);
+}
+
+fn column_count() -> u32 {
+    return texels.size.x;
+}
+
+// Share of the light that all hair of a texel lets through.
+fn behind_column(at: vec2u) -> f32 {
+    return texel_light(i32(at.x), i32(at.y), BEHIND);
+}

@@ -1,0 +1,305 @@
+//! Maps with a record for each light texel, on the GPU.
+//!
+//! Strands are drawn into texels by compute kernels with integer atomics, a thread a segment: nothing depends on the order
+//! in which threads run. Each pass over the segments is lines.wgsl with its own `put`; each pass over the texels is
+//! each_texel.wgsl with its own `texel_pass`. A method is a list of passes and a query.
+
+use std::fmt::Debug;
+use std::marker::PhantomData;
+
+use bytemuck::{Pod, Zeroable};
+use glam::Vec4;
+use lovelock_gpu::{Commands, Gpu, GpuError, Kernel, ShaderPart, ShaderSource, read_buffer, wgpu};
+
+use super::{TexelFilter, TexelFrame, TexelMethod};
+use crate::gpu::{
+    Ask, Buffer, EXP, GpuColumns, GpuShadow, GpuShadowError, GpuShadowInput, GpuTargets, fits_device, wgsl,
+};
+use crate::methods::texels::map::depth_per_texel;
+use crate::{ShadowError, ShadowReport, ShadowSettings};
+
+const FRAME: ShaderPart = wgsl!("methods/texels/gpu/", "frame.wgsl");
+const BUILD: ShaderPart = wgsl!("methods/texels/gpu/", "build.wgsl");
+const LINES: ShaderPart = wgsl!("methods/texels/gpu/", "lines.wgsl");
+const EACH_TEXEL: ShaderPart = wgsl!("methods/texels/gpu/", "each_texel.wgsl");
+const LOOKUP: ShaderPart = wgsl!("methods/texels/gpu/", "lookup.wgsl");
+/// The depth range of each texel, which several methods begin with.
+pub(crate) const RANGE: ShaderPart = wgsl!("methods/texels/gpu/", "range.wgsl");
+/// Reads what [`RANGE`] left.
+pub(crate) const RANGE_READ: ShaderPart = wgsl!("methods/texels/gpu/", "range_read.wgsl");
+/// Words of scratch memory a texel that [`RANGE`] uses, the first ones of all.
+pub(crate) const RANGE_WORDS: u64 = 3;
+
+/// Twin of `TexelUniform` in frame.wgsl.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct TexelUniform {
+    anchor: Vec4,
+    column: Vec4,
+    row: Vec4,
+    depth: Vec4,
+    size: [u32; 4],
+    whole: [u32; 4],
+    broken: [f32; 32],
+}
+
+/// What a pass goes over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Over {
+    /// Every segment: the part defines `put`.
+    Segments,
+    /// Every texel: the part defines `texel_pass`.
+    Texels,
+}
+
+/// One pass of a method.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pass {
+    /// As statistics name it, `shadow/…`.
+    pub name: &'static str,
+    pub over: Over,
+    pub parts: &'static [ShaderPart],
+}
+
+impl Pass {
+    fn source(&self) -> ShaderSource {
+        let last = match self.over {
+            Over::Segments => LINES,
+            Over::Texels => EACH_TEXEL,
+        };
+        let parts: Vec<_> = [EXP, FRAME, BUILD].iter().chain(self.parts).copied().chain([last]).collect();
+        ShaderSource::new(&parts)
+    }
+
+    fn kernel(&self, gpu: &Gpu) -> Result<Kernel, GpuError> {
+        let entry = match self.over {
+            Over::Segments => "draw",
+            Over::Texels => "each_texel",
+        };
+        Kernel::new(gpu, self.name, &self.source(), entry)
+    }
+}
+
+/// What a method needs for one texel, in words of 32 bits, and the settings that its shaders read.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Needs {
+    /// Words of the map a texel.
+    pub map_words: u64,
+    /// Words of scratch memory a texel.
+    pub scratch_words: u64,
+    /// `TexelUniform::whole`.
+    pub whole: [u32; 4],
+    /// `TexelUniform::broken`.
+    pub broken: [f32; 32],
+}
+
+/// The GPU's part of a method with a record for each texel.
+pub(crate) trait GpuTexelMethod: TexelMethod {
+    /// All passes, in the order in which they stand in [`GpuTexelMethod::schedule`].
+    const PASSES: &'static [Pass];
+    /// The part that defines `depth_before`.
+    const QUERY: &'static [ShaderPart];
+
+    fn needs(&self) -> Needs;
+
+    /// The passes to run, by their place in [`GpuTexelMethod::PASSES`]; one may run more than once.
+    fn schedule(&self) -> Vec<usize> {
+        (0..Self::PASSES.len()).collect()
+    }
+}
+
+/// A method with a record for each texel, on the GPU.
+#[derive(Debug)]
+pub(crate) struct TexelShadow<M: GpuTexelMethod> {
+    passes: Vec<Kernel>,
+    ask: Ask,
+    scratch: Buffer,
+    maps: Vec<Map>,
+    _method: PhantomData<M>,
+}
+
+/// The map of one light.
+#[derive(Debug)]
+struct Map {
+    uniform: wgpu::Buffer,
+    words: Buffer,
+    /// Words that the last build uses.
+    used: u64,
+    frame: Option<TexelFrame>,
+    report: ShadowReport,
+}
+
+impl<M: GpuTexelMethod> TexelShadow<M> {
+    pub(crate) fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Ok(Self {
+            passes: M::PASSES.iter().map(|pass| pass.kernel(gpu)).collect::<Result<_, _>>()?,
+            ask: Ask::new(gpu, &Self::query(), true)?,
+            scratch: Buffer::new(gpu, "shadow scratch"),
+            maps: Vec::new(),
+            _method: PhantomData,
+        })
+    }
+
+    /// Every composed shader with its label.
+    pub(crate) fn shaders() -> Vec<(String, ShaderSource)> {
+        let passes = M::PASSES.iter().map(|pass| (pass.name.to_owned(), pass.source()));
+        passes.chain(Ask::shaders(&Self::query(), true)).collect()
+    }
+
+    fn query() -> Vec<ShaderPart> {
+        [FRAME, LOOKUP].iter().chain(M::QUERY).copied().collect()
+    }
+
+    fn map(&mut self, gpu: &Gpu, slot: usize) -> &mut Map {
+        while self.maps.len() <= slot {
+            self.maps.push(Map {
+                uniform: gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                    label: Some("texels"),
+                    size: size_of::<TexelUniform>() as u64,
+                    usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                    mapped_at_creation: false,
+                }),
+                words: Buffer::new(gpu, "shadow map"),
+                used: 0,
+                frame: None,
+                report: ShadowReport::default(),
+            });
+        }
+        &mut self.maps[slot]
+    }
+}
+
+impl TexelUniform {
+    fn new(
+        frame: &TexelFrame,
+        depth_per_texel: f32,
+        segments: u32,
+        filter: TexelFilter,
+        needs: &Needs,
+    ) -> Self {
+        let axes = frame.axes();
+        let texels = frame.resolution * frame.resolution;
+        let filter = match filter {
+            TexelFilter::Nearest => 0,
+            TexelFilter::Bilinear => 1,
+            TexelFilter::Jitter => 2,
+        };
+        Self {
+            anchor: axes.anchor.extend(depth_per_texel),
+            column: axes.column.extend(axes.offset.x),
+            row: axes.row.extend(axes.offset.y),
+            depth: axes.depth.extend(axes.offset.z),
+            size: [frame.resolution, segments, filter, texels],
+            whole: needs.whole,
+            broken: needs.broken,
+        }
+    }
+}
+
+impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
+    fn build(
+        &mut self,
+        slot: usize,
+        gpu: &Gpu,
+        commands: &mut Commands,
+        input: &GpuShadowInput,
+        settings: &ShadowSettings,
+    ) -> Result<(), ShadowError> {
+        let method = M::new(settings);
+        let frame = TexelFrame::place(
+            (input.light, input.anchor),
+            input.strand_width,
+            method.resolution(),
+            &input.bounds,
+        );
+        let needs = method.needs();
+        let texels = u64::from(frame.resolution).pow(2);
+        let (map_words, scratch_words) = (texels * needs.map_words, texels * needs.scratch_words);
+        let needed_bytes = 4 * (map_words + scratch_words);
+        let limit_bytes = method.memory_limit_bytes() / u64::from(input.maps.max(1));
+        if needed_bytes > limit_bytes {
+            let maps = input.maps.max(1);
+            return Err(ShadowError::TooLarge { method: M::METHOD, needed_bytes, limit_bytes, maps });
+        }
+        fits_device(gpu, M::METHOD, 4 * map_words.max(scratch_words))?;
+
+        self.scratch.fit(gpu, scratch_words);
+        let depth = depth_per_texel(settings, input.strand_width, &frame);
+        let segments = input.strands.segment_count;
+        let uniform = TexelUniform::new(&frame, depth, segments, method.filter(), &needs);
+        let map = self.map(gpu, slot);
+        map.words.fit(gpu, map_words);
+        map.used = map_words;
+        map.frame = Some(frame);
+        map.report = ShadowReport {
+            memory_bytes: map.words.bytes(),
+            cells_total: texels,
+            cell_size: frame.texel_size,
+            needed_bytes,
+            ..ShadowReport::default()
+        };
+        gpu.queue.write_buffer(&map.uniform, 0, bytemuck::bytes_of(&uniform));
+        self.maps[slot].report.scratch_bytes = self.scratch.bytes();
+
+        let map = &self.maps[slot];
+        let encoder = commands.encoder();
+        encoder.clear_buffer(map.words.raw(), 0, Some((4 * map_words).max(4)));
+        encoder.clear_buffer(self.scratch.raw(), 0, Some((4 * scratch_words).max(4)));
+        let resources = [
+            (0, map.uniform.as_entire_binding()),
+            (1, input.strands.points.as_entire_binding()),
+            (2, input.strands.segments.as_entire_binding()),
+            (3, map.words.raw().as_entire_binding()),
+            (4, self.scratch.raw().as_entire_binding()),
+        ];
+        for at in method.schedule() {
+            let (pass, kernel) = (&M::PASSES[at], &self.passes[at]);
+            let group = kernel.bind(gpu, &resources);
+            let threads = match pass.over {
+                Over::Segments => u64::from(segments),
+                Over::Texels => texels,
+            };
+            commands.compute(pass.name, |pass| kernel.run(pass, &group, threads));
+        }
+        Ok(())
+    }
+
+    fn ask(&mut self, slot: usize, gpu: &Gpu, commands: &mut Commands, targets: &GpuTargets) {
+        let Some(map) = self.maps.get(slot) else { return };
+        let resources = [(0, map.uniform.as_entire_binding()), (3, map.words.raw().as_entire_binding())];
+        self.ask.run(gpu, commands, slot, &resources, targets);
+    }
+
+    fn columns_size(&self, slot: usize) -> u32 {
+        self.maps.get(slot).and_then(|map| map.frame).map_or(0, |frame| frame.resolution)
+    }
+
+    fn columns(
+        &mut self,
+        slot: usize,
+        gpu: &Gpu,
+        commands: &mut Commands,
+        into: &wgpu::TextureView,
+    ) -> Option<GpuColumns> {
+        let map = self.maps.get(slot)?;
+        let frame = map.frame?;
+        let resources = [(0, map.uniform.as_entire_binding()), (3, map.words.raw().as_entire_binding())];
+        self.ask.write_columns(gpu, commands, &resources, frame.resolution, into);
+        Some(GpuColumns { size: frame.resolution, uv_from_world: frame.uv_from_world() })
+    }
+
+    fn settle(&mut self, _gpu: &Gpu) -> Result<bool, GpuShadowError> {
+        Ok(false)
+    }
+
+    fn report(&self, slot: usize) -> ShadowReport {
+        self.maps.get(slot).map_or_else(ShadowReport::default, |map| map.report)
+    }
+
+    fn map_words(&self, slot: usize, gpu: &Gpu) -> Result<Vec<u32>, GpuError> {
+        let Some(map) = self.maps.get(slot) else { return Ok(Vec::new()) };
+        let mut words = vec![0; map.used as usize];
+        read_buffer(gpu, map.words.raw(), &mut words)?;
+        Ok(words)
+    }
+}
