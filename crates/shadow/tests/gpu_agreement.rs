@@ -75,10 +75,9 @@ fn all_grooms() -> Vec<Groom> {
 }
 
 fn methods() -> impl Iterator<Item = ShadowMethod> {
-    ShadowMethod::ALL
-        .iter()
-        .copied()
-        .filter(|m| matches!(m, ShadowMethod::None | ShadowMethod::OccupancyMaps))
+    ShadowMethod::ALL.iter().copied().filter(|m| {
+        !matches!(m, ShadowMethod::VoxelMap | ShadowMethod::DensityClustering | ShadowMethod::None)
+    })
 }
 
 #[allow(dead_code)]

@@ -185,7 +185,9 @@ fn maps_that_do_not_fit_are_refused_with_the_number() {
         map.build(&input(&strands(&grow(Style { wisps: 2, ..SMOOTH }, 1))), &settings)
             .expect("a little fits");
         let error = map.build(&fine, &settings).expect_err("does not fit");
-        let ShadowError::TooLarge { method: of, needed_bytes, limit_bytes, .. } = error;
+        let ShadowError::TooLarge { method: of, needed_bytes, limit_bytes, .. } = error else {
+            panic!("{method}: {error}");
+        };
         assert_eq!(of, method);
         // 21 bytes each.
         assert!(

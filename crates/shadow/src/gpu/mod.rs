@@ -9,8 +9,11 @@ use glam::{Mat4, Vec3};
 use lovelock_gpu::{Commands, Gpu, GpuError, ShaderPart, ShaderSource, wgpu};
 
 use crate::bounds::Bounds;
+use crate::methods::deep_opacity_maps::Layers;
+use crate::methods::exact::Sorted;
 use crate::methods::none;
 use crate::methods::occupancy_maps::Occupancy;
+use crate::methods::opacity_maps::Slices;
 use crate::methods::texels::TexelShadow;
 use crate::{LightFrame, ShadowError, ShadowMethod, ShadowReport, ShadowSettings};
 
@@ -142,7 +145,10 @@ pub enum GpuShadowError {
 pub fn gpu_shadow(method: ShadowMethod, gpu: &Gpu) -> Result<Box<dyn GpuShadow>, GpuError> {
     Ok(match method {
         ShadowMethod::None => Box::new(none::GpuNoShadow::new(gpu)?),
+        ShadowMethod::OpacityMaps => Box::new(TexelShadow::<Slices>::new(gpu)?),
+        ShadowMethod::DeepOpacityMaps => Box::new(TexelShadow::<Layers>::new(gpu)?),
         ShadowMethod::OccupancyMaps => Box::new(TexelShadow::<Occupancy>::new(gpu)?),
+        ShadowMethod::Exact => Box::new(TexelShadow::<Sorted>::new(gpu)?),
         _ => return Err(GpuError::Refused(format!("{method} is not there yet"))),
     })
 }
@@ -153,7 +159,10 @@ pub fn all_shaders() -> Vec<(String, ShaderSource)> {
     for &method in ShadowMethod::ALL {
         let sources = match method {
             ShadowMethod::None => none::GpuNoShadow::shaders(),
+            ShadowMethod::OpacityMaps => TexelShadow::<Slices>::shaders(),
+            ShadowMethod::DeepOpacityMaps => TexelShadow::<Layers>::shaders(),
             ShadowMethod::OccupancyMaps => TexelShadow::<Occupancy>::shaders(),
+            ShadowMethod::Exact => TexelShadow::<Sorted>::shaders(),
             _ => Vec::new(),
         };
         all.extend(sources.into_iter().map(|(label, source)| (format!("{method}: {label}"), source)));

@@ -15,11 +15,11 @@ const MOST_LAYERS: usize = *DeepOpacityMapsSettings::LAYERS.end() as usize;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layers {
     settings: DeepOpacityMapsSettings,
-    count: usize,
+    pub(super) count: usize,
     /// Where each layer begins, from the first fragment on.
-    starts: [f32; MOST_LAYERS],
+    pub(super) starts: [f32; MOST_LAYERS],
     /// One over its thickness.
-    per_depth: [f32; MOST_LAYERS],
+    pub(super) per_depth: [f32; MOST_LAYERS],
 }
 
 impl Layers {

@@ -4,6 +4,7 @@
 //! behind the last boundary counts to the last layer. A single hair before the rest moves all layers forward.
 
 mod cpu;
+mod gpu;
 
 pub use cpu::{DeepOpacityMaps, Layers};
 

@@ -4,6 +4,7 @@
 //! each slice, and a point between two ends interpolates optical depth.
 
 mod cpu;
+mod gpu;
 
 pub use cpu::{OpacityMaps, Slices};
 
