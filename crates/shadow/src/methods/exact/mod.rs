@@ -4,6 +4,7 @@
 //! A point receives what the fragments before it let through; its own does not count.
 
 pub(crate) mod cpu;
+mod gpu;
 
 pub use cpu::{ExactMap, Sorted};
 

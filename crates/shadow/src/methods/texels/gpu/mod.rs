@@ -4,6 +4,8 @@
 //! in which threads run. Each pass over the segments is lines.wgsl with its own `put`; each pass over the texels is
 //! each_texel.wgsl with its own `texel_pass`. A method is a list of passes and a query.
 
+pub(crate) mod list;
+
 use std::fmt::Debug;
 use std::marker::PhantomData;
 
@@ -11,6 +13,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec4;
 use lovelock_gpu::{Commands, Gpu, GpuError, Kernel, ShaderPart, ShaderSource, read_buffer, wgpu};
 
+use self::list::{List, Share, Unsettled};
 use super::{TexelFilter, TexelFrame, TexelMethod};
 use crate::gpu::{
     Ask, Buffer, EXP, GpuColumns, GpuShadow, GpuShadowError, GpuShadowInput, GpuTargets, fits_device, wgsl,
@@ -50,6 +53,8 @@ pub(crate) enum Over {
     Segments,
     /// Every texel: the part defines `texel_pass`.
     Texels,
+    /// Every texel, by workgroups that do something together: the part is the entry point `each_group`.
+    Groups,
 }
 
 /// One pass of a method.
@@ -64,10 +69,11 @@ pub(crate) struct Pass {
 impl Pass {
     fn source(&self) -> ShaderSource {
         let last = match self.over {
-            Over::Segments => LINES,
-            Over::Texels => EACH_TEXEL,
+            Over::Segments => Some(LINES),
+            Over::Texels => Some(EACH_TEXEL),
+            Over::Groups => None,
         };
-        let parts: Vec<_> = [EXP, FRAME, BUILD].iter().chain(self.parts).copied().chain([last]).collect();
+        let parts: Vec<_> = [EXP, FRAME, BUILD].iter().chain(self.parts).copied().chain(last).collect();
         ShaderSource::new(&parts)
     }
 
@@ -75,6 +81,7 @@ impl Pass {
         let entry = match self.over {
             Over::Segments => "draw",
             Over::Texels => "each_texel",
+            Over::Groups => "each_group",
         };
         Kernel::new(gpu, self.name, &self.source(), entry)
     }
@@ -99,6 +106,8 @@ pub(crate) trait GpuTexelMethod: TexelMethod {
     const PASSES: &'static [Pass];
     /// The part that defines `depth_before`.
     const QUERY: &'static [ShaderPart];
+    /// Whether its passes put fragments into a [`List`] at binding 5.
+    const LISTS: bool = false;
 
     fn needs(&self) -> Needs;
 
@@ -123,6 +132,7 @@ pub(crate) struct TexelShadow<M: GpuTexelMethod> {
 struct Map {
     uniform: wgpu::Buffer,
     words: Buffer,
+    list: Option<List>,
     /// Words that the last build uses.
     used: u64,
     frame: Option<TexelFrame>,
@@ -152,20 +162,35 @@ impl<M: GpuTexelMethod> TexelShadow<M> {
 
     fn map(&mut self, gpu: &Gpu, slot: usize) -> &mut Map {
         while self.maps.len() <= slot {
-            self.maps.push(Map {
-                uniform: gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                    label: Some("texels"),
-                    size: size_of::<TexelUniform>() as u64,
-                    usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-                    mapped_at_creation: false,
-                }),
-                words: Buffer::new(gpu, "shadow map"),
-                used: 0,
-                frame: None,
-                report: ShadowReport::default(),
-            });
+            self.maps.push(Map::new(gpu, M::LISTS));
         }
         &mut self.maps[slot]
+    }
+}
+
+impl Map {
+    /// A map of nothing: everything is lit.
+    fn new(gpu: &Gpu, lists: bool) -> Self {
+        Self {
+            uniform: gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("texels"),
+                size: size_of::<TexelUniform>() as u64,
+                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            }),
+            words: Buffer::new(gpu, "shadow map"),
+            list: lists.then(|| List::new(gpu)),
+            used: 0,
+            frame: None,
+            report: ShadowReport::default(),
+        }
+    }
+
+    /// What a query reads.
+    fn resources(&self) -> Vec<(u32, wgpu::BindingResource<'_>)> {
+        let list = self.list.as_ref().map(|list| (5, list.raw().as_entire_binding()));
+        let map = [(0, self.uniform.as_entire_binding()), (3, self.words.raw().as_entire_binding())];
+        map.into_iter().chain(list).collect()
     }
 }
 
@@ -239,25 +264,30 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
             ..ShadowReport::default()
         };
         gpu.queue.write_buffer(&map.uniform, 0, bytemuck::bytes_of(&uniform));
+        let encoder = commands.encoder();
+        if let Some(list) = &mut map.list {
+            let maps = input.maps.max(1);
+            let share = Share { method: M::METHOD, limit_bytes, other_bytes: needed_bytes, maps };
+            list.begin(gpu, encoder, share, segments);
+            map.report.memory_bytes += list.memory_bytes();
+        }
         self.maps[slot].report.scratch_bytes = self.scratch.bytes();
 
         let map = &self.maps[slot];
-        let encoder = commands.encoder();
         encoder.clear_buffer(map.words.raw(), 0, Some((4 * map_words).max(4)));
         encoder.clear_buffer(self.scratch.raw(), 0, Some((4 * scratch_words).max(4)));
-        let resources = [
-            (0, map.uniform.as_entire_binding()),
+        let mut resources = map.resources();
+        resources.extend([
             (1, input.strands.points.as_entire_binding()),
             (2, input.strands.segments.as_entire_binding()),
-            (3, map.words.raw().as_entire_binding()),
             (4, self.scratch.raw().as_entire_binding()),
-        ];
+        ]);
         for at in method.schedule() {
             let (pass, kernel) = (&M::PASSES[at], &self.passes[at]);
             let group = kernel.bind(gpu, &resources);
             let threads = match pass.over {
                 Over::Segments => u64::from(segments),
-                Over::Texels => texels,
+                Over::Texels | Over::Groups => texels,
             };
             commands.compute(pass.name, |pass| kernel.run(pass, &group, threads));
         }
@@ -266,8 +296,7 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
 
     fn ask(&mut self, slot: usize, gpu: &Gpu, commands: &mut Commands, targets: &GpuTargets) {
         let Some(map) = self.maps.get(slot) else { return };
-        let resources = [(0, map.uniform.as_entire_binding()), (3, map.words.raw().as_entire_binding())];
-        self.ask.run(gpu, commands, slot, &resources, targets);
+        self.ask.run(gpu, commands, slot, &map.resources(), targets);
     }
 
     fn columns_size(&self, slot: usize) -> u32 {
@@ -283,13 +312,30 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
     ) -> Option<GpuColumns> {
         let map = self.maps.get(slot)?;
         let frame = map.frame?;
-        let resources = [(0, map.uniform.as_entire_binding()), (3, map.words.raw().as_entire_binding())];
-        self.ask.write_columns(gpu, commands, &resources, frame.resolution, into);
+        self.ask.write_columns(gpu, commands, &map.resources(), frame.resolution, into);
         Some(GpuColumns { size: frame.resolution, uv_from_world: frame.uv_from_world() })
     }
 
-    fn settle(&mut self, _gpu: &Gpu) -> Result<bool, GpuShadowError> {
-        Ok(false)
+    fn settle(&mut self, gpu: &Gpu) -> Result<bool, GpuShadowError> {
+        let mut again = false;
+        for map in &mut self.maps {
+            let Some(list) = &mut map.list else { break };
+            match list.settle(gpu) {
+                Ok(None) => {}
+                Ok(Some((needed_bytes, short))) => {
+                    again |= short;
+                    map.report.needed_bytes = needed_bytes;
+                    map.report.samples = list.found();
+                    map.report.memory_bytes = map.words.bytes() + list.memory_bytes();
+                }
+                Err(Unsettled::Gpu(error)) => return Err(error.into()),
+                Err(Unsettled::Shadow(error)) => {
+                    *map = Map::new(gpu, M::LISTS);
+                    return Err(error.into());
+                }
+            }
+        }
+        Ok(again)
     }
 
     fn report(&self, slot: usize) -> ShadowReport {

@@ -1,0 +1,5 @@
+// Counts the fragments of each texel. A texel has two words: where its fragments begin in the list, and where they end.
+
+fn put(texel: u32, depth: f32, weight: u32) {
+    atomicAdd(&map[texel * 2u + 1u], 1u);
+}

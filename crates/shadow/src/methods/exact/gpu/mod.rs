@@ -1,0 +1,31 @@
+//! Every fragment on the GPU: a count a texel; places in a list; the fragments, put there and sorted, a thread a texel.
+//!
+//! Weights are whole numbers, so that their sums are exact in any order.
+
+use lovelock_gpu::ShaderPart;
+
+use super::Sorted;
+use crate::gpu::wgsl;
+use crate::methods::texels::gpu::list::{LIST_BODY, LIST_HEAD};
+use crate::methods::texels::gpu::{GpuTexelMethod, Needs, Over, Pass};
+
+const COUNT: ShaderPart = wgsl!("methods/exact/gpu/", "count.wgsl");
+const PLACE: ShaderPart = wgsl!("methods/exact/gpu/", "place.wgsl");
+const SCATTER: ShaderPart = wgsl!("methods/exact/gpu/", "scatter.wgsl");
+const SORT: ShaderPart = wgsl!("methods/exact/gpu/", "sort.wgsl");
+const QUERY: ShaderPart = wgsl!("methods/exact/gpu/", "query.wgsl");
+
+impl GpuTexelMethod for Sorted {
+    const PASSES: &'static [Pass] = &[
+        Pass { name: "shadow/count", over: Over::Segments, parts: &[COUNT] },
+        Pass { name: "shadow/place", over: Over::Groups, parts: &[LIST_HEAD, PLACE] },
+        Pass { name: "shadow/scatter", over: Over::Segments, parts: &[LIST_BODY, SCATTER] },
+        Pass { name: "shadow/sort", over: Over::Texels, parts: &[LIST_BODY, SORT] },
+    ];
+    const QUERY: &'static [ShaderPart] = &[QUERY];
+    const LISTS: bool = true;
+
+    fn needs(&self) -> Needs {
+        Needs { map_words: 2, ..Needs::default() }
+    }
+}
