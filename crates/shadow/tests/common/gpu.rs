@@ -7,7 +7,7 @@ use glam::Vec3;
 use lovelock_gpu::{Gpu, GrowBuffer, PassTime, PassTimer, read_buffer, wgpu};
 use lovelock_shadow::{
     Bounds, GpuShadow, GpuShadowInput, GpuStrands, GpuTargets, ShadowError, ShadowInput, ShadowMethod,
-    ShadowSettings, gpu_shadow,
+    ShadowSettings, gpu_shadow, voxel_map::longest_strand,
 };
 
 /// The device that all tests of a process share; none where there is no adapter.
@@ -55,11 +55,6 @@ impl Built {
         let ends = strands.first_point.windows(2);
         let segments: Vec<u32> = ends.flat_map(|ends| ends[0]..ends[1].saturating_sub(1)).collect();
         let (points, segments) = (buffer(gpu, &points), buffer(gpu, &segments));
-        let longest = |ends: &[u32]| -> f32 {
-            (ends[0] as usize + 1..ends[1] as usize)
-                .map(|i| strands.point(i).distance(strands.point(i - 1)))
-                .sum()
-        };
         let input = GpuShadowInput {
             strands: GpuStrands {
                 points: points.raw(),
@@ -68,7 +63,7 @@ impl Built {
                 segment_count: segments.len() as u32,
             },
             bounds: Bounds::of_strands(input),
-            longest_strand: strands.first_point.windows(2).map(longest).fold(0.0, f32::max),
+            longest_strand: longest_strand(strands),
             strand_width: input.strand_width,
             light: input.light,
             anchor: input.anchor,

@@ -1,6 +1,6 @@
 //! The quick voxel map: the stages of a build, and lookups in parallel.
 
-use glam::{Mat4, Vec3, Vec4};
+use glam::Vec3;
 use lovelock_groom::Strands;
 use lovelock_groom::simd::Width;
 use rayon::prelude::*;
@@ -99,7 +99,7 @@ impl Built {
         let deposit = Deposit {
             layout,
             lattice: self.lattice,
-            depth: fixed_point_depth(input, settings, &self.lattice),
+            depth: fixed_point_depth(input.strand_width, settings, &self.lattice),
             by_point: settings.voxel_map.deposit == VoxelDeposit::PointCount,
         };
         let (strands, pieces) = (input.strands, self.grids.len());
@@ -159,12 +159,12 @@ fn bounds(width: Width, input: &ShadowInput) -> Bounds {
 }
 
 /// What a segment one cell long across the light, or a point, adds to its cell, in fixed point.
-fn fixed_point_depth(input: &ShadowInput, settings: &ShadowSettings, lattice: &Lattice) -> f32 {
+pub(super) fn fixed_point_depth(strand_width: f32, settings: &ShadowSettings, lattice: &Lattice) -> f32 {
     let VoxelMapSettings { deposit, point_extinction, .. } = settings.voxel_map;
     let scale = settings.safe_extinction_scale();
     let depth = match deposit {
         // τ = s_ext w ℓ sinθ / ds², with ℓ sinθ in units of ds.
-        VoxelDeposit::Length => scale * input.strand_width / lattice.cell_size,
+        VoxelDeposit::Length => scale * strand_width / lattice.cell_size,
         // τ = f ds.
         VoxelDeposit::PointCount => scale * point_extinction * lattice.cell_size,
     };
@@ -217,7 +217,7 @@ impl CpuShadow for VoxelMap {
 
     fn column_map(&self) -> Option<ColumnMap> {
         let built = self.built.as_ref()?;
-        let (layout, lattice) = (&built.layout, &built.lattice);
+        let layout = &built.layout;
         let lookup = built.lookup()?;
         let n = layout.resolution;
         let mut transmittance = vec![1.0; (n * n) as usize];
@@ -227,15 +227,7 @@ impl CpuShadow for VoxelMap {
                 *out = behind_all(lookup.cell_anywhere(last));
             }
         }
-        // Rows of the map run along the second axis across the light.
-        let n = n as f32;
-        let first = lattice.first.as_vec3();
-        let row = |axis: usize| {
-            let per_map = lattice.axes_per_cell[axis] / n;
-            per_map.extend(-per_map.dot(lattice.anchor) - first[axis] / n)
-        };
-        let uv_from_world = Mat4::from_cols(row(2), row(1), row(0), Vec4::W).transpose();
-        Some(ColumnMap { size: layout.resolution, transmittance, uv_from_world })
+        Some(ColumnMap { size: n, transmittance, uv_from_world: built.lattice.uv_from_world() })
     }
 }
 

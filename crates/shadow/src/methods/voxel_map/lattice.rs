@@ -3,12 +3,12 @@
 //! The cells are a window of `N × N × N` on an infinite lattice of cubes along the light's axes, one corner of
 //! which is the anchor. The window follows the hair; the lattice follows the anchor alone.
 
-use glam::{IVec3, Vec3};
+use glam::{IVec3, Mat4, Vec3, Vec4};
 use lovelock_groom::Strands;
 
 use super::{MapExtent, VoxelMapSettings};
-use crate::ShadowInput;
 use crate::bounds::{Bounds, FARTHEST, SMALLEST_CELL, round_up_to_step};
+use crate::{LightFrame, ShadowInput};
 
 /// Cells of the window that hair cannot use: an empty one on each side, and one that hair's bounds may cut
 /// where they begin between two corners of the lattice.
@@ -35,6 +35,16 @@ impl Lattice {
     /// The cell's size moves in steps of a sixteenth of an octave, so that it stays as it is from frame to
     /// frame while the hair's extent changes little.
     pub fn new(input: &ShadowInput, settings: &VoxelMapSettings, bounds: &Bounds) -> Self {
+        Self::place((input.light, input.anchor), || longest_strand(input.strands), settings, bounds)
+    }
+
+    /// [`Lattice::new`] for strands that are elsewhere. Their longest one is asked for where the extent depends on it.
+    pub(crate) fn place(
+        (light, anchor): (LightFrame, Vec3),
+        longest_strand: impl FnOnce() -> f32,
+        settings: &VoxelMapSettings,
+        bounds: &Bounds,
+    ) -> Self {
         let resolution = settings.safe_resolution();
         let (min, max) =
             if bounds.min.x <= bounds.max.x { (bounds.min, bounds.max) } else { (Vec3::ZERO, Vec3::ZERO) };
@@ -42,7 +52,8 @@ impl Lattice {
         let wanted = match settings.extent {
             MapExtent::Fit => fitting,
             MapExtent::Paper => {
-                let edge = 2.0 * longest_strand(input.strands) + settings.head_size.clamp(0.0, 10.0);
+                let longest = longest_strand().clamp(0.0, FARTHEST);
+                let edge = 2.0 * longest + settings.head_size.clamp(0.0, 10.0);
                 fitting.max(edge / resolution as f32)
             }
         };
@@ -53,11 +64,10 @@ impl Lattice {
         let (low, high) = ((min * per_cell).floor().as_ivec3(), (max * per_cell).floor().as_ivec3());
         // What the hair does not need lies half on each side.
         let spare = (IVec3::splat(resolution as i32) - (high - low + 1)).max(IVec3::ZERO);
-        let light = &input.light;
         Self {
             resolution,
             cell_size,
-            anchor: input.anchor,
+            anchor,
             axes_per_cell: [light.x * per_cell, light.y * per_cell, light.z * per_cell],
             first: low - spare / 2,
         }
@@ -72,6 +82,18 @@ impl Lattice {
     /// Coordinates of `p` in the window, in cells: its cell is their whole part.
     pub fn window_from_world(&self, p: Vec3) -> Vec3 {
         self.lattice_from_world(p) - self.first.as_vec3()
+    }
+
+    /// World position to `(u, v, depth)` of a [`ColumnMap`](crate::ColumnMap), whose rows run along the second axis across
+    /// the light.
+    pub(crate) fn uv_from_world(&self) -> Mat4 {
+        let n = self.resolution as f32;
+        let first = self.first.as_vec3();
+        let row = |axis: usize| {
+            let per_map = self.axes_per_cell[axis] / n;
+            per_map.extend(-per_map.dot(self.anchor) - first[axis] / n)
+        };
+        Mat4::from_cols(row(2), row(1), row(0), Vec4::W).transpose()
     }
 
     /// Whether a point in window coordinates is one of those that the window was made for: finite, and not one
@@ -95,7 +117,7 @@ impl Lattice {
 }
 
 /// Length of the longest strand along its points, metres; strands that are not finite count for nothing.
-fn longest_strand(strands: &Strands) -> f32 {
+pub fn longest_strand(strands: &Strands) -> f32 {
     let ends = strands.first_point.windows(2).map(|ends| ends[0] as usize..ends[1] as usize);
     let length = |range: std::ops::Range<usize>| -> f32 {
         range.clone().zip(range.skip(1)).map(|(a, b)| strands.point(a).distance(strands.point(b))).sum()

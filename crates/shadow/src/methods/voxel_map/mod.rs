@@ -12,6 +12,7 @@
 
 mod cpu;
 mod deposit;
+mod gpu;
 mod grid;
 mod lattice;
 mod layout;
@@ -22,7 +23,8 @@ mod simd;
 mod sum;
 
 pub use cpu::VoxelMap;
-pub use lattice::Lattice;
+pub(crate) use gpu::GpuVoxelMap;
+pub use lattice::{Lattice, longest_strand};
 
 pub use crate::bounds::Bounds;
 

@@ -1,0 +1,211 @@
+//! The voxel map on the GPU: density by integer atomics, a thread a segment; sums along the light, a thread a column.
+//!
+//! Cells hold the same integers as on the processor.
+
+use bytemuck::{Pod, Zeroable};
+use glam::Vec4;
+use lovelock_gpu::{Commands, Gpu, GpuError, Kernel, ShaderPart, ShaderSource, read_buffer, wgpu};
+
+use super::cpu::fixed_point_depth;
+use super::{Lattice, VoxelDeposit, VoxelFilter};
+use crate::gpu::{Ask, Buffer, GpuColumns, GpuShadow, GpuShadowInput, GpuTargets, fits_device, wgsl};
+use crate::{ShadowError, ShadowMethod, ShadowReport, ShadowSettings};
+
+const FRAME: ShaderPart = wgsl!("methods/voxel_map/gpu/", "frame.wgsl");
+const DEPOSIT: ShaderPart = wgsl!("methods/voxel_map/gpu/", "deposit.wgsl");
+const SUM: ShaderPart = wgsl!("methods/voxel_map/gpu/", "sum.wgsl");
+const QUERY: [ShaderPart; 2] = [FRAME, wgsl!("methods/voxel_map/gpu/", "query.wgsl")];
+
+/// As statistics name the passes.
+const DENSITY_PASS: &str = "shadow/density";
+const SUM_PASS: &str = "shadow/sum";
+
+/// Twin of `VoxelUniform` in frame.wgsl.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+struct VoxelUniform {
+    anchor: Vec4,
+    along: Vec4,
+    row: Vec4,
+    column: Vec4,
+    size: [u32; 4],
+}
+
+impl VoxelUniform {
+    fn new(lattice: &Lattice, depth: f32, input: &GpuShadowInput, filter: VoxelFilter) -> Self {
+        let first = lattice.first.as_vec3();
+        let [along, row, column] = lattice.axes_per_cell;
+        let as_printed = u32::from(filter == VoxelFilter::Paper);
+        let strands = &input.strands;
+        Self {
+            anchor: lattice.anchor.extend(depth),
+            along: along.extend(first.x),
+            row: row.extend(first.y),
+            column: column.extend(first.z),
+            size: [lattice.resolution, strands.segment_count, strands.point_count, as_printed],
+        }
+    }
+}
+
+/// [`ShadowMethod::VoxelMap`] on the GPU.
+#[derive(Debug)]
+pub(crate) struct GpuVoxelMap {
+    segments: Kernel,
+    points: Kernel,
+    sum: Kernel,
+    ask: Ask,
+    /// A bit a cell; needed while a map is made, and by all lights in turn.
+    full: Buffer,
+    maps: Vec<Map>,
+}
+
+/// The map of one light.
+#[derive(Debug)]
+struct Map {
+    uniform: wgpu::Buffer,
+    cells: Buffer,
+    lattice: Option<Lattice>,
+    report: ShadowReport,
+}
+
+impl Map {
+    /// A map of nothing: everything is lit.
+    fn new(gpu: &Gpu) -> Self {
+        Self {
+            uniform: gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("voxels"),
+                size: size_of::<VoxelUniform>() as u64,
+                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            }),
+            cells: Buffer::new(gpu, "voxel map"),
+            lattice: None,
+            report: ShadowReport::default(),
+        }
+    }
+
+    /// What a query reads.
+    fn resources(&self) -> [(u32, wgpu::BindingResource<'_>); 2] {
+        [(0, self.uniform.as_entire_binding()), (3, self.cells.raw().as_entire_binding())]
+    }
+}
+
+fn deposit_source() -> ShaderSource {
+    ShaderSource::new(&[FRAME, DEPOSIT])
+}
+
+fn sum_source() -> ShaderSource {
+    ShaderSource::new(&[FRAME, SUM])
+}
+
+impl GpuVoxelMap {
+    pub(crate) fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Ok(Self {
+            segments: Kernel::new(gpu, DENSITY_PASS, &deposit_source(), "deposit_segments")?,
+            points: Kernel::new(gpu, DENSITY_PASS, &deposit_source(), "deposit_points")?,
+            sum: Kernel::new(gpu, SUM_PASS, &sum_source(), "sum_columns")?,
+            ask: Ask::new(gpu, &QUERY, true)?,
+            full: Buffer::new(gpu, "full voxels"),
+            maps: Vec::new(),
+        })
+    }
+
+    /// Every composed shader with its label.
+    pub(crate) fn shaders() -> Vec<(String, ShaderSource)> {
+        let passes = [(DENSITY_PASS.to_owned(), deposit_source()), (SUM_PASS.to_owned(), sum_source())];
+        passes.into_iter().chain(Ask::shaders(&QUERY, true)).collect()
+    }
+}
+
+impl GpuShadow for GpuVoxelMap {
+    fn build(
+        &mut self,
+        slot: usize,
+        gpu: &Gpu,
+        commands: &mut Commands,
+        input: &GpuShadowInput,
+        settings: &ShadowSettings,
+    ) -> Result<(), ShadowError> {
+        let ours = &settings.voxel_map;
+        let placed = (input.light, input.anchor);
+        let lattice = Lattice::place(placed, || input.longest_strand, ours, &input.bounds);
+        let cells = u64::from(lattice.resolution).pow(3);
+        while self.maps.len() <= slot {
+            self.maps.push(Map::new(gpu));
+        }
+        if let Err(error) = fits_device(gpu, ShadowMethod::VoxelMap, 4 * cells) {
+            self.maps[slot] = Map::new(gpu);
+            return Err(error);
+        }
+        self.full.fit(gpu, cells / 32);
+        let map = &mut self.maps[slot];
+        map.cells.fit(gpu, cells);
+        map.lattice = Some(lattice);
+        map.report = ShadowReport {
+            memory_bytes: map.cells.bytes(),
+            cells_total: cells,
+            cell_size: lattice.cell_size,
+            points_ignored: input.bounds.ignored,
+            scratch_bytes: self.full.bytes(),
+            ..ShadowReport::default()
+        };
+        let depth = fixed_point_depth(input.strand_width, settings, &lattice);
+        let uniform = VoxelUniform::new(&lattice, depth, input, ours.filter);
+        gpu.queue.write_buffer(&map.uniform, 0, bytemuck::bytes_of(&uniform));
+
+        let encoder = commands.encoder();
+        encoder.clear_buffer(map.cells.raw(), 0, Some(4 * cells));
+        encoder.clear_buffer(self.full.raw(), 0, Some(cells / 8));
+        let mut resources = map.resources().to_vec();
+        resources.extend([
+            (1, input.strands.points.as_entire_binding()),
+            (2, input.strands.segments.as_entire_binding()),
+            (4, self.full.raw().as_entire_binding()),
+        ]);
+        let (kernel, threads) = match ours.deposit {
+            VoxelDeposit::Length => (&self.segments, input.strands.segment_count),
+            VoxelDeposit::PointCount => (&self.points, input.strands.point_count),
+        };
+        let group = kernel.bind(gpu, &resources);
+        commands.compute(DENSITY_PASS, |pass| kernel.run(pass, &group, u64::from(threads)));
+        let group = self.sum.bind(gpu, &resources);
+        let columns = u64::from(lattice.resolution).pow(2);
+        commands.compute(SUM_PASS, |pass| self.sum.run(pass, &group, columns));
+        Ok(())
+    }
+
+    fn ask(&mut self, slot: usize, gpu: &Gpu, commands: &mut Commands, targets: &GpuTargets) {
+        let Some(map) = self.maps.get(slot) else { return };
+        self.ask.run(gpu, commands, slot, &map.resources(), targets);
+    }
+
+    fn columns_size(&self, slot: usize) -> u32 {
+        self.maps.get(slot).and_then(|map| map.lattice).map_or(0, |lattice| lattice.resolution)
+    }
+
+    fn columns(
+        &mut self,
+        slot: usize,
+        gpu: &Gpu,
+        commands: &mut Commands,
+        into: &wgpu::TextureView,
+    ) -> Option<GpuColumns> {
+        let map = self.maps.get(slot)?;
+        let lattice = map.lattice?;
+        self.ask.write_columns(gpu, commands, &map.resources(), lattice.resolution, into);
+        Some(GpuColumns { size: lattice.resolution, uv_from_world: lattice.uv_from_world() })
+    }
+
+    fn report(&self, slot: usize) -> ShadowReport {
+        self.maps.get(slot).map_or_else(ShadowReport::default, |map| map.report)
+    }
+
+    fn map_words(&self, slot: usize, gpu: &Gpu) -> Result<Vec<u32>, GpuError> {
+        let Some(Map { cells, lattice: Some(lattice), .. }) = self.maps.get(slot) else {
+            return Ok(Vec::new());
+        };
+        let mut words = vec![0; (lattice.resolution as usize).pow(3)];
+        read_buffer(gpu, cells.raw(), &mut words)?;
+        Ok(words)
+    }
+}

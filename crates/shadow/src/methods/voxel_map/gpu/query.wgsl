@@ -1,0 +1,55 @@
+// Filtered lookups: four columns a point. Twin of lookup.rs.
+
+@group(0) @binding(3) var<storage, read> map: array<u32>;
+
+// The broken and the whole part of `c`, held within 0 and `end` and at most `last`; 0 for what is no number.
+fn split(c: f32, end: f32, last: u32) -> vec2f {
+    let positive = select(0.0, c, c > 0.0);
+    let inside = select(end, positive, positive < end);
+    let whole = min(u32(inside), last);
+    return vec2f(inside - f32(whole), f32(whole));
+}
+
+fn mix_of(a: f32, b: f32, t: f32) -> f32 {
+    return a + (b - a) * t;
+}
+
+fn column_light(cell: vec3u, along: f32) -> f32 {
+    let faces = map[cell_at(cell)];
+    let front = f32(faces & 0xffffu);
+    let back = f32(faces >> 16u);
+    if (voxels.size.w != 0u) {
+        return mix_of(exp_of_minus_steps(front), exp_of_minus_steps(back), along);
+    }
+    // Exact for a cell of even density.
+    return exp_of_minus_steps(mix_of(front, back, along));
+}
+
+// Share of the light that reaches a point through the hair.
+fn hair_transmittance(world_position: vec3f) -> f32 {
+    if (voxels.size.x == 0u) {
+        return 1.0;
+    }
+    let p = window_from_world(world_position);
+    let n = f32(voxels.size.x);
+    // A column's value belongs to its centre; as printed, to its far edge.
+    let lead = select(0.5, 1.0, voxels.size.w != 0u);
+    // Before the window and for what is no number: its first face and its border, which are lit.
+    let u = split(p.x, n, voxels.size.x - 1u);
+    let v = split(p.y - lead, n - 1.0, voxels.size.x - 2u);
+    let w = split(p.z - lead, n - 1.0, voxels.size.x - 2u);
+    let cell = vec3u(u32(u.y), u32(v.y), u32(w.y));
+    let near = mix_of(column_light(cell, u.x), column_light(cell + vec3u(0u, 0u, 1u), u.x), w.x);
+    let far =
+        mix_of(column_light(cell + vec3u(0u, 1u, 0u), u.x), column_light(cell + vec3u(0u, 1u, 1u), u.x), w.x);
+    return min(mix_of(near, far, v.x), 1.0);
+}
+
+fn column_count() -> u32 {
+    return voxels.size.x;
+}
+
+// Share of the light that all hair of a column lets through.
+fn behind_column(at: vec2u) -> f32 {
+    return exp_of_minus_steps(f32(map[cell_at(vec3u(voxels.size.x - 1u, at.y, at.x))] >> 16u));
+}
