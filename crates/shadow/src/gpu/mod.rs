@@ -10,6 +10,7 @@ use lovelock_gpu::{Commands, Gpu, GpuError, ShaderPart, ShaderSource, wgpu};
 
 use crate::bounds::Bounds;
 use crate::methods::deep_opacity_maps::Layers;
+use crate::methods::density_clustering::Clustering;
 use crate::methods::exact::Sorted;
 use crate::methods::none;
 use crate::methods::occupancy_maps::Occupancy;
@@ -147,6 +148,7 @@ pub fn gpu_shadow(method: ShadowMethod, gpu: &Gpu) -> Result<Box<dyn GpuShadow>,
         ShadowMethod::None => Box::new(none::GpuNoShadow::new(gpu)?),
         ShadowMethod::OpacityMaps => Box::new(TexelShadow::<Slices>::new(gpu)?),
         ShadowMethod::DeepOpacityMaps => Box::new(TexelShadow::<Layers>::new(gpu)?),
+        ShadowMethod::DensityClustering => Box::new(TexelShadow::<Clustering>::new(gpu)?),
         ShadowMethod::OccupancyMaps => Box::new(TexelShadow::<Occupancy>::new(gpu)?),
         ShadowMethod::Exact => Box::new(TexelShadow::<Sorted>::new(gpu)?),
         _ => return Err(GpuError::Refused(format!("{method} is not there yet"))),
@@ -161,6 +163,7 @@ pub fn all_shaders() -> Vec<(String, ShaderSource)> {
             ShadowMethod::None => none::GpuNoShadow::shaders(),
             ShadowMethod::OpacityMaps => TexelShadow::<Slices>::shaders(),
             ShadowMethod::DeepOpacityMaps => TexelShadow::<Layers>::shaders(),
+            ShadowMethod::DensityClustering => TexelShadow::<Clustering>::shaders(),
             ShadowMethod::OccupancyMaps => TexelShadow::<Occupancy>::shaders(),
             ShadowMethod::Exact => TexelShadow::<Sorted>::shaders(),
             _ => Vec::new(),

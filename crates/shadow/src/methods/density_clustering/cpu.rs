@@ -19,6 +19,10 @@ const GAMMA: f64 = 1.732_050_807_568_877_2;
 /// Least width of a bin, a part of the texel's range: a cluster at one depth has no spread.
 const LEAST_WIDTH: f64 = 1.0 / 256.0;
 
+/// A fragment that lies so little outside the bin of its own cluster, a part of the texel's range, counts as within: where a
+/// bin ends at a centre that is itself a fragment, rounding must not decide.
+const SLACK: f64 = 1.0 / 65_536.0;
+
 /// One over the width of a bin without: a step.
 const STEEPEST: f64 = 1e30;
 
@@ -36,7 +40,7 @@ pub struct Bin {
 /// A record has a bin for each cluster.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clustering {
-    settings: DensityClusteringSettings,
+    pub(super) settings: DensityClusteringSettings,
     count: usize,
 }
 
@@ -147,6 +151,7 @@ impl Clustering {
             return;
         }
         let least_width = f64::from(far - near) * LEAST_WIDTH;
+        let slack = f64::from(far - near) * SLACK;
         let ranges = ranges(&kept_centres, &kept_deviations, least_width, kept);
 
         let borders = borders(&kept_centres, kept);
@@ -155,9 +160,9 @@ impl Clustering {
             // The nearest centre, but for a bin that holds the fragment.
             let mut j = cluster(&borders, fragment.depth());
             let depth = f64::from(fragment.depth());
-            if depth < ranges[j].0 && j > 0 && depth <= ranges[j - 1].1 {
+            if depth < ranges[j].0 - slack && j > 0 && depth <= ranges[j - 1].1 {
                 j -= 1;
-            } else if depth > ranges[j].1 && j + 1 < kept && depth >= ranges[j + 1].0 {
+            } else if depth > ranges[j].1 + slack && j + 1 < kept && depth >= ranges[j + 1].0 {
                 j += 1;
             }
             depths[j] += f64::from(fragment.optical_depth());

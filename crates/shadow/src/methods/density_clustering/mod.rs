@@ -5,6 +5,7 @@
 //! as its spread, and optical depth rises evenly through a bin.
 
 mod cpu;
+mod gpu;
 mod seeds;
 
 pub use cpu::{Bin, Clustering, DensityClustering};
