@@ -56,10 +56,9 @@ impl WispCurve {
         self.controls.extend((0..points).map(|p| guides.map(|g| Vec3A::from(moved.point(g, p)))));
 
         let mean = |p: usize| (self.controls[p][0] + self.controls[p][1] + self.controls[p][2]) / 3.0;
-        let rest_mean = |p: usize| guides.iter().map(|&g| Vec3A::from(rest.point(g, p))).sum::<Vec3A>() / 3.0;
-        let root_tangent = (rest_mean(1) - rest_mean(0)).normalize_or(Vec3A::Y);
-        let mut tangent = world_from_head.transform_vector3a(root_tangent);
-        let mut normal = world_from_head.transform_vector3a(reference_normal(root_tangent));
+        let [root_normal, _, root_tangent] = Self::root_frame(rest, wisp);
+        let mut tangent = world_from_head.transform_vector3a(root_tangent.into());
+        let mut normal = world_from_head.transform_vector3a(root_normal.into());
         self.links.clear();
         for p in 1..points {
             let chord = mean((p + 1).min(points - 1)) - mean(p - 1);
@@ -73,6 +72,14 @@ impl WispCurve {
             });
             (tangent, normal) = (next, turned);
         }
+    }
+
+    /// The frame at the root of a wisp at rest, head space: normal, binormal and tangent. It turns with the head.
+    pub fn root_frame(rest: &Guides, wisp: &Wisp) -> [Vec3; 3] {
+        let mean = |p| wisp.guides.iter().map(|&g| Vec3A::from(rest.point(g as usize, p))).sum::<Vec3A>() / 3.0;
+        let tangent = (mean(1) - mean(0)).normalize_or(Vec3A::Y);
+        let normal = reference_normal(tangent);
+        [normal, tangent.cross(normal), tangent].map(Vec3::from)
     }
 
     /// Points of one guide.

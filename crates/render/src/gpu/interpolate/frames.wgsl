@@ -1,0 +1,116 @@
+// The moving frame of each wisp, a thread a wisp: carried along the mean of its guides by the smallest rotations.
+// Twin of `WispCurve::place` in lovelock-groom.
+
+// Twin of `Instant` in mod.rs.
+struct Instant {
+    // Columns of the matrix that turns head space into world space.
+    turn_x: vec4f,
+    turn_y: vec4f,
+    turn_z: vec4f,
+    // Points of all guides, points of one guide, wisps, points of all strands.
+    counts: vec4u,
+}
+
+// Twin of `Wisp` in mod.rs: its guides, and its frame at the root at rest.
+struct Wisp {
+    guides: vec3u,
+    tangent: vec3f,
+    normal: vec3f,
+}
+
+// The three guides of a wisp at one of their points, with the normal in their fourth components, and the tangent.
+struct CurvePoint {
+    a: vec4f,
+    b: vec4f,
+    c: vec4f,
+    tangent: vec4f,
+}
+
+@group(0) @binding(0) var<uniform> instant: Instant;
+// All x, then all y, then all z.
+@group(0) @binding(1) var<storage, read> guides: array<f32>;
+@group(0) @binding(2) var<storage, read> wisps: array<Wisp>;
+@group(0) @binding(3) var<storage, read_write> curves: array<CurvePoint>;
+
+fn guide_point(guide: u32, point: u32) -> vec3f {
+    let n = instant.counts.x;
+    let i = guide * instant.counts.y + point;
+    return vec3f(guides[i], guides[n + i], guides[2u * n + i]);
+}
+
+fn dot3(a: vec3f, b: vec3f) -> f32 {
+    return (a.x * b.x + a.y * b.y) + a.z * b.z;
+}
+
+// A unit vector along `v`, or `otherwise` where there is none.
+fn normalize_or(v: vec3f, otherwise: vec3f) -> vec3f {
+    let squared = dot3(v, v);
+    // False for what is no number.
+    if (squared > 0.0 && squared <= 3.4028234e38) {
+        return v * (1.0 / sqrt(squared));
+    }
+    return otherwise;
+}
+
+// A unit vector square to `along`, made from the axis least along it.
+fn reference_normal(along: vec3f) -> vec3f {
+    let size = abs(along);
+    var axis = vec3f(0.0, 0.0, 1.0);
+    if (size.x <= size.y && size.x <= size.z) {
+        axis = vec3f(1.0, 0.0, 0.0);
+    } else if (size.y <= size.z) {
+        axis = vec3f(0.0, 1.0, 0.0);
+    }
+    return normalize_or(axis - along * dot3(axis, along), vec3f(1.0, 0.0, 0.0));
+}
+
+// Carries a normal by the smallest rotation from one unit vector to another.
+fn transport(normal: vec3f, before: vec3f, after: vec3f) -> vec3f {
+    let one_plus_cos = 1.0 + dot3(before, after);
+    var turned = normal;
+    if (one_plus_cos > 1e-6) {
+        turned = normal - (before + after) * (dot3(normal, after) / one_plus_cos);
+    }
+    return normalize_or(turned - after * dot3(turned, after), reference_normal(after));
+}
+
+fn to_world(v: vec3f) -> vec3f {
+    return (instant.turn_x.xyz * v.x + instant.turn_y.xyz * v.y) + instant.turn_z.xyz * v.z;
+}
+
+@compute @workgroup_size(64)
+fn carry_frames(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    let w = id.x + id.y * groups.x * 64u;
+    if (w >= instant.counts.z) {
+        return;
+    }
+    let wisp = wisps[w];
+    let points = instant.counts.y;
+    var tangent = to_world(wisp.tangent);
+    var normal = to_world(wisp.normal);
+    var a = guide_point(wisp.guides.x, 0u);
+    var b = guide_point(wisp.guides.y, 0u);
+    var c = guide_point(wisp.guides.z, 0u);
+    var before = (a + b + c) / 3.0;
+    var here = before;
+    for (var p = 0u; p < points; p++) {
+        // The point after this one; at the tip, this one.
+        let after = min(p + 1u, points - 1u);
+        let next_a = guide_point(wisp.guides.x, after);
+        let next_b = guide_point(wisp.guides.y, after);
+        let next_c = guide_point(wisp.guides.z, after);
+        let next = (next_a + next_b + next_c) / 3.0;
+        if (p > 0u) {
+            let turned_to = normalize_or(next - before, tangent);
+            normal = transport(normal, tangent, turned_to);
+            tangent = turned_to;
+        }
+        curves[w * points + p] =
+            CurvePoint(vec4f(a, normal.x), vec4f(b, normal.y), vec4f(c, normal.z), vec4f(tangent, 0.0));
+        before = here;
+        here = next;
+        a = next_a;
+        b = next_b;
+        c = next_c;
+    }
+}

@@ -1,0 +1,247 @@
+//! Strands from guides on the device: a frame uploads guides, not strands.
+//!
+//! In step with [`lovelock_groom::interpolate`]. One kernel carries the moving frame of each wisp along its guides, a thread a
+//! wisp; the other places the strands, a thread a point. What does not change from frame to frame goes up once a hairstyle.
+
+#[cfg(test)]
+mod tests;
+
+use std::sync::Arc;
+
+use bytemuck::{Pod, Zeroable};
+use glam::Vec4;
+use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, Kernel, ShaderPart, ShaderSource, wgpu};
+use lovelock_groom::{GuideFrame, Hairstyle, WispCurve};
+
+const FRAMES: ShaderPart =
+    ShaderPart { name: "crates/render/src/gpu/interpolate/frames.wgsl", text: include_str!("frames.wgsl") };
+const STRANDS: ShaderPart =
+    ShaderPart { name: "crates/render/src/gpu/interpolate/strands.wgsl", text: include_str!("strands.wgsl") };
+
+/// Twin of `Instant` in frames.wgsl.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+struct Instant {
+    turn: [Vec4; 3],
+    counts: [u32; 4],
+}
+
+/// Twin of `Wisp` in frames.wgsl.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+struct Wisp {
+    guides: [u32; 4],
+    tangent: Vec4,
+    normal: Vec4,
+}
+
+/// Twin of `Strand` in strands.wgsl.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+struct Strand {
+    weights: [f32; 3],
+    wisp: u32,
+}
+
+/// Twin of `CurvePoint` in frames.wgsl; never read on the processor.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+struct CurvePoint([f32; 16]);
+
+/// The composed shaders with their labels.
+pub(in crate::gpu) fn shaders() -> Vec<(String, ShaderSource)> {
+    vec![("interpolate".to_owned(), ShaderSource::new(&[FRAMES, STRANDS]))]
+}
+
+/// The kernels that move strands with their guides, and what they keep of a hairstyle.
+#[derive(Debug)]
+pub(in crate::gpu) struct Interpolation {
+    carry_frames: Kernel,
+    place_points: Kernel,
+    style: Option<Arc<Hairstyle>>,
+    instant: wgpu::Buffer,
+    guides: GrowBuffer<f32>,
+    wisps: GrowBuffer<Wisp>,
+    curves: GrowBuffer<CurvePoint>,
+    strands: GrowBuffer<Strand>,
+    strand_of: GrowBuffer<u32>,
+    places: GrowBuffer<Vec4>,
+}
+
+impl Interpolation {
+    /// Compiles the kernels; there is no hairstyle yet.
+    ///
+    /// # Errors
+    /// A shader that does not compile, by file and line.
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        let source = ShaderSource::new(&[FRAMES, STRANDS]);
+        let (device, storage) = (&gpu.device, wgpu::BufferUsages::STORAGE);
+        Ok(Self {
+            carry_frames: Kernel::new(gpu, "carry frames", &source, "carry_frames")?,
+            place_points: Kernel::new(gpu, "place points", &source, "place_points")?,
+            style: None,
+            instant: device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("instant of guides"),
+                size: size_of::<Instant>() as u64,
+                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            }),
+            guides: GrowBuffer::new(device, "guides", storage),
+            wisps: GrowBuffer::new(device, "wisps", storage),
+            curves: GrowBuffer::new(device, "curves of wisps", storage),
+            strands: GrowBuffer::new(device, "strands", storage),
+            strand_of: GrowBuffer::new(device, "strand of point", storage),
+            places: GrowBuffer::new(device, "places along guides", storage),
+        })
+    }
+
+    /// Encodes writing every strand point of `style`, world space, metres, into `points`: an `array<vec4f>` whose last
+    /// components become 0. Guides are handed to the queue at once, so one frame may be encoded a submission.
+    ///
+    /// Nothing is encoded for a hairstyle without strands.
+    ///
+    /// # Errors
+    /// Guides that are not those of the hairstyle; a hairstyle that contradicts itself, or that needs more than the device
+    /// gives to one buffer; `points` too small for it.
+    pub fn run(
+        &mut self,
+        gpu: &Gpu,
+        commands: &mut Commands,
+        style: &Arc<Hairstyle>,
+        frame: &GuideFrame,
+        points: &wgpu::Buffer,
+    ) -> Result<(), GpuError> {
+        let count = style.strands.points();
+        if count == 0 {
+            return Ok(());
+        }
+        self.follow(gpu, style)?;
+        check_guides(style, frame)?;
+        let needed = count as u64 * size_of::<Vec4>() as u64;
+        if points.size() < needed {
+            return Err(GpuError::Refused(format!(
+                "the buffer of the strands has {} bytes; they need {needed}",
+                points.size()
+            )));
+        }
+
+        let guides = &frame.guides;
+        let bytes_of_axis = size_of_val(guides.x.as_slice()) as u64;
+        self.guides.reserve(&gpu.device, 3 * guides.x.len());
+        for (offset, axis) in (0..).zip([&guides.x, &guides.y, &guides.z]) {
+            gpu.queue.write_buffer(self.guides.raw(), offset * bytes_of_axis, bytemuck::cast_slice(axis));
+        }
+        let turn = frame.world_from_head.matrix3;
+        let instant = Instant {
+            turn: [turn.x_axis, turn.y_axis, turn.z_axis].map(|column| column.extend(0.0)),
+            // Each fits, for its buffer fits a binding.
+            counts: [guides.x.len(), guides.points_per_guide, style.wisps.len(), count].map(|n| n as u32),
+        };
+        gpu.queue.write_buffer(&self.instant, 0, bytemuck::bytes_of(&instant));
+
+        let resources = [
+            (0, self.instant.as_entire_binding()),
+            (1, self.guides.raw().as_entire_binding()),
+            (2, self.wisps.raw().as_entire_binding()),
+            (3, self.curves.raw().as_entire_binding()),
+            (4, self.strands.raw().as_entire_binding()),
+            (5, self.strand_of.raw().as_entire_binding()),
+            (6, self.places.raw().as_entire_binding()),
+            (7, points.as_entire_binding()),
+        ];
+        let carry = self.carry_frames.bind(gpu, &resources);
+        let place = self.place_points.bind(gpu, &resources);
+        commands.compute("interpolate", |pass| {
+            self.carry_frames.run(pass, &carry, style.wisps.len() as u64);
+            self.place_points.run(pass, &place, count as u64);
+        });
+        Ok(())
+    }
+
+    /// Bytes that are held on the device.
+    pub fn bytes(&self) -> u64 {
+        let buffers = [
+            self.guides.raw(),
+            self.wisps.raw(),
+            self.curves.raw(),
+            self.strands.raw(),
+            self.strand_of.raw(),
+            self.places.raw(),
+        ];
+        self.instant.size() + buffers.iter().map(|buffer| buffer.size()).sum::<u64>()
+    }
+
+    /// Sends up what belongs to the hairstyle, where it is another one than before.
+    fn follow(&mut self, gpu: &Gpu, style: &Arc<Hairstyle>) -> Result<(), GpuError> {
+        if self.style.as_ref().is_some_and(|old| Arc::ptr_eq(old, style)) {
+            return Ok(());
+        }
+        style.check().map_err(|error| GpuError::Refused(format!("the hairstyle: {error}")))?;
+        let (device, queue) = (&gpu.device, &gpu.queue);
+        let set = &style.strands;
+        let curve_points = style.wisps.len() * style.guides.points_per_guide;
+        fits(gpu, "guides", 3 * style.guides.x.len(), size_of::<f32>())?;
+        fits(gpu, "wisps", style.wisps.len(), size_of::<Wisp>())?;
+        fits(gpu, "curves of the wisps", curve_points, size_of::<CurvePoint>())?;
+        fits(gpu, "strands", set.count(), size_of::<Strand>())?;
+        fits(gpu, "strand points", set.points(), size_of::<Vec4>())?;
+
+        let wisps: Vec<_> = style.wisps.iter().map(|wisp| root_of(style, wisp)).collect();
+        let strands = set.weights.iter().zip(&set.wisp);
+        let strands: Vec<_> = strands.map(|(&weights, &wisp)| Strand { weights, wisp }).collect();
+        let strand_of: Vec<u32> = (0..)
+            .zip(set.first_point.windows(2))
+            .flat_map(|(strand, ends)| (ends[0]..ends[1]).map(move |_| strand))
+            .collect();
+        let links = (style.guides.points_per_guide - 1) as f32;
+        let places: Vec<_> = (0..set.points())
+            .map(|i| {
+                // Within the guides, and 0 for what is no number: shaders need not agree on that.
+                let along = set.guide_param[i].max(0.0).min(links);
+                Vec4::new(set.offset_normal[i], set.offset_binormal[i], set.offset_tangent[i], along)
+            })
+            .collect();
+        self.style = None;
+        self.wisps.write(device, queue, &wisps);
+        self.curves.reserve(device, curve_points);
+        self.strands.write(device, queue, &strands);
+        self.strand_of.write(device, queue, &strand_of);
+        self.places.write(device, queue, &places);
+        self.style = Some(Arc::clone(style));
+        Ok(())
+    }
+}
+
+/// A wisp's guides and its frame at the root, at rest.
+fn root_of(style: &Hairstyle, wisp: &lovelock_groom::Wisp) -> Wisp {
+    let [normal, _, tangent] = WispCurve::root_frame(&style.guides, wisp);
+    let [a, b, c] = wisp.guides;
+    Wisp { guides: [a, b, c, 0], tangent: tangent.extend(0.0), normal: normal.extend(0.0) }
+}
+
+/// Refuses guides that the hairstyle does not have.
+fn check_guides(style: &Hairstyle, frame: &GuideFrame) -> Result<(), GpuError> {
+    let (wanted, found) = (&style.guides, &frame.guides);
+    let lengths = [&found.x, &found.y, &found.z].map(Vec::len);
+    if found.points_per_guide == wanted.points_per_guide && lengths == [wanted.x.len(); 3] {
+        return Ok(());
+    }
+    Err(GpuError::Refused(format!(
+        "found {} guides of {} points, but the hairstyle has {} guides of {} points",
+        found.count(),
+        found.points_per_guide,
+        wanted.count(),
+        wanted.points_per_guide
+    )))
+}
+
+/// Refuses what does not fit one binding.
+fn fits(gpu: &Gpu, what: &str, count: usize, bytes_each: usize) -> Result<(), GpuError> {
+    let (needed, limit) = (count as u64 * bytes_each as u64, gpu.most_storage_bytes());
+    if needed > limit || u32::try_from(count).is_err() {
+        return Err(GpuError::Refused(format!(
+            "the {what} of this hairstyle need {needed} bytes in one buffer; the device gives {limit}"
+        )));
+    }
+    Ok(())
+}
