@@ -1,5 +1,5 @@
-//! Every method on the GPU against its definition on the processor: transmittance at seeded points, and the error against
-//! every fragment sorted.
+//! Every method on the GPU against its definition on the processor: transmittance at seeded points with every filter, and
+//! the error against every fragment sorted.
 
 mod common;
 #[path = "common/gpu.rs"]
@@ -11,30 +11,48 @@ use common::Random;
 use glam::Vec3;
 use gpu::{Built, device};
 use grooms::Groom;
-use lovelock_groom::Strands;
-use lovelock_shadow::{CpuShadow, ShadowMethod, ShadowSettings, TexelFilter, cpu_shadow};
+use lovelock_groom::{Preset, Strands};
+use lovelock_shadow::voxel_map::{MapExtent, VoxelDeposit, VoxelFilter};
+use lovelock_shadow::{ShadowInput, ShadowMethod, ShadowSettings, TexelFilter, cpu_shadow};
 
 /// Points that are asked.
 const POINTS: usize = 4096;
 
-/// Differences of transmittance between the two, sorted. A byte's rounding is 0.002.
-struct Differences(Vec<f32>);
+/// Differences of transmittance between the two, sorted.
+#[derive(Debug)]
+struct Differences {
+    /// 99 of 100 stay below.
+    p99: f32,
+    most: f32,
+}
 
 impl Differences {
     fn of(a: &[f32], b: &[f32]) -> Self {
         let mut all: Vec<_> = a.iter().zip(b).map(|(a, b)| (a - b).abs()).collect();
         all.sort_by(f32::total_cmp);
-        Self(all)
+        Self { p99: all[all.len() * 99 / 100], most: all[all.len() - 1] }
     }
 
-    fn p99(&self) -> f32 {
-        self.0[self.0.len() * 99 / 100]
-    }
-
-    fn most(&self) -> f32 {
-        self.0[self.0.len() - 1]
+    fn within(&self, tolerance: &Self) -> bool {
+        self.p99 <= tolerance.p99 && self.most <= tolerance.most
     }
 }
+
+/// How near answers of the GPU come to those of the definition. Half a step of their 8 bits is 0.00196. Measured: 0.00196 at
+/// most over 99 of 100 points, and 0.00206 over all, but for one case.
+fn tolerance(method: ShadowMethod, groom: &Groom) -> Differences {
+    let most = match (method, groom.name) {
+        // Strands lie straight across the light here. Where a texel's fragments all have one depth, a point at just this depth
+        // is lit by the definition; its range in 20 bits is a little wider, and the point lies within. Measured: 0.137.
+        (ShadowMethod::OccupancyMaps, "slab") => 0.15,
+        _ => 0.0025,
+    };
+    Differences { p99: 0.0021, most }
+}
+
+/// How far the error against `exact` may be from that of the definition. Measured: 0.00074 where that is 0, by rounding to
+/// 8 bits; 0.00050 elsewhere.
+const EXCESS: f32 = 0.001;
 
 /// Points of the hair, near it and beside it.
 fn points(strands: &Strands, seed: u64) -> Vec<Vec3> {
@@ -52,35 +70,18 @@ fn points(strands: &Strands, seed: u64) -> Vec<Vec3> {
         .collect()
 }
 
-fn ask(shadow: &dyn CpuShadow, at: &[Vec3]) -> Vec<f32> {
-    at.iter().map(|&p| shadow.transmittance(p)).collect()
+/// The definition's answers.
+fn defined(method: ShadowMethod, input: &ShadowInput, settings: &ShadowSettings, at: &[Vec3]) -> Vec<f32> {
+    let mut map = cpu_shadow(method);
+    map.build(input, settings).expect("fits");
+    at.iter().map(|&p| map.transmittance(p)).collect()
 }
 
-#[allow(dead_code)]
 fn rmse(a: &[f32], b: &[f32]) -> f32 {
     let sum: f64 = a.iter().zip(b).map(|(a, b)| f64::from(a - b).powi(2)).sum();
     (sum / a.len() as f64).sqrt() as f32
 }
 
-fn one_strand() -> Groom {
-    let line = (0..30).map(|i| Vec3::new(0.002 * i as f32, 0.1 - 0.005 * i as f32, 0.001 * i as f32));
-    Groom { name: "one strand", strands: common::strands(&[line.collect()]), width: 2e-3 }
-}
-
-fn all_grooms() -> Vec<Groom> {
-    let mut all = vec![one_strand(), Groom::slab(), Groom::tuft()];
-    all.push(Groom::preset(lovelock_groom::Preset::Smooth));
-    all.extend(Groom::straight());
-    all
-}
-
-fn methods() -> impl Iterator<Item = ShadowMethod> {
-    ShadowMethod::ALL.iter().copied().filter(|m| {
-        !matches!(m, ShadowMethod::VoxelMap | ShadowMethod::DensityClustering | ShadowMethod::None)
-    })
-}
-
-#[allow(dead_code)]
 fn with_filter(filter: TexelFilter) -> ShadowSettings {
     let mut settings = ShadowSettings::default();
     settings.opacity_maps.filter = filter;
@@ -91,26 +92,136 @@ fn with_filter(filter: TexelFilter) -> ShadowSettings {
     settings
 }
 
+/// Settings that change how a map is read or, of the voxel map, made.
+fn variants(method: ShadowMethod) -> Vec<ShadowSettings> {
+    match method {
+        ShadowMethod::None => vec![ShadowSettings::default()],
+        ShadowMethod::VoxelMap => {
+            let mut all = Vec::new();
+            for filter in [VoxelFilter::Centred, VoxelFilter::Paper] {
+                for (deposit, extent) in
+                    [(VoxelDeposit::Length, MapExtent::Fit), (VoxelDeposit::PointCount, MapExtent::Paper)]
+                {
+                    let mut settings = ShadowSettings::default();
+                    settings.voxel_map.filter = filter;
+                    settings.voxel_map.deposit = deposit;
+                    settings.voxel_map.extent = extent;
+                    all.push(settings);
+                }
+            }
+            all
+        }
+        _ => TexelFilter::ALL.map(with_filter).to_vec(),
+    }
+}
+
 #[test]
-fn transmittance_is_that_of_the_definition() {
+fn transmittance_is_that_of_the_definition_with_every_filter() {
     let Some(gpu) = device() else { return };
-    for groom in all_grooms() {
-        let input = groom.input();
-        let at = points(&groom.strands, 1);
-        for method in methods() {
-            let settings = ShadowSettings::default();
-            let mut cpu = cpu_shadow(method);
-            cpu.build(&input, &settings).expect("fits");
-            let mut built = Built::new(gpu, method, &input, &settings);
-            let found = built.ask(&at);
-            let differences = Differences::of(&ask(cpu.as_ref(), &at), &found);
-            println!(
-                "{}, {method}: p99 {:.4}, most {:.4}",
-                groom.name,
-                differences.p99(),
-                differences.most()
+    let grooms = Groom::for_both_backends();
+    for &method in ShadowMethod::ALL {
+        let mut built = Built::empty(gpu, method);
+        for groom in &grooms {
+            let at = points(&groom.strands, 1);
+            let mut shaded = 0;
+            for (variant, settings) in variants(method).iter().enumerate() {
+                let defined = defined(method, &groom.input(), settings, &at);
+                built.build(0, &groom.input(), settings).expect("it fits");
+                let found = Differences::of(&defined, &built.ask(&at));
+                println!("{method}, {variant}, {}: {:.5} {:.5}", groom.name, found.p99, found.most);
+                assert!(
+                    found.within(&tolerance(method, groom)),
+                    "{}, {method}, {variant}: {found:?}",
+                    groom.name
+                );
+                shaded += defined.iter().filter(|t| **t < 0.9).count();
+            }
+            // Controls: there is shadow to speak of.
+            assert_eq!(
+                shaded > POINTS / 100,
+                method != ShadowMethod::None,
+                "{}, {method}: {shaded}",
+                groom.name
             );
-            assert!(differences.p99() < 0.004, "{}, {method}: {}", groom.name, differences.p99());
+        }
+    }
+}
+
+#[test]
+fn the_error_against_every_fragment_sorted_is_that_of_the_definition() {
+    let Some(gpu) = device() else { return };
+    let settings = ShadowSettings::default();
+    for groom in Groom::for_both_backends() {
+        let at = points(&groom.strands, 2);
+        let truth = defined(ShadowMethod::Exact, &groom.input(), &settings, &at);
+        for &method in ShadowMethod::ALL {
+            let definition = rmse(&defined(method, &groom.input(), &settings, &at), &truth);
+            let on_gpu = rmse(&Built::new(gpu, method, &groom.input(), &settings).ask(&at), &truth);
+            println!("{method}, {}: {definition:.5}, excess {:.5}", groom.name, on_gpu - definition);
+            // Both ways: what is wrong can come nearer by chance.
+            assert!(
+                (on_gpu - definition).abs() <= EXCESS,
+                "{}, {method}: {on_gpu}, of the definition {definition}",
+                groom.name
+            );
+        }
+    }
+}
+
+/// A strand's points in the middle fifth of the hair's extent along the light are left out, with the rest of the strand.
+fn without_a_slab(groom: &Groom) -> Strands {
+    let light = groom.input().light;
+    let along = |p: Vec3| light.light_from_world(p).x;
+    let hair = &groom.strands;
+    let all = (0..hair.points()).map(|i| along(hair.point(i)));
+    let (low, high) = all.fold((f32::MAX, f32::MIN), |(low, high), c| (low.min(c), high.max(c)));
+    let (first, last) = (low + 0.4 * (high - low), low + 0.6 * (high - low));
+    let mut kept: Vec<Vec<Vec3>> = Vec::new();
+    for ends in hair.first_point.windows(2) {
+        let strand = (ends[0] as usize..ends[1] as usize).map(|i| hair.point(i));
+        // Those before and behind it stay, as strands of their own.
+        for part in strand.collect::<Vec<_>>().split(|p| (first..last).contains(&along(*p))) {
+            kept.push(part.to_vec());
+        }
+    }
+    common::strands(&kept)
+}
+
+/// What each comparison must find out.
+#[test]
+fn a_moved_light_a_dropped_slab_and_a_swapped_method_are_found_out() {
+    let Some(gpu) = device() else { return };
+    let settings = ShadowSettings::default();
+    for groom in [Groom::slab(), Groom::tuft(), Groom::preset(Preset::Smooth)] {
+        let at = points(&groom.strands, 3);
+        let less = without_a_slab(&groom);
+        let exact = defined(ShadowMethod::Exact, &groom.input(), &settings, &at);
+        let methods = &ShadowMethod::ALL[1..];
+        for (i, &method) in methods.iter().enumerate() {
+            let definition = defined(method, &groom.input(), &settings, &at);
+            let mut built = Built::new(gpu, method, &groom.input(), &settings);
+            let texel = built.shadow.report(0).cell_size;
+            let moved: Vec<_> = at.iter().map(|&p| p + texel * groom.input().light.y).collect();
+            let moved = built.ask(&moved);
+            built.build(0, &ShadowInput { strands: &less, ..groom.input() }, &settings).expect("it fits");
+            let dropped = built.ask(&at);
+            let other = methods[(i + 1) % methods.len()];
+            let swapped = Built::new(gpu, other, &groom.input(), &settings).ask(&at);
+            for (what, wrong) in [("moved", moved), ("dropped", dropped), ("swapped", swapped)] {
+                let found = Differences::of(&definition, &wrong);
+                println!("{method}, {}, {what}: {found:?}", groom.name);
+                assert!(
+                    !found.within(&tolerance(method, &groom)),
+                    "{method}, {}, {what}: {found:?}",
+                    groom.name
+                );
+                if what != "swapped" {
+                    let (right, wrong) = (rmse(&definition, &exact), rmse(&wrong, &exact));
+                    let by = (wrong - right).abs();
+                    println!("   {by}");
+                    assert!(by > EXCESS, "{method}, {}, {what}: {wrong}, {right}", groom.name);
+                }
+            }
         }
     }
 }

@@ -16,6 +16,7 @@ use crate::methods::none;
 use crate::methods::occupancy_maps::Occupancy;
 use crate::methods::opacity_maps::Slices;
 use crate::methods::texels::TexelShadow;
+use crate::methods::voxel_map::GpuVoxelMap;
 use crate::{LightFrame, ShadowError, ShadowMethod, ShadowReport, ShadowSettings};
 
 pub(crate) use ask::Ask;
@@ -118,6 +119,9 @@ pub trait GpuShadow: Debug + Send {
         Ok(false)
     }
 
+    /// Gives the memory of all maps back; they must be built again before they are asked.
+    fn forget(&mut self, _gpu: &Gpu) {}
+
     /// What the last build of a slot cost and met, as far as the processor knows.
     fn report(&self, slot: usize) -> ShadowReport;
 
@@ -146,12 +150,12 @@ pub enum GpuShadowError {
 pub fn gpu_shadow(method: ShadowMethod, gpu: &Gpu) -> Result<Box<dyn GpuShadow>, GpuError> {
     Ok(match method {
         ShadowMethod::None => Box::new(none::GpuNoShadow::new(gpu)?),
+        ShadowMethod::VoxelMap => Box::new(GpuVoxelMap::new(gpu)?),
         ShadowMethod::OpacityMaps => Box::new(TexelShadow::<Slices>::new(gpu)?),
         ShadowMethod::DeepOpacityMaps => Box::new(TexelShadow::<Layers>::new(gpu)?),
         ShadowMethod::DensityClustering => Box::new(TexelShadow::<Clustering>::new(gpu)?),
         ShadowMethod::OccupancyMaps => Box::new(TexelShadow::<Occupancy>::new(gpu)?),
         ShadowMethod::Exact => Box::new(TexelShadow::<Sorted>::new(gpu)?),
-        _ => return Err(GpuError::Refused(format!("{method} is not there yet"))),
     })
 }
 
@@ -161,12 +165,12 @@ pub fn all_shaders() -> Vec<(String, ShaderSource)> {
     for &method in ShadowMethod::ALL {
         let sources = match method {
             ShadowMethod::None => none::GpuNoShadow::shaders(),
+            ShadowMethod::VoxelMap => GpuVoxelMap::shaders(),
             ShadowMethod::OpacityMaps => TexelShadow::<Slices>::shaders(),
             ShadowMethod::DeepOpacityMaps => TexelShadow::<Layers>::shaders(),
             ShadowMethod::DensityClustering => TexelShadow::<Clustering>::shaders(),
             ShadowMethod::OccupancyMaps => TexelShadow::<Occupancy>::shaders(),
             ShadowMethod::Exact => TexelShadow::<Sorted>::shaders(),
-            _ => Vec::new(),
         };
         all.extend(sources.into_iter().map(|(label, source)| (format!("{method}: {label}"), source)));
     }

@@ -5,9 +5,10 @@ use std::sync::{Arc, OnceLock};
 
 use glam::Vec3;
 use lovelock_gpu::{Gpu, GrowBuffer, PassTime, PassTimer, read_buffer, wgpu};
+use lovelock_groom::Strands;
 use lovelock_shadow::{
-    Bounds, GpuShadow, GpuShadowInput, GpuStrands, GpuTargets, ShadowError, ShadowInput, ShadowMethod,
-    ShadowSettings, gpu_shadow, voxel_map::longest_strand,
+    Bounds, GpuShadow, GpuShadowError, GpuShadowInput, GpuStrands, GpuTargets, ShadowError, ShadowInput,
+    ShadowMethod, ShadowSettings, gpu_shadow, voxel_map::longest_strand,
 };
 
 /// The device that all tests of a process share; none where there is no adapter.
@@ -24,7 +25,7 @@ pub fn device() -> Option<&'static Arc<Gpu>> {
         .as_ref()
 }
 
-fn buffer<T: bytemuck::Pod>(gpu: &Gpu, items: &[T]) -> GrowBuffer<T> {
+pub fn buffer<T: bytemuck::Pod>(gpu: &Gpu, items: &[T]) -> GrowBuffer<T> {
     let mut buffer = GrowBuffer::new(&gpu.device, "test", wgpu::BufferUsages::STORAGE);
     buffer.write(&gpu.device, &gpu.queue, items);
     buffer
@@ -34,7 +35,40 @@ fn padded(p: Vec3) -> [f32; 4] {
     [p.x, p.y, p.z, 0.0]
 }
 
-/// A method with one map.
+/// Strands on the device.
+pub struct Uploaded {
+    points: GrowBuffer<[f32; 4]>,
+    segments: GrowBuffer<u32>,
+}
+
+impl Uploaded {
+    pub fn new(gpu: &Gpu, strands: &Strands) -> Self {
+        let points: Vec<_> = (0..strands.points()).map(|i| padded(strands.point(i))).collect();
+        let ends = strands.first_point.windows(2);
+        let segments: Vec<u32> = ends.flat_map(|ends| ends[0]..ends[1].saturating_sub(1)).collect();
+        Self { points: buffer(gpu, &points), segments: buffer(gpu, &segments) }
+    }
+
+    /// What a build reads.
+    pub fn input(&self, input: &ShadowInput) -> GpuShadowInput<'_> {
+        GpuShadowInput {
+            strands: GpuStrands {
+                points: self.points.raw(),
+                point_count: self.points.len() as u32,
+                segments: self.segments.raw(),
+                segment_count: self.segments.len() as u32,
+            },
+            bounds: Bounds::of_strands(input),
+            longest_strand: longest_strand(input.strands),
+            strand_width: input.strand_width,
+            light: input.light,
+            anchor: input.anchor,
+            maps: input.maps,
+        }
+    }
+}
+
+/// A method with its maps.
 pub struct Built {
     gpu: &'static Arc<Gpu>,
     pub shadow: Box<dyn GpuShadow>,
@@ -43,6 +77,13 @@ pub struct Built {
 }
 
 impl Built {
+    /// A method without a map.
+    pub fn empty(gpu: &'static Arc<Gpu>, method: ShadowMethod) -> Self {
+        let shadow = gpu_shadow(method, gpu).expect("shaders compile");
+        let timer = PassTimer::new(gpu).expect("a timer");
+        Self { gpu, shadow, timer, passes: Vec::new() }
+    }
+
     /// Builds the map of `input` on the device.
     pub fn try_new(
         gpu: &'static Arc<Gpu>,
@@ -50,38 +91,9 @@ impl Built {
         input: &ShadowInput,
         settings: &ShadowSettings,
     ) -> Result<Self, ShadowError> {
-        let strands = input.strands;
-        let points: Vec<_> = (0..strands.points()).map(|i| padded(strands.point(i))).collect();
-        let ends = strands.first_point.windows(2);
-        let segments: Vec<u32> = ends.flat_map(|ends| ends[0]..ends[1].saturating_sub(1)).collect();
-        let (points, segments) = (buffer(gpu, &points), buffer(gpu, &segments));
-        let input = GpuShadowInput {
-            strands: GpuStrands {
-                points: points.raw(),
-                point_count: points.len() as u32,
-                segments: segments.raw(),
-                segment_count: segments.len() as u32,
-            },
-            bounds: Bounds::of_strands(input),
-            longest_strand: longest_strand(strands),
-            strand_width: input.strand_width,
-            light: input.light,
-            anchor: input.anchor,
-            maps: input.maps,
-        };
-        let shadow = gpu_shadow(method, gpu).expect("shaders compile");
-        let timer = PassTimer::new(gpu).expect("a timer");
-        let mut built = Self { gpu, shadow, timer, passes: Vec::new() };
-        loop {
-            let mut commands = built.timer.begin(gpu, "test");
-            built.shadow.build(0, gpu, &mut commands, &input, settings)?;
-            let commands = commands.finish();
-            built.timer.submit(gpu, commands);
-            gpu.check().expect("the device takes it");
-            if !built.shadow.settle(gpu).expect("it fits") {
-                return Ok(built);
-            }
-        }
+        let mut built = Self::empty(gpu, method);
+        built.build(0, input, settings)?;
+        Ok(built)
     }
 
     /// As [`Built::try_new`], of a map that fits.
@@ -94,24 +106,66 @@ impl Built {
         Self::try_new(gpu, method, input, settings).expect("it fits")
     }
 
-    /// The map's words.
+    /// Builds the map of a slot, and says how often it took.
+    pub fn build(
+        &mut self,
+        slot: usize,
+        input: &ShadowInput,
+        settings: &ShadowSettings,
+    ) -> Result<u32, ShadowError> {
+        let strands = Uploaded::new(self.gpu, input.strands);
+        self.build_from(slot, &strands.input(input), settings)
+    }
+
+    /// As [`Built::build`], of strands that are there.
+    pub fn build_from(
+        &mut self,
+        slot: usize,
+        input: &GpuShadowInput,
+        settings: &ShadowSettings,
+    ) -> Result<u32, ShadowError> {
+        for times in 1..=2 {
+            let mut commands = self.timer.begin(self.gpu, "test");
+            let done = self.shadow.build(slot, self.gpu, &mut commands, input, settings);
+            commands.submit();
+            self.gpu.check().expect("the device takes it");
+            done?;
+            match self.shadow.settle(self.gpu) {
+                Ok(false) => return Ok(times),
+                Ok(true) => {}
+                Err(GpuShadowError::Shadow(error)) => return Err(error),
+                Err(error) => panic!("{error}"),
+            }
+        }
+        panic!("the second build has the room that the first one asked for");
+    }
+
+    /// The words of the first map.
     pub fn words(&self) -> Vec<u32> {
         self.shadow.map_words(0, self.gpu).expect("read back")
     }
 
-    /// Transmittance at some points, rounded to 8 bits as pictures have it.
+    /// Transmittance at some points by the first map, rounded to 8 bits as pictures have it.
     pub fn ask(&mut self, at: &[Vec3]) -> Vec<f32> {
+        let words = self.ask_slots(&[0], at);
+        words.into_iter().map(|word| (word & 0xff) as f32 / 255.0).collect()
+    }
+
+    /// The words of answers that several maps give in turn.
+    pub fn ask_slots(&mut self, slots: &[usize], at: &[Vec3]) -> Vec<u32> {
         let points: Vec<_> = at.iter().map(|&p| padded(p)).collect();
         let (points, out) = (buffer(self.gpu, &points), buffer(self.gpu, &vec![0_u32; at.len()]));
         let targets =
             GpuTargets { points: points.raw(), stride: 1, count: at.len() as u32, out: out.raw(), sum: None };
         let mut commands = self.timer.begin(self.gpu, "test");
-        self.shadow.ask(0, self.gpu, &mut commands, &targets);
-        let commands = commands.finish();
-        self.timer.submit(self.gpu, commands);
+        for &slot in slots {
+            self.shadow.ask(slot, self.gpu, &mut commands, &targets);
+        }
+        commands.submit();
+        self.gpu.check().expect("the device takes it");
         let mut words = vec![0_u32; at.len()];
         read_buffer(self.gpu, out.raw(), &mut words).expect("read back");
         self.passes = self.timer.times(self.gpu);
-        words.into_iter().map(|word| (word & 0xff) as f32 / 255.0).collect()
+        words
     }
 }

@@ -42,6 +42,12 @@ impl Groom {
         Self::of(name, strands)
     }
 
+    /// A strand alone.
+    pub fn one_strand() -> Self {
+        let line = (0..30).map(|i| Vec3::new(0.002 * i as f32, 0.1 - 0.005 * i as f32, 0.001 * i as f32));
+        Self { width: 2e-3, ..Self::of("one strand", strands(&[line.collect()])) }
+    }
+
     /// Straight strands across the light, evenly spread in a box: 0.1 m along it, 0.1 m across.
     pub fn slab() -> Self {
         let light = LightFrame::new(LIGHT);
@@ -86,6 +92,13 @@ impl Groom {
         let file = load_hair(&path).expect("straight.hair is read");
         let style = import(&file, &ImportSettings::default(), &PlainHead.scalp(40)).expect("it is imported");
         Some(Self::at_rest("straight.hair", &style))
+    }
+
+    /// Those that the two backends are compared on.
+    pub fn for_both_backends() -> Vec<Self> {
+        let mut all = vec![Self::one_strand(), Self::slab(), Self::tuft(), Self::preset(Preset::Smooth)];
+        all.extend(Self::straight());
+        all
     }
 
     pub fn all() -> Vec<Self> {

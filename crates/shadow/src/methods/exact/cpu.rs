@@ -39,6 +39,14 @@ fn count_before(fragments: &[Fragment], depth: f32) -> usize {
 }
 
 impl ExactMap {
+    /// The fragments of a texel of the last build, sorted by depth, each with the optical depth up to and including itself;
+    /// none before the first build and beside the map.
+    pub fn fragments(&self, column: u32, row: u32) -> &[Fragment] {
+        let Some(frame) = self.frame() else { return &[] };
+        let centre = Vec3::new(column as f32 + 0.5, row as f32 + 0.5, 0.0);
+        self.fragments_at(frame.world_from_texel(centre)).0
+    }
+
     /// Fragments before a point (world space, metres) in the texel that it lies in: how deep in the hair it is. 0 beside
     /// the map and before the first build.
     pub fn fragments_before(&self, p: Vec3) -> usize {

@@ -53,6 +53,17 @@ impl VoxelMap {
         self.built.as_ref().map(|built| &built.lattice)
     }
 
+    /// Optical depth, in steps of 1/4096, at the front and at the back face of a cell of the last build, the light's axis
+    /// first; `None` before the first build and outside the window.
+    pub fn faces(&self, [i, j, k]: [u32; 3]) -> Option<[u16; 2]> {
+        let built = self.built.as_ref()?;
+        if [i, j, k].iter().any(|c| *c >= built.layout.resolution) {
+            return None;
+        }
+        let word = built.lookup()?.cell_anywhere(built.layout.address(i, j, k) as usize);
+        Some([word as u16, (word >> 16) as u16])
+    }
+
     fn build_with(&mut self, input: &ShadowInput, settings: &ShadowSettings, width: Width) {
         let bounds = bounds(width, input);
         let lattice = Lattice::new(input, &settings.voxel_map, &bounds);

@@ -1,12 +1,7 @@
-// Sorts the fragments of a texel by depth, then by weight, so that no order is left to chance; weights become running sums.
+// Sorts the fragments of a texel, where they are few; weights become running sums.
 
 // Longer lists are sorted in a heap.
 const SHORT: u32 = 24u;
-
-fn lies_before(a: vec2u, b: vec2u) -> bool {
-    // Depths are not negative: their bits are ordered as they are.
-    return a.x < b.x || (a.x == b.x && a.y < b.y);
-}
 
 // Lets the fragment at `top` of the heap that begins at `first` and has `count` fragments sink to its place.
 fn sink(first: u32, count: u32, top: u32) {
@@ -26,10 +21,12 @@ fn sink(first: u32, count: u32, top: u32) {
 }
 
 fn texel_pass(texel: u32) {
-    let end = min(atomicLoad(&map[texel * 2u + 1u]), list_room());
-    let start = min(atomicLoad(&map[texel * 2u]), end);
-    let first = LIST_HEAD + start;
-    let count = end - start;
+    let own_list = list_of(texel);
+    let first = own_list.x;
+    let count = own_list.y;
+    if (count > LONG) {
+        return;
+    }
     if (count <= SHORT) {
         for (var i = 1u; i < count; i++) {
             let own = list[first + i];
@@ -53,9 +50,7 @@ fn texel_pass(texel: u32) {
     }
     var sum = 0u;
     for (var i = 0u; i < count; i++) {
-        let more = sum + list[first + i].y;
-        // Stops at the largest number: after three million fragments at least.
-        sum = select(more, 0xffffffffu, more < sum);
+        sum = sum_of(sum, list[first + i].y);
         list[first + i].y = sum;
     }
 }

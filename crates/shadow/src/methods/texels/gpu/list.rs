@@ -82,6 +82,13 @@ impl List {
         self.found
     }
 
+    /// Its words, the head included.
+    pub fn words(&self, gpu: &Gpu) -> Result<Vec<u32>, GpuError> {
+        let mut words = vec![0; bytes(self.found).min(self.buffer.bytes()) as usize / 4];
+        read_buffer(gpu, self.buffer.raw(), &mut words)?;
+        Ok(words)
+    }
+
     /// Makes room as the last build needed it and a little more, or by guess, as far as that may be; encodes emptying it.
     pub fn begin(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, share: Share, segments: u32) {
         let wanted = if self.found == 0 { 2 * u64::from(segments) } else { self.found + self.found / 8 };
