@@ -110,6 +110,7 @@ impl ShadowMethod {
                     SettingInfo::new("seeds", "uniform, toward-light, histogram", id(usual.seeds)),
                     SettingInfo::range("steps", &Clusters::STEPS, usual.steps),
                     SettingInfo::new("deviation", "exact, merged", id(usual.deviation)),
+                    SettingInfo::new("prefiltered", "false, true", usual.prefiltered),
                 ];
                 SettingInfo::texels(usual.resolution, usual.filter).into_iter().chain(own).collect()
             }

@@ -22,6 +22,9 @@ use lovelock_shadow::{
 /// A fragment's weight is a whole number from 1024 on, wrong by at most so much of itself; sums of floats are rounded too.
 const WEIGHT_ROUNDING: f32 = 0.5 / 1024.0 + 1e-5;
 
+/// Where two texels share a fragment, the smaller part is rounded as well: units that a texel's sums may be off by that.
+const SHARE_ROUNDING: f32 = 8.0;
+
 fn one_strand() -> Groom {
     let line = (0..30).map(|i| Vec3::new(0.002 * i as f32, 0.1 - 0.005 * i as f32, 0.001 * i as f32));
     Groom { name: "one strand", strands: common::strands(&[line.collect()]), width: 2e-3 }
@@ -164,9 +167,8 @@ impl Apart {
             let expected = record.map_or_else(|| vec![Bin::default(); found.len()], <[_]>::to_vec);
             texels += usize::from(record.is_some());
             let pairs = || expected.iter().zip(&found);
-            if pairs()
-                .any(|(a, b)| (a.optical_depth - b.optical_depth).abs() > WEIGHT_ROUNDING * a.optical_depth)
-            {
+            let rounded = |of: f32| WEIGHT_ROUNDING * of + SHARE_ROUNDING * both.unit;
+            if pairs().any(|(a, b)| (a.optical_depth - b.optical_depth).abs() > rounded(a.optical_depth)) {
                 other += 1;
                 continue;
             }
@@ -184,9 +186,12 @@ impl Apart {
         }
     }
 
-    /// Measured on all hairstyles: at most 0.0009 of the texels (8 clusters from a histogram on `smooth`), and 0.0004 widths.
-    fn is_in_step(&self) -> bool {
-        self.other_hair < 0.002 && self.ends < 0.001
+    /// Measured on all hairstyles with thin lines: at most 0.0009 of the texels, and 0.0004 widths. With pre-filtered ones the
+    /// smaller parts of fragments weigh a few units, rounded: 0.0016, and 0.0043.
+    fn is_in_step(&self, settings: &ShadowSettings) -> bool {
+        let (other_hair, ends) =
+            if settings.density_clustering.prefiltered { (0.004, 0.01) } else { (0.002, 0.001) };
+        self.other_hair < other_hair && self.ends < ends
     }
 }
 
@@ -205,28 +210,36 @@ fn clusters(seeds: ClusterSeeds, deviation: ClusterDeviation, steps: u32, cluste
     settings
 }
 
+fn thin_lines(mut settings: ShadowSettings) -> ShadowSettings {
+    settings.density_clustering.prefiltered = false;
+    settings
+}
+
 #[test]
 fn bins_lie_where_the_definition_has_them() {
     use ClusterDeviation::{Exact, Merged};
     use ClusterSeeds::{Histogram, TowardLight, Uniform};
+    let usual = clusters(TowardLight, Exact, 1, 4);
     let all = [
-        (TowardLight, Exact, 1, 4),
-        (Uniform, Merged, 1, 4),
-        (Histogram, Exact, 1, 1),
-        (Uniform, Exact, 3, 8),
+        usual,
+        thin_lines(usual),
+        clusters(Uniform, Merged, 1, 4),
+        thin_lines(clusters(Histogram, Exact, 1, 1)),
+        clusters(Uniform, Exact, 3, 8),
+        thin_lines(clusters(Histogram, Merged, 2, 8)),
     ];
     for groom in all_grooms() {
-        for (seeds, deviation, steps, count) in all.into_iter().chain([(Histogram, Merged, 2, 8)]) {
-            let settings = clusters(seeds, deviation, steps, count);
+        for settings in all {
+            let own = settings.density_clustering;
             let Some(mut both) = Both::<Clustering>::new(&groom, &settings) else { return };
             let apart = Apart::of(&both, 0);
-            println!("{}, {seeds:?}, {deviation:?}, {steps} steps, {count}: {apart:?}", groom.name);
-            assert!(apart.is_in_step(), "{}, {settings:?}: {apart:?}", groom.name);
-            assert!(!Apart::of(&both, 1).is_in_step(), "control: by a texel");
-            for texel in both.words.chunks_exact_mut(3 * count as usize) {
+            println!("{}, {own:?}: {apart:?}", groom.name);
+            assert!(apart.is_in_step(&settings), "{}, {own:?}: {apart:?}", groom.name);
+            assert!(!Apart::of(&both, 1).is_in_step(&settings), "control: by a texel");
+            for texel in both.words.chunks_exact_mut(3 * own.clusters as usize) {
                 texel[2] = 0;
             }
-            assert!(!Apart::of(&both, 0).is_in_step(), "control: without the first bin");
+            assert!(!Apart::of(&both, 0).is_in_step(&settings), "control: without the first bin");
         }
     }
 }
@@ -236,14 +249,17 @@ fn bins_of_other_settings_are_found_out() {
     use ClusterDeviation::{Exact, Merged};
     use ClusterSeeds::{Histogram, TowardLight, Uniform};
     let groom = Groom::tuft();
-    let usual = clusters(TowardLight, Exact, 1, 4);
+    let usual = thin_lines(clusters(TowardLight, Exact, 1, 4));
     for (seeds, deviation, steps) in
         [(Uniform, Exact, 1), (Histogram, Exact, 1), (TowardLight, Merged, 1), (TowardLight, Exact, 2)]
     {
-        let other = clusters(seeds, deviation, steps, 4);
+        let other = thin_lines(clusters(seeds, deviation, steps, 4));
         let Some(both) = Both::<Clustering>::of_two(&groom, &usual, &other) else { return };
-        assert!(!Apart::of(&both, 0).is_in_step(), "{seeds:?}, {deviation:?}, {steps}");
+        assert!(!Apart::of(&both, 0).is_in_step(&usual), "{seeds:?}, {deviation:?}, {steps}");
     }
+    let other = clusters(TowardLight, Exact, 1, 4);
+    let both = Both::<Clustering>::of_two(&groom, &usual, &other).expect("a device");
+    assert!(!Apart::of(&both, 0).is_in_step(&other), "other lines");
 }
 
 #[test]

@@ -174,6 +174,7 @@ fn maps_that_do_not_fit_are_refused_with_the_number() {
     settings.opacity_maps.resolution = 2048;
     settings.deep_opacity_maps.resolution = 2048;
     settings.density_clustering.resolution = 2048;
+    settings.density_clustering.prefiltered = false;
     settings.occupancy_maps.resolution = 2048;
     settings.exact.resolution = 2048;
     settings.exact.memory_limit_bytes = 1 << 30;

@@ -54,7 +54,7 @@ fn counted_by_exact(input: &ShadowInput) -> u64 {
     settings.exact.memory_limit_bytes = 0;
     let error =
         cpu_shadow(ShadowMethod::Exact).build(input, &settings).expect_err("more than the least limit");
-    let ShadowError::TooLarge { needed_bytes, limit_bytes, maps, .. } = error;
+    let ShadowError::TooLarge { needed_bytes, limit_bytes, maps, .. } = error else { panic!("{error}") };
     assert_eq!(limit_bytes, (16 << 20) / u64::from(maps), "{error}");
     needed_bytes
 }
@@ -132,7 +132,7 @@ fn maps_share_the_limit() {
         assert!(exact.report().samples > 0);
     }
     let error = exact.build(&ShadowInput { maps: 3, ..input(&hair) }, &settings).expect_err("three do not");
-    let ShadowError::TooLarge { needed_bytes, limit_bytes, maps, .. } = error;
+    let ShadowError::TooLarge { needed_bytes, limit_bytes, maps, .. } = error else { panic!("{error}") };
     assert_eq!((limit_bytes, maps), (settings.exact.memory_limit_bytes / 3, 3));
     assert!(needed_bytes > limit_bytes && error.to_string().contains("as one of 3 lights"), "{error}");
 

@@ -29,12 +29,13 @@ fn input(strands: &Strands, direction: Vec3, strand_width: f32) -> ShadowInput<'
     ShadowInput { strands, strand_width, light: LightFrame::new(direction), anchor: HEAD, maps: 1 }
 }
 
-/// 64 texels along each edge for every method.
+/// 64 texels along each edge for every method, and thin lines, which lie in one row of texels.
 fn settings(filter: TexelFilter) -> ShadowSettings {
     let mut s = ShadowSettings { extinction_scale: 0.5, ..ShadowSettings::default() };
     (s.opacity_maps.resolution, s.opacity_maps.filter) = (64, filter);
     (s.deep_opacity_maps.resolution, s.deep_opacity_maps.filter) = (64, filter);
     (s.density_clustering.resolution, s.density_clustering.filter) = (64, filter);
+    s.density_clustering.prefiltered = false;
     (s.occupancy_maps.resolution, s.occupancy_maps.filter) = (64, filter);
     (s.exact.resolution, s.exact.filter) = (64, filter);
     s.method = ShadowMethod::Exact;
@@ -251,6 +252,32 @@ fn converged_scattered_ribbons_dim_as_chance_has_it() {
             "{}",
             found.change
         );
+    }
+}
+
+#[test]
+fn a_prefiltered_strand_is_shared_by_two_rows() {
+    for direction in LIGHTS {
+        let frame = frame(direction);
+        let at = |column: f32, row: f32, depth: f32| frame.world_from_texel(Vec3::new(column, row, depth));
+        for (place, shares) in [(32.5, [0.0, 1.0, 0.0]), (32.75, [0.0, 0.75, 0.25]), (32.1, [0.4, 0.6, 0.0])]
+        {
+            let mut of = corners(&frame.light);
+            of.push(vec![at(20.0, place, 0.5), at(44.0, place, 0.5)]);
+            let hair = strands(&of);
+            let mut settings = settings(TexelFilter::Nearest);
+            settings.density_clustering.prefiltered = true;
+            let input = input(&hair, direction, 0.5 * frame.texel_size);
+            let map = built(ShadowMethod::DensityClustering, &input, &settings);
+            for (row, share) in [31.5, 32.5, 33.5].into_iter().zip(shares) {
+                let (before, behind) =
+                    (map.transmittance(at(31.5, row, 0.49)), map.transmittance(at(31.5, row, 0.9)));
+                assert!(
+                    before == 1.0 && (behind - (-0.25 * share as f32).exp()).abs() < ROUNDING,
+                    "{place}: {row}: {behind}"
+                );
+            }
+        }
     }
 }
 

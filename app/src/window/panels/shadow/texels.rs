@@ -115,6 +115,14 @@ pub(super) fn density_clustering(
         d.deviation,
         &[(ClusterDeviation::Exact, "Own pass"), (ClusterDeviation::Merged, "Merged")],
     );
+    choice(
+        ui,
+        "Lines",
+        "How strands are drawn into the map: into one row of texels, or shared between the two nearest, which swims half as much.",
+        &mut v.prefiltered,
+        d.prefiltered,
+        &[(true, "Pre-filtered"), (false, "Thin")],
+    );
 }
 
 pub(super) fn occupancy_maps(ui: &mut Ui, v: &mut OccupancyMapsSettings, d: &OccupancyMapsSettings) {

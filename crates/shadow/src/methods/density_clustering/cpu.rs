@@ -219,6 +219,10 @@ impl TexelMethod for Clustering {
         self.settings.filter
     }
 
+    fn prefiltered(&self) -> bool {
+        self.settings.prefiltered
+    }
+
     fn cells(&self) -> usize {
         self.count
     }

@@ -58,6 +58,9 @@ pub struct DensityClusteringSettings {
     pub steps: u32,
     /// How the spread of a cluster is found.
     pub deviation: ClusterDeviation,
+    /// Whether each step of a strand is shared between the two nearest texels (the paper's pre-filtered lines) and not put
+    /// into one.
+    pub prefiltered: bool,
 }
 
 impl DensityClusteringSettings {
@@ -91,6 +94,7 @@ impl Default for DensityClusteringSettings {
             seeds: ClusterSeeds::default(),
             steps: 1,
             deviation: ClusterDeviation::default(),
+            prefiltered: true,
         }
     }
 }

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use super::fragments::{Fragment, Fragments, needed_bytes, refit, sum_over_segments};
 use super::frame::TexelFrame;
-use super::lines::{Lines, Steps};
+use super::lines::{FilteredLines, Lines, Steps};
 use super::lookup::{self, Lookup};
 use super::{MAP_MEMORY_LIMIT_BYTES, TexelFilter};
 use crate::bounds::Bounds;
@@ -41,6 +41,11 @@ pub trait TexelMethod: Copy + Debug + Send + Sync {
 
     /// How a point reads the texels around it.
     fn filter(&self) -> TexelFilter;
+
+    /// Whether strands are drawn as pre-filtered lines, which share each step between two texels.
+    fn prefiltered(&self) -> bool {
+        false
+    }
 
     /// Memory that the map and its build may take together, bytes.
     fn memory_limit_bytes(&self) -> u64 {
@@ -155,7 +160,8 @@ impl<M: TexelMethod> TexelMap<M> {
         let frame = TexelFrame::new(input, method.resolution(), &bounds);
         let resolution = frame.resolution;
         let texels = u64::from(resolution).pow(2);
-        let count = sum_over_segments(input, &frame, |from, to| Steps::new(from, to).count());
+        let per_step = if method.prefiltered() { FilteredLines::PER_STEP } else { 1 };
+        let count = sum_over_segments(input, &frame, |from, to| per_step * Steps::new(from, to).count());
         // Slots, and all that sorting takes.
         let sorting = needed_bytes(input, resolution, count).saturating_add(4 * texels);
         Self::check(sorting, &method, input)?;
@@ -169,7 +175,11 @@ impl<M: TexelMethod> TexelMap<M> {
 
         let lines =
             Lines { resolution, depth_per_texel: depth_per_texel(settings, input.strand_width, &frame) };
-        self.fragments.draw(input, &frame, (resolution, resolution), &lines);
+        if method.prefiltered() {
+            self.fragments.draw(input, &frame, (resolution, resolution), &FilteredLines(lines));
+        } else {
+            self.fragments.draw(input, &frame, (resolution, resolution), &lines);
+        }
         let in_use: u64 = self.fragments.in_use().iter().sum();
         let needed_bytes = sorting + in_use * cell_bytes;
         Self::check(needed_bytes, &method, input)?;

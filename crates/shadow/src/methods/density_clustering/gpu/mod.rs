@@ -28,7 +28,7 @@ const RANGE_WORDS: u64 = 2;
 const HISTOGRAM_WORDS: u64 = 32;
 
 const fn over_segments(name: &'static str, parts: &'static [ShaderPart]) -> Pass {
-    Pass { name, over: Over::Segments, parts }
+    Pass { name, over: Over::FilteredSegments, parts }
 }
 
 const fn over_texels(name: &'static str, parts: &'static [ShaderPart]) -> Pass {
@@ -61,7 +61,7 @@ impl GpuTexelMethod for Clustering {
         Needs {
             map_words: 3 * clusters,
             scratch_words: RANGE_WORDS + histogram.max(3 * clusters),
-            whole: [clusters as u32, seeds, u32::from(merged), 0],
+            whole: [clusters as u32, seeds, u32::from(merged), u32::from(self.settings.prefiltered)],
             ..Needs::default()
         }
     }

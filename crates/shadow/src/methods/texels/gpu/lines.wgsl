@@ -1,5 +1,5 @@
-// Draws segments into texels, one texel wide: a step along the longer axis is one fragment. Twin of lines.rs.
-// A pass defines `put(texel, depth, weight)`.
+// Draws segments into texels by steps along the longer axis, for which thin_step.wgsl or filtered_step.wgsl defines `put_step`.
+// Twin of lines.rs. A pass defines `put(texel, depth, weight)`.
 
 @group(0) @binding(1) var<storage, read> points: array<vec4f>;
 @group(0) @binding(2) var<storage, read> segments: array<u32>;
@@ -20,6 +20,13 @@ fn held(p: vec3f) -> vec3f {
 fn centres_below(c: f32) -> i32 {
     let whole = i32(c);
     return whole + select(0, 1, c - f32(whole) > 0.5);
+}
+
+// The texel at these places on the longer axis and on the shorter; those at the border stay empty.
+fn texel_of(by_row: bool, major: i32, minor: i32) -> u32 {
+    let held_minor = u32(clamp(minor, 1, i32(texels.size.x) - 2));
+    let at = select(vec2u(u32(major), held_minor), vec2u(held_minor, u32(major)), by_row);
+    return at.y * texels.size.x + at.x;
 }
 
 @compute @workgroup_size(64)
@@ -46,14 +53,10 @@ fn draw(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) group
     let per_texel = 1.0 / (high.x - low.x);
     let end = centres_below(high.x);
     let length = sqrt(d.x * d.x + d.y * d.y) * per_texel;
-    let weight = u32(length * WEIGHT_ONE + 0.5);
     let rise = high - low;
-    let last = i32(texels.size.x) - 2;
     for (var major = centres_below(low.x); major < end; major++) {
         let t = (f32(major) + 0.5 - low.x) * per_texel;
-        let minor = u32(clamp(i32(low.y + t * rise.y), 1, last));
         let depth = clamp(low.z + t * rise.z, 0.0, 1.0);
-        let at = select(vec2u(u32(major), minor), vec2u(minor, u32(major)), by_row);
-        put(at.y * texels.size.x + at.x, depth, weight);
+        put_step(by_row, major, low.y + t * rise.y, depth, length);
     }
 }

@@ -23,6 +23,8 @@ use crate::{ShadowError, ShadowReport, ShadowSettings};
 
 const FRAME: ShaderPart = wgsl!("methods/texels/gpu/", "frame.wgsl");
 const BUILD: ShaderPart = wgsl!("methods/texels/gpu/", "build.wgsl");
+const THIN_STEP: ShaderPart = wgsl!("methods/texels/gpu/", "thin_step.wgsl");
+const FILTERED_STEP: ShaderPart = wgsl!("methods/texels/gpu/", "filtered_step.wgsl");
 const LINES: ShaderPart = wgsl!("methods/texels/gpu/", "lines.wgsl");
 const EACH_TEXEL: ShaderPart = wgsl!("methods/texels/gpu/", "each_texel.wgsl");
 const LOOKUP: ShaderPart = wgsl!("methods/texels/gpu/", "lookup.wgsl");
@@ -51,6 +53,8 @@ pub(crate) struct TexelUniform {
 pub(crate) enum Over {
     /// Every segment: the part defines `put`.
     Segments,
+    /// Every segment, by pre-filtered lines where the last word of [`Needs::whole`] is set: the part defines `put`.
+    FilteredSegments,
     /// Every texel: the part defines `texel_pass`.
     Texels,
     /// Every texel, by workgroups that do something together: the part is the entry point `each_group`.
@@ -69,17 +73,18 @@ pub(crate) struct Pass {
 impl Pass {
     fn source(&self) -> ShaderSource {
         let last = match self.over {
-            Over::Segments => Some(LINES),
-            Over::Texels => Some(EACH_TEXEL),
-            Over::Groups => None,
+            Over::Segments => &[THIN_STEP, LINES][..],
+            Over::FilteredSegments => &[FILTERED_STEP, LINES],
+            Over::Texels => &[EACH_TEXEL],
+            Over::Groups => &[],
         };
-        let parts: Vec<_> = [EXP, FRAME, BUILD].iter().chain(self.parts).copied().chain(last).collect();
+        let parts: Vec<_> = [EXP, FRAME, BUILD].iter().chain(self.parts).chain(last).copied().collect();
         ShaderSource::new(&parts)
     }
 
     fn kernel(&self, gpu: &Gpu) -> Result<Kernel, GpuError> {
         let entry = match self.over {
-            Over::Segments => "draw",
+            Over::Segments | Over::FilteredSegments => "draw",
             Over::Texels => "each_texel",
             Over::Groups => "each_group",
         };
@@ -242,11 +247,16 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
         let (map_words, scratch_words) = (texels * needs.map_words, texels * needs.scratch_words);
         let needed_bytes = 4 * (map_words + scratch_words);
         let limit_bytes = method.memory_limit_bytes() / u64::from(input.maps.max(1));
-        if needed_bytes > limit_bytes {
+        let fits = if needed_bytes > limit_bytes {
             let maps = input.maps.max(1);
-            return Err(ShadowError::TooLarge { method: M::METHOD, needed_bytes, limit_bytes, maps });
+            Err(ShadowError::TooLarge { method: M::METHOD, needed_bytes, limit_bytes, maps })
+        } else {
+            fits_device(gpu, M::METHOD, 4 * map_words.max(scratch_words))
+        };
+        if let Err(error) = fits {
+            *self.map(gpu, slot) = Map::new(gpu, M::LISTS);
+            return Err(error);
         }
-        fits_device(gpu, M::METHOD, 4 * map_words.max(scratch_words))?;
 
         self.scratch.fit(gpu, scratch_words);
         let depth = depth_per_texel(settings, input.strand_width, &frame);
@@ -286,7 +296,7 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
             let (pass, kernel) = (&M::PASSES[at], &self.passes[at]);
             let group = kernel.bind(gpu, &resources);
             let threads = match pass.over {
-                Over::Segments => u64::from(segments),
+                Over::Segments | Over::FilteredSegments => u64::from(segments),
                 Over::Texels | Over::Groups => texels,
             };
             commands.compute(pass.name, |pass| kernel.run(pass, &group, threads));
@@ -338,6 +348,11 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
         Ok(again)
     }
 
+    fn forget(&mut self, gpu: &Gpu) {
+        self.maps.clear();
+        self.scratch = Buffer::new(gpu, "shadow scratch");
+    }
+
     fn report(&self, slot: usize) -> ShadowReport {
         self.maps.get(slot).map_or_else(ShadowReport::default, |map| map.report)
     }
@@ -346,6 +361,9 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
         let Some(map) = self.maps.get(slot) else { return Ok(Vec::new()) };
         let mut words = vec![0; map.used as usize];
         read_buffer(gpu, map.words.raw(), &mut words)?;
+        if let Some(list) = &map.list {
+            words.extend(list.words(gpu)?);
+        }
         Ok(words)
     }
 }

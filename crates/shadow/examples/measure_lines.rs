@@ -1,0 +1,87 @@
+//! What pre-filtered lines change in density clustering: error against the converged shadow, and swimming, which is how much
+//! the light of a point changes while hair and lattice move against each other.
+//!
+//! `cargo run --release -p lovelock-shadow --example measure_lines` prints a table.
+
+#[path = "../tests/common/mod.rs"]
+mod common;
+#[path = "../tests/common/grooms.rs"]
+mod grooms;
+
+use common::Random;
+use glam::Vec3;
+use grooms::Groom;
+use lovelock_groom::Preset;
+use lovelock_shadow::{CpuShadow, ShadowMethod, ShadowSettings, TexelFilter, converged, cpu_shadow};
+
+/// Points that are asked.
+const POINTS: usize = 4000;
+/// Places of the lattice, within a texel.
+const SHIFTS: usize = 16;
+
+fn main() {
+    println!(
+        "| hairstyle | filter | lines | converged | swimming | build, fragments |\n|---|---|---|---|---|---|"
+    );
+    for groom in [Groom::tuft(), Groom::preset(Preset::Smooth), Groom::preset(Preset::Curly)] {
+        let mut random = Random(12);
+        let any = |random: &mut Random| {
+            (random.unit() * groom.strands.points() as f32) as usize % groom.strands.points()
+        };
+        let at: Vec<Vec3> = (0..POINTS).map(|_| groom.strands.point(any(&mut random))).collect();
+        let (x, y, z) = axes(&at);
+        let settings =
+            ShadowSettings { method: ShadowMethod::DensityClustering, ..ShadowSettings::default() };
+        let truth = converged(&groom.input(), &settings, [&x, &y, &z]).expect("hair fits").transmittance;
+        for filter in [TexelFilter::Nearest, TexelFilter::Bilinear] {
+            for prefiltered in [false, true] {
+                let mut settings = settings;
+                settings.density_clustering.filter = filter;
+                settings.density_clustering.prefiltered = prefiltered;
+                let (error, swimming, fragments) = measure(&groom, &settings, &at, &truth);
+                let lines = if prefiltered { "pre-filtered" } else { "thin" };
+                println!(
+                    "| {} | {filter:?} | {lines} | {error:.4} | {swimming:.4} | {fragments} |",
+                    groom.name
+                );
+            }
+        }
+    }
+}
+
+fn axes(of: &[Vec3]) -> (Vec<f32>, Vec<f32>, Vec<f32>) {
+    let axis = |axis: fn(&Vec3) -> f32| of.iter().map(axis).collect();
+    (axis(|p| p.x), axis(|p| p.y), axis(|p| p.z))
+}
+
+/// Root mean squares: the difference from the truth at one place, and the deviation over many places from their mean. And
+/// the number of fragments.
+fn measure(groom: &Groom, settings: &ShadowSettings, at: &[Vec3], truth: &[f32]) -> (f64, f64, u64) {
+    let (x, y, z) = axes(at);
+    let mut map = cpu_shadow(ShadowMethod::DensityClustering);
+    let look = |anchor: Vec3, map: &mut dyn CpuShadow| {
+        let input = lovelock_shadow::ShadowInput { anchor, ..groom.input() };
+        map.build(&input, settings).expect("hair fits");
+        let mut light = vec![0.0; at.len()];
+        map.transmittance_at(&x, &y, &z, &mut light);
+        light
+    };
+    let light = look(groom.input().anchor, &mut *map);
+    let report = map.report();
+    let squares = light.iter().zip(truth).map(|(a, b)| f64::from(a - b).powi(2));
+    let error = (squares.sum::<f64>() / at.len() as f64).sqrt();
+    let mut random = Random(5);
+    let (mut sum, mut square) = (vec![0.0_f64; at.len()], vec![0.0_f64; at.len()]);
+    for _ in 0..SHIFTS {
+        let across = Vec3::new(0.0, random.unit(), random.unit()) * report.cell_size;
+        let light = look(groom.input().anchor + groom.input().light.world_from_light(across), &mut *map);
+        for ((sum, square), light) in sum.iter_mut().zip(&mut square).zip(light) {
+            *sum += f64::from(light);
+            *square += f64::from(light).powi(2);
+        }
+    }
+    let n = SHIFTS as f64;
+    let variances = sum.iter().zip(&square).map(|(sum, square)| (square / n - (sum / n).powi(2)).max(0.0));
+    let swimming = (variances.sum::<f64>() / at.len() as f64).sqrt();
+    (error, swimming, report.samples)
+}

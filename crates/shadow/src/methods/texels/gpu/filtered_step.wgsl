@@ -1,0 +1,13 @@
+// Lines one texel wide, or pre-filtered where `texels.whole.w` is set: a step is then a fragment in each of the two texels
+// nearest to it across the longer axis, which share its weight.
+
+fn put_step(by_row: bool, major: i32, minor: f32, depth: f32, length: f32) {
+    let weight = u32(length * WEIGHT_ONE + 0.5);
+    let filtered = texels.whole.w != 0u;
+    let at = select(minor, minor - 0.5, filtered);
+    let low = floor(at);
+    let second = select(0u, u32(length * WEIGHT_ONE * (at - low) + 0.5), filtered);
+    for (var k = 0u; k < select(1u, 2u, filtered); k++) {
+        put(texel_of(by_row, major, i32(low) + i32(k)), depth, select(weight - second, second, k == 1u));
+    }
+}
