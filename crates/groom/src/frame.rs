@@ -76,7 +76,8 @@ impl WispCurve {
 
     /// The frame at the root of a wisp at rest, head space: normal, binormal and tangent. It turns with the head.
     pub fn root_frame(rest: &Guides, wisp: &Wisp) -> [Vec3; 3] {
-        let mean = |p| wisp.guides.iter().map(|&g| Vec3A::from(rest.point(g as usize, p))).sum::<Vec3A>() / 3.0;
+        let mean =
+            |p| wisp.guides.iter().map(|&g| Vec3A::from(rest.point(g as usize, p))).sum::<Vec3A>() / 3.0;
         let tangent = (mean(1) - mean(0)).normalize_or(Vec3A::Y);
         let normal = reference_normal(tangent);
         [normal, tangent.cross(normal), tangent].map(Vec3::from)

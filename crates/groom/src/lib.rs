@@ -20,6 +20,7 @@ mod rng;
 mod scalp;
 mod scalp_index;
 mod settings;
+mod strand_bounds;
 mod strands;
 
 pub mod simd;
@@ -41,4 +42,5 @@ pub use presets::Preset;
 pub use scalp::{Scalp, ScalpError, ScalpPoint};
 pub use scalp_index::ScalpIndex;
 pub use settings::{GroomSettings, MOST_POINTS};
+pub use strand_bounds::StrandBounds;
 pub use strands::Strands;
