@@ -39,12 +39,14 @@ impl Differences {
 }
 
 /// How near answers of the GPU come to those of the definition. Half a step of their 8 bits is 0.00196. Measured: 0.00196 at
-/// most over 99 of 100 points, and 0.00206 over all, but for one case.
+/// most over 99 of 100 points, and 0.00206 over all, but for two cases.
 fn tolerance(method: ShadowMethod, groom: &Groom) -> Differences {
     let most = match (method, groom.name) {
         // Strands lie straight across the light here. Where a texel's fragments all have one depth, a point at just this depth
         // is lit by the definition; its range in 20 bits is a little wider, and the point lies within. Measured: 0.137.
         (ShadowMethod::OccupancyMaps, "slab") => 0.15,
+        // A fragment half way between two centres may go to either. Measured: 0.038.
+        (ShadowMethod::DensityClustering, _) => 0.05,
         _ => 0.0025,
     };
     Differences { p99: 0.0021, most }

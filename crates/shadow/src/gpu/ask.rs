@@ -111,3 +111,40 @@ impl Ask {
         commands.compute("shadow/columns", |pass| kernel.run(pass, &group, u64::from(size).pow(2)));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::mem::offset_of;
+
+    use super::*;
+    use crate::gpu::layout::layout_in_shader;
+    use crate::gpu::{all_shaders, wgsl};
+
+    #[test]
+    fn the_uniform_has_the_layout_of_every_shader() {
+        let expected = [
+            offset_of!(AskUniform, count),
+            offset_of!(AskUniform, stride),
+            offset_of!(AskUniform, slot),
+            offset_of!(AskUniform, sums),
+            size_of::<AskUniform>(),
+        ];
+        for (label, source) in all_shaders().iter().filter(|(label, _)| label.ends_with("ask")) {
+            assert_eq!(layout_in_shader(source, "Ask"), expected, "{label}");
+        }
+    }
+
+    #[test]
+    fn another_layout_is_found_out() {
+        let part = |text| ShaderPart { name: "", text };
+        let right = wgsl!("gpu/", "ask.wgsl").text;
+        let wrong = right.replacen(
+            "    slot: u32,\n    sums: u32,",
+            "    sums: u32,\n    more: u32,\n    slot: u32,",
+            1,
+        );
+        let query = part("fn hair_transmittance(p: vec3f) -> f32 { return 1.0; }");
+        let layout = |text| layout_in_shader(&ShaderSource::new(&[query, part(text)]), "Ask");
+        assert_ne!(layout(Box::leak(wrong.into_boxed_str())), layout(right));
+    }
+}

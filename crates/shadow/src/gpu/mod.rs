@@ -1,6 +1,8 @@
 //! Shadow methods on the GPU: the passes of each, in step with its definition on the processor.
 
 mod ask;
+#[cfg(test)]
+pub(crate) mod layout;
 mod memory;
 
 use std::fmt::Debug;

@@ -73,6 +73,7 @@ pub struct Built {
     gpu: &'static Arc<Gpu>,
     pub shadow: Box<dyn GpuShadow>,
     timer: PassTimer,
+    /// Of the last build, or of asking after it.
     pub passes: Vec<PassTime>,
 }
 
@@ -130,6 +131,9 @@ impl Built {
             commands.submit();
             self.gpu.check().expect("the device takes it");
             done?;
+            let wait = wgpu::PollType::wait_indefinitely();
+            self.gpu.device.poll(wait).expect("the device is there");
+            self.passes = self.timer.times(self.gpu);
             match self.shadow.settle(self.gpu) {
                 Ok(false) => return Ok(times),
                 Ok(true) => {}

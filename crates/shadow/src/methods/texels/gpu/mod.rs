@@ -2,9 +2,11 @@
 //!
 //! Strands are drawn into texels by compute kernels with integer atomics, a thread a segment: nothing depends on the order
 //! in which threads run. Each pass over the segments is lines.wgsl with its own `put`; each pass over the texels is
-//! each_texel.wgsl with its own `texel_pass`. A method is a list of passes and a query.
+//! `each_texel.wgsl` with its own `texel_pass`. A method is a list of passes and a query.
 
 pub(crate) mod list;
+#[cfg(test)]
+mod tests;
 
 use std::fmt::Debug;
 use std::marker::PhantomData;

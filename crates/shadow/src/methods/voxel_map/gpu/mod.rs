@@ -209,3 +209,26 @@ impl GpuShadow for GpuVoxelMap {
         Ok(words)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::mem::offset_of;
+
+    use super::*;
+    use crate::gpu::layout::layout_in_shader;
+
+    #[test]
+    fn the_uniform_has_the_layout_of_every_shader() {
+        let expected = [
+            offset_of!(VoxelUniform, anchor),
+            offset_of!(VoxelUniform, along),
+            offset_of!(VoxelUniform, row),
+            offset_of!(VoxelUniform, column),
+            offset_of!(VoxelUniform, size),
+            size_of::<VoxelUniform>(),
+        ];
+        for (label, source) in GpuVoxelMap::shaders() {
+            assert_eq!(layout_in_shader(&source, "VoxelUniform"), expected, "{label}");
+        }
+    }
+}
