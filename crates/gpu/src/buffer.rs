@@ -68,3 +68,18 @@ fn make(device: &wgpu::Device, label: &str, usage: wgpu::BufferUsages, size: u64
         mapped_at_creation: false,
     })
 }
+
+/// A uniform buffer that holds one value and is never written again.
+pub fn constants<T: Pod>(gpu: &crate::Gpu, label: &str, value: &T) -> wgpu::Buffer {
+    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size: (size_of::<T>() as u64).next_multiple_of(16),
+        usage: wgpu::BufferUsages::UNIFORM,
+        mapped_at_creation: true,
+    });
+    if let Ok(mut bytes) = buffer.get_mapped_range_mut(..) {
+        bytes.slice(..size_of::<T>()).copy_from_slice(bytemuck::bytes_of(value));
+    }
+    buffer.unmap();
+    buffer
+}

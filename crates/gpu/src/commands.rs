@@ -1,8 +1,8 @@
 //! The passes of one frame, timed where the device can.
 
-use wgpu_profiler::{GpuProfiler, GpuProfilerSettings, GpuTimerQueryResult};
+use wgpu_profiler::{GpuProfiler, GpuProfilerQuery, GpuProfilerSettings, GpuTimerQueryResult};
 
-use crate::{Gpu, GpuError};
+use crate::{Gpu, GpuError, Stopwatch};
 
 /// What one pass took on the device. Passes of one name are summed.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,12 +13,25 @@ pub struct PassTime {
     pub ms: f64,
 }
 
-/// Measures passes by the timestamps of the device; measures nothing where it has none.
-pub struct PassTimer(GpuProfiler);
+/// Measures passes: by the timestamps of a graphics card; on the processor, where a driver works through them one after
+/// another anyway, by waiting for each. Measures nothing where a card has no timestamps.
+pub struct PassTimer(Clock);
+
+enum Clock {
+    Timestamps(Box<GpuProfiler>),
+    Wall(Vec<PassTime>),
+}
 
 impl std::fmt::Debug for PassTimer {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("PassTimer").finish_non_exhaustive()
+    }
+}
+
+impl Default for PassTimer {
+    /// A timer that waits for each pass.
+    fn default() -> Self {
+        Self(Clock::Wall(Vec::new()))
     }
 }
 
@@ -28,49 +41,60 @@ impl PassTimer {
     /// # Errors
     /// The device refuses.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        if gpu.is_software() {
+            return Ok(Self::default());
+        }
         let settings = GpuProfilerSettings {
             enable_timer_queries: gpu.has_timestamps(),
             enable_debug_groups: false,
             max_num_pending_frames: 4,
         };
-        let profiler = GpuProfiler::new(&gpu.device, settings);
-        profiler.map(Self).map_err(|error| GpuError::Refused(format!("timers: {error}")))
+        let profiler = GpuProfiler::new(&gpu.device, settings)
+            .map_err(|error| GpuError::Refused(format!("timers: {error}")))?;
+        Ok(Self(Clock::Timestamps(Box::new(profiler))))
     }
 
     /// Begins a frame.
-    pub fn begin(&self, gpu: &Gpu, label: &str) -> Commands<'_> {
-        let encoder =
-            gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some(label) });
-        Commands { encoder, profiler: &self.0 }
-    }
-
-    /// Ends what [`PassTimer::begin`] began and hands it to the device.
-    pub fn submit(&mut self, gpu: &Gpu, mut encoder: wgpu::CommandEncoder) {
-        self.0.resolve_queries(&mut encoder);
-        gpu.queue.submit([encoder.finish()]);
-        // Fails where a pass was left open, which `Commands` does not allow.
-        let _ = self.0.end_frame();
+    pub fn begin<'a>(&'a mut self, gpu: &'a Gpu, label: &'static str) -> Commands<'a> {
+        if let Clock::Wall(times) = &mut self.0 {
+            times.clear();
+        }
+        Commands { gpu, label, encoder: encoder(gpu, label), clock: &mut self.0 }
     }
 
     /// Times of the last frame that is finished, in the order of its passes; empty where none was measured. Wait for the
     /// device before.
     pub fn times(&mut self, gpu: &Gpu) -> Vec<PassTime> {
-        let mut newest = Vec::new();
-        while let Some(found) = self.0.process_finished_frame(gpu.queue.get_timestamp_period()) {
-            newest = summed(&found);
+        match &mut self.0 {
+            Clock::Wall(times) => std::mem::take(times),
+            Clock::Timestamps(profiler) => {
+                let mut newest = Vec::new();
+                while let Some(found) = profiler.process_finished_frame(gpu.queue.get_timestamp_period()) {
+                    newest = summed(&found);
+                }
+                newest
+            }
         }
-        newest
+    }
+}
+
+fn encoder(gpu: &Gpu, label: &str) -> wgpu::CommandEncoder {
+    gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some(label) })
+}
+
+/// Adds a pass to those of its name.
+fn add(times: &mut Vec<PassTime>, name: &str, ms: f64) {
+    match times.iter_mut().find(|time| time.name == name) {
+        Some(time) => time.ms += ms,
+        None => times.push(PassTime { name: name.to_owned(), ms }),
     }
 }
 
 fn summed(found: &[GpuTimerQueryResult]) -> Vec<PassTime> {
-    let mut times: Vec<PassTime> = Vec::new();
+    let mut times = Vec::new();
     for pass in found {
-        let Some(range) = &pass.time else { continue };
-        let ms = ((range.end - range.start) * 1e3).max(0.0);
-        match times.iter_mut().find(|time| time.name == pass.label) {
-            Some(time) => time.ms += ms,
-            None => times.push(PassTime { name: pass.label.clone(), ms }),
+        if let Some(range) = &pass.time {
+            add(&mut times, &pass.label, ((range.end - range.start) * 1e3).max(0.0));
         }
     }
     times
@@ -78,8 +102,10 @@ fn summed(found: &[GpuTimerQueryResult]) -> Vec<PassTime> {
 
 /// The commands of one frame.
 pub struct Commands<'a> {
+    gpu: &'a Gpu,
+    label: &'static str,
     encoder: wgpu::CommandEncoder,
-    profiler: &'a GpuProfiler,
+    clock: &'a mut Clock,
 }
 
 impl std::fmt::Debug for Commands<'_> {
@@ -91,12 +117,12 @@ impl std::fmt::Debug for Commands<'_> {
 impl Commands<'_> {
     /// A compute pass. Kernels in it run one after another.
     pub fn compute(&mut self, name: &str, with: impl FnOnce(&mut wgpu::ComputePass)) {
-        let query = self.profiler.begin_pass_query(name, &mut self.encoder);
-        with(&mut self.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-            label: Some(name),
-            timestamp_writes: query.compute_pass_timestamp_writes(),
-        }));
-        self.profiler.end_query(&mut self.encoder, query);
+        self.timed(name, |encoder, query| {
+            with(&mut encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                label: Some(name),
+                timestamp_writes: query.and_then(GpuProfilerQuery::compute_pass_timestamp_writes),
+            }));
+        });
     }
 
     /// A render pass of what `descriptor` says but for its label and timestamps.
@@ -106,13 +132,37 @@ impl Commands<'_> {
         descriptor: &wgpu::RenderPassDescriptor,
         with: impl FnOnce(&mut wgpu::RenderPass),
     ) {
-        let query = self.profiler.begin_pass_query(name, &mut self.encoder);
-        with(&mut self.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some(name),
-            timestamp_writes: query.render_pass_timestamp_writes(),
-            ..descriptor.clone()
-        }));
-        self.profiler.end_query(&mut self.encoder, query);
+        self.timed(name, |encoder, query| {
+            with(&mut encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some(name),
+                timestamp_writes: query.and_then(GpuProfilerQuery::render_pass_timestamp_writes),
+                ..descriptor.clone()
+            }));
+        });
+    }
+
+    fn timed(
+        &mut self,
+        name: &str,
+        encode: impl FnOnce(&mut wgpu::CommandEncoder, Option<&GpuProfilerQuery>),
+    ) {
+        match &mut *self.clock {
+            Clock::Timestamps(profiler) => {
+                let query = profiler.begin_pass_query(name, &mut self.encoder);
+                encode(&mut self.encoder, Some(&query));
+                profiler.end_query(&mut self.encoder, query);
+            }
+            Clock::Wall(times) => {
+                let watch = Stopwatch::start();
+                encode(&mut self.encoder, None);
+                let next = encoder(self.gpu, self.label);
+                let done = std::mem::replace(&mut self.encoder, next);
+                self.gpu.queue.submit([done.finish()]);
+                // A device that is lost says so when the frame is read back.
+                let _ = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
+                add(times, name, watch.ms());
+            }
+        }
     }
 
     /// Everything else that goes to the device, between passes.
@@ -120,8 +170,15 @@ impl Commands<'_> {
         &mut self.encoder
     }
 
-    /// The whole, for [`PassTimer::submit`].
-    pub fn finish(self) -> wgpu::CommandEncoder {
-        self.encoder
+    /// Hands everything to the device.
+    pub fn submit(mut self) {
+        if let Clock::Timestamps(profiler) = &mut *self.clock {
+            profiler.resolve_queries(&mut self.encoder);
+        }
+        self.gpu.queue.submit([self.encoder.finish()]);
+        if let Clock::Timestamps(profiler) = &mut *self.clock {
+            // Fails where a pass was left open, which `timed` does not do.
+            let _ = profiler.end_frame();
+        }
     }
 }

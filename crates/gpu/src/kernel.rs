@@ -27,12 +27,7 @@ impl Kernel {
     ///
     /// # Errors
     /// The file and line that do not compile, and why; or what the driver says.
-    pub fn new(
-        gpu: &Gpu,
-        label: &'static str,
-        source: &ShaderSource,
-        entry: &str,
-    ) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu, label: &'static str, source: &ShaderSource, entry: &str) -> Result<Self, GpuError> {
         let checked = shader::check(source)?;
         let used = checked.bindings_of(entry);
         gpu.checked(|| {

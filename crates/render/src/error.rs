@@ -23,7 +23,4 @@ pub enum RenderError {
         /// The longest side that the backend can draw.
         limit: u32,
     },
-    /// The graphics card does not draw this transparency.
-    #[error("the gpu backend does not draw the transparency {0}: use the cpu backend, or opaque or sorted")]
-    Transparency(crate::Transparency),
 }

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use glam::Affine3A;
-use lovelock_groom::{HairLook, Hairstyle, Strands};
+use lovelock_gpu::PassTime;
+use lovelock_groom::{GuideFrame, HairLook, Hairstyle, Strands, interpolate};
 use lovelock_motion::{Body, Skin};
 
 use crate::{Camera, Light, PictureSettings, ShadowSettings};
@@ -11,10 +12,10 @@ use crate::{Camera, Light, PictureSettings, ShadowSettings};
 /// Everything that one picture shows, at one instant.
 #[derive(Clone, Copy)]
 pub struct FrameInput<'a> {
-    /// The hairstyle that `strands` were interpolated from.
+    /// The hairstyle.
     pub style: &'a Arc<Hairstyle>,
-    /// The strands, world space.
-    pub strands: &'a Strands,
+    /// Where its strands are.
+    pub hair: HairPose<'a>,
     /// Colour and width of the hair.
     pub look: &'a HairLook,
     /// The body and its skinned surface; hair alone is drawn where there is none.
@@ -31,32 +32,46 @@ pub struct FrameInput<'a> {
     pub picture: &'a PictureSettings,
 }
 
+/// Where the strands of a hairstyle are at one instant, world space.
+#[derive(Clone, Copy, Debug)]
+pub enum HairPose<'a> {
+    /// Where their guides bring them: they are interpolated where they are drawn.
+    Guides(&'a GuideFrame),
+    /// As they are given: as many points as the hairstyle has.
+    Strands(&'a Strands),
+}
+
+impl HairPose<'_> {
+    /// The strands on the processor: those that are given, or interpolated into `made`.
+    pub(crate) fn strands<'s>(&'s self, style: &Hairstyle, made: &'s mut Strands) -> &'s Strands {
+        match self {
+            Self::Strands(strands) => strands,
+            Self::Guides(guides) => {
+                interpolate(style, guides, made);
+                made
+            }
+        }
+    }
+}
+
 /// What one picture cost, and what went into it.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrameStats {
-    /// Time to make the shadow maps and look them up at every strand point, milliseconds.
+    /// Time to make strands of guides, milliseconds; 0 where the device does not measure its passes.
+    pub interpolate_ms: f64,
+    /// Time to make the shadow maps and look them up at every strand point, milliseconds; 0 as above.
     pub shadow_ms: f64,
-    /// Time to draw, milliseconds: until the commands were handed over, or until the picture was read back.
+    /// The rest of the time until the picture was there, milliseconds.
     pub draw_ms: f64,
-    /// What the time to draw is made of, where the backend knows.
-    pub draw: Option<DrawTimes>,
+    /// What the passes took, in their order: `shadow/…` and `draw/…`, those of all lights together. As far as the backend
+    /// measures them.
+    pub passes: Vec<PassTime>,
     /// Segments that were drawn.
     pub segments: u64,
     /// Bytes of the shadow maps.
     pub shadow_bytes: u64,
+    /// Bytes of the strands as they are drawn and of what is kept for the pixels, to put strands together in them.
+    pub draw_bytes: u64,
     /// Mean transmittance of the first light over the strands' points.
     pub mean_transmittance: f32,
-}
-
-/// The parts of the time to draw, milliseconds.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct DrawTimes {
-    /// The body as each light sees it.
-    pub body_depth: f64,
-    /// Strand points projected and shaded.
-    pub points: f64,
-    /// Segments and triangles sorted into tiles.
-    pub sort: f64,
-    /// Tiles drawn and put together.
-    pub tiles: f64,
 }

@@ -14,7 +14,6 @@ mod light_view;
 mod picture;
 mod renderer;
 mod shadow_stage;
-mod sort;
 mod strand_details;
 mod transparency;
 mod uniform;
@@ -23,10 +22,10 @@ pub use backend::{Backend, UnknownBackend};
 pub use camera::Camera;
 pub use cpu::CpuRenderer;
 pub use error::RenderError;
-pub use frame::{DrawTimes, FrameInput, FrameStats};
+pub use frame::{FrameInput, FrameStats, HairPose};
 pub use gpu::{GpuRenderer, all_shaders};
 pub use light::{Light, MAX_LIGHTS};
-pub use lovelock_gpu::{Gpu, GpuError, Stopwatch, check_shader};
+pub use lovelock_gpu::{Gpu, GpuError, PassTime, Stopwatch, check_shader};
 pub use lovelock_shadow::voxel_map::{MapExtent, VoxelDeposit, VoxelFilter, VoxelMapSettings};
 pub use lovelock_shadow::{
     ClusterDeviation, ClusterSeeds, DeepOpacityMapsSettings, DensityClusteringSettings, ExactSettings,

@@ -12,10 +12,8 @@ pub struct Renderer {
     choice: Backend,
     gpu: Option<GpuRenderer>,
     cpu: Option<Box<CpuRenderer>>,
-    /// Names of the graphics card and of the processor's way.
-    adapters: [String; 2],
-    /// Whether the last picture was drawn by the processor though there is a card.
-    stood_in: bool,
+    /// Name of what draws.
+    adapter: String,
 }
 
 impl Renderer {
@@ -49,13 +47,11 @@ impl Renderer {
 
     fn on(gpu: Arc<Gpu>, choice: Backend) -> Result<Self, RenderError> {
         let adapter = gpu.info.name.clone();
-        let adapters = [adapter, CpuRenderer::adapter()];
-        Ok(Self { choice, gpu: Some(GpuRenderer::new(gpu)?), cpu: None, adapters, stood_in: false })
+        Ok(Self { choice, gpu: Some(GpuRenderer::new(gpu)?), cpu: None, adapter })
     }
 
     fn on_processor(choice: Backend) -> Self {
-        let adapters = [String::new(), CpuRenderer::adapter()];
-        Self { choice, gpu: None, cpu: Some(Box::default()), adapters, stood_in: false }
+        Self { choice, gpu: None, cpu: Some(Box::default()), adapter: CpuRenderer::adapter() }
     }
 
     /// What was asked for.
@@ -63,19 +59,19 @@ impl Renderer {
         self.choice
     }
 
-    /// What drew the last picture, and draws the next one by all that is known: the graphics card or the processor.
+    /// What draws: the graphics card or the processor.
     pub fn backend(&self) -> Backend {
-        if self.gpu.is_some() && !self.stood_in { Backend::Gpu } else { Backend::Cpu }
+        if self.gpu.is_some() { Backend::Gpu } else { Backend::Cpu }
     }
 
     /// The name of what draws: the adapter, or the processor's way.
     pub fn adapter(&self) -> &str {
-        &self.adapters[usize::from(self.backend() == Backend::Cpu)]
+        &self.adapter
     }
 
     /// Whether the processor does the drawing, by itself or as a software adapter.
     pub fn is_software(&self) -> bool {
-        self.stood_in || self.gpu.as_ref().is_none_or(|gpu| gpu.gpu().is_software())
+        self.gpu.as_ref().is_none_or(|gpu| gpu.gpu().is_software())
     }
 
     /// Draws `input` at `width` by `height` pixels.
@@ -89,11 +85,9 @@ impl Renderer {
         height: u32,
         picture: &mut Picture,
     ) -> Result<FrameStats, RenderError> {
-        self.stood_in = self.choice == Backend::Auto && !input.picture.transparency.is_on_gpu();
         match &mut self.gpu {
-            // Where the choice is ours, what the card does not draw is drawn by the processor.
-            Some(gpu) if !self.stood_in => gpu.picture(input, width, height, picture),
-            _ => self.cpu.get_or_insert_default().picture(input, width, height, picture),
+            Some(gpu) => gpu.picture(input, width, height, picture),
+            None => self.cpu.get_or_insert_default().picture(input, width, height, picture),
         }
     }
 }

@@ -1,6 +1,6 @@
-//! The shadow methods of one frame: one map a light, asked once a strand point and once a vertex of the body.
+//! The shadow methods of one frame on the processor: one map a light, asked once a strand point and once a vertex of the body.
 
-use glam::{Mat4, Vec3};
+use glam::Vec3;
 use lovelock_groom::Strands;
 use lovelock_shadow::{ColumnMap, CpuShadow, LightFrame, ShadowError, ShadowInput, ShadowMethod, cpu_shadow};
 use rayon::prelude::*;
@@ -40,15 +40,16 @@ impl LightShadow {
         direction: Vec3,
         maps: u32,
         input: &FrameInput,
+        strands: &Strands,
         vertices: &[Vec<f32>; 3],
     ) -> Result<(), ShadowError> {
         // Carried along rather than made anew, so that the map does not roll while the light is dragged.
         self.frame = self.frame.transported(direction);
         let strand_width = input.look.shadow_width(input.style.strands.count());
         let anchor = input.world_from_head.translation.into();
-        let from = ShadowInput { strands: input.strands, strand_width, light: self.frame, anchor, maps };
+        let from = ShadowInput { strands, strand_width, light: self.frame, anchor, maps };
         self.shadow.build(&from, input.shadow)?;
-        let Strands { x, y, z, .. } = input.strands;
+        let Strands { x, y, z, .. } = strands;
         self.at_points.resize(x.len(), 1.0);
         self.shadow.transmittance_at(x, y, z, &mut self.at_points);
         let [x, y, z] = vertices;
@@ -72,7 +73,7 @@ impl ShadowStage {
     ///
     /// # Errors
     /// The map would need more memory than its limit.
-    pub fn run(&mut self, input: &FrameInput) -> Result<(), ShadowError> {
+    pub fn run(&mut self, input: &FrameInput, strands: &Strands) -> Result<(), ShadowError> {
         let lights: Vec<Light> =
             input.lights.iter().filter(|light| light.enabled).take(MAX_LIGHTS).map(Light::clamped).collect();
         if self.method != Some(input.shadow.method) {
@@ -98,9 +99,9 @@ impl ShadowStage {
         self.lights
             .par_iter_mut()
             .zip(&lights)
-            .try_for_each(|(shadow, light)| shadow.run(light.direction, maps, input, vertices))?;
+            .try_for_each(|(shadow, light)| shadow.run(light.direction, maps, input, strands, vertices))?;
         let at_points: Vec<&[f32]> = self.lights.iter().map(|light| &light.at_points[..]).collect();
-        pack(&at_points, input.strands.points(), &mut self.at_points);
+        pack(&at_points, strands.points(), &mut self.at_points);
         let at_vertices: Vec<&[f32]> = self.lights.iter().map(|light| &light.at_vertices[..]).collect();
         pack(&at_vertices, positions.len(), &mut self.at_vertices);
         self.mean = at_points.first().map_or(1.0, |values| mean(values));
@@ -108,14 +109,6 @@ impl ShadowStage {
         self.columns.extend(self.lights.iter().map(|light| light.shadow.column_map()));
         self.bytes = self.lights.iter().map(|light| light.shadow.report().memory_bytes).sum();
         Ok(())
-    }
-
-    /// Carries world space to the texture of light `k`'s column map; far outside where it has none.
-    pub fn columns_from_world(&self, k: usize) -> Mat4 {
-        const OUTSIDE: Mat4 = Mat4::from_cols_array(&[
-            0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0, -1.0, 0.0, 1.0,
-        ]);
-        self.columns.get(k).and_then(Option::as_ref).map_or(OUTSIDE, |map| map.uv_from_world)
     }
 }
 

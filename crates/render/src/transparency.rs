@@ -63,14 +63,6 @@ impl Transparency {
             Self::Exact => "Every fragment of a pixel sorted and blended: the reference for the others.",
         }
     }
-
-    /// Whether the gpu backend draws it; the cpu backend draws all.
-    pub const fn is_on_gpu(self) -> bool {
-        match self {
-            Self::Opaque | Self::Sorted => true,
-            Self::WeightedAverage | Self::OccupancyOrder | Self::Exact => false,
-        }
-    }
 }
 
 impl fmt::Display for Transparency {

@@ -154,7 +154,7 @@ mod tests {
                 size_of::<FrameUniform>(),
             ]
         );
-        // The shaded point is written and read by shaders alone, but Rust makes room for it.
+        // Written and read by shaders alone, but Rust makes room for it.
         assert_eq!(layout_in_shader("ShadedPoint").last(), Some(&32));
     }
 }

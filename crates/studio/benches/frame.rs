@@ -5,7 +5,6 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use lovelock_groom::Strands;
 use lovelock_render::{Backend, Picture, Renderer, Transparency};
 use lovelock_studio::{Access, BenchScene, Engine, FrameClock, LoadControl, SceneLoader};
 
@@ -25,7 +24,7 @@ fn whole_frames(criterion: &mut Criterion) {
         let clock = FrameClock::new(30.0);
         let mut engine = Engine::with_step(Arc::clone(&loaded), project.simulation, clock.step_secs);
         let mut renderer = Renderer::open(Backend::Cpu).expect("the processor");
-        let (mut strands, mut picture) = (Strands::default(), Picture::default());
+        let mut picture = Picture::default();
         let mut frame = 40;
         group.throughput(Throughput::Elements(loaded.style.strands.segments() as u64));
         group.bench_function(format!("{scene}, {transparency}"), |bencher| {
@@ -33,9 +32,8 @@ fn whole_frames(criterion: &mut Criterion) {
                 frame += 1;
                 engine.advance_to_step(clock.step_of_frame(frame));
                 let snapshot = engine.snapshot();
-                snapshot.interpolate(&mut strands);
                 let camera = snapshot.camera(&project.camera);
-                let input = snapshot.frame_input(&project, &strands, &camera);
+                let input = snapshot.frame_input(&project, &camera);
                 renderer.picture(&input, 1280, 720, &mut picture).expect("a picture");
             });
         });

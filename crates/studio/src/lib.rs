@@ -35,7 +35,7 @@ pub use session::{
     SceneLoader, Totals, Wake, Worker, camera_at, dancer, frame_points,
 };
 pub use slot::Slot;
-pub use stats::{Stage, StageHistory, StageTimes, median};
+pub use stats::{PassHistory, Stage, StageHistory, StageTimes, median};
 
 /// Gives the threads that share parallel work their names; without it they bear that of whoever came first.
 ///

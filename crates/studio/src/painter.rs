@@ -5,7 +5,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
-use lovelock_groom::Strands;
 use lovelock_render::{Backend, Camera, FrameStats, Picture, RenderError, Renderer};
 
 use crate::{FrameSnapshot, Project, Slot, StageTimes};
@@ -80,7 +79,6 @@ impl Painter {
             adapter: adapter.clone(),
             on_painted: Box::new(on_painted),
             renderer: None,
-            strands: Strands::default(),
         };
         let thread = std::thread::Builder::new().name("draw".to_owned()).spawn(move || worker.run())?;
         Ok(Self { mailbox, painted, errors, adapter, busy, thread: Some(thread) })
@@ -136,7 +134,6 @@ struct Worker {
     adapter: Slot<Adapter>,
     on_painted: Box<dyn Fn() + Send>,
     renderer: Option<Renderer>,
-    strands: Strands,
 }
 
 impl Worker {
@@ -191,12 +188,11 @@ impl Worker {
         };
         let PaintRequest { project, snapshot, width, height } = request;
         let mut times = snapshot.times;
-        times.interpolate = snapshot.interpolate(&mut self.strands);
         let camera = snapshot.camera(&project.camera);
         let mut picture = Picture::default();
-        let input = snapshot.frame_input(project, &self.strands, &camera);
+        let input = snapshot.frame_input(project, &camera);
         let stats = renderer.picture(&input, *width, *height, &mut picture)?;
-        (times.shadow, times.draw) = (stats.shadow_ms, stats.draw_ms);
+        times.take_picture(&stats);
         Ok(Painted { picture, camera, stats, times, step: snapshot.step })
     }
 }

@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 
+use lovelock_render::{FrameStats, PassTime};
 use serde::Serialize;
 
 /// A stage of one frame, in the order in which it happens.
@@ -82,6 +83,11 @@ impl StageTimes {
         }
     }
 
+    /// Takes over what one picture cost.
+    pub fn take_picture(&mut self, stats: &FrameStats) {
+        (self.interpolate, self.shadow, self.draw) = (stats.interpolate_ms, stats.shadow_ms, stats.draw_ms);
+    }
+
     /// The sum of all stages.
     pub fn total(&self) -> f64 {
         Stage::ALL.iter().map(|&stage| self.get(stage)).sum()
@@ -140,6 +146,42 @@ impl StageHistory {
     }
 }
 
+/// What the passes of the last frames took, pass by pass in the order in which they came.
+#[derive(Clone, Debug)]
+pub struct PassHistory {
+    passes: Vec<(String, VecDeque<f64>)>,
+    capacity: usize,
+}
+
+impl PassHistory {
+    /// A history that keeps the last `capacity` frames (at least one).
+    pub fn new(capacity: usize) -> Self {
+        Self { passes: Vec::new(), capacity: capacity.max(1) }
+    }
+
+    /// Adds a frame. Passes that it has not are forgotten: it was drawn otherwise.
+    pub fn push(&mut self, passes: &[PassTime]) {
+        self.passes.retain(|(name, _)| passes.iter().any(|pass| pass.name == *name));
+        for pass in passes {
+            let at = self.passes.iter().position(|(name, _)| *name == pass.name).unwrap_or_else(|| {
+                self.passes.push((pass.name.clone(), VecDeque::new()));
+                self.passes.len() - 1
+            });
+            let times = &mut self.passes[at].1;
+            if times.len() == self.capacity {
+                times.pop_front();
+            }
+            times.push_back(pass.ms);
+        }
+    }
+
+    /// The median of each pass, milliseconds.
+    pub fn medians(&self) -> Vec<PassTime> {
+        let median = |times: &VecDeque<f64>| median(times.iter().copied());
+        self.passes.iter().map(|(name, times)| PassTime { name: name.clone(), ms: median(times) }).collect()
+    }
+}
+
 /// The median of some numbers: the mean of the middle two where their count is even, 0 where there are none.
 pub fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut sorted: Vec<f64> = values.collect();
@@ -171,6 +213,18 @@ mod tests {
         assert_eq!(history.series(Stage::Draw).collect::<Vec<_>>(), [2.0, 3.0, 4.0]);
         assert_eq!(history.medians().draw, 3.0);
         assert_eq!(history.newest().map(StageTimes::total), Some(4.0));
+    }
+
+    #[test]
+    fn passes_keep_their_order_and_those_that_end_are_forgotten() {
+        let pass = |name: &str, ms: f64| PassTime { name: name.to_owned(), ms };
+        let mut history = PassHistory::new(3);
+        for ms in [9.0, 1.0, 2.0, 3.0] {
+            history.push(&[pass("b", ms), pass("a", 10.0 * ms)]);
+        }
+        assert_eq!(history.medians(), [pass("b", 2.0), pass("a", 20.0)]);
+        history.push(&[pass("a", 20.0), pass("c", 5.0)]);
+        assert_eq!(history.medians(), [pass("a", 20.0), pass("c", 5.0)]);
     }
 
     #[test]

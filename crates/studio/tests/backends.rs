@@ -3,7 +3,6 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use lovelock_groom::Strands;
 use lovelock_render::{Backend, Picture, Renderer};
 use lovelock_studio::{Access, Engine, LoadControl, Project, SceneLoader};
 use lovelock_testkit::flip;
@@ -30,11 +29,9 @@ fn the_default_project_looks_the_same_on_both() {
     let mut draw = |renderer: &mut Renderer, step: u64| {
         engine.advance_to_step(step);
         let snapshot = engine.snapshot();
-        let mut strands = Strands::default();
-        snapshot.interpolate(&mut strands);
         let camera = snapshot.camera(&project.camera);
         let mut picture = Picture::default();
-        let input = snapshot.frame_input(&project, &strands, &camera);
+        let input = snapshot.frame_input(&project, &camera);
         renderer.picture(&input, width, height, &mut picture).expect("a picture");
         picture.rgba
     };

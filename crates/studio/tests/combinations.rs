@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use lovelock_groom::{Preset, Strands};
+use lovelock_groom::Preset;
 use lovelock_render::{Backend, Picture, Renderer, ShadowMethod, Transparency};
 use lovelock_studio::{Access, Engine, LoadControl, Project, SceneLoader};
 use lovelock_testkit::flip;
@@ -27,14 +27,12 @@ fn draw_all(name: &str, mut project: Project) {
     let mut engine = Engine::new(Arc::clone(&scene), project.simulation);
     engine.advance_to_step(30);
     let snapshot = engine.snapshot();
-    let mut strands = Strands::default();
-    snapshot.interpolate(&mut strands);
     let camera = snapshot.camera(&project.camera);
     let mut renderer = Renderer::open(Backend::Cpu).expect("the processor");
     let mut draw = |method, transparency| {
         project.shadow.method = method;
         project.picture.transparency = transparency;
-        let input = snapshot.frame_input(&project, &strands, &camera);
+        let input = snapshot.frame_input(&project, &camera);
         let mut picture = Picture::default();
         renderer.picture(&input, SIZE.0, SIZE.1, &mut picture).expect("a picture");
         picture.rgba

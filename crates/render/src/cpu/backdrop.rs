@@ -152,7 +152,8 @@ fn ground_light<const N: usize>(view: &View, ndc: &[[f32; N]; 2]) -> [[f32; N]; 
         if facing <= 0.0 {
             continue;
         }
-        let body = light.body_light(&place, &[0.004; N], &view.disc6);
+        let lean = light.lean_of(&[[0.0; N], [1.0; N], [0.0; N]]);
+        let body = light.body_light(&place, &lean, 0.004, &view.surface_disc);
         for lane in 0..N {
             let hair = light.columns_light(Vec3::new(place[0][lane], place[1][lane], place[2][lane]));
             for c in 0..3 {

@@ -2,7 +2,7 @@
 // Compiled within the versions of `dispatch`.
 #![allow(clippy::inline_always)]
 
-use glam::{Mat4, Vec2, Vec3};
+use glam::{Mat4, Vec3};
 use rayon::prelude::*;
 
 use super::dispatch;
@@ -126,17 +126,10 @@ impl DepthMap {
         }
     }
 
-    /// Adds, for some places at `u`, `v` and depth `z`, the share of the four texels around them, moved by `tap`,
-    /// that are not nearer to the light.
+    /// Adds, for some places at `u`, `v` and depth `z`, the share of the four texels around them that are not nearer
+    /// to the light.
     #[inline(always)]
-    pub fn add_compared<const N: usize>(
-        &self,
-        u: &[f32; N],
-        v: &[f32; N],
-        z: &[f32; N],
-        tap: Vec2,
-        sum: &mut [f32; N],
-    ) {
+    pub fn add_compared<const N: usize>(&self, u: &[f32; N], v: &[f32; N], z: &[f32; N], sum: &mut [f32; N]) {
         // One texel is left to the right and below for the neighbours.
         const LAST: f32 = (SIZE - 1) as f32 - 1e-3;
         let size = SIZE as f32;
@@ -144,8 +137,8 @@ impl DepthMap {
         let mut right = [0.0; N];
         let mut below = [0.0; N];
         for lane in 0..N {
-            let x = min(max((u[lane] + tap.x) * size - 0.5, 0.0), LAST);
-            let y = min(max((v[lane] + tap.y) * size - 0.5, 0.0), LAST);
+            let x = min(max(u[lane] * size - 0.5, 0.0), LAST);
+            let y = min(max(v[lane] * size - 0.5, 0.0), LAST);
             let (x0, y0) = (floor(x), floor(y));
             (right[lane], below[lane]) = (x - x0, y - y0);
             at[lane] = index_of(y0) * SIZE as u32 + index_of(x0);
@@ -170,7 +163,7 @@ impl DepthMap {
     }
 
     /// What each of [`DepthMap::add_compared`] adds for taps within `radius`, where the blocks around all of the
-    /// places tell it.
+    /// places tell it. The taps' depth is within `steepest` times `radius` of that of their place.
     #[inline(always)]
     pub fn all_alike<const N: usize>(
         &self,
@@ -178,6 +171,7 @@ impl DepthMap {
         v: &[f32; N],
         z: &[f32; N],
         radius: f32,
+        steepest: f32,
     ) -> Option<f32> {
         let (size, last) = (SIZE as f32, (SIZE - 1) as f32);
         let range = |of: &[f32; N]| {
@@ -204,9 +198,10 @@ impl DepthMap {
                 farthest = max(*far, farthest);
             }
         }
-        if far <= nearest {
+        let deeper = radius * steepest;
+        if far + deeper <= nearest {
             Some(1.0)
-        } else if near > farthest {
+        } else if near - deeper > farthest {
             Some(0.0)
         } else {
             None
@@ -295,6 +290,8 @@ fn bound_blocks(rows: &[f32], blocks: &mut [[f32; 2]]) {
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec2;
+
     use super::*;
 
     fn drawn(vertices: &[Vec3], triangles: &[[u32; 3]]) -> DepthMap {
@@ -312,7 +309,7 @@ mod tests {
 
     fn compare(map: &DepthMap, uv: Vec2, z: f32) -> f32 {
         let mut sum = [0.0];
-        map.add_compared(&[uv.x], &[uv.y], &[z], Vec2::ZERO, &mut sum);
+        map.add_compared(&[uv.x], &[uv.y], &[z], &mut sum);
         sum[0]
     }
 
@@ -347,13 +344,17 @@ mod tests {
         let map = map();
         let mut told = 0;
         for i in 0..64 {
-            for (j, z) in [(10, 0.2), (31, 0.55), (33, 0.9), (60, 0.5), (62, 0.51)] {
+            for (j, z) in [(10, 0.2), (31, 0.55), (32, 0.497), (32, 0.503), (33, 0.9), (60, 0.5), (62, 0.51)]
+            {
                 let (u, v) = ([i as f32 / 64.0; 2], [j as f32 / 64.0, j as f32 / 64.0 + 0.01]);
-                if let Some(all) = map.all_alike(&u, &v, &[z; 2], 0.01) {
+                if let Some(all) = map.all_alike(&u, &v, &[z; 2], 0.01, 0.5) {
                     told += 1;
-                    for tap in [Vec2::ZERO, Vec2::X, Vec2::NEG_Y, Vec2::splat(-0.7)] {
+                    for (x, y, deeper) in
+                        [(0.0, 0.0, 0.0), (1.0, 0.0, 0.5), (0.0, -1.0, -0.5), (-0.7, -0.7, 0.4)]
+                    {
                         let mut sum = [0.0; 2];
-                        map.add_compared(&u, &v, &[z; 2], tap * 0.01, &mut sum);
+                        let (u, v) = (u.map(|u| u + 0.01 * x), v.map(|v| v + 0.01 * y));
+                        map.add_compared(&u, &v, &[z + 0.01 * deeper; 2], &mut sum);
                         assert_eq!(sum, [all; 2], "{u:?} {z}");
                     }
                 }

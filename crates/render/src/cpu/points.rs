@@ -182,7 +182,7 @@ fn shade_group(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoi
     let [primary, secondary, primary_exponent, secondary_exponent] = uniform.highlights.to_array();
     for (k, light) in view.lights.iter().enumerate().take(MAX_LIGHTS) {
         // Roots lie on the skin: the bias keeps the skin under a strand from shadowing it.
-        let shadow = light.body_light(&here, &[0.006; LANES], &view.disc3);
+        let shadow = light.body_light(&here, &[[0.0; LANES]; 3], 0.006, &view.strand_disc);
         let [lx, ly, lz] = (-light.direction).to_array();
         let (radiance, specular) = (light.radiance.to_array(), light.specular);
         let mut share = [0.0; LANES];

@@ -3,7 +3,8 @@
 use std::sync::{Mutex, PoisonError};
 
 use glam::{Vec3, Vec4};
-use lovelock_gpu::Stopwatch;
+use lovelock_gpu::{PassTime, Stopwatch};
+use lovelock_groom::Strands;
 use lovelock_groom::simd::Width;
 use lovelock_motion::{Body, Skin};
 use rayon::prelude::*;
@@ -29,7 +30,7 @@ use crate::picture::check_size;
 use crate::shadow_stage::ShadowStage;
 use crate::strand_details::StrandDetails;
 use crate::uniform::{FrameUniform, LightMaps};
-use crate::{DrawTimes, FrameInput, FrameStats, MAX_LIGHTS, Picture, RenderError, Transparency};
+use crate::{FrameInput, FrameStats, MAX_LIGHTS, Picture, RenderError, Transparency};
 
 /// Texels along each edge of the body's depth maps.
 const DEPTH_TEXELS: u32 = body_depth::SIZE as u32;
@@ -41,6 +42,7 @@ const SEGMENTS_AT_ONCE: usize = 128;
 #[derive(Debug)]
 pub struct CpuRenderer {
     width: Width,
+    strands: Strands,
     shadow: ShadowStage,
     details: StrandDetails,
     points: Vec<ShadedPoint>,
@@ -72,6 +74,7 @@ impl Default for CpuRenderer {
     fn default() -> Self {
         Self {
             width: Width::widest(),
+            strands: Strands::default(),
             shadow: ShadowStage::default(),
             details: StrandDetails::default(),
             points: Vec::new(),
@@ -115,12 +118,33 @@ impl CpuRenderer {
         picture: &mut Picture,
     ) -> Result<FrameStats, RenderError> {
         check_size(width, height)?;
+        let mut made = std::mem::take(&mut self.strands);
         let watch = Stopwatch::start();
-        self.shadow.run(input)?;
+        let strands = input.hair.strands(input.style, &mut made);
+        let interpolate_ms = watch.ms();
+        let stats = self.draw(input, strands, width, height, picture);
+        self.strands = made;
+        stats.map(|stats| FrameStats { interpolate_ms, ..stats })
+    }
+
+    fn draw(
+        &mut self,
+        input: &FrameInput,
+        strands: &Strands,
+        width: u32,
+        height: u32,
+        picture: &mut Picture,
+    ) -> Result<FrameStats, RenderError> {
+        let watch = Stopwatch::start();
+        self.shadow.run(input, strands)?;
         let shadow_ms = watch.ms();
 
         let watch = Stopwatch::start();
-        let mut times = DrawTimes::default();
+        let mut passes = Vec::new();
+        let mut passed = |name: &str, part: &Stopwatch| {
+            passes.push(PassTime { name: name.to_owned(), ms: part.ms() });
+        };
+        let part = Stopwatch::start();
         let body = input.body.map(|(body, skin)| (&**body, skin));
         let closed = input.body.is_some_and(|(body, _)| self.closed.of(body));
         // From within, the faces that look away from the eye are those behind the wall.
@@ -131,17 +155,14 @@ impl CpuRenderer {
         let maps = self.draw_depth(input, body, closed);
         let uniform = FrameUniform::new(input, width, height, &maps, DEPTH_TEXELS);
         let view = View::new(&uniform, &self.depth, &self.shadow.columns, DEPTH_TEXELS);
-        times.body_depth = watch.ms();
+        passed("draw/body-depth", &part);
 
         let part = Stopwatch::start();
         self.details.follow(input.style);
-        let points_in = PointsIn {
-            strands: input.strands,
-            details: &self.details.words,
-            transmittance: &self.shadow.at_points,
-        };
+        let points_in =
+            PointsIn { strands, details: &self.details.words, transmittance: &self.shadow.at_points };
         shade_all(self.width, &view, &points_in, &mut self.points);
-        times.points = part.ms();
+        passed("draw/points", &part);
 
         let part = Stopwatch::start();
         let grid = Grid::new(width, height);
@@ -161,11 +182,11 @@ impl CpuRenderer {
                 });
                 if input.picture.transparency == Transparency::Sorted {
                     let forward = (input.camera.target - input.camera.eye).normalize_or_zero();
-                    keys.measure(input.strands, segments, forward);
+                    keys.measure(strands, segments, forward);
                 }
             },
         );
-        times.sort = part.ms();
+        passed("draw/sort", &part);
 
         let part = Stopwatch::start();
         self.tiles.resize(grid.columns * grid.rows * TILE_BYTES, 0);
@@ -198,13 +219,15 @@ impl CpuRenderer {
         self.plain = plain;
         copy_rows(&tiles, &grid, picture);
         self.tiles = tiles;
-        times.tiles = part.ms();
+        passed("draw/tiles", &part);
         Ok(FrameStats {
+            interpolate_ms: 0.0,
             shadow_ms,
             draw_ms: watch.ms(),
-            draw: Some(times),
+            passes,
             segments: self.details.segments.len() as u64,
             shadow_bytes: self.shadow.bytes,
+            draw_bytes: (self.tiles.capacity() + self.plain.bytes.capacity()) as u64,
             mean_transmittance: self.shadow.mean,
         })
     }
@@ -221,15 +244,14 @@ impl CpuRenderer {
         let (center, radius) = bounding_sphere(positions);
         let lights: Vec<_> = input.lights.iter().filter(|light| light.enabled).take(MAX_LIGHTS).collect();
         self.depth.resize_with(lights.len(), DepthMap::default);
-        let (width, shadow) = (self.width, &self.shadow);
+        let width = self.width;
         lights
             .into_par_iter()
             .zip(&mut self.depth)
-            .enumerate()
-            .map(|(k, (light, depth))| {
+            .map(|(light, depth)| {
                 let view = light_view(light.clamped().direction, center, radius, DEPTH_TEXELS);
                 depth.draw(width, view.shadow_from_world, (positions, triangles, closed));
-                LightMaps { columns_from_world: shadow.columns_from_world(k), ..view }
+                view
             })
             .collect()
     }

@@ -10,16 +10,18 @@ use super::math::{floor, index_of, max, min, three};
 use crate::MAX_LIGHTS;
 use crate::uniform::FrameUniform;
 
-/// Most taps of a soft shadow's edge.
-pub(super) const MOST_TAPS: usize = 6;
+/// Taps of a soft shadow's edge on a surface. Six show their steps as bands.
+const SURFACE_TAPS: usize = 16;
+/// Taps of a soft shadow's edge on a strand's point, which its neighbours blur.
+const STRAND_TAPS: usize = 3;
 
 /// The picture's settings with the maps of its lights.
 pub(super) struct View<'a> {
     pub uniform: &'a FrameUniform,
     pub lights: Vec<LightView<'a>>,
-    /// Golden-angle discs of 3 and of 6 taps, as the shader has them.
-    pub disc3: [Vec2; 3],
-    pub disc6: [Vec2; MOST_TAPS],
+    /// Golden-angle discs for surfaces and for strands, as the shader has them.
+    pub surface_disc: [Vec2; SURFACE_TAPS],
+    pub strand_disc: [Vec2; STRAND_TAPS],
 }
 
 /// One light.
@@ -31,6 +33,10 @@ pub(super) struct LightView<'a> {
     pub radiance: Vec3,
     /// Blur of the body's shadow, part of the map's edge.
     blur: f32,
+    /// Part of the map's edge that one texel is.
+    texel: f32,
+    /// Unit vectors along the map's edges, to the right and down.
+    edges: [Vec3; 2],
     shadow_from_world: Mat4,
     depth: &'a DepthMap,
     columns: Option<&'a ColumnMap>,
@@ -54,12 +60,17 @@ impl<'a> View<'a> {
                 specular: light.direction_specular.w,
                 radiance: light.radiance_blur.truncate(),
                 blur: light.radiance_blur.w.max(1.0) / texels as f32,
+                texel: 1.0 / texels as f32,
+                edges: [
+                    light.shadow_from_world.row(0).truncate().normalize_or_zero(),
+                    -light.shadow_from_world.row(1).truncate().normalize_or_zero(),
+                ],
                 shadow_from_world: light.shadow_from_world,
                 depth,
                 columns: columns.get(k).and_then(Option::as_ref),
             })
             .collect();
-        Self { uniform, lights, disc3: disc(), disc6: disc() }
+        Self { uniform, lights, surface_disc: disc(), strand_disc: disc() }
     }
 
     /// Light from everywhere that reaches a surface whose normal has the height `up`.
@@ -80,10 +91,33 @@ fn disc<const N: usize>() -> [Vec2; N] {
 }
 
 impl LightView<'_> {
+    /// How surfaces with the unit normals `n` lean as the light sees them: their normals along u, v and toward the
+    /// light.
+    #[inline(always)]
+    pub fn lean_of<const N: usize>(&self, n: &[[f32; N]; 3]) -> [[f32; N]; 3] {
+        let axes = [self.edges[0], self.edges[1], -self.direction];
+        let mut lean = [[0.0; N]; 3];
+        for (lean, axis) in lean.iter_mut().zip(axes) {
+            for lane in 0..N {
+                lean[lane] = n[0][lane] * axis.x + n[1][lane] * axis.y + n[2][lane] * axis.z;
+            }
+        }
+        lean
+    }
+
     /// Share of the light that the body lets through to some places, each of which is moved `bias` metres toward
     /// the light first: the mean over the taps of `disc`.
+    ///
+    /// The disc lies in the plane of the surface, which leans as `lean` says: a flat surface keeps no light from
+    /// itself. For what has no surface `lean` is zero and the disc lies across the light.
     #[inline(always)]
-    pub fn body_light<const N: usize>(&self, p: &[[f32; N]; 3], bias: &[f32; N], disc: &[Vec2]) -> [f32; N] {
+    pub fn body_light<const N: usize>(
+        &self,
+        p: &[[f32; N]; 3],
+        lean: &[[f32; N]; 3],
+        bias: f32,
+        disc: &[Vec2],
+    ) -> [f32; N] {
         let m = &self.shadow_from_world;
         let (rx, ry, rz) = (m.row(0), m.row(1), m.row(2));
         let toward = self.direction;
@@ -91,16 +125,18 @@ impl LightView<'_> {
         let mut v = [0.0; N];
         let mut z = [0.0; N];
         let mut inside = [0.0; N];
-        let mut any = 0.0;
+        let (mut any, mut steepest) = (0.0, 0.0);
         for lane in 0..N {
-            let (x, y, w) = (
-                p[0][lane] - toward.x * bias[lane],
-                p[1][lane] - toward.y * bias[lane],
-                p[2][lane] - toward.z * bias[lane],
-            );
+            let (x, y, w) =
+                (p[0][lane] - toward.x * bias, p[1][lane] - toward.y * bias, p[2][lane] - toward.z * bias);
             u[lane] = (rx.x * x + rx.y * y + rx.z * w + rx.w) * 0.5 + 0.5;
             v[lane] = 0.5 - (ry.x * x + ry.y * y + ry.z * w + ry.w) * 0.5;
-            z[lane] = rz.x * x + rz.y * y + rz.z * w + rz.w;
+            // Texels around a place lie as much nearer as the plane leans over one of them; a place that the light
+            // only grazes would need more than is right elsewhere.
+            let leans = lean[0][lane].abs() + lean[1][lane].abs();
+            let nearer = self.texel * leans / max(lean[2][lane], 0.25);
+            z[lane] = rz.x * x + rz.y * y + rz.z * w + rz.w - nearer;
+            steepest = max(leans, steepest);
             let seen = (u[lane] >= 0.0) & (v[lane] >= 0.0) & (u[lane] <= 1.0) & (v[lane] <= 1.0);
             inside[lane] = if seen { 1.0 } else { 0.0 };
             any = max(inside[lane], any);
@@ -108,16 +144,30 @@ impl LightView<'_> {
         if any <= 0.0 {
             return [1.0; N];
         }
-        if let Some(all) = self.depth.all_alike(&u, &v, &z, self.blur) {
+        if let Some(all) = self.depth.all_alike(&u, &v, &z, self.blur, steepest) {
             let mut out = [1.0; N];
             for lane in 0..N {
                 out[lane] = if inside[lane] > 0.0 { all } else { 1.0 };
             }
             return out;
         }
+        let mut turn = [[0.0; N]; 2];
+        for lane in 0..N {
+            let inverse = 1.0 / (1.0 + max(lean[2][lane], 0.0));
+            (turn[0][lane], turn[1][lane]) = (lean[0][lane] * inverse, lean[1][lane] * inverse);
+        }
         let mut sum = [0.0; N];
+        let (mut tap_u, mut tap_v, mut tap_z) = ([0.0; N], [0.0; N], [0.0; N]);
         for tap in disc {
-            self.depth.add_compared(&u, &v, &z, *tap * self.blur, &mut sum);
+            let tap = *tap * self.blur;
+            for lane in 0..N {
+                // The map is as deep as it is wide, so that its three coordinates turn together.
+                let deeper = tap.x * lean[0][lane] + tap.y * lean[1][lane];
+                tap_u[lane] = u[lane] + tap.x - turn[0][lane] * deeper;
+                tap_v[lane] = v[lane] + tap.y - turn[1][lane] * deeper;
+                tap_z[lane] = z[lane] + deeper;
+            }
+            self.depth.add_compared(&tap_u, &tap_v, &tap_z, &mut sum);
         }
         let share = 1.0 / disc.len() as f32;
         for lane in 0..N {

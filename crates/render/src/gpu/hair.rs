@@ -1,158 +1,192 @@
-//! The strands on the GPU: their buffers and bind groups.
+//! The strands on the GPU: where they are, and how each of their points is shaded.
 
 use bytemuck::{Pod, Zeroable};
-use lovelock_gpu::{Gpu, GrowBuffer, wgpu};
+use glam::Vec3;
+use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, THREADS, wgpu};
+use lovelock_groom::StrandBounds;
+use lovelock_shadow::{Bounds, GpuStrands, LightFrame, ShadowInput};
 use rayon::prelude::*;
 
+use super::interpolate::Interpolation;
 use super::pipelines::Pipelines;
-use crate::sort::DepthSort;
 use crate::strand_details::StrandDetails;
-use crate::{FrameInput, Transparency};
+use crate::{FrameInput, HairPose};
 
-/// A position and, in the bits of `w`, four 8-bit transmittances.
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-#[repr(C)]
-struct Point([f32; 4]);
-
-/// Twin of `ShadedPoint` in the strand shaders; never read on the processor.
+/// Twin of `ShadedPoint` in the shaders; never read on the processor.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
 struct ShadedPoint([u32; 8]);
 
-/// The strands' buffers. What belongs to the hairstyle is written when it changes, the rest every frame.
+/// The strands' buffers. What belongs to the hairstyle is written when it changes; of a frame only guides are, unless its
+/// strands are given.
 #[derive(Debug)]
 pub(super) struct HairBuffers {
     style: StrandDetails,
-    points: GrowBuffer<Point>,
+    extent: Option<StrandBounds>,
+    interpolation: Interpolation,
+    points: GrowBuffer<[f32; 4]>,
     details: GrowBuffer<u32>,
+    segments: GrowBuffer<u32>,
+    transmittance: GrowBuffer<u32>,
     shaded: GrowBuffer<ShadedPoint>,
-    order: GrowBuffer<u32>,
-    staging: Vec<Point>,
-    sort: DepthSort,
-    points_group: Option<wgpu::BindGroup>,
-    ribbons_group: Option<wgpu::BindGroup>,
+    staging: Vec<[f32; 4]>,
+    group: Option<wgpu::BindGroup>,
 }
 
 impl HairBuffers {
-    pub fn new(gpu: &Gpu) -> Self {
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let storage = wgpu::BufferUsages::STORAGE;
-        Self {
+        let device = &gpu.device;
+        Ok(Self {
             style: StrandDetails::default(),
-            points: GrowBuffer::new(&gpu.device, "strand points", storage),
-            details: GrowBuffer::new(&gpu.device, "strand details", storage),
-            shaded: GrowBuffer::new(&gpu.device, "shaded points", storage),
-            order: GrowBuffer::new(&gpu.device, "segment order", storage),
+            extent: None,
+            interpolation: Interpolation::new(gpu)?,
+            points: GrowBuffer::new(device, "strand points", storage),
+            details: GrowBuffer::new(device, "strand details", storage),
+            segments: GrowBuffer::new(device, "segments", storage),
+            transmittance: GrowBuffer::new(device, "transmittance", storage),
+            shaded: GrowBuffer::new(device, "shaded points", storage),
             staging: Vec::new(),
-            sort: DepthSort::default(),
-            points_group: None,
-            ribbons_group: None,
-        }
+            group: None,
+        })
     }
 
-    /// Writes one frame. `transmittance` holds one packed word a point.
-    pub fn write(&mut self, gpu: &Gpu, pipelines: &Pipelines, input: &FrameInput, transmittance: &[u32]) {
-        let FrameInput { style, strands, camera, .. } = *input;
-        let transparency = input.picture.transparency;
+    /// Brings one frame's strands to the device.
+    ///
+    /// # Errors
+    /// The hairstyle needs a buffer that the device does not give.
+    pub fn write(
+        &mut self,
+        gpu: &Gpu,
+        pipelines: &Pipelines,
+        commands: &mut Commands,
+        input: &FrameInput,
+    ) -> Result<(), GpuError> {
         let (device, queue) = (&gpu.device, &gpu.queue);
-        let mut remade = false;
-        let style_is_new = self.style.follow(style);
-        if style_is_new {
-            remade |= self.details.write(device, queue, &self.style.words);
+        let points = input.style.strands.points();
+        let needed = points as u64 * size_of::<ShadedPoint>() as u64;
+        if needed > gpu.most_storage_bytes() {
+            return Err(GpuError::Refused(format!(
+                "{points} strand points need a buffer of {needed} bytes, and {} takes at most {}: draw fewer strands, or \
+                 by the processor",
+                gpu.info.name,
+                gpu.most_storage_bytes()
+            )));
         }
-        strands
-            .x
-            .par_iter()
-            .zip(&strands.y)
-            .zip(&strands.z)
-            .zip(transmittance)
-            .map(|(((&x, &y), &z), &t)| Point([x, y, z, f32::from_bits(t)]))
-            .collect_into_vec(&mut self.staging);
-        remade |= self.points.write(device, queue, &self.staging);
-        remade |= self.shaded.reserve(device, strands.points());
-        match transparency {
-            Transparency::Opaque => remade |= self.order.write(device, queue, &self.style.segments),
-            // What the graphics card does not draw, its renderer refuses before it comes here.
-            Transparency::Sorted
-            | Transparency::WeightedAverage
-            | Transparency::OccupancyOrder
-            | Transparency::Exact => {
-                let forward = (camera.target - camera.eye).normalize_or_zero();
-                let staging = &self.staging;
-                let order = self.sort.sort(&self.style.segments, |i| {
-                    let [x, y, z, _] = staging[i].0;
-                    x * forward.x + y * forward.y + z * forward.z
-                });
-                remade |= self.order.write(device, queue, order);
+        let mut remade = false;
+        if self.style.follow(input.style) {
+            remade |= self.details.write(device, queue, &self.style.words);
+            remade |= self.segments.write(device, queue, &self.style.segments);
+            self.group = None;
+            self.extent = None;
+        }
+        remade |= self.points.reserve(device, points);
+        remade |= self.transmittance.reserve(device, points);
+        remade |= self.shaded.reserve(device, points);
+        match input.hair {
+            HairPose::Guides(guides) => {
+                self.interpolation.run(gpu, commands, input.style, guides, self.points.raw())?;
+            }
+            HairPose::Strands(strands) => {
+                strands
+                    .x
+                    .par_iter()
+                    .zip(&strands.y)
+                    .zip(&strands.z)
+                    .map(|((&x, &y), &z)| [x, y, z, 0.0])
+                    .collect_into_vec(&mut self.staging);
+                // Strands and hairstyle should be of one size.
+                self.staging.resize(points, [f32::NAN; 4]);
+                self.points.write(device, queue, &self.staging);
             }
         }
-        // `arrayLength` of the details is the number of points, so the groups follow every new style too.
-        if remade || style_is_new || self.points_group.is_none() {
+        if remade || self.group.is_none() {
             self.bind(device, pipelines);
         }
+        Ok(())
     }
 
     fn bind(&mut self, device: &wgpu::Device, pipelines: &Pipelines) {
+        // `arrayLength` of the details is the number of points.
         let details = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
             buffer: self.details.raw(),
             offset: 0,
             size: std::num::NonZeroU64::new((self.details.len() as u64 * 4).max(4)),
         });
-        let group = |label, layout, resources: Vec<wgpu::BindingResource>| {
-            let entries: Vec<_> = resources
-                .into_iter()
-                .enumerate()
-                .map(|(binding, resource)| wgpu::BindGroupEntry { binding: binding as u32, resource })
-                .collect();
-            device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some(label),
-                layout,
-                entries: &entries,
-            })
-        };
-        let order = self.order.raw().as_entire_binding();
-        let (points, shaded) = (self.points.raw().as_entire_binding(), self.shaded.raw().as_entire_binding());
-        self.points_group =
-            Some(group("strand points", &pipelines.points_layout, vec![points, details, shaded.clone()]));
-        self.ribbons_group = Some(group("strand ribbons", &pipelines.ribbons_layout, vec![shaded, order]));
+        let resources = [
+            self.points.raw().as_entire_binding(),
+            details,
+            self.transmittance.raw().as_entire_binding(),
+            self.shaded.raw().as_entire_binding(),
+        ];
+        let entries: Vec<_> = resources
+            .into_iter()
+            .enumerate()
+            .map(|(binding, resource)| wgpu::BindGroupEntry { binding: binding as u32, resource })
+            .collect();
+        self.group = Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("strand points"),
+            layout: &pipelines.points_layout,
+            entries: &entries,
+        }));
     }
 
-    /// Segments of the last frame.
-    pub fn segment_count(&self) -> u32 {
-        self.order.len() as u32
+    /// Bounds of the strands along the axes of a light, relative to `anchor`, and the length of the longest strand; not
+    /// much larger than need be.
+    pub fn bounds(&mut self, input: &FrameInput, light: LightFrame, anchor: Vec3) -> (Bounds, f32) {
+        let extent = self.extent.get_or_insert_with(|| StrandBounds::new(input.style));
+        let bounds = match input.hair {
+            HairPose::Strands(strands) => {
+                let input = ShadowInput { strands, strand_width: 0.0, light, anchor, maps: 1 };
+                Bounds::of_strands(&input)
+            }
+            HairPose::Guides(guides) => {
+                let found = extent.along(guides, [light.x, light.y, light.z], anchor);
+                found.map_or(Bounds::EMPTY, |(min, max)| Bounds { min, max, ignored: 0 })
+            }
+        };
+        (bounds, extent.longest_strand())
+    }
+
+    /// The strands as shadow methods read them.
+    pub fn strands(&self) -> GpuStrands<'_> {
+        GpuStrands {
+            points: self.points.raw(),
+            point_count: self.points.len() as u32,
+            segments: self.segments.raw(),
+            segment_count: self.segments.len() as u32,
+        }
+    }
+
+    /// Memory that is held, bytes.
+    pub fn memory_bytes(&self) -> u64 {
+        let own = [&self.details, &self.segments, &self.transmittance].map(|buffer| buffer.raw().size());
+        let own = own.iter().sum::<u64>() + self.points.raw().size() + self.shaded.raw().size();
+        own + self.interpolation.bytes()
+    }
+
+    /// Where shadow methods leave four transmittances a point.
+    pub fn transmittance(&self) -> &wgpu::Buffer {
+        self.transmittance.raw()
+    }
+
+    /// Points as they are drawn.
+    pub fn shaded(&self) -> &wgpu::Buffer {
+        self.shaded.raw()
     }
 
     /// Projects and shades every point. The frame's bind group is group 0.
-    pub fn shade(&self, pipelines: &Pipelines, pass: &mut wgpu::ComputePass, frame: &wgpu::BindGroup) {
+    pub fn shade(&self, pipelines: &Pipelines, commands: &mut Commands, frame: &wgpu::BindGroup) {
         /// Workgroups along one axis of a dispatch: WebGPU's limit.
         const MOST_GROUPS: u32 = 65_535;
-        let (Some(group), points) = (&self.points_group, self.details.len() as u32) else {
-            return;
-        };
-        if points == 0 {
-            return;
-        }
-        let groups = points.div_ceil(64);
-        pass.set_pipeline(&pipelines.shade_points);
-        pass.set_bind_group(0, frame, &[]);
-        pass.set_bind_group(1, group, &[]);
-        pass.dispatch_workgroups(groups.min(MOST_GROUPS), groups.div_ceil(MOST_GROUPS), 1);
-    }
-
-    /// Draws every segment.
-    pub fn draw(
-        &self,
-        pipelines: &Pipelines,
-        pass: &mut wgpu::RenderPass,
-        frame: &wgpu::BindGroup,
-        transparency: Transparency,
-    ) {
-        let Some(group) = &self.ribbons_group else { return };
-        if self.segment_count() == 0 {
-            return;
-        }
-        pass.set_pipeline(pipelines.ribbons(transparency));
-        pass.set_bind_group(0, frame, &[]);
-        pass.set_bind_group(1, group, &[]);
-        pass.draw(0..self.segment_count() * 6, 0..1);
+        let points = self.details.len() as u32;
+        let Some(group) = self.group.as_ref().filter(|_| points > 0) else { return };
+        let groups = points.div_ceil(THREADS);
+        commands.compute("draw/points", |pass| {
+            pass.set_pipeline(&pipelines.shade_points);
+            pass.set_bind_group(0, frame, &[]);
+            pass.set_bind_group(1, group, &[]);
+            pass.dispatch_workgroups(groups.min(MOST_GROUPS), groups.div_ceil(MOST_GROUPS), 1);
+        });
     }
 }

@@ -1,8 +1,12 @@
 //! The GPU backend: wgpu compute and raster passes.
 
+mod eye;
+mod ground;
 mod hair;
+mod interpolate;
 mod pipelines;
 mod renderer;
+mod shadow;
 mod surface;
 mod targets;
 

@@ -3,7 +3,7 @@
 use lovelock_gpu::{Gpu, GpuError, ShaderPart, ShaderSource, wgpu};
 
 use super::targets::{DEPTH_FORMAT, HDR_FORMAT, OUT_FORMAT, SAMPLES};
-use crate::Transparency;
+use crate::gpu::{eye, interpolate};
 
 macro_rules! part {
     ($name:literal) => {
@@ -17,24 +17,30 @@ macro_rules! part {
 const FRAME: ShaderPart = part!("frame.wgsl");
 const STRAND_SHADING: ShaderPart = part!("strand_shading.wgsl");
 const STRAND_POINTS: ShaderPart = part!("strand_points.wgsl");
-const STRAND_RIBBONS: ShaderPart = part!("strand_ribbons.wgsl");
 const SURFACE: ShaderPart = part!("surface.wgsl");
 const DEPTH: ShaderPart = part!("depth.wgsl");
 const BACKDROP: ShaderPart = part!("backdrop.wgsl");
+const GROUND_LIGHT: ShaderPart = part!("ground_light.wgsl");
+const GROUND: ShaderPart = part!("ground.wgsl");
 const TONE_MAP: ShaderPart = part!("tone_map.wgsl");
 
-/// Every composed shader with its label, so that a test can validate them without a device.
-pub fn all_shaders() -> Vec<(&'static str, ShaderSource)> {
+/// The shaders of the pipelines that are made here.
+fn own_shaders() -> [(&'static str, ShaderSource); 6] {
     [
         ("strand points", &[FRAME, STRAND_SHADING, STRAND_POINTS][..]),
-        ("strand ribbons", &[FRAME, STRAND_RIBBONS]),
         ("surface", &[FRAME, SURFACE]),
         ("depth", &[DEPTH]),
-        ("backdrop", &[FRAME, BACKDROP]),
+        ("ground", &[FRAME, GROUND_LIGHT, GROUND]),
+        ("backdrop", &[FRAME, GROUND_LIGHT, BACKDROP]),
         ("tone map", &[FRAME, TONE_MAP]),
     ]
     .map(|(label, parts)| (label, ShaderSource::new(parts)))
-    .into()
+}
+
+/// Every composed shader with its label, so that a test can validate them without a device.
+pub fn all_shaders() -> Vec<(String, ShaderSource)> {
+    let own = own_shaders().into_iter().map(|(label, source)| (label.to_owned(), source));
+    own.chain(eye::shaders()).chain(interpolate::shaders()).collect()
 }
 
 /// The pipelines and the layouts of their bind groups.
@@ -42,19 +48,19 @@ pub fn all_shaders() -> Vec<(&'static str, ShaderSource)> {
 pub(super) struct Pipelines {
     pub frame_layout: wgpu::BindGroupLayout,
     pub points_layout: wgpu::BindGroupLayout,
-    pub ribbons_layout: wgpu::BindGroupLayout,
     pub depth_layout: wgpu::BindGroupLayout,
     pub tone_layout: wgpu::BindGroupLayout,
+    pub corners_layout: wgpu::BindGroupLayout,
+    pub ground_layout: wgpu::BindGroupLayout,
     pub shade_points: wgpu::ComputePipeline,
-    pub ribbons_opaque: wgpu::RenderPipeline,
-    pub ribbons_sorted: wgpu::RenderPipeline,
+    pub ground_corners: wgpu::ComputePipeline,
     pub surface: wgpu::RenderPipeline,
     pub depth: wgpu::RenderPipeline,
     pub backdrop: wgpu::RenderPipeline,
     pub tone_map: wgpu::RenderPipeline,
 }
 
-/// Bytes of one vertex of the body that change every frame: position, transmittance, normal, padding.
+/// Bytes of one vertex of the body that change every frame: position and normal, four numbers each.
 pub(super) const MOVING_VERTEX_BYTES: u64 = 32;
 /// Bytes of one vertex of the body that stay: colour and scalp.
 pub(super) const FIXED_VERTEX_BYTES: u64 = 16;
@@ -63,10 +69,10 @@ impl Pipelines {
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let device = &gpu.device;
         let mut modules = Vec::new();
-        for (label, source) in all_shaders() {
+        for (label, source) in own_shaders() {
             modules.push(gpu.shader(label, &source)?);
         }
-        let [points, ribbons, surface, depth, backdrop, tone]: [wgpu::ShaderModule; 6] =
+        let [points, surface, depth, ground, backdrop, tone]: [wgpu::ShaderModule; 6] =
             modules.try_into().map_err(|_| GpuError::Shader("the list of shaders changed".to_owned()))?;
 
         let stages = wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE;
@@ -91,20 +97,32 @@ impl Pipelines {
         let points_layout = layout(
             device,
             "strand points",
-            &[(compute, storage(true)), (compute, storage(true)), (compute, storage(false))],
+            &[
+                (compute, storage(true)),
+                (compute, storage(true)),
+                (compute, storage(true)),
+                (compute, storage(false)),
+            ],
         );
         let vertex = wgpu::ShaderStages::VERTEX;
-        let ribbons_layout =
-            layout(device, "strand ribbons", &[(vertex, storage(true)), (vertex, storage(true))]);
         let depth_layout = layout(device, "depth", &[(vertex, uniform())]);
         let tone_layout = layout(
             device,
             "tone map",
-            &[(
-                wgpu::ShaderStages::FRAGMENT,
-                texture(wgpu::TextureSampleType::Float { filterable: false }, wgpu::TextureViewDimension::D2),
-            )],
+            &[
+                (
+                    wgpu::ShaderStages::FRAGMENT,
+                    texture(
+                        wgpu::TextureSampleType::Float { filterable: false },
+                        wgpu::TextureViewDimension::D2,
+                    ),
+                ),
+                (wgpu::ShaderStages::FRAGMENT, storage(true)),
+            ],
         );
+
+        let corners_layout = layout(device, "ground corners", &[(compute, storage(false))]);
+        let ground_layout = layout(device, "ground", &[(wgpu::ShaderStages::FRAGMENT, storage(true))]);
 
         let pipeline_layout = |label, groups: &[&wgpu::BindGroupLayout]| {
             let groups: Vec<_> = groups.iter().map(|&group| Some(group)).collect();
@@ -114,49 +132,32 @@ impl Pipelines {
                 immediate_size: 0,
             })
         };
-        let shade_points = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some("strand points"),
-            layout: Some(&pipeline_layout("strand points", &[&frame_layout, &points_layout])),
-            module: &points,
-            entry_point: Some("shade_points"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            cache: None,
-        });
-        let ribbon_layout = pipeline_layout("strand ribbons", &[&frame_layout, &ribbons_layout]);
-        let ribbon_pipeline = |mode: Transparency| {
-            let (entry, blend, writes_depth) = match mode {
-                Transparency::Opaque => ("opaque", None, true),
-                // The others are refused before they come here.
-                Transparency::Sorted
-                | Transparency::WeightedAverage
-                | Transparency::OccupancyOrder
-                | Transparency::Exact => {
-                    ("blended", Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING), false)
-                }
-            };
-            raster(
-                device,
-                mode.label(),
-                &ribbon_layout,
-                &ribbons,
-                ["ribbon", entry],
-                &[],
-                Draw {
-                    blend,
-                    depth: Some((wgpu::CompareFunction::Greater, writes_depth)),
-                    ..Draw::default()
-                },
-            )
+        let compute_pipeline = |label, own: &wgpu::BindGroupLayout, module, entry| {
+            device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(label),
+                layout: Some(&pipeline_layout(label, &[&frame_layout, own])),
+                module,
+                entry_point: Some(entry),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                cache: None,
+            })
         };
+        let shade_points = compute_pipeline("strand points", &points_layout, &points, "shade_points");
+        let ground_corners = compute_pipeline("ground", &corners_layout, &ground, "ground_corners");
         let moving = wgpu::VertexBufferLayout {
             array_stride: MOVING_VERTEX_BYTES,
             step_mode: wgpu::VertexStepMode::Vertex,
-            attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Uint32, 2 => Float32x3],
+            attributes: &wgpu::vertex_attr_array![0 => Float32x4, 2 => Float32x3],
         };
         let fixed = wgpu::VertexBufferLayout {
             array_stride: FIXED_VERTEX_BYTES,
             step_mode: wgpu::VertexStepMode::Vertex,
             attributes: &wgpu::vertex_attr_array![3 => Float32x4],
+        };
+        let hair = wgpu::VertexBufferLayout {
+            array_stride: 4,
+            step_mode: wgpu::VertexStepMode::Vertex,
+            attributes: &wgpu::vertex_attr_array![1 => Uint32],
         };
         let position_only = wgpu::VertexBufferLayout {
             array_stride: MOVING_VERTEX_BYTES,
@@ -170,13 +171,13 @@ impl Pipelines {
             &frame_only,
             &surface,
             ["surface", "shade_surface"],
-            &[moving, fixed],
+            &[moving, fixed, hair],
             Draw { depth: Some((wgpu::CompareFunction::Greater, true)), ..Draw::default() },
         );
         let backdrop = raster(
             device,
             "backdrop",
-            &frame_only,
+            &pipeline_layout("backdrop", &[&frame_layout, &ground_layout]),
             &backdrop,
             ["screen", "backdrop"],
             &[],
@@ -208,30 +209,19 @@ impl Pipelines {
             cache: None,
         });
         Ok(Self {
-            ribbons_opaque: ribbon_pipeline(Transparency::Opaque),
-            ribbons_sorted: ribbon_pipeline(Transparency::Sorted),
             frame_layout,
             points_layout,
-            ribbons_layout,
             depth_layout,
             tone_layout,
+            corners_layout,
+            ground_layout,
             shade_points,
+            ground_corners,
             surface,
             depth,
             backdrop,
             tone_map,
         })
-    }
-
-    /// The pipeline that draws strands in `mode`.
-    pub fn ribbons(&self, mode: Transparency) -> &wgpu::RenderPipeline {
-        match mode {
-            Transparency::Opaque => &self.ribbons_opaque,
-            Transparency::Sorted
-            | Transparency::WeightedAverage
-            | Transparency::OccupancyOrder
-            | Transparency::Exact => &self.ribbons_sorted,
-        }
     }
 }
 
@@ -240,13 +230,12 @@ impl Pipelines {
 struct Draw {
     format: wgpu::TextureFormat,
     samples: u32,
-    blend: Option<wgpu::BlendState>,
     depth: Option<(wgpu::CompareFunction, bool)>,
 }
 
 impl Default for Draw {
     fn default() -> Self {
-        Self { format: HDR_FORMAT, samples: SAMPLES, blend: None, depth: None }
+        Self { format: HDR_FORMAT, samples: SAMPLES, depth: None }
     }
 }
 
@@ -292,7 +281,7 @@ fn raster(
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             targets: &[Some(wgpu::ColorTargetState {
                 format: draw.format,
-                blend: draw.blend,
+                blend: None,
                 write_mask: wgpu::ColorWrites::ALL,
             })],
         }),

@@ -4,22 +4,21 @@ use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3};
-use lovelock_gpu::{Gpu, GrowBuffer, wgpu};
+use lovelock_gpu::{Commands, Gpu, GrowBuffer, wgpu};
 use lovelock_motion::{Body, Skin};
 use rayon::prelude::*;
 
 use super::pipelines::Pipelines;
+use super::shadow::Vertices;
 use super::targets::DEPTH_FORMAT;
 use crate::MAX_LIGHTS;
 
-/// Vertex attributes that change every frame: position, transmittance of hair, normal.
+/// Vertex attributes that change every frame: position and normal. Shadow methods read them as two `vec4f`.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
 struct Moving {
-    position: [f32; 3],
-    hair: u32,
-    normal: [f32; 3],
-    pad: u32,
+    position: [f32; 4],
+    normal: [f32; 4],
 }
 
 /// Colour, and 1 where hair grows.
@@ -32,6 +31,7 @@ struct Fixed([f32; 4]);
 pub(super) struct SurfaceBuffers {
     body: Option<Arc<Body>>,
     moving: GrowBuffer<Moving>,
+    hair: GrowBuffer<u32>,
     fixed: GrowBuffer<Fixed>,
     indices: GrowBuffer<u32>,
     staging: Vec<Moving>,
@@ -91,7 +91,8 @@ impl SurfaceBuffers {
         let vertex = wgpu::BufferUsages::VERTEX;
         Self {
             body: None,
-            moving: GrowBuffer::new(device, "body surface", vertex),
+            moving: GrowBuffer::new(device, "body surface", vertex | wgpu::BufferUsages::STORAGE),
+            hair: GrowBuffer::new(device, "hair on the body", vertex | wgpu::BufferUsages::STORAGE),
             fixed: GrowBuffer::new(device, "body colours", vertex),
             indices: GrowBuffer::new(device, "body triangles", wgpu::BufferUsages::INDEX),
             staging: Vec::new(),
@@ -102,12 +103,13 @@ impl SurfaceBuffers {
         }
     }
 
-    /// Writes one frame; `hair` holds one packed word of transmittances a vertex.
-    pub fn write(&mut self, gpu: &Gpu, body: Option<(&Arc<Body>, &Skin)>, hair: &[u32]) {
+    /// Writes one frame.
+    pub fn write(&mut self, gpu: &Gpu, body: Option<(&Arc<Body>, &Skin)>) {
         let (device, queue) = (&gpu.device, &gpu.queue);
         let Some((body, skin)) = body else {
             self.body = None;
             self.indices.reserve(device, 0);
+            self.moving.reserve(device, 0);
             return;
         };
         if !self.body.as_ref().is_some_and(|old| Arc::ptr_eq(old, body)) {
@@ -125,10 +127,19 @@ impl SurfaceBuffers {
         skin.positions
             .par_iter()
             .zip(&skin.normals)
-            .zip(hair)
-            .map(|((p, n), &hair)| Moving { position: p.to_array(), hair, normal: n.to_array(), pad: 0 })
+            .map(|(p, n)| Moving { position: [p.x, p.y, p.z, 1.0], normal: [n.x, n.y, n.z, 0.0] })
             .collect_into_vec(&mut self.staging);
         self.moving.write(device, queue, &self.staging);
+        self.hair.reserve(device, self.staging.len());
+    }
+
+    /// The vertices, for shadow methods; none without a body.
+    pub fn vertices(&self) -> Option<Vertices<'_>> {
+        (!self.moving.is_empty()).then(|| Vertices {
+            positions: self.moving.raw(),
+            count: self.moving.len() as u32,
+            hair: self.hair.raw(),
+        })
     }
 
     /// Draws the depth of the body for light `k`.
@@ -136,15 +147,13 @@ impl SurfaceBuffers {
         &self,
         gpu: &Gpu,
         pipelines: &Pipelines,
-        encoder: &mut wgpu::CommandEncoder,
+        commands: &mut Commands,
         k: usize,
         shadow_from_world: Mat4,
     ) {
         let (buffer, group) = &self.uniforms[k];
         gpu.queue.write_buffer(buffer, 0, bytemuck::bytes_of(&shadow_from_world));
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("body depth"),
-            color_attachments: &[],
+        let descriptor = wgpu::RenderPassDescriptor {
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &self.layers[k],
                 depth_ops: Some(wgpu::Operations {
@@ -154,15 +163,17 @@ impl SurfaceBuffers {
                 stencil_ops: None,
             }),
             ..Default::default()
+        };
+        commands.render("draw/body-depth", &descriptor, |pass| {
+            if self.indices.is_empty() {
+                return;
+            }
+            pass.set_pipeline(&pipelines.depth);
+            pass.set_bind_group(0, group, &[]);
+            pass.set_vertex_buffer(0, self.moving.raw().slice(..));
+            pass.set_index_buffer(self.indices.raw().slice(..), wgpu::IndexFormat::Uint32);
+            pass.draw_indexed(0..self.indices.len() as u32, 0, 0..1);
         });
-        if self.indices.is_empty() {
-            return;
-        }
-        pass.set_pipeline(&pipelines.depth);
-        pass.set_bind_group(0, group, &[]);
-        pass.set_vertex_buffer(0, self.moving.raw().slice(..));
-        pass.set_index_buffer(self.indices.raw().slice(..), wgpu::IndexFormat::Uint32);
-        pass.draw_indexed(0..self.indices.len() as u32, 0, 0..1);
     }
 
     /// Draws the body. The frame's bind group is group 0.
@@ -174,6 +185,7 @@ impl SurfaceBuffers {
         pass.set_bind_group(0, frame, &[]);
         pass.set_vertex_buffer(0, self.moving.raw().slice(..));
         pass.set_vertex_buffer(1, self.fixed.raw().slice(..));
+        pass.set_vertex_buffer(2, self.hair.raw().slice(..));
         pass.set_index_buffer(self.indices.raw().slice(..), wgpu::IndexFormat::Uint32);
         pass.draw_indexed(0..self.indices.len() as u32, 0, 0..1);
     }

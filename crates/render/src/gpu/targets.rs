@@ -41,7 +41,8 @@ impl Targets {
         let attachment = wgpu::TextureUsages::RENDER_ATTACHMENT;
         let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
         let color = make("linear samples", HDR_FORMAT, SAMPLES, attachment);
-        let depth = make("depth samples", DEPTH_FORMAT, SAMPLES, attachment);
+        let depth =
+            make("depth samples", DEPTH_FORMAT, SAMPLES, attachment | wgpu::TextureUsages::TEXTURE_BINDING);
         let resolved = make("linear", HDR_FORMAT, 1, attachment | wgpu::TextureUsages::TEXTURE_BINDING);
         let out = make(
             "picture",

@@ -7,8 +7,8 @@ use glam::{Affine3A, Vec3};
 use lovelock_groom::{HairLook, Hairstyle, StrandSet, Strands};
 use lovelock_motion::{Body, Mesh, Skin};
 use lovelock_render::{
-    Backend, Camera, FrameInput, Light, Picture, PictureSettings, RenderError, Renderer, ShadowMethod,
-    ShadowSettings, Transparency,
+    Backend, Camera, FrameInput, HairPose, Light, Picture, PictureSettings, RenderError, Renderer,
+    ShadowMethod, ShadowSettings,
 };
 
 /// The renderer that all tests of a binary share: making one takes seconds where a software adapter draws.
@@ -23,11 +23,6 @@ fn renderer(backend: Backend) -> Option<&'static Mutex<Renderer>> {
             }
         })
         .as_ref()
-}
-
-/// Whether the backend of the test draws this transparency.
-pub fn draws(transparency: Transparency) -> bool {
-    crate::BACKEND == Backend::Cpu || transparency.is_on_gpu()
 }
 
 /// A scene of some strands before a camera that looks at the origin from one metre along +Z.
@@ -68,7 +63,7 @@ impl Scene {
     pub fn input(&self) -> FrameInput<'_> {
         FrameInput {
             style: &self.style,
-            strands: &self.strands,
+            hair: HairPose::Strands(&self.strands),
             look: &self.look,
             body: self.body.as_ref().map(|(body, skin)| (body, skin)),
             world_from_head: Affine3A::IDENTITY,
@@ -197,7 +192,7 @@ pub fn tuft_scene(strands: u32) -> Scene {
     s.look = HairLook::default();
     s.look.real_hairs = 8000.0;
     s.lights = Light::default_rig();
-    s.shadow = ShadowSettings::default();
+    s.shadow = ShadowSettings { method: ShadowMethod::OccupancyMaps, ..ShadowSettings::default() };
     s.picture = PictureSettings::default();
     s
 }

@@ -7,15 +7,12 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use lovelock_groom::Strands;
 use lovelock_render::{Backend, Picture, RenderError, Renderer};
 
 pub use report::{BenchReport, SceneReport, StageReport};
 pub use scenes::BenchScene;
 
-use crate::{
-    Access, Engine, FrameClock, LoadControl, Project, Scene, SceneLoader, StageTimes, Stopwatch, StudioError,
-};
+use crate::{Access, Engine, FrameClock, LoadControl, Project, Scene, SceneLoader, Stopwatch, StudioError};
 
 /// What to measure.
 #[derive(Clone, Debug)]
@@ -103,22 +100,21 @@ fn measure(
     let clock = FrameClock::new(30.0);
     let mut engine = Engine::with_step(Arc::clone(loaded), project.simulation, clock.step_secs);
     engine.advance_to_step(clock.step_of_frame(FIRST_FRAME));
-    let (mut strands, mut picture) = (Strands::default(), Picture::default());
+    let mut picture = Picture::default();
     let mut frames = Vec::new();
     for frame in 0..=u64::from(request.frames.max(1)) {
         let watch = Stopwatch::start();
         engine.advance_to_step(clock.step_of_frame(FIRST_FRAME + 1 + frame));
         let snapshot = engine.snapshot();
-        let interpolate = snapshot.interpolate(&mut strands);
         let camera = snapshot.camera(&project.camera);
-        let input = snapshot.frame_input(project, &strands, &camera);
+        let input = snapshot.frame_input(project, &camera);
         let stats = renderer.picture(&input, width, height, &mut picture)?;
-        let times =
-            StageTimes { interpolate, shadow: stats.shadow_ms, draw: stats.draw_ms, ..snapshot.times };
+        let mut times = snapshot.times;
+        times.take_picture(&stats);
         // The first one makes buffers.
         if frame > 0 {
             frames.push((watch.ms(), times, stats));
         }
     }
-    Ok(SceneReport::new(scene, project, renderer, request, &strands, &frames))
+    Ok(SceneReport::new(scene, project, renderer, request, &loaded.style.strands, &frames))
 }

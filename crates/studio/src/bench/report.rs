@@ -2,8 +2,8 @@
 
 use std::fmt::{self, Write};
 
-use lovelock_groom::Strands;
-use lovelock_render::{DrawTimes, FrameStats, Renderer};
+use lovelock_groom::StrandSet;
+use lovelock_render::{FrameStats, Renderer};
 use serde::Serialize;
 
 use super::{BenchRequest, BenchScene};
@@ -45,8 +45,13 @@ pub struct SceneReport {
     pub segments: u64,
     /// Frames measured.
     pub frames: u64,
-    /// The stages, the whole frame, and the parts of drawing where the backend tells them (`draw/…`).
+    /// The stages, the passes of shadow and drawing where the backend measures them (`shadow/…`, `draw/…`), and the whole
+    /// frame.
     pub stages: Vec<StageReport>,
+    /// Bytes that the shadow maps held.
+    pub shadow_bytes: u64,
+    /// Bytes that were held for the pixels, to put strands together in them.
+    pub draw_bytes: u64,
     /// The most memory that the process held while this was measured, bytes, with what it kept from before; on
     /// Linux, null elsewhere.
     pub peak_memory_bytes: Option<u64>,
@@ -79,16 +84,13 @@ impl StageReport {
     }
 }
 
-/// One of the times of drawing, milliseconds.
-type PartOfDraw = fn(&DrawTimes) -> f64;
-
 impl SceneReport {
     pub(super) fn new(
         scene: BenchScene,
         project: &Project,
         renderer: &Renderer,
         request: &BenchRequest,
-        strands: &Strands,
+        strands: &StrandSet,
         frames: &[(f64, StageTimes, FrameStats)],
     ) -> Self {
         let drawn = [Stage::Motion, Stage::Simulate, Stage::Interpolate, Stage::Shadow, Stage::Draw];
@@ -99,21 +101,13 @@ impl SceneReport {
                 StageReport::new(&name, scene.published_ms(stage), frames.iter().map(move |f| f.1.get(stage)))
             })
             .collect();
-        if frames.iter().all(|frame| frame.2.draw.is_some()) {
-            let parts: [(&str, PartOfDraw); 4] = [
-                ("draw/body-depth", |times| times.body_depth),
-                ("draw/points", |times| times.points),
-                ("draw/sort", |times| times.sort),
-                ("draw/tiles", |times| times.tiles),
-            ];
-            stages.extend(parts.into_iter().map(|(name, of)| {
-                StageReport::new(
-                    name,
-                    None,
-                    frames.iter().map(move |frame| of(&frame.2.draw.unwrap_or_default())),
-                )
-            }));
-        }
+        let named = |name: &str, stats: &FrameStats| {
+            stats.passes.iter().find(|pass| pass.name == name).map_or(0.0, |pass| pass.ms)
+        };
+        let passes = frames.first().map_or(&[][..], |frame| &frame.2.passes);
+        stages.extend(passes.iter().map(|pass| {
+            StageReport::new(&pass.name, None, frames.iter().map(|frame| named(&pass.name, &frame.2)))
+        }));
         let published = drawn.into_iter().filter_map(|stage| scene.published_ms(stage)).sum::<f64>();
         let published = (published > 0.0).then_some(published);
         stages.push(StageReport::new("frame", published, frames.iter().map(|frame| frame.0)));
@@ -130,6 +124,8 @@ impl SceneReport {
             segments: strands.segments() as u64,
             frames: frames.len() as u64,
             stages,
+            shadow_bytes: frames.iter().map(|frame| frame.2.shadow_bytes).max().unwrap_or(0),
+            draw_bytes: frames.iter().map(|frame| frame.2.draw_bytes).max().unwrap_or(0),
             peak_memory_bytes: peak_memory_bytes(),
         }
     }
@@ -144,14 +140,14 @@ impl BenchReport {
     /// One line a stage, with a heading.
     pub fn csv(&self) -> String {
         let mut out =
-            "scene,backend,adapter,shadow,transparency,width,height,points,segments,stage,median_ms,min_ms,max_ms,published_ms,peak_memory_bytes\n"
+            "scene,backend,adapter,shadow,transparency,width,height,points,segments,stage,median_ms,min_ms,max_ms,published_ms,shadow_bytes,draw_bytes,peak_memory_bytes\n"
                 .to_owned();
         for scene in &self.scenes {
             for stage in &scene.stages {
                 let optional = |value: Option<String>| value.unwrap_or_default();
                 let _ = writeln!(
                     out,
-                    "{},{},\"{}\",{},{},{},{},{},{},{},{:.4},{:.4},{:.4},{},{}",
+                    "{},{},\"{}\",{},{},{},{},{},{},{},{:.4},{:.4},{:.4},{},{},{},{}",
                     scene.scene,
                     scene.backend,
                     scene.adapter.replace('"', "\"\""),
@@ -166,6 +162,8 @@ impl BenchReport {
                     stage.min_ms,
                     stage.max_ms,
                     optional(stage.published_ms.map(|ms| ms.to_string())),
+                    scene.shadow_bytes,
+                    scene.draw_bytes,
                     optional(scene.peak_memory_bytes.map(|bytes| bytes.to_string())),
                 );
             }
@@ -173,6 +171,12 @@ impl BenchReport {
         out
     }
 }
+
+/// One of the amounts of memory of a report, bytes.
+type Memory = fn(&SceneReport) -> u64;
+
+const MEMORY: [(&str, Memory); 2] =
+    [("shadow memory", |scene| scene.shadow_bytes), ("pixel memory", |scene| scene.draw_bytes)];
 
 impl fmt::Display for BenchReport {
     /// The backends of a scene side by side.
@@ -192,14 +196,22 @@ impl fmt::Display for BenchReport {
                 first.transparency,
                 first.frames
             )?;
-            write!(f, "  {:<16}", "")?;
+            write!(f, "  {:<20}", "")?;
             for scene in same {
                 write!(f, "{:>12}{:>20}", scene.backend, "(least to most)")?;
             }
             writeln!(f, "{:>12}", "published")?;
-            let names = same.iter().max_by_key(|scene| scene.stages.len()).map_or(&[][..], |s| &s.stages[..]);
-            for stage in names {
-                write!(f, "  {:<16}", stage.name)?;
+            // Those of all, in the order of the one that has most.
+            let mut by_size: Vec<_> = same.iter().collect();
+            by_size.sort_by_key(|scene| std::cmp::Reverse(scene.stages.len()));
+            let mut stages: Vec<&StageReport> = Vec::new();
+            for stage in by_size.iter().flat_map(|scene| &scene.stages) {
+                if !stages.iter().any(|known| known.name == stage.name) {
+                    stages.push(stage);
+                }
+            }
+            for stage in stages {
+                write!(f, "  {:<20}", stage.name)?;
                 for scene in same {
                     match scene.stages.iter().find(|other| other.name == stage.name) {
                         Some(found) => {
@@ -210,6 +222,13 @@ impl fmt::Display for BenchReport {
                     }
                 }
                 writeln!(f, "{:>12}", stage.published_ms.map_or_else(String::new, |ms| format!("{ms:.0}")))?;
+            }
+            for (name, of) in MEMORY {
+                write!(f, "  {name:<20}")?;
+                for scene in same {
+                    write!(f, "{:>8.1} MiB{:>20}", of(scene) as f64 / f64::from(1 << 20), "")?;
+                }
+                writeln!(f)?;
             }
         }
         for note in &self.notes {
@@ -261,6 +280,8 @@ mod tests {
             segments: 4,
             frames: 3,
             stages: vec![StageReport::new("draw", Some(37.0), [ms, ms + 1.0, ms + 5.0].into_iter())],
+            shadow_bytes: 3 << 20,
+            draw_bytes: 5 << 20,
             peak_memory_bytes: None,
         };
         BenchReport {
@@ -286,7 +307,8 @@ mod tests {
         let csv = report().csv();
         let line = csv.lines().nth(1).expect("a line");
         assert!(
-            line.contains("\"a \"\"quoted\"\", name\"") && line.ends_with("11.0000,10.0000,15.0000,37,"),
+            line.contains("\"a \"\"quoted\"\", name\"")
+                && line.ends_with("11.0000,10.0000,15.0000,37,3145728,5242880,"),
             "{line}"
         );
     }

@@ -5,14 +5,13 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use lovelock_groom::Strands;
 use lovelock_record::{FrameRate, OutputKind, PictureSink, RecordError, SinkSettings};
 use lovelock_render::{Backend, GpuError, Picture, RenderError, Renderer};
 
 use super::new_folders::NewFolders;
 use super::{Progress, RecordReport, RecordRequest};
 use crate::{
-    Engine, FrameClock, LoadControl, Problem, Project, Scene, SceneLoader, StageHistory, StageTimes,
+    Engine, FrameClock, LoadControl, PassHistory, Problem, Project, Scene, SceneLoader, StageHistory,
     Stopwatch, StudioError,
 };
 
@@ -49,26 +48,26 @@ pub fn record(
     // Before the sink, to be dropped after it.
     let _new_folders = NewFolders::missing_on(&request.out);
     let mut sink = PictureSink::for_path(&request.out, job.sink_settings(frames.start)).map_err(refused)?;
-    let (mut strands, mut picture) = (Strands::default(), Picture::default());
-    let mut history = StageHistory::new(((frames.end - frames.start) as usize).min(MOST_TIMES));
+    let mut picture = Picture::default();
+    let most_times = ((frames.end - frames.start) as usize).min(MOST_TIMES);
+    let (mut history, mut passes) = (StageHistory::new(most_times), PassHistory::new(most_times));
+    let (mut shadow_bytes, mut draw_bytes) = (0, 0);
     let mut whole = Vec::new();
     for frame in frames.clone() {
         let watch = Stopwatch::start();
         engine.advance_to_step(clock.step_of_frame(frame));
         let snapshot = engine.snapshot();
-        let interpolate = snapshot.interpolate(&mut strands);
         let camera = snapshot.camera(&job.project.camera);
-        let input = snapshot.frame_input(&job.project, &strands, &camera);
+        let input = snapshot.frame_input(&job.project, &camera);
         let stats = renderer.picture(&input, job.width, job.height, &mut picture)?;
         let encoding = Stopwatch::start();
         sink.push(&picture.rgba).map_err(refused)?;
-        history.push(StageTimes {
-            interpolate,
-            shadow: stats.shadow_ms,
-            draw: stats.draw_ms,
-            encode: encoding.ms(),
-            ..snapshot.times
-        });
+        let mut times = snapshot.times;
+        times.take_picture(&stats);
+        times.encode = encoding.ms();
+        history.push(times);
+        passes.push(&stats.passes);
+        (shadow_bytes, draw_bytes) = (stats.shadow_bytes.max(shadow_bytes), stats.draw_bytes.max(draw_bytes));
         whole.push(watch.ms());
         let (done, total) = (frame + 1 - frames.start, frames.end - frames.start);
         tell(progress, Progress::Frame { done, total })?;
@@ -88,10 +87,13 @@ pub fn record(
         adapter: renderer.adapter().to_owned(),
         shadow: job.project.shadow.method.to_string(),
         transparency: job.project.picture.transparency.to_string(),
-        strands: strands.count() as u64,
-        segments: strands.segments() as u64,
+        strands: scene.style.strands.count() as u64,
+        segments: scene.style.strands.segments() as u64,
         frame_ms: crate::median(whole.into_iter()),
         stage_ms: history.medians(),
+        passes_ms: passes.medians().into_iter().map(|pass| (pass.name, pass.ms)).collect(),
+        shadow_bytes,
+        draw_bytes,
         max_stretch: totals.max_stretch,
         max_penetration_m: totals.max_penetration_m,
         recovered_guides: totals.recovered_guides,
@@ -125,10 +127,6 @@ impl<'a> Job<'a> {
         let (width, height) = request.size.unwrap_or((project.recording.width, project.recording.height));
         let job = Self { project, request, fps, width, height };
         lovelock_render::check_size(width, height)?;
-        let transparency = job.project.picture.transparency;
-        if job.is_on_gpu_only() && !transparency.is_on_gpu() {
-            return Err(RenderError::Transparency(transparency).into());
-        }
         FrameRate::from_fps(fps).map_err(|error| job.refused(&error))?;
         if let Some(frames) = &request.frames
             && frames.is_empty()
@@ -146,13 +144,6 @@ impl<'a> Job<'a> {
                 .map_err(|error| job.refused(&error))?;
         }
         Ok(job)
-    }
-
-    /// Whether nothing but the graphics card may draw: the processor draws what it cannot where the choice is
-    /// [`Backend::Auto`].
-    fn is_on_gpu_only(&self) -> bool {
-        self.request.gpu.is_some()
-            || self.request.backend.unwrap_or(self.project.picture.backend) == Backend::Gpu
     }
 
     /// The frames to draw: as asked for, else as the project says, else the whole clip.
@@ -249,7 +240,7 @@ fn tell(progress: &mut dyn FnMut(Progress) -> ControlFlow<()>, what: Progress) -
 impl From<RenderError> for StudioError {
     fn from(error: RenderError) -> Self {
         match error {
-            RenderError::Size { .. } | RenderError::Transparency(_) => Self::option(error),
+            RenderError::Size { .. } => Self::option(error),
             RenderError::Gpu(_) | RenderError::Shadow(_) => Self::work(error),
         }
     }

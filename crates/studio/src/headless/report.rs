@@ -1,5 +1,6 @@
 //! What a recording was: the keys of `record --json`.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use serde::{Serialize, Serializer};
@@ -41,6 +42,12 @@ pub struct RecordReport {
     pub frame_ms: f64,
     /// Medians of the stages, milliseconds.
     pub stage_ms: StageMedians,
+    /// Medians of the passes of drawing, milliseconds, by their names; as far as what drew measures them.
+    pub passes_ms: BTreeMap<String, f64>,
+    /// The most bytes that shadow maps held.
+    pub shadow_bytes: u64,
+    /// The most bytes that were held for the pixels, to put strands together in them.
+    pub draw_bytes: u64,
     /// Largest relative change of a link's length in the frames.
     pub max_stretch: f32,
     /// Deepest point inside the body, metres.

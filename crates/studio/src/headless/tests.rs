@@ -1,7 +1,7 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use lovelock_render::{Backend, ShadowMethod, Transparency};
+use lovelock_render::{Backend, ShadowMethod};
 
 use super::*;
 use crate::StudioError;
@@ -44,14 +44,6 @@ fn wrong_requests_are_refused_before_any_work() {
         ("an unknown ending", request(&dir.path().join("x.gif"))),
         ("no name", request(Path::new(""))),
         ("too large", RecordRequest { size: Some((8192, 8192)), ..request(&sequence) }),
-        (
-            "a transparency that the gpu does not draw",
-            RecordRequest {
-                backend: Some(Backend::Gpu),
-                transparency: Some(Transparency::Exact),
-                ..request(&sequence)
-            },
-        ),
     ];
     for (what, request) in wrong {
         let mut told = 0;
@@ -147,6 +139,9 @@ fn the_report_has_the_keys_that_were_promised() {
         segments: 1,
         frame_ms: 1.0,
         stage_ms: StageMedians::default(),
+        passes_ms: [("draw/points".to_owned(), 1.5)].into(),
+        shadow_bytes: 1,
+        draw_bytes: 1,
         max_stretch: 0.0,
         max_penetration_m: 0.0,
         recovered_guides: 0,
@@ -170,6 +165,9 @@ fn the_report_has_the_keys_that_were_promised() {
         "segments",
         "frame_ms",
         "stage_ms",
+        "passes_ms",
+        "shadow_bytes",
+        "draw_bytes",
         "max_stretch",
         "max_penetration_m",
         "recovered_guides",

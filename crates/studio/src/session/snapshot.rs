@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use lovelock_groom::{GuideFrame, Strands, interpolate};
 use lovelock_motion::{Pose, Skin};
-use lovelock_render::{Camera, FrameInput};
+use lovelock_render::{Camera, FrameInput, HairPose};
 use lovelock_wisp::StepReport;
 
 use super::{Scene, Totals, camera_at};
-use crate::{CameraSection, Project, StageTimes, Stopwatch};
+use crate::{CameraSection, Project, StageTimes};
 
 /// One instant of the scene: all that drawing needs, and how it came about.
 #[derive(Clone, Debug)]
@@ -36,11 +36,9 @@ pub struct FrameSnapshot {
 }
 
 impl FrameSnapshot {
-    /// Makes the strands; returns the milliseconds that it took.
-    pub fn interpolate(&self, strands: &mut Strands) -> f64 {
-        let watch = Stopwatch::start();
+    /// Makes the strands on the processor; drawing needs none of it.
+    pub fn interpolate(&self, strands: &mut Strands) {
         interpolate(&self.scene.style, &self.guides, strands);
-        watch.ms()
     }
 
     /// The camera at this instant.
@@ -49,15 +47,10 @@ impl FrameSnapshot {
     }
 
     /// Everything that the picture of this instant shows, by the settings of `project`.
-    pub fn frame_input<'a>(
-        &'a self,
-        project: &'a Project,
-        strands: &'a Strands,
-        camera: &'a Camera,
-    ) -> FrameInput<'a> {
+    pub fn frame_input<'a>(&'a self, project: &'a Project, camera: &'a Camera) -> FrameInput<'a> {
         FrameInput {
             style: &self.scene.style,
-            strands,
+            hair: HairPose::Guides(&self.guides),
             look: &project.look,
             body: Some((&self.scene.body, &self.skin)),
             world_from_head: self.guides.world_from_head,

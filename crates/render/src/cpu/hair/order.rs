@@ -58,10 +58,9 @@ impl SegmentKeys {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sort::DepthSort;
 
     #[test]
-    fn near_to_far_is_far_to_near_reversed() {
+    fn the_nearest_middle_comes_first() {
         let mut strands = Strands::default();
         for i in 0..2000 {
             strands.x.push(0.0);
@@ -70,13 +69,17 @@ mod tests {
         }
         let firsts: Vec<u32> = (0..1999).collect();
         let forward = glam::Vec3::Z;
-        let mut sort = DepthSort::default();
-        let mut far_to_near = sort.sort(&firsts, |i| strands.z[i]).to_vec();
-        far_to_near.reverse();
         let mut keys = SegmentKeys::default();
         keys.measure(&strands, &firsts, forward);
         let mut order = Vec::new();
         keys.sort(&firsts, &firsts, &mut order);
-        assert_eq!(order.iter().map(|&entry| entry as u32).collect::<Vec<_>>(), far_to_near);
+        let order: Vec<u32> = order.iter().map(|&entry| entry as u32).collect();
+        let middle = |first: u32| 0.5 * (strands.z[first as usize] + strands.z[first as usize + 1]);
+        // A key is the 65,535th part of the range of 3 m; of one key the later segment comes first.
+        assert!(order.windows(2).all(|w| middle(w[0]) <= middle(w[1]) + 2.0 * 3.0 / 65_535.0));
+        assert!(order.windows(2).any(|w| middle(w[0]) < middle(w[1]) - 0.001), "the control: depths differ");
+        let mut all = order;
+        all.sort_unstable();
+        assert_eq!(all, firsts, "every segment once");
     }
 }

@@ -82,13 +82,14 @@ pub(crate) fn shade_batch(view: &View, batch: &mut SurfaceBatch) {
         let l = (-light.direction).to_array();
         let (radiance, specular) = (light.radiance.to_array(), light.specular);
         let mut facing = [0.0; LANES];
-        let mut bias = [0.0; LANES];
+        let mut above = [0.0; LANES];
         // Light wraps a little round skin; the shadow map is asked only where light can come.
         let mut reached = f32::NEG_INFINITY;
         for lane in 0..LANES {
             facing[lane] = normal[0][lane] * l[0] + normal[1][lane] * l[1] + normal[2][lane] * l[2];
             open[lane] += hair[lane];
-            bias[lane] = 0.004 + 0.006 * (1.0 - saturate(facing[lane]));
+            // Where light grazes the skin, the flat triangles of a round limb keep it from each other.
+            above[lane] = 0.002 + 0.004 * (1.0 - saturate(facing[lane]));
             reached = max(facing[lane], reached);
         }
         if reached <= -0.12 {
@@ -97,10 +98,10 @@ pub(crate) fn shade_batch(view: &View, batch: &mut SurfaceBatch) {
         let mut place = [[0.0; LANES]; 3];
         for c in 0..3 {
             for lane in 0..LANES {
-                place[c][lane] = batch.position[c][lane] + normal[c][lane] * 0.002;
+                place[c][lane] = batch.position[c][lane] + normal[c][lane] * above[lane];
             }
         }
-        let lit = light.body_light(&place, &bias, &view.disc6);
+        let lit = light.body_light(&place, &light.lean_of(&normal), 0.003, &view.surface_disc);
         let mut matt = [0.0; LANES];
         let mut gloss = [0.0; LANES];
         for lane in 0..LANES {

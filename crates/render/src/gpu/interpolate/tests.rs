@@ -43,8 +43,7 @@ impl Bench {
         self.points.reserve(&self.gpu.device, style.strands.points());
         let mut commands = self.timer.begin(self.gpu, "test");
         let encoded = self.interpolation.run(self.gpu, &mut commands, style, frame, self.points.raw());
-        let commands = commands.finish();
-        self.timer.submit(self.gpu, commands);
+        commands.submit();
         encoded?;
         let mut found = vec![[f32::NAN; 4]; style.strands.points()];
         read_buffer(self.gpu, self.points.raw(), &mut found)?;

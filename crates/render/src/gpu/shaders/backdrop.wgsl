@@ -1,5 +1,7 @@
 // The background: a graded backdrop that runs into the ground without a seam, with the shadows on the ground.
 
+@group(1) @binding(0) var<storage, read> corners: array<vec4f>;
+
 struct Screen {
     @builtin(position) position: vec4f,
     @location(0) ndc: vec2f,
@@ -11,31 +13,33 @@ fn screen(@builtin(vertex_index) vertex: u32) -> Screen {
     return Screen(vec4f(ndc, 0.0, 1.0), ndc);
 }
 
+// Difference of two corners' light that is not worth a look between them: half a step of 8 bits.
+const ALIKE: f32 = 1.0 / 512.0;
+
+// The share of the light that is left on the ground at a pixel.
+fn light_at(pixel: vec2u, ndc: vec2f) -> vec3f {
+    let columns = corner_columns();
+    let first = pixel.y / CELL * columns + pixel.x / CELL;
+    let a = corners[first];
+    let b = corners[first + 1u];
+    let c = corners[first + columns];
+    let d = corners[first + columns + 1u];
+    // Corners on both sides of the horizon do not speak for what is between them.
+    let spread = max(max(abs(a - b), abs(a - c)), abs(a - d));
+    if (all(spread < vec4f(ALIKE))) {
+        return a.rgb;
+    }
+    return ground_light(ndc).rgb;
+}
+
 @fragment
 fn backdrop(in: Screen) -> @location(0) vec4f {
     let down = 0.5 - 0.5 * in.ndc.y;
     // A soft pool of light behind the figure.
     let pool = 1.0 - 0.28 * smoothstep(0.2, 1.5, length(in.ndc * vec2f(0.8, 0.7)));
     var color = mix(frame.background_top.xyz, frame.background_bottom.xyz, smoothstep(0.0, 1.0, down)) * pool;
-
     if (frame.ambient_up_ground.w > 0.5) {
-        let near = frame.world_from_clip * vec4f(in.ndc, 1.0, 1.0);
-        let eye = frame.eye_lights.xyz;
-        let ray = normalize(near.xyz / near.w - eye);
-        if (ray.y < -1e-3 && eye.y > 0.0) {
-            let p = eye - ray * (eye.y / ray.y);
-            // The share of the light that is left; where nothing is in the way the ground is the backdrop.
-            let up = vec3f(0.0, 1.0, 0.0);
-            var full = 0.5 * ambient(up) * 3.14159;
-            var lit = full;
-            for (var k = 0u; k < light_count(); k++) {
-                let light = frame.lights[k];
-                let share = light.radiance_blur.xyz * max(-light.direction_specular.y, 0.0);
-                full += share;
-                lit += share * body_light(k, p, 0.004, 6u) * columns_light(k, p);
-            }
-            color *= lit / max(full, vec3f(1e-4));
-        }
+        color *= light_at(vec2u(in.position.xy), in.ndc);
     }
     return vec4f(color, 1.0);
 }

@@ -45,24 +45,43 @@ fn light_count() -> u32 {
     return min(u32(frame.eye_lights.w), MAX_LIGHTS);
 }
 
-// Share of light `i` that the body lets through to `p`, which is moved `bias` metres toward the light first.
-fn body_light(i: u32, p: vec3f, bias: f32, taps: u32) -> f32 {
+// How a surface with the unit normal `n` leans as light `i` sees it: its normal along u, v and toward the light.
+fn lean_of(i: u32, n: vec3f) -> vec3f {
+    let light = frame.lights[i];
+    let rows = transpose(light.shadow_from_world);
+    let u = dot(n, normalize(rows[0].xyz));
+    let v = -dot(n, normalize(rows[1].xyz));
+    return vec3f(u, v, -dot(n, light.direction_specular.xyz));
+}
+
+// Taps of a soft shadow's edge on a surface, where six show their steps as bands, and on a strand's point.
+const SURFACE_TAPS: u32 = 16u;
+const STRAND_TAPS: u32 = 3u;
+
+// Share of light `i` that the body lets through to `p`, which is moved `bias` metres toward the light first. The taps
+// lie on a disc in the plane of the surface, which leans as `lean` says: a flat surface keeps no light from itself. For
+// what has no surface `lean` is zero and the disc lies across the light.
+fn body_light(i: u32, p: vec3f, lean: vec3f, bias: f32, taps: u32) -> f32 {
     let light = frame.lights[i];
     let at = light.shadow_from_world * vec4f(p - light.direction_specular.xyz * bias, 1.0);
     let uv = at.xy * vec2f(0.5, -0.5) + 0.5;
     if (any(uv < vec2f(0.0)) || any(uv > vec2f(1.0))) {
         return 1.0;
     }
-    if (taps <= 1u) {
-        return textureSampleCompareLevel(body_depth, compare, uv, i, at.z);
-    }
-    // A golden-angle disc: even at any number of taps, and the same for every pixel, so it never shimmers.
-    let radius = max(light.radiance_blur.w, 1.0) / frame.ambient_down_texels.w;
+    // Texels around a place lie as much nearer as the plane leans over one of them; a place that the light only grazes
+    // would need more than is right elsewhere.
+    let texel = 1.0 / frame.ambient_down_texels.w;
+    let z = at.z - texel * (abs(lean.x) + abs(lean.y)) / max(lean.z, 0.25);
+    let turn = lean.xy / (1.0 + max(lean.z, 0.0));
+    // A golden-angle disc: even at any number of taps, and the same for every pixel, so it never shimmers. The map is
+    // as deep as it is wide, so that its three coordinates turn together.
+    let radius = max(light.radiance_blur.w, 1.0) * texel;
     var sum = 0.0;
     for (var k = 0u; k < taps; k++) {
         let angle = 2.3999632 * f32(k);
-        let r = radius * sqrt((f32(k) + 0.5) / f32(taps));
-        sum += textureSampleCompareLevel(body_depth, compare, uv + r * vec2f(cos(angle), sin(angle)), i, at.z);
+        let tap = radius * sqrt((f32(k) + 0.5) / f32(taps)) * vec2f(cos(angle), sin(angle));
+        let deeper = dot(tap, lean.xy);
+        sum += textureSampleCompareLevel(body_depth, compare, uv + tap - turn * deeper, i, z + deeper);
     }
     return sum / f32(taps);
 }

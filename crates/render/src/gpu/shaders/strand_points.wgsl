@@ -11,9 +11,10 @@ struct ShadedPoint {
     color: vec2u,
 }
 
-@group(1) @binding(0) var<storage, read> points: array<vec4f>;       // position; w holds four 8-bit transmittances
-@group(1) @binding(1) var<storage, read> details: array<u32>;        // see `pack_detail` in hair.rs
-@group(1) @binding(2) var<storage, read_write> shaded: array<ShadedPoint>;
+@group(1) @binding(0) var<storage, read> points: array<vec4f>;
+@group(1) @binding(1) var<storage, read> details: array<u32>;        // see `pack_detail` in strand_details.rs
+@group(1) @binding(2) var<storage, read> light_left: array<u32>;     // four 8-bit transmittances
+@group(1) @binding(3) var<storage, read_write> shaded: array<ShadedPoint>;
 
 struct Projected { pixel: vec2f, depth: f32, w: f32 }
 
@@ -38,8 +39,7 @@ fn shade_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroup
     let first = (detail >> 24u) & 1u;
     let last = (detail >> 25u) & 1u;
 
-    let point = points[i];
-    let p = point.xyz;
+    let p = points[i].xyz;
     let before = points[i - (1u - first)].xyz;
     let after = points[i + (1u - last)].xyz;
     var t = after - before;
@@ -59,7 +59,7 @@ fn shade_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroup
     let tip = 1.0 - frame.width_opacity_tip_scalp.z * smoothstep(0.2, 1.0, along);
     let color = strand_color(frame.absorption_variation.xyz * variation * tip);
 
-    let transmittance = unpack4x8unorm(bitcast<u32>(point.w));
+    let transmittance = unpack4x8unorm(light_left[i]);
     var sum = vec3f(0.0);
     var open = 0.0;
     let lights = light_count();
@@ -68,7 +68,7 @@ fn shade_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroup
         let lit = transmittance[k];
         open += sqrt(lit);
         // Roots lie on the skin: the bias keeps the skin under a strand from shadowing it.
-        let body = body_light(k, p, 0.006, 3u);
+        let body = body_light(k, p, vec3f(0.0), 0.006, STRAND_TAPS);
         sum += light.radiance_blur.xyz * (lit * body)
             * strand_light(t, -light.direction_specular.xyz, v, color, light.direction_specular.w, lit);
     }

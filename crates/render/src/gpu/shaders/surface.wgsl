@@ -1,7 +1,7 @@
 // The body, lit, with the shadow of the hair and its own.
 
 struct Vertex {
-    @location(0) position: vec3f,
+    @location(0) position: vec4f,
     // Transmittance of hair toward four lights, 8 bits each.
     @location(1) hair: u32,
     @location(2) normal: vec3f,
@@ -20,8 +20,8 @@ struct Surface {
 @vertex
 fn surface(in: Vertex) -> Surface {
     var out: Surface;
-    out.position = frame.clip_from_world * vec4f(in.position, 1.0);
-    out.world = in.position;
+    out.position = frame.clip_from_world * vec4f(in.position.xyz, 1.0);
+    out.world = in.position.xyz;
     out.normal = in.normal;
     out.color_scalp = in.color_scalp;
     out.hair = unpack4x8unorm(in.hair);
@@ -49,8 +49,9 @@ fn shade_surface(in: Surface) -> @location(0) vec4f {
         if (wrapped <= 0.0) {
             continue;
         }
-        let bias = 0.004 + 0.006 * (1.0 - clamp(facing, 0.0, 1.0));
-        let lit = body_light(k, in.world + n * 0.002, bias, 6u) * in.hair[k];
+        // Where light grazes the skin, the flat triangles of a round limb keep it from each other.
+        let above = in.world + n * (0.002 + 0.004 * (1.0 - clamp(facing, 0.0, 1.0)));
+        let lit = body_light(k, above, lean_of(k, n), 0.003, SURFACE_TAPS) * in.hair[k];
         let h = normalize(l + v);
         let gloss = 0.014 * skin * light.direction_specular.w
             * (pow(max(dot(n, h), 0.0), 24.0) + 0.6 * pow(1.0 - max(dot(n, v), 0.0), 4.0));

@@ -1,4 +1,4 @@
-// Linear light to the screen: exposure, AgX, sRGB.
+// Hair over what is behind it, and linear light to the screen: exposure, AgX, sRGB.
 //
 // AgX is Troy Sobotka's; the polynomial for its curve and the matrices are Benjamin Wrensch's fit (2023).
 
@@ -7,6 +7,9 @@ struct Screen {
 }
 
 @group(1) @binding(0) var linear_picture: texture_2d<f32>;
+// The hair of each pixel: its light times what it covers, and the share of the light behind that comes through, as four
+// half floats.
+@group(1) @binding(1) var<storage, read> hair_layer: array<vec2u>;
 
 @vertex
 fn screen(@builtin(vertex_index) vertex: u32) -> Screen {
@@ -48,8 +51,11 @@ fn srgb(linear: vec3f) -> vec3f {
 @fragment
 fn tone_map(in: Screen) -> @location(0) vec4f {
     let pixel = vec2u(in.position.xy);
-    let hdr = textureLoad(linear_picture, pixel, 0);
-    let color = srgb(agx(max(hdr.rgb, vec3f(0.0)) * frame.size_scale_exposure.w));
+    let hair = hair_layer[pixel.y * u32(frame.size_scale_exposure.x) + pixel.x];
+    let rg = unpack2x16float(hair.x);
+    let bt = unpack2x16float(hair.y);
+    let hdr = textureLoad(linear_picture, pixel, 0).rgb * bt.y + vec3f(rg, bt.x);
+    let color = srgb(agx(max(hdr, vec3f(0.0)) * frame.size_scale_exposure.w));
     // Half a step of ordered noise, so that smooth gradients do not band.
     let noise = fract(52.9829189 * fract(dot(vec2f(pixel), vec2f(0.06711056, 0.00583715)))) - 0.5;
     return vec4f(color + noise / 255.0, 1.0);

@@ -1,0 +1,119 @@
+// Walks over the pixels of every segment, as ribbons that face the camera. Below a pixel, width becomes coverage: a strand of
+// 0.2 pixels is drawn one pixel wide at a fifth of its opacity, so it neither breaks up nor gains weight as it recedes. Twin of
+// cpu/hair/segment.rs and cpu/hair/list.rs. A pass defines `take(pixel, fragment)`.
+
+struct Fragment {
+    // 1 at the near plane, falling to 0 at infinity.
+    depth: f32,
+    // Opacity times coverage of the pixel, before the body hides it.
+    alpha: f32,
+    // Samples of the pixel in which it lies before the body.
+    seen: vec4<bool>,
+    // Place along the segment, 0 to 1, and factor on the colour.
+    along: f32,
+    gain: f32,
+    // First point of its segment, and the pixel in the picture.
+    first: u32,
+    at: vec2u,
+}
+
+// Opacity with what the body hides taken off.
+fn opacity_of(fragment: Fragment) -> f32 {
+    return fragment.alpha * dot(select(vec4f(0.0), vec4f(0.25), fragment.seen), vec4f(1.0));
+}
+
+fn color_of(fragment: Fragment) -> vec3f {
+    let a = shaded[fragment.first].color;
+    let b = shaded[fragment.first + 1u].color;
+    let color_a = vec3f(unpack2x16float(a.x), unpack2x16float(a.y).x);
+    let color_b = vec3f(unpack2x16float(b.x), unpack2x16float(b.y).x);
+    return (color_a + (color_b - color_a) * fragment.along) * fragment.gain;
+}
+
+@compute @workgroup_size(64)
+fn each_fragment(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    let thread = id.x + id.y * groups.x * 64u;
+    let segment = thread / eye.lanes;
+    if (segment >= eye.segments) {
+        return;
+    }
+    let first = segments[segment];
+    let a = shaded[first];
+    let b = shaded[first + 1u];
+    if (!(a.half_width >= 0.0 && b.half_width >= 0.0)) {
+        return;
+    }
+    let d = b.at.xy - a.at.xy;
+    let length = sqrt(d.x * d.x + d.y * d.y);
+    if (!(length >= 1e-4)) {
+        return;
+    }
+    let normal = vec2f(-d.y, d.x) / length;
+    // `across` is the vector along the strand, turned.
+    let run_a = vec2f(a.across.y, -a.across.x);
+    let run_b = vec2f(b.across.y, -b.across.x);
+    let half_a = max(a.half_width, 0.5);
+    let half_b = max(b.half_width, 0.5);
+    let reach = max(half_a, half_b) + 0.5;
+    let opacity_a = eye.opacity * min(a.half_width * 2.0, 1.0);
+    let opacity_b = eye.opacity * min(b.half_width * 2.0, 1.0);
+    let streaked = max(half_a, half_b) > 0.8;
+    let hash = unpack2x16float(a.color.y).y;
+
+    // The axis on which it is longer is gone along; on the other one a run of pixels is crossed.
+    let low_corner = min(a.at.xy - abs(a.across) * reach, b.at.xy - abs(b.across) * reach);
+    let high_corner = max(a.at.xy + abs(a.across) * reach, b.at.xy + abs(b.across) * reach);
+    let top = f32(eye.band.x);
+    let low = max(low_corner, vec2f(0.0, top));
+    let high = min(high_corner, vec2f(f32(eye.size.x), top + f32(eye.band.y)));
+    if (!(low.x < high.x && low.y < high.y)) {
+        return;
+    }
+    let by_row = abs(d.y) > abs(d.x);
+    let begin = select(low, low.yx, by_row);
+    let until = select(high, high.yx, by_row);
+    let start = select(a.at.xy, a.at.yx, by_row);
+    let step = select(d, d.yx, by_row);
+    let slope = step.y / step.x;
+    let half_run = reach * length / abs(step.x);
+    let last = i32(ceil(until.x - 0.5));
+    for (var major = i32(ceil(begin.x - 0.5)) + i32(thread % eye.lanes); major < last; major += i32(eye.lanes)) {
+        let middle = start.y + slope * (f32(major) + 0.5 - start.x);
+        let end = i32(ceil(min(middle + half_run, until.y) - 0.5));
+        for (var minor = i32(ceil(max(middle - half_run, begin.y) - 0.5)); minor < end; minor++) {
+            let at = select(vec2u(u32(major), u32(minor)), vec2u(u32(minor), u32(major)), by_row);
+            let centre = vec2f(at) + 0.5;
+            let p = centre - a.at.xy;
+            // A pixel belongs to the segment between the lines across the strand through its two ends, which neighbouring
+            // segments share.
+            let after_a = dot(p, run_a);
+            let after_b = dot(centre - b.at.xy, run_b);
+            if (!(after_a >= 0.0 && after_b < 0.0)) {
+                continue;
+            }
+            let along = clamp(after_a / max(after_a - after_b, 1e-6), 0.0, 1.0);
+            let half_width = half_a + (half_b - half_a) * along;
+            let offset = dot(p, normal);
+            var alpha = (opacity_a + (opacity_b - opacity_a) * along)
+                * clamp(half_width + 0.5 - abs(offset), 0.0, 1.0);
+            if (alpha <= 0.0) {
+                continue;
+            }
+            let depth = a.at.z + (b.at.z - a.at.z) * along;
+            let seen = vec4f(depth) >= behind[at.y * eye.size.x + at.x];
+            if (!any(seen)) {
+                continue;
+            }
+            var gain = 1.0;
+            if (streaked) {
+                // A drawn strand stands for many hairs: where it is wide enough to show them, it is streaked like them.
+                let across = offset / half_width;
+                let wave = smoothstep(0.8, 2.0, half_width)
+                    * (sin(across * 5.0 + hash * 41.0) * 0.6 + sin(across * 11.0 - hash * 73.0) * 0.4);
+                alpha = clamp(alpha * (1.0 + 0.22 * wave), 0.0, 1.0);
+                gain = 1.0 + 0.18 * wave;
+            }
+            take((at.y - eye.band.x) * eye.size.x + at.x, Fragment(depth, alpha, seen, along, gain, first, at));
+        }
+    }
+}

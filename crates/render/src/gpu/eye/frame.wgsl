@@ -1,0 +1,49 @@
+// The picture's pixels, strands as they are drawn, and what is behind them. Twin of `EyeUniform` in mod.rs.
+
+struct EyeUniform {
+    // Pixels of the picture; the first row of the band and its rows.
+    size: vec2u,
+    band: vec2u,
+    // Segments, threads a segment, room in the list of fragments.
+    segments: u32,
+    lanes: u32,
+    room: u32,
+    // Opacity of a strand where it covers a pixel wholly.
+    opacity: f32,
+}
+
+struct ShadedPoint {
+    // Pixels from the left and top, depth.
+    at: vec3f,
+    // Half of the strand's width in pixels; negative where the point must not be drawn.
+    half_width: f32,
+    // Unit vector across the strand on the screen.
+    across: vec2f,
+    // Colour as four half floats; the fourth is a hash of the strand in 0..1.
+    color: vec2u,
+}
+
+@group(0) @binding(0) var<uniform> eye: EyeUniform;
+@group(0) @binding(1) var<storage, read> shaded: array<ShadedPoint>;
+// First point of each segment.
+@group(0) @binding(2) var<storage, read> segments: array<u32>;
+// Depths of the body in the four samples of each pixel of the picture.
+@group(0) @binding(3) var<storage, read> behind: array<vec4f>;
+// What modes keep for the pixels of a band; everything is 0 when a band begins.
+@group(0) @binding(4) var<storage, read_write> map: array<atomic<u32>>;
+// Fragments of all pixels of a band, `FRAGMENT_WORDS` each.
+@group(0) @binding(5) var<storage, read_write> list: array<u32>;
+// Fragments in the list.
+@group(0) @binding(6) var<storage, read_write> total: array<atomic<u32>>;
+// The hair of each pixel of the picture: its light times what it covers, and the share of the light behind that comes
+// through, as four half floats.
+@group(0) @binding(7) var<storage, read_write> layer: array<vec2u>;
+
+fn band_pixels() -> u32 {
+    return eye.size.x * eye.band.y;
+}
+
+fn write_layer(pixel: u32, color: vec3f, through: f32) {
+    layer[eye.band.x * eye.size.x + pixel] = vec2u(pack2x16float(min(color.rg, vec2f(65504.0))),
+        pack2x16float(vec2f(min(color.b, 65504.0), through)));
+}

@@ -1,0 +1,273 @@
+//! The hair as the eye sees it: every way of transparency by compute kernels.
+//!
+//! A thread walks over the pixels of a segment and leaves its fragments in integer atomics, so that nothing depends on the
+//! order of threads. Each pass over the fragments is fragments.wgsl with its own `take`, each pass over the pixels
+//! each_pixel.wgsl with its own `pixel_pass`. Where the device gives no buffer that holds a whole picture, it is drawn in
+//! bands of rows.
+
+mod modes;
+
+use bytemuck::{Pod, Zeroable};
+use lovelock_gpu::{
+    Commands, Gpu, GpuError, GrowBuffer, Kernel, ShaderPart, ShaderSource, read_buffer, wgpu,
+};
+
+use crate::Transparency;
+use modes::{Mode, Over, Pass};
+
+macro_rules! part {
+    ($name:literal) => {
+        lovelock_gpu::ShaderPart {
+            name: concat!("crates/render/src/gpu/eye/", $name),
+            text: include_str!($name),
+        }
+    };
+}
+use part;
+
+const FRAME: ShaderPart = part!("frame.wgsl");
+const FRAGMENTS: ShaderPart = part!("fragments.wgsl");
+const EACH_PIXEL: ShaderPart = part!("each_pixel.wgsl");
+const BEHIND: ShaderPart = part!("behind.wgsl");
+
+/// Words of one fragment in a list.
+const FRAGMENT_WORDS: u64 = 3;
+
+/// Twin of `EyeUniform` in frame.wgsl.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct EyeUniform {
+    size: [u32; 2],
+    band: [u32; 2],
+    segments: u32,
+    lanes: u32,
+    room: u32,
+    /// Bits of the opacity.
+    opacity: u32,
+}
+
+/// What the eye's passes draw.
+pub(super) struct EyeInput<'a> {
+    pub width: u32,
+    pub height: u32,
+    /// Points as `ShadedPoint` has them.
+    pub shaded: &'a wgpu::Buffer,
+    /// First point of each segment.
+    pub segments: &'a wgpu::Buffer,
+    pub segment_count: u32,
+    /// Depths of the body, four samples a pixel.
+    pub depth: &'a wgpu::TextureView,
+    /// Opacity of a strand where it covers a pixel wholly.
+    pub opacity: f32,
+    pub transparency: Transparency,
+}
+
+/// The kernels of all modes that were used, and the memory of the pixels.
+#[derive(Debug)]
+pub(super) struct Eye {
+    behind_kernel: Kernel,
+    modes: Vec<(Transparency, Vec<Kernel>)>,
+    behind: GrowBuffer<[f32; 4]>,
+    map: GrowBuffer<u32>,
+    list: GrowBuffer<u32>,
+    total: wgpu::Buffer,
+    layer: GrowBuffer<[u32; 2]>,
+    /// Threads that share a segment.
+    lanes: u32,
+    /// Fragments that there is room for, and bands at least, where lists are kept.
+    room: u64,
+    least_bands: u32,
+    /// Whether the last frame had lists, and in how many bands.
+    lists: Option<u32>,
+}
+
+impl Pass {
+    fn source(&self) -> ShaderSource {
+        let last: &[ShaderPart] = match self.over {
+            Over::Fragments => &[FRAGMENTS],
+            Over::Pixels => &[EACH_PIXEL],
+            Over::Groups(_) => &[],
+        };
+        let parts: Vec<_> = [FRAME].iter().chain(self.parts).chain(last).copied().collect();
+        ShaderSource::new(&parts)
+    }
+
+    fn kernel(&self, gpu: &Gpu) -> Result<Kernel, GpuError> {
+        let entry = match self.over {
+            Over::Fragments => "each_fragment",
+            Over::Pixels => "each_pixel",
+            Over::Groups(entry) => entry,
+        };
+        Kernel::new(gpu, self.name, &self.source(), entry)
+    }
+}
+
+/// Every composed shader with its label.
+pub(super) fn shaders() -> Vec<(String, ShaderSource)> {
+    let behind = ("behind".to_owned(), ShaderSource::new(&[BEHIND]));
+    let modes = Transparency::ALL.into_iter().flat_map(|transparency| {
+        let passes = Mode::of(transparency).passes.iter();
+        passes.map(move |pass| (format!("{transparency}: {}", pass.name), pass.source()))
+    });
+    std::iter::once(behind).chain(modes).collect()
+}
+
+impl Eye {
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        let storage = wgpu::BufferUsages::STORAGE;
+        let device = &gpu.device;
+        Ok(Self {
+            behind_kernel: Kernel::new(gpu, "behind", &ShaderSource::new(&[BEHIND]), "read_depths")?,
+            modes: Vec::new(),
+            behind: GrowBuffer::new(device, "depths behind", storage),
+            map: GrowBuffer::new(device, "eye maps", storage),
+            list: GrowBuffer::new(device, "fragments", storage),
+            total: device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("fragments in all"),
+                size: 16,
+                usage: storage | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
+                mapped_at_creation: false,
+            }),
+            layer: GrowBuffer::new(device, "hair layer", storage),
+            lanes: if gpu.is_software() { 1 } else { 4 },
+            room: 1 << 16,
+            least_bands: 1,
+            lists: None,
+        })
+    }
+
+    /// The hair of each pixel, as `layer` in frame.wgsl.
+    pub fn layer(&self) -> &wgpu::Buffer {
+        self.layer.raw()
+    }
+
+    /// Memory that is held, bytes.
+    pub fn memory_bytes(&self) -> u64 {
+        let buffers = [self.behind.raw(), self.map.raw(), self.list.raw(), self.layer.raw()];
+        buffers.iter().map(|buffer| buffer.size()).sum()
+    }
+
+    /// Makes room for a picture's layer; says whether the buffer is another one.
+    pub fn fit(&mut self, gpu: &Gpu, width: u32, height: u32) -> bool {
+        self.layer.reserve(&gpu.device, width as usize * height as usize)
+    }
+
+    /// Encodes drawing the hair into [`Eye::layer`], which [`Eye::fit`] made large enough.
+    ///
+    /// # Errors
+    /// A shader that does not compile, or a picture whose rows are too long for this device's buffers.
+    pub fn draw(&mut self, gpu: &Gpu, commands: &mut Commands, input: &EyeInput) -> Result<(), GpuError> {
+        let (device, pixels) = (&gpu.device, u64::from(input.width) * u64::from(input.height));
+        let mode = Mode::of(input.transparency);
+        if pixels * 16 > gpu.most_storage_bytes() {
+            return Err(too_large(gpu, pixels * 16));
+        }
+        if !self.modes.iter().any(|(known, _)| *known == input.transparency) {
+            let kernels = mode.passes.iter().map(|pass| pass.kernel(gpu)).collect::<Result<_, _>>()?;
+            self.modes.push((input.transparency, kernels));
+        }
+        self.behind.reserve(device, pixels as usize);
+        let resources = [
+            (0, wgpu::BindingResource::TextureView(input.depth)),
+            (1, self.behind.raw().as_entire_binding()),
+        ];
+        let group = self.behind_kernel.bind(gpu, &resources);
+        commands.compute("draw/behind", |pass| self.behind_kernel.run(pass, &group, pixels));
+
+        let row_bytes = u64::from(input.width) * u64::from(mode.words) * 4;
+        let most_rows = gpu.most_storage_bytes() / row_bytes.max(1);
+        if most_rows == 0 {
+            return Err(too_large(gpu, row_bytes));
+        }
+        let mut bands = u64::from(input.height).div_ceil(most_rows) as u32;
+        self.lists = None;
+        if mode.lists {
+            let most = gpu.most_storage_bytes() / (4 * FRAGMENT_WORDS);
+            self.room = self.room.min(most);
+            self.list.reserve(device, (self.room * FRAGMENT_WORDS) as usize);
+            bands = bands.max(self.least_bands).min(input.height);
+            self.lists = Some(bands);
+        }
+        let rows = input.height.div_ceil(bands);
+        self.map.reserve(device, (u64::from(rows) * row_bytes / 4) as usize);
+        commands.encoder().clear_buffer(&self.total, 0, None);
+        for first in (0..input.height).step_by(rows as usize) {
+            self.draw_band(gpu, commands, input, mode, [first, rows.min(input.height - first)]);
+        }
+        Ok(())
+    }
+
+    fn draw_band(&self, gpu: &Gpu, commands: &mut Commands, input: &EyeInput, mode: &Mode, band: [u32; 2]) {
+        let pixels = u64::from(input.width) * u64::from(band[1]);
+        let uniform = EyeUniform {
+            size: [input.width, input.height],
+            band,
+            segments: input.segment_count,
+            lanes: self.lanes,
+            room: self.room as u32,
+            opacity: input.opacity.to_bits(),
+        };
+        let buffer = lovelock_gpu::constants(gpu, "eye", &uniform);
+        let resources = [
+            (0, buffer.as_entire_binding()),
+            (1, input.shaded.as_entire_binding()),
+            (2, input.segments.as_entire_binding()),
+            (3, self.behind.raw().as_entire_binding()),
+            (4, self.map.raw().as_entire_binding()),
+            (5, self.list.raw().as_entire_binding()),
+            (6, self.total.as_entire_binding()),
+            (7, self.layer.raw().as_entire_binding()),
+        ];
+        let encoder = commands.encoder();
+        encoder.clear_buffer(self.map.raw(), 0, Some((pixels * u64::from(mode.words) * 4).max(4)));
+        if mode.lists {
+            // Each band's list begins anew; the frame's total is the largest band's.
+            encoder.clear_buffer(&self.total, 0, Some(4));
+        }
+        let kernels = self.modes.iter().find(|(known, _)| *known == input.transparency);
+        let Some((_, kernels)) = kernels else { return };
+        for (pass, kernel) in mode.passes.iter().zip(kernels) {
+            let threads = match pass.over {
+                Over::Fragments => u64::from(input.segment_count) * u64::from(self.lanes),
+                Over::Pixels | Over::Groups(_) => pixels,
+            };
+            let group = kernel.bind(gpu, &resources);
+            commands.compute(pass.name, |pass| kernel.run(pass, &group, threads));
+        }
+    }
+
+    /// Call when the device is done with a frame: whether lists were too short and the frame must be drawn anew; there is
+    /// more room then.
+    ///
+    /// # Errors
+    /// The device is lost.
+    pub fn settle(&mut self, gpu: &Gpu, height: u32) -> Result<bool, GpuError> {
+        let Some(bands) = self.lists else { return Ok(false) };
+        let mut totals = [0_u32; 2];
+        read_buffer(gpu, &self.total, &mut totals)?;
+        let wanted = u64::from(totals[1]);
+        if wanted <= self.room {
+            return Ok(false);
+        }
+        let limit = gpu.most_storage_bytes() / (4 * FRAGMENT_WORDS);
+        if wanted <= limit {
+            // A quarter more: hair that moves does not need another one in the next frame.
+            self.room = (wanted + wanted / 4).min(limit);
+            return Ok(true);
+        }
+        // A band of a picture has at least as many more as bands are fewer.
+        let more = (u64::from(bands) * wanted / limit + 1).max(u64::from(bands) + 1);
+        self.room = limit;
+        self.least_bands = more.min(u64::from(height)) as u32;
+        Ok(bands < height)
+    }
+}
+
+fn too_large(gpu: &Gpu, needed: u64) -> GpuError {
+    GpuError::Refused(format!(
+        "a picture of this size needs a buffer of {needed} bytes, and {} takes at most {}: draw a smaller one, or by the \
+         processor",
+        gpu.info.name,
+        gpu.most_storage_bytes()
+    ))
+}

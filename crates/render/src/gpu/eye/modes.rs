@@ -1,0 +1,125 @@
+//! The passes of each way of transparency.
+
+use lovelock_gpu::ShaderPart;
+
+use super::part;
+use crate::Transparency;
+
+/// What a pass goes over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Over {
+    /// Every pixel of every segment: the part defines `take`.
+    Fragments,
+    /// Every pixel of the band: the part defines `pixel_pass`.
+    Pixels,
+    /// Every pixel of the band, in groups of 64 that work together, by this entry point of the part.
+    Groups(&'static str),
+}
+
+/// One pass.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pass {
+    /// As statistics name it, `draw/…`.
+    pub name: &'static str,
+    pub over: Over,
+    pub parts: &'static [ShaderPart],
+}
+
+/// One way of transparency.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Mode {
+    /// Words that it keeps for a pixel.
+    pub words: u32,
+    /// Whether it lists fragments.
+    pub lists: bool,
+    pub passes: &'static [Pass],
+}
+
+const OCCUPANCY: ShaderPart = part!("occupancy/record.wgsl");
+const WEIGHTED: ShaderPart = part!("weighted/record.wgsl");
+const OPAQUE: ShaderPart = part!("opaque/record.wgsl");
+const SAMPLES: ShaderPart = part!("opaque/samples.wgsl");
+const LISTS: ShaderPart = part!("lists/record.wgsl");
+const BY_DEPTH: ShaderPart = part!("lists/by_depth.wgsl");
+const BY_SEGMENT: ShaderPart = part!("lists/by_segment.wgsl");
+
+const fn fragments(name: &'static str, parts: &'static [ShaderPart]) -> Pass {
+    Pass { name, over: Over::Fragments, parts }
+}
+
+const fn resolve(parts: &'static [ShaderPart]) -> Pass {
+    Pass { name: "draw/resolve", over: Over::Pixels, parts }
+}
+
+const COUNT: Pass = fragments("draw/count", &[LISTS, part!("lists/count.wgsl")]);
+const ALLOCATE: Pass = Pass {
+    name: "draw/allocate",
+    over: Over::Groups("allocate"),
+    parts: &[LISTS, part!("lists/allocate.wgsl")],
+};
+const BLEND: Pass =
+    Pass { name: "draw/sort-and-blend", over: Over::Pixels, parts: &[LISTS, part!("lists/resolve.wgsl")] };
+
+const OPAQUE_MODE: Mode = Mode {
+    words: 8,
+    lists: false,
+    passes: &[
+        fragments("draw/nearest", &[OPAQUE, SAMPLES, part!("opaque/depth.wgsl")]),
+        fragments("draw/color", &[OPAQUE, SAMPLES, part!("opaque/color.wgsl")]),
+        resolve(&[OPAQUE, part!("opaque/resolve.wgsl")]),
+    ],
+};
+
+const WEIGHTED_MODE: Mode = Mode {
+    words: 5,
+    lists: false,
+    passes: &[
+        fragments("draw/sums", &[WEIGHTED, part!("weighted/sums.wgsl")]),
+        resolve(&[WEIGHTED, part!("weighted/resolve.wgsl")]),
+    ],
+};
+
+const OCCUPANCY_MODE: Mode = Mode {
+    words: 18,
+    lists: false,
+    passes: &[
+        fragments("draw/range", &[OCCUPANCY, part!("occupancy/range.wgsl")]),
+        fragments("draw/occupancy", &[OCCUPANCY, part!("occupancy/bits.wgsl")]),
+        fragments("draw/light", &[OCCUPANCY, part!("occupancy/light.wgsl")]),
+        resolve(&[OCCUPANCY, part!("occupancy/resolve.wgsl")]),
+    ],
+};
+
+const SORTED_MODE: Mode = Mode {
+    words: 3,
+    lists: true,
+    passes: &[
+        COUNT,
+        ALLOCATE,
+        fragments("draw/scatter", &[LISTS, BY_SEGMENT, part!("lists/scatter.wgsl")]),
+        BLEND,
+    ],
+};
+
+const EXACT_MODE: Mode = Mode {
+    words: 3,
+    lists: true,
+    passes: &[
+        COUNT,
+        ALLOCATE,
+        fragments("draw/scatter", &[LISTS, BY_DEPTH, part!("lists/scatter.wgsl")]),
+        BLEND,
+    ],
+};
+
+impl Mode {
+    pub const fn of(transparency: Transparency) -> &'static Self {
+        match transparency {
+            Transparency::Opaque => &OPAQUE_MODE,
+            Transparency::WeightedAverage => &WEIGHTED_MODE,
+            Transparency::OccupancyOrder => &OCCUPANCY_MODE,
+            Transparency::Sorted => &SORTED_MODE,
+            Transparency::Exact => &EXACT_MODE,
+        }
+    }
+}

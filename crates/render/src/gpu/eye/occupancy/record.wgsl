@@ -1,0 +1,30 @@
+// What occupancy order keeps of a pixel, in words: the farthest and the nearest depth, the latter as it is and the former
+// turned round so that 0 is none; a bit for each of 128 slices of the distances between; the optical depth of each of 8 slabs
+// of 16 slices, in 2^-16; and the weighted light, in 2^-16, with the sum of the weights. Twin of
+// cpu/transparency/occupancy.rs.
+
+const RECORD_WORDS: u32 = 18u;
+const BITS_AT: u32 = 2u;
+const SLABS_AT: u32 = 6u;
+const LIGHT_AT: u32 = 14u;
+const SLICES: f32 = 128.0;
+const DEPTH_ONE: f32 = 65536.0;
+const MOST_DEPTH: f32 = 16.0;
+const LIGHT_ONE: f32 = 65536.0;
+
+// Depth falls with distance; its inverse is distance up to a factor.
+fn distance_of(depth: f32) -> f32 {
+    return 1.0 / max(depth, 1e-9);
+}
+
+// Where a distance lies between the nearest and the farthest: slice as a whole and a broken part.
+fn slice_of(record: u32, depth: f32) -> f32 {
+    let near = distance_of(bitcast<f32>(atomicLoad(&map[record])));
+    let far = distance_of(bitcast<f32>(~atomicLoad(&map[record + 1u])));
+    let slice = (distance_of(depth) - near) / (far - near) * SLICES;
+    return select(0.0, clamp(slice, 0.0, SLICES), far > near);
+}
+
+fn optical_depth(alpha: f32) -> f32 {
+    return select(MOST_DEPTH, min(-log(1.0 - alpha), MOST_DEPTH), alpha < 1.0);
+}

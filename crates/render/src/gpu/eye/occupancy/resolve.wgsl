@@ -1,0 +1,21 @@
+// Sets the sum right, so that all fragments together cover what they must: the estimate dims it.
+
+fn pixel_pass(pixel: u32) {
+    let record = pixel * RECORD_WORDS;
+    if (atomicLoad(&map[record]) == 0u) {
+        write_layer(pixel, vec3f(0.0), 1.0);
+        return;
+    }
+    var total_depth = 0.0;
+    for (var k = 0u; k < 8u; k++) {
+        total_depth += f32(atomicLoad(&map[record + SLABS_AT + k]));
+    }
+    let through = exp(-total_depth / DEPTH_ONE);
+    let light = vec3f(
+        f32(atomicLoad(&map[record + LIGHT_AT])),
+        f32(atomicLoad(&map[record + LIGHT_AT + 1u])),
+        f32(atomicLoad(&map[record + LIGHT_AT + 2u])),
+    );
+    let weight = f32(atomicLoad(&map[record + LIGHT_AT + 3u]));
+    write_layer(pixel, light * ((1.0 - through) / max(weight, 1.0)), through);
+}

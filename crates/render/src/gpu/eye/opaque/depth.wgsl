@@ -1,0 +1,12 @@
+// The nearest depth in each sample.
+
+fn take(pixel: u32, fragment: Fragment) {
+    let samples = covered_samples(fragment);
+    let bits = bitcast<u32>(fragment.depth);
+    for (var k = 0u; k < 4u; k++) {
+        let at = pixel * RECORD_WORDS + k;
+        if (((samples >> k) & 1u) != 0u && atomicLoad(&map[at]) < bits) {
+            atomicMax(&map[at], bits);
+        }
+    }
+}

@@ -1,0 +1,15 @@
+// The light on the ground at the corners of cells of pixels.
+
+@group(1) @binding(0) var<storage, read_write> corners: array<vec4f>;
+
+@compute @workgroup_size(64)
+fn ground_corners(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    let i = id.x + id.y * groups.x * 64u;
+    if (i >= arrayLength(&corners)) {
+        return;
+    }
+    let columns = corner_columns();
+    let pixel = vec2f(vec2u(i % columns, i / columns) * CELL);
+    let ndc = (pixel / frame.size_scale_exposure.xy - 0.5) * vec2f(2.0, -2.0);
+    corners[i] = ground_light(ndc);
+}

@@ -1,0 +1,31 @@
+// The light that reaches the ground, as the picture sees it. Twin of `ground_place` and `ground_light` in cpu/backdrop.rs.
+
+// The share of the light that is left on the ground behind a place of the picture, and whether there is ground: 1 or 0.
+// Where nothing is in the way, and above the horizon, the share is 1.
+fn ground_light(ndc: vec2f) -> vec4f {
+    let near = frame.world_from_clip * vec4f(ndc, 1.0, 1.0);
+    let eye = frame.eye_lights.xyz;
+    let ray = normalize(near.xyz / near.w - eye);
+    if (!(ray.y < -1e-3 && eye.y > 0.0)) {
+        return vec4f(1.0, 1.0, 1.0, 0.0);
+    }
+    let p = eye - ray * (eye.y / ray.y);
+    let up = vec3f(0.0, 1.0, 0.0);
+    var full = 0.5 * ambient(up) * 3.14159;
+    var lit = full;
+    for (var k = 0u; k < light_count(); k++) {
+        let light = frame.lights[k];
+        let share = light.radiance_blur.xyz * max(-light.direction_specular.y, 0.0);
+        full += share;
+        lit += share * body_light(k, p, lean_of(k, up), 0.004, 6u) * columns_light(k, p);
+    }
+    return vec4f(lit / max(full, vec3f(1e-4)), 1.0);
+}
+
+// Pixels along each edge of a cell: most of the ground is lit evenly, so it is asked at the corners of cells first.
+const CELL: u32 = 4u;
+
+// Corners in a row of them.
+fn corner_columns() -> u32 {
+    return (u32(frame.size_scale_exposure.x) + CELL - 1u) / CELL + 1u;
+}

@@ -1,0 +1,237 @@
+//! The shadow methods of one frame on the GPU: a map a light, asked once a strand point and once a vertex of the body.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use glam::{Mat4, Vec3};
+use lovelock_gpu::{Commands, Gpu, wgpu};
+use lovelock_shadow::{
+    GpuColumns, GpuShadow, GpuShadowError, GpuShadowInput, GpuTargets, LightFrame, ShadowMethod, gpu_shadow,
+};
+
+use super::hair::HairBuffers;
+use crate::{FrameInput, Light, MAX_LIGHTS, RenderError};
+
+/// The shadow of every light, kept from frame to frame.
+pub(super) struct GpuShadowStage {
+    /// Methods that were used, with their pipelines; maps has only the one in use.
+    methods: BTreeMap<ShadowMethod, Box<dyn GpuShadow>>,
+    method: ShadowMethod,
+    frames: Vec<LightFrame>,
+    /// Sum of the first light's bytes over the strands' points.
+    sum: wgpu::Buffer,
+    columns: Columns,
+    lights: usize,
+}
+
+impl fmt::Debug for GpuShadowStage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("GpuShadowStage").field("method", &self.method).finish_non_exhaustive()
+    }
+}
+
+/// The vertices of the body, asked as the strands' points are.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Vertices<'a> {
+    /// Two `vec4f` a vertex, the first of which begins with the position.
+    pub positions: &'a wgpu::Buffer,
+    pub count: u32,
+    /// One word a vertex.
+    pub hair: &'a wgpu::Buffer,
+}
+
+impl GpuShadowStage {
+    pub fn new(gpu: &Gpu) -> Self {
+        Self {
+            methods: BTreeMap::new(),
+            method: ShadowMethod::None,
+            frames: Vec::new(),
+            sum: gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("sum of transmittances"),
+                size: 16,
+                usage: wgpu::BufferUsages::STORAGE
+                    | wgpu::BufferUsages::COPY_DST
+                    | wgpu::BufferUsages::COPY_SRC,
+                mapped_at_creation: false,
+            }),
+            columns: Columns::new(&gpu.device, 1),
+            lights: 0,
+        }
+    }
+
+    /// Encodes building the maps of all lights and asking them everywhere that they are needed.
+    ///
+    /// # Errors
+    /// The maps need more memory than they may have, or a shader does not compile.
+    pub fn run(
+        &mut self,
+        gpu: &Gpu,
+        commands: &mut Commands,
+        input: &FrameInput,
+        hair: &mut HairBuffers,
+        vertices: Option<Vertices>,
+    ) -> Result<(), RenderError> {
+        let lights: Vec<Light> =
+            input.lights.iter().filter(|light| light.enabled).take(MAX_LIGHTS).map(Light::clamped).collect();
+        let method = input.shadow.method;
+        if self.method != method
+            && let Some(old) = self.methods.get_mut(&self.method)
+        {
+            old.forget(gpu);
+        }
+        self.method = method;
+        if !self.methods.contains_key(&method) {
+            self.methods.insert(method, gpu_shadow(method, gpu)?);
+        }
+        let Some(shadow) = self.methods.get_mut(&method) else { return Ok(()) };
+        self.lights = lights.len();
+        self.frames.truncate(lights.len());
+        let anchor: Vec3 = input.world_from_head.translation.into();
+        commands.encoder().clear_buffer(&self.sum, 0, None);
+        for (slot, light) in lights.iter().enumerate() {
+            // Carried along rather than made anew, so that the map does not roll while the light is dragged.
+            let frame = match self.frames.get(slot) {
+                Some(frame) => frame.transported(light.direction),
+                None => LightFrame::new(light.direction),
+            };
+            self.frames.truncate(slot);
+            self.frames.push(frame);
+            let (bounds, longest_strand) = hair.bounds(input, frame, anchor);
+            let from = GpuShadowInput {
+                strands: hair.strands(),
+                bounds,
+                longest_strand,
+                strand_width: input.look.shadow_width(input.style.strands.count()),
+                light: frame,
+                anchor,
+                maps: lights.len() as u32,
+            };
+            shadow.build(slot, gpu, commands, &from, input.shadow)?;
+            let strands = hair.strands();
+            let targets = GpuTargets {
+                points: strands.points,
+                stride: 1,
+                count: strands.point_count,
+                out: hair.transmittance(),
+                sum: Some(&self.sum),
+            };
+            shadow.ask(slot, gpu, commands, &targets);
+            if let Some(vertices) = vertices {
+                let targets = GpuTargets {
+                    points: vertices.positions,
+                    stride: 2,
+                    count: vertices.count,
+                    out: vertices.hair,
+                    sum: None,
+                };
+                shadow.ask(slot, gpu, commands, &targets);
+            }
+        }
+        if lights.is_empty() {
+            // All light, where there is none to be blocked.
+            self.columns.clear();
+        }
+        let most = (0..lights.len()).map(|slot| shadow.columns_size(slot)).max().unwrap_or(0);
+        self.columns.fit(&gpu.device, most.max(1));
+        for slot in 0..lights.len() {
+            let written = shadow.columns(slot, gpu, commands, &self.columns.layers[slot]);
+            self.columns.written[slot] = written;
+        }
+        Ok(())
+    }
+
+    /// See [`GpuShadow::settle`].
+    pub fn settle(&mut self, gpu: &Gpu) -> Result<bool, RenderError> {
+        match self.methods.get_mut(&self.method).map(|shadow| shadow.settle(gpu)) {
+            None => Ok(false),
+            Some(Ok(again)) => Ok(again),
+            Some(Err(GpuShadowError::Shadow(error))) => Err(error.into()),
+            Some(Err(GpuShadowError::Gpu(error))) => Err(error.into()),
+        }
+    }
+
+    /// Bytes that the maps hold.
+    pub fn memory_bytes(&self) -> u64 {
+        let Some(shadow) = self.methods.get(&self.method) else { return 0 };
+        let scratch = (0..self.lights).map(|slot| shadow.report(slot).scratch_bytes).max().unwrap_or(0);
+        (0..self.lights).map(|slot| shadow.report(slot).memory_bytes).sum::<u64>() + scratch
+    }
+
+    /// The sum of the bytes of the first light's transmittances over the strands' points.
+    pub fn sum(&self) -> &wgpu::Buffer {
+        &self.sum
+    }
+
+    /// All layers of what lies behind the hair.
+    pub fn columns_view(&self) -> &wgpu::TextureView {
+        &self.columns.view
+    }
+
+    /// Carries world space to light `k`'s layer; far outside where it has none.
+    pub fn columns_from_world(&self, k: usize) -> Mat4 {
+        self.columns.from_world(k)
+    }
+}
+
+/// What all hair lets through, a layer a light, for surfaces far behind it.
+#[derive(Debug)]
+struct Columns {
+    size: u32,
+    view: wgpu::TextureView,
+    layers: Vec<wgpu::TextureView>,
+    written: [Option<GpuColumns>; MAX_LIGHTS],
+}
+
+impl Columns {
+    fn new(device: &wgpu::Device, size: u32) -> Self {
+        let texture = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("hair columns"),
+            size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: MAX_LIGHTS as u32 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba8Unorm,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING,
+            view_formats: &[],
+        });
+        let layers = (0..MAX_LIGHTS as u32).map(|layer| {
+            texture.create_view(&wgpu::TextureViewDescriptor {
+                dimension: Some(wgpu::TextureViewDimension::D2),
+                base_array_layer: layer,
+                array_layer_count: Some(1),
+                ..Default::default()
+            })
+        });
+        Self {
+            size,
+            layers: layers.collect(),
+            view: texture.create_view(&wgpu::TextureViewDescriptor {
+                dimension: Some(wgpu::TextureViewDimension::D2Array),
+                ..Default::default()
+            }),
+            written: [None; MAX_LIGHTS],
+        }
+    }
+
+    /// Makes room for layers of `size` by `size` texels, with a few more so that hair that sways needs no other texture.
+    fn fit(&mut self, device: &wgpu::Device, size: u32) {
+        if size > self.size {
+            *self = Self::new(device, size.next_multiple_of(64));
+        }
+        self.clear();
+    }
+
+    fn clear(&mut self) {
+        self.written = [None; MAX_LIGHTS];
+    }
+
+    fn from_world(&self, k: usize) -> Mat4 {
+        const OUTSIDE: Mat4 = Mat4::from_cols_array(&[
+            0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0, -1.0, 0.0, 1.0,
+        ]);
+        let Some(columns) = self.written.get(k).copied().flatten() else { return OUTSIDE };
+        // A map may be smaller than the texture that holds it: its coordinates are scaled to its corner.
+        let part = columns.size as f32 / self.size as f32;
+        Mat4::from_scale(Vec3::new(part, part, 1.0)) * columns.uv_from_world
+    }
+}
