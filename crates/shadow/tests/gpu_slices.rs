@@ -314,3 +314,36 @@ fn maps_larger_than_the_device_takes_are_refused() {
     settings.opacity_maps.resolution = 64;
     Built::new(gpu, ShadowMethod::OpacityMaps, &groom.input(), &settings);
 }
+
+#[test]
+fn every_pass_is_timed_by_its_name() {
+    let Some(gpu) = device() else { return };
+    let of: [(ShadowMethod, &[&str]); 3] = [
+        (ShadowMethod::OpacityMaps, &["shadow/slices", "shadow/sums"]),
+        (ShadowMethod::DeepOpacityMaps, &["shadow/near", "shadow/layers", "shadow/sums"]),
+        (
+            ShadowMethod::DensityClustering,
+            &[
+                "shadow/range",
+                "shadow/seeds",
+                "shadow/clusters",
+                "shadow/centres",
+                "shadow/spread",
+                "shadow/bins",
+                "shadow/fill",
+            ],
+        ),
+    ];
+    for groom in [Groom::preset(Preset::Smooth)].into_iter().chain(Groom::straight()) {
+        for (method, names) in of {
+            let mut built = Built::new(gpu, method, &groom.input(), &ShadowSettings::default());
+            // Once more, with memory that is there.
+            built.build(0, &groom.input(), &ShadowSettings::default()).expect("it fits");
+            let found: Vec<_> = built.passes.iter().map(|pass| pass.name.as_str()).collect();
+            let times: Vec<_> =
+                built.passes.iter().map(|pass| format!("{} {:.2}", pass.name, pass.ms)).collect();
+            println!("{}, {method}, ms: {}", groom.name, times.join(", "));
+            assert!(found == names || !gpu.has_timestamps(), "{method}: {found:?}");
+        }
+    }
+}
