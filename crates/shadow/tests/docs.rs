@@ -23,6 +23,12 @@ fn section<'a>(measured: &'a str, hairstyle: &str) -> Option<&'a str> {
     Some(rest.split_once("\n### ").map_or(rest, |(section, _)| section))
 }
 
+/// The table of both backends in a section.
+fn both_backends(section: &str) -> &str {
+    let at = section.find("| both backends |").expect("a table of both backends");
+    &section[at..]
+}
+
 /// The cells of the row of a method in a table; `None` where there is no such row.
 fn row<'a>(text: &'a str, first: &str) -> Option<Vec<&'a str>> {
     let rows = text.lines().map(|line| line.trim_matches('|').split('|').map(str::trim).collect::<Vec<_>>());
@@ -73,6 +79,36 @@ fn every_method_is_measured_on_every_hairstyle() {
             assert_eq!(method == ShadowMethod::Exact, number("exact") == 0.0, "{hairstyle}: {method}");
             assert_eq!(method == ShadowMethod::None, number("exact") > 0.2, "{hairstyle}: {method}");
             assert!(number("build, ms") >= 0.0 && number("lookups, ms") >= 0.0 && number("map") >= 0.0);
+        }
+    }
+}
+
+#[test]
+fn every_method_is_measured_on_both_backends() {
+    let document = document();
+    for hairstyle in HAIRSTYLES {
+        let section = section(measured(&document), hairstyle).expect(hairstyle);
+        let alone = row(section, "method").expect("heads of columns");
+        let both = both_backends(section);
+        let heads = row(both, "both backends").expect("heads of columns");
+        for &method in ShadowMethod::ALL {
+            let cells = row(both, &format!("`{method}`")).expect("a row of every method");
+            assert_eq!(cells.len(), heads.len(), "{hairstyle}: {method}");
+            let cell = |head: &str| cells[heads.iter().position(|found| *found == head).expect(head)];
+            let number = |head: &str| -> f64 {
+                let number = cell(head).split(' ').next().unwrap_or_default();
+                number.parse().unwrap_or_else(|_| panic!("{hairstyle}: {method}: {head}: {number:?}"))
+            };
+            let first = row(section, &format!("`{method}`")).expect("a row of every method");
+            let exact = alone.iter().position(|head| *head == "exact").expect("a column");
+            assert_eq!(cell("exact, CPU"), first[exact], "{hairstyle}: {method}: of the same run");
+            // Rounding to 8 bits, as tests/gpu_agreement.rs has it.
+            assert!(number("difference") <= 0.0021, "{hairstyle}: {method}");
+            assert!((number("exact, GPU") - number("exact, CPU")).abs() <= 0.0011, "{hairstyle}: {method}");
+            assert_eq!(number("held, GPU") > 0.0, method != ShadowMethod::None, "{hairstyle}: {method}");
+            for head in ["build, CPU", "build, GPU", "lookups, CPU", "lookups, GPU"] {
+                assert!(number(head) >= 0.0, "{hairstyle}: {method}: {head}");
+            }
         }
     }
 }

@@ -106,7 +106,7 @@ fn bad_hair() -> Vec<(&'static str, Strands)> {
             let middle = HEAD + light.x * spread * random.signed();
             vec![middle - 0.001 * light.y, middle + 0.001 * light.y]
         };
-        let mut all: Vec<_> = (0..20_000).map(|_| line(&mut random)).collect();
+        let mut all: Vec<_> = (0..100_000).map(|_| line(&mut random)).collect();
         all.extend([vec![HEAD - 0.1 * Vec3::ONE], vec![HEAD + 0.1 * Vec3::ONE]]);
         strands(&all)
     };

@@ -1,15 +1,18 @@
 //! Writes the measured part of `docs/shadow_methods.md`: what the registry says of every method, and error, time and
-//! memory of each on five hairstyles.
+//! memory of each on five hairstyles, on the processor and on the graphics device.
 //!
 //! `cargo run --release -p lovelock-shadow --example measure_methods -- docs/shadow_methods.md` replaces what stands
 //! between the markers in the file; without an argument it is printed.
 
 #[path = "../../tests/common/mod.rs"]
 mod common;
+#[path = "../../tests/common/gpu.rs"]
+mod gpu;
 #[path = "../../tests/common/grooms.rs"]
 mod grooms;
 mod machine;
 mod measure;
+mod on_gpu;
 mod splice;
 mod tables;
 
@@ -28,7 +31,9 @@ fn text() -> String {
     let grooms = Groom::all();
     for groom in &grooms {
         eprintln!("measuring {}", groom.name);
-        text.push_str(&tables::hairstyle(groom, &measure::all_methods(groom)));
+        let measured = measure::all_methods(groom);
+        text.push_str(&tables::hairstyle(groom, &measured));
+        text.push_str(&tables::both_backends(&measured));
     }
     if grooms.iter().all(|groom| groom.name != FILE) {
         let _ = writeln!(text, "\nThe folder of real files was not there: {FILE} is left out.");

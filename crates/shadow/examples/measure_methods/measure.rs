@@ -9,6 +9,7 @@ use lovelock_shadow::{
 
 use crate::common::Random;
 use crate::grooms::Groom;
+use crate::on_gpu::{self, OnGpu};
 
 /// Runs of which the median is taken.
 pub(crate) const RUNS: usize = 15;
@@ -47,6 +48,7 @@ pub(crate) struct Measured {
     pub(crate) build: Time,
     pub(crate) lookup: Time,
     pub(crate) report: ShadowReport,
+    pub(crate) on_gpu: Option<OnGpu>,
     /// Points among the first ten fragments.
     pub(crate) first_points: usize,
 }
@@ -152,6 +154,7 @@ fn one(method: ShadowMethod, groom: &Groom, exact: &Exact, truth: &Converged) ->
         build,
         lookup,
         report: map.report(),
+        on_gpu: on_gpu::measure(method, groom, &light, &exact.light),
         first_points: first.count(),
     }
 }
@@ -170,7 +173,11 @@ fn time(mut run: impl FnMut()) -> Time {
         run();
         start.elapsed().as_secs_f64() * 1e3
     };
-    let mut times: Vec<_> = (0..RUNS).map(once).collect();
+    median((0..RUNS).map(once).collect())
+}
+
+/// Of `RUNS` times, milliseconds.
+pub(crate) fn median(mut times: Vec<f64>) -> Time {
     times.sort_by(f64::total_cmp);
     Time { median: times[RUNS / 2], low: times[RUNS / 4], high: times[RUNS - 1 - RUNS / 4] }
 }
@@ -180,11 +187,11 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
     if count == 0 { 0.0 } else { sum / count as f64 }
 }
 
-fn rmse(pairs: impl Iterator<Item = (f32, f32)>) -> f64 {
+pub(crate) fn rmse(pairs: impl Iterator<Item = (f32, f32)>) -> f64 {
     mean(pairs.map(|(a, b)| (f64::from(a) - f64::from(b)).powi(2))).sqrt()
 }
 
-fn percentile(a: &[f32], b: &[f32]) -> f64 {
+pub(crate) fn percentile(a: &[f32], b: &[f32]) -> f64 {
     let mut errors: Vec<_> = a.iter().zip(b).map(|(a, b)| (a - b).abs()).collect();
     errors.sort_by(f32::total_cmp);
     errors.get(errors.len() * 99 / 100).copied().map_or(0.0, f64::from)

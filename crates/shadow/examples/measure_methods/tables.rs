@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use lovelock_shadow::{CONVERGED_CHANGE, SettingInfo, ShadowMethod, ShadowSettings};
 
 use crate::grooms::Groom;
-use crate::machine;
 use crate::measure::{CONVERGED_POINTS, FIRST, Measured, RUNS, Time};
+use crate::{machine, on_gpu};
 
 /// The methods, and what can be set about each.
 pub(crate) fn registry() -> String {
@@ -46,8 +46,12 @@ pub(crate) fn how_measured() -> String {
          - *99 %*: 99 of 100 points are nearer to `exact`.\n\
          - *first ten*: root mean square against `exact` over points with fewer than {FIRST} fragments before them.\n\n\
          Times are medians of {RUNS} runs, with the quartiles, on a machine that may have had other work. *Map* is what a\n\
-         map holds, of the voxel map in address space; *building* is what builds use beside it and keep.\n",
+         map holds, of the voxel map in address space; *building* is what builds use beside it and keep.\n\n\
+         The second table of a hairstyle has the processor and the graphics device ({adapter}) side by side. *Difference*: 99 of\n\
+         100 points are nearer to each other, of which rounding to 8 bits makes 0.002. Times on the device are sums of its passes,\n\
+         by its timestamps or, where it is the processor itself, by waiting for each. *Held* is *map* and *building* together.\n",
         machine = machine::line(),
+        adapter = on_gpu::adapter().unwrap_or_else(|| String::from("there was none")),
     )
 }
 
@@ -94,6 +98,36 @@ pub(crate) fn hairstyle(groom: &Groom, measured: &[Measured]) -> String {
         );
     }
     text
+}
+
+/// The methods on both backends.
+pub(crate) fn both_backends(measured: &[Measured]) -> String {
+    let mut text = String::from(
+        "\n| both backends | exact, CPU | exact, GPU | difference | build, CPU | build, GPU | lookups, CPU | lookups, GPU | held, CPU | held, GPU |\n\
+         |---|---|---|---|---|---|---|---|---|---|\n",
+    );
+    for row in measured {
+        let Some(gpu) = &row.on_gpu else { continue };
+        let _ = writeln!(
+            text,
+            "| `{}` | {:.4} | {:.4} | {:.4} | {} | {} | {} | {} | {} | {} |",
+            row.method,
+            row.errors.exact,
+            gpu.exact,
+            gpu.difference,
+            digits(row.build.median),
+            milliseconds(&gpu.build),
+            digits(row.lookup.median),
+            milliseconds(&gpu.lookup),
+            bytes(row.report.memory_bytes + row.report.scratch_bytes),
+            bytes(gpu.held),
+        );
+    }
+    text
+}
+
+fn digits(ms: f64) -> String {
+    if ms < 10.0 { format!("{ms:.2}") } else { format!("{ms:.1}") }
 }
 
 /// Three digits that mean something, or fewer where time is short.

@@ -2,7 +2,7 @@
 // become running sums.
 //
 // Steps are taken four at a time: software Vulkan (Mesa's llvmpipe) leaves a shader's loops after 65,535 rounds in all, which
-// is enough for 500,000 fragments of a texel then.
+// is enough for 500,000 fragments in the long lists of these texels then.
 
 const GROUP: u32 = 256u;
 const AT_ONCE: u32 = 4u;

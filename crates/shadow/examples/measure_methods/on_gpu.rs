@@ -1,0 +1,56 @@
+//! The methods on the graphics device.
+
+use glam::Vec3;
+use lovelock_shadow::{ShadowMethod, ShadowSettings};
+
+use crate::gpu::{Built, Uploaded, device};
+use crate::grooms::Groom;
+use crate::measure::{RUNS, Time, median, percentile, rmse};
+
+pub(crate) struct OnGpu {
+    /// Root mean square against `exact`, as the definition's.
+    pub(crate) exact: f64,
+    /// Which 99 of 100 differences from the definition stay below.
+    pub(crate) difference: f64,
+    pub(crate) build: Time,
+    pub(crate) lookup: Time,
+    /// What the map and its builds hold, bytes.
+    pub(crate) held: u64,
+}
+
+/// The adapter by name; none where there is none.
+pub(crate) fn adapter() -> Option<String> {
+    device().map(|gpu| format!("{} ({})", gpu.info.name, gpu.info.backend))
+}
+
+/// A method with its usual settings; `definition` and `exact` are answers at every point.
+pub(crate) fn measure(
+    method: ShadowMethod,
+    groom: &Groom,
+    definition: &[f32],
+    exact: &[f32],
+) -> Option<OnGpu> {
+    let gpu = device()?;
+    let hair = &groom.strands;
+    let settings = ShadowSettings { method, ..ShadowSettings::default() };
+    let (uploaded, mut built) = (Uploaded::new(gpu, hair), Built::empty(gpu, method));
+    let at: Vec<Vec3> = (0..hair.points()).map(|i| hair.point(i)).collect();
+    let input = uploaded.input(&groom.input());
+    let mut light = Vec::new();
+    let (mut builds, mut lookups) = (Vec::new(), Vec::new());
+    // Memory is kept from build to build: the first one is no measure of the others.
+    for _ in 0..=RUNS {
+        built.build_from(0, &input, &settings).expect("hair fits");
+        builds.push(built.passes.iter().fold(0.0, |sum, pass| sum + pass.ms));
+        light = built.ask(&at);
+        lookups.push(built.passes.iter().fold(0.0, |sum, pass| sum + pass.ms));
+    }
+    let report = built.shadow.report(0);
+    Some(OnGpu {
+        exact: rmse(light.iter().copied().zip(exact.iter().copied())),
+        difference: percentile(&light, definition),
+        build: median(builds.split_off(1)),
+        lookup: median(lookups.split_off(1)),
+        held: report.memory_bytes + report.scratch_bytes,
+    })
+}
