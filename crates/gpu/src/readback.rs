@@ -4,28 +4,20 @@ use bytemuck::Pod;
 
 use crate::{Gpu, GpuError};
 
-/// Brings a finished picture and a few numbers back; its memory is kept from frame to frame.
+/// Brings what a frame left in some buffers back; its memory is kept from frame to frame.
 #[derive(Debug, Default)]
 pub struct Readback {
     buffer: Option<wgpu::Buffer>,
-    /// Bytes of a row in the buffer, of a row of the picture, rows, and words after them.
-    layout: [u64; 4],
+    /// Bytes of each part.
+    parts: Vec<u64>,
 }
 
 impl Readback {
-    /// Encodes copying a texture of four bytes a pixel, and the first `words` words of `numbers`.
-    pub fn copy(
-        &mut self,
-        gpu: &Gpu,
-        encoder: &mut wgpu::CommandEncoder,
-        texture: &wgpu::Texture,
-        (numbers, words): (&wgpu::Buffer, u64),
-    ) {
-        let (width, height) = (texture.width(), texture.height());
-        let padded_row = (width * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-        let rows = u64::from(padded_row) * u64::from(height);
-        let size = rows + 4 * words;
-        self.layout = [u64::from(padded_row), u64::from(width) * 4, u64::from(height), words];
+    /// Encodes copying the first bytes of some buffers, as many as are named with each; multiples of 4.
+    pub fn copy(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, wanted: &[(&wgpu::Buffer, u64)]) {
+        self.parts.clear();
+        self.parts.extend(wanted.iter().map(|(_, bytes)| *bytes));
+        let size = self.parts.iter().sum::<u64>();
         let buffer = match self.buffer.take() {
             Some(buffer) if buffer.size() == size => buffer,
             _ => gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -35,43 +27,32 @@ impl Readback {
                 mapped_at_creation: false,
             }),
         };
-        let buffer = self.buffer.insert(buffer);
-        encoder.copy_texture_to_buffer(
-            texture.as_image_copy(),
-            wgpu::TexelCopyBufferInfo {
-                buffer,
-                layout: wgpu::TexelCopyBufferLayout {
-                    offset: 0,
-                    bytes_per_row: Some(padded_row),
-                    rows_per_image: None,
-                },
-            },
-            texture.size(),
-        );
-        encoder.copy_buffer_to_buffer(numbers, 0, buffer, rows, 4 * words);
+        let mut at = 0;
+        for &(from, bytes) in wanted {
+            encoder.copy_buffer_to_buffer(from, 0, &buffer, at, bytes);
+            at += bytes;
+        }
+        self.buffer = Some(buffer);
     }
 
-    /// Waits for the device and takes what was copied: rows from the top, tightly packed, and the numbers.
+    /// Waits for the device and takes what was copied, part by part.
     ///
     /// # Errors
     /// The device is lost or the buffer cannot be mapped.
-    pub fn read(&mut self, gpu: &Gpu, picture: &mut Vec<u8>, numbers: &mut Vec<u32>) -> Result<(), GpuError> {
+    pub fn read(&mut self, gpu: &Gpu, into: &mut [&mut Vec<u8>]) -> Result<(), GpuError> {
         let Some(buffer) = &self.buffer else {
             return Err(GpuError::Readback("nothing was copied".to_owned()));
         };
-        let [padded_row, row, height, _] = self.layout.map(|size| size as usize);
         map(gpu, buffer)?;
-        picture.clear();
         {
             let bytes = buffer.get_mapped_range(..).map_err(|error| GpuError::Readback(error.to_string()))?;
-            let (rows, words) = bytes.split_at(padded_row * height);
-            for line in rows.chunks_exact(padded_row.max(1)) {
-                picture.extend_from_slice(&line[..row]);
+            let mut rest = &bytes[..];
+            for (into, &part) in into.iter_mut().zip(&self.parts) {
+                let (here, after) = rest.split_at(part as usize);
+                into.clear();
+                into.extend_from_slice(here);
+                rest = after;
             }
-            numbers.clear();
-            numbers.extend(
-                words.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])),
-            );
         }
         buffer.unmap();
         Ok(())

@@ -5,6 +5,7 @@
 
 mod backend;
 mod camera;
+mod closed;
 mod cpu;
 mod error;
 mod frame;

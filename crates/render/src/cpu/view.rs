@@ -11,7 +11,7 @@ use crate::MAX_LIGHTS;
 use crate::uniform::FrameUniform;
 
 /// Taps of a soft shadow's edge on a surface. Six show their steps as bands.
-const SURFACE_TAPS: usize = 16;
+const SURFACE_TAPS: usize = 12;
 /// Taps of a soft shadow's edge on a strand's point, which its neighbours blur.
 const STRAND_TAPS: usize = 3;
 

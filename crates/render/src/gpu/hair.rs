@@ -2,11 +2,12 @@
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
-use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, THREADS, wgpu};
+use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, wgpu};
 use lovelock_groom::StrandBounds;
 use lovelock_shadow::{Bounds, GpuStrands, LightFrame, ShadowInput};
 use rayon::prelude::*;
 
+use super::frame_resources::FrameResources;
 use super::interpolate::Interpolation;
 use super::pipelines::Pipelines;
 use crate::strand_details::StrandDetails;
@@ -30,7 +31,6 @@ pub(super) struct HairBuffers {
     transmittance: GrowBuffer<u32>,
     shaded: GrowBuffer<ShadedPoint>,
     staging: Vec<[f32; 4]>,
-    group: Option<wgpu::BindGroup>,
 }
 
 impl HairBuffers {
@@ -47,7 +47,6 @@ impl HairBuffers {
             transmittance: GrowBuffer::new(device, "transmittance", storage),
             shaded: GrowBuffer::new(device, "shaded points", storage),
             staging: Vec::new(),
-            group: None,
         })
     }
 
@@ -55,13 +54,7 @@ impl HairBuffers {
     ///
     /// # Errors
     /// The hairstyle needs a buffer that the device does not give.
-    pub fn write(
-        &mut self,
-        gpu: &Gpu,
-        pipelines: &Pipelines,
-        commands: &mut Commands,
-        input: &FrameInput,
-    ) -> Result<(), GpuError> {
+    pub fn write(&mut self, gpu: &Gpu, commands: &mut Commands, input: &FrameInput) -> Result<(), GpuError> {
         let (device, queue) = (&gpu.device, &gpu.queue);
         let points = input.style.strands.points();
         let needed = points as u64 * size_of::<ShadedPoint>() as u64;
@@ -73,16 +66,14 @@ impl HairBuffers {
                 gpu.most_storage_bytes()
             )));
         }
-        let mut remade = false;
         if self.style.follow(input.style) {
-            remade |= self.details.write(device, queue, &self.style.words);
-            remade |= self.segments.write(device, queue, &self.style.segments);
-            self.group = None;
+            self.details.write(device, queue, &self.style.words);
+            self.segments.write(device, queue, &self.style.segments);
             self.extent = None;
         }
-        remade |= self.points.reserve(device, points);
-        remade |= self.transmittance.reserve(device, points);
-        remade |= self.shaded.reserve(device, points);
+        self.points.reserve(device, points);
+        self.transmittance.reserve(device, points);
+        self.shaded.reserve(device, points);
         match input.hair {
             HairPose::Guides(guides) => {
                 self.interpolation.run(gpu, commands, input.style, guides, self.points.raw())?;
@@ -100,35 +91,7 @@ impl HairBuffers {
                 self.points.write(device, queue, &self.staging);
             }
         }
-        if remade || self.group.is_none() {
-            self.bind(device, pipelines);
-        }
         Ok(())
-    }
-
-    fn bind(&mut self, device: &wgpu::Device, pipelines: &Pipelines) {
-        // `arrayLength` of the details is the number of points.
-        let details = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-            buffer: self.details.raw(),
-            offset: 0,
-            size: std::num::NonZeroU64::new((self.details.len() as u64 * 4).max(4)),
-        });
-        let resources = [
-            self.points.raw().as_entire_binding(),
-            details,
-            self.transmittance.raw().as_entire_binding(),
-            self.shaded.raw().as_entire_binding(),
-        ];
-        let entries: Vec<_> = resources
-            .into_iter()
-            .enumerate()
-            .map(|(binding, resource)| wgpu::BindGroupEntry { binding: binding as u32, resource })
-            .collect();
-        self.group = Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("strand points"),
-            layout: &pipelines.points_layout,
-            entries: &entries,
-        }));
     }
 
     /// Bounds of the strands along the axes of a light, relative to `anchor`, and the length of the longest strand; not
@@ -175,18 +138,25 @@ impl HairBuffers {
         self.shaded.raw()
     }
 
-    /// Projects and shades every point. The frame's bind group is group 0.
-    pub fn shade(&self, pipelines: &Pipelines, commands: &mut Commands, frame: &wgpu::BindGroup) {
-        /// Workgroups along one axis of a dispatch: WebGPU's limit.
-        const MOST_GROUPS: u32 = 65_535;
-        let points = self.details.len() as u32;
-        let Some(group) = self.group.as_ref().filter(|_| points > 0) else { return };
-        let groups = points.div_ceil(THREADS);
-        commands.compute("draw/points", |pass| {
-            pass.set_pipeline(&pipelines.shade_points);
-            pass.set_bind_group(0, frame, &[]);
-            pass.set_bind_group(1, group, &[]);
-            pass.dispatch_workgroups(groups.min(MOST_GROUPS), groups.div_ceil(MOST_GROUPS), 1);
+    /// Projects and shades every point.
+    pub fn shade(&self, gpu: &Gpu, pipelines: &Pipelines, commands: &mut Commands, frame: &FrameResources) {
+        let points = self.details.len() as u64;
+        if points == 0 {
+            return;
+        }
+        // `arrayLength` of the details is the number of points.
+        let details = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+            buffer: self.details.raw(),
+            offset: 0,
+            size: std::num::NonZeroU64::new(points * 4),
         });
+        let own = [
+            (4, self.points.raw().as_entire_binding()),
+            (5, details),
+            (6, self.transmittance.raw().as_entire_binding()),
+            (7, self.shaded.raw().as_entire_binding()),
+        ];
+        let group = pipelines.shade_points.bind(gpu, &frame.with(own));
+        commands.compute("draw/points", |pass| pipelines.shade_points.run(pass, &group, points));
     }
 }

@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
-use lovelock_gpu::{Commands, Gpu, PassTimer, Readback, Stopwatch, wgpu};
+use lovelock_gpu::{Commands, Gpu, GrowBuffer, PassTimer, Readback, Stopwatch, wgpu};
 
 use super::eye::{Eye, EyeInput};
+use super::frame_resources::FrameResources;
 use super::ground::Ground;
 use super::hair::HairBuffers;
 use super::pipelines::Pipelines;
@@ -30,12 +31,13 @@ pub struct GpuRenderer {
     surface: SurfaceBuffers,
     ground: Ground,
     eye: Eye,
-    compare: wgpu::Sampler,
     linear: wgpu::Sampler,
     uniform: wgpu::Buffer,
+    uniform_group: wgpu::BindGroup,
     targets: Option<Targets>,
+    screen: GrowBuffer<u32>,
     readback: Readback,
-    numbers: Vec<u32>,
+    numbers: Vec<u8>,
 }
 
 impl GpuRenderer {
@@ -51,6 +53,12 @@ impl GpuRenderer {
             min_filter: wgpu::FilterMode::Linear,
             ..Default::default()
         };
+        let uniform = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("frame"),
+            size: size_of::<FrameUniform>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
         Ok(Self {
             timer: PassTimer::new(&gpu)?,
             shadow: GpuShadowStage::new(&gpu),
@@ -58,18 +66,15 @@ impl GpuRenderer {
             surface: SurfaceBuffers::new(&gpu, &pipelines),
             ground: Ground::new(&gpu),
             eye: Eye::new(&gpu)?,
-            compare: device.create_sampler(&wgpu::SamplerDescriptor {
-                compare: Some(wgpu::CompareFunction::LessEqual),
-                ..linear
-            }),
             linear: device.create_sampler(&linear),
-            uniform: device.create_buffer(&wgpu::BufferDescriptor {
+            uniform_group: device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some("frame"),
-                size: size_of::<FrameUniform>() as u64,
-                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
+                layout: &pipelines.uniform_layout,
+                entries: &[wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() }],
             }),
+            uniform,
             targets: None,
+            screen: GrowBuffer::new(device, "screen", wgpu::BufferUsages::STORAGE),
             readback: Readback::default(),
             numbers: Vec::new(),
             pipelines,
@@ -101,7 +106,7 @@ impl GpuRenderer {
             let drawn = self.draw(&gpu, timer.begin(&gpu, "frame"), input, width, height);
             self.timer = timer;
             drawn?;
-            self.readback.read(&gpu, &mut picture.rgba, &mut self.numbers)?;
+            self.readback.read(&gpu, &mut [&mut picture.rgba, &mut self.numbers])?;
             gpu.check()?;
             let again = [self.shadow.settle(&gpu)?, self.eye.settle(&gpu, height)?];
             if again == [false, false] {
@@ -120,7 +125,7 @@ impl GpuRenderer {
         let (interpolate_ms, shadow_ms) = (of("interpolate"), of("shadow/"));
         let strands = self.hair.strands();
         let points = f64::from(strands.point_count.max(1));
-        let sum = self.numbers.first().map_or(0.0, |&sum| f64::from(sum));
+        let sum = self.numbers.first_chunk().map_or(0.0, |&bytes| f64::from(u32::from_le_bytes(bytes)));
         Ok(FrameStats {
             interpolate_ms,
             shadow_ms,
@@ -148,9 +153,10 @@ impl GpuRenderer {
         }
         let Some(targets) = &self.targets else { return Ok(()) };
         self.eye.fit(gpu, width, height);
-        self.ground.fit(gpu, &self.pipelines, width, height);
-        self.hair.write(gpu, &self.pipelines, &mut commands, input)?;
-        self.surface.write(gpu, input.body);
+        self.ground.fit(gpu, width, height);
+        self.screen.reserve(device, width as usize * height as usize);
+        self.hair.write(gpu, &mut commands, input)?;
+        self.surface.write(gpu, input.body, input.camera.eye);
         self.shadow.run(gpu, &mut commands, input, &mut self.hair, self.surface.vertices())?;
 
         let (center, radius) = bounding_sphere(input.body.map_or(&[], |(_, skin)| &skin.positions));
@@ -162,15 +168,20 @@ impl GpuRenderer {
         }
         let uniform = FrameUniform::new(input, width, height, &maps, self.surface.texels);
         gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
-        let frame = self.frame_group(gpu);
+        let frame = FrameResources {
+            uniform: &self.uniform,
+            body_depth: &self.surface.depth,
+            columns: self.shadow.columns_view(),
+            linear: &self.linear,
+        };
         for (k, map) in maps.iter().enumerate() {
             self.surface.draw_depth(gpu, &self.pipelines, &mut commands, k, map.shadow_from_world);
         }
-        self.hair.shade(&self.pipelines, &mut commands, &frame);
+        self.hair.shade(gpu, &self.pipelines, &mut commands, &frame);
         if input.picture.ground {
-            self.ground.run(&self.pipelines, &mut commands, &frame);
+            self.ground.run(gpu, &self.pipelines, &mut commands, &frame);
         }
-        self.draw_behind(&mut commands, targets, &frame);
+        self.draw_body(&mut commands, targets);
         let strands = self.hair.strands();
         let eye = EyeInput {
             width,
@@ -183,24 +194,39 @@ impl GpuRenderer {
             transparency: input.picture.transparency,
         };
         self.eye.draw(gpu, &mut commands, &eye)?;
-        self.tone_map(gpu, &mut commands, targets, &frame);
-        self.readback.copy(gpu, commands.encoder(), &targets.out, (self.shadow.sum(), 1));
+        let pixels = u64::from(width) * u64::from(height);
+        let own = [
+            (4, wgpu::BindingResource::TextureView(&targets.normals)),
+            (5, wgpu::BindingResource::TextureView(&targets.colors)),
+            (6, self.eye.behind().as_entire_binding()),
+            (7, self.ground.corners().as_entire_binding()),
+            (8, self.eye.layer().as_entire_binding()),
+            (9, self.screen.raw().as_entire_binding()),
+        ];
+        let kernel = &self.pipelines.picture;
+        let group = kernel.bind(gpu, &frame.with(own));
+        commands.compute("draw/picture", |pass| kernel.run(pass, &group, pixels));
+        let wanted = [(self.screen.raw(), 4 * pixels), (self.shadow.sum(), 4)];
+        self.readback.copy(gpu, commands.encoder(), &wanted);
         commands.submit();
         Ok(())
     }
 
-    /// The body and the background.
-    fn draw_behind(&self, commands: &mut Commands, targets: &Targets, frame: &wgpu::BindGroup) {
-        let descriptor = wgpu::RenderPassDescriptor {
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &targets.color,
+    /// The body as the eye sees it, sample by sample, to be lit later.
+    fn draw_body(&self, commands: &mut Commands, targets: &Targets) {
+        let target = |view| {
+            Some(wgpu::RenderPassColorAttachment {
+                view,
                 depth_slice: None,
-                resolve_target: Some(&targets.resolved),
+                resolve_target: None,
                 ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
-                    store: wgpu::StoreOp::Discard,
+                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                    store: wgpu::StoreOp::Store,
                 },
-            })],
+            })
+        };
+        let descriptor = wgpu::RenderPassDescriptor {
+            color_attachments: &[target(&targets.normals), target(&targets.colors)],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &targets.depth,
                 depth_ops: Some(wgpu::Operations {
@@ -212,61 +238,7 @@ impl GpuRenderer {
             ..Default::default()
         };
         commands.render("draw/body", &descriptor, |pass| {
-            self.ground.draw(&self.pipelines, pass, frame);
-            self.surface.draw(&self.pipelines, pass, frame);
+            self.surface.draw(&self.pipelines, pass, &self.uniform_group);
         });
-    }
-
-    /// Hair over what is behind it, to the screen's numbers.
-    fn tone_map(&self, gpu: &Gpu, commands: &mut Commands, targets: &Targets, frame: &wgpu::BindGroup) {
-        let tone = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("tone map"),
-            layout: &self.pipelines.tone_layout,
-            entries: &[
-                wgpu::BindGroupEntry {
-                    binding: 0,
-                    resource: wgpu::BindingResource::TextureView(&targets.resolved),
-                },
-                wgpu::BindGroupEntry { binding: 1, resource: self.eye.layer().as_entire_binding() },
-            ],
-        });
-        let descriptor = wgpu::RenderPassDescriptor {
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &targets.out_view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
-                    store: wgpu::StoreOp::Store,
-                },
-            })],
-            ..Default::default()
-        };
-        commands.render("draw/tone-map", &descriptor, |pass| {
-            pass.set_pipeline(&self.pipelines.tone_map);
-            pass.set_bind_group(0, frame, &[]);
-            pass.set_bind_group(1, &tone, &[]);
-            pass.draw(0..3, 0..1);
-        });
-    }
-
-    fn frame_group(&self, gpu: &Gpu) -> wgpu::BindGroup {
-        let resources = [
-            self.uniform.as_entire_binding(),
-            wgpu::BindingResource::TextureView(&self.surface.depth),
-            wgpu::BindingResource::Sampler(&self.compare),
-            wgpu::BindingResource::TextureView(self.shadow.columns_view()),
-            wgpu::BindingResource::Sampler(&self.linear),
-        ];
-        let entries: Vec<_> = resources
-            .into_iter()
-            .enumerate()
-            .map(|(binding, resource)| wgpu::BindGroupEntry { binding: binding as u32, resource })
-            .collect();
-        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("frame"),
-            layout: &self.pipelines.frame_layout,
-            entries: &entries,
-        })
     }
 }

@@ -12,6 +12,7 @@ use super::pipelines::Pipelines;
 use super::shadow::Vertices;
 use super::targets::DEPTH_FORMAT;
 use crate::MAX_LIGHTS;
+use crate::closed::{Closedness, encloses};
 
 /// Vertex attributes that change every frame: position and normal. Shadow methods read them as two `vec4f`.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
@@ -30,13 +31,18 @@ struct Fixed([f32; 4]);
 #[derive(Debug)]
 pub(super) struct SurfaceBuffers {
     body: Option<Arc<Body>>,
+    closed: Closedness,
+    is_closed: bool,
+    /// Whether the body is closed and the eye outside.
+    seen_from_without: bool,
     moving: GrowBuffer<Moving>,
     hair: GrowBuffer<u32>,
     fixed: GrowBuffer<Fixed>,
     indices: GrowBuffer<u32>,
     staging: Vec<Moving>,
-    /// The depth maps of all lights, as a texture array.
-    pub depth: wgpu::TextureView,
+    /// The depth maps of all lights, one after another, as kernels read them.
+    pub depth: wgpu::Buffer,
+    texture: wgpu::Texture,
     layers: Vec<wgpu::TextureView>,
     uniforms: Vec<(wgpu::Buffer, wgpu::BindGroup)>,
     /// Texels of a depth map's edge.
@@ -55,7 +61,7 @@ impl SurfaceBuffers {
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
             format: DEPTH_FORMAT,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
             view_formats: &[],
         });
         let layers = (0..MAX_LIGHTS as u32)
@@ -68,9 +74,11 @@ impl SurfaceBuffers {
                 })
             })
             .collect();
-        let depth = texture.create_view(&wgpu::TextureViewDescriptor {
-            dimension: Some(wgpu::TextureViewDimension::D2Array),
-            ..Default::default()
+        let depth = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("body depth"),
+            size: u64::from(texels).pow(2) * 4 * MAX_LIGHTS as u64,
+            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
         });
         let uniforms = (0..MAX_LIGHTS)
             .map(|_| {
@@ -82,7 +90,7 @@ impl SurfaceBuffers {
                 });
                 let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
                     label: Some("depth pass"),
-                    layout: &pipelines.depth_layout,
+                    layout: &pipelines.uniform_layout,
                     entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
                 });
                 (buffer, group)
@@ -91,20 +99,24 @@ impl SurfaceBuffers {
         let vertex = wgpu::BufferUsages::VERTEX;
         Self {
             body: None,
+            closed: Closedness::default(),
+            is_closed: false,
+            seen_from_without: false,
             moving: GrowBuffer::new(device, "body surface", vertex | wgpu::BufferUsages::STORAGE),
             hair: GrowBuffer::new(device, "hair on the body", vertex | wgpu::BufferUsages::STORAGE),
             fixed: GrowBuffer::new(device, "body colours", vertex),
             indices: GrowBuffer::new(device, "body triangles", wgpu::BufferUsages::INDEX),
             staging: Vec::new(),
             depth,
+            texture,
             layers,
             uniforms,
             texels,
         }
     }
 
-    /// Writes one frame.
-    pub fn write(&mut self, gpu: &Gpu, body: Option<(&Arc<Body>, &Skin)>) {
+    /// Writes one frame, to be seen from `eye`.
+    pub fn write(&mut self, gpu: &Gpu, body: Option<(&Arc<Body>, &Skin)>, eye: Vec3) {
         let (device, queue) = (&gpu.device, &gpu.queue);
         let Some((body, skin)) = body else {
             self.body = None;
@@ -124,6 +136,8 @@ impl SurfaceBuffers {
             self.indices.write(device, queue, mesh.triangles.as_flattened());
             self.body = Some(Arc::clone(body));
         }
+        self.is_closed = self.closed.of(body);
+        self.seen_from_without = self.is_closed && !encloses(eye, &skin.positions, &body.mesh.triangles);
         skin.positions
             .par_iter()
             .zip(&skin.normals)
@@ -168,21 +182,38 @@ impl SurfaceBuffers {
             if self.indices.is_empty() {
                 return;
             }
-            pass.set_pipeline(&pipelines.depth);
+            pass.set_pipeline(&pipelines.depth[usize::from(self.is_closed)]);
             pass.set_bind_group(0, group, &[]);
             pass.set_vertex_buffer(0, self.moving.raw().slice(..));
             pass.set_index_buffer(self.indices.raw().slice(..), wgpu::IndexFormat::Uint32);
             pass.draw_indexed(0..self.indices.len() as u32, 0, 0..1);
         });
+        let texels = u64::from(self.texels);
+        commands.encoder().copy_texture_to_buffer(
+            wgpu::TexelCopyTextureInfo {
+                origin: wgpu::Origin3d { x: 0, y: 0, z: k as u32 },
+                aspect: wgpu::TextureAspect::DepthOnly,
+                ..self.texture.as_image_copy()
+            },
+            wgpu::TexelCopyBufferInfo {
+                buffer: &self.depth,
+                layout: wgpu::TexelCopyBufferLayout {
+                    offset: texels * texels * 4 * k as u64,
+                    bytes_per_row: Some(self.texels * 4),
+                    rows_per_image: None,
+                },
+            },
+            wgpu::Extent3d { width: self.texels, height: self.texels, depth_or_array_layers: 1 },
+        );
     }
 
-    /// Draws the body. The frame's bind group is group 0.
-    pub fn draw(&self, pipelines: &Pipelines, pass: &mut wgpu::RenderPass, frame: &wgpu::BindGroup) {
+    /// Draws the body. `uniform` is the frame's.
+    pub fn draw(&self, pipelines: &Pipelines, pass: &mut wgpu::RenderPass, uniform: &wgpu::BindGroup) {
         if self.indices.is_empty() {
             return;
         }
-        pass.set_pipeline(&pipelines.surface);
-        pass.set_bind_group(0, frame, &[]);
+        pass.set_pipeline(&pipelines.surface[usize::from(self.seen_from_without)]);
+        pass.set_bind_group(0, uniform, &[]);
         pass.set_vertex_buffer(0, self.moving.raw().slice(..));
         pass.set_vertex_buffer(1, self.fixed.raw().slice(..));
         pass.set_vertex_buffer(2, self.hair.raw().slice(..));

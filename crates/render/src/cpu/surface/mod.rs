@@ -2,7 +2,6 @@
 // Compiled within the versions of `dispatch`.
 #![allow(clippy::inline_always)]
 
-pub(super) mod closed;
 pub(super) mod light;
 pub(super) mod raster;
 pub(super) mod shade;

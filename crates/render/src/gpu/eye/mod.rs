@@ -136,6 +136,11 @@ impl Eye {
         })
     }
 
+    /// Depths of the body in the samples of each pixel, as `behind` in frame.wgsl.
+    pub fn behind(&self) -> &wgpu::Buffer {
+        self.behind.raw()
+    }
+
     /// The hair of each pixel, as `layer` in frame.wgsl.
     pub fn layer(&self) -> &wgpu::Buffer {
         self.layer.raw()

@@ -1,18 +1,5 @@
 // The background: a graded backdrop that runs into the ground without a seam, with the shadows on the ground.
 
-@group(1) @binding(0) var<storage, read> corners: array<vec4f>;
-
-struct Screen {
-    @builtin(position) position: vec4f,
-    @location(0) ndc: vec2f,
-}
-
-@vertex
-fn screen(@builtin(vertex_index) vertex: u32) -> Screen {
-    let ndc = vec2f(f32((vertex << 1u) & 2u), f32(vertex & 2u)) * 2.0 - 1.0;
-    return Screen(vec4f(ndc, 0.0, 1.0), ndc);
-}
-
 // Difference of two corners' light that is not worth a look between them: half a step of 8 bits.
 const ALIKE: f32 = 1.0 / 512.0;
 
@@ -32,14 +19,15 @@ fn light_at(pixel: vec2u, ndc: vec2f) -> vec3f {
     return ground_light(ndc).rgb;
 }
 
-@fragment
-fn backdrop(in: Screen) -> @location(0) vec4f {
-    let down = 0.5 - 0.5 * in.ndc.y;
+// The background behind a pixel.
+fn backdrop(pixel: vec2u) -> vec3f {
+    let ndc = ((vec2f(pixel) + 0.5) / frame.size_scale_exposure.xy - 0.5) * vec2f(2.0, -2.0);
+    let down = 0.5 - 0.5 * ndc.y;
     // A soft pool of light behind the figure.
-    let pool = 1.0 - 0.28 * smoothstep(0.2, 1.5, length(in.ndc * vec2f(0.8, 0.7)));
+    let pool = 1.0 - 0.28 * smoothstep(0.2, 1.5, length(ndc * vec2f(0.8, 0.7)));
     var color = mix(frame.background_top.xyz, frame.background_bottom.xyz, smoothstep(0.0, 1.0, down)) * pool;
     if (frame.ambient_up_ground.w > 0.5) {
-        color *= light_at(vec2u(in.position.xy), in.ndc);
+        color *= light_at(pixel, ndc);
     }
-    return vec4f(color, 1.0);
+    return color;
 }

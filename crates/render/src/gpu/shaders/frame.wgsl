@@ -36,10 +36,11 @@ struct FrameUniform {
 }
 
 @group(0) @binding(0) var<uniform> frame: FrameUniform;
-@group(0) @binding(1) var body_depth: texture_depth_2d_array;
-@group(0) @binding(2) var compare: sampler_comparison;
-@group(0) @binding(3) var hair_columns: texture_2d_array<f32>;
-@group(0) @binding(4) var linear_clamp: sampler;
+// The body's depth maps, light after light and row after row. A buffer: reading it took a third of the time that comparing
+// samplers take on the processor.
+@group(0) @binding(1) var<storage, read> body_depth: array<f32>;
+@group(0) @binding(2) var hair_columns: texture_2d_array<f32>;
+@group(0) @binding(3) var linear_clamp: sampler;
 
 fn light_count() -> u32 {
     return min(u32(frame.eye_lights.w), MAX_LIGHTS);
@@ -55,7 +56,7 @@ fn lean_of(i: u32, n: vec3f) -> vec3f {
 }
 
 // Taps of a soft shadow's edge on a surface, where six show their steps as bands, and on a strand's point.
-const SURFACE_TAPS: u32 = 16u;
+const SURFACE_TAPS: u32 = 12u;
 const STRAND_TAPS: u32 = 3u;
 
 // Share of light `i` that the body lets through to `p`, which is moved `bias` metres toward the light first. The taps
@@ -76,14 +77,42 @@ fn body_light(i: u32, p: vec3f, lean: vec3f, bias: f32, taps: u32) -> f32 {
     // A golden-angle disc: even at any number of taps, and the same for every pixel, so it never shimmers. The map is
     // as deep as it is wide, so that its three coordinates turn together.
     let radius = max(light.radiance_blur.w, 1.0) * texel;
+    var direction = vec2f(1.0, 0.0);
     var sum = 0.0;
     for (var k = 0u; k < taps; k++) {
-        let angle = 2.3999632 * f32(k);
-        let tap = radius * sqrt((f32(k) + 0.5) / f32(taps)) * vec2f(cos(angle), sin(angle));
+        let tap = radius * sqrt((f32(taps - k) - 0.5) / f32(taps)) * direction;
         let deeper = dot(tap, lean.xy);
-        sum += textureSampleCompareLevel(body_depth, compare, uv + tap - turn * deeper, i, z + deeper);
+        sum += nearer_than_body(i, uv + tap - turn * deeper, z + deeper);
+        // Where five taps from the rim on agree, so do those within.
+        if (k == 4u && taps > 8u && (sum == 0.0 || sum == 5.0)) {
+            return sum / 5.0;
+        }
+        direction = vec2f(
+            direction.x * -0.737368878 - direction.y * 0.675490294,
+            direction.x * 0.675490294 + direction.y * -0.737368878,
+        );
     }
     return sum / f32(taps);
+}
+
+// Share of the four texels around a place of light `i`'s map that are not nearer to the light than `z`, by their weights.
+fn nearer_than_body(i: u32, uv: vec2f, z: f32) -> f32 {
+    let texels = frame.ambient_down_texels.w;
+    let at = clamp(uv, vec2f(0.0), vec2f(1.0)) * texels - 0.5;
+    let low = floor(at);
+    let part = at - low;
+    let size = i32(texels);
+    let a = vec2u(clamp(vec2i(low), vec2i(0), vec2i(size - 1)));
+    let b = vec2u(clamp(vec2i(low) + 1, vec2i(0), vec2i(size - 1)));
+    let row_a = (i * u32(size) + a.y) * u32(size);
+    let row_b = (i * u32(size) + b.y) * u32(size);
+    let open = select(
+        vec4f(0.0),
+        vec4f(1.0),
+        vec4f(z) <= vec4f(body_depth[row_a + a.x], body_depth[row_a + b.x], body_depth[row_b + a.x], body_depth[row_b + b.x]),
+    );
+    let across = open.xz + (open.yw - open.xz) * part.x;
+    return across.x + (across.y - across.x) * part.y;
 }
 
 // Share of light `i` that all hair on the way lets through, for a point behind all of it.

@@ -1,11 +1,12 @@
 // The light on the ground at the corners of cells of pixels.
 
-@group(1) @binding(0) var<storage, read_write> corners: array<vec4f>;
+@group(0) @binding(4) var<storage, read_write> corners: array<vec4f>;
 
 @compute @workgroup_size(64)
 fn ground_corners(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let i = id.x + id.y * groups.x * 64u;
-    if (i >= arrayLength(&corners)) {
+    let rows = (u32(frame.size_scale_exposure.y) + CELL - 1u) / CELL + 1u;
+    if (i >= corner_columns() * rows) {
         return;
     }
     let columns = corner_columns();

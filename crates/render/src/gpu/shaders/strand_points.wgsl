@@ -11,10 +11,10 @@ struct ShadedPoint {
     color: vec2u,
 }
 
-@group(1) @binding(0) var<storage, read> points: array<vec4f>;
-@group(1) @binding(1) var<storage, read> details: array<u32>;        // see `pack_detail` in strand_details.rs
-@group(1) @binding(2) var<storage, read> light_left: array<u32>;     // four 8-bit transmittances
-@group(1) @binding(3) var<storage, read_write> shaded: array<ShadedPoint>;
+@group(0) @binding(4) var<storage, read> points: array<vec4f>;
+@group(0) @binding(5) var<storage, read> details: array<u32>;        // see `pack_detail` in strand_details.rs
+@group(0) @binding(6) var<storage, read> light_left: array<u32>;     // four 8-bit transmittances
+@group(0) @binding(7) var<storage, read_write> shaded: array<ShadedPoint>;
 
 struct Projected { pixel: vec2f, depth: f32, w: f32 }
 

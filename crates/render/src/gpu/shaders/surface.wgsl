@@ -1,4 +1,5 @@
-// The body, lit, with the shadow of the hair and its own.
+// The body as the eye sees it: what is needed to light it, for each sample of a pixel. Lit is only what hair leaves to be
+// seen, in picture.wgsl.
 
 struct Vertex {
     @location(0) position: vec4f,
@@ -9,55 +10,34 @@ struct Vertex {
     @location(3) color_scalp: vec4f,
 }
 
-struct Surface {
+struct Seen {
     @builtin(position) position: vec4f,
-    @location(0) world: vec3f,
     @location(1) normal: vec3f,
     @location(2) color_scalp: vec4f,
     @location(3) hair: vec4f,
 }
 
 @vertex
-fn surface(in: Vertex) -> Surface {
-    var out: Surface;
+fn surface(in: Vertex) -> Seen {
+    var out: Seen;
     out.position = frame.clip_from_world * vec4f(in.position.xyz, 1.0);
-    out.world = in.position.xyz;
     out.normal = in.normal;
     out.color_scalp = in.color_scalp;
     out.hair = unpack4x8unorm(in.hair);
     return out;
 }
 
+struct Sample {
+    // Normal on an octahedron, and four transmittances of 8 bits; all in parts of 16.
+    @location(0) normal_hair: vec4u,
+    @location(1) color_scalp: vec4f,
+}
+
 @fragment
-fn shade_surface(in: Surface) -> @location(0) vec4f {
-    let v = normalize(frame.eye_lights.xyz - in.world);
-    let n = normalize(in.normal);
-    // Under hair the skin is painted with the colour of the roots, so that gaps never read as baldness.
-    let root = 0.3 * (exp(-2.8 * pow(max(frame.absorption_variation.xyz, vec3f(0.0)), vec3f(0.7))) + 0.012);
-    let albedo = mix(in.color_scalp.rgb, root, 0.88 * smoothstep(0.15, 0.75, in.color_scalp.w));
-    let skin = 1.0 - in.color_scalp.w;
-    var sum = vec3f(0.0);
-    var open = 0.0;
-    let lights = light_count();
-    for (var k = 0u; k < lights; k++) {
-        let light = frame.lights[k];
-        let l = -light.direction_specular.xyz;
-        let facing = dot(n, l);
-        open += in.hair[k];
-        // Light wraps a little round skin; the shadow map is asked only where light can come.
-        let wrapped = clamp((facing + 0.12) / 1.12, 0.0, 1.0);
-        if (wrapped <= 0.0) {
-            continue;
-        }
-        // Where light grazes the skin, the flat triangles of a round limb keep it from each other.
-        let above = in.world + n * (0.002 + 0.004 * (1.0 - clamp(facing, 0.0, 1.0)));
-        let lit = body_light(k, above, lean_of(k, n), 0.003, SURFACE_TAPS) * in.hair[k];
-        let h = normalize(l + v);
-        let gloss = 0.014 * skin * light.direction_specular.w
-            * (pow(max(dot(n, h), 0.0), 24.0) + 0.6 * pow(1.0 - max(dot(n, v), 0.0), 4.0));
-        sum += light.radiance_blur.xyz * lit * (albedo * wrapped * 0.318 + vec3f(gloss) * clamp(facing, 0.0, 1.0));
-    }
-    let inside = select(1.0, open / f32(max(lights, 1u)), lights > 0u);
-    sum += 0.5 * ambient(n) * albedo * (0.35 + 0.65 * inside);
-    return vec4f(sum, 1.0);
+fn sample_surface(in: Seen) -> Sample {
+    let n = in.normal / max(abs(in.normal.x) + abs(in.normal.y) + abs(in.normal.z), 1e-9);
+    let folded = (1.0 - abs(n.yx)) * select(vec2f(-1.0), vec2f(1.0), n.xy >= vec2f(0.0));
+    let flat_normal = pack2x16snorm(select(folded, n.xy, n.z >= 0.0));
+    let hair = pack4x8unorm(in.hair);
+    return Sample(vec4u(flat_normal & 0xffffu, flat_normal >> 16u, hair & 0xffffu, hair >> 16u), in.color_scalp);
 }

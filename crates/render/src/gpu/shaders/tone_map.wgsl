@@ -1,21 +1,6 @@
-// Hair over what is behind it, and linear light to the screen: exposure, AgX, sRGB.
+// Linear light to the screen: exposure, AgX, sRGB.
 //
 // AgX is Troy Sobotka's; the polynomial for its curve and the matrices are Benjamin Wrensch's fit (2023).
-
-struct Screen {
-    @builtin(position) position: vec4f,
-}
-
-@group(1) @binding(0) var linear_picture: texture_2d<f32>;
-// The hair of each pixel: its light times what it covers, and the share of the light behind that comes through, as four
-// half floats.
-@group(1) @binding(1) var<storage, read> hair_layer: array<vec2u>;
-
-@vertex
-fn screen(@builtin(vertex_index) vertex: u32) -> Screen {
-    let ndc = vec2f(f32((vertex << 1u) & 2u), f32(vertex & 2u)) * 2.0 - 1.0;
-    return Screen(vec4f(ndc, 0.0, 1.0));
-}
 
 fn agx(linear: vec3f) -> vec3f {
     let inset = mat3x3f(
@@ -48,15 +33,10 @@ fn srgb(linear: vec3f) -> vec3f {
     return select(high, low, linear <= vec3f(0.0031308));
 }
 
-@fragment
-fn tone_map(in: Screen) -> @location(0) vec4f {
-    let pixel = vec2u(in.position.xy);
-    let hair = hair_layer[pixel.y * u32(frame.size_scale_exposure.x) + pixel.x];
-    let rg = unpack2x16float(hair.x);
-    let bt = unpack2x16float(hair.y);
-    let hdr = textureLoad(linear_picture, pixel, 0).rgb * bt.y + vec3f(rg, bt.x);
-    let color = srgb(agx(max(hdr, vec3f(0.0)) * frame.size_scale_exposure.w));
+// The numbers of a pixel of the screen.
+fn tone_map(light: vec3f, pixel: vec2u) -> vec3f {
+    let color = srgb(agx(max(light, vec3f(0.0)) * frame.size_scale_exposure.w));
     // Half a step of ordered noise, so that smooth gradients do not band.
     let noise = fract(52.9829189 * fract(dot(vec2f(pixel), vec2f(0.06711056, 0.00583715)))) - 0.5;
-    return vec4f(color + noise / 255.0, 1.0);
+    return color + noise / 255.0;
 }

@@ -11,44 +11,49 @@ fn depth_before(texel: u32, depth: f32) -> f32 {
     let mean = f32(1024u + ((map[record] & 31u) | ((far_word & 31u) << 5u)));
     let bits = record + 2u;
     let counts = bits + (texels.whole.x >> 5u);
-    if (depth >= far) {
-        return depth_of_weight(f32(total(counts)) * mean);
-    }
     let place = slice_of(near, far, depth);
     let slice = u32(place.x);
     let slab = slice >> texels.whole.z;
+    // Counts, two a word: those of the slabs before, of the slab itself and of all. By shifts rather than by branches.
     var before = 0u;
-    for (var k = 0u; k < slab; k++) {
-        before += (map[counts + (k >> 1u)] >> (16u * (k & 1u))) & 0xffffu;
-    }
-    let own = (map[counts + (slab >> 1u)] >> (16u * (slab & 1u))) & 0xffffu;
-    // Bits of the slab, and those of them before the slice.
-    let first = slab << texels.whole.z;
-    let last = first + (1u << texels.whole.z) - 1u;
-    var occupied = 0u;
-    var passed = 0u;
-    for (var word = first >> 5u; word <= (last >> 5u); word++) {
-        var found = map[bits + word];
-        if (last - first < 31u) {
-            found &= ((1u << (last - first + 1u)) - 1u) << (first & 31u);
-        }
-        occupied += countOneBits(found);
-        if (word < (slice >> 5u)) {
-            passed += countOneBits(found);
-        } else if (word == (slice >> 5u)) {
-            passed += countOneBits(found & ((1u << (slice & 31u)) - 1u));
-        }
-    }
-    let own_bit = f32((map[bits + (slice >> 5u)] >> (slice & 31u)) & 1u);
-    let share = (f32(passed) + place.y * own_bit) / f32(max(occupied, 1u));
-    return depth_of_weight((f32(before) + share * f32(own)) * mean);
-}
-
-fn total(counts: u32) -> u32 {
     var all = 0u;
+    var own = 0u;
     for (var k = 0u; k < texels.whole.y / 2u; k++) {
         let two = map[counts + k];
-        all += (two & 0xffffu) + (two >> 16u);
+        let low = two & 0xffffu;
+        let high = two >> 16u;
+        all += low + high;
+        before += select(0u, low, 2u * k < slab) + select(0u, high, 2u * k + 1u < slab);
+        own += select(0u, low, 2u * k == slab) + select(0u, high, 2u * k + 1u == slab);
     }
-    return all;
+    if (depth >= far) {
+        return depth_of_weight(f32(all) * mean);
+    }
+    // Fragments of one depth lie between two neighbouring numbers here. A point at this depth comes before them.
+    if ((far_word >> SPARE) - (map[record] >> SPARE) <= 1u) {
+        return 0.0;
+    }
+    // Bits of the slab, and those of them before the slice.
+    var occupied = 0u;
+    var passed = 0u;
+    let slice_bits = map[bits + (slice >> 5u)];
+    let before_slice = slice_bits & ((1u << (slice & 31u)) - 1u);
+    if (texels.whole.z <= 5u) {
+        // A slab lies within one word.
+        let first = (slab << texels.whole.z) & 31u;
+        let mask = (0xffffffffu >> (32u - (1u << texels.whole.z))) << first;
+        occupied = countOneBits(slice_bits & mask);
+        passed = countOneBits(before_slice & mask);
+    } else {
+        let first = slab << (texels.whole.z - 5u);
+        passed = countOneBits(before_slice);
+        for (var k = 0u; k < (1u << (texels.whole.z - 5u)); k++) {
+            let ones = countOneBits(map[bits + first + k]);
+            occupied += ones;
+            passed += select(0u, ones, first + k < (slice >> 5u));
+        }
+    }
+    let own_bit = f32((slice_bits >> (slice & 31u)) & 1u);
+    let share = (f32(passed) + place.y * own_bit) / f32(max(occupied, 1u));
+    return depth_of_weight((f32(before) + share * f32(own)) * mean);
 }

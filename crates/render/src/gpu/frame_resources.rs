@@ -1,0 +1,28 @@
+//! What every kernel of the picture binds: twin of the bindings in frame.wgsl.
+
+use lovelock_gpu::wgpu;
+
+/// The frame's uniform, the body's depth maps, what lies behind the hair, and how that is sampled.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FrameResources<'a> {
+    pub uniform: &'a wgpu::Buffer,
+    pub body_depth: &'a wgpu::Buffer,
+    pub columns: &'a wgpu::TextureView,
+    pub linear: &'a wgpu::Sampler,
+}
+
+impl<'a> FrameResources<'a> {
+    /// These with a kernel's own, from binding 4 on.
+    pub fn with<const N: usize>(
+        &self,
+        own: [(u32, wgpu::BindingResource<'a>); N],
+    ) -> Vec<(u32, wgpu::BindingResource<'a>)> {
+        let frame = [
+            (0, self.uniform.as_entire_binding()),
+            (1, self.body_depth.as_entire_binding()),
+            (2, wgpu::BindingResource::TextureView(self.columns)),
+            (3, wgpu::BindingResource::Sampler(self.linear)),
+        ];
+        frame.into_iter().chain(own).collect()
+    }
+}
