@@ -6,22 +6,24 @@ use lovelock_gpu::wgpu;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FrameResources<'a> {
     pub uniform: &'a wgpu::Buffer,
-    pub body_depth: &'a wgpu::Buffer,
+    pub body_depth: &'a wgpu::TextureView,
     pub columns: &'a wgpu::TextureView,
     pub linear: &'a wgpu::Sampler,
+    pub compare: &'a wgpu::Sampler,
 }
 
 impl<'a> FrameResources<'a> {
-    /// These with a kernel's own, from binding 4 on.
+    /// These with a kernel's own, at bindings 4 to 14.
     pub fn with<const N: usize>(
         &self,
         own: [(u32, wgpu::BindingResource<'a>); N],
     ) -> Vec<(u32, wgpu::BindingResource<'a>)> {
         let frame = [
             (0, self.uniform.as_entire_binding()),
-            (1, self.body_depth.as_entire_binding()),
+            (1, wgpu::BindingResource::TextureView(self.body_depth)),
             (2, wgpu::BindingResource::TextureView(self.columns)),
             (3, wgpu::BindingResource::Sampler(self.linear)),
+            (15, wgpu::BindingResource::Sampler(self.compare)),
         ];
         frame.into_iter().chain(own).collect()
     }

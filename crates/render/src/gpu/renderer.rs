@@ -32,6 +32,7 @@ pub struct GpuRenderer {
     ground: Ground,
     eye: Eye,
     linear: wgpu::Sampler,
+    compare: wgpu::Sampler,
     uniform: wgpu::Buffer,
     uniform_group: wgpu::BindGroup,
     targets: Option<Targets>,
@@ -66,6 +67,10 @@ impl GpuRenderer {
             surface: SurfaceBuffers::new(&gpu, &pipelines),
             ground: Ground::new(&gpu),
             eye: Eye::new(&gpu)?,
+            compare: device.create_sampler(&wgpu::SamplerDescriptor {
+                compare: Some(wgpu::CompareFunction::LessEqual),
+                ..linear
+            }),
             linear: device.create_sampler(&linear),
             uniform_group: device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some("frame"),
@@ -173,6 +178,7 @@ impl GpuRenderer {
             body_depth: &self.surface.depth,
             columns: self.shadow.columns_view(),
             linear: &self.linear,
+            compare: &self.compare,
         };
         for (k, map) in maps.iter().enumerate() {
             self.surface.draw_depth(gpu, &self.pipelines, &mut commands, k, map.shadow_from_world);
@@ -198,7 +204,7 @@ impl GpuRenderer {
         let own = [
             (4, wgpu::BindingResource::TextureView(&targets.normals)),
             (5, wgpu::BindingResource::TextureView(&targets.colors)),
-            (6, self.eye.behind().as_entire_binding()),
+            (6, wgpu::BindingResource::TextureView(&targets.depth)),
             (7, self.ground.corners().as_entire_binding()),
             (8, self.eye.layer().as_entire_binding()),
             (9, self.screen.raw().as_entire_binding()),

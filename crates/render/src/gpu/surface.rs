@@ -40,9 +40,8 @@ pub(super) struct SurfaceBuffers {
     fixed: GrowBuffer<Fixed>,
     indices: GrowBuffer<u32>,
     staging: Vec<Moving>,
-    /// The depth maps of all lights, one after another, as kernels read them.
-    pub depth: wgpu::Buffer,
-    texture: wgpu::Texture,
+    /// The depth maps of all lights, as a texture array.
+    pub depth: wgpu::TextureView,
     layers: Vec<wgpu::TextureView>,
     uniforms: Vec<(wgpu::Buffer, wgpu::BindGroup)>,
     /// Texels of a depth map's edge.
@@ -61,7 +60,7 @@ impl SurfaceBuffers {
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
             format: DEPTH_FORMAT,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
             view_formats: &[],
         });
         let layers = (0..MAX_LIGHTS as u32)
@@ -74,11 +73,9 @@ impl SurfaceBuffers {
                 })
             })
             .collect();
-        let depth = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("body depth"),
-            size: u64::from(texels).pow(2) * 4 * MAX_LIGHTS as u64,
-            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
+        let depth = texture.create_view(&wgpu::TextureViewDescriptor {
+            dimension: Some(wgpu::TextureViewDimension::D2Array),
+            ..Default::default()
         });
         let uniforms = (0..MAX_LIGHTS)
             .map(|_| {
@@ -108,7 +105,6 @@ impl SurfaceBuffers {
             indices: GrowBuffer::new(device, "body triangles", wgpu::BufferUsages::INDEX),
             staging: Vec::new(),
             depth,
-            texture,
             layers,
             uniforms,
             texels,
@@ -188,23 +184,6 @@ impl SurfaceBuffers {
             pass.set_index_buffer(self.indices.raw().slice(..), wgpu::IndexFormat::Uint32);
             pass.draw_indexed(0..self.indices.len() as u32, 0, 0..1);
         });
-        let texels = u64::from(self.texels);
-        commands.encoder().copy_texture_to_buffer(
-            wgpu::TexelCopyTextureInfo {
-                origin: wgpu::Origin3d { x: 0, y: 0, z: k as u32 },
-                aspect: wgpu::TextureAspect::DepthOnly,
-                ..self.texture.as_image_copy()
-            },
-            wgpu::TexelCopyBufferInfo {
-                buffer: &self.depth,
-                layout: wgpu::TexelCopyBufferLayout {
-                    offset: texels * texels * 4 * k as u64,
-                    bytes_per_row: Some(self.texels * 4),
-                    rows_per_image: None,
-                },
-            },
-            wgpu::Extent3d { width: self.texels, height: self.texels, depth_or_array_layers: 1 },
-        );
     }
 
     /// Draws the body. `uniform` is the frame's.

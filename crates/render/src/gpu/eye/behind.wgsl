@@ -1,7 +1,7 @@
-// The body's depth in the four samples of each pixel, where compute kernels can read it quickly.
+// The nearest depth of the body in each pixel: most fragments need no more of it.
 
 @group(0) @binding(0) var depths: texture_depth_multisampled_2d;
-@group(0) @binding(1) var<storage, read_write> behind: array<vec4f>;
+@group(0) @binding(1) var nearest: texture_storage_2d<r32float, write>;
 
 @compute @workgroup_size(64)
 fn read_depths(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
@@ -11,10 +11,9 @@ fn read_depths(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups
         return;
     }
     let at = vec2u(i % size.x, i / size.x);
-    behind[i] = vec4f(
-        textureLoad(depths, at, 0),
-        textureLoad(depths, at, 1),
-        textureLoad(depths, at, 2),
-        textureLoad(depths, at, 3),
+    let depth = max(
+        max(textureLoad(depths, at, 0), textureLoad(depths, at, 1)),
+        max(textureLoad(depths, at, 2), textureLoad(depths, at, 3)),
     );
+    textureStore(nearest, at, vec4f(depth, 0.0, 0.0, 0.0));
 }

@@ -9,25 +9,17 @@ struct Fragment {
     alpha: f32,
     // Samples of the pixel in which it lies before the body.
     seen: vec4<bool>,
-    // Place along the segment, 0 to 1, and factor on the colour.
-    along: f32,
-    gain: f32,
-    // First point of its segment, and the pixel in the picture.
-    first: u32,
+    // Light, linear.
+    color: vec3f,
+    // A hash of the strand in 0..1, the distance of the segment's middle up to a factor, and the pixel in the picture.
+    hash: f32,
+    middle: f32,
     at: vec2u,
 }
 
 // Opacity with what the body hides taken off.
 fn opacity_of(fragment: Fragment) -> f32 {
     return fragment.alpha * dot(select(vec4f(0.0), vec4f(0.25), fragment.seen), vec4f(1.0));
-}
-
-fn color_of(fragment: Fragment) -> vec3f {
-    let a = shaded[fragment.first].color;
-    let b = shaded[fragment.first + 1u].color;
-    let color_a = vec3f(unpack2x16float(a.x), unpack2x16float(a.y).x);
-    let color_b = vec3f(unpack2x16float(b.x), unpack2x16float(b.y).x);
-    return (color_a + (color_b - color_a) * fragment.along) * fragment.gain;
 }
 
 @compute @workgroup_size(64)
@@ -58,7 +50,11 @@ fn each_fragment(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
     let opacity_a = eye.opacity * min(a.half_width * 2.0, 1.0);
     let opacity_b = eye.opacity * min(b.half_width * 2.0, 1.0);
     let streaked = max(half_a, half_b) > 0.8;
-    let hash = unpack2x16float(a.color.y).y;
+    let blue_hash = unpack2x16float(a.color.y);
+    let color_a = vec3f(unpack2x16float(a.color.x), blue_hash.x);
+    let color_b = vec3f(unpack2x16float(b.color.x), unpack2x16float(b.color.y).x);
+    let hash = blue_hash.y;
+    let middle_distance = 0.5 / max(a.at.z, 1e-9) + 0.5 / max(b.at.z, 1e-9);
 
     // The axis on which it is longer is gone along; on the other one a run of pixels is crossed.
     let low_corner = min(a.at.xy - abs(a.across) * reach, b.at.xy - abs(b.across) * reach);
@@ -100,9 +96,17 @@ fn each_fragment(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
                 continue;
             }
             let depth = a.at.z + (b.at.z - a.at.z) * along;
-            let seen = vec4f(depth) >= behind[at.y * eye.size.x + at.x];
-            if (!any(seen)) {
-                continue;
+            var seen = vec4<bool>(true);
+            if (depth < textureLoad(nearest, at, 0).x) {
+                seen = vec4f(depth) >= vec4f(
+                    textureLoad(depths, at, 0),
+                    textureLoad(depths, at, 1),
+                    textureLoad(depths, at, 2),
+                    textureLoad(depths, at, 3),
+                );
+                if (!any(seen)) {
+                    continue;
+                }
             }
             var gain = 1.0;
             if (streaked) {
@@ -113,7 +117,8 @@ fn each_fragment(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
                 alpha = clamp(alpha * (1.0 + 0.22 * wave), 0.0, 1.0);
                 gain = 1.0 + 0.18 * wave;
             }
-            take((at.y - eye.band.x) * eye.size.x + at.x, Fragment(depth, alpha, seen, along, gain, first, at));
+            let color = (color_a + (color_b - color_a) * along) * gain;
+            take((at.y - eye.band.x) * eye.size.x + at.x, Fragment(depth, alpha, seen, color, hash, middle_distance, at));
         }
     }
 }

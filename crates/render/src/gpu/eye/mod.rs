@@ -67,7 +67,7 @@ pub(super) struct EyeInput<'a> {
 pub(super) struct Eye {
     behind_kernel: Kernel,
     modes: Vec<(Transparency, Vec<Kernel>)>,
-    behind: GrowBuffer<[f32; 4]>,
+    nearest: Option<(wgpu::TextureView, [u32; 2])>,
     map: GrowBuffer<u32>,
     list: GrowBuffer<u32>,
     total: wgpu::Buffer,
@@ -119,7 +119,7 @@ impl Eye {
         Ok(Self {
             behind_kernel: Kernel::new(gpu, "behind", &ShaderSource::new(&[BEHIND]), "read_depths")?,
             modes: Vec::new(),
-            behind: GrowBuffer::new(device, "depths behind", storage),
+            nearest: None,
             map: GrowBuffer::new(device, "eye maps", storage),
             list: GrowBuffer::new(device, "fragments", storage),
             total: device.create_buffer(&wgpu::BufferDescriptor {
@@ -136,11 +136,6 @@ impl Eye {
         })
     }
 
-    /// Depths of the body in the samples of each pixel, as `behind` in frame.wgsl.
-    pub fn behind(&self) -> &wgpu::Buffer {
-        self.behind.raw()
-    }
-
     /// The hair of each pixel, as `layer` in frame.wgsl.
     pub fn layer(&self) -> &wgpu::Buffer {
         self.layer.raw()
@@ -148,7 +143,7 @@ impl Eye {
 
     /// Memory that is held, bytes.
     pub fn memory_bytes(&self) -> u64 {
-        let buffers = [self.behind.raw(), self.map.raw(), self.list.raw(), self.layer.raw()];
+        let buffers = [self.map.raw(), self.list.raw(), self.layer.raw()];
         buffers.iter().map(|buffer| buffer.size()).sum()
     }
 
@@ -171,10 +166,14 @@ impl Eye {
             let kernels = mode.passes.iter().map(|pass| pass.kernel(gpu)).collect::<Result<_, _>>()?;
             self.modes.push((input.transparency, kernels));
         }
-        self.behind.reserve(device, pixels as usize);
+        let size = [input.width, input.height];
+        if self.nearest.as_ref().is_none_or(|(_, old)| *old != size) {
+            self.nearest = Some((nearest_texture(device, size), size));
+        }
+        let Some((nearest, _)) = &self.nearest else { return Ok(()) };
         let resources = [
             (0, wgpu::BindingResource::TextureView(input.depth)),
-            (1, self.behind.raw().as_entire_binding()),
+            (1, wgpu::BindingResource::TextureView(nearest)),
         ];
         let group = self.behind_kernel.bind(gpu, &resources);
         commands.compute("draw/behind", |pass| self.behind_kernel.run(pass, &group, pixels));
@@ -212,16 +211,18 @@ impl Eye {
             room: self.room as u32,
             opacity: input.opacity.to_bits(),
         };
+        let Some((nearest, _)) = &self.nearest else { return };
         let buffer = lovelock_gpu::constants(gpu, "eye", &uniform);
         let resources = [
             (0, buffer.as_entire_binding()),
             (1, input.shaded.as_entire_binding()),
             (2, input.segments.as_entire_binding()),
-            (3, self.behind.raw().as_entire_binding()),
+            (3, wgpu::BindingResource::TextureView(nearest)),
             (4, self.map.raw().as_entire_binding()),
             (5, self.list.raw().as_entire_binding()),
             (6, self.total.as_entire_binding()),
             (7, self.layer.raw().as_entire_binding()),
+            (8, wgpu::BindingResource::TextureView(input.depth)),
         ];
         let encoder = commands.encoder();
         encoder.clear_buffer(self.map.raw(), 0, Some((pixels * u64::from(mode.words) * 4).max(4)));
@@ -266,6 +267,21 @@ impl Eye {
         self.least_bands = more.min(u64::from(height)) as u32;
         Ok(bands < height)
     }
+}
+
+/// A texture for the nearest depth of each pixel.
+fn nearest_texture(device: &wgpu::Device, [width, height]: [u32; 2]) -> wgpu::TextureView {
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("nearest depths"),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::R32Float,
+        usage: wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    });
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
 fn too_large(gpu: &Gpu, needed: u64) -> GpuError {

@@ -85,6 +85,11 @@ const OCCUPANCY_MODE: Mode = Mode {
     passes: &[
         fragments("draw/range", &[OCCUPANCY, part!("occupancy/range.wgsl")]),
         fragments("draw/occupancy", &[OCCUPANCY, part!("occupancy/bits.wgsl")]),
+        Pass {
+            name: "draw/sum-slabs",
+            over: Over::Pixels,
+            parts: &[OCCUPANCY, part!("occupancy/sums.wgsl")],
+        },
         fragments("draw/light", &[OCCUPANCY, part!("occupancy/light.wgsl")]),
         resolve(&[OCCUPANCY, part!("occupancy/resolve.wgsl")]),
     ],

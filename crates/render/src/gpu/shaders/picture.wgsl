@@ -2,8 +2,8 @@
 
 @group(0) @binding(4) var normals: texture_multisampled_2d<u32>;
 @group(0) @binding(5) var colors: texture_multisampled_2d<f32>;
-// Depths of the body in the four samples of each pixel; 0 where there is none.
-@group(0) @binding(6) var<storage, read> behind: array<vec4f>;
+// 0 where there is no body.
+@group(0) @binding(6) var depths: texture_depth_multisampled_2d;
 @group(0) @binding(7) var<storage, read> corners: array<vec4f>;
 // The hair of each pixel: its light times what it covers, and the share of the light behind that comes through, as four
 // half floats.
@@ -14,54 +14,71 @@
 // Light that comes through hair and is no longer worth lighting what is behind: a fourth of a step of 8 bits.
 const UNSEEN: f32 = 1.0 / 1024.0;
 
-// Where the four samples of a pixel lie in it: WebGPU's.
-const SAMPLES: array<vec2f, 4> =
-    array<vec2f, 4>(vec2f(0.375, 0.125), vec2f(0.875, 0.375), vec2f(0.125, 0.625), vec2f(0.625, 0.875));
+// What one sample sees of the body.
+struct Seen {
+    normal: vec3f,
+    depth: f32,
+    color_scalp: vec4f,
+    hair: vec4f,
+}
 
-fn lit_sample(pixel: vec2u, k: i32, depth: f32, words: vec4u) -> vec3f {
-    var places = SAMPLES;
-    let ndc = ((vec2f(pixel) + places[k]) / frame.size_scale_exposure.xy - 0.5) * vec2f(2.0, -2.0);
-    let world = frame.world_from_clip * vec4f(ndc, depth, 1.0);
+fn sample_at(pixel: vec2u, k: i32, depth: f32) -> Seen {
+    let words = textureLoad(normals, pixel, k);
     let folded = unpack2x16snorm(words.x | (words.y << 16u));
     let z = 1.0 - abs(folded.x) - abs(folded.y);
     let turned = (1.0 - abs(folded.yx)) * select(vec2f(-1.0), vec2f(1.0), folded >= vec2f(0.0));
-    let normal = vec3f(select(turned, folded, z >= 0.0), z);
-    let color = textureLoad(colors, pixel, k);
-    let hair = unpack4x8unorm(words.z | (words.w << 16u));
-    return shade_surface(Surface(world.xyz / world.w, normal, color, hair));
+    let normal = normalize(vec3f(select(turned, folded, z >= 0.0), z));
+    return Seen(normal, depth, textureLoad(colors, pixel, k), unpack4x8unorm(words.z | (words.w << 16u)));
 }
 
-// The body and what is behind it.
+// Whether two samples lie on one smooth piece of the body, so that they can be lit as one.
+fn belong_together(a: Seen, b: Seen) -> bool {
+    return dot(a.normal, b.normal) > 0.9 && abs(a.depth - b.depth) < 0.01 * a.depth
+        && all(abs(a.color_scalp - b.color_scalp) < vec4f(0.1));
+}
+
+// The body and what is behind it. Samples of one smooth piece are lit together, at the middle of the pixel.
 fn behind_hair(i: u32, pixel: vec2u) -> vec3f {
-    let depths = behind[i];
-    if (all(depths == vec4f(0.0))) {
+    let depth = vec4f(
+        textureLoad(depths, pixel, 0),
+        textureLoad(depths, pixel, 1),
+        textureLoad(depths, pixel, 2),
+        textureLoad(depths, pixel, 3),
+    );
+    let covered = depth > vec4f(0.0);
+    if (!any(covered)) {
         return backdrop(pixel);
     }
-    var words: array<vec4u, 4>;
-    var depth = array<f32, 4>(depths.x, depths.y, depths.z, depths.w);
+    var open = dot(select(vec4u(0u), vec4u(1u, 2u, 4u, 8u), covered), vec4u(1u));
+    let free = 0.25 * f32(4u - countOneBits(open));
+    let ndc = ((vec2f(pixel) + 0.5) / frame.size_scale_exposure.xy - 0.5) * vec2f(2.0, -2.0);
     var sum = vec3f(0.0);
-    var free = 0.0;
-    for (var k = 0; k < 4; k++) {
-        if (depth[k] == 0.0) {
-            free += 0.25;
-            continue;
-        }
-        words[k] = textureLoad(normals, pixel, k);
-        // A triangle has the same words in all of its samples.
-        var first = true;
-        for (var j = 0; j < k; j++) {
-            first = first && !(depth[j] != 0.0 && all(words[j] == words[k]));
-        }
-        if (!first) {
-            continue;
-        }
-        var share = 0.25;
-        for (var j = k + 1; j < 4; j++) {
-            if (depth[j] != 0.0 && all(textureLoad(normals, pixel, j) == words[k])) {
-                share += 0.25;
+    while (open != 0u) {
+        let first = i32(firstTrailingBit(open));
+        let one = sample_at(pixel, first, depth[first]);
+        open &= open - 1u;
+        var together = one;
+        var count = 1.0;
+        for (var rest = open; rest != 0u; rest &= rest - 1u) {
+            let k = i32(firstTrailingBit(rest));
+            let other = sample_at(pixel, k, depth[k]);
+            if (belong_together(one, other)) {
+                together.normal += other.normal;
+                together.depth += other.depth;
+                together.color_scalp += other.color_scalp;
+                together.hair += other.hair;
+                count += 1.0;
+                open &= ~(1u << u32(k));
             }
         }
-        sum += share * lit_sample(pixel, k, depth[k], words[k]);
+        let world = frame.world_from_clip * vec4f(ndc, together.depth / count, 1.0);
+        let surface = Surface(
+            world.xyz / world.w,
+            together.normal,
+            together.color_scalp / count,
+            together.hair / count,
+        );
+        sum += 0.25 * count * shade_surface(surface);
     }
     if (free > 0.0) {
         sum += free * backdrop(pixel);

@@ -6,11 +6,11 @@ fn take(pixel: u32, fragment: Fragment) {
     let slice = min(u32(place), u32(SLICES) - 1u);
     let slab = slice >> 4u;
     var before = 0.0;
-    for (var k = 0u; k < slab; k++) {
-        before += f32(atomicLoad(&map[record + SLABS_AT + k]));
+    if (slab > 0u) {
+        before = f32(atomicLoad(&map[record + SLABS_AT + slab - 1u]));
     }
-    if (before > 12.0 * DEPTH_ONE) {
-        // Less than a step of the sum comes past.
+    if (before > 8.0 * DEPTH_ONE) {
+        // A three-thousandth comes past.
         return;
     }
     let bits = (atomicLoad(&map[record + BITS_AT + (slice >> 5u)]) >> (16u * (slab & 1u))) & 0xffffu;
@@ -18,9 +18,10 @@ fn take(pixel: u32, fragment: Fragment) {
     let passed = countOneBits(bits & ((1u << at) - 1u));
     let own = min(place - f32(slice), 1.0) * f32((bits >> at) & 1u);
     let share = (f32(passed) + own) / f32(max(countOneBits(bits), 1u));
-    let depth = (before + share * f32(atomicLoad(&map[record + SLABS_AT + slab]))) / DEPTH_ONE;
+    let own_slab = f32(atomicLoad(&map[record + SLABS_AT + slab])) - before;
+    let depth = (before + share * own_slab) / DEPTH_ONE;
     let weight = exp(-depth) * opacity_of(fragment) * LIGHT_ONE;
-    let light = vec3u(clamp(color_of(fragment), vec3f(0.0), vec3f(64.0)) * weight + 0.5);
+    let light = vec3u(clamp(fragment.color, vec3f(0.0), vec3f(64.0)) * weight + 0.5);
     atomicAdd(&map[record + LIGHT_AT], light.r);
     atomicAdd(&map[record + LIGHT_AT + 1u], light.g);
     atomicAdd(&map[record + LIGHT_AT + 2u], light.b);

@@ -1,6 +1,6 @@
 // What occupancy order keeps of a pixel, in words: the farthest and the nearest depth, the latter as it is and the former
 // turned round so that 0 is none; a bit for each of 128 slices of the distances between; the optical depth of each of 8 slabs
-// of 16 slices, in 2^-16; and the weighted light, in 2^-16, with the sum of the weights. Twin of
+// of 16 slices and, once they are summed, of all up to it, in 2^-16; and the weighted light, in 2^-16, with the sum of the weights. Twin of
 // cpu/transparency/occupancy.rs.
 
 const RECORD_WORDS: u32 = 18u;

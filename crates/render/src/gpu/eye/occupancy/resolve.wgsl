@@ -6,11 +6,7 @@ fn pixel_pass(pixel: u32) {
         write_layer(pixel, vec3f(0.0), 1.0);
         return;
     }
-    var total_depth = 0.0;
-    for (var k = 0u; k < 8u; k++) {
-        total_depth += f32(atomicLoad(&map[record + SLABS_AT + k]));
-    }
-    let through = exp(-total_depth / DEPTH_ONE);
+    let through = exp(-f32(atomicLoad(&map[record + SLABS_AT + 7u])) / DEPTH_ONE);
     let light = vec3f(
         f32(atomicLoad(&map[record + LIGHT_AT])),
         f32(atomicLoad(&map[record + LIGHT_AT + 1u])),

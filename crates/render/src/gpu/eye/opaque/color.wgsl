@@ -6,7 +6,7 @@ fn take(pixel: u32, fragment: Fragment) {
     for (var k = 0u; k < 4u; k++) {
         let at = pixel * RECORD_WORDS + k;
         if (((samples >> k) & 1u) != 0u && atomicLoad(&map[at]) == bits) {
-            atomicMax(&map[at + 4u], pack_color(color_of(fragment)));
+            atomicMax(&map[at + 4u], pack_color(fragment.color));
         }
     }
 }

@@ -2,7 +2,7 @@
 // strand, from one on that is the strand's own. Strands of a pixel take different samples, so that many thin ones add up.
 // Twin of `covered_samples` in cpu/hair/list.rs.
 fn covered_samples(fragment: Fragment) -> u32 {
-    let hash = unpack2x16float(shaded[fragment.first].color.y).y;
+    let hash = fragment.hash;
     let pixel = vec2f(fragment.at);
     let noise = fract(52.9829189 * fract(dot(pixel, vec2f(0.06711056, 0.00583715))) + 13.7 * hash);
     let count = u32(clamp(floor(fragment.alpha * 4.0 + noise), 0.0, 4.0));

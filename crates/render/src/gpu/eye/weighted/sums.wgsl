@@ -3,7 +3,7 @@
 fn take(pixel: u32, fragment: Fragment) {
     let record = pixel * RECORD_WORDS;
     let weight = opacity_of(fragment) * LIGHT_ONE;
-    let light = vec3u(clamp(color_of(fragment), vec3f(0.0), vec3f(64.0)) * weight + 0.5);
+    let light = vec3u(clamp(fragment.color, vec3f(0.0), vec3f(64.0)) * weight + 0.5);
     atomicAdd(&map[record], light.r);
     atomicAdd(&map[record + 1u], light.g);
     atomicAdd(&map[record + 2u], light.b);
