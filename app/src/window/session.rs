@@ -23,7 +23,7 @@ pub(crate) struct Session {
     /// What was last handed to the drawing: the project, the frame and the size.
     pub(crate) drawn: Option<(Arc<Project>, Arc<FrameSnapshot>, [u32; 2])>,
     seen_painted: u64,
-    seen_errors: u64,
+    seen_notices: u64,
     pub(crate) scene: Option<Arc<Scene>>,
     pub(crate) frame: Option<Arc<FrameSnapshot>>,
     pub(crate) painted: Option<Arc<Painted>>,
@@ -61,7 +61,7 @@ impl Session {
             simulated: Arc::clone(project),
             drawn: None,
             seen_painted: 0,
-            seen_errors: 0,
+            seen_notices: 0,
             scene: None,
             frame: None,
             painted: None,
@@ -129,11 +129,9 @@ impl Session {
         if let Some(painted) = self.painter.painted().newer_than(&mut self.seen_painted) {
             self.stages.push(painted.times);
             self.painted = Some(painted);
-            self.draw_error = None;
         }
-        if let Some(error) = self.painter.errors().newer_than(&mut self.seen_errors) {
-            self.draw_error = Some((*error).clone());
-        }
+        self.draw_error = self.painter.error();
+        said.extend(self.painter.notices().newer_than(&mut self.seen_notices).map(|said| (*said).clone()));
         said
     }
 

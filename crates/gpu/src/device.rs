@@ -41,7 +41,7 @@ pub struct Gpu {
     pub queue: wgpu::Queue,
     /// What the adapter says of itself.
     pub info: wgpu::AdapterInfo,
-    /// The first thing that went wrong and that nobody has heard of yet.
+    /// The first thing that went wrong and that nobody has heard of yet, or that the device is lost.
     fault: Fault,
 }
 
@@ -49,7 +49,11 @@ type Fault = Arc<Mutex<Option<GpuError>>>;
 
 fn note(fault: &Fault, error: GpuError) {
     tracing::error!(%error, "graphics device");
-    fault.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+    let mut fault = fault.lock().unwrap_or_else(PoisonError::into_inner);
+    // A device that is lost refuses everything: that it is lost says why.
+    if fault.is_none() || matches!(error, GpuError::Lost(_)) {
+        *fault = Some(error);
+    }
 }
 
 impl Gpu {

@@ -125,11 +125,13 @@ pub fn read_buffer<T: Pod>(gpu: &Gpu, from: &wgpu::Buffer, out: &mut [T]) -> Res
 
 /// Waits until the device is done, and maps a buffer.
 fn map(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<(), GpuError> {
-    let failed = |reason: String| GpuError::Readback(reason);
+    // What went wrong before is why it cannot be read.
+    let failed = |reason: String| gpu.check().err().unwrap_or(GpuError::Readback(reason));
     let (sender, receiver) = std::sync::mpsc::sync_channel(1);
     buffer.map_async(wgpu::MapMode::Read, .., move |result| {
         let _ = sender.send(result);
     });
-    gpu.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|error| failed(error.to_string()))?;
+    let polled = gpu.device.poll(wgpu::PollType::wait_indefinitely());
+    polled.map_err(|error| failed(error.to_string()))?;
     receiver.recv().map_err(|error| failed(error.to_string()))?.map_err(|error| failed(error.to_string()))
 }

@@ -74,6 +74,11 @@ impl Renderer {
         self.gpu.as_ref().is_none_or(|gpu| gpu.gpu().is_software())
     }
 
+    /// The device that it draws on; none on the processor.
+    pub fn gpu(&self) -> Option<&Arc<Gpu>> {
+        self.gpu.as_ref().map(GpuRenderer::gpu)
+    }
+
     /// Draws `input` at `width` by `height` pixels.
     ///
     /// # Errors

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
-use lovelock_render::{Backend, Camera, FrameStats, Picture, RenderError, Renderer};
+use lovelock_render::{Backend, Camera, FrameStats, GpuError, Picture, RenderError, Renderer};
 
 use crate::{FrameSnapshot, Project, Slot, StageTimes};
 
@@ -48,15 +48,30 @@ pub struct Adapter {
     pub software: bool,
 }
 
+/// Why there is no newer picture.
+#[derive(Debug)]
+struct Failure {
+    message: String,
+    /// Pictures finished before it.
+    pictures: u64,
+}
+
 /// The request that waits; `None` in `Some` ends the thread.
 type Mailbox = Arc<(Mutex<Option<Option<PaintRequest>>>, Condvar)>;
+
+/// Opens what draws on the backend that was chosen.
+type Open = Box<dyn FnMut(Backend) -> Result<Renderer, RenderError> + Send>;
+
+/// How often in a row a graphics device is opened anew by itself before it counts as broken.
+const MOST_FAILURES: u32 = 3;
 
 /// Draws on a thread of its own. Requests that come while it draws replace each other.
 #[derive(Debug)]
 pub struct Painter {
     mailbox: Mailbox,
     painted: Slot<Painted>,
-    errors: Slot<String>,
+    failures: Slot<Failure>,
+    notices: Slot<String>,
     adapter: Slot<Adapter>,
     busy: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
@@ -68,20 +83,30 @@ impl Painter {
     /// # Errors
     /// The system makes no thread.
     pub fn start(on_painted: impl Fn() + Send + 'static) -> std::io::Result<Self> {
+        Self::start_with(Box::new(Renderer::open), on_painted)
+    }
+
+    /// As [`Painter::start`], on what `open` opens.
+    fn start_with(open: Open, on_painted: impl Fn() + Send + 'static) -> std::io::Result<Self> {
         let mailbox = Mailbox::default();
-        let (painted, errors, adapter) = (Slot::default(), Slot::default(), Slot::default());
+        let (painted, failures, notices) = (Slot::default(), Slot::default(), Slot::default());
+        let adapter = Slot::default();
         let busy = Arc::new(AtomicBool::new(false));
         let worker = Worker {
             busy: Arc::clone(&busy),
             mailbox: Arc::clone(&mailbox),
             painted: painted.clone(),
-            errors: errors.clone(),
+            failures: failures.clone(),
+            notices: notices.clone(),
             adapter: adapter.clone(),
             on_painted: Box::new(on_painted),
-            renderer: None,
+            open,
+            opened: None,
+            failed: 0,
+            card_given_up: false,
         };
         let thread = std::thread::Builder::new().name("draw".to_owned()).spawn(move || worker.run())?;
-        Ok(Self { mailbox, painted, errors, adapter, busy, thread: Some(thread) })
+        Ok(Self { mailbox, painted, failures, notices, adapter, busy, thread: Some(thread) })
     }
 
     /// Asks for a picture; a request that still waits is forgotten.
@@ -95,9 +120,16 @@ impl Painter {
         &self.painted
     }
 
-    /// Where sentences about pictures that could not be drawn are left; the last picture stays.
-    pub fn errors(&self) -> &Slot<String> {
-        &self.errors
+    /// Why the last picture could not be drawn, in a sentence; none when one came since. The last good picture stays in
+    /// its slot.
+    pub fn error(&self) -> Option<String> {
+        let failure = self.failures.latest()?;
+        (failure.pictures == self.painted.number()).then(|| failure.message.clone())
+    }
+
+    /// Where sentences are left that stay true while pictures come: that another backend draws from now on.
+    pub fn notices(&self) -> &Slot<String> {
+        &self.notices
     }
 
     /// What draws; empty until the first picture.
@@ -130,10 +162,17 @@ struct Worker {
     mailbox: Mailbox,
     busy: Arc<AtomicBool>,
     painted: Slot<Painted>,
-    errors: Slot<String>,
+    failures: Slot<Failure>,
+    notices: Slot<String>,
     adapter: Slot<Adapter>,
     on_painted: Box<dyn Fn() + Send>,
-    renderer: Option<Renderer>,
+    open: Open,
+    /// What draws, and what it was opened for.
+    opened: Option<(Backend, Renderer)>,
+    /// Failures of the device in a row.
+    failed: u32,
+    /// Whether [`Backend::Auto`] means the processor, since the graphics card fails again and again.
+    card_given_up: bool,
 }
 
 impl Worker {
@@ -141,23 +180,59 @@ impl Worker {
         while let Some(request) = self.next() {
             // A panic while drawing costs the device and one picture, not the window.
             let result = catch_unwind(AssertUnwindSafe(|| self.paint(&request)));
-            match result {
-                Ok(Ok(painted)) => self.painted.put(Arc::new(painted)),
+            let again = match result {
+                Ok(Ok(painted)) => {
+                    self.failed = 0;
+                    self.painted.put(Arc::new(painted));
+                    false
+                }
                 Ok(Err(error)) => {
-                    if matches!(error, RenderError::Gpu(_)) {
-                        self.renderer = None;
-                    }
-                    self.errors.put(Arc::new(error.to_string()));
+                    let again = device_is_gone(&error) && self.try_again(request.project.picture.backend);
+                    self.fail(error.to_string());
+                    again
                 }
                 Err(_) => {
-                    self.renderer = None;
-                    let text = "drawing stopped unexpectedly; the graphics device is opened again".to_owned();
-                    self.errors.put(Arc::new(text));
+                    let again = self.try_again(request.project.picture.backend);
+                    self.fail("drawing stopped unexpectedly; what draws is opened again".to_owned());
+                    again
                 }
+            };
+            if again {
+                self.repeat(request);
+            } else {
+                self.busy.store(false, Ordering::Relaxed);
             }
-            self.busy.store(false, Ordering::Relaxed);
             (self.on_painted)();
         }
+    }
+
+    fn fail(&self, message: String) {
+        self.failures.put(Arc::new(Failure { message, pictures: self.painted.number() }));
+    }
+
+    /// Closes what draws after it failed; whether to draw the same picture again by itself.
+    fn try_again(&mut self, choice: Backend) -> bool {
+        let by_processor = self.opened.take().is_some_and(|(_, renderer)| renderer.backend() == Backend::Cpu);
+        self.failed = self.failed.saturating_add(1);
+        if self.failed < MOST_FAILURES {
+            return true;
+        }
+        if choice != Backend::Auto || self.card_given_up || by_processor {
+            return false;
+        }
+        self.card_given_up = true;
+        self.notices.put(Arc::new(format!(
+            "The graphics card failed {MOST_FAILURES} times in a row: the processor draws from now on. Choose \
+             \"{}\" in Picture to try the card again.",
+            Backend::Gpu.label()
+        )));
+        true
+    }
+
+    /// Asks for the same picture again, where no other is asked for.
+    fn repeat(&self, request: PaintRequest) {
+        let mut waiting = self.mailbox.0.lock().unwrap_or_else(PoisonError::into_inner);
+        waiting.get_or_insert(Some(request));
     }
 
     /// Waits for a request.
@@ -174,16 +249,19 @@ impl Worker {
 
     fn paint(&mut self, request: &PaintRequest) -> Result<Painted, RenderError> {
         let choice = request.project.picture.backend;
-        if self.renderer.as_ref().is_some_and(|renderer| renderer.choice() != choice) {
-            self.renderer = None;
+        // Who asks for the card by name wants it tried again.
+        self.card_given_up &= choice != Backend::Gpu;
+        let wanted = if choice == Backend::Auto && self.card_given_up { Backend::Cpu } else { choice };
+        if self.opened.as_ref().is_some_and(|(opened_for, _)| *opened_for != wanted) {
+            self.opened = None;
         }
-        let renderer = match &mut self.renderer {
-            Some(renderer) => renderer,
+        let renderer = match &mut self.opened {
+            Some((_, renderer)) => renderer,
             none => {
-                let renderer = Renderer::open(choice)?;
+                let renderer = (self.open)(wanted)?;
                 let (name, backend) = (renderer.adapter().to_owned(), renderer.backend());
                 self.adapter.put(Arc::new(Adapter { name, backend, software: renderer.is_software() }));
-                none.insert(renderer)
+                &mut none.insert((wanted, renderer)).1
             }
         };
         let PaintRequest { project, snapshot, width, height } = request;
@@ -196,3 +274,15 @@ impl Worker {
         Ok(Painted { picture, camera, stats, times, step: snapshot.step })
     }
 }
+
+/// Whether what draws must be opened again. A shader that does not compile does so on every device alike, and there
+/// is no use in looking for an adapter again that is not there.
+fn device_is_gone(error: &RenderError) -> bool {
+    match error {
+        RenderError::Gpu(error) => !matches!(error, GpuError::Shader(_) | GpuError::NoAdapter(_)),
+        RenderError::Shadow(_) | RenderError::Size { .. } => false,
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,159 @@
+//! Devices that go and devices that never work. Those of the first kind need an adapter; software will do.
+
+use std::sync::mpsc::{Receiver, channel};
+use std::time::Duration;
+
+use lovelock_render::Gpu;
+
+use super::*;
+use crate::session::tests::small_project;
+use crate::{Access, Engine, SceneLoader};
+
+/// A painter on what a test opens, one instant, and what was asked to be opened.
+struct Rig {
+    painter: Painter,
+    snapshot: Arc<FrameSnapshot>,
+    finished: Receiver<()>,
+    opened: Arc<Mutex<Vec<Backend>>>,
+}
+
+impl Rig {
+    fn new(mut open: impl FnMut(Backend) -> Result<Renderer, RenderError> + Send + 'static) -> Self {
+        let (scene, _) = SceneLoader::new().load_now(&small_project(), &Access::new()).expect("a scene");
+        let snapshot = Engine::new(scene, small_project().simulation).snapshot();
+        let opened = Arc::new(Mutex::new(Vec::new()));
+        let noted = Arc::clone(&opened);
+        let open = move |choice| {
+            noted.lock().expect("a list").push(choice);
+            open(choice)
+        };
+        let (sender, finished) = channel();
+        let wake = move || {
+            let _ = sender.send(());
+        };
+        let painter = Painter::start_with(Box::new(open), wake).expect("a thread");
+        Self { painter, snapshot, finished, opened }
+    }
+
+    /// Asks for one picture, and waits until nothing is drawn any more.
+    fn draw(&self, backend: Backend) {
+        let mut project = small_project();
+        project.picture.backend = backend;
+        let (project, snapshot) = (Arc::new(project), Arc::clone(&self.snapshot));
+        self.painter.request(PaintRequest { project, snapshot, width: 64, height: 48 });
+        while self.painter.busy().load(Ordering::Relaxed) {
+            // A guard against waiting for ever.
+            self.finished.recv_timeout(Duration::from_secs(100)).expect("an end");
+        }
+    }
+
+    fn opened(&self) -> Vec<Backend> {
+        self.opened.lock().expect("a list").clone()
+    }
+
+    fn pixels(&self) -> Vec<u8> {
+        self.painter.painted().latest().expect("a picture").picture.rgba.clone()
+    }
+
+    /// Pictures, failures and notices so far.
+    fn counts(&self) -> [u64; 3] {
+        let painter = &self.painter;
+        [painter.painted.number(), painter.failures.number(), painter.notices.number()]
+    }
+}
+
+fn lost(_: Backend) -> Result<Renderer, RenderError> {
+    Err(GpuError::Lost("for this test".to_owned()).into())
+}
+
+#[test]
+fn a_lost_device_is_opened_again_and_draws_the_same() {
+    let devices = Arc::new(Mutex::new(Vec::<Arc<Gpu>>::new()));
+    let noted = Arc::clone(&devices);
+    let rig = Rig::new(move |choice| {
+        let renderer = Renderer::open(choice)?;
+        noted.lock().expect("a list").extend(renderer.gpu().cloned());
+        Ok(renderer)
+    });
+    rig.draw(Backend::Gpu);
+    if devices.lock().expect("a list").is_empty() {
+        return lovelock_testkit::skip_without_adapter(&rig.painter.error().unwrap_or_default());
+    }
+    let before = rig.pixels();
+    rig.draw(Backend::Gpu);
+    assert_eq!((rig.counts(), rig.opened().len()), ([2, 0, 0], 1), "a device that is well is kept");
+
+    devices.lock().expect("a list")[0].device.destroy();
+    rig.draw(Backend::Gpu);
+    let said = rig.painter.failures.latest().expect("a sentence").message.clone();
+    assert!(said.contains("graphics device") && said.contains("lost") && !said.contains('\n'), "{said}");
+    assert_eq!(rig.counts(), [3, 1, 0], "one sentence, and a new picture that nobody had to ask for");
+    assert_eq!(rig.opened(), [Backend::Gpu; 2]);
+    assert_eq!(rig.painter.error(), None, "it is over");
+    assert!(rig.pixels() == before, "the same bytes");
+}
+
+#[test]
+fn a_card_that_always_fails_is_given_up() {
+    let rig = Rig::new(|choice| if choice == Backend::Cpu { Renderer::open(choice) } else { lost(choice) });
+    rig.draw(Backend::Auto);
+    assert_eq!(rig.counts(), [1, 3, 1], "a picture after three failures, and a notice");
+    let notice = rig.painter.notices().latest().expect("a notice");
+    assert!(notice.contains("processor draws from now on"), "{notice}");
+    assert_eq!(rig.painter.adapter().expect("it draws").backend, Backend::Cpu);
+    rig.draw(Backend::Auto);
+    assert_eq!((rig.counts(), rig.opened().len()), ([2, 3, 1], 4), "it stays with the processor");
+    let by_fallback = rig.pixels();
+    rig.draw(Backend::Cpu);
+    assert!(rig.pixels() == by_fallback, "the processor's own picture");
+
+    // Asked for by name it is tried again, and leaves the last picture where it was.
+    rig.draw(Backend::Gpu);
+    assert_eq!((rig.counts()[0], rig.opened().pop()), (3, Some(Backend::Gpu)));
+    assert!(rig.painter.error().is_some_and(|said| said.contains("for this test")));
+    assert!(rig.pixels() == by_fallback);
+}
+
+#[test]
+fn a_device_that_always_fails_is_not_tried_for_ever() {
+    let rig = Rig::new(lost);
+    rig.draw(Backend::Gpu);
+    assert_eq!((rig.counts(), rig.opened().len()), ([0, 3, 0], 3));
+    rig.draw(Backend::Gpu);
+    assert_eq!(rig.counts(), [0, 4, 0], "once for each picture that is asked for");
+    assert!(rig.painter.error().is_some());
+    let never = Rig::new(lost);
+    never.draw(Backend::Auto);
+    assert_eq!(never.counts(), [0, 4, 1], "nor is a processor that fails");
+}
+
+#[test]
+fn a_shader_that_does_not_compile_is_told_and_the_last_picture_stays() {
+    const TOLD: &str = "crates/render/src/gpu/shaders/x.wgsl, line 3: no definition in scope for `y`";
+    let rig = Rig::new(|choice| match choice {
+        Backend::Cpu => Renderer::open(choice),
+        _ => Err(GpuError::Shader(TOLD.to_owned()).into()),
+    });
+    rig.draw(Backend::Cpu);
+    let good = rig.pixels();
+    rig.draw(Backend::Gpu);
+    assert_eq!((rig.counts(), rig.opened().len()), ([1, 1, 0], 2), "it is not compiled again by itself");
+    assert_eq!(rig.painter.error().as_deref(), Some(TOLD));
+    assert!(rig.pixels() == good);
+    rig.draw(Backend::Cpu);
+    assert_eq!(rig.painter.error(), None);
+    assert_eq!(rig.counts(), [2, 1, 0]);
+}
+
+#[test]
+fn a_panic_while_drawing_is_told_and_draws_again() {
+    let mut times = 0;
+    let rig = Rig::new(move |choice| {
+        times += 1;
+        assert!(times != 1, "on purpose, once");
+        Renderer::open(choice)
+    });
+    rig.draw(Backend::Cpu);
+    assert_eq!(rig.counts(), [1, 1, 0]);
+    assert_eq!(rig.painter.error(), None);
+}
