@@ -10,7 +10,7 @@ const CELL: u32 = 4;
 
 /// The corners of one picture.
 #[derive(Debug)]
-pub(super) struct Ground(GrowBuffer<[f32; 4]>);
+pub(super) struct Ground(GrowBuffer<u32>);
 
 impl Ground {
     pub fn new(gpu: &Gpu) -> Self {

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use lovelock_gpu::{Commands, Gpu, GrowBuffer, PassTimer, Readback, Stopwatch, wgpu};
+use lovelock_gpu::{Commands, Gpu, GrowBuffer, PassTimer, Readback, Stopwatch, constants, wgpu};
 
-use super::eye::{Eye, EyeInput};
+use super::eye::{Area, Eye, EyeInput};
 use super::frame_resources::FrameResources;
 use super::ground::Ground;
 use super::hair::HairBuffers;
@@ -157,7 +157,6 @@ impl GpuRenderer {
             self.targets = Some(Targets::new(device, width, height));
         }
         let Some(targets) = &self.targets else { return Ok(()) };
-        self.eye.fit(gpu, width, height);
         self.ground.fit(gpu, width, height);
         self.screen.reserve(device, width as usize * height as usize);
         self.hair.write(gpu, &mut commands, input)?;
@@ -188,10 +187,15 @@ impl GpuRenderer {
             self.ground.run(gpu, &self.pipelines, &mut commands, &frame);
         }
         self.draw_body(&mut commands, targets);
+        let (bounds, _) = self.hair.bounds(input, Area::axes(input.camera), input.camera.eye);
+        let strand_width = uniform.width_opacity_tip_scalp.x;
+        let area = Area::of(input.camera, [width, height], (bounds.min, bounds.max), strand_width);
+        self.eye.fit(gpu, area);
         let strands = self.hair.strands();
         let eye = EyeInput {
             width,
             height,
+            area,
             shaded: self.hair.shaded(),
             segments: strands.segments,
             segment_count: strands.segment_count,
@@ -201,6 +205,8 @@ impl GpuRenderer {
         };
         self.eye.draw(gpu, &mut commands, &eye)?;
         let pixels = u64::from(width) * u64::from(height);
+        let Some(nearest) = self.eye.nearest() else { return Ok(()) };
+        let hair_area = constants(gpu, "hair area", &[area.left, area.top, area.columns, area.rows]);
         let own = [
             (4, wgpu::BindingResource::TextureView(&targets.normals)),
             (5, wgpu::BindingResource::TextureView(&targets.colors)),
@@ -208,6 +214,8 @@ impl GpuRenderer {
             (7, self.ground.corners().as_entire_binding()),
             (8, self.eye.layer().as_entire_binding()),
             (9, self.screen.raw().as_entire_binding()),
+            (10, wgpu::BindingResource::TextureView(nearest)),
+            (11, hair_area.as_entire_binding()),
         ];
         let kernel = &self.pipelines.picture;
         let group = kernel.bind(gpu, &frame.with(own));

@@ -59,9 +59,8 @@ fn each_fragment(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
     // The axis on which it is longer is gone along; on the other one a run of pixels is crossed.
     let low_corner = min(a.at.xy - abs(a.across) * reach, b.at.xy - abs(b.across) * reach);
     let high_corner = max(a.at.xy + abs(a.across) * reach, b.at.xy + abs(b.across) * reach);
-    let top = f32(eye.band.x);
-    let low = max(low_corner, vec2f(0.0, top));
-    let high = min(high_corner, vec2f(f32(eye.size.x), top + f32(eye.band.y)));
+    let low = max(low_corner, vec2f(eye.area.xy));
+    let high = min(high_corner, vec2f(eye.area.xy + eye.area.zw));
     if (!(low.x < high.x && low.y < high.y)) {
         return;
     }
@@ -118,7 +117,7 @@ fn each_fragment(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
                 gain = 1.0 + 0.18 * wave;
             }
             let color = (color_a + (color_b - color_a) * along) * gain;
-            take((at.y - eye.band.x) * eye.size.x + at.x, Fragment(depth, alpha, seen, color, hash, middle_distance, at));
+            take((at.y - eye.area.y) * eye.area.z + at.x - eye.area.x, Fragment(depth, alpha, seen, color, hash, middle_distance, at));
         }
     }
 }

@@ -1,15 +1,16 @@
 // The picture's pixels, strands as they are drawn, and what is behind them. Twin of `EyeUniform` in mod.rs.
 
 struct EyeUniform {
-    // Pixels of the picture; the first row of the band and its rows.
-    size: vec2u,
-    band: vec2u,
+    // The first column and row of the area that is drawn, its columns and its rows.
+    area: vec4u,
     // Segments, threads a segment, room in the list of fragments.
     segments: u32,
     lanes: u32,
     room: u32,
     // Opacity of a strand where it covers a pixel wholly.
     opacity: f32,
+    // The first pixel of the area among those of all areas of the picture.
+    first: u32,
 }
 
 struct ShadedPoint {
@@ -30,21 +31,21 @@ struct ShadedPoint {
 // The nearest depth of the body in each pixel of the picture, and the depths in its four samples.
 @group(0) @binding(3) var nearest: texture_2d<f32>;
 @group(0) @binding(8) var depths: texture_depth_multisampled_2d;
-// What modes keep for the pixels of a band; everything is 0 when a band begins.
+// What modes keep for the pixels of the area; everything is 0 to begin with.
 @group(0) @binding(4) var<storage, read_write> map: array<atomic<u32>>;
-// Fragments of all pixels of a band, `FRAGMENT_WORDS` each.
+// Fragments of all pixels of the area, `FRAGMENT_WORDS` each.
 @group(0) @binding(5) var<storage, read_write> list: array<u32>;
 // Fragments in the list.
 @group(0) @binding(6) var<storage, read_write> total: array<atomic<u32>>;
-// The hair of each pixel of the picture: its light times what it covers, and the share of the light behind that comes
+// The hair of each pixel: its light times what it covers, and the share of the light behind that comes
 // through, as four half floats.
 @group(0) @binding(7) var<storage, read_write> layer: array<vec2u>;
 
-fn band_pixels() -> u32 {
-    return eye.size.x * eye.band.y;
+fn area_pixels() -> u32 {
+    return eye.area.z * eye.area.w;
 }
 
 fn write_layer(pixel: u32, color: vec3f, through: f32) {
-    layer[eye.band.x * eye.size.x + pixel] = vec2u(pack2x16float(min(color.rg, vec2f(65504.0))),
+    layer[eye.first + pixel] = vec2u(pack2x16float(min(color.rg, vec2f(65504.0))),
         pack2x16float(vec2f(min(color.b, 65504.0), through)));
 }

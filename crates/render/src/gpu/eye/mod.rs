@@ -5,6 +5,7 @@
 //! each_pixel.wgsl with its own `pixel_pass`. Where the device gives no buffer that holds a whole picture, it is drawn in
 //! bands of rows.
 
+mod area;
 mod modes;
 
 use bytemuck::{Pod, Zeroable};
@@ -13,6 +14,7 @@ use lovelock_gpu::{
 };
 
 use crate::Transparency;
+pub(super) use area::Area;
 use modes::{Mode, Over, Pass};
 
 macro_rules! part {
@@ -34,22 +36,24 @@ const BEHIND: ShaderPart = part!("behind.wgsl");
 const FRAGMENT_WORDS: u64 = 3;
 
 /// Twin of `EyeUniform` in frame.wgsl.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub(super) struct EyeUniform {
-    size: [u32; 2],
-    band: [u32; 2],
+    area: [u32; 4],
     segments: u32,
     lanes: u32,
     room: u32,
-    /// Bits of the opacity.
-    opacity: u32,
+    opacity: f32,
+    first: u32,
+    pad: [u32; 3],
 }
 
 /// What the eye's passes draw.
 pub(super) struct EyeInput<'a> {
     pub width: u32,
     pub height: u32,
+    /// The part of the picture that may have hair.
+    pub area: Area,
     /// Points as `ShadedPoint` has them.
     pub shaded: &'a wgpu::Buffer,
     /// First point of each segment.
@@ -136,7 +140,7 @@ impl Eye {
         })
     }
 
-    /// The hair of each pixel, as `layer` in frame.wgsl.
+    /// The hair of each pixel of the area, as `layer` in frame.wgsl.
     pub fn layer(&self) -> &wgpu::Buffer {
         self.layer.raw()
     }
@@ -147,9 +151,14 @@ impl Eye {
         buffers.iter().map(|buffer| buffer.size()).sum()
     }
 
-    /// Makes room for a picture's layer; says whether the buffer is another one.
-    pub fn fit(&mut self, gpu: &Gpu, width: u32, height: u32) -> bool {
-        self.layer.reserve(&gpu.device, width as usize * height as usize)
+    /// Makes room for the layer of an area.
+    pub fn fit(&mut self, gpu: &Gpu, area: Area) {
+        self.layer.reserve(&gpu.device, area.pixels() as usize);
+    }
+
+    /// The nearest depth of the body in each pixel, as `nearest` in frame.wgsl.
+    pub fn nearest(&self) -> Option<&wgpu::TextureView> {
+        self.nearest.as_ref().map(|(view, _)| view)
     }
 
     /// Encodes drawing the hair into [`Eye::layer`], which [`Eye::fit`] made large enough.
@@ -159,9 +168,7 @@ impl Eye {
     pub fn draw(&mut self, gpu: &Gpu, commands: &mut Commands, input: &EyeInput) -> Result<(), GpuError> {
         let (device, pixels) = (&gpu.device, u64::from(input.width) * u64::from(input.height));
         let mode = Mode::of(input.transparency);
-        if pixels * 16 > gpu.most_storage_bytes() {
-            return Err(too_large(gpu, pixels * 16));
-        }
+        let Area { left, top, columns, rows: all_rows } = input.area;
         if !self.modes.iter().any(|(known, _)| *known == input.transparency) {
             let kernels = mode.passes.iter().map(|pass| pass.kernel(gpu)).collect::<Result<_, _>>()?;
             self.modes.push((input.transparency, kernels));
@@ -178,38 +185,53 @@ impl Eye {
         let group = self.behind_kernel.bind(gpu, &resources);
         commands.compute("draw/behind", |pass| self.behind_kernel.run(pass, &group, pixels));
 
-        let row_bytes = u64::from(input.width) * u64::from(mode.words) * 4;
+        self.lists = None;
+        if input.area.is_empty() {
+            return Ok(());
+        }
+        let row_bytes = u64::from(columns) * u64::from(mode.words) * 4;
         let most_rows = gpu.most_storage_bytes() / row_bytes.max(1);
         if most_rows == 0 {
             return Err(too_large(gpu, row_bytes));
         }
-        let mut bands = u64::from(input.height).div_ceil(most_rows) as u32;
-        self.lists = None;
+        let mut bands = u64::from(all_rows).div_ceil(most_rows) as u32;
         if mode.lists {
             let most = gpu.most_storage_bytes() / (4 * FRAGMENT_WORDS);
             self.room = self.room.min(most);
             self.list.reserve(device, (self.room * FRAGMENT_WORDS) as usize);
-            bands = bands.max(self.least_bands).min(input.height);
+            bands = bands.max(self.least_bands).min(all_rows);
             self.lists = Some(bands);
         }
-        let rows = input.height.div_ceil(bands);
+        let rows = all_rows.div_ceil(bands);
         self.map.reserve(device, (u64::from(rows) * row_bytes / 4) as usize);
         commands.encoder().clear_buffer(&self.total, 0, None);
-        for first in (0..input.height).step_by(rows as usize) {
-            self.draw_band(gpu, commands, input, mode, [first, rows.min(input.height - first)]);
+        for first in (0..all_rows).step_by(rows as usize) {
+            let rows = rows.min(all_rows - first);
+            let band = Area { left, top: top + first, columns, rows };
+            self.draw_area(gpu, commands, input, mode, band, first * columns);
         }
         Ok(())
     }
 
-    fn draw_band(&self, gpu: &Gpu, commands: &mut Commands, input: &EyeInput, mode: &Mode, band: [u32; 2]) {
-        let pixels = u64::from(input.width) * u64::from(band[1]);
+    /// Draws a part of the picture; `first` is the place of its first pixel in the layer.
+    fn draw_area(
+        &self,
+        gpu: &Gpu,
+        commands: &mut Commands,
+        input: &EyeInput,
+        mode: &Mode,
+        area: Area,
+        first: u32,
+    ) {
+        let pixels = area.pixels();
         let uniform = EyeUniform {
-            size: [input.width, input.height],
-            band,
+            area: [area.left, area.top, area.columns, area.rows],
             segments: input.segment_count,
             lanes: self.lanes,
             room: self.room as u32,
-            opacity: input.opacity.to_bits(),
+            opacity: input.opacity,
+            first,
+            pad: [0; 3],
         };
         let Some((nearest, _)) = &self.nearest else { return };
         let buffer = lovelock_gpu::constants(gpu, "eye", &uniform);

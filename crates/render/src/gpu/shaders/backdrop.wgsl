@@ -7,10 +7,10 @@ const ALIKE: f32 = 1.0 / 512.0;
 fn light_at(pixel: vec2u, ndc: vec2f) -> vec3f {
     let columns = corner_columns();
     let first = pixel.y / CELL * columns + pixel.x / CELL;
-    let a = corners[first];
-    let b = corners[first + 1u];
-    let c = corners[first + columns];
-    let d = corners[first + columns + 1u];
+    let a = unpack_share(corners[first]);
+    let b = unpack_share(corners[first + 1u]);
+    let c = unpack_share(corners[first + columns]);
+    let d = unpack_share(corners[first + columns + 1u]);
     // Corners on both sides of the horizon do not speak for what is between them.
     let spread = max(max(abs(a - b), abs(a - c)), abs(a - d));
     if (all(spread < vec4f(ALIKE))) {

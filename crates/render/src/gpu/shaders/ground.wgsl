@@ -1,6 +1,6 @@
 // The light on the ground at the corners of cells of pixels.
 
-@group(0) @binding(4) var<storage, read_write> corners: array<vec4f>;
+@group(0) @binding(4) var<storage, read_write> corners: array<u32>;
 
 @compute @workgroup_size(64)
 fn ground_corners(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
@@ -12,5 +12,5 @@ fn ground_corners(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgro
     let columns = corner_columns();
     let pixel = vec2f(vec2u(i % columns, i / columns) * CELL);
     let ndc = (pixel / frame.size_scale_exposure.xy - 0.5) * vec2f(2.0, -2.0);
-    corners[i] = ground_light(ndc);
+    corners[i] = pack_share(ground_light(ndc));
 }

@@ -25,6 +25,17 @@ fn ground_light(ndc: vec2f) -> vec4f {
 // Pixels along each edge of a cell: most of the ground is lit evenly, so it is asked at the corners of cells first.
 const CELL: u32 = 4u;
 
+// A share of the light in three times ten bits; the highest bit says that there is ground.
+fn pack_share(share: vec4f) -> u32 {
+    let parts = vec3u(clamp(share.rgb, vec3f(0.0), vec3f(1.0)) * 1023.0 + 0.5);
+    return parts.r | (parts.g << 10u) | (parts.b << 20u) | select(0u, 0x80000000u, share.w > 0.5);
+}
+
+fn unpack_share(packed: u32) -> vec4f {
+    let parts = vec3u(packed, packed >> 10u, packed >> 20u) & vec3u(1023u);
+    return vec4f(vec3f(parts) / 1023.0, f32(packed >> 31u));
+}
+
 // Corners in a row of them.
 fn corner_columns() -> u32 {
     return (u32(frame.size_scale_exposure.x) + CELL - 1u) / CELL + 1u;

@@ -4,8 +4,12 @@
 @group(0) @binding(5) var colors: texture_multisampled_2d<f32>;
 // 0 where there is no body.
 @group(0) @binding(6) var depths: texture_depth_multisampled_2d;
-@group(0) @binding(7) var<storage, read> corners: array<vec4f>;
-// The hair of each pixel: its light times what it covers, and the share of the light behind that comes through, as four
+@group(0) @binding(7) var<storage, read> corners: array<u32>;
+// The nearest of the depths in each pixel.
+@group(0) @binding(10) var nearest: texture_2d<f32>;
+// The part of the picture that may have hair: first column and row, columns and rows.
+@group(0) @binding(11) var<uniform> hair_area: vec4u;
+// The hair of each pixel of that part: its light times what it covers, and the share of the light behind that comes through, as four
 // half floats.
 @group(0) @binding(8) var<storage, read> hair_layer: array<vec2u>;
 // Red, green, blue and alpha of each pixel.
@@ -38,7 +42,10 @@ fn belong_together(a: Seen, b: Seen) -> bool {
 }
 
 // The body and what is behind it. Samples of one smooth piece are lit together, at the middle of the pixel.
-fn behind_hair(i: u32, pixel: vec2u) -> vec3f {
+fn behind_hair(pixel: vec2u) -> vec3f {
+    if (textureLoad(nearest, pixel, 0).x == 0.0) {
+        return backdrop(pixel);
+    }
     let depth = vec4f(
         textureLoad(depths, pixel, 0),
         textureLoad(depths, pixel, 1),
@@ -46,9 +53,6 @@ fn behind_hair(i: u32, pixel: vec2u) -> vec3f {
         textureLoad(depths, pixel, 3),
     );
     let covered = depth > vec4f(0.0);
-    if (!any(covered)) {
-        return backdrop(pixel);
-    }
     var open = dot(select(vec4u(0u), vec4u(1u, 2u, 4u, 8u), covered), vec4u(1u));
     let free = 0.25 * f32(4u - countOneBits(open));
     let ndc = ((vec2f(pixel) + 0.5) / frame.size_scale_exposure.xy - 0.5) * vec2f(2.0, -2.0);
@@ -94,11 +98,18 @@ fn picture(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) gr
         return;
     }
     let pixel = vec2u(i % size.x, i / size.x);
-    let rg = unpack2x16float(hair_layer[i].x);
-    let bt = unpack2x16float(hair_layer[i].y);
-    var light = vec3f(rg, bt.x);
-    if (bt.y > UNSEEN) {
-        light += bt.y * behind_hair(i, pixel);
+    var light = vec3f(0.0);
+    var through = 1.0;
+    let place = pixel - hair_area.xy;
+    // Left of and above the area these are very large.
+    if (place.x < hair_area.z && place.y < hair_area.w) {
+        let hair = hair_layer[place.y * hair_area.z + place.x];
+        let bt = unpack2x16float(hair.y);
+        light = vec3f(unpack2x16float(hair.x), bt.x);
+        through = bt.y;
+    }
+    if (through > UNSEEN) {
+        light += through * behind_hair(pixel);
     }
     screen[i] = pack4x8unorm(vec4f(tone_map(light, pixel), 1.0));
 }

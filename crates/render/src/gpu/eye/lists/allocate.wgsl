@@ -11,7 +11,7 @@ fn allocate(
 ) {
     let pixel = id.x + id.y * groups.x * 64u;
     var count = 0u;
-    if (pixel < band_pixels()) {
+    if (pixel < area_pixels()) {
         count = atomicLoad(&map[pixel * RECORD_WORDS + 1u]);
     }
     let own = atomicAdd(&wanted, count);
@@ -19,11 +19,11 @@ fn allocate(
     if (local == 0u) {
         let more = atomicLoad(&wanted);
         begin = atomicAdd(&total[0], more);
-        // The most that any band needs.
+        // The most that any area needs.
         atomicMax(&total[1], begin + more);
     }
     workgroupBarrier();
-    if (pixel < band_pixels()) {
+    if (pixel < area_pixels()) {
         atomicStore(&map[pixel * RECORD_WORDS], begin + own);
     }
 }
