@@ -2,35 +2,36 @@
 
 fn depth_before(texel: u32, depth: f32) -> f32 {
     let record = record_of(texel);
+    let near_word = map[record];
     let far_word = map[record + 1u];
-    let near = bitcast<f32>((map[record] >> SPARE) << 3u);
-    let far = bitcast<f32>((far_word >> SPARE) << 3u);
-    if (depth <= near) {
+    let near = bitcast<f32>((near_word >> SPARE) << 3u);
+    // The mean of a texel with hair is not 0.
+    if (depth <= near || (near_word | far_word) == 0u) {
         return 0.0;
     }
-    let mean = f32(1024u + ((map[record] & 31u) | ((far_word & 31u) << 5u)));
+    let far = bitcast<f32>((far_word >> SPARE) << 3u);
+    let mean = f32(1023u + ((near_word & 31u) | ((far_word & 31u) << 5u)));
     let bits = record + 2u;
     let counts = bits + (texels.whole.x >> 5u);
     let place = slice_of(near, far, depth);
     let slice = u32(place.x);
-    let slab = slice >> texels.whole.z;
-    // Counts, two a word: those of the slabs before, of the slab itself and of all. By shifts rather than by branches.
+    // Behind all hair every slab lies before.
+    let slab = select(slice >> texels.whole.z, texels.whole.y, depth >= far);
+    // Counts, two a word: those of the slabs before, and of the slab itself.
     var before = 0u;
-    var all = 0u;
     var own = 0u;
-    for (var k = 0u; k < texels.whole.y / 2u; k++) {
+    for (var k = 0u; k < texels.whole.y / 2u && 2u * k <= slab; k++) {
         let two = map[counts + k];
         let low = two & 0xffffu;
         let high = two >> 16u;
-        all += low + high;
         before += select(0u, low, 2u * k < slab) + select(0u, high, 2u * k + 1u < slab);
         own += select(0u, low, 2u * k == slab) + select(0u, high, 2u * k + 1u == slab);
     }
     if (depth >= far) {
-        return depth_of_weight(f32(all) * mean);
+        return depth_of_weight(f32(before) * mean);
     }
     // Fragments of one depth lie between two neighbouring numbers here. A point at this depth comes before them.
-    if ((far_word >> SPARE) - (map[record] >> SPARE) <= 1u) {
+    if ((far_word >> SPARE) - (near_word >> SPARE) <= 1u) {
         return 0.0;
     }
     // Bits of the slab, and those of them before the slice.

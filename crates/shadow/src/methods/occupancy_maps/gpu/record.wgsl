@@ -2,7 +2,7 @@
 // for each slice; a count of 16 bits for each slab, two a word. `texels.whole`: slices, slabs, slices of a slab as a power of
 // two, words of a record.
 
-// The mean weight less 1024, in 0..425, has nine bits; a depth within 0 and 1 leaves its two highest bits free and can spare
+// The mean weight less 1023, in 1..425, has nine bits; a depth within 0 and 1 leaves its two highest bits free and can spare
 // three of its lowest: 2^-20 of it.
 const SPARE: u32 = 5u;
 

@@ -13,7 +13,7 @@ fn texel_pass(texel: u32) {
         count += (two & 0xffffu) + (two >> 16u);
     }
     // Where counts have stopped, the mean makes up for it.
-    let mean = u32(clamp(round(f32(weight) / f32(max(count, 1u))) - 1024.0, 0.0, 1023.0));
+    let mean = u32(clamp(round(f32(weight) / f32(max(count, 1u))) - 1023.0, 1.0, 1023.0));
     let near = bitcast<u32>(near_of(texel)) >> 3u;
     let far = (bitcast<u32>(far_of(texel)) + 7u) >> 3u;
     atomicStore(&map[record], (near << SPARE) | (mean & 31u));
