@@ -1,7 +1,7 @@
 //! One pass of the window, from top to bottom.
 
 use egui::{Align2, CentralPanel, Frame, Panel, ProgressBar, Rect, RichText, ScrollArea, Ui, vec2};
-use lovelock_studio::{PROJECT_EXTENSION, Place, Project};
+use lovelock_studio::{PROJECT_EXTENSION, Painted, Place, Project};
 
 use super::control::section;
 use super::path_dialog::{Answer, PathDialog, Purpose};
@@ -178,7 +178,8 @@ impl Window {
                         panels::recording::ui(ui, &mut project.recording, self.recorder.state(), frames);
                 });
                 section(ui, "Statistics", true, |ui| {
-                    panels::statistics::ui(ui, &self.session.stages, &self.facts());
+                    let session = &self.session;
+                    panels::statistics::ui(ui, &session.stages, &session.passes, &self.facts());
                 });
             });
         });
@@ -231,16 +232,53 @@ impl Window {
 
     fn facts(&self) -> Vec<panels::statistics::Fact> {
         let mut facts = Vec::new();
-        if let Some(painted) = &self.session.painted {
-            facts.push(("Picture", format!("{} × {}", painted.picture.width, painted.picture.height)));
-            facts.push(("Segments drawn", painted.stats.segments.to_string()));
-            facts.push(("Mean transmittance", format!("{:.3}", painted.stats.mean_transmittance)));
+        let mut fact = |name, tip, value| facts.push(panels::statistics::Fact { name, tip, value });
+        if let Some(Painted { picture, stats, .. }) = self.session.painted.as_deref() {
+            let mib = |bytes: u64| format!("{:.1} MiB", bytes as f64 / f64::from(1 << 20));
+            let size = format!("{} × {}", picture.width, picture.height);
+            fact("Picture", "Size of the picture as it is drawn, pixels.", size);
+            fact(
+                "Segments drawn",
+                "Straight pieces of all strands in the picture.",
+                stats.segments.to_string(),
+            );
+            fact(
+                "Shadow maps",
+                "Memory that the shadow method holds, for all lights together.",
+                mib(stats.shadow_bytes),
+            );
+            fact(
+                "Strands and pixels",
+                "Memory for the strands as they are drawn, and for each pixel to put them together.",
+                mib(stats.draw_bytes),
+            );
+            fact(
+                "Mean transmittance",
+                "Share of the first light that reaches a point of the hair through other hair, on average.",
+                format!("{:.3}", stats.mean_transmittance),
+            );
         }
         if let Some(frame) = &self.session.frame {
-            facts.push(("Substeps", frame.report.substeps.to_string()));
-            facts.push(("Largest stretch", format!("{:.4} %", 100.0 * frame.totals.max_stretch)));
-            facts.push(("Deepest in the body", format!("{:.1} mm", 1e3 * frame.totals.max_penetration_m)));
-            facts.push(("Guides put back", frame.totals.recovered_guides.to_string()));
+            fact(
+                "Substeps",
+                "Parts in which the last step was simulated: more when hair is fast.",
+                frame.report.substeps.to_string(),
+            );
+            fact(
+                "Largest stretch",
+                "How far a link has been from its length at most.",
+                format!("{:.4} %", 100.0 * frame.totals.max_stretch),
+            );
+            fact(
+                "Deepest in the body",
+                "How far hair has been inside the body at most.",
+                format!("{:.1} mm", 1e3 * frame.totals.max_penetration_m),
+            );
+            fact(
+                "Guides put back",
+                "Guides that the simulation lost and set on their style again.",
+                frame.totals.recovered_guides.to_string(),
+            );
         }
         facts
     }

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use lovelock_studio::{
-    Access, Event, FrameSnapshot, PaintRequest, Painted, Painter, Place, Problem, Project, Scene,
-    StageHistory, StudioError, Worker,
+    Access, Event, FrameSnapshot, PaintRequest, Painted, Painter, PassHistory, Place, Problem, Project,
+    Scene, StageHistory, StudioError, Worker,
 };
 
 use super::panels::{body, hair};
@@ -31,6 +31,7 @@ pub(crate) struct Session {
     pub(crate) hair: hair::Loaded,
     pub(crate) body: body::Loaded,
     pub(crate) stages: StageHistory,
+    pub(crate) passes: PassHistory,
     pub(crate) playing: bool,
     pub(crate) draw_error: Option<String>,
 }
@@ -69,6 +70,7 @@ impl Session {
             hair: hair::Loaded::default(),
             body: body::Loaded::default(),
             stages: StageHistory::new(PLOTTED_FRAMES),
+            passes: PassHistory::new(PLOTTED_FRAMES),
             playing: true,
             draw_error: None,
         })
@@ -128,6 +130,7 @@ impl Session {
         }
         if let Some(painted) = self.painter.painted().newer_than(&mut self.seen_painted) {
             self.stages.push(painted.times);
+            self.passes.push(&painted.stats.passes);
             self.painted = Some(painted);
         }
         self.draw_error = self.painter.error();

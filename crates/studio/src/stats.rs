@@ -146,7 +146,7 @@ impl StageHistory {
     }
 }
 
-/// What the passes of the last frames took, pass by pass in the order in which they came.
+/// What the passes of the last frames took, pass by pass in the order of the newest frame.
 #[derive(Clone, Debug)]
 pub struct PassHistory {
     passes: Vec<(String, VecDeque<f64>)>,
@@ -161,17 +161,16 @@ impl PassHistory {
 
     /// Adds a frame. Passes that it has not are forgotten: it was drawn otherwise.
     pub fn push(&mut self, passes: &[PassTime]) {
-        self.passes.retain(|(name, _)| passes.iter().any(|pass| pass.name == *name));
+        let mut before = std::mem::take(&mut self.passes);
         for pass in passes {
-            let at = self.passes.iter().position(|(name, _)| *name == pass.name).unwrap_or_else(|| {
-                self.passes.push((pass.name.clone(), VecDeque::new()));
-                self.passes.len() - 1
-            });
-            let times = &mut self.passes[at].1;
+            let known = before.iter().position(|(name, _)| *name == pass.name);
+            let (name, mut times) =
+                known.map_or_else(|| (pass.name.clone(), VecDeque::new()), |at| before.swap_remove(at));
             if times.len() == self.capacity {
                 times.pop_front();
             }
             times.push_back(pass.ms);
+            self.passes.push((name, times));
         }
     }
 
@@ -225,6 +224,8 @@ mod tests {
         assert_eq!(history.medians(), [pass("b", 2.0), pass("a", 20.0)]);
         history.push(&[pass("a", 20.0), pass("c", 5.0)]);
         assert_eq!(history.medians(), [pass("a", 20.0), pass("c", 5.0)]);
+        history.push(&[pass("d", 1.0), pass("c", 7.0), pass("a", 20.0)]);
+        assert_eq!(history.medians(), [pass("d", 1.0), pass("c", 6.0), pass("a", 20.0)], "as they come now");
     }
 
     #[test]

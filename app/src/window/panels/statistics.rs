@@ -2,15 +2,31 @@
 
 use egui::{RichText, Ui};
 use egui_plot::{GridMark, Line, Plot, PlotPoints};
-use lovelock_studio::{Stage, StageHistory};
+use lovelock_studio::render::PassTime;
+use lovelock_studio::{PassHistory, Stage, StageHistory};
 
+use crate::window::control::note;
 use crate::window::theme;
 
-/// One line of facts: what it is, and its value.
-pub(crate) type Fact = (&'static str, String);
+/// One line of facts.
+#[derive(Clone, Debug)]
+pub(crate) struct Fact {
+    /// What it is.
+    pub(crate) name: &'static str,
+    /// The same in a sentence.
+    pub(crate) tip: &'static str,
+    /// Its value with its unit.
+    pub(crate) value: String,
+}
 
-/// The plot of stage times and the facts below it.
-pub(crate) fn ui(ui: &mut Ui, history: &StageHistory, facts: &[Fact]) {
+/// Passes that belong together: how their names begin, a title, and what they do.
+const GROUPS: [(&str, &str, &str); 2] = [
+    ("shadow/", "Shadow", "Builds the maps of all lights and looks up how much light reaches the strands."),
+    ("draw/", "Draw", "Shades the strands and puts them together with the body and the background."),
+];
+
+/// The plot of stage times, the passes and the facts below it.
+pub(crate) fn ui(ui: &mut Ui, history: &StageHistory, passes: &PassHistory, facts: &[Fact]) {
     Plot::new("stage times")
         .height(112.0)
         .allow_zoom(false)
@@ -44,14 +60,52 @@ pub(crate) fn ui(ui: &mut Ui, history: &StageHistory, facts: &[Fact]) {
             ui.end_row();
         }
     });
+    egui::CollapsingHeader::new(RichText::new("Passes").small()).show(ui, |ui| {
+        let medians = passes.medians();
+        if !medians.is_empty() {
+            passes_ui(ui, &medians);
+        } else if history.newest().is_some() {
+            note(ui, "This device does not measure its passes.");
+        }
+    });
     ui.separator();
     egui::Grid::new("facts").num_columns(2).spacing([10.0, 2.0]).show(ui, |ui| {
-        for (name, value) in facts {
-            ui.label(RichText::new(*name).small().color(theme::QUIET));
+        for Fact { name, tip, value } in facts {
+            ui.label(RichText::new(*name).small().color(theme::QUIET)).on_hover_text(*tip);
             ui.label(RichText::new(value).small());
             ui.end_row();
         }
     });
+}
+
+/// Medians of the passes, group by group with their sums.
+fn passes_ui(ui: &mut Ui, medians: &[PassTime]) {
+    egui::Grid::new("passes").num_columns(2).spacing([10.0, 2.0]).show(ui, |ui| {
+        for (group, title, tip) in GROUPS {
+            let of_group: Vec<_> =
+                medians.iter().filter_map(|pass| Some((pass.name.strip_prefix(group)?, pass.ms))).collect();
+            if of_group.is_empty() {
+                continue;
+            }
+            let sum: f64 = of_group.iter().map(|(_, ms)| ms).sum();
+            ui.label(RichText::new(format!("{title}, {} passes", of_group.len())).small().strong())
+                .on_hover_text(tip);
+            ui.label(RichText::new(format!("{sum:.2} ms")).small().strong());
+            ui.end_row();
+            for (name, ms) in of_group {
+                ui.label(RichText::new(in_words(name)).small().color(theme::QUIET));
+                ui.label(RichText::new(format!("{ms:.2} ms")).small());
+                ui.end_row();
+            }
+        }
+    });
+}
+
+/// `body-depth` as people write it.
+fn in_words(name: &str) -> String {
+    let mut letters = name.chars();
+    let first = letters.next().into_iter().flat_map(char::to_uppercase);
+    first.chain(letters.map(|letter| if letter == '-' { ' ' } else { letter })).collect()
 }
 
 /// Lines of the grid at 1, 2 or 5 times a power of ten, few enough that each has room for its number.
@@ -74,6 +128,12 @@ fn round_step(least: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn passes_are_named_in_words() {
+        assert_eq!(in_words("sort-and-blend"), "Sort and blend");
+        assert_eq!(in_words(""), "");
+    }
 
     #[test]
     fn grid_lines_are_few_and_round() {

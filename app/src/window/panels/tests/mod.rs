@@ -7,8 +7,8 @@ use egui::Ui;
 use egui_kittest::Harness;
 use glam::Vec3;
 use lovelock_studio::groom::Preset;
-use lovelock_studio::render::VoxelDeposit;
-use lovelock_studio::{HairSource, Project, StageHistory, StageTimes};
+use lovelock_studio::render::{PassTime, VoxelDeposit};
+use lovelock_studio::{HairSource, PassHistory, Project, StageHistory, StageTimes};
 
 use super::recording::State;
 use crate::window::control::section;
@@ -22,6 +22,7 @@ pub(super) struct Bench {
     pub(super) hair: super::hair::Loaded,
     pub(super) body: super::body::Loaded,
     pub(super) stages: StageHistory,
+    pub(super) passes: PassHistory,
     pub(super) clip_frames: u64,
 }
 
@@ -29,6 +30,15 @@ impl Bench {
     pub(super) fn new(project: Project) -> Self {
         let mut stages = StageHistory::new(8);
         stages.push(StageTimes { draw: 3.25, ..StageTimes::default() });
+        let mut passes = PassHistory::new(8);
+        let pass = |name: &str, ms| PassTime { name: name.to_owned(), ms };
+        passes.push(&[
+            pass("interpolate", 0.5),
+            pass("shadow/range", 1.25),
+            pass("shadow/occupancy", 2.5),
+            pass("draw/body-depth", 4.75),
+            pass("draw/sort-and-blend", 8.5),
+        ]);
         Self {
             project,
             selected_light: 0,
@@ -44,6 +54,7 @@ impl Bench {
                 notes: Vec::new(),
             },
             stages,
+            passes,
             clip_frames: 480,
         }
     }
@@ -73,7 +84,8 @@ pub(super) const PANELS: [(&str, Show); 9] = [
         super::recording::ui(ui, &mut b.project.recording, &State::Idle, b.clip_frames);
     }),
     ("Statistics", |ui, b| {
-        super::statistics::ui(ui, &b.stages, &[("Picture", "1280 × 720".to_owned())]);
+        let (name, tip, value) = ("Picture", "Size of the picture.", "1280 × 720".to_owned());
+        super::statistics::ui(ui, &b.stages, &b.passes, &[super::statistics::Fact { name, tip, value }]);
     }),
 ];
 

@@ -8,10 +8,10 @@ use lovelock_studio::render::{MAX_LIGHTS, ShadowMethod, VoxelDeposit};
 use lovelock_studio::wisp::SimulationSettings;
 use lovelock_studio::{BodySource, HairSource, MotionSource, Project, RecordingSection, Stage};
 
-use super::panel;
+use super::{Bench, panel};
 use crate::window::panels::recording::{Ask, State};
 use crate::window::panels::{body, hair, recording};
-use crate::window::testing::{control, drag, is_on, screen, tooltip_at, type_at};
+use crate::window::testing::{Shown, control, drag, is_on, screen, texts, tooltip_at, type_at};
 
 /// Chooses an entry of a box that opens.
 fn choose<S>(harness: &mut egui_kittest::Harness<'_, S>, name: &str, entry: &str) {
@@ -307,4 +307,40 @@ fn statistics_name_every_stage_and_fact() {
     }
     assert!(harness.query_by_label("3.25 ms").is_some());
     assert!(harness.query_by_label("1280 × 720").is_some());
+}
+
+#[test]
+fn statistics_group_the_passes_with_their_sums() {
+    let mut harness = panel("Statistics", Project::default());
+    // What stands beside a name, on its line.
+    let value = |harness: &egui_kittest::Harness<'_, Shown<Bench>>, name: &str| {
+        let y = harness.get_by_label(name).rect().center().y;
+        let values: Vec<_> = texts(harness)
+            .into_iter()
+            .filter(|(text, rect, _)| text.ends_with(" ms") && (rect.center().y - y).abs() < 4.0)
+            .map(|(text, ..)| text)
+            .collect();
+        values.join(" ")
+    };
+    for (name, ms) in [
+        ("Shadow, 2 passes", "3.75 ms"),
+        ("Range", "1.25 ms"),
+        ("Occupancy", "2.50 ms"),
+        ("Draw, 2 passes", "13.25 ms"),
+        ("Body depth", "4.75 ms"),
+        ("Sort and blend", "8.50 ms"),
+    ] {
+        assert_eq!(value(&harness, name), ms, "{name}");
+    }
+    assert!(harness.query_by_label_contains("does not measure").is_none());
+    let at = harness.get_by_label("Shadow, 2 passes").rect().center();
+    assert!(tooltip_at(&mut harness, at).is_some_and(|tip| tip.contains("maps of all lights")));
+    let at = harness.get_by_label("Picture").rect().center();
+    assert!(tooltip_at(&mut harness, at).is_some_and(|tip| tip.contains("Size")), "facts are explained too");
+
+    // A device without timers.
+    harness.state_mut().state.passes.push(&[]);
+    harness.run();
+    assert!(harness.query_by_label("This device does not measure its passes.").is_some());
+    assert!(harness.query_by_label("Range").is_none());
 }
