@@ -128,11 +128,40 @@ fn hair_shadows_the_body() {
     };
     let Some(free) = wall(false, ShadowMethod::VoxelMap) else { return };
     let unshadowed = wall(true, ShadowMethod::None).expect("an adapter");
-    let shadowed = wall(true, ShadowMethod::VoxelMap).expect("an adapter");
     assert!(free > 120, "a lit wall: {free}");
     // The control: without a shadow method the same hair leaves the wall as it is.
     assert!(unshadowed.abs_diff(free) < 10, "{unshadowed} against {free}");
-    assert!(shadowed * 3 < free * 2, "{shadowed} against {free}");
+    for &method in ShadowMethod::ALL.iter().filter(|method| **method != ShadowMethod::None) {
+        let shadowed = wall(true, method).expect("an adapter");
+        assert!(shadowed * 3 < free * 2, "{method}: {shadowed} against {free}");
+    }
+}
+
+#[test]
+fn hair_shadows_the_ground() {
+    // Light from straight above; the camera looks down past the hair at the ground under it.
+    let ground = |hair: bool, method| {
+        let lines: Vec<_> = curtain(400, 0.4, 0.0)
+            .into_iter()
+            .map(|line| line.into_iter().map(|p| Vec3::new(p.x, 0.5, p.y)).collect())
+            .collect();
+        let mut s = scene(if hair { &lines } else { &[] });
+        s.look.real_hairs = 100_000.0;
+        s.look.width_scale = 0.01;
+        s.lights = vec![Light { direction: Vec3::NEG_Y, softness: 0.0, ..Light::default() }];
+        s.shadow = ShadowSettings { method, ..ShadowSettings::default() };
+        s.picture.ground = true;
+        (s.picture.background_top, s.picture.background_bottom) = (Vec3::splat(0.3), Vec3::splat(0.3));
+        s.camera = Camera { eye: Vec3::new(0.0, 0.3, 1.5), target: Vec3::ZERO, fov_y: 0.3 };
+        s.draw(96, 96).map(|picture| sum(pixel(&picture, 48, 48)))
+    };
+    let Some(free) = ground(false, ShadowMethod::VoxelMap) else { return };
+    let unshadowed = ground(true, ShadowMethod::None).expect("an adapter");
+    assert!(unshadowed.abs_diff(free) < 4, "the control: {unshadowed} against {free}");
+    for &method in ShadowMethod::ALL.iter().filter(|method| **method != ShadowMethod::None) {
+        let shadowed = ground(true, method).expect("an adapter");
+        assert!(shadowed * 10 < free * 9, "{method}: {shadowed} against {free}");
+    }
 }
 
 #[test]

@@ -185,14 +185,40 @@ pub fn tuft(strands: u32) -> Vec<Vec<Vec3>> {
         .collect()
 }
 
+/// One strand that hangs before the origin and bends.
+pub fn one_strand() -> Vec<Vec<Vec3>> {
+    let at = |j: u32| {
+        let t = j as f32 / 20.0;
+        Vec3::new(0.05 * t * t, 0.1 - 0.2 * t, 0.02 * t)
+    };
+    vec![(0..=20).map(at).collect()]
+}
+
+/// A board of strands that hang side by side and behind each other: `across` by `deep` of them.
+pub fn slab(across: u32, deep: u32) -> Vec<Vec<Vec3>> {
+    (0..across * deep)
+        .map(|i| {
+            let (x, z) = ((i % across) as f32 / across as f32 - 0.5, (i / across) as f32 / deep as f32 - 0.5);
+            // Between the rows of the ones before.
+            let x = x + 0.618_034 * (i / across) as f32 / across as f32 % (1.0 / across as f32);
+            (0..=8).map(|j| Vec3::new(0.2 * x, 0.1 - 0.025 * j as f32, 0.08 * z)).collect()
+        })
+        .collect()
+}
+
 /// A tuft before a wall on which its shadow falls, under the lights of the default scene.
 pub fn tuft_scene(strands: u32) -> Scene {
-    let mut s = scene(&tuft(strands));
+    before_wall(&tuft(strands))
+}
+
+/// Strands before a wall on which their shadow falls, under the lights of the default scene.
+pub fn before_wall(lines: &[Vec<Vec3>]) -> Scene {
+    let mut s = scene(lines);
     s.body = Some(grid(-0.08, 0.3, 48, Vec3::new(0.35, 0.25, 0.2)));
     s.look = HairLook::default();
     s.look.real_hairs = 8000.0;
     s.lights = Light::default_rig();
-    s.shadow = ShadowSettings { method: ShadowMethod::OccupancyMaps, ..ShadowSettings::default() };
+    s.shadow = ShadowSettings::default();
     s.picture = PictureSettings::default();
     s
 }

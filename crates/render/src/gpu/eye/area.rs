@@ -30,7 +30,12 @@ impl Area {
 
     /// The part of a picture in which hair may lie that is bounded, from the eye on, by `min` and `max` along the axes of
     /// [`Area::axes`], and whose strands are `width` wide; metres. The whole picture where hair comes close to the eye.
-    pub fn of(camera: &Camera, [width, height]: [u32; 2], (min, max): (Vec3, Vec3), strand_width: f32) -> Self {
+    pub fn of(
+        camera: &Camera,
+        [width, height]: [u32; 2],
+        (min, max): (Vec3, Vec3),
+        strand_width: f32,
+    ) -> Self {
         let whole = Self { left: 0, top: 0, columns: width, rows: height };
         if min.x > max.x {
             return Self::default();
