@@ -12,6 +12,15 @@ use crate::{GroomSettings, Obstacle, ScalpIndex};
 
 /// Distance from the tips over which hair bends under or out, metres.
 const ENDS: f32 = 0.09;
+/// A turn from one link to the next by which a guide counts as folded, radians: it is laid anew.
+const FOLD: f32 = 1.2;
+/// The sharpest turn of a guide that needs no more smoothing, radians.
+const EASY_TURN: f32 = 0.45;
+/// How often a folded guide is laid anew before it is cut by a tenth, and how often it is cut.
+const SMOOTHINGS: usize = 6;
+const CUTS: usize = 3;
+/// How far from the body the course of such a guide is kept, metres: as far as links that are laid along it need no push.
+const CLEAR: f32 = 0.005;
 
 /// Three guides of equal links about `path`, `length` metres long, rooted on the scalp and outside `obstacle`.
 pub(super) fn around(
@@ -74,8 +83,67 @@ pub(super) fn around(
         });
         let mut target = target;
         target[0] = own_root.position;
-        lay(&target, own_length, own_root.normal, obstacle)
+        lay_smoothly(&target, own_length, own_root.normal, obstacle)
     })
+}
+
+/// As [`lay`], but so that the chain does not fold.
+///
+/// Where the target passes through something thin, such as an ear, a chain that is pushed out of it link by link folds
+/// back on itself: its way is smoothed until it does not. What meets a shoulder head on and still folds is cut shorter.
+fn lay_smoothly(
+    target: &[Vec3; GUIDE_POINTS],
+    length: f32,
+    root_normal: Vec3,
+    obstacle: &dyn Obstacle,
+) -> [Vec3; GUIDE_POINTS] {
+    let mut best = lay(target, length, root_normal, obstacle);
+    let mut sharpest = sharpest_turn(&best);
+    if sharpest < FOLD {
+        return best;
+    }
+    let mut length = length;
+    for _ in 0..CUTS {
+        let mut target = *target;
+        for round in 0..SMOOTHINGS {
+            if sharpest < EASY_TURN {
+                return best;
+            }
+            smooth(&mut target, round, length, obstacle);
+            let laid = lay(&target, length, root_normal, obstacle);
+            let turn = sharpest_turn(&laid);
+            if turn < sharpest {
+                (best, sharpest) = (laid, turn);
+            }
+        }
+        if sharpest < FOLD {
+            break;
+        }
+        length *= 0.9;
+    }
+    best
+}
+
+/// Smooths the way of a guide, the more the later the round, and keeps it clear of the body.
+fn smooth(target: &mut [Vec3; GUIDE_POINTS], round: usize, length: f32, obstacle: &dyn Obstacle) {
+    for _ in 0..4 + 2 * round {
+        let before = *target;
+        for k in 1..GUIDE_POINTS - 1 {
+            target[k] = 0.25 * (before[k - 1] + before[k + 1]) + 0.5 * before[k];
+        }
+        let [.., a, b, end] = &mut *target;
+        *end = 0.5 * (*end + *b + (*b - *a));
+        for (k, p) in target.iter_mut().enumerate().skip(1) {
+            let clear = (CLEAR * (1.0 + 0.5 * round as f32)).min(0.2 * length * fraction(k));
+            let (distance, n) = obstacle.distance(*p);
+            *p += n * (clear - distance).max(0.0);
+        }
+    }
+}
+
+/// The sharpest turn from one link to the next, radians.
+fn sharpest_turn(guide: &[Vec3; GUIDE_POINTS]) -> f32 {
+    guide.windows(3).map(|p| (p[1] - p[0]).angle_between(p[2] - p[1])).fold(0.0, f32::max)
 }
 
 fn fraction(k: usize) -> f32 {
