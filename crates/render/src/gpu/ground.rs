@@ -5,7 +5,7 @@ use lovelock_gpu::{Commands, Gpu, GrowBuffer, wgpu};
 use super::frame_resources::FrameResources;
 use super::pipelines::Pipelines;
 
-/// Pixels along each edge of a cell; twin of `CELL` in ground_light.wgsl.
+/// Pixels along each edge of a cell; twin of `CELL` in `ground_light.wgsl`.
 const CELL: u32 = 4;
 
 /// The corners of one picture.

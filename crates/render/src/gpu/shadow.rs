@@ -1,6 +1,7 @@
 //! The shadow methods of one frame on the GPU: a map a light, asked once a strand point and once a vertex of the body.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::fmt;
 
 use glam::{Mat4, Vec3};
@@ -80,10 +81,10 @@ impl GpuShadowStage {
             old.forget(gpu);
         }
         self.method = method;
-        if !self.methods.contains_key(&method) {
-            self.methods.insert(method, gpu_shadow(method, gpu)?);
-        }
-        let Some(shadow) = self.methods.get_mut(&method) else { return Ok(()) };
+        let shadow = match self.methods.entry(method) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(new) => new.insert(gpu_shadow(method, gpu)?),
+        };
         self.lights = lights.len();
         self.frames.truncate(lights.len());
         let anchor: Vec3 = input.world_from_head.translation.into();
@@ -169,7 +170,7 @@ impl GpuShadowStage {
 
     /// Carries world space to light `k`'s layer; far outside where it has none.
     pub fn columns_from_world(&self, k: usize) -> Mat4 {
-        self.columns.from_world(k)
+        self.columns.uv_from_world(k)
     }
 }
 
@@ -225,7 +226,7 @@ impl Columns {
         self.written = [None; MAX_LIGHTS];
     }
 
-    fn from_world(&self, k: usize) -> Mat4 {
+    fn uv_from_world(&self, k: usize) -> Mat4 {
         const OUTSIDE: Mat4 = Mat4::from_cols_array(&[
             0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0, -1.0, 0.0, 1.0,
         ]);

@@ -25,7 +25,7 @@ pub(crate) struct Fragment {
 
 /// Samples of a pixel that an opacity takes: as many as its fourths, rounded up or down by a noise of the pixel and the
 /// strand, from one on that is the strand's own. Strands of a pixel take different samples, so that many thin ones add up. Twin
-/// of `covered_samples` in `strand_ribbons.wgsl`.
+/// of `covered_samples` in `eye/opaque/samples.wgsl`.
 #[inline(always)]
 fn covered_samples(alpha: f32, [x, y]: [f32; 2], hash: f32) -> u32 {
     let inner = x * 0.067_110_56 + y * 0.005_837_15;

@@ -1,4 +1,4 @@
-//! One segment as a ribbon over the pixels of a tile: the twin of `strand_ribbons.wgsl`.
+//! One segment as a ribbon over the pixels of a tile: the twin of `eye/fragments.wgsl`.
 //!
 //! Below a pixel, width becomes coverage: a strand of 0.2 pixels is drawn one pixel wide at a fifth of its
 //! opacity, so it neither breaks up nor gains weight as it recedes.

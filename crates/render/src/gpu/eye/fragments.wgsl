@@ -24,8 +24,7 @@ fn opacity_of(fragment: Fragment) -> f32 {
 
 @compute @workgroup_size(64)
 fn each_fragment(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
-    let thread = id.x + id.y * groups.x * 64u;
-    let segment = thread / eye.lanes;
+    let segment = id.x + id.y * groups.x * 64u;
     if (segment >= eye.segments) {
         return;
     }
@@ -72,7 +71,7 @@ fn each_fragment(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
     let slope = step.y / step.x;
     let half_run = reach * length / abs(step.x);
     let last = i32(ceil(until.x - 0.5));
-    for (var major = i32(ceil(begin.x - 0.5)) + i32(thread % eye.lanes); major < last; major += i32(eye.lanes)) {
+    for (var major = i32(ceil(begin.x - 0.5)); major < last; major++) {
         let middle = start.y + slope * (f32(major) + 0.5 - start.x);
         let end = i32(ceil(min(middle + half_run, until.y) - 0.5));
         for (var minor = i32(ceil(max(middle - half_run, begin.y) - 0.5)); minor < end; minor++) {

@@ -3,9 +3,8 @@
 struct EyeUniform {
     // The first column and row of the area that is drawn, its columns and its rows.
     area: vec4u,
-    // Segments, threads a segment, room in the list of fragments.
+    // Segments, and room in the list of fragments.
     segments: u32,
-    lanes: u32,
     room: u32,
     // Opacity of a strand where it covers a pixel wholly.
     opacity: f32,

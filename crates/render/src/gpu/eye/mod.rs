@@ -1,8 +1,8 @@
 //! The hair as the eye sees it: every way of transparency by compute kernels.
 //!
 //! A thread walks over the pixels of a segment and leaves its fragments in integer atomics, so that nothing depends on the
-//! order of threads. Each pass over the fragments is fragments.wgsl with its own `take`, each pass over the pixels
-//! each_pixel.wgsl with its own `pixel_pass`. Where the device gives no buffer that holds a whole picture, it is drawn in
+//! order of threads. Each pass over the fragments is `fragments.wgsl` with its own `take`, each pass over the pixels
+//! `each_pixel.wgsl` with its own `pixel_pass`. Where the device gives no buffer that holds a whole picture, it is drawn in
 //! bands of rows.
 
 mod area;
@@ -41,11 +41,9 @@ const FRAGMENT_WORDS: u64 = 3;
 pub(super) struct EyeUniform {
     area: [u32; 4],
     segments: u32,
-    lanes: u32,
     room: u32,
     opacity: f32,
     first: u32,
-    pad: [u32; 3],
 }
 
 /// What the eye's passes draw.
@@ -76,8 +74,6 @@ pub(super) struct Eye {
     list: GrowBuffer<u32>,
     total: wgpu::Buffer,
     layer: GrowBuffer<[u32; 2]>,
-    /// Threads that share a segment.
-    lanes: u32,
     /// Fragments that there is room for, and bands at least, where lists are kept.
     room: u64,
     least_bands: u32,
@@ -133,7 +129,6 @@ impl Eye {
                 mapped_at_creation: false,
             }),
             layer: GrowBuffer::new(device, "hair layer", storage),
-            lanes: if gpu.is_software() { 1 } else { 4 },
             room: 1 << 16,
             least_bands: 1,
             lists: None,
@@ -227,11 +222,9 @@ impl Eye {
         let uniform = EyeUniform {
             area: [area.left, area.top, area.columns, area.rows],
             segments: input.segment_count,
-            lanes: self.lanes,
             room: self.room as u32,
             opacity: input.opacity,
             first,
-            pad: [0; 3],
         };
         let Some((nearest, _)) = &self.nearest else { return };
         let buffer = lovelock_gpu::constants(gpu, "eye", &uniform);
@@ -256,7 +249,7 @@ impl Eye {
         let Some((_, kernels)) = kernels else { return };
         for (pass, kernel) in mode.passes.iter().zip(kernels) {
             let threads = match pass.over {
-                Over::Fragments => u64::from(input.segment_count) * u64::from(self.lanes),
+                Over::Fragments => u64::from(input.segment_count),
                 Over::Pixels | Over::Groups(_) => pixels,
             };
             let group = kernel.bind(gpu, &resources);
@@ -313,4 +306,39 @@ fn too_large(gpu: &Gpu, needed: u64) -> GpuError {
         gpu.info.name,
         gpu.most_storage_bytes()
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::mem::offset_of;
+
+    use lovelock_gpu::check_shader;
+    use naga::TypeInner;
+
+    use super::*;
+
+    #[test]
+    fn the_uniform_has_the_layout_of_the_shader() {
+        let (_, source) = shaders().into_iter().nth(1).expect("a pass");
+        let module = check_shader(&source).expect("valid");
+        let (_, ty) = module
+            .types
+            .iter()
+            .find(|(_, ty)| ty.name.as_deref() == Some("EyeUniform"))
+            .expect("the structure");
+        let TypeInner::Struct { members, span } = &ty.inner else { panic!("no structure") };
+        let found: Vec<usize> =
+            members.iter().map(|member| member.offset as usize).chain([*span as usize]).collect();
+        assert_eq!(
+            found,
+            [
+                offset_of!(EyeUniform, area),
+                offset_of!(EyeUniform, segments),
+                offset_of!(EyeUniform, room),
+                offset_of!(EyeUniform, opacity),
+                offset_of!(EyeUniform, first),
+                size_of::<EyeUniform>(),
+            ]
+        );
+    }
 }
