@@ -78,7 +78,7 @@ pub(crate) struct Record {
 
 #[derive(Debug, Args)]
 pub(crate) struct Bench {
-    /// The scenes: smooth, curly, smooth-500k, smooth-1m, smooth-2m; all of them where none is named.
+    /// The scenes: smooth, curly, smooth-500k, smooth-1m, smooth-2m, woman-300k, dog-2m; all of them where none is named.
     pub(crate) scenes: Vec<lovelock_studio::BenchScene>,
     /// A file for the numbers, comma-separated.
     #[arg(short, long, value_name = "FILE.csv")]
@@ -86,9 +86,15 @@ pub(crate) struct Bench {
     /// Frames to measure, 1 to 1000.
     #[arg(long, default_value_t = 15, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) frames: u32,
-    /// Size in pixels.
-    #[arg(long, value_name = "WxH", value_parser = size, default_value = "1280x720")]
-    pub(crate) size: (u32, u32),
+    /// Size in pixels; the scene's own where none is given: 1280x720, and 800x600 for woman-300k and dog-2m.
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub(crate) size: Option<(u32, u32)>,
+    /// Shadow method; the scene's own where none is given.
+    #[arg(long, value_name = "ID")]
+    pub(crate) shadow: Option<ShadowMethod>,
+    /// How overlapping strands are put together; the scene's own where none is given.
+    #[arg(long, value_name = "ID")]
+    pub(crate) transparency: Option<Transparency>,
     /// The backend to measure; both where none is given.
     #[arg(long, value_name = "BACKEND")]
     pub(crate) backend: Option<lovelock_studio::render::Backend>,

@@ -9,7 +9,13 @@ use super::output::Output;
 
 /// Measures, and tells the numbers.
 pub(crate) fn run(task: &Bench, output: Output) -> Result<(), StudioError> {
-    let mut request = BenchRequest { frames: task.frames, size: task.size, ..BenchRequest::default() };
+    let mut request = BenchRequest {
+        frames: task.frames,
+        size: task.size,
+        shadow: task.shadow,
+        transparency: task.transparency,
+        ..BenchRequest::default()
+    };
     if !task.scenes.is_empty() {
         request.scenes.clone_from(&task.scenes);
     }

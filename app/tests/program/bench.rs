@@ -27,8 +27,17 @@ fn a_scene_is_measured_stage_by_stage() {
     assert_eq!(scene["points"], 103_850);
     let stages = scene["stages"].as_array().expect("stages");
     let of = |name: &str| stages.iter().find(|stage| stage["name"] == name).expect(name);
-    for name in ["motion", "simulate", "interpolate", "shadow", "draw", "draw/points", "draw/tiles", "frame"]
-    {
+    for name in [
+        "motion",
+        "simulate",
+        "interpolate",
+        "shadow",
+        "draw",
+        "draw/points",
+        "draw/tiles",
+        "picture",
+        "frame",
+    ] {
         let [least, median, most] =
             ["min_ms", "median_ms", "max_ms"].map(|key| of(name)[key].as_f64().expect("a number"));
         assert!(0.0 < least && least <= median && median <= most, "{name}: {scene}");
@@ -37,17 +46,51 @@ fn a_scene_is_measured_stage_by_stage() {
     assert_eq!(of("frame")["published_ms"], 160.0);
     assert!(of("motion")["published_ms"].is_null());
     assert!(of("frame")["median_ms"].as_f64() >= of("draw")["median_ms"].as_f64());
+    let picture = of("picture")["median_ms"].as_f64().expect("a number");
+    let rate = scene["pictures_per_second"].as_f64().expect("a number");
+    // Text keeps the last digit or loses it.
+    assert!((rate * picture / 1e3 - 1.0).abs() < 1e-12, "{rate} {picture}");
+    assert!(scene["published_note"].is_null());
     let csv = std::fs::read_to_string(dir.path().join("a b.csv")).expect("the file");
     assert_eq!(csv.lines().count(), 1 + stages.len());
 }
 
 #[test]
+fn a_published_scene_has_its_own_size_and_method_beside_the_papers_table() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let measure = |more: &[&str]| {
+        let args = ["bench", "woman-300k", "--frames", "1", "--backend", "cpu", "--json"];
+        run(dir.path(), args.iter().chain(more)).done().json()["scenes"][0].clone()
+    };
+    let published = |scene: &serde_json::Value, name: &str| {
+        let stages = scene["stages"].as_array().expect("stages");
+        stages.iter().find(|stage| stage["name"] == name).expect(name)["published_ms"].as_f64()
+    };
+    let own = measure(&[]);
+    assert_eq!((&own["strands"], &own["segments"]), (&20_000.into(), &300_000.into()));
+    assert_eq!((&own["width"], &own["height"]), (&800.into(), &600.into()));
+    assert_eq!(own["shadow"], "occupancy-maps");
+    assert_eq!(own["transparency"], "occupancy-order");
+    assert_eq!(published(&own, "interpolate"), Some(2.9));
+    assert_eq!(published(&own, "picture").map(|ms| (1e4 / ms).round()), Some(373.0));
+    assert!(own["published_note"].as_str().is_some_and(|note| note.contains("Sintorn")), "{own}");
+    // Another method in another size is beside no figure of theirs.
+    let other = measure(&["--size", "96x64", "--shadow", "voxel-map", "--transparency", "sorted"]);
+    assert_eq!((&other["width"], &other["shadow"]), (&96.into(), &"voxel-map".into()));
+    assert_eq!(other["transparency"], "sorted");
+    assert_eq!(published(&other, "interpolate").or(published(&other, "picture")), None);
+    assert!(other["published_note"].is_null());
+}
+
+#[test]
 fn wrong_requests_are_refused_before_any_work() {
     let dir = tempfile::tempdir().expect("a folder");
-    let wrong: [(&[&str], &str); 5] = [
+    let wrong: [(&[&str], &str); 7] = [
         (&["bench", "wig"], "smooth-2m"),
         (&["bench", "--frames", "0"], "1..=1000"),
         (&["bench", "--backend", "magic"], "expected auto, gpu or cpu"),
+        (&["bench", "--shadow", "magic"], "occupancy-maps"),
+        (&["bench", "--transparency", "magic"], "occupancy-order"),
         (&["bench", "smooth", "-o", "no folder/x.csv"], "no folder"),
         (&["bench", "smooth", "--size", "8192x8192", "--backend", "cpu"], "at most 35 million"),
     ];

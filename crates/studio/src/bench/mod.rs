@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use lovelock_render::{Backend, Picture, RenderError, Renderer};
+use lovelock_render::{Backend, Picture, RenderError, Renderer, ShadowMethod, Transparency};
 
 pub use report::{BenchReport, SceneReport, StageReport};
 pub use scenes::BenchScene;
@@ -23,8 +23,12 @@ pub struct BenchRequest {
     pub backends: Vec<Backend>,
     /// Frames to measure, after one that is not counted.
     pub frames: u32,
-    /// Width and height, pixels.
-    pub size: (u32, u32),
+    /// Width and height, pixels; the scene's own where none is given.
+    pub size: Option<(u32, u32)>,
+    /// The shadow method; the scene's own where none is given.
+    pub shadow: Option<ShadowMethod>,
+    /// The transparency; the scene's own where none is given.
+    pub transparency: Option<Transparency>,
 }
 
 impl Default for BenchRequest {
@@ -33,7 +37,9 @@ impl Default for BenchRequest {
             scenes: BenchScene::ALL.to_vec(),
             backends: vec![Backend::Cpu, Backend::Gpu],
             frames: 15,
-            size: (1280, 720),
+            size: None,
+            shadow: None,
+            transparency: None,
         }
     }
 }
@@ -49,7 +55,9 @@ pub fn bench(
     request: &BenchRequest,
     progress: &mut dyn FnMut(&str) -> ControlFlow<()>,
 ) -> Result<BenchReport, StudioError> {
-    lovelock_render::check_size(request.size.0, request.size.1)?;
+    if let Some((width, height)) = request.size {
+        lovelock_render::check_size(width, height)?;
+    }
     let mut notes = Vec::new();
     let mut renderers = Vec::new();
     for &backend in &request.backends {
@@ -64,7 +72,9 @@ pub fn bench(
     }
     let mut scenes = Vec::new();
     for &scene in &request.scenes {
-        let project = scene.project();
+        let mut project = scene.project();
+        project.shadow.method = request.shadow.unwrap_or(project.shadow.method);
+        project.picture.transparency = request.transparency.unwrap_or(project.picture.transparency);
         let loaded = load(&project)?;
         for renderer in &mut renderers {
             let what = format!("{} on {}", scene.id(), renderer.adapter());
@@ -95,7 +105,7 @@ fn measure(
     renderer: &mut Renderer,
     request: &BenchRequest,
 ) -> Result<SceneReport, StudioError> {
-    let (width, height) = request.size;
+    let (width, height) = request.size.unwrap_or(scene.size());
     report::reset_peak_memory();
     let clock = FrameClock::new(30.0);
     let mut engine = Engine::with_step(Arc::clone(loaded), project.simulation, clock.step_secs);
@@ -116,5 +126,5 @@ fn measure(
             frames.push((watch.ms(), times, stats));
         }
     }
-    Ok(SceneReport::new(scene, project, renderer, request, &loaded.style.strands, &frames))
+    Ok(SceneReport::new(scene, project, renderer, [width, height], &loaded.style.strands, &frames))
 }

@@ -3,10 +3,10 @@
 use std::fmt::{self, Write};
 
 use lovelock_groom::StrandSet;
-use lovelock_render::{FrameStats, Renderer};
+use lovelock_render::{Backend, FrameStats, PassTime, Renderer};
 use serde::Serialize;
 
-use super::{BenchRequest, BenchScene};
+use super::BenchScene;
 use crate::{Project, Stage, StageTimes};
 
 /// What was measured on this machine.
@@ -45,9 +45,16 @@ pub struct SceneReport {
     pub segments: u64,
     /// Frames measured.
     pub frames: u64,
-    /// The stages, the passes of shadow and drawing where the backend measures them (`shadow/…`, `draw/…`), and the whole
-    /// frame.
+    /// The stages, the passes of shadow and drawing where the backend measures them (`shadow/…`, `draw/…`), all passes of a
+    /// graphics device together (`passes`), interpolation, shadow and drawing (`picture`), and the whole frame with its
+    /// simulation (`frame`).
     pub stages: Vec<StageReport>,
+    /// Pictures a second: one over the median of `picture`.
+    pub pictures_per_second: f64,
+    /// Frames a second: one over the median of `frame`.
+    pub frames_per_second: f64,
+    /// What to know of the published figures.
+    pub published_note: Option<&'static str>,
     /// Bytes that the shadow maps held.
     pub shadow_bytes: u64,
     /// Bytes that were held for the pixels, to put strands together in them.
@@ -73,7 +80,8 @@ pub struct StageReport {
 }
 
 impl StageReport {
-    fn new(name: &str, published_ms: Option<f64>, times: impl Iterator<Item = f64> + Clone) -> Self {
+    fn new(name: &str, published_ms: Option<f64>, times: &[f64]) -> Self {
+        let times = times.iter().copied();
         Self {
             name: name.to_owned(),
             median_ms: crate::median(times.clone()),
@@ -89,41 +97,54 @@ impl SceneReport {
         scene: BenchScene,
         project: &Project,
         renderer: &Renderer,
-        request: &BenchRequest,
+        [width, height]: [u32; 2],
         strands: &StrandSet,
         frames: &[(f64, StageTimes, FrameStats)],
     ) -> Self {
-        let drawn = [Stage::Motion, Stage::Simulate, Stage::Interpolate, Stage::Shadow, Stage::Draw];
-        let mut stages: Vec<_> = drawn
-            .into_iter()
-            .map(|stage| {
-                let name = stage.label().to_lowercase();
-                StageReport::new(&name, scene.published_ms(stage), frames.iter().map(move |f| f.1.get(stage)))
-            })
-            .collect();
-        let named = |name: &str, stats: &FrameStats| {
-            stats.passes.iter().find(|pass| pass.name == name).map_or(0.0, |pass| pass.ms)
+        let own = scene.project();
+        // What was published was made by the scene's own method.
+        let as_published = own.shadow.method == project.shadow.method
+            && own.picture.transparency == project.picture.transparency;
+        let published = |name: &str| if as_published { scene.published_ms(name) } else { None };
+        let row = |name: &str, of: &dyn Fn(&(f64, StageTimes, FrameStats)) -> f64| {
+            StageReport::new(name, published(name), &frames.iter().map(of).collect::<Vec<f64>>())
         };
+        let mut stages: Vec<_> =
+            [Stage::Motion, Stage::Simulate, Stage::Interpolate, Stage::Shadow, Stage::Draw]
+                .map(|stage| row(&stage.label().to_lowercase(), &|(_, times, _)| times.get(stage)))
+                .into();
         let passes = frames.first().map_or(&[][..], |frame| &frame.2.passes);
-        stages.extend(passes.iter().map(|pass| {
-            StageReport::new(&pass.name, None, frames.iter().map(|frame| named(&pass.name, &frame.2)))
-        }));
-        let published = drawn.into_iter().filter_map(|stage| scene.published_ms(stage)).sum::<f64>();
-        let published = (published > 0.0).then_some(published);
-        stages.push(StageReport::new("frame", published, frames.iter().map(|frame| frame.0)));
+        for PassTime { name, .. } in passes {
+            // Interpolation is a stage and a pass.
+            if stages.iter().all(|stage| stage.name != *name) {
+                let of =
+                    |stats: &FrameStats| stats.passes.iter().find(|pass| pass.name == *name).map(|p| p.ms);
+                stages.push(row(name, &|(.., stats)| of(stats).unwrap_or(0.0)));
+            }
+        }
+        if renderer.backend() == Backend::Gpu && !passes.is_empty() {
+            stages.push(row("passes", &|(.., stats)| stats.passes.iter().map(|pass| pass.ms).sum()));
+        }
+        let picture = row("picture", &|(_, times, _)| times.interpolate + times.shadow + times.draw);
+        let frame = row("frame", &|(whole_ms, ..)| *whole_ms);
+        let [pictures_per_second, frames_per_second] = [&picture, &frame].map(|row| 1e3 / row.median_ms);
+        stages.extend([picture, frame]);
         Self {
             scene: scene.id().to_owned(),
             backend: renderer.backend().to_string(),
             adapter: renderer.adapter().to_owned(),
             shadow: project.shadow.method.to_string(),
             transparency: project.picture.transparency.to_string(),
-            width: request.size.0,
-            height: request.size.1,
+            width,
+            height,
             strands: strands.count() as u64,
             points: strands.points() as u64,
             segments: strands.segments() as u64,
             frames: frames.len() as u64,
             stages,
+            pictures_per_second,
+            frames_per_second,
+            published_note: scene.published_note().filter(|_| as_published),
             shadow_bytes: frames.iter().map(|frame| frame.2.shadow_bytes).max().unwrap_or(0),
             draw_bytes: frames.iter().map(|frame| frame.2.draw_bytes).max().unwrap_or(0),
             peak_memory_bytes: peak_memory_bytes(),
@@ -172,11 +193,24 @@ impl BenchReport {
     }
 }
 
-/// One of the amounts of memory of a report, bytes.
-type Memory = fn(&SceneReport) -> u64;
+/// One number of a report, and what stands behind it.
+type Number = (&'static str, fn(&SceneReport) -> f64, &'static str);
 
-const MEMORY: [(&str, Memory); 2] =
-    [("shadow memory", |scene| scene.shadow_bytes), ("pixel memory", |scene| scene.draw_bytes)];
+const NUMBERS: [Number; 4] = [
+    ("shadow memory", |scene| mib(scene.shadow_bytes), " MiB"),
+    ("pixel memory", |scene| mib(scene.draw_bytes), " MiB"),
+    ("pictures a second", |scene| scene.pictures_per_second, ""),
+    ("frames a second", |scene| scene.frames_per_second, ""),
+];
+
+fn mib(bytes: u64) -> f64 {
+    bytes as f64 / f64::from(1 << 20)
+}
+
+/// With two decimals at the most, and none where there are none.
+fn short(ms: f64) -> String {
+    ((100.0 * ms).round() / 100.0).to_string()
+}
 
 impl fmt::Display for BenchReport {
     /// The backends of a scene side by side.
@@ -196,11 +230,6 @@ impl fmt::Display for BenchReport {
                 first.transparency,
                 first.frames
             )?;
-            write!(f, "  {:<20}", "")?;
-            for scene in same {
-                write!(f, "{:>12}{:>20}", scene.backend, "(least to most)")?;
-            }
-            writeln!(f, "{:>12}", "published")?;
             // Those of all, in the order of the one that has most.
             let mut by_size: Vec<_> = same.iter().collect();
             by_size.sort_by_key(|scene| std::cmp::Reverse(scene.stages.len()));
@@ -210,8 +239,14 @@ impl fmt::Display for BenchReport {
                     stages.push(stage);
                 }
             }
+            let width = stages.iter().map(|stage| stage.name.len()).fold(20, usize::max);
+            write!(f, "  {:<width$}", "")?;
+            for scene in same {
+                write!(f, "{:>12}{:>20}", scene.backend, "(least to most)")?;
+            }
+            writeln!(f, "{:>12}", "published")?;
             for stage in stages {
-                write!(f, "  {:<20}", stage.name)?;
+                write!(f, "  {:<width$}", stage.name)?;
                 for scene in same {
                     match scene.stages.iter().find(|other| other.name == stage.name) {
                         Some(found) => {
@@ -221,14 +256,23 @@ impl fmt::Display for BenchReport {
                         None => write!(f, "{:>32}", "")?,
                     }
                 }
-                writeln!(f, "{:>12}", stage.published_ms.map_or_else(String::new, |ms| format!("{ms:.0}")))?;
+                writeln!(f, "{:>12}", stage.published_ms.map_or_else(String::new, short))?;
             }
-            for (name, of) in MEMORY {
-                write!(f, "  {name:<20}")?;
+            for (name, of, unit) in NUMBERS {
+                write!(f, "  {name:<width$}")?;
                 for scene in same {
-                    write!(f, "{:>8.1} MiB{:>20}", of(scene) as f64 / f64::from(1 << 20), "")?;
+                    let number = format!("{:.1}{unit}", of(scene));
+                    write!(f, "{number:>12}{:>20}", "")?;
                 }
-                writeln!(f)?;
+                // The picture's rate is what papers print.
+                let published = first.stages.iter().find(|stage| stage.name == "picture");
+                match published.and_then(|stage| stage.published_ms) {
+                    Some(ms) if name == "pictures a second" => writeln!(f, "{:>12}", short(1e3 / ms))?,
+                    _ => writeln!(f)?,
+                }
+            }
+            if let Some(note) = first.published_note {
+                writeln!(f, "  {note}")?;
             }
         }
         for note in &self.notes {
@@ -279,7 +323,10 @@ mod tests {
             points: 6,
             segments: 4,
             frames: 3,
-            stages: vec![StageReport::new("draw", Some(37.0), [ms, ms + 1.0, ms + 5.0].into_iter())],
+            stages: vec![StageReport::new("draw", Some(37.0), &[ms, ms + 1.0, ms + 5.0])],
+            pictures_per_second: 90.9,
+            frames_per_second: 80.0,
+            published_note: None,
             shadow_bytes: 3 << 20,
             draw_bytes: 5 << 20,
             peak_memory_bytes: None,
