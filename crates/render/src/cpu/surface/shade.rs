@@ -1,4 +1,4 @@
-//! Light on the body: the twin of `surface.wgsl`, some pixels at a time.
+//! Light on the body: the twin of `surface_shading.wgsl`, some pixels at a time.
 // Compiled within the versions of `dispatch`.
 #![allow(clippy::inline_always)]
 

@@ -37,8 +37,39 @@ fn sample_at(pixel: vec2u, k: i32, depth: f32) -> Seen {
 
 // Whether two samples lie on one smooth piece of the body, so that they can be lit as one.
 fn belong_together(a: Seen, b: Seen) -> bool {
-    return dot(a.normal, b.normal) > 0.9 && abs(a.depth - b.depth) < 0.01 * a.depth
+    return dot(a.normal, b.normal) > 0.9 && abs(a.depth - b.depth) <= 0.01 * a.depth
         && all(abs(a.color_scalp - b.color_scalp) < vec4f(0.1));
+}
+
+// One of four, without an array: where kernels run on the processor, arrays that are indexed are slow.
+fn chosen(a: Seen, b: Seen, c: Seen, d: Seen, k: u32) -> Seen {
+    var one = a;
+    if (k == 1u) {
+        one = b;
+    } else if (k == 2u) {
+        one = c;
+    } else if (k == 3u) {
+        one = d;
+    }
+    return one;
+}
+
+// Samples that are lit together, and how many they are.
+struct Group {
+    sum: Seen,
+    count: f32,
+}
+
+fn join(group: Group, other: Seen, joins: bool) -> Group {
+    var joined = group;
+    if (joins) {
+        joined.sum.normal += other.normal;
+        joined.sum.depth += other.depth;
+        joined.sum.color_scalp += other.color_scalp;
+        joined.sum.hair += other.hair;
+        joined.count += 1.0;
+    }
+    return joined;
 }
 
 // The body and what is behind it. Samples of one smooth piece are lit together, at the middle of the pixel.
@@ -46,43 +77,40 @@ fn behind_hair(pixel: vec2u) -> vec3f {
     if (textureLoad(nearest, pixel, 0).x == 0.0) {
         return backdrop(pixel);
     }
-    let depth = vec4f(
-        textureLoad(depths, pixel, 0),
-        textureLoad(depths, pixel, 1),
-        textureLoad(depths, pixel, 2),
-        textureLoad(depths, pixel, 3),
-    );
-    let covered = depth > vec4f(0.0);
-    var open = dot(select(vec4u(0u), vec4u(1u, 2u, 4u, 8u), covered), vec4u(1u));
-    let free = 0.25 * f32(4u - countOneBits(open));
+    let a = sample_at(pixel, 0, textureLoad(depths, pixel, 0));
+    let b = sample_at(pixel, 1, textureLoad(depths, pixel, 1));
+    let c = sample_at(pixel, 2, textureLoad(depths, pixel, 2));
+    let d = sample_at(pixel, 3, textureLoad(depths, pixel, 3));
+    // Samples that are not lit yet, a bit each.
+    var open = vec4<bool>(a.depth > 0.0, b.depth > 0.0, c.depth > 0.0, d.depth > 0.0);
+    let free = dot(select(vec4f(0.25), vec4f(0.0), open), vec4f(1.0));
     let ndc = ((vec2f(pixel) + 0.5) / frame.size_scale_exposure.xy - 0.5) * vec2f(2.0, -2.0);
     var sum = vec3f(0.0);
-    while (open != 0u) {
-        let first = i32(firstTrailingBit(open));
-        let one = sample_at(pixel, first, depth[first]);
-        open &= open - 1u;
-        var together = one;
-        var count = 1.0;
-        for (var rest = open; rest != 0u; rest &= rest - 1u) {
-            let k = i32(firstTrailingBit(rest));
-            let other = sample_at(pixel, k, depth[k]);
-            if (belong_together(one, other)) {
-                together.normal += other.normal;
-                together.depth += other.depth;
-                together.color_scalp += other.color_scalp;
-                together.hair += other.hair;
-                count += 1.0;
-                open &= ~(1u << u32(k));
-            }
-        }
-        let world = frame.world_from_clip * vec4f(ndc, together.depth / count, 1.0);
+    while (any(open)) {
+        let first = select(select(select(3u, 2u, open.z), 1u, open.y), 0u, open.x);
+        let one = chosen(a, b, c, d, first);
+        // Whatever the numbers are, one sample is lit in each round.
+        open = open & (vec4u(first) != vec4u(0u, 1u, 2u, 3u));
+        let together = open & vec4<bool>(
+            belong_together(one, a),
+            belong_together(one, b),
+            belong_together(one, c),
+            belong_together(one, d),
+        );
+        open = open & !together;
+        var group = Group(one, 1.0);
+        group = join(group, a, together.x);
+        group = join(group, b, together.y);
+        group = join(group, c, together.z);
+        group = join(group, d, together.w);
+        let world = frame.world_from_clip * vec4f(ndc, group.sum.depth / group.count, 1.0);
         let surface = Surface(
             world.xyz / world.w,
-            together.normal,
-            together.color_scalp / count,
-            together.hair / count,
+            group.sum.normal,
+            group.sum.color_scalp / group.count,
+            group.sum.hair / group.count,
         );
-        sum += 0.25 * count * shade_surface(surface);
+        sum += 0.25 * group.count * shade_surface(surface);
     }
     if (free > 0.0) {
         sum += free * backdrop(pixel);
