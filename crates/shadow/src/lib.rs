@@ -26,7 +26,8 @@ pub use converged::{CONVERGED_CHANGE, Converged, MOST_CONVERGED_SAMPLES, converg
 pub use cpu::{ColumnMap, CpuShadow, ShadowInput, ShadowReport, cpu_shadow};
 pub use error::ShadowError;
 pub use gpu::{
-    GpuColumns, GpuShadow, GpuShadowError, GpuShadowInput, GpuStrands, GpuTargets, all_shaders, gpu_shadow,
+    GpuColumns, GpuShadow, GpuShadowError, GpuShadowInput, GpuStrands, GpuTargets, SUM_WORDS, all_shaders,
+    gpu_shadow,
 };
 pub use light::LightFrame;
 pub use method::{ShadowMethod, UnknownShadowMethod};

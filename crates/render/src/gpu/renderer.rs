@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use lovelock_gpu::{Commands, Gpu, GrowBuffer, PassTimer, Readback, Stopwatch, constants, wgpu};
+use lovelock_shadow::SUM_WORDS;
 
 use super::eye::{Area, Eye, EyeInput};
 use super::frame_resources::FrameResources;
@@ -130,7 +131,8 @@ impl GpuRenderer {
         let (interpolate_ms, shadow_ms) = (of("interpolate"), of("shadow/"));
         let strands = self.hair.strands();
         let points = f64::from(strands.point_count.max(1));
-        let sum = self.numbers.first_chunk().map_or(0.0, |&bytes| f64::from(u32::from_le_bytes(bytes)));
+        let words = self.numbers.as_chunks::<4>().0.iter();
+        let sum = words.map(|&bytes| f64::from(u32::from_le_bytes(bytes))).fold(0.0, |sum, word| sum + word);
         Ok(FrameStats {
             interpolate_ms,
             shadow_ms,
@@ -220,7 +222,7 @@ impl GpuRenderer {
         let kernel = &self.pipelines.picture;
         let group = kernel.bind(gpu, &frame.with(own));
         commands.compute("draw/picture", |pass| kernel.run(pass, &group, pixels));
-        let wanted = [(self.screen.raw(), 4 * pixels), (self.shadow.sum(), 4)];
+        let wanted = [(self.screen.raw(), 4 * pixels), (self.shadow.sum(), 4 * SUM_WORDS)];
         self.readback.copy(gpu, commands.encoder(), &wanted);
         commands.submit();
         Ok(())

@@ -7,7 +7,8 @@ use std::fmt;
 use glam::{Mat4, Vec3};
 use lovelock_gpu::{Commands, Gpu, wgpu};
 use lovelock_shadow::{
-    GpuColumns, GpuShadow, GpuShadowError, GpuShadowInput, GpuTargets, LightFrame, ShadowMethod, gpu_shadow,
+    GpuColumns, GpuShadow, GpuShadowError, GpuShadowInput, GpuTargets, LightFrame, SUM_WORDS, ShadowMethod,
+    gpu_shadow,
 };
 
 use super::hair::HairBuffers;
@@ -49,7 +50,7 @@ impl GpuShadowStage {
             frames: Vec::new(),
             sum: gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("sum of transmittances"),
-                size: 16,
+                size: 4 * SUM_WORDS,
                 usage: wgpu::BufferUsages::STORAGE
                     | wgpu::BufferUsages::COPY_DST
                     | wgpu::BufferUsages::COPY_SRC,
@@ -158,7 +159,7 @@ impl GpuShadowStage {
         (0..self.lights).map(|slot| shadow.report(slot).memory_bytes).sum::<u64>() + scratch
     }
 
-    /// The sum of the bytes of the first light's transmittances over the strands' points.
+    /// Words whose sum is that of the bytes of the first light's transmittances over the strands' points.
     pub fn sum(&self) -> &wgpu::Buffer {
         &self.sum
     }

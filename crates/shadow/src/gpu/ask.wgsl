@@ -8,37 +8,29 @@ struct Ask {
     sums: u32,
 }
 
+const SUM_WORDS: u32 = 256u;
+
 @group(0) @binding(10) var<uniform> ask: Ask;
 @group(0) @binding(11) var<storage, read> targets: array<vec4f>;
 @group(0) @binding(12) var<storage, read_write> answers: array<u32>;
 @group(0) @binding(13) var<storage, read_write> sum: array<atomic<u32>>;
 
-var<workgroup> group_sum: atomic<u32>;
-
 @compute @workgroup_size(64)
-fn ask_points(
-    @builtin(global_invocation_id) id: vec3u,
-    @builtin(num_workgroups) groups: vec3u,
-    @builtin(local_invocation_index) local: u32,
-) {
+fn ask_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let i = id.x + id.y * groups.x * 64u;
-    var byte = 0u;
-    if (i < ask.count) {
-        let t = hair_transmittance(targets[i * ask.stride].xyz);
-        byte = u32(clamp(t, 0.0, 1.0) * 255.0 + 0.5);
-        if (ask.slot == 0u) {
-            answers[i] = 0xffffff00u | byte;
-        } else {
-            let shift = 8u * ask.slot;
-            answers[i] = (answers[i] & ~(0xffu << shift)) | (byte << shift);
-        }
+    if (i >= ask.count) {
+        return;
+    }
+    let t = hair_transmittance(targets[i * ask.stride].xyz);
+    let byte = u32(clamp(t, 0.0, 1.0) * 255.0 + 0.5);
+    if (ask.slot == 0u) {
+        answers[i] = 0xffffff00u | byte;
+    } else {
+        let shift = 8u * ask.slot;
+        answers[i] = (answers[i] & ~(0xffu << shift)) | (byte << shift);
     }
     if (ask.sums != 0u) {
-        // One addition a group: a single word takes them all.
-        atomicAdd(&group_sum, byte);
-        workgroupBarrier();
-        if (local == 0u) {
-            atomicAdd(&sum[0], atomicLoad(&group_sum));
-        }
+        // Over many words, which wait for each other less than one would.
+        atomicAdd(&sum[(i >> 6u) % SUM_WORDS], byte);
     }
 }

@@ -68,9 +68,13 @@ pub struct GpuTargets<'a> {
     /// One word a point: four transmittances of 8 bits, the first light's in the lowest byte. Asking the map of slot *k*
     /// sets byte *k*; that of slot 0 sets the others to all light.
     pub out: &'a wgpu::Buffer,
-    /// Where the sum of the bytes of slot 0 is added, if anywhere: an `array<u32>` of one word.
+    /// Where the sum of the bytes of slot 0 is added, if anywhere: an `array<u32>` of [`SUM_WORDS`] words, which make it
+    /// together.
     pub sum: Option<&'a wgpu::Buffer>,
 }
+
+/// Words of [`GpuTargets::sum`]; twin of the constant in `ask.wgsl`.
+pub const SUM_WORDS: u64 = 256;
 
 /// What lies behind the whole hair, on the device: see [`ColumnMap`](crate::ColumnMap).
 #[derive(Clone, Copy, Debug, PartialEq)]
