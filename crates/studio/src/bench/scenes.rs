@@ -114,10 +114,11 @@ impl BenchScene {
     /// our simulation with the interpolation of strands in it; density and transmittance our shadow; filtering and
     /// drawing our drawing.
     ///
-    /// Of `woman-300k` and `dog-2m`: Sintorn, Assarsson 2009 (a GeForce GTX 280). The rates of figure 1 are those of a
+    /// Of `woman-300k` and `dog-2m`: Sintorn, Assarsson 2009 (a `GeForce` GTX 280). The rates of figure 1 are those of a
     /// picture. The paper's table has passes of another frame, of 20,000 strands (see [`BenchScene::published_note`]): its
     /// occupancy and slab-size maps are one pass here, its shadow map of the background the body's depth, its
     /// composition our last pass.
+    #[expect(clippy::match_same_arms, reason = "the table's figures, which are equal by chance")]
     pub fn published_ms(self, name: &str) -> Option<f64> {
         let ms = match (self, name) {
             (Self::Smooth, "simulate") => 67.0 + 3.0,
