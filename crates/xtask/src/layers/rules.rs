@@ -27,7 +27,7 @@ const WITHOUT_WGPU: [&str; 6] = ["groom", "motion", "wisp", "record", "testkit",
 const LIBRARIES: [(&[&str], &[&str]); 3] = [
     (&["egui", "eframe", "epaint", "emath"], &["app"]),
     (&["clap"], &["app", "xtask"]),
-    (&["wgpu", "naga"], &["gpu", "render", "studio", "app"]),
+    (&["wgpu", "naga"], &["gpu", "shadow", "render", "studio", "app"]),
 ];
 
 /// One sentence for every arrow that may not be.
