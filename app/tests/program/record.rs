@@ -292,3 +292,37 @@ fn files_are_taken_instead_of_the_projects() {
     assert_eq!(json["strands"], 228, "every strand of the file is drawn");
     assert_eq!(read_film(&dir.path().join("a.mp4")).expect("a film").frames, 2);
 }
+
+#[test]
+fn the_card_records_any_combination_and_tells_its_passes() {
+    let dir = tempfile::tempdir().expect("a folder");
+    saved(dir.path(), "p.lovelock", &small_project());
+    let record = |backend: &str, shadow: &str, transparency: &str| {
+        let args = ["record", "p.lovelock", "-o", "a", "--frames", "0..2", "--json", "--backend", backend];
+        run(dir.path(), args.iter().chain(&["--shadow", shadow, "--transparency", transparency]))
+    };
+    for (shadow, transparency, passes) in [
+        ("occupancy-maps", "occupancy-order", ["shadow/range", "draw/occupancy"]),
+        ("density-clustering", "exact", ["shadow/clusters", "draw/scatter"]),
+    ] {
+        let ran = record("gpu", shadow, transparency);
+        if ran.stderr.contains("no graphics adapter") {
+            return lovelock_testkit::skip_without_adapter(&ran.stderr);
+        }
+        let json = ran.done().json();
+        assert_eq!((&json["backend"], &json["shadow"]), (&"gpu".into(), &shadow.into()));
+        assert_eq!(json["transparency"], transparency);
+        assert_eq!(json["frames"], 2);
+        assert!(json["shadow_bytes"].as_u64() > Some(0) && json["draw_bytes"].as_u64() > Some(0), "{json}");
+        for pass in passes {
+            // A card without timers measures none.
+            let told = json["passes_ms"].as_object().expect("passes");
+            assert!(told.is_empty() || told[pass].as_f64() > Some(0.0), "{pass}: {json}");
+        }
+    }
+    // The control: the processor has no such passes.
+    let json = record("cpu", "occupancy-maps", "occupancy-order").done().json();
+    assert_eq!(json["backend"], "cpu");
+    assert!(json["passes_ms"]["draw/tiles"].as_f64() > Some(0.0), "{json}");
+    assert!(json["passes_ms"]["shadow/range"].is_null());
+}

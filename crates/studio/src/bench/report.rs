@@ -193,6 +193,9 @@ impl BenchReport {
     }
 }
 
+/// Rows that hold others, in their order.
+const SUMS: [&str; 3] = ["passes", "picture", "frame"];
+
 /// One number of a report, and what stands behind it.
 type Number = (&'static str, fn(&SceneReport) -> f64, &'static str);
 
@@ -239,10 +242,12 @@ impl fmt::Display for BenchReport {
                     stages.push(stage);
                 }
             }
+            // The sums after the passes of all backends.
+            stages.sort_by_key(|stage| SUMS.iter().position(|sum| stage.name == *sum).map_or(0, |at| at + 1));
             let width = stages.iter().map(|stage| stage.name.len()).fold(20, usize::max);
             write!(f, "  {:<width$}", "")?;
             for scene in same {
-                write!(f, "{:>12}{:>20}", scene.backend, "(least to most)")?;
+                write!(f, "{:>12}{:>24}", scene.backend, "(least to most)")?;
             }
             writeln!(f, "{:>12}", "published")?;
             for stage in stages {
@@ -251,9 +256,9 @@ impl fmt::Display for BenchReport {
                     match scene.stages.iter().find(|other| other.name == stage.name) {
                         Some(found) => {
                             let spread = format!("({:.2} to {:.2})", found.min_ms, found.max_ms);
-                            write!(f, "{:>12.2}{spread:>20}", found.median_ms)?;
+                            write!(f, "{:>12.2}{spread:>24}", found.median_ms)?;
                         }
-                        None => write!(f, "{:>32}", "")?,
+                        None => write!(f, "{:>36}", "")?,
                     }
                 }
                 writeln!(f, "{:>12}", stage.published_ms.map_or_else(String::new, short))?;
@@ -262,7 +267,7 @@ impl fmt::Display for BenchReport {
                 write!(f, "  {name:<width$}")?;
                 for scene in same {
                     let number = format!("{:.1}{unit}", of(scene));
-                    write!(f, "{number:>12}{:>20}", "")?;
+                    write!(f, "{number:>12}{:>24}", "")?;
                 }
                 // The picture's rate is what papers print.
                 let published = first.stages.iter().find(|stage| stage.name == "picture");
@@ -347,6 +352,26 @@ mod tests {
             numbers,
             ["draw", "11.00", "(10.00", "to", "15.00)", "101.00", "(100.00", "to", "105.00)", "37"]
         );
+    }
+
+    #[test]
+    fn sums_follow_the_passes_of_all_backends() {
+        let mut report = report();
+        for (scene, names) in
+            report.scenes.iter_mut().zip([&["draw/tiles", "picture"][..], &["draw/a", "passes", "picture"]])
+        {
+            scene.stages.extend(names.iter().map(|name| StageReport::new(name, Some(26.81), &[2.0])));
+        }
+        let text = report.to_string();
+        let rows: Vec<_> = text.lines().filter_map(|line| line.split_whitespace().next()).collect();
+        let at = |name: &str| rows.iter().position(|row| *row == name).expect(name);
+        assert!(
+            at("draw/a") < at("draw/tiles")
+                && at("draw/tiles") < at("passes")
+                && at("passes") < at("picture")
+        );
+        let rate = text.lines().find(|line| line.trim().starts_with("pictures a second")).expect("a rate");
+        assert!(rate.ends_with("37.3"), "what was published as a rate is printed as one: {rate}");
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Devices that go and devices that never work. Those of the first kind need an adapter; software will do.
 
-use std::sync::mpsc::{Receiver, channel};
+use std::sync::mpsc::{Receiver, sync_channel};
 use std::time::Duration;
 
 use lovelock_render::Gpu;
@@ -27,9 +27,9 @@ impl Rig {
             noted.lock().expect("a list").push(choice);
             open(choice)
         };
-        let (sender, finished) = channel();
+        let (sender, finished) = sync_channel(64);
         let wake = move || {
-            let _ = sender.send(());
+            let _ = sender.try_send(());
         };
         let painter = Painter::start_with(Box::new(open), wake).expect("a thread");
         Self { painter, snapshot, finished, opened }
