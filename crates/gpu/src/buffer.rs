@@ -29,7 +29,9 @@ impl<T: Pod> GrowBuffer<T> {
             return false;
         }
         // Grow by half as much again, so that a slider does not make a new buffer at every step.
-        let limit = device.limits().max_buffer_size;
+        // Whole buffers are bound.
+        let limits = device.limits();
+        let limit = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
         let grown = (size + size / 2).next_multiple_of(16).min(limit).max(size);
         self.buffer = make(device, self.label, self.usage, grown);
         true

@@ -21,6 +21,9 @@ pub enum GpuError {
     /// A shader does not compile.
     #[error("{0}")]
     Shader(String),
+    /// What is to be drawn does not fit the device, or contradicts itself. The device is as good as before.
+    #[error("the graphics device cannot draw this: {0}")]
+    Input(String),
     /// The driver takes no more work as it was asked.
     #[error("the graphics device refused: {0}")]
     Refused(String),

@@ -40,10 +40,11 @@ impl Readback {
     /// # Errors
     /// The device is lost or the buffer cannot be mapped.
     pub fn read(&mut self, gpu: &Gpu, into: &mut [&mut Vec<u8>]) -> Result<(), GpuError> {
-        let Some(buffer) = &self.buffer else {
+        // Put back when all went well: a buffer that stays mapped cannot be used again.
+        let Some(buffer) = self.buffer.take() else {
             return Err(GpuError::Readback("nothing was copied".to_owned()));
         };
-        map(gpu, buffer)?;
+        map(gpu, &buffer)?;
         {
             let bytes = buffer.get_mapped_range(..).map_err(|error| GpuError::Readback(error.to_string()))?;
             let mut rest = &bytes[..];
@@ -55,6 +56,7 @@ impl Readback {
             }
         }
         buffer.unmap();
+        self.buffer = Some(buffer);
         Ok(())
     }
 }

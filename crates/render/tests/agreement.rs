@@ -5,7 +5,7 @@ mod common;
 use common::{Scene, tuft_scene};
 use glam::Vec3;
 use lovelock_groom::simd::Width;
-use lovelock_render::{Backend, CpuRenderer, Picture, ShadowMethod, Transparency};
+use lovelock_render::{Backend, Camera, CpuRenderer, Picture, ShadowMethod, Transparency};
 use lovelock_testkit::{Flip, flip};
 
 const BACKEND: Backend = Backend::Gpu;
@@ -131,4 +131,75 @@ fn a_renderer_that_has_drawn_other_scenes_draws_the_same() {
         draw(&mut used, &other);
     }
     assert!(draw(&mut used, &scene) == first);
+}
+
+/// Hair over a ground that its shadow falls on.
+fn over_ground() -> Scene {
+    let mut s = tuft_scene(300);
+    s.body = None;
+    s.strands.y.iter_mut().for_each(|y| *y += 0.3);
+    s.lights.truncate(1);
+    s.lights[0].direction = Vec3::new(0.1, -1.0, 0.05);
+    s.picture.ground = true;
+    s.camera = Camera { eye: Vec3::new(0.0, 0.5, 1.2), target: Vec3::new(0.0, 0.1, 0.0), fov_y: 0.6 };
+    s
+}
+
+#[test]
+fn the_shadow_on_the_ground_ends_with_its_map() {
+    let mut s = over_ground();
+    // Larger maps first: what they leave must not be seen later. 80 and 112 are no multiples of 64.
+    for (method, resolution) in
+        [(ShadowMethod::Exact, 512), (ShadowMethod::OpacityMaps, 80), (ShadowMethod::VoxelMap, 112)]
+    {
+        s.shadow.method = method;
+        s.shadow.exact.resolution = resolution;
+        s.shadow.opacity_maps.resolution = resolution;
+        s.shadow.voxel_map.resolution = resolution;
+        let Some(difference) = compared(&s, &s) else { return };
+        println!("{method}, {resolution}: {difference:?}");
+        assert!(difference.mean < MEAN && difference.p99 < P99, "{method}, {resolution}: {difference:?}");
+    }
+    let mut bright = over_ground();
+    bright.shadow.method = ShadowMethod::None;
+    let Some(control) = compared(&s, &bright) else { return };
+    assert!(control.mean > MEAN, "the control, a ground without shadow: {control:?}");
+}
+
+#[test]
+fn pictures_larger_than_the_devices_buffers_are_drawn_in_bands() {
+    let mut s = tuft_scene(60);
+    // Hair all over the picture: 72 bytes a pixel are more than the 128 MiB that software adapters bind.
+    s.camera = Camera { eye: Vec3::new(0.0, 0.0, 0.1), target: Vec3::ZERO, fov_y: 1.2 };
+    s.picture.transparency = Transparency::OccupancyOrder;
+    let (w, h) = (1700, 1200);
+    let Some(gpu) = s.draw_by(Backend::Gpu, w, h) else { return };
+    let cpu = s.draw_by(Backend::Cpu, w, h).expect("a picture");
+    let difference = flip(&gpu.rgba, &cpu.rgba, w, h);
+    println!("{difference:?}");
+    assert!(difference.mean < MEAN && difference.p99 < P99, "{difference:?}");
+}
+
+#[test]
+fn ground_beyond_the_bodys_shadow_map_is_lit() {
+    for backend in [Backend::Cpu, Backend::Gpu] {
+        let mut s = over_ground();
+        s.body = Some(common::closed_box(true));
+        s.strands = common::scene(&[]).strands;
+        s.style = common::scene(&[]).style;
+        // Steep light, a ground far below the body, and the place right under it but behind the map's far end.
+        s.lights[0].direction = Vec3::new(0.02, -1.0, 0.02);
+        s.camera = Camera { eye: Vec3::new(0.0, 3.0, 3.0), target: Vec3::new(0.0, 0.0, 0.0), fov_y: 0.5 };
+        if let Some((_, skin)) = &mut s.body {
+            skin.positions.iter_mut().for_each(|p| p.y += 1.0);
+        }
+        let Some(picture) = s.draw_by(backend, 128, 96) else { return };
+        s.body = None;
+        let free = s.draw_by(backend, 128, 96).expect("a picture");
+        let both = picture.rgba.chunks_exact(4).zip(free.rgba.chunks_exact(4));
+        let dark = both.filter(|(with, without)| with[1].saturating_add(10) < without[1]).count();
+        println!("{backend}: {dark} dark pixels");
+        // The box and its shadow have 68. Where the far end of the map keeps light off, 91 even if only the edge is wrong.
+        assert!(dark > 20 && dark < 80, "{backend}: {dark}");
+    }
 }

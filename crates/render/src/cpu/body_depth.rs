@@ -152,7 +152,8 @@ impl DepthMap {
                 depth[lane] = self.depth[(at[lane] + corner) as usize % (SIZE * SIZE)];
             }
             for lane in 0..N {
-                lit[lane] = if z[lane] <= depth[lane] { 1.0 } else { 0.0 };
+                // Behind the far end of the map nothing more keeps the light off.
+                lit[lane] = if min(z[lane], 1.0) <= depth[lane] { 1.0 } else { 0.0 };
             }
         }
         for lane in 0..N {
@@ -199,9 +200,9 @@ impl DepthMap {
             }
         }
         let deeper = radius * steepest;
-        if far + deeper <= nearest {
+        if min(far + deeper, 1.0) <= nearest {
             Some(1.0)
-        } else if near - deeper > farthest {
+        } else if min(near - deeper, 1.0) > farthest {
             Some(0.0)
         } else {
             None

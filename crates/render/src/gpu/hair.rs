@@ -59,7 +59,7 @@ impl HairBuffers {
         let points = input.style.strands.points();
         let needed = points as u64 * size_of::<ShadedPoint>() as u64;
         if needed > gpu.most_storage_bytes() {
-            return Err(GpuError::Refused(format!(
+            return Err(GpuError::Input(format!(
                 "{points} strand points need a buffer of {needed} bytes, and {} takes at most {}: draw fewer strands, or \
                  by the processor",
                 gpu.info.name,

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use lovelock_gpu::{Commands, Gpu, GrowBuffer, PassTimer, Readback, Stopwatch, constants, wgpu};
+use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, PassTimer, Readback, Stopwatch, constants, wgpu};
 use lovelock_shadow::SUM_WORDS;
 
-use super::eye::{Area, Eye, EyeInput};
+use super::eye::{Area, Eye, EyeInput, too_large};
 use super::frame_resources::FrameResources;
 use super::ground::Ground;
 use super::hair::HairBuffers;
@@ -18,8 +18,8 @@ use crate::picture::check_size_for;
 use crate::uniform::{FrameUniform, LightMaps};
 use crate::{FrameInput, FrameStats, MAX_LIGHTS, Picture, RenderError};
 
-/// How often a frame is drawn anew because lists had too little room; each time they have more.
-const MOST_ATTEMPTS: usize = 6;
+/// How often a frame is drawn anew because lists had too little room: each time they have more, or bands are halved.
+const MOST_ATTEMPTS: u32 = 16;
 
 /// Draws pictures on a GPU, and keeps what it needs for the next one.
 #[derive(Debug)]
@@ -107,16 +107,25 @@ impl GpuRenderer {
         check_size_for(width, height, self.gpu.max_picture_side())?;
         let gpu = Arc::clone(&self.gpu);
         let watch = Stopwatch::start();
-        for _ in 0..MOST_ATTEMPTS {
+        for attempt in 0.. {
             let mut timer = std::mem::take(&mut self.timer);
             let drawn = self.draw(&gpu, timer.begin(&gpu, "frame"), input, width, height);
+            if drawn.is_err() {
+                // What was begun is not timed to its end, and what the driver said of it belongs to this picture.
+                self.timer = PassTimer::new(&gpu)?;
+                let _ = gpu.check();
+                return drawn.map(|()| FrameStats::default());
+            }
             self.timer = timer;
-            drawn?;
             self.readback.read(&gpu, &mut [&mut picture.rgba, &mut self.numbers])?;
             gpu.check()?;
-            let again = [self.shadow.settle(&gpu)?, self.eye.settle(&gpu, height)?];
+            let again = [self.shadow.settle(&gpu)?, self.eye.settle(&gpu)?];
             if again == [false, false] {
                 break;
+            }
+            if attempt == MOST_ATTEMPTS {
+                let reason = "the lists of fragments did not settle; draw by the processor".to_owned();
+                return Err(GpuError::Input(reason).into());
             }
         }
         (picture.width, picture.height) = (width, height);
@@ -139,8 +148,11 @@ impl GpuRenderer {
             draw_ms: (watch.ms() - interpolate_ms - shadow_ms).max(0.0),
             segments: u64::from(strands.segment_count),
             shadow_bytes: self.shadow.memory_bytes(),
-            draw_bytes: self.eye.memory_bytes() + self.hair.memory_bytes(),
-            mean_transmittance: if sum > 0.0 { (sum / (255.0 * points)) as f32 } else { 1.0 },
+            draw_bytes: self.eye.memory_bytes()
+                + self.hair.memory_bytes()
+                + self.screen.raw().size()
+                + self.targets.as_ref().map_or(0, Targets::memory_bytes),
+            mean_transmittance: if self.shadow.has_light() { (sum / (255.0 * points)) as f32 } else { 1.0 },
             passes,
         })
     }
@@ -155,7 +167,13 @@ impl GpuRenderer {
         height: u32,
     ) -> Result<(), RenderError> {
         let device = &gpu.device;
+        let pixels = u64::from(width) * u64::from(height);
+        if 4 * pixels > gpu.most_storage_bytes() {
+            return Err(too_large(gpu, 4 * pixels).into());
+        }
         if self.targets.as_ref().is_none_or(|t| (t.width, t.height) != (width, height)) {
+            // The old ones are given back first.
+            self.targets = None;
             self.targets = Some(Targets::new(device, width, height));
         }
         let Some(targets) = &self.targets else { return Ok(()) };
@@ -192,7 +210,6 @@ impl GpuRenderer {
         let (bounds, _) = self.hair.bounds(input, Area::axes(input.camera), input.camera.eye);
         let strand_width = uniform.width_opacity_tip_scalp.x;
         let area = Area::of(input.camera, [width, height], (bounds.min, bounds.max), strand_width);
-        self.eye.fit(gpu, area);
         let strands = self.hair.strands();
         let eye = EyeInput {
             width,
@@ -206,7 +223,6 @@ impl GpuRenderer {
             transparency: input.picture.transparency,
         };
         self.eye.draw(gpu, &mut commands, &eye)?;
-        let pixels = u64::from(width) * u64::from(height);
         let Some(nearest) = self.eye.nearest() else { return Ok(()) };
         let hair_area = constants(gpu, "hair area", &[area.left, area.top, area.columns, area.rows]);
         let own = [

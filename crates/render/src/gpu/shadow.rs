@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::fmt;
 
-use glam::{Mat4, Vec3};
+use glam::{Mat4, Vec3, Vec4};
 use lovelock_gpu::{Commands, Gpu, wgpu};
 use lovelock_shadow::{
     GpuColumns, GpuShadow, GpuShadowError, GpuShadowInput, GpuTargets, LightFrame, SUM_WORDS, ShadowMethod,
@@ -152,6 +152,11 @@ impl GpuShadowStage {
         }
     }
 
+    /// Whether any light shone on the last frame.
+    pub fn has_light(&self) -> bool {
+        self.lights > 0
+    }
+
     /// Bytes that the maps hold.
     pub fn memory_bytes(&self) -> u64 {
         let Some(shadow) = self.methods.get(&self.method) else { return 0 };
@@ -229,11 +234,14 @@ impl Columns {
 
     fn uv_from_world(&self, k: usize) -> Mat4 {
         const OUTSIDE: Mat4 = Mat4::from_cols_array(&[
-            0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0, -1.0, 0.0, 1.0,
+            0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0, -1.0, 1.0, 1.0,
         ]);
         let Some(columns) = self.written.get(k).copied().flatten() else { return OUTSIDE };
-        // A map may be smaller than the texture that holds it: its coordinates are scaled to its corner.
+        // A map may be smaller than the texture that holds it: its coordinates are scaled to its corner, whose edge is what
+        // comes out as the third.
         let part = columns.size as f32 / self.size as f32;
-        Mat4::from_scale(Vec3::new(part, part, 1.0)) * columns.uv_from_world
+        let scaled = Mat4::from_scale(Vec3::new(part, part, 1.0)) * columns.uv_from_world;
+        let rows = scaled.transpose();
+        Mat4::from_cols(rows.x_axis, rows.y_axis, Vec4::W * part, rows.w_axis).transpose()
     }
 }

@@ -21,6 +21,11 @@ pub(super) struct Targets {
 }
 
 impl Targets {
+    /// Memory of all of them: 8 bytes for normals, 8 for colours and 4 for depth a sample.
+    pub fn memory_bytes(&self) -> u64 {
+        u64::from(self.width) * u64::from(self.height) * u64::from(SAMPLES) * 20
+    }
+
     pub fn new(device: &wgpu::Device, width: u32, height: u32) -> Self {
         let make = |label, format| {
             let texture = device.create_texture(&wgpu::TextureDescriptor {

@@ -275,11 +275,13 @@ impl Worker {
     }
 }
 
-/// Whether what draws must be opened again. A shader that does not compile does so on every device alike, and there
-/// is no use in looking for an adapter again that is not there.
+/// Whether what draws must be opened again. A shader that does not compile does so on every device alike, what does not
+/// fit will not fit then, and there is no use in looking for an adapter again that is not there.
 fn device_is_gone(error: &RenderError) -> bool {
     match error {
-        RenderError::Gpu(error) => !matches!(error, GpuError::Shader(_) | GpuError::NoAdapter(_)),
+        RenderError::Gpu(error) => {
+            !matches!(error, GpuError::Shader(_) | GpuError::NoAdapter(_) | GpuError::Input(_))
+        }
         RenderError::Shadow(_) | RenderError::Size { .. } => false,
     }
 }

@@ -1,6 +1,8 @@
 // Walks over the pixels of every segment, as ribbons that face the camera. Below a pixel, width becomes coverage: a strand of
 // 0.2 pixels is drawn one pixel wide at a fifth of its opacity, so it neither breaks up nor gains weight as it recedes. Twin of
 // cpu/hair/segment.rs and cpu/hair/list.rs. A pass defines `take(pixel, fragment)`.
+//
+// A thread walks over a whole segment: one that fills a picture, seen from a few centimetres, is slow.
 
 struct Fragment {
     // 1 at the near plane, falling to 0 at infinity.

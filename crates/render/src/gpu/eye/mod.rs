@@ -77,8 +77,16 @@ pub(super) struct Eye {
     /// Fragments that there is room for, and bands at least, where lists are kept.
     room: u64,
     least_bands: u32,
-    /// Whether the last frame had lists, and in how many bands.
-    lists: Option<u32>,
+    /// Whether the last frame had lists.
+    lists: Option<Lists>,
+}
+
+/// How the lists of a frame were cut.
+#[derive(Clone, Copy, Debug)]
+struct Lists {
+    bands: u32,
+    /// Rows of the area.
+    rows: u32,
 }
 
 impl Pass {
@@ -146,17 +154,12 @@ impl Eye {
         buffers.iter().map(|buffer| buffer.size()).sum()
     }
 
-    /// Makes room for the layer of an area.
-    pub fn fit(&mut self, gpu: &Gpu, area: Area) {
-        self.layer.reserve(&gpu.device, area.pixels() as usize);
-    }
-
     /// The nearest depth of the body in each pixel, as `nearest` in frame.wgsl.
     pub fn nearest(&self) -> Option<&wgpu::TextureView> {
         self.nearest.as_ref().map(|(view, _)| view)
     }
 
-    /// Encodes drawing the hair into [`Eye::layer`], which [`Eye::fit`] made large enough.
+    /// Encodes drawing the hair into [`Eye::layer`].
     ///
     /// # Errors
     /// A shader that does not compile, or a picture whose rows are too long for this device's buffers.
@@ -184,6 +187,10 @@ impl Eye {
         if input.area.is_empty() {
             return Ok(());
         }
+        if input.area.pixels() * 8 > gpu.most_storage_bytes() {
+            return Err(too_large(gpu, input.area.pixels() * 8));
+        }
+        self.layer.reserve(device, input.area.pixels() as usize);
         let row_bytes = u64::from(columns) * u64::from(mode.words) * 4;
         let most_rows = gpu.most_storage_bytes() / row_bytes.max(1);
         if most_rows == 0 {
@@ -191,11 +198,10 @@ impl Eye {
         }
         let mut bands = u64::from(all_rows).div_ceil(most_rows) as u32;
         if mode.lists {
-            let most = gpu.most_storage_bytes() / (4 * FRAGMENT_WORDS);
-            self.room = self.room.min(most);
+            self.room = self.room.min(list_limit(gpu));
             self.list.reserve(device, (self.room * FRAGMENT_WORDS) as usize);
             bands = bands.max(self.least_bands).min(all_rows);
-            self.lists = Some(bands);
+            self.lists = Some(Lists { bands, rows: all_rows });
         }
         let rows = all_rows.div_ceil(bands);
         self.map.reserve(device, (u64::from(rows) * row_bytes / 4) as usize);
@@ -261,27 +267,39 @@ impl Eye {
     /// more room then.
     ///
     /// # Errors
-    /// The device is lost.
-    pub fn settle(&mut self, gpu: &Gpu, height: u32) -> Result<bool, GpuError> {
-        let Some(bands) = self.lists else { return Ok(false) };
+    /// One row of the picture needs a longer list than the device gives, or the device is lost.
+    pub fn settle(&mut self, gpu: &Gpu) -> Result<bool, GpuError> {
+        let Some(Lists { bands, rows }) = self.lists else { return Ok(false) };
         let mut totals = [0_u32; 2];
         read_buffer(gpu, &self.total, &mut totals)?;
         let wanted = u64::from(totals[1]);
         if wanted <= self.room {
+            // After a close view, half as many bands are tried once lists have shrunk.
+            if self.least_bands > 1 && wanted < self.room / 4 {
+                self.least_bands /= 2;
+            }
             return Ok(false);
         }
-        let limit = gpu.most_storage_bytes() / (4 * FRAGMENT_WORDS);
+        let limit = list_limit(gpu);
         if wanted <= limit {
             // A quarter more: hair that moves does not need another one in the next frame.
             self.room = (wanted + wanted / 4).min(limit);
             return Ok(true);
         }
+        if bands >= rows {
+            return Err(too_large(gpu, wanted * 4 * FRAGMENT_WORDS));
+        }
         // A band of a picture has at least as many more as bands are fewer.
-        let more = (u64::from(bands) * wanted / limit + 1).max(u64::from(bands) + 1);
+        let more = (u64::from(bands) * wanted / limit + 1).max(2 * u64::from(bands));
         self.room = limit;
-        self.least_bands = more.min(u64::from(height)) as u32;
-        Ok(bands < height)
+        self.least_bands = more.min(u64::from(rows)) as u32;
+        Ok(true)
     }
+}
+
+/// Most fragments of a list: what fits a buffer of the device, and 1 GiB.
+fn list_limit(gpu: &Gpu) -> u64 {
+    gpu.most_storage_bytes().min(1 << 30) / (4 * FRAGMENT_WORDS)
 }
 
 /// A texture for the nearest depth of each pixel.
@@ -299,8 +317,9 @@ fn nearest_texture(device: &wgpu::Device, [width, height]: [u32; 2]) -> wgpu::Te
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-fn too_large(gpu: &Gpu, needed: u64) -> GpuError {
-    GpuError::Refused(format!(
+/// Says what does not fit.
+pub(super) fn too_large(gpu: &Gpu, needed: u64) -> GpuError {
+    GpuError::Input(format!(
         "a picture of this size needs a buffer of {needed} bytes, and {} takes at most {}: draw a smaller one, or by the \
          processor",
         gpu.info.name,

@@ -119,7 +119,7 @@ impl Interpolation {
         check_guides(style, frame)?;
         let needed = count as u64 * size_of::<Vec4>() as u64;
         if points.size() < needed {
-            return Err(GpuError::Refused(format!(
+            return Err(GpuError::Input(format!(
                 "the buffer of the strands has {} bytes; they need {needed}",
                 points.size()
             )));
@@ -176,7 +176,7 @@ impl Interpolation {
         if self.style.as_ref().is_some_and(|old| Arc::ptr_eq(old, style)) {
             return Ok(());
         }
-        style.check().map_err(|error| GpuError::Refused(format!("the hairstyle: {error}")))?;
+        style.check().map_err(|error| GpuError::Input(format!("the hairstyle: {error}")))?;
         let (device, queue) = (&gpu.device, &gpu.queue);
         let set = &style.strands;
         let curve_points = style.wisps.len() * style.guides.points_per_guide;
@@ -226,7 +226,7 @@ fn check_guides(style: &Hairstyle, frame: &GuideFrame) -> Result<(), GpuError> {
     if found.points_per_guide == wanted.points_per_guide && lengths == [wanted.x.len(); 3] {
         return Ok(());
     }
-    Err(GpuError::Refused(format!(
+    Err(GpuError::Input(format!(
         "found {} guides of {} points, but the hairstyle has {} guides of {} points",
         found.count(),
         found.points_per_guide,
@@ -239,7 +239,7 @@ fn check_guides(style: &Hairstyle, frame: &GuideFrame) -> Result<(), GpuError> {
 fn fits(gpu: &Gpu, what: &str, count: usize, bytes_each: usize) -> Result<(), GpuError> {
     let (needed, limit) = (count as u64 * bytes_each as u64, gpu.most_storage_bytes());
     if needed > limit || u32::try_from(count).is_err() {
-        return Err(GpuError::Refused(format!(
+        return Err(GpuError::Input(format!(
             "the {what} of this hairstyle need {needed} bytes in one buffer; the device gives {limit}"
         )));
     }

@@ -9,7 +9,8 @@ struct LightUniform {
     radiance_blur: vec4f,
     // To the clip space of the body's depth map, z in 0..1.
     shadow_from_world: mat4x4f,
-    // To the texture of what light the hair lets through, for surfaces behind all hair; z and w are unused.
+    // To the texture of what light the hair lets through, for surfaces behind all hair; z is the part of the texture's edge
+    // that this light's map takes.
     columns_from_world: mat4x4f,
 }
 
@@ -81,7 +82,8 @@ fn body_light(i: u32, p: vec3f, lean: vec3f, bias: f32, taps: u32) -> f32 {
     for (var k = 0u; k < taps; k++) {
         let tap = radius * sqrt((f32(taps - k) - 0.5) / f32(taps)) * direction;
         let deeper = dot(tap, lean.xy);
-        sum += textureSampleCompareLevel(body_depth, compare, uv + tap - turn * deeper, i, z + deeper);
+        // Behind the far end of the map nothing more keeps the light off.
+        sum += textureSampleCompareLevel(body_depth, compare, uv + tap - turn * deeper, i, min(z + deeper, 1.0));
         // Where five taps from the rim on agree, so do those within.
         if (k == 4u && taps > 8u && (sum == 0.0 || sum == 5.0)) {
             return sum / 5.0;
@@ -96,11 +98,13 @@ fn body_light(i: u32, p: vec3f, lean: vec3f, bias: f32, taps: u32) -> f32 {
 
 // Share of light `i` that all hair on the way lets through, for a point behind all of it.
 fn columns_light(i: u32, p: vec3f) -> f32 {
-    let uv = (frame.lights[i].columns_from_world * vec4f(p, 1.0)).xy;
-    if (any(uv < vec2f(0.0)) || any(uv > vec2f(1.0))) {
+    let at = (frame.lights[i].columns_from_world * vec4f(p, 1.0)).xyz;
+    if (any(at.xy < vec2f(0.0)) || any(at.xy > vec2f(at.z))) {
         return 1.0;
     }
-    return textureSampleLevel(hair_columns, linear_clamp, uv, i, 0.0).r;
+    // Nothing beyond the map's corner of the texture is read.
+    let last = vec2f(at.z) - 0.5 / vec2f(textureDimensions(hair_columns));
+    return textureSampleLevel(hair_columns, linear_clamp, min(at.xy, last), i, 0.0).r;
 }
 
 // Light from everywhere that reaches a surface with normal `n`.

@@ -12,9 +12,10 @@ struct Vertex {
 
 struct Seen {
     @builtin(position) position: vec4f,
-    @location(1) normal: vec3f,
-    @location(2) color_scalp: vec4f,
-    @location(3) hair: vec4f,
+    // Within the triangle, even where it covers no more than a corner of the pixel.
+    @location(1) @interpolate(perspective, centroid) normal: vec3f,
+    @location(2) @interpolate(perspective, centroid) color_scalp: vec4f,
+    @location(3) @interpolate(perspective, centroid) hair: vec4f,
 }
 
 @vertex

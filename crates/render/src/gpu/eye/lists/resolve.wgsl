@@ -51,7 +51,8 @@ fn put_at(at: u32, item: vec3u) {
 fn pixel_pass(pixel: u32) {
     let record = pixel * RECORD_WORDS;
     let begin = atomicLoad(&map[record]);
-    var count = min(atomicLoad(&map[record + 1u]), eye.room - min(begin, eye.room));
+    let there = min(atomicLoad(&map[record + 1u]), atomicLoad(&map[record + 2u]));
+    var count = min(there, eye.room - min(begin, eye.room));
     let first = begin * FRAGMENT_WORDS;
     for (var k = count / 2u; k > 0u; k--) {
         sink(first, count, k - 1u, key_at(first + (k - 1u) * FRAGMENT_WORDS));

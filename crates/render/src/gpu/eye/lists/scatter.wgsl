@@ -2,9 +2,11 @@
 
 fn take(pixel: u32, fragment: Fragment) {
     let record = pixel * RECORD_WORDS;
-    let at = atomicLoad(&map[record]) + atomicAdd(&map[record + 2u], 1u);
-    // Where there is too little room the frame is drawn anew.
-    if (at < eye.room) {
+    let place = atomicAdd(&map[record + 2u], 1u);
+    let at = atomicLoad(&map[record]) + place;
+    // Where there is too little room the frame is drawn anew. A fragment that was not counted, since two programs may round
+    // differently, is left out.
+    if (place < atomicLoad(&map[record + 1u]) && at < eye.room) {
         let color = min(fragment.color, vec3f(65504.0));
         list[at * FRAGMENT_WORDS] = key_of(fragment);
         list[at * FRAGMENT_WORDS + 1u] = pack2x16float(color.rg);

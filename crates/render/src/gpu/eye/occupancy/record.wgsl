@@ -1,6 +1,6 @@
 // What occupancy order keeps of a pixel, in words: the farthest and the nearest depth, the latter as it is and the former
 // turned round so that 0 is none; a bit for each of 128 slices of the distances between; the optical depth of each of 8 slabs
-// of 16 slices and, once they are summed, of all up to it, in 2^-16; and the weighted light, in 2^-16, with the sum of the weights. Twin of
+// of 16 slices and, once they are summed, of all up to it, in 2^-16; and the weighted light, in 2^-14, with the sum of the weights. Twin of
 // cpu/transparency/occupancy.rs.
 
 const RECORD_WORDS: u32 = 18u;
@@ -10,7 +10,7 @@ const LIGHT_AT: u32 = 14u;
 const SLICES: f32 = 128.0;
 const DEPTH_ONE: f32 = 65536.0;
 const MOST_DEPTH: f32 = 16.0;
-const LIGHT_ONE: f32 = 65536.0;
+const LIGHT_ONE: f32 = 16384.0;
 
 // Depth falls with distance; its inverse is distance up to a factor.
 fn distance_of(depth: f32) -> f32 {

@@ -5,7 +5,8 @@ fn take(pixel: u32, fragment: Fragment) {
     let bits = bitcast<u32>(fragment.depth);
     for (var k = 0u; k < 4u; k++) {
         let at = pixel * RECORD_WORDS + k;
-        if (((samples >> k) & 1u) != 0u && atomicLoad(&map[at]) == bits) {
+        // A few units in the last place: the two passes are two programs, which may round differently.
+        if (((samples >> k) & 1u) != 0u && atomicLoad(&map[at]) <= bits + 4u) {
             atomicMax(&map[at + 4u], pack_color(fragment.color));
         }
     }

@@ -11,9 +11,18 @@ fn put(texel: u32, depth: f32, weight: u32) {
     let slab = slice >> texels.whole.z;
     let counts = record + 2u + (texels.whole.x >> 5u) + (slab >> 1u);
     let shift = 16u * (slab & 1u);
-    let before = atomicAdd(&map[counts], 1u << shift);
-    if (((before >> shift) & 0xffffu) == 0xffffu) {
-        // Full: counts stop there.
-        atomicSub(&map[counts], 1u << shift);
+    var before = atomicLoad(&map[counts]);
+    if (((before >> shift) & 0xffffu) < 0x8000u) {
+        // As many threads as would fill the rest do not run at once.
+        atomicAdd(&map[counts], 1u << shift);
+        return;
+    }
+    // Counts stop when they are full.
+    while (((before >> shift) & 0xffffu) != 0xffffu) {
+        let tried = atomicCompareExchangeWeak(&map[counts], before, before + (1u << shift));
+        if (tried.exchanged) {
+            break;
+        }
+        before = tried.old_value;
     }
 }

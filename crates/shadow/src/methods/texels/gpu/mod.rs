@@ -237,6 +237,8 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
         input: &GpuShadowInput,
         settings: &ShadowSettings,
     ) -> Result<(), ShadowError> {
+        // Lights that are gone leave nothing behind.
+        self.maps.truncate(input.maps.max(1) as usize);
         let method = M::new(settings);
         let frame = TexelFrame::place(
             (input.light, input.anchor),

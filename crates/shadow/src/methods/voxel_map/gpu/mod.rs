@@ -130,6 +130,8 @@ impl GpuShadow for GpuVoxelMap {
         let placed = (input.light, input.anchor);
         let lattice = Lattice::place(placed, || input.longest_strand, ours, &input.bounds);
         let cells = u64::from(lattice.resolution).pow(3);
+        // Lights that are gone leave nothing behind.
+        self.maps.truncate(input.maps.max(1) as usize);
         while self.maps.len() <= slot {
             self.maps.push(Map::new(gpu));
         }
@@ -194,6 +196,11 @@ impl GpuShadow for GpuVoxelMap {
         let lattice = map.lattice?;
         self.ask.write_columns(gpu, commands, &map.resources(), lattice.resolution, into);
         Some(GpuColumns { size: lattice.resolution, uv_from_world: lattice.uv_from_world() })
+    }
+
+    fn forget(&mut self, gpu: &Gpu) {
+        self.maps.clear();
+        self.full.fit(gpu, 0);
     }
 
     fn report(&self, slot: usize) -> ShadowReport {
