@@ -13,7 +13,7 @@ use grooms::Groom;
 use lovelock_gpu::{PassTimer, read_buffer, read_texture_rgba8, wgpu};
 use lovelock_groom::Strands;
 use lovelock_shadow::{
-    GpuTargets, LightFrame, ShadowError, ShadowInput, ShadowMethod, ShadowSettings, cpu_shadow,
+    GpuTargets, LightFrame, SUM_WORDS, ShadowError, ShadowInput, ShadowMethod, ShadowSettings, cpu_shadow,
 };
 
 fn input(strands: &Strands) -> ShadowInput<'_> {
@@ -205,7 +205,10 @@ fn the_sum_of_answers_the_stride_and_what_lies_behind_are_right() {
         // Every third point of the strands, in the buffer that they are in.
         let hair = Uploaded::new(gpu, &groom.strands);
         let (count, stride) = (groom.strands.points() as u32 / 3, 3);
-        let (out, sum) = (buffer(gpu, &vec![0_u32; count as usize]), buffer(gpu, &[7_u32]));
+        // Sums are added to what is there.
+        let mut before = vec![0_u32; SUM_WORDS as usize];
+        before[0] = 7;
+        let (out, sum) = (buffer(gpu, &vec![0_u32; count as usize]), buffer(gpu, &before));
         let points = hair.input(&groom.input()).strands.points;
         let targets = GpuTargets { points, stride, count, out: out.raw(), sum: Some(sum.raw()) };
         let mut timer = PassTimer::new(gpu).expect("a timer");
@@ -229,9 +232,13 @@ fn the_sum_of_answers_the_stride_and_what_lies_behind_are_right() {
 
         let mut words = vec![0_u32; count as usize];
         read_buffer(gpu, out.raw(), &mut words).expect("read back");
-        let mut total = [0_u32];
-        read_buffer(gpu, sum.raw(), &mut total).expect("read back");
-        assert_eq!(total[0], 7 + words.iter().map(|word| word & 0xff).sum::<u32>(), "{method}");
+        let mut sums = vec![0_u32; SUM_WORDS as usize];
+        read_buffer(gpu, sum.raw(), &mut sums).expect("read back");
+        assert_eq!(
+            sums.iter().sum::<u32>(),
+            7 + words.iter().map(|word| word & 0xff).sum::<u32>(),
+            "{method}"
+        );
         let at: Vec<_> = (0..count).map(|i| groom.strands.point((stride * i) as usize)).collect();
         assert_eq!(words, built.ask_slots(&[0], &at), "{method}");
 
