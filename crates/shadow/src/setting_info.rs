@@ -39,7 +39,7 @@ impl SettingInfo {
         let (least, most) = (TEXEL_RESOLUTIONS.start(), TEXEL_RESOLUTIONS.end());
         [
             Self::new("resolution", format_args!("{least} to {most} texels, in steps of 16"), resolution),
-            Self::new("filter", "nearest, bilinear", id(filter)),
+            Self::new("filter", "nearest, bilinear, jitter", id(filter)),
         ]
     }
 }
