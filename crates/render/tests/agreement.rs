@@ -203,3 +203,17 @@ fn ground_beyond_the_bodys_shadow_map_is_lit() {
         assert!(dark > 20 && dark < 80, "{backend}: {dark}");
     }
 }
+
+#[test]
+fn strands_that_fill_the_picture_are_drawn_whole() {
+    let mut s = tuft_scene(1);
+    // Wider than the picture: one thread would have 480,000 pixels to walk over.
+    (s.look.real_hairs, s.look.width_scale) = (10_000.0, 1.0);
+    s.shadow.method = ShadowMethod::None;
+    let (w, h) = (800, 600);
+    let Some(gpu) = s.draw_by(Backend::Gpu, w, h) else { return };
+    let cpu = s.draw_by(Backend::Cpu, w, h).expect("a picture");
+    let difference = flip(&gpu.rgba, &cpu.rgba, w, h);
+    println!("{difference:?}");
+    assert!(difference.mean < MEAN && difference.p99 < P99, "{difference:?}");
+}

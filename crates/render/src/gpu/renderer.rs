@@ -215,6 +215,7 @@ impl GpuRenderer {
             width,
             height,
             area,
+            reach: 0.5 * strand_width * uniform.size_scale_exposure.z / bounds.min.x.max(0.05),
             shaded: self.hair.shaded(),
             segments: strands.segments,
             segment_count: strands.segment_count,

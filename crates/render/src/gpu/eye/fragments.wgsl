@@ -2,7 +2,8 @@
 // 0.2 pixels is drawn one pixel wide at a fifth of its opacity, so it neither breaks up nor gains weight as it recedes. Twin of
 // cpu/hair/segment.rs and cpu/hair/list.rs. A pass defines `take(pixel, fragment)`.
 //
-// A thread walks over a whole segment: one that fills a picture, seen from a few centimetres, is slow.
+// A segment that may cover very many pixels is shared by some threads: where kernels run on the processor, one leaves its
+// loops after 65,535 rounds.
 
 struct Fragment {
     // 1 at the near plane, falling to 0 at infinity.
@@ -26,7 +27,8 @@ fn opacity_of(fragment: Fragment) -> f32 {
 
 @compute @workgroup_size(64)
 fn each_fragment(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
-    let segment = id.x + id.y * groups.x * 64u;
+    let thread = id.x + id.y * groups.x * 64u;
+    let segment = thread / eye.lanes;
     if (segment >= eye.segments) {
         return;
     }
@@ -73,7 +75,7 @@ fn each_fragment(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
     let slope = step.y / step.x;
     let half_run = reach * length / abs(step.x);
     let last = i32(ceil(until.x - 0.5));
-    for (var major = i32(ceil(begin.x - 0.5)); major < last; major++) {
+    for (var major = i32(ceil(begin.x - 0.5)) + i32(thread % eye.lanes); major < last; major += i32(eye.lanes)) {
         let middle = start.y + slope * (f32(major) + 0.5 - start.x);
         let end = i32(ceil(min(middle + half_run, until.y) - 0.5));
         for (var minor = i32(ceil(max(middle - half_run, begin.y) - 0.5)); minor < end; minor++) {

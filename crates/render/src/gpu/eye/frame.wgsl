@@ -10,6 +10,8 @@ struct EyeUniform {
     opacity: f32,
     // The first pixel of the area among those of all areas of the picture.
     first: u32,
+    // Threads that share a segment.
+    lanes: u32,
 }
 
 struct ShadedPoint {

@@ -44,6 +44,8 @@ pub(super) struct EyeUniform {
     room: u32,
     opacity: f32,
     first: u32,
+    lanes: u32,
+    pad: [u32; 3],
 }
 
 /// What the eye's passes draw.
@@ -59,9 +61,26 @@ pub(super) struct EyeInput<'a> {
     pub segment_count: u32,
     /// Depths of the body, four samples a pixel.
     pub depth: &'a wgpu::TextureView,
+    /// Half of the widest strand, pixels.
+    pub reach: f32,
     /// Opacity of a strand where it covers a pixel wholly.
     pub opacity: f32,
     pub transparency: Transparency,
+}
+
+/// Most pixels that one thread walks over: half of what software adapters allow.
+const MOST_PIXELS_A_THREAD: f32 = 32_768.0;
+/// Most threads that share a segment.
+const MOST_LANES: u32 = 64;
+
+impl EyeInput<'_> {
+    /// Threads that share a segment, so that none walks over too many pixels: by how long and wide one could be.
+    fn lanes(&self) -> u32 {
+        let (columns, rows) = (self.area.columns as f32, self.area.rows as f32);
+        let most = (2.0 * self.reach + 4.0) * (columns.hypot(rows) + 2.0 * self.reach);
+        let most = if most < columns * rows { most } else { columns * rows };
+        ((most / MOST_PIXELS_A_THREAD).ceil() as u32).clamp(1, MOST_LANES)
+    }
 }
 
 /// The kernels of all modes that were used, and the memory of the pixels.
@@ -231,6 +250,8 @@ impl Eye {
             room: self.room as u32,
             opacity: input.opacity,
             first,
+            lanes: input.lanes(),
+            pad: [0; 3],
         };
         let Some((nearest, _)) = &self.nearest else { return };
         let buffer = lovelock_gpu::constants(gpu, "eye", &uniform);
@@ -255,7 +276,7 @@ impl Eye {
         let Some((_, kernels)) = kernels else { return };
         for (pass, kernel) in mode.passes.iter().zip(kernels) {
             let threads = match pass.over {
-                Over::Fragments => u64::from(input.segment_count),
+                Over::Fragments => u64::from(input.segment_count) * u64::from(input.lanes()),
                 Over::Pixels | Over::Groups(_) => pixels,
             };
             let group = kernel.bind(gpu, &resources);
@@ -356,6 +377,7 @@ mod tests {
                 offset_of!(EyeUniform, room),
                 offset_of!(EyeUniform, opacity),
                 offset_of!(EyeUniform, first),
+                offset_of!(EyeUniform, lanes),
                 size_of::<EyeUniform>(),
             ]
         );
