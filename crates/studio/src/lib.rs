@@ -7,6 +7,7 @@
 mod bench;
 mod clock;
 mod command;
+mod compare;
 mod error;
 mod headless;
 mod history;
@@ -20,6 +21,7 @@ mod stats;
 pub use bench::{BenchReport, BenchRequest, BenchScene, SceneReport, StageReport, bench};
 pub use clock::{FrameClock, MAX_STEPS_PER_TICK, Playback, STEP_SECS, Stopwatch};
 pub use command::{COMMANDS, Command, CommandGroup, CommandInfo, Shortcut};
+pub use compare::Contender;
 pub use error::{Place, Problem, ProblemKind, StudioError};
 pub use headless::{Progress, RecordJob, RecordReport, RecordRequest, StageMedians, record};
 pub use history::{GestureId, History};
