@@ -21,7 +21,11 @@ mod stats;
 pub use bench::{BenchReport, BenchRequest, BenchScene, SceneReport, StageReport, bench};
 pub use clock::{FrameClock, MAX_STEPS_PER_TICK, Playback, STEP_SECS, Stopwatch};
 pub use command::{COMMANDS, Command, CommandGroup, CommandInfo, Shortcut};
-pub use compare::Contender;
+pub use compare::{
+    BandingReport, CompareReport, Contender, FlipError, FootprintTruth, Legend, MethodFiles, MethodReport,
+    PointTruth, ProbeCurve, ProbeMark, ProbeReport, Reference, SceneFacts, StabilityReport, StageMs,
+    TimeSpread, TransmittanceError,
+};
 pub use error::{Place, Problem, ProblemKind, StudioError};
 pub use headless::{Progress, RecordJob, RecordReport, RecordRequest, StageMedians, record};
 pub use history::{GestureId, History};

@@ -1,0 +1,323 @@
+//! What a comparison found: the keys of `compare --json` and of `report.json`, and what the page shows.
+//!
+//! Numbers that could not be measured are null, each with a sentence in [`MethodReport::refused`] or
+//! [`CompareReport::notes`] that says why. Files are named relative to the report's folder.
+
+use serde::{Deserialize, Serialize};
+
+/// What a comparison found.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct CompareReport {
+    /// Whether everything that was asked for has been done. False where the run was cancelled: what is here is whole.
+    pub complete: bool,
+    /// Version of the program.
+    pub version: String,
+    /// Processor and number of threads.
+    pub machine: String,
+    /// Frames that were looked at, half open. Errors, pictures and times are of the first one.
+    pub frames: [u64; 2],
+    /// What was drawn.
+    pub scene: SceneFacts,
+    /// The truth, and how far it can be trusted.
+    pub reference: Reference,
+    /// One entry for each method, backend and value of a sweep, in the order in which they were asked for.
+    pub methods: Vec<MethodReport>,
+    /// Rays of light through chosen points of hair.
+    pub probes: Vec<ProbeReport>,
+    /// The scales of the error maps.
+    pub legends: Vec<Legend>,
+    /// What was left out, and other things to know, in sentences.
+    pub notes: Vec<String>,
+}
+
+/// What was drawn.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct SceneFacts {
+    /// The project's file, or `default project`, with what was changed of it.
+    pub name: String,
+    /// Frames a second of the frames' numbers.
+    pub fps: f64,
+    /// Width of the pictures, pixels.
+    pub width: u32,
+    /// Height of the pictures, pixels.
+    pub height: u32,
+    /// Strands.
+    pub strands: u64,
+    /// Their points.
+    pub points: u64,
+    /// Their segments.
+    pub segments: u64,
+    /// Factor on the optical depth of every strand.
+    pub extinction_scale: f32,
+    /// Lights that are on. Errors of transmittance are those of the first one.
+    pub lights: u32,
+    /// Draws that a time is the median of, after a warm-up.
+    pub draws: u32,
+}
+
+/// The truth that methods are held against.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Reference {
+    /// Whether every truth converged within its limit.
+    pub converged: bool,
+    /// Subtexels along the edge of a texel in the last round of the one that needed most.
+    pub samples: u32,
+    /// The largest change of the last rounds, root mean square of transmittance.
+    pub change: f32,
+    /// The change below which a truth counts as converged.
+    pub limit: f32,
+    /// One truth for each footprint: the means of light over the texels of the methods that are named.
+    pub footprints: Vec<FootprintTruth>,
+    /// The truth at points: transmittance of the exact method on a fine map.
+    pub points: Option<PointTruth>,
+    /// File of the picture drawn from converged transmittance with exact transparency.
+    pub picture: Option<String>,
+    /// File of that transmittance in colour.
+    pub transmittance: Option<String>,
+    /// What could not be had of the truth, with the numbers, in one sentence each.
+    pub refused: Vec<String>,
+}
+
+/// Converged transmittance for one footprint.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct FootprintTruth {
+    /// [`MethodReport::name`]s of those that are held against it.
+    pub methods: Vec<String>,
+    /// Whether it converged.
+    pub converged: bool,
+    /// Subtexels along the edge of a texel in the last round.
+    pub samples: u32,
+    /// Root mean square change in the last round.
+    pub change: f32,
+    /// Subtexels and change of every round after the first.
+    pub changes: Vec<(u32, f32)>,
+    /// Points that it was found at: all of the strands', or every so many of them.
+    pub points: u64,
+}
+
+/// The exact method on a fine map.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PointTruth {
+    /// Texels along each edge of its map.
+    pub resolution: u32,
+    /// Memory that it took, bytes.
+    pub memory_bytes: u64,
+    /// Root mean square difference to the same on a map of half the resolution.
+    pub change: f32,
+}
+
+/// One method, on one backend, at one value of a sweep.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct MethodReport {
+    /// Id of the shadow method.
+    pub id: String,
+    /// What people call the method.
+    pub label: String,
+    /// Unique among the methods of a report, such as `occupancy-maps resolution=256 cpu`: what differs from the others.
+    pub name: String,
+    /// Id of the transparency mode.
+    pub transparency: String,
+    /// `cpu` or `gpu`.
+    pub backend: String,
+    /// Name of what drew.
+    pub adapter: String,
+    /// Settings of the method, name and value.
+    pub settings: Vec<(String, String)>,
+    /// Name and value of what a sweep changed; null outside a sweep.
+    pub sweep: Option<(String, String)>,
+    /// Why it, or a part of it, could not be done; one sentence.
+    pub refused: Option<String>,
+    /// Error of transmittance at strand points against the mean of the light over the method's own texels: what it could
+    /// know best.
+    pub transmittance: Option<TransmittanceError>,
+    /// The same against the truth at points. Null for the method that is that truth.
+    pub transmittance_at_points: Option<TransmittanceError>,
+    /// Difference of the picture to the reference picture, as seen (FLIP, 0 to 1).
+    pub flip: Option<FlipError>,
+    /// Signal to noise of the picture, decibels; null also where the pictures are the same.
+    pub psnr_db: Option<f64>,
+    /// Structural similarity of the pictures; 1 where they are the same.
+    pub ssim: Option<f64>,
+    /// Median times of the stages, milliseconds.
+    pub ms: Option<StageMs>,
+    /// The same with their spread, and the passes of the backend.
+    pub times: Vec<TimeSpread>,
+    /// Bytes of the shadow maps of all lights.
+    pub memory_bytes: Option<u64>,
+    /// Bytes that were held for the pixels and the drawn strands.
+    pub draw_bytes: Option<u64>,
+    /// How still it stands.
+    pub stability: Option<StabilityReport>,
+    /// What slices show in even density.
+    pub banding: Option<BandingReport>,
+    /// Whether no other of the same backend is both more right (by [`MethodReport::transmittance`]) and quicker.
+    pub front_of_time: bool,
+    /// Whether no other of the same backend is both more right and smaller.
+    pub front_of_memory: bool,
+    /// What was written of it.
+    pub files: MethodFiles,
+}
+
+/// Error of transmittance over points.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct TransmittanceError {
+    /// Points compared.
+    pub count: u64,
+    /// Root mean square.
+    pub rmse: f64,
+    /// Mean, signed: above zero where the method is too bright.
+    pub bias: f64,
+    /// 99th percentile of the magnitude.
+    pub p99: f64,
+    /// The largest magnitude.
+    pub max: f64,
+    /// Root mean square over the points with fewer than ten fragments of hair before them: where light enters.
+    pub first10_rmse: Option<f64>,
+}
+
+/// FLIP of a picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct FlipError {
+    /// Mean over the pixels.
+    pub mean: f64,
+    /// 99th percentile over the pixels.
+    pub p99: f64,
+}
+
+/// Median times, milliseconds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct StageMs {
+    /// To make the shadow maps.
+    pub build: f64,
+    /// To ask them at every strand point.
+    pub query: f64,
+    /// To draw what is left of the picture.
+    pub draw: f64,
+    /// The whole picture without interpolation.
+    pub whole: f64,
+}
+
+/// A time over many draws, milliseconds.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct TimeSpread {
+    /// The stage (`build`, `query`, `draw`, `whole`) or the backend's pass (`shadow/…`, `draw/…`).
+    pub name: String,
+    /// Median.
+    pub median: f64,
+    /// 10th percentile.
+    pub low: f64,
+    /// 90th percentile.
+    pub high: f64,
+    /// Draws.
+    pub count: u32,
+}
+
+/// How still a method stands.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct StabilityReport {
+    /// Mean standard deviation of transmittance under shifts of the map by less than a texel.
+    pub swim: f64,
+    /// 99th percentile of that over points.
+    pub swim_p99: f64,
+    /// Largest change of transmittance at a point from one frame to the next; null for a single frame.
+    pub pop: Option<f64>,
+    /// 99th percentile of that over points.
+    pub pop_p99: Option<f64>,
+    /// Root mean square change from frame to frame that is not the reference's own; null for a single frame.
+    pub flicker: Option<f64>,
+}
+
+/// What a method's slices show in a slab of even density, where transmittance is an exponential.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct BandingReport {
+    /// Largest deviation of the second derivative from the exponential's, per square of the slab's depth.
+    pub residual: f64,
+    /// Root mean square error of transmittance in the slab.
+    pub rmse: f64,
+    /// Slices in the slab; null where the method has none of one depth.
+    pub slices: Option<f64>,
+    /// Amplitude of transmittance at the frequency of the slices, where it has some.
+    pub amplitude: Option<f64>,
+    /// Depth as a part of the slab, transmittance of the method: a curve to plot beside the exponential.
+    pub curve: Vec<(f32, f32)>,
+    /// Extinction over the whole slab: the truth is `exp(-optical_depth * depth)`.
+    pub optical_depth: f64,
+}
+
+/// Files of one method, relative to the report.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct MethodFiles {
+    /// The picture.
+    pub picture: Option<String>,
+    /// Error of transmittance (signed) in colour, with its legend.
+    pub transmittance_error: Option<String>,
+    /// FLIP of the picture in colour, with its legend.
+    pub picture_error: Option<String>,
+    /// Swim in colour.
+    pub swim: Option<String>,
+    /// Pop in colour.
+    pub pop: Option<String>,
+    /// Flicker in colour.
+    pub flicker: Option<String>,
+}
+
+/// A ray of light through a point of hair, as each method sees it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ProbeReport {
+    /// The pixel that was asked, from the upper left corner.
+    pub pixel: [u32; 2],
+    /// The strand that is in front there.
+    pub strand: u32,
+    /// Which of its points, from the root.
+    pub point: u32,
+    /// Where that point is, world space, metres.
+    pub position: [f32; 3],
+    /// The step function of the exact method: depth along the light relative to the point, metres, and transmittance
+    /// from there on.
+    pub steps: Vec<(f32, f32)>,
+    /// The mean of light over a texel along the ray: depth, transmittance.
+    pub reference: Vec<(f32, f32)>,
+    /// What each method says.
+    pub methods: Vec<ProbeCurve>,
+}
+
+/// One method along a ray.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ProbeCurve {
+    /// Its [`MethodReport::name`].
+    pub method: String,
+    /// Depth along the light relative to the point, metres, and transmittance there.
+    pub curve: Vec<(f32, f32)>,
+    /// Transmittance at the point itself.
+    pub value: f32,
+    /// What the method keeps along the ray.
+    pub marks: Vec<ProbeMark>,
+}
+
+/// Something that a method keeps on a ray: the boundary of a slice, the ends of a cluster, a fragment.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ProbeMark {
+    /// `slice`, `layer`, `slab`, `cluster`, `cell` or `fragment`.
+    pub kind: String,
+    /// Where it begins, metres along the light relative to the point.
+    pub start: f32,
+    /// Where it ends; the same where it has no extent.
+    pub end: f32,
+    /// Optical depth in it, or a count.
+    pub weight: f32,
+}
+
+/// The scale of one kind of map.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Legend {
+    /// `transmittance`, `transmittance-error`, `picture-error`, `swim`, `pop` or `flicker`.
+    pub of: String,
+    /// What the numbers are, as a heading.
+    pub title: String,
+    /// The value of the first colour and of the last one.
+    pub range: [f32; 2],
+    /// Name of the colour map.
+    pub colors: String,
+    /// File of the scale alone.
+    pub file: Option<String>,
+}
