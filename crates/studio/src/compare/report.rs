@@ -123,8 +123,10 @@ pub struct MethodReport {
     pub adapter: String,
     /// Settings of the method, name and value.
     pub settings: Vec<(String, String)>,
-    /// Name and value of what a sweep changed; null outside a sweep.
-    pub sweep: Option<(String, String)>,
+    /// Name and value of what a sweep changed; empty outside a sweep.
+    pub sweep: Vec<(String, String)>,
+    /// Edge of a texel (of a cell) of its map, metres; null where it has no map. Texels are never narrower than strands.
+    pub cell_size_m: Option<f32>,
     /// Why it, or a part of it, could not be done; one sentence.
     pub refused: Option<String>,
     /// Error of transmittance at strand points against the mean of the light over the method's own texels: what it could
