@@ -5,7 +5,7 @@ use super::graph::Graph;
 /// Who may use whom, each crate by its name without `lovelock-`.
 const ARROWS: [(&str, &[&str]); 11] = [
     ("app", &["studio"]),
-    ("studio", &["render", "wisp", "motion", "groom", "record"]),
+    ("studio", &["render", "shadow", "wisp", "motion", "groom", "record"]),
     ("render", &["shadow", "gpu", "groom", "motion"]),
     ("shadow", &["gpu", "groom"]),
     ("wisp", &["groom", "motion"]),
