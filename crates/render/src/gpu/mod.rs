@@ -7,6 +7,7 @@ mod hair;
 mod interpolate;
 mod pipelines;
 mod renderer;
+mod screen;
 mod shadow;
 mod surface;
 mod targets;

@@ -49,7 +49,10 @@ pub fn all_shaders() -> Vec<(String, ShaderSource)> {
 pub(super) struct Pipelines {
     pub shade_points: Kernel,
     pub ground: Kernel,
+    /// Hair and even background, and a list of the pixels that are left.
     pub picture: Kernel,
+    /// The listed pixels.
+    pub picture_lit: Kernel,
     /// A uniform for the vertices.
     pub uniform_layout: wgpu::BindGroupLayout,
     /// The body as the eye sees it: all of it, and where it is closed what faces the eye.
@@ -93,6 +96,7 @@ impl Pipelines {
             shade_points: Kernel::new(gpu, points.0, &points.1, "shade_points")?,
             ground: Kernel::new(gpu, ground.0, &ground.1, "ground_corners")?,
             picture: Kernel::new(gpu, picture.0, &picture.1, "picture")?,
+            picture_lit: Kernel::new(gpu, "picture lit", &picture.1, "picture_lit")?,
             surface: CULLS.map(|cull| surface_pipeline(device, &layout, &surface, cull)),
             depth: CULLS.map(|cull| depth_pipeline(device, &layout, &depth, cull)),
             uniform_layout,

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, PassTimer, Readback, Stopwatch, constants, wgpu};
+use lovelock_gpu::{Commands, Gpu, GpuError, PassTimer, Readback, Stopwatch, wgpu};
 use lovelock_shadow::SUM_WORDS;
 
 use super::eye::{Area, Eye, EyeInput, too_large};
@@ -10,6 +10,7 @@ use super::frame_resources::FrameResources;
 use super::ground::Ground;
 use super::hair::HairBuffers;
 use super::pipelines::Pipelines;
+use super::screen::{Screen, ScreenInput};
 use super::shadow::GpuShadowStage;
 use super::surface::SurfaceBuffers;
 use super::targets::Targets;
@@ -37,7 +38,7 @@ pub struct GpuRenderer {
     uniform: wgpu::Buffer,
     uniform_group: wgpu::BindGroup,
     targets: Option<Targets>,
-    screen: GrowBuffer<u32>,
+    screen: Screen,
     readback: Readback,
     numbers: Vec<u8>,
 }
@@ -80,7 +81,7 @@ impl GpuRenderer {
             }),
             uniform,
             targets: None,
-            screen: GrowBuffer::new(device, "screen", wgpu::BufferUsages::STORAGE),
+            screen: Screen::new(&gpu),
             readback: Readback::default(),
             numbers: Vec::new(),
             pipelines,
@@ -150,7 +151,7 @@ impl GpuRenderer {
             shadow_bytes: self.shadow.memory_bytes(),
             draw_bytes: self.eye.memory_bytes()
                 + self.hair.memory_bytes()
-                + self.screen.raw().size()
+                + self.screen.memory_bytes()
                 + self.targets.as_ref().map_or(0, Targets::memory_bytes),
             mean_transmittance: if self.shadow.has_light() { (sum / (255.0 * points)) as f32 } else { 1.0 },
             passes,
@@ -178,7 +179,7 @@ impl GpuRenderer {
         }
         let Some(targets) = &self.targets else { return Ok(()) };
         self.ground.fit(gpu, width, height);
-        self.screen.reserve(device, width as usize * height as usize);
+        self.screen.fit(gpu, width, height);
         self.hair.write(gpu, &mut commands, input)?;
         self.surface.write(gpu, input.body, input.camera.eye);
         self.shadow.run(gpu, &mut commands, input, &mut self.hair, self.surface.vertices())?;
@@ -225,21 +226,10 @@ impl GpuRenderer {
         };
         self.eye.draw(gpu, &mut commands, &eye)?;
         let Some(nearest) = self.eye.nearest() else { return Ok(()) };
-        let hair_area = constants(gpu, "hair area", &[area.left, area.top, area.columns, area.rows]);
-        let own = [
-            (4, wgpu::BindingResource::TextureView(&targets.normals)),
-            (5, wgpu::BindingResource::TextureView(&targets.colors)),
-            (6, wgpu::BindingResource::TextureView(&targets.depth)),
-            (7, self.ground.corners().as_entire_binding()),
-            (8, self.eye.layer().as_entire_binding()),
-            (9, self.screen.raw().as_entire_binding()),
-            (10, wgpu::BindingResource::TextureView(nearest)),
-            (11, hair_area.as_entire_binding()),
-        ];
-        let kernel = &self.pipelines.picture;
-        let group = kernel.bind(gpu, &frame.with(own));
-        commands.compute("draw/picture", |pass| kernel.run(pass, &group, pixels));
-        let wanted = [(self.screen.raw(), 4 * pixels), (self.shadow.sum(), 4 * SUM_WORDS)];
+        let screen =
+            ScreenInput { targets, nearest, corners: self.ground.corners(), area, hair: self.eye.layer() };
+        self.screen.run(gpu, &self.pipelines, &mut commands, &frame, &screen);
+        let wanted = [(self.screen.pixels(), 4 * pixels), (self.shadow.sum(), 4 * SUM_WORDS)];
         self.readback.copy(gpu, commands.encoder(), &wanted);
         commands.submit();
         Ok(())

@@ -14,6 +14,9 @@
 @group(0) @binding(8) var<storage, read> hair_layer: array<vec2u>;
 // Red, green, blue and alpha of each pixel.
 @group(0) @binding(9) var<storage, read_write> screen: array<u32>;
+// Pixels that are lit one by one, and how many they are.
+@group(0) @binding(12) var<storage, read_write> lit_pixels: array<u32>;
+@group(0) @binding(13) var<storage, read_write> lit_count: atomic<u32>;
 
 // Light that comes through hair and is no longer worth lighting what is behind: a fourth of a step of 8 bits.
 const UNSEEN: f32 = 1.0 / 1024.0;
@@ -118,6 +121,23 @@ fn behind_hair(pixel: vec2u) -> vec3f {
     return sum;
 }
 
+// The hair of a pixel: its light times what it covers, and the share of the light behind that comes through.
+fn hair_of(pixel: vec2u) -> vec4f {
+    let place = pixel - hair_area.xy;
+    // Left of and above the area these are very large.
+    if (place.x < hair_area.z && place.y < hair_area.w) {
+        let hair = hair_layer[place.y * hair_area.z + place.x];
+        return vec4f(unpack2x16float(hair.x), unpack2x16float(hair.y));
+    }
+    return vec4f(0.0, 0.0, 0.0, 1.0);
+}
+
+fn write_pixel(i: u32, pixel: vec2u, light: vec3f) {
+    screen[i] = pack4x8unorm(vec4f(tone_map(light, pixel), 1.0));
+}
+
+// Pixels of hair and even background. The others are listed: where kernels run on the processor, all threads of a vector pay
+// for what one of them does, and the body would be lit in the whole picture.
 @compute @workgroup_size(64)
 fn picture(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let i = id.x + id.y * groups.x * 64u;
@@ -126,18 +146,24 @@ fn picture(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) gr
         return;
     }
     let pixel = vec2u(i % size.x, i / size.x);
-    var light = vec3f(0.0);
-    var through = 1.0;
-    let place = pixel - hair_area.xy;
-    // Left of and above the area these are very large.
-    if (place.x < hair_area.z && place.y < hair_area.w) {
-        let hair = hair_layer[place.y * hair_area.z + place.x];
-        let bt = unpack2x16float(hair.y);
-        light = vec3f(unpack2x16float(hair.x), bt.x);
-        through = bt.y;
+    let hair = hair_of(pixel);
+    let ground = even_light(pixel);
+    if (hair.w > UNSEEN && (textureLoad(nearest, pixel, 0).x > 0.0 || ground.w == 0.0)) {
+        lit_pixels[atomicAdd(&lit_count, 1u)] = i;
+    } else {
+        write_pixel(i, pixel, hair.rgb + hair.w * graded(pixel) * ground.rgb);
     }
-    if (through > UNSEEN) {
-        light += through * behind_hair(pixel);
+}
+
+// The listed pixels, shared by the threads.
+@compute @workgroup_size(64)
+fn picture_lit(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    let width = u32(frame.size_scale_exposure.x);
+    let count = atomicLoad(&lit_count);
+    for (var k = id.x; k < count; k += groups.x * 64u) {
+        let i = lit_pixels[k];
+        let pixel = vec2u(i % width, i / width);
+        let hair = hair_of(pixel);
+        write_pixel(i, pixel, hair.rgb + hair.w * behind_hair(pixel));
     }
-    screen[i] = pack4x8unorm(vec4f(tone_map(light, pixel), 1.0));
 }
