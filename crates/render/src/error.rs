@@ -23,4 +23,30 @@ pub enum RenderError {
         /// The longest side that the backend can draw.
         limit: u32,
     },
+    /// Something was asked about a picture, and none has been drawn.
+    #[error("no picture has been drawn that could be asked about")]
+    NoPicture,
+    /// A light was asked for that the last picture has not.
+    #[error(
+        "there is no light {light}: the picture has {lights} lights that are switched on, counted from 0"
+    )]
+    NoLight {
+        /// The light asked for.
+        light: usize,
+        /// How many there are.
+        lights: usize,
+    },
+    /// Transmittance that is given does not fit the picture.
+    #[error("the transmittance that is given has {found} {of}, and the picture {needed}")]
+    Known {
+        /// What is counted.
+        of: &'static str,
+        /// How many are given.
+        found: usize,
+        /// How many are needed.
+        needed: usize,
+    },
+    /// Transmittance is given to the graphics card.
+    #[error("transmittance that is given is drawn by the processor alone: choose the backend `cpu`")]
+    KnownOnGpu,
 }

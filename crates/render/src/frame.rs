@@ -7,7 +7,7 @@ use lovelock_gpu::PassTime;
 use lovelock_groom::{GuideFrame, HairLook, Hairstyle, Strands, interpolate};
 use lovelock_motion::{Body, Skin};
 
-use crate::{Camera, Light, PictureSettings, ShadowSettings};
+use crate::{Camera, KnownTransmittance, Light, PictureSettings, ShadowSettings};
 
 /// Everything that one picture shows, at one instant.
 #[derive(Clone, Copy)]
@@ -30,6 +30,8 @@ pub struct FrameInput<'a> {
     pub camera: &'a Camera,
     /// Settings of the picture as a whole.
     pub picture: &'a PictureSettings,
+    /// Transmittance that takes the place of what the shadow method says; the CPU backend alone draws it.
+    pub known: Option<KnownTransmittance<'a>>,
 }
 
 /// Where the strands of a hairstyle are at one instant, world space.
@@ -74,4 +76,48 @@ pub struct FrameStats {
     pub draw_bytes: u64,
     /// Mean transmittance of the first light over the strands' points.
     pub mean_transmittance: f32,
+}
+
+impl FrameStats {
+    /// Time to make the shadow maps, milliseconds: all passes `shadow/…` but those of [`FrameStats::ask_ms`]; 0 where the
+    /// device does not measure its passes.
+    pub fn build_ms(&self) -> f64 {
+        self.sum_ms(|name| name.starts_with("shadow/") && !ASKING.contains(&name))
+    }
+
+    /// Time to read the shadow maps at strand points and at vertices of the body, and what lies behind all hair,
+    /// milliseconds; 0 where the device does not measure its passes.
+    pub fn ask_ms(&self) -> f64 {
+        self.sum_ms(|name| ASKING.contains(&name))
+    }
+
+    fn sum_ms(&self, of: impl Fn(&str) -> bool) -> f64 {
+        self.passes.iter().filter(|pass| of(&pass.name)).map(|pass| pass.ms).fold(0.0, |sum, ms| sum + ms)
+    }
+}
+
+/// Passes that read maps which are made.
+const ASKING: [&str; 2] = ["shadow/ask", "shadow/columns"];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn building_and_asking_are_told_apart_by_the_names_of_passes() {
+        let names = [
+            "interpolate/strands",
+            "shadow/fill",
+            "shadow/ask",
+            "draw/ask",
+            "shadow/columns",
+            "shadow/asking",
+        ];
+        let passes = names.iter().zip([1.0, 2.0, 4.0, 8.0, 16.0, 32.0]);
+        let passes = passes.map(|(name, ms)| PassTime { name: (*name).to_owned(), ms }).collect();
+        let stats = FrameStats { passes, ..FrameStats::default() };
+        assert_eq!((stats.build_ms(), stats.ask_ms()), (34.0, 20.0));
+        let nothing = FrameStats::default();
+        assert_eq!((nothing.build_ms(), nothing.ask_ms()), (0.0, 0.0));
+    }
 }

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use glam::Vec3;
 use lovelock_gpu::Gpu;
 
 use crate::{Backend, CpuRenderer, FrameInput, FrameStats, GpuRenderer, Picture, RenderError};
@@ -93,6 +94,30 @@ impl Renderer {
         match &mut self.gpu {
             Some(gpu) => gpu.picture(input, width, height, picture),
             None => self.cpu.get_or_insert_default().picture(input, width, height, picture),
+        }
+    }
+
+    /// Transmittance that the last picture used at every strand point, 0 to 1, in the order of the points: of light `light`,
+    /// counted from 0 among those that are switched on. In steps of 1/255 on a graphics card, which keeps no more.
+    ///
+    /// # Errors
+    /// No such light, no picture since the renderer was opened or the last one failed, or a device that is lost.
+    pub fn transmittance(&mut self, light: usize) -> Result<Vec<f32>, RenderError> {
+        match &mut self.gpu {
+            Some(gpu) => gpu.transmittance(light),
+            None => self.cpu.get_or_insert_default().transmittance(light),
+        }
+    }
+
+    /// Asks the map of a light of the last picture at any points, world space, metres: transmittance, 0 to 1, in the
+    /// precision and for the lights of [`Renderer::transmittance`]. A point that is not finite gets 1.
+    ///
+    /// # Errors
+    /// As [`Renderer::transmittance`], or more points than the device takes at once.
+    pub fn transmittance_at(&mut self, light: usize, points: &[Vec3]) -> Result<Vec<f32>, RenderError> {
+        match &mut self.gpu {
+            Some(gpu) => gpu.transmittance_at(light, points),
+            None => self.cpu.get_or_insert_default().transmittance_at(light, points),
         }
     }
 }

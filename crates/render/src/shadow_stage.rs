@@ -1,11 +1,12 @@
 //! The shadow methods of one frame on the processor: one map a light, asked once a strand point and once a vertex of the body.
 
 use glam::Vec3;
+use lovelock_gpu::{PassTime, Stopwatch};
 use lovelock_groom::Strands;
 use lovelock_shadow::{ColumnMap, CpuShadow, LightFrame, ShadowError, ShadowInput, ShadowMethod, cpu_shadow};
 use rayon::prelude::*;
 
-use crate::{FrameInput, Light, MAX_LIGHTS};
+use crate::{FrameInput, Light, MAX_LIGHTS, RenderError};
 
 /// The shadow of every light, kept from frame to frame.
 #[derive(Default)]
@@ -22,7 +23,11 @@ pub(crate) struct ShadowStage {
     pub mean: f32,
     /// Bytes of all maps.
     pub bytes: u64,
+    /// What building and asking took, all lights together.
+    pub passes: Vec<PassTime>,
     vertices: [Vec<f32>; 3],
+    /// Whether the last run came to its end.
+    is_whole: bool,
 }
 
 struct LightShadow {
@@ -34,28 +39,34 @@ struct LightShadow {
 }
 
 impl LightShadow {
-    /// Builds the map, one of `maps` that share the limit of memory, and asks it everywhere.
-    fn run(
+    /// Builds the map, one of `maps` that share the limit of memory.
+    fn build(
         &mut self,
         direction: Vec3,
         maps: u32,
         input: &FrameInput,
         strands: &Strands,
-        vertices: &[Vec<f32>; 3],
     ) -> Result<(), ShadowError> {
         // Carried along rather than made anew, so that the map does not roll while the light is dragged.
         self.frame = self.frame.transported(direction);
         let strand_width = input.look.shadow_width(input.style.strands.count());
         let anchor = input.world_from_head.translation.into();
         let from = ShadowInput { strands, strand_width, light: self.frame, anchor, maps };
-        self.shadow.build(&from, input.shadow)?;
-        let Strands { x, y, z, .. } = strands;
-        self.at_points.resize(x.len(), 1.0);
-        self.shadow.transmittance_at(x, y, z, &mut self.at_points);
-        let [x, y, z] = vertices;
-        self.at_vertices.resize(x.len(), 1.0);
-        self.shadow.transmittance_at(x, y, z, &mut self.at_vertices);
-        Ok(())
+        self.shadow.build(&from, input.shadow)
+    }
+
+    /// Asks the map at strand points and at vertices, unless the answers are known.
+    fn ask(&mut self, strands: &Strands, vertices: &[Vec<f32>; 3], known: [Option<&[f32]>; 2]) {
+        let points = [&strands.x, &strands.y, &strands.z];
+        let [v, w, u] = vertices;
+        let asked = [(points, &mut self.at_points), ([v, w, u], &mut self.at_vertices)];
+        for (([x, y, z], answers), known) in asked.into_iter().zip(known) {
+            answers.resize(x.len(), 1.0);
+            match known {
+                Some(known) => answers.copy_from_slice(known),
+                None => self.shadow.transmittance_at(x, y, z, answers),
+            }
+        }
     }
 }
 
@@ -72,17 +83,22 @@ impl ShadowStage {
     /// Builds the maps and looks them up everywhere that they are needed.
     ///
     /// # Errors
-    /// The map would need more memory than its limit.
-    pub fn run(&mut self, input: &FrameInput, strands: &Strands) -> Result<(), ShadowError> {
+    /// The map would need more memory than its limit, or what is known does not fit the picture.
+    pub fn run(&mut self, input: &FrameInput, strands: &Strands) -> Result<(), RenderError> {
+        self.is_whole = false;
         let lights: Vec<Light> =
             input.lights.iter().filter(|light| light.enabled).take(MAX_LIGHTS).map(Light::clamped).collect();
-        if self.method != Some(input.shadow.method) {
+        let method = if input.known.is_some() { ShadowMethod::Exact } else { input.shadow.method };
+        if self.method != Some(method) {
             self.lights.clear();
-            self.method = Some(input.shadow.method);
+            self.method = Some(method);
         }
         self.lights.truncate(lights.len());
         let empty: &[Vec3] = &[];
         let positions = input.body.map_or(empty, |(_, skin)| &skin.positions[..]);
+        if let Some(known) = input.known {
+            known.check(lights.len(), strands.points(), positions.len())?;
+        }
         self.vertices.par_iter_mut().enumerate().for_each(|(axis, values)| {
             values.clear();
             values.extend(positions.iter().map(|p| p[axis]));
@@ -90,25 +106,65 @@ impl ShadowStage {
         while self.lights.len() < lights.len() {
             self.lights.push(LightShadow {
                 frame: LightFrame::new(lights[self.lights.len()].direction),
-                shadow: cpu_shadow(input.shadow.method),
+                shadow: cpu_shadow(method),
                 at_points: Vec::new(),
                 at_vertices: Vec::new(),
             });
         }
         let (vertices, maps) = (&self.vertices, lights.len() as u32);
+        self.passes.clear();
+        let mut passed = |name: &str, part: &Stopwatch| {
+            self.passes.push(PassTime { name: name.to_owned(), ms: part.ms() });
+        };
+        let part = Stopwatch::start();
         self.lights
             .par_iter_mut()
             .zip(&lights)
-            .try_for_each(|(shadow, light)| shadow.run(light.direction, maps, input, strands, vertices))?;
+            .try_for_each(|(shadow, light)| shadow.build(light.direction, maps, input, strands))?;
+        passed("shadow/build", &part);
+
+        let part = Stopwatch::start();
+        self.lights.par_iter_mut().enumerate().for_each(|(k, shadow)| {
+            let known = input.known.map_or([None; 2], |known| {
+                [known.at_points, known.at_vertices].map(|lists| lists.get(k).map(Vec::as_slice))
+            });
+            shadow.ask(strands, vertices, known);
+        });
         let at_points: Vec<&[f32]> = self.lights.iter().map(|light| &light.at_points[..]).collect();
         pack(&at_points, strands.points(), &mut self.at_points);
         let at_vertices: Vec<&[f32]> = self.lights.iter().map(|light| &light.at_vertices[..]).collect();
         pack(&at_vertices, positions.len(), &mut self.at_vertices);
         self.mean = at_points.first().map_or(1.0, |values| mean(values));
+        passed("shadow/ask", &part);
+
+        let part = Stopwatch::start();
         self.columns.clear();
         self.columns.extend(self.lights.iter().map(|light| light.shadow.column_map()));
+        passed("shadow/columns", &part);
         self.bytes = self.lights.iter().map(|light| light.shadow.report().memory_bytes).sum();
+        self.is_whole = true;
         Ok(())
+    }
+
+    /// Transmittance of light `light` at the strand points of the last run.
+    pub fn transmittance(&self, light: usize) -> Result<&[f32], RenderError> {
+        self.light(light).map(|light| &light.at_points[..])
+    }
+
+    /// Asks the map of light `light` of the last run.
+    pub fn transmittance_at(&self, light: usize, points: &[Vec3]) -> Result<Vec<f32>, RenderError> {
+        let light = self.light(light)?;
+        let [x, y, z] = [0, 1, 2].map(|axis| points.iter().map(|p| p[axis]).collect::<Vec<_>>());
+        let mut answers = vec![1.0; points.len()];
+        light.shadow.transmittance_at(&x, &y, &z, &mut answers);
+        Ok(answers)
+    }
+
+    fn light(&self, light: usize) -> Result<&LightShadow, RenderError> {
+        if !self.is_whole {
+            return Err(RenderError::NoPicture);
+        }
+        self.lights.get(light).ok_or(RenderError::NoLight { light, lights: self.lights.len() })
     }
 }
 

@@ -1,5 +1,7 @@
 //! One picture from top to bottom, on the processor.
 
+mod inspect;
+
 use std::sync::{Mutex, PoisonError};
 
 use glam::{Vec3, Vec4};
@@ -140,7 +142,7 @@ impl CpuRenderer {
         let shadow_ms = watch.ms();
 
         let watch = Stopwatch::start();
-        let mut passes = Vec::new();
+        let mut passes = self.shadow.passes.clone();
         let mut passed = |name: &str, part: &Stopwatch| {
             passes.push(PassTime { name: name.to_owned(), ms: part.ms() });
         };

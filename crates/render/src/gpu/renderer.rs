@@ -1,5 +1,7 @@
 //! One picture from top to bottom.
 
+mod inspect;
+
 use std::sync::Arc;
 
 use lovelock_gpu::{Commands, Gpu, GpuError, PassTimer, Readback, Stopwatch, wgpu};
@@ -41,6 +43,8 @@ pub struct GpuRenderer {
     screen: Screen,
     readback: Readback,
     numbers: Vec<u8>,
+    /// Whether the last picture came to its end.
+    is_whole: bool,
 }
 
 impl GpuRenderer {
@@ -84,6 +88,7 @@ impl GpuRenderer {
             screen: Screen::new(&gpu),
             readback: Readback::default(),
             numbers: Vec::new(),
+            is_whole: false,
             pipelines,
             gpu,
         })
@@ -106,6 +111,10 @@ impl GpuRenderer {
         picture: &mut Picture,
     ) -> Result<FrameStats, RenderError> {
         check_size_for(width, height, self.gpu.max_picture_side())?;
+        if input.known.is_some() {
+            return Err(RenderError::KnownOnGpu);
+        }
+        self.is_whole = false;
         let gpu = Arc::clone(&self.gpu);
         let watch = Stopwatch::start();
         for attempt in 0.. {
@@ -130,6 +139,7 @@ impl GpuRenderer {
             }
         }
         (picture.width, picture.height) = (width, height);
+        self.is_whole = true;
         let passes = self.timer.times(&gpu);
         let of = |stage: &str| {
             passes

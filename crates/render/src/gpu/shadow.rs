@@ -152,6 +152,18 @@ impl GpuShadowStage {
         }
     }
 
+    /// Encodes asking the map of slot `slot` of the last frame.
+    pub fn ask(&mut self, slot: usize, gpu: &Gpu, commands: &mut Commands, targets: &GpuTargets) {
+        if let Some(shadow) = self.methods.get_mut(&self.method) {
+            shadow.ask(slot, gpu, commands, targets);
+        }
+    }
+
+    /// Lights that shone on the last frame.
+    pub fn lights(&self) -> usize {
+        self.lights
+    }
+
     /// Whether any light shone on the last frame.
     pub fn has_light(&self) -> bool {
         self.lights > 0

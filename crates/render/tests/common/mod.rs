@@ -71,6 +71,7 @@ impl Scene {
             shadow: &self.shadow,
             camera: &self.camera,
             picture: &self.picture,
+            known: None,
         }
     }
 }

@@ -58,6 +58,7 @@ impl FrameSnapshot {
             shadow: &project.shadow,
             camera,
             picture: &project.picture,
+            known: None,
         }
     }
 }

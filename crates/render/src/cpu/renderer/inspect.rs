@@ -1,0 +1,24 @@
+//! Looking into what a picture was drawn with.
+
+use glam::Vec3;
+
+use super::CpuRenderer;
+use crate::RenderError;
+
+impl CpuRenderer {
+    /// See [`Renderer::transmittance`](crate::Renderer::transmittance).
+    ///
+    /// # Errors
+    /// As there.
+    pub fn transmittance(&self, light: usize) -> Result<Vec<f32>, RenderError> {
+        self.shadow.transmittance(light).map(<[f32]>::to_vec)
+    }
+
+    /// See [`Renderer::transmittance_at`](crate::Renderer::transmittance_at).
+    ///
+    /// # Errors
+    /// As there.
+    pub fn transmittance_at(&self, light: usize, points: &[Vec3]) -> Result<Vec<f32>, RenderError> {
+        self.shadow.transmittance_at(light, points)
+    }
+}
