@@ -241,7 +241,7 @@ impl From<RenderError> for StudioError {
     fn from(error: RenderError) -> Self {
         match error {
             RenderError::Size { .. } => Self::option(error),
-            RenderError::Gpu(_) | RenderError::Shadow(_) => Self::work(error),
+            error => Self::work(error),
         }
     }
 }

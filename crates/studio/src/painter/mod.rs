@@ -282,7 +282,7 @@ fn device_is_gone(error: &RenderError) -> bool {
         RenderError::Gpu(error) => {
             !matches!(error, GpuError::Shader(_) | GpuError::NoAdapter(_) | GpuError::Input(_))
         }
-        RenderError::Shadow(_) | RenderError::Size { .. } => false,
+        _ => false,
     }
 }
 
