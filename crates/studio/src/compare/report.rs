@@ -189,10 +189,10 @@ pub struct FlipError {
 /// Median times, milliseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StageMs {
-    /// To make the shadow maps.
-    pub build: f64,
-    /// To ask them at every strand point.
-    pub query: f64,
+    /// To make the shadow maps; null where the device does not time its passes.
+    pub build: Option<f64>,
+    /// To ask them at every strand point and every vertex of the body; null as above.
+    pub query: Option<f64>,
     /// To draw what is left of the picture.
     pub draw: f64,
     /// The whole picture without interpolation.
@@ -217,9 +217,9 @@ pub struct TimeSpread {
 /// How still a method stands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StabilityReport {
-    /// Mean standard deviation of transmittance under shifts of the map by less than a texel.
+    /// Standard deviation of transmittance under shifts of the map by less than a texel, root mean square over points.
     pub swim: f64,
-    /// 99th percentile of that over points.
+    /// 99th percentile of the points' own deviations.
     pub swim_p99: f64,
     /// Largest change of transmittance at a point from one frame to the next; null for a single frame.
     pub pop: Option<f64>,
@@ -232,14 +232,19 @@ pub struct StabilityReport {
 /// What a method's slices show in a slab of even density, where transmittance is an exponential.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct BandingReport {
-    /// Largest deviation of the second derivative from the exponential's, per square of the slab's depth.
+    /// Largest deviation of the second derivative from the exponential's, as a multiple of the exponential's own where
+    /// light enters.
     pub residual: f64,
     /// Root mean square error of transmittance in the slab.
     pub rmse: f64,
-    /// Slices in the slab; null where the method has none of one depth.
-    pub slices: Option<f64>,
-    /// Amplitude of transmittance at the frequency of the slices, where it has some.
-    pub amplitude: Option<f64>,
+    /// The largest amplitude of all waves in the error.
+    pub amplitude: f64,
+    /// Period of that wave, a part of the slab.
+    pub period: f64,
+    /// Distance of two slices (layers, cells), a part of the slab; null where the method has none of one depth.
+    pub slice: Option<f64>,
+    /// Amplitude of the wave with the period of the slices.
+    pub slice_amplitude: Option<f64>,
     /// Depth as a part of the slab, transmittance of the method: a curve to plot beside the exponential.
     pub curve: Vec<(f32, f32)>,
     /// Extinction over the whole slab: the truth is `exp(-optical_depth * depth)`.
