@@ -3,5 +3,5 @@
 mod compare;
 mod data;
 
-pub use compare::{Flip, flip, mean_color, psnr_db};
+pub use compare::{Flip, flip, mean_color};
 pub use data::{data_dir, skip_without_adapter};

@@ -3,9 +3,9 @@
 use super::graph::Graph;
 
 /// Who may use whom, each crate by its name without `lovelock-`.
-const ARROWS: [(&str, &[&str]); 11] = [
+const ARROWS: [(&str, &[&str]); 12] = [
     ("app", &["studio"]),
-    ("studio", &["render", "shadow", "wisp", "motion", "groom", "record"]),
+    ("studio", &["render", "shadow", "wisp", "motion", "groom", "record", "metrics"]),
     ("render", &["shadow", "gpu", "groom", "motion"]),
     ("shadow", &["gpu", "groom"]),
     ("wisp", &["groom", "motion"]),
@@ -13,7 +13,8 @@ const ARROWS: [(&str, &[&str]); 11] = [
     ("motion", &[]),
     ("groom", &[]),
     ("gpu", &[]),
-    ("testkit", &[]),
+    ("metrics", &[]),
+    ("testkit", &["metrics"]),
     ("xtask", &[]),
 ];
 
@@ -21,7 +22,7 @@ const ARROWS: [(&str, &[&str]); 11] = [
 const FOR_TESTS: &str = "testkit";
 
 /// Crates that build and test without a graphics library, so that their tests stay quick on a small machine.
-const WITHOUT_WGPU: [&str; 6] = ["groom", "motion", "wisp", "record", "testkit", "xtask"];
+const WITHOUT_WGPU: [&str; 7] = ["groom", "motion", "wisp", "record", "metrics", "testkit", "xtask"];
 
 /// Libraries that only some crates may name: how their packages' names start, and who may.
 const LIBRARIES: [(&[&str], &[&str]); 3] = [
@@ -95,7 +96,7 @@ mod tests {
         graph
     }
 
-    const GOOD: [&str; 14] = [
+    const GOOD: [&str; 15] = [
         "lovelock → lovelock-studio",
         "lovelock → egui",
         "lovelock → clap",
@@ -109,7 +110,8 @@ mod tests {
         "lovelock-gpu → wgpu",
         "lovelock-groom → glam",
         "lovelock-groom ⇢ lovelock-testkit",
-        "lovelock-testkit → nv-flip",
+        "lovelock-testkit → lovelock-metrics",
+        "lovelock-studio → lovelock-metrics",
     ];
 
     #[test]
@@ -129,6 +131,8 @@ mod tests {
             ("lovelock-record → lovelock-studio", "record may use groom"),
             ("lovelock-shadow → lovelock-motion", "shadow may use gpu, groom"),
             ("lovelock-groom → lovelock-testkit", "groom may use"),
+            ("lovelock-render ⇢ lovelock-metrics", "render may use"),
+            ("lovelock-metrics → lovelock-groom", "none of the others"),
             ("lovelock-groom ⇢ lovelock-wisp", "groom may use"),
             ("lovelock-studio → egui_plot", "only app"),
             ("lovelock-render ⇢ eframe", "only app"),

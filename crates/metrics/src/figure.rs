@@ -1,0 +1,233 @@
+//! Pictures with words: labels, and the legend of a false colour.
+
+use crate::color_map::ColorMap;
+use crate::image::Image;
+use crate::ticks::ticks;
+use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
+use std::ops::RangeInclusive;
+
+/// Pixels along an edge that no canvas exceeds.
+const LARGEST: usize = 32_768;
+
+/// A picture that is put together: sRGB, four bytes a pixel, rows from the top. What would lie outside is cut off.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Canvas {
+    width: usize,
+    height: usize,
+    rgba: Vec<u8>,
+}
+
+impl Canvas {
+    /// Height of a line of [`text`](Self::text), pixels.
+    pub const LINE: usize = 16;
+
+    /// A picture of one opaque colour. An edge is at least 1 and at most 32,768 pixels long.
+    pub fn new(width: usize, height: usize, color: [u8; 3]) -> Self {
+        let [width, height] = [width, height].map(|edge| edge.clamp(1, LARGEST));
+        let [r, g, b] = color;
+        Self { width, height, rgba: [r, g, b, 255].repeat(width * height) }
+    }
+
+    /// Pixels in a row.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Rows.
+    pub fn height(&self) -> usize {
+        self.height
+    }
+
+    /// The bytes, four a pixel.
+    pub fn rgba(&self) -> &[u8] {
+        &self.rgba
+    }
+
+    /// The bytes, four a pixel.
+    pub fn into_rgba(self) -> Vec<u8> {
+        self.rgba
+    }
+
+    /// How wide [`text`](Self::text) draws, pixels.
+    pub fn text_width(text: &str) -> usize {
+        text.chars().count() * get_raster_width(FontWeight::Regular, RasterHeight::Size16)
+    }
+
+    /// Puts one colour over a pixel, by the share `alpha` of 255.
+    fn blend(&mut self, x: i32, y: i32, color: [u8; 3], alpha: u8) {
+        let (Ok(x), Ok(y)) = (usize::try_from(x), usize::try_from(y)) else { return };
+        if x >= self.width || y >= self.height {
+            return;
+        }
+        let pixel = &mut self.rgba[(y * self.width + x) * 4..][..4];
+        for (below, above) in pixel.iter_mut().zip(color) {
+            let sum = u16::from(*below) * u16::from(255 - alpha) + u16::from(above) * u16::from(alpha);
+            *below = ((sum + 127) / 255) as u8;
+        }
+        pixel[3] = 255;
+    }
+
+    /// Fills `width` by `height` pixels from `x`, `y` with one colour.
+    pub fn fill(&mut self, x: i32, y: i32, width: usize, height: usize, color: [u8; 3]) {
+        let inside = |start: i32, length: usize, edge: usize| {
+            start.max(0)..start.saturating_add(length.min(LARGEST) as i32).min(edge as i32)
+        };
+        for y in inside(y, height, self.height) {
+            for x in inside(x, width, self.width) {
+                self.blend(x, y, color, 255);
+            }
+        }
+    }
+
+    /// Puts a picture at `x`, `y`. Its transparent pixels let the canvas show.
+    pub fn put(&mut self, x: i32, y: i32, picture: &Image<'_>) {
+        for (row, pixels) in picture.rgba().chunks_exact(picture.width() * 4).enumerate() {
+            for (column, pixel) in pixels.chunks_exact(4).enumerate() {
+                let place = (x.saturating_add(column as i32), y.saturating_add(row as i32));
+                self.blend(place.0, place.1, [pixel[0], pixel[1], pixel[2]], pixel[3]);
+            }
+        }
+    }
+
+    /// Writes one line of text with its upper left corner at `x`, `y`, in Noto Sans Mono, [`LINE`](Self::LINE) pixels
+    /// high. A letter beyond Latin 1 becomes a question mark.
+    pub fn text(&mut self, x: i32, y: i32, text: &str, color: [u8; 3]) {
+        let mut pen = x;
+        for letter in text.chars() {
+            let raster = |letter| get_raster(letter, FontWeight::Regular, RasterHeight::Size16);
+            let Some(glyph) = raster(letter).or_else(|| raster('?')) else { continue };
+            for (row, line) in glyph.rows().enumerate() {
+                for (column, &ink) in line.iter().enumerate() {
+                    self.blend(pen.saturating_add(column as i32), y.saturating_add(row as i32), color, ink);
+                }
+            }
+            pen = pen.saturating_add(glyph.width() as i32);
+            if pen > LARGEST as i32 {
+                break;
+            }
+        }
+    }
+}
+
+/// What the colours of a map stand for: a bar with round numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Legend {
+    /// The colours.
+    pub map: ColorMap,
+    /// What its first and its last colour stand for.
+    pub range: RangeInclusive<f32>,
+    /// What is shown, with its unit: one line above the bar.
+    pub title: String,
+}
+
+/// Ink on paper.
+const INK: [u8; 3] = [32, 33, 36];
+const PAPER: [u8; 3] = [255, 255, 255];
+/// Where there is nothing to show: no colour of a map.
+const NOTHING: [u8; 3] = [222, 225, 230];
+
+impl Legend {
+    /// Pixels across the bar itself.
+    const BAR: usize = 18;
+
+    /// Draws the legend at `x`, `y`, `height` pixels high: the title, and below it an upright bar with its largest
+    /// number on top.
+    pub fn draw(&self, canvas: &mut Canvas, x: i32, y: i32, height: usize, ink: [u8; 3]) {
+        canvas.text(x, y, &self.title, ink);
+        let line = Canvas::LINE as i32;
+        let top = y.saturating_add(line + line / 2 + 4);
+        let length = height.saturating_sub(Canvas::LINE * 2 + 4).clamp(1, LARGEST) as i32;
+        for row in 0..length {
+            let t = 1.0 - (row as f32 + 0.5) / length as f32;
+            canvas.fill(x, top + row, Self::BAR, 1, self.map.at(t));
+        }
+        let (low, high) = (f64::from(*self.range.start()), f64::from(*self.range.end()));
+        let ticks = ticks(low, high, (length as usize / 40).clamp(2, 8));
+        let after = x.saturating_add(Self::BAR as i32);
+        for &value in &ticks.values {
+            let row = top + ((high - value) / (high - low) * f64::from(length - 1)).round() as i32;
+            canvas.fill(after, row, 5, 1, ink);
+            canvas.text(after + 8, row - line / 2, &ticks.label(value), ink);
+        }
+    }
+
+    /// How wide [`draw`](Self::draw) is for a bar of any height, pixels.
+    pub fn width(&self) -> usize {
+        let (low, high) = (f64::from(*self.range.start()), f64::from(*self.range.end()));
+        let labels = (2..=8).filter_map(|wanted| {
+            let ticks = ticks(low, high, wanted);
+            ticks.values.iter().map(|&value| Canvas::text_width(&ticks.label(value))).max()
+        });
+        (Self::BAR + 8 + labels.max().unwrap_or(0)).max(Canvas::text_width(&self.title))
+    }
+
+    /// A painted map with its legend to the right, on white. Transparent pixels become a grey that no map has.
+    pub fn beside(&self, picture: &Image<'_>) -> Canvas {
+        let margin = 12;
+        let height = picture.height().max(Canvas::LINE * 6);
+        let mut canvas = Canvas::new(picture.width() + self.width() + 2 * margin, height, PAPER);
+        canvas.fill(0, 0, picture.width(), picture.height(), NOTHING);
+        canvas.put(0, 0, picture);
+        self.draw(&mut canvas, (picture.width() + margin) as i32, 4, height - 8, INK);
+        canvas
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Canvas, INK, Legend, NOTHING};
+    use crate::{ColorMap, Image};
+
+    fn pixel(canvas: &Canvas, x: usize, y: usize) -> [u8; 3] {
+        let at = (y * canvas.width() + x) * 4;
+        [0, 1, 2].map(|i| canvas.rgba()[at + i])
+    }
+
+    #[test]
+    fn text_has_ink_inside_its_width_alone() {
+        let mut canvas = Canvas::new(80, 20, [255; 3]);
+        canvas.text(4, 2, "Ab·1", [0; 3]);
+        let wide = Canvas::text_width("Ab·1");
+        let dark = |x: usize| (0..20).any(|y| pixel(&canvas, x, y)[0] < 100);
+        assert!((4..4 + wide).any(dark) && !(4 + wide..80).any(dark) && !(0..4).any(dark));
+        // Another text is another picture.
+        let mut other = Canvas::new(80, 20, [255; 3]);
+        other.text(4, 2, "Ab·2", [0; 3]);
+        assert_ne!(canvas, other);
+    }
+
+    #[test]
+    fn nothing_is_drawn_outside() {
+        let mut canvas = Canvas::new(10, 10, [9; 3]);
+        let before = canvas.clone();
+        canvas.text(-500, 3, "far", [0; 3]);
+        canvas.text(i32::MAX, i32::MAX, "far", [0; 3]);
+        canvas.fill(i32::MIN, 0, 5, 5, [0; 3]);
+        canvas.fill(10, 0, usize::MAX, 5, [0; 3]);
+        canvas.put(0, -2, &Image::new(1, 2, &[0; 8]).unwrap());
+        assert_eq!(canvas, before);
+        canvas.fill(8, 8, usize::MAX, usize::MAX, [1; 3]);
+        assert_eq!((pixel(&canvas, 9, 9), pixel(&canvas, 7, 7)), ([1; 3], [9; 3]));
+        assert_eq!(Canvas::new(0, usize::MAX, [0; 3]).rgba().len(), 4 * 32_768);
+    }
+
+    #[test]
+    fn a_legend_shows_the_ends_of_its_map_and_greys_what_is_missing() {
+        let legend = Legend { map: ColorMap::Magma, range: 0.0..=0.2, title: "error".into() };
+        let painted = crate::paint(&[0.0, f32::NAN], 0.0..=0.2, ColorMap::Magma).repeat(200);
+        let canvas = legend.beside(&Image::new(2, 200, &painted).unwrap());
+        assert_eq!(canvas.height(), 200);
+        assert_eq!((pixel(&canvas, 0, 5), pixel(&canvas, 1, 5)), (ColorMap::Magma.at(0.0), NOTHING));
+        let bar: Vec<_> = (0..200).map(|y| pixel(&canvas, 2 + 12 + 4, y)).collect();
+        for t in [0.02, 0.5, 0.98] {
+            let wanted = ColorMap::Magma.at(t);
+            let near = |color: &&[u8; 3]| (0..3).all(|i| color[i].abs_diff(wanted[i]) < 4);
+            assert!(bar.iter().any(|color| near(&color)), "{t}: {wanted:?}");
+        }
+        let marks = (0..200).filter(|&y| pixel(&canvas, 2 + 12 + Legend::BAR + 2, y) == INK).count();
+        assert_eq!(marks, 3, "0.0, 0.1 and 0.2");
+        // A range without extent has a bar and no numbers.
+        let flat = Legend { range: 0.0..=0.0, ..legend };
+        assert_eq!(flat.beside(&Image::new(2, 200, &painted).unwrap()).height(), 200);
+    }
+}

@@ -1,0 +1,32 @@
+//! How good a picture or a transmittance is, as numbers and as colours: FLIP, PSNR and SSIM of pictures, errors of
+//! transmittance, stability over time, banding, spreads of times, and false colour with its legend.
+//!
+//! Every number here is a pure function of its arguments. No function panics for any input: what cannot be compared
+//! is an error, `None`, or counted as left out.
+
+mod banding;
+mod blur;
+mod color_map;
+mod errors;
+mod figure;
+mod flip;
+mod image;
+mod pareto;
+mod psnr;
+mod spread;
+mod ssim;
+mod stability;
+mod ticks;
+
+pub use banding::{Banding, banding};
+pub use color_map::{ColorMap, paint};
+pub use errors::{Errors, errors, errors_of};
+pub use figure::{Canvas, Legend};
+pub use flip::{FlipMap, flip};
+pub use image::{Image, ImageError};
+pub use pareto::pareto;
+pub use psnr::psnr_db;
+pub use spread::{Spread, percentile};
+pub use ssim::ssim;
+pub use stability::{Stability, flicker, pop, swim};
+pub use ticks::{Ticks, ticks};
