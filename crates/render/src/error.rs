@@ -36,8 +36,8 @@ pub enum RenderError {
         /// How many there are.
         lights: usize,
     },
-    /// Transmittance that is given does not fit the picture.
-    #[error("the transmittance that is given has {found} {of}, and the picture {needed}")]
+    /// Transmittance or other values that are given do not fit the picture.
+    #[error("what is given for the picture has {found} {of}, not {needed}")]
     Known {
         /// What is counted.
         of: &'static str,

@@ -57,7 +57,7 @@ mod tests {
         assert!(one.check(2, 5, 3).is_err());
         assert_eq!(
             known.check(2, 6, 3).unwrap_err().to_string(),
-            "the transmittance that is given has 5 strand points, and the picture 6"
+            "what is given for the picture has 5 strand points, not 6"
         );
     }
 }

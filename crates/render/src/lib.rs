@@ -22,7 +22,7 @@ mod uniform;
 
 pub use backend::{Backend, UnknownBackend};
 pub use camera::Camera;
-pub use cpu::CpuRenderer;
+pub use cpu::{CpuRenderer, HairHit, ValuePicture, ValueRenderer};
 pub use error::RenderError;
 pub use frame::{FrameInput, FrameStats, HairPose};
 pub use gpu::{GpuRenderer, all_shaders};

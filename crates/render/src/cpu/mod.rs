@@ -22,12 +22,16 @@ mod body_depth;
 mod dispatch;
 mod hair;
 mod math;
+mod placed;
 mod points;
+mod pool;
 mod renderer;
 mod surface;
 mod tile;
 mod tone;
 mod transparency;
+mod values;
 mod view;
 
 pub use renderer::CpuRenderer;
+pub use values::{HairHit, ValuePicture, ValueRenderer};

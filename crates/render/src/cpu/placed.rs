@@ -1,0 +1,235 @@
+//! Hair and body placed in the tiles of a picture, and what is seen of them in each.
+
+use glam::Vec3;
+use lovelock_groom::Strands;
+use lovelock_groom::simd::Width;
+use lovelock_motion::{Body, Skin};
+use rayon::prelude::*;
+
+use super::bins::Bins;
+use super::dispatch;
+use super::hair::blend::{BlendState, BlendTile};
+use super::hair::list::{Fragments, ListTile};
+use super::hair::order::SegmentKeys;
+use super::hair::segment::{bounds, is_drawn};
+use super::points::{PointsIn, ShadedPoint, shade_all};
+use super::surface::PlacedSurface;
+use super::surface::raster::{Occlusion, SurfaceSamples, TriangleTile};
+use super::tile::{Grid, HairPlanes, TILE};
+use super::transparency::resolve_tile;
+use super::view::View;
+use crate::closed::{Closedness, encloses};
+use crate::strand_details::StrandDetails;
+use crate::{FrameInput, Transparency};
+
+/// Segments of a tile that are fetched and drawn together.
+const SEGMENTS_AT_ONCE: usize = 128;
+
+/// What a picture shows, ready to be drawn tile by tile; kept from frame to frame.
+#[derive(Debug)]
+pub(super) struct Placed {
+    pub width: Width,
+    pub details: StrandDetails,
+    pub points: Vec<ShadedPoint>,
+    pub surface: PlacedSurface,
+    pub segment_bins: Bins,
+    keys: SegmentKeys,
+    closed: Closedness,
+}
+
+/// What a thread needs to find out what is seen in a tile.
+#[derive(Debug, Default)]
+pub(super) struct TileScratch {
+    pub samples: SurfaceSamples,
+    pub hair: HairPlanes,
+    hidden: Occlusion,
+    blend: BlendState,
+    order: Vec<u64>,
+    segments: Vec<[ShadedPoint; 2]>,
+    fragments: Fragments,
+}
+
+/// The body of a picture.
+pub(super) type PosedBody<'a> = Option<(&'a Body, &'a Skin)>;
+
+impl Placed {
+    pub fn new(width: Width) -> Self {
+        Self {
+            width,
+            details: StrandDetails::default(),
+            points: Vec::new(),
+            surface: PlacedSurface::default(),
+            segment_bins: Bins::default(),
+            keys: SegmentKeys::default(),
+            closed: Closedness::default(),
+        }
+    }
+
+    /// Whether the body of a picture has an inside.
+    pub fn is_closed(&mut self, input: &FrameInput) -> bool {
+        input.body.is_some_and(|(body, _)| self.closed.of(body))
+    }
+
+    /// Projects and shades the strands' points, which have four packed `transmittance`s each.
+    pub fn shade(&mut self, view: &View, input: &FrameInput, strands: &Strands, transmittance: &[u32]) {
+        self.details.follow(input.style);
+        let from = PointsIn { strands, details: &self.details.words, transmittance };
+        shade_all(self.width, view, &from, &mut self.points);
+    }
+
+    /// First points of the segments whose points are all there, in the order of their points.
+    pub fn segments(&self) -> &[u32] {
+        let segments = &self.details.segments;
+        &segments[..segments.partition_point(|&first| (first as usize + 1) < self.points.len())]
+    }
+
+    /// Sorts segments and triangles into tiles, once points are shaded. `hair_on_body` holds one packed word of
+    /// transmittances a vertex.
+    pub fn sort(
+        &mut self,
+        view: &View,
+        grid: &Grid,
+        input: &FrameInput,
+        strands: &Strands,
+        hair_on_body: &[u32],
+    ) {
+        let body = posed_body(input);
+        // From within, the faces that look away from the eye are those behind the wall.
+        let seen_from_without = self.is_closed(input)
+            && body.is_some_and(|(body, skin)| {
+                !encloses(input.camera.eye, &skin.positions, &body.mesh.triangles)
+            });
+        let points = &self.points;
+        let whole = self.segments().len();
+        let segments = &self.details.segments[..whole];
+        let (surface, bins, keys) = (&mut self.surface, &mut self.segment_bins, &mut self.keys);
+        rayon::join(
+            || surface.place(view.uniform.clip_from_world, grid, body, hair_on_body, seen_from_without),
+            || {
+                bins.fill(segments.len(), grid.columns, grid.rows, |i| {
+                    let first = segments[i] as usize;
+                    let (a, b) = (points.get(first)?, points.get(first + 1)?);
+                    if is_drawn(a, b) { grid.range(bounds(a, b)) } else { None }
+                });
+                if input.picture.transparency == Transparency::Sorted {
+                    let forward = (input.camera.target - input.camera.eye).normalize_or_zero();
+                    keys.measure(strands, segments, forward);
+                }
+            },
+        );
+    }
+
+    /// Whether nothing lies in a tile.
+    pub fn is_empty(&self, tile: usize) -> bool {
+        self.surface.bins.of(tile).is_empty() && self.segment_bins.of(tile).is_empty()
+    }
+
+    /// Finds which part of the body each sample of a tile shows, and the hair before it.
+    pub fn draw_tile(
+        &self,
+        view: &View,
+        grid: &Grid,
+        input: &FrameInput,
+        tile: usize,
+        scratch: &mut TileScratch,
+    ) {
+        self.draw_body(grid, posed_body(input), tile, scratch);
+        scratch.hair.clear();
+        let segments = self.segment_bins.of(tile);
+        if !segments.is_empty() {
+            self.draw_hair(view, input.picture.transparency, grid.origin(tile), segments, scratch);
+        }
+    }
+
+    /// Finds which part of the body each sample of a tile shows.
+    pub fn draw_body(&self, grid: &Grid, body: PosedBody, tile: usize, scratch: &mut TileScratch) {
+        scratch.samples.clear();
+        scratch.hidden.clear();
+        let list = self.surface.bins.of(tile);
+        if let Some((body, _)) = body
+            && !list.is_empty()
+        {
+            let (vertices, triangles) = (&self.surface.vertices[..], &body.mesh.triangles[..]);
+            let input = TriangleTile { origin: grid.origin(tile), vertices, triangles, list };
+            dispatch::triangles(self.width, &input, &mut scratch.samples, &mut scratch.hidden);
+        }
+    }
+
+    fn draw_hair(
+        &self,
+        view: &View,
+        transparency: Transparency,
+        origin: [f32; 2],
+        segments: &[u32],
+        scratch: &mut TileScratch,
+    ) {
+        let opacity = view.uniform.width_opacity_tip_scalp.y;
+        match transparency {
+            Transparency::Sorted => {
+                self.keys.sort(segments, &self.details.segments, &mut scratch.order);
+                let order = std::mem::take(&mut scratch.order);
+                scratch.blend.clear();
+                // Some at a time: what comes after the tile is full is not even fetched.
+                for order in order.chunks(SEGMENTS_AT_ONCE) {
+                    scratch.segments.clear();
+                    scratch.segments.extend(order.iter().map(|&first| {
+                        let first = first as u32 as usize;
+                        [self.points[first], self.points[first + 1]]
+                    }));
+                    let input =
+                        BlendTile { origin, segments: &scratch.segments, hidden: &scratch.hidden, opacity };
+                    dispatch::blend(self.width, &input, &mut scratch.blend);
+                    if scratch.blend.is_full() {
+                        break;
+                    }
+                }
+                scratch.order = order;
+                scratch.blend.write(&mut scratch.hair);
+            }
+            Transparency::Opaque
+            | Transparency::WeightedAverage
+            | Transparency::OccupancyOrder
+            | Transparency::Exact => {
+                let input = ListTile {
+                    origin,
+                    points: &self.points,
+                    segments,
+                    first_points: &self.details.segments,
+                    samples: &scratch.samples,
+                    opacity,
+                };
+                dispatch::list(self.width, &input, &mut scratch.fragments);
+                resolve_tile(transparency, &mut scratch.fragments, &mut scratch.hair);
+            }
+        }
+    }
+}
+
+/// The body of a picture, as its parts.
+pub(super) fn posed_body<'a>(input: &FrameInput<'a>) -> PosedBody<'a> {
+    input.body.map(|(body, skin)| (&**body, skin))
+}
+
+/// Positions and triangles of the body of a picture.
+pub(super) fn surface_of<'a>(input: &FrameInput<'a>) -> (&'a [Vec3], &'a [[u32; 3]]) {
+    posed_body(input).map_or((&[], &[]), |(body, skin)| (&skin.positions, &body.mesh.triangles))
+}
+
+/// Puts items of finished tiles, `per_pixel` of them a pixel, into the rows of a picture.
+pub(super) fn copy_rows<T: Copy + Default + Send + Sync>(
+    tiles: &[T],
+    per_pixel: usize,
+    grid: &Grid,
+    out: &mut Vec<T>,
+) {
+    let row_items = grid.width as usize * per_pixel;
+    let (line, tile_items) = (TILE * per_pixel, TILE * TILE * per_pixel);
+    out.resize(row_items * grid.height as usize, T::default());
+    out.par_chunks_mut(row_items).with_min_len(TILE).enumerate().for_each(|(y, row)| {
+        let first = y / TILE * grid.columns;
+        for (column, out) in row.chunks_mut(line).enumerate() {
+            let start = (first + column) * tile_items + y % TILE * line;
+            out.copy_from_slice(&tiles[start..start + out.len()]);
+        }
+    });
+}

@@ -1,0 +1,43 @@
+//! Scratch memory that threads lend each other.
+
+use std::sync::{Mutex, PoisonError};
+
+/// Scratch memory that is not in use.
+#[derive(Debug)]
+pub(super) struct Pool<T>(Mutex<Vec<Box<T>>>);
+
+impl<T> Default for Pool<T> {
+    fn default() -> Self {
+        Self(Mutex::default())
+    }
+}
+
+impl<T> Pool<T> {
+    /// Lends some, if there is any.
+    pub fn take(&self) -> Lease<'_, T> {
+        let scratch = self.0.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        Lease { pool: self, scratch }
+    }
+}
+
+/// Scratch memory that goes back when the task is done.
+#[derive(Debug)]
+pub(super) struct Lease<'a, T> {
+    pool: &'a Pool<T>,
+    scratch: Option<Box<T>>,
+}
+
+impl<T: Default> Lease<'_, T> {
+    /// What was lent, or made where there was none.
+    pub fn get(&mut self) -> &mut T {
+        self.scratch.get_or_insert_default()
+    }
+}
+
+impl<T> Drop for Lease<'_, T> {
+    fn drop(&mut self) {
+        if let Some(scratch) = self.scratch.take() {
+            self.pool.0.lock().unwrap_or_else(PoisonError::into_inner).push(scratch);
+        }
+    }
+}
