@@ -75,10 +75,23 @@ fn each_fragment(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
     let slope = step.y / step.x;
     let half_run = reach * length / abs(step.x);
     let last = i32(ceil(until.x - 0.5));
-    for (var major = i32(ceil(begin.x - 0.5)) + i32(thread % eye.lanes); major < last; major += i32(eye.lanes)) {
-        let middle = start.y + slope * (f32(major) + 0.5 - start.x);
-        let end = i32(ceil(min(middle + half_run, until.y) - 0.5));
-        for (var minor = i32(ceil(max(middle - half_run, begin.y) - 0.5)); minor < end; minor++) {
+    // One loop over both axes: where kernels run on the processor, each inner loop has a round that does nothing.
+    let lanes = i32(eye.lanes);
+    var major = i32(ceil(begin.x - 0.5)) + i32(thread % eye.lanes) - lanes;
+    var minor = 0;
+    var end = 0;
+    loop {
+        minor++;
+        if (minor >= end) {
+            major += lanes;
+            if (major >= last) {
+                break;
+            }
+            let middle = start.y + slope * (f32(major) + 0.5 - start.x);
+            end = i32(ceil(min(middle + half_run, until.y) - 0.5));
+            minor = i32(ceil(max(middle - half_run, begin.y) - 0.5));
+        }
+        if (minor < end) {
             let at = select(vec2u(u32(major), u32(minor)), vec2u(u32(minor), u32(major)), by_row);
             let centre = vec2f(at) + 0.5;
             let p = centre - a.at.xy;

@@ -79,7 +79,8 @@ fn body_light(i: u32, p: vec3f, lean: vec3f, bias: f32, taps: u32) -> f32 {
     let radius = max(light.radiance_blur.w, 1.0) * texel;
     var direction = vec2f(1.0, 0.0);
     var sum = 0.0;
-    for (var k = 0u; k < taps; k++) {
+    var k = 0u;
+    loop {
         let tap = radius * sqrt((f32(taps - k) - 0.5) / f32(taps)) * direction;
         let deeper = dot(tap, lean.xy);
         // Behind the far end of the map nothing more keeps the light off.
@@ -92,6 +93,11 @@ fn body_light(i: u32, p: vec3f, lean: vec3f, bias: f32, taps: u32) -> f32 {
             direction.x * -0.737368878 - direction.y * 0.675490294,
             direction.x * 0.675490294 + direction.y * -0.737368878,
         );
+        k++;
+        // Tested at the end: where kernels run on the processor, a test at the beginning costs a round in which nothing is done.
+        continuing {
+            break if k >= taps;
+        }
     }
     return sum / f32(taps);
 }

@@ -89,7 +89,7 @@ fn behind_hair(pixel: vec2u) -> vec3f {
     let free = dot(select(vec4f(0.25), vec4f(0.0), open), vec4f(1.0));
     let ndc = ((vec2f(pixel) + 0.5) / frame.size_scale_exposure.xy - 0.5) * vec2f(2.0, -2.0);
     var sum = vec3f(0.0);
-    while (any(open)) {
+    loop {
         let first = select(select(select(3u, 2u, open.z), 1u, open.y), 0u, open.x);
         let one = chosen(a, b, c, d, first);
         // Whatever the numbers are, one sample is lit in each round.
@@ -114,6 +114,10 @@ fn behind_hair(pixel: vec2u) -> vec3f {
             group.sum.hair / group.count,
         );
         sum += 0.25 * group.count * shade_surface(surface);
+        // At the end, as in `body_light`.
+        continuing {
+            break if !any(open);
+        }
     }
     if (free > 0.0) {
         sum += free * backdrop(pixel);

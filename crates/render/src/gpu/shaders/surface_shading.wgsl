@@ -20,23 +20,27 @@ fn shade_surface(in: Surface) -> vec3f {
     var sum = vec3f(0.0);
     var open = 0.0;
     let lights = light_count();
-    for (var k = 0u; k < lights; k++) {
+    var k = 0u;
+    loop {
         let light = frame.lights[k];
         let l = -light.direction_specular.xyz;
         let facing = dot(n, l);
-        open += in.hair[k];
+        open += select(0.0, in.hair[k], k < lights);
         // Light wraps a little round skin; the shadow map is asked only where light can come.
         let wrapped = clamp((facing + 0.12) / 1.12, 0.0, 1.0);
-        if (wrapped <= 0.0) {
-            continue;
+        if (wrapped > 0.0 && k < lights) {
+            // Where light grazes the skin, the flat triangles of a round limb keep it from each other.
+            let above = in.world + n * (0.002 + 0.004 * (1.0 - clamp(facing, 0.0, 1.0)));
+            let lit = body_light(k, above, lean_of(k, n), 0.003, SURFACE_TAPS) * in.hair[k];
+            let h = normalize(l + v);
+            let gloss = 0.014 * skin * light.direction_specular.w
+                * (pow(max(dot(n, h), 0.0), 24.0) + 0.6 * pow(1.0 - max(dot(n, v), 0.0), 4.0));
+            sum += light.radiance_blur.xyz * lit * (albedo * wrapped * 0.318 + vec3f(gloss) * clamp(facing, 0.0, 1.0));
         }
-        // Where light grazes the skin, the flat triangles of a round limb keep it from each other.
-        let above = in.world + n * (0.002 + 0.004 * (1.0 - clamp(facing, 0.0, 1.0)));
-        let lit = body_light(k, above, lean_of(k, n), 0.003, SURFACE_TAPS) * in.hair[k];
-        let h = normalize(l + v);
-        let gloss = 0.014 * skin * light.direction_specular.w
-            * (pow(max(dot(n, h), 0.0), 24.0) + 0.6 * pow(1.0 - max(dot(n, v), 0.0), 4.0));
-        sum += light.radiance_blur.xyz * lit * (albedo * wrapped * 0.318 + vec3f(gloss) * clamp(facing, 0.0, 1.0));
+        k++;
+        continuing {
+            break if k >= lights;
+        }
     }
     let inside = select(1.0, open / f32(max(lights, 1u)), lights > 0u);
     sum += 0.5 * ambient(n) * albedo * (0.35 + 0.65 * inside);
