@@ -91,6 +91,25 @@ mod tests {
     }
 
     #[test]
+    fn scikit_image_has_the_same_numbers() {
+        // skimage.metrics.structural_similarity 0.26 of the lumas with gaussian_weights, sigma 1.5,
+        // use_sample_covariance=False and data_range 255.
+        let colors = |seed: u32, more: u32| -> Vec<u8> {
+            let pixel = |x: u32, y: u32| {
+                let checks = if (x / 4 + y / 3) % 2 == 1 { 200 } else { 0 };
+                let rgb = [(x * 7 + y * 3 * seed) % 256, (x * y * seed) % 256, checks];
+                rgb.map(|channel| (channel + more * ((x * 13) % 17)).min(255) as u8)
+            };
+            (0..40 * 33).map(|i| pixel(i % 40, i / 40)).flat_map(|[r, g, b]| [r, g, b, 255]).collect()
+        };
+        for (other, expected) in [(colors(2, 0), 0.419_696_788_9), (colors(1, 1), 0.985_277_606_7)] {
+            let found = of(40, &colors(1, 0), &other);
+            // Single precision: measured at most 3e-7.
+            assert!((found - expected).abs() < 2e-6, "{found} {expected}");
+        }
+    }
+
+    #[test]
     fn small_and_unequal_pictures_are_refused() {
         let small = grey(10, 30, |_, _| 0);
         let image = Image::new(10, 30, &small).unwrap();

@@ -1,11 +1,11 @@
 //! `cargo xtask ci`: every check, in the order in which they find faults.
 
 use crate::tool::{cargo, run as run_tool, timed};
-use crate::{layers, testing};
+use crate::{interchange, layers, testing};
 use anyhow::{bail, ensure};
 use std::time::Duration;
 
-/// Runs the tests, then format, clippy, layers and documentation, all of them even after a fault. The totals of the
+/// Runs the tests, then interchange, browser, format, clippy, layers and documentation, all of them even after a fault. The totals of the
 /// tests are the last line on standard output.
 pub(crate) fn run() -> anyhow::Result<()> {
     let mut steps = Vec::new();
@@ -17,7 +17,8 @@ pub(crate) fn run() -> anyhow::Result<()> {
     steps.push(("test", outcome, time));
     // Clippy reads the dependencies anew without making code of them, and the documentation reuses what it has read.
     for (name, check) in [
-        ("format", (|| run_tool(&mut cargo(&["fmt", "--all", "--check"]))) as fn() -> anyhow::Result<()>),
+        ("interchange", interchange::run as fn() -> anyhow::Result<()>),
+        ("format", || run_tool(&mut cargo(&["fmt", "--all", "--check"]))),
         ("clippy", || {
             run_tool(&mut cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))
         }),

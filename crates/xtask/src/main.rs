@@ -1,7 +1,9 @@
 //! Chores of the workspace: run, test, ci, layers and assets. `cargo xtask` lists them.
 
 mod assets;
+mod browser;
 mod ci;
+mod interchange;
 mod launch;
 mod layers;
 mod system;
@@ -36,8 +38,14 @@ enum Chore {
         /// Only the tests of this package
         #[arg(short, long)]
         package: Option<String>,
+        /// Instead, holds FLIP against its authors' program in Python, which it installs below target
+        #[arg(long, conflicts_with_all = ["filter", "package"])]
+        interchange: bool,
+        /// Instead, opens the page of a comparison in Chromium, which it installs where it may
+        #[arg(long, conflicts_with_all = ["filter", "package"])]
+        browser: bool,
     },
-    /// Runs every check: tests, format, clippy, layers, documentation
+    /// Runs every check: tests, interchange, browser, format, clippy, layers, documentation
     Ci,
     /// Checks which crate may use which
     Layers,
@@ -52,7 +60,11 @@ enum Chore {
 fn main() -> ExitCode {
     let done = match Arguments::parse().chore {
         Chore::Run { arguments } => launch::run(&arguments),
-        Chore::Test { filter, package } => testing::run(filter.as_deref(), package.as_deref()),
+        Chore::Test { interchange, browser, .. } if interchange || browser => {
+            let first = if interchange { interchange::run() } else { Ok(()) };
+            first.and_then(|()| if browser { browser::run() } else { Ok(()) })
+        }
+        Chore::Test { filter, package, .. } => testing::run(filter.as_deref(), package.as_deref()),
         Chore::Ci => ci::run(),
         Chore::Layers => layers::run(),
         Chore::Assets { preview } => assets::run(preview.as_deref()),

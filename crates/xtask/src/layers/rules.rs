@@ -15,7 +15,7 @@ const ARROWS: [(&str, &[&str]); 12] = [
     ("gpu", &[]),
     ("metrics", &[]),
     ("testkit", &["metrics"]),
-    ("xtask", &[]),
+    ("xtask", &["metrics"]),
 ];
 
 /// Crates that any other may use for its tests.

@@ -5,6 +5,7 @@ mod plan;
 mod probe;
 
 use anyhow::bail;
+use needs::{BROWSER, INTERCHANGE, NEEDS, Need};
 use plan::{Plan, Rights, Step, plan};
 use probe::Here;
 use std::process::Command;
@@ -15,10 +16,24 @@ use std::process::Command;
 /// error: without the rest, the window or the GPU pictures are missing, and a warning says so. macOS and Windows need
 /// nothing.
 pub(crate) fn prepare() -> anyhow::Result<()> {
+    get(&NEEDS)
+}
+
+/// Sees to what `cargo xtask test --interchange` needs of the system.
+pub(crate) fn prepare_interchange() -> anyhow::Result<()> {
+    get(&INTERCHANGE)
+}
+
+/// Sees to what `cargo xtask test --browser` needs of the system.
+pub(crate) fn prepare_browser() -> anyhow::Result<()> {
+    get(&BROWSER)
+}
+
+fn get(needs: &[Need]) -> anyhow::Result<()> {
     if !cfg!(target_os = "linux") {
         return Ok(());
     }
-    let Some(first) = plan(&Here::new()) else {
+    let Some(first) = plan(&Here::new(), needs) else {
         return Ok(());
     };
     name(&first);
@@ -26,7 +41,7 @@ pub(crate) fn prepare() -> anyhow::Result<()> {
         println!("Installing with apt-get: {}", packages.join(" "));
         install(*rights, *update_first, packages);
     }
-    let Some(left) = plan(&Here::new()) else {
+    let Some(left) = plan(&Here::new(), needs) else {
         return Ok(());
     };
     let what: Vec<_> = left.missing.iter().map(|need| need.what).collect();

@@ -22,6 +22,10 @@ pub(crate) enum Test {
     Library(&'static str),
     /// A Vulkan driver: a software one, or one for a device that is there.
     VulkanDriver,
+    /// A Python 3 that can make virtual environments.
+    Python,
+    /// A program that answers when it is asked for its version.
+    Program(&'static str),
 }
 
 /// A library that is opened at run time, when the window opens.
@@ -29,7 +33,23 @@ const fn library(what: &'static str, name: &'static str, packages: [&'static str
     Need { what, test: Test::Library(name), to_build: false, packages }
 }
 
-/// Everything. The names of the libraries are those that the crates open: winit by x11-dl (Xlib, Xcursor, Xlib-xcb,
+/// What `cargo xtask test --interchange` needs beyond [`NEEDS`].
+pub(crate) const INTERCHANGE: [Need; 1] = [Need {
+    what: "Python 3 with virtual environments",
+    test: Test::Python,
+    to_build: true,
+    packages: ["python3-venv", "python3", "python", "python3", "python3"],
+}];
+
+/// What `cargo xtask test --browser` needs beyond [`NEEDS`].
+pub(crate) const BROWSER: [Need; 1] = [Need {
+    what: "the browser Chromium",
+    test: Test::Program("chromium"),
+    to_build: true,
+    packages: ["chromium", "chromium", "chromium", "chromium", "chromium"],
+}];
+
+/// What building, testing and the window need. The names of the libraries are those that the crates open: winit by x11-dl (Xlib, Xcursor, Xlib-xcb,
 /// Xinput2), xkbcommon-dl and wayland-sys, rfd for its dialogs (D-Bus), wgpu by ash (Vulkan).
 pub(crate) const NEEDS: [Need; 11] = [
     Need {

@@ -1,6 +1,6 @@
 //! What to do about what is missing: decided here, from what a [`Probe`] sees, without touching anything.
 
-use super::needs::{NEEDS, Need, Test};
+use super::needs::{Need, Test};
 
 /// What the machine is asked.
 pub(crate) trait Probe {
@@ -10,6 +10,10 @@ pub(crate) trait Probe {
     fn has_library(&self, name: &str) -> bool;
     /// Whether there is a Vulkan driver that can work: a software one, or one with its device.
     fn has_vulkan_driver(&self) -> bool;
+    /// Whether Python 3 can make virtual environments.
+    fn has_python(&self) -> bool;
+    /// Whether a program answers.
+    fn has_program(&self, name: &str) -> bool;
     /// `ID` and `ID_LIKE` of os-release, in that order.
     fn distribution(&self) -> Vec<String>;
     /// Whether this is the superuser.
@@ -93,13 +97,15 @@ impl Plan {
 }
 
 /// Asks for everything on the list; nothing where nothing is missing.
-pub(crate) fn plan(probe: &dyn Probe) -> Option<Plan> {
+pub(crate) fn plan(probe: &dyn Probe, needs: &[Need]) -> Option<Plan> {
     let there = |need: &Need| match need.test {
         Test::CxxCompiler => probe.has_cxx_compiler(),
         Test::Library(name) => probe.has_library(name),
         Test::VulkanDriver => probe.has_vulkan_driver(),
+        Test::Python => probe.has_python(),
+        Test::Program(name) => probe.has_program(name),
     };
-    let missing: Vec<Need> = NEEDS.into_iter().filter(|need| !there(need)).collect();
+    let missing: Vec<Need> = needs.iter().copied().filter(|need| !there(need)).collect();
     if missing.is_empty() {
         return None;
     }
@@ -140,7 +146,8 @@ pub(crate) fn plan(probe: &dyn Probe) -> Option<Plan> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Family, NEEDS, Plan, Probe, Rights, Step, Test, plan};
+    use super::super::needs::{BROWSER, INTERCHANGE, NEEDS};
+    use super::{Family, Plan, Probe, Rights, Step, Test};
 
     /// A machine made up.
     #[expect(clippy::struct_excessive_bools, reason = "each answers one question of the probe")]
@@ -178,6 +185,12 @@ mod tests {
         fn has_vulkan_driver(&self) -> bool {
             self.driver
         }
+        fn has_python(&self) -> bool {
+            self.compiler
+        }
+        fn has_program(&self, _name: &str) -> bool {
+            self.compiler
+        }
         fn distribution(&self) -> Vec<String> {
             self.ids.iter().map(|&id| id.to_owned()).collect()
         }
@@ -193,6 +206,10 @@ mod tests {
         fn has_package_lists(&self) -> bool {
             self.lists
         }
+    }
+
+    fn plan(probe: &dyn Probe) -> Option<Plan> {
+        super::plan(probe, &NEEDS)
     }
 
     #[test]
@@ -251,6 +268,18 @@ mod tests {
         let plan = plan(&Machine { driver: false, ids: &["plan9"], root: true, ..WHOLE }).unwrap();
         assert_eq!(plan.step, Step::Name);
         assert_eq!(plan.missing.iter().map(|need| need.test).collect::<Vec<_>>(), [Test::VulkanDriver]);
+    }
+
+    #[test]
+    fn a_chore_asks_for_what_it_needs_alone() {
+        let bare = Machine { compiler: false, libraries: false, root: true, ..WHOLE };
+        let packages = |needs| match super::plan(&bare, needs) {
+            Some(Plan { step: Step::Install { packages, .. }, .. }) => packages,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(packages(&INTERCHANGE), ["python3-venv"]);
+        assert_eq!(packages(&BROWSER), ["chromium"]);
+        assert_eq!(super::plan(&WHOLE, &INTERCHANGE), None);
     }
 
     #[test]

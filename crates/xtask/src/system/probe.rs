@@ -76,6 +76,15 @@ impl Probe for Here {
         has_working_driver(&names, has_device)
     }
 
+    fn has_python(&self) -> bool {
+        // Debian leaves out the module by which a virtual environment gets its pip.
+        output_of("python3", &["-c", "import venv, ensurepip"]).is_some()
+    }
+
+    fn has_program(&self, name: &str) -> bool {
+        output_of(name, &["--version"]).is_some()
+    }
+
     fn distribution(&self) -> Vec<String> {
         let files = ["/etc/os-release", "/usr/lib/os-release"];
         distribution_ids(

@@ -1,0 +1,109 @@
+//! `cargo xtask test --interchange`: numbers held against other people's programs, which come from their package
+//! registry into a virtual environment below `target`.
+
+mod pictures;
+
+use crate::{system, tool};
+use anyhow::{Context as _, ensure};
+use lovelock_metrics::{Image, flip};
+use pictures::Picture;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// The program of FLIP's authors, as the Python Package Index has it.
+const PACKAGE: &str = "flip-evaluator==1.7";
+/// It wants this and does not say so; which release fits depends on the Python.
+const BESIDE: &str = "numpy<3";
+
+/// The largest difference between two means of FLIP. Measured: 8e-5, as theirs looks with 67.02 pixels a degree.
+const LIMIT: f64 = 1e-3;
+
+/// Compares the means of FLIP of pairs of pictures, and fails where one is off.
+pub(crate) fn run() -> anyhow::Result<()> {
+    system::prepare_interchange()?;
+    let folder = tool::root().join("target/interchange");
+    let python = environment(&folder.join("python"))?;
+    let pictures = Picture::all();
+    for picture in &pictures {
+        picture.save(&folder)?;
+    }
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/interchange/flip_means.py");
+    let mut program = Command::new(&python);
+    program.arg(&script).args(pictures.iter().map(|picture| folder.join(picture.file())));
+    let output = program.output().with_context(|| format!("could not start {}", python.display()))?;
+    ensure!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr).trim());
+    let theirs: Vec<f64> = serde_json::from_slice(&output.stdout).context("the script printed no numbers")?;
+    let means =
+        pairs(&pictures).map(|(reference, test)| mean(reference, test)).collect::<Result<Vec<_>, _>>()?;
+    compare(&means, &theirs)?;
+    println!("interchange: {} means of FLIP as {PACKAGE} has them, to {LIMIT}", means.len());
+    Ok(())
+}
+
+/// Every picture as the reference of every other, in the order of the script.
+fn pairs(pictures: &[Picture]) -> impl Iterator<Item = (&Picture, &Picture)> {
+    let size = |picture: &Picture| (picture.width, picture.height);
+    pictures.iter().flat_map(move |reference| {
+        let same = pictures.iter().filter(move |test| size(test) == size(reference));
+        same.map(move |test| (reference, test))
+    })
+}
+
+fn mean(reference: &Picture, test: &Picture) -> anyhow::Result<f64> {
+    let reference = Image::new(reference.width, reference.height, &reference.rgba)?;
+    let test = Image::new(test.width, test.height, &test.rgba)?;
+    Ok(flip(&reference, &test)?.mean())
+}
+
+/// Fails where two means differ by more than the limit.
+fn compare(ours: &[f64], theirs: &[f64]) -> anyhow::Result<()> {
+    ensure!(ours.len() == theirs.len(), "{} means, and {} of theirs", ours.len(), theirs.len());
+    for (index, (ours, theirs)) in ours.iter().zip(theirs).enumerate() {
+        println!("  pair {index}: {ours:.6}, theirs {theirs:.6}");
+        let difference = (ours - theirs).abs();
+        ensure!(difference <= LIMIT, "the mean of pair {index} is off by {difference:.6}");
+    }
+    Ok(())
+}
+
+/// A virtual environment with the package, made where there is none; the path of its Python.
+fn environment(folder: &Path) -> anyhow::Result<PathBuf> {
+    let python = folder.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
+    // Written last, so that an environment that was left half made is made anew.
+    let made = folder.join("made");
+    if fs::read_to_string(&made).is_ok_and(|packages| packages == format!("{PACKAGE} {BESIDE}")) {
+        return Ok(python);
+    }
+    if folder.exists() {
+        fs::remove_dir_all(folder).with_context(|| format!("could not remove {}", folder.display()))?;
+    }
+    println!("Making a Python environment with {PACKAGE}.");
+    tool::run(Command::new("python3").args(["-m", "venv"]).arg(folder))?;
+    let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", PACKAGE, BESIDE];
+    tool::run(Command::new(&python).args(pip))?;
+    fs::write(&made, format!("{PACKAGE} {BESIDE}"))?;
+    Ok(python)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Picture, compare, mean, pairs};
+
+    #[test]
+    fn means_that_differ_are_found() {
+        assert!(compare(&[0.1, 0.2], &[0.1005, 0.1995]).is_ok());
+        let error = compare(&[0.1, 0.2], &[0.1, 0.202]).unwrap_err().to_string();
+        assert_eq!(error, "the mean of pair 1 is off by 0.002000");
+        assert!(compare(&[0.1], &[]).is_err());
+        assert!(compare(&[0.1], &[f64::NAN]).is_err());
+    }
+
+    #[test]
+    fn pairs_are_of_one_size_and_most_of_them_differ() {
+        let pictures = Picture::all();
+        let means: Vec<f64> = pairs(&pictures).map(|(a, b)| mean(a, b).unwrap()).collect();
+        let differ = means.iter().filter(|&&mean| mean > 0.01).count();
+        assert!(differ * 2 > means.len() && differ < means.len(), "{means:?}");
+    }
+}
