@@ -32,8 +32,8 @@ pub use lovelock_gpu::{Gpu, GpuError, PassTime, Stopwatch, check_shader};
 pub use lovelock_shadow::voxel_map::{MapExtent, VoxelDeposit, VoxelFilter, VoxelMapSettings};
 pub use lovelock_shadow::{
     ClusterDeviation, ClusterSeeds, DeepOpacityMapsSettings, DensityClusteringSettings, ExactSettings,
-    LayerGrowth, OccupancyMapsSettings, OpacityMapsSettings, ShadowError, ShadowMethod, ShadowSettings,
-    TEXEL_RESOLUTIONS, TexelFilter,
+    LayerGrowth, OccupancyMapsSettings, OpacityMapsSettings, RayMark, RayMarkKind, RayStructure, ShadowError,
+    ShadowMethod, ShadowSettings, TEXEL_RESOLUTIONS, TexelFilter,
 };
 pub use picture::{MOST_PIXELS, MOST_SIDE, Picture, PictureSettings, check_size};
 pub use renderer::Renderer;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::Vec3;
 use lovelock_gpu::Gpu;
 
-use crate::{Backend, CpuRenderer, FrameInput, FrameStats, GpuRenderer, Picture, RenderError};
+use crate::{Backend, CpuRenderer, FrameInput, FrameStats, GpuRenderer, Picture, RayStructure, RenderError};
 
 /// Draws pictures on the backend that was chosen, and keeps what it needs for the next one.
 #[derive(Debug)]
@@ -118,6 +118,19 @@ impl Renderer {
         match &mut self.gpu {
             Some(gpu) => gpu.transmittance_at(light, points),
             None => self.cpu.get_or_insert_default().transmittance_at(light, points),
+        }
+    }
+
+    /// What the map of a light of the last picture keeps along the light through `p`, world space, metres. `None` on a graphics
+    /// card, whose maps stay there: build the method's [`CpuShadow`](lovelock_shadow::CpuShadow), its definition, to look into
+    /// it.
+    ///
+    /// # Errors
+    /// On the processor as [`Renderer::transmittance`].
+    pub fn along_ray(&mut self, light: usize, p: Vec3) -> Result<Option<RayStructure>, RenderError> {
+        match &self.gpu {
+            Some(_) => Ok(None),
+            None => self.cpu.get_or_insert_default().along_ray(light, p).map(Some),
         }
     }
 }

@@ -6,7 +6,7 @@ use lovelock_groom::Strands;
 use lovelock_shadow::{ColumnMap, CpuShadow, LightFrame, ShadowError, ShadowInput, ShadowMethod, cpu_shadow};
 use rayon::prelude::*;
 
-use crate::{FrameInput, Light, MAX_LIGHTS, RenderError};
+use crate::{FrameInput, Light, MAX_LIGHTS, RayStructure, RenderError};
 
 /// The shadow of every light, kept from frame to frame.
 #[derive(Default)]
@@ -158,6 +158,11 @@ impl ShadowStage {
         let mut answers = vec![1.0; points.len()];
         light.shadow.transmittance_at(&x, &y, &z, &mut answers);
         Ok(answers)
+    }
+
+    /// What the map of light `light` of the last run keeps along the light through `p`.
+    pub fn along_ray(&self, light: usize, p: Vec3) -> Result<RayStructure, RenderError> {
+        self.light(light).map(|light| light.shadow.along_ray(p))
     }
 
     fn light(&self, light: usize) -> Result<&LightShadow, RenderError> {

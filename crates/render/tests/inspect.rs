@@ -52,6 +52,10 @@ fn the_transmittance_of_a_picture_is_what_its_maps_say() {
             assert!(difference.abs() < 1e-6, "{backend:?} {method}: {difference}");
             let asked = renderer.transmittance_at(0, &points(&scene)).expect("a picture");
             assert_eq!(asked, used, "{backend:?} {method}");
+            let ray = renderer.along_ray(0, scene.strands.point(30)).expect("a picture");
+            let has_marks = ray.as_ref().is_some_and(|ray| !ray.marks.is_empty());
+            assert_eq!(ray.is_some(), backend == Backend::Cpu);
+            assert_eq!(has_marks, backend == Backend::Cpu && method != ShadowMethod::None, "{method}");
             if method == ShadowMethod::None {
                 continue;
             }

@@ -9,7 +9,7 @@ use crate::methods::exact::ExactMap;
 use crate::methods::occupancy_maps::OccupancyMaps;
 use crate::methods::opacity_maps::OpacityMaps;
 use crate::methods::{none, voxel_map};
-use crate::{LightFrame, ShadowError, ShadowMethod, ShadowSettings};
+use crate::{LightFrame, RayStructure, ShadowError, ShadowMethod, ShadowSettings};
 
 /// What a map is built from.
 #[derive(Clone, Copy, Debug)]
@@ -91,6 +91,9 @@ pub trait CpuShadow {
 
     /// What lies behind the whole hair along the light; `None` where the method cannot say or casts nothing.
     fn column_map(&self) -> Option<ColumnMap>;
+
+    /// What the last build keeps along the light through `p` (world space, metres), to be looked at.
+    fn along_ray(&self, p: Vec3) -> RayStructure;
 }
 
 /// An empty map of `method`: everything is lit until it is built.

@@ -16,7 +16,7 @@ pub(crate) const RUNS: usize = 15;
 /// Points of the comparison with the converged shadow, drawn by chance.
 pub(crate) const CONVERGED_POINTS: usize = 2000;
 /// A point with fewer fragments than this before it belongs to the first ten.
-pub(crate) const FIRST: usize = 10;
+pub(crate) const FIRST: u32 = 10;
 
 /// Errors are differences of transmittance, 0 to 1.
 pub(crate) struct Errors {
@@ -104,8 +104,9 @@ impl Exact {
         let mut map = ExactMap::default();
         map.build(&groom.input(), &settings).expect("hair fits");
         let hair = &groom.strands;
-        let first = |point| map.fragments_before(hair.point(point)) < FIRST;
-        Self { resolution, light: look_up(&map, groom), first: (0..hair.points()).map(first).collect() }
+        let points: Vec<_> = (0..hair.points()).map(|point| hair.point(point)).collect();
+        let first = map.fragments_before(&points).into_iter().map(|before| before < FIRST).collect();
+        Self { resolution, light: look_up(&map, groom), first }
     }
 }
 

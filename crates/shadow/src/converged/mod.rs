@@ -39,6 +39,8 @@ pub struct Converged {
     /// Root mean square change in the last round. Above [`CONVERGED_CHANGE`] only where
     /// [`MOST_CONVERGED_SAMPLES`] ended it.
     pub change: f32,
+    /// All rounds but the first: their samples, and the change that each brought.
+    pub changes: Vec<(u32, f32)>,
 }
 
 /// The mean of the light over the box of one texel around each of the points `x`, `y`, `z` (world space, metres;
@@ -68,14 +70,16 @@ pub fn converged(
     let mut samples = 1;
     let mut last = round(input, settings, &frame, &places, samples, &mut scratch)?;
     let mut change = f32::INFINITY;
+    let mut changes = Vec::new();
     while samples < LEAST_SAMPLES || (change > CONVERGED_CHANGE && samples < MOST_CONVERGED_SAMPLES) {
         samples *= 2;
         let next = round(input, settings, &frame, &places, samples, &mut scratch)?;
         let squares: f64 = last.iter().zip(&next).map(|(a, b)| (f64::from(*a) - f64::from(*b)).powi(2)).sum();
         change = (squares / next.len().max(1) as f64).sqrt() as f32;
+        changes.push((samples, change));
         last = next;
     }
-    Ok(Converged { transmittance: last, samples, change })
+    Ok(Converged { transmittance: last, samples, change, changes })
 }
 
 /// The texels of the method in use.

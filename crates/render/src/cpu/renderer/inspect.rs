@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::CpuRenderer;
-use crate::RenderError;
+use crate::{RayStructure, RenderError};
 
 impl CpuRenderer {
     /// See [`Renderer::transmittance`](crate::Renderer::transmittance).
@@ -20,5 +20,13 @@ impl CpuRenderer {
     /// As there.
     pub fn transmittance_at(&self, light: usize, points: &[Vec3]) -> Result<Vec<f32>, RenderError> {
         self.shadow.transmittance_at(light, points)
+    }
+
+    /// What the map of a light of the last picture keeps along the light through `p`, world space, metres.
+    ///
+    /// # Errors
+    /// As [`Renderer::transmittance`](crate::Renderer::transmittance).
+    pub fn along_ray(&self, light: usize, p: Vec3) -> Result<RayStructure, RenderError> {
+        self.shadow.along_ray(light, p)
     }
 }

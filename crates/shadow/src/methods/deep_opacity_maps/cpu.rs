@@ -4,7 +4,7 @@
 
 use super::super::texels::{Fragment, TexelFilter, TexelMap, TexelMethod};
 use super::{DeepOpacityMapsSettings, LayerGrowth};
-use crate::{ShadowMethod, ShadowSettings};
+use crate::{RayMarkKind, ShadowMethod, ShadowSettings};
 
 /// The map of [`ShadowMethod::DeepOpacityMaps`].
 pub type DeepOpacityMaps = TexelMap<Layers>;
@@ -91,6 +91,20 @@ impl TexelMethod for Layers {
         let sums = &record[1..];
         let before = layer.checked_sub(1).map_or(0.0, |last| sums[last]);
         before + (sums[layer] - before) * part
+    }
+
+    fn pieces(
+        &self,
+        _fragments: &[Fragment],
+        record: &[f32],
+        put: &mut dyn FnMut(RayMarkKind, [f32; 2], f32),
+    ) {
+        let Some((near, sums)) = record.split_first() else { return };
+        let mut before = 0.0;
+        for ((sum, start), per_depth) in sums.iter().zip(&self.starts).zip(&self.per_depth) {
+            put(RayMarkKind::Layer, [near + start, near + (start + 1.0 / per_depth)], sum - before);
+            before = *sum;
+        }
     }
 }
 

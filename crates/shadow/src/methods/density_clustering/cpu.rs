@@ -5,7 +5,7 @@
 use super::super::texels::{Fragment, TexelFilter, TexelMap, TexelMethod};
 use super::seeds::seeds;
 use super::{ClusterDeviation, DensityClusteringSettings};
-use crate::{ShadowMethod, ShadowSettings};
+use crate::{RayMarkKind, ShadowMethod, ShadowSettings};
 
 /// The map of [`ShadowMethod::DensityClustering`].
 pub type DensityClustering = TexelMap<Clustering>;
@@ -244,6 +244,18 @@ impl TexelMethod for Clustering {
     fn depth_before(&self, _fragments: &[Fragment], record: &[Bin], depth: f32) -> f32 {
         let part = |bin: &Bin| ((depth - bin.start) * bin.per_depth).clamp(0.0, 1.0);
         record.iter().map(|bin| bin.optical_depth * part(bin)).sum()
+    }
+
+    fn pieces(
+        &self,
+        _fragments: &[Fragment],
+        record: &[Bin],
+        put: &mut dyn FnMut(RayMarkKind, [f32; 2], f32),
+    ) {
+        // Those that are there come in the order of their centres.
+        for bin in record.iter().filter(|bin| bin.optical_depth > 0.0) {
+            put(RayMarkKind::Bin, [bin.start, bin.start + 1.0 / bin.per_depth], bin.optical_depth);
+        }
     }
 }
 

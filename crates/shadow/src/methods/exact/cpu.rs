@@ -3,10 +3,11 @@
 #![allow(clippy::inline_always)]
 
 use glam::Vec3;
+use rayon::prelude::*;
 
 use super::super::texels::{Fragment, TexelFilter, TexelMap, TexelMethod};
 use super::ExactSettings;
-use crate::{ShadowMethod, ShadowSettings};
+use crate::{RayMarkKind, ShadowMethod, ShadowSettings};
 
 /// The map of [`ShadowMethod::Exact`].
 pub type ExactMap = TexelMap<Sorted>;
@@ -47,11 +48,14 @@ impl ExactMap {
         self.fragments_at(frame.world_from_texel(centre)).0
     }
 
-    /// Fragments before a point (world space, metres) in the texel that it lies in: how deep in the hair it is. 0 beside
-    /// the map and before the first build.
-    pub fn fragments_before(&self, p: Vec3) -> usize {
-        let (fragments, depth) = self.fragments_at(p);
-        count_before(fragments, depth)
+    /// Fragments before each of some points (world space, metres) in the texel that it lies in: how deep in the hair it is.
+    /// 0 beside the map and before the first build.
+    pub fn fragments_before(&self, points: &[Vec3]) -> Vec<u32> {
+        let count = |p: &Vec3| {
+            let (fragments, depth) = self.fragments_at(*p);
+            count_before(fragments, depth) as u32
+        };
+        points.par_iter().with_min_len(4096).map(count).collect()
     }
 }
 
@@ -89,6 +93,20 @@ impl TexelMethod for Sorted {
     #[inline(always)]
     fn depth_before(&self, fragments: &[Fragment], _record: &[()], depth: f32) -> f32 {
         sum_before(fragments, depth)
+    }
+
+    fn pieces(
+        &self,
+        fragments: &[Fragment],
+        _record: &[()],
+        put: &mut dyn FnMut(RayMarkKind, [f32; 2], f32),
+    ) {
+        let mut before = 0.0;
+        for fragment in fragments {
+            let sum = fragment.optical_depth();
+            put(RayMarkKind::Fragment, [fragment.depth(); 2], sum - before);
+            before = sum;
+        }
     }
 }
 

@@ -4,7 +4,7 @@ use glam::Vec3;
 use lovelock_gpu::{Commands, Gpu, GpuError, ShaderPart, ShaderSource, wgpu};
 
 use crate::gpu::{Ask, GpuColumns, GpuShadow, GpuShadowInput, GpuTargets, wgsl};
-use crate::{ColumnMap, CpuShadow, ShadowError, ShadowInput, ShadowReport, ShadowSettings};
+use crate::{ColumnMap, CpuShadow, RayStructure, ShadowError, ShadowInput, ShadowReport, ShadowSettings};
 
 /// Every point receives all light.
 #[derive(Clone, Copy, Debug, Default)]
@@ -29,6 +29,10 @@ impl CpuShadow for NoShadow {
 
     fn column_map(&self) -> Option<ColumnMap> {
         None
+    }
+
+    fn along_ray(&self, _p: Vec3) -> RayStructure {
+        RayStructure::default()
     }
 }
 

@@ -5,7 +5,7 @@
 use super::super::texels::{Fragment, TexelFilter, TexelMap, TexelMethod};
 use super::OccupancyMapsSettings;
 use crate::whole_part::whole_part;
-use crate::{ShadowMethod, ShadowSettings};
+use crate::{RayMarkKind, ShadowMethod, ShadowSettings};
 
 /// The map of [`ShadowMethod::OccupancyMaps`].
 pub type OccupancyMaps = TexelMap<Occupancy>;
@@ -175,6 +175,30 @@ impl TexelMethod for Occupancy {
             (_, 4) => depth_before::<16, 2>(record, depth),
             (_, 8) => depth_before::<16, 4>(record, depth),
             _ => depth_before::<16, 8>(record, depth),
+        }
+    }
+
+    fn pieces(
+        &self,
+        _fragments: &[Fragment],
+        record: &[u32],
+        put: &mut dyn FnMut(RayMarkKind, [f32; 2], f32),
+    ) {
+        let Some((header, rest)) = record.split_first_chunk::<HEADER>() else { return };
+        let [near, far, mean] = header.map(f32::from_bits);
+        let (bits, counts) = rest.split_at(self.bit_words());
+        let depth = |slice: u32| near + (far - near) * (slice as f32 / self.slices as f32);
+        let per_slab = 1 << self.slab_shift();
+        for slab in 0..self.slabs {
+            let optical_depth = count(counts, slab as usize) as f32 * mean;
+            put(RayMarkKind::Slab, [slab, slab + 1].map(|end| depth(end * per_slab)), optical_depth);
+        }
+        let is_set = |slice: u32| bits[(slice / 32) as usize] >> (slice % 32) & 1 != 0;
+        for slice in (0..self.slices).filter(|slice| is_set(*slice)) {
+            let slab = slice / per_slab;
+            let occupied = (slab * per_slab..(slab + 1) * per_slab).filter(|slice| is_set(*slice)).count();
+            let share = count(counts, slab as usize) as f32 * mean / occupied as f32;
+            put(RayMarkKind::Slice, [depth(slice), depth(slice + 1)], share);
         }
     }
 }

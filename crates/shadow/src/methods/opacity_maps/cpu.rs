@@ -4,7 +4,7 @@
 
 use super::super::texels::{Fragment, TexelFilter, TexelMap, TexelMethod};
 use super::OpacityMapsSettings;
-use crate::{ShadowMethod, ShadowSettings};
+use crate::{RayMarkKind, ShadowMethod, ShadowSettings};
 
 /// The map of [`ShadowMethod::OpacityMaps`].
 pub type OpacityMaps = TexelMap<Slices>;
@@ -79,6 +79,19 @@ impl TexelMethod for Slices {
         let (slice, part) = self.slice(depth);
         let before = slice.checked_sub(1).map_or(0.0, |last| record[last]);
         before + (record[slice] - before) * part.min(1.0)
+    }
+
+    fn pieces(
+        &self,
+        _fragments: &[Fragment],
+        record: &[f32],
+        put: &mut dyn FnMut(RayMarkKind, [f32; 2], f32),
+    ) {
+        let (thickness, mut before) = (1.0 / self.count as f32, 0.0);
+        for (slice, sum) in record.iter().enumerate() {
+            put(RayMarkKind::Slice, [slice, slice + 1].map(|end| end as f32 * thickness), sum - before);
+            before = *sum;
+        }
     }
 }
 

@@ -14,7 +14,11 @@ use super::lines::{FilteredLines, Lines, Steps};
 use super::lookup::{self, Lookup};
 use super::{MAP_MEMORY_LIMIT_BYTES, TexelFilter};
 use crate::bounds::Bounds;
-use crate::{ColumnMap, CpuShadow, ShadowError, ShadowInput, ShadowMethod, ShadowReport, ShadowSettings};
+use crate::exp::exp_of_minus;
+use crate::{
+    ColumnMap, CpuShadow, RayMark, RayMarkKind, RayStructure, ShadowError, ShadowInput, ShadowMethod,
+    ShadowReport, ShadowSettings,
+};
 
 /// Points of one parallel piece of a lookup.
 const POINTS_PER_LOOKUP: usize = 2048;
@@ -68,6 +72,15 @@ pub trait TexelMethod: Copy + Debug + Send + Sync {
 
     /// Optical depth of the texel's hair before `depth`: 0 to 1 within the hair's range, more behind it.
     fn depth_before(&self, fragments: &[Fragment], record: &[Self::Cell], depth: f32) -> f32;
+
+    /// Calls `put` for each piece of a record, those of one kind by depth: what it is, the depths at which it begins and ends,
+    /// and its optical depth.
+    fn pieces(
+        &self,
+        fragments: &[Fragment],
+        record: &[Self::Cell],
+        put: &mut dyn FnMut(RayMarkKind, [f32; 2], f32),
+    );
 }
 
 /// The map of a method with a record for each texel; everything is lit until it is built.
@@ -122,15 +135,18 @@ impl<M: TexelMethod> TexelMap<M> {
     /// The fragments, as [`TexelMethod::fill`] left them, of the texel that a point lies in, and the point's depth; none
     /// beside the map.
     pub(crate) fn fragments_at(&self, p: Vec3) -> (&[Fragment], f32) {
-        let Some(built) = &self.built else { return (&[], 0.0) };
+        let Some((_, texel, depth)) = self.texel_of(p) else { return (&[], 0.0) };
+        (self.fragments.texel(texel), depth)
+    }
+
+    /// The texel that a point lies in, and the point's depth; `None` beside the map.
+    fn texel_of(&self, p: Vec3) -> Option<(&Built<M>, usize, f32)> {
+        let built = self.built.as_ref()?;
         let p = built.frame.texel_from_world(p);
         let end = built.frame.resolution as f32;
         // False for what is no number.
-        if p.x >= 0.0 && p.x < end && p.y >= 0.0 && p.y < end {
-            let texel = self.fragments.place(p.x as u32, p.y as u32);
-            return (self.fragments.texel(texel), p.z);
-        }
-        (&[], 0.0)
+        let inside = p.x >= 0.0 && p.x < end && p.y >= 0.0 && p.y < end && p.z.is_finite();
+        inside.then(|| (built, self.fragments.place(p.x as u32, p.y as u32), p.z))
     }
 
     /// Refuses what would not fit, without allocating it.
@@ -305,74 +321,23 @@ impl<M: TexelMethod> CpuShadow for TexelMap<M> {
         texels.for_each(|(texel, out)| *out = lookup.behind(texel));
         Some(ColumnMap { size, transmittance, uv_from_world: built.frame.uv_from_world() })
     }
+
+    fn along_ray(&self, p: Vec3) -> RayStructure {
+        let mut marks = Vec::new();
+        let Some((built, texel, here)) = self.texel_of(p) else { return RayStructure::default() };
+        let Some(slot) = (self.slots[texel] as usize).checked_sub(1) else { return RayStructure::default() };
+        let (method, cells) = (&built.method, built.method.cells());
+        let record = &self.cells[slot * cells..(slot + 1) * cells];
+        let fragments = if M::READS_FRAGMENTS { self.fragments.texel(texel) } else { &[] };
+        method.pieces(fragments, record, &mut |kind, depths, optical_depth| {
+            let [start, end] = depths.map(|depth| (depth - here) * built.frame.depth_range);
+            // What lies at a depth itself does not count before it.
+            let behind = method.depth_before(fragments, record, depths[1].next_up());
+            marks.push(RayMark { kind, start, end, optical_depth, transmittance: exp_of_minus(behind) });
+        });
+        RayStructure { marks }
+    }
 }
 
 #[cfg(test)]
-mod tests {
-    use std::sync::Arc;
-
-    use lovelock_groom::Strands;
-
-    use super::*;
-    use crate::LightFrame;
-    use crate::methods::{deep_opacity_maps, density_clustering, exact, occupancy_maps, opacity_maps};
-
-    /// Strands that wind through a box, with a broken point.
-    fn strands() -> Strands {
-        let mut made = Strands::default();
-        let mut first_point = vec![0];
-        for strand in 0..200_u32 {
-            for point in 0..=20_u32 {
-                let (s, p) = (strand as f32, point as f32);
-                made.x.push(0.1 * (0.7 * s + 0.2 * p).sin());
-                made.y.push(1.5 - 0.01 * p + 0.02 * (1.3 * s).cos());
-                made.z.push(0.1 * (1.1 * s + 0.3 * p).cos());
-            }
-            first_point.push(made.x.len() as u32);
-        }
-        made.z[150] = f32::NAN;
-        made.first_point = Arc::from(first_point);
-        made
-    }
-
-    fn same_bits<M: TexelMethod>(settings: &ShadowSettings) {
-        let strands = strands();
-        let light = LightFrame::new(Vec3::new(0.2, -1.0, 0.3));
-        let input = ShadowInput { strands: &strands, strand_width: 2e-3, light, anchor: Vec3::Y, maps: 1 };
-        let mut map = TexelMap::<M>::default();
-        map.build(&input, settings).expect("fits");
-        let mut bits = |width| {
-            map.width = width;
-            // One point more than whole blocks, and points beside the hair.
-            let ends = [0.0, 3.0, f32::INFINITY];
-            let [x, y, z] = [&strands.x, &strands.y, &strands.z]
-                .map(|axis| axis.iter().copied().chain(ends).collect::<Vec<_>>());
-            let mut out = vec![f32::NAN; x.len()];
-            map.transmittance_at(&x, &y, &z, &mut out);
-            let alone = map.transmittance(Vec3::new(x[9], y[9], z[9]));
-            assert_eq!(alone, out[9]);
-            out.iter().map(|t| t.to_bits()).collect::<Vec<_>>()
-        };
-        let baseline = bits(Width::Baseline);
-        for &width in Width::ALL.iter().filter(|width| width.is_available()) {
-            assert!(bits(width) == baseline, "{} with {width:?}", M::METHOD);
-        }
-    }
-
-    #[test]
-    fn every_instruction_set_gives_the_same_bits() {
-        for filter in TexelFilter::ALL {
-            let mut settings = ShadowSettings::default();
-            settings.opacity_maps.filter = filter;
-            settings.deep_opacity_maps.filter = filter;
-            settings.density_clustering.filter = filter;
-            settings.occupancy_maps.filter = filter;
-            settings.exact.filter = filter;
-            same_bits::<opacity_maps::Slices>(&settings);
-            same_bits::<deep_opacity_maps::Layers>(&settings);
-            same_bits::<density_clustering::Clustering>(&settings);
-            same_bits::<occupancy_maps::Occupancy>(&settings);
-            same_bits::<exact::Sorted>(&settings);
-        }
-    }
-}
+mod tests;

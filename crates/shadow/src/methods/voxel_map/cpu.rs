@@ -12,7 +12,11 @@ use super::layout::Layout;
 use super::lookup::{Lookup, behind_all};
 use super::{VoxelDeposit, VoxelFilter, VoxelMapSettings, simd, sum};
 use crate::bounds::Bounds;
-use crate::{ColumnMap, CpuShadow, ShadowError, ShadowInput, ShadowReport, ShadowSettings};
+use crate::exp::{DEPTH_STEPS, exp_of_minus_steps};
+use crate::{
+    ColumnMap, CpuShadow, RayMark, RayMarkKind, RayStructure, ShadowError, ShadowInput, ShadowReport,
+    ShadowSettings,
+};
 
 /// Points that are worth a worker of their own.
 const POINTS_PER_WORKER: usize = 4096;
@@ -239,6 +243,28 @@ impl CpuShadow for VoxelMap {
             }
         }
         Some(ColumnMap { size: n, transmittance, uv_from_world: built.lattice.uv_from_world() })
+    }
+
+    fn along_ray(&self, p: Vec3) -> RayStructure {
+        let Some(built) = &self.built else { return RayStructure::default() };
+        let at = built.lattice.window_from_world(p);
+        let n = built.layout.resolution;
+        // False for what is no number.
+        let within = |c: f32| c >= 0.0 && c < n as f32;
+        if !(within(at.y) && within(at.z) && at.x.is_finite()) {
+            return RayStructure::default();
+        }
+        let mark = |i: u32| {
+            let [front, back] = self.faces([i, at.y as u32, at.z as u32])?.map(f32::from);
+            let [start, end] = [i, i + 1].map(|face| (face as f32 - at.x) * built.lattice.cell_size);
+            let (optical_depth, transmittance) = ((back - front) / DEPTH_STEPS, exp_of_minus_steps(back));
+            Some(RayMark { kind: RayMarkKind::Cell, start, end, optical_depth, transmittance })
+        };
+        let mut marks: Vec<_> = (0..n).filter_map(mark).collect();
+        if marks.iter().all(|mark| mark.optical_depth <= 0.0) {
+            marks.clear();
+        }
+        RayStructure { marks }
     }
 }
 

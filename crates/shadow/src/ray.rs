@@ -1,0 +1,66 @@
+//! What a map keeps along one ray of its light.
+
+use std::fmt;
+
+/// A piece of what a method keeps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum RayMarkKind {
+    /// A slice of even depth: of opacity maps, every one of them; of occupancy maps, those whose bit is set.
+    Slice,
+    /// A layer of deep opacity maps.
+    Layer,
+    /// A slab of occupancy maps, with its count of fragments times their mean optical depth.
+    Slab,
+    /// A bin of density clustering: a cluster with even density.
+    Bin,
+    /// A cell of the voxel map.
+    Cell,
+    /// A fragment of the exact shadow: a step.
+    Fragment,
+}
+
+impl RayMarkKind {
+    /// What the interface calls it.
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::Slice => "Slice",
+            Self::Layer => "Layer",
+            Self::Slab => "Slab",
+            Self::Bin => "Bin",
+            Self::Cell => "Cell",
+            Self::Fragment => "Fragment",
+        }
+    }
+}
+
+impl fmt::Display for RayMarkKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.label())
+    }
+}
+
+/// One piece of what a method keeps along a ray.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RayMark {
+    /// What it is.
+    pub kind: RayMarkKind,
+    /// Where it begins, metres along the light from the point; below 0 before it.
+    pub start: f32,
+    /// Where it ends; the same as `start` for a step.
+    pub end: f32,
+    /// Optical depth that it holds.
+    pub optical_depth: f32,
+    /// Transmittance behind it, by this column alone, before any filter: 0 to 1.
+    pub transmittance: f32,
+}
+
+/// What a method keeps in the column (of texels or cells) that a point lies in, by depth; those of one kind together.
+///
+/// Filters read the columns around it too: what the method *answers* along the ray is
+/// [`CpuShadow::transmittance`](crate::CpuShadow::transmittance) at places on it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RayStructure {
+    /// The pieces; none where the column has no hair, beside the map, for a point that is not finite, and before the first
+    /// build.
+    pub marks: Vec<RayMark>,
+}
