@@ -1,0 +1,236 @@
+//! Plots as SVG.
+
+mod axis;
+mod labels;
+
+pub(super) use axis::Axis;
+
+use super::words::escaped;
+use labels::Labels;
+use std::fmt::Write as _;
+
+/// No line has more corners; what has more is thinned.
+const CORNERS: usize = 2000;
+
+/// Room around the field, pixels: left, top, right, bottom.
+const MARGINS: [f64; 4] = [58.0, 12.0, 16.0, 46.0];
+
+/// A plot that is being drawn.
+pub(super) struct Plot {
+    width: f64,
+    height: f64,
+    x: Axis,
+    y: Axis,
+    /// More room below the field, for lanes.
+    below: f64,
+    body: String,
+    labels: Labels,
+}
+
+/// How a line looks.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stroke<'a> {
+    /// A colour of CSS.
+    pub(super) color: &'a str,
+    /// Pixels.
+    pub(super) width: f64,
+    /// Whether it is dashed.
+    pub(super) dashed: bool,
+}
+
+/// What stands for a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Dot {
+    /// It is on the front.
+    Full,
+    /// It is not.
+    Hollow,
+}
+
+impl Plot {
+    /// An empty plot; the size is that of the field between the axes, pixels.
+    pub(super) fn new(width: f64, height: f64, x: Axis, y: Axis) -> Self {
+        let (body, labels) = (String::new(), Labels::new(width, height));
+        let mut plot = Self { width, height, x, y, below: 0.0, body, labels };
+        plot.grid();
+        plot
+    }
+
+    fn grid(&mut self) {
+        let (width, height) = (self.width, self.height);
+        for (value, word) in self.x.marks((width / 90.0) as usize) {
+            let at = self.left(value);
+            let _ = write!(
+                self.body,
+                "<path class=\"grid\" d=\"M{at:.1} 0V{height:.0}\"/><text class=\"tick\" x=\"{at:.1}\" y=\"{:.0}\" \
+                 text-anchor=\"middle\">{word}</text>",
+                height + 17.0
+            );
+        }
+        for (value, word) in self.y.marks((height / 45.0) as usize) {
+            let at = self.top(value);
+            let _ = write!(
+                self.body,
+                "<path class=\"grid\" d=\"M0 {at:.1}H{width:.0}\"/><text class=\"tick\" x=\"-8\" y=\"{:.1}\" \
+                 text-anchor=\"end\">{word}</text>",
+                at + 4.0
+            );
+        }
+    }
+
+    fn left(&self, value: f64) -> f64 {
+        self.x.place(value) * self.width
+    }
+
+    fn top(&self, value: f64) -> f64 {
+        (1.0 - self.y.place(value)) * self.height
+    }
+
+    /// The places of those points whose x lies in the field and whose numbers are finite.
+    fn places(&self, points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+        let every = points.len().div_ceil(CORNERS).max(1);
+        let last = points.len().saturating_sub(1);
+        let kept = points.iter().enumerate().filter(|(i, _)| i.is_multiple_of(every) || *i == last);
+        let inside = kept.filter(|(_, (x, y))| self.x.holds(*x) && y.is_finite());
+        inside.map(|(_, &(x, y))| (self.left(x), self.top(y))).collect()
+    }
+
+    fn path(&mut self, d: &str, stroke: Stroke<'_>, of: Option<usize>) {
+        let dashes = if stroke.dashed { " stroke-dasharray=\"5 4\"" } else { "" };
+        let of = of.map(|index| format!(" data-m=\"{index}\"")).unwrap_or_default();
+        let (color, width) = (escaped(stroke.color), stroke.width);
+        let _ = write!(
+            self.body,
+            "<path class=\"line\" d=\"{d}\" stroke=\"{color}\" stroke-width=\"{width}\"{dashes}{of}/>"
+        );
+    }
+
+    /// A line through points; `of` is the number of the method that it belongs to.
+    pub(super) fn line(&mut self, points: &[(f64, f64)], stroke: Stroke<'_>, of: Option<usize>) {
+        let mut d = String::new();
+        for (index, (x, y)) in self.places(points).into_iter().enumerate() {
+            let _ = write!(d, "{}{x:.1} {y:.1}", if index == 0 { 'M' } else { 'L' });
+        }
+        if !d.is_empty() {
+            self.path(&d, stroke, of);
+        }
+    }
+
+    /// A step function: each value holds from its x to the next one's, the last to the end of the field.
+    pub(super) fn steps(&mut self, points: &[(f64, f64)], stroke: Stroke<'_>) {
+        let mut d = String::new();
+        for (index, (x, y)) in self.places(points).into_iter().enumerate() {
+            let _ = if index == 0 { write!(d, "M{x:.1} {y:.1}") } else { write!(d, "H{x:.1}V{y:.1}") };
+        }
+        if !d.is_empty() {
+            let _ = write!(d, "H{:.1}", self.width);
+            self.path(&d, stroke, None);
+        }
+    }
+
+    /// A level line from side to side with a word above its right end.
+    pub(super) fn level(&mut self, y: f64, word: &str) {
+        let (at, width) = (self.top(y), self.width);
+        let _ = write!(
+            self.body,
+            "<path class=\"level\" d=\"M0 {at:.1}H{width:.0}\"/><text class=\"note\" x=\"{:.0}\" y=\"{:.1}\" \
+             text-anchor=\"end\">{}</text>",
+            width - 4.0,
+            at - 5.0,
+            escaped(word)
+        );
+    }
+
+    /// An upright line with a word at its foot.
+    pub(super) fn upright(&mut self, x: f64, word: &str) {
+        let (at, height) = (self.left(x), self.height);
+        let _ = write!(
+            self.body,
+            "<path class=\"level\" d=\"M{at:.1} 0V{height:.0}\"/><text class=\"note\" x=\"{:.1}\" y=\"{:.0}\">{}</text>",
+            at + 5.0,
+            12.0,
+            escaped(word)
+        );
+    }
+
+    /// A dot; none where its numbers are not finite. `title` is shown by the pointer; a label that is not empty stands beside it once all dots are there.
+    pub(super) fn dot(&mut self, (x, y): (f64, f64), dot: Dot, color: &str, label: &str, title: &str) {
+        if !(x.is_finite() && y.is_finite()) {
+            return;
+        }
+        let (x, y) = (self.left(x), self.top(y));
+        let color = escaped(color);
+        let fill = if dot == Dot::Full { &color } else { "#fff" };
+        let _ = write!(
+            self.body,
+            "<circle class=\"dot\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"5\" stroke=\"{color}\" fill=\"{fill}\"><title>{}</title>\
+             </circle>",
+            escaped(title)
+        );
+        self.labels.add(x, y, label);
+    }
+
+    /// A lane below the field on the same x: its name to the left, and spans from start to end with a weight of 0 to 1.
+    pub(super) fn lane(
+        &mut self,
+        name: &str,
+        color: &str,
+        spans: impl IntoIterator<Item = (f64, f64, f64)>,
+        of: usize,
+    ) {
+        const HEIGHT: f64 = 20.0;
+        let top = self.height + 40.0 + self.below;
+        self.below += HEIGHT;
+        let (color, name) = (escaped(color), escaped(name));
+        let _ = write!(
+            self.body,
+            "<g class=\"lane\" data-m=\"{of}\"><rect class=\"bed\" x=\"0\" y=\"{top:.0}\" width=\"{:.0}\" height=\"14\"/>\
+             <text class=\"name\" x=\"-10\" y=\"{:.0}\" text-anchor=\"end\" fill=\"{color}\">{name}</text>",
+            self.width,
+            top + 11.5
+        );
+        for (start, end, weight) in spans.into_iter().take(CORNERS) {
+            if !self.x.meets(start, end) {
+                continue;
+            }
+            let (from, to) = (self.left(start), self.left(end));
+            let _ = write!(
+                self.body,
+                "<rect x=\"{from:.1}\" y=\"{top:.0}\" width=\"{:.1}\" height=\"14\" fill=\"{color}\" opacity=\"{:.2}\"/>",
+                (to - from).max(1.2),
+                0.15 + 0.75 * if weight > 0.0 { weight.min(1.0) } else { 0.0 }
+            );
+        }
+        self.body += "</g>";
+    }
+
+    /// The whole drawing. `says` is what it shows, for those who cannot see it; `wide` is more room on the left.
+    pub(super) fn svg(mut self, says: &str, wide: f64) -> String {
+        self.body += &self.labels.svg();
+        let [left, top, right, bottom] = MARGINS;
+        let left = left + wide;
+        let extra = if self.below > 0.0 { self.below + 6.0 } else { 0.0 };
+        let (width, height) = (left + self.width + right, top + self.height + bottom + extra);
+        let middle = self.height / 2.0;
+        let away = -44.0;
+        format!(
+            "<svg class=\"plot\" role=\"img\" aria-label=\"{}\" viewBox=\"0 0 {width:.0} {height:.0}\" \
+             width=\"{width:.0}\" height=\"{height:.0}\"><g transform=\"translate({left:.0} {top:.0})\">{}\
+             <path class=\"frame\" d=\"M0 0V{:.0}H{:.0}\"/>\
+             <text class=\"axis\" x=\"{:.0}\" y=\"{:.0}\" text-anchor=\"middle\">{}</text>\
+             <text class=\"axis\" transform=\"translate({away:.0} {middle:.0}) rotate(-90)\" text-anchor=\"middle\">{}</text>\
+             </g></svg>",
+            escaped(says),
+            self.body,
+            self.height,
+            self.width,
+            self.width / 2.0,
+            self.height + 35.0,
+            escaped(&self.x.label),
+            escaped(&self.y.label),
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests;

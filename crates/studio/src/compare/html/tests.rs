@@ -1,0 +1,208 @@
+use super::page;
+use crate::compare::report::*;
+
+/// A report with something of everything, as if two methods had been measured on two backends.
+fn report() -> CompareReport {
+    let mut report = CompareReport {
+        complete: true,
+        version: "1.2.3".into(),
+        machine: "a processor, 2 threads".into(),
+        frames: [12, 15],
+        scene: SceneFacts {
+            name: "curls <of> \"mine\".lovelock".into(),
+            width: 320,
+            height: 240,
+            strands: 12_345,
+            points: 400_000,
+            lights: 1,
+            draws: 30,
+            ..SceneFacts::default()
+        },
+        reference: Reference {
+            converged: true,
+            samples: 32,
+            change: 0.0004,
+            limit: 0.001,
+            footprints: vec![FootprintTruth {
+                methods: vec!["voxel-map cpu".into()],
+                converged: true,
+                samples: 32,
+                change: 0.0004,
+                changes: vec![(8, 0.01), (16, 0.002), (32, 0.0004)],
+                points: 1000,
+            }],
+            picture: Some("pictures/reference.png".into()),
+            ..Reference::default()
+        },
+        ..CompareReport::default()
+    };
+    for (id, label, rmse, time) in [("voxel-map", "Voxel map", 0.02, 3.0), ("exact", "Exact", 0.05, 40.0)] {
+        for (backend, factor) in [("cpu", 1.0), ("gpu", 0.1)] {
+            let name = format!("{id} {backend}");
+            let error =
+                TransmittanceError { count: 9, rmse, bias: -0.004, p99: 0.09, max: 0.4, first10_rmse: None };
+            report.methods.push(MethodReport {
+                id: id.into(),
+                label: label.into(),
+                name: name.clone(),
+                transparency: "sorted".into(),
+                backend: backend.into(),
+                adapter: format!("adapter of the {backend}"),
+                settings: vec![("resolution".into(), "128".into())],
+                transmittance: Some(error),
+                flip: Some(FlipError { mean: 0.031, p99: 0.2, ..FlipError::default() }),
+                psnr_db: Some(38.2),
+                ssim: Some(0.99),
+                ms: Some(StageMs {
+                    build: Some(time * factor),
+                    query: Some(1.0 * factor),
+                    draw: 5.0,
+                    whole: 9.0,
+                }),
+                times: vec![TimeSpread {
+                    name: "build".into(),
+                    median: time,
+                    low: time,
+                    high: time,
+                    count: 30,
+                }],
+                memory_bytes: Some(3 << 20),
+                stability: Some(StabilityReport {
+                    swim: 0.0123,
+                    swim_p99: 0.05,
+                    ..StabilityReport::default()
+                }),
+                banding: Some(BandingReport {
+                    curve: (0..64)
+                        .map(|i| (i as f32 / 64.0, (-3.0 * i as f32 / 64.0).exp() + 0.02))
+                        .collect(),
+                    optical_depth: 3.0,
+                    ..BandingReport::default()
+                }),
+                front_of_time: id == "voxel-map",
+                files: MethodFiles {
+                    picture: Some(format!("pictures/{name}.png")),
+                    ..MethodFiles::default()
+                },
+                ..MethodReport::default()
+            });
+        }
+    }
+    report.probes.push(ProbeReport {
+        pixel: [100, 80],
+        steps: vec![(-0.01, 1.0), (0.0, 0.6), (0.02, 0.2)],
+        reference: vec![(-0.02, 1.0), (0.02, 0.4), (0.03, 0.1)],
+        methods: vec![ProbeCurve {
+            method: "voxel-map cpu".into(),
+            curve: vec![(-0.02, 0.97), (0.03, 0.2)],
+            value: 0.66,
+            marks: vec![ProbeMark { kind: "slice".into(), start: 0.0, end: 0.004, weight: 2.0 }],
+        }],
+        ..ProbeReport::default()
+    });
+    report
+}
+
+/// Fails where an element is left open or is closed that was not open.
+fn balanced(html: &str) {
+    let mut open = Vec::new();
+    let body =
+        html.split_once("<body>").and_then(|(_, body)| body.rsplit_once("<script>")).expect("a body").0;
+    for piece in body.split('<').skip(1) {
+        let (tag, _) = piece.split_once('>').expect("a tag ends");
+        let name = tag.split_whitespace().next().unwrap_or_default();
+        if let Some(name) = name.strip_prefix('/') {
+            assert_eq!(open.pop(), Some(name.to_owned()), "near {piece}");
+        } else if !tag.ends_with('/') && !["img", "meta", "br", "!--"].contains(&name) {
+            open.push(name.to_owned());
+        }
+    }
+    assert_eq!(open, Vec::<String>::new());
+}
+
+#[test]
+fn the_page_is_whole_and_names_everything() {
+    let page = page(&report());
+    for text in [
+        "curls &lt;of&gt; &quot;mine&quot;.lovelock",
+        "frames 12 to 14",
+        "12\u{202f}345 strands",
+        "On the CPU: adapter of the cpu",
+        "On the GPU: adapter of the gpu",
+        "Cost on the CPU, ms",
+        "Cost on the GPU, ms",
+        "Voxel map · GPU",
+        "./pictures/voxel-map%20gpu.png",
+        "−0.0040",
+        "3.00 MiB",
+        "Probe 1: pixel 100, 80",
+        "It converged",
+    ] {
+        assert!(page.contains(text), "{text}");
+    }
+    assert!(!page.contains("<of>") && !page.contains("NaN"), "what is in the report stays text");
+    balanced(&page);
+}
+
+#[test]
+fn the_page_asks_for_nothing_beyond_its_folder() {
+    let page = page(&report());
+    let mut found = 0;
+    for attribute in ["src=\"", "href=\""] {
+        for part in page.split(attribute).skip(1) {
+            assert!(part.starts_with("./") || part.starts_with('#'), "{}", &part[..40]);
+            found += 1;
+        }
+    }
+    assert!(found > 10);
+    for never in ["http:", "https:", "@import", "url(", "fetch("] {
+        assert!(!page.contains(never), "{never}");
+    }
+    assert!(page.contains("default-src 'none'"));
+}
+
+#[test]
+fn a_reference_that_did_not_converge_is_said_at_the_top() {
+    let mut doubtful = report();
+    doubtful.reference.converged = false;
+    doubtful.reference.footprints[0].converged = false;
+    doubtful.reference.refused.push("the exact map needs 9 GiB".into());
+    let text = page(&doubtful);
+    let (head, rest) = text.split_once("<nav").unwrap();
+    assert!(head.contains("did not converge within its limit") && head.contains("needs 9 GiB"), "{head}");
+    assert!(!rest.contains("It converged"));
+    // Negative control.
+    assert!(!page(&report()).split_once("<nav").unwrap().0.contains("class=\"banner\""));
+}
+
+#[test]
+fn a_cancelled_and_an_empty_report_are_pages_too() {
+    let empty = page(&CompareReport::default());
+    assert!(empty.contains("was cancelled") && empty.contains("no converged reference"));
+    balanced(&empty);
+    let mut refused = report();
+    refused.methods[0] = MethodReport {
+        id: "exact".into(),
+        name: "exact cpu".into(),
+        backend: "cpu".into(),
+        refused: Some("needs 12 GiB & more".into()),
+        ..MethodReport::default()
+    };
+    let text = page(&refused);
+    assert!(text.contains("needs 12 GiB &amp; more"));
+    balanced(&text);
+}
+
+#[test]
+fn numbers_that_are_none_break_no_plot() {
+    let mut broken = report();
+    broken.methods[0].transmittance.as_mut().unwrap().rmse = f64::NAN;
+    broken.methods[1].ms = Some(StageMs { build: Some(0.0), query: Some(0.0), ..StageMs::default() });
+    broken.methods[2].banding.as_mut().unwrap().curve[3] = (f32::INFINITY, f32::NAN);
+    broken.probes[0].steps.push((f32::NAN, f32::NAN));
+    broken.probes[0].methods[0].marks[0].weight = f32::NAN;
+    broken.reference.footprints[0].changes = vec![(0, 0.0), (u32::MAX, f32::INFINITY)];
+    let page = page(&broken);
+    assert!(!page.contains("NaN") && !page.contains("inf\"") && !page.contains("inf "));
+    balanced(&page);
+}

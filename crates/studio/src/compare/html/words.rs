@@ -1,0 +1,120 @@
+//! Text and numbers as the page writes them.
+
+use std::fmt::Write as _;
+
+/// What stands where nothing was measured.
+pub(super) const NOTHING: &str = "–";
+
+/// Text inside an element or an attribute in double quotes.
+pub(super) fn escaped(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match letter {
+            '&' => out += "&amp;",
+            '<' => out += "&lt;",
+            '>' => out += "&gt;",
+            '"' => out += "&quot;",
+            '\'' => out += "&#39;",
+            _ => out.push(letter),
+        }
+    }
+    out
+}
+
+/// A file's name, relative to the page, as the address of a picture: whatever is not plain becomes its bytes.
+pub(super) fn address(file: &str) -> String {
+    let mut out = String::with_capacity(file.len());
+    for byte in file.bytes() {
+        if byte.is_ascii_alphanumeric() || b"-_./~".contains(&byte) {
+            out.push(char::from(byte));
+        } else {
+            let _ = write!(out, "%{byte:02X}");
+        }
+    }
+    // Without this a name such as `a:b` would be an address of its own, and `//a` another machine.
+    format!("./{}", out.trim_start_matches('/'))
+}
+
+/// A number with `places` digits after the point and a true minus; a dash for none and for what is not finite.
+pub(super) fn fixed(value: Option<f64>, places: usize) -> String {
+    match value.filter(|value| value.is_finite()) {
+        Some(value) => {
+            let text = format!("{value:.places$}");
+            let nothing = text.trim_start_matches(['-', '0', '.']).is_empty();
+            if nothing { text.trim_start_matches('-').to_owned() } else { text.replace('-', "−") }
+        }
+        None => NOTHING.into(),
+    }
+}
+
+/// As [`fixed`], with a plus where it is above zero.
+pub(super) fn signed(value: Option<f64>, places: usize) -> String {
+    let text = fixed(value, places);
+    let digits = text.contains(|letter: char| ('1'..='9').contains(&letter));
+    if digits && !text.starts_with('−') { format!("+{text}") } else { text }
+}
+
+/// Milliseconds with three digits that mean something.
+pub(super) fn ms(value: Option<f64>) -> String {
+    let places = match value.map_or(0.0, f64::abs) {
+        size if size < 10.0 => 2,
+        size if size < 100.0 => 1,
+        _ => 0,
+    };
+    fixed(value, places)
+}
+
+/// Bytes in the largest binary unit that leaves a number above one.
+pub(super) fn bytes(value: Option<u64>) -> String {
+    let Some(bytes) = value else { return NOTHING.into() };
+    let units = [("GiB", 30), ("MiB", 20), ("KiB", 10)];
+    for (unit, power) in units {
+        let size = bytes as f64 / f64::from(1_u32 << power);
+        if size >= 1.0 {
+            return format!("{} {unit}", fixed(Some(size), if size < 10.0 { 2 } else { 1 }));
+        }
+    }
+    format!("{bytes} B")
+}
+
+/// A whole number in groups of three digits.
+pub(super) fn grouped(value: u64) -> String {
+    let digits = value.to_string();
+    let mut out = String::new();
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            out.push('\u{202f}');
+        }
+        out.push(digit);
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{address, bytes, escaped, fixed, grouped, ms, signed};
+
+    #[test]
+    fn numbers_read_as_they_should() {
+        assert_eq!(fixed(Some(0.012_34), 4), "0.0123");
+        assert_eq!(fixed(Some(-0.5), 2), "−0.50");
+        assert_eq!(fixed(Some(-0.000_01), 2), "0.00");
+        assert_eq!((fixed(None, 2), fixed(Some(f64::NAN), 2)), ("–".into(), "–".into()));
+        assert_eq!(signed(Some(0.25), 2), "+0.25");
+        assert_eq!((signed(Some(-0.25), 2), signed(Some(0.0), 2)), ("−0.25".into(), "0.00".into()));
+        assert_eq!([0.123, 12.34, 456.7].map(|value| ms(Some(value))), ["0.12", "12.3", "457"]);
+        assert_eq!(bytes(Some(512)), "512 B");
+        assert_eq!(bytes(Some(3 << 19)), "1.50 MiB");
+        assert_eq!(bytes(Some(20 << 30)), "20.0 GiB");
+        assert_eq!(grouped(1_234_567), "1\u{202f}234\u{202f}567");
+        assert_eq!(grouped(999), "999");
+    }
+
+    #[test]
+    fn text_cannot_leave_its_place() {
+        assert_eq!(escaped("<b a=\"1\">&'"), "&lt;b a=&quot;1&quot;&gt;&amp;&#39;");
+        assert_eq!(address("pictures/größe 1.png"), "./pictures/gr%C3%B6%C3%9Fe%201.png");
+        assert_eq!(address("//host/a"), "./host/a");
+        assert_eq!(address("http://host/\"><script>"), "./http%3A//host/%22%3E%3Cscript%3E");
+    }
+}
