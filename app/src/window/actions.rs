@@ -92,6 +92,7 @@ impl Window {
             Command::PresetCurly => self.change("hairstyle", |project| project.set_preset(Preset::Curly)),
             Command::PresetLong => self.change("hairstyle", |project| project.set_preset(Preset::Long)),
             Command::Palette => self.palette.toggle(),
+            Command::Compare => self.layout.compare.shown = !self.layout.compare.shown,
             Command::TogglePanels => self.layout.panels_hidden = !self.layout.panels_hidden,
             Command::ShowKeys => self.keys_shown = !self.keys_shown,
             Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),

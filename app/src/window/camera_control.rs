@@ -10,6 +10,15 @@ const TURN: f32 = 3.6;
 /// Applies what the pointer did over the viewport. Returns whether the camera changed.
 pub(crate) fn apply(camera: &mut CameraSection, response: &Response) -> bool {
     let before = *camera;
+    steer(camera, response);
+    if response.hovered() {
+        zoom(camera, 1.0 / response.ctx.input(egui::InputState::zoom_delta));
+    }
+    *camera != before
+}
+
+/// As [`apply`], without the pinch and Ctrl with the wheel.
+pub(crate) fn steer(camera: &mut CameraSection, response: &Response) {
     let size = response.rect.height().max(1.0);
     let drag = response.drag_delta() / size;
     let shift = response.ctx.input(|input| input.modifiers.shift);
@@ -22,10 +31,9 @@ pub(crate) fn apply(camera: &mut CameraSection, response: &Response) -> bool {
         orbit(camera, drag.x, drag.y);
     }
     if response.hovered() {
-        let (scroll, pinch) = response.ctx.input(|input| (input.smooth_scroll_delta.y, input.zoom_delta()));
-        zoom(camera, (-scroll * 0.002).exp() / pinch);
+        let scroll = response.ctx.input(|input| input.smooth_scroll_delta.y);
+        zoom(camera, (-scroll * 0.002).exp());
     }
-    *camera != before
 }
 
 /// Turns the camera about its target; `dx` and `dy` in heights of the viewport.

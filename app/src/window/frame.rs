@@ -15,6 +15,8 @@ impl Window {
         self.gestures.begin_pass(&ctx);
         let said = self.session.update();
         self.tell(said);
+        let said = self.compare.update(self.session.live());
+        self.tell(said);
         if let Some(end) = self.recorder.update() {
             match end {
                 panels::recording::State::Done(what) => {
@@ -45,7 +47,11 @@ impl Window {
             self.left_panel(ui, &mut project);
             self.right_panel(ui, &mut project, &ctx);
         }
-        self.picture(ui, &mut project);
+        if self.layout.compare.shown {
+            self.comparison(ui, &mut project);
+        } else {
+            self.picture(ui, &mut project);
+        }
         let label = changed_part(self.history.project(), &project);
         self.edit(label, project);
         if let Some(ask) = playback {
@@ -61,7 +67,14 @@ impl Window {
             self.run(command, &ctx);
         }
         self.windows(&ctx);
-        self.session.send(self.history.project(), self.viewport.wanted);
+        // While panes are shown nobody looks at the one picture.
+        let compares = self.layout.compare.shown;
+        self.session.send(self.history.project(), if compares { [0, 0] } else { self.viewport.wanted });
+        if compares {
+            let (live, frame) = (self.session.live(), self.session.frame.as_ref());
+            let playing = self.session.playing;
+            self.compare.send(live, self.history.project(), frame, &self.layout.compare, playing);
+        }
         let title = title(self.project_path.as_deref(), self.history.is_modified());
         ctx.send_viewport_cmd(egui::ViewportCommand::Title(title));
         self.notices.show(&ctx);
@@ -205,7 +218,13 @@ impl Window {
             let adapter = self.session.painter().adapter();
             let name = adapter.map_or_else(String::new, |adapter| adapter.name.clone());
             Viewport::caption(ui, rect, Align2::RIGHT_TOP, &format!("{ms:.0} ms · {name}"), theme::QUIET);
-            // What runs aside is told over the picture too: the panels may be hidden.
+            self.running(ui, rect);
+        });
+    }
+
+    /// What runs aside, told over the picture too: the panels may be hidden.
+    pub(super) fn running(&mut self, ui: &mut Ui, rect: Rect) {
+        {
             let mut row = 0;
             if let Some((fraction, text)) = self.recorder.state().progress() {
                 let tip = "Stops the recording; an unfinished film is removed.";
@@ -220,7 +239,7 @@ impl Window {
                     self.session.worker().cancel_load();
                 }
             }
-        });
+        }
     }
 
     /// Errors of a part of the project, where that part is edited.
@@ -371,6 +390,7 @@ fn changed_part(before: &Project, after: &Project) -> &'static str {
         (before.body != after.body, "body"),
         (before.motion != after.motion, "motion"),
         (before.recording != after.recording, "recording"),
+        (before.compare != after.compare, "compare"),
     ];
     parts.iter().find(|(differs, _)| *differs).map_or("change", |(_, name)| name)
 }

@@ -84,7 +84,12 @@ fn in_order(group: CommandGroup) -> Vec<&'static CommandInfo> {
 /// The part of its menu that a command stands in: parts are set off by lines.
 fn part_of(command: Command) -> u8 {
     match command {
-        Command::Save | Command::SaveAs | Command::ToggleLoop | Command::Palette | Command::TogglePanels => 1,
+        Command::Save
+        | Command::SaveAs
+        | Command::ToggleLoop
+        | Command::Palette
+        | Command::TogglePanels
+        | Command::Compare => 1,
         Command::Record | Command::SavePicture => 2,
         Command::Quit => 3,
         _ => 0,
@@ -111,6 +116,9 @@ pub(crate) fn list(ui: &mut Ui) {
             ("Drag", "Turns the camera about the hair."),
             ("Shift+drag, right drag", "Moves the camera aside."),
             ("Wheel", "Moves the camera nearer and farther."),
+            ("Ctrl+wheel", "Magnifies the panes of a comparison."),
+            ("Hold V", "Shows another pane of a comparison in place."),
+            ("Click a pane", "Plots the light at the hair there."),
             ("Double-click a control", "Restores its default."),
         ] {
             ui.label(RichText::new(keys).monospace().color(theme::ACCENT));

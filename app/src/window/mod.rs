@@ -2,6 +2,7 @@
 
 mod actions;
 mod camera_control;
+mod compare;
 mod control;
 mod frame;
 mod gesture;
@@ -26,6 +27,7 @@ use std::sync::Arc;
 use lovelock_studio::{Access, Command, History, Project, StudioError};
 use serde::{Deserialize, Serialize};
 
+use compare::{Compare, CompareLayout};
 use gesture::Gestures;
 use notices::Notices;
 use palette::Palette;
@@ -49,6 +51,7 @@ struct Layout {
     recent: Vec<PathBuf>,
     /// Pixels drawn a pixel of the screen; 0 chooses by the device.
     view_scale: f32,
+    compare: CompareLayout,
 }
 
 /// What is asked before changes are lost.
@@ -65,6 +68,7 @@ pub(crate) struct Window {
     project_path: Option<PathBuf>,
     session: Session,
     viewport: Viewport,
+    compare: Compare,
     recorder: Recorder,
     palette: Palette,
     layout: Layout,
@@ -146,6 +150,7 @@ impl Window {
             project_path,
             session,
             viewport: Viewport::default(),
+            compare: Compare::default(),
             recorder: Recorder::default(),
             palette: Palette::default(),
             layout,

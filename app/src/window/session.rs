@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use lovelock_studio::{
-    Access, Event, FrameSnapshot, PaintRequest, Painted, Painter, PassHistory, Place, Problem, Project,
+    Access, Event, FrameSnapshot, Live, PaintRequest, Painted, Painter, PassHistory, Place, Problem, Project,
     Scene, StageHistory, StudioError, Worker,
 };
 
@@ -17,6 +17,7 @@ const PLOTTED_FRAMES: usize = 240;
 pub(crate) struct Session {
     worker: Worker,
     painter: Painter,
+    live: Live,
     access: Access,
     /// What was last handed to the simulation.
     simulated: Arc<Project>,
@@ -46,11 +47,14 @@ impl Session {
         let wake = ctx.clone();
         let painter = Painter::start(move || wake.request_repaint())
             .map_err(|error| StudioError::work(format!("no thread to draw on: {error}")))?;
+        let wake = ctx.clone();
+        let live = Live::start(move || wake.request_repaint())
+            .map_err(|error| StudioError::work(format!("no thread to compare on: {error}")))?;
         // While a picture is drawn, its end will repaint the window: a repaint for every step of the simulation
         // would take the processor from the drawing.
-        let (wake, busy) = (ctx.clone(), painter.busy());
+        let (wake, busy) = (ctx.clone(), [painter.busy(), live.busy()]);
         let wake = move || {
-            if !busy.load(std::sync::atomic::Ordering::Relaxed) {
+            if !busy.iter().any(|busy| busy.load(std::sync::atomic::Ordering::Relaxed)) {
                 wake.request_repaint();
             }
         };
@@ -58,6 +62,7 @@ impl Session {
         Ok(Self {
             worker,
             painter,
+            live,
             access,
             simulated: Arc::clone(project),
             drawn: None,
@@ -84,6 +89,11 @@ impl Session {
     /// What draws.
     pub(crate) fn painter(&self) -> &Painter {
         &self.painter
+    }
+
+    /// What draws panes beside each other.
+    pub(crate) fn live(&self) -> &Live {
+        &self.live
     }
 
     /// Which files the project may reach.

@@ -18,7 +18,9 @@ pub(crate) const PANEL: Color32 = Color32::from_rgb(28, 30, 34);
 const RAISED: Color32 = Color32::from_rgb(44, 47, 53);
 const HOVERED: Color32 = Color32::from_rgb(58, 62, 70);
 const TEXT: Color32 = Color32::from_rgb(214, 216, 221);
-const LINE: Color32 = Color32::from_rgb(46, 49, 55);
+/// Text over pictures.
+pub(crate) const BRIGHT: Color32 = Color32::from_rgb(236, 238, 242);
+pub(crate) const LINE: Color32 = Color32::from_rgb(46, 49, 55);
 
 /// Colours of the lines in plots, told apart by those who see no red or green too (after Okabe and Ito).
 pub(crate) const PLOT: [Color32; 6] = [
@@ -33,6 +35,11 @@ pub(crate) const PLOT: [Color32; 6] = [
 /// A linear colour on the screen.
 pub(crate) fn from_linear(linear: [f32; 3]) -> Color32 {
     let [r, g, b] = linear.map(|v| (v.clamp(0.0, 1.0).powf(1.0 / 2.2) * 255.0) as u8);
+    Color32::from_rgb(r, g, b)
+}
+
+/// A colour as the screen has it.
+pub(crate) fn from_srgb([r, g, b]: [u8; 3]) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 

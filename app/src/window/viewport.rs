@@ -86,10 +86,11 @@ impl Viewport {
         }
         let at = match align {
             Align2::LEFT_BOTTOM => rect.left_bottom() + Vec2::new(10.0, -8.0),
+            Align2::RIGHT_BOTTOM => rect.right_bottom() + Vec2::new(-10.0, -8.0),
             Align2::RIGHT_TOP => rect.right_top() + Vec2::new(-10.0, 8.0),
             _ => rect.left_top() + Vec2::new(10.0, 8.0),
         };
-        let painter = ui.painter_at(rect);
+        let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
         let galley = painter.layout(text.to_owned(), FontId::proportional(11.5), color, rect.width() - 24.0);
         let place = align.anchor_size(at, galley.size());
         painter.rect_filled(place.expand(4.0), 4.0, theme::PAGE.gamma_multiply(0.6));
@@ -98,7 +99,7 @@ impl Viewport {
 }
 
 /// Pixels for a viewport of `size` points.
-fn size_for(size: Vec2, pixels_per_point: f32, most_pixels: f32, scale: f32) -> [u32; 2] {
+pub(crate) fn size_for(size: Vec2, pixels_per_point: f32, most_pixels: f32, scale: f32) -> [u32; 2] {
     let pixels = size * pixels_per_point;
     let scale =
         if scale > 0.0 { scale } else { (most_pixels / (pixels.x * pixels.y).max(1.0)).sqrt().min(1.0) };
@@ -107,7 +108,7 @@ fn size_for(size: Vec2, pixels_per_point: f32, most_pixels: f32, scale: f32) -> 
 }
 
 /// The largest place in `rect` of the proportions of `size`, in its middle.
-fn fit(size: Vec2, rect: Rect) -> Rect {
+pub(crate) fn fit(size: Vec2, rect: Rect) -> Rect {
     let scale = (rect.width() / size.x.max(1.0)).min(rect.height() / size.y.max(1.0));
     Rect::from_center_size(rect.center(), size * scale)
 }

@@ -47,6 +47,8 @@ pub enum Command {
     PresetLong,
     /// The command palette.
     Palette,
+    /// Several ways to draw the hair beside each other, or one picture.
+    Compare,
     /// Hides or shows all panels.
     TogglePanels,
     /// The list of keys.
@@ -320,6 +322,14 @@ pub const COMMANDS: &[CommandInfo] = {
             )
         },
         entry(
+            C::Compare,
+            "compare",
+            "Compare methods",
+            "Shows several ways to draw the hair beside each other.",
+            &["C"],
+            G::View,
+        ),
+        entry(
             C::TogglePanels,
             "toggle-panels",
             "Hide or show the panels",
@@ -387,6 +397,7 @@ mod tests {
             ("Home", Command::JumpToStart),
             ("End", Command::JumpToEnd),
             ("R", Command::Record),
+            ("C", Command::Compare),
             ("F", Command::FrameHair),
             ("Ctrl+Z", Command::Undo),
             ("Ctrl+Shift+Z", Command::Redo),

@@ -99,6 +99,8 @@ pub enum Place {
     Picture,
     /// The recording.
     Recording,
+    /// What is compared.
+    Compare,
 }
 
 impl Place {
@@ -116,6 +118,7 @@ impl Place {
             Self::Camera => "camera",
             Self::Picture => "picture",
             Self::Recording => "recording",
+            Self::Compare => "comparison",
         }
     }
 }

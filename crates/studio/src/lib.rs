@@ -22,9 +22,10 @@ pub use bench::{BenchReport, BenchRequest, BenchScene, SceneReport, StageReport,
 pub use clock::{FrameClock, MAX_STEPS_PER_TICK, Playback, STEP_SECS, Stopwatch};
 pub use command::{COMMANDS, Command, CommandGroup, CommandInfo, Shortcut};
 pub use compare::{
-    BandingReport, CompareReport, Contender, FlipError, FootprintTruth, Legend, MethodFiles, MethodReport,
-    PointTruth, ProbeCurve, ProbeMark, ProbeReport, Reference, SceneFacts, StabilityReport, StageMs,
-    TimeSpread, TransmittanceError,
+    BandingReport, CompareReport, Contender, FlipError, FootprintTruth, Legend, Live, LiveError, LivePane,
+    LiveProbe, LiveRequest, LiveShows, LiveTimes, LiveView, MethodFiles, MethodReport, PointTruth,
+    ProbeCurve, ProbeMark, ProbePlace, ProbeReport, ProbedHair, Reference, SceneFacts, StabilityReport,
+    StageMs, TimeSpread, TransmittanceError,
 };
 pub use error::{Place, Problem, ProblemKind, StudioError};
 pub use headless::{Progress, RecordJob, RecordReport, RecordRequest, StageMedians, record};
@@ -32,9 +33,9 @@ pub use history::{GestureId, History};
 pub use info::{Content, FileKind, Info, ProjectInfo, info};
 pub use painter::{Adapter, PaintRequest, Painted, Painter};
 pub use project::{
-    Access, BodySection, BodySource, CameraMode, CameraSection, FileRef, HairSection, HairSource,
-    MotionSection, MotionSource, PROJECT_EXTENSION, PROJECT_VERSION, Project, RecordingSection, load_project,
-    load_project_with, parse_project, save_project, write_whole,
+    Access, BodySection, BodySource, CameraMode, CameraSection, CompareSection, FileRef, HairSection,
+    HairSource, MotionSection, MotionSource, PROJECT_EXTENSION, PROJECT_VERSION, Project, RecordingSection,
+    load_project, load_project_with, parse_project, save_project, write_whole,
 };
 pub use session::{
     BodyObstacle, Engine, Event, FrameSnapshot, HeadPath, LoadControl, LoadProgress, SETTLE_SECS, Scene,
@@ -53,6 +54,7 @@ pub fn name_workers() {
 
 // What the interface edits and shows, so that it needs no other crate of the engine.
 pub use lovelock_groom as groom;
+pub use lovelock_metrics as metrics;
 pub use lovelock_motion as motion;
 pub use lovelock_record as recording;
 pub use lovelock_render as render;

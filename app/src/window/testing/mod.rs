@@ -1,5 +1,6 @@
 //! Parts of the window on a screen that is not there, for tests.
 
+mod compare;
 mod dialogs;
 mod keyboard;
 mod notices;
@@ -106,6 +107,14 @@ pub(crate) fn click<S>(harness: &mut Harness<'_, S>, at: Pos2) {
     press(harness, at, true);
     press(harness, at, false);
     harness.run_ok();
+}
+
+/// One click in a window that never rests.
+pub(crate) fn click_at<S>(harness: &mut Harness<'_, S>, at: Pos2) {
+    harness.hover_at(at);
+    press(harness, at, true);
+    press(harness, at, false);
+    harness.run_steps(6);
 }
 
 /// Two clicks, quick enough.

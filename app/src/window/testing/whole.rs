@@ -17,10 +17,10 @@ use super::{Shown, control, controls, drag, screen_of};
 use crate::window::actions::Opened;
 use crate::window::{Layout, Window};
 
-const CTRL: Modifiers = Modifiers { ctrl: true, command: true, ..Modifiers::NONE };
+pub(super) const CTRL: Modifiers = Modifiers { ctrl: true, command: true, ..Modifiers::NONE };
 
 /// The window on a project of few strands, once its scene is loaded.
-fn window() -> Harness<'static, Shown<Option<Window>>> {
+pub(super) fn window() -> Harness<'static, Shown<Option<Window>>> {
     let mut project = Project::default();
     project.hair.groom.wisps = 16;
     project.hair.groom.strands_per_wisp = 8;
@@ -36,16 +36,20 @@ fn window() -> Harness<'static, Shown<Option<Window>>> {
     harness
 }
 
-fn of<'h>(harness: &'h Harness<'_, Shown<Option<Window>>>) -> &'h Window {
+pub(super) fn of<'h>(harness: &'h Harness<'_, Shown<Option<Window>>>) -> &'h Window {
     harness.state().state.as_ref().expect("a window")
 }
 
-fn project(harness: &Harness<'_, Shown<Option<Window>>>) -> Arc<Project> {
+pub(super) fn project(harness: &Harness<'_, Shown<Option<Window>>>) -> Arc<Project> {
     Arc::clone(of(harness).history.project())
 }
 
 /// Passes until something is so.
-fn wait(harness: &mut Harness<'_, Shown<Option<Window>>>, what: &str, is_so: impl Fn(&Window) -> bool) {
+pub(super) fn wait(
+    harness: &mut Harness<'_, Shown<Option<Window>>>,
+    what: &str,
+    is_so: impl Fn(&Window) -> bool,
+) {
     let watch = Stopwatch::start();
     while !is_so(of(harness)) {
         // A guard against waiting for ever; loading takes a second or so.
@@ -57,16 +61,16 @@ fn wait(harness: &mut Harness<'_, Shown<Option<Window>>>, what: &str, is_so: imp
 }
 
 /// Some passes: this window never rests while it plays.
-fn go(harness: &mut Harness<'_, Shown<Option<Window>>>) {
+pub(super) fn go(harness: &mut Harness<'_, Shown<Option<Window>>>) {
     harness.run_steps(6);
 }
 
-fn key(harness: &mut Harness<'_, Shown<Option<Window>>>, modifiers: Modifiers, key: Key) {
+pub(super) fn key(harness: &mut Harness<'_, Shown<Option<Window>>>, modifiers: Modifiers, key: Key) {
     harness.key_press_modifiers(modifiers, key);
     go(harness);
 }
 
-fn press_button(harness: &mut Harness<'_, Shown<Option<Window>>>, name: &str) {
+pub(super) fn press_button(harness: &mut Harness<'_, Shown<Option<Window>>>, name: &str) {
     control(harness, Role::Button, name).click();
     go(harness);
 }

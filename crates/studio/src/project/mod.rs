@@ -19,8 +19,8 @@ pub use file::{
 };
 pub use path::{Access, FileRef};
 pub use sections::{
-    BodySection, BodySource, CameraMode, CameraSection, HairSection, HairSource, MotionSection, MotionSource,
-    RecordingSection,
+    BodySection, BodySource, CameraMode, CameraSection, CompareSection, HairSection, HairSource,
+    MotionSection, MotionSource, RecordingSection,
 };
 
 use lovelock_groom::{GroomSettings, HairLook, Preset};
@@ -54,6 +54,8 @@ pub struct Project {
     pub picture: PictureSettings,
     /// What a recording is.
     pub recording: RecordingSection,
+    /// What is compared beside each other.
+    pub compare: CompareSection,
 }
 
 impl Default for Project {
@@ -70,6 +72,7 @@ impl Default for Project {
             camera: CameraSection::default(),
             picture: PictureSettings::default(),
             recording: RecordingSection::default(),
+            compare: CompareSection::default(),
         }
     }
 }

@@ -6,8 +6,8 @@ use glam::Vec3;
 use lovelock_render::{Light, MAX_LIGHTS, MOST_PIXELS, MOST_SIDE, ShadowSettings};
 
 use super::generic::differences;
-use super::{CameraSection, MotionSection, PROJECT_VERSION, Project, RecordingSection};
-use crate::{Place, Problem, ProblemKind};
+use super::{CameraSection, CompareSection, MotionSection, PROJECT_VERSION, Project, RecordingSection};
+use crate::{Contender, Place, Problem, ProblemKind};
 
 impl Project {
     /// The project with every value inside its range, and what had to be moved.
@@ -24,6 +24,7 @@ impl Project {
         project.camera = camera(&self.camera);
         project.picture = self.picture.clamped();
         project.recording = recording(&self.recording);
+        project.compare = compare(&self.compare);
 
         let mut problems = Vec::new();
         let mut note = |place, changes: Vec<String>| {
@@ -38,6 +39,13 @@ impl Project {
         note(Place::Camera, differences(&self.camera, &project.camera));
         note(Place::Picture, differences(&self.picture, &project.picture));
         note(Place::Recording, differences(&self.recording, &project.recording));
+        for (before, after) in self.compare.panes.iter().zip(&project.compare.panes) {
+            note(Place::Compare, differences(before, after));
+        }
+        let (found, kept) = (self.compare.panes.len(), project.compare.panes.len());
+        if found != kept {
+            note(Place::Compare, vec![format!("there were {found} panes; there are {kept} now")]);
+        }
         for (before, after) in self.lights.iter().zip(&project.lights) {
             // Any length of direction is fine; it is only told where it was no direction at all.
             let mut before = before.clone();
@@ -163,4 +171,16 @@ fn recording(recording: &RecordingSection) -> RecordingSection {
         end_frame: recording.end_frame.map(|end| end.clamp(first_frame + 1, 20_000_000)),
         ..recording.clone()
     }
+}
+
+/// The panes in range, as many as are drawn; the default ones where there are none.
+fn compare(compare: &CompareSection) -> CompareSection {
+    if compare.panes.is_empty() {
+        return CompareSection::default();
+    }
+    let pane = |pane: &Contender| {
+        let (low, high) = (*Contender::SCALES.start(), *Contender::SCALES.end());
+        Contender { shadow: shadow(&pane.shadow), scale: within(pane.scale, low, high, high), ..pane.clone() }
+    };
+    CompareSection { panes: compare.panes.iter().take(CompareSection::MOST_PANES).map(pane).collect() }
 }

@@ -4,9 +4,11 @@ use glam::Vec3;
 use lovelock_groom::{GroomSettings, ImportSettings, Preset};
 use lovelock_motion::{BodySettings, MotionSettings};
 use lovelock_record::FilmQuality;
+use lovelock_render::{Backend, ShadowMethod, ShadowSettings, Transparency};
 use serde::{Deserialize, Serialize};
 
 use super::FileRef;
+use crate::Contender;
 
 /// Where the body comes from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -195,5 +197,37 @@ impl Default for RecordingSection {
             quality: FilmQuality::default(),
             output: None,
         }
+    }
+}
+
+/// What is compared beside each other.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct CompareSection {
+    /// The panes, from the left and the top: 1 to [`CompareSection::MOST_PANES`].
+    pub panes: Vec<Contender>,
+}
+
+impl CompareSection {
+    /// The most panes.
+    pub const MOST_PANES: usize = 6;
+}
+
+impl Default for CompareSection {
+    /// A method of each kind: a grid, layers, bits, and the truth.
+    fn default() -> Self {
+        let pane = |method| Contender {
+            shadow: ShadowSettings { method, ..ShadowSettings::default() },
+            transparency: Transparency::default(),
+            backend: Backend::default(),
+            scale: 1.0,
+        };
+        let methods = [
+            ShadowMethod::VoxelMap,
+            ShadowMethod::DeepOpacityMaps,
+            ShadowMethod::OccupancyMaps,
+            ShadowMethod::Exact,
+        ];
+        Self { panes: methods.map(pane).to_vec() }
     }
 }

@@ -181,6 +181,25 @@ fn the_values_of_every_shadow_method_are_moved_and_told() {
 }
 
 #[test]
+fn panes_are_few_and_lie_in_their_ranges() {
+    let text = "(version: 1, compare: (panes: [(scale: 9.0), (scale: NaN, shadow: (method: \"exact\", \
+                exact: (resolution: 3))), (), (), (), (), (), ()]))";
+    let (project, problems) = parse_project(Path::new("p"), text).expect("reads");
+    let panes = &project.compare.panes;
+    assert_eq!(panes.len(), CompareSection::MOST_PANES);
+    assert_eq!((panes[0].scale, panes[1].scale), (1.0, 1.0));
+    assert_eq!(panes[1].shadow.method, lovelock_render::ShadowMethod::Exact);
+    assert_eq!(panes[1].shadow.exact.resolution, 64);
+    assert_eq!(problems.len(), 4, "{problems:?}");
+    assert!(problems.iter().all(|p| p.place == Place::Compare));
+    assert_eq!(round_trip(&project), (project.clone(), Vec::new()), "once is enough");
+    // None is too few.
+    let (project, problems) =
+        parse_project(Path::new("p"), "(version: 1, compare: (panes: []))").expect("reads");
+    assert_eq!((project.compare, problems.len()), (CompareSection::default(), 1));
+}
+
+#[test]
 fn a_recording_has_a_size_that_is_drawn() {
     for (size, kept) in [
         ((8192, 8192), (8192, 4320)),
@@ -268,6 +287,8 @@ proptest! {
         project.recording.end_frame = end;
         project.recording.width = width;
         project.recording.height = height;
+        project.compare.panes[1].shadow = shadow;
+        project.compare.panes[0].scale = gravity;
         let (clean, _) = project.sanitised();
         prop_assert!(lovelock_render::check_size(clean.recording.width, clean.recording.height).is_ok());
         prop_assert_eq!(round_trip(&clean), (clean.clone(), Vec::new()));

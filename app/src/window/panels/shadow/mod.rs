@@ -26,6 +26,12 @@ pub(crate) fn ui(ui: &mut Ui, settings: &mut ShadowSettings, memory_bytes: u64) 
         .logarithmic()
         .decimals(3)
         .show(ui, &mut s.extinction_scale, d.extinction_scale);
+    of_method(ui, s, &d);
+    note(ui, format!("{:.1} MiB for the maps of all lights", memory_bytes as f64 / (1024.0 * 1024.0)));
+}
+
+/// The controls of the method in use.
+pub(crate) fn of_method(ui: &mut Ui, s: &mut ShadowSettings, d: &ShadowSettings) {
     match s.method {
         ShadowMethod::None => {}
         ShadowMethod::VoxelMap => voxel_map::ui(ui, &mut s.voxel_map, &d.voxel_map),
@@ -39,7 +45,6 @@ pub(crate) fn ui(ui: &mut Ui, settings: &mut ShadowSettings, memory_bytes: u64) 
         ShadowMethod::OccupancyMaps => texels::occupancy_maps(ui, &mut s.occupancy_maps, &d.occupancy_maps),
         ShadowMethod::Exact => texels::exact(ui, &mut s.exact, &d.exact),
     }
-    note(ui, format!("{:.1} MiB for the maps of all lights", memory_bytes as f64 / (1024.0 * 1024.0)));
 }
 
 /// A whole number out of some, each shown with `suffix`; a value that is none of them is shown too.

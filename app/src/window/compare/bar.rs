@@ -1,0 +1,192 @@
+//! The line over the panes: what they show, and what is done with all of them.
+
+use egui::{DragValue, RichText, Ui, Vec2};
+use egui_material_icons::{MaterialIcon, icons};
+use lovelock_studio::{CompareSection, LiveShows, Project};
+
+use super::layout::CompareLayout;
+use super::legend::LARGEST;
+use crate::window::theme;
+
+/// What the line asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Ask {
+    /// A pane more.
+    Add,
+    /// The panes as a picture file.
+    Save,
+    /// The dance as a film of the panes.
+    Film,
+    /// The whole of the pictures again.
+    WholePicture,
+    /// Back to the one picture.
+    Close,
+}
+
+/// The line. `magnified` is how many times larger than the whole the panes show.
+pub(super) fn ui(
+    ui: &mut Ui,
+    layout: &mut CompareLayout,
+    project: &mut Project,
+    magnified: f32,
+) -> Option<Ask> {
+    let mut ask = None;
+    let panes = project.compare.panes.len();
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = Vec2::new(6.0, 4.0);
+        for (wipe, name, tip) in [
+            (
+                false,
+                "Grid",
+                "All panes beside each other. Hold V to see the second of a pair in place of a pane.",
+            ),
+            (
+                true,
+                "Wipe",
+                "Two panes on one page, divided by a line to drag. Hold V to see them the other way round.",
+            ),
+        ] {
+            if ui.selectable_label(layout.wipe == wipe, name).on_hover_text(tip).clicked() {
+                layout.wipe = wipe;
+            }
+        }
+        if layout.wipe {
+            pair(ui, layout, project);
+        }
+        ui.separator();
+        shows(ui, layout);
+        ui.separator();
+        let mut stops = project.picture.exposure_stops;
+        let drag = DragValue::new(&mut stops).range(-6.0..=6.0).speed(0.02).fixed_decimals(2).suffix(" EV");
+        let response = ui.add(drag).on_hover_text("Exposure of all panes, in stops.");
+        response
+            .widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, "Exposure of all panes"));
+        if response.changed() {
+            project.picture.exposure_stops = stops;
+        }
+        if magnified > 1.001 {
+            let tip = "Shows the whole picture again. Ctrl+wheel over a pane magnifies all panes.";
+            if ui.button(format!("{magnified:.1}×")).on_hover_text(tip).clicked() {
+                ask = Some(Ask::WholePicture);
+            }
+        }
+        ui.separator();
+        toggle(
+            ui,
+            &mut layout.probe,
+            icons::ICON_COLORIZE,
+            "Probe",
+            "Plots the light along the ray through a hair that you click.",
+        );
+        toggle(
+            ui,
+            &mut layout.costs,
+            icons::ICON_QUERY_STATS,
+            "Costs",
+            "Plots what the panes take, and their error against it.",
+        );
+        let measures =
+            "Measures the error of every pane against the exact method, which takes a part of the time.";
+        toggle(ui, &mut layout.measures, icons::ICON_STRAIGHTEN, "Measure errors", measures);
+        ui.separator();
+        let mut button =
+            |ui: &mut Ui, icon: MaterialIcon, name: &str, tip: &str, enabled: bool, what: Ask| {
+                let response = ui.add_enabled(enabled, egui::Button::new(icon)).on_hover_text(tip);
+                response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, enabled, name));
+                if response.clicked() {
+                    ask = Some(what);
+                }
+            };
+        let room = panes < CompareSection::MOST_PANES;
+        button(
+            ui,
+            icons::ICON_ADD,
+            "Add pane",
+            "Adds a pane: the next method that no pane shows.",
+            room,
+            Ask::Add,
+        );
+        button(
+            ui,
+            icons::ICON_PHOTO_CAMERA,
+            "Save comparison",
+            "Saves the panes with their labels as a picture (Ctrl+P).",
+            true,
+            Ask::Save,
+        );
+        button(
+            ui,
+            icons::ICON_VIDEOCAM,
+            "Record comparison",
+            "Records the dance as a film of all panes (R).",
+            true,
+            Ask::Film,
+        );
+        button(ui, icons::ICON_CLOSE, "Close comparison", "Back to the one picture (C).", true, Ask::Close);
+    });
+    ask
+}
+
+/// The two panes of the wipe.
+fn pair(ui: &mut Ui, layout: &mut CompareLayout, project: &Project) {
+    let panes = &project.compare.panes;
+    let mut pair = layout.pair_of(panes.len());
+    let before = pair;
+    for (side, name) in ["Left pane", "Right pane"].into_iter().enumerate() {
+        let said = |index: usize| {
+            let method = panes.get(index).map_or("", |pane| pane.shadow.method.label());
+            format!("{} {method}", index + 1)
+        };
+        let color = theme::PLOT[pair[side] % theme::PLOT.len()];
+        let response = egui::ComboBox::from_id_salt(("pair", side))
+            .selected_text(RichText::new(said(pair[side])).color(color))
+            .width(132.0)
+            .truncate()
+            .show_ui(ui, |ui| {
+                for index in 0..panes.len() {
+                    ui.selectable_value(&mut pair[side], index, said(index));
+                }
+            })
+            .response;
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, name));
+    }
+    if pair != before {
+        layout.pair = pair;
+    }
+}
+
+/// What the panes show, and the largest number of its scale.
+fn shows(ui: &mut Ui, layout: &mut CompareLayout) {
+    let response = egui::ComboBox::from_id_salt("shows")
+        .selected_text(layout.shows.label())
+        .width(150.0)
+        .show_ui(ui, |ui| {
+            for shows in LiveShows::ALL {
+                ui.selectable_value(&mut layout.shows, shows, shows.label())
+                    .on_hover_text(shows.description());
+            }
+        })
+        .response;
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "What panes show"));
+    let Some(_) = layout.shows.colors() else { return };
+    let response = egui::ComboBox::from_id_salt("largest")
+        .selected_text(format!("to {}", layout.largest))
+        .width(70.0)
+        .show_ui(ui, |ui| {
+            for largest in LARGEST {
+                ui.selectable_value(&mut layout.largest, largest, format!("to {largest}"));
+            }
+        })
+        .response;
+    response
+        .widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Largest number of the scale"));
+}
+
+/// A button that stays pressed.
+fn toggle(ui: &mut Ui, on: &mut bool, icon: MaterialIcon, name: &str, tip: &str) {
+    let response = ui.selectable_label(*on, icon).on_hover_text(tip);
+    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, *on, name));
+    if response.clicked() {
+        *on = !*on;
+    }
+}

@@ -1,0 +1,271 @@
+//! What the panes take: over the last seconds, and against their error.
+
+use egui::{Align, Layout, RichText, Ui, vec2};
+use egui_plot::{
+    GridMark, HoverPosition, Line, LineStyle, MarkerShape, Plot, PlotPoint, PlotPoints, Points, Text,
+};
+use lovelock_studio::{LiveError, LiveTimes, Project};
+
+use super::costs::{Costs, PLOTTED_SECS, Way, series};
+use super::label;
+use super::layout::CostPlot;
+use crate::window::control::note;
+use crate::window::theme;
+
+/// Width of the table of medians, points.
+const TABLE_WIDTH: f32 = 330.0;
+
+/// The choice of plot, the plot, and the medians beside it where there is room.
+pub(super) fn ui(ui: &mut Ui, plot: &mut CostPlot, costs: &Costs, project: &Project, panes: &[usize]) {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        for which in CostPlot::ALL {
+            let text = RichText::new(which.label()).small();
+            if ui.selectable_label(*plot == which, text).on_hover_text(which.tip()).clicked() {
+                *plot = which;
+            }
+        }
+    });
+    let room = ui.available_size();
+    let beside = room.x > TABLE_WIDTH + 260.0;
+    let draw = |ui: &mut Ui| match *plot {
+        CostPlot::ErrorTime | CostPlot::ErrorMemory => scatter(ui, *plot, costs, project, panes),
+        CostPlot::Whole | CostPlot::Build | CostPlot::Ask | CostPlot::Draw => {
+            over_time(ui, *plot, costs, project, panes);
+        }
+    };
+    if beside {
+        ui.horizontal_top(|ui| {
+            ui.allocate_ui(vec2(room.x - TABLE_WIDTH - 8.0, room.y), draw);
+            ui.vertical(|ui| table(ui, costs, project, panes));
+        });
+    } else {
+        draw(ui);
+    }
+}
+
+/// One stage over time.
+fn stage(plot: CostPlot) -> impl Fn(&LiveTimes) -> f64 + Copy {
+    move |times| match plot {
+        CostPlot::Build => times.build,
+        CostPlot::Ask => times.ask,
+        CostPlot::Draw => times.draw,
+        CostPlot::Whole | CostPlot::ErrorTime | CostPlot::ErrorMemory => times.whole(),
+    }
+}
+
+/// The ways that are on the screen, with their colours.
+fn shown<'a>(
+    costs: &'a Costs,
+    project: &'a Project,
+    panes: &'a [usize],
+) -> impl Iterator<Item = (usize, &'a Way)> {
+    panes.iter().filter_map(|&index| {
+        let pane = project.compare.panes.get(index)?;
+        Some((index, costs.of(pane)?))
+    })
+}
+
+fn over_time(ui: &mut Ui, which: CostPlot, costs: &Costs, project: &Project, panes: &[usize]) {
+    let now = costs.now_secs();
+    let lines: Vec<_> = shown(costs, project, panes)
+        .map(|(index, way)| {
+            let since = |at: f64| at - now;
+            let recent = way.samples.iter().filter(|sample| since(sample.at_secs) > -PLOTTED_SECS);
+            let points: Vec<[f64; 2]> =
+                recent.map(|sample| [since(sample.at_secs), stage(which)(&sample.times)]).collect();
+            (index, way.contender.shadow.method.label(), points)
+        })
+        .collect();
+    plain("compare times")
+        .include_x(-PLOTTED_SECS)
+        .include_x(0.0)
+        .include_y(0.0)
+        .y_axis_label("ms")
+        .x_axis_label("seconds ago")
+        .x_axis_formatter(|mark, _| format!("{:.0}", -mark.value))
+        .label_formatter(|at| match at {
+            HoverPosition::NearDataPoint { plot_name, position, .. } => {
+                Some(format!("{plot_name}\n{:.1} ms", position.y))
+            }
+            HoverPosition::Elsewhere { .. } => None,
+        })
+        .show(ui, |plot| {
+            for (index, name, points) in lines {
+                let color = theme::PLOT[index % theme::PLOT.len()];
+                plot.line(Line::new(format!("{} {name}", index + 1), points).color(color).width(1.8));
+            }
+        });
+}
+
+/// Error and what it costs of one way, as powers of ten; none where one of them is none.
+fn place(way: &Way, which: CostPlot) -> Option<[f64; 2]> {
+    let error = way.error.rmse()?;
+    let cost = match which {
+        CostPlot::ErrorMemory => way.shadow_bytes as f64 / f64::from(1 << 20),
+        _ => way.median(LiveTimes::whole),
+    };
+    (error > 0.0 && cost > 0.0).then(|| [cost.log10(), error.log10()])
+}
+
+fn scatter(ui: &mut Ui, which: CostPlot, costs: &Costs, project: &Project, panes: &[usize]) {
+    let ways: Vec<_> = shown(costs, project, panes)
+        .map(|(index, way)| {
+            let trail = costs.trail(series(&way.contender));
+            let trail: Vec<[f64; 2]> = trail.filter_map(|way| place(way, which)).collect();
+            (index, way, trail)
+        })
+        .collect();
+    let left_out: Vec<&str> = ways
+        .iter()
+        .filter(|(_, way, _)| place(way, which).is_none())
+        .map(|(_, way, _)| way.contender.shadow.method.label())
+        .collect();
+    let unit = if which == CostPlot::ErrorMemory { "MiB" } else { "ms" };
+    if ways.iter().all(|(_, way, _)| way.error == LiveError::NotMeasured) {
+        note(ui, "Errors are not measured: press the ruler over the panes.");
+    } else if !left_out.is_empty() {
+        note(ui, format!("Not on these axes: {}.", left_out.join(", ")));
+    }
+    let power = |mark: GridMark, _: &std::ops::RangeInclusive<f64>| short(10_f64.powf(mark.value));
+    plain("compare scatter")
+        .set_margin_fraction(vec2(0.16, 0.16))
+        .x_axis_label(unit)
+        .y_axis_label("error")
+        .x_grid_spacer(|input| decades(input.bounds))
+        .y_grid_spacer(|input| decades(input.bounds))
+        .x_axis_formatter(power)
+        .y_axis_formatter(power)
+        .label_formatter(move |at| match at {
+            HoverPosition::NearDataPoint { plot_name, position, .. } => Some(format!(
+                "{plot_name}\n{} {unit}, error {}",
+                short(10_f64.powf(position.x)),
+                short(10_f64.powf(position.y))
+            )),
+            HoverPosition::Elsewhere { .. } => None,
+        })
+        .show(ui, |plot| {
+            for (index, way, trail) in ways {
+                let color = theme::PLOT[index % theme::PLOT.len()];
+                let name = format!("{} {}", index + 1, way.contender.shadow.method.label());
+                if trail.len() > 1 {
+                    let faint = color.gamma_multiply(0.5);
+                    let line = Line::new(name.clone(), trail.clone()).color(faint).width(1.2);
+                    plot.line(line.style(LineStyle::Solid).allow_hover(false));
+                    plot.points(Points::new(name.clone(), trail).color(faint).radius(2.5));
+                }
+                let Some(at) = place(way, which) else { continue };
+                let point = Points::new(name, PlotPoints::from(at)).color(color).radius(5.0);
+                plot.points(point.shape(MarkerShape::Circle));
+                let text = RichText::new(way.contender.shadow.method.label()).small().color(color);
+                let text = Text::new("", PlotPoint::new(at[0], at[1]), text);
+                plot.text(text.anchor(egui::Align2::LEFT_BOTTOM));
+            }
+        });
+}
+
+/// A plot that neither moves nor zooms.
+fn plain(id: &str) -> Plot<'_> {
+    Plot::new(id.to_owned())
+        .allow_zoom(false)
+        .allow_drag(false)
+        .allow_scroll(false)
+        .allow_boxed_zoom(false)
+        .allow_double_click_reset(false)
+        .show_x(false)
+        .show_y(false)
+}
+
+/// Lines at 1, 2 and 5 times the powers of ten, which are the coordinates here.
+fn decades((low, high): (f64, f64)) -> Vec<GridMark> {
+    if !(low.abs() < 30.0 && high.abs() < 30.0) {
+        return Vec::new();
+    }
+    // Where many powers are in view, they alone.
+    let parts: &[f64] = if high - low > 2.2 { &[1.0] } else { &[1.0, 2.0, 5.0] };
+    let powers = low.floor() as i32..=high.ceil() as i32;
+    powers
+        .flat_map(|power| parts.iter().map(move |part| f64::from(power) + part.log10()))
+        .filter(|value| (low..=high).contains(value))
+        // One size, so that all have their numbers.
+        .map(|value| GridMark { value, step_size: 1.0 })
+        .collect()
+}
+
+/// A number with two digits that count.
+fn short(value: f64) -> String {
+    let digits = (1 - value.abs().max(1e-9).log10().floor() as i32).clamp(0, 6) as usize;
+    let text = format!("{value:.digits$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+/// Medians of all stages, memory and error.
+fn table(ui: &mut Ui, costs: &Costs, project: &Project, panes: &[usize]) {
+    egui::Grid::new("compare medians").num_columns(7).spacing([10.0, 3.0]).show(ui, |ui| {
+        let right = |ui: &mut Ui, text: RichText| {
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.label(text.small()));
+        };
+        ui.label("");
+        for title in ["build", "ask", "draw", "ms", "memory", "error"] {
+            right(ui, RichText::new(title).color(theme::QUIET));
+        }
+        ui.end_row();
+        for (index, way) in shown(costs, project, panes) {
+            let color = theme::PLOT[index % theme::PLOT.len()];
+            ui.label(RichText::new(way.contender.shadow.method.label()).small().color(color));
+            let numbers = [
+                way.median(|times| times.build),
+                way.median(|times| times.ask),
+                way.median(|times| times.draw),
+                way.median(LiveTimes::whole),
+            ];
+            for ms in numbers {
+                right(ui, RichText::new(format!("{ms:.1}")));
+            }
+            right(ui, RichText::new(label::bytes(way.shadow_bytes)));
+            let error = match &way.error {
+                LiveError::Measured { rmse, .. } => format!("{rmse:.4}"),
+                LiveError::Reference => "reference".to_owned(),
+                LiveError::NotMeasured | LiveError::Refused(_) => "–".to_owned(),
+            };
+            right(ui, RichText::new(error));
+            ui.end_row();
+        }
+    });
+    note(ui, "Medians of the last pictures, while everything else runs too.");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short_and_lines_few() {
+        assert_eq!(
+            [0.0123, 0.5, 1.0, 7.25, 42.4, 1234.0].map(short),
+            ["0.012", "0.5", "1", "7.2", "42", "1234"]
+        );
+        for bounds in [(-1.0, 1.0), (-2.5, 3.0), (0.1, 0.2), (f64::NAN, 1.0), (-1e300, 1e300)] {
+            let marks = decades(bounds);
+            assert!(marks.len() < 12, "{bounds:?}: {}", marks.len());
+            assert!(marks.iter().all(|mark| mark.value >= bounds.0 && mark.value <= bounds.1));
+        }
+        assert_eq!(decades((-0.1, 1.1)).len(), 4, "1, 2, 5 and 10");
+    }
+
+    #[test]
+    fn what_has_no_error_or_no_cost_is_not_on_the_axes() {
+        let mut costs = Costs::default();
+        let pane = super::super::costs::tests::pane(64, 9.0, 0.01);
+        costs.push(&pane);
+        let way = |costs: &Costs| costs.of(&pane.contender).cloned().expect("a way");
+        let at = place(&way(&costs), CostPlot::ErrorTime).expect("a place");
+        assert!((at[0] - 1.0).abs() < 1e-12 && (at[1] + 2.0).abs() < 1e-12, "{at:?}");
+        let mut reference = way(&costs);
+        reference.error = LiveError::Reference;
+        assert_eq!(place(&reference, CostPlot::ErrorTime), None);
+        let mut free = way(&costs);
+        free.shadow_bytes = 0;
+        assert_eq!(place(&free, CostPlot::ErrorMemory), None);
+    }
+}

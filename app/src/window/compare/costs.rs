@@ -1,0 +1,172 @@
+//! What the panes took over the last seconds, and what became of them under other settings.
+
+use std::collections::VecDeque;
+
+use lovelock_studio::render::{Backend, ShadowMethod, Transparency};
+use lovelock_studio::{Contender, LiveError, LivePane, LiveTimes, Stopwatch, median};
+
+/// Seconds that are plotted.
+pub(super) const PLOTTED_SECS: f64 = 12.0;
+/// Pictures of a way that are kept, and ways.
+const MOST_SAMPLES: usize = 720;
+const MOST_WAYS: usize = 60;
+
+/// Times of one picture.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sample {
+    /// Seconds since the window was opened.
+    pub(super) at_secs: f64,
+    pub(super) times: LiveTimes,
+}
+
+/// One way to draw, with what its pictures took.
+#[derive(Clone, Debug)]
+pub(super) struct Way {
+    pub(super) contender: Contender,
+    pub(super) samples: VecDeque<Sample>,
+    pub(super) shadow_bytes: u64,
+    pub(super) error: LiveError,
+}
+
+/// What belongs to one trail: a way whose other settings change.
+pub(super) type Series = (ShadowMethod, Transparency, Backend);
+
+impl Way {
+    /// The trail that it belongs to.
+    pub(super) fn series(&self) -> Series {
+        series(&self.contender)
+    }
+
+    /// The median of a stage over its last pictures, milliseconds.
+    pub(super) fn median(&self, stage: impl Fn(&LiveTimes) -> f64) -> f64 {
+        median(self.samples.iter().map(|sample| stage(&sample.times)))
+    }
+}
+
+/// The trail of a contender.
+pub(super) fn series(contender: &Contender) -> Series {
+    (contender.shadow.method, contender.transparency, contender.backend)
+}
+
+/// The ways that were drawn, the one that was drawn last at the end.
+pub(super) struct Costs {
+    clock: Stopwatch,
+    ways: Vec<Way>,
+}
+
+impl Default for Costs {
+    fn default() -> Self {
+        Self { clock: Stopwatch::start(), ways: Vec::new() }
+    }
+}
+
+impl Costs {
+    /// Takes note of a pane.
+    pub(super) fn push(&mut self, pane: &LivePane) {
+        if pane.problem.is_some() {
+            return;
+        }
+        let known = self.ways.iter().position(|way| way.contender == pane.contender);
+        let mut way = match known {
+            Some(at) => self.ways.remove(at),
+            None => Way {
+                contender: pane.contender.clone(),
+                samples: VecDeque::new(),
+                shadow_bytes: 0,
+                error: LiveError::NotMeasured,
+            },
+        };
+        let at_secs = self.clock.secs();
+        // Those of former times count no more; the last ones of a way that rests stay for its trail.
+        while way.samples.len() >= MOST_SAMPLES
+            || way.samples.front().is_some_and(|sample| sample.at_secs < at_secs - PLOTTED_SECS)
+        {
+            way.samples.pop_front();
+        }
+        way.samples.push_back(Sample { at_secs, times: pane.times });
+        way.shadow_bytes = pane.shadow_bytes;
+        if pane.error != LiveError::NotMeasured {
+            way.error = pane.error.clone();
+        }
+        if self.ways.len() == MOST_WAYS {
+            self.ways.remove(0);
+        }
+        self.ways.push(way);
+    }
+
+    /// What a contender took.
+    pub(super) fn of(&self, contender: &Contender) -> Option<&Way> {
+        self.ways.iter().find(|way| way.contender == *contender)
+    }
+
+    /// The ways of a trail, the one that was drawn last at the end.
+    pub(super) fn trail(&self, series: Series) -> impl Iterator<Item = &Way> {
+        self.ways.iter().filter(move |way| way.series() == series)
+    }
+
+    /// Seconds since the window was opened.
+    pub(super) fn now_secs(&self) -> f64 {
+        self.clock.secs()
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use lovelock_studio::render::{Camera, Picture};
+    use lovelock_studio::{Adapter, LiveShows};
+
+    use super::*;
+
+    /// A pane that took `ms`, of that resolution.
+    pub(crate) fn pane(resolution: u32, ms: f64, rmse: f64) -> LivePane {
+        let mut contender = Contender::default();
+        contender.shadow.voxel_map.resolution = resolution;
+        LivePane {
+            adapter: Adapter { name: String::new(), backend: Backend::Cpu, software: true },
+            camera: Camera { eye: glam::Vec3::ZERO, target: glam::Vec3::Z, fov_y: 0.5 },
+            contender,
+            picture: Picture::default(),
+            problem: None,
+            step: 0,
+            time_secs: 0.0,
+            times: LiveTimes { build: ms, ask: 0.0, draw: 1.0 },
+            shadow_bytes: u64::from(resolution).pow(3),
+            draw_bytes: 0,
+            error: LiveError::Measured { rmse, bias: 0.0, p99: rmse },
+            flip: None,
+            shows: LiveShows::Picture,
+        }
+    }
+
+    #[test]
+    fn settings_of_a_way_are_its_trail_and_problems_are_none() {
+        let mut costs = Costs::default();
+        for (resolution, ms) in [(64, 1.0), (64, 3.0), (128, 5.0), (64, 2.0)] {
+            costs.push(&pane(resolution, ms, 0.1));
+        }
+        costs.push(&LivePane { problem: Some("no".to_owned()), ..pane(256, 9.0, 0.1) });
+        let of = |resolution| costs.of(&pane(resolution, 0.0, 0.0).contender);
+        assert_eq!(of(64).map(|way| way.median(|times| times.build)), Some(2.0));
+        assert_eq!(of(64).map(|way| way.median(LiveTimes::whole)), Some(3.0));
+        assert!(of(256).is_none());
+        let mine = series(&pane(64, 0.0, 0.0).contender);
+        let trail: Vec<u32> =
+            costs.trail(mine).map(|way| way.contender.shadow.voxel_map.resolution).collect();
+        assert_eq!(trail, [128, 64], "the newest at the end");
+        let other = (ShadowMethod::Exact, mine.1, mine.2);
+        assert_eq!(costs.trail(other).count(), 0);
+    }
+
+    #[test]
+    fn what_is_kept_has_a_bound() {
+        let mut costs = Costs::default();
+        for i in 0..2000 {
+            costs.push(&pane(i % 97, 1.0, 0.1));
+        }
+        for _ in 0..2000 {
+            costs.push(&pane(5, 1.0, 0.1));
+        }
+        assert!(costs.ways.len() <= MOST_WAYS);
+        assert!(costs.ways.iter().all(|way| way.samples.len() <= MOST_SAMPLES));
+    }
+}

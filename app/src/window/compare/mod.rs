@@ -1,0 +1,265 @@
+//! Several ways to draw the same hair at the same instant, beside each other.
+
+mod bar;
+mod cost_plot;
+mod costs;
+mod grid;
+mod header;
+mod label;
+mod layout;
+mod legend;
+mod page;
+mod probe_plot;
+mod texture;
+mod zoom;
+
+use std::sync::Arc;
+
+use egui::{CentralPanel, Frame, Key, Panel, Rect, Ui};
+use lovelock_studio::{
+    Command, CompareSection, Contender, FrameSnapshot, Live, LivePane, LiveProbe, LiveRequest, LiveView,
+    ProbePlace, Project,
+};
+
+use super::Window;
+use costs::Costs;
+pub(crate) use layout::CompareLayout;
+use texture::PaneTextures;
+use zoom::Zoom;
+
+/// What the comparison shows, and what it asked for last.
+#[derive(Default)]
+pub(crate) struct Compare {
+    panes: [Option<Arc<LivePane>>; CompareSection::MOST_PANES],
+    seen: [u64; CompareSection::MOST_PANES],
+    seen_notices: u64,
+    seen_probe: u64,
+    textures: PaneTextures,
+    zoom: Zoom,
+    costs: Costs,
+    /// The hair that was asked for, and what came of it.
+    place: Option<ProbePlace>,
+    probed: Option<Arc<LiveProbe>>,
+    /// Size that panes should have, pixels.
+    wanted: [u32; 2],
+    /// Whether the line of the wipe is being dragged.
+    splitting: bool,
+    sent: Option<LiveRequest>,
+}
+
+impl Compare {
+    /// Takes what the thread left. Returns sentences that the user should see.
+    pub(crate) fn update(&mut self, live: &Live) -> Vec<String> {
+        for (index, (seen, held)) in self.seen.iter_mut().zip(&mut self.panes).enumerate() {
+            if let Some(pane) = live.pane(index).and_then(|slot| slot.newer_than(seen)) {
+                self.costs.push(&pane);
+                *held = Some(pane);
+            }
+        }
+        if let Some(probed) = live.probe().newer_than(&mut self.seen_probe) {
+            self.probed = Some(probed);
+        }
+        live.notices().newer_than(&mut self.seen_notices).map(|said| (*said).clone()).into_iter().collect()
+    }
+
+    /// Asks for the panes on the newest frame, where something has changed.
+    pub(crate) fn send(
+        &mut self,
+        live: &Live,
+        project: &Arc<Project>,
+        frame: Option<&Arc<FrameSnapshot>>,
+        layout: &CompareLayout,
+        playing: bool,
+    ) {
+        let [width, height] = self.wanted;
+        let Some(frame) = frame.filter(|_| width > 0 && height > 0) else { return };
+        let request = LiveRequest {
+            project: Arc::clone(project),
+            snapshot: Arc::clone(frame),
+            panes: layout.visible(project.compare.panes.len()),
+            width,
+            height,
+            // What is compared is of one instant; where time stands still every pane is.
+            together: layout.wipe || playing,
+            view: view(layout),
+            probe: self.place.filter(|_| layout.probe),
+        };
+        if !self.sent.as_ref().is_some_and(|sent| is_same(sent, &request)) {
+            live.request(request.clone());
+            self.sent = Some(request);
+        }
+    }
+
+    /// The newest picture of a pane.
+    #[cfg(test)]
+    pub(crate) fn pane(&self, index: usize) -> Option<&Arc<LivePane>> {
+        self.panes.get(index)?.as_ref()
+    }
+
+    /// The hair whose light is plotted.
+    #[cfg(test)]
+    pub(crate) fn probed_hair(&self) -> Option<&lovelock_studio::ProbedHair> {
+        self.probed.as_ref()?.hair.as_ref()
+    }
+
+    /// Which asking was answered last, and which is the last one.
+    #[cfg(test)]
+    pub(crate) fn probed_and_asked(&self) -> [u64; 2] {
+        [self.probed.as_ref().map_or(0, |probed| probed.number), self.place.map_or(0, |place| place.number)]
+    }
+
+    /// Asks for the hair at a place of the pictures, shares from the left and the top.
+    fn probe_at(&mut self, x: f32, y: f32) {
+        let number = self.place.map_or(1, |place| place.number + 1);
+        self.place = Some(ProbePlace { number, x, y });
+    }
+}
+
+/// What the layout asks the panes to show.
+fn view(layout: &CompareLayout) -> LiveView {
+    let colored = layout.shows.colors().is_some();
+    LiveView { shows: layout.shows, largest: layout.largest, measures: layout.measures || colored, light: 0 }
+}
+
+/// Whether two requests ask for the same.
+fn is_same(a: &LiveRequest, b: &LiveRequest) -> bool {
+    Arc::ptr_eq(&a.project, &b.project)
+        && Arc::ptr_eq(&a.snapshot, &b.snapshot)
+        && (&a.panes, a.width, a.height, a.together, a.view, a.probe)
+            == (&b.panes, b.width, b.height, b.together, b.view, b.probe)
+}
+
+/// A pane for the next method that no pane shows, else another of the project's own way.
+fn next_pane(project: &Project) -> Contender {
+    let panes = &project.compare.panes;
+    let methods = lovelock_studio::render::ShadowMethod::ALL;
+    let shown = |method| panes.iter().any(|pane| pane.shadow.method == method);
+    let mut next = Contender::of(project);
+    if let Some(&method) = methods.iter().find(|&&method| !shown(method)) {
+        next.shadow.method = method;
+    }
+    next
+}
+
+impl Window {
+    /// The panes in place of the picture.
+    pub(super) fn comparison(&mut self, ui: &mut Ui, project: &mut Project) {
+        let ctx = ui.ctx().clone();
+        let mut command = None;
+        let mut film = false;
+        CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
+            let layout = &mut self.layout.compare;
+            let magnified = self.compare.zoom.factor();
+            let asked =
+                Panel::top("compare bar").show(ui, |ui| bar::ui(ui, layout, project, magnified)).inner;
+            match asked {
+                Some(bar::Ask::Add) => {
+                    let next = next_pane(project);
+                    project.compare.panes.push(next);
+                    project.compare.panes.truncate(CompareSection::MOST_PANES);
+                }
+                Some(bar::Ask::WholePicture) => self.compare.zoom = Zoom::default(),
+                Some(bar::Ask::Save) => command = Some(Command::SavePicture),
+                Some(bar::Ask::Film) => film = true,
+                Some(bar::Ask::Close) => command = Some(Command::Compare),
+                None => {}
+            }
+            self.dock(ui, project);
+            let layout = &self.layout.compare;
+            if layout.shows.colors().is_some() {
+                Panel::bottom("compare legend")
+                    .show_separator_line(false)
+                    .show(ui, |ui| legend::ui(ui, layout.shows, layout.largest));
+            }
+            let page = ui.available_rect_before_wrap();
+            ui.painter().rect_filled(page, 0.0, super::theme::PAGE);
+            self.panes(ui, page, project);
+            self.running(ui, page);
+        });
+        if film {
+            command = Some(Command::Record);
+        }
+        if let Some(command) = command {
+            self.run(command, &ctx);
+        }
+    }
+
+    /// The plots under the panes.
+    fn dock(&mut self, ui: &mut Ui, project: &Project) {
+        let layout = &mut self.layout.compare;
+        let (probe, costs) = (layout.probe, layout.costs);
+        if !probe && !costs {
+            return;
+        }
+        let panes = layout.visible(project.compare.panes.len());
+        let compare = &self.compare;
+        Panel::bottom("compare dock").resizable(true).default_size(238.0).size_range(170.0..=460.0).show(
+            ui,
+            |ui| {
+                let mut draw = |ui: &mut Ui, is_probe: bool| {
+                    if is_probe {
+                        let asked = compare.place.is_some();
+                        probe_plot::ui(ui, asked, compare.probed.as_deref(), project, &panes);
+                    } else {
+                        cost_plot::ui(ui, &mut layout.cost_plot, &compare.costs, project, &panes);
+                    }
+                };
+                if probe && costs {
+                    ui.columns(2, |columns| {
+                        draw(&mut columns[0], true);
+                        draw(&mut columns[1], false);
+                    });
+                } else {
+                    draw(ui, probe);
+                }
+            },
+        );
+    }
+
+    /// The panes on their page.
+    fn panes(&mut self, ui: &mut Ui, page: Rect, project: &mut Project) {
+        let count = project.compare.panes.len();
+        self.compare.textures.keep(count);
+        let typing = ui.ctx().egui_wants_keyboard_input();
+        let flicked = !typing && ui.input(|input| input.key_down(Key::V));
+        let asked = if self.layout.compare.wipe {
+            self.wipe(ui, page, project, flicked)
+        } else {
+            self.grid(ui, page, project, flicked)
+        };
+        let panes = &mut project.compare.panes;
+        match asked {
+            Some(header::Ask::Use(index)) => {
+                if let Some(pane) = panes.get(index).cloned() {
+                    let scale = project.shadow.extinction_scale;
+                    *project = pane.applied_to(project);
+                    project.shadow.extinction_scale = scale;
+                }
+            }
+            Some(header::Ask::Swap(index)) if index + 1 < panes.len() => panes.swap(index, index + 1),
+            Some(header::Ask::Remove(index)) if panes.len() > 1 && index < panes.len() => {
+                panes.remove(index);
+            }
+            Some(header::Ask::Swap(_) | header::Ask::Remove(_)) | None => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use lovelock_studio::render::ShadowMethod;
+
+    use super::*;
+
+    #[test]
+    fn a_new_pane_shows_what_none_shows_and_then_the_projects_own() {
+        let mut project = Project::default();
+        project.compare.panes.clear();
+        for &method in ShadowMethod::ALL {
+            let next = next_pane(&project);
+            assert_eq!(next.shadow.method, method);
+            project.compare.panes.push(next);
+        }
+        assert_eq!(next_pane(&project), Contender::of(&project));
+    }
+}

@@ -1,0 +1,238 @@
+//! The panes on their page: in a grid, or two of them divided by a line.
+
+use egui::{
+    Align2, Color32, CursorIcon, FontId, Id, Popup, Pos2, Rect, Response, Sense, Stroke, StrokeKind, Ui,
+    UiBuilder, Vec2, pos2, vec2,
+};
+use lovelock_studio::{LivePane, LiveTimes, Project};
+
+use super::{Window, grid, header, label};
+use crate::window::viewport::{self, Viewport};
+use crate::window::{camera_control, theme};
+
+/// How near to the line of the wipe the pointer takes it, points.
+const REACH: f32 = 9.0;
+
+/// Pixels that a pane may always have, however many there are.
+const LEAST_PIXELS: f32 = 640.0 * 360.0;
+
+impl Window {
+    /// All panes.
+    pub(super) fn grid(
+        &mut self,
+        ui: &mut Ui,
+        page: Rect,
+        project: &mut Project,
+        flicked: bool,
+    ) -> Option<header::Ask> {
+        let count = project.compare.panes.len();
+        let mut asked = None;
+        for (index, cell) in grid::places(count, page, header::HEIGHT).into_iter().enumerate() {
+            asked = self.header(ui, cell, index, project).or(asked);
+            let mut place = cell;
+            place.min.y += header::HEIGHT;
+            if index == 0 {
+                self.want(ui, place, count);
+            }
+            let response = self.steer(ui, place, index, project);
+            let [first, second] = self.layout.compare.pair_of(count);
+            let other = if index == second { first } else { second };
+            let shown = if flicked && response.contains_pointer() { other } else { index };
+            self.pane(ui, place, shown, project, Align2::LEFT_BOTTOM);
+            if shown != index {
+                self.name(ui, place, shown, project, Align2::LEFT_TOP);
+            }
+            let shape = ui.painter();
+            let edge = if shown == index { theme::LINE } else { theme::PLOT[shown % theme::PLOT.len()] };
+            shape.rect_stroke(place, 0.0, Stroke::new(1.0, edge), StrokeKind::Inside);
+        }
+        asked
+    }
+
+    /// Two panes, divided by a line.
+    pub(super) fn wipe(
+        &mut self,
+        ui: &mut Ui,
+        page: Rect,
+        project: &mut Project,
+        flicked: bool,
+    ) -> Option<header::Ask> {
+        let mut pair = self.layout.compare.pair_of(project.compare.panes.len());
+        let half = 0.5 * page.width();
+        let mut asked = None;
+        for (side, index) in pair.into_iter().enumerate() {
+            let left = page.left() + half * side as f32;
+            let line = Rect::from_min_size(pos2(left, page.top()), vec2(half, page.height()));
+            asked = self.header(ui, line, index, project).or(asked);
+            if pair[0] == pair[1] {
+                break;
+            }
+        }
+        let mut place = page;
+        place.min.y += header::HEIGHT;
+        self.want(ui, place, 2);
+        if flicked {
+            pair.reverse();
+        }
+        let zoom = self.compare.zoom;
+        let split = self.layout.compare.split.clamp(0.0, 1.0);
+        let x = zoom.to_screen(place, pos2(split, 0.5)).x;
+        let near = ui.input(|input| input.pointer.hover_pos()).is_some_and(|at| (at.x - x).abs() < REACH);
+        // The line is taken where it is pressed, and held until it is let go.
+        let pressed = ui.input(|input| input.pointer.primary_pressed());
+        if pressed && near {
+            self.compare.splitting = true;
+        } else if !ui.input(|input| input.pointer.primary_down()) {
+            self.compare.splitting = false;
+        }
+        let response = if self.compare.splitting || near {
+            let response = ui.interact(place, Id::unique("wipe"), Sense::click_and_drag());
+            if self.compare.splitting
+                && response.dragged()
+                && let Some(at) = response.interact_pointer_pos()
+            {
+                self.layout.compare.split = zoom.from_screen(place, at).x.clamp(0.0, 1.0);
+            }
+            response.on_hover_cursor(CursorIcon::ResizeHorizontal)
+        } else {
+            self.steer(ui, place, pair[0], project)
+        };
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Wipe"));
+        let x = x.clamp(place.left(), place.right());
+        let parts = [
+            Rect::from_min_max(place.min, pos2(x, place.bottom())),
+            Rect::from_min_max(pos2(x, place.top()), place.max),
+        ];
+        for ((part, index), (top, bottom)) in parts
+            .into_iter()
+            .zip(pair)
+            .zip([(Align2::LEFT_TOP, Align2::LEFT_BOTTOM), (Align2::RIGHT_TOP, Align2::RIGHT_BOTTOM)])
+        {
+            ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
+                ui.set_clip_rect(part.intersect(ui.clip_rect()));
+                self.pane(ui, place, index, project, bottom);
+                self.name(ui, place, index, project, top);
+            });
+        }
+        let painter = ui.painter_at(place.expand(1.0));
+        let strong = if near || self.compare.splitting { theme::ACCENT } else { Color32::WHITE };
+        painter.line_segment([pos2(x, place.top()), pos2(x, place.bottom())], Stroke::new(1.5, strong));
+        let knob = pos2(x, place.bottom() - 46.0);
+        painter.circle(knob, 10.0, theme::PAGE.gamma_multiply(0.8), Stroke::new(1.5, strong));
+        for (side, tip) in [(-1.0, 6.0), (1.0, 6.0)] {
+            let arrow =
+                [knob + vec2(side * 2.5, -3.5), knob + vec2(side * tip, 0.0), knob + vec2(side * 2.5, 3.5)];
+            painter.line(arrow.to_vec(), Stroke::new(1.5, strong));
+        }
+        asked
+    }
+
+    /// The line over a pane.
+    fn header(&self, ui: &mut Ui, cell: Rect, index: usize, project: &mut Project) -> Option<header::Ask> {
+        let panes = project.compare.panes.len();
+        let pane = project.compare.panes.get_mut(index)?;
+        let line = Rect::from_min_size(cell.min, vec2(cell.width(), header::HEIGHT));
+        ui.painter().rect_filled(line, 0.0, theme::PANEL);
+        let builder = UiBuilder::new()
+            .max_rect(line.shrink2(vec2(6.0, 2.0)))
+            .layout(egui::Layout::left_to_right(egui::Align::Center));
+        ui.scope_builder(builder, |ui| header::ui(ui, index, panes, pane)).inner
+    }
+
+    /// How large panes should be drawn that are shown at `place`.
+    fn want(&mut self, ui: &Ui, place: Rect, panes: usize) {
+        let shown = self.compare.panes.iter().take(panes).flatten();
+        let each = shown
+            .map(|pane| viewport::most_pixels(Some(&pane.adapter)))
+            .fold(viewport::most_pixels(self.session.painter().adapter().as_deref()), f32::min);
+        let most = (each / panes.max(1) as f32).max(LEAST_PIXELS);
+        let points = ui.ctx().pixels_per_point();
+        self.compare.wanted = viewport::size_for(place.size(), points, most, self.layout.view_scale);
+    }
+
+    /// What the pointer does over a pane: to the camera, to what is magnified, and to the probe.
+    fn steer(&mut self, ui: &Ui, place: Rect, index: usize, project: &mut Project) -> Response {
+        let response = ui.interact(place, Id::unique(("pane", index)), Sense::click_and_drag());
+        let name = format!("Pane {}", index + 1);
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &name));
+        if !self.compare.zoom.apply(&response, place) {
+            camera_control::steer(&mut project.camera, &response);
+        }
+        if response.clicked()
+            && !Popup::is_any_open(ui.ctx())
+            && let Some(at) = response.interact_pointer_pos()
+        {
+            let at = self.compare.zoom.from_screen(place, at);
+            self.compare.probe_at(at.x, at.y);
+            self.layout.compare.probe = true;
+        }
+        response
+    }
+
+    /// The picture of a pane with what is said of it in a corner.
+    fn pane(&mut self, ui: &Ui, place: Rect, index: usize, project: &Project, corner: Align2) {
+        let painter = ui.painter().with_clip_rect(place.intersect(ui.clip_rect()));
+        let compare = &mut self.compare;
+        let Some(pane) = compare.panes.get(index).cloned().flatten() else {
+            let font = FontId::proportional(14.0);
+            painter.text(place.center(), Align2::CENTER_CENTER, "Getting ready…", font, theme::QUIET);
+            return;
+        };
+        let zoom = compare.zoom;
+        let points = ui.ctx().pixels_per_point();
+        let magnified = place.width() * points * zoom.factor() / pane.picture.width.max(1) as f32;
+        compare.textures.take(ui.ctx(), index, &pane, magnified);
+        // A picture of another shape is of a moment ago, before the page changed.
+        let whole = compare.textures.size(index).map_or(place, |size| viewport::fit(size, place));
+        let near = (whole.size() - place.size()).abs().max_elem() < 3.0;
+        let whole = if near { place } else { whole };
+        compare.textures.paint(&painter, index, whole, zoom.shown());
+        if compare.probed.is_some() {
+            self.mark(ui, whole, &pane, project);
+        }
+        if let Some(problem) = &pane.problem {
+            let room = place.shrink(14.0);
+            let galley =
+                painter.layout(problem.clone(), FontId::proportional(12.5), theme::WRONG, room.width());
+            let at = Align2::CENTER_CENTER.anchor_size(place.center(), galley.size());
+            painter.rect_filled(at.expand(8.0), 5.0, theme::PAGE.gamma_multiply(0.85));
+            painter.galley(at.min, galley, theme::WRONG);
+            return;
+        }
+        let newest = self.session.frame.as_ref().map_or(0.0, |frame| frame.time_secs);
+        let ms = self
+            .compare
+            .costs
+            .of(&pane.contender)
+            .map_or_else(|| pane.times.whole(), |way| way.median(LiveTimes::whole));
+        let said = label::figures(&pane, ms, newest - pane.time_secs);
+        Viewport::caption(ui, place, corner, &said, theme::BRIGHT);
+    }
+
+    /// Whose picture is seen, in a corner.
+    fn name(&self, ui: &Ui, place: Rect, index: usize, project: &Project, corner: Align2) {
+        let Some(pane) = project.compare.panes.get(index) else { return };
+        let text = format!("{} · {}", index + 1, label::whole(pane));
+        Viewport::caption(ui, place, corner, &text, theme::PLOT[index % theme::PLOT.len()]);
+    }
+
+    /// A ring about the hair whose light is plotted.
+    fn mark(&self, ui: &Ui, place: Rect, pane: &LivePane, project: &Project) {
+        let probed = self.compare.probed.as_deref().filter(|_| self.layout.compare.probe);
+        let Some(hair) = probed.and_then(|probed| probed.hair.as_ref()) else { return };
+        let camera = self.session.frame.as_ref().map_or(pane.camera, |frame| frame.camera(&project.camera));
+        let aspect = place.width() / place.height().max(1.0);
+        let clip = camera.clip_from_world(aspect) * hair.position.extend(1.0);
+        if clip.w <= 0.0 {
+            return;
+        }
+        let at = pos2(0.5 + 0.5 * clip.x / clip.w, 0.5 - 0.5 * clip.y / clip.w);
+        let at: Pos2 = self.compare.zoom.to_screen(place, at);
+        let painter = ui.painter().with_clip_rect(place.intersect(ui.clip_rect()));
+        painter.circle_stroke(at, 7.0, Stroke::new(3.0, theme::PAGE.gamma_multiply(0.7)));
+        painter.circle_stroke(at, 7.0, Stroke::new(1.5, theme::ACCENT));
+        for side in [Vec2::X, Vec2::Y, -Vec2::X, -Vec2::Y] {
+            painter.line_segment([at + side * 7.0, at + side * 11.0], Stroke::new(1.5, theme::ACCENT));
+        }
+    }
+}

@@ -1,0 +1,70 @@
+//! The newest picture of each pane on the graphics device of the window.
+
+use std::sync::Arc;
+
+use egui::{Color32, ColorImage, Painter, Rect, TextureHandle, TextureOptions, Vec2};
+use lovelock_studio::{CompareSection, LivePane};
+
+/// Pixels of the screen a pixel of the picture from which on pixels are shown as such.
+const SHARP: f32 = 3.0;
+
+/// The pictures of the panes.
+#[derive(Default)]
+pub(super) struct PaneTextures {
+    held: [Option<Held>; CompareSection::MOST_PANES],
+}
+
+struct Held {
+    texture: TextureHandle,
+    /// The picture that was last put there.
+    of: Arc<LivePane>,
+    options: TextureOptions,
+}
+
+impl PaneTextures {
+    /// Takes over the newest picture of a pane; one without a picture leaves what was there.
+    pub(super) fn take(&mut self, ctx: &egui::Context, index: usize, pane: &Arc<LivePane>, magnified: f32) {
+        let Some(slot) = self.held.get_mut(index) else { return };
+        let options = if magnified >= SHARP { TextureOptions::NEAREST } else { TextureOptions::LINEAR };
+        if slot.as_ref().is_some_and(|held| Arc::ptr_eq(&held.of, pane) && held.options == options) {
+            return;
+        }
+        let picture = &pane.picture;
+        if picture.rgba.is_empty() {
+            return;
+        }
+        // Opaque: nothing is multiplied, and the bytes are taken as they are.
+        let size = [picture.width as usize, picture.height as usize];
+        let image = ColorImage::from_rgba_premultiplied(size, &picture.rgba);
+        let of = Arc::clone(pane);
+        match slot {
+            Some(held) => {
+                held.texture.set(image, options);
+                (held.of, held.options) = (of, options);
+            }
+            none => {
+                let texture = ctx.load_texture(format!("pane {index}"), image, options);
+                *none = Some(Held { texture, of, options });
+            }
+        }
+    }
+
+    /// Size of a pane's picture, pixels.
+    pub(super) fn size(&self, index: usize) -> Option<Vec2> {
+        self.held.get(index)?.as_ref().map(|held| held.texture.size_vec2())
+    }
+
+    /// Paints a pane's picture. Returns false where there is none.
+    pub(super) fn paint(&self, painter: &Painter, index: usize, place: Rect, shown: Rect) -> bool {
+        let Some(held) = self.held.get(index).and_then(Option::as_ref) else { return false };
+        painter.image(held.texture.id(), place, shown, Color32::WHITE);
+        true
+    }
+
+    /// Forgets the pictures of panes that are no more.
+    pub(super) fn keep(&mut self, panes: usize) {
+        for slot in self.held.iter_mut().skip(panes) {
+            *slot = None;
+        }
+    }
+}

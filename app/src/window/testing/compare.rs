@@ -1,0 +1,169 @@
+//! The comparison in the whole window: panes come, are changed, swapped, used and removed, by one step of undo each.
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use lovelock_studio::render::ShadowMethod;
+use lovelock_studio::{CompareSection, LiveError, LiveShows};
+
+use super::whole::{CTRL, go, key, of, press_button, project, wait, window};
+use super::{Shown, control, drag};
+use crate::window::Window;
+
+type Whole = Harness<'static, Shown<Option<Window>>>;
+
+/// The window with its panes on the screen, drawn.
+fn comparing() -> Whole {
+    let mut harness = window();
+    key(&mut harness, Modifiers::NONE, Key::Space);
+    key(&mut harness, Modifiers::NONE, Key::C);
+    wait(&mut harness, "the panes", |window| drawn(window, 4));
+    harness
+}
+
+/// Whether that many panes are there as the project has them.
+fn drawn(window: &Window, panes: usize) -> bool {
+    let wanted = &window.history.project().compare.panes;
+    wanted.len() == panes
+        && wanted.iter().enumerate().all(|(index, wanted)| {
+            window.compare.pane(index).is_some_and(|pane| pane.contender == *wanted && pane.problem.is_none())
+        })
+}
+
+fn methods(harness: &Whole) -> Vec<ShadowMethod> {
+    project(harness).compare.panes.iter().map(|pane| pane.shadow.method).collect()
+}
+
+#[test]
+fn panes_are_drawn_with_their_cost_and_error() {
+    let mut harness = comparing();
+    harness.check_accessibility();
+    let panes = methods(&harness);
+    for (index, method) in panes.iter().enumerate() {
+        let pane = of(&harness).compare.pane(index).expect("a pane");
+        assert_eq!(pane.contender.shadow.method, *method);
+        assert!(pane.times.whole() > 0.0 && !pane.picture.rgba.is_empty());
+        // On a graphics card the exact method is measured as the others are.
+        let by_processor = pane.adapter.backend == lovelock_studio::render::Backend::Cpu;
+        match &pane.error {
+            LiveError::Reference => assert!(*method == ShadowMethod::Exact && by_processor),
+            LiveError::Measured { rmse, .. } => {
+                assert!(
+                    rmse.is_finite() && (*rmse > 1e-4 || *method == ShadowMethod::Exact),
+                    "{method}: {rmse}"
+                );
+            }
+            other => panic!("{method}: {other:?}"),
+        }
+    }
+    // Out of sight they are not drawn.
+    key(&mut harness, Modifiers::NONE, Key::C);
+    assert!(harness.query_by_role_and_label(Role::Image, "Pane 1").is_none());
+    assert!(harness.query_by_role_and_label(Role::Image, "Viewport").is_some());
+}
+
+#[test]
+fn panes_are_added_swapped_used_and_removed_by_one_click_and_one_step() {
+    let mut harness = comparing();
+    let before = methods(&harness);
+    assert_eq!(before.len(), 4);
+    press_button(&mut harness, "Swap pane 1");
+    assert_eq!(methods(&harness)[..2], [before[1], before[0]]);
+    assert_eq!(of(&harness).history.undo_len(), 1);
+    press_button(&mut harness, "Remove pane 4");
+    assert_eq!(methods(&harness).len(), 3);
+    press_button(&mut harness, "Add pane");
+    let added = methods(&harness)[3];
+    assert!(!methods(&harness)[..3].contains(&added), "a method that no pane shows");
+    wait(&mut harness, "the new pane", |window| drawn(window, 4));
+    assert_eq!(of(&harness).history.undo_len(), 3);
+    for _ in 0..2 {
+        press_button(&mut harness, "Add pane");
+    }
+    assert_eq!(methods(&harness).len(), CompareSection::MOST_PANES);
+    wait(&mut harness, "six panes", |window| drawn(window, 6));
+    for _ in 0..5 {
+        key(&mut harness, CTRL, Key::Z);
+    }
+    assert_eq!(methods(&harness), before);
+    assert_eq!(of(&harness).history.undo_len(), 0);
+
+    let shadow = project(&harness).shadow;
+    press_button(&mut harness, "Use pane 3");
+    let used = project(&harness);
+    assert_eq!(used.shadow.method, before[2]);
+    assert_eq!(used.shadow.extinction_scale.to_bits(), shadow.extinction_scale.to_bits());
+    assert_eq!(used.compare.panes.len(), 4);
+    assert_eq!(of(&harness).history.undo_len(), 1);
+    key(&mut harness, CTRL, Key::Z);
+    assert_eq!(project(&harness).shadow, shadow);
+}
+
+#[test]
+fn a_wipe_shows_two_panes_and_its_line_is_dragged() {
+    let mut harness = comparing();
+    press_button(&mut harness, "Wipe");
+    let page = control(&harness, Role::Image, "Wipe").rect();
+    assert!(harness.query_by_role_and_label(Role::Image, "Pane 2").is_none());
+    let camera = project(&harness).camera;
+    let (from, to) = (page.center(), page.lerp_inside(egui::vec2(0.25, 0.5)));
+    drag(&mut harness, from, to);
+    go(&mut harness);
+    let split = of(&harness).layout.compare.split;
+    assert!((split - 0.25).abs() < 0.02, "{split}");
+    assert_eq!(project(&harness).camera, camera, "the line was dragged and not the camera");
+    assert_eq!(of(&harness).history.undo_len(), 0, "a line is no part of the project");
+    // Beside the line the camera turns, and both follow.
+    drag(&mut harness, page.lerp_inside(egui::vec2(0.7, 0.5)), page.lerp_inside(egui::vec2(0.8, 0.5)));
+    go(&mut harness);
+    assert_ne!(project(&harness).camera, camera);
+    assert_eq!(of(&harness).layout.compare.split.to_bits(), split.to_bits());
+}
+
+#[test]
+fn errors_are_shown_in_colour_and_hair_is_probed() {
+    let mut harness = comparing();
+    of_mut(&mut harness).layout.compare.shows = LiveShows::TransmittanceBias;
+    go(&mut harness);
+    wait(&mut harness, "colours", |window| {
+        window.compare.pane(0).is_some_and(|pane| pane.shows == LiveShows::TransmittanceBias)
+    });
+    assert!(harness.query_by_role_and_label(Role::Image, "Scale of transmittance - exact").is_some());
+    // Where guides are there is hair, some of it hidden by the head.
+    for point in (0..400).step_by(23) {
+        let pane = control(&harness, Role::Image, "Pane 1").rect();
+        let window = of(&harness);
+        let frame = window.session.frame.as_ref().expect("a frame");
+        let guides = &frame.guides.guides;
+        let Some(&x) = guides.x.get(point) else { break };
+        let at = glam::Vec3::new(x, guides.y[point], guides.z[point]).extend(1.0);
+        let camera = frame.camera(&window.history.project().camera);
+        let clip = camera.clip_from_world(pane.width() / pane.height()) * at;
+        let share = egui::vec2(0.5 + 0.5 * clip.x / clip.w, 0.5 - 0.5 * clip.y / clip.w);
+        if !(0.0..=1.0).contains(&share.x) || !(0.0..=1.0).contains(&share.y) {
+            continue;
+        }
+        super::click_at(&mut harness, pane.lerp_inside(share));
+        wait(&mut harness, "an answer", |window| {
+            let [probed, asked] = window.compare.probed_and_asked();
+            probed == asked
+        });
+        if of(&harness).compare.probed_hair().is_some() {
+            break;
+        }
+    }
+    let hair = of(&harness).compare.probed_hair().expect("hair where guides are");
+    assert_eq!(hair.curves.len(), 4);
+    for (index, curve) in &hair.curves {
+        assert!((0.0..=1.0).contains(&curve.value), "pane {index}");
+        let first = curve.curve.first().expect("points").1;
+        let last = curve.curve.last().expect("points").1;
+        assert!(first > 0.99 && last < first, "light comes in at {first} and leaves at {last}");
+    }
+    assert!(of(&harness).layout.compare.probe, "a click opens the plot");
+}
+
+fn of_mut<'h>(harness: &'h mut Whole) -> &'h mut Window {
+    harness.state_mut().state.as_mut().expect("a window")
+}

@@ -1,0 +1,135 @@
+//! The exact method on the instant that panes are drawn on: what they are measured by.
+
+use std::sync::Arc;
+
+use lovelock_groom::{HairLook, Strands};
+use lovelock_render::{
+    Backend, Camera, CpuRenderer, Light, Picture, ShadowMethod, ShadowSettings, Transparency,
+};
+
+use super::round::input_of;
+use crate::{Contender, FrameSnapshot, Project};
+
+/// Pixels along each edge of a picture that nobody looks at: it is drawn for its transmittance.
+const UNSEEN: u32 = 16;
+
+/// The exact method's transmittance and picture. Each is made when it is first asked for, once an instant.
+#[derive(Default)]
+pub(super) struct ExactReference {
+    renderer: CpuRenderer,
+    transmittance: Option<(TransmittanceKey, Result<Arc<Vec<f32>>, String>)>,
+    picture: Option<(PictureKey, Result<Arc<Picture>, String>)>,
+}
+
+/// Everything that transmittance depends on.
+#[derive(PartialEq)]
+struct TransmittanceKey {
+    instant: Instant,
+    shadow: ShadowSettings,
+    look: HairLook,
+    light: Light,
+}
+
+/// Everything that the picture depends on.
+#[derive(PartialEq)]
+struct PictureKey {
+    instant: Instant,
+    project: Project,
+    camera: Camera,
+    size: [u32; 2],
+}
+
+/// A snapshot, which is itself alone.
+struct Instant(Arc<FrameSnapshot>);
+
+impl PartialEq for Instant {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+}
+
+impl ExactReference {
+    /// Whether a contender is the reference itself.
+    pub(super) fn is(project: &Project, contender: &Contender, backend: Backend) -> bool {
+        backend == Backend::Cpu
+            && contender.shadow.method == ShadowMethod::Exact
+            && contender.shadow.exact == project.shadow.exact
+    }
+
+    /// The exact transmittance of light `light` at every strand point.
+    ///
+    /// # Errors
+    /// A sentence: no such light, or a map that needs too much memory.
+    pub(super) fn transmittance(
+        &mut self,
+        project: &Project,
+        snapshot: &Arc<FrameSnapshot>,
+        strands: &Strands,
+        light: usize,
+    ) -> Result<Arc<Vec<f32>>, String> {
+        let Some(light) = project.lights.iter().filter(|light| light.enabled).nth(light) else {
+            return Err("no light is on".to_owned());
+        };
+        let shadow = ShadowSettings { method: ShadowMethod::Exact, ..project.shadow };
+        let instant = Instant(Arc::clone(snapshot));
+        let key = TransmittanceKey { instant, shadow, look: project.look, light: light.clone() };
+        if let Some((held, found)) = &self.transmittance
+            && *held == key
+        {
+            return found.clone();
+        }
+        let mut unseen = project.clone();
+        unseen.lights = vec![light.clone()];
+        unseen.shadow = shadow;
+        unseen.picture.transparency = Transparency::Opaque;
+        let found = self.draw(&unseen, snapshot, strands, [UNSEEN; 2], &mut Picture::default());
+        let found = found.and_then(|()| self.renderer.transmittance(0).map_err(|error| error.to_string()));
+        let found = found.map(Arc::new);
+        self.transmittance = Some((key, found.clone()));
+        found
+    }
+
+    /// The picture with exact shadows and transparency.
+    ///
+    /// # Errors
+    /// A sentence: a size that is not drawn, or a map that needs too much memory.
+    pub(super) fn picture(
+        &mut self,
+        project: &Project,
+        snapshot: &Arc<FrameSnapshot>,
+        strands: &Strands,
+        size: [u32; 2],
+    ) -> Result<Arc<Picture>, String> {
+        let mut exact = project.clone();
+        exact.shadow.method = ShadowMethod::Exact;
+        exact.picture.transparency = Transparency::Exact;
+        // The panes themselves do not matter to it.
+        exact.compare = crate::CompareSection { panes: Vec::new() };
+        let camera = snapshot.camera(&exact.camera);
+        let key = PictureKey { instant: Instant(Arc::clone(snapshot)), project: exact, camera, size };
+        if let Some((held, found)) = &self.picture
+            && *held == key
+        {
+            return found.clone();
+        }
+        let mut picture = Picture::default();
+        let drawn = self.draw(&key.project, snapshot, strands, size, &mut picture);
+        let found = drawn.map(|()| Arc::new(picture));
+        self.picture = Some((key, found.clone()));
+        found
+    }
+
+    fn draw(
+        &mut self,
+        project: &Project,
+        snapshot: &FrameSnapshot,
+        strands: &Strands,
+        [width, height]: [u32; 2],
+        picture: &mut Picture,
+    ) -> Result<(), String> {
+        let camera = snapshot.camera(&project.camera);
+        let input = input_of(snapshot, project, strands, &camera);
+        let drawn = self.renderer.picture(&input, width, height, picture);
+        drawn.map(|_| ()).map_err(|error| error.to_string())
+    }
+}

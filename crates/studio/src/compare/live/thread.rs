@@ -1,0 +1,101 @@
+//! The thread: takes the newest request when it is free, and draws its panes in turn.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::Ordering;
+use std::sync::{Arc, PoisonError};
+
+use super::renderers::{Broken, Renderers};
+use super::round::Rounds;
+use super::{Left, LiveRequest, Mailbox};
+use crate::CompareSection;
+
+pub(super) struct Worker {
+    mailbox: Mailbox,
+    left: Left,
+    on_drawn: Box<dyn Fn() + Send>,
+    rounds: Rounds,
+}
+
+impl Worker {
+    pub(super) fn new(
+        mailbox: Mailbox,
+        left: Left,
+        on_drawn: Box<dyn Fn() + Send>,
+        renderers: Renderers,
+    ) -> Self {
+        Self { mailbox, left, on_drawn, rounds: Rounds::new(renderers) }
+    }
+
+    pub(super) fn run(mut self) {
+        while let Some(request) = self.next() {
+            // A panic beside the drawing of a pane, which catches its own, costs a round and not the window.
+            let again = catch_unwind(AssertUnwindSafe(|| self.round(&request))).unwrap_or_else(|_| {
+                let message = "Comparing met an error and went on; save your project.";
+                self.left.notices.put(Arc::new(message.to_owned()));
+                false
+            });
+            {
+                let mut waiting = self.mailbox.0.lock().unwrap_or_else(PoisonError::into_inner);
+                if again {
+                    waiting.get_or_insert(Some(request));
+                }
+                self.left.busy.store(waiting.is_some(), Ordering::Relaxed);
+            }
+            (self.on_drawn)();
+        }
+    }
+
+    /// Draws the panes. Returns whether to draw the same again by itself, since a device was lost.
+    fn round(&mut self, request: &LiveRequest) -> bool {
+        let mut again = false;
+        self.rounds.begin(request);
+        let mut finished = Vec::new();
+        for &index in request.panes.iter().take(CompareSection::MOST_PANES) {
+            let Some(slot) =
+                self.left.panes.get(index).filter(|_| index < request.project.compare.panes.len())
+            else {
+                continue;
+            };
+            // Whoever closes the window does not wait for the other panes.
+            if self.ends() {
+                return false;
+            }
+            let (pane, broken) = self.rounds.pane(request, index);
+            if let Some(Broken { try_again, notice }) = broken {
+                again |= try_again;
+                if let Some(notice) = notice {
+                    self.left.notices.put(Arc::new(notice));
+                }
+            }
+            if request.together {
+                finished.push((slot, pane));
+            } else {
+                slot.put(Arc::new(pane));
+                (self.on_drawn)();
+            }
+        }
+        for (slot, pane) in finished {
+            slot.put(Arc::new(pane));
+        }
+        if let Some(probe) = self.rounds.probe(request) {
+            self.left.probe.put(Arc::new(probe));
+        }
+        again
+    }
+
+    fn ends(&self) -> bool {
+        matches!(*self.mailbox.0.lock().unwrap_or_else(PoisonError::into_inner), Some(None))
+    }
+
+    /// Waits for a request.
+    fn next(&self) -> Option<LiveRequest> {
+        let (waiting, wake) = &*self.mailbox;
+        let mut waiting = waiting.lock().unwrap_or_else(PoisonError::into_inner);
+        loop {
+            if let Some(request) = waiting.take() {
+                return request;
+            }
+            waiting = wake.wait(waiting).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+}
