@@ -3,7 +3,8 @@
 use super::names::{Group, Names, color};
 use super::plot::{Axis, Dot, Plot, Stroke};
 use super::words::{bytes, fixed, ms};
-use crate::{CompareReport, MethodReport, ProbeReport};
+use crate::{CompareReport, FootprintTruth, MethodReport, ProbeReport};
+use lovelock_metrics::Spread;
 use std::collections::BTreeMap;
 
 /// What is drawn in black: the truth.
@@ -108,7 +109,7 @@ pub(super) fn probe(report: &CompareReport, names: &Names, probe: &ProbeReport) 
         depths.fold((f64::MAX, f64::MIN), |(low, high), depth| (low.min(depth), high.max(depth)));
     let (low, high) = if low < high { (low, high) } else { (-1.0, 1.0) };
     let x = Axis::even("depth along the light, from the point, mm", low, high);
-    let mut plot = Plot::new(880.0, 330.0, x, Axis::even("transmittance", 0.0, 1.0));
+    let mut plot = Plot::new(820.0, 330.0, x, Axis::even("transmittance", 0.0, 1.0));
     plot.upright(0.0, "the point");
     let mut steps = mm(&probe.steps);
     // Before the first fragment all light arrives, and the step at the rim holds to the rim.
@@ -131,30 +132,39 @@ pub(super) fn probe(report: &CompareReport, names: &Names, probe: &ProbeReport) 
     }
     let widest = curves.iter().map(|(_, method, _)| names.full(method).chars().count()).max().unwrap_or(0);
     let says = format!("Transmittance along the light through pixel {} {}", probe.pixel[0], probe.pixel[1]);
-    plot.svg(&says, (widest as f64 * 6.2 - 40.0).clamp(0.0, 260.0))
+    plot.svg(&says, (widest as f64 * 6.6 - 40.0).clamp(0.0, 260.0))
 }
 
 /// The error of a method's transmittance in a slab of even density, with the same scale for all methods.
-pub(super) fn banding(method: &MethodReport, largest: f64) -> Option<String> {
+pub(super) fn banding(method: &MethodReport, scale: f64) -> Option<String> {
     let found = method.banding.as_ref().filter(|found| found.curve.len() > 1)?;
     let truth = |depth: f64| (-found.optical_depth * depth).exp();
     let errors: Vec<(f64, f64)> =
         widened(&found.curve).into_iter().map(|(depth, value)| (depth, value - truth(depth))).collect();
-    let y = Axis::even("error of transmittance", -largest, largest);
+    let y = Axis::even("error", -scale, scale);
     let mut plot = Plot::new(300.0, 120.0, Axis::even("depth, part of the slab", 0.0, 1.0), y);
     plot.level(0.0, "");
     plot.line(&errors, thin(color(method)), None);
     Some(plot.svg(&format!("Error of {} in a slab of even density", method.label), 0.0))
 }
 
-/// The largest error in any slab of a report, for one scale: at least one part in a hundred.
-pub(super) fn largest_in_slabs(report: &CompareReport) -> f64 {
+/// One scale for the errors in slabs: a round number of at least one in a hundred that holds three times the median of
+/// the methods' largest errors. A method without shadows would make all others flat.
+pub(super) fn scale_of_slabs(report: &CompareReport) -> f64 {
     let slabs = report.methods.iter().filter_map(|method| method.banding.as_ref());
-    let errors = slabs.flat_map(|slab| {
+    let largest = slabs.map(|slab| {
         let error = |(depth, value): (f64, f64)| (value - (-slab.optical_depth * depth).exp()).abs();
-        widened(&slab.curve).into_iter().map(error)
+        let errors = widened(&slab.curve).into_iter().map(error).filter(|error| error.is_finite());
+        errors.fold(0.0, f64::max)
     });
-    errors.filter(|error| error.is_finite()).fold(0.01, f64::max).min(1.0)
+    let median = Spread::of(&largest.collect::<Vec<_>>()).map_or(0.0, |spread| spread.median);
+    let round = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5];
+    round.into_iter().find(|&scale| scale >= 3.0 * median).unwrap_or(1.0)
+}
+
+/// The colour of a truth: that of the first method that is held against it.
+pub(super) fn of_truth(report: &CompareReport, truth: &FootprintTruth) -> &'static str {
+    report.methods.iter().find(|method| truth.methods.contains(&method.name)).map_or(TRUTH, color)
 }
 
 /// How each truth came to rest: the change of every round against its subtexels.
@@ -172,7 +182,7 @@ pub(super) fn convergence(report: &CompareReport) -> Option<String> {
     }
     for truth in &reference.footprints {
         let of = report.methods.iter().find(|method| truth.methods.contains(&method.name));
-        let color = of.map_or(TRUTH, color);
+        let color = of_truth(report, truth);
         let points: Vec<(f64, f64)> =
             truth.changes.iter().map(|&(samples, change)| (f64::from(samples), f64::from(change))).collect();
         plot.line(&points, thin(color), None);
@@ -180,7 +190,8 @@ pub(super) fn convergence(report: &CompareReport) -> Option<String> {
             let dot = if change <= limit { Dot::Full } else { Dot::Hollow };
             let title = format!("{}: {samples} subtexels, {change:.5}", truth.methods.join(", "));
             let last = index + 1 == points.len();
-            let label = of.filter(|_| last).map_or("", |method| &method.label);
+            // Of those that came to rest the table tells.
+            let label = of.filter(|_| last && !truth.converged).map_or("", |method| &method.label);
             plot.dot((samples, change), dot, color, label, &title);
         }
     }

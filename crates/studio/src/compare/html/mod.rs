@@ -29,7 +29,7 @@ pub(super) fn page(report: &CompareReport) -> String {
         ("stability", "Stability", stability(report, &groups, &names)),
         ("banding", "Banding", banding(report, &groups, &names)),
         ("times", "Times", groups.iter().map(|group| tables::times(group, &names)).collect()),
-        ("reference", "Reference", reference(report)),
+        ("reference", "Reference", reference(report, &names)),
         ("settings", "Settings", settings(report, &groups, &names)),
         ("reading", "How to read this page", include_str!("reading.html").to_owned()),
     ];
@@ -138,8 +138,11 @@ fn overview(report: &CompareReport, groups: &[Group<'_>], names: &Names) -> Stri
                 table is both more right and cheaper.</p>";
     }
     if !report.notes.is_empty() {
-        let notes: String = report.notes.iter().map(|note| format!("<li>{}</li>", escaped(note))).collect();
-        let _ = write!(out, "<ul class=\"notes\">{notes}</ul>");
+        out += "<ul class=\"notes\">";
+        for note in &report.notes {
+            let _ = write!(out, "<li>{}</li>", escaped(note));
+        }
+        out += "</ul>";
     }
     out
 }
@@ -255,28 +258,32 @@ fn banding(report: &CompareReport, groups: &[Group<'_>], names: &Names) -> Strin
     if tables.is_empty() {
         return tables;
     }
-    let largest = figures::largest_in_slabs(report);
+    let scale = figures::scale_of_slabs(report);
     let mut plots = String::new();
     for method in &report.methods {
-        if let Some(plot) = figures::banding(method, largest) {
+        if let Some(plot) = figures::banding(method, scale) {
             let name = escaped(&names.full(method));
             let _ = write!(plots, "<figure><figcaption>{name}</figcaption>{plot}</figure>");
         }
     }
     format!(
         "<p>A slab of even density is lit from the front; its transmittance should be an exponential. Layers show as waves in \
-         the error.</p>{tables}<div class=\"small\">{plots}</div>"
+         the error, all drawn to one scale; what is larger is cut at its rim.</p>{tables}<div class=\"small\">{plots}</div>"
     )
 }
 
-fn reference(report: &CompareReport) -> String {
+fn reference(report: &CompareReport, names: &Names) -> String {
     let reference = &report.reference;
     let mut rows = String::new();
     for truth in &reference.footprints {
+        let held = report.methods.iter().filter(|method| truth.methods.contains(&method.name));
+        let held: Vec<String> = held.map(|method| names.full(method)).collect();
+        let swatch = figures::of_truth(report, truth);
         let _ = write!(
             rows,
-            "<tr><th scope=\"row\">{}</th><td>{}</td><td>{}</td><td>{}</td><td class=\"text\">{}</td></tr>",
-            escaped(&truth.methods.join(", ")),
+            "<tr><th scope=\"row\"><i class=\"swatch\" style=\"background:{swatch}\"></i>{}</th><td>{}</td><td>{}</td><td>{}</td>\
+             <td class=\"text\">{}</td></tr>",
+            escaped(&held.join(", ")),
             grouped(truth.points),
             truth.samples,
             fixed(Some(f64::from(truth.change)), 5),

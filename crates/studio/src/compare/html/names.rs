@@ -3,6 +3,7 @@
 use super::words::escaped;
 use crate::{CompareReport, MethodReport};
 use lovelock_render::ShadowMethod;
+use std::fmt::Write as _;
 
 /// Colours that are told apart on white, also by the colour-blind: one for each method, in the order of the menu.
 const COLORS: [&str; 10] = [
@@ -38,10 +39,10 @@ impl Names {
     pub(super) fn full(&self, method: &MethodReport) -> String {
         let mut name = self.within_group(method);
         if self.transparencies {
-            name += &format!(" · {}", method.transparency);
+            let _ = write!(name, " · {}", method.transparency);
         }
         if self.backends {
-            name += &format!(" · {}", backend(&method.backend));
+            let _ = write!(name, " · {}", backend(&method.backend));
         }
         name
     }
@@ -51,7 +52,7 @@ impl Names {
     pub(super) fn within_group(&self, method: &MethodReport) -> String {
         let mut name = if method.label.is_empty() { method.id.clone() } else { method.label.clone() };
         for (setting, value) in &method.sweep {
-            name += &format!(" · {} {value}", setting.replace('_', " "));
+            let _ = write!(name, " · {} {value}", setting.replace('_', " "));
         }
         name
     }
@@ -87,10 +88,10 @@ pub(super) fn groups<'a>(report: &'a CompareReport, names: &Names) -> Vec<Group<
         }
         let mut title = format!("On the {}", backend(&method.backend));
         if !method.adapter.is_empty() {
-            title += &format!(": {}", method.adapter);
+            let _ = write!(title, ": {}", method.adapter);
         }
         if names.transparencies {
-            title += &format!(", transparency {}", method.transparency);
+            let _ = write!(title, ", transparency {}", method.transparency);
         }
         groups.push(Group { title, backend: backend(&method.backend), methods: vec![(index, method)] });
     }

@@ -5,8 +5,11 @@ use super::words::{address, escaped};
 use crate::{CompareReport, MethodFiles};
 use std::fmt::Write as _;
 
+/// The file of one kind among those of a method.
+type File = fn(&MethodFiles) -> &Option<String>;
+
 /// Kinds of pictures: the word in the page, the heading of the button, and the file of a method.
-const KINDS: [(&str, &str, fn(&MethodFiles) -> &Option<String>); 6] = [
+const KINDS: [(&str, &str, File); 6] = [
     ("picture", "Picture", |files| &files.picture),
     ("transmittance-error", "Transmittance error", |files| &files.transmittance_error),
     ("picture-error", "Picture error (FLIP)", |files| &files.picture_error),
@@ -49,7 +52,7 @@ pub(super) fn section(report: &CompareReport, names: &Names) -> String {
         "<div class=\"controls\"><div class=\"kinds\" role=\"group\" aria-label=\"Kind of picture\">{buttons}</div>\
          <label>Left <select id=\"left\"></select></label><label>Right <select id=\"right\"></select></label>\
          <label>Zoom <select id=\"zoom\"><option>1</option><option>2</option><option>4</option></select></label></div>\
-         <div class=\"stage\"><div id=\"wipe\" tabindex=\"0\" role=\"slider\" aria-label=\"Split between left and right\" \
+         <div class=\"box\"><div id=\"wipe\" tabindex=\"0\" role=\"slider\" aria-label=\"Split between left and right\" \
          aria-valuemin=\"0\" aria-valuemax=\"100\" aria-valuenow=\"50\"><img id=\"under\" alt=\"\" draggable=\"false\">\
          <img id=\"over\" alt=\"\" draggable=\"false\"><i id=\"split\"></i></div></div>\
          <p class=\"note\" id=\"hint\">Drag the line, or move it with the arrow keys; hold F to see the left one in whole. At first \

@@ -234,24 +234,26 @@ fn spread(time: &TimeSpread) -> String {
 /// Settings of every method.
 pub(super) fn settings(group: &Group<'_>, names: &Names) -> String {
     let mut rows = String::new();
+    let refused = group.methods.iter().any(|(_, method)| method.refused.is_some());
     for (_, method) in &group.methods {
         let settings: Vec<String> = (method.settings.iter())
             .map(|(name, value)| format!("{} <b>{}</b>", escaped(&name.replace('_', " ")), escaped(value)))
             .collect();
         let texel = method.cell_size_m.map(|size| f64::from(size) * 1000.0);
         let texel = if texel.is_some() { format!("{} mm", fixed(texel, 2)) } else { fixed(None, 0) };
+        let why = escaped(method.refused.as_deref().unwrap_or_default());
+        let why = if refused { format!("<td class=\"text\">{why}</td>") } else { String::new() };
+        let settings = if settings.is_empty() { "none".into() } else { settings.join(" · ") };
         let _ = write!(
             rows,
-            "<tr>{}<td>{texel}</td><td class=\"text\">{}</td><td class=\"text\">{}</td></tr>",
-            names.cell(method),
-            if settings.is_empty() { "none".into() } else { settings.join(" · ") },
-            escaped(method.refused.as_deref().unwrap_or_default())
+            "<tr>{}<td>{texel}</td><td class=\"text\">{settings}</td>{why}</tr>",
+            names.cell(method)
         );
     }
+    let why = if refused { "<th scope=\"col\" class=\"text\">Left out</th>" } else { "" };
     format!(
         "<div class=\"scroll\"><table><caption>{}</caption><thead><tr><th scope=\"col\">Method</th><th scope=\"col\">Texel or \
-         cell</th><th scope=\"col\" class=\"text\">Settings</th><th scope=\"col\" class=\"text\">Left out</th></tr></thead>\
-         <tbody>{rows}</tbody></table></div>",
+         cell</th><th scope=\"col\" class=\"text\">Settings</th>{why}</tr></thead><tbody>{rows}</tbody></table></div>",
         escaped(&group.title)
     )
 }

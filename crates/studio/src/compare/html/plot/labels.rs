@@ -4,7 +4,7 @@ use super::escaped;
 use std::fmt::Write as _;
 
 /// Pixels that a letter takes, on average, and the height of a line.
-const LETTER: (f64, f64) = (6.1, 13.0);
+const LETTER: (f64, f64) = (6.7, 13.0);
 
 /// A rectangle: left, top, right, bottom.
 type Box4 = [f64; 4];
@@ -81,7 +81,7 @@ mod tests {
         };
         let boxes: Vec<_> = (svg.split("<text").skip(1))
             .map(|text| (number(text, "x=\""), number(text, "y=\"")))
-            .map(|(x, y)| [x, y - 10.0, x + 11.0 * 6.1, y + 3.0])
+            .map(|(x, y)| [x, y - 10.0, x + 11.0 * 6.7, y + 3.0])
             .collect();
         assert_eq!(boxes.len(), 5);
         for (i, a) in boxes.iter().enumerate() {
@@ -94,7 +94,7 @@ mod tests {
         let mut labels = Labels::new(100.0, 100.0);
         labels.add(99.0, 50.0, "at the rim");
         let svg = labels.svg();
-        assert!(svg.contains("x=\"29.0\""), "{svg}");
+        assert!(svg.contains("x=\"23.0\""), "{svg}");
         // Without words there is nothing.
         let mut silent = Labels::new(100.0, 100.0);
         silent.add(50.0, 50.0, "");

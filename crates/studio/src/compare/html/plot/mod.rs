@@ -58,7 +58,7 @@ impl Plot {
 
     fn grid(&mut self) {
         let (width, height) = (self.width, self.height);
-        for (value, word) in self.x.marks((width / 90.0) as usize) {
+        for (value, word) in self.x.marks((width / 75.0) as usize) {
             let at = self.left(value);
             let _ = write!(
                 self.body,
@@ -67,7 +67,7 @@ impl Plot {
                 height + 17.0
             );
         }
-        for (value, word) in self.y.marks((height / 45.0) as usize) {
+        for (value, word) in self.y.marks((height / 32.0) as usize) {
             let at = self.top(value);
             let _ = write!(
                 self.body,
@@ -179,7 +179,7 @@ impl Plot {
         of: usize,
     ) {
         const HEIGHT: f64 = 20.0;
-        let top = self.height + 40.0 + self.below;
+        let top = self.height + 48.0 + self.below;
         self.below += HEIGHT;
         let (color, name) = (escaped(color), escaped(name));
         let _ = write!(
@@ -209,7 +209,7 @@ impl Plot {
         self.body += &self.labels.svg();
         let [left, top, right, bottom] = MARGINS;
         let left = left + wide;
-        let extra = if self.below > 0.0 { self.below + 6.0 } else { 0.0 };
+        let extra = if self.below > 0.0 { self.below + 14.0 } else { 0.0 };
         let (width, height) = (left + self.width + right, top + self.height + bottom + extra);
         let middle = self.height / 2.0;
         let away = -44.0;
