@@ -207,10 +207,9 @@ pub(super) fn times(group: &Group<'_>, names: &Names) -> String {
         let stage = if pass.contains('/') { "" } else { " class=\"stage\"" };
         let _ = write!(rows, "<tr{stage}><th scope=\"row\">{}</th>", escaped(pass));
         for method in &measured {
-            rows += &match method.times.iter().find(|time| time.name == **pass) {
-                Some(time) => format!("<td data-v=\"{}\">{}</td>", time.median, spread(time)),
-                None => "<td></td>".into(),
-            };
+            let time = method.times.iter().find(|time| time.name == **pass);
+            let (median, text) = time.map_or((None, String::new()), |time| (Some(time.median), spread(time)));
+            rows += &cell(&text, median, "");
         }
         rows += "</tr>";
     }
