@@ -4,7 +4,6 @@ use super::names::{Group, Names, color};
 use super::plot::{Axis, Dot, Plot, Stroke};
 use super::words::{bytes, fixed, ms};
 use crate::{CompareReport, FootprintTruth, MethodReport, ProbeReport};
-use lovelock_metrics::Spread;
 use std::collections::BTreeMap;
 
 /// What is drawn in black: the truth.
@@ -135,31 +134,22 @@ pub(super) fn probe(report: &CompareReport, names: &Names, probe: &ProbeReport) 
     plot.svg(&says, (widest as f64 * 6.6 - 40.0).clamp(0.0, 260.0))
 }
 
-/// The error of a method's transmittance in a slab of even density, with the same scale for all methods.
-pub(super) fn banding(method: &MethodReport, scale: f64) -> Option<String> {
+/// The error of a method's transmittance in a slab of even density. The scale is the least round number that holds all of
+/// it, and not below a hundredth: what is less is flat.
+pub(super) fn banding(method: &MethodReport) -> Option<String> {
     let found = method.banding.as_ref().filter(|found| found.curve.len() > 1)?;
     let truth = |depth: f64| (-found.optical_depth * depth).exp();
     let errors: Vec<(f64, f64)> =
         widened(&found.curve).into_iter().map(|(depth, value)| (depth, value - truth(depth))).collect();
+    let finite = errors.iter().map(|(_, error)| error.abs()).filter(|error| error.is_finite());
+    let largest = finite.fold(0.0, f64::max);
+    let round = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5];
+    let scale = round.into_iter().find(|&scale| scale >= largest).unwrap_or(1.0);
     let y = Axis::even("error", -scale, scale);
     let mut plot = Plot::new(300.0, 120.0, Axis::even("depth, part of the slab", 0.0, 1.0), y);
     plot.level(0.0, "");
     plot.line(&errors, thin(color(method)), None);
     Some(plot.svg(&format!("Error of {} in a slab of even density", method.label), 0.0))
-}
-
-/// One scale for the errors in slabs: a round number of at least one in a hundred that holds three times the median of
-/// the methods' largest errors. A method without shadows would make all others flat.
-pub(super) fn scale_of_slabs(report: &CompareReport) -> f64 {
-    let slabs = report.methods.iter().filter_map(|method| method.banding.as_ref());
-    let largest = slabs.map(|slab| {
-        let error = |(depth, value): (f64, f64)| (value - (-slab.optical_depth * depth).exp()).abs();
-        let errors = widened(&slab.curve).into_iter().map(error).filter(|error| error.is_finite());
-        errors.fold(0.0, f64::max)
-    });
-    let median = Spread::of(&largest.collect::<Vec<_>>()).map_or(0.0, |spread| spread.median);
-    let round = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5];
-    round.into_iter().find(|&scale| scale >= 3.0 * median).unwrap_or(1.0)
 }
 
 /// The colour of a truth: that of the first method that is held against it.

@@ -61,7 +61,7 @@ fn header(report: &CompareReport) -> String {
     let scene = &report.scene;
     let [first, end] = report.frames;
     let frames = if end > first + 1 {
-        format!("frames {first} to {} (pictures, errors and times of frame {first})", end - 1)
+        format!("frames {first} to {} (pictures, errors and times: frame {first})", end - 1)
     } else {
         format!("frame {first}")
     };
@@ -258,17 +258,16 @@ fn banding(report: &CompareReport, groups: &[Group<'_>], names: &Names) -> Strin
     if tables.is_empty() {
         return tables;
     }
-    let scale = figures::scale_of_slabs(report);
     let mut plots = String::new();
     for method in &report.methods {
-        if let Some(plot) = figures::banding(method, scale) {
+        if let Some(plot) = figures::banding(method) {
             let name = escaped(&names.full(method));
             let _ = write!(plots, "<figure><figcaption>{name}</figcaption>{plot}</figure>");
         }
     }
     format!(
         "<p>A slab of even density is lit from the front; its transmittance should be an exponential. Layers show as waves in \
-         the error, all drawn to one scale; what is larger is cut at its rim.</p>{tables}<div class=\"small\">{plots}</div>"
+         the error. Mind the scale of each plot.</p>{tables}<div class=\"small\">{plots}</div>"
     )
 }
 

@@ -74,6 +74,13 @@
     };
     addEventListener("keydown", hold(true));
     addEventListener("keyup", hold(false));
+    // Small pictures are seen twice as large from the start.
+    const first = cards.querySelector("img");
+    const grow = () => {
+      if (first.naturalWidth * 2 <= wipe.parentElement.clientWidth) zoom.value = "2";
+      size();
+    };
+    if (first.complete) grow(); else first.addEventListener("load", grow);
     for (const image of [under, over]) image.addEventListener("load", size);
     for (const select of [left, right]) select.addEventListener("change", show);
     zoom.addEventListener("change", size);

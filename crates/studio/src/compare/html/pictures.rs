@@ -26,7 +26,7 @@ pub(super) fn section(report: &CompareReport, names: &Names) -> String {
         let mut of_kind = String::new();
         let reference = (kind == "picture").then_some(report.reference.picture.as_ref()).flatten();
         if let Some(file) = reference {
-            of_kind += &card(kind, file, "Reference: converged transmittance, exact transparency", "#202124");
+            of_kind += &card(kind, file, "Reference", "#202124");
         }
         for method in &report.methods {
             if let Some(file) = file(&method.files) {

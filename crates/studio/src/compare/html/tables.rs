@@ -230,13 +230,24 @@ fn spread(time: &TimeSpread) -> String {
     )
 }
 
+/// A number with no more digits than it means; anything else as it is.
+fn shortened(value: &str) -> String {
+    match value.parse::<f32>() {
+        // The shortest number of single precision that reads the same.
+        Ok(number) if value.contains('.') && value.len() > 8 => format!("{number}"),
+        _ => value.to_owned(),
+    }
+}
+
 /// Settings of every method.
 pub(super) fn settings(group: &Group<'_>, names: &Names) -> String {
     let mut rows = String::new();
     let refused = group.methods.iter().any(|(_, method)| method.refused.is_some());
     for (_, method) in &group.methods {
         let settings: Vec<String> = (method.settings.iter())
-            .map(|(name, value)| format!("{} <b>{}</b>", escaped(&name.replace('_', " ")), escaped(value)))
+            .map(|(name, value)| {
+                format!("{} <b>{}</b>", escaped(&name.replace('_', " ")), escaped(&shortened(value)))
+            })
             .collect();
         let texel = method.cell_size_m.map(|size| f64::from(size) * 1000.0);
         let texel = if texel.is_some() { format!("{} mm", fixed(texel, 2)) } else { fixed(None, 0) };

@@ -48,7 +48,10 @@ fn report() -> CompareReport {
                 transparency: "sorted".into(),
                 backend: backend.into(),
                 adapter: format!("adapter of the {backend}"),
-                settings: vec![("resolution".into(), "128".into())],
+                settings: vec![
+                    ("resolution".into(), "128".into()),
+                    ("size".into(), "0.23999999463558197".into()),
+                ],
                 transmittance: Some(error),
                 flip: Some(FlipError { mean: 0.031, p99: 0.2, ..FlipError::default() }),
                 psnr_db: Some(38.2),
@@ -137,6 +140,7 @@ fn the_page_is_whole_and_names_everything() {
         "3.00 MiB",
         "Probe 1: pixel 100, 80",
         "It converged",
+        "<b>128</b> · size <b>0.24</b>",
     ] {
         assert!(page.contains(text), "{text}");
     }

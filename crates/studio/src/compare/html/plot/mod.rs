@@ -13,7 +13,7 @@ use std::fmt::Write as _;
 const CORNERS: usize = 2000;
 
 /// Room around the field, pixels: left, top, right, bottom.
-const MARGINS: [f64; 4] = [58.0, 12.0, 16.0, 46.0];
+const MARGINS: [f64; 4] = [62.0, 12.0, 16.0, 46.0];
 
 /// A plot that is being drawn.
 pub(super) struct Plot {
@@ -212,7 +212,7 @@ impl Plot {
         let extra = if self.below > 0.0 { self.below + 14.0 } else { 0.0 };
         let (width, height) = (left + self.width + right, top + self.height + bottom + extra);
         let middle = self.height / 2.0;
-        let away = -44.0;
+        let away = -47.0;
         format!(
             "<svg class=\"plot\" role=\"img\" aria-label=\"{}\" viewBox=\"0 0 {width:.0} {height:.0}\" \
              width=\"{width:.0}\" height=\"{height:.0}\"><g transform=\"translate({left:.0} {top:.0})\">{}\
