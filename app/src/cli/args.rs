@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{Args, Parser, Subcommand};
-use lovelock_studio::render::{ShadowMethod, Transparency};
+use lovelock_studio::render::{Backend, ShadowMethod, Transparency};
 
 /// Hair styled, simulated, shadowed and judged live. Opens the window where no command is given.
 #[derive(Debug, Parser)]
@@ -30,16 +30,37 @@ pub(crate) struct Arguments {
 pub(crate) enum Task {
     /// Simulates and draws the dance into a film or a folder of pictures.
     Record(Record),
+    /// Draws one instant by several shadow methods, and writes their pictures, errors and costs as a page and tables.
+    Compare(Compare),
     /// Measures frames of known scenes, stage by stage, on each backend, beside what was published.
     Bench(Bench),
     /// Says what a hair, character, motion or project file holds.
     Info(Info),
 }
 
+/// What is simulated.
 #[derive(Debug, Args)]
-pub(crate) struct Record {
+pub(crate) struct SourceArguments {
     /// The project; the default project where none is given.
     pub(crate) project: Option<PathBuf>,
+    /// A shipped hairstyle instead of the project's: smooth, curly or long.
+    #[arg(long, value_name = "ID", conflicts_with = "hair")]
+    pub(crate) preset: Option<String>,
+    /// A hair file instead of the project's hairstyle.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) hair: Option<PathBuf>,
+    /// A character file instead of the project's body.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) body: Option<PathBuf>,
+    /// A motion file (BVH) instead of the project's motion.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) motion: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Record {
+    #[command(flatten)]
+    pub(crate) source: SourceArguments,
     /// Where it goes: a name ending in `.mp4` is a film, any other a folder of PNG files with a manifest.
     #[arg(short, long, value_name = "OUT")]
     pub(crate) out: PathBuf,
@@ -61,20 +82,57 @@ pub(crate) struct Record {
     /// What draws: auto (the graphics card where there is a real one), gpu (by wgpu, software or not) or cpu (the
     /// processor, without any driver); the project's choice where none is given.
     #[arg(long, value_name = "BACKEND")]
-    pub(crate) backend: Option<lovelock_studio::render::Backend>,
-    /// A shipped hairstyle instead of the project's: smooth, curly or long.
-    #[arg(long, value_name = "ID", conflicts_with = "hair")]
-    pub(crate) preset: Option<String>,
-    /// A hair file instead of the project's hairstyle.
-    #[arg(long, value_name = "FILE")]
-    pub(crate) hair: Option<PathBuf>,
-    /// A character file instead of the project's body.
-    #[arg(long, value_name = "FILE")]
-    pub(crate) body: Option<PathBuf>,
-    /// A motion file (BVH) instead of the project's motion.
-    #[arg(long, value_name = "FILE")]
-    pub(crate) motion: Option<PathBuf>,
+    pub(crate) backend: Option<Backend>,
 }
+
+#[derive(Debug, Args)]
+pub(crate) struct Compare {
+    #[command(flatten)]
+    pub(crate) source: SourceArguments,
+    /// The folder for the report: report.html, report.csv, report.json and pictures.
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    /// The frame to look at; the project's first one where none is given.
+    #[arg(long, value_name = "N", conflicts_with = "frames")]
+    pub(crate) frame: Option<u64>,
+    /// Frames to look at, half open, such as 30..40: pictures, errors and times of the first one, pop and flicker of all.
+    #[arg(long, value_name = "A..B", value_parser = frames)]
+    pub(crate) frames: Option<Range<u64>>,
+    /// Frames a second.
+    #[arg(long, value_parser = rate)]
+    pub(crate) fps: Option<f64>,
+    /// Size in pixels, such as 1280x720.
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub(crate) size: Option<(u32, u32)>,
+    /// Shadow methods, divided by commas, or `all`.
+    #[arg(long, value_name = "ID,ID|all", default_value = "all", value_parser = methods)]
+    pub(crate) methods: Methods,
+    /// How overlapping strands are put together, divided by commas; the project's choice where none is given.
+    #[arg(long, value_name = "ID,ID", value_delimiter = ',')]
+    pub(crate) transparency: Vec<Transparency>,
+    /// What draws: auto (the graphics card where there is a real one), gpu, cpu, or both; the project's choice where none
+    /// is given.
+    #[arg(long, value_name = "BACKEND", value_parser = backends)]
+    pub(crate) backend: Option<Backends>,
+    /// A setting that methods run through, such as resolution=64,128,256; may be given several times.
+    #[arg(long, value_name = "SETTING=V,V")]
+    pub(crate) sweep: Vec<lovelock_studio::Sweep>,
+    /// A pixel whose hair is probed; may be given several times. Some are chosen where none is given.
+    #[arg(long, value_name = "X,Y", value_parser = pixel)]
+    pub(crate) probe: Vec<[u32; 2]>,
+    /// Draws that a time is the median of, 30 to 1000.
+    #[arg(long, default_value_t = lovelock_studio::CompareRequest::LEAST_DRAWS,
+        value_parser = clap::value_parser!(u32).range(30..=1000))]
+    pub(crate) draws: u32,
+}
+
+/// Shadow methods; all where there are none.
+#[derive(Clone, Debug)]
+pub(crate) struct Methods(pub(crate) Vec<ShadowMethod>);
+
+/// What draws, one after the other.
+#[derive(Clone, Debug)]
+pub(crate) struct Backends(pub(crate) Vec<Backend>);
 
 #[derive(Debug, Args)]
 pub(crate) struct Bench {
@@ -97,7 +155,7 @@ pub(crate) struct Bench {
     pub(crate) transparency: Option<Transparency>,
     /// The backend to measure; both where none is given.
     #[arg(long, value_name = "BACKEND")]
-    pub(crate) backend: Option<lovelock_studio::render::Backend>,
+    pub(crate) backend: Option<Backend>,
 }
 
 #[derive(Debug, Args)]
@@ -121,6 +179,31 @@ fn size(text: &str) -> Result<(u32, u32), String> {
     let (width, height) = text.split_once(['x', 'X', '×']).ok_or_else(wanted)?;
     let number = |text: &str| u32::from_str(text.trim()).ok().filter(|n| *n > 0).ok_or_else(wanted);
     Ok((number(width)?, number(height)?))
+}
+
+/// Ids divided by commas, or `all`.
+fn methods(text: &str) -> Result<Methods, String> {
+    if text.trim() == "all" {
+        return Ok(Methods(Vec::new()));
+    }
+    let method = |id: &str| ShadowMethod::from_str(id.trim()).map_err(|error| format!("{error}, or all"));
+    text.split(',').map(method).collect::<Result<_, _>>().map(Methods)
+}
+
+fn backends(text: &str) -> Result<Backends, String> {
+    if text == "both" {
+        return Ok(Backends(vec![Backend::Cpu, Backend::Gpu]));
+    }
+    let backend = Backend::from_str(text).map_err(|error| format!("{error}, or both"))?;
+    Ok(Backends(vec![backend]))
+}
+
+/// `X,Y`, pixels from the upper left corner.
+fn pixel(text: &str) -> Result<[u32; 2], String> {
+    let wanted = || format!("`{text}` is no pixel: expected X,Y from the upper left corner, such as 640,200");
+    let (x, y) = text.split_once(',').ok_or_else(wanted)?;
+    let number = |text: &str| u32::from_str(text.trim()).map_err(|_| wanted());
+    Ok([number(x)?, number(y)?])
 }
 
 fn rate(text: &str) -> Result<f64, String> {

@@ -1,10 +1,13 @@
 //! The command line.
 
 mod args;
+mod bar;
 mod bench;
+mod compare;
 mod info;
 mod output;
 mod record;
+mod source;
 
 use std::process::ExitCode;
 
@@ -38,6 +41,7 @@ pub(crate) fn run() -> ExitCode {
             crate::window::open(arguments.project.as_deref(), screenshot)
         }
         Some(Task::Record(task)) => record::run(&task, output),
+        Some(Task::Compare(task)) => compare::run(&task, output),
         Some(Task::Bench(task)) => bench::run(&task, output),
         Some(Task::Info(task)) => info::run(&task, output),
     };

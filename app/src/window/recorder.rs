@@ -64,6 +64,7 @@ impl Recorder {
                     ("Simulating up to the first frame".to_owned(), done, total)
                 }
                 Progress::Frame { done, total } => ("Frame".to_owned(), done, total),
+                Progress::Comparing { what, done, total } => (what, done, total),
                 Progress::Finishing => ("Finishing".to_owned(), 1, 1),
             };
             if matches!(&self.state, State::Running { what: before, .. } if *before != what) {

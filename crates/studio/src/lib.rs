@@ -22,10 +22,11 @@ pub use bench::{BenchReport, BenchRequest, BenchScene, SceneReport, StageReport,
 pub use clock::{FrameClock, MAX_STEPS_PER_TICK, Playback, STEP_SECS, Stopwatch};
 pub use command::{COMMANDS, Command, CommandGroup, CommandInfo, Shortcut};
 pub use compare::{
-    BandingReport, CompareReport, Contender, FlipError, FootprintTruth, Legend, Live, LiveError, LivePane,
-    LiveProbe, LiveRequest, LiveShows, LiveTimes, LiveView, MethodFiles, MethodReport, PointTruth,
-    ProbeCurve, ProbeMark, ProbePlace, ProbeReport, ProbedHair, Reference, SceneFacts, StabilityReport,
-    StageMs, TimeSpread, TransmittanceError,
+    BandingReport, CompareReport, CompareRequest, Contender, FlipError, FootprintTruth, Legend, Live,
+    LiveError, LivePane, LiveProbe, LiveRequest, LiveShows, LiveTimes, LiveView, MethodFiles, MethodReport,
+    PointTruth, ProbeCurve, ProbeMark, ProbePlace, ProbeReport, ProbedHair, Reference, SceneFacts, Sheet,
+    SheetPane, StabilityReport, StageMs, Sweep, TimeSpread, TransmittanceError, bytes_label, compare,
+    pane_columns,
 };
 pub use error::{Place, Problem, ProblemKind, StudioError};
 pub use headless::{Progress, RecordJob, RecordReport, RecordRequest, StageMedians, record};

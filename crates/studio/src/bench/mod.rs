@@ -9,6 +9,7 @@ use std::sync::atomic::AtomicBool;
 
 use lovelock_render::{Backend, Picture, RenderError, Renderer, ShadowMethod, Transparency};
 
+pub(crate) use report::machine;
 pub use report::{BenchReport, SceneReport, StageReport};
 pub use scenes::BenchScene;
 

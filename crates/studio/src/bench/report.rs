@@ -288,7 +288,7 @@ impl fmt::Display for BenchReport {
 }
 
 /// The processor's name and the number of threads.
-pub(super) fn machine() -> String {
+pub(crate) fn machine() -> String {
     let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let name =

@@ -1,12 +1,17 @@
 //! Methods beside each other on the same hair at the same instant, with the truth, the error and the cost.
 
+mod batch;
 mod contender;
+mod html;
 mod live;
 mod report;
 
+pub use batch::{CompareRequest, Sweep, compare};
 pub use contender::Contender;
+pub(crate) use live::FilmOfPanes;
 pub use live::{
-    Live, LiveError, LivePane, LiveProbe, LiveRequest, LiveShows, LiveTimes, LiveView, ProbePlace, ProbedHair,
+    Live, LiveError, LivePane, LiveProbe, LiveRequest, LiveShows, LiveTimes, LiveView, ProbePlace,
+    ProbedHair, Sheet, SheetPane, bytes_label, pane_columns,
 };
 pub use report::{
     BandingReport, CompareReport, FlipError, FootprintTruth, Legend, MethodFiles, MethodReport, PointTruth,

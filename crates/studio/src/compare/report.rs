@@ -180,9 +180,11 @@ pub struct TransmittanceError {
 /// FLIP of a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FlipError {
-    /// Mean over the pixels.
+    /// Mean over all pixels.
     pub mean: f64,
-    /// 99th percentile over the pixels.
+    /// Mean over the pixels that show hair; null where none does. It does not depend on how much of the picture hair fills.
+    pub hair_mean: Option<f64>,
+    /// 99th percentile over all pixels.
     pub p99: f64,
 }
 
@@ -301,16 +303,16 @@ pub struct ProbeCurve {
     pub marks: Vec<ProbeMark>,
 }
 
-/// Something that a method keeps on a ray: the boundary of a slice, the ends of a cluster, a fragment.
+/// Something that a method keeps on a ray: a slice, a bin of a cluster, a fragment.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ProbeMark {
-    /// `slice`, `layer`, `slab`, `cluster`, `cell` or `fragment`.
+    /// `slice`, `layer`, `slab`, `bin`, `cell` or `fragment`.
     pub kind: String,
     /// Where it begins, metres along the light relative to the point.
     pub start: f32,
     /// Where it ends; the same where it has no extent.
     pub end: f32,
-    /// Optical depth in it, or a count.
+    /// Optical depth in it.
     pub weight: f32,
 }
 

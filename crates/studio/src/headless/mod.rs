@@ -2,9 +2,13 @@
 
 mod job;
 mod new_folders;
+mod prepare;
 mod record;
 mod report;
 mod request;
+
+pub(crate) use new_folders::NewFolders;
+pub(crate) use prepare::{load, open_renderer, simulate_to, tell};
 
 pub use job::RecordJob;
 pub use record::record;

@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 /// Folders that were not there; dropping it removes those that are there by then and empty.
-pub(super) struct NewFolders(Vec<PathBuf>);
+pub(crate) struct NewFolders(Vec<PathBuf>);
 
 impl NewFolders {
     /// The path and the folders above it that do not exist, the innermost first.
-    pub(super) fn missing_on(path: &Path) -> Self {
+    pub(crate) fn missing_on(path: &Path) -> Self {
         let named = path.ancestors().filter(|path| !path.as_os_str().is_empty());
         Self(named.take_while(|path| path.symlink_metadata().is_err()).map(Path::to_owned).collect())
     }

@@ -3,17 +3,14 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
 use lovelock_record::{FrameRate, OutputKind, PictureSink, RecordError, SinkSettings};
-use lovelock_render::{Backend, GpuError, Picture, RenderError, Renderer};
+use lovelock_render::{Picture, Renderer};
 
 use super::new_folders::NewFolders;
+use super::prepare::{load, open_renderer, simulate_to, tell};
 use super::{Progress, RecordReport, RecordRequest};
-use crate::{
-    Engine, FrameClock, LoadControl, PassHistory, Problem, Project, Scene, SceneLoader, StageHistory,
-    Stopwatch, StudioError,
-};
+use crate::{Engine, FrameClock, PassHistory, Project, Scene, StageHistory, Stopwatch, StudioError};
 
 /// The most frames of which times are kept for the medians.
 const MOST_TIMES: usize = 1 << 20;
@@ -33,7 +30,7 @@ pub fn record(
     progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<RecordReport, StudioError> {
     let job = Job::new(project, request)?;
-    let (scene, problems) = load(&job.project, request, progress)?;
+    let (scene, problems) = load(&job.project, &request.access, progress)?;
     tell(progress, Progress::Loaded { problems: problems.clone() })?;
 
     let frames = job.frames(&scene)?;
@@ -184,64 +181,5 @@ impl<'a> Job<'a> {
 
 /// Opens what draws.
 fn open(project: &Project, request: &RecordRequest) -> Result<Renderer, StudioError> {
-    let choice = request.backend.unwrap_or(project.picture.backend);
-    let renderer = match &request.gpu {
-        Some(gpu) => Renderer::on_device(Arc::clone(gpu)),
-        None => Renderer::open(choice),
-    };
-    renderer.map_err(|error| match (&error, choice) {
-        (RenderError::Gpu(GpuError::NoAdapter(_)), Backend::Gpu) => {
-            StudioError::work(format!("--backend gpu: {error}"))
-        }
-        _ => error.into(),
-    })
-}
-
-fn load(
-    project: &Project,
-    request: &RecordRequest,
-    progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-) -> Result<(Arc<Scene>, Vec<Problem>), StudioError> {
-    let cancelled = AtomicBool::new(false);
-    let mut show = |what: &str, _: f32| {
-        if progress(Progress::Loading { what: what.to_owned() }).is_break() {
-            cancelled.store(true, std::sync::atomic::Ordering::Relaxed);
-        }
-    };
-    let mut control = LoadControl { cancelled: &cancelled, progress: &mut show };
-    let (scene, mut problems) = SceneLoader::new().load(project, &request.access, &mut control)?;
-    problems.extend(scene.notes.iter().cloned());
-    Ok((scene, problems))
-}
-
-/// Lives through the frames before the first one that is drawn, so that frame 100 is the same in every recording.
-fn simulate_to(
-    engine: &mut Engine,
-    step: u64,
-    progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-) -> Result<(), StudioError> {
-    const STEPS_A_REPORT: u64 = 60;
-    let mut done = 0;
-    while done < step {
-        tell(progress, Progress::Simulating { done, total: step })?;
-        done = (done + STEPS_A_REPORT).min(step);
-        engine.advance_to_step(done);
-    }
-    Ok(())
-}
-
-fn tell(progress: &mut dyn FnMut(Progress) -> ControlFlow<()>, what: Progress) -> Result<(), StudioError> {
-    match progress(what) {
-        ControlFlow::Continue(()) => Ok(()),
-        ControlFlow::Break(()) => Err(StudioError::Cancelled),
-    }
-}
-
-impl From<RenderError> for StudioError {
-    fn from(error: RenderError) -> Self {
-        match error {
-            RenderError::Size { .. } => Self::option(error),
-            error => Self::work(error),
-        }
-    }
+    open_renderer(request.backend.unwrap_or(project.picture.backend), request.gpu.as_ref())
 }

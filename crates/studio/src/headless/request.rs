@@ -31,7 +31,7 @@ pub struct RecordRequest {
     pub gpu: Option<Arc<Gpu>>,
 }
 
-/// How far a recording is.
+/// How far a recording or a comparison is.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Progress {
     /// Files are read and hair grows.
@@ -56,6 +56,15 @@ pub enum Progress {
         /// Frames done.
         done: u64,
         /// Frames in all.
+        total: u64,
+    },
+    /// Methods are compared.
+    Comparing {
+        /// What is being done.
+        what: String,
+        /// Parts done.
+        done: u64,
+        /// Parts in all.
         total: u64,
     },
     /// The file is made whole.

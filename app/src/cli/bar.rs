@@ -1,0 +1,64 @@
+//! How far a long piece of work is.
+
+use std::io::IsTerminal;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use lovelock_studio::Progress;
+
+/// Progress on standard error: a bar on a terminal, plain lines elsewhere.
+pub(super) struct Bar {
+    bar: Option<ProgressBar>,
+    said: u64,
+}
+
+impl Bar {
+    pub(super) fn new() -> Self {
+        let bar = std::io::stderr().is_terminal().then(|| {
+            let style = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} {eta} left")
+                .unwrap_or_else(|_| ProgressStyle::default_bar());
+            ProgressBar::new(1).with_style(style)
+        });
+        Self { bar, said: 0 }
+    }
+
+    pub(super) fn show(&mut self, progress: &Progress) {
+        let (what, done, total) = match progress {
+            Progress::Loading { what } => (what.as_str(), 0, 1),
+            Progress::Loaded { problems } => {
+                for problem in problems {
+                    self.line(&format!("lovelock: {}", problem.message));
+                }
+                return;
+            }
+            Progress::Simulating { done, total } => ("simulating", *done, *total),
+            Progress::Frame { done, total } => ("frame", *done, *total),
+            Progress::Comparing { what, done, total } => (what.as_str(), *done, *total),
+            Progress::Finishing => ("finishing", 1, 1),
+        };
+        if let Some(bar) = &self.bar {
+            bar.set_length(total.max(1));
+            bar.set_position(done);
+            bar.set_message(what.to_owned());
+            return;
+        }
+        // Some twenty lines for a whole recording, however long.
+        let tenth = (20 * done).checked_div(total).unwrap_or(0);
+        if matches!(progress, Progress::Frame { .. }) && tenth != self.said {
+            self.said = tenth;
+            eprintln!("{what} {done} of {total}");
+        }
+    }
+
+    fn line(&self, text: &str) {
+        match &self.bar {
+            Some(bar) => bar.println(text),
+            None => eprintln!("{text}"),
+        }
+    }
+
+    pub(super) fn done(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}

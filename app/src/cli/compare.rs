@@ -1,0 +1,91 @@
+//! `lovelock compare`.
+
+use std::fmt::Write;
+
+use lovelock_studio::{CompareReport, CompareRequest, MethodReport, StudioError};
+
+use super::args::Compare;
+use super::output::Output;
+use super::source::Source;
+
+/// Compares methods and writes a report.
+pub(crate) fn run(task: &Compare, output: Output) -> Result<(), StudioError> {
+    let mut scene = Source::open(&task.source)?;
+    let one = task.frame.map(|frame| frame..frame.saturating_add(1));
+    let request = CompareRequest {
+        out: task.out.clone(),
+        name: scene.name.clone(),
+        frames: task.frames.clone().or(one),
+        fps: task.fps,
+        size: task.size,
+        methods: task.methods.0.clone(),
+        transparencies: task.transparency.clone(),
+        backends: task.backend.clone().map(|backends| backends.0).unwrap_or_default(),
+        sweeps: task.sweep.clone(),
+        probes: task.probe.clone(),
+        draws: task.draws,
+        access: std::mem::take(&mut scene.access),
+        gpu: None,
+    };
+    let report = scene.watched(|project, progress| lovelock_studio::compare(project, &request, progress))?;
+    output.result(&report, || summary(&report, &task.out.join("report.html").display().to_string()))
+}
+
+/// The page's name, what to know before its numbers are believed, and the most important of them: a table for each backend.
+fn summary(report: &CompareReport, page: &str) -> String {
+    let mut text = format!("{page}\n");
+    let mut line = |line: std::fmt::Arguments| {
+        let _ = text.write_fmt(line);
+        text.push('\n');
+    };
+    let reference = &report.reference;
+    if !reference.converged {
+        line(format_args!(
+            "the reference did not converge: {:.4} in the last round, the limit is {:.4}",
+            reference.change, reference.limit
+        ));
+    }
+    for sentence in reference.refused.iter().chain(&report.notes) {
+        line(format_args!("{sentence}"));
+    }
+    let names = report.methods.iter().map(|method| method.name.chars().count()).fold(6, usize::max);
+    let mut adapters: Vec<(&str, &str)> = Vec::new();
+    for method in &report.methods {
+        let adapter = (method.backend.as_str(), method.adapter.as_str());
+        if !adapters.contains(&adapter) {
+            adapters.push(adapter);
+        }
+    }
+    for (backend, adapter) in adapters {
+        line(format_args!("\n{backend}: {adapter}; times are medians of {} draws", report.scene.draws));
+        line(format_args!(
+            "{:<names$} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>10}",
+            "method", "rmse", "bias", "FLIP", "build ms", "query ms", "draw ms", "KiB"
+        ));
+        for method in report.methods.iter().filter(|method| method.backend == backend) {
+            line(format_args!("{:<names$} {}", method.name, numbers(method)));
+        }
+    }
+    text
+}
+
+/// Errors, times and memory of a method, or why there are none.
+fn numbers(method: &MethodReport) -> String {
+    if let Some(refused) = &method.refused {
+        return refused.clone();
+    }
+    let number = |value: Option<f64>, places: usize| {
+        value.map_or_else(|| "-".to_owned(), |value| format!("{value:.places$}"))
+    };
+    let bias = method.transmittance.map_or_else(|| "-".to_owned(), |error| format!("{:+.4}", error.bias));
+    format!(
+        "{:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>10}",
+        number(method.transmittance.map(|error| error.rmse), 4),
+        bias,
+        number(method.flip.map(|flip| flip.mean), 4),
+        number(method.ms.and_then(|ms| ms.build), 2),
+        number(method.ms.and_then(|ms| ms.query), 2),
+        number(method.ms.map(|ms| ms.draw), 1),
+        number(method.memory_bytes.map(|bytes| bytes as f64 / 1024.0), 0),
+    )
+}

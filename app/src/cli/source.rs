@@ -1,0 +1,106 @@
+//! What is simulated: a project, with what the command line changes of it.
+
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+
+use lovelock_studio::groom::Preset;
+use lovelock_studio::{Access, Place, Problem, Progress, Project, StudioError, load_project_with};
+
+use super::args::SourceArguments;
+use super::bar::Bar;
+
+/// A project as the command line wants it.
+pub(super) struct Source {
+    pub(super) project: Project,
+    pub(super) access: Access,
+    /// What the command line names, as people say it.
+    pub(super) name: String,
+    /// Files that are named on the command line.
+    named: Vec<(Place, PathBuf)>,
+}
+
+impl Source {
+    /// Reads the project and puts into it what is named beside it.
+    pub(super) fn open(task: &SourceArguments) -> Result<Self, StudioError> {
+        let mut access = Access::new();
+        let (mut project, problems) = match &task.project {
+            Some(path) => {
+                access.set_project(Some(path));
+                load_project_with(path, &mut access)?
+            }
+            None => (Project::default(), Vec::new()),
+        };
+        tell(&problems);
+        let file_name = |path: &PathBuf| {
+            path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
+        };
+        let mut name = task.project.as_ref().map_or_else(|| "default project".to_owned(), file_name);
+        if let Some(id) = &task.preset {
+            project.set_preset(preset(id)?);
+            name += &format!(", {id}");
+        }
+        let places = [(Place::Hair, &task.hair), (Place::Body, &task.body), (Place::Motion, &task.motion)];
+        let mut named = Vec::new();
+        for (place, path) in places {
+            let Some(path) = path else { continue };
+            // A file that is named here is wanted: without it there is nothing to do.
+            if !path.is_file() {
+                return Err(StudioError::input(path, format!("{}: there is no such file", path.display())));
+            }
+            access.pick(path);
+            name += &format!(", {}", file_name(path));
+            named.push((place, path.clone()));
+        }
+        if let Some(path) = &task.hair {
+            project.set_hair_file(path);
+        }
+        if let Some(path) = &task.body {
+            project.set_body_file(path);
+        }
+        if let Some(path) = &task.motion {
+            project.set_motion_file(path);
+        }
+        Ok(Self { project, access, name, named })
+    }
+
+    /// Does the work with its progress shown.
+    pub(super) fn watched<T>(
+        &self,
+        work: impl FnOnce(&Project, &mut dyn FnMut(Progress) -> ControlFlow<()>) -> Result<T, StudioError>,
+    ) -> Result<T, StudioError> {
+        let mut bar = Bar::new();
+        let mut refused = None;
+        let result = work(&self.project, &mut |progress| {
+            if let Progress::Loaded { problems } = &progress {
+                // A file that the project names is replaced, and said so; one that is named here is not.
+                for problem in problems.iter().filter(|problem| problem.is_failure()) {
+                    if let Some((_, path)) = self.named.iter().find(|(place, _)| *place == problem.place) {
+                        refused = Some(StudioError::input(path, problem.cause.clone()));
+                        return ControlFlow::Break(());
+                    }
+                }
+            }
+            bar.show(&progress);
+            ControlFlow::Continue(())
+        });
+        bar.done();
+        refused.map_or(result, Err)
+    }
+}
+
+fn preset(id: &str) -> Result<Preset, StudioError> {
+    Preset::from_id(id).ok_or_else(|| {
+        let known: Vec<_> = Preset::ALL.iter().map(|preset| preset.id()).collect();
+        StudioError::option(format!(
+            "--preset: unknown hairstyle `{id}`: expected one of {}",
+            known.join(", ")
+        ))
+    })
+}
+
+/// Tells what the project's text had wrong. Files that are missing are told by the loader, with what takes their place.
+fn tell(problems: &[Problem]) {
+    for problem in problems.iter().filter(|problem| !problem.is_failure()) {
+        eprintln!("lovelock: {}", problem.message);
+    }
+}

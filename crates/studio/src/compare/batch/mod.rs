@@ -1,0 +1,22 @@
+//! Methods compared without a window: a folder with pictures, maps of errors, tables and a page.
+
+mod banding;
+mod csv;
+mod draw;
+mod entrants;
+mod folder;
+mod hair;
+mod maps;
+mod measure;
+mod probe;
+mod reference;
+mod request;
+mod run;
+mod stability;
+mod sweep;
+mod truth;
+mod work;
+
+pub use request::CompareRequest;
+pub use run::compare;
+pub use sweep::Sweep;

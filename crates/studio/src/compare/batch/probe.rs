@@ -1,0 +1,127 @@
+//! Rays of light through chosen points of hair, as each method sees them.
+
+use glam::Vec3;
+use lovelock_render::{FrameInput, RenderError, Renderer, ShadowMethod, ShadowSettings, ValueRenderer};
+use lovelock_shadow::{CpuShadow, LightFrame, RayMarkKind, ShadowInput, converged, cpu_shadow};
+
+use super::truth::Points;
+use crate::{ProbeCurve, ProbeMark, ProbeReport};
+
+/// Places on a ray that are asked.
+const PLACES: usize = 241;
+
+/// How far a ray is looked at where no hair says so, metres to both sides.
+const USUAL_REACH: f32 = 0.05;
+
+/// Transmittance that is looked for where nobody says where to probe: in the light, in between, in the shade.
+const WANTED: [f32; 3] = [0.85, 0.5, 0.15];
+
+/// One ray.
+#[derive(Debug)]
+pub(super) struct Probe {
+    position: Vec3,
+    /// Depths that are asked, metres along the light from the point, and where they are.
+    depths: Vec<f32>,
+    places: Vec<Vec3>,
+    pub report: ProbeReport,
+}
+
+/// Pixels that show hair in the light, in between, and in the shade, by transmittance of the picture's pixels, row after row;
+/// none where there is no hair.
+pub(super) fn usual_pixels(transmittance: &[f32], width: u32) -> Vec<[u32; 2]> {
+    let mut chosen: Vec<[u32; 2]> = Vec::new();
+    for wanted in WANTED {
+        let off = |at: &usize| (transmittance[*at] - wanted).abs();
+        let seen = (0..transmittance.len()).filter(|at| transmittance[*at].is_finite());
+        let Some(best) = seen.min_by(|a, b| off(a).total_cmp(&off(b))) else { break };
+        let pixel = [best as u32 % width, best as u32 / width];
+        if !chosen.contains(&pixel) {
+            chosen.push(pixel);
+        }
+    }
+    chosen
+}
+
+impl Probe {
+    /// The ray through the hair that a pixel shows; none where it shows none.
+    pub(super) fn new(
+        values: &mut ValueRenderer,
+        input: &FrameInput,
+        [width, height]: [u32; 2],
+        pixel: [u32; 2],
+        light: LightFrame,
+        truth: Option<&Points>,
+    ) -> Option<Self> {
+        let hit = values.pick(input, width, height, pixel.map(|at| at as f32 + 0.5))?;
+        let steps: Vec<(f32, f32)> = truth
+            .map(|truth| truth.map.along_ray(hit.position).marks)
+            .unwrap_or_default()
+            .iter()
+            .filter(|mark| mark.kind == RayMarkKind::Fragment)
+            .map(|mark| (mark.start, mark.transmittance))
+            .collect();
+        let reach = |of: Option<&(f32, f32)>, usual: f32| of.map_or(usual, |step| step.0);
+        let low = reach(steps.first(), -USUAL_REACH).min(0.0);
+        let high = reach(steps.last(), USUAL_REACH).max(0.0);
+        let margin = 0.05 * (high - low) + 1e-3;
+        let depth = |i: usize| low - margin + (high - low + 2.0 * margin) * i as f32 / (PLACES - 1) as f32;
+        let depths: Vec<f32> = (0..PLACES).map(depth).collect();
+        let places = depths.iter().map(|depth| hit.position + *depth * light.x).collect();
+        let first = input.style.strands.first_point.get(hit.strand).copied().unwrap_or(0);
+        let report = ProbeReport {
+            pixel,
+            strand: hit.strand as u32,
+            point: (hit.point as u32).saturating_sub(first),
+            position: hit.position.to_array(),
+            steps,
+            ..ProbeReport::default()
+        };
+        Some(Self { position: hit.position, depths, places, report })
+    }
+
+    /// Finds the mean of the light over a texel of the exact map along the ray; nothing where it does not fit in memory.
+    pub(super) fn find_reference(&mut self, input: &ShadowInput, settings: &ShadowSettings) {
+        let axis = |of: fn(&Vec3) -> f32| self.places.iter().map(of).collect::<Vec<f32>>();
+        let settings = ShadowSettings { method: ShadowMethod::Exact, ..*settings };
+        let found = converged(input, &settings, [&axis(|p| p.x), &axis(|p| p.y), &axis(|p| p.z)]);
+        if let Ok(found) = found {
+            self.report.reference = self.depths.iter().copied().zip(found.transmittance).collect();
+        }
+    }
+
+    /// Asks the map of the last picture along the ray.
+    ///
+    /// # Errors
+    /// A device that is lost.
+    pub(super) fn ask(
+        &mut self,
+        renderer: &mut Renderer,
+        input: &ShadowInput,
+        settings: &ShadowSettings,
+        name: &str,
+    ) -> Result<(), RenderError> {
+        let mut asked = self.places.clone();
+        asked.push(self.position);
+        let mut light = renderer.transmittance_at(0, &asked)?;
+        let value = light.pop().unwrap_or(1.0);
+        // What a map keeps is that of the definition on the processor.
+        let mut map = cpu_shadow(settings.method);
+        let marks = match map.build(input, settings) {
+            Ok(()) => map.along_ray(self.position).marks,
+            Err(_) => Vec::new(),
+        };
+        let marks = marks.iter().map(|mark| ProbeMark {
+            kind: mark.kind.label().to_lowercase(),
+            start: mark.start,
+            end: mark.end,
+            weight: mark.optical_depth,
+        });
+        self.report.methods.push(ProbeCurve {
+            method: name.to_owned(),
+            curve: self.depths.iter().copied().zip(light).collect(),
+            value,
+            marks: marks.collect(),
+        });
+        Ok(())
+    }
+}

@@ -1,0 +1,87 @@
+//! What all work without a window begins with: a loaded scene, hair that has lived, and something that draws.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use lovelock_render::{Backend, Gpu, GpuError, RenderError, Renderer};
+
+use super::Progress;
+use crate::{Access, Engine, LoadControl, Problem, Project, Scene, SceneLoader, StudioError};
+
+/// Opens what draws: `gpu` where one is given.
+///
+/// # Errors
+/// No adapter for [`Backend::Gpu`], or one that cannot be used.
+pub(crate) fn open_renderer(choice: Backend, gpu: Option<&Arc<Gpu>>) -> Result<Renderer, StudioError> {
+    let renderer = match gpu {
+        Some(gpu) => Renderer::on_device(Arc::clone(gpu)),
+        None => Renderer::open(choice),
+    };
+    renderer.map_err(|error| match (&error, choice) {
+        (RenderError::Gpu(GpuError::NoAdapter(_)), Backend::Gpu) => {
+            StudioError::work(format!("--backend gpu: {error}"))
+        }
+        _ => error.into(),
+    })
+}
+
+/// Loads the scene, and says what of it is missing.
+///
+/// # Errors
+/// Hair that cannot be grown, or [`StudioError::Cancelled`].
+pub(crate) fn load(
+    project: &Project,
+    access: &Access,
+    progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+) -> Result<(Arc<Scene>, Vec<Problem>), StudioError> {
+    let cancelled = AtomicBool::new(false);
+    let mut show = |what: &str, _: f32| {
+        if progress(Progress::Loading { what: what.to_owned() }).is_break() {
+            cancelled.store(true, std::sync::atomic::Ordering::Relaxed);
+        }
+    };
+    let mut control = LoadControl { cancelled: &cancelled, progress: &mut show };
+    let (scene, mut problems) = SceneLoader::new().load(project, access, &mut control)?;
+    problems.extend(scene.notes.iter().cloned());
+    Ok((scene, problems))
+}
+
+/// Lives through the frames before the first one that is drawn, so that frame 100 is the same in every recording.
+pub(crate) fn simulate_to(
+    engine: &mut Engine,
+    step: u64,
+    progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+) -> Result<(), StudioError> {
+    const STEPS_A_REPORT: u64 = 60;
+    let mut done = 0;
+    while done < step {
+        tell(progress, Progress::Simulating { done, total: step })?;
+        done = (done + STEPS_A_REPORT).min(step);
+        engine.advance_to_step(done);
+    }
+    Ok(())
+}
+
+/// Tells how far the work is.
+///
+/// # Errors
+/// [`StudioError::Cancelled`] where it is to stop.
+pub(crate) fn tell(
+    progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    what: Progress,
+) -> Result<(), StudioError> {
+    match progress(what) {
+        ControlFlow::Continue(()) => Ok(()),
+        ControlFlow::Break(()) => Err(StudioError::Cancelled),
+    }
+}
+
+impl From<RenderError> for StudioError {
+    fn from(error: RenderError) -> Self {
+        match error {
+            RenderError::Size { .. } => Self::option(error),
+            error => Self::work(error),
+        }
+    }
+}
