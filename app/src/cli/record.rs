@@ -18,7 +18,7 @@ pub(crate) fn run(task: &Record, output: Output) -> Result<(), StudioError> {
         transparency: task.transparency,
         backend: task.backend,
         access: std::mem::take(&mut scene.access),
-        gpu: None,
+        ..RecordRequest::default()
     };
     let report = scene.watched(|project, progress| lovelock_studio::record(project, &request, progress))?;
     output.result(&report, || summary(&report))

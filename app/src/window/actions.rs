@@ -110,7 +110,8 @@ impl Window {
 
     fn frame_hair(&mut self) {
         let Some(frame) = self.session.frame.clone() else { return };
-        let [width, height] = self.viewport.wanted;
+        let compares = self.layout.compare.shown;
+        let [width, height] = if compares { self.compare.wanted() } else { self.viewport.wanted };
         let aspect = width as f32 / height.max(1) as f32;
         let guides = &frame.guides.guides;
         let points = (0..guides.x.len()).map(|i| glam::Vec3::new(guides.x[i], guides.y[i], guides.z[i]));
@@ -176,8 +177,10 @@ impl Window {
             Purpose::SaveProject => self.save_to(path),
             Purpose::Film | Purpose::Sequence => {
                 let access = self.session.access().clone();
-                self.recorder.start(self.history.project().clone(), access, path, ctx);
+                let panes = self.layout.compare.shown.then(|| self.layout.compare.sheet());
+                self.recorder.start(self.history.project().clone(), access, path, panes, ctx);
             }
+            Purpose::Picture if self.layout.compare.shown => self.save_panes(path, ctx),
             Purpose::Picture => {
                 let Some(painted) = self.session.painted.clone() else { return };
                 let picture = &painted.picture;

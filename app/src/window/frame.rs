@@ -17,6 +17,7 @@ impl Window {
         self.tell(said);
         let said = self.compare.update(self.session.live());
         self.tell(said);
+        self.tell_saved();
         if let Some(end) = self.recorder.update() {
             match end {
                 panels::recording::State::Done(what) => {
@@ -190,7 +191,12 @@ impl Window {
                     recording =
                         panels::recording::ui(ui, &mut project.recording, self.recorder.state(), frames);
                 });
+                // Panes have their own: nobody draws the one picture beside them.
+                let compares = self.layout.compare.shown;
                 section(ui, "Statistics", true, |ui| {
+                    if compares {
+                        super::control::note(ui, "Of the one picture, before the comparison was opened.");
+                    }
                     let session = &self.session;
                     panels::statistics::ui(ui, &session.stages, &session.passes, &self.facts());
                 });
@@ -338,8 +344,10 @@ impl Window {
                 .project_path
                 .clone()
                 .unwrap_or_else(|| folder.join("hair").with_extension(PROJECT_EXTENSION)),
+            Purpose::Film if self.layout.compare.shown => folder.join("out").join("comparison.mp4"),
             Purpose::Film => folder.join("out").join("dance.mp4"),
             Purpose::Sequence => folder.join("out").join("frames"),
+            Purpose::Picture if self.layout.compare.shown => folder.join("comparison.png"),
             Purpose::Picture => folder.join("hair.png"),
         };
         let dialog = PathDialog::new(purpose, &suggestion);
@@ -355,8 +363,9 @@ impl Window {
         let clip = self.session.scene.as_ref().map_or(1, |scene| scene.frames(recording.fps));
         let first = recording.first_frame;
         let frames = recording.end_frame.unwrap_or(clip.max(first + 1)).saturating_sub(first);
+        let what = if self.layout.compare.shown { "The panes with their labels: " } else { "" };
         format!(
-            "{frames} frames of {} × {}, {} a second: {:.1} s. The Recording panel sets them.",
+            "{what}{frames} frames of {} × {}, {} a second: {:.1} s. The Recording panel sets them.",
             recording.width,
             recording.height,
             recording.fps,

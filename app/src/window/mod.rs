@@ -187,7 +187,9 @@ impl Window {
         match command {
             Command::Undo => self.history.undo_len() > 0,
             Command::Redo => self.history.redo_len() > 0,
-            Command::FrameHair | Command::SavePicture => self.session.painted.is_some(),
+            Command::SavePicture if self.layout.compare.shown => self.compare.has_pictures(),
+            Command::FrameHair => self.session.frame.is_some(),
+            Command::SavePicture => self.session.painted.is_some(),
             _ => true,
         }
     }

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use lovelock_studio::{Access, Progress, Project, RecordJob, RecordRequest, Stopwatch};
+use lovelock_studio::{Access, Progress, Project, RecordJob, RecordRequest, Sheet, Stopwatch};
 
 use super::panels::recording::State;
 
@@ -22,12 +22,19 @@ impl Default for Recorder {
 }
 
 impl Recorder {
-    /// Starts to record `project` to `out`, unless one runs.
-    pub(crate) fn start(&mut self, project: Arc<Project>, access: Access, out: &Path, ctx: &egui::Context) {
+    /// Starts to record `project`, or its panes put together, to `out`, unless one runs.
+    pub(crate) fn start(
+        &mut self,
+        project: Arc<Project>,
+        access: Access,
+        out: &Path,
+        panes: Option<Sheet>,
+        ctx: &egui::Context,
+    ) {
         if self.running.is_some() {
             return;
         }
-        let request = RecordRequest { out: out.to_owned(), access, ..RecordRequest::default() };
+        let request = RecordRequest { out: out.to_owned(), access, panes, ..RecordRequest::default() };
         let ctx = ctx.clone();
         match RecordJob::start(project, request, Arc::new(move || ctx.request_repaint())) {
             Ok(job) => {

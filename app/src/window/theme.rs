@@ -43,6 +43,11 @@ pub(crate) fn from_srgb([r, g, b]: [u8; 3]) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
+/// What the screen shows of a colour.
+pub(crate) fn to_srgb(color: Color32) -> [u8; 3] {
+    [color.r(), color.g(), color.b()]
+}
+
 /// Dresses `ctx`.
 pub(crate) fn apply(ctx: &egui::Context) {
     ctx.set_theme(Theme::Dark);

@@ -4,12 +4,12 @@ use egui::{Align, Layout, RichText, Ui, vec2};
 use egui_plot::{
     GridMark, HoverPosition, Line, LineStyle, MarkerShape, Plot, PlotPoint, PlotPoints, Points, Text,
 };
-use lovelock_studio::{LiveError, LiveTimes, Project};
+use lovelock_studio::{LiveError, LiveTimes, Project, bytes_label};
 
 use super::costs::{Costs, PLOTTED_SECS, Way, series};
-use super::label;
 use super::layout::CostPlot;
 use crate::window::control::note;
+use crate::window::panels::statistics::round_steps;
 use crate::window::theme;
 
 /// Width of the table of medians, points.
@@ -67,7 +67,9 @@ fn shown<'a>(
 }
 
 fn over_time(ui: &mut Ui, which: CostPlot, costs: &Costs, project: &Project, panes: &[usize]) {
-    let now = costs.now_secs();
+    // Seconds before the newest picture: where nothing is drawn, no time passes.
+    let newest = |way: &Way| way.samples.back().map_or(0.0, |sample| sample.at_secs);
+    let now = shown(costs, project, panes).map(|(_, way)| newest(way)).fold(0.0, f64::max);
     let lines: Vec<_> = shown(costs, project, panes)
         .map(|(index, way)| {
             let since = |at: f64| at - now;
@@ -83,7 +85,11 @@ fn over_time(ui: &mut Ui, which: CostPlot, costs: &Costs, project: &Project, pan
         .include_y(0.0)
         .y_axis_label("ms")
         .x_axis_label("seconds ago")
-        .x_axis_formatter(|mark, _| format!("{:.0}", -mark.value))
+        .x_grid_spacer(|_| {
+            (0..=6).map(|i| GridMark { value: -2.0 * f64::from(i), step_size: 10.0 }).collect()
+        })
+        .y_grid_spacer(|input| round_steps(input.bounds))
+        .x_axis_formatter(|mark, _| format!("{:.0}", mark.value.abs()))
         .label_formatter(|at| match at {
             HoverPosition::NearDataPoint { plot_name, position, .. } => {
                 Some(format!("{plot_name}\n{:.1} ms", position.y))
@@ -222,7 +228,7 @@ fn table(ui: &mut Ui, costs: &Costs, project: &Project, panes: &[usize]) {
             for ms in numbers {
                 right(ui, RichText::new(format!("{ms:.1}")));
             }
-            right(ui, RichText::new(label::bytes(way.shadow_bytes)));
+            right(ui, RichText::new(bytes_label(way.shadow_bytes)));
             let error = match &way.error {
                 LiveError::Measured { rmse, .. } => format!("{rmse:.4}"),
                 LiveError::Reference => "reference".to_owned(),

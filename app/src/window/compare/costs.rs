@@ -103,11 +103,6 @@ impl Costs {
     pub(super) fn trail(&self, series: Series) -> impl Iterator<Item = &Way> {
         self.ways.iter().filter(move |way| way.series() == series)
     }
-
-    /// Seconds since the window was opened.
-    pub(super) fn now_secs(&self) -> f64 {
-        self.clock.secs()
-    }
 }
 
 #[cfg(test)]

@@ -1,22 +1,14 @@
 //! Where panes are.
 
 use egui::{Rect, Vec2, pos2};
-
-/// Width over height that a pane should have, about.
-const SHAPE: f32 = 1.35;
+use lovelock_studio::pane_columns;
 
 /// Room between panes, points.
 pub(super) const GAP: f32 = 3.0;
 
-/// Columns of a grid of `panes` on a page of that size, with `header` over each: those that make panes largest.
+/// Columns of a grid of `panes` on a page of that size.
 pub(super) fn columns(panes: usize, page: Vec2, header: f32) -> usize {
-    let larger = |columns: usize| {
-        let rows = panes.div_ceil(columns);
-        let width = page.x / columns as f32;
-        let height = (page.y / rows as f32 - header).max(1.0);
-        (width / SHAPE).min(height)
-    };
-    (1..=panes.max(1)).max_by(|&a, &b| larger(a).total_cmp(&larger(b)).then(b.cmp(&a))).unwrap_or(1)
+    pane_columns(panes, page.into(), header)
 }
 
 /// The places of `panes` on a page, row by row.

@@ -1,12 +1,11 @@
 //! The line over a pane: its method, its settings, and what can be done with it.
 
 use egui::containers::menu::{MenuButton, MenuConfig};
-use egui::{PopupCloseBehavior, RichText, Sense, Ui, Vec2, vec2};
-use egui_material_icons::icons;
+use egui::{PopupCloseBehavior, Rect, RichText, Ui, UiBuilder, pos2, vec2};
+use egui_material_icons::{MaterialIcon, icons};
 use lovelock_studio::Contender;
 use lovelock_studio::render::{Backend, PictureSettings, ShadowMethod, ShadowSettings, Transparency};
 
-use super::label;
 use crate::window::control::{Number, choice, note};
 use crate::window::{panels, theme};
 
@@ -24,16 +23,56 @@ pub(super) enum Ask {
     Remove(usize),
 }
 
-/// The line over pane `index` of `panes`; `pane` is changed by its controls.
-pub(super) fn ui(ui: &mut Ui, index: usize, panes: usize, pane: &mut Contender) -> Option<Ask> {
+/// Width of one of the buttons at the right, points.
+const BUTTON: f32 = 24.0;
+
+/// The line over pane `index` of `panes`, which fills `line`; `pane` is changed by its controls.
+pub(super) fn ui(ui: &mut Ui, line: Rect, index: usize, panes: usize, pane: &mut Contender) -> Option<Ask> {
     let mut ask = None;
-    ui.spacing_mut().item_spacing.x = 4.0;
-    let (swatch, _) = ui.allocate_exact_size(vec2(8.0, 14.0), Sense::hover());
+    let middle = line.center().y;
+    let part = |from: f32, to: f32| Rect::from_x_y_ranges(from..=to.max(from), middle - 10.0..=middle + 10.0);
+    let swatch = Rect::from_center_size(pos2(line.left() + 11.0, middle), vec2(8.0, 14.0));
     ui.painter().rect_filled(swatch, 2.0, theme::PLOT[index % theme::PLOT.len()]);
-    // Room for the buttons at the right.
-    let buttons = 4.0 * 26.0;
-    let width = (ui.available_width() - buttons - 4.0).clamp(60.0, 150.0);
-    let method = egui::ComboBox::from_id_salt(("method", index))
+    let buttons = line.right() - 4.0 * BUTTON - 4.0;
+    let left = line.left() + 20.0;
+    let width = (buttons - left - 4.0).clamp(50.0, 148.0);
+    ui.scope_builder(UiBuilder::new().max_rect(part(left, left + width)), |ui| {
+        method(ui, index, pane, width)
+    });
+    let said = pane.settings_label();
+    let room = part(left + width + 8.0, buttons - 2.0);
+    if room.width() > 36.0 {
+        let text = egui::Label::new(RichText::new(&said).small().color(theme::QUIET)).truncate();
+        ui.scope_builder(
+            UiBuilder::new().max_rect(room).layout(egui::Layout::left_to_right(egui::Align::Center)),
+            |ui| ui.add(text).on_hover_text(&said),
+        );
+    }
+    let place = |nth: u8| part(buttons + BUTTON * f32::from(nth), buttons + BUTTON * f32::from(nth + 1));
+    ui.scope_builder(UiBuilder::new().max_rect(place(0)), |ui| settings(ui, index, pane));
+    let mut button = |nth: u8, icon: MaterialIcon, name: &str, tip: &str, enabled: bool, what: Ask| {
+        let button = egui::Button::new(icon).frame(false);
+        let response = ui
+            .scope_builder(UiBuilder::new().max_rect(place(nth)), |ui| ui.add_enabled(enabled, button))
+            .inner;
+        let response = response.on_hover_text(tip);
+        let name = format!("{name} {}", index + 1);
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, enabled, &name));
+        if response.clicked() {
+            ask = Some(what);
+        }
+    };
+    let swap = "Changes places with the next pane.";
+    button(1, icons::ICON_SWAP_HORIZ, "Swap pane", swap, index + 1 < panes, Ask::Swap(index));
+    let take = "Draws the project this way from now on.";
+    button(2, icons::ICON_CHECK, "Use pane", take, true, Ask::Use(index));
+    button(3, icons::ICON_CLOSE, "Remove pane", "Removes this pane.", panes > 1, Ask::Remove(index));
+    ask
+}
+
+/// The choice of method.
+fn method(ui: &mut Ui, index: usize, pane: &mut Contender, width: f32) {
+    let response = egui::ComboBox::from_id_salt(("method", index))
         .selected_text(pane.shadow.method.label())
         .width(width)
         .height(320.0)
@@ -45,44 +84,15 @@ pub(super) fn ui(ui: &mut Ui, index: usize, panes: usize, pane: &mut Contender) 
             }
         })
         .response;
-    method.widget_info(|| {
+    response.widget_info(|| {
         let name = format!("Method of pane {}", index + 1);
         egui::WidgetInfo::labeled(egui::Role::ComboBox, true, name)
     });
-    let said = label::rest(pane);
-    let room = ui.available_width() - buttons;
-    let text = RichText::new(&said).small().color(theme::QUIET);
-    ui.allocate_ui_with_layout(
-        vec2(room.max(0.0), 20.0),
-        egui::Layout::left_to_right(egui::Align::Center),
-        |ui| {
-            ui.set_min_width(room.max(0.0));
-            if room > 40.0 {
-                ui.add(egui::Label::new(text).truncate()).on_hover_text(&said);
-            }
-        },
-    );
-    settings(ui, index, pane);
-    let mut button = |ui: &mut Ui, icon, name: &str, tip: &str, enabled, what| {
-        let button = egui::Button::new(icon).frame(false).min_size(Vec2::splat(20.0));
-        let response = ui.add_enabled(enabled, button).on_hover_text(tip);
-        let name = format!("{name} {}", index + 1);
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, enabled, &name));
-        if response.clicked() {
-            ask = Some(what);
-        }
-    };
-    let swap = "Changes places with the pane to the right.";
-    button(ui, icons::ICON_SWAP_HORIZ, "Swap pane", swap, index + 1 < panes, Ask::Swap(index));
-    let take = "Draws the project this way from now on.";
-    button(ui, icons::ICON_CHECK, "Use pane", take, true, Ask::Use(index));
-    button(ui, icons::ICON_CLOSE, "Remove pane", "Removes this pane.", panes > 1, Ask::Remove(index));
-    ask
 }
 
 /// The button that opens all settings of a pane.
 fn settings(ui: &mut Ui, index: usize, pane: &mut Contender) {
-    let button = egui::Button::new(icons::ICON_TUNE).frame(false).min_size(Vec2::splat(20.0));
+    let button = egui::Button::new(icons::ICON_TUNE).frame(false);
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     let (response, _) = MenuButton::from_button(button).config(config).ui(ui, |ui| {
         ui.set_width(300.0);

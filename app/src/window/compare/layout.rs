@@ -1,7 +1,9 @@
 //! How the comparison is laid out: kept between runs, not part of the project.
 
-use lovelock_studio::LiveShows;
+use lovelock_studio::{LiveShows, LiveView, Sheet};
 use serde::{Deserialize, Serialize};
+
+use crate::window::theme;
 
 /// How the comparison is laid out.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -98,6 +100,21 @@ impl CompareLayout {
     /// The two panes that are compared, of `panes` that there are.
     pub(crate) fn pair_of(&self, panes: usize) -> [usize; 2] {
         self.pair.map(|pane| pane.min(panes.saturating_sub(1)))
+    }
+
+    /// The panes put together into one picture as they are on the screen.
+    pub(crate) fn sheet(&self) -> Sheet {
+        Sheet {
+            wipe: self.wipe.then_some((self.pair, self.split)),
+            view: self.view(),
+            colors: theme::PLOT.map(theme::to_srgb),
+        }
+    }
+
+    /// What the panes show.
+    pub(crate) fn view(&self) -> LiveView {
+        let measures = self.measures || self.shows.colors().is_some();
+        LiveView { shows: self.shows, largest: self.largest, measures, light: 0 }
     }
 
     /// The panes that are on the screen, of `panes` that there are.

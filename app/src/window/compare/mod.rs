@@ -5,11 +5,11 @@ mod cost_plot;
 mod costs;
 mod grid;
 mod header;
-mod label;
 mod layout;
 mod legend;
 mod page;
 mod probe_plot;
+mod save;
 mod texture;
 mod zoom;
 
@@ -17,13 +17,14 @@ use std::sync::Arc;
 
 use egui::{CentralPanel, Frame, Key, Panel, Rect, Ui};
 use lovelock_studio::{
-    Command, CompareSection, Contender, FrameSnapshot, Live, LivePane, LiveProbe, LiveRequest, LiveView,
-    ProbePlace, Project,
+    Command, CompareSection, Contender, FrameSnapshot, Live, LivePane, LiveProbe, LiveRequest, ProbePlace,
+    Project,
 };
 
 use super::Window;
 use costs::Costs;
 pub(crate) use layout::CompareLayout;
+use save::Saving;
 use texture::PaneTextures;
 use zoom::Zoom;
 
@@ -42,8 +43,11 @@ pub(crate) struct Compare {
     probed: Option<Arc<LiveProbe>>,
     /// Size that panes should have, pixels.
     wanted: [u32; 2],
+    /// Size of the page that the panes share, points.
+    page: egui::Vec2,
     /// Whether the line of the wipe is being dragged.
     splitting: bool,
+    saving: Option<Saving>,
     sent: Option<LiveRequest>,
 }
 
@@ -81,7 +85,7 @@ impl Compare {
             height,
             // What is compared is of one instant; where time stands still every pane is.
             together: layout.wipe || playing,
-            view: view(layout),
+            view: layout.view(),
             probe: self.place.filter(|_| layout.probe),
         };
         if !self.sent.as_ref().is_some_and(|sent| is_same(sent, &request)) {
@@ -108,17 +112,21 @@ impl Compare {
         [self.probed.as_ref().map_or(0, |probed| probed.number), self.place.map_or(0, |place| place.number)]
     }
 
+    /// Size that panes should have, pixels.
+    pub(crate) fn wanted(&self) -> [u32; 2] {
+        self.wanted
+    }
+
+    /// Whether there is a picture of any pane.
+    pub(crate) fn has_pictures(&self) -> bool {
+        self.panes.iter().flatten().any(|pane| !pane.picture.rgba.is_empty())
+    }
+
     /// Asks for the hair at a place of the pictures, shares from the left and the top.
     fn probe_at(&mut self, x: f32, y: f32) {
         let number = self.place.map_or(1, |place| place.number + 1);
         self.place = Some(ProbePlace { number, x, y });
     }
-}
-
-/// What the layout asks the panes to show.
-fn view(layout: &CompareLayout) -> LiveView {
-    let colored = layout.shows.colors().is_some();
-    LiveView { shows: layout.shows, largest: layout.largest, measures: layout.measures || colored, light: 0 }
 }
 
 /// Whether two requests ask for the same.
@@ -173,6 +181,7 @@ impl Window {
             }
             let page = ui.available_rect_before_wrap();
             ui.painter().rect_filled(page, 0.0, super::theme::PAGE);
+            self.compare.page = page.size();
             self.panes(ui, page, project);
             self.running(ui, page);
         });

@@ -6,7 +6,7 @@ use egui::{
 };
 use lovelock_studio::{LivePane, LiveTimes, Project};
 
-use super::{Window, grid, header, label};
+use super::{Window, grid, header};
 use crate::window::viewport::{self, Viewport};
 use crate::window::{camera_control, theme};
 
@@ -133,10 +133,7 @@ impl Window {
         let pane = project.compare.panes.get_mut(index)?;
         let line = Rect::from_min_size(cell.min, vec2(cell.width(), header::HEIGHT));
         ui.painter().rect_filled(line, 0.0, theme::PANEL);
-        let builder = UiBuilder::new()
-            .max_rect(line.shrink2(vec2(6.0, 2.0)))
-            .layout(egui::Layout::left_to_right(egui::Align::Center));
-        ui.scope_builder(builder, |ui| header::ui(ui, index, panes, pane)).inner
+        header::ui(ui, line, index, panes, pane)
     }
 
     /// How large panes should be drawn that are shown at `place`.
@@ -205,14 +202,17 @@ impl Window {
             .costs
             .of(&pane.contender)
             .map_or_else(|| pane.times.whole(), |way| way.median(LiveTimes::whole));
-        let said = label::figures(&pane, ms, newest - pane.time_secs);
+        let mut said = pane.figures_label(ms);
+        if let Some(age) = age_label(newest - pane.time_secs) {
+            said = format!("{said} · {age}");
+        }
         Viewport::caption(ui, place, corner, &said, theme::BRIGHT);
     }
 
     /// Whose picture is seen, in a corner.
     fn name(&self, ui: &Ui, place: Rect, index: usize, project: &Project, corner: Align2) {
         let Some(pane) = project.compare.panes.get(index) else { return };
-        let text = format!("{} · {}", index + 1, label::whole(pane));
+        let text = format!("{} · {}", index + 1, pane.label());
         Viewport::caption(ui, place, corner, &text, theme::PLOT[index % theme::PLOT.len()]);
     }
 
@@ -234,5 +234,26 @@ impl Window {
         for side in [Vec2::X, Vec2::Y, -Vec2::X, -Vec2::Y] {
             painter.line_segment([at + side * 7.0, at + side * 11.0], Stroke::new(1.5, theme::ACCENT));
         }
+    }
+}
+
+/// How old a pane is.
+fn age_label(secs: f64) -> Option<String> {
+    match secs {
+        // A step of the simulation is no age.
+        secs if secs < 0.025 => None,
+        secs if secs < 0.95 => Some(format!("{:.0} ms old", 1e3 * secs)),
+        secs => Some(format!("{secs:.1} s old")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pane_says_its_age_when_it_has_one() {
+        let said = [-1.0, 0.0, 0.12, 2.0].map(age_label);
+        assert_eq!(said, [None, None, Some("120 ms old".to_owned()), Some("2.0 s old".to_owned())]);
     }
 }

@@ -109,7 +109,7 @@ fn in_words(name: &str) -> String {
 }
 
 /// Lines of the grid at 1, 2 or 5 times a power of ten, few enough that each has room for its number.
-fn round_steps((low, high): (f64, f64)) -> Vec<GridMark> {
+pub(crate) fn round_steps((low, high): (f64, f64)) -> Vec<GridMark> {
     let step_size = round_step((high - low) / 4.0);
     // Bounds that are no numbers, or too far from zero for the step, have no lines.
     let (first, last) = ((low / step_size).ceil(), (high / step_size).floor());

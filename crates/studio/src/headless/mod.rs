@@ -1,5 +1,6 @@
 //! Recording without a window.
 
+mod drawer;
 mod job;
 mod new_folders;
 mod prepare;

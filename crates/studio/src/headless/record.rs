@@ -5,10 +5,11 @@ use std::path::Path;
 use std::sync::Arc;
 
 use lovelock_record::{FrameRate, OutputKind, PictureSink, RecordError, SinkSettings};
-use lovelock_render::{Picture, Renderer};
+use lovelock_render::Picture;
 
+use super::drawer::Drawer;
 use super::new_folders::NewFolders;
-use super::prepare::{load, open_renderer, simulate_to, tell};
+use super::prepare::{load, simulate_to, tell};
 use super::{Progress, RecordReport, RecordRequest};
 use crate::{Engine, FrameClock, PassHistory, Project, Scene, StageHistory, Stopwatch, StudioError};
 
@@ -35,7 +36,7 @@ pub fn record(
 
     let frames = job.frames(&scene)?;
     // After what the request may get wrong: drivers speak on standard error while they are tried.
-    let mut renderer = open(&job.project, request)?;
+    let mut drawer = Drawer::open(&job.project, request)?;
     let clock = FrameClock::new(job.fps);
     let mut engine = Engine::with_step(Arc::clone(&scene), job.project.simulation, clock.step_secs);
     simulate_to(&mut engine, clock.step_of_frame(frames.start), progress)?;
@@ -54,9 +55,7 @@ pub fn record(
         let watch = Stopwatch::start();
         engine.advance_to_step(clock.step_of_frame(frame));
         let snapshot = engine.snapshot();
-        let camera = snapshot.camera(&job.project.camera);
-        let input = snapshot.frame_input(&job.project, &camera);
-        let stats = renderer.picture(&input, job.width, job.height, &mut picture)?;
+        let stats = drawer.picture(&job.project, &snapshot, [job.width, job.height], &mut picture)?;
         let encoding = Stopwatch::start();
         sink.push(&picture.rgba).map_err(refused)?;
         let mut times = snapshot.times;
@@ -80,8 +79,8 @@ pub fn record(
         fps: job.fps,
         width: job.width,
         height: job.height,
-        backend: renderer.backend().to_string(),
-        adapter: renderer.adapter().to_owned(),
+        backend: drawer.backend(),
+        adapter: drawer.adapter().to_owned(),
         shadow: job.project.shadow.method.to_string(),
         transparency: job.project.picture.transparency.to_string(),
         strands: scene.style.strands.count() as u64,
@@ -177,9 +176,4 @@ impl<'a> Job<'a> {
             StudioError::Work { file, message: error.to_string() }
         }
     }
-}
-
-/// Opens what draws.
-fn open(project: &Project, request: &RecordRequest) -> Result<Renderer, StudioError> {
-    open_renderer(request.backend.unwrap_or(project.picture.backend), request.gpu.as_ref())
 }

@@ -26,7 +26,7 @@ pub struct RecordReport {
     pub width: u32,
     /// Height, pixels.
     pub height: u32,
-    /// `gpu` or `cpu`.
+    /// `gpu` or `cpu`; `panes` for a film of panes, which have one each.
     pub backend: String,
     /// Name of the adapter that drew.
     pub adapter: String,

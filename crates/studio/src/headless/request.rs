@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use lovelock_render::{Backend, Gpu, ShadowMethod, Transparency};
 
-use crate::{Access, Problem};
+use crate::{Access, Problem, Sheet};
 
 /// What to record; where a field is none, the project says.
 #[derive(Clone, Debug, Default)]
@@ -29,6 +29,8 @@ pub struct RecordRequest {
     pub access: Access,
     /// The device to draw on; one is opened where none.
     pub gpu: Option<Arc<Gpu>>,
+    /// The project's panes beside each other in place of its picture.
+    pub panes: Option<Sheet>,
 }
 
 /// How far a recording or a comparison is.

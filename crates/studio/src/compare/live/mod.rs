@@ -3,12 +3,15 @@
 //! A round draws every pane that is asked for on one instant, whose strands are interpolated once. Panes are left in
 //! their slots as they are finished, or together at the end of the round.
 
+mod film;
 mod heat;
+mod label;
 mod probe;
 mod reference;
 mod renderers;
 mod request;
 mod round;
+mod sheet;
 mod thread;
 mod view;
 
@@ -16,10 +19,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
+pub(crate) use film::FilmOfPanes;
+pub use label::bytes_label;
 use lovelock_render::Renderer;
 pub use probe::{LiveProbe, ProbePlace, ProbedHair};
 use renderers::{Open, Renderers};
 pub use request::{LiveError, LivePane, LiveRequest, LiveTimes};
+pub use sheet::{Sheet, SheetPane, pane_columns};
 pub use view::{LiveShows, LiveView};
 
 use crate::{CompareSection, Slot};

@@ -2,11 +2,11 @@
 
 use glam::Vec3;
 use lovelock_groom::Strands;
-use lovelock_render::{Light, RenderError, Renderer, ValueRenderer};
+use lovelock_render::{Light, RayStructure, RenderError, Renderer, ValueRenderer};
 
 use super::LiveRequest;
 use super::round::input_of;
-use crate::{FrameSnapshot, ProbeCurve};
+use crate::{FrameSnapshot, ProbeCurve, ProbeMark};
 
 /// Points of a curve.
 const SAMPLES: usize = 257;
@@ -138,11 +138,13 @@ fn reach(strands: &Strands, at: Vec3, along: Vec3) -> [f32; 2] {
     [(low - MARGIN).max(-FARTHEST), (high + MARGIN).min(FARTHEST)]
 }
 
-/// What the maps of a pane's last picture say along the ray.
+/// What the maps of a pane's last picture say along the ray, and what they keep there: on a graphics card, where they
+/// cannot be looked into, what `definition` finds.
 pub(super) fn curve(
     renderer: &mut Renderer,
     (light, along): (usize, Vec3),
     hair: &ProbedHair,
+    definition: impl FnOnce() -> Result<RayStructure, RenderError>,
 ) -> Result<ProbeCurve, RenderError> {
     let [low, high] = hair.range;
     let depth = |i: usize| low + (high - low) * i as f32 / (SAMPLES - 1) as f32;
@@ -151,5 +153,15 @@ pub(super) fn curve(
     let mut found = renderer.transmittance_at(light, &points)?;
     let value = found.pop().unwrap_or(1.0);
     let curve = found.into_iter().enumerate().map(|(i, t)| (depth(i), t)).collect();
-    Ok(ProbeCurve { method: String::new(), curve, value, marks: Vec::new() })
+    let kept = match renderer.along_ray(light, hair.position)? {
+        Some(kept) => kept,
+        None => definition()?,
+    };
+    let marks = kept.marks.iter().map(|mark| ProbeMark {
+        kind: mark.kind.label().to_lowercase(),
+        start: mark.start,
+        end: mark.end,
+        weight: mark.optical_depth,
+    });
+    Ok(ProbeCurve { method: String::new(), curve, value, marks: marks.collect() })
 }

@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
+use glam::Vec3;
 use lovelock_groom::{HairLook, Strands};
 use lovelock_render::{
-    Backend, Camera, CpuRenderer, Light, Picture, ShadowMethod, ShadowSettings, Transparency,
+    Backend, Camera, CpuRenderer, Light, Picture, RayMarkKind, ShadowMethod, ShadowSettings, Transparency,
 };
 
 use super::round::input_of;
@@ -16,7 +17,9 @@ const UNSEEN: u32 = 16;
 /// The exact method's transmittance and picture. Each is made when it is first asked for, once an instant.
 #[derive(Default)]
 pub(super) struct ExactReference {
-    renderer: CpuRenderer,
+    /// Draws what nobody looks at, for its transmittance and its maps.
+    unseen: CpuRenderer,
+    seen: CpuRenderer,
     transmittance: Option<(TransmittanceKey, Result<Arc<Vec<f32>>, String>)>,
     picture: Option<(PictureKey, Result<Arc<Picture>, String>)>,
 }
@@ -82,8 +85,9 @@ impl ExactReference {
         unseen.lights = vec![light.clone()];
         unseen.shadow = shadow;
         unseen.picture.transparency = Transparency::Opaque;
-        let found = self.draw(&unseen, snapshot, strands, [UNSEEN; 2], &mut Picture::default());
-        let found = found.and_then(|()| self.renderer.transmittance(0).map_err(|error| error.to_string()));
+        let size = [UNSEEN; 2];
+        let found = draw(&mut self.unseen, &unseen, snapshot, strands, size, &mut Picture::default());
+        let found = found.and_then(|()| self.unseen.transmittance(0).map_err(|error| error.to_string()));
         let found = found.map(Arc::new);
         self.transmittance = Some((key, found.clone()));
         found
@@ -113,23 +117,31 @@ impl ExactReference {
             return found.clone();
         }
         let mut picture = Picture::default();
-        let drawn = self.draw(&key.project, snapshot, strands, size, &mut picture);
+        let drawn = draw(&mut self.seen, &key.project, snapshot, strands, size, &mut picture);
         let found = drawn.map(|()| Arc::new(picture));
         self.picture = Some((key, found.clone()));
         found
     }
 
-    fn draw(
-        &mut self,
-        project: &Project,
-        snapshot: &FrameSnapshot,
-        strands: &Strands,
-        [width, height]: [u32; 2],
-        picture: &mut Picture,
-    ) -> Result<(), String> {
-        let camera = snapshot.camera(&project.camera);
-        let input = input_of(snapshot, project, strands, &camera);
-        let drawn = self.renderer.picture(&input, width, height, picture);
-        drawn.map(|_| ()).map_err(|error| error.to_string())
+    /// The steps of transmittance along the light through `p`, of the light and the instant that
+    /// [`ExactReference::transmittance`] was last asked for: depth from `p`, metres, and transmittance from there on.
+    pub(super) fn steps(&mut self, p: Vec3) -> Vec<(f32, f32)> {
+        let found = self.unseen.along_ray(0, p).unwrap_or_default();
+        let steps = found.marks.iter().filter(|mark| mark.kind == RayMarkKind::Fragment);
+        steps.map(|mark| (mark.start, mark.transmittance)).collect()
     }
+}
+
+fn draw(
+    renderer: &mut CpuRenderer,
+    project: &Project,
+    snapshot: &FrameSnapshot,
+    strands: &Strands,
+    [width, height]: [u32; 2],
+    picture: &mut Picture,
+) -> Result<(), String> {
+    let camera = snapshot.camera(&project.camera);
+    let input = input_of(snapshot, project, strands, &camera);
+    let drawn = renderer.picture(&input, width, height, picture);
+    drawn.map(|_| ()).map_err(|error| error.to_string())
 }

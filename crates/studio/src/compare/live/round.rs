@@ -3,11 +3,13 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
+use glam::Vec3;
 use lovelock_groom::Strands;
 use lovelock_metrics::errors;
 use lovelock_render::{
-    Camera, FrameInput, HairPose, Light, Picture, RenderError, Transparency, ValueRenderer,
+    Camera, FrameInput, HairPose, Light, Picture, RayStructure, RenderError, Transparency, ValueRenderer,
 };
+use lovelock_shadow::{LightFrame, ShadowInput, cpu_shadow};
 
 use super::probe::{Probes, curve, direction};
 use super::reference::ExactReference;
@@ -174,16 +176,45 @@ impl Rounds {
         let light = enabled(&request.project).nth(request.view.light)?;
         let mut probe = self.probes.follow(&request.snapshot, &self.strands, light)?;
         if let Some(hair) = &mut probe.hair {
+            let (project, snapshot) = (&request.project, &request.snapshot);
+            let exact = self.reference.transmittance(project, snapshot, &self.strands, request.view.light);
+            if exact.is_ok() {
+                hair.steps = self.reference.steps(hair.position);
+            }
             for &pane in &request.panes {
                 let Some(renderer) = self.renderers.last(pane) else { continue };
                 // A pane that could not be drawn has no maps, and says so itself.
-                if let Ok(curve) = curve(renderer, (request.view.light, direction(light)), hair) {
+                let strands = &self.strands;
+                let definition = || kept(project, snapshot, strands, pane, light, hair.position);
+                if let Ok(curve) = curve(renderer, (request.view.light, direction(light)), hair, definition) {
                     hair.curves.push((pane, curve));
                 }
             }
         }
         Some(probe)
     }
+}
+
+/// What a pane's method keeps along the light through `p`, by its definition.
+fn kept(
+    project: &Project,
+    snapshot: &FrameSnapshot,
+    strands: &Strands,
+    pane: usize,
+    light: &Light,
+    p: Vec3,
+) -> Result<RayStructure, RenderError> {
+    let drawn = drawn_as(project, &project.compare.panes.get(pane).cloned().unwrap_or_default());
+    let input = ShadowInput {
+        strands,
+        strand_width: project.look.shadow_width(strands.count()),
+        light: LightFrame::new(direction(light)),
+        anchor: snapshot.guides.world_from_head.translation.into(),
+        maps: enabled(project).count() as u32,
+    };
+    let mut map = cpu_shadow(drawn.shadow.method);
+    map.build(&input, &drawn.shadow)?;
+    Ok(map.along_ray(p))
 }
 
 /// The lights that are on.

@@ -1,0 +1,78 @@
+//! The panes as a picture file, written aside.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, TryRecvError, sync_channel};
+
+use lovelock_studio::{LivePane, LiveTimes, Sheet, recording};
+
+use super::{Compare, grid, header};
+use crate::window::{Window, notices};
+
+/// A picture that is being written.
+pub(super) struct Saving {
+    path: PathBuf,
+    done: Receiver<Result<(), String>>,
+}
+
+impl Compare {
+    /// How the picture was saved, once it is: the path, or a sentence.
+    pub(crate) fn saved(&mut self) -> Option<Result<PathBuf, String>> {
+        let saving = self.saving.as_ref()?;
+        let done = match saving.done.try_recv() {
+            Ok(done) => done,
+            Err(TryRecvError::Empty) => return None,
+            Err(TryRecvError::Disconnected) => Err("The picture was not saved.".to_owned()),
+        };
+        let path = saving.path.clone();
+        self.saving = None;
+        Some(done.map(|()| path))
+    }
+
+    /// Starts to write the panes that are on the screen, with their labels.
+    fn save(&mut self, sheet: Sheet, columns: usize, panes: &[usize], path: &Path, ctx: &egui::Context) {
+        let shown: Vec<(usize, Arc<LivePane>, f64)> = panes
+            .iter()
+            .filter_map(|&index| {
+                let pane = self.panes.get(index)?.clone()?;
+                let known = self.costs.of(&pane.contender);
+                let ms = known.map_or_else(|| pane.times.whole(), |way| way.median(LiveTimes::whole));
+                Some((index, pane, ms))
+            })
+            .collect();
+        let whole = sheet.size_of(shown.len(), columns, self.wanted);
+        let (sender, done) = sync_channel(1);
+        let (to, wake) = (path.to_owned(), ctx.clone());
+        let write = move || {
+            let panes: Vec<_> = shown.iter().map(|(index, pane, ms)| (*index, &**pane, *ms)).collect();
+            let picture = sheet.compose(&panes, whole);
+            let written = recording::write_png(&to, picture.width, picture.height, &picture.rgba);
+            let _ = sender.send(written.map_err(|error| error.to_string()));
+            wake.request_repaint();
+        };
+        let spawned = std::thread::Builder::new().name("save picture".to_owned()).spawn(write);
+        // Without a thread the channel is closed, which says that nothing was saved.
+        drop(spawned);
+        self.saving = Some(Saving { path: path.to_owned(), done });
+    }
+}
+
+impl Window {
+    /// Starts to write the panes that are on the screen, with their labels.
+    pub(in crate::window) fn save_panes(&mut self, path: &Path, ctx: &egui::Context) {
+        let layout = &self.layout.compare;
+        let panes = layout.visible(self.history.project().compare.panes.len());
+        let columns = grid::columns(panes.len(), self.compare.page, header::HEIGHT);
+        let sheet = layout.sheet();
+        self.compare.save(sheet, columns, &panes, path, ctx);
+    }
+
+    /// Tells that the picture of the panes was saved, or why not.
+    pub(in crate::window) fn tell_saved(&mut self) {
+        match self.compare.saved() {
+            Some(Ok(path)) => self.notices.tell(notices::Kind::Done, format!("Saved {}", path.display())),
+            Some(Err(why)) => self.tell([why]),
+            None => {}
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! Frames of a film of panes.
+
+use std::sync::Arc;
+
+use lovelock_render::{Picture, Renderer};
+
+use super::renderers::Renderers;
+use super::round::Rounds;
+use super::{LiveRequest, Sheet};
+use crate::{FrameSnapshot, Project, StudioError};
+
+/// Draws all panes of a frame and puts them together.
+pub(crate) struct FilmOfPanes {
+    rounds: Rounds,
+    sheet: Sheet,
+    project: Arc<Project>,
+}
+
+impl FilmOfPanes {
+    /// The panes of `project`, put together as `sheet` says.
+    pub(crate) fn new(project: &Project, sheet: Sheet) -> Self {
+        let rounds = Rounds::new(Renderers::new(Box::new(Renderer::open)));
+        Self { rounds, sheet, project: Arc::new(project.clone()) }
+    }
+
+    /// One frame. Returns what drew it.
+    ///
+    /// # Errors
+    /// No pane can be drawn; a pane that cannot be drawn beside others says so in its place.
+    pub(crate) fn frame(
+        &mut self,
+        snapshot: &Arc<FrameSnapshot>,
+        whole: [u32; 2],
+        picture: &mut Picture,
+    ) -> Result<Vec<String>, StudioError> {
+        let panes = self.sheet.panes(self.project.compare.panes.len());
+        let [width, height] = self.sheet.pane_size(panes.len(), whole);
+        let request = LiveRequest {
+            project: Arc::clone(&self.project),
+            snapshot: Arc::clone(snapshot),
+            panes,
+            width,
+            height,
+            together: true,
+            view: self.sheet.view,
+            probe: None,
+        };
+        self.rounds.begin(&request);
+        let mut drawn = Vec::new();
+        for &index in &request.panes {
+            // A lost device is opened again, as often as the thread of the window does.
+            let mut pane = self.rounds.pane(&request, index);
+            while pane.1.as_ref().is_some_and(|broken| broken.try_again) {
+                pane = self.rounds.pane(&request, index);
+            }
+            drawn.push((index, pane.0));
+        }
+        if let Some((_, first)) = drawn.first()
+            && drawn.iter().all(|(_, pane)| pane.problem.is_some())
+        {
+            return Err(StudioError::work(first.problem.clone().unwrap_or_default()));
+        }
+        let shown: Vec<_> = drawn.iter().map(|(index, pane)| (*index, pane, pane.times.whole())).collect();
+        *picture = self.sheet.compose(&shown, whole);
+        let mut adapters: Vec<String> = drawn.into_iter().map(|(_, pane)| pane.adapter.name).collect();
+        adapters.dedup();
+        Ok(adapters)
+    }
+}

@@ -1,0 +1,204 @@
+//! Panes put together into one picture, with their labels.
+
+use lovelock_metrics::{Canvas, Image, Legend};
+use lovelock_render::Picture;
+
+use super::heat::resize;
+use super::{LivePane, LiveView};
+use crate::CompareSection;
+
+/// Height of the line over a pane, pixels.
+const HEADER: u32 = 26;
+/// Pixels between panes.
+const GAP: u32 = 4;
+/// Pixels about the scale of colours.
+const MARGIN: u32 = 14;
+/// Behind everything, the line over a pane, its text, and text over pictures.
+const PAGE: [u8; 3] = [19, 20, 23];
+const LINE: [u8; 3] = [28, 30, 34];
+const QUIET: [u8; 3] = [168, 172, 180];
+const INK: [u8; 3] = [236, 238, 242];
+
+/// How panes are put together into one picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sheet {
+    /// The panes left and right of a line, and where that is, a share of the width; all panes in a grid where none.
+    pub wipe: Option<([usize; 2], f32)>,
+    /// What they show.
+    pub view: LiveView,
+    /// The colour of each pane's mark, sRGB.
+    pub colors: [[u8; 3]; CompareSection::MOST_PANES],
+}
+
+/// A pane as it is put there: its number, its picture, and its time, milliseconds.
+pub type SheetPane<'a> = (usize, &'a LivePane, f64);
+
+/// A place: from the left, from the top, width, height; pixels.
+type Place = [u32; 4];
+
+impl Sheet {
+    /// Which of `panes` are put there.
+    pub fn panes(&self, panes: usize) -> Vec<usize> {
+        let last = panes.saturating_sub(1);
+        match self.wipe {
+            Some(([left, right], _)) if left.min(last) == right.min(last) => vec![left.min(last)],
+            Some((pair, _)) => pair.map(|pane| pane.min(last)).to_vec(),
+            None => (0..panes).collect(),
+        }
+    }
+
+    /// The size of the whole where each of `panes` has the size `pane`, in a grid of `columns`.
+    pub fn size_of(&self, panes: usize, columns: usize, pane: [u32; 2]) -> [u32; 2] {
+        let (columns, rows) = if self.wipe.is_some() {
+            (1, 1)
+        } else {
+            let columns = columns.clamp(1, panes.max(1));
+            (columns as u32, panes.max(1).div_ceil(columns) as u32)
+        };
+        [columns * (pane[0] + GAP) - GAP + self.legend_width(), rows * (pane[1] + HEADER + GAP) - GAP]
+    }
+
+    /// The size at which `panes` are drawn for a whole of that size.
+    pub fn pane_size(&self, panes: usize, whole: [u32; 2]) -> [u32; 2] {
+        let [.., width, height] = self.places(panes, whole).first().copied().unwrap_or([0, 0, 16, 16]);
+        [width.max(16), height.max(16)]
+    }
+
+    /// Where the pictures of panes are.
+    fn places(&self, panes: usize, [width, height]: [u32; 2]) -> Vec<Place> {
+        let width = width.saturating_sub(self.legend_width()).max(16);
+        if self.wipe.is_some() {
+            return vec![[0, HEADER, width, height.saturating_sub(HEADER).max(16)]];
+        }
+        let columns = pane_columns(panes, [width as f32, height as f32], HEADER as f32) as u32;
+        let rows = (panes.max(1) as u32).div_ceil(columns);
+        let each = |length: u32, count: u32| (length + GAP).saturating_sub(count * GAP) / count;
+        let (w, h) = (each(width, columns), each(height, rows));
+        let place = |pane: u32| {
+            let (row, column) = (pane / columns, pane % columns);
+            [column * (w + GAP), row * (h + GAP) + HEADER, w.max(16), h.saturating_sub(HEADER).max(16)]
+        };
+        (0..panes as u32).map(place).collect()
+    }
+
+    fn legend(&self) -> Option<Legend> {
+        let map = self.view.shows.colors()?;
+        let range = map.range_to(self.view.largest);
+        Some(Legend { map, range, title: self.view.shows.quantity().to_owned() })
+    }
+
+    fn legend_width(&self) -> u32 {
+        self.legend().map_or(0, |legend| legend.width() as u32 + 2 * MARGIN)
+    }
+
+    /// Puts the panes together.
+    pub fn compose(&self, panes: &[SheetPane<'_>], whole: [u32; 2]) -> Picture {
+        let [width, height] = whole;
+        let mut canvas = Canvas::new(width as usize, height as usize, PAGE);
+        let places = self.places(panes.len(), whole);
+        match (self.wipe, panes, places.first()) {
+            (Some((_, split)), [left, right], Some(&place)) => {
+                self.wipe(&mut canvas, [left, right], split, place);
+            }
+            (_, panes, _) => {
+                for (pane, &place) in panes.iter().zip(&places) {
+                    self.put(&mut canvas, pane, place);
+                }
+            }
+        }
+        if let Some(legend) = self.legend() {
+            let x = (width - self.legend_width().min(width) + MARGIN) as i32;
+            let tall = (height as usize).saturating_sub(2 * MARGIN as usize).min(420);
+            legend.draw(&mut canvas, x, MARGIN as i32, tall, INK);
+        }
+        let (width, height) = (canvas.width() as u32, canvas.height() as u32);
+        Picture { width, height, rgba: canvas.into_rgba() }
+    }
+
+    /// One pane with its line and its figures.
+    fn put(&self, canvas: &mut Canvas, pane: &SheetPane<'_>, place: Place) {
+        picture(canvas, pane.1, place, 0..place[2]);
+        self.header(canvas, pane, [place[0], place[1] - HEADER, place[2]]);
+        figures(canvas, pane, place, false);
+    }
+
+    /// Two panes, divided by a line.
+    fn wipe(&self, canvas: &mut Canvas, [left, right]: [&SheetPane<'_>; 2], split: f32, place: Place) {
+        let [x, y, width, height] = place;
+        let at = (split.clamp(0.0, 1.0) * width as f32).round() as u32;
+        picture(canvas, left.1, place, 0..at);
+        picture(canvas, right.1, place, at..width);
+        let half = width / 2;
+        self.header(canvas, left, [x, y - HEADER, half]);
+        self.header(canvas, right, [x + half, y - HEADER, width - half]);
+        canvas.fill((x + at) as i32 - 1, y as i32, 2, height as usize, [255; 3]);
+        figures(canvas, left, [x, y, half, height], false);
+        figures(canvas, right, [x + half, y, width - half, height], true);
+    }
+
+    /// The line over a pane.
+    fn header(&self, canvas: &mut Canvas, (index, pane, _): &SheetPane<'_>, [x, y, width]: [u32; 3]) {
+        let (x, y) = (x as i32, y as i32);
+        canvas.fill(x, y, width as usize, HEADER as usize, LINE);
+        canvas.fill(x + 8, y + 6, 8, 14, self.colors[index % self.colors.len()]);
+        let room = (width as usize).saturating_sub(30);
+        let method = fitted(pane.contender.shadow.method.label(), room);
+        canvas.text(x + 24, y + 5, method, INK);
+        let after = Canvas::text_width(method) + 14;
+        let settings = pane.contender.settings_label();
+        canvas.text(x + 24 + after as i32, y + 5, fitted(&settings, room.saturating_sub(after)), QUIET);
+    }
+}
+
+/// Columns `from` of a pane's picture, brought to the size of its place.
+fn picture(canvas: &mut Canvas, pane: &LivePane, [x, y, width, height]: Place, from: std::ops::Range<u32>) {
+    let mut drawn = pane.picture.clone();
+    resize(&mut drawn, width, height);
+    let columns = from.start.min(width)..from.end.min(width);
+    if drawn.rgba.is_empty() || (drawn.width, drawn.height) != (width, height) || columns.is_empty() {
+        return;
+    }
+    let bytes = columns.start as usize * 4..columns.end as usize * 4;
+    let part: Vec<u8> = drawn
+        .rgba
+        .chunks_exact(width as usize * 4)
+        .flat_map(|row| row[bytes.clone()].iter().copied())
+        .collect();
+    if let Ok(image) = Image::new(columns.end - columns.start, height, &part) {
+        canvas.put((x + columns.start) as i32, y as i32, &image);
+    }
+}
+
+/// What a pane costs, or why it is empty, at the foot of its place.
+fn figures(canvas: &mut Canvas, (_, pane, ms): &SheetPane<'_>, [x, y, width, height]: Place, at_right: bool) {
+    let text = pane.problem.clone().unwrap_or_else(|| pane.figures_label(*ms));
+    let text = fitted(&text, (width as usize).saturating_sub(32));
+    let wide = Canvas::text_width(text);
+    if wide == 0 || height < 40 {
+        return;
+    }
+    let left = if at_right { (x + width) as i32 - wide as i32 - 16 } else { x as i32 + 16 };
+    let top = (y + height) as i32 - 28;
+    canvas.fill(left - 8, top - 3, wide + 16, 22, LINE);
+    canvas.text(left, top, text, INK);
+}
+
+/// As much of a text as has room.
+fn fitted(text: &str, room: usize) -> &str {
+    let letter = Canvas::text_width("0").max(1);
+    text.char_indices().nth(room / letter).map_or(text, |(end, _)| &text[..end])
+}
+
+/// Width over height that a pane should have, about.
+const SHAPE: f32 = 1.35;
+
+/// Columns of a grid of `panes` on a page of that size, with a line of height `header` over each: those that make panes
+/// largest.
+pub fn pane_columns(panes: usize, [width, height]: [f32; 2], header: f32) -> usize {
+    let larger = |columns: usize| {
+        let rows = panes.div_ceil(columns);
+        let (wide, high) = (width / columns as f32, (height / rows as f32 - header).max(1.0));
+        (wide / SHAPE).min(high)
+    };
+    (1..=panes.max(1)).max_by(|&a, &b| larger(a).total_cmp(&larger(b)).then(b.cmp(&a))).unwrap_or(1)
+}

@@ -1,0 +1,74 @@
+//! What draws the frames of a recording: the project's picture, or panes beside each other.
+
+use std::sync::Arc;
+
+use lovelock_render::{FrameStats, Picture, Renderer};
+
+use super::RecordRequest;
+use super::prepare::open_renderer;
+use crate::compare::FilmOfPanes;
+use crate::{FrameSnapshot, Project, Stopwatch, StudioError};
+
+/// What draws the frames of a recording.
+pub(super) enum Drawer {
+    /// The project's picture.
+    One(Box<Renderer>),
+    /// Panes, and the names of what drew them last.
+    Panes(Box<FilmOfPanes>, String),
+}
+
+impl Drawer {
+    /// Opens what draws `project`.
+    ///
+    /// # Errors
+    /// No adapter for the backend that was asked for, or one that cannot be used.
+    pub(super) fn open(project: &Project, request: &RecordRequest) -> Result<Self, StudioError> {
+        if let Some(sheet) = &request.panes {
+            let panes = Box::new(FilmOfPanes::new(project, sheet.clone()));
+            return Ok(Self::Panes(panes, String::new()));
+        }
+        let choice = request.backend.unwrap_or(project.picture.backend);
+        Ok(Self::One(Box::new(open_renderer(choice, request.gpu.as_ref())?)))
+    }
+
+    /// Draws a frame.
+    ///
+    /// # Errors
+    /// A size out of range, a shadow that needs too much memory, or a device that is lost.
+    pub(super) fn picture(
+        &mut self,
+        project: &Project,
+        snapshot: &Arc<FrameSnapshot>,
+        [width, height]: [u32; 2],
+        picture: &mut Picture,
+    ) -> Result<FrameStats, StudioError> {
+        match self {
+            Self::One(renderer) => {
+                let camera = snapshot.camera(&project.camera);
+                let input = snapshot.frame_input(project, &camera);
+                Ok(renderer.picture(&input, width, height, picture)?)
+            }
+            Self::Panes(panes, adapters) => {
+                let watch = Stopwatch::start();
+                *adapters = panes.frame(snapshot, [width, height], picture)?.join(", ");
+                Ok(FrameStats { draw_ms: watch.ms(), ..FrameStats::default() })
+            }
+        }
+    }
+
+    /// `gpu` or `cpu`; `panes` where each pane has its own.
+    pub(super) fn backend(&self) -> String {
+        match self {
+            Self::One(renderer) => renderer.backend().to_string(),
+            Self::Panes(..) => "panes".to_owned(),
+        }
+    }
+
+    /// The names of what draws.
+    pub(super) fn adapter(&self) -> &str {
+        match self {
+            Self::One(renderer) => renderer.adapter(),
+            Self::Panes(_, adapters) => adapters,
+        }
+    }
+}
