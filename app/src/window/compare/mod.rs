@@ -202,7 +202,7 @@ impl Window {
         }
         let panes = layout.visible(project.compare.panes.len());
         let compare = &self.compare;
-        Panel::bottom("compare dock").resizable(true).default_size(238.0).size_range(170.0..=460.0).show(
+        Panel::bottom("compare dock").resizable(true).default_size(270.0).size_range(170.0..=460.0).show(
             ui,
             |ui| {
                 let mut draw = |ui: &mut Ui, is_probe: bool| {

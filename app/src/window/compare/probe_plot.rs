@@ -37,11 +37,11 @@ pub(super) fn ui(ui: &mut Ui, asked: bool, probed: Option<&LiveProbe>, project: 
     let rows = curves.iter().filter(|(_, curve)| !curve.marks.is_empty()).count();
     let [low, high] = hair.range.map(|depth| 1e3 * f64::from(depth));
     Plot::new("compare probe")
-        .allow_zoom(false)
-        .allow_drag(false)
+        // Depth alone is moved and zoomed, by dragging and by Ctrl and the wheel; a double-click shows it whole.
+        .allow_zoom([true, false])
+        .allow_drag([true, false])
         .allow_scroll(false)
         .allow_boxed_zoom(false)
-        .allow_double_click_reset(false)
         .show_x(false)
         .show_y(false)
         .include_x(low)
@@ -50,7 +50,6 @@ pub(super) fn ui(ui: &mut Ui, asked: bool, probed: Option<&LiveProbe>, project: 
         .include_y(-ROW * (rows as f64 + 0.4))
         .set_margin_fraction(egui::vec2(0.01, 0.03))
         .x_axis_label("depth along the light from the hair, mm")
-        .y_axis_label("transmittance")
         .y_axis_formatter(
             |mark, _| {
                 if mark.value < -1e-6 { String::new() } else { format!("{:.2}", mark.value) }

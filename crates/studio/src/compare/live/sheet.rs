@@ -202,3 +202,121 @@ pub fn pane_columns(panes: usize, [width, height]: [f32; 2], header: f32) -> usi
     };
     (1..=panes.max(1)).max_by(|&a, &b| larger(a).total_cmp(&larger(b)).then(b.cmp(&a))).unwrap_or(1)
 }
+
+#[cfg(test)]
+mod tests {
+    use lovelock_metrics::ColorMap;
+    use lovelock_render::{Backend, Camera};
+
+    use super::*;
+    use crate::{Adapter, Contender, LiveError, LiveShows, LiveTimes};
+
+    /// A pane of one colour.
+    fn pane(color: [u8; 3], [width, height]: [u32; 2]) -> LivePane {
+        let [r, g, b] = color;
+        LivePane {
+            contender: Contender::default(),
+            picture: Picture { width, height, rgba: [r, g, b, 255].repeat((width * height) as usize) },
+            problem: None,
+            camera: Camera { eye: glam::Vec3::ZERO, target: glam::Vec3::Z, fov_y: 0.5 },
+            step: 0,
+            time_secs: 0.0,
+            times: LiveTimes::default(),
+            shadow_bytes: 1 << 20,
+            draw_bytes: 0,
+            adapter: Adapter { name: String::new(), backend: Backend::Cpu, software: true },
+            error: LiveError::NotMeasured,
+            flip: None,
+            shows: LiveShows::Picture,
+        }
+    }
+
+    fn sheet(wipe: Option<([usize; 2], f32)>) -> Sheet {
+        Sheet { wipe, view: LiveView::default(), colors: [[9, 9, 9]; CompareSection::MOST_PANES] }
+    }
+
+    fn at(picture: &Picture, x: u32, y: u32) -> [u8; 3] {
+        let first = ((y * picture.width + x) * 4) as usize;
+        [picture.rgba[first], picture.rgba[first + 1], picture.rgba[first + 2]]
+    }
+
+    const COLORS: [[u8; 3]; 6] =
+        [[200, 0, 0], [0, 200, 0], [0, 0, 200], [200, 200, 0], [0, 200, 200], [200, 0, 200]];
+
+    #[test]
+    fn each_pane_is_in_its_place_whole_with_words_over_it() {
+        let panes = COLORS.map(|color| pane(color, [200, 120]));
+        for count in 1..=6 {
+            let shown: Vec<SheetPane> = panes[..count].iter().enumerate().map(|(i, p)| (i, p, 1.0)).collect();
+            let sheet = sheet(None);
+            let columns = pane_columns(count, [1280.0, 720.0], 26.0);
+            let whole = sheet.size_of(count, columns, [200, 120]);
+            let picture = sheet.compose(&shown, whole);
+            assert_eq!([picture.width, picture.height], whole);
+            let places = sheet.places(count, whole);
+            assert_eq!(places.len(), count);
+            for (&[x, y, width, height], color) in places.iter().zip(COLORS) {
+                assert_eq!(at(&picture, x + 1, y + 1), color, "{count} panes");
+                assert_eq!(at(&picture, x + width - 1, y + 1), color);
+                assert_eq!(at(&picture, x + width - 1, y + height - 1), color);
+                let ink = (x..x + width).any(|x| at(&picture, x, y - 13) == INK);
+                assert!(ink, "{count} panes: no word over the pane at {x}, {y}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_wipe_shows_one_pane_left_of_its_line_and_the_other_right_of_it() {
+        let (left, right) = (pane(COLORS[0], [200, 120]), pane(COLORS[1], [100, 60]));
+        let sheet = sheet(Some(([0, 1], 0.25)));
+        let whole = sheet.size_of(2, 2, [200, 120]);
+        let picture = sheet.compose(&[(0, &left, 1.0), (1, &right, 1.0)], whole);
+        let row = HEADER + 20;
+        assert_eq!([at(&picture, 5, row), at(&picture, 45, row)], [COLORS[0]; 2]);
+        assert_eq!([at(&picture, 55, row), at(&picture, 195, row)], [COLORS[1]; 2]);
+        assert_eq!(at(&picture, 50, row), [255; 3], "the line");
+        assert_eq!(sheet.panes(6), [0, 1]);
+        assert_eq!(sheet.panes(1), [0]);
+    }
+
+    #[test]
+    fn colours_come_with_their_scale_beside_the_panes() {
+        let drawn = pane(COLORS[2], [200, 200]);
+        let mut colored = sheet(None);
+        colored.view.shows = LiveShows::PictureError;
+        let whole = colored.size_of(1, 1, [200, 200]);
+        assert!(whole[0] > sheet(None).size_of(1, 1, [200, 200])[0]);
+        let picture = colored.compose(&[(0, &drawn, 1.0)], whole);
+        let beside = |picture: &Picture, color: [u8; 3]| {
+            (210..picture.width).any(|x| (0..picture.height).any(|y| at(picture, x, y) == color))
+        };
+        let brightest = ColorMap::Magma.at(0.9975);
+        let near = |a: [u8; 3], b: [u8; 3]| a.iter().zip(b).all(|(&a, b)| a.abs_diff(b) < 12);
+        let found =
+            (210..picture.width).any(|x| (0..picture.height).any(|y| near(at(&picture, x, y), brightest)));
+        assert!(found && beside(&picture, INK));
+        // Without colours there is no room for it at all.
+        let plain = sheet(None).compose(&[(0, &drawn, 1.0)], whole);
+        assert!(!beside(&plain, ColorMap::Magma.at(0.5)));
+    }
+
+    #[test]
+    fn any_size_is_put_together() {
+        let drawn = pane(COLORS[0], [64, 48]);
+        let broken = LivePane {
+            problem: Some("It needs 9 GiB; the limit is 1 GiB.".to_owned()),
+            picture: Picture::default(),
+            ..drawn.clone()
+        };
+        let shown = [(0, &drawn, 1.0), (1, &broken, 2.0), (2, &drawn, 3.0)];
+        for whole in [[16, 16], [64, 17], [1, 900], [1920, 1080]] {
+            for wipe in [None, Some(([0, 1], f32::NAN)), Some(([2, 2], 9.0))] {
+                let picture = sheet(wipe).compose(&shown[..wipe.map_or(3, |_| 2)], whole);
+                assert_eq!([picture.width, picture.height], whole);
+                assert_eq!(picture.rgba.len() as u32, 4 * whole[0] * whole[1]);
+            }
+        }
+        let [width, height] = sheet(None).pane_size(6, [3, 3]);
+        assert!(width >= 16 && height >= 16);
+    }
+}

@@ -187,3 +187,145 @@ fn a_card_that_always_fails_leaves_its_panes_to_the_processor_or_says_so() {
         assert_eq!(rig.live.notices().latest().is_some(), drawn || backend == Backend::Gpu);
     }
 }
+
+/// The exact transmittance of the first light, by the engine's renderer.
+fn exact(rig: &Rig) -> Vec<f32> {
+    let mut project = rig.project.clone();
+    project.shadow.method = ShadowMethod::Exact;
+    let camera = rig.snapshot.camera(&project.camera);
+    let mut renderer = CpuRenderer::default();
+    let input = rig.snapshot.frame_input(&project, &camera);
+    renderer.picture(&input, 32, 32, &mut Picture::default()).expect("a picture");
+    renderer.transmittance(0).expect("transmittance")
+}
+
+#[test]
+fn errors_are_those_against_the_exact_method_and_it_is_not_held_against_itself() {
+    let mut rig = on_processor(&[ShadowMethod::None, ShadowMethod::Exact, ShadowMethod::Exact]);
+    rig.project.compare.panes[2].shadow.exact.filter = lovelock_render::TexelFilter::Nearest;
+    rig.draw(rig.request(&[0, 1, 2]));
+    let truth = exact(&rig);
+    // A pane without shadow is wrong by all the light that hair takes.
+    let lost =
+        |power: i32| truth.iter().map(|&t| f64::from(1.0 - t).powi(power)).sum::<f64>() / truth.len() as f64;
+    let LiveError::Measured { rmse, bias, p99 } = rig.pane(0).error else {
+        panic!("{:?}", rig.pane(0).error)
+    };
+    assert!((rmse - lost(2).sqrt()).abs() < 1e-6 && (bias - lost(1)).abs() < 1e-6, "{rmse} {bias}");
+    assert!(p99 >= rmse && p99 <= 1.0 && bias > 0.1);
+    assert_eq!(rig.pane(1).error, LiveError::Reference);
+    let other = rig.pane(2).error.rmse().expect("another map is not the reference");
+    assert!(other > 0.0 && other < rmse, "{other}");
+
+    let view = LiveView { measures: false, ..LiveView::default() };
+    rig.draw(LiveRequest { view, ..rig.request(&[0]) });
+    assert_eq!(rig.pane(0).error, LiveError::NotMeasured, "nobody asked");
+    // A light that there is not has no error, and the picture comes all the same.
+    let view = LiveView { light: 77, ..LiveView::default() };
+    rig.draw(LiveRequest { view, ..rig.request(&[0]) });
+    assert_eq!((rig.pane(0).problem.clone(), rig.pane(0).error.clone()), (None, LiveError::NotMeasured));
+}
+
+#[test]
+fn a_reference_that_does_not_fit_is_refused_with_the_number_and_the_panes_come() {
+    let mut rig = on_processor(&[ShadowMethod::None]);
+    // Strands so thin that a map of the largest resolution is needed, which is more than the least limit.
+    rig.project.look.diameter = 17e-6;
+    rig.project.look.real_hairs = 1.0;
+    rig.project.shadow.exact.resolution = *lovelock_render::TEXEL_RESOLUTIONS.end();
+    rig.project.shadow.exact.memory_limit_bytes = 1;
+    rig.draw(rig.request(&[0]));
+    let pane = rig.pane(0);
+    assert_eq!(pane.problem, None);
+    let LiveError::Refused(why) = &pane.error else { panic!("{:?}", pane.error) };
+    assert!(why.contains("MiB"), "{why}");
+}
+
+#[test]
+fn colours_are_on_hair_alone_and_stronger_where_the_error_is_larger() {
+    let rig = on_processor(&[ShadowMethod::None, ShadowMethod::Exact]);
+    rig.draw(LiveRequest { width: 160, height: 120, ..rig.request(&[0]) });
+    let plain = rig.pane(0).picture.clone();
+    let view = |largest| LiveView { shows: LiveShows::TransmittanceError, largest, ..LiveView::default() };
+    let drawn = |largest: f32| {
+        rig.draw(LiveRequest { width: 160, height: 120, view: view(largest), ..rig.request(&[0, 1]) });
+        [rig.pane(0).picture.clone(), rig.pane(1).picture.clone()]
+    };
+    let colored = |picture: &Picture| {
+        let strong = |pixel: &&[u8]| pixel[..3].iter().max().unwrap() - pixel[..3].iter().min().unwrap() > 40;
+        picture.rgba.chunks_exact(4).filter(strong).count()
+    };
+    let [wrong, right] = drawn(1.0);
+    let grey = |pixel: &[u8]| pixel[0] == pixel[1] && pixel[1] == pixel[2];
+    assert!(grey(&wrong.rgba[..4]) && !grey(&plain.rgba[..4]), "no hair in the corner: it is grey");
+    assert!(colored(&wrong) > 100, "{}", colored(&wrong));
+    // The exact method has no error: all of its hair has the first colour, which is dark violet.
+    let first = lovelock_metrics::ColorMap::Viridis.at(0.0);
+    assert!(right.rgba.chunks_exact(4).any(|pixel| pixel[..3] == first));
+    assert!(!right.rgba.chunks_exact(4).any(|pixel| pixel[1] > 120 && pixel[0] < 160 && pixel[2] < 160));
+    let [half, _] = drawn(2.0);
+    let green =
+        |picture: &Picture| picture.rgba.chunks_exact(4).map(|pixel| u64::from(pixel[1])).sum::<u64>();
+    assert!(green(&half) < green(&wrong), "a wider scale has weaker colours");
+}
+
+#[test]
+fn the_picture_of_the_reference_differs_from_none_but_itself() {
+    let mut rig = on_processor(&[ShadowMethod::None, ShadowMethod::Exact]);
+    rig.project.compare.panes[1].transparency = lovelock_render::Transparency::Exact;
+    let view = LiveView { shows: LiveShows::PictureError, ..LiveView::default() };
+    rig.draw(LiveRequest { width: 96, height: 72, view, ..rig.request(&[0, 1]) });
+    let flip = |index| rig.pane(index).flip.expect("a mean");
+    assert_eq!(flip(1), 0.0);
+    assert!(flip(0) > 0.005, "{}", flip(0));
+    assert_ne!(rig.pane(0).picture, rig.pane(1).picture);
+}
+
+#[test]
+fn a_probe_follows_a_hair_and_reads_what_each_pane_says_there() {
+    let mut rig = on_processor(&[ShadowMethod::None, ShadowMethod::Exact, ShadowMethod::OpacityMaps]);
+    rig.project.compare.panes[1].shadow.exact.filter = lovelock_render::TexelFilter::Nearest;
+    let shown = LiveRequest { width: 160, height: 120, ..rig.request(&[0, 1, 2]) };
+    rig.draw(shown.clone());
+    assert!(rig.live.probe().latest().is_none());
+    let mut found = None;
+    for number in 1..200_u64 {
+        let (x, y) = ((number * 37 % 160) as f32 / 160.0, (number * 61 % 120) as f32 / 120.0);
+        rig.draw(LiveRequest { probe: Some(ProbePlace { number, x, y }), ..shown.clone() });
+        let probe = rig.live.probe().latest().expect("an answer");
+        assert_eq!(probe.number, number);
+        if let Some(hair) = &probe.hair
+            && hair.steps.len() > 3
+        {
+            found = Some((number, (x, y), hair.clone()));
+            break;
+        }
+    }
+    let (number, (x, y), hair) = found.expect("hair with hair before or behind it");
+    assert_eq!(hair.curves.iter().map(|(pane, _)| *pane).collect::<Vec<_>>(), [0, 1, 2]);
+    let curve = |pane: usize| &hair.curves[pane].1;
+    assert!(curve(0).curve.iter().all(|point| point.1 == 1.0) && curve(0).marks.is_empty());
+    assert!(curve(1).marks.len() == hair.steps.len(), "a mark for each fragment");
+    assert!(curve(2).marks.iter().all(|mark| mark.kind == "slice"));
+    // With the nearest texel alone, what the exact method answers is its step function.
+    let step =
+        |depth: f32| hair.steps.iter().take_while(|step| step.0 < depth).last().map_or(1.0, |step| step.1);
+    let wrong = curve(1).curve.iter().filter(|point| (point.1 - step(point.0)).abs() > 1e-3).count();
+    // At an edge of a texel the ray leaves the column of the point by rounding.
+    assert!(wrong < curve(1).curve.len() / 10, "{wrong} of {}", curve(1).curve.len());
+    let opacity = curve(2).curve.iter().filter(|point| (point.1 - step(point.0)).abs() > 1e-3).count();
+    assert!(opacity > curve(2).curve.len() / 10, "another method is not: {opacity}");
+
+    // The same asking on a later instant means the same hair.
+    rig.snapshot = {
+        let mut engine = Engine::new(Arc::clone(&rig.snapshot.scene), rig.project.simulation);
+        engine.advance_to_step(40);
+        engine.snapshot()
+    };
+    let later = LiveRequest { snapshot: Arc::clone(&rig.snapshot), ..shown };
+    rig.draw(LiveRequest { probe: Some(ProbePlace { number, x, y }), ..later });
+    let probe = rig.live.probe().latest().expect("an answer");
+    let moved = probe.hair.as_ref().expect("the hair");
+    assert_eq!((moved.strand, moved.point), (hair.strand, hair.point));
+    assert_ne!(moved.position, hair.position);
+}
