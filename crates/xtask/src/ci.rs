@@ -1,7 +1,7 @@
 //! `cargo xtask ci`: every check, in the order in which they find faults.
 
 use crate::tool::{cargo, run as run_tool, timed};
-use crate::{interchange, layers, testing};
+use crate::{browser, interchange, layers, testing};
 use anyhow::{bail, ensure};
 use std::time::Duration;
 
@@ -18,6 +18,7 @@ pub(crate) fn run() -> anyhow::Result<()> {
     // Clippy reads the dependencies anew without making code of them, and the documentation reuses what it has read.
     for (name, check) in [
         ("interchange", interchange::run as fn() -> anyhow::Result<()>),
+        ("browser", browser::run),
         ("format", || run_tool(&mut cargo(&["fmt", "--all", "--check"]))),
         ("clippy", || {
             run_tool(&mut cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))

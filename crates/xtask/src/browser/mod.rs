@@ -39,7 +39,6 @@ fn compare(folder: &Path, report: &Path) -> anyhow::Result<()> {
     let mut lovelock = tool::cargo(&["run", "--quiet", "--package", "lovelock", "--", "compare"]);
     lovelock.arg(&project).arg("-o").arg(report);
     lovelock.args(["--frames", "4..7", "--methods", "all", "--backend", "cpu", "--size", "240x180"]);
-    lovelock.args(["--probe", "120,60"]);
     tool::run(&mut lovelock)
 }
 

@@ -55,11 +55,16 @@ pub(super) fn cost(group: &Group<'_>, names: &Names, cost: Cost) -> Option<Strin
         Cost::Time => format!("build and ask, ms on the {}", group.backend),
         Cost::Memory => "shadow maps, MiB".into(),
     };
-    let x = Axis::logarithmic(&label, points.iter().map(|point| point.0));
-    let y = Axis::logarithmic("RMSE of transmittance", points.iter().map(|point| point.1));
+    // A method that does nothing costs nothing and is far off: it lies on the rim, so that the others are told apart.
+    let dearest = points.iter().map(|point| point.0).fold(0.0, f64::max);
+    let least = points.iter().map(|point| point.1).filter(|error| *error > 0.0).fold(f64::MAX, f64::min);
+    let costs = points.iter().map(|point| point.0).filter(|cost| *cost >= dearest / 100.0);
+    let x = Axis::logarithmic(&label, costs);
+    let errors = points.iter().map(|point| point.1).filter(|error| *error <= least * 10.0);
+    let y = Axis::logarithmic("RMSE of transmittance", errors);
     let mut plot = Plot::new(430.0, 300.0, x, y);
-    let mut front: Vec<(f64, f64)> =
-        points.iter().filter(|(.., method)| cost.front(method)).map(|&(x, y, _)| (x, y)).collect();
+    let on_front = points.iter().filter(|(x, y, method)| cost.front(method) && plot.holds(*x, *y));
+    let mut front: Vec<(f64, f64)> = on_front.map(|&(x, y, _)| (x, y)).collect();
     front.sort_by(|a, b| a.0.total_cmp(&b.0));
     plot.line(&front, Stroke { color: "#b4bcc6", width: 5.0, dashed: false }, None);
     let mut trails: BTreeMap<&str, Vec<(f64, f64)>> = BTreeMap::new();

@@ -158,7 +158,7 @@ fn costs(groups: &[Group<'_>], names: &Names) -> String {
     }
     if !out.is_empty() {
         out += "<p class=\"note\">Lower is more right, further left is cheaper. Filled dots, joined by the grey band, are the \
-                front; dashed lines join the settings of a sweep. A cost of nothing lies on the left rim.</p>";
+                front; dashed lines join the settings of a sweep. A method that lies far off is on the rim.</p>";
     }
     out
 }

@@ -86,6 +86,11 @@ impl Plot {
         (1.0 - self.y.place(value)) * self.height
     }
 
+    /// Whether a point lies in the field and not beyond its rim.
+    pub(super) fn holds(&self, x: f64, y: f64) -> bool {
+        self.x.holds(x) && self.y.holds(y)
+    }
+
     /// The places of those points whose x lies in the field and whose numbers are finite.
     fn places(&self, points: &[(f64, f64)]) -> Vec<(f64, f64)> {
         let every = points.len().div_ceil(CORNERS).max(1);
