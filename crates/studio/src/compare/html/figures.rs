@@ -1,9 +1,10 @@
 //! The plots of the page.
 
 use super::names::{Group, Names, color};
-use super::plot::{Axis, Dot, Plot, Stroke};
+use super::plot::{Axis, Dot, Label, Plot, Stroke};
 use super::words::{bytes, fixed, ms};
 use crate::{CompareReport, FootprintTruth, MethodReport, ProbeReport};
+use lovelock_metrics::Spread;
 use std::collections::BTreeMap;
 
 /// What is drawn in black: the truth.
@@ -56,13 +57,14 @@ pub(super) fn cost(group: &Group<'_>, names: &Names, cost: Cost) -> Option<Strin
         Cost::Memory => "shadow maps, MiB".into(),
     };
     // A method that does nothing costs nothing and is far off: it lies on the rim, so that the others are told apart.
-    let dearest = points.iter().map(|point| point.0).fold(0.0, f64::max);
+    let usual: Vec<f64> = points.iter().map(|point| point.0).filter(|cost| *cost > 0.0).collect();
+    let usual = Spread::of(&usual).map_or(0.0, |spread| spread.median);
     let least = points.iter().map(|point| point.1).filter(|error| *error > 0.0).fold(f64::MAX, f64::min);
-    let costs = points.iter().map(|point| point.0).filter(|cost| *cost >= dearest / 100.0);
+    let costs = points.iter().map(|point| point.0).filter(|cost| *cost >= usual / 100.0);
     let x = Axis::logarithmic(&label, costs);
     let errors = points.iter().map(|point| point.1).filter(|error| *error <= least * 10.0);
     let y = Axis::logarithmic("RMSE of transmittance", errors);
-    let mut plot = Plot::new(430.0, 300.0, x, y);
+    let mut plot = Plot::new(470.0, 320.0, x, y);
     let on_front = points.iter().filter(|(x, y, method)| cost.front(method) && plot.holds(*x, *y));
     let mut front: Vec<(f64, f64)> = on_front.map(|&(x, y, _)| (x, y)).collect();
     front.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -84,11 +86,18 @@ pub(super) fn cost(group: &Group<'_>, names: &Names, cost: Cost) -> Option<Strin
         };
         let title = format!("{name}: {price}, RMSE {}", fixed(Some(y), 4));
         let dot = if cost.front(method) { Dot::Full } else { Dot::Hollow };
-        // Of a sweep the values say enough: the colour names the method.
+        // Of a sweep the first has the name and all have their values: the colour says the rest.
         let values: Vec<&str> = method.sweep.iter().map(|(_, value)| value.as_str()).collect();
+        let values = values.join(", ");
         let first = points.iter().find(|(.., other)| other.id == method.id).map(|(.., other)| &other.name);
-        let label = if values.is_empty() || first == Some(&method.name) { name } else { values.join(", ") };
-        plot.dot((x, y), dot, color(method), &label, &title);
+        let label = if first == Some(&method.name) {
+            Label::Always(format!("{} {values}", method.label).trim().to_owned())
+        } else if values.is_empty() {
+            Label::Always(name)
+        } else {
+            Label::WhereFree(values)
+        };
+        plot.dot((x, y), dot, color(method), label, &title);
     }
     let says = format!("Error of transmittance against {label} of {} methods", points.len());
     Some(plot.svg(&says, 0.0))
@@ -186,8 +195,8 @@ pub(super) fn convergence(report: &CompareReport) -> Option<String> {
             let title = format!("{}: {samples} subtexels, {change:.5}", truth.methods.join(", "));
             let last = index + 1 == points.len();
             // Of those that came to rest the table tells.
-            let label = of.filter(|_| last && !truth.converged).map_or("", |method| &method.label);
-            plot.dot((samples, change), dot, color, label, &title);
+            let label = of.filter(|_| last && !truth.converged).map(|method| method.label.clone());
+            plot.dot((samples, change), dot, color, Label::Always(label.unwrap_or_default()), &title);
         }
     }
     Some(plot.svg("Change of the reference with every round", 0.0))

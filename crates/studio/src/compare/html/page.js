@@ -39,7 +39,8 @@
         button.setAttribute("aria-pressed", String(button.dataset.kind === kind));
       }
       const names = figures().map((figure) => figure.dataset.name);
-      for (const [select, otherwise] of [[left, 0], [right, 1]]) {
+      // The first method is often the one without shadows, which says little.
+      for (const [select, otherwise] of [[left, 0], [right, 2]]) {
         const before = select.value;
         select.replaceChildren(...names.map((name) => new Option(name, name)));
         select.value = names.includes(before) ? before : names[Math.min(otherwise, names.length - 1)];

@@ -4,7 +4,7 @@ use lovelock_metrics::ticks;
 
 /// The largest factor between the ends of a logarithmic axis: what is next to nothing lies on its low end, so that the
 /// others are told apart.
-const WIDEST: f64 = 3000.0;
+const WIDEST: f64 = 1e5;
 
 /// One axis of a plot.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,7 +27,7 @@ impl Axis {
     }
 
     /// An axis with equal factors that holds those of `values` that are above zero, with room around them, down to one
-    /// in three thousand of the largest.
+    /// in a hundred thousand of the largest.
     pub(in super::super) fn logarithmic(label: &str, values: impl IntoIterator<Item = f64>) -> Self {
         let positive = values.into_iter().filter(|value| value.is_finite() && *value > 0.0);
         let (low, high) = positive.fold((f64::MAX, 0.0_f64), |(low, high), v| (low.min(v), high.max(v)));

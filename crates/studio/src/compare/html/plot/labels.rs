@@ -9,10 +9,22 @@ const LETTER: (f64, f64) = (6.7, 13.0);
 /// A rectangle: left, top, right, bottom.
 type Box4 = [f64; 4];
 
+/// The word beside a dot.
+#[derive(Clone, Debug, PartialEq)]
+pub(in super::super) enum Label {
+    /// It is there, whatever it covers. An empty one is not.
+    Always(String),
+    /// It is left out where it would cover too much.
+    WhereFree(String),
+}
+
+/// The part of a word that may be covered before it is left out.
+const COVERED: f64 = 0.2;
+
 /// Words beside dots. All dots are known before a word is placed, so that none covers a dot.
 pub(super) struct Labels {
     field: (f64, f64),
-    dots: Vec<(f64, f64, String)>,
+    dots: Vec<(f64, f64, Label)>,
 }
 
 impl Labels {
@@ -21,18 +33,25 @@ impl Labels {
         Self { field: (width, height), dots: Vec::new() }
     }
 
-    /// A dot and its word, which may be empty.
-    pub(super) fn add(&mut self, x: f64, y: f64, word: &str) {
-        self.dots.push((x, y, word.to_owned()));
+    /// A dot and its word.
+    pub(super) fn add(&mut self, x: f64, y: f64, label: Label) {
+        self.dots.push((x, y, label));
     }
 
-    /// All words, each at the one of eight places that covers the least.
+    /// All words, each at the one of eight places that covers the least; those that must be there come first.
     pub(super) fn svg(&self) -> String {
-        // A dot is in the way of all words but those at its own place.
-        let mut taken: Vec<Box4> =
-            self.dots.iter().map(|(x, y, _)| [x - 6.0, y - 6.0, x + 6.0, y + 6.0]).collect();
+        // A covered dot is worse than a covered word.
+        let mut taken: Vec<(Box4, f64)> =
+            self.dots.iter().map(|(x, y, _)| ([x - 7.0, y - 7.0, x + 7.0, y + 7.0], 3.0)).collect();
         let mut out = String::new();
-        for (x, y, word) in self.dots.iter().filter(|(_, _, word)| !word.is_empty()).take(200) {
+        let words = |always: bool| {
+            self.dots.iter().filter_map(move |(x, y, label)| match label {
+                Label::Always(word) if always && !word.is_empty() => Some((*x, *y, word, f64::INFINITY)),
+                Label::WhereFree(word) if !always && !word.is_empty() => Some((*x, *y, word, COVERED)),
+                Label::Always(_) | Label::WhereFree(_) => None,
+            })
+        };
+        for (x, y, word, most) in words(true).chain(words(false)).take(200) {
             let (width, height) = (word.chars().count() as f64 * LETTER.0, LETTER.1);
             let around = [
                 (x + 9.0, y - height / 2.0),
@@ -46,11 +65,14 @@ impl Labels {
             ];
             let boxes = around.map(|(left, top)| [left, top, left + width, top + height]);
             let cost = |place: &Box4| {
-                let covered: f64 = taken.iter().map(|other| overlap(place, other)).sum();
+                let covered: f64 = taken.iter().map(|(other, weight)| weight * overlap(place, other)).sum();
                 covered + 4.0 * (width * height - overlap(place, &[0.0, 0.0, self.field.0, self.field.1]))
             };
             let Some(best) = boxes.into_iter().min_by(|a, b| cost(a).total_cmp(&cost(b))) else { continue };
-            taken.push(best);
+            if cost(&best) > most * width * height {
+                continue;
+            }
+            taken.push((best, 1.0));
             let (left, base) = (best[0], best[1] + height - 3.0);
             let word = escaped(word);
             let _ = write!(out, "<text class=\"label\" x=\"{left:.1}\" y=\"{base:.1}\">{word}</text>");
@@ -67,13 +89,17 @@ fn overlap(a: &Box4, b: &Box4) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{Labels, overlap};
+    use super::{Label, Labels, overlap};
 
     #[test]
     fn words_do_not_cover_each_other_where_there_is_room() {
         let mut labels = Labels::new(400.0, 300.0);
         for i in 0..5 {
-            labels.add(200.0 + f64::from(i) * 3.0, 150.0 + f64::from(i) * 12.0, "six letters");
+            labels.add(
+                200.0 + f64::from(i) * 3.0,
+                150.0 + f64::from(i) * 12.0,
+                Label::Always("six letters".into()),
+            );
         }
         let svg = labels.svg();
         let number = |text: &str, name: &str| -> f64 {
@@ -90,14 +116,31 @@ mod tests {
     }
 
     #[test]
+    fn words_that_need_not_be_there_give_way() {
+        let mut labels = Labels::new(300.0, 300.0);
+        for i in 0..40 {
+            labels.add(
+                150.0 + f64::from(i % 3),
+                150.0 + f64::from(i % 5),
+                Label::WhereFree(format!("word {i:02}")),
+            );
+        }
+        labels.add(150.0, 150.0, Label::Always("the name".into()));
+        let svg = labels.svg();
+        assert!(svg.contains("the name"));
+        let words = svg.matches("word").count();
+        assert!((1..16).contains(&words), "{words}");
+    }
+
+    #[test]
     fn words_stay_in_the_field() {
         let mut labels = Labels::new(100.0, 100.0);
-        labels.add(99.0, 50.0, "at the rim");
+        labels.add(99.0, 50.0, Label::Always("at the rim".into()));
         let svg = labels.svg();
         assert!(svg.contains("x=\"23.0\""), "{svg}");
         // Without words there is nothing.
         let mut silent = Labels::new(100.0, 100.0);
-        silent.add(50.0, 50.0, "");
+        silent.add(50.0, 50.0, Label::Always(String::new()));
         assert_eq!(silent.svg(), "");
     }
 }

@@ -6,6 +6,7 @@ mod labels;
 pub(super) use axis::Axis;
 
 use super::words::escaped;
+pub(super) use labels::Label;
 use labels::Labels;
 use std::fmt::Write as _;
 
@@ -158,8 +159,8 @@ impl Plot {
         );
     }
 
-    /// A dot; none where its numbers are not finite. `title` is shown by the pointer; a label that is not empty stands beside it once all dots are there.
-    pub(super) fn dot(&mut self, (x, y): (f64, f64), dot: Dot, color: &str, label: &str, title: &str) {
+    /// A dot; none where its numbers are not finite. `title` is shown by the pointer; the label stands beside it once all dots are there.
+    pub(super) fn dot(&mut self, (x, y): (f64, f64), dot: Dot, color: &str, label: Label, title: &str) {
         if !(x.is_finite() && y.is_finite()) {
             return;
         }

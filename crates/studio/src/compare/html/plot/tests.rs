@@ -1,4 +1,4 @@
-use super::{Axis, Dot, Plot, Stroke};
+use super::{Axis, Dot, Label, Plot, Stroke};
 
 const THIN: Stroke<'static> = Stroke { color: "#123", width: 1.0, dashed: false };
 
@@ -20,8 +20,8 @@ fn lines_go_where_their_numbers_are() {
 #[test]
 fn a_dot_has_its_words_and_no_number_breaks_the_drawing() {
     let mut dots = plot();
-    dots.dot((0.5, 0.5), Dot::Full, "red\"", "<name>", "more");
-    dots.dot((f64::NAN, f64::INFINITY), Dot::Hollow, "blue", "nowhere", "");
+    dots.dot((0.5, 0.5), Dot::Full, "red\"", Label::Always("<name>".into()), "more");
+    dots.dot((f64::NAN, f64::INFINITY), Dot::Hollow, "blue", Label::Always("nowhere".into()), "");
     dots.lane("lane", "#456", [(f64::NAN, 1.0, f64::NAN), (-1.0, 5.0, 2.0), (7.0, 8.0, 1.0)], 0);
     let svg = dots.svg("", 40.0);
     assert!(svg.contains("&lt;name&gt;") && svg.contains("<title>more</title>") && svg.contains("red&quot;"));
