@@ -60,7 +60,7 @@ pub(super) fn cost(group: &Group<'_>, names: &Names, cost: Cost) -> Option<Strin
     let usual: Vec<f64> = points.iter().map(|point| point.0).filter(|cost| *cost > 0.0).collect();
     let usual = Spread::of(&usual).map_or(0.0, |spread| spread.median);
     let least = points.iter().map(|point| point.1).filter(|error| *error > 0.0).fold(f64::MAX, f64::min);
-    let costs = points.iter().map(|point| point.0).filter(|cost| *cost >= usual / 100.0);
+    let costs = points.iter().map(|point| point.0).filter(|cost| *cost >= usual / 30.0);
     let x = Axis::logarithmic(&label, costs);
     let errors = points.iter().map(|point| point.1).filter(|error| *error <= least * 10.0);
     let y = Axis::logarithmic("RMSE of transmittance", errors);
