@@ -53,29 +53,41 @@ impl Labels {
         };
         for (x, y, word, most) in words(true).chain(words(false)).take(200) {
             let (width, height) = (word.chars().count() as f64 * LETTER.0, LETTER.1);
+            // Words end at their dot where they stand before it: their true width is the browser's alone to know.
             let around = [
-                (x + 9.0, y - height / 2.0),
-                (x - 9.0 - width, y - height / 2.0),
-                (x - width / 2.0, y - 8.0 - height),
-                (x - width / 2.0, y + 8.0),
-                (x + 6.0, y - 6.0 - height),
-                (x + 6.0, y + 6.0),
-                (x - 6.0 - width, y - 6.0 - height),
-                (x - 6.0 - width, y + 6.0),
+                (x + 9.0, y - height / 2.0, "start"),
+                (x - 9.0 - width, y - height / 2.0, "end"),
+                (x - width / 2.0, y - 8.0 - height, "middle"),
+                (x - width / 2.0, y + 8.0, "middle"),
+                (x + 6.0, y - 6.0 - height, "start"),
+                (x + 6.0, y + 6.0, "start"),
+                (x - 6.0 - width, y - 6.0 - height, "end"),
+                (x - 6.0 - width, y + 6.0, "end"),
             ];
-            let boxes = around.map(|(left, top)| [left, top, left + width, top + height]);
+            let boxes = around.map(|(left, top, anchor)| ([left, top, left + width, top + height], anchor));
             let cost = |place: &Box4| {
                 let covered: f64 = taken.iter().map(|(other, weight)| weight * overlap(place, other)).sum();
                 covered + 4.0 * (width * height - overlap(place, &[0.0, 0.0, self.field.0, self.field.1]))
             };
-            let Some(best) = boxes.into_iter().min_by(|a, b| cost(a).total_cmp(&cost(b))) else { continue };
+            let Some((best, anchor)) = boxes.into_iter().min_by(|a, b| cost(&a.0).total_cmp(&cost(&b.0)))
+            else {
+                continue;
+            };
             if cost(&best) > most * width * height {
                 continue;
             }
             taken.push((best, 1.0));
-            let (left, base) = (best[0], best[1] + height - 3.0);
+            let base = best[1] + height - 3.0;
+            let at = match anchor {
+                "end" => best[2],
+                "middle" => best[0] + width / 2.0,
+                _ => best[0],
+            };
             let word = escaped(word);
-            let _ = write!(out, "<text class=\"label\" x=\"{left:.1}\" y=\"{base:.1}\">{word}</text>");
+            let _ = write!(
+                out,
+                "<text class=\"label\" x=\"{at:.1}\" y=\"{base:.1}\" text-anchor=\"{anchor}\">{word}</text>"
+            );
         }
         out
     }
@@ -106,7 +118,14 @@ mod tests {
             text.split_once(name).unwrap().1.split_once('"').unwrap().0.parse().unwrap()
         };
         let boxes: Vec<_> = (svg.split("<text").skip(1))
-            .map(|text| (number(text, "x=\""), number(text, "y=\"")))
+            .map(|text| {
+                let before = match text.split_once("anchor=\"").unwrap().1.as_bytes()[0] {
+                    b'e' => 1.0,
+                    b'm' => 0.5,
+                    _ => 0.0,
+                };
+                (number(text, "x=\"") - before * 11.0 * 6.7, number(text, "y=\""))
+            })
             .map(|(x, y)| [x, y - 10.0, x + 11.0 * 6.7, y + 3.0])
             .collect();
         assert_eq!(boxes.len(), 5);
@@ -137,7 +156,7 @@ mod tests {
         let mut labels = Labels::new(100.0, 100.0);
         labels.add(99.0, 50.0, Label::Always("at the rim".into()));
         let svg = labels.svg();
-        assert!(svg.contains("x=\"23.0\""), "{svg}");
+        assert!(svg.contains("x=\"90.0\"") && svg.contains("\"end\""), "{svg}");
         // Without words there is nothing.
         let mut silent = Labels::new(100.0, 100.0);
         silent.add(50.0, 50.0, Label::Always(String::new()));
