@@ -9,6 +9,8 @@ use lovelock_studio::Progress;
 pub(super) struct Bar {
     bar: Option<ProgressBar>,
     said: u64,
+    /// The part of a comparison that was told last.
+    part: String,
 }
 
 impl Bar {
@@ -18,7 +20,7 @@ impl Bar {
                 .unwrap_or_else(|_| ProgressStyle::default_bar());
             ProgressBar::new(1).with_style(style)
         });
-        Self { bar, said: 0 }
+        Self { bar, said: 0, part: String::new() }
     }
 
     pub(super) fn show(&mut self, progress: &Progress) {
@@ -32,7 +34,13 @@ impl Bar {
             }
             Progress::Simulating { done, total } => ("simulating", *done, *total),
             Progress::Frame { done, total } => ("frame", *done, *total),
-            Progress::Comparing { what, done, total } => (what.as_str(), *done, *total),
+            Progress::Comparing { what, done, total } => {
+                if self.bar.is_none() && self.part != *what {
+                    eprintln!("{what} ({done} of {total})");
+                    self.part.clone_from(what);
+                }
+                (what.as_str(), *done, *total)
+            }
             Progress::Finishing => ("finishing", 1, 1),
         };
         if let Some(bar) = &self.bar {

@@ -20,3 +20,6 @@ mod work;
 pub use request::CompareRequest;
 pub use run::compare;
 pub use sweep::Sweep;
+
+#[cfg(test)]
+mod tests;

@@ -22,8 +22,8 @@ enum Footprint {
     Cells(f32, u64),
     /// Edge of a texel, metres, and texels.
     Texels(f32, u64),
-    /// That of a map that cannot be made.
-    Unknown(ShadowSettings),
+    /// That of a map that cannot be made: its settings, and why.
+    Unknown(ShadowSettings, String),
 }
 
 /// Converged transmittance of the first light at every strand point, for one footprint.
@@ -53,7 +53,11 @@ impl Truths {
         let (footprint, cell_size) = footprint((hair, project, light), settings);
         let known = self.0.iter().position(|truth| truth.footprint == footprint);
         let at = known.unwrap_or_else(|| {
-            let (transmittance, facts) = converge((hair, project, light), settings);
+            // What is too much for the method is too much for a truth that is finer still.
+            let (transmittance, facts) = match &footprint {
+                Footprint::Unknown(_, why) => (Err(why.clone()), FootprintTruth::default()),
+                _ => converge((hair, project, light), settings),
+            };
             self.0.push(Truth { footprint, settings: *settings, transmittance, facts });
             self.0.len() - 1
         });
@@ -73,8 +77,8 @@ fn footprint(
     let method = if has_map { settings.method } else { ShadowMethod::Exact };
     let settings = ShadowSettings { method, ..*settings };
     let mut map = cpu_shadow(method);
-    if map.build(&hair.shadow_input(project, light), &settings).is_err() {
-        return (Footprint::Unknown(settings), None);
+    if let Err(error) = map.build(&hair.shadow_input(project, light), &settings) {
+        return (Footprint::Unknown(settings, error.to_string()), None);
     }
     let report = map.report();
     let footprint = if method == ShadowMethod::VoxelMap {

@@ -99,7 +99,8 @@ impl Work<'_> {
         };
         report.legends = maps::kinds(film.is_some()).map(|kind| kind.legend()).collect();
         for (entrant, (truth, cell_size)) in entrants.into_iter().zip(found) {
-            part(entrant.report.name.clone(), false)?;
+            let name = entrant.report.name.clone();
+            part(name.clone(), false)?;
             let backend = entrant.contender.backend;
             let Some(renderer) = renderers.iter_mut().find(|open| open.backend() == backend) else {
                 continue;
@@ -118,8 +119,8 @@ impl Work<'_> {
             report.methods.push(entrant.report);
             mark_fronts(report);
             report.probes = probes.iter().map(|probe| probe.report.clone()).collect();
-            part(String::new(), true)?;
             self.folder.report(report)?;
+            part(format!("{name} is done"), true)?;
         }
         Ok(())
     }
@@ -146,7 +147,10 @@ impl Work<'_> {
             let shadow_input = hair.shadow_input(self.project, light);
             match Probe::new(values, &input, self.size, pixel, shadow_input.light, points) {
                 Some(mut probe) => {
-                    probe.find_reference(&shadow_input, &self.project.shadow);
+                    // Where the exact map does not fit, what is finer than it takes minutes.
+                    if points.is_some() {
+                        probe.find_reference(&shadow_input, &self.project.shadow);
+                    }
                     probes.push(probe);
                 }
                 None => report.notes.push(format!("the probe at {},{} meets no hair", pixel[0], pixel[1])),
