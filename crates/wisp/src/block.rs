@@ -21,9 +21,8 @@ pub(crate) struct Block {
 
     pub(crate) position: Vec<Lane3>,
     pub(crate) velocity: Vec<Lane3>,
-    /// How far each bend was from that at rest after the last substep, as damping sees it: without the zigzag that links fold
-    /// into where hair is pushed together, which damping would hold.
-    pub(crate) strain: Vec<Lane3>,
+    /// The bend at rest in the frame of the last substep.
+    pub(crate) bend: Vec<Lane3>,
     /// The pose after the last step in which all was finite.
     pub(crate) good: Vec<Lane3>,
 
@@ -31,8 +30,7 @@ pub(crate) struct Block {
     pub(crate) push: Vec<Lane3>,
     pub(crate) keep: Vec<Lane>,
     pub(crate) next: Vec<Lane3>,
-    /// The bends at rest in the frames of this substep, then those that shape memory made.
-    pub(crate) bend: Vec<Lane3>,
+    pub(crate) next_bend: Vec<Lane3>,
     pub(crate) residual: Vec<Lane3>,
     pub(crate) lengths: LengthScratch,
     pub(crate) bending: Bending,
@@ -63,12 +61,12 @@ impl Block {
             rest_distance: Vec::new(),
             position: vec![ZERO3; points],
             velocity: vec![ZERO3; points],
-            strain: vec![ZERO3; points],
+            bend: vec![ZERO3; points],
             good: vec![ZERO3; points],
             push: vec![ZERO3; points],
             keep: vec![ZERO; points],
             next: vec![ZERO3; points],
-            bend: vec![ZERO3; points],
+            next_bend: vec![ZERO3; points],
             residual: vec![ZERO3; points],
             lengths: LengthScratch::new(points),
             bending: Bending::new(points),
@@ -87,10 +85,10 @@ impl Block {
         for i in 0..self.points() {
             for k in 0..LANES {
                 put(&mut self.position[i], k, from_head.apply(at(&self.rest.position[i], k)));
+                put(&mut self.bend[i], k, from_head.rotate(at(&self.rest.bend[i], k)));
             }
         }
         self.velocity.fill(ZERO3);
-        self.strain.fill(ZERO3);
         self.good.copy_from_slice(&self.position);
     }
 
@@ -102,7 +100,7 @@ impl Block {
                     let p = by.apply(at(row, k));
                     put(row, k, p);
                 }
-                for row in [&mut self.velocity[i], &mut self.strain[i]] {
+                for row in [&mut self.velocity[i], &mut self.bend[i]] {
                     let v = by.rotate(at(row, k));
                     put(row, k, v);
                 }
@@ -128,10 +126,10 @@ impl Block {
                     end += turn.apply(at(&self.rest.direction[i], k)) * self.rest.length[i][k];
                 }
                 put(&mut self.position[i], k, end);
+                put(&mut self.bend[i], k, turn.apply(at(&self.rest.bend[i], k)));
             }
         }
         self.velocity.copy_from_slice(&old.velocity);
-        self.strain.copy_from_slice(&old.strain);
         self.good.copy_from_slice(&self.position);
     }
 }

@@ -53,7 +53,7 @@ impl Default for SimulationSettings {
             substeps: 4,
             stiffness_root: 14.0,
             stiffness_tip: 5.0,
-            bend_damping: 0.06,
+            bend_damping: 0.03,
             hold: 5.0,
             settle: 2.0,
             drag: 0.8,

@@ -2,10 +2,9 @@
 
 use glam::{Affine3A, Vec3};
 use lovelock_groom::{GuideFrame, Guides, Preset, Strands, interpolate};
-use lovelock_wisp::SimulationSettings;
 
 mod common;
-use common::{STEP_SECS, Stage, frame};
+use common::Stage;
 
 /// Degrees between successive segments of a line.
 fn turns(line: &[Vec3]) -> impl Iterator<Item = f32> {
@@ -51,35 +50,5 @@ fn hair_at_rest_has_no_kinks() {
         let n = frame.guides.points_per_guide;
         frame.guides.y[5 * n + 12] += frame.guides.point(5, 0).distance(frame.guides.point(5, 1));
         assert!(all_but(of_guides(&frame.guides), 0.0) > guide, "{preset:?}: a kink must be found");
-    }
-}
-
-/// Share of the values above 30 degrees.
-fn sharp(turns: &[f32]) -> f64 {
-    turns.iter().filter(|&&turn| turn > 30.0).count() as f64 / turns.len() as f64
-}
-
-#[test]
-fn hair_in_motion_does_not_fold_into_zigzags() {
-    for preset in Preset::ALL {
-        let mut stage = Stage::new(preset);
-        let mut simulation = stage.simulation(Some(0.0));
-        for step in 1..=90 {
-            let input = stage.at(Some(f64::from(step) / 60.0));
-            simulation.step(&input, &SimulationSettings::default(), STEP_SECS);
-        }
-        let mut moved = frame(&simulation);
-        let share = sharp(&of_guides(&moved.guides));
-        println!("{preset:?}: {share} of the turns are sharp");
-        // Measured: 0.040, 0.016 and 0.029. Where damping holds what links do to bends: 0.18, 0.13 and 0.06.
-        assert!(share < 0.055, "{preset:?}: {share} of the turns are sharp");
-
-        // The control: points out by a third of a link, this way and that.
-        let n = moved.guides.points_per_guide;
-        for i in 0..moved.guides.y.len() {
-            let link = moved.guides.point(i / n, 0).distance(moved.guides.point(i / n, 1));
-            moved.guides.y[i] += link * [0.33, -0.33][i % 2];
-        }
-        assert!(sharp(&of_guides(&moved.guides)) > 0.2, "{preset:?}: zigzags must be found");
     }
 }

@@ -124,20 +124,16 @@ fn links_keep_their_length_at_every_step_of_a_violent_dance() {
         .collect();
     for settings in [SimulationSettings::default(), bare()] {
         let mut simulation = at_rest(&guides);
-        let mut fastest = 0.0_f32;
         for step in 1..1200 {
             let time = f64::from(step) / 60.0;
             let report = simulation.step(&head(time, violent(time)), &settings, STEP_SECS);
-            fastest = fastest.max(report.max_speed);
             assert!(!report.jumped && report.recovered_guides == 0);
             // Positions of up to 0.4 m in f32 are 3e-8 apart; a link of 1 cm takes two of them.
             assert!(report.max_stretch < 1e-5, "step {step}: {}", report.max_stretch);
             // In the world's coordinates, up to 0.7 m, rounding is twice as much.
             assert!(stretch(&simulation) < 2e-5, "step {step}: {}", stretch(&simulation));
+            assert!(report.max_speed < 20.0, "step {step}: {} m/s", report.max_speed);
         }
-        println!("tips crack at {fastest} m/s");
-        // Measured: 20.1 m/s, and 17.1 m/s with nothing but lengths.
-        assert!(fastest < 25.0, "{fastest} m/s");
     }
 }
 

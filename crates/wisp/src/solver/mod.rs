@@ -76,6 +76,7 @@ fn restore(block: &mut Block, plan: &Plan, k: usize) {
         put(&mut block.position[i], k, p);
         let v = last.map_or(glam::Vec3::ZERO, |s| s.rigid_velocity(p));
         put(&mut block.velocity[i], k, v);
-        put(&mut block.strain[i], k, glam::Vec3::ZERO);
+        let bend = last.map_or(at(&block.rest.bend[i], k), |s| s.head.rotate(at(&block.rest.bend[i], k)));
+        put(&mut block.bend[i], k, bend);
     }
 }

@@ -6,13 +6,6 @@ use crate::block::Block;
 use crate::colliders::contact::{Near, apart, bounds, buried, lay_point, penetration};
 use crate::lanes::{LANES, Turns, ZERO3, at, direction_or, greater, lesser, put};
 
-/// How often what lengths and the body do to bends is smoothed before damping holds it. Each time leaves fewer kinks in moving
-/// hair and lets hair that is pressed against the body push back harder. Guides of the three styles whose links turn by more
-/// than 30 degrees after 90 steps of the dance, of 11,658, 13,485 and 15,660 links, and the fastest point of the longest style:
-/// without smoothing 2125, 1774, 908 and 10 m/s; twice 467, 210, 468 and 15 m/s; four times 367, 93, 363 and 15 m/s, but after a
-/// turn it does not come to rest in two seconds; nothing held at all 132, 24, 124 and 23 m/s.
-const STRAIN_SMOOTHING: usize = 2;
-
 /// Takes the block through substep `s`.
 #[inline(always)]
 pub(crate) fn run(block: &mut Block, plan: &Plan, s: usize) {
@@ -68,11 +61,12 @@ fn velocities(block: &mut Block, plan: &Plan, s: usize) {
 fn shape_memory(block: &mut Block, plan: &Plan, s: usize) {
     let (substep, gamma, count) = (&plan.substeps[s], plan.bending.gamma(), block.points());
     let mut frames = Turns::splat(substep.head_turn);
-    // c [(1 + gamma) (D p - b*) - gamma e] at every inner point, where e is what shape memory left of D p - b* in the last substep.
+    // c [(1 + gamma) (D p - b*) - gamma (D x - b*_old)] at every inner point.
     for i in 1..count.saturating_sub(1) {
         let (p0, p1, p2) = (block.next[i - 1], block.next[i], block.next[i + 1]);
+        let (x0, x1, x2) = (block.position[i - 1], block.position[i], block.position[i + 1]);
         let (rest_direction, rest_bend) = (block.rest.direction[i], block.rest.bend[i]);
-        let (strain, c, fixed) = (block.strain[i], *block.bending.stiffness(i), *block.bending.fixed(i));
+        let (old, c, fixed) = (block.bend[i], *block.bending.stiffness(i), *block.bending.fixed(i));
         let (mut bend, mut residual) = (ZERO3, ZERO3);
         for k in 0..LANES {
             let link = at(&p1, k) - at(&p0, k);
@@ -83,11 +77,12 @@ fn shape_memory(block: &mut Block, plan: &Plan, s: usize) {
                 (frame.apply(at(&rest_bend, k)), substep.head.rotate(at(&rest_bend, k)));
             let wanted = with_lock + (with_head - with_lock) * fixed[k];
             let now = at(&p0, k) - 2.0 * at(&p1, k) + at(&p2, k);
-            let r = (now - wanted) * (1.0 + gamma) - at(&strain, k) * gamma;
+            let before = at(&x0, k) - 2.0 * at(&x1, k) + at(&x2, k);
+            let r = (now - wanted) * (1.0 + gamma) - (before - at(&old, k)) * gamma;
             put(&mut bend, k, wanted);
             put(&mut residual, k, r * c[k]);
         }
-        block.bend[i] = bend;
+        block.next_bend[i] = bend;
         block.residual[i] = residual;
     }
     block.residual[0] = ZERO3;
@@ -115,18 +110,6 @@ fn shape_memory(block: &mut Block, plan: &Plan, s: usize) {
             put(&mut p, k, moved);
         }
         block.next[i] = p;
-    }
-    for i in 1..count.saturating_sub(1) {
-        let (p0, p1, p2) = (block.next[i - 1], block.next[i], block.next[i + 1]);
-        let bend = block.bend[i];
-        let (mut solved, mut strain) = (ZERO3, ZERO3);
-        for k in 0..LANES {
-            let b = at(&p0, k) - 2.0 * at(&p1, k) + at(&p2, k);
-            put(&mut solved, k, b);
-            put(&mut strain, k, b - at(&bend, k));
-        }
-        block.bend[i] = solved;
-        block.strain[i] = strain;
     }
 }
 
@@ -206,44 +189,8 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize) {
         block.velocity[i] = velocity;
         (before, was_before) = (placed, was);
     }
-    keep_strain(block);
+    std::mem::swap(&mut block.bend, &mut block.next_bend);
     for depth in &deepest[..block.used] {
         block.outcome.max_penetration_m = greater(block.outcome.max_penetration_m, *depth);
-    }
-}
-
-/// Adds to the strain what lengths and the body did to bends, smoothed along the chain.
-#[inline(always)]
-fn keep_strain(block: &mut Block) {
-    let count = block.points();
-    block.residual.fill(ZERO3);
-    for i in 1..count.saturating_sub(1) {
-        let (x0, x1, x2) = (block.position[i - 1], block.position[i], block.position[i + 1]);
-        let (solved, mut change) = (block.bend[i], ZERO3);
-        for k in 0..LANES {
-            put(&mut change, k, at(&x0, k) - 2.0 * at(&x1, k) + at(&x2, k) - at(&solved, k));
-        }
-        block.residual[i] = change;
-    }
-    // Binomial weights 1, 2, 1 so many times: of a zigzag nothing is left, of a bend over eight links nearly all.
-    for _ in 0..STRAIN_SMOOTHING {
-        let mut left = ZERO3;
-        for i in 1..count.saturating_sub(1) {
-            let (middle, right) = (block.residual[i], block.residual[i + 1]);
-            let mut smooth = ZERO3;
-            for k in 0..LANES {
-                put(&mut smooth, k, (at(&left, k) + at(&middle, k) * 2.0 + at(&right, k)) * 0.25);
-            }
-            left = middle;
-            block.residual[i] = smooth;
-        }
-    }
-    for i in 1..count.saturating_sub(1) {
-        let (mut strain, change) = (block.strain[i], block.residual[i]);
-        for k in 0..LANES {
-            let kept = at(&strain, k) + at(&change, k);
-            put(&mut strain, k, kept);
-        }
-        block.strain[i] = strain;
     }
 }
