@@ -37,7 +37,7 @@ pub(super) fn ui(ui: &mut Ui, line: Rect, index: usize, panes: usize, pane: &mut
     let left = line.left() + 20.0;
     let width = (buttons - left - 4.0).clamp(50.0, 148.0);
     ui.scope_builder(UiBuilder::new().max_rect(part(left, left + width)), |ui| {
-        method(ui, index, pane, width)
+        method(ui, index, pane, width);
     });
     let said = pane.settings_label();
     let room = part(left + width + 8.0, buttons - 2.0);

@@ -8,6 +8,7 @@ use crate::window::theme;
 /// How the comparison is laid out.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
+#[expect(clippy::struct_excessive_bools, reason = "switches, each with its own button")]
 pub(crate) struct CompareLayout {
     /// Whether the panes are on the screen in place of the one picture.
     pub(crate) shown: bool,

@@ -28,7 +28,7 @@ impl Window {
         let count = project.compare.panes.len();
         let mut asked = None;
         for (index, cell) in grid::places(count, page, header::HEIGHT).into_iter().enumerate() {
-            asked = self.header(ui, cell, index, project).or(asked);
+            asked = Self::header(ui, cell, index, project).or(asked);
             let mut place = cell;
             place.min.y += header::HEIGHT;
             if index == 0 {
@@ -40,7 +40,7 @@ impl Window {
             let shown = if flicked && response.contains_pointer() { other } else { index };
             self.pane(ui, place, shown, project, Align2::LEFT_BOTTOM);
             if shown != index {
-                self.name(ui, place, shown, project, Align2::LEFT_TOP);
+                Self::name(ui, place, shown, project, Align2::LEFT_TOP);
             }
             let shape = ui.painter();
             let edge = if shown == index { theme::LINE } else { theme::PLOT[shown % theme::PLOT.len()] };
@@ -63,7 +63,7 @@ impl Window {
         for (side, index) in pair.into_iter().enumerate() {
             let left = page.left() + half * side as f32;
             let line = Rect::from_min_size(pos2(left, page.top()), vec2(half, page.height()));
-            asked = self.header(ui, line, index, project).or(asked);
+            asked = Self::header(ui, line, index, project).or(asked);
             if pair[0] == pair[1] {
                 break;
             }
@@ -91,7 +91,7 @@ impl Window {
                 && response.dragged()
                 && let Some(at) = response.interact_pointer_pos()
             {
-                self.layout.compare.split = zoom.from_screen(place, at).x.clamp(0.0, 1.0);
+                self.layout.compare.split = zoom.at(place, at).x.clamp(0.0, 1.0);
             }
             response.on_hover_cursor(CursorIcon::ResizeHorizontal)
         } else {
@@ -111,7 +111,7 @@ impl Window {
             ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
                 ui.set_clip_rect(part.intersect(ui.clip_rect()));
                 self.pane(ui, place, index, project, bottom);
-                self.name(ui, place, index, project, top);
+                Self::name(ui, place, index, project, top);
             });
         }
         let painter = ui.painter_at(place.expand(1.0));
@@ -128,7 +128,7 @@ impl Window {
     }
 
     /// The line over a pane.
-    fn header(&self, ui: &mut Ui, cell: Rect, index: usize, project: &mut Project) -> Option<header::Ask> {
+    fn header(ui: &mut Ui, cell: Rect, index: usize, project: &mut Project) -> Option<header::Ask> {
         let panes = project.compare.panes.len();
         let pane = project.compare.panes.get_mut(index)?;
         let line = Rect::from_min_size(cell.min, vec2(cell.width(), header::HEIGHT));
@@ -159,7 +159,7 @@ impl Window {
             && !Popup::is_any_open(ui.ctx())
             && let Some(at) = response.interact_pointer_pos()
         {
-            let at = self.compare.zoom.from_screen(place, at);
+            let at = self.compare.zoom.at(place, at);
             self.compare.probe_at(at.x, at.y);
             self.layout.compare.probe = true;
         }
@@ -210,7 +210,7 @@ impl Window {
     }
 
     /// Whose picture is seen, in a corner.
-    fn name(&self, ui: &Ui, place: Rect, index: usize, project: &Project, corner: Align2) {
+    fn name(ui: &Ui, place: Rect, index: usize, project: &Project, corner: Align2) {
         let Some(pane) = project.compare.panes.get(index) else { return };
         let text = format!("{} · {}", index + 1, pane.label());
         Viewport::caption(ui, place, corner, &text, theme::PLOT[index % theme::PLOT.len()]);

@@ -42,7 +42,7 @@ impl Zoom {
     }
 
     /// Which place of the picture is there on the screen.
-    pub(crate) fn from_screen(self, place: Rect, at: Pos2) -> Pos2 {
+    pub(crate) fn at(self, place: Rect, at: Pos2) -> Pos2 {
         self.shown().min + (at - place.min) / place.size().max(Vec2::splat(1.0)) / self.factor
     }
 
@@ -51,9 +51,9 @@ impl Zoom {
         if !by.is_finite() {
             return;
         }
-        let fixed = self.from_screen(place, at);
+        let fixed = self.at(place, at);
         self.factor = (self.factor * by).clamp(1.0, Self::MOST);
-        self.shift(fixed - self.from_screen(place, at));
+        self.shift(fixed - self.at(place, at));
     }
 
     /// Moves what is shown by shares of the picture.
@@ -96,9 +96,9 @@ mod tests {
         let mut zoom = Zoom::default();
         assert_eq!(zoom.shown(), Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)));
         let at = pos2(180.0, 100.0);
-        let before = zoom.from_screen(place, at);
+        let before = zoom.at(place, at);
         zoom.magnify(place, at, 4.0);
-        assert!((zoom.from_screen(place, at) - before).length() < 1e-5);
+        assert!((zoom.at(place, at) - before).length() < 1e-5);
         assert!((zoom.to_screen(place, before) - at).length() < 1e-3);
         for by in [7.0, f32::NAN, 1e9, -3.0, 0.0] {
             zoom.magnify(place, pos2(1e4, -1e4), by);

@@ -164,6 +164,64 @@ fn errors_are_shown_in_colour_and_hair_is_probed() {
     assert!(of(&harness).layout.compare.probe, "a click opens the plot");
 }
 
-fn of_mut<'h>(harness: &'h mut Whole) -> &'h mut Window {
+fn of_mut(harness: &mut Whole) -> &mut Window {
     harness.state_mut().state.as_mut().expect("a window")
+}
+
+#[test]
+fn a_held_key_shows_the_other_pane_in_place() {
+    let mut harness = comparing();
+    let name =
+        |harness: &Whole, text: &str| super::texts(harness).iter().any(|(said, ..)| said.starts_with(text));
+    let pane = control(&harness, Role::Image, "Pane 1").rect();
+    harness.hover_at(pane.center());
+    go(&mut harness);
+    let second = format!("2 · {}", project(&harness).compare.panes[1].label());
+    assert!(!name(&harness, &second));
+    harness.key_down(Key::V);
+    go(&mut harness);
+    assert!(name(&harness, &second), "the second pane in the place of the first");
+    harness.key_up(Key::V);
+    go(&mut harness);
+    assert!(!name(&harness, &second));
+}
+
+#[test]
+fn panes_are_magnified_together_and_the_camera_stays() {
+    let mut harness = comparing();
+    let camera = project(&harness).camera;
+    let pane = control(&harness, Role::Image, "Pane 2").rect();
+    harness.hover_at(pane.center());
+    harness.event(egui::Event::Zoom(3.0));
+    go(&mut harness);
+    assert!(harness.query_by_label("3.0×").is_some());
+    assert_eq!(project(&harness).camera, camera);
+    press_button(&mut harness, "3.0×");
+    assert!(harness.query_by_label_contains("×").is_none_or(|_| harness.query_by_label("3.0×").is_none()));
+}
+
+#[test]
+fn panes_are_saved_with_their_labels_and_recorded_as_a_film() {
+    let mut harness = comparing();
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = dir.path().join("a comparison.png");
+    press_button(&mut harness, "Save comparison");
+    super::whole::answer(&mut harness, &path);
+    wait(&mut harness, "the file", |_| path.is_file());
+    let bytes = std::fs::read(&path).expect("a file");
+    assert_eq!(&bytes[1..4], b"PNG");
+    let side = |at: usize| u32::from_be_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]);
+    let pane = of(&harness).compare.pane(0).expect("a pane").picture.clone();
+    assert!(side(16) >= 2 * pane.width && side(20) >= 2 * pane.height, "four panes and their labels");
+
+    let window = of_mut(&mut harness);
+    let mut changed = (**window.history.project()).clone();
+    (changed.recording.width, changed.recording.height, changed.recording.end_frame) = (320, 240, Some(2));
+    window.edit("recording", changed);
+    go(&mut harness);
+    let film = dir.path().join("film.mp4");
+    press_button(&mut harness, "Record comparison");
+    super::whole::answer(&mut harness, &film);
+    wait(&mut harness, "the film", |window| !window.recorder.is_running() && film.is_file());
+    assert!(std::fs::metadata(&film).expect("a file").len() > 500);
 }

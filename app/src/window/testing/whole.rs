@@ -84,7 +84,7 @@ fn menu(harness: &mut Harness<'_, Shown<Option<Window>>>, command: Command) {
 }
 
 /// Answers the question for a path.
-fn answer(harness: &mut Harness<'_, Shown<Option<Window>>>, path: &Path) {
+pub(super) fn answer(harness: &mut Harness<'_, Shown<Option<Window>>>, path: &Path) {
     harness.get_by_label("Path").click();
     go(harness);
     harness.key_press_modifiers(CTRL, Key::A);

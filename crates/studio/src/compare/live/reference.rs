@@ -20,9 +20,12 @@ pub(super) struct ExactReference {
     /// Draws what nobody looks at, for its transmittance and its maps.
     unseen: CpuRenderer,
     seen: CpuRenderer,
-    transmittance: Option<(TransmittanceKey, Result<Arc<Vec<f32>>, String>)>,
-    picture: Option<(PictureKey, Result<Arc<Picture>, String>)>,
+    transmittance: Option<(TransmittanceKey, Found<Vec<f32>>)>,
+    picture: Option<(PictureKey, Found<Picture>)>,
 }
+
+/// Something that was made, or a sentence that says why not.
+type Found<T> = Result<Arc<T>, String>;
 
 /// Everything that transmittance depends on.
 #[derive(PartialEq)]
@@ -69,7 +72,7 @@ impl ExactReference {
         snapshot: &Arc<FrameSnapshot>,
         strands: &Strands,
         light: usize,
-    ) -> Result<Arc<Vec<f32>>, String> {
+    ) -> Found<Vec<f32>> {
         let Some(light) = project.lights.iter().filter(|light| light.enabled).nth(light) else {
             return Err("no light is on".to_owned());
         };
@@ -103,7 +106,7 @@ impl ExactReference {
         snapshot: &Arc<FrameSnapshot>,
         strands: &Strands,
         size: [u32; 2],
-    ) -> Result<Arc<Picture>, String> {
+    ) -> Found<Picture> {
         let mut exact = project.clone();
         exact.shadow.method = ShadowMethod::Exact;
         exact.picture.transparency = Transparency::Exact;

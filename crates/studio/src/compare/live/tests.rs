@@ -329,3 +329,27 @@ fn a_probe_follows_a_hair_and_reads_what_each_pane_says_there() {
     assert_eq!((moved.strand, moved.point), (hair.strand, hair.point));
     assert_ne!(moved.position, hair.position);
 }
+
+/// The window's threads go first: those that draw panes are nicer, and the one that asked for them is not.
+#[cfg(target_os = "linux")]
+#[test]
+fn threads_that_draw_panes_give_way() {
+    let rig = on_processor(&[ShadowMethod::VoxelMap]);
+    rig.draw(rig.request(&[0]));
+    let mut seen = Vec::new();
+    for task in std::fs::read_dir("/proc/self/task").expect("threads").flatten() {
+        let read = |name: &str| std::fs::read_to_string(task.path().join(name)).unwrap_or_default();
+        let stat = read("stat");
+        // The name may hold anything, so fields are counted from its closing bracket: niceness is the 17th after it.
+        let nice =
+            stat.rsplit_once(')').and_then(|(_, rest)| rest.split_whitespace().nth(16)?.parse::<i32>().ok());
+        if let Some(nice) = nice {
+            seen.push((read("comm").trim().to_owned(), nice));
+        }
+    }
+    let own = seen.iter().filter(|(name, _)| name == "compare" || name.starts_with("pane worker"));
+    let least = own.map(|(_, nice)| *nice).min().expect("threads that draw panes");
+    let mine = seen.iter().map(|(_, nice)| *nice).min().expect("this thread");
+    // Whoever runs the tests at the lowest priority has none to give.
+    assert!(least > mine || mine >= 9, "{seen:?}");
+}

@@ -4,6 +4,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, PoisonError};
 
+use thread_priority::{ThreadPriority, ThreadPriorityValue, set_current_thread_priority};
+
 use super::renderers::{Broken, Renderers};
 use super::round::Rounds;
 use super::{Left, LiveRequest, Mailbox};
@@ -26,7 +28,24 @@ impl Worker {
         Self { mailbox, left, on_drawn, rounds: Rounds::new(renderers) }
     }
 
-    pub(super) fn run(mut self) {
+    /// Draws until the window is closed, on workers of its own that give way to everybody else's: the window and its
+    /// simulation go on while six panes are drawn.
+    pub(super) fn run(self) {
+        give_way();
+        let workers = rayon::ThreadPoolBuilder::new()
+            .thread_name(|i| format!("pane worker {i}"))
+            .start_handler(|_| give_way())
+            .build();
+        match workers {
+            Ok(workers) => workers.install(|| self.draw()),
+            Err(error) => {
+                tracing::warn!(%error, "panes share the workers of the rest");
+                self.draw();
+            }
+        }
+    }
+
+    fn draw(mut self) {
         while let Some(request) = self.next() {
             // A panic beside the drawing of a pane, which catches its own, costs a round and not the window.
             let again = catch_unwind(AssertUnwindSafe(|| self.round(&request))).unwrap_or_else(|_| {
@@ -97,5 +116,15 @@ impl Worker {
             }
             waiting = wake.wait(waiting).unwrap_or_else(PoisonError::into_inner);
         }
+    }
+}
+
+/// Lets other threads go first, where the system takes such wishes: without it panes are drawn as well.
+fn give_way() {
+    // A quarter of the scale from its low end: a niceness of 9 where there is such a thing.
+    if let Ok(low) = ThreadPriorityValue::try_from(25_u8)
+        && let Err(error) = set_current_thread_priority(ThreadPriority::Crossplatform(low))
+    {
+        tracing::debug!(?error, "no lower priority for panes");
     }
 }
