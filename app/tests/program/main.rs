@@ -1,6 +1,7 @@
 //! The whole program, run as a user runs it.
 
 mod bench;
+mod compare;
 mod info;
 mod projects;
 mod record;

@@ -26,15 +26,29 @@ pub(super) struct Probe {
     pub report: ProbeReport,
 }
 
-/// Pixels that show hair in the light, in between, and in the shade, by transmittance of the picture's pixels, row after row;
-/// none where there is no hair.
+/// Pixels between hair on all sides.
+const RIM: usize = 4;
+
+/// Pixels that show hair in the light, in between, and in the shade, by transmittance of the picture's pixels, row after row:
+/// within the hair where there is enough of it. None where there is no hair.
 pub(super) fn usual_pixels(transmittance: &[f32], width: u32) -> Vec<[u32; 2]> {
+    let columns = width.max(1) as usize;
+    let is_hair = |at: usize| transmittance.get(at).is_some_and(|light| light.is_finite());
+    let within = |at: &usize| {
+        let (x, y) = (at % columns, at / columns);
+        let around = [(x.checked_sub(RIM), Some(y)), (Some(x + RIM), Some(y)), (Some(x), y.checked_sub(RIM))];
+        let around = around.into_iter().chain([(Some(x), Some(y + RIM))]);
+        let mut around = around.map(|place| if let (Some(x), Some(y)) = place { Some((x, y)) } else { None });
+        around.all(|place| place.is_some_and(|(x, y)| x < columns && is_hair(y * columns + x)))
+    };
+    let seen: Vec<usize> = (0..transmittance.len()).filter(|at| is_hair(*at)).collect();
+    let inner: Vec<usize> = seen.iter().copied().filter(within).collect();
+    let among = if inner.is_empty() { &seen } else { &inner };
     let mut chosen: Vec<[u32; 2]> = Vec::new();
     for wanted in WANTED {
         let off = |at: &usize| (transmittance[*at] - wanted).abs();
-        let seen = (0..transmittance.len()).filter(|at| transmittance[*at].is_finite());
-        let Some(best) = seen.min_by(|a, b| off(a).total_cmp(&off(b))) else { break };
-        let pixel = [best as u32 % width, best as u32 / width];
+        let Some(best) = among.iter().copied().min_by(|a, b| off(a).total_cmp(&off(b))) else { break };
+        let pixel = [(best % columns) as u32, (best / columns) as u32];
         if !chosen.contains(&pixel) {
             chosen.push(pixel);
         }
@@ -123,5 +137,26 @@ impl Probe {
             marks: marks.collect(),
         });
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pixels_lie_within_the_hair_and_have_the_light_that_is_wanted() {
+        let n = f32::NAN;
+        assert_eq!(usual_pixels(&[n; 12], 4), [[0; 2]; 0]);
+        assert_eq!(usual_pixels(&[], 0), [[0; 2]; 0]);
+        // Too little hair to have an inside.
+        assert_eq!(usual_pixels(&[n, 0.1, 0.9, n], 4), [[2, 0], [1, 0]]);
+        // Hair from column 5 on, the brighter the farther; its rim is left out.
+        let (width, height) = (40, 20);
+        let light = |at: usize| if at % width < 5 { n } else { (at % width) as f32 / width as f32 };
+        let picture: Vec<f32> = (0..width * height).map(light).collect();
+        let chosen = usual_pixels(&picture, width as u32);
+        assert_eq!(chosen.iter().map(|pixel| pixel[0]).collect::<Vec<_>>(), [34, 20, 9]);
+        assert!(chosen.iter().all(|pixel| (4..16).contains(&pixel[1])), "{chosen:?}");
     }
 }

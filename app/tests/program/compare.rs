@@ -1,0 +1,116 @@
+//! `lovelock compare`.
+
+use lovelock_studio::render::ShadowMethod;
+use serde_json::Value;
+
+use crate::tool::{names, run, saved, small_project};
+
+#[test]
+fn a_report_has_the_keys_that_are_promised_and_its_files() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let mut project = small_project();
+    // Strands a few millimetres wide to the light, as of much hair: the truth of wider ones is slow to find.
+    project.look.real_hairs *= 0.05;
+    saved(dir.path(), "ein Projekt ü.lovelock", &project);
+    let ran = run(
+        dir.path(),
+        [
+            "compare",
+            "ein Projekt ü.lovelock",
+            "-o",
+            "reports/größe & ü",
+            "--frame",
+            "3",
+            "--methods",
+            "none,voxel-map,exact",
+            "--size",
+            "96x64",
+            "--backend",
+            "cpu",
+            "--json",
+        ],
+    );
+    let json = ran.done().json();
+    assert_eq!(json["frames"], serde_json::json!([3, 4]));
+    assert_eq!(json["complete"], Value::Bool(true));
+    assert!(json["reference"]["converged"].is_boolean() && json["reference"]["samples"].is_u64());
+    let methods = json["methods"].as_array().expect("methods");
+    let ids: Vec<_> = methods.iter().map(|method| method["id"].as_str().unwrap_or_default()).collect();
+    assert_eq!(ids, ["none", "voxel-map", "exact"]);
+    for method in methods {
+        for key in ["transparency", "backend", "adapter", "memory_bytes", "ssim"] {
+            assert!(!method[key].is_null(), "no `{key}` in {method}");
+        }
+        for key in ["rmse", "bias", "p99", "first10_rmse"] {
+            assert!(method["transmittance"][key].is_number(), "no `{key}` in {method}");
+        }
+        for key in ["mean", "p99"] {
+            assert!(method["flip"][key].is_number(), "no `{key}` in {method}");
+        }
+        for key in ["build", "query", "draw"] {
+            assert!(method["ms"][key].is_number(), "no `{key}` in {method}");
+        }
+        // Thirty draws at the least.
+        assert_eq!(method["times"][0]["count"], Value::from(30));
+    }
+    let out = dir.path().join("reports/größe & ü");
+    assert_eq!(names(&out), ["pictures", "report.csv", "report.html", "report.json"]);
+    let pictures = names(&out.join("pictures"));
+    for file in ["reference.png", "voxel-map.png", "exact.transmittance-error.png", "none.picture-error.png"]
+    {
+        assert!(pictures.iter().any(|name| name == file), "no {file} in {pictures:?}");
+    }
+    assert!(pictures.iter().all(|name| name.ends_with(".png")), "{pictures:?}");
+}
+
+#[test]
+fn wrong_requests_are_refused_in_one_line_and_leave_nothing() {
+    let dir = tempfile::tempdir().expect("a folder");
+    saved(dir.path(), "p.lovelock", &small_project());
+    std::fs::write(dir.path().join("file"), b"x").expect("a file");
+    let before = names(dir.path());
+    let wrong: [(&[&str], &str, i32); 17] = [
+        (&["--methods", "magic"], "magic", 2),
+        (&["--methods", "voxel-map,"], "density-clustering", 2),
+        (&["--transparency", "magic"], "weighted-average", 2),
+        (&["--backend", "magic"], "both", 2),
+        (&["--frame", "1000000"], "1000000", 2),
+        (&["--frames", "5..5"], "5..5", 2),
+        (&["--frame", "1", "--frames", "1..2"], "--frame", 2),
+        (&["--size", "9x"], "9x", 2),
+        (&["--sweep", "resolution"], "resolution", 2),
+        (&["--sweep", "resolution=1"], "64 to 2048", 2),
+        (&["--sweep", "sparkle=1"], "slabs", 2),
+        (&["--probe", "5"], "5", 2),
+        (&["--probe", "96,0"], "96,0", 2),
+        (&["--draws", "3"], "30", 2),
+        (&["--hair", "no such.hair"], "no such.hair", 2),
+        (&["-o", "file"], "file", 2),
+        (&["-o", "file/in it"], "in it", 1),
+    ];
+    for (more, named, code) in wrong {
+        let mut args = vec!["compare", "p.lovelock", "--size", "96x64", "--backend", "cpu"];
+        // What is said twice is refused for that.
+        if more[0] == "--size" {
+            args.drain(2..4);
+        }
+        if more[0] == "--backend" {
+            args.truncate(4);
+        }
+        if more[0] == "--sweep" {
+            args.extend(["--methods", "occupancy-maps"]);
+        }
+        if more[0] != "-o" {
+            args.extend(["-o", "report"]);
+        }
+        args.extend(more);
+        let ran = run(dir.path(), &args);
+        let line = ran.refused(code);
+        assert!(line.contains(named), "{args:?}: `{named}` is not named: {line}");
+        assert_eq!(names(dir.path()), before, "{args:?}");
+    }
+    let ran = run(dir.path(), ["compare", "p.lovelock", "-o", "report", "--methods", "fog"]);
+    for method in ShadowMethod::ALL {
+        assert!(ran.refused(2).contains(method.id()), "{}", ran.stderr);
+    }
+}
