@@ -7,7 +7,7 @@ use lovelock_studio::Progress;
 
 /// Progress on standard error: a bar on a terminal, plain lines elsewhere.
 pub(super) struct Bar {
-    bar: Option<ProgressBar>,
+    drawn: Option<ProgressBar>,
     said: u64,
     /// The part of a comparison that was told last.
     part: String,
@@ -20,7 +20,7 @@ impl Bar {
                 .unwrap_or_else(|_| ProgressStyle::default_bar());
             ProgressBar::new(1).with_style(style)
         });
-        Self { bar, said: 0, part: String::new() }
+        Self { drawn: bar, said: 0, part: String::new() }
     }
 
     pub(super) fn show(&mut self, progress: &Progress) {
@@ -35,7 +35,7 @@ impl Bar {
             Progress::Simulating { done, total } => ("simulating", *done, *total),
             Progress::Frame { done, total } => ("frame", *done, *total),
             Progress::Comparing { what, done, total } => {
-                if self.bar.is_none() && self.part != *what {
+                if self.drawn.is_none() && self.part != *what {
                     eprintln!("{what} ({done} of {total})");
                     self.part.clone_from(what);
                 }
@@ -43,7 +43,7 @@ impl Bar {
             }
             Progress::Finishing => ("finishing", 1, 1),
         };
-        if let Some(bar) = &self.bar {
+        if let Some(bar) = &self.drawn {
             bar.set_length(total.max(1));
             bar.set_position(done);
             bar.set_message(what.to_owned());
@@ -58,14 +58,14 @@ impl Bar {
     }
 
     fn line(&self, text: &str) {
-        match &self.bar {
+        match &self.drawn {
             Some(bar) => bar.println(text),
             None => eprintln!("{text}"),
         }
     }
 
     pub(super) fn done(&self) {
-        if let Some(bar) = &self.bar {
+        if let Some(bar) = &self.drawn {
             bar.finish_and_clear();
         }
     }

@@ -59,8 +59,8 @@ fn summary(report: &CompareReport, page: &str) -> String {
     for (backend, adapter) in adapters {
         line(format_args!("\n{backend}: {adapter}; times are medians of {} draws", report.scene.draws));
         line(format_args!(
-            "{:<names$} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>10}",
-            "method", "rmse", "bias", "FLIP", "build ms", "query ms", "draw ms", "KiB"
+            "{:<names$} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>10}",
+            "method", "rmse", "of one", "bias", "FLIP", "build ms", "query ms", "draw ms", "KiB"
         ));
         for method in report.methods.iter().filter(|method| method.backend == backend) {
             line(format_args!("{:<names$} {}", method.name, numbers(method)));
@@ -79,8 +79,9 @@ fn numbers(method: &MethodReport) -> String {
     };
     let bias = method.transmittance.map_or_else(|| "-".to_owned(), |error| format!("{:+.4}", error.bias));
     format!(
-        "{:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>10}",
+        "{:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>10}",
         number(method.transmittance.map(|error| error.rmse), 4),
+        number(method.front_error(), 4),
         bias,
         number(method.flip.map(|flip| flip.mean), 4),
         number(method.ms.and_then(|ms| ms.build), 2),

@@ -34,10 +34,10 @@ impl Source {
         let file_name = |path: &PathBuf| {
             path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
         };
-        let mut name = task.project.as_ref().map_or_else(|| "default project".to_owned(), file_name);
+        let mut names = vec![task.project.as_ref().map_or_else(|| "default project".to_owned(), file_name)];
         if let Some(id) = &task.preset {
             project.set_preset(preset(id)?);
-            name += &format!(", {id}");
+            names.push(id.clone());
         }
         let places = [(Place::Hair, &task.hair), (Place::Body, &task.body), (Place::Motion, &task.motion)];
         let mut named = Vec::new();
@@ -48,7 +48,7 @@ impl Source {
                 return Err(StudioError::input(path, format!("{}: there is no such file", path.display())));
             }
             access.pick(path);
-            name += &format!(", {}", file_name(path));
+            names.push(file_name(path));
             named.push((place, path.clone()));
         }
         if let Some(path) = &task.hair {
@@ -60,7 +60,7 @@ impl Source {
         if let Some(path) = &task.motion {
             project.set_motion_file(path);
         }
-        Ok(Self { project, access, name, named })
+        Ok(Self { project, access, name: names.join(", "), named })
     }
 
     /// Does the work with its progress shown.

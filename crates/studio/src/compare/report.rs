@@ -132,6 +132,9 @@ pub struct MethodReport {
     /// Error of transmittance at strand points against the mean of the light over the method's own texels: what it could
     /// know best.
     pub transmittance: Option<TransmittanceError>,
+    /// The same against one truth for all methods: the mean of the light over a texel of `exact` by the project's settings,
+    /// from which the reference picture is drawn. Coarse texels count against a method here.
+    pub transmittance_common: Option<TransmittanceError>,
     /// The same against the truth at points. Null for the method that is that truth.
     pub transmittance_at_points: Option<TransmittanceError>,
     /// Difference of the picture to the reference picture, as seen (FLIP, 0 to 1).
@@ -152,12 +155,20 @@ pub struct MethodReport {
     pub stability: Option<StabilityReport>,
     /// What slices show in even density.
     pub banding: Option<BandingReport>,
-    /// Whether no other of the same backend is both more right (by [`MethodReport::transmittance`]) and quicker.
+    /// Whether no other of the same backend and transparency is both more right and quicker, by [`MethodReport::front_error`].
     pub front_of_time: bool,
-    /// Whether no other of the same backend is both more right and smaller.
+    /// Whether no other of the same backend and transparency is both more right and smaller.
     pub front_of_memory: bool,
     /// What was written of it.
     pub files: MethodFiles,
+}
+
+impl MethodReport {
+    /// The error by which methods are ranked: against one truth for all. Where that truth could not be had, against the
+    /// method's own texels.
+    pub fn front_error(&self) -> Option<f64> {
+        self.transmittance_common.or(self.transmittance).map(|error| error.rmse)
+    }
 }
 
 /// Error of transmittance over points.

@@ -7,7 +7,7 @@ use crate::CompareReport;
 pub(super) fn csv(report: &CompareReport) -> String {
     let mut out = String::from(
         "name,method,transparency,backend,adapter,sweep,frame,width,height,cell_size_m,\
-         rmse,bias,p99,max,first10_rmse,points_rmse,points_bias,points_p99,points_first10_rmse,\
+         rmse,bias,p99,max,first10_rmse,common_rmse,common_bias,points_rmse,points_bias,points_p99,points_first10_rmse,\
          flip_mean,flip_hair_mean,flip_p99,psnr_db,ssim,build_ms,build_low_ms,build_high_ms,query_ms,query_low_ms,query_high_ms,\
          draw_ms,draw_low_ms,draw_high_ms,whole_ms,whole_low_ms,whole_high_ms,draws,memory_bytes,draw_bytes,\
          swim,pop,pop_p99,flicker,banding_residual,banding_amplitude,front_of_time,front_of_memory,refused\n",
@@ -33,6 +33,8 @@ pub(super) fn csv(report: &CompareReport) -> String {
             number(footprint.map(|e| e.p99)),
             number(footprint.map(|e| e.max)),
             number(footprint.and_then(|e| e.first10_rmse)),
+            number(method.transmittance_common.map(|e| e.rmse)),
+            number(method.transmittance_common.map(|e| e.bias)),
             number(points.map(|e| e.rmse)),
             number(points.map(|e| e.bias)),
             number(points.map(|e| e.p99)),

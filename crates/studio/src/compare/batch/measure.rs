@@ -42,6 +42,10 @@ impl Work<'_> {
             report.files.transmittance_error =
                 self.point_map(&name, maps::TRANSMITTANCE_ERROR, &error, (values, &input))?;
         }
+        if let Ok(truth) = &against.truths.0[against.common].transmittance {
+            report.transmittance_common =
+                Some(draw::transmittance_error(&drawn.transmittance, truth, against.points));
+        }
         if let Some(points) = against.points
             && !points.is_made_by(&entrant.contender.shadow, cell_size)
         {

@@ -6,20 +6,20 @@ use lovelock_render::{
 
 use super::hair::Hair;
 use super::maps::{self, at_pixels};
-use super::truth::{Truths, converge};
+use super::truth::{Truth, converge};
 use super::work::Work;
 use crate::{CompareReport, StudioError};
 
 impl Work<'_> {
-    /// Draws the picture that others are held against: exact transparency, shaded with converged transmittance. None where
-    /// the truth does not fit in memory; the report says so.
+    /// Draws the picture that others are held against: exact transparency, shaded with converged transmittance, which is known
+    /// of the first light. None where the truth does not fit in memory; the report says so.
     ///
     /// # Errors
     /// A size out of range, or a file that cannot be written.
     pub(super) fn reference(
         &self,
         hair: &Hair,
-        truths: &mut Truths,
+        of_first_light: &Truth,
         report: &mut CompareReport,
     ) -> Result<Option<Picture>, StudioError> {
         let mut project = self.project.clone();
@@ -28,8 +28,7 @@ impl Work<'_> {
         let mut at_points = Vec::new();
         for (i, light) in self.lights.iter().enumerate() {
             let found = if i == 0 {
-                let (truth, _) = truths.find((hair, &project, light), &project.shadow, None);
-                truths.0[truth].transmittance.clone()
+                of_first_light.transmittance.clone()
             } else {
                 converge((hair, &project, light), &project.shadow).0
             };

@@ -85,6 +85,10 @@ fn every_method_is_drawn_measured_and_written() {
         assert!(other.flip.map(|flip| flip.mean) < none.flip.map(|flip| flip.mean), "{}", other.id);
         assert!(other.stability.is_some_and(|stability| stability.swim > 0.0), "{}", other.id);
     }
+    // One truth ranks all, and for the texels that it is of it is no other than their own.
+    let common = |id: &str| method(&report, id).transmittance_common;
+    assert_eq!(common("exact"), method(&report, "exact").transmittance);
+    assert_ne!(common("voxel-map"), method(&report, "voxel-map").transmittance);
     // The truth at points is not held against itself; the voxel map is.
     assert_eq!(method(&report, "exact").transmittance_at_points, None);
     assert!(method(&report, "voxel-map").transmittance_at_points.is_some());

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use lovelock_metrics::pareto;
-use lovelock_render::{Light, Picture, Renderer, ValueRenderer};
+use lovelock_render::{Light, Picture, Renderer, ShadowMethod, ShadowSettings, ValueRenderer};
 use lovelock_shadow::CONVERGED_CHANGE;
 
 use super::CompareRequest;
@@ -32,6 +32,8 @@ pub(super) struct Work<'a> {
 pub(super) struct Against<'a> {
     pub hair: &'a Hair,
     pub truths: &'a Truths,
+    /// Which of them is the same for all.
+    pub common: usize,
     pub points: Option<&'a Points>,
     pub picture: Option<&'a Picture>,
     pub film: Option<&'a Film>,
@@ -76,7 +78,9 @@ impl Work<'_> {
             }
         };
         part("the reference picture".to_owned(), true)?;
-        let picture = self.reference(&hair, &mut truths, report)?;
+        let shadow = ShadowSettings { method: ShadowMethod::Exact, ..self.project.shadow };
+        let (common, _) = truths.find((&hair, self.project, &self.lights[0]), &shadow, None);
+        let picture = self.reference(&hair, &truths.0[common], report)?;
         note_truths(report, &truths, points.as_ref());
         let film = self.film(snapshots, &truths, report, &mut part)?;
 
@@ -92,6 +96,7 @@ impl Work<'_> {
         let against = Against {
             hair: &hair,
             truths: &truths,
+            common,
             points: points.as_ref(),
             picture: picture.as_ref(),
             film: film.as_ref(),
@@ -189,6 +194,7 @@ fn note_truths(report: &mut CompareReport, truths: &Truths, points: Option<&Poin
             Ok(_) => reference.footprints.push(truth.facts.clone()),
             Err(error) => {
                 let of = truth.facts.methods.join(", ");
+                let of = if of.is_empty() { "exact" } else { &of };
                 reference.refused.push(format!("the truth for the texels of {of}: {error}"));
             }
         }
@@ -203,7 +209,7 @@ fn note_truths(report: &mut CompareReport, truths: &Truths, points: Option<&Poin
 /// Marks the methods that none of the same backend and transparency beats in error and cost.
 fn mark_fronts(report: &mut CompareReport) {
     let methods = &mut report.methods;
-    let error = |method: &MethodReport| method.transmittance.map_or(f64::NAN, |error| error.rmse);
+    let error = |method: &MethodReport| method.front_error().unwrap_or(f64::NAN);
     let time = |method: &MethodReport| {
         let stages = method.ms.and_then(|ms| Some(ms.build? + ms.query?));
         stages.unwrap_or(f64::NAN)

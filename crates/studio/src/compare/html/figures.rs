@@ -47,7 +47,7 @@ impl Cost {
 /// Nothing where fewer than two methods have both numbers.
 pub(super) fn cost(group: &Group<'_>, names: &Names, cost: Cost) -> Option<String> {
     let points: Vec<(f64, f64, &MethodReport)> = (group.methods.iter())
-        .filter_map(|(_, method)| Some((cost.of(method)?, method.transmittance?.rmse, *method)))
+        .filter_map(|(_, method)| Some((cost.of(method)?, method.front_error()?, *method)))
         .collect();
     if points.len() < 2 {
         return None;

@@ -157,7 +157,7 @@ fn costs(groups: &[Group<'_>], names: &Names) -> String {
         }
     }
     if !out.is_empty() {
-        out += "<p class=\"note\">Lower is more right, further left is cheaper. Filled dots, joined by the grey band, are the \
+        out += "<p class=\"note\">The error is that of <i>One truth</i>. Lower is more right, further left is cheaper. Filled dots, joined by the grey band, are the \
                 front; dashed lines join the settings of a sweep. A method that lies far off is on the rim.</p>";
     }
     out
@@ -277,12 +277,14 @@ fn reference(report: &CompareReport, names: &Names) -> String {
     for truth in &reference.footprints {
         let held = report.methods.iter().filter(|method| truth.methods.contains(&method.name));
         let held: Vec<String> = held.map(|method| names.full(method)).collect();
+        // Where `exact` is not among the methods.
+        let held = if held.is_empty() { "One truth for all".to_owned() } else { held.join(", ") };
         let swatch = figures::of_truth(report, truth);
         let _ = write!(
             rows,
             "<tr><th scope=\"row\"><i class=\"swatch\" style=\"background:{swatch}\"></i>{}</th><td>{}</td><td>{}</td><td>{}</td>\
              <td class=\"text\">{}</td></tr>",
-            escaped(&held.join(", ")),
+            escaped(&held),
             grouped(truth.points),
             truth.samples,
             fixed(Some(f64::from(truth.change)), 5),

@@ -46,7 +46,7 @@ fn table(caption: &str, spans: &[(&str, usize)], columns: &[Column], rows: &str)
 
 /// Errors, pictures, costs and stillness of the methods of one group.
 pub(super) fn overview(group: &Group<'_>, names: &Names, draws: u32) -> String {
-    const COLUMNS: [Column; 14] = [
+    const COLUMNS: [Column; 15] = [
         Column(
             "RMSE",
             "Root mean square error of transmittance at strand points, against the method's own texels",
@@ -54,6 +54,10 @@ pub(super) fn overview(group: &Group<'_>, names: &Names, draws: u32) -> String {
         Column("Bias", "Mean error: above zero the hair is too bright"),
         Column("p99", "99th percentile of the error without its sign"),
         Column("First 10", "Root mean square error where fewer than ten strands lie before the point"),
+        Column(
+            "One truth",
+            "Root mean square error against the same truth for all: the mean of the light over a texel of exact",
+        ),
         Column(
             "At points",
             "Root mean square error against the truth at the points themselves, which no map can reach",
@@ -73,7 +77,7 @@ pub(super) fn overview(group: &Group<'_>, names: &Names, draws: u32) -> String {
     ];
     let cost = format!("Cost on the {}, ms", group.backend);
     let spans = [
-        ("Error of transmittance", 5),
+        ("Error of transmittance", 6),
         ("Difference of the picture", 5),
         (cost.as_str(), 3),
         ("Stillness", 1),
@@ -98,10 +102,12 @@ pub(super) fn overview(group: &Group<'_>, names: &Names, draws: u32) -> String {
         let swim = method.stability.map(|stability| stability.swim);
         let mut put = |text: String, value: Option<f64>, class: &str| rows += &cell(&text, value, class);
         let four = |value: Option<f64>| fixed(value, 4);
-        put(four(error.map(|e| e.rmse)), error.map(|e| e.rmse), "strong");
+        put(four(error.map(|e| e.rmse)), error.map(|e| e.rmse), "");
         put(signed(error.map(|e| e.bias), 4), error.map(|e| e.bias), "");
         put(fixed(error.map(|e| e.p99), 3), error.map(|e| e.p99), "");
         put(four(error.and_then(|e| e.first10_rmse)), error.and_then(|e| e.first10_rmse), "");
+        let common = method.transmittance_common.map(|error| error.rmse);
+        put(four(common), common, "strong");
         put(four(at_points), at_points, "");
         put(four(flip.map(|f| f.mean)), flip.map(|f| f.mean), "first");
         put(four(flip.and_then(|f| f.hair_mean)), flip.and_then(|f| f.hair_mean), "");
