@@ -13,7 +13,9 @@ use crate::window::panels::statistics::round_steps;
 use crate::window::theme;
 
 /// Width of the table of medians, points.
-const TABLE_WIDTH: f32 = 330.0;
+const TABLE_WIDTH: f32 = 440.0;
+/// Width of its column of names, points.
+const NAME_WIDTH: f32 = 112.0;
 
 /// The choice of plot, the plot, and the medians beside it where there is room.
 pub(super) fn ui(ui: &mut Ui, plot: &mut CostPlot, costs: &Costs, project: &Project, panes: &[usize]) {
@@ -36,7 +38,8 @@ pub(super) fn ui(ui: &mut Ui, plot: &mut CostPlot, costs: &Costs, project: &Proj
     };
     if beside {
         ui.horizontal_top(|ui| {
-            ui.allocate_ui(vec2(room.x - TABLE_WIDTH - 8.0, room.y), draw);
+            let size = vec2(room.x - TABLE_WIDTH - 8.0, room.y);
+            ui.allocate_ui_with_layout(size, Layout::top_down(Align::LEFT), draw);
             ui.vertical(|ui| table(ui, costs, project, panes));
         });
     } else {
@@ -85,9 +88,7 @@ fn over_time(ui: &mut Ui, which: CostPlot, costs: &Costs, project: &Project, pan
         .include_y(0.0)
         .y_axis_label("ms")
         .x_axis_label("seconds ago")
-        .x_grid_spacer(|_| {
-            (0..=6).map(|i| GridMark { value: -2.0 * f64::from(i), step_size: 10.0 }).collect()
-        })
+        .x_grid_spacer(|_| (0..=6).map(|i| GridMark { value: -2.0 * f64::from(i), step_size: 2.0 }).collect())
         .y_grid_spacer(|input| round_steps(input.bounds))
         .x_axis_formatter(|mark, _| format!("{:.0}", mark.value.abs()))
         .label_formatter(|at| match at {
@@ -99,7 +100,12 @@ fn over_time(ui: &mut Ui, which: CostPlot, costs: &Costs, project: &Project, pan
         .show(ui, |plot| {
             for (index, name, points) in lines {
                 let color = theme::PLOT[index % theme::PLOT.len()];
-                plot.line(Line::new(format!("{} {name}", index + 1), points).color(color).width(1.8));
+                plot.line(
+                    Line::new(format!("{} {name}", index + 1), points)
+                        .color(color)
+                        .width(1.8)
+                        .allow_band(false),
+                );
             }
         });
 }
@@ -163,9 +169,11 @@ fn scatter(ui: &mut Ui, which: CostPlot, costs: &Costs, project: &Project, panes
                 let Some(at) = place(way, which) else { continue };
                 let point = Points::new(name, PlotPoints::from(at)).color(color).radius(5.0);
                 plot.points(point.shape(MarkerShape::Circle));
-                let text = RichText::new(way.contender.shadow.method.label()).small().color(color);
+                // Room for the point before the name.
+                let text = format!("    {}", way.contender.shadow.method.label());
+                let text = RichText::new(text).small().color(color);
                 let text = Text::new("", PlotPoint::new(at[0], at[1]), text);
-                plot.text(text.anchor(egui::Align2::LEFT_BOTTOM));
+                plot.text(text.anchor(egui::Align2::LEFT_CENTER));
             }
         });
 }
@@ -190,12 +198,19 @@ fn decades((low, high): (f64, f64)) -> Vec<GridMark> {
     // Where many powers are in view, they alone.
     let parts: &[f64] = if high - low > 2.2 { &[1.0] } else { &[1.0, 2.0, 5.0] };
     let powers = low.floor() as i32..=high.ceil() as i32;
-    powers
+    let mark = |value: f64| GridMark { value, step_size: 0.5 };
+    let marks: Vec<GridMark> = powers
         .flat_map(|power| parts.iter().map(move |part| f64::from(power) + part.log10()))
         .filter(|value| (low..=high).contains(value))
-        // One size, so that all have their numbers.
-        .map(|value| GridMark { value, step_size: 1.0 })
-        .collect()
+        .map(mark)
+        .collect();
+    if marks.len() > 1 {
+        return marks;
+    }
+    // A part of a power alone is in view: even steps of the number itself.
+    let even = round_steps((10_f64.powf(low), 10_f64.powf(high)));
+    let even = even.into_iter().map(|step| step.value.log10());
+    even.filter(|value| (low..=high).contains(value)).map(mark).collect()
 }
 
 /// A number with two digits that count.
@@ -205,39 +220,55 @@ fn short(value: f64) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
+/// Widths of the columns of numbers, points: four times, memory and error.
+const COLUMNS: [f32; 6] = [42.0, 42.0, 42.0, 48.0, 62.0, 58.0];
+
 /// Medians of all stages, memory and error.
 fn table(ui: &mut Ui, costs: &Costs, project: &Project, panes: &[usize]) {
-    egui::Grid::new("compare medians").num_columns(7).spacing([10.0, 3.0]).show(ui, |ui| {
-        let right = |ui: &mut Ui, text: RichText| {
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.label(text.small()));
-        };
-        ui.label("");
-        for title in ["build", "ask", "draw", "ms", "memory", "error"] {
-            right(ui, RichText::new(title).color(theme::QUIET));
-        }
-        ui.end_row();
-        for (index, way) in shown(costs, project, panes) {
-            let color = theme::PLOT[index % theme::PLOT.len()];
-            ui.label(RichText::new(way.contender.shadow.method.label()).small().color(color));
-            let numbers = [
-                way.median(|times| times.build),
-                way.median(|times| times.ask),
-                way.median(|times| times.draw),
-                way.median(LiveTimes::whole),
-            ];
-            for ms in numbers {
-                right(ui, RichText::new(format!("{ms:.1}")));
-            }
-            right(ui, RichText::new(bytes_label(way.shadow_bytes)));
-            let error = match &way.error {
-                LiveError::Measured { rmse, .. } => format!("{rmse:.4}"),
-                LiveError::Reference => "reference".to_owned(),
-                LiveError::NotMeasured | LiveError::Refused(_) => "–".to_owned(),
+    let row = |ui: &mut Ui, name: RichText, cells: [RichText; 6]| {
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 4.0;
+            let cell = |ui: &mut Ui, width: f32, layout: Layout, text: RichText| {
+                ui.allocate_ui_with_layout(vec2(width, 15.0), layout, |ui| {
+                    ui.set_min_width(width);
+                    ui.add(egui::Label::new(text.small()).truncate());
+                });
             };
-            right(ui, RichText::new(error));
-            ui.end_row();
-        }
-    });
+            cell(ui, NAME_WIDTH, Layout::left_to_right(Align::Center), name);
+            for (width, text) in COLUMNS.into_iter().zip(cells) {
+                cell(ui, width, Layout::right_to_left(Align::Center), text);
+            }
+        });
+    };
+    ui.spacing_mut().item_spacing.y = 2.0;
+    let titles = ["build", "ask", "draw", "whole", "memory", "error"];
+    row(
+        ui,
+        RichText::new("ms").color(theme::QUIET),
+        titles.map(|title| RichText::new(title).color(theme::QUIET)),
+    );
+    for (index, way) in shown(costs, project, panes) {
+        let color = theme::PLOT[index % theme::PLOT.len()];
+        let ms = |stage: fn(&LiveTimes) -> f64| RichText::new(format!("{:.1}", way.median(stage)));
+        let error = match &way.error {
+            LiveError::Measured { rmse, .. } => format!("{rmse:.4}"),
+            LiveError::Reference => "reference".to_owned(),
+            LiveError::NotMeasured | LiveError::Refused(_) => "–".to_owned(),
+        };
+        let name = RichText::new(way.contender.shadow.method.label()).color(color);
+        row(
+            ui,
+            name,
+            [
+                ms(|times| times.build),
+                ms(|times| times.ask),
+                ms(|times| times.draw),
+                ms(LiveTimes::whole),
+                RichText::new(bytes_label(way.shadow_bytes)),
+                RichText::new(error),
+            ],
+        );
+    }
     note(ui, "Medians of the last pictures, while everything else runs too.");
 }
 
@@ -257,6 +288,10 @@ mod tests {
             assert!(marks.iter().all(|mark| mark.value >= bounds.0 && mark.value <= bounds.1));
         }
         assert_eq!(decades((-0.1, 1.1)).len(), 4, "1, 2, 5 and 10");
+        // Between 560 and 800 there is none of them.
+        let near: Vec<i64> =
+            decades((2.75, 2.9)).iter().map(|mark| 10_f64.powf(mark.value).round() as i64).collect();
+        assert!(near.len() >= 2 && near.iter().all(|value| value % 50 == 0), "{near:?}");
     }
 
     #[test]

@@ -183,7 +183,8 @@ impl Window {
             ui.painter().rect_filled(page, 0.0, super::theme::PAGE);
             self.compare.page = page.size();
             self.panes(ui, page, project);
-            self.running(ui, page);
+            // Below the lines over the panes, whose buttons stay free.
+            self.running(ui, page.with_min_y(page.top() + header::HEIGHT));
         });
         if film {
             command = Some(Command::Record);

@@ -1,7 +1,7 @@
 //! The light along the ray through a hair, as every pane's method sees it.
 
 use egui::{RichText, Ui};
-use egui_plot::{HoverPosition, Line, LineStyle, MarkerShape, Plot, PlotPoints, Points, VLine};
+use egui_plot::{GridMark, HoverPosition, Line, LineStyle, MarkerShape, Plot, PlotPoints, Points, VLine};
 use lovelock_studio::{LiveProbe, ProbedHair, Project};
 
 use crate::window::control::note;
@@ -50,9 +50,10 @@ pub(super) fn ui(ui: &mut Ui, asked: bool, probed: Option<&LiveProbe>, project: 
         .include_y(-ROW * (rows as f64 + 0.4))
         .set_margin_fraction(egui::vec2(0.01, 0.03))
         .x_axis_label("depth along the light from the hair, mm")
+        .y_grid_spacer(|_| (0..=2).map(|i| GridMark { value: 0.5 * f64::from(i), step_size: 0.5 }).collect())
         .y_axis_formatter(
             |mark, _| {
-                if mark.value < -1e-6 { String::new() } else { format!("{:.2}", mark.value) }
+                if mark.value < -1e-6 { String::new() } else { format!("{:.1}", mark.value) }
             },
         )
         .label_formatter(|at| match at {
@@ -70,8 +71,9 @@ pub(super) fn ui(ui: &mut Ui, asked: bool, probed: Option<&LiveProbe>, project: 
             );
             let steps = staircase(&hair.steps, hair.range);
             if !steps.is_empty() {
-                let line = Line::new("every fragment", steps).color(theme::BRIGHT).width(1.0);
-                plot.line(line.style(LineStyle::Solid));
+                let line = Line::new("every fragment", steps).color(theme::BRIGHT).width(1.2);
+                // Steps are edges, and not the two sides of a band.
+                plot.line(line.style(LineStyle::Solid).allow_band(false));
             }
             let mut row = 0;
             for (index, curve) in &curves {
@@ -80,7 +82,7 @@ pub(super) fn ui(ui: &mut Ui, asked: bool, probed: Option<&LiveProbe>, project: 
                 let color = theme::PLOT[index % theme::PLOT.len()];
                 let points: Vec<[f64; 2]> =
                     curve.curve.iter().map(|&(depth, t)| [1e3 * f64::from(depth), f64::from(t)]).collect();
-                plot.line(Line::new(name.clone(), points).color(color).width(1.8));
+                plot.line(Line::new(name.clone(), points).color(color).width(1.8).allow_band(false));
                 let at = PlotPoints::from([0.0, f64::from(curve.value)]);
                 let point = Points::new(name.clone(), at).color(color).radius(4.5);
                 plot.points(point.shape(MarkerShape::Circle));
@@ -102,9 +104,15 @@ pub(super) fn ui(ui: &mut Ui, asked: bool, probed: Option<&LiveProbe>, project: 
                         let body = vec![[start.max(low), middle], [end.min(high), middle]];
                         plot.line(Line::new(label.clone(), body).color(color.gamma_multiply(0.6)).width(3.0));
                     }
-                    for edge in [start, end] {
+                    for edge in [start, end].into_iter().filter(|edge| (low..=high).contains(edge)) {
                         let tick = vec![[edge, middle - half], [edge, middle + half]];
-                        plot.line(Line::new(label.clone(), tick).color(color).width(1.0).allow_hover(false));
+                        plot.line(
+                            Line::new(label.clone(), tick)
+                                .color(color)
+                                .width(1.0)
+                                .allow_hover(false)
+                                .allow_band(false),
+                        );
                     }
                 }
             }
