@@ -80,7 +80,7 @@ fn header(report: &CompareReport) -> String {
         facts.join(" · ")
     );
     if !report.complete {
-        out += "<div class=\"banner\"><b>This comparison was cancelled.</b> What is here is whole; the rest is missing.</div>";
+        out += "<div class=\"banner\"><b>This comparison is not complete.</b> It was stopped, or still runs: what is here is whole, the rest is missing.</div>";
     }
     out += &doubts(report);
     out + "</header>"
