@@ -86,7 +86,7 @@ pub(super) fn ui(
             "Plots what the panes take, and their error against it.",
         );
         let measures =
-            "Measures the error of every pane against the exact method, which takes a part of the time.";
+            "Measures the error of every pane against the exact method, for the first light that is on. It takes a part of the time.";
         toggle(ui, &mut layout.measures, icons::ICON_STRAIGHTEN, "Measure errors", measures);
         ui.separator();
         let mut button =

@@ -15,7 +15,7 @@ mod zoom;
 
 use std::sync::Arc;
 
-use egui::{CentralPanel, Frame, Key, Panel, Rect, Ui};
+use egui::{CentralPanel, Frame, Key, Panel, Popup, Rect, Ui};
 use lovelock_studio::{
     Command, CompareSection, Contender, FrameSnapshot, Live, LivePane, LiveProbe, LiveRequest, ProbePlace,
     Project,
@@ -47,6 +47,8 @@ pub(crate) struct Compare {
     page: egui::Vec2,
     /// Whether the line of the wipe is being dragged.
     splitting: bool,
+    /// Whether a menu was open when the pointer was pressed: the click then closes it and means nothing else.
+    menu_open: bool,
     saving: Option<Saving>,
     sent: Option<LiveRequest>,
 }
@@ -153,6 +155,12 @@ impl Window {
     /// The panes in place of the picture.
     pub(super) fn comparison(&mut self, ui: &mut Ui, project: &mut Project) {
         let ctx = ui.ctx().clone();
+        // Before anything of this pass closes it.
+        let open = Popup::is_any_open(&ctx);
+        if ctx.input(|input| input.pointer.any_pressed()) {
+            self.compare.menu_open = open;
+        }
+        self.compare.menu_open |= open;
         let mut command = None;
         let mut film = false;
         CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {

@@ -1,8 +1,8 @@
 //! The panes on their page: in a grid, or two of them divided by a line.
 
 use egui::{
-    Align2, Color32, CursorIcon, FontId, Id, Popup, Pos2, Rect, Response, Sense, Stroke, StrokeKind, Ui,
-    UiBuilder, Vec2, pos2, vec2,
+    Align2, Color32, CursorIcon, FontId, Id, Pos2, Rect, Response, Sense, Stroke, StrokeKind, Ui, UiBuilder,
+    Vec2, pos2, vec2,
 };
 use lovelock_studio::{LivePane, LiveTimes, Project};
 
@@ -156,7 +156,7 @@ impl Window {
             camera_control::steer(&mut project.camera, &response);
         }
         if response.clicked()
-            && !Popup::is_any_open(ui.ctx())
+            && !self.compare.menu_open
             && let Some(at) = response.interact_pointer_pos()
         {
             let at = self.compare.zoom.at(place, at);

@@ -225,3 +225,19 @@ fn panes_are_saved_with_their_labels_and_recorded_as_a_film() {
     wait(&mut harness, "the film", |window| !window.recorder.is_running() && film.is_file());
     assert!(std::fs::metadata(&film).expect("a file").len() > 500);
 }
+
+#[test]
+fn a_click_that_closes_a_menu_asks_for_no_hair() {
+    let mut harness = comparing();
+    press_button(&mut harness, "Settings of pane 1");
+    assert!(harness.query_by_label("Transparency").is_some());
+    let pane = control(&harness, Role::Image, "Pane 3").rect();
+    super::click_at(&mut harness, pane.center());
+    go(&mut harness);
+    assert!(harness.query_by_label("Transparency").is_none(), "the menu is closed");
+    assert_eq!(of(&harness).compare.probed_and_asked()[1], 0);
+    // The next click is one.
+    super::click_at(&mut harness, pane.center());
+    go(&mut harness);
+    assert_eq!(of(&harness).compare.probed_and_asked()[1], 1);
+}
