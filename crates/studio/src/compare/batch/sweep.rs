@@ -72,6 +72,12 @@ pub(super) fn with_value(
     if !may_be(&info.values, &value) {
         return Err(wrong());
     }
+    if let Some((below, above)) = off_step(&info.values, &value) {
+        return Err(StudioError::option(format!(
+            "--sweep {setting}={text}: {} takes {}; the nearest are {below} and {above}",
+            settings.method, info.values
+        )));
+    }
     let mut all = serde_json::to_value(settings).map_err(StudioError::work)?;
     let place = all.get_mut(section(settings.method)).and_then(|of_method| of_method.get_mut(setting));
     *place.ok_or_else(wrong)? = value;
@@ -92,6 +98,15 @@ fn may_be(values: &str, value: &Value) -> bool {
         (Ok(low), Ok(high)) => (low..=high).contains(&number),
         _ => true,
     }
+}
+
+/// The multiples on both sides of a number that is none, where `values` ends `in steps of` something: `64 to 2048 texels, in
+/// steps of 16`. None where it is one.
+fn off_step(values: &str, value: &Value) -> Option<(u64, u64)> {
+    let (_, step) = values.split_once(", in steps of ")?;
+    let (number, step) = (value.as_u64()?, step.parse::<u64>().ok().filter(|step| *step > 0)?);
+    let below = number - number % step;
+    (below < number).then(|| (below, below.saturating_add(step)))
 }
 
 #[cfg(test)]
@@ -137,6 +152,21 @@ mod tests {
             let info = method.settings().into_iter().find(|info| info.name == name).expect("a setting");
             assert_eq!(error.exit_code(), 2);
             assert!(error.to_string().contains(&info.values), "{error}");
+        }
+        for (method, value, nearest) in [
+            (ShadowMethod::OccupancyMaps, "65", "64 and 80"),
+            (ShadowMethod::Exact, "2047", "2032 and 2048"),
+            (ShadowMethod::VoxelMap, "129", "128 and 136"),
+        ] {
+            let error = with_value(&of(method), "resolution", value).expect_err(value);
+            assert!(error.exit_code() == 2 && error.to_string().contains(nearest), "{error}");
+        }
+        // Negative control: what is on the step.
+        for value in ["64", "80", "2032", "2048"] {
+            assert!(
+                matches!(with_value(&of(ShadowMethod::Exact), "resolution", value), Ok(Some(_))),
+                "{value}"
+            );
         }
         let changed = with_value(&of(ShadowMethod::OccupancyMaps), "slabs", "16").expect("a value");
         assert_eq!(changed.map(|settings| settings.occupancy_maps.slabs), Some(16));
