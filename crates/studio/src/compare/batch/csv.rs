@@ -10,7 +10,8 @@ pub(super) fn csv(report: &CompareReport) -> String {
          rmse,bias,p99,max,first10_rmse,common_rmse,common_bias,points_rmse,points_bias,points_p99,points_first10_rmse,\
          flip_mean,flip_hair_mean,flip_p99,psnr_db,ssim,build_ms,build_low_ms,build_high_ms,query_ms,query_low_ms,query_high_ms,\
          draw_ms,draw_low_ms,draw_high_ms,whole_ms,whole_low_ms,whole_high_ms,draws,memory_bytes,draw_bytes,\
-         swim,pop,pop_p99,flicker,banding_residual,banding_amplitude,front_of_time,front_of_memory,refused\n",
+         swim,swim_p99,pop,pop_p99,flicker,banding_residual,banding_rmse,banding_amplitude,banding_slice_amplitude,\
+         front_of_time,front_of_memory,complete,refused\n",
     );
     for method in &report.methods {
         let swept: Vec<_> = method.sweep.iter().map(|(name, value)| format!("{name}={value}")).collect();
@@ -55,13 +56,17 @@ pub(super) fn csv(report: &CompareReport) -> String {
         let (stability, banding) = (method.stability, method.banding.as_ref());
         row.extend([
             number(stability.map(|s| s.swim)),
+            number(stability.map(|s| s.swim_p99)),
             number(stability.and_then(|s| s.pop)),
             number(stability.and_then(|s| s.pop_p99)),
             number(stability.and_then(|s| s.flicker)),
             number(banding.map(|b| b.residual)),
+            number(banding.map(|b| b.rmse)),
             number(banding.map(|b| b.amplitude)),
+            number(banding.and_then(|b| b.slice_amplitude)),
             method.front_of_time.to_string(),
             method.front_of_memory.to_string(),
+            report.complete.to_string(),
             quoted(method.refused.as_deref().unwrap_or_default()),
         ]);
         out += &row.join(",");
@@ -70,9 +75,11 @@ pub(super) fn csv(report: &CompareReport) -> String {
     out
 }
 
-/// Six digits that mean something.
+/// Six digits that mean something, however small the number; nothing for what is no number.
 fn number(value: Option<f64>) -> String {
-    value.map(|value| format!("{value:.6}")).unwrap_or_default()
+    let Some(value) = value.filter(|value| value.is_finite()) else { return String::new() };
+    // Rounded in the notation that counts digits, then written as programs write numbers.
+    format!("{value:.5e}").parse::<f64>().map(|value| value.to_string()).unwrap_or_default()
 }
 
 /// A text field as RFC 4180 has it.
@@ -99,8 +106,22 @@ mod tests {
         assert_eq!(lines.len(), 2);
         let fields = |line: &str| line.split(',').count();
         assert_eq!(fields(lines[0]), fields(lines[1]), "{text}");
-        assert!(lines[1].starts_with("\"a \"\"b\"\"\",") && lines[1].contains(",31.250000,"), "{text}");
+        assert!(lines[1].starts_with("\"a \"\"b\"\"\",") && lines[1].contains(",31.25,"), "{text}");
         let at = lines[0].split(',').position(|name| name == "psnr_db").expect("a column");
-        assert_eq!(lines[1].split(',').nth(at), Some("31.250000"));
+        assert_eq!(lines[1].split(',').nth(at), Some("31.25"));
+    }
+
+    #[test]
+    fn small_numbers_keep_six_digits() {
+        for (value, text) in [
+            (6.525_431_2e-5, "0.0000652543"),
+            (0.0, "0"),
+            (-1.0, "-1"),
+            (1_234_567.8, "1234570"),
+            (0.123_456_789, "0.123457"),
+        ] {
+            assert_eq!(number(Some(value)), text);
+        }
+        assert_eq!([number(None), number(Some(f64::NAN)), number(Some(f64::INFINITY))], ["", "", ""]);
     }
 }
