@@ -24,9 +24,9 @@ pub use command::{COMMANDS, Command, CommandGroup, CommandInfo, Shortcut};
 pub use compare::{
     BandingReport, CompareReport, CompareRequest, Contender, FlipError, FootprintTruth, Legend, Live,
     LiveError, LivePane, LiveProbe, LiveRequest, LiveShows, LiveTimes, LiveView, MethodFiles, MethodReport,
-    PointTruth, ProbeCurve, ProbeMark, ProbePlace, ProbeReport, ProbedHair, Reference, SceneFacts, Sheet,
-    SheetPane, StabilityReport, StageMs, Sweep, TimeSpread, TransmittanceError, bytes_label, compare,
-    pane_columns,
+    NamedTruth, PointTruth, ProbeCurve, ProbeMark, ProbePlace, ProbeReport, ProbedHair, Reference,
+    SceneFacts, Sheet, SheetPane, StabilityReport, StageMs, Sweep, TimeSpread, TransmittanceError,
+    bytes_label, compare, pane_columns,
 };
 pub use error::{Place, Problem, ProblemKind, StudioError};
 pub use headless::{Progress, RecordJob, RecordReport, RecordRequest, StageMedians, record};

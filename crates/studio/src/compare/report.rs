@@ -58,7 +58,7 @@ pub struct SceneFacts {
 /// The truth that methods are held against.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Reference {
-    /// Whether every truth converged within its limit.
+    /// Whether every truth that errors are measured against converged within its limit.
     pub converged: bool,
     /// Subtexels along the edge of a texel in the last round of the one that needed most.
     pub samples: u32,
@@ -68,6 +68,11 @@ pub struct Reference {
     pub limit: f32,
     /// One truth for each footprint: the means of light over the texels of the methods that are named.
     pub footprints: Vec<FootprintTruth>,
+    /// The other truths of the same kind: of lights after the first, and of later frames.
+    pub others: Vec<NamedTruth>,
+    /// Those along the probes' rays. No error is measured against them, and `converged` leaves them out: over the places of one
+    /// ray less evens out than over all points.
+    pub probes: Vec<NamedTruth>,
     /// The truth at points: transmittance of the exact method on a fine map.
     pub points: Option<PointTruth>,
     /// File of the picture drawn from converged transmittance with exact transparency.
@@ -93,6 +98,49 @@ pub struct FootprintTruth {
     pub changes: Vec<(u32, f32)>,
     /// Points that it was found at: all of the strands', or every so many of them.
     pub points: u64,
+}
+
+/// Converged transmittance of something else than the first light in the first frame.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct NamedTruth {
+    /// What it is of: `reference picture, light 2`, `frame 41`.
+    pub name: String,
+    /// Whether it converged.
+    pub converged: bool,
+    /// Subtexels along the edge of a texel in the last round.
+    pub samples: u32,
+    /// Root mean square change in the last round.
+    pub change: f32,
+}
+
+impl NamedTruth {
+    /// The facts of a truth, under a name.
+    pub(crate) fn new(name: String, facts: &FootprintTruth) -> Self {
+        let FootprintTruth { converged, samples, change, .. } = *facts;
+        Self { name, converged, samples, change }
+    }
+}
+
+impl Reference {
+    /// The change of the truth at points where it is above the limit of the others: errors at points that are smaller may be
+    /// the truth's own.
+    pub fn doubt_at_points(&self) -> Option<f32> {
+        let change = self.points.as_ref()?.change;
+        (change > self.limit).then_some(change)
+    }
+
+    /// Sums up all truths that are known by now, those of probes aside.
+    pub(crate) fn settle(&mut self) {
+        let footprints = self.footprints.iter().map(|of| (of.converged, of.samples, of.change));
+        let others = self.others.iter().map(|of| (of.converged, of.samples, of.change));
+        self.converged = !self.footprints.is_empty();
+        (self.samples, self.change) = (0, 0.0);
+        for (converged, samples, change) in footprints.chain(others) {
+            self.converged &= converged;
+            self.samples = self.samples.max(samples);
+            self.change = self.change.max(change);
+        }
+    }
 }
 
 /// The exact method on a fine map.
@@ -127,6 +175,9 @@ pub struct MethodReport {
     pub sweep: Vec<(String, String)>,
     /// Edge of a texel (of a cell) of its map, metres; null where it has no map. Texels are never narrower than strands.
     pub cell_size_m: Option<f32>,
+    /// Texels (cells) that its map has: fewer than its settings ask for where these would be narrower than strands, or where
+    /// the box around the hair is no cube.
+    pub cells_total: Option<u64>,
     /// Why it, or a part of it, could not be done; one sentence.
     pub refused: Option<String>,
     /// Error of transmittance at strand points against the mean of the light over the method's own texels: what it could

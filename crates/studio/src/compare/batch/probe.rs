@@ -2,10 +2,12 @@
 
 use glam::Vec3;
 use lovelock_render::{FrameInput, RenderError, Renderer, ShadowMethod, ShadowSettings, ValueRenderer};
-use lovelock_shadow::{CpuShadow, LightFrame, RayMarkKind, ShadowInput, converged, cpu_shadow};
+use lovelock_shadow::{
+    CONVERGED_CHANGE, CpuShadow, LightFrame, RayMarkKind, ShadowError, ShadowInput, converged, cpu_shadow,
+};
 
 use super::truth::Points;
-use crate::{ProbeCurve, ProbeMark, ProbeReport};
+use crate::{NamedTruth, ProbeCurve, ProbeMark, ProbeReport};
 
 /// Places on a ray that are asked.
 const PLACES: usize = 241;
@@ -93,14 +95,30 @@ impl Probe {
         Some(Self { position: hit.position, depths, places, report })
     }
 
-    /// Finds the mean of the light over a texel of the exact map along the ray; nothing where it does not fit in memory.
-    pub(super) fn find_reference(&mut self, input: &ShadowInput, settings: &ShadowSettings) {
+    /// Finds the mean of the light over a texel of the exact map along the ray, and tells how well it converged.
+    ///
+    /// # Errors
+    /// What does not fit in memory, with the numbers.
+    pub(super) fn find_reference(
+        &mut self,
+        input: &ShadowInput,
+        settings: &ShadowSettings,
+    ) -> Result<NamedTruth, ShadowError> {
         let axis = |of: fn(&Vec3) -> f32| self.places.iter().map(of).collect::<Vec<f32>>();
         let settings = ShadowSettings { method: ShadowMethod::Exact, ..*settings };
-        let found = converged(input, &settings, [&axis(|p| p.x), &axis(|p| p.y), &axis(|p| p.z)]);
-        if let Ok(found) = found {
-            self.report.reference = self.depths.iter().copied().zip(found.transmittance).collect();
-        }
+        let found = converged(input, &settings, [&axis(|p| p.x), &axis(|p| p.y), &axis(|p| p.z)])?;
+        self.report.reference = self.depths.iter().copied().zip(found.transmittance).collect();
+        Ok(NamedTruth {
+            name: self.name(),
+            converged: found.change <= CONVERGED_CHANGE,
+            samples: found.samples,
+            change: found.change,
+        })
+    }
+
+    /// What reports call it.
+    pub(super) fn name(&self) -> String {
+        format!("probe at {},{}", self.report.pixel[0], self.report.pixel[1])
     }
 
     /// Asks the map of the last picture along the ray.

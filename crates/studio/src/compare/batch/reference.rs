@@ -8,7 +8,7 @@ use super::hair::Hair;
 use super::maps::{self, at_pixels};
 use super::truth::{Truth, converge};
 use super::work::Work;
-use crate::{CompareReport, StudioError};
+use crate::{CompareReport, NamedTruth, StudioError};
 
 impl Work<'_> {
     /// Draws the picture that others are held against: exact transparency, shaded with converged transmittance, which is known
@@ -30,7 +30,12 @@ impl Work<'_> {
             let found = if i == 0 {
                 of_first_light.transmittance.clone()
             } else {
-                converge((hair, &project, light), &project.shadow).0
+                let (found, facts) = converge((hair, &project, light), &project.shadow);
+                if found.is_ok() {
+                    let name = format!("reference picture, light {}", i + 1);
+                    report.reference.others.push(NamedTruth::new(name, &facts));
+                }
+                found
             };
             match found {
                 Ok(found) => at_points.push(found),

@@ -9,7 +9,7 @@ use lovelock_shadow::LightFrame;
 
 use super::hair::Hair;
 use super::truth::{Truth, converge};
-use crate::{FrameSnapshot, Project, StudioError};
+use crate::{FootprintTruth, FrameSnapshot, NamedTruth, Project, Reference, StudioError};
 
 /// Shifts of the map.
 const SHIFTS: usize = 6;
@@ -83,33 +83,47 @@ impl Film {
         Ok(())
     }
 
-    /// Finds the truth in every frame; `tell` is called before each.
+    /// Finds the truth in every frame; `tell` is called before each. `reference` is told how well those of frames after the
+    /// first converged (of each frame that which changed most), and which could not be had.
     ///
     /// # Errors
     /// What `tell` returns.
     pub(super) fn new(
-        snapshots: Vec<Arc<FrameSnapshot>>,
+        (first_frame, snapshots): (u64, Vec<Arc<FrameSnapshot>>),
         project: &Project,
         light: &Light,
         known: &[Truth],
+        reference: &mut Reference,
         mut tell: impl FnMut() -> Result<(), StudioError>,
     ) -> Result<Self, StudioError> {
         let mut truths: Vec<_> =
             known.iter().map(|truth| truth.transmittance.is_ok().then(Vec::new)).collect();
         for (frame, snapshot) in snapshots.iter().enumerate() {
             let hair = Hair::new(Arc::clone(snapshot), project);
+            let name = format!("frame {}", first_frame + frame as u64);
+            let mut worst: Option<FootprintTruth> = None;
             for (of_truth, known) in truths.iter_mut().zip(known) {
                 let Some(frames) = of_truth else { continue };
                 tell()?;
                 let found = match (frame, &known.transmittance) {
                     (0, Ok(found)) => Ok(found.clone()),
-                    _ => converge((&hair, project, light), &known.settings).0,
+                    _ => {
+                        let (found, facts) = converge((&hair, project, light), &known.settings);
+                        if found.is_ok() && worst.as_ref().is_none_or(|worst| worst.change < facts.change) {
+                            worst = Some(facts);
+                        }
+                        found
+                    }
                 };
                 match found {
                     Ok(found) => frames.push(found),
-                    Err(_) => *of_truth = None,
+                    Err(error) => {
+                        *of_truth = None;
+                        reference.refused.push(format!("the truth of {name}: {error}"));
+                    }
                 }
             }
+            reference.others.extend(worst.map(|facts| NamedTruth::new(name, &facts)));
         }
         Ok(Self { snapshots, truths })
     }

@@ -52,6 +52,9 @@ fn every_method_is_drawn_measured_and_written() {
     let ids: Vec<_> = report.methods.iter().map(|method| method.id.as_str()).collect();
     assert_eq!(ids, ShadowMethod::ALL.iter().map(|method| method.id()).collect::<Vec<_>>());
     assert_eq!(report.reference.refused, [""; 0]);
+    let others: Vec<&str> = report.reference.others.iter().map(|truth| truth.name.as_str()).collect();
+    assert_eq!(others, ["reference picture, light 2", "reference picture, light 3", "frame 3"]);
+    assert_eq!(report.reference.probes.len(), report.probes.len());
     for method in &report.methods {
         assert_eq!(method.refused, None, "{}", method.id);
         let (error, flip) = (method.transmittance.expect("errors"), method.flip.expect("FLIP"));
@@ -110,6 +113,26 @@ fn every_method_is_drawn_measured_and_written() {
     assert_eq!(csv.lines().count(), 1 + report.methods.len());
     let page = std::fs::read_to_string(out.join("report.html")).expect("a page");
     assert!(page.contains("Occupancy maps") && page.contains("occupancy-maps.png"));
+}
+
+#[test]
+fn the_truth_of_every_light_counts() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let mut project = little_hair();
+    project.lights.truncate(1);
+    project.lights[0].enabled = true;
+    project.lights.push(project.lights[0].clone());
+    let wanted = request(dir.path(), &[ShadowMethod::None]);
+    let report = run(&project, &wanted).expect("a report");
+    let of_second = report.reference.others.iter().find(|truth| truth.name == "reference picture, light 2");
+    let of_second = of_second.unwrap_or_else(|| panic!("{:?}", report.reference.others));
+    assert!(of_second.samples > 1 && of_second.change <= report.reference.change);
+    // The same light has the same truth.
+    assert_eq!(of_second.change, report.reference.footprints[0].change);
+    // Negative control: one light has no second.
+    project.lights.truncate(1);
+    let report = run(&project, &wanted).expect("a report");
+    assert!(report.reference.others.iter().all(|truth| !truth.name.contains("light")));
 }
 
 #[test]

@@ -37,6 +37,16 @@ pub(super) struct Truth {
     pub facts: FootprintTruth,
 }
 
+impl Truth {
+    /// Texels or cells of the maps that have this footprint.
+    pub(super) fn cells(&self) -> Option<u64> {
+        match self.footprint {
+            Footprint::Cells(_, cells) | Footprint::Texels(_, cells) => Some(cells),
+            Footprint::Unknown(..) => None,
+        }
+    }
+}
+
 /// The truths of one instant.
 #[derive(Debug, Default)]
 pub(super) struct Truths(pub Vec<Truth>);

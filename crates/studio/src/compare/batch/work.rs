@@ -92,6 +92,7 @@ impl Work<'_> {
         let numbers = known.unwrap_or(&lit);
         let hair_pixels = maps::at_pixels(&mut values, &input, numbers, self.size)?;
         let mut probes = self.probes(&mut values, &hair, &hair_pixels, points.as_ref(), report);
+        report.reference.settle();
 
         let against = Against {
             hair: &hair,
@@ -113,6 +114,7 @@ impl Work<'_> {
             let mut entrant = entrant;
             renderer.adapter().clone_into(&mut entrant.report.adapter);
             entrant.report.cell_size_m = cell_size;
+            entrant.report.cells_total = cell_size.and(truths.0[truth].cells());
             let tools = (&mut *renderer, &mut values, &mut probes[..]);
             let result = self.measure(&mut entrant, &against, (truth, cell_size), tools);
             match result {
@@ -154,7 +156,13 @@ impl Work<'_> {
                 Some(mut probe) => {
                     // Where the exact map does not fit, what is finer than it takes minutes.
                     if points.is_some() {
-                        probe.find_reference(&shadow_input, &self.project.shadow);
+                        let reference = &mut report.reference;
+                        match probe.find_reference(&shadow_input, &self.project.shadow) {
+                            Ok(facts) => reference.probes.push(facts),
+                            Err(error) => {
+                                reference.refused.push(format!("the truth of the {}: {error}", probe.name()));
+                            }
+                        }
                     }
                     probes.push(probe);
                 }
@@ -181,7 +189,8 @@ impl Work<'_> {
             return Ok(None);
         }
         let tell = || part("the truth frame by frame".to_owned(), false);
-        Film::new(snapshots, self.project, &self.lights[0], &truths.0, tell).map(Some)
+        let frames = (report.frames[0], snapshots);
+        Film::new(frames, self.project, &self.lights[0], &truths.0, &mut report.reference, tell).map(Some)
     }
 }
 
@@ -199,10 +208,7 @@ fn note_truths(report: &mut CompareReport, truths: &Truths, points: Option<&Poin
             }
         }
     }
-    let facts = || reference.footprints.iter();
-    reference.samples = facts().map(|facts| facts.samples).max().unwrap_or(0);
-    reference.change = facts().map(|facts| facts.change).fold(0.0, f32::max);
-    reference.converged = facts().len() > 0 && facts().all(|facts| facts.converged);
+    reference.settle();
     reference.points = points.map(|points| points.facts.clone());
 }
 

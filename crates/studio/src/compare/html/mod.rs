@@ -89,8 +89,9 @@ fn header(report: &CompareReport) -> String {
 /// Why the reference cannot be trusted wholly; nothing where it can.
 fn doubts(report: &CompareReport) -> String {
     let reference = &report.reference;
+    let of_points = coarse_points(report);
     if reference.converged && reference.refused.is_empty() {
-        return String::new();
+        return of_points;
     }
     let mut list = String::new();
     for truth in reference.footprints.iter().filter(|truth| !truth.converged) {
@@ -98,10 +99,19 @@ fn doubts(report: &CompareReport) -> String {
             list,
             "<li>The truth for {} still changed by {} (root mean square) at {} subtexels along the edge of a texel; the limit \
              is {}.</li>",
-            escaped(&truth.methods.join(", ")),
+            if truth.methods.is_empty() { "all".to_owned() } else { escaped(&truth.methods.join(", ")) },
             fixed(Some(f64::from(truth.change)), 5),
             truth.samples,
             fixed(Some(f64::from(reference.limit)), 5)
+        );
+    }
+    for truth in reference.others.iter().filter(|truth| !truth.converged) {
+        let _ = write!(
+            list,
+            "<li>The truth of the {} still changed by {} (root mean square) at {} subtexels.</li>",
+            escaped(&truth.name),
+            fixed(Some(f64::from(truth.change)), 5),
+            truth.samples,
         );
     }
     for why in &reference.refused {
@@ -114,7 +124,17 @@ fn doubts(report: &CompareReport) -> String {
     } else {
         "The reference did not converge within its limit: errors near its last change mean nothing."
     };
-    format!("<div class=\"banner\"><b>{head}</b><ul>{list}</ul></div>")
+    format!("<div class=\"banner\"><b>{head}</b><ul>{list}</ul></div>{of_points}")
+}
+
+/// How far the truth at points can be trusted, where its map is not fine enough for its own limit.
+fn coarse_points(report: &CompareReport) -> String {
+    let Some(change) = report.reference.doubt_at_points() else { return String::new() };
+    format!(
+        "<div class=\"banner\"><b>The truth at points is not fine enough.</b> Errors at points below {} may be the truth's own: \
+         so much it differs from the same on half as many texels along the edge (root mean square).</div>",
+        fixed(Some(f64::from(change)), 4)
+    )
 }
 
 fn overview(report: &CompareReport, groups: &[Group<'_>], names: &Names) -> String {
@@ -131,7 +151,7 @@ fn overview(report: &CompareReport, groups: &[Group<'_>], names: &Names) -> Stri
         );
     }
     for group in groups {
-        out += &tables::overview(group, names, report.scene.draws);
+        out += &tables::overview(group, names, report);
     }
     if !out.is_empty() {
         out += "<p class=\"note\">A click on a heading sorts. Costs on a shaded ground are on the front: no other method of the \
@@ -174,6 +194,15 @@ fn probes(report: &CompareReport, names: &Names) -> String {
             figures::probe(report, names, probe),
             place(report, probe),
             values(report, names, probe)
+        );
+    }
+    for truth in report.reference.probes.iter().filter(|truth| !truth.converged) {
+        let _ = write!(
+            out,
+            "<p class=\"note\">The mean over a texel of the {} still changed by {} (root mean square) at {} subtexels.</p>",
+            escaped(&truth.name),
+            fixed(Some(f64::from(truth.change)), 4),
+            truth.samples
         );
     }
     if !out.is_empty() {

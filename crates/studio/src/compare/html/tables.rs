@@ -2,7 +2,7 @@
 
 use super::names::{Group, Names};
 use super::words::{bytes, escaped, fixed, grouped, ms, signed};
-use crate::{MethodReport, TimeSpread};
+use crate::{CompareReport, MethodReport, TimeSpread};
 use std::fmt::Write as _;
 
 /// A heading of a column: what it says, and what the pointer shows.
@@ -44,8 +44,12 @@ fn table(caption: &str, spans: &[(&str, usize)], columns: &[Column], rows: &str)
     )
 }
 
+/// What the column of errors at points says.
+const AT_POINTS: &str =
+    "Root mean square error against the truth at the points themselves, which no map can reach";
+
 /// Errors, pictures, costs and stillness of the methods of one group.
-pub(super) fn overview(group: &Group<'_>, names: &Names, draws: u32) -> String {
+pub(super) fn overview(group: &Group<'_>, names: &Names, report: &CompareReport) -> String {
     const COLUMNS: [Column; 15] = [
         Column(
             "RMSE",
@@ -58,10 +62,7 @@ pub(super) fn overview(group: &Group<'_>, names: &Names, draws: u32) -> String {
             "One truth",
             "Root mean square error against the same truth for all: the mean of the light over a texel of exact",
         ),
-        Column(
-            "At points",
-            "Root mean square error against the truth at the points themselves, which no map can reach",
-        ),
+        Column("At points", AT_POINTS),
         Column("FLIP", "Mean perceived difference of the picture, 0 to 1"),
         Column("In hair", "Mean perceived difference over the pixels that show hair"),
         Column("p99", "99th percentile of the perceived difference over the pixels"),
@@ -125,7 +126,16 @@ pub(super) fn overview(group: &Group<'_>, names: &Names, draws: u32) -> String {
         put(four(swim), swim, "first");
         rows += "</tr>";
     }
-    table(&format!("{}. Times are medians of {draws} draws.", group.title), &spans, &COLUMNS, &rows)
+    let title = format!("{}. Times are medians of {} draws.", group.title, report.scene.draws);
+    let table = table(&title, &spans, &COLUMNS, &rows);
+    match report.reference.doubt_at_points() {
+        Some(change) => {
+            let doubt =
+                format!("{AT_POINTS}. Below {} it may be the truth's own", fixed(Some(change.into()), 4));
+            table.replacen(&escaped(AT_POINTS), &escaped(&doubt), 1)
+        }
+        None => table,
+    }
 }
 
 /// How still the methods of one group stand.
@@ -245,6 +255,22 @@ fn shortened(value: &str) -> String {
     }
 }
 
+/// The map that was made, where it is not the one that the settings say: texels are never narrower than strands, and cells
+/// lie only where hair is.
+fn effective(method: &MethodReport) -> Option<String> {
+    let cells = method.cells_total?;
+    let edge = (cells as f64).sqrt().round() as u64;
+    let asked = method.settings.iter().find(|(name, _)| name == "resolution")?.1.parse::<u64>().ok()?;
+    let map = if edge * edge != cells {
+        format!("{} cells", grouped(cells))
+    } else if edge == asked {
+        return None;
+    } else {
+        format!("{edge} × {edge} texels")
+    };
+    Some(format!("drawn with <b>{map}</b>"))
+}
+
 /// Settings of every method.
 pub(super) fn settings(group: &Group<'_>, names: &Names) -> String {
     let mut rows = String::new();
@@ -255,6 +281,7 @@ pub(super) fn settings(group: &Group<'_>, names: &Names) -> String {
                 format!("{} <b>{}</b>", escaped(&name.replace('_', " ")), escaped(&shortened(value)))
             })
             .collect();
+        let settings: Vec<String> = settings.into_iter().chain(effective(method)).collect();
         let texel = method.cell_size_m.map(|size| f64::from(size) * 1000.0);
         let texel = if texel.is_some() { format!("{} mm", fixed(texel, 2)) } else { fixed(None, 0) };
         let why = escaped(method.refused.as_deref().unwrap_or_default());

@@ -175,8 +175,61 @@ fn a_reference_that_did_not_converge_is_said_at_the_top() {
     let (head, rest) = text.split_once("<nav").unwrap();
     assert!(head.contains("did not converge within its limit") && head.contains("needs 9 GiB"), "{head}");
     assert!(!rest.contains("It converged"));
+    // The truth of another light or of a later frame counts as well.
+    for name in ["reference picture, light 2", "frame 13"] {
+        let mut doubtful = report();
+        let other = NamedTruth { name: name.into(), converged: false, samples: 32, change: 0.07 };
+        doubtful.reference.others.push(other);
+        doubtful.reference.settle();
+        assert!(!doubtful.reference.converged && doubtful.reference.change > 0.06);
+        let head = page(&doubtful).split_once("<nav").unwrap().0.to_owned();
+        assert!(head.contains(&format!("The truth of the {name} still changed by 0.07")), "{head}");
+    }
     // Negative control.
+    let mut trusted = report();
+    trusted.reference.others.push(NamedTruth { converged: true, ..NamedTruth::default() });
+    trusted.reference.settle();
+    // A ray of a probe is said beside the probe.
+    let ray = NamedTruth { name: "probe at 100,80".into(), change: 0.007, ..NamedTruth::default() };
+    trusted.reference.probes.push(ray);
+    trusted.reference.settle();
+    let text = page(&trusted);
+    assert!(trusted.reference.converged && !text.contains("class=\"banner\""));
+    assert!(text.contains("of the probe at 100,80 still changed by 0.0070"));
     assert!(!page(&report()).split_once("<nav").unwrap().0.contains("class=\"banner\""));
+}
+
+#[test]
+fn a_map_that_is_not_what_was_asked_for_is_said_with_the_settings() {
+    let mut clipped = report();
+    clipped.methods[0].cells_total = Some(112 * 112);
+    clipped.methods[1].cells_total = Some(3 * 112 * 112);
+    let text = page(&clipped);
+    assert!(
+        text.contains("drawn with <b>112 × 112 texels</b>") && text.contains("<b>37\u{202f}632 cells</b>")
+    );
+    // Negative control: the map that was asked for.
+    clipped.methods[0].cells_total = Some(128 * 128);
+    clipped.methods[1].cells_total = None;
+    assert!(!page(&clipped).contains("drawn with"));
+}
+
+#[test]
+fn a_coarse_truth_at_points_is_said_at_the_top_and_at_its_column() {
+    let mut coarse = report();
+    let points = |change| Some(PointTruth { resolution: 112, memory_bytes: 1 << 20, change });
+    coarse.reference.points = points(0.084);
+    let text = page(&coarse);
+    assert!(
+        text.split_once("<nav").unwrap().0.contains("below 0.0840 may be the truth&#39;s own") || {
+            text.split_once("<nav").unwrap().0.contains("below 0.0840 may be the truth's own")
+        }
+    );
+    assert!(text.contains("Below 0.0840 it may be"));
+    balanced(&text);
+    // Negative control.
+    coarse.reference.points = points(0.0009);
+    assert!(!page(&coarse).contains("may be the truth"));
 }
 
 #[test]
