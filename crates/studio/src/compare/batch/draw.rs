@@ -1,10 +1,11 @@
 //! One of those that are compared: its picture, its times, its errors.
 
 use lovelock_metrics::{Errors, Image, Spread, errors, errors_of, flip, psnr_db, ssim};
-use lovelock_render::{FrameInput, FrameStats, Picture, RenderError, Renderer};
+use lovelock_render::{FrameInput, FrameStats, Picture, Renderer};
 
 use super::truth::Points;
-use crate::{FlipError, MethodReport, StageMs, TimeSpread, TransmittanceError};
+use super::work::Tell;
+use crate::{FlipError, MethodReport, StageMs, StudioError, TimeSpread, TransmittanceError};
 
 /// Draws before those that are timed: buffers are made and caches filled.
 const WARM_UP: u32 = 3;
@@ -16,20 +17,22 @@ pub(super) struct Drawn {
     pub transmittance: Vec<f32>,
 }
 
-/// Draws `draws` times after a warm-up, and notes times and memory.
+/// Draws `draws` times after a warm-up, and notes times and memory. `tell` is asked before each, outside of what is timed.
 ///
 /// # Errors
-/// A shadow that needs too much memory, or a device that is lost.
+/// A shadow that needs too much memory, a device that is lost, or what `tell` returns.
 pub(super) fn draw(
     renderer: &mut Renderer,
     input: &FrameInput,
     [width, height]: [u32; 2],
     draws: u32,
     report: &mut MethodReport,
-) -> Result<Drawn, RenderError> {
+    tell: &mut Tell,
+) -> Result<Drawn, StudioError> {
     let mut picture = Picture::default();
     let mut stats = Vec::new();
     for draw in 0..WARM_UP + draws.max(1) {
+        tell()?;
         let one = renderer.picture(input, width, height, &mut picture)?;
         if draw >= WARM_UP {
             stats.push(one);

@@ -6,27 +6,28 @@ use super::entrants::{Entrant, file_name};
 use super::maps::{self, Kind, at_pixels};
 use super::probe::Probe;
 use super::stability::swimming;
-use super::work::{Against, Work};
+use super::work::{Against, Tell, Work};
 use super::{banding, draw};
 use crate::{StabilityReport, StudioError};
 
 impl Work<'_> {
-    /// Everything about one of those that are compared.
+    /// Everything about one of those that are compared. `tell` is asked before each draw.
     ///
     /// # Errors
-    /// What does not fit in memory, or cannot be written; numbers that are known by then are in the entrant's report.
+    /// What `tell` returns; what does not fit in memory, or cannot be written; numbers that are known by then are in the entrant's report.
     pub(super) fn measure(
         &self,
         entrant: &mut Entrant,
         against: &Against,
         (truth, cell_size): (usize, Option<f32>),
         (renderer, values, probes): (&mut Renderer, &mut ValueRenderer, &mut [Probe]),
+        tell: &mut Tell,
     ) -> Result<(), StudioError> {
         let project = entrant.contender.applied_to(self.project);
         let input = against.hair.frame_input(&project);
         let name = file_name(&entrant.report.name);
         let report = &mut entrant.report;
-        let drawn = draw::draw(renderer, &input, self.size, self.request.draws, report)?;
+        let drawn = draw::draw(renderer, &input, self.size, self.request.draws, report, tell)?;
         let shadow_input = against.hair.shadow_input(&project, &self.lights[0]);
         for probe in probes {
             probe.ask(renderer, &shadow_input, &project.shadow, &report.name)?;
@@ -60,12 +61,12 @@ impl Work<'_> {
         report.banding = banding::slab(&entrant.contender.shadow);
 
         let place = (against.hair, &project, &self.lights[0]);
-        let swim = swimming(renderer, place, cell_size.unwrap_or(0.0))?;
+        let swim = swimming(renderer, place, cell_size.unwrap_or(0.0), tell)?;
         report.files.swim = self.point_map(&name, maps::SWIM, &swim.per_point, (values, &input))?;
         let mut stability =
             StabilityReport { swim: swim.rms, swim_p99: swim.p99, ..StabilityReport::default() };
         if let Some(film) = against.film {
-            let (pop, flicker) = film.watch(renderer, &project, truth)?;
+            let (pop, flicker) = film.watch(renderer, &project, truth, tell)?;
             (stability.pop, stability.pop_p99) = (Some(pop.max), Some(pop.p99));
             report.files.pop = self.point_map(&name, maps::POP, &pop.per_point, (values, &input))?;
             if let Some(flicker) = flicker {

@@ -70,6 +70,7 @@ pub fn compare(
         Err(error) => return Err(error),
     }
     folder.report(&report)?;
+    folder.tidy(&report);
     Ok(report)
 }
 

@@ -9,6 +9,7 @@ use lovelock_shadow::LightFrame;
 
 use super::hair::Hair;
 use super::truth::{Truth, converge};
+use super::work::Tell;
 use crate::{FootprintTruth, FrameSnapshot, NamedTruth, Project, Reference, StudioError};
 
 /// Shifts of the map.
@@ -43,16 +44,18 @@ fn drawn(renderer: &mut Renderer, input: &FrameInput) -> Result<Vec<f32>, Studio
 /// to the same places for every method.
 ///
 /// # Errors
-/// As drawing.
+/// As drawing, or what `tell` returns, which is asked before each draw.
 pub(super) fn swimming(
     renderer: &mut Renderer,
     (hair, project, light): (&Hair, &Project, &Light),
     cell_size: f32,
+    tell: &mut Tell,
 ) -> Result<Stability, StudioError> {
     let axes = LightFrame::new(light.direction);
     let mut random = Random(7);
     let mut shifts = Vec::with_capacity(SHIFTS);
     for _ in 0..SHIFTS {
+        tell()?;
         let shift = cell_size * Vec3::new(random.unit(), random.unit(), random.unit());
         let world_from_head = hair.head_moved_by(axes.world_from_light(shift));
         shifts.push(drawn(renderer, &FrameInput { world_from_head, ..hair.frame_input(project) })?);
@@ -131,15 +134,17 @@ impl Film {
     /// Pop, and flicker against the truth of this number.
     ///
     /// # Errors
-    /// As drawing.
+    /// As drawing, or what `tell` returns, which is asked before each frame.
     pub(super) fn watch(
         &self,
         renderer: &mut Renderer,
         project: &Project,
         truth: usize,
+        tell: &mut Tell,
     ) -> Result<(Stability, Option<Stability>), StudioError> {
         let mut frames = Vec::with_capacity(self.snapshots.len());
         for snapshot in &self.snapshots {
+            tell()?;
             let hair = Hair::new(Arc::clone(snapshot), project);
             frames.push(drawn(renderer, &hair.frame_input(project))?);
         }

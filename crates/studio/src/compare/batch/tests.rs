@@ -176,8 +176,13 @@ fn a_reference_that_does_not_fit_is_refused_with_the_number_and_the_rest_is_made
 fn what_is_finished_stays_when_it_is_stopped() {
     let dir = tempfile::tempdir().expect("a folder");
     let methods = [ShadowMethod::None, ShadowMethod::VoxelMap, ShadowMethod::OpacityMaps];
+    // Asked once before all, and then before each of its draws: this stops between two of them.
+    let mut asked = 0;
     let mut stop = |progress| match progress {
-        Progress::Comparing { what, .. } if what == "opacity-maps" => ControlFlow::Break(()),
+        Progress::Comparing { what, .. } if what == "opacity-maps" => {
+            asked += 1;
+            if asked < 4 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        }
         _ => ControlFlow::Continue(()),
     };
     let report = compare(&little_hair(), &request(dir.path(), &methods), &mut stop).expect("a report");
@@ -188,6 +193,21 @@ fn what_is_finished_stays_when_it_is_stopped() {
     assert!(!read.complete && read.methods.len() == 2);
     assert!(dir.path().join("pictures/voxel-map.png").is_file());
     assert!(!dir.path().join("pictures/opacity-maps.png").exists());
+
+    // Stopped while it shifts the map, after its picture is written: 3 draws of warm-up and 2 that count.
+    let mut asked = 0;
+    let mut stop = |progress| match progress {
+        Progress::Comparing { what, .. } if what == "voxel-map" => {
+            asked += 1;
+            if asked < 9 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        }
+        _ => ControlFlow::Continue(()),
+    };
+    let report = compare(&little_hair(), &request(dir.path(), &methods), &mut stop).expect("a report");
+    assert!(!report.complete && report.methods.len() == 1);
+    let pictures = dir.path().join("pictures");
+    assert!(pictures.join("none.png").is_file());
+    assert!(!pictures.join("voxel-map.png").exists(), "neither of this run nor of the one before");
 }
 
 #[test]

@@ -18,6 +18,9 @@ use super::truth::{Points, Truths};
 use crate::headless::tell;
 use crate::{CompareReport, FrameSnapshot, MethodReport, Progress, Project, StudioError};
 
+/// Asked now and then whether to go on.
+pub(super) type Tell<'a> = dyn FnMut() -> Result<(), StudioError> + 'a;
+
 /// What all parts of the work need.
 pub(super) struct Work<'a> {
     pub project: &'a Project,
@@ -116,7 +119,9 @@ impl Work<'_> {
             entrant.report.cell_size_m = cell_size;
             entrant.report.cells_total = cell_size.and(truths.0[truth].cells());
             let tools = (&mut *renderer, &mut values, &mut probes[..]);
-            let result = self.measure(&mut entrant, &against, (truth, cell_size), tools);
+            let result = self.measure(&mut entrant, &against, (truth, cell_size), tools, &mut || {
+                part(name.clone(), false)
+            });
             match result {
                 Ok(()) => {}
                 // What does not fit costs its own numbers alone; a full disk costs everything.
