@@ -102,7 +102,10 @@ fn named_before(report: &Path) -> BTreeSet<String> {
 fn collect(value: &Value, named: &mut BTreeSet<String>) {
     match value {
         Value::String(text) => {
-            let plain = |name: &str| name.ends_with(".png") && !name.contains(['/', '\\', ':']);
+            let plain = |name: &str| {
+                Path::new(name).extension().is_some_and(|end| end == "png")
+                    && !name.contains(['/', '\\', ':'])
+            };
             let name = text.strip_prefix(PICTURES).and_then(|rest| rest.strip_prefix('/'));
             if name.is_some_and(plain) {
                 named.insert(text.clone());

@@ -108,15 +108,14 @@ impl Film {
             for (of_truth, known) in truths.iter_mut().zip(known) {
                 let Some(frames) = of_truth else { continue };
                 tell()?;
-                let found = match (frame, &known.transmittance) {
-                    (0, Ok(found)) => Ok(found.clone()),
-                    _ => {
-                        let (found, facts) = converge((&hair, project, light), &known.settings);
-                        if found.is_ok() && worst.as_ref().is_none_or(|worst| worst.change < facts.change) {
-                            worst = Some(facts);
-                        }
-                        found
+                let found = if let (0, Ok(found)) = (frame, &known.transmittance) {
+                    Ok(found.clone())
+                } else {
+                    let (found, facts) = converge((&hair, project, light), &known.settings);
+                    if found.is_ok() && worst.as_ref().is_none_or(|worst| worst.change < facts.change) {
+                        worst = Some(facts);
                     }
+                    found
                 };
                 match found {
                     Ok(found) => frames.push(found),

@@ -177,8 +177,21 @@ fn costs(groups: &[Group<'_>], names: &Names) -> String {
         }
     }
     if !out.is_empty() {
-        out += "<p class=\"note\">The error is that of <i>One truth</i>. Lower is more right, further left is cheaper. Filled dots, joined by the grey band, are the \
-                front; dashed lines join the settings of a sweep. A method that lies far off is on the rim.</p>";
+        let methods = || groups.iter().flat_map(|group| &group.methods).map(|(_, method)| method);
+        let fallen = methods().filter(|method| method.transmittance_common.is_none()).count();
+        let error = if fallen == 0 {
+            "The error is that of <i>One truth</i>."
+        } else if fallen == methods().count() {
+            "<i>One truth</i> could not be had: the error is that against each method's own texels, and methods with different texels \
+             cannot be ranked by it."
+        } else {
+            "The error is that of <i>One truth</i>; where a method has none, that against its own texels."
+        };
+        let _ = write!(
+            out,
+            "<p class=\"note\">{error} Lower is more right, further left is cheaper. Filled dots, joined by the grey band, are \
+             the front; dashed lines join the settings of a sweep. A method that lies far off is on the rim.</p>"
+        );
     }
     out
 }

@@ -57,7 +57,10 @@ pub(super) fn overview(group: &Group<'_>, names: &Names, report: &CompareReport)
         ),
         Column("Bias", "Mean error: above zero the hair is too bright"),
         Column("p99", "99th percentile of the error without its sign"),
-        Column("First 10", "Root mean square error where fewer than ten strands lie before the point"),
+        Column(
+            "First 10",
+            "Root mean square error where fewer than ten fragments of hair lie before the point",
+        ),
         Column(
             "One truth",
             "Root mean square error against the same truth for all: the mean of the light over a texel of exact",

@@ -233,6 +233,18 @@ fn a_coarse_truth_at_points_is_said_at_the_top_and_at_its_column() {
 }
 
 #[test]
+fn the_plots_of_cost_say_which_error_they_show() {
+    let mut report = report();
+    let own = "against each method's own texels";
+    let one = "The error is that of <i>One truth</i>.";
+    assert!(page(&report).contains(own) && !page(&report).contains(one));
+    for method in &mut report.methods {
+        method.transmittance_common = method.transmittance;
+    }
+    assert!(page(&report).contains(one) && !page(&report).contains(own));
+}
+
+#[test]
 fn a_cancelled_and_an_empty_report_are_pages_too() {
     let empty = page(&CompareReport::default());
     assert!(empty.contains("is not complete") && empty.contains("no converged reference"));
