@@ -1,6 +1,7 @@
 //! `lovelock compare`.
 
 use std::fmt::Write;
+use std::ops::Range;
 
 use lovelock_studio::{CompareReport, CompareRequest, MethodReport, StudioError};
 
@@ -10,8 +11,8 @@ use super::source::Source;
 
 /// Compares methods and writes a report.
 pub(crate) fn run(task: &Compare, output: Output) -> Result<(), StudioError> {
+    let one = task.frame.map(one_frame).transpose()?;
     let mut scene = Source::open(&task.source)?;
-    let one = task.frame.map(|frame| frame..frame.saturating_add(1));
     let request = CompareRequest {
         out: task.out.clone(),
         name: scene.name.clone(),
@@ -31,6 +32,17 @@ pub(crate) fn run(task: &Compare, output: Output) -> Result<(), StudioError> {
     output.result(&report, || summary(&report, &task.out.join("report.html").display().to_string()))
 }
 
+/// The range of one frame alone.
+///
+/// # Errors
+/// The last number that there is: no range can end behind it, and no clip is so long.
+fn one_frame(frame: u64) -> Result<Range<u64>, StudioError> {
+    let end = frame.checked_add(1);
+    let end = end
+        .ok_or_else(|| StudioError::option(format!("frame {frame} is outside the clip: none is so long")))?;
+    Ok(frame..end)
+}
+
 /// The page's name, what to know before its numbers are believed, and the most important of them: a table for each backend.
 fn summary(report: &CompareReport, page: &str) -> String {
     let mut text = format!("{page}\n");
@@ -44,6 +56,9 @@ fn summary(report: &CompareReport, page: &str) -> String {
             "the reference did not converge: {:.4} in the last round, the limit is {:.4}",
             reference.change, reference.limit
         ));
+    }
+    if let Some(change) = reference.doubt_at_points() {
+        line(format_args!("errors at points below {change:.4} may be the truth's own"));
     }
     for sentence in reference.refused.iter().chain(&report.notes) {
         line(format_args!("{sentence}"));

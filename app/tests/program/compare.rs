@@ -74,17 +74,20 @@ fn wrong_requests_are_refused_in_one_line_and_leave_nothing() {
     saved(dir.path(), "p.lovelock", &small_project());
     std::fs::write(dir.path().join("file"), b"x").expect("a file");
     let before = names(dir.path());
-    let wrong: [(&[&str], &str, i32); 17] = [
+    let wrong: [(&[&str], &str, i32); 20] = [
         (&["--methods", "magic"], "magic", 2),
         (&["--methods", "voxel-map,"], "density-clustering", 2),
         (&["--transparency", "magic"], "weighted-average", 2),
         (&["--backend", "magic"], "both", 2),
         (&["--frame", "1000000"], "1000000", 2),
+        (&["--frame", "18446744073709551614"], "18446744073709551614 is outside the clip", 2),
+        (&["--frame", "18446744073709551615"], "18446744073709551615 is outside the clip", 2),
         (&["--frames", "5..5"], "5..5", 2),
         (&["--frame", "1", "--frames", "1..2"], "--frame", 2),
         (&["--size", "9x"], "9x", 2),
         (&["--sweep", "resolution"], "resolution", 2),
         (&["--sweep", "resolution=1"], "64 to 2048", 2),
+        (&["--sweep", "resolution=64,65"], "64 and 80", 2),
         (&["--sweep", "sparkle=1"], "slabs", 2),
         (&["--probe", "5"], "5", 2),
         (&["--probe", "96,0"], "96,0", 2),
