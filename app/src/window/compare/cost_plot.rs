@@ -6,16 +6,16 @@ use egui_plot::{
 };
 use lovelock_studio::{LiveError, LiveTimes, Project, bytes_label};
 
-use super::costs::{Costs, PLOTTED_SECS, Way, series};
+use super::costs::{Costs, PLOTTED_SECS, Way};
 use super::layout::CostPlot;
 use crate::window::control::note;
 use crate::window::panels::statistics::round_steps;
 use crate::window::theme;
 
 /// Width of the table of medians, points.
-const TABLE_WIDTH: f32 = 440.0;
+const TABLE_WIDTH: f32 = 476.0;
 /// Width of its column of names, points.
-const NAME_WIDTH: f32 = 112.0;
+const NAME_WIDTH: f32 = 148.0;
 
 /// The choice of plot, the plot, and the medians beside it where there is room.
 pub(super) fn ui(ui: &mut Ui, plot: &mut CostPlot, costs: &Costs, project: &Project, panes: &[usize]) {
@@ -48,12 +48,12 @@ pub(super) fn ui(ui: &mut Ui, plot: &mut CostPlot, costs: &Costs, project: &Proj
 }
 
 /// One stage over time.
-fn stage(plot: CostPlot) -> impl Fn(&LiveTimes) -> f64 + Copy {
+fn stage(plot: CostPlot) -> impl Fn(&LiveTimes) -> Option<f64> + Copy {
     move |times| match plot {
         CostPlot::Build => times.build,
         CostPlot::Ask => times.ask,
         CostPlot::Draw => times.draw,
-        CostPlot::Whole | CostPlot::ErrorTime | CostPlot::ErrorMemory => times.whole(),
+        CostPlot::Whole | CostPlot::ErrorTime | CostPlot::ErrorMemory => Some(times.whole),
     }
 }
 
@@ -77,9 +77,10 @@ fn over_time(ui: &mut Ui, which: CostPlot, costs: &Costs, project: &Project, pan
         .map(|(index, way)| {
             let since = |at: f64| at - now;
             let recent = way.samples.iter().filter(|sample| since(sample.at_secs) > -PLOTTED_SECS);
-            let points: Vec<[f64; 2]> =
-                recent.map(|sample| [since(sample.at_secs), stage(which)(&sample.times)]).collect();
-            (index, way.contender.shadow.method.label(), points)
+            let points: Vec<[f64; 2]> = recent
+                .filter_map(|sample| Some([since(sample.at_secs), stage(which)(&sample.times)?]))
+                .collect();
+            (index, way.label(), points)
         })
         .collect();
     plain("compare times")
@@ -115,7 +116,7 @@ fn place(way: &Way, which: CostPlot) -> Option<[f64; 2]> {
     let error = way.error.rmse()?;
     let cost = match which {
         CostPlot::ErrorMemory => way.shadow_bytes as f64 / f64::from(1 << 20),
-        _ => way.median(LiveTimes::whole),
+        _ => way.whole(),
     };
     (error > 0.0 && cost > 0.0).then(|| [cost.log10(), error.log10()])
 }
@@ -123,15 +124,15 @@ fn place(way: &Way, which: CostPlot) -> Option<[f64; 2]> {
 fn scatter(ui: &mut Ui, which: CostPlot, costs: &Costs, project: &Project, panes: &[usize]) {
     let ways: Vec<_> = shown(costs, project, panes)
         .map(|(index, way)| {
-            let trail = costs.trail(series(&way.contender));
+            let trail = costs.trail(way.series());
             let trail: Vec<[f64; 2]> = trail.filter_map(|way| place(way, which)).collect();
             (index, way, trail)
         })
         .collect();
-    let left_out: Vec<&str> = ways
+    let left_out: Vec<String> = ways
         .iter()
         .filter(|(_, way, _)| place(way, which).is_none())
-        .map(|(_, way, _)| way.contender.shadow.method.label())
+        .map(|(_, way, _)| way.label())
         .collect();
     let unit = if which == CostPlot::ErrorMemory { "MiB" } else { "ms" };
     if ways.iter().all(|(_, way, _)| way.error == LiveError::NotMeasured) {
@@ -159,7 +160,7 @@ fn scatter(ui: &mut Ui, which: CostPlot, costs: &Costs, project: &Project, panes
         .show(ui, |plot| {
             for (index, way, trail) in ways {
                 let color = theme::PLOT[index % theme::PLOT.len()];
-                let name = format!("{} {}", index + 1, way.contender.shadow.method.label());
+                let name = format!("{} {}", index + 1, way.label());
                 if trail.len() > 1 {
                     let faint = color.gamma_multiply(0.5);
                     let line = Line::new(name.clone(), trail.clone()).color(faint).width(1.2);
@@ -170,7 +171,7 @@ fn scatter(ui: &mut Ui, which: CostPlot, costs: &Costs, project: &Project, panes
                 let point = Points::new(name, PlotPoints::from(at)).color(color).radius(5.0);
                 plot.points(point.shape(MarkerShape::Circle));
                 // Room for the point before the name.
-                let text = format!("    {}", way.contender.shadow.method.label());
+                let text = format!("    {}", way.label());
                 let text = RichText::new(text).small().color(color);
                 let text = Text::new("", PlotPoint::new(at[0], at[1]), text);
                 plot.text(text.anchor(egui::Align2::LEFT_CENTER));
@@ -225,16 +226,17 @@ const COLUMNS: [f32; 6] = [42.0, 42.0, 42.0, 48.0, 62.0, 58.0];
 
 /// Medians of all stages, memory and error.
 fn table(ui: &mut Ui, costs: &Costs, project: &Project, panes: &[usize]) {
-    let row = |ui: &mut Ui, name: RichText, cells: [RichText; 6]| {
+    let row = |ui: &mut Ui, (name, tip): (RichText, &str), cells: [RichText; 6]| {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 4.0;
             let cell = |ui: &mut Ui, width: f32, layout: Layout, text: RichText| {
                 ui.allocate_ui_with_layout(vec2(width, 15.0), layout, |ui| {
                     ui.set_min_width(width);
-                    ui.add(egui::Label::new(text.small()).truncate());
-                });
+                    ui.add(egui::Label::new(text.small()).truncate())
+                })
+                .inner
             };
-            cell(ui, NAME_WIDTH, Layout::left_to_right(Align::Center), name);
+            cell(ui, NAME_WIDTH, Layout::left_to_right(Align::Center), name).on_hover_text(tip);
             for (width, text) in COLUMNS.into_iter().zip(cells) {
                 cell(ui, width, Layout::right_to_left(Align::Center), text);
             }
@@ -244,26 +246,28 @@ fn table(ui: &mut Ui, costs: &Costs, project: &Project, panes: &[usize]) {
     let titles = ["build", "ask", "draw", "whole", "memory", "error"];
     row(
         ui,
-        RichText::new("ms").color(theme::QUIET),
+        (RichText::new("ms").color(theme::QUIET), "Milliseconds, on what each line names."),
         titles.map(|title| RichText::new(title).color(theme::QUIET)),
     );
     for (index, way) in shown(costs, project, panes) {
         let color = theme::PLOT[index % theme::PLOT.len()];
-        let ms = |stage: fn(&LiveTimes) -> f64| RichText::new(format!("{:.1}", way.median(stage)));
+        let ms = |stage: fn(&LiveTimes) -> Option<f64>| {
+            RichText::new(way.median(stage).map_or_else(|| "–".to_owned(), |ms| format!("{ms:.1}")))
+        };
         let error = match &way.error {
             LiveError::Measured { rmse, .. } => format!("{rmse:.4}"),
             LiveError::Reference => "reference".to_owned(),
             LiveError::NotMeasured | LiveError::Refused(_) => "–".to_owned(),
         };
-        let name = RichText::new(way.contender.shadow.method.label()).color(color);
+        let name = RichText::new(way.label()).color(color);
         row(
             ui,
-            name,
+            (name, way.adapter.name.as_str()),
             [
                 ms(|times| times.build),
                 ms(|times| times.ask),
                 ms(|times| times.draw),
-                ms(LiveTimes::whole),
+                ms(|times| Some(times.whole)),
                 RichText::new(bytes_label(way.shadow_bytes)),
                 RichText::new(error),
             ],

@@ -1,9 +1,10 @@
 //! What the panes took over the last seconds, and what became of them under other settings.
 
 use std::collections::VecDeque;
+use std::sync::Arc;
 
 use lovelock_studio::render::{Backend, ShadowMethod, Transparency};
-use lovelock_studio::{Contender, LiveError, LivePane, LiveTimes, Stopwatch, median};
+use lovelock_studio::{Adapter, Contender, LiveError, LivePane, LiveTimes, Project, Stopwatch, median};
 
 /// Seconds that are plotted.
 pub(super) const PLOTTED_SECS: f64 = 12.0;
@@ -23,40 +24,51 @@ pub(super) struct Sample {
 #[derive(Clone, Debug)]
 pub(super) struct Way {
     pub(super) contender: Contender,
+    /// What drew it, whatever was chosen.
+    pub(super) adapter: Adapter,
     pub(super) samples: VecDeque<Sample>,
     pub(super) shadow_bytes: u64,
     pub(super) error: LiveError,
 }
 
-/// What belongs to one trail: a way whose other settings change.
+/// What belongs to one trail: a way whose other settings change. The backend is the one that drew.
 pub(super) type Series = (ShadowMethod, Transparency, Backend);
 
 impl Way {
     /// The trail that it belongs to.
     pub(super) fn series(&self) -> Series {
-        series(&self.contender)
+        (self.contender.shadow.method, self.contender.transparency, self.adapter.backend)
     }
 
-    /// The median of a stage over its last pictures, milliseconds.
-    pub(super) fn median(&self, stage: impl Fn(&LiveTimes) -> f64) -> f64 {
-        median(self.samples.iter().map(|sample| stage(&sample.times)))
+    /// Its method and what drew it, such as `Voxel map · CPU`: times of two backends do not compare.
+    pub(super) fn label(&self) -> String {
+        format!("{} · {}", self.contender.shadow.method.label(), self.adapter.backend_label())
     }
-}
 
-/// The trail of a contender.
-pub(super) fn series(contender: &Contender) -> Series {
-    (contender.shadow.method, contender.transparency, contender.backend)
+    /// The median of a stage over its last pictures, milliseconds; none where the device does not measure it.
+    pub(super) fn median(&self, stage: impl Fn(&LiveTimes) -> Option<f64>) -> Option<f64> {
+        let mut measured = self.samples.iter().filter_map(|sample| stage(&sample.times)).peekable();
+        measured.peek()?;
+        Some(median(measured))
+    }
+
+    /// The median of the whole pictures, milliseconds.
+    pub(super) fn whole(&self) -> f64 {
+        self.median(|times| Some(times.whole)).unwrap_or_default()
+    }
 }
 
 /// The ways that were drawn, the one that was drawn last at the end.
 pub(super) struct Costs {
     clock: Stopwatch,
     ways: Vec<Way>,
+    /// What all ways were drawn of, and how large a pane was to be.
+    drawn_of: Option<(Arc<Project>, [u32; 2])>,
 }
 
 impl Default for Costs {
     fn default() -> Self {
-        Self { clock: Stopwatch::start(), ways: Vec::new() }
+        Self { clock: Stopwatch::start(), ways: Vec::new(), drawn_of: None }
     }
 }
 
@@ -66,11 +78,23 @@ impl Costs {
         if pane.problem.is_some() {
             return;
         }
+        // Ways are held against each other, so they are of one thing alone.
+        let same = self.drawn_of.as_ref().is_some_and(|(project, size)| {
+            *size == pane.asked_size && is_same_but_for_panes(project, &pane.project)
+        });
+        if !same {
+            self.ways.clear();
+        }
+        self.drawn_of = Some((Arc::clone(&pane.project), pane.asked_size));
+        // One choice can come to mean another backend.
+        self.ways
+            .retain(|way| way.contender.backend != pane.contender.backend || way.adapter == pane.adapter);
         let known = self.ways.iter().position(|way| way.contender == pane.contender);
         let mut way = match known {
             Some(at) => self.ways.remove(at),
             None => Way {
                 contender: pane.contender.clone(),
+                adapter: pane.adapter.clone(),
                 samples: VecDeque::new(),
                 shadow_bytes: 0,
                 error: LiveError::NotMeasured,
@@ -105,10 +129,16 @@ impl Costs {
     }
 }
 
+/// Whether two projects are one in all that panes share.
+fn is_same_but_for_panes(a: &Arc<Project>, b: &Arc<Project>) -> bool {
+    let of_panes = |project: &Project| Project { compare: a.compare.clone(), ..project.clone() };
+    Arc::ptr_eq(a, b) || **a == of_panes(b)
+}
+
 #[cfg(test)]
 pub(super) mod tests {
+    use lovelock_studio::LiveShows;
     use lovelock_studio::render::{Camera, Picture};
-    use lovelock_studio::{Adapter, LiveShows};
 
     use super::*;
 
@@ -120,11 +150,14 @@ pub(super) mod tests {
             adapter: Adapter { name: String::new(), backend: Backend::Cpu, software: true },
             camera: Camera { eye: glam::Vec3::ZERO, target: glam::Vec3::Z, fov_y: 0.5 },
             contender,
+            project: Arc::default(),
+            asked_size: [640, 360],
             picture: Picture::default(),
             problem: None,
+            colors_problem: None,
             step: 0,
             time_secs: 0.0,
-            times: LiveTimes { build: ms, ask: 0.0, draw: 1.0 },
+            times: LiveTimes { build: Some(ms), ask: Some(0.0), draw: Some(1.0), whole: ms + 1.0 },
             shadow_bytes: u64::from(resolution).pow(3),
             draw_bytes: 0,
             error: LiveError::Measured { rmse, bias: 0.0, p99: rmse },
@@ -141,15 +174,44 @@ pub(super) mod tests {
         }
         costs.push(&LivePane { problem: Some("no".to_owned()), ..pane(256, 9.0, 0.1) });
         let of = |resolution| costs.of(&pane(resolution, 0.0, 0.0).contender);
-        assert_eq!(of(64).map(|way| way.median(|times| times.build)), Some(2.0));
-        assert_eq!(of(64).map(|way| way.median(LiveTimes::whole)), Some(3.0));
+        assert_eq!(of(64).map(|way| way.median(|times| times.build)), Some(Some(2.0)));
+        assert_eq!(of(64).map(Way::whole), Some(3.0));
         assert!(of(256).is_none());
-        let mine = series(&pane(64, 0.0, 0.0).contender);
+        let mine = of(64).expect("a way").series();
         let trail: Vec<u32> =
             costs.trail(mine).map(|way| way.contender.shadow.voxel_map.resolution).collect();
         assert_eq!(trail, [128, 64], "the newest at the end");
         let other = (ShadowMethod::Exact, mine.1, mine.2);
         assert_eq!(costs.trail(other).count(), 0);
+    }
+
+    #[test]
+    fn ways_of_another_scene_size_or_backend_are_forgotten() {
+        let first = pane(64, 1.0, 0.1);
+        let ways = |then: LivePane| {
+            let mut costs = Costs::default();
+            costs.push(&first);
+            costs.push(&then);
+            costs.ways.len()
+        };
+        let second = pane(128, 1.0, 0.1);
+        assert_eq!(ways(second.clone()), 2);
+        let mut project = Project::default();
+        project.compare.panes.clear();
+        let other_panes = LivePane { project: Arc::new(project.clone()), ..second.clone() };
+        assert_eq!(ways(other_panes), 2, "panes are not what they share");
+        project.look.diameter *= 2.0;
+        assert_eq!(ways(LivePane { project: Arc::new(project), ..second.clone() }), 1);
+        assert_eq!(ways(LivePane { asked_size: [320, 180], ..second.clone() }), 1);
+        let card = Adapter { name: "a card".to_owned(), backend: Backend::Gpu, software: false };
+        let drawn_there = LivePane { adapter: card.clone(), ..second.clone() };
+        assert_eq!(ways(drawn_there.clone()), 1, "what was chosen drew elsewhere");
+        let mut chosen = drawn_there;
+        chosen.contender.backend = Backend::Gpu;
+        assert_eq!(ways(chosen.clone()), 2, "another choice beside the first");
+        let mut costs = Costs::default();
+        costs.push(&chosen);
+        assert_eq!(costs.of(&chosen.contender).map(Way::label), Some("Voxel map · GPU".to_owned()));
     }
 
     #[test]

@@ -3,8 +3,8 @@
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{PopupCloseBehavior, Rect, RichText, Ui, UiBuilder, pos2, vec2};
 use egui_material_icons::{MaterialIcon, icons};
-use lovelock_studio::Contender;
 use lovelock_studio::render::{Backend, PictureSettings, ShadowMethod, ShadowSettings, Transparency};
+use lovelock_studio::{Contender, LivePane};
 
 use crate::window::control::{Number, choice, note};
 use crate::window::{panels, theme};
@@ -26,8 +26,14 @@ pub(super) enum Ask {
 /// Width of one of the buttons at the right, points.
 const BUTTON: f32 = 24.0;
 
-/// The line over pane `index` of `panes`, which fills `line`; `pane` is changed by its controls.
-pub(super) fn ui(ui: &mut Ui, line: Rect, index: usize, panes: usize, pane: &mut Contender) -> Option<Ask> {
+/// The line over pane `index` of `panes`, which fills `line`; `pane` is changed by its controls, `drawn` is its last picture.
+pub(super) fn ui(
+    ui: &mut Ui,
+    line: Rect,
+    (index, panes): (usize, usize),
+    pane: &mut Contender,
+    drawn: Option<&LivePane>,
+) -> Option<Ask> {
     let mut ask = None;
     let middle = line.center().y;
     let part = |from: f32, to: f32| Rect::from_x_y_ranges(from..=to.max(from), middle - 10.0..=middle + 10.0);
@@ -39,13 +45,16 @@ pub(super) fn ui(ui: &mut Ui, line: Rect, index: usize, panes: usize, pane: &mut
     ui.scope_builder(UiBuilder::new().max_rect(part(left, left + width)), |ui| {
         method(ui, index, pane, width);
     });
-    let said = pane.settings_label();
+    // What drew it, which the choice of a backend does not say.
+    let drawn = drawn.filter(|drawn| drawn.contender == *pane && !drawn.adapter.name.is_empty());
+    let said = drawn.map_or_else(|| pane.settings_label(), LivePane::settings_label);
+    let tip = drawn.map_or_else(|| said.clone(), |drawn| format!("{said}\n{}", drawn.adapter.name));
     let room = part(left + width + 8.0, buttons - 2.0);
     if room.width() > 36.0 {
         let text = egui::Label::new(RichText::new(&said).small().color(theme::QUIET)).truncate();
         ui.scope_builder(
             UiBuilder::new().max_rect(room).layout(egui::Layout::left_to_right(egui::Align::Center)),
-            |ui| ui.add(text).on_hover_text(&said),
+            |ui| ui.add(text).on_hover_text(&tip),
         );
     }
     let place = |nth: u8| part(buttons + BUTTON * f32::from(nth), buttons + BUTTON * f32::from(nth + 1));

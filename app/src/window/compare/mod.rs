@@ -49,7 +49,7 @@ pub(crate) struct Compare {
     splitting: bool,
     /// Whether a menu was open when the pointer was pressed: the click then closes it and means nothing else.
     menu_open: bool,
-    saving: Option<Saving>,
+    saving: Vec<Saving>,
     sent: Option<LiveRequest>,
 }
 

@@ -4,8 +4,9 @@ use egui::{
     Align2, Color32, CursorIcon, FontId, Id, Pos2, Rect, Response, Sense, Stroke, StrokeKind, Ui, UiBuilder,
     Vec2, pos2, vec2,
 };
-use lovelock_studio::{LivePane, LiveTimes, Project};
+use lovelock_studio::{LivePane, Project};
 
+use super::costs::Way;
 use super::{Window, grid, header};
 use crate::window::viewport::{self, Viewport};
 use crate::window::{camera_control, theme};
@@ -28,7 +29,7 @@ impl Window {
         let count = project.compare.panes.len();
         let mut asked = None;
         for (index, cell) in grid::places(count, page, header::HEIGHT).into_iter().enumerate() {
-            asked = Self::header(ui, cell, index, project).or(asked);
+            asked = self.header(ui, cell, index, project).or(asked);
             let mut place = cell;
             place.min.y += header::HEIGHT;
             if index == 0 {
@@ -40,7 +41,7 @@ impl Window {
             let shown = if flicked && response.contains_pointer() { other } else { index };
             self.pane(ui, place, shown, project, Align2::LEFT_BOTTOM);
             if shown != index {
-                Self::name(ui, place, shown, project, Align2::LEFT_TOP);
+                self.name(ui, place, shown, project, Align2::LEFT_TOP);
             }
             let shape = ui.painter();
             let edge = if shown == index { theme::LINE } else { theme::PLOT[shown % theme::PLOT.len()] };
@@ -63,7 +64,7 @@ impl Window {
         for (side, index) in pair.into_iter().enumerate() {
             let left = page.left() + half * side as f32;
             let line = Rect::from_min_size(pos2(left, page.top()), vec2(half, page.height()));
-            asked = Self::header(ui, line, index, project).or(asked);
+            asked = self.header(ui, line, index, project).or(asked);
             if pair[0] == pair[1] {
                 break;
             }
@@ -111,7 +112,7 @@ impl Window {
             ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
                 ui.set_clip_rect(part.intersect(ui.clip_rect()));
                 self.pane(ui, place, index, project, bottom);
-                Self::name(ui, place, index, project, top);
+                self.name(ui, place, index, project, top);
             });
         }
         let painter = ui.painter_at(place.expand(1.0));
@@ -128,12 +129,13 @@ impl Window {
     }
 
     /// The line over a pane.
-    fn header(ui: &mut Ui, cell: Rect, index: usize, project: &mut Project) -> Option<header::Ask> {
+    fn header(&self, ui: &mut Ui, cell: Rect, index: usize, project: &mut Project) -> Option<header::Ask> {
         let panes = project.compare.panes.len();
         let pane = project.compare.panes.get_mut(index)?;
         let line = Rect::from_min_size(cell.min, vec2(cell.width(), header::HEIGHT));
         ui.painter().rect_filled(line, 0.0, theme::PANEL);
-        header::ui(ui, line, index, panes, pane)
+        let drawn = self.compare.panes.get(index).and_then(Option::as_deref);
+        header::ui(ui, line, (index, panes), pane, drawn)
     }
 
     /// How large panes should be drawn that are shown at `place`.
@@ -183,25 +185,26 @@ impl Window {
         let whole = compare.textures.size(index).map_or(place, |size| viewport::fit(size, place));
         let near = (whole.size() - place.size()).abs().max_elem() < 3.0;
         let whole = if near { place } else { whole };
-        compare.textures.paint(&painter, index, whole, zoom.shown());
+        // An older picture under a scale of colours would be taken for an error.
+        if pane.shows.colors().is_none() || !pane.picture.rgba.is_empty() {
+            compare.textures.paint(&painter, index, whole, zoom.shown());
+        }
         if compare.probed.is_some() {
             self.mark(ui, whole, &pane, project);
         }
-        if let Some(problem) = &pane.problem {
+        if let Some(problem) = pane.problem.as_ref().or(pane.colors_problem.as_ref()) {
             let room = place.shrink(14.0);
             let galley =
                 painter.layout(problem.clone(), FontId::proportional(12.5), theme::WRONG, room.width());
             let at = Align2::CENTER_CENTER.anchor_size(place.center(), galley.size());
             painter.rect_filled(at.expand(8.0), 5.0, theme::PAGE.gamma_multiply(0.85));
             painter.galley(at.min, galley, theme::WRONG);
+        }
+        if pane.problem.is_some() {
             return;
         }
         let newest = self.session.frame.as_ref().map_or(0.0, |frame| frame.time_secs);
-        let ms = self
-            .compare
-            .costs
-            .of(&pane.contender)
-            .map_or_else(|| pane.times.whole(), |way| way.median(LiveTimes::whole));
+        let ms = self.compare.costs.of(&pane.contender).map_or(pane.times.whole, Way::whole);
         let mut said = pane.figures_label(ms);
         if let Some(age) = age_label(newest - pane.time_secs) {
             said = format!("{said} · {age}");
@@ -210,9 +213,12 @@ impl Window {
     }
 
     /// Whose picture is seen, in a corner.
-    fn name(ui: &Ui, place: Rect, index: usize, project: &Project, corner: Align2) {
+    fn name(&self, ui: &Ui, place: Rect, index: usize, project: &Project, corner: Align2) {
         let Some(pane) = project.compare.panes.get(index) else { return };
-        let text = format!("{} · {}", index + 1, pane.label());
+        let drawn = self.compare.panes.get(index).and_then(Option::as_deref);
+        let label =
+            drawn.filter(|drawn| drawn.contender == *pane).map_or_else(|| pane.label(), LivePane::label);
+        let text = format!("{} · {label}", index + 1);
         Viewport::caption(ui, place, corner, &text, theme::PLOT[index % theme::PLOT.len()]);
     }
 

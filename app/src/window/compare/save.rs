@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, sync_channel};
 
-use lovelock_studio::{LivePane, LiveTimes, Sheet, recording};
+use lovelock_studio::{LivePane, Sheet, recording};
 
+use super::costs::Way;
 use super::{Compare, grid, header};
 use crate::window::{Window, notices};
 
@@ -16,16 +17,15 @@ pub(super) struct Saving {
 }
 
 impl Compare {
-    /// How the picture was saved, once it is: the path, or a sentence.
+    /// How a picture was saved, once it is: the path, or a sentence. Each is told of once.
     pub(crate) fn saved(&mut self) -> Option<Result<PathBuf, String>> {
-        let saving = self.saving.as_ref()?;
-        let done = match saving.done.try_recv() {
-            Ok(done) => done,
-            Err(TryRecvError::Empty) => return None,
-            Err(TryRecvError::Disconnected) => Err("The picture was not saved.".to_owned()),
-        };
-        let path = saving.path.clone();
-        self.saving = None;
+        let finished = self.saving.iter().enumerate().find_map(|(at, saving)| match saving.done.try_recv() {
+            Ok(done) => Some((at, done)),
+            Err(TryRecvError::Empty) => None,
+            Err(TryRecvError::Disconnected) => Some((at, Err("The picture was not saved.".to_owned()))),
+        });
+        let (at, done) = finished?;
+        let path = self.saving.remove(at).path;
         Some(done.map(|()| path))
     }
 
@@ -36,7 +36,7 @@ impl Compare {
             .filter_map(|&index| {
                 let pane = self.panes.get(index)?.clone()?;
                 let known = self.costs.of(&pane.contender);
-                let ms = known.map_or_else(|| pane.times.whole(), |way| way.median(LiveTimes::whole));
+                let ms = known.map_or(pane.times.whole, Way::whole);
                 Some((index, pane, ms))
             })
             .collect();
@@ -53,7 +53,7 @@ impl Compare {
         let spawned = std::thread::Builder::new().name("save picture".to_owned()).spawn(write);
         // Without a thread the channel is closed, which says that nothing was saved.
         drop(spawned);
-        self.saving = Some(Saving { path: path.to_owned(), done });
+        self.saving.push(Saving { path: path.to_owned(), done });
     }
 }
 
@@ -69,10 +69,11 @@ impl Window {
 
     /// Tells that the picture of the panes was saved, or why not.
     pub(in crate::window) fn tell_saved(&mut self) {
-        match self.compare.saved() {
-            Some(Ok(path)) => self.notices.tell(notices::Kind::Done, format!("Saved {}", path.display())),
-            Some(Err(why)) => self.tell([why]),
-            None => {}
+        while let Some(saved) = self.compare.saved() {
+            match saved {
+                Ok(path) => self.notices.tell(notices::Kind::Done, format!("Saved {}", path.display())),
+                Err(why) => self.tell([why]),
+            }
         }
     }
 }

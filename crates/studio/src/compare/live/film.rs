@@ -60,7 +60,7 @@ impl FilmOfPanes {
         {
             return Err(StudioError::work(first.problem.clone().unwrap_or_default()));
         }
-        let shown: Vec<_> = drawn.iter().map(|(index, pane)| (*index, pane, pane.times.whole())).collect();
+        let shown: Vec<_> = drawn.iter().map(|(index, pane)| (*index, pane, pane.times.whole)).collect();
         *picture = self.sheet.compose(&shown, whole);
         let mut adapters: Vec<String> = drawn.into_iter().map(|(_, pane)| pane.adapter.name).collect();
         adapters.dedup();

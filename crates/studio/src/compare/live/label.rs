@@ -1,9 +1,9 @@
 //! What is said of a pane in a line.
 
-use lovelock_render::ShadowMethod;
+use lovelock_render::{Backend, ShadowMethod};
 
 use super::{LiveError, LivePane};
-use crate::Contender;
+use crate::{Adapter, Contender};
 
 impl Contender {
     /// The settings of the method that matter most: the size of its map, and what it keeps along the light.
@@ -28,10 +28,13 @@ impl Contender {
         }
     }
 
-    /// What it is beside its method, such as `128³ · sorted · cpu`.
+    /// What it is beside its method, such as `128³ · sorted · CPU`.
     pub fn settings_label(&self) -> String {
-        let mut parts =
-            vec![self.size_label(), self.transparency.id().to_owned(), self.backend.id().to_owned()];
+        let mut parts = vec![
+            self.size_label(),
+            self.transparency.id().to_owned(),
+            backend_label(self.backend).to_owned(),
+        ];
         if self.scale < 1.0 {
             parts.push(format!("{:.0} % size", 100.0 * self.scale));
         }
@@ -39,16 +42,34 @@ impl Contender {
         parts.join(" · ")
     }
 
-    /// All of it, such as `Voxel map · 128³ · sorted · cpu`.
+    /// All of it, such as `Voxel map · 128³ · sorted · CPU`.
     pub fn label(&self) -> String {
         format!("{} · {}", self.shadow.method.label(), self.settings_label())
     }
 }
 
+impl Adapter {
+    /// The short name of its backend beside a time: `CPU` or `GPU`.
+    pub const fn backend_label(&self) -> &'static str {
+        backend_label(self.backend)
+    }
+}
+
 impl LivePane {
-    /// What it costs and how right it is, such as `12.3 ms · 4.0 MiB · error 0.0210`. `ms` is the time to show.
+    /// [`Contender::settings_label`] with the backend that drew it in place of the one that was chosen.
+    pub fn settings_label(&self) -> String {
+        Contender { backend: self.adapter.backend, ..self.contender.clone() }.settings_label()
+    }
+
+    /// [`Contender::label`] with the backend that drew it in place of the one that was chosen.
+    pub fn label(&self) -> String {
+        Contender { backend: self.adapter.backend, ..self.contender.clone() }.label()
+    }
+
+    /// What it costs and how right it is, such as `12.3 ms CPU · 4.0 MiB · error 0.0210`. `ms` is the time to show.
     pub fn figures_label(&self, ms: f64) -> String {
-        let mut parts = vec![format!("{ms:.1} ms"), bytes_label(self.shadow_bytes)];
+        let backend = self.adapter.backend_label();
+        let mut parts = vec![format!("{ms:.1} ms {backend}"), bytes_label(self.shadow_bytes)];
         match &self.error {
             LiveError::NotMeasured => {}
             LiveError::Reference => parts.push("the reference".to_owned()),
@@ -57,6 +78,15 @@ impl LivePane {
         }
         parts.extend(self.flip.map(|flip| format!("FLIP {flip:.4}")));
         parts.join(" · ")
+    }
+}
+
+/// The short name of a backend beside a time.
+const fn backend_label(backend: Backend) -> &'static str {
+    match backend {
+        Backend::Auto => "auto",
+        Backend::Gpu => "GPU",
+        Backend::Cpu => "CPU",
     }
 }
 

@@ -55,11 +55,20 @@ impl PartialEq for Instant {
 }
 
 impl ExactReference {
-    /// Whether a contender is the reference itself.
-    pub(super) fn is(project: &Project, contender: &Contender, backend: Backend) -> bool {
+    /// Whether a contender is the reference itself: it reads as the reference does the very map that the reference reads.
+    ///
+    /// Settings do not tell: texels are never narrower than strands are wide, so that several resolutions make one map,
+    /// and a limit of memory changes none. One map gives one transmittance, `found` and `exact`, to the last bit.
+    pub(super) fn is(
+        project: &Project,
+        (contender, backend): (&Contender, Backend),
+        (found, exact): (&[f32], &[f32]),
+    ) -> bool {
+        let same_bits = || found.iter().map(|t| t.to_bits()).eq(exact.iter().map(|t| t.to_bits()));
         backend == Backend::Cpu
             && contender.shadow.method == ShadowMethod::Exact
-            && contender.shadow.exact == project.shadow.exact
+            && contender.shadow.exact.filter == project.shadow.exact.filter
+            && same_bits()
     }
 
     /// The exact transmittance of light `light` at every strand point.

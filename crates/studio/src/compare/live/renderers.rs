@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use lovelock_render::{Backend, Gpu, GpuError, RenderError, Renderer};
 
-/// How often in a row a graphics device is opened anew by itself before it counts as broken.
+use crate::Contender;
+
+/// How often in a row a pane may break the graphics device before it is no more drawn there.
 const MOST_FAILURES: u32 = 3;
 
 /// Opens what draws on the backend that was chosen.
@@ -14,7 +16,7 @@ pub(super) type Open = Box<dyn FnMut(Backend) -> Result<Renderer, RenderError> +
 pub(super) struct Broken {
     /// Whether to draw again by itself.
     pub(super) try_again: bool,
-    /// What the user should know: that the processor draws from now on what the graphics card drew.
+    /// What the user should know: what is not drawn on the graphics card from now on.
     pub(super) notice: Option<String>,
 }
 
@@ -26,21 +28,37 @@ pub(super) struct Renderers {
     gpu: Option<Arc<Gpu>>,
     /// What [`Backend::Auto`] turned out to be.
     auto: Option<Backend>,
-    /// Failures of the device in a row.
-    failed: u32,
+    /// What each pane is, with its own failures of the device in a row: a pane that works says nothing of another.
+    failed: Vec<(Contender, u32)>,
 }
 
 impl Renderers {
     /// Renderers that `open` opens.
     pub(super) fn new(open: Open) -> Self {
-        Self { open, panes: Vec::new(), gpu: None, auto: None, failed: 0 }
+        Self { open, panes: Vec::new(), gpu: None, auto: None, failed: Vec::new() }
     }
 
     /// The renderer of a pane, opened where there is none for that choice.
     ///
     /// # Errors
-    /// No adapter for [`Backend::Gpu`], one that cannot be used, or one that failed again and again.
-    pub(super) fn of_pane(&mut self, pane: usize, choice: Backend) -> Result<&mut Renderer, RenderError> {
+    /// No adapter for [`Backend::Gpu`], one that cannot be used, or one that failed again and again with this pane.
+    pub(super) fn of_pane(
+        &mut self,
+        pane: usize,
+        contender: &Contender,
+    ) -> Result<&mut Renderer, RenderError> {
+        let choice = contender.backend;
+        if self.failed.len() <= pane {
+            self.failed.resize_with(pane + 1, || (contender.clone(), 0));
+        }
+        if self.failed[pane].0 != *contender {
+            self.failed[pane] = (contender.clone(), 0);
+        }
+        if choice == Backend::Gpu && self.failed[pane].1 >= MOST_FAILURES {
+            let sentence =
+                "this pane broke the graphics device again and again: change its settings to try again";
+            return Err(GpuError::Input(sentence.to_owned()).into());
+        }
         let wanted = match choice {
             Backend::Auto => self.auto.unwrap_or(Backend::Auto),
             chosen => chosen,
@@ -80,8 +98,10 @@ impl Renderers {
 
     /// A pane was drawn.
     pub(super) fn worked(&mut self, pane: usize) {
-        if self.last(pane).is_some_and(|renderer| renderer.backend() == Backend::Gpu) {
-            self.failed = 0;
+        if self.last(pane).is_some_and(|renderer| renderer.backend() == Backend::Gpu)
+            && let Some(failed) = self.failed.get_mut(pane)
+        {
+            failed.1 = 0;
         }
     }
 
@@ -100,24 +120,30 @@ impl Renderers {
             }
         }
         self.gpu = None;
-        self.failed = self.failed.saturating_add(1);
-        let given_up = self.failed >= MOST_FAILURES && self.auto != Some(Backend::Cpu);
-        if given_up {
-            self.auto = Some(Backend::Cpu);
-        } else if self.auto == Some(Backend::Gpu) {
+        if self.auto == Some(Backend::Gpu) {
             self.auto = None;
         }
-        let notice = given_up.then(|| {
-            format!(
-                "The graphics card failed {MOST_FAILURES} times in a row: the processor draws the panes from now on."
-            )
+        let Some((contender, failed)) = self.failed.get_mut(pane) else {
+            return Broken { try_again: false, notice: None };
+        };
+        *failed = failed.saturating_add(1);
+        let notice = (*failed == MOST_FAILURES).then(|| {
+            let what = if contender.backend == Backend::Gpu {
+                format!("pane {} is not drawn there any more", pane + 1)
+            } else {
+                self.auto = Some(Backend::Cpu);
+                "the processor draws what it may from now on".to_owned()
+            };
+            format!("The graphics card failed {MOST_FAILURES} times in a row: {what}.")
         });
-        Broken { try_again: self.failed < MOST_FAILURES || given_up, notice }
+        // After the last failure once more, for the panes that lost their device with this one.
+        Broken { try_again: *failed <= MOST_FAILURES, notice }
     }
 
     /// Forgets the renderers of panes that are no more.
     pub(super) fn keep(&mut self, panes: usize) {
         self.panes.truncate(panes);
+        self.failed.truncate(panes);
     }
 }
 

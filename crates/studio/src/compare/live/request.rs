@@ -31,25 +31,26 @@ pub struct LiveRequest {
 /// What a pane took, milliseconds. Strands are made once for all panes and belong to none.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LiveTimes {
-    /// To make the shadow maps; 0 where the device does not measure its passes.
-    pub build: f64,
-    /// To ask them; 0 as above.
-    pub ask: f64,
-    /// The rest of the picture.
-    pub draw: f64,
+    /// To make the shadow maps; none where the device does not measure its passes.
+    pub build: Option<f64>,
+    /// To ask them; none as above.
+    pub ask: Option<f64>,
+    /// The rest of the picture; none as above.
+    pub draw: Option<f64>,
+    /// The whole picture.
+    pub whole: f64,
 }
 
 impl LiveTimes {
     /// The times of a picture.
     pub(super) fn of(stats: &FrameStats) -> Self {
-        let (build, ask) = (stats.build_ms(), stats.ask_ms());
         let whole = stats.shadow_ms + stats.draw_ms;
-        Self { build, ask, draw: (whole - build - ask).max(0.0) }
-    }
-
-    /// The whole picture.
-    pub fn whole(&self) -> f64 {
-        self.build + self.ask + self.draw
+        if stats.passes.is_empty() {
+            return Self { whole, ..Self::default() };
+        }
+        let (build, ask) = (stats.build_ms(), stats.ask_ms());
+        let draw = (whole - build - ask).max(0.0);
+        Self { build: Some(build), ask: Some(ask), draw: Some(draw), whole: build + ask + draw }
     }
 }
 
@@ -89,10 +90,16 @@ impl LiveError {
 pub struct LivePane {
     /// What was drawn.
     pub contender: Contender,
-    /// The picture; empty where there is a `problem`.
+    /// The project that it was drawn of.
+    pub project: Arc<Project>,
+    /// The size that was asked for, pixels.
+    pub asked_size: [u32; 2],
+    /// The picture; empty where there is a `problem` or a `colors_problem`.
     pub picture: Picture,
     /// Why there is no picture, in a sentence.
     pub problem: Option<String>,
+    /// Why there is nothing in the colours that the view shows, in a sentence, although the pane was drawn.
+    pub colors_problem: Option<String>,
     /// Where the picture was taken from.
     pub camera: Camera,
     /// [`FrameSnapshot::step`] of the instant.
@@ -109,8 +116,26 @@ pub struct LivePane {
     pub adapter: Adapter,
     /// Its error.
     pub error: LiveError,
-    /// Mean difference of the picture (FLIP), where the view shows it.
+    /// Mean difference of the picture (FLIP), where the view shows it and the pane is not the reference itself.
     pub flip: Option<f64>,
     /// What the view showed.
     pub shows: super::LiveShows,
+}
+
+#[cfg(test)]
+mod tests {
+    use lovelock_render::PassTime;
+
+    use super::*;
+
+    #[test]
+    fn a_device_that_measures_no_passes_has_no_parts_of_its_time() {
+        let mut stats = FrameStats { shadow_ms: 0.0, draw_ms: 9.0, ..FrameStats::default() };
+        assert_eq!(LiveTimes::of(&stats), LiveTimes { whole: 9.0, ..LiveTimes::default() });
+        let pass = |name: &str, ms| PassTime { name: name.to_owned(), ms };
+        stats.passes = vec![pass("shadow/fill", 2.0), pass("shadow/ask", 1.0), pass("draw/blend", 5.0)];
+        stats.shadow_ms = 3.0;
+        let parts = LiveTimes { build: Some(2.0), ask: Some(1.0), draw: Some(9.0), whole: 12.0 };
+        assert_eq!(LiveTimes::of(&stats), parts);
+    }
 }

@@ -66,8 +66,11 @@ impl Rounds {
         let camera = request.snapshot.camera(&project.camera);
         let mut pane = LivePane {
             contender: contender.clone(),
+            project: Arc::clone(project),
+            asked_size: [request.width, request.height],
             picture: Picture::default(),
             problem: None,
+            colors_problem: None,
             camera,
             step: request.snapshot.step,
             time_secs: request.snapshot.time_secs,
@@ -108,7 +111,7 @@ impl Rounds {
         contender: &Contender,
         pane: &mut LivePane,
     ) -> Result<(), RenderError> {
-        let renderer = self.renderers.of_pane(index, contender.backend)?;
+        let renderer = self.renderers.of_pane(index, contender)?;
         let (name, backend) = (renderer.adapter().to_owned(), renderer.backend());
         pane.adapter = Adapter { name, backend, software: renderer.is_software() };
         let project = drawn_as(&request.project, contender);
@@ -117,32 +120,44 @@ impl Rounds {
         let stats = renderer.picture(&input, width, height, &mut pane.picture)?;
         pane.times = LiveTimes::of(&stats);
         (pane.shadow_bytes, pane.draw_bytes) = (stats.shadow_bytes, stats.draw_bytes);
-        let found = request.view.measures.then(|| renderer.transmittance(request.view.light)).transpose();
+        if !request.view.measures {
+            return Ok(());
+        }
         // A light that is not there has no transmittance, and the picture is as good without.
-        if let Ok(Some(found)) = found {
-            self.measure(request, &project, &found, pane)?;
+        let found = renderer.transmittance(request.view.light).map_err(|error| error.to_string());
+        let measured = found.and_then(|found| self.measure(request, &project, &found, pane));
+        // The picture itself under a scale of colours would be taken for an error.
+        if let Err(why) = measured
+            && request.view.shows.colors().is_some()
+        {
+            pane.colors_problem = Some(why);
+            pane.picture = Picture::default();
         }
         Ok(())
     }
 
     /// Holds the transmittance of a pane against the exact one, and shows the difference where that is asked for.
+    ///
+    /// # Errors
+    /// A sentence: what the pane is held against could not be had, or not be put into colours.
     fn measure(
         &mut self,
         request: &LiveRequest,
         drawn: &Project,
         found: &[f32],
         pane: &mut LivePane,
-    ) -> Result<(), RenderError> {
+    ) -> Result<(), String> {
         let (shared, snapshot) = (&request.project, &request.snapshot);
         let exact = self.reference.transmittance(shared, snapshot, &self.strands, request.view.light);
         let exact = match exact {
             Ok(exact) => exact,
             Err(why) => {
-                pane.error = LiveError::Refused(why);
-                return Ok(());
+                pane.error = LiveError::Refused(why.clone());
+                return Err(why);
             }
         };
-        pane.error = if ExactReference::is(shared, &pane.contender, pane.adapter.backend) {
+        let drawn_by = (&pane.contender, pane.adapter.backend);
+        pane.error = if ExactReference::is(shared, drawn_by, (found, &exact)) {
             LiveError::Reference
         } else {
             let of = errors(found, &exact);
@@ -152,11 +167,12 @@ impl Rounds {
         let largest = if request.view.largest > 0.0 { request.view.largest } else { 1.0 };
         if request.view.shows == LiveShows::PictureError {
             let size = [request.width, request.height];
-            let reference = self.reference.picture(shared, snapshot, &self.strands, size);
-            match reference.and_then(|exact| heat::of_pictures(&exact, largest, &mut pane.picture)) {
-                Ok(mean) => pane.flip = Some(mean),
-                Err(why) => pane.error = LiveError::Refused(why),
-            }
+            let exact = self.reference.picture(shared, snapshot, &self.strands, size)?;
+            let is_itself = pane.error == LiveError::Reference
+                && pane.contender.transparency == Transparency::Exact
+                && pane.picture == *exact;
+            let mean = heat::of_pictures(&exact, largest, &mut pane.picture)?;
+            pane.flip = (!is_itself).then_some(mean);
             return Ok(());
         }
         let signed = request.view.shows == LiveShows::TransmittanceBias;
@@ -167,7 +183,8 @@ impl Rounds {
         let mut shown = drawn.clone();
         shown.picture.transparency = Transparency::Sorted;
         let input = input_of(snapshot, &shown, &self.strands, &pane.camera);
-        heat::on_hair(&mut self.values, &input, &values, (colors, largest), &mut pane.picture)
+        let colored = heat::on_hair(&mut self.values, &input, &values, (colors, largest), &mut pane.picture);
+        colored.map_err(|error| error.to_string())
     }
 
     /// The light along the ray through the chosen hair, as the panes of the round have it.

@@ -145,7 +145,7 @@ impl Sheet {
         let method = fitted(pane.contender.shadow.method.label(), room);
         canvas.text(x + 24, y + 5, method, INK);
         let after = Canvas::text_width(method) + 14;
-        let settings = pane.contender.settings_label();
+        let settings = pane.settings_label();
         canvas.text(x + 24 + after as i32, y + 5, fitted(&settings, room.saturating_sub(after)), QUIET);
     }
 }
@@ -171,16 +171,21 @@ fn picture(canvas: &mut Canvas, pane: &LivePane, [x, y, width, height]: Place, f
 
 /// What a pane costs, or why it is empty, at the foot of its place.
 fn figures(canvas: &mut Canvas, (_, pane, ms): &SheetPane<'_>, [x, y, width, height]: Place, at_right: bool) {
-    let text = pane.problem.clone().unwrap_or_else(|| pane.figures_label(*ms));
-    let text = fitted(&text, (width as usize).saturating_sub(32));
-    let wide = Canvas::text_width(text);
-    if wide == 0 || height < 40 {
-        return;
+    let lines = match &pane.problem {
+        Some(problem) => vec![problem.clone()],
+        None => [Some(pane.figures_label(*ms)), pane.colors_problem.clone()].into_iter().flatten().collect(),
+    };
+    for (text, up) in lines.iter().zip([28, 52]) {
+        let text = fitted(text, (width as usize).saturating_sub(32));
+        let wide = Canvas::text_width(text);
+        if wide == 0 || height < up + 12 {
+            return;
+        }
+        let left = if at_right { (x + width) as i32 - wide as i32 - 16 } else { x as i32 + 16 };
+        let top = (y + height - up) as i32;
+        canvas.fill(left - 8, top - 3, wide + 16, 22, LINE);
+        canvas.text(left, top, text, INK);
     }
-    let left = if at_right { (x + width) as i32 - wide as i32 - 16 } else { x as i32 + 16 };
-    let top = (y + height) as i32 - 28;
-    canvas.fill(left - 8, top - 3, wide + 16, 22, LINE);
-    canvas.text(left, top, text, INK);
 }
 
 /// As much of a text as has room.
@@ -216,8 +221,11 @@ mod tests {
         let [r, g, b] = color;
         LivePane {
             contender: Contender::default(),
+            project: std::sync::Arc::default(),
+            asked_size: [width, height],
             picture: Picture { width, height, rgba: [r, g, b, 255].repeat((width * height) as usize) },
             problem: None,
+            colors_problem: None,
             camera: Camera { eye: glam::Vec3::ZERO, target: glam::Vec3::Z, fov_y: 0.5 },
             step: 0,
             time_secs: 0.0,
