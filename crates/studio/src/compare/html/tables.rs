@@ -264,7 +264,9 @@ fn effective(method: &MethodReport) -> Option<String> {
     let cells = method.cells_total?;
     let edge = (cells as f64).sqrt().round() as u64;
     let asked = method.settings.iter().find(|(name, _)| name == "resolution")?.1.parse::<u64>().ok()?;
-    let map = if edge * edge != cells {
+    let map = if asked.checked_pow(3) == Some(cells) {
+        return None;
+    } else if edge * edge != cells {
         format!("{} cells", grouped(cells))
     } else if edge == asked {
         return None;

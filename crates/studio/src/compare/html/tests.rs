@@ -210,7 +210,7 @@ fn a_map_that_is_not_what_was_asked_for_is_said_with_the_settings() {
     );
     // Negative control: the map that was asked for.
     clipped.methods[0].cells_total = Some(128 * 128);
-    clipped.methods[1].cells_total = None;
+    clipped.methods[1].cells_total = Some(128 * 128 * 128);
     assert!(!page(&clipped).contains("drawn with"));
 }
 
