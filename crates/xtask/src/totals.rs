@@ -15,7 +15,8 @@ impl Totals {
     /// Reads one line of `cargo test` or `cargo nextest run`, if it is one that sums up.
     pub(crate) fn of_line(line: &str) -> Option<Self> {
         let line = without_colours(line);
-        if let Some(counts) = line.trim_start().strip_prefix("test result: ") {
+        // What nextest repeats of a test that failed is indented, and has been counted.
+        if let Some(counts) = line.strip_prefix("test result: ") {
             // test result: ok. 39 passed; 0 failed; 2 ignored; 0 measured; 0 filtered out; finished in 0.69s
             return Some(Self::of_counts(counts.split_once(". ")?.1.split(';')));
         }
@@ -106,6 +107,8 @@ mod tests {
 
     #[test]
     fn other_lines_count_nothing() {
+        let repeated = "    test result: FAILED. 0 passed; 1 failed; 0 ignored; 0 measured; 93 filtered out; finished in 6.41s";
+        assert_eq!(Totals::of_line(repeated), None);
         for line in
             ["", "test a::b ... ok", "    PASS [ 0.1s] a b", "3 passed; 0 failed", "Summary of it: 3 passed"]
         {
