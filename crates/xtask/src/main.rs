@@ -1,9 +1,10 @@
-//! Chores of the workspace: run, test, ci, layers and assets. `cargo xtask` lists them.
+//! Chores of the workspace: run, test, ci, layers, latency and assets. `cargo xtask` lists them.
 
 mod assets;
 mod browser;
 mod ci;
 mod interchange;
+mod latency;
 mod launch;
 mod layers;
 mod system;
@@ -49,6 +50,12 @@ enum Chore {
     Ci,
     /// Checks which crate may use which
     Layers,
+    /// Measures how long the window takes from an input to the screen, on a screen of its own (Linux, Xvfb)
+    Latency {
+        /// Inputs that are timed for each of three windows
+        #[arg(long, default_value_t = 50)]
+        inputs: usize,
+    },
     /// Makes the shipped assets anew
     Assets {
         /// Also write pictures of the dancer into this folder
@@ -67,6 +74,7 @@ fn main() -> ExitCode {
         Chore::Test { filter, package, .. } => testing::run(filter.as_deref(), package.as_deref()),
         Chore::Ci => ci::run(),
         Chore::Layers => layers::run(),
+        Chore::Latency { inputs } => latency::run(inputs),
         Chore::Assets { preview } => assets::run(preview.as_deref()),
     };
     match done {

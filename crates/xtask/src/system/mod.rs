@@ -5,7 +5,7 @@ mod plan;
 mod probe;
 
 use anyhow::bail;
-use needs::{BROWSER, INTERCHANGE, NEEDS, Need};
+use needs::{BROWSER, INTERCHANGE, NEEDS, Need, SCREEN};
 use plan::{Plan, Rights, Step, plan};
 use probe::Here;
 use std::process::Command;
@@ -27,6 +27,11 @@ pub(crate) fn prepare_interchange() -> anyhow::Result<()> {
 /// Sees to what `cargo xtask test --browser` needs of the system.
 pub(crate) fn prepare_browser() -> anyhow::Result<()> {
     get(&BROWSER)
+}
+
+/// Sees to what `cargo xtask latency` needs of the system.
+pub(crate) fn prepare_screen() -> anyhow::Result<()> {
+    get(&SCREEN)
 }
 
 fn get(needs: &[Need]) -> anyhow::Result<()> {

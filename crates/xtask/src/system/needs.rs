@@ -24,7 +24,7 @@ pub(crate) enum Test {
     VulkanDriver,
     /// A Python 3 that can make virtual environments.
     Python,
-    /// A program that answers when it is asked for its version.
+    /// A program in one of the folders of `PATH`.
     Program(&'static str),
 }
 
@@ -47,6 +47,14 @@ pub(crate) const BROWSER: [Need; 1] = [Need {
     test: Test::Program("chromium"),
     to_build: true,
     packages: ["chromium", "chromium", "chromium", "chromium", "chromium"],
+}];
+
+/// What `cargo xtask latency` needs beyond [`NEEDS`].
+pub(crate) const SCREEN: [Need; 1] = [Need {
+    what: "a screen without a monitor (Xvfb)",
+    test: Test::Program("Xvfb"),
+    to_build: true,
+    packages: ["xvfb", "xorg-x11-server-Xvfb", "xorg-server-xvfb", "xorg-x11-server-Xvfb", "xvfb"],
 }];
 
 /// What building, testing and the window need. The names of the libraries are those that the crates open: winit by x11-dl (Xlib, Xcursor, Xlib-xcb,

@@ -12,7 +12,7 @@ pub(crate) trait Probe {
     fn has_vulkan_driver(&self) -> bool;
     /// Whether Python 3 can make virtual environments.
     fn has_python(&self) -> bool;
-    /// Whether a program answers.
+    /// Whether a program is in one of the folders of `PATH`.
     fn has_program(&self, name: &str) -> bool;
     /// `ID` and `ID_LIKE` of os-release, in that order.
     fn distribution(&self) -> Vec<String>;

@@ -82,7 +82,8 @@ impl Probe for Here {
     }
 
     fn has_program(&self, name: &str) -> bool {
-        output_of(name, &["--version"]).is_some()
+        std::env::var_os("PATH")
+            .is_some_and(|path| std::env::split_paths(&path).any(|folder| folder.join(name).is_file()))
     }
 
     fn distribution(&self) -> Vec<String> {
