@@ -1,4 +1,4 @@
-//! Films and picture sequences, written beside their final name and renamed when whole.
+//! Films, picture sequences and takes, written beside their final name and renamed when whole.
 //!
 //! A picture comes in as 8-bit sRGB, four bytes a pixel (RGBA, row by row from the top), and goes out either as
 //! an H.264 film in an MP4 file ([`FilmWriter`]) or as a folder of PNG files with a manifest
@@ -12,6 +12,8 @@
 //!   `push` waits when the encoder is behind.
 //! - The same pictures give the same bytes: the encoder runs on one thread and no clock is read.
 //!
+//! A [`TakeWriter`] records the simulation itself, and a [`TakeReader`] plays it; a take that was cut short is kept.
+//!
 //! [`read_film`] and [`FilmReader`] read a film back without any other program.
 
 mod error;
@@ -24,6 +26,7 @@ mod reader;
 mod sequence;
 mod sink;
 mod still;
+mod take;
 mod yuv;
 
 pub use error::RecordError;
@@ -34,3 +37,8 @@ pub use reader::{FilmInfo, FilmReader, read_film};
 pub use sequence::{SequenceReport, SequenceSettings, SequenceWriter, frame_name};
 pub use sink::{OutputKind, PictureSink, SinkReport, SinkSettings};
 pub use still::write_png;
+pub use take::{
+    AssetState, MOST_ERROR_M, MOST_GUIDE_POINTS, MOST_PROJECT_BYTES, TAKE_EXTENSION, TAKE_VERSION, TakeAsset,
+    TakeCondition, TakeError, TakeFrame, TakeHeader, TakeReader, TakeReport, TakeWriter,
+    hairstyle_fingerprint,
+};

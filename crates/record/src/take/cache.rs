@@ -1,0 +1,40 @@
+//! The chunks that were decoded last.
+
+use std::sync::Arc;
+
+use super::codec::Decoded;
+
+/// Decoded chunks up to a bound of bytes, the one used last at the end.
+pub(super) struct Cache {
+    chunks: Vec<(usize, Arc<Decoded>)>,
+    bound: usize,
+}
+
+impl Cache {
+    pub(super) fn new(bound: usize) -> Self {
+        Self { chunks: Vec::new(), bound }
+    }
+
+    pub(super) fn set_bound(&mut self, bound: usize) {
+        self.bound = bound;
+        self.trim();
+    }
+
+    pub(super) fn get(&mut self, chunk: usize) -> Option<Arc<Decoded>> {
+        let place = self.chunks.iter().position(|(held, _)| *held == chunk)?;
+        self.chunks[place..].rotate_left(1);
+        self.chunks.last().map(|(_, decoded)| Arc::clone(decoded))
+    }
+
+    pub(super) fn put(&mut self, chunk: usize, decoded: &Arc<Decoded>) {
+        self.chunks.push((chunk, Arc::clone(decoded)));
+        self.trim();
+    }
+
+    fn trim(&mut self) {
+        let mut bytes: usize = self.chunks.iter().map(|(_, decoded)| decoded.bytes()).sum();
+        while bytes > self.bound && self.chunks.len() > 1 {
+            bytes -= self.chunks.remove(0).1.bytes();
+        }
+    }
+}

@@ -1,0 +1,214 @@
+//! What a take says about itself: the scene that it was recorded from.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+
+use lovelock_groom::Hairstyle;
+use serde::{Deserialize, Serialize};
+use xxhash_rust::xxh3::Xxh3;
+
+use super::TAKE_VERSION;
+use crate::FrameRate;
+
+/// The most guide points that a take can hold: ten times what the largest hairstyle has.
+pub const MOST_GUIDE_POINTS: u64 = 1 << 20;
+
+/// The longest project text, bytes; a project has some kilobytes.
+pub const MOST_PROJECT_BYTES: usize = 4 << 20;
+
+/// What a take says about itself, written once at its start.
+///
+/// [`TakeHeader::default`] is a start to fill in: `..TakeHeader::default()` keeps callers whole when a field is added.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct TakeHeader {
+    /// Version of the format; [`super::TakeWriter::create`] sets it to [`TAKE_VERSION`].
+    pub version: u32,
+    /// The program that recorded it and its version, such as `lovelock 0.1.0`.
+    pub program: String,
+    /// Frames a second of the take: frame `n` stands `n / rate` seconds after its start.
+    #[serde(with = "Rate")]
+    pub frames_per_second: FrameRate,
+    /// Guide strands, 1 or more.
+    pub guides: u32,
+    /// Points of one guide, 2 or more.
+    pub points_per_guide: u32,
+    /// Rendered strands of the hairstyle.
+    pub strands: u32,
+    /// [`hairstyle_fingerprint`] of the hairstyle whose guides were recorded.
+    pub hairstyle: u64,
+    /// The project as it was at frame 0, as text; opaque here. Later states are [`super::TakeWriter::change`]'s.
+    pub project: String,
+    /// The files that the scene was made from.
+    pub assets: Vec<TakeAsset>,
+    /// The seed that the hairstyle was grown from.
+    pub seed: u64,
+    /// Name of the clip that was danced; empty where the body rested.
+    pub clip: String,
+    /// Length of that clip, seconds; 0 where the body rested.
+    pub clip_secs: f64,
+    /// Time of the scene at frame 0, seconds.
+    pub start_secs: f64,
+}
+
+impl Default for TakeHeader {
+    fn default() -> Self {
+        Self {
+            version: TAKE_VERSION,
+            program: String::new(),
+            frames_per_second: FrameRate { num: 60, den: 1 },
+            guides: 0,
+            points_per_guide: 0,
+            strands: 0,
+            hairstyle: 0,
+            project: String::new(),
+            assets: Vec::new(),
+            seed: 0,
+            clip: String::new(),
+            clip_secs: 0.0,
+            start_secs: 0.0,
+        }
+    }
+}
+
+impl TakeHeader {
+    /// Guide points of one frame.
+    pub fn points(&self) -> usize {
+        self.guides as usize * self.points_per_guide as usize
+    }
+
+    /// Seconds from the start of the take to frame `frame`.
+    pub fn secs_of(&self, frame: u64) -> f64 {
+        frame as f64 * f64::from(self.frames_per_second.den) / f64::from(self.frames_per_second.num)
+    }
+
+    /// What is wrong with it, as `found …, wanted …` would say it; nothing where a take can have it.
+    pub(super) fn check(&self) -> Result<(), (String, String)> {
+        let wrong = |found: String, wanted: &str| Err((found, wanted.to_owned()));
+        let FrameRate { num, den } = self.frames_per_second;
+        if num == 0 || den == 0 || !(1.0..=240.0).contains(&self.frames_per_second.as_f64()) {
+            return wrong(format!("{num}/{den} frames per second"), "1 to 240");
+        }
+        let points = u64::from(self.guides) * u64::from(self.points_per_guide);
+        if self.guides == 0 || self.points_per_guide < 2 || points > MOST_GUIDE_POINTS {
+            return wrong(
+                format!("{} guides of {} points", self.guides, self.points_per_guide),
+                &format!("1 guide or more of 2 points or more, {MOST_GUIDE_POINTS} points in all at most"),
+            );
+        }
+        if self.project.len() > MOST_PROJECT_BYTES {
+            return wrong(
+                format!("a project of {} bytes", self.project.len()),
+                &format!("{MOST_PROJECT_BYTES} at most"),
+            );
+        }
+        if !(self.clip_secs.is_finite() && self.clip_secs >= 0.0 && self.start_secs.is_finite()) {
+            return wrong(
+                format!("a clip of {} s, started at {} s", self.clip_secs, self.start_secs),
+                "finite times",
+            );
+        }
+        Ok(())
+    }
+}
+
+/// The fields of [`FrameRate`] as they are stored.
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "FrameRate")]
+struct Rate {
+    num: u32,
+    den: u32,
+}
+
+/// A file that a take was recorded from.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct TakeAsset {
+    /// What it is to the scene: `hair`, `body` or `motion`.
+    pub role: String,
+    /// The file.
+    pub path: PathBuf,
+    /// XXH3-64 of its bytes, seed 0.
+    pub checksum: u64,
+    /// Its length in bytes.
+    pub bytes: u64,
+}
+
+/// How the file of a [`TakeAsset`] is found.
+#[derive(Debug)]
+pub enum AssetState {
+    /// Byte for byte what was recorded from.
+    Same,
+    /// There, but another file now: its length and checksum.
+    Changed {
+        /// Its length in bytes.
+        bytes: u64,
+        /// XXH3-64 of its bytes.
+        checksum: u64,
+    },
+    /// It cannot be read.
+    Missing(io::Error),
+}
+
+impl TakeAsset {
+    /// The file as it is now. Reads all of it, in pieces.
+    ///
+    /// # Errors
+    /// Where the file cannot be read.
+    pub fn of_file(role: impl Into<String>, path: impl Into<PathBuf>) -> io::Result<Self> {
+        let path = path.into();
+        let (checksum, bytes) = checksum_of(&path)?;
+        Ok(Self { role: role.into(), path, checksum, bytes })
+    }
+
+    /// Whether the file is still what it was.
+    pub fn state(&self) -> AssetState {
+        match checksum_of(&self.path) {
+            Ok((checksum, bytes)) if (checksum, bytes) == (self.checksum, self.bytes) => AssetState::Same,
+            Ok((checksum, bytes)) => AssetState::Changed { bytes, checksum },
+            Err(error) => AssetState::Missing(error),
+        }
+    }
+}
+
+fn checksum_of(path: &Path) -> io::Result<(u64, u64)> {
+    let mut file = File::open(path)?;
+    let mut hash = Xxh3::new();
+    let mut buffer = vec![0; 1 << 18];
+    let mut bytes = 0;
+    loop {
+        match file.read(&mut buffer) {
+            Ok(0) => return Ok((hash.digest(), bytes)),
+            Ok(read) => {
+                hash.update(&buffer[..read]);
+                bytes += read as u64;
+            }
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            Err(error) => return Err(error),
+        }
+    }
+}
+
+/// XXH3-64 over what the guides of a take belong to: guides at rest, wisps and the number of strands. Another value
+/// says that a recorded frame cannot carry this hairstyle's strands.
+pub fn hairstyle_fingerprint(style: &Hairstyle) -> u64 {
+    let mut hash = Xxh3::new();
+    let mut add = |value: u64| hash.update(&value.to_le_bytes());
+    add(style.guides.points_per_guide as u64);
+    add(style.guides.x.len() as u64);
+    for axis in [&style.guides.x, &style.guides.y, &style.guides.z] {
+        for v in axis {
+            add(u64::from(v.to_bits()));
+        }
+    }
+    add(style.strands.count() as u64);
+    add(style.wisps.len() as u64);
+    for wisp in &style.wisps {
+        for guide in wisp.guides {
+            add(u64::from(guide));
+        }
+        add(u64::from(wisp.first_strand));
+        add(u64::from(wisp.strand_count));
+    }
+    hash.digest()
+}

@@ -1,0 +1,82 @@
+//! Where the chunks of a take are: the index at its end, and the trailer that says where the index is.
+
+use super::bytes::Bytes;
+use super::chunk::{ChunkHeader, HEADER_BYTES};
+
+/// How a trailer starts.
+pub(super) const TRAILER_MAGIC: [u8; 8] = *b"\x9ALTEND\r\n";
+
+/// Bytes of a trailer, the last of a finished take.
+pub(super) const TRAILER_BYTES: usize = 32;
+
+/// A chunk and where it starts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Entry {
+    pub(super) offset: u64,
+    pub(super) header: ChunkHeader,
+}
+
+impl Entry {
+    /// First byte after the chunk, unless there is no such byte.
+    pub(super) fn end(&self) -> Option<u64> {
+        self.offset.checked_add(HEADER_BYTES as u64)?.checked_add(self.header.body_bytes())
+    }
+}
+
+/// The data part of an index: the offset and the header of every chunk of frames, in order.
+pub(super) fn to_bytes(entries: &[Entry]) -> Vec<u8> {
+    let mut out = Vec::with_capacity(entries.len() * (8 + HEADER_BYTES));
+    for entry in entries {
+        out.extend(entry.offset.to_le_bytes());
+        out.extend(entry.header.to_bytes());
+    }
+    out
+}
+
+/// The entries of an index, or nothing where it contradicts itself.
+pub(super) fn parse(raw: &[u8]) -> Option<Vec<Entry>> {
+    let mut bytes = Bytes::new(raw);
+    let mut entries = Vec::with_capacity(raw.len() / (8 + HEADER_BYTES));
+    while bytes.left() > 0 {
+        let offset = bytes.u64()?;
+        let header = ChunkHeader::parse(bytes.take(HEADER_BYTES)?.try_into().ok()?).ok()?;
+        entries.push(Entry { offset, header });
+    }
+    Some(entries)
+}
+
+/// The last bytes of a finished take.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Trailer {
+    /// Where the chunk of the index starts.
+    pub(super) index: u64,
+    pub(super) frames: u64,
+    pub(super) take: u32,
+}
+
+impl Trailer {
+    pub(super) fn to_bytes(self) -> [u8; TRAILER_BYTES] {
+        let mut bytes = [0; TRAILER_BYTES];
+        bytes[..8].copy_from_slice(&TRAILER_MAGIC);
+        bytes[8..16].copy_from_slice(&self.index.to_le_bytes());
+        bytes[16..24].copy_from_slice(&self.frames.to_le_bytes());
+        bytes[24..28].copy_from_slice(&self.take.to_le_bytes());
+        let crc = crc32fast::hash(&bytes[..28]);
+        bytes[28..].copy_from_slice(&crc.to_le_bytes());
+        bytes
+    }
+
+    /// Whether `bytes` start with a trailer.
+    pub(super) fn parse_start(bytes: &[u8; HEADER_BYTES]) -> bool {
+        bytes.first_chunk().is_some_and(|start| Self::parse(start).is_some())
+    }
+
+    pub(super) fn parse(bytes: &[u8; TRAILER_BYTES]) -> Option<Self> {
+        let (body, crc) = bytes.split_at(28);
+        let mut rest = Bytes::new(body);
+        if rest.take(8)? != TRAILER_MAGIC || Bytes::new(crc).u32()? != crc32fast::hash(body) {
+            return None;
+        }
+        Some(Self { index: rest.u64()?, frames: rest.u64()?, take: rest.u32()? })
+    }
+}

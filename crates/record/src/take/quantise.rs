@@ -1,0 +1,105 @@
+//! Guides as whole numbers of a fixed step about the head, and back.
+
+use glam::{Affine3A, DMat3, DVec3};
+use lovelock_groom::GuideFrame;
+
+/// Length of one step, metres. Rounding moves a point by half a step along each axis at most, 0.0433 mm in all.
+pub(super) const STEP_M: f64 = 5e-5;
+
+/// The furthest that a point may be from the head, in steps: 6.7 km.
+const MOST_STEPS: f64 = (1_u32 << 27) as f64;
+
+/// The size of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Layout {
+    pub(super) guides: usize,
+    pub(super) points: usize,
+}
+
+impl Layout {
+    /// Whole numbers of one frame. They lie axis after axis, point after point from the root, guide after guide:
+    /// number `(axis * points + point) * guides + guide`.
+    pub(super) fn numbers(self) -> usize {
+        3 * self.guides * self.points
+    }
+}
+
+/// Writes the guides of `frame` into `out`, which holds [`Layout::numbers`].
+pub(super) fn quantise(frame: &GuideFrame, layout: Layout, out: &mut [i32]) -> Result<(), String> {
+    let Layout { guides, points } = layout;
+    let from = &frame.guides;
+    let total = guides * points;
+    if from.points_per_guide != points || [&from.x, &from.y, &from.z].iter().any(|a| a.len() != total) {
+        return Err(format!(
+            "{} guides of {} points, wanted {guides} of {points}",
+            from.count(),
+            from.points_per_guide
+        ));
+    }
+    let (turn, place) = rigid(&frame.world_from_head)?;
+    let back = turn.inverse() * (1.0 / STEP_M);
+    let plane = total;
+    let mut furthest = 0.0_f64;
+    for guide in 0..guides {
+        for point in 0..points {
+            let i = guide * points + point;
+            let world = DVec3::new(from.x[i].into(), from.y[i].into(), from.z[i].into());
+            let steps = (back * (world - place)).round();
+            let reach = steps.abs().max_element();
+            // Also where it is not a number.
+            if reach.is_nan() || reach > MOST_STEPS {
+                return Err(format!(
+                    "guide {guide}, point {point} at {world} m; wanted a place within {:.0} m of the head",
+                    MOST_STEPS * STEP_M
+                ));
+            }
+            furthest = furthest.max(reach);
+            let to = point * guides + guide;
+            out[to] = steps.x as i32;
+            out[plane + to] = steps.y as i32;
+            out[2 * plane + to] = steps.z as i32;
+        }
+    }
+    Ok(())
+}
+
+/// Puts the guides back into the world.
+pub(super) fn restore(numbers: &[i32], layout: Layout, frame: &mut GuideFrame) {
+    let Layout { guides, points } = layout;
+    let total = guides * points;
+    let turn = DMat3::from_cols_array(&frame.world_from_head.matrix3.to_cols_array().map(f64::from)) * STEP_M;
+    let place = frame.world_from_head.translation.as_dvec3();
+    let to = &mut frame.guides;
+    to.points_per_guide = points;
+    for axis in [&mut to.x, &mut to.y, &mut to.z] {
+        axis.resize(total, 0.0);
+    }
+    for guide in 0..guides {
+        for point in 0..points {
+            let from = point * guides + guide;
+            let steps = DVec3::new(
+                numbers[from].into(),
+                numbers[total + from].into(),
+                numbers[2 * total + from].into(),
+            );
+            let world = (turn * steps + place).as_vec3();
+            let i = guide * points + point;
+            (to.x[i], to.y[i], to.z[i]) = (world.x, world.y, world.z);
+        }
+    }
+}
+
+/// The turn and the place of a transform that turns and moves only.
+fn rigid(transform: &Affine3A) -> Result<(DMat3, DVec3), String> {
+    let turn = DMat3::from_cols_array(&transform.matrix3.to_cols_array().map(f64::from));
+    let place = transform.translation.as_dvec3();
+    let off = turn.transpose() * turn - DMat3::IDENTITY;
+    let worst = off.to_cols_array().iter().fold(0.0_f64, |worst, v| worst.max(v.abs()));
+    // A product of a few rotations in single precision is off by 1e-6.
+    let straight = off.is_finite() && worst < 1e-3 && turn.determinant() > 0.0;
+    if straight && place.is_finite() {
+        Ok((turn, place))
+    } else {
+        Err(format!("a head that is placed by {transform}; wanted a turn and a place"))
+    }
+}

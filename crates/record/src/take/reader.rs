@@ -1,0 +1,354 @@
+//! Playing a take.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::cache::Cache;
+use super::chunk::{HEADER_BYTES, MAGIC, Part, unpack};
+use super::codec::{self, Decoded};
+use super::disk::part_path;
+use super::index::Entry;
+use super::interpolate::between;
+use super::map::{Map, MapError, is_sound, map};
+use super::quantise::{Layout, restore};
+use super::settings::Settings;
+use super::source::Source;
+use super::{TAKE_VERSION, TakeCondition, TakeError, TakeFrame, TakeHeader};
+
+/// Bytes of decoded chunks that are kept, unless asked for otherwise: seven seconds of a shipped hairstyle.
+const CACHE_BYTES: usize = 64 << 20;
+
+/// A take that is open for playing: finished, cut or damaged.
+pub struct TakeReader {
+    path: PathBuf,
+    source: Box<dyn Source>,
+    map: Map,
+    layout: Layout,
+    cache: Cache,
+    project: Option<Playing>,
+    /// Chunks that turned out to be damaged, by their place in the map.
+    bad: BTreeMap<usize, String>,
+    /// Frames that interpolation works with.
+    ends: (TakeFrame, TakeFrame),
+}
+
+/// The project as it was handed out last.
+struct Playing {
+    chunk: usize,
+    settings: Settings,
+    text: Arc<str>,
+    /// The frames of the chunk that it holds for.
+    frames: Range<u32>,
+}
+
+impl TakeReader {
+    /// Opens the take at `path`, finished or not (`NAME.take.part`). Reads its ends alone where it is whole; looks
+    /// through it where it is not.
+    ///
+    /// # Errors
+    /// [`TakeError::NotATake`], [`TakeError::Newer`], [`TakeError::Empty`] and [`TakeError::Malformed`] by what the file
+    /// holds; [`TakeError::Io`] where it cannot be read.
+    pub fn open(path: &Path) -> Result<Self, TakeError> {
+        let file = File::open(path).map_err(|error| {
+            let part = part_path(path);
+            if error.kind() == io::ErrorKind::NotFound && part.exists() {
+                let what = format!("is not there, but {} is, which was not finished", part.display());
+                return TakeError::request(path, what);
+            }
+            TakeError::io(path, "open", error)
+        })?;
+        let data = file.metadata().map_err(|error| TakeError::io(path, "read", error))?;
+        if data.is_dir() {
+            return Err(TakeError::request(path, "is a folder; wanted a take"));
+        }
+        Self::open_source(path, Box::new(file), data.len())
+    }
+
+    pub(super) fn open_source(
+        path: &Path,
+        mut source: Box<dyn Source>,
+        length: u64,
+    ) -> Result<Self, TakeError> {
+        let map = map(&mut *source, length).map_err(|error| map_error(path, error))?;
+        if map.entries.is_empty() {
+            let why = map.cut.or(map.damage).unwrap_or_else(|| "its index is empty".to_owned());
+            return Err(TakeError::Empty { path: path.to_owned(), why });
+        }
+        let layout =
+            Layout { guides: map.header.guides as usize, points: map.header.points_per_guide as usize };
+        Ok(Self {
+            path: path.to_owned(),
+            source,
+            map,
+            layout,
+            cache: Cache::new(CACHE_BYTES),
+            project: None,
+            bad: BTreeMap::new(),
+            ends: Default::default(),
+        })
+    }
+
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// What the take says about itself.
+    pub fn header(&self) -> &TakeHeader {
+        &self.map.header
+    }
+
+    /// Frames in the take, with those that are lost; at least 1.
+    pub fn frames(&self) -> u64 {
+        self.map.frames
+    }
+
+    /// Its length: frames by frames a second, seconds.
+    pub fn duration_secs(&self) -> f64 {
+        self.header().secs_of(self.frames())
+    }
+
+    /// Bounds the memory for decoded frames, bytes (64 MiB at first). The chunk that is played is kept whatever it
+    /// takes.
+    pub fn set_cache_bytes(&mut self, bytes: usize) {
+        self.cache.set_bound(bytes);
+    }
+
+    /// What is known to be wrong with the take: what opening saw, and what frames that were played since have shown.
+    /// [`TakeReader::verify`] looks at all of it.
+    pub fn condition(&self) -> TakeCondition {
+        let lost = self.lost();
+        let why = self.map.damage.as_ref().or_else(|| self.bad.values().next());
+        match (why, &self.map.cut) {
+            (None, None) if lost.is_empty() => TakeCondition::Whole,
+            (None, Some(why)) if lost.is_empty() => {
+                TakeCondition::Cut { frames: self.frames(), why: why.clone() }
+            }
+            (why, cut) => TakeCondition::Damaged {
+                lost,
+                cut: cut.is_some(),
+                why: why.or(cut.as_ref()).cloned().unwrap_or_else(|| "frames are missing".to_owned()),
+            },
+        }
+    }
+
+    /// Reads the whole file and checks every checksum.
+    ///
+    /// # Errors
+    /// [`TakeError::Io`] where the disk cannot read it.
+    pub fn verify(&mut self) -> Result<TakeCondition, TakeError> {
+        for chunk in 0..self.map.entries.len() {
+            let entry = self.map.entries[chunk];
+            let why = match is_sound(&mut *self.source, &entry) {
+                Ok(true) => continue,
+                Ok(false) => format!("the chunk at byte {} was changed", entry.offset),
+                Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => {
+                    format!("the file no longer reaches the chunk at byte {}", entry.offset)
+                }
+                Err(error) => return Err(TakeError::io(&self.path, "read", error)),
+            };
+            self.bad.entry(chunk).or_insert(why);
+        }
+        Ok(self.condition())
+    }
+
+    /// Frame `frame`, counted from 0.
+    ///
+    /// # Errors
+    /// [`TakeError::NoSuchFrame`] past the end; [`TakeError::Lost`] where it is damaged, with the frames that are lost
+    /// with it; [`TakeError::Io`] where the disk cannot read it.
+    pub fn frame(&mut self, frame: u64) -> Result<TakeFrame, TakeError> {
+        let mut out = TakeFrame::default();
+        self.frame_into(frame, &mut out)?;
+        Ok(out)
+    }
+
+    /// As [`TakeReader::frame`], without allocating where `out` already fits. After an error `out` is as before.
+    ///
+    /// # Errors
+    /// As [`TakeReader::frame`].
+    pub fn frame_into(&mut self, frame: u64, out: &mut TakeFrame) -> Result<(), TakeError> {
+        let (chunk, within) = self.find(frame)?;
+        let decoded = self.decoded(chunk, frame)?;
+        let meta = &decoded.metas[within as usize];
+        out.guides.time_secs = meta.time_secs;
+        out.guides.world_from_head = meta.world_from_head;
+        out.clip_secs = meta.clip_secs;
+        out.wall_frame = meta.wall_frame;
+        out.substeps = meta.substeps;
+        out.jumped = meta.jumped;
+        let size = self.layout.numbers();
+        let numbers = &decoded.numbers[within as usize * size..][..size];
+        restore(numbers, self.layout, &mut out.guides);
+        Ok(())
+    }
+
+    /// The instant `secs` after the start of the take, clamped to it, between the two frames beside it: the head turns
+    /// and moves evenly, points move evenly about the head, and links keep their lengths. Where the motion jumped, or
+    /// one of the two is lost, it is the other.
+    ///
+    /// # Errors
+    /// As [`TakeReader::frame`] where both are lost.
+    pub fn frame_at(&mut self, secs: f64, out: &mut TakeFrame) -> Result<(), TakeError> {
+        let rate = self.header().frames_per_second.as_f64();
+        let last = self.frames() - 1;
+        let place = if secs.is_finite() { (secs * rate).clamp(0.0, last as f64) } else { 0.0 };
+        let (before, t) = (place.floor(), place - place.floor());
+        let before = before as u64;
+        // A thousandth of a frame is less than what a position is stored to.
+        if t < 1e-3 || before >= last {
+            return self.frame_into(before, out);
+        }
+        if t > 1.0 - 1e-3 {
+            return self.frame_into(before + 1, out);
+        }
+        let mut ends = std::mem::take(&mut self.ends);
+        let result = match (self.frame_into(before, &mut ends.0), self.frame_into(before + 1, &mut ends.1)) {
+            (Ok(()), Ok(())) => {
+                between(&ends.0, &ends.1, t, self.map.header.clip_secs, out);
+                Ok(())
+            }
+            (Ok(()), Err(TakeError::Lost { .. })) => {
+                out.clone_from(&ends.0);
+                Ok(())
+            }
+            (Err(TakeError::Lost { .. }), Ok(())) => {
+                out.clone_from(&ends.1);
+                Ok(())
+            }
+            (Err(error), _) | (_, Err(error)) => Err(error),
+        };
+        self.ends = ends;
+        result
+    }
+
+    /// The nearest frame that is not known to be lost, for playing over damage; the earlier of two.
+    pub fn nearest(&self, frame: u64) -> Option<u64> {
+        let good = self.map.entries.iter().enumerate().filter(|(chunk, _)| !self.bad.contains_key(chunk));
+        good.map(|(_, entry)| frame.clamp(entry.header.first, entry.header.end() - 1))
+            .min_by_key(|&near| (near.abs_diff(frame), near))
+    }
+
+    /// The project's text at frame `frame`. While it stays the same, so does the `Arc`.
+    ///
+    /// # Errors
+    /// As [`TakeReader::frame`].
+    pub fn project_at(&mut self, frame: u64) -> Result<Arc<str>, TakeError> {
+        let (chunk, within) = self.find(frame)?;
+        let same_chunk = self.project.as_ref().is_some_and(|playing| playing.chunk == chunk);
+        if let Some(playing) = self.project.as_ref().filter(|p| same_chunk && p.frames.contains(&within)) {
+            return Ok(Arc::clone(&playing.text));
+        }
+        let before = self.project.take();
+        let (settings, old) = match before {
+            Some(playing) if same_chunk => (playing.settings, Some(playing.text)),
+            before => {
+                let Entry { offset, header } = self.map.entries[chunk];
+                let raw = self.part(chunk, frame, offset + HEADER_BYTES as u64, &header.text)?;
+                let settings =
+                    Settings::parse(&raw, header.changes).map_err(|why| self.damaged(chunk, frame, &why))?;
+                (settings, before.map(|playing| playing.text))
+            }
+        };
+        let (text, frames) = settings.at(within).map_err(|why| self.damaged(chunk, frame, &why))?;
+        let text = old.filter(|old| **old == *text).unwrap_or_else(|| text.into());
+        self.project = Some(Playing { chunk, settings, text: Arc::clone(&text), frames });
+        Ok(text)
+    }
+
+    /// The chunk that holds a frame, and which of its frames it is.
+    fn find(&self, frame: u64) -> Result<(usize, u32), TakeError> {
+        if frame >= self.frames() {
+            return Err(TakeError::NoSuchFrame { path: self.path.clone(), frame, frames: self.frames() });
+        }
+        let after = self.map.entries.partition_point(|entry| entry.header.first <= frame);
+        match after.checked_sub(1).map(|chunk| (chunk, self.map.entries[chunk].header)) {
+            Some((chunk, header)) if frame < header.end() => match self.bad.get(&chunk) {
+                None => Ok((chunk, (frame - header.first) as u32)),
+                Some(why) => Err(self.lost_error(frame, header.first..header.end(), why.clone())),
+            },
+            before => {
+                let start = before.map_or(0, |(_, header)| header.end());
+                let end = self.map.entries.get(after).map_or(self.frames(), |entry| entry.header.first);
+                let why = self.map.damage.clone().unwrap_or_else(|| "they are missing".to_owned());
+                Err(self.lost_error(frame, start..end, why))
+            }
+        }
+    }
+
+    fn lost_error(&self, frame: u64, lost: Range<u64>, why: String) -> TakeError {
+        TakeError::Lost { path: self.path.clone(), frame, first: lost.start, last: lost.end - 1, why }
+    }
+
+    /// Remembers that a chunk is damaged.
+    fn damaged(&mut self, chunk: usize, frame: u64, why: &str) -> TakeError {
+        let Entry { offset, header } = self.map.entries[chunk];
+        let why = format!("the chunk at byte {offset} was changed: {why}");
+        self.bad.entry(chunk).or_insert(why.clone());
+        self.lost_error(frame, header.first..header.end(), why)
+    }
+
+    /// Every run of lost frames.
+    fn lost(&self) -> Vec<Range<u64>> {
+        let mut lost: Vec<Range<u64>> = Vec::new();
+        let mut add = |range: Range<u64>| match lost.last_mut() {
+            _ if range.is_empty() => {}
+            Some(last) if last.end == range.start => last.end = range.end,
+            _ => lost.push(range),
+        };
+        let mut end = 0;
+        for (chunk, entry) in self.map.entries.iter().enumerate() {
+            add(end..entry.header.first);
+            end = entry.header.end();
+            if self.bad.contains_key(&chunk) {
+                add(entry.header.first..end);
+            }
+        }
+        add(end..self.map.frames);
+        lost
+    }
+
+    /// The frames of a chunk, from the cache or the file. `frame` is the one that is asked for.
+    fn decoded(&mut self, chunk: usize, frame: u64) -> Result<Arc<Decoded>, TakeError> {
+        if let Some(decoded) = self.cache.get(chunk) {
+            return Ok(decoded);
+        }
+        let Entry { offset, header } = self.map.entries[chunk];
+        let offset = offset + HEADER_BYTES as u64 + u64::from(header.text.packed);
+        let raw = self.part(chunk, frame, offset, &header.data)?;
+        let decoded = codec::decode(&raw, header.frames as usize, self.layout)
+            .map_err(|why| self.damaged(chunk, frame, &why))?;
+        let decoded = Arc::new(decoded);
+        self.cache.put(chunk, &decoded);
+        Ok(decoded)
+    }
+
+    /// A part of a chunk, unpacked.
+    fn part(&mut self, chunk: usize, frame: u64, offset: u64, part: &Part) -> Result<Vec<u8>, TakeError> {
+        let mut packed = vec![0; part.packed as usize];
+        match self.source.read_at(offset, &mut packed) {
+            Ok(()) => {}
+            Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => {
+                return Err(self.damaged(chunk, frame, "the file no longer reaches it"));
+            }
+            Err(error) => return Err(TakeError::io(&self.path, format!("read frame {frame}"), error)),
+        }
+        unpack(&packed, part).map_err(|why| self.damaged(chunk, frame, &why))
+    }
+}
+
+fn map_error(path: &Path, error: MapError) -> TakeError {
+    let path = path.to_owned();
+    match error {
+        MapError::Io(source) => TakeError::Io { path, action: "read".to_owned(), source },
+        MapError::NotATake { found } => {
+            TakeError::NotATake { path, found, wanted: MAGIC.escape_ascii().to_string() }
+        }
+        MapError::Newer(found) => TakeError::Newer { path, found, newest: TAKE_VERSION },
+        MapError::Malformed { offset, found, wanted } => TakeError::Malformed { path, offset, found, wanted },
+    }
+}

@@ -1,0 +1,145 @@
+//! The project's text at the start of a chunk and how it changes in it.
+//!
+//! A change is the run of bytes between what it has in common with the text before it, at its start and its end: a
+//! slider that is dragged costs some bytes a frame.
+
+use std::ops::Range;
+
+use super::MOST_PROJECT_BYTES;
+use super::bytes::Bytes;
+
+/// A change: from `frame` of the chunk on, all but `prefix` bytes at the start and `suffix` at the end is `middle`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Edit {
+    frame: u32,
+    prefix: u32,
+    suffix: u32,
+    middle: Vec<u8>,
+}
+
+/// The texts of one chunk, as they are written.
+#[derive(Clone, Debug, Default)]
+pub(super) struct SettingsLog {
+    start: String,
+    edits: Vec<Edit>,
+    now: String,
+    bytes: usize,
+}
+
+impl SettingsLog {
+    /// A chunk that starts with `project`.
+    pub(super) fn new(project: String) -> Self {
+        Self { now: project.clone(), bytes: project.len(), start: project, edits: Vec::new() }
+    }
+
+    /// The project is `project` from `frame` of the chunk on.
+    pub(super) fn change(&mut self, frame: u32, project: &str) {
+        if project == self.now {
+            return;
+        }
+        if frame == 0 {
+            *self = Self::new(project.to_owned());
+            return;
+        }
+        // A second change at one frame takes the place of the first.
+        if self.edits.last().is_some_and(|edit| edit.frame == frame) {
+            let last = self.edits.pop().map_or(0, |edit| edit.middle.len());
+            self.bytes -= last;
+            self.now = apply_all(&self.start, &self.edits).unwrap_or_default();
+            return self.change(frame, project);
+        }
+        let (old, new) = (self.now.as_bytes(), project.as_bytes());
+        let same = |pairs: &mut dyn Iterator<Item = (&u8, &u8)>| pairs.take_while(|(a, b)| a == b).count();
+        let prefix = same(&mut old.iter().zip(new));
+        let suffix = same(&mut old[prefix..].iter().rev().zip(new[prefix..].iter().rev()));
+        let middle = new[prefix..new.len() - suffix].to_vec();
+        self.bytes += middle.len() + 16;
+        self.edits.push(Edit { frame, prefix: prefix as u32, suffix: suffix as u32, middle });
+        project.clone_into(&mut self.now);
+    }
+
+    /// The project now.
+    pub(super) fn now(&self) -> &str {
+        &self.now
+    }
+
+    /// Changes so far.
+    pub(super) fn changes(&self) -> u32 {
+        self.edits.len() as u32
+    }
+
+    /// Length of what [`SettingsLog::to_bytes`] makes, nearly.
+    pub(super) fn bytes(&self) -> usize {
+        self.bytes
+    }
+
+    /// The text part of a chunk.
+    pub(super) fn to_bytes(&self) -> Vec<u8> {
+        let mut out = Vec::with_capacity(self.bytes + 8);
+        out.extend((self.start.len() as u32).to_le_bytes());
+        out.extend(self.start.as_bytes());
+        for edit in &self.edits {
+            for word in [edit.frame, edit.prefix, edit.suffix, edit.middle.len() as u32] {
+                out.extend(word.to_le_bytes());
+            }
+            out.extend(&edit.middle);
+        }
+        out
+    }
+}
+
+/// The texts of one chunk, as they are read.
+#[derive(Clone, Debug)]
+pub(super) struct Settings {
+    start: String,
+    edits: Vec<Edit>,
+}
+
+impl Settings {
+    /// The texts in the text part `raw` of a chunk of `changes` changes.
+    pub(super) fn parse(raw: &[u8], changes: u32) -> Result<Self, String> {
+        let mut bytes = Bytes::new(raw);
+        let short = || "a text part that ends too early".to_owned();
+        let length = bytes.u32().ok_or_else(short)?;
+        let start = bytes.take(length as usize).ok_or_else(short)?.to_vec();
+        let start = String::from_utf8(start).map_err(|_| NO_UTF8.to_owned())?;
+        let mut edits: Vec<Edit> = Vec::new();
+        for _ in 0..changes {
+            let mut word = || bytes.u32().ok_or_else(short);
+            let [frame, prefix, suffix, length] = [word()?, word()?, word()?, word()?];
+            if edits.last().is_some_and(|last| last.frame >= frame) {
+                return Err("changes that are out of order".to_owned());
+            }
+            let middle = bytes.take(length as usize).ok_or_else(short)?.to_vec();
+            edits.push(Edit { frame, prefix, suffix, middle });
+        }
+        if bytes.left() > 0 {
+            return Err(format!("{} bytes after the last change", bytes.left()));
+        }
+        Ok(Self { start, edits })
+    }
+
+    /// The project at `frame` of the chunk, and the frames of the chunk for which it stays so.
+    pub(super) fn at(&self, frame: u32) -> Result<(String, Range<u32>), String> {
+        let past = self.edits.partition_point(|edit| edit.frame <= frame);
+        let from = past.checked_sub(1).map_or(0, |last| self.edits[last].frame);
+        let until = self.edits.get(past).map_or(u32::MAX, |next| next.frame);
+        Ok((apply_all(&self.start, &self.edits[..past])?, from..until))
+    }
+}
+
+const NO_UTF8: &str = "a project that is no UTF-8";
+
+fn apply_all(start: &str, edits: &[Edit]) -> Result<String, String> {
+    let mut text = start.as_bytes().to_vec();
+    for edit in edits {
+        let (prefix, suffix) = (edit.prefix as usize, edit.suffix as usize);
+        let kept = prefix.checked_add(suffix).filter(|&kept| kept <= text.len());
+        let end = kept.map(|_| text.len() - suffix).ok_or("a change that keeps more than there is")?;
+        text.splice(prefix..end, edit.middle.iter().copied());
+        if text.len() > MOST_PROJECT_BYTES {
+            return Err(format!("a project of {} bytes", text.len()));
+        }
+    }
+    String::from_utf8(text).map_err(|_| NO_UTF8.to_owned())
+}

@@ -1,0 +1,184 @@
+//! The thread that packs chunks and writes them.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::Receiver;
+
+use super::chunk::{ChunkHeader, HEADER_BYTES, Kind, Part, compressor, pack};
+use super::codec::{self, Meta};
+use super::disk::{Disk, publish};
+use super::index::{self, Entry, Trailer};
+use super::quantise::Layout;
+use super::settings::SettingsLog;
+use super::{TAKE_VERSION, TakeError};
+
+/// How hard zstd tries; see the measurements in `docs/file_formats.md`.
+const LEVEL: i32 = 3;
+
+/// The frames of one chunk, as the recording hands them over.
+pub(super) struct Load {
+    pub(super) metas: Vec<Meta>,
+    pub(super) numbers: Vec<i32>,
+    pub(super) settings: SettingsLog,
+}
+
+/// What the worker is told.
+pub(super) enum Job {
+    /// The next chunk.
+    Chunk(Load),
+    /// That was all. A channel that closes without it leaves the unfinished file.
+    Finish,
+    /// Nothing of it is wanted.
+    Discard,
+}
+
+/// The unfinished file and what was written to it.
+pub(super) struct TakeFile {
+    target: PathBuf,
+    part: PathBuf,
+    disk: Box<dyn Disk>,
+    compressor: zstd::bulk::Compressor<'static>,
+    layout: Layout,
+    head: Vec<u8>,
+    take: u32,
+    position: u64,
+    entries: Vec<Entry>,
+    /// Frames on the disk, for whoever reports what is kept.
+    kept: Arc<AtomicU64>,
+}
+
+impl TakeFile {
+    /// Writes the header, twice, and waits for the disk.
+    pub(super) fn start(
+        target: &Path,
+        part: &Path,
+        disk: Box<dyn Disk>,
+        layout: Layout,
+        head: Vec<u8>,
+        kept: Arc<AtomicU64>,
+    ) -> Result<Self, TakeError> {
+        let compressor = compressor(LEVEL).map_err(|error| TakeError::io(part, "compress", error))?;
+        let mut file = Self {
+            target: target.to_owned(),
+            part: part.to_owned(),
+            disk,
+            compressor,
+            layout,
+            take: crc32fast::hash(&head),
+            head,
+            position: 0,
+            entries: Vec::new(),
+            kept,
+        };
+        let write = |file: &mut Self| {
+            let head = file.head_chunk()?;
+            file.write(&[&head[..], &head[..]].concat())
+        };
+        write(&mut file).map_err(|error| file.failed("write its header", error))?;
+        Ok(file)
+    }
+
+    /// Takes jobs until told to finish (its length in bytes), until the channel closes (nothing), or until something
+    /// fails.
+    pub(super) fn run(mut self, jobs: &Receiver<Job>) -> Result<Option<u64>, TakeError> {
+        while let Ok(job) = jobs.recv() {
+            match job {
+                Job::Chunk(load) => self.add(&load)?,
+                Job::Finish => return self.finish().map(Some),
+                // While the file is locked, so that it is no one else's.
+                Job::Discard => {
+                    return fs::remove_file(&self.part)
+                        .map(|()| None)
+                        .map_err(|error| TakeError::io(&self.part, "remove", error));
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    fn add(&mut self, load: &Load) -> Result<(), TakeError> {
+        let first = self.entries.last().map_or(0, |entry| entry.header.end());
+        let last = first + load.metas.len() as u64 - 1;
+        self.write_frames(load, first)
+            .map_err(|error| self.failed(&format!("write frames {first} to {last}"), error))?;
+        self.kept.store(last + 1, Ordering::Release);
+        Ok(())
+    }
+
+    fn write_frames(&mut self, load: &Load, first: u64) -> std::io::Result<()> {
+        let data = codec::encode(&load.metas, &load.numbers, self.layout);
+        let mut header = self.header(Kind::Frames);
+        (header.first, header.frames) = (first, load.metas.len() as u32);
+        header.changes = load.settings.changes();
+        let (header, bytes) = self.chunk(header, &load.settings.to_bytes(), &data)?;
+        let offset = self.position;
+        self.write(&bytes)?;
+        self.entries.push(Entry { offset, header });
+        Ok(())
+    }
+
+    /// Writes the header once more, the index and the trailer, and gives the file its name.
+    fn finish(mut self) -> Result<u64, TakeError> {
+        let write = |file: &mut Self| {
+            let mut bytes = file.head_chunk()?;
+            let index = file.position + bytes.len() as u64;
+            let entries = index::to_bytes(&file.entries);
+            bytes.extend(file.chunk(file.header(Kind::Index), &[], &entries)?.1);
+            let frames = file.entries.last().map_or(0, |entry| entry.header.end());
+            bytes.extend(Trailer { index, frames, take: file.take }.to_bytes());
+            file.write(&bytes)
+        };
+        write(&mut self).map_err(|error| self.failed("write its index", error))?;
+        publish(&self.part, &self.target)
+            .map_err(|error| self.failed(&format!("name it {}", self.target.display()), error))?;
+        Ok(self.position)
+    }
+
+    fn header(&self, kind: Kind) -> ChunkHeader {
+        ChunkHeader {
+            kind,
+            version: TAKE_VERSION,
+            first: 0,
+            frames: 0,
+            changes: 0,
+            text: Part::default(),
+            data: Part::default(),
+            take: self.take,
+        }
+    }
+
+    fn head_chunk(&mut self) -> std::io::Result<Vec<u8>> {
+        let head = std::mem::take(&mut self.head);
+        let chunk = self.chunk(self.header(Kind::Head), &head, &[]);
+        self.head = head;
+        Ok(chunk?.1)
+    }
+
+    /// The bytes of a chunk, and its header with the lengths and checksums filled in.
+    fn chunk(
+        &mut self,
+        mut header: ChunkHeader,
+        text: &[u8],
+        data: &[u8],
+    ) -> std::io::Result<(ChunkHeader, Vec<u8>)> {
+        let mut bytes = vec![0; HEADER_BYTES];
+        header.text = pack(&mut self.compressor, text, &mut bytes)?;
+        header.data = pack(&mut self.compressor, data, &mut bytes)?;
+        bytes[..HEADER_BYTES].copy_from_slice(&header.to_bytes());
+        Ok((header, bytes))
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<()> {
+        self.disk.write_all(bytes)?;
+        self.disk.sync()?;
+        self.position += bytes.len() as u64;
+        Ok(())
+    }
+
+    fn failed(&self, action: &str, source: std::io::Error) -> TakeError {
+        let kept = self.kept.load(Ordering::Acquire);
+        TakeError::Write { path: self.part.clone(), action: action.to_owned(), kept, source }
+    }
+}
