@@ -11,7 +11,7 @@ use lovelock_studio::render::{Backend, ShadowMethod, Transparency};
 #[derive(Debug, Parser)]
 #[command(name = "lovelock", version, subcommand_precedence_over_arg = true)]
 pub(crate) struct Arguments {
-    /// A project, hairstyle (.hair, .tfx), character (.glb, .gltf) or motion (.bvh) to open in the window.
+    /// A project, take, hairstyle (.hair, .tfx), character (.glb, .gltf) or motion (.bvh) to open in the window.
     pub(crate) project: Option<PathBuf>,
     /// Print one JSON object on standard output and nothing else there.
     #[arg(long, global = true)]
@@ -34,14 +34,14 @@ pub(crate) enum Task {
     Compare(Compare),
     /// Measures frames of known scenes, stage by stage, on each backend, beside what was published.
     Bench(Bench),
-    /// Says what a hair, character, motion or project file holds.
+    /// Says what a hair, character, motion, project or take file holds.
     Info(Info),
 }
 
 /// What is simulated.
 #[derive(Debug, Args)]
 pub(crate) struct SourceArguments {
-    /// The project; the default project where none is given.
+    /// The project, or a take; the default project where none is given.
     pub(crate) project: Option<PathBuf>,
     /// A shipped hairstyle instead of the project's: smooth, curly or long.
     #[arg(long, value_name = "ID", conflicts_with = "hair")]
@@ -61,7 +61,8 @@ pub(crate) struct SourceArguments {
 pub(crate) struct Record {
     #[command(flatten)]
     pub(crate) source: SourceArguments,
-    /// Where it goes: a name ending in `.mp4` is a film, any other a folder of PNG files with a manifest.
+    /// Where it goes: a name ending in `.mp4` is a film, in `.take` the simulation alone, any other a folder of PNG files with
+    /// a manifest.
     #[arg(short, long, value_name = "OUT")]
     pub(crate) out: PathBuf,
     /// Frames to record, half open, such as 0..240; the whole clip where none are given.

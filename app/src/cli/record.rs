@@ -1,6 +1,8 @@
 //! `lovelock record`.
 
-use lovelock_studio::{RecordReport, RecordRequest, Stage, StudioError};
+use lovelock_studio::{
+    RecordReport, RecordRequest, Stage, StudioError, TakeRecordReport, is_take, record_take,
+};
 
 use super::args::Record;
 use super::output::Output;
@@ -20,6 +22,10 @@ pub(crate) fn run(task: &Record, output: Output) -> Result<(), StudioError> {
         access: std::mem::take(&mut scene.access),
         ..RecordRequest::default()
     };
+    if is_take(&request.out) {
+        let report = scene.watched(|project, progress| record_take(project, &request, progress))?;
+        return output.result(&report, || take_summary(&report));
+    }
     let report = scene.watched(|project, progress| lovelock_studio::record(project, &request, progress))?;
     output.result(&report, || summary(&report))
 }
@@ -43,6 +49,23 @@ fn summary(report: &RecordReport) -> String {
         report.segments,
         report.frame_ms,
         report.adapter,
+        report.max_stretch,
+        1e3 * report.max_penetration_m,
+        report.recovered_guides,
+    )
+}
+
+fn take_summary(report: &TakeRecordReport) -> String {
+    format!(
+        "{}: {} frames at {} a second, {} guides of {} points, {:.2} MB a second\n\
+         {:.1} times as fast as it plays; largest stretch {:.1e}, deepest in the body {:.2} mm, {} guides put back",
+        report.out,
+        report.frames,
+        report.fps,
+        report.guides,
+        report.points_per_guide,
+        report.bytes as f64 / 1e6 / report.duration_secs.max(1e-9),
+        1e3 * report.duration_secs / report.ms.max(1e-9),
         report.max_stretch,
         1e3 * report.max_penetration_m,
         report.recovered_guides,

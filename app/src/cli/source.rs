@@ -4,7 +4,9 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use lovelock_studio::groom::Preset;
-use lovelock_studio::{Access, Place, Problem, Progress, Project, StudioError, load_project_with};
+use lovelock_studio::{
+    Access, FileKind, Place, Problem, Progress, Project, StudioError, load_project_with, project_of_take,
+};
 
 use super::args::SourceArguments;
 use super::bar::Bar;
@@ -24,6 +26,10 @@ impl Source {
     pub(super) fn open(task: &SourceArguments) -> Result<Self, StudioError> {
         let mut access = Access::new();
         let (mut project, problems) = match &task.project {
+            Some(path) if matches!(FileKind::of(path), Ok(FileKind::Take)) => {
+                access.pick(path);
+                project_of_take(path)?
+            }
             Some(path) => {
                 access.set_project(Some(path));
                 load_project_with(path, &mut access)?

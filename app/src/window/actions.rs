@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use lovelock_studio::groom::Preset;
 use lovelock_studio::{
     Access, CameraMode, CameraSection, Command, FileKind, Problem, Project, StudioError, frame_points,
-    load_project_with, recording, save_project,
+    load_project_with, project_of_take, recording, save_project,
 };
 
 use super::path_dialog::Purpose;
@@ -37,6 +37,7 @@ pub(super) fn open_for_start(path: &Path) -> Result<Opened, StudioError> {
         FileKind::Hair => opened.project.set_hair_file(path),
         FileKind::Character => opened.project.set_body_file(path),
         FileKind::Motion => opened.project.set_motion_file(path),
+        FileKind::Take => (opened.project, opened.problems) = project_of_take(path)?,
     }
     Ok(opened)
 }
@@ -55,7 +56,7 @@ impl Window {
             }
             Command::JumpToStart => self.session.worker().restart(),
             Command::JumpToEnd => {
-                let duration = self.session.scene.as_ref().map_or(0.0, |scene| scene.duration_secs());
+                let duration = self.session.frame.as_ref().map_or(0.0, |frame| frame.duration_secs);
                 self.session.worker().seek((duration - lovelock_studio::STEP_SECS).max(0.0));
             }
             Command::ToggleLoop => {
@@ -127,16 +128,31 @@ impl Window {
                 self.pending = Some(Pending::Open(path.to_owned()));
             }
             Ok(FileKind::Project) => self.open_project(path),
+            Ok(FileKind::Take) => self.open_take(path),
             Ok(kind) => {
                 self.session.pick(path);
                 self.change("file", |project| match kind {
                     FileKind::Hair => project.set_hair_file(path),
                     FileKind::Character => project.set_body_file(path),
-                    FileKind::Motion | FileKind::Project => project.set_motion_file(path),
+                    FileKind::Motion | FileKind::Project | FileKind::Take => project.set_motion_file(path),
                 });
                 // The file may have been named before without being allowed.
                 let project = self.history.project().clone();
                 self.session.reload(&project);
+            }
+            Err(error) => self.tell([error.to_string()]),
+        }
+    }
+
+    /// Plays a take, with the project that it was recorded from; one step of undo goes back to what was there.
+    pub(super) fn open_take(&mut self, path: &Path) {
+        match project_of_take(path) {
+            Ok((take, problems)) => {
+                self.session.pick(path);
+                self.change("take", |project| *project = take);
+                let project = self.history.project().clone();
+                self.session.reload(&project);
+                self.tell(problems.into_iter().map(|problem| problem.message));
             }
             Err(error) => self.tell([error.to_string()]),
         }

@@ -135,7 +135,7 @@ impl Window {
     fn timeline(&mut self, ui: &mut Ui) -> Option<timeline::Ask> {
         let view = timeline::View {
             time_secs: self.session.frame.as_ref().map_or(0.0, |frame| frame.position_secs),
-            duration_secs: self.session.scene.as_ref().map_or(0.0, |scene| scene.duration_secs()),
+            duration_secs: self.session.frame.as_ref().map_or(0.0, |frame| frame.duration_secs),
             playing: self.session.playing,
             looping: self.history.project().motion.looping,
         };

@@ -35,6 +35,8 @@ pub(crate) struct Session {
     pub(crate) passes: PassHistory,
     pub(crate) playing: bool,
     pub(crate) draw_error: Option<String>,
+    /// The take that was recorded last.
+    pub(crate) saved_take: Option<PathBuf>,
 }
 
 impl Session {
@@ -78,6 +80,7 @@ impl Session {
             passes: PassHistory::new(PLOTTED_FRAMES),
             playing: true,
             draw_error: None,
+            saved_take: None,
         })
     }
 
@@ -128,6 +131,21 @@ impl Session {
                 }
                 Event::LoadFailed { message } => said.push(message),
                 Event::EndReached => self.playing = false,
+                Event::TakeSaved { report, because } => {
+                    let why = because.map_or_else(String::new, |why| format!(", ended because {why}"));
+                    said.push(format!(
+                        "The take is in {}: {:.1} s, {} frames{why}.",
+                        report.path.display(),
+                        report.duration_secs,
+                        report.frames
+                    ));
+                    self.saved_take = Some(report.path);
+                }
+                Event::TakeFailed { message } => said.push(message),
+                Event::TakeUnreadable { message } => {
+                    self.playing = false;
+                    said.push(message);
+                }
                 Event::Panicked { thread, message } => {
                     said.push(format!(
                         "The {thread} met an error and started again; save your project. ({message})"

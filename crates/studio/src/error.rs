@@ -101,6 +101,8 @@ pub enum Place {
     Recording,
     /// What is compared.
     Compare,
+    /// The take that plays.
+    Take,
 }
 
 impl Place {
@@ -119,6 +121,7 @@ impl Place {
             Self::Picture => "picture",
             Self::Recording => "recording",
             Self::Compare => "comparison",
+            Self::Take => "take",
         }
     }
 }

@@ -17,26 +17,30 @@ mod project;
 mod session;
 mod slot;
 mod stats;
+mod take;
 
 pub use bench::{BenchReport, BenchRequest, BenchScene, SceneReport, StageReport, bench};
 pub use clock::{FrameClock, MAX_STEPS_PER_TICK, Playback, STEP_SECS, Stopwatch};
 pub use command::{COMMANDS, Command, CommandGroup, CommandInfo, Shortcut};
 pub use compare::{
-    BandingReport, CompareReport, CompareRequest, Contender, FlipError, FootprintTruth, Legend, Live,
-    LiveError, LivePane, LiveProbe, LiveRequest, LiveShows, LiveTimes, LiveView, MethodFiles, MethodReport,
-    NamedTruth, PointTruth, ProbeCurve, ProbeMark, ProbePlace, ProbeReport, ProbedHair, Reference,
-    SceneFacts, Sheet, SheetPane, StabilityReport, StageMs, Sweep, TimeSpread, TransmittanceError,
+    BandingReport, ChangeReport, CompareReport, CompareRequest, Contender, FlipError, FootprintTruth, Legend,
+    Live, LiveError, LivePane, LiveProbe, LiveRequest, LiveShows, LiveTimes, LiveView, MethodFiles,
+    MethodReport, NamedTruth, PointTruth, ProbeCurve, ProbeMark, ProbePlace, ProbeReport, ProbedHair,
+    Reference, SceneFacts, Sheet, SheetPane, StabilityReport, StageMs, Sweep, TimeSpread, TransmittanceError,
     bytes_label, compare, pane_columns,
 };
 pub use error::{Place, Problem, ProblemKind, StudioError};
-pub use headless::{Progress, RecordJob, RecordReport, RecordRequest, StageMedians, record};
+pub use headless::{
+    Progress, RecordJob, RecordReport, RecordRequest, StageMedians, TakeRecordReport, is_take, record,
+    record_take,
+};
 pub use history::{GestureId, History};
-pub use info::{Content, FileKind, Info, ProjectInfo, info};
+pub use info::{Content, FileKind, Info, ProjectInfo, TakeInfo, info};
 pub use painter::{Adapter, PaintRequest, Painted, Painter};
 pub use project::{
     Access, BodySection, BodySource, CameraMode, CameraSection, CompareSection, FileRef, HairSection,
     HairSource, MotionSection, MotionSource, PROJECT_EXTENSION, PROJECT_VERSION, Project, RecordingSection,
-    load_project, load_project_with, parse_project, save_project, write_whole,
+    TakeSection, load_project, load_project_with, parse_project, save_project, write_whole,
 };
 pub use session::{
     BodyObstacle, Engine, Event, FrameSnapshot, HeadPath, LoadControl, LoadProgress, SETTLE_SECS, Scene,
@@ -44,6 +48,7 @@ pub use session::{
 };
 pub use slot::Slot;
 pub use stats::{PassHistory, Stage, StageHistory, StageTimes, median};
+pub use take::{TakePlayer, TakeProgress, TakeRecording, project_of_take};
 
 /// Gives the threads that share parallel work their names; without it they bear that of whoever came first.
 ///

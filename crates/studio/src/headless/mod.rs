@@ -1,10 +1,12 @@
 //! Recording without a window.
 
+mod dance;
 mod drawer;
 mod job;
 mod new_folders;
 mod prepare;
 mod record;
+mod record_take;
 mod report;
 mod request;
 
@@ -13,6 +15,7 @@ pub(crate) use prepare::{load, open_renderer, simulate_to, tell};
 
 pub use job::RecordJob;
 pub use record::record;
+pub use record_take::{TakeRecordReport, is_take, record_take};
 pub use report::{RecordReport, StageMedians};
 pub use request::{Progress, RecordRequest};
 

@@ -2,16 +2,16 @@
 
 use std::ops::ControlFlow;
 use std::path::Path;
-use std::sync::Arc;
 
 use lovelock_record::{FrameRate, OutputKind, PictureSink, RecordError, SinkSettings};
 use lovelock_render::Picture;
 
+use super::dance::Dance;
 use super::drawer::Drawer;
 use super::new_folders::NewFolders;
-use super::prepare::{load, simulate_to, tell};
+use super::prepare::tell;
 use super::{Progress, RecordReport, RecordRequest};
-use crate::{Engine, FrameClock, PassHistory, Project, Scene, StageHistory, Stopwatch, StudioError};
+use crate::{PassHistory, Project, StageHistory, Stopwatch, StudioError};
 
 /// The most frames of which times are kept for the medians.
 const MOST_TIMES: usize = 1 << 20;
@@ -31,16 +31,13 @@ pub fn record(
     progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<RecordReport, StudioError> {
     let job = Job::new(project, request)?;
-    let (scene, problems) = load(&job.project, &request.access, progress)?;
+    let (mut dance, problems) = Dance::open(&job.project, &request.access, job.fps, progress)?;
     tell(progress, Progress::Loaded { problems: problems.clone() })?;
 
-    let frames = job.frames(&scene)?;
+    let frames = job.frames(&dance)?;
     // After what the request may get wrong: drivers speak on standard error while they are tried.
     let mut drawer = Drawer::open(&job.project, request)?;
-    let clock = FrameClock::new(job.fps);
-    let mut engine = Engine::with_step(Arc::clone(&scene), job.project.simulation, clock.step_secs);
-    simulate_to(&mut engine, clock.step_of_frame(frames.start), progress)?;
-    engine.clear_totals();
+    dance.begin(frames.start, progress)?;
 
     let refused = |error: RecordError| job.refused(&error);
     // Before the sink, to be dropped after it.
@@ -53,8 +50,7 @@ pub fn record(
     let mut whole = Vec::new();
     for frame in frames.clone() {
         let watch = Stopwatch::start();
-        engine.advance_to_step(clock.step_of_frame(frame));
-        let snapshot = engine.snapshot();
+        let snapshot = dance.snapshot(frame)?;
         let stats = drawer.picture(&job.project, &snapshot, [job.width, job.height], &mut picture)?;
         let encoding = Stopwatch::start();
         sink.push(&picture.rgba).map_err(refused)?;
@@ -71,7 +67,8 @@ pub fn record(
     tell(progress, Progress::Finishing)?;
     let written = sink.finish().map_err(refused)?;
 
-    let totals = engine.totals();
+    let totals = dance.totals();
+    let strands = &dance.scene().style.strands;
     Ok(RecordReport {
         out: request.out.clone(),
         frames: written.frames(),
@@ -83,8 +80,8 @@ pub fn record(
         adapter: drawer.adapter().to_owned(),
         shadow: job.project.shadow.method.to_string(),
         transparency: job.project.picture.transparency.to_string(),
-        strands: scene.style.strands.count() as u64,
-        segments: scene.style.strands.segments() as u64,
+        strands: strands.count() as u64,
+        segments: strands.segments() as u64,
         frame_ms: crate::median(whole.into_iter()),
         stage_ms: history.medians(),
         passes_ms: passes.medians().into_iter().map(|pass| (pass.name, pass.ms)).collect(),
@@ -93,9 +90,9 @@ pub fn record(
         max_stretch: totals.max_stretch,
         max_penetration_m: totals.max_penetration_m,
         recovered_guides: totals.recovered_guides,
-        state_hash: format!("{:016x}", engine.state_hash()),
+        state_hash: dance.state_hash().map_or_else(String::new, |hash| format!("{hash:016x}")),
         bytes: written.bytes(),
-        steps_per_frame: clock.steps_per_frame,
+        steps_per_frame: dance.steps_per_frame(),
         notes: problems.iter().map(ToString::to_string).collect(),
     })
 }
@@ -143,16 +140,17 @@ impl<'a> Job<'a> {
     }
 
     /// The frames to draw: as asked for, else as the project says, else the whole clip.
-    fn frames(&self, scene: &Scene) -> Result<std::ops::Range<u64>, StudioError> {
+    fn frames(&self, dance: &Dance) -> Result<std::ops::Range<u64>, StudioError> {
         let recording = &self.project.recording;
         let frames = self.request.frames.clone().unwrap_or_else(|| {
             let first = recording.first_frame;
-            first..recording.end_frame.unwrap_or_else(|| scene.frames(self.fps).max(first + 1))
+            first..recording.end_frame.unwrap_or_else(|| dance.frames().max(first + 1))
         });
         // About two weeks at 30 frames a second: a slip of the finger.
         if frames.end > 40_000_000 {
             return Err(StudioError::option(format!("frame {} is farther than any dance goes", frames.end)));
         }
+        dance.check(&frames)?;
         Ok(frames)
     }
 

@@ -54,11 +54,11 @@ pub struct RecordReport {
     pub max_penetration_m: f32,
     /// Guides that were not finite and were put back.
     pub recovered_guides: u64,
-    /// Fingerprint of the last simulated state: 16 hexadecimal digits.
+    /// Fingerprint of the last simulated state: 16 hexadecimal digits; empty where a take was drawn.
     pub state_hash: String,
     /// Bytes written.
     pub bytes: u64,
-    /// Steps of the simulation a frame.
+    /// Steps of the simulation a frame; 0 where a take was drawn.
     pub steps_per_frame: u32,
     /// What could not be loaded and other things to know, in sentences.
     pub notes: Vec<String>,

@@ -4,6 +4,8 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
+use lovelock_record::TAKE_EXTENSION;
+
 use crate::{PROJECT_EXTENSION, StudioError};
 
 /// A kind of file that is read.
@@ -17,14 +19,17 @@ pub enum FileKind {
     Motion,
     /// A project.
     Project,
+    /// A take.
+    Take,
 }
 
 /// What is read, for messages.
-const READ: &str = "hair (.hair, .tfx), characters (.glb, .gltf), motion (.bvh) and projects (.lovelock)";
+const READ: &str = "hair (.hair, .tfx), characters (.glb, .gltf), motion (.bvh), projects (.lovelock) and takes \
+                    (.take)";
 
 impl FileKind {
     /// All kinds.
-    pub const ALL: [Self; 4] = [Self::Hair, Self::Character, Self::Motion, Self::Project];
+    pub const ALL: [Self; 5] = [Self::Hair, Self::Character, Self::Motion, Self::Project, Self::Take];
 
     /// The name in sentences.
     pub fn label(self) -> &'static str {
@@ -33,6 +38,7 @@ impl FileKind {
             Self::Character => "character",
             Self::Motion => "motion",
             Self::Project => "project",
+            Self::Take => "take",
         }
     }
 
@@ -43,6 +49,7 @@ impl FileKind {
             Self::Character => &["glb", "gltf"],
             Self::Motion => &["bvh"],
             Self::Project => &[PROJECT_EXTENSION, "ron"],
+            Self::Take => &[TAKE_EXTENSION],
         }
     }
 
@@ -84,6 +91,8 @@ impl FileKind {
         match start {
             [b'H', b'A', b'I', b'R', ..] => return Some(Self::Hair),
             [b'g', b'l', b'T', b'F', ..] => return Some(Self::Character),
+            // As `record::take` begins every chunk.
+            [0x9a, b'L', b'T', b'A', b'K', b'E', ..] => return Some(Self::Take),
             _ => {}
         }
         let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start).trim_ascii_start();

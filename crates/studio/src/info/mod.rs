@@ -1,6 +1,7 @@
 //! What a file holds: `lovelock info`.
 
 mod kind;
+mod take;
 mod text;
 
 use std::collections::BTreeMap;
@@ -11,6 +12,7 @@ use lovelock_motion::{CharacterInfo, MotionInfo, load_character, load_motion};
 use serde::Serialize;
 
 pub use kind::FileKind;
+pub use take::TakeInfo;
 
 use crate::{BodySource, HairSource, MotionSource, PROJECT_VERSION, StudioError, load_project};
 
@@ -36,6 +38,8 @@ pub enum Content {
     Motion(MotionInfo),
     /// A project.
     Project(ProjectInfo),
+    /// A recorded simulation.
+    Take(TakeInfo),
 }
 
 /// A project file in words.
@@ -67,7 +71,7 @@ pub struct ProjectInfo {
     pub files: Vec<String>,
 }
 
-/// Says what a hair, character, motion or project file holds.
+/// Says what a hair, character, motion, project or take file holds.
 ///
 /// # Errors
 /// Exit status 2 with one line where the file is missing, broken, or of no kind that is read.
@@ -83,6 +87,7 @@ pub fn info(path: &Path) -> Result<Info, StudioError> {
         }
         FileKind::Motion => Content::Motion(load_motion(path).map_err(|error| refuse(&error))?.info()),
         FileKind::Project => Content::Project(project_info(path)?),
+        FileKind::Take => Content::Take(TakeInfo::of(path)?),
     };
     Ok(Info { file: path.display().to_string(), content })
 }

@@ -6,6 +6,7 @@ fn kind_of(info: &Info) -> &'static str {
         Content::Character(_) => "character",
         Content::Motion(_) => "motion",
         Content::Project(_) => "project",
+        Content::Take(_) => "take",
     }
 }
 

@@ -67,6 +67,24 @@ impl fmt::Display for Info {
                 )?;
                 remarks(f, &project.dropped, &project.notes)
             }
+            Content::Take(take) => {
+                line(f, "kind", &take.format)?;
+                line(
+                    f,
+                    "frames",
+                    format_args!("{} at {} a second, {:.2} s", take.frames, take.fps, take.duration_secs),
+                )?;
+                line(f, "guides", format_args!("{} of {} points", take.guides, take.points_per_guide))?;
+                line(f, "strands", take.strands)?;
+                if !take.clip.is_empty() {
+                    line(f, "clip", &take.clip)?;
+                }
+                line(f, "program", &take.program)?;
+                let rate = take.bytes as f64 / 1e6 / take.duration_secs.max(1e-9);
+                line(f, "size", format_args!("{} bytes, {rate:.2} MB a second", take.bytes))?;
+                line(f, "condition", &take.condition)?;
+                remarks(f, &take.dropped, &[])
+            }
         }
     }
 }

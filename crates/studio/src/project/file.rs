@@ -59,14 +59,20 @@ pub fn load_project_with(path: &Path, access: &mut Access) -> Result<(Project, V
             format!("{name}: byte {at}: found a byte that is no UTF-8, wanted a project (text)"),
         )
     })?;
-    let (mut project, mut problems) = parse_project(path, &text)?;
-    let folder = folder_of(path);
-    for file in project.file_refs_mut() {
-        *file = file.in_memory(&folder);
-    }
+    let (project, mut problems) = project_of_text(path, &text)?;
     access.set_project(Some(path));
     for (place, file) in project.files() {
         problems.extend(access.read(place, file).err());
+    }
+    Ok((project, problems))
+}
+
+/// As [`parse_project`], of a file at `path`: paths become those of files below its folder.
+pub(crate) fn project_of_text(path: &Path, text: &str) -> Result<(Project, Vec<Problem>), StudioError> {
+    let (mut project, problems) = parse_project(path, text)?;
+    let folder = folder_of(path);
+    for file in project.file_refs_mut() {
+        *file = file.in_memory(&folder);
     }
     Ok((project, problems))
 }
@@ -124,19 +130,21 @@ pub fn parse_project(path: &Path, text: &str) -> Result<(Project, Vec<Problem>),
 /// Where the folder cannot be written, the disk is full, or a path is not Unicode.
 pub fn save_project(path: &Path, project: &Project) -> Result<(), StudioError> {
     let name = path.display();
-    let fail = |what: &str, error: &dyn std::fmt::Display| {
-        StudioError::output(path, format!("{name}: could not {what}: {error}"))
-    };
+    let text = text_of_project(path, project).map_err(|error| {
+        StudioError::output(path, format!("{name}: could not be written as text: {error}"))
+    })?;
+    write_whole(path, format!("{text}\n").as_bytes())
+}
+
+/// A project as the file at `path` holds it.
+pub(crate) fn text_of_project(path: &Path, project: &Project) -> Result<String, ron::Error> {
     let folder = folder_of(path);
     let mut project = project.clone();
     project.version = PROJECT_VERSION;
     for file in project.file_refs_mut() {
         *file = file.for_disk(&folder);
     }
-    let pretty = ron::ser::PrettyConfig::new().struct_names(false).depth_limit(4);
-    let text =
-        ron::ser::to_string_pretty(&project, pretty).map_err(|error| fail("be written as text", &error))?;
-    write_whole(path, format!("{text}\n").as_bytes())
+    ron::ser::to_string_pretty(&project, ron::ser::PrettyConfig::new().struct_names(false).depth_limit(4))
 }
 
 /// Writes a file beside `path`, flushes it to the disk, then renames it: never a part of it under the final name.

@@ -17,10 +17,11 @@ use serde::{Deserialize, Serialize};
 pub use file::{
     PROJECT_EXTENSION, load_project, load_project_with, parse_project, save_project, write_whole,
 };
+pub(crate) use file::{project_of_text, text_of_project};
 pub use path::{Access, FileRef};
 pub use sections::{
     BodySection, BodySource, CameraMode, CameraSection, CompareSection, HairSection, HairSource,
-    MotionSection, MotionSource, RecordingSection,
+    MotionSection, MotionSource, RecordingSection, TakeSection,
 };
 
 use lovelock_groom::{GroomSettings, HairLook, Preset};
@@ -56,6 +57,8 @@ pub struct Project {
     pub recording: RecordingSection,
     /// What is compared beside each other.
     pub compare: CompareSection,
+    /// A recorded simulation that plays.
+    pub take: TakeSection,
 }
 
 impl Default for Project {
@@ -73,6 +76,7 @@ impl Default for Project {
             picture: PictureSettings::default(),
             recording: RecordingSection::default(),
             compare: CompareSection::default(),
+            take: TakeSection::default(),
         }
     }
 }
@@ -108,12 +112,22 @@ impl Project {
         self.motion.file = Some(FileRef::new(path));
     }
 
+    /// Plays a take, which the user picked.
+    pub fn set_take(&mut self, path: impl Into<std::path::PathBuf>) {
+        self.take.file = Some(FileRef::new(path));
+    }
+
     /// Every file that the project names and uses, with the part that uses it.
     pub fn files(&self) -> Vec<(crate::Place, &FileRef)> {
         let body = (self.body.source == BodySource::File).then_some(self.body.file.as_ref()).flatten();
         let motion =
             (self.motion.source == MotionSource::File).then_some(self.motion.file.as_ref()).flatten();
         let hair = (self.hair.source == HairSource::File).then_some(self.hair.file.as_ref()).flatten();
+        let take = self.take.file.as_ref();
+        if take.is_some() {
+            // It says by itself which files it was made from.
+            return take.into_iter().map(|file| (crate::Place::Take, file)).collect();
+        }
         [(crate::Place::Body, body), (crate::Place::Motion, motion), (crate::Place::Hair, hair)]
             .into_iter()
             .filter_map(|(place, file)| Some((place, file?)))
@@ -122,7 +136,8 @@ impl Project {
 
     /// Every file that the project names, used or not.
     pub(crate) fn file_refs_mut(&mut self) -> impl Iterator<Item = &mut FileRef> {
-        [&mut self.body.file, &mut self.motion.file, &mut self.hair.file, &mut self.recording.output]
+        let Self { body, motion, hair, recording, take, .. } = self;
+        [&mut body.file, &mut motion.file, &mut hair.file, &mut recording.output, &mut take.file]
             .into_iter()
             .flatten()
     }

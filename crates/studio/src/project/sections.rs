@@ -200,6 +200,14 @@ impl Default for RecordingSection {
     }
 }
 
+/// A recorded simulation that plays in place of one that runs.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct TakeSection {
+    /// The take; where there is one, body, motion, hairstyle and their movement are as they were recorded.
+    pub file: Option<FileRef>,
+}
+
 /// What is compared beside each other.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]

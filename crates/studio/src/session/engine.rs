@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::Affine3A;
 use lovelock_groom::GuideFrame;
 use lovelock_motion::{PlacedCollider, Pose, Skin, place_colliders, pose_at, skin};
+use lovelock_record::TakeFrame;
 use lovelock_wisp::{Simulation, SimulationSettings, StepInput, StepReport};
 
 use super::snapshot::SnapshotPool;
@@ -101,6 +102,11 @@ impl Engine {
     /// The scene.
     pub fn scene(&self) -> &Arc<Scene> {
         &self.scene
+    }
+
+    /// Length of a step, seconds.
+    pub fn step_secs(&self) -> f64 {
+        self.step_secs
     }
 
     /// Time of the scene, seconds; goes on rising where the clip loops.
@@ -244,6 +250,14 @@ impl Engine {
         self.seek(time_secs);
     }
 
+    /// The instant as a take holds it.
+    pub fn take_frame(&self, out: &mut TakeFrame) {
+        self.simulation.frame(&mut out.guides);
+        out.guides.time_secs = self.time_secs();
+        out.clip_secs = self.scene.clip_secs(self.time_secs());
+        (out.wall_frame, out.substeps, out.jumped) = (self.taken, self.report.substeps, self.report.jumped);
+    }
+
     /// The instant as it is, for drawing. Resets the times that it carries.
     pub fn snapshot(&mut self) -> Arc<FrameSnapshot> {
         let watch = Stopwatch::start();
@@ -255,6 +269,7 @@ impl Engine {
             step,
             time_secs,
             position_secs: 0.0,
+            duration_secs: 0.0,
             pose: Pose::default(),
             skin: Skin::default(),
             guides: GuideFrame {
@@ -272,6 +287,7 @@ impl Engine {
             }
             (frame.step, frame.time_secs, frame.position_secs) =
                 (step, time_secs, scene.position_secs(time_secs));
+            frame.duration_secs = scene.duration_secs();
             frame.pose.clone_from(pose);
             skin(&scene.body, pose, &mut frame.skin);
             simulation.frame(&mut frame.guides);

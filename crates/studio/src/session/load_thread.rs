@@ -7,7 +7,24 @@ use std::thread::JoinHandle;
 
 use super::worker::Outbox;
 use super::{Event, LoadControl, Scene, SceneLoader};
-use crate::{Access, Problem, Project, StudioError};
+use crate::{Access, Place, Problem, Project, StudioError, TakePlayer};
+
+/// What a load has made.
+pub(super) enum Loaded {
+    /// A scene to simulate, and the project that it was made of.
+    Scene(Arc<Scene>, Arc<Project>),
+    /// A take to play.
+    Take(Box<TakePlayer>),
+}
+
+impl Loaded {
+    fn scene(&self) -> &Arc<Scene> {
+        match self {
+            Self::Scene(scene, _) => scene,
+            Self::Take(player) => player.scene(),
+        }
+    }
+}
 
 /// How far a load is.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,10 +60,10 @@ struct Inside {
 }
 
 impl LoadThread {
-    /// Starts the thread; `deliver` is called on it with every scene.
+    /// Starts the thread; `deliver` is called on it with every scene and take.
     pub(super) fn start(
         outbox: Outbox,
-        deliver: impl Fn(Arc<Scene>) + Send + 'static,
+        deliver: impl Fn(Loaded) + Send + 'static,
     ) -> Result<Self, StudioError> {
         let desk = Arc::<(Mutex<Desk>, Condvar)>::default();
         let cancelled = Arc::new(AtomicBool::new(false));
@@ -100,14 +117,15 @@ impl Drop for LoadThread {
 }
 
 impl Inside {
-    fn run(&self, deliver: &dyn Fn(Arc<Scene>)) {
+    fn run(&self, deliver: &dyn Fn(Loaded)) {
         let mut loader = SceneLoader::new();
         while let Some((project, access)) = self.next() {
             let loaded = catch_unwind(AssertUnwindSafe(|| self.load(&mut loader, &project, &access)));
             self.show(None);
             match loaded {
-                Ok(Ok((scene, problems))) => {
-                    deliver(Arc::clone(&scene));
+                Ok(Ok((loaded, problems))) => {
+                    let scene = Arc::clone(loaded.scene());
+                    deliver(loaded);
                     self.outbox.send(Event::Loaded { scene, problems });
                 }
                 Ok(Err(StudioError::Cancelled)) => self.outbox.send(Event::LoadCancelled),
@@ -141,17 +159,30 @@ impl Inside {
     fn load(
         &self,
         loader: &mut SceneLoader,
-        project: &Project,
+        project: &Arc<Project>,
         access: &Access,
-    ) -> Result<(Arc<Scene>, Vec<Problem>), StudioError> {
+    ) -> Result<(Loaded, Vec<Problem>), StudioError> {
         let mut progress =
             |what: &str, fraction: f32| self.show(Some(LoadProgress { what: what.to_owned(), fraction }));
-        let loaded = loader.load(
+        let mut untaken = None;
+        if let Some(file) = &project.take.file {
+            progress("opening the take", 0.0);
+            match access.read(Place::Take, file).map(|path| TakePlayer::open(&path, access)) {
+                Ok(Ok((player, problems))) => return Ok((Loaded::Take(Box::new(player)), problems)),
+                Ok(Err(error)) => untaken = Some(Problem::not_loaded(Place::Take, error)),
+                Err(problem) => untaken = Some(problem),
+            }
+        }
+        let (scene, mut problems) = loader.load(
             project,
             access,
             &mut LoadControl { cancelled: &self.cancelled, progress: &mut progress },
         )?;
-        if self.cancelled.load(Ordering::Relaxed) { Err(StudioError::Cancelled) } else { Ok(loaded) }
+        problems.extend(untaken.map(|problem| problem.but("the project is simulated instead")));
+        if self.cancelled.load(Ordering::Relaxed) {
+            return Err(StudioError::Cancelled);
+        }
+        Ok((Loaded::Scene(scene, Arc::clone(project)), problems))
     }
 
     fn show(&self, progress: Option<LoadProgress>) {

@@ -223,7 +223,7 @@ impl SceneLoader {
 
 impl Problem {
     /// The problem with what was done about it.
-    fn but(mut self, instead: &str) -> Self {
+    pub(super) fn but(mut self, instead: &str) -> Self {
         if matches!(self.kind, ProblemKind::NotLoaded | ProblemKind::NeedsPermission(_))
             && self.place != Place::Project
         {

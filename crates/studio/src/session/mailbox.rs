@@ -3,23 +3,35 @@
 //! It holds at most one wish of each kind, so it can neither overflow nor make anybody wait, however fast a
 //! slider is dragged.
 
+use std::path::PathBuf;
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::Duration;
 
-use super::Scene;
+use super::load_thread::Loaded;
 use crate::{Access, Project};
 
+/// What to do with the recording of a take.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) enum TakeWish {
+    /// Begin one.
+    Start(PathBuf),
+    /// Make it whole.
+    Finish,
+}
+
 /// Everything that is asked for and not yet done.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub(super) struct Wishes {
     /// The project as it is now, and what it may reach.
     pub(super) project: Option<(Arc<Project>, Access)>,
-    /// A scene that the loader has made.
-    pub(super) scene: Option<Arc<Scene>>,
+    /// What the loader has made.
+    pub(super) loaded: Option<Loaded>,
     /// Whether time passes.
     pub(super) playing: Option<bool>,
     /// Seconds of the scene a second.
     pub(super) rate: Option<f64>,
+    /// Whether a take plays from its end to its start.
+    pub(super) backwards: Option<bool>,
     /// A time to go to.
     pub(super) seek_secs: Option<f64>,
     /// Steps to go on (positive) or back, after `seek_secs`.
@@ -28,27 +40,32 @@ pub(super) struct Wishes {
     pub(super) restart: bool,
     /// The hair settled where it is.
     pub(super) settle: bool,
+    /// A take is to be recorded, or enough of it is.
+    pub(super) take: Option<TakeWish>,
     /// The thread shall end.
     pub(super) stop: bool,
 }
 
 impl Wishes {
     fn is_empty(&self) -> bool {
-        let Self { project, scene, playing, rate, seek_secs, steps, restart, settle, stop } = self;
+        let Self { project, loaded, playing, rate, backwards, seek_secs, steps, restart, settle, take, stop } =
+            self;
         project.is_none()
-            && scene.is_none()
+            && loaded.is_none()
             && playing.is_none()
             && rate.is_none()
+            && backwards.is_none()
             && seek_secs.is_none()
             && *steps == 0
             && !restart
             && !settle
+            && take.is_none()
             && !stop
     }
 }
 
 /// The box, shared by both threads.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Default)]
 pub(super) struct Mailbox {
     shared: Arc<(Mutex<Wishes>, Condvar)>,
 }

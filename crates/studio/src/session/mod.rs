@@ -4,6 +4,7 @@ mod camera;
 mod dancer;
 mod engine;
 mod head_path;
+mod inside;
 mod load_thread;
 mod loader;
 mod mailbox;
@@ -20,6 +21,7 @@ pub use load_thread::LoadProgress;
 pub use loader::{LoadControl, SceneLoader};
 pub use scene::{BodyObstacle, Scene};
 pub use snapshot::FrameSnapshot;
+pub(crate) use snapshot::SnapshotPool;
 pub use worker::{Event, Wake, Worker};
 
 #[cfg(test)]

@@ -19,8 +19,10 @@ pub struct FrameSnapshot {
     pub step: u64,
     /// Time of the scene, seconds; goes on rising where the clip loops.
     pub time_secs: f64,
-    /// Where the timeline stands, seconds from the clip's start.
+    /// Where the timeline stands, seconds from the start of the clip, or of the take that plays.
     pub position_secs: f64,
+    /// Length of the timeline, seconds; 0 where the body rests.
+    pub duration_secs: f64,
     /// Where the joints are.
     pub pose: Pose,
     /// The surface of the body.
@@ -65,7 +67,7 @@ impl FrameSnapshot {
 
 /// Snapshots that nobody looks at any more, so that frames do not allocate.
 #[derive(Debug, Default)]
-pub(super) struct SnapshotPool {
+pub(crate) struct SnapshotPool {
     given_out: Vec<Arc<FrameSnapshot>>,
 }
 
@@ -74,7 +76,7 @@ impl SnapshotPool {
     const MOST: usize = 6;
 
     /// Fills a snapshot that is free, or a new one, and hands it out.
-    pub(super) fn make(
+    pub(crate) fn make(
         &mut self,
         new: impl FnOnce() -> FrameSnapshot,
         fill: impl FnOnce(&mut FrameSnapshot),

@@ -1,25 +1,21 @@
 //! The simulation on its own thread, in real time.
 
 use std::any::Any;
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
-use lovelock_wisp::SimulationSettings;
+use lovelock_record::TakeReport;
 
+use super::inside::Inside;
 use super::load_thread::LoadThread;
-use super::mailbox::{Mailbox, Wishes};
-use super::{Engine, FrameSnapshot, LoadProgress, Scene};
-use crate::{
-    Access, BodySection, HairSection, MotionSection, Playback, Problem, Project, Slot, Stopwatch, StudioError,
-};
+use super::mailbox::{Mailbox, TakeWish};
+use super::{FrameSnapshot, LoadProgress, Scene};
+use crate::{Access, Problem, Project, Slot, StudioError, TakeProgress};
 
 /// Events that may wait for the interface; more are dropped, and logged.
 const MOST_EVENTS: usize = 256;
-
-/// Panics in a row after which the simulation rests until something changes.
-const MOST_PANICS: u32 = 3;
 
 /// Called, from any thread, when there is something new to show: the window repaints.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
@@ -43,6 +39,23 @@ pub enum Event {
     },
     /// A motion that does not loop came to its end, and playing has paused.
     EndReached,
+    /// A take is whole and has its name.
+    TakeSaved {
+        /// What was recorded.
+        report: TakeReport,
+        /// Why it ended by itself, where it did.
+        because: Option<String>,
+    },
+    /// A take could not be recorded; what is kept of it, the message says.
+    TakeFailed {
+        /// Why.
+        message: String,
+    },
+    /// The take that plays has a place that cannot be read; the instant before it stays.
+    TakeUnreadable {
+        /// Why.
+        message: String,
+    },
     /// A thread met a defect of the program and caught itself. The scene goes on; save the project.
     Panicked {
         /// Which thread.
@@ -82,22 +95,6 @@ impl Outbox {
     }
 }
 
-/// What a scene is made from: other sections of a project need no load.
-#[derive(Clone, Debug, PartialEq)]
-struct SceneInputs {
-    body: BodySection,
-    motion: MotionSection,
-    hair: HairSection,
-    access: Access,
-}
-
-impl SceneInputs {
-    fn of(project: &Project, access: &Access) -> Self {
-        let Project { body, motion, hair, .. } = project.clone();
-        Self { body, motion, hair, access: access.clone() }
-    }
-}
-
 /// The simulation thread and the loader thread. Dropping it ends both.
 ///
 /// No call waits: wishes are left in a box where later ones replace earlier ones, and the newest frame lies in a
@@ -107,6 +104,7 @@ pub struct Worker {
     frames: Slot<FrameSnapshot>,
     events: Mutex<Receiver<Event>>,
     loader: Arc<LoadThread>,
+    recorded: Arc<Mutex<Option<TakeProgress>>>,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -121,26 +119,18 @@ impl Worker {
         let mailbox = Mailbox::default();
         let frames = Slot::default();
         let to_simulation = mailbox.clone();
-        let loader = Arc::new(LoadThread::start(outbox.clone(), move |scene| {
-            to_simulation.ask(|wishes| wishes.scene = Some(scene));
+        let loader = Arc::new(LoadThread::start(outbox.clone(), move |loaded| {
+            to_simulation.ask(|wishes| wishes.loaded = Some(loaded));
         })?);
         mailbox.ask(|wishes| wishes.project = Some((project, access)));
-        let inside = Inside {
-            mailbox: mailbox.clone(),
-            frames: frames.clone(),
-            loader: Arc::clone(&loader),
-            outbox,
-            engine: None,
-            settings: SimulationSettings::default(),
-            inputs: None,
-            playback: Playback::default(),
-            panics: 0,
-        };
+        let recorded = Arc::default();
+        let inside =
+            Inside::new(mailbox.clone(), frames.clone(), Arc::clone(&loader), outbox, Arc::clone(&recorded));
         let thread = std::thread::Builder::new()
             .name("lovelock simulation".to_owned())
             .spawn(move || inside.run())
             .map_err(|error| StudioError::work(format!("the simulation thread could not start: {error}")))?;
-        Ok(Self { mailbox, frames, events: Mutex::new(events), loader, thread: Some(thread) })
+        Ok(Self { mailbox, frames, events: Mutex::new(events), loader, recorded, thread: Some(thread) })
     }
 
     /// The project has changed. What needs loading is loaded aside; the old scene dances on meanwhile.
@@ -156,6 +146,27 @@ impl Worker {
     /// Seconds of the scene a second, 0.05 to 2: slow motion.
     pub fn set_rate(&self, rate: f64) {
         self.mailbox.ask(|wishes| wishes.rate = Some(rate));
+    }
+
+    /// Whether a take plays from its end to its start; a simulation only goes on.
+    pub fn set_backwards(&self, backwards: bool) {
+        self.mailbox.ask(|wishes| wishes.backwards = Some(backwards));
+    }
+
+    /// Records every step from now on as a take, until [`Worker::finish_take`]. A disk that fails comes as an event.
+    pub fn record_take(&self, path: impl Into<PathBuf>) {
+        let path = path.into();
+        self.mailbox.ask(|wishes| wishes.take = Some(TakeWish::Start(path)));
+    }
+
+    /// Makes the take that is recorded whole.
+    pub fn finish_take(&self) {
+        self.mailbox.ask(|wishes| wishes.take = Some(TakeWish::Finish));
+    }
+
+    /// How far the take is that is recorded; none where none is.
+    pub fn take_progress(&self) -> Option<TakeProgress> {
+        self.recorded.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
     /// Goes to a time, seconds; the hair moves along.
@@ -192,7 +203,8 @@ impl Worker {
     /// Dances a scene that no loader has made.
     #[cfg(test)]
     pub(super) fn put_scene(&self, scene: Arc<Scene>) {
-        self.mailbox.ask(|wishes| wishes.scene = Some(scene));
+        let project = Arc::new(Project::default());
+        self.mailbox.ask(|wishes| wishes.loaded = Some(super::load_thread::Loaded::Scene(scene, project)));
     }
 
     /// How far a load is; none where nothing is loaded.
@@ -221,134 +233,6 @@ impl Drop for Worker {
         self.mailbox.ask(|wishes| wishes.stop = true);
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
-        }
-    }
-}
-
-/// The simulation thread's own state.
-struct Inside {
-    mailbox: Mailbox,
-    frames: Slot<FrameSnapshot>,
-    loader: Arc<LoadThread>,
-    outbox: Outbox,
-    engine: Option<Engine>,
-    settings: SimulationSettings,
-    inputs: Option<SceneInputs>,
-    playback: Playback,
-    panics: u32,
-}
-
-impl Inside {
-    fn run(mut self) {
-        // Threads of its own: a step takes a millisecond, and would wait for the tiles of a picture in the common ones.
-        let threads = rayon::ThreadPoolBuilder::new().thread_name(|i| format!("simulate {i}")).build().ok();
-        let mut watch = Stopwatch::start();
-        loop {
-            let timeout = if self.engine.is_some() { self.playback.until_next_step() } else { None };
-            let wishes = self.mailbox.take(timeout);
-            if wishes.stop {
-                return;
-            }
-            let elapsed_secs = watch.secs();
-            watch = Stopwatch::start();
-            let done = catch_unwind(AssertUnwindSafe(|| match &threads {
-                Some(threads) => threads.install(|| self.turn(wishes, elapsed_secs)),
-                None => self.turn(wishes, elapsed_secs),
-            }));
-            match done {
-                Ok(()) => self.panics = 0,
-                Err(panic) => self.recover(&*panic),
-            }
-        }
-    }
-
-    /// Does what is asked for and what time asks for, and shows the result.
-    fn turn(&mut self, wishes: Wishes, elapsed_secs: f64) {
-        let mut changed = self.obey(wishes);
-        let due = self.playback.advance(elapsed_secs);
-        let Some(engine) = &mut self.engine else { return };
-        for _ in 0..due {
-            if engine.is_at_end() {
-                self.playback.set_playing(false);
-                self.outbox.send(Event::EndReached);
-                break;
-            }
-            engine.step();
-            changed = true;
-        }
-        if changed {
-            self.frames.put(engine.snapshot());
-            self.outbox.wake();
-        }
-    }
-
-    /// Does what is asked for; returns whether the frame may have changed.
-    fn obey(&mut self, wishes: Wishes) -> bool {
-        let Wishes { project, scene, playing, rate, seek_secs, steps, restart, settle, stop: _ } = wishes;
-        let mut changed = false;
-        if let Some((project, access)) = project {
-            self.settings = project.simulation;
-            if let Some(engine) = &mut self.engine {
-                engine.set_settings(&self.settings);
-            }
-            let inputs = SceneInputs::of(&project, &access);
-            if self.inputs.as_ref() != Some(&inputs) {
-                self.inputs = Some(inputs);
-                self.loader.request(project, access);
-            }
-        }
-        if let Some(scene) = scene {
-            match &mut self.engine {
-                Some(engine) => engine.set_scene(scene),
-                None => self.engine = Some(Engine::new(scene, self.settings)),
-            }
-            changed = true;
-        }
-        if let Some(rate) = rate {
-            self.playback.set_rate(rate);
-        }
-        let Some(engine) = &mut self.engine else {
-            if let Some(playing) = playing {
-                self.playback.set_playing(playing);
-            }
-            return changed;
-        };
-        if let Some(playing) = playing {
-            if playing && engine.is_at_end() {
-                engine.restart();
-            }
-            self.playback.set_playing(playing);
-        }
-        if restart {
-            engine.restart();
-            changed = true;
-        }
-        if let Some(time_secs) = seek_secs {
-            engine.seek(time_secs);
-            changed = true;
-        }
-        if steps > 0 {
-            (0..steps).for_each(|_| engine.step());
-        } else if steps < 0 {
-            engine.step_back(steps.unsigned_abs());
-        }
-        if settle {
-            engine.settle();
-        }
-        changed || settle || steps != 0
-    }
-
-    /// After a panic the engine may be half way through a step: it starts again, in the same scene.
-    fn recover(&mut self, panic: &(dyn Any + Send)) {
-        self.outbox.panicked("simulation", panic);
-        self.panics += 1;
-        let scene = self.engine.take().map(|engine| Arc::clone(engine.scene()));
-        if let (Some(scene), true) = (scene, self.panics < MOST_PANICS) {
-            self.engine = catch_unwind(AssertUnwindSafe(|| Engine::new(scene, self.settings))).ok();
-        }
-        if self.engine.is_none() {
-            // The same project may be asked for again.
-            self.inputs = None;
         }
     }
 }

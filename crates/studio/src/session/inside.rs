@@ -1,0 +1,383 @@
+//! The simulation thread's own state: an engine or a take, and what is asked of it.
+
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use lovelock_wisp::SimulationSettings;
+
+use super::load_thread::{LoadThread, Loaded};
+use super::mailbox::{Mailbox, TakeWish, Wishes};
+use super::worker::{Event, Outbox};
+use super::{Engine, FrameSnapshot, Scene};
+use crate::take::TakeTransport;
+use crate::{
+    Access, BodySection, FileRef, HairSection, MotionSection, Playback, Project, Slot, Stopwatch,
+    TakeProgress, TakeRecording,
+};
+
+/// Panics in a row after which the simulation rests until something changes.
+const MOST_PANICS: u32 = 3;
+
+/// What a scene is made from: other sections of a project need no load.
+#[derive(Clone, Debug, PartialEq)]
+enum SceneInputs {
+    Simulated { body: BodySection, motion: MotionSection, hair: HairSection, access: Access },
+    Take { file: FileRef, access: Access },
+}
+
+impl SceneInputs {
+    fn of(project: &Project, access: &Access) -> Self {
+        let Project { body, motion, hair, take, .. } = project.clone();
+        let access = access.clone();
+        match take.file {
+            Some(file) => Self::Take { file, access },
+            None => Self::Simulated { body, motion, hair, access },
+        }
+    }
+}
+
+/// The simulation thread's own state.
+pub(super) struct Inside {
+    mailbox: Mailbox,
+    frames: Slot<FrameSnapshot>,
+    loader: Arc<LoadThread>,
+    outbox: Outbox,
+    recorded: Arc<Mutex<Option<TakeProgress>>>,
+    engine: Option<Engine>,
+    /// The take that plays in place of the engine.
+    take: Option<TakeTransport>,
+    recording: Option<TakeRecording>,
+    project: Option<Arc<Project>>,
+    /// What the engine's scene was made of: what is loaded comes later than what is asked for.
+    scene_of: Option<Arc<Project>>,
+    settings: SimulationSettings,
+    inputs: Option<SceneInputs>,
+    playback: Playback,
+    backwards: bool,
+    panics: u32,
+}
+
+impl Inside {
+    pub(super) fn new(
+        mailbox: Mailbox,
+        frames: Slot<FrameSnapshot>,
+        loader: Arc<LoadThread>,
+        outbox: Outbox,
+        recorded: Arc<Mutex<Option<TakeProgress>>>,
+    ) -> Self {
+        Self {
+            mailbox,
+            frames,
+            loader,
+            outbox,
+            recorded,
+            engine: None,
+            take: None,
+            recording: None,
+            project: None,
+            scene_of: None,
+            settings: SimulationSettings::default(),
+            inputs: None,
+            playback: Playback::default(),
+            backwards: false,
+            panics: 0,
+        }
+    }
+
+    pub(super) fn run(mut self) {
+        // Threads of its own: a step takes a millisecond, and would wait for the tiles of a picture in the common ones.
+        let threads = rayon::ThreadPoolBuilder::new().thread_name(|i| format!("simulate {i}")).build().ok();
+        let mut watch = Stopwatch::start();
+        loop {
+            let moves = self.engine.is_some() || self.take.is_some();
+            let timeout = if moves { self.playback.until_next_step() } else { None };
+            let wishes = self.mailbox.take(timeout);
+            if wishes.stop {
+                // What was recorded is not to be lost because the window closes.
+                self.end_take(None);
+                return;
+            }
+            let elapsed_secs = watch.secs();
+            watch = Stopwatch::start();
+            let done = catch_unwind(AssertUnwindSafe(|| match &threads {
+                Some(threads) => threads.install(|| self.turn(wishes, elapsed_secs)),
+                None => self.turn(wishes, elapsed_secs),
+            }));
+            match done {
+                Ok(()) => self.panics = 0,
+                Err(panic) => self.recover(&*panic),
+            }
+        }
+    }
+
+    /// Does what is asked for and what time asks for, and shows the result.
+    fn turn(&mut self, wishes: Wishes, elapsed_secs: f64) {
+        let changed = self.obey(wishes);
+        if self.take.is_some() {
+            self.play(changed, elapsed_secs);
+        } else {
+            self.simulate(changed, elapsed_secs);
+        }
+    }
+
+    fn simulate(&mut self, mut changed: bool, elapsed_secs: f64) {
+        let due = self.playback.advance(elapsed_secs);
+        for _ in 0..due {
+            let Some(engine) = &mut self.engine else { return };
+            if engine.is_at_end() {
+                self.playback.set_playing(false);
+                self.outbox.send(Event::EndReached);
+                break;
+            }
+            engine.step();
+            self.record_step();
+            changed = true;
+        }
+        let Some(engine) = &mut self.engine else { return };
+        if changed {
+            self.frames.put(engine.snapshot());
+            self.outbox.wake();
+        }
+    }
+
+    /// A take goes on by the time that has passed, not by whole frames: it is smooth at any rate.
+    fn play(&mut self, mut changed: bool, elapsed_secs: f64) {
+        let Some(take) = &mut self.take else { return };
+        if self.playback.is_playing() && elapsed_secs.is_finite() {
+            let direction = if self.backwards { -1.0 } else { 1.0 };
+            let ended = take.advance(elapsed_secs.clamp(0.0, 0.25) * self.playback.rate() * direction);
+            changed = true;
+            if ended {
+                self.playback.set_playing(false);
+                self.outbox.send(Event::EndReached);
+            }
+        }
+        if changed {
+            match take.snapshot() {
+                Ok(snapshot) => {
+                    self.frames.put(snapshot);
+                    self.outbox.wake();
+                }
+                Err(error) => {
+                    // Once, and not for every frame of a damaged second.
+                    self.playback.set_playing(false);
+                    self.outbox.send(Event::TakeUnreadable { message: error.to_string() });
+                }
+            }
+        }
+    }
+
+    /// Does what is asked for; returns whether the frame may have changed.
+    fn obey(&mut self, wishes: Wishes) -> bool {
+        let Wishes {
+            project,
+            loaded,
+            playing,
+            rate,
+            backwards,
+            seek_secs,
+            steps,
+            restart,
+            settle,
+            take,
+            stop: _,
+        } = wishes;
+        if let Some((project, access)) = project {
+            self.set_project(project, access);
+        }
+        let mut changed = loaded.is_some();
+        if let Some(loaded) = loaded {
+            self.set_loaded(loaded);
+        }
+        if let Some(rate) = rate {
+            self.playback.set_rate(rate);
+        }
+        if let Some(backwards) = backwards {
+            self.backwards = backwards;
+        }
+        if let Some(playing) = playing {
+            if playing {
+                self.leave_the_end();
+            }
+            self.playback.set_playing(playing);
+        }
+        changed |= match (&mut self.take, &mut self.engine) {
+            (Some(take), _) => {
+                if restart {
+                    take.restart(false);
+                }
+                if let Some(secs) = seek_secs {
+                    take.seek(secs);
+                }
+                take.step(steps);
+                restart || seek_secs.is_some() || steps != 0
+            }
+            (None, Some(engine)) => {
+                if restart {
+                    engine.restart();
+                }
+                if let Some(secs) = seek_secs {
+                    engine.seek(secs);
+                }
+                if steps < 0 {
+                    engine.step_back(steps.unsigned_abs());
+                }
+                if settle {
+                    engine.settle();
+                }
+                restart || seek_secs.is_some() || settle || steps != 0
+            }
+            (None, None) => false,
+        };
+        if self.take.is_none() {
+            for _ in 0..steps {
+                if let Some(engine) = &mut self.engine {
+                    engine.step();
+                    self.record_step();
+                }
+            }
+        }
+        match take {
+            Some(TakeWish::Start(path)) => self.start_take(&path),
+            Some(TakeWish::Finish) => self.end_take(None),
+            None => {}
+        }
+        changed
+    }
+
+    fn set_project(&mut self, project: Arc<Project>, access: Access) {
+        self.settings = project.simulation;
+        if let Some(engine) = &mut self.engine {
+            engine.set_settings(&self.settings);
+        }
+        if let Some(take) = &mut self.take {
+            take.set_looping(project.motion.looping);
+        }
+        self.project = Some(Arc::clone(&project));
+        self.record_change();
+        let inputs = SceneInputs::of(&project, &access);
+        if self.inputs.as_ref() != Some(&inputs) {
+            self.inputs = Some(inputs);
+            self.loader.request(project, access);
+        }
+    }
+
+    fn set_loaded(&mut self, loaded: Loaded) {
+        match loaded {
+            Loaded::Take(player) => {
+                self.end_take(Some("another take was opened"));
+                let mut take = TakeTransport::new(*player);
+                if let Some(project) = &self.project {
+                    take.set_looping(project.motion.looping);
+                }
+                self.take = Some(take);
+            }
+            Loaded::Scene(scene, project) => {
+                self.take = None;
+                self.backwards = false;
+                if self.recording.as_ref().is_some_and(|recording| !recording.holds(&scene)) {
+                    self.end_take(Some("the hair has other guides now"));
+                }
+                self.set_scene(scene);
+                self.scene_of = Some(project);
+                self.record_change();
+            }
+        }
+    }
+
+    fn set_scene(&mut self, scene: Arc<Scene>) {
+        match &mut self.engine {
+            Some(engine) => engine.set_scene(scene),
+            None => self.engine = Some(Engine::new(scene, self.settings)),
+        }
+    }
+
+    /// Before playing: from an end at which nothing can follow, to the other one.
+    fn leave_the_end(&mut self) {
+        if let Some(take) = &mut self.take {
+            if take.is_at_end(self.backwards) {
+                take.restart(self.backwards);
+            }
+        } else if let Some(engine) = &mut self.engine
+            && engine.is_at_end()
+        {
+            engine.restart();
+        }
+    }
+
+    fn start_take(&mut self, path: &std::path::Path) {
+        if self.take.is_some() {
+            let message = format!("{}: a take plays; leave it to record another", path.display());
+            return self.outbox.send(Event::TakeFailed { message });
+        }
+        self.end_take(None);
+        let (Some(engine), Some(project)) = (&self.engine, self.recorded_project()) else {
+            let message = format!("{}: there is nothing to record yet", path.display());
+            return self.outbox.send(Event::TakeFailed { message });
+        };
+        match TakeRecording::start(path, &project, engine) {
+            Ok(recording) => self.recording = Some(recording),
+            Err(error) => self.outbox.send(Event::TakeFailed { message: error.to_string() }),
+        }
+        self.tell_progress();
+    }
+
+    /// Makes the take whole that is recorded, if one is.
+    fn end_take(&mut self, because: Option<&str>) {
+        let Some(recording) = self.recording.take() else { return };
+        match recording.finish() {
+            Ok(report) => self.outbox.send(Event::TakeSaved { report, because: because.map(str::to_owned) }),
+            Err(error) => self.outbox.send(Event::TakeFailed { message: error.to_string() }),
+        }
+        self.tell_progress();
+    }
+
+    fn record_step(&mut self) {
+        let (Some(recording), Some(engine)) = (&mut self.recording, &self.engine) else { return };
+        if let Err(error) = recording.push(engine) {
+            self.recording = None;
+            self.outbox.send(Event::TakeFailed { message: error.to_string() });
+        }
+        self.tell_progress();
+    }
+
+    fn record_change(&mut self) {
+        let project = self.recorded_project();
+        let (Some(recording), Some(project)) = (&mut self.recording, project) else { return };
+        if let Err(error) = recording.change(&project) {
+            self.outbox.send(Event::TakeFailed { message: error.to_string() });
+        }
+    }
+
+    /// The project as it is seen: the scene is still that of the last load.
+    fn recorded_project(&self) -> Option<Arc<Project>> {
+        let project = self.project.as_ref()?;
+        let Some(of) = &self.scene_of else { return Some(Arc::clone(project)) };
+        if (&of.body, &of.motion, &of.hair) == (&project.body, &project.motion, &project.hair) {
+            return Some(Arc::clone(project));
+        }
+        let Project { body, motion, hair, .. } = Project::clone(of);
+        Some(Arc::new(Project { body, motion, hair, ..Project::clone(project) }))
+    }
+
+    fn tell_progress(&self) {
+        let progress = self.recording.as_ref().map(TakeRecording::progress);
+        *self.recorded.lock().unwrap_or_else(PoisonError::into_inner) = progress;
+    }
+
+    /// After a panic the engine may be half way through a step: it starts again, in the same scene.
+    fn recover(&mut self, panic: &(dyn Any + Send)) {
+        self.outbox.panicked("simulation", panic);
+        self.panics += 1;
+        self.take = None;
+        let scene = self.engine.take().map(|engine| Arc::clone(engine.scene()));
+        if let (Some(scene), true) = (scene, self.panics < MOST_PANICS) {
+            self.engine = catch_unwind(AssertUnwindSafe(|| Engine::new(scene, self.settings))).ok();
+        }
+        if self.engine.is_none() {
+            // The same project may be asked for again.
+            self.inputs = None;
+        }
+    }
+}

@@ -1,0 +1,55 @@
+//! Takes: the simulation recorded once, and played as often as wanted.
+//!
+//! [`TakeRecording`] writes what an [`Engine`](crate::Engine) does; [`TakePlayer`] makes [`FrameSnapshot`](crate::FrameSnapshot)s
+//! of a take without simulating, so that whatever draws a simulation draws a take.
+
+mod playing;
+mod recording;
+mod transport;
+
+pub use playing::TakePlayer;
+pub use recording::{TakeProgress, TakeRecording};
+pub(crate) use transport::TakeTransport;
+
+use std::path::Path;
+
+use lovelock_record::{TakeError, TakeReader};
+
+use crate::project::project_of_text;
+use crate::{Problem, Project, StudioError};
+
+/// The project that a take was recorded from, set to play it. Problems are those of the project's text.
+///
+/// # Errors
+/// No take, one of a newer version or without frames.
+pub fn project_of_take(path: &Path) -> Result<(Project, Vec<Problem>), StudioError> {
+    let mut reader = TakeReader::open(path)?;
+    let start = reader.nearest(0).unwrap_or(0);
+    let text = reader.project_at(start)?;
+    let (mut project, problems) = project_of_text(path, &text)?;
+    project.set_take(path);
+    Ok((project, problems))
+}
+
+impl From<TakeError> for StudioError {
+    fn from(error: TakeError) -> Self {
+        let file = Some(error.path().to_owned());
+        let message = error.to_string();
+        match error {
+            TakeError::Io { .. } | TakeError::Write { .. } | TakeError::Stopped { .. } => {
+                Self::Work { file, message }
+            }
+            TakeError::Request { .. }
+            | TakeError::Busy { .. }
+            | TakeError::NotATake { .. }
+            | TakeError::Newer { .. }
+            | TakeError::Empty { .. }
+            | TakeError::Malformed { .. }
+            | TakeError::Lost { .. }
+            | TakeError::NoSuchFrame { .. } => Self::Request { file, message },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

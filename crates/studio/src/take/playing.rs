@@ -1,0 +1,241 @@
+//! A take as a source of instants.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use lovelock_groom::{GuideFrame, Hairstyle};
+use lovelock_motion::{Pose, Skin, pose_at, skin};
+use lovelock_record::{AssetState, TakeCondition, TakeFrame, TakeHeader, TakeReader, hairstyle_fingerprint};
+use lovelock_wisp::StepReport;
+
+use crate::project::project_of_text;
+use crate::session::SnapshotPool;
+use crate::{
+    Access, FrameSnapshot, Place, Problem, ProblemKind, Project, Scene, SceneLoader, StageTimes, Stopwatch,
+    StudioError, Totals,
+};
+
+/// Scenes of other parts of the take that are kept, so that going to and fro does not grow the hair again.
+const MOST_SCENES: usize = 8;
+
+/// A take that is open for playing, with its scene.
+pub struct TakePlayer {
+    reader: TakeReader,
+    access: Access,
+    loader: SceneLoader,
+    /// The project of the first frame.
+    first: Project,
+    /// The text of the project that the present scene was made from.
+    text: Arc<str>,
+    scene: Arc<Scene>,
+    /// Scenes by the project that they were made from, the one used last at the end.
+    scenes: Vec<(Project, Arc<Scene>)>,
+    frame: TakeFrame,
+    pose: Pose,
+    pool: SnapshotPool,
+    shown: u64,
+}
+
+impl TakePlayer {
+    /// Opens a take and makes its scene. Problems say what of it has changed, is missing or is damaged.
+    ///
+    /// # Errors
+    /// No take, one of a newer version or without frames; hair that the recorded guides do not fit any more.
+    pub fn open(path: &Path, access: &Access) -> Result<(Self, Vec<Problem>), StudioError> {
+        let mut reader = TakeReader::open(path)?;
+        let start = reader.nearest(0).unwrap_or(0);
+        let text = reader.project_at(start).unwrap_or_else(|_| Arc::from(reader.header().project.as_str()));
+        let (mut project, mut problems) = project_of_text(path, &text)?;
+        project.take.file = None;
+        // What lies beside the take may be read, as what lies beside a project.
+        let mut access = access.clone();
+        access.set_project(Some(path));
+        let mut loader = SceneLoader::new();
+        let (scene, of_scene) = loader.load_now(&project, &access)?;
+        let header = reader.header();
+        fits(path, header, &scene.style)?;
+        problems.extend(of_scene);
+        problems.extend(differences(path, header, &reader.condition(), &scene.style));
+        let player = Self {
+            reader,
+            access,
+            loader,
+            first: project.clone(),
+            text,
+            scene: Arc::clone(&scene),
+            scenes: vec![(made_of(&project), scene)],
+            frame: TakeFrame::default(),
+            pose: Pose::default(),
+            pool: SnapshotPool::default(),
+            shown: 0,
+        };
+        Ok((player, problems))
+    }
+
+    /// The file.
+    pub fn path(&self) -> &Path {
+        self.reader.path()
+    }
+
+    /// What the take says about itself.
+    pub fn header(&self) -> &TakeHeader {
+        self.reader.header()
+    }
+
+    /// What is known to be wrong with it.
+    pub fn condition(&self) -> TakeCondition {
+        self.reader.condition()
+    }
+
+    /// The project as it was at the first frame.
+    pub fn project(&self) -> &Project {
+        &self.first
+    }
+
+    /// The scene at the instant that was shown last.
+    pub fn scene(&self) -> &Arc<Scene> {
+        &self.scene
+    }
+
+    /// Frames in it.
+    pub fn frames(&self) -> u64 {
+        self.reader.frames()
+    }
+
+    /// Length of a frame, seconds.
+    pub fn frame_secs(&self) -> f64 {
+        1.0 / self.header().frames_per_second.as_f64()
+    }
+
+    /// From the first frame to the last one, seconds.
+    pub fn duration_secs(&self) -> f64 {
+        self.header().secs_of(self.frames() - 1)
+    }
+
+    /// The instant `secs` after the start, clamped to the take; between frames it is interpolated.
+    ///
+    /// # Errors
+    /// The frames around it are damaged, or the disk cannot read them.
+    pub fn snapshot(&mut self, secs: f64) -> Result<Arc<FrameSnapshot>, StudioError> {
+        let watch = Stopwatch::start();
+        let secs = if secs.is_finite() { secs.clamp(0.0, self.duration_secs()) } else { 0.0 };
+        self.follow((secs / self.frame_secs()).round() as u64)?;
+        self.reader.frame_at(secs, &mut self.frame)?;
+        pose_at(&self.scene.body, self.scene.clip.as_deref(), self.frame.clip_secs, &mut self.pose);
+        self.shown += 1;
+        let duration_secs = self.duration_secs();
+        let (scene, frame, pose, shown) = (&self.scene, &self.frame, &self.pose, self.shown);
+        let report = StepReport { substeps: frame.substeps, jumped: frame.jumped, ..StepReport::default() };
+        let new = || FrameSnapshot {
+            scene: Arc::clone(scene),
+            step: 0,
+            time_secs: 0.0,
+            position_secs: 0.0,
+            duration_secs,
+            pose: Pose::default(),
+            skin: Skin::default(),
+            guides: GuideFrame::clone(&frame.guides),
+            report,
+            totals: Totals::default(),
+            times: StageTimes::default(),
+        };
+        Ok(self.pool.make(new, |snapshot| {
+            if !Arc::ptr_eq(&snapshot.scene, scene) {
+                snapshot.scene = Arc::clone(scene);
+            }
+            snapshot.step = shown;
+            // The camera follows the head of the scene's time; the timeline stands at the take's.
+            (snapshot.time_secs, snapshot.position_secs) = (frame.guides.time_secs, secs);
+            snapshot.duration_secs = duration_secs;
+            snapshot.pose.clone_from(pose);
+            skin(&scene.body, pose, &mut snapshot.skin);
+            snapshot.guides.clone_from(&frame.guides);
+            snapshot.report = report;
+            snapshot.times = StageTimes { motion: watch.ms(), ..StageTimes::default() };
+        }))
+    }
+
+    /// Makes the scene that of the project at a frame.
+    fn follow(&mut self, frame: u64) -> Result<(), StudioError> {
+        let frame = self.reader.nearest(frame).unwrap_or(frame);
+        let text = self.reader.project_at(frame)?;
+        if Arc::ptr_eq(&text, &self.text) || text == self.text {
+            return Ok(());
+        }
+        let (project, _) = project_of_text(self.reader.path(), &text)?;
+        let key = made_of(&project);
+        if let Some(place) = self.scenes.iter().position(|(of, _)| *of == key) {
+            self.scenes[place..].rotate_left(1);
+        } else {
+            let (scene, _) = self.loader.load_now(&project, &self.access)?;
+            fits(self.reader.path(), self.reader.header(), &scene.style)?;
+            if self.scenes.len() == MOST_SCENES {
+                self.scenes.remove(0);
+            }
+            self.scenes.push((key, scene));
+        }
+        if let Some((_, scene)) = self.scenes.last() {
+            self.scene = Arc::clone(scene);
+        }
+        self.text = text;
+        Ok(())
+    }
+}
+
+/// The parts of a project that a scene is made of; the rest as it is by default.
+fn made_of(project: &Project) -> Project {
+    let Project { body, motion, hair, .. } = project.clone();
+    Project { body, motion, hair, ..Project::default() }
+}
+
+/// Whether recorded guides are those of a hairstyle.
+fn fits(path: &Path, header: &TakeHeader, style: &Hairstyle) -> Result<(), StudioError> {
+    let (guides, points) = (style.guides.count(), style.guides.points_per_guide);
+    if (guides, points) == (header.guides as usize, header.points_per_guide as usize) {
+        return Ok(());
+    }
+    Err(StudioError::input(
+        path,
+        format!(
+            "{}: its hairstyle is another one now: {guides} guides of {points} points, and the take has {} of {}",
+            path.display(),
+            header.guides,
+            header.points_per_guide
+        ),
+    ))
+}
+
+/// What is not as it was when the take was recorded.
+fn differences(
+    path: &Path,
+    header: &TakeHeader,
+    condition: &TakeCondition,
+    style: &Hairstyle,
+) -> Vec<Problem> {
+    let note =
+        |what: String| Problem::new(Place::Take, ProblemKind::Note, format!("{}: {what}", path.display()));
+    let mut problems = Vec::new();
+    if !condition.is_whole() {
+        problems.push(note(format!("the take is {condition}")));
+    }
+    for asset in &header.assets {
+        let (role, file) = (&asset.role, asset.path.display());
+        match asset.state() {
+            AssetState::Same => {}
+            AssetState::Changed { .. } => {
+                problems
+                    .push(note(format!("the {role} file {file} has changed since the take was recorded")));
+            }
+            AssetState::Missing(error) => {
+                problems.push(note(format!("the {role} file {file} of the take cannot be read ({error})")));
+            }
+        }
+    }
+    if hairstyle_fingerprint(style) != header.hairstyle {
+        problems.push(note(
+            "the hairstyle has changed since the take was recorded; its strands follow the recorded guides"
+                .to_owned(),
+        ));
+    }
+    problems
+}

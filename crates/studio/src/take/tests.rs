@@ -1,0 +1,233 @@
+//! Takes: what was simulated comes back, with what was changed meanwhile. No test here needs a graphics adapter.
+
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use glam::Vec3;
+use lovelock_record::{MOST_ERROR_M, TakeCondition};
+
+use super::*;
+use crate::session::tests::small_project;
+use crate::{Access, Engine, FrameSnapshot, ProblemKind, Project, RecordRequest, SceneLoader, record_take};
+
+fn points(frame: &FrameSnapshot) -> Vec<Vec3> {
+    let guides = &frame.guides.guides;
+    (0..guides.x.len()).map(|i| Vec3::new(guides.x[i], guides.y[i], guides.z[i])).collect()
+}
+
+fn farthest(a: &FrameSnapshot, b: &FrameSnapshot) -> f32 {
+    assert_eq!(a.guides.guides.x.len(), b.guides.guides.x.len());
+    points(a).iter().zip(points(b)).map(|(a, b)| a.distance(b)).fold(0.0, f32::max)
+}
+
+/// Records `steps` of a project and returns each instant as it was simulated. `change` may change the project.
+fn recorded(
+    path: &Path,
+    project: &Project,
+    steps: u64,
+    mut change: impl FnMut(u64, &mut Project),
+) -> Vec<FrameSnapshot> {
+    let mut loader = SceneLoader::new();
+    let mut project = project.clone();
+    let (scene, _) = loader.load_now(&project, &Access::new()).expect("a scene");
+    let mut engine = Engine::new(scene, project.simulation);
+    let mut take = TakeRecording::start(path, &Arc::new(project.clone()), &engine).expect("a take");
+    let mut frames = vec![FrameSnapshot::clone(&engine.snapshot())];
+    for step in 1..steps {
+        let before = project.clone();
+        change(step, &mut project);
+        if project != before {
+            engine.set_scene(loader.load_now(&project, &Access::new()).expect("a scene").0);
+            engine.set_settings(&project.simulation);
+            take.change(&Arc::new(project.clone())).expect("a change");
+        }
+        engine.step();
+        take.push(&engine).expect("a frame");
+        frames.push(FrameSnapshot::clone(&engine.snapshot()));
+    }
+    let report = take.finish().expect("a whole take");
+    assert_eq!((report.frames, report.path.as_path()), (steps, path));
+    frames
+}
+
+fn played(path: &Path) -> TakePlayer {
+    let (player, problems) = TakePlayer::open(path, &Access::new()).expect("a take that plays");
+    assert_eq!(problems, []);
+    player
+}
+
+fn folder() -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("dance.take");
+    (folder, path)
+}
+
+#[test]
+fn every_frame_comes_back_as_it_was_simulated_in_any_order() {
+    let (_folder, path) = folder();
+    let frames = recorded(&path, &small_project(), 130, |_, _| {});
+    let mut player = played(&path);
+    assert_eq!((player.frames(), player.condition()), (130, TakeCondition::Whole));
+    assert!((player.duration_secs() - 129.0 / 60.0).abs() < 1e-9);
+    for n in [0, 1, 64, 129, 128, 3, 60, 59] {
+        let frame = player.snapshot(n as f64 / 60.0).expect("a frame");
+        let off = farthest(&frame, &frames[n]);
+        assert!(f64::from(off) <= MOST_ERROR_M, "frame {n} is {off} m off");
+        assert_eq!(frame.time_secs, frames[n].time_secs);
+        assert_eq!(frame.guides.world_from_head, frames[n].guides.world_from_head);
+        // The body as well: its pose follows from the clip's time.
+        assert_eq!(frame.skin.positions, frames[n].skin.positions, "frame {n}");
+        assert!((frame.position_secs - n as f64 / 60.0).abs() < 1e-9);
+    }
+    // The control: the frame beside it is farther off than any rounding.
+    let beside = player.snapshot(65.0 / 60.0).expect("a frame");
+    assert!(f64::from(farthest(&beside, &frames[64])) > 10.0 * MOST_ERROR_M);
+}
+
+#[test]
+fn between_two_frames_hair_is_between_them() {
+    let (_folder, path) = folder();
+    let frames = recorded(&path, &small_project(), 40, |_, _| {});
+    let mut player = played(&path);
+    let middle = player.snapshot(20.5 / 60.0).expect("an instant");
+    let whole = farthest(&frames[20], &frames[21]);
+    for end in [&frames[20], &frames[21]] {
+        let off = farthest(&middle, end);
+        assert!((0.3 * whole..0.7 * whole).contains(&off), "{off} of {whole} m");
+    }
+    assert!((middle.time_secs - 0.5 * (frames[20].time_secs + frames[21].time_secs)).abs() < 1e-6);
+}
+
+#[test]
+fn a_style_that_changed_meanwhile_changes_again() {
+    let (_folder, path) = folder();
+    let project = small_project();
+    let longer = |project: &mut Project| project.hair.groom.length *= 1.2;
+    recorded(&path, &project, 60, |step, project| {
+        if step == 30 {
+            longer(project);
+            project.look.width_scale *= 1.5;
+        }
+    });
+    let mut player = played(&path);
+    let style_at = |player: &mut TakePlayer, frame: f64| {
+        Arc::clone(&player.snapshot(frame / 60.0).expect("a frame").scene.style)
+    };
+    let (first, later) = (style_at(&mut player, 10.0), style_at(&mut player, 45.0));
+    assert!(!Arc::ptr_eq(&first, &later) && first.guides != later.guides);
+    assert!(Arc::ptr_eq(&first, &style_at(&mut player, 29.0)), "going back grows no hair again");
+    assert!(Arc::ptr_eq(&later, &style_at(&mut player, 30.0)), "the change is at its frame");
+    assert_eq!(player.project().look, project.look, "the first frame's project is the take's");
+}
+
+#[test]
+fn the_project_of_a_take_plays_it() {
+    let (_folder, path) = folder();
+    let mut project = small_project();
+    project.lights.truncate(1);
+    recorded(&path, &project, 3, |_, _| {});
+    let (read, problems) = project_of_take(&path).expect("a project");
+    assert_eq!(problems, []);
+    assert_eq!(read.take.file.as_ref().map(|file| file.path.as_path()), Some(path.as_path()));
+    assert_eq!(Project { take: crate::TakeSection::default(), ..read }, project);
+}
+
+#[test]
+fn hair_that_the_guides_do_not_fit_is_refused_and_other_hair_is_told() {
+    let (folder, path) = folder();
+    let hair = folder.path().join("tuft.hair");
+    let strands = |roots: u32, bend: f32| {
+        // Yuksel's layout: a header of 128 bytes, then points.
+        let mut bytes = b"HAIR".to_vec();
+        for number in [roots, roots * 3, 2] {
+            bytes.extend(number.to_le_bytes());
+        }
+        bytes.extend(2_u32.to_le_bytes());
+        bytes.resize(128, 0);
+        for root in 0..roots {
+            for point in 0..3 {
+                let (x, y) = (root as f32 * 0.4, 170.0 - 8.0 * point as f32);
+                for v in [x, y, bend * point as f32] {
+                    bytes.extend(v.to_le_bytes());
+                }
+            }
+        }
+        bytes
+    };
+    std::fs::write(&hair, strands(40, 0.0)).expect("a file");
+    let mut project = small_project();
+    project.set_hair_file(&hair);
+    let mut access = Access::new();
+    access.pick(&hair);
+    let (scene, _) = SceneLoader::new().load_now(&project, &access).expect("a scene");
+    let engine = Engine::new(scene, project.simulation);
+    let take = TakeRecording::start(&path, &Arc::new(project.clone()), &engine).expect("a take");
+    take.finish().expect("a whole take");
+    assert_eq!(
+        TakePlayer::open(&path, &Access::new())
+            .expect("a take")
+            .1
+            .iter()
+            .filter(|p| p.place == crate::Place::Take)
+            .count(),
+        0
+    );
+
+    std::fs::write(&hair, strands(40, 1.0)).expect("a file");
+    let (_, problems) = TakePlayer::open(&path, &Access::new()).expect("guides of the same layout");
+    let told: Vec<_> = problems.iter().filter(|p| p.place == crate::Place::Take).collect();
+    assert_eq!(told.len(), 2, "{told:?}");
+    assert!(told.iter().all(|problem| problem.kind == ProblemKind::Note));
+    assert!(told[0].message.contains("tuft.hair has changed"), "{}", told[0].message);
+    assert!(told[1].message.contains("the hairstyle has changed"), "{}", told[1].message);
+
+    // The grown hairstyle takes the place of the missing file, and is another one.
+    std::fs::remove_file(&hair).expect("a file to remove");
+    let error = TakePlayer::open(&path, &Access::new()).err().expect("a refusal");
+    assert_eq!(error.exit_code(), 2);
+    assert!(error.to_string().contains("dance.take") && error.to_string().contains("guides of"), "{error}");
+}
+
+#[test]
+fn without_a_window_every_step_is_recorded_and_a_cancelled_take_leaves_nothing() {
+    let (folder, path) = folder();
+    let request =
+        RecordRequest { out: path.clone(), frames: Some(3..9), fps: Some(30.0), ..RecordRequest::default() };
+    let report =
+        record_take(&small_project(), &request, &mut |_| ControlFlow::Continue(())).expect("a recording");
+    assert_eq!((report.frames, report.fps, report.guides), (12, 60.0, 48));
+    let mut player = played(&path);
+    assert!((player.snapshot(0.0).expect("a frame").time_secs - 0.1).abs() < 1e-6, "frame 3 at 30 a second");
+
+    let cancelled = folder.path().join("cancelled.take");
+    let request = RecordRequest { out: cancelled, ..request };
+    let stopped = record_take(&small_project(), &request, &mut |progress| match progress {
+        crate::Progress::Frame { .. } => ControlFlow::Break(()),
+        _ => ControlFlow::Continue(()),
+    });
+    assert!(matches!(stopped, Err(crate::StudioError::Cancelled)));
+    let left: Vec<_> =
+        std::fs::read_dir(folder.path()).expect("a folder").flatten().map(|e| e.file_name()).collect();
+    assert_eq!(left, ["dance.take"]);
+}
+
+#[test]
+fn a_transport_goes_round_back_and_stops_at_its_ends() {
+    let (_folder, path) = folder();
+    recorded(&path, &small_project(), 61, |_, _| {});
+    let mut transport = TakeTransport::new(played(&path));
+    transport.set_looping(false);
+    assert!(!transport.advance(0.5) && transport.advance(0.75), "the end is at a second");
+    assert!(transport.is_at_end(false) && !transport.is_at_end(true));
+    assert!((transport.snapshot().expect("a frame").position_secs - 1.0).abs() < 1e-9);
+    assert!(!transport.advance(-0.25) && transport.advance(-2.0), "backwards it stops at the start");
+    assert!(transport.is_at_end(true));
+    transport.step(-1);
+    assert_eq!(transport.snapshot().expect("a frame").position_secs, 0.0);
+    transport.set_looping(true);
+    transport.step(-1);
+    assert!((transport.snapshot().expect("a frame").position_secs - 1.0).abs() < 1e-9, "the last frame");
+    assert!(!transport.advance(2.0 / 60.0));
+    assert!((transport.snapshot().expect("a frame").position_secs - 1.0 / 60.0).abs() < 1e-9, "and round");
+}
