@@ -152,6 +152,7 @@ pub(super) enum HeaderError {
 /// Packs `raw` at the end of `out`.
 pub(super) fn pack(
     compressor: &mut zstd::bulk::Compressor<'_>,
+    level: i32,
     raw: &[u8],
     out: &mut Vec<u8>,
 ) -> io::Result<Part> {
@@ -161,6 +162,7 @@ pub(super) fn pack(
     if raw.is_empty() {
         return Ok(Part::default());
     }
+    compressor.set_compression_level(level)?;
     let packed = compressor.compress(raw)?;
     out.extend_from_slice(&packed);
     Ok(Part { packed: packed.len() as u32, raw: raw.len() as u32, crc: crc32fast::hash(&packed) })
@@ -183,8 +185,8 @@ pub(super) fn unpack(packed: &[u8], part: &Part) -> Result<Vec<u8>, String> {
 }
 
 /// A compressor whose output carries zstd's own checksum of the raw bytes.
-pub(super) fn compressor(level: i32) -> io::Result<zstd::bulk::Compressor<'static>> {
-    let mut compressor = zstd::bulk::Compressor::new(level)?;
+pub(super) fn compressor() -> io::Result<zstd::bulk::Compressor<'static>> {
+    let mut compressor = zstd::bulk::Compressor::new(0)?;
     compressor.include_checksum(true)?;
     Ok(compressor)
 }

@@ -21,6 +21,7 @@ mod header;
 mod index;
 mod interpolate;
 mod map;
+mod predict;
 mod quantise;
 mod reader;
 mod settings;

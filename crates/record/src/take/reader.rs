@@ -32,7 +32,8 @@ pub struct TakeReader {
     project: Option<Playing>,
     /// Chunks that turned out to be damaged, by their place in the map.
     bad: BTreeMap<usize, String>,
-    /// Frames that interpolation works with.
+    /// Buffers: the numbers of a frame, and the frames that interpolation works with.
+    numbers: Vec<i32>,
     ends: (TakeFrame, TakeFrame),
 }
 
@@ -88,7 +89,8 @@ impl TakeReader {
             cache: Cache::new(CACHE_BYTES),
             project: None,
             bad: BTreeMap::new(),
-            ends: Default::default(),
+            numbers: Vec::new(),
+            ends: <(TakeFrame, TakeFrame)>::default(),
         })
     }
 
@@ -181,9 +183,8 @@ impl TakeReader {
         out.wall_frame = meta.wall_frame;
         out.substeps = meta.substeps;
         out.jumped = meta.jumped;
-        let size = self.layout.numbers();
-        let numbers = &decoded.numbers[within as usize * size..][..size];
-        restore(numbers, self.layout, &mut out.guides);
+        decoded.numbers(within as usize, self.layout, &mut self.numbers);
+        restore(&self.numbers, self.layout, &mut out.guides);
         Ok(())
     }
 
