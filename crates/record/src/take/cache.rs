@@ -31,8 +31,12 @@ impl Cache {
         self.trim();
     }
 
+    pub(super) fn bytes(&self) -> usize {
+        self.chunks.iter().map(|(_, decoded)| decoded.bytes()).sum()
+    }
+
     fn trim(&mut self) {
-        let mut bytes: usize = self.chunks.iter().map(|(_, decoded)| decoded.bytes()).sum();
+        let mut bytes = self.bytes();
         while bytes > self.bound && self.chunks.len() > 1 {
             bytes -= self.chunks.remove(0).1.bytes();
         }

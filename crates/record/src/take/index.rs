@@ -7,7 +7,7 @@ use super::chunk::{ChunkHeader, HEADER_BYTES};
 pub(super) const TRAILER_MAGIC: [u8; 8] = *b"\x9ALTEND\r\n";
 
 /// Bytes of a trailer, the last of a finished take.
-pub(super) const TRAILER_BYTES: usize = 32;
+pub(super) const TRAILER_BYTES: usize = 40;
 
 /// A chunk and where it starts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,6 +48,8 @@ pub(super) fn parse(raw: &[u8]) -> Option<Vec<Entry>> {
 /// The last bytes of a finished take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Trailer {
+    /// Where the last copy of the take's header starts.
+    pub(super) head: u64,
     /// Where the chunk of the index starts.
     pub(super) index: u64,
     pub(super) frames: u64,
@@ -58,25 +60,21 @@ impl Trailer {
     pub(super) fn to_bytes(self) -> [u8; TRAILER_BYTES] {
         let mut bytes = [0; TRAILER_BYTES];
         bytes[..8].copy_from_slice(&TRAILER_MAGIC);
-        bytes[8..16].copy_from_slice(&self.index.to_le_bytes());
-        bytes[16..24].copy_from_slice(&self.frames.to_le_bytes());
-        bytes[24..28].copy_from_slice(&self.take.to_le_bytes());
-        let crc = crc32fast::hash(&bytes[..28]);
-        bytes[28..].copy_from_slice(&crc.to_le_bytes());
+        bytes[8..16].copy_from_slice(&self.head.to_le_bytes());
+        bytes[16..24].copy_from_slice(&self.index.to_le_bytes());
+        bytes[24..32].copy_from_slice(&self.frames.to_le_bytes());
+        bytes[32..36].copy_from_slice(&self.take.to_le_bytes());
+        let crc = crc32fast::hash(&bytes[..36]);
+        bytes[36..].copy_from_slice(&crc.to_le_bytes());
         bytes
     }
 
-    /// Whether `bytes` start with a trailer.
-    pub(super) fn parse_start(bytes: &[u8; HEADER_BYTES]) -> bool {
-        bytes.first_chunk().is_some_and(|start| Self::parse(start).is_some())
-    }
-
     pub(super) fn parse(bytes: &[u8; TRAILER_BYTES]) -> Option<Self> {
-        let (body, crc) = bytes.split_at(28);
+        let (body, crc) = bytes.split_at(36);
         let mut rest = Bytes::new(body);
         if rest.take(8)? != TRAILER_MAGIC || Bytes::new(crc).u32()? != crc32fast::hash(body) {
             return None;
         }
-        Some(Self { index: rest.u64()?, frames: rest.u64()?, take: rest.u32()? })
+        Some(Self { head: rest.u64()?, index: rest.u64()?, frames: rest.u64()?, take: rest.u32()? })
     }
 }

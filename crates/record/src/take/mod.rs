@@ -22,8 +22,10 @@ mod index;
 mod interpolate;
 mod map;
 mod predict;
+mod probe;
 mod quantise;
 mod reader;
+mod scan;
 mod settings;
 mod source;
 mod worker;
@@ -50,3 +52,6 @@ pub const MOST_ERROR_M: f64 = 5e-5;
 
 /// The most frames in one chunk.
 const MOST_CHUNK_FRAMES: u32 = 60;
+
+#[cfg(test)]
+mod tests;

@@ -113,13 +113,15 @@ impl Rows {
         own: &Coefficients,
         out: &mut [i32],
     ) {
-        let taps = self.taps([point, frame, axis]).map(|row| &row[..out.len()]);
         let weights = EARLY.get(frame).unwrap_or(own).map(i32::from);
+        // Slices of one length, so that the loop is one of vectors.
+        let out = &mut out[..self.guides];
+        let [a, b, c, d, e, f, g, h] = self.taps([point, frame, axis]).map(|row| &row[..out.len()]);
         for (k, guess) in out.iter_mut().enumerate() {
-            let values = tap_values(taps.map(|row| row[k]));
+            let values = tap_values([a[k], b[k], c[k], d[k], e[k], f[k], g[k], h[k]]);
             let mut sum = 1_i32 << (PLACES - 1);
-            for (weight, value) in weights.iter().zip(values) {
-                sum = sum.wrapping_add(weight.wrapping_mul(value));
+            for tap in 0..TAPS {
+                sum = sum.wrapping_add(weights[tap].wrapping_mul(values[tap]));
             }
             *guess = sum >> PLACES;
         }

@@ -38,29 +38,41 @@ pub(super) fn quantise(frame: &GuideFrame, layout: Layout, out: &mut [i32]) -> R
     }
     let (turn, place) = rigid(&frame.world_from_head)?;
     let back = turn.inverse() * (1.0 / STEP_M);
-    let plane = total;
-    let mut furthest = 0.0_f64;
+    let (mut furthest, mut at) = (0.0_f64, 0);
     for guide in 0..guides {
         for point in 0..points {
             let i = guide * points + point;
             let world = DVec3::new(from.x[i].into(), from.y[i].into(), from.z[i].into());
-            let steps = (back * (world - place)).round();
-            let reach = steps.abs().max_element();
+            let steps = back * (world - place);
+            let reach = steps.abs().element_sum();
             // Also where it is not a number.
-            if reach.is_nan() || reach > MOST_STEPS {
-                return Err(format!(
-                    "guide {guide}, point {point} at {world} m; wanted a place within {:.0} m of the head",
-                    MOST_STEPS * STEP_M
-                ));
+            if reach > furthest || reach.is_nan() {
+                (furthest, at) = (reach, i);
             }
-            furthest = furthest.max(reach);
             let to = point * guides + guide;
-            out[to] = steps.x as i32;
-            out[plane + to] = steps.y as i32;
-            out[2 * plane + to] = steps.z as i32;
+            out[to] = nearest(steps.x);
+            out[total + to] = nearest(steps.y);
+            out[2 * total + to] = nearest(steps.z);
         }
     }
+    if furthest.is_nan() || furthest > MOST_STEPS {
+        let (x, y, z) = (from.x[at], from.y[at], from.z[at]);
+        return Err(format!(
+            "guide {}, point {} at [{x}, {y}, {z}] m; wanted a place within {:.0} m of the head",
+            at / points,
+            at % points,
+            MOST_STEPS * STEP_M
+        ));
+    }
     Ok(())
+}
+
+/// The nearest whole number, of halves the even one.
+fn nearest(value: f64) -> i32 {
+    // Doubles of this size are whole numbers, so the sum is rounded; a call of the system's library for each number
+    // would take as long as all the rest.
+    const WHOLE: f64 = 6_755_399_441_055_744.0;
+    ((value + WHOLE) - WHOLE) as i32
 }
 
 /// Puts the guides back into the world.

@@ -13,7 +13,8 @@ use super::codec::{self, Decoded};
 use super::disk::part_path;
 use super::index::Entry;
 use super::interpolate::between;
-use super::map::{Map, MapError, is_sound, map};
+use super::map::{Map, MapError, map};
+use super::probe::is_sound;
 use super::quantise::{Layout, restore};
 use super::settings::Settings;
 use super::source::Source;
@@ -120,6 +121,12 @@ impl TakeReader {
         self.cache.set_bound(bytes);
     }
 
+    /// Bytes of decoded frames that are kept now.
+    #[cfg(test)]
+    pub(super) fn cached_bytes(&self) -> usize {
+        self.cache.bytes()
+    }
+
     /// What is known to be wrong with the take: what opening saw, and what frames that were played since have shown.
     /// [`TakeReader::verify`] looks at all of it.
     pub fn condition(&self) -> TakeCondition {
@@ -154,6 +161,10 @@ impl TakeReader {
                 Err(error) => return Err(TakeError::io(&self.path, "read", error)),
             };
             self.bad.entry(chunk).or_insert(why);
+        }
+        if self.map.damage.is_none() && self.map.cut.is_none() {
+            let found = self.map.inspect(&mut *self.source);
+            self.map.damage = found.map_err(|error| TakeError::io(&self.path, "read", error))?;
         }
         Ok(self.condition())
     }

@@ -143,3 +143,54 @@ fn apply_all(start: &str, edits: &[Edit]) -> Result<String, String> {
     }
     String::from_utf8(text).map_err(|_| NO_UTF8.to_owned())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Settings, SettingsLog};
+    use proptest::prelude::*;
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        #[test]
+        fn any_texts_come_back(texts in prop::collection::vec((0_u32..3, "[aäb€]{0,6}"), 0..20), start in "[aäb€]{0,6}") {
+            let mut log = SettingsLog::new(start.clone());
+            let (mut frame, mut wanted) = (0, vec![start]);
+            for (later, text) in texts {
+                frame += later;
+                log.change(frame, &text);
+                let before = wanted.last().cloned().unwrap_or_default();
+                wanted.resize(frame as usize + 1, before);
+                wanted[frame as usize] = text;
+            }
+            let settings = Settings::parse(&log.to_bytes(), log.changes()).unwrap();
+            for (frame, text) in wanted.iter().enumerate() {
+                let (found, range) = settings.at(frame as u32).unwrap();
+                prop_assert_eq!(&found, text);
+                prop_assert!(range.contains(&(frame as u32)));
+            }
+        }
+
+        #[test]
+        fn bytes_that_are_no_texts_are_refused_or_read(raw in prop::collection::vec(any::<u8>(), 0..200)) {
+            // No panic, whatever they are.
+            if let Ok(settings) = Settings::parse(&raw, 2) {
+                let _ = settings.at(1);
+            }
+        }
+    }
+
+    #[test]
+    fn a_change_keeps_no_more_than_there_is() {
+        let mut log = SettingsLog::new("start".to_owned());
+        log.change(1, "stare");
+        let good = log.to_bytes();
+        assert_eq!(Settings::parse(&good, 1).unwrap().at(1).unwrap().0, "stare");
+        // The prefix, after the length, the text and the frame.
+        let mut bad = good.clone();
+        bad[4 + 5 + 4] = 6;
+        assert!(Settings::parse(&bad, 1).unwrap().at(1).is_err());
+        assert!(Settings::parse(&good, 0).is_err(), "a change that the header does not know");
+        assert!(Settings::parse(&good, 2).is_err(), "a change that is missing");
+    }
+}

@@ -127,11 +127,12 @@ impl TakeFile {
     fn finish(mut self) -> Result<u64, TakeError> {
         let write = |file: &mut Self| {
             let mut bytes = file.head_chunk()?;
+            let head = file.position;
             let index = file.position + bytes.len() as u64;
             let entries = index::to_bytes(&file.entries);
             bytes.extend(file.chunk(file.header(Kind::Index), &[], &entries)?.1);
             let frames = file.entries.last().map_or(0, |entry| entry.header.end());
-            bytes.extend(Trailer { index, frames, take: file.take }.to_bytes());
+            bytes.extend(Trailer { head, index, frames, take: file.take }.to_bytes());
             file.write(&bytes)
         };
         write(&mut self).map_err(|error| self.failed("write its index", error))?;
