@@ -46,6 +46,10 @@ pub(super) fn claim(target: &Path) -> Result<File, TakeError> {
     match OpenOptions::new().read(true).append(true).open(&part) {
         Ok(old) => {
             lock(&old, &part)?;
+            if !is_still(&old, &part) {
+                // Its writer has given it its name meanwhile, and perhaps another has begun.
+                return Err(TakeError::Busy { path: part });
+            }
             set_aside(&old, target, &part)?;
         }
         Err(error) if error.kind() == io::ErrorKind::NotFound => {}
@@ -71,6 +75,22 @@ fn lock(file: &File, part: &Path) -> Result<(), TakeError> {
         Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => Ok(()),
         Err(TryLockError::Error(error)) => Err(TakeError::io(part, "lock", error)),
     }
+}
+
+/// Whether the open file is the one of that name.
+#[cfg(unix)]
+fn is_still(file: &File, path: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    match (file.metadata(), fs::metadata(path)) {
+        (Ok(open), Ok(named)) => (open.dev(), open.ino()) == (named.dev(), named.ino()),
+        _ => false,
+    }
+}
+
+/// Elsewhere a file that is open keeps its name.
+#[cfg(not(unix))]
+fn is_still(_: &File, _: &Path) -> bool {
+    true
 }
 
 /// Gives the file of an earlier recording a name of its own; an empty one goes.

@@ -5,7 +5,7 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use lovelock_groom::Hairstyle;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 use xxhash_rust::xxh3::Xxh3;
 
 use super::TAKE_VERSION;
@@ -126,12 +126,17 @@ struct Rate {
 pub struct TakeAsset {
     /// What it is to the scene: `hair`, `body` or `motion`.
     pub role: String,
-    /// The file.
+    /// The file. A name that is no UTF-8 is stored as near as UTF-8 comes, and is then missing.
+    #[serde(serialize_with = "as_text")]
     pub path: PathBuf,
     /// XXH3-64 of its bytes, seed 0.
     pub checksum: u64,
     /// Its length in bytes.
     pub bytes: u64,
+}
+
+fn as_text<S: Serializer>(path: &Path, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(&path.to_string_lossy())
 }
 
 /// How the file of a [`TakeAsset`] is found.

@@ -101,9 +101,10 @@ impl Map {
                 Err(_) => return Ok(Some(format!("a chunk whose header is damaged at byte {at}"))),
             };
             let known = self.entries.binary_search_by_key(&at, |known| known.offset);
+            let fits = entry.end().is_some_and(|after| after <= end);
             let good = match (entry.header.kind, known) {
                 (Kind::Frames, Ok(chunk)) => self.entries[chunk].header == entry.header,
-                (Kind::Head | Kind::Index, Err(_)) => is_sound(source, &entry)?,
+                (Kind::Head | Kind::Index, Err(_)) => fits && is_sound(source, &entry)?,
                 _ => false,
             };
             if !good {
