@@ -10,6 +10,12 @@ pub const THREADS: u32 = 64;
 /// Workgroups along one axis of a dispatch: WebGPU's limit.
 const MOST_GROUPS: u32 = 65_535;
 
+/// The name and the value of an `override` of a shader.
+///
+/// What every thread would find to be the same is better known when a kernel is compiled: where kernels run on the processor,
+/// both sides of a branch are carried out, and the driver only leaves out what can never be reached.
+pub type Constant = (&'static str, f64);
+
 /// A compute pipeline whose resources are all in group 0.
 ///
 /// Its layout comes from the shader. Composed shaders declare more than one entry point uses; what it does not use is not
@@ -28,8 +34,24 @@ impl Kernel {
     /// # Errors
     /// The file and line that do not compile, and why; or what the driver says.
     pub fn new(gpu: &Gpu, label: &'static str, source: &ShaderSource, entry: &str) -> Result<Self, GpuError> {
+        Self::specialised(gpu, label, source, entry, &[])
+    }
+
+    /// As [`Kernel::new`], for these values of the shader's `override`s; names that it does not declare are left out.
+    ///
+    /// # Errors
+    /// As [`Kernel::new`].
+    pub fn specialised(
+        gpu: &Gpu,
+        label: &'static str,
+        source: &ShaderSource,
+        entry: &str,
+        constants: &[Constant],
+    ) -> Result<Self, GpuError> {
         let checked = shader::check(source)?;
         let used = checked.bindings_of(entry);
+        let constants: Vec<_> =
+            constants.iter().copied().filter(|(name, _)| checked.has_override(name)).collect();
         gpu.checked(|| {
             let module = gpu.module(label, source);
             let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
@@ -37,7 +59,10 @@ impl Kernel {
                 layout: None,
                 module: &module,
                 entry_point: Some(entry),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    constants: &constants,
+                    ..Default::default()
+                },
                 cache: None,
             });
             let layout = pipeline.get_bind_group_layout(0);

@@ -11,7 +11,7 @@ mod timer;
 pub use buffer::{GrowBuffer, constants};
 pub use commands::{Commands, PassTime, PassTimer};
 pub use device::{Gpu, GpuError};
-pub use kernel::{Kernel, THREADS};
+pub use kernel::{Constant, Kernel, THREADS};
 pub use readback::{Readback, read_buffer, read_texture_rgba8};
 pub use shader::{ShaderPart, ShaderSource, check_shader};
 pub use timer::Stopwatch;

@@ -61,6 +61,11 @@ pub(crate) struct Checked {
 }
 
 impl Checked {
+    /// Whether a constant can be set when a pipeline is made.
+    pub(crate) fn has_override(&self, name: &str) -> bool {
+        self.module.overrides.iter().any(|(_, constant)| constant.name.as_deref() == Some(name))
+    }
+
     /// The bindings of group 0 that an entry point uses.
     pub(crate) fn bindings_of(&self, entry: &str) -> BTreeSet<u32> {
         let Some(at) = self.module.entry_points.iter().position(|point| point.name == entry) else {

@@ -50,3 +50,12 @@ pub enum RenderError {
     #[error("transmittance that is given is drawn by the processor alone: choose the backend `cpu`")]
     KnownOnGpu,
 }
+
+impl From<lovelock_shadow::GpuShadowError> for RenderError {
+    fn from(error: lovelock_shadow::GpuShadowError) -> Self {
+        match error {
+            lovelock_shadow::GpuShadowError::Shadow(error) => error.into(),
+            lovelock_shadow::GpuShadowError::Gpu(error) => error.into(),
+        }
+    }
+}

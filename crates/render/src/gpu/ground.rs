@@ -3,7 +3,7 @@
 use lovelock_gpu::{Commands, Gpu, GrowBuffer, wgpu};
 
 use super::frame_resources::FrameResources;
-use super::pipelines::Pipelines;
+use super::light_kernels::LightKernels;
 
 /// Pixels along each edge of a cell; twin of `CELL` in `ground_light.wgsl`.
 const CELL: u32 = 4;
@@ -28,8 +28,8 @@ impl Ground {
     }
 
     /// Encodes asking for the light at the corners.
-    pub fn run(&self, gpu: &Gpu, pipelines: &Pipelines, commands: &mut Commands, frame: &FrameResources) {
-        let group = pipelines.ground.bind(gpu, &frame.with([(4, self.0.raw().as_entire_binding())]));
-        commands.compute("draw/ground", |pass| pipelines.ground.run(pass, &group, self.0.len() as u64));
+    pub fn run(&self, gpu: &Gpu, kernels: &LightKernels, commands: &mut Commands, frame: &FrameResources) {
+        let group = kernels.ground.bind(gpu, &frame.with([(4, self.0.raw().as_entire_binding())]));
+        commands.compute("draw/ground", |pass| kernels.ground.run(pass, &group, self.0.len() as u64));
     }
 }

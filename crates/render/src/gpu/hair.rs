@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::frame_resources::FrameResources;
 use super::interpolate::Interpolation;
-use super::pipelines::Pipelines;
+use super::light_kernels::LightKernels;
 use crate::strand_details::StrandDetails;
 use crate::{FrameInput, HairPose};
 
@@ -139,7 +139,7 @@ impl HairBuffers {
     }
 
     /// Projects and shades every point.
-    pub fn shade(&self, gpu: &Gpu, pipelines: &Pipelines, commands: &mut Commands, frame: &FrameResources) {
+    pub fn shade(&self, gpu: &Gpu, kernels: &LightKernels, commands: &mut Commands, frame: &FrameResources) {
         let points = self.details.len() as u64;
         if points == 0 {
             return;
@@ -156,7 +156,7 @@ impl HairBuffers {
             (6, self.transmittance.raw().as_entire_binding()),
             (7, self.shaded.raw().as_entire_binding()),
         ];
-        let group = pipelines.shade_points.bind(gpu, &frame.with(own));
-        commands.compute("draw/points", |pass| pipelines.shade_points.run(pass, &group, points));
+        let group = kernels.shade_points.bind(gpu, &frame.with(own));
+        commands.compute("draw/points", |pass| kernels.shade_points.run(pass, &group, points));
     }
 }

@@ -5,6 +5,7 @@ mod frame_resources;
 mod ground;
 mod hair;
 mod interpolate;
+mod light_kernels;
 mod pipelines;
 mod renderer;
 mod screen;

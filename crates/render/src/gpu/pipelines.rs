@@ -2,6 +2,7 @@
 
 use lovelock_gpu::{Gpu, GpuError, Kernel, ShaderPart, ShaderSource, wgpu};
 
+use super::light_kernels::{LightShaders, LightVariants};
 use super::targets::{COLOR_FORMAT, DEPTH_FORMAT, NORMAL_FORMAT, SAMPLES};
 use super::{eye, interpolate};
 
@@ -47,12 +48,10 @@ pub fn all_shaders() -> Vec<(String, ShaderSource)> {
 /// The kernels and pipelines, and the layouts of the latters' bind groups.
 #[derive(Debug)]
 pub(super) struct Pipelines {
-    pub shade_points: Kernel,
-    pub ground: Kernel,
-    /// Hair and even background, and a list of the pixels that are left.
+    /// Those that light something.
+    pub lit: LightVariants,
+    /// Hair and even background, and lists of the pixels that are left.
     pub picture: Kernel,
-    /// The listed pixels.
-    pub picture_lit: Kernel,
     /// A uniform for the vertices.
     pub uniform_layout: wgpu::BindGroupLayout,
     /// The body as the eye sees it: all of it, and where it is closed what faces the eye.
@@ -93,10 +92,8 @@ impl Pipelines {
         });
         let (surface, depth) = (gpu.shader(surface.0, &surface.1)?, gpu.shader(depth.0, &depth.1)?);
         Ok(Self {
-            shade_points: Kernel::new(gpu, points.0, &points.1, "shade_points")?,
-            ground: Kernel::new(gpu, ground.0, &ground.1, "ground_corners")?,
             picture: Kernel::new(gpu, picture.0, &picture.1, "picture")?,
-            picture_lit: Kernel::new(gpu, "picture lit", &picture.1, "picture_lit")?,
+            lit: LightVariants::new(LightShaders { points: points.1, ground: ground.1, picture: picture.1 }),
             surface: CULLS.map(|cull| surface_pipeline(device, &layout, &surface, cull)),
             depth: CULLS.map(|cull| depth_pipeline(device, &layout, &depth, cull)),
             uniform_layout,

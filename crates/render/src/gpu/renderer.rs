@@ -7,7 +7,7 @@ use std::sync::Arc;
 use lovelock_gpu::{Commands, Gpu, GpuError, PassTimer, Readback, Stopwatch, wgpu};
 use lovelock_shadow::SUM_WORDS;
 
-use super::eye::{Area, Eye, EyeInput, too_large};
+use super::eye::{Area, Eye, EyeInput, WIDEST_PLAIN, too_large};
 use super::frame_resources::FrameResources;
 use super::ground::Ground;
 use super::hair::HairBuffers;
@@ -213,20 +213,23 @@ impl GpuRenderer {
         for (k, map) in maps.iter().enumerate() {
             self.surface.draw_depth(gpu, &self.pipelines, &mut commands, k, map.shadow_from_world);
         }
-        self.hair.shade(gpu, &self.pipelines, &mut commands, &frame);
+        self.draw_body(gpu, &mut commands, targets);
+        let lit = self.pipelines.lit.of(gpu, maps.len())?;
+        self.hair.shade(gpu, lit, &mut commands, &frame);
         if input.picture.ground {
-            self.ground.run(gpu, &self.pipelines, &mut commands, &frame);
+            self.ground.run(gpu, lit, &mut commands, &frame);
         }
-        self.draw_body(&mut commands, targets);
         let (bounds, _) = self.hair.bounds(input, Area::axes(input.camera), input.camera.eye);
         let strand_width = uniform.width_opacity_tip_scalp.x;
         let area = Area::of(input.camera, [width, height], (bounds.min, bounds.max), strand_width);
         let strands = self.hair.strands();
+        let reach_at =
+            |least: f32| 0.5 * strand_width * uniform.size_scale_exposure.z / bounds.min.x.max(least);
         let eye = EyeInput {
-            width,
-            height,
             area,
-            reach: 0.5 * strand_width * uniform.size_scale_exposure.z / bounds.min.x.max(0.05),
+            reach: reach_at(0.05),
+            // What is nearer than this is not drawn.
+            streaked: reach_at(0.02) > WIDEST_PLAIN,
             shaded: self.hair.shaded(),
             segments: strands.segments,
             segment_count: strands.segment_count,
@@ -235,10 +238,8 @@ impl GpuRenderer {
             transparency: input.picture.transparency,
         };
         self.eye.draw(gpu, &mut commands, &eye)?;
-        let Some(nearest) = self.eye.nearest() else { return Ok(()) };
-        let screen =
-            ScreenInput { targets, nearest, corners: self.ground.corners(), area, hair: self.eye.layer() };
-        self.screen.run(gpu, &self.pipelines, &mut commands, &frame, &screen);
+        let screen = ScreenInput { targets, corners: self.ground.corners(), area, hair: self.eye.layer() };
+        self.screen.run(gpu, &self.pipelines.picture, lit, &mut commands, &frame, &screen);
         let wanted = [(self.screen.pixels(), 4 * pixels), (self.shadow.sum(), 4 * SUM_WORDS)];
         self.readback.copy(gpu, commands.encoder(), &wanted);
         commands.submit();
@@ -246,16 +247,17 @@ impl GpuRenderer {
     }
 
     /// The body as the eye sees it, sample by sample, to be lit later.
-    fn draw_body(&self, commands: &mut Commands, targets: &Targets) {
+    fn draw_body(&self, gpu: &Gpu, commands: &mut Commands, targets: &Targets) {
+        // Where there is no depth, nobody reads what was there before. Only to write it anew costs much where the processor draws;
+        // a card rather clears than loads.
+        let clear = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
+        let load = if gpu.is_software() { wgpu::LoadOp::Load } else { clear };
         let target = |view| {
             Some(wgpu::RenderPassColorAttachment {
                 view,
                 depth_slice: None,
                 resolve_target: None,
-                ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-                    store: wgpu::StoreOp::Store,
-                },
+                ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
             })
         };
         let descriptor = wgpu::RenderPassDescriptor {

@@ -1,10 +1,10 @@
 //! The finished pixels of one picture: hair over the body over the background.
 
-use lovelock_gpu::{Commands, Gpu, GrowBuffer, constants, wgpu};
+use lovelock_gpu::{Commands, Gpu, GrowBuffer, Kernel, constants, wgpu};
 
 use super::eye::Area;
 use super::frame_resources::FrameResources;
-use super::pipelines::Pipelines;
+use super::light_kernels::{LISTS, LightKernels};
 use super::targets::Targets;
 
 /// Threads that share the pixels that are lit one by one: enough to fill a card, and few enough that those without a pixel cost
@@ -16,8 +16,6 @@ const LIT_THREADS: [u64; 2] = [1 << 18, 1 << 15];
 pub(super) struct ScreenInput<'a> {
     /// The body as the eye sees it.
     pub targets: &'a Targets,
-    /// The nearest of its depths in each pixel.
-    pub nearest: &'a wgpu::TextureView,
     /// The light on the ground.
     pub corners: &'a wgpu::Buffer,
     /// The part of the picture that may have hair, and the hair of each of its pixels.
@@ -29,6 +27,7 @@ pub(super) struct ScreenInput<'a> {
 #[derive(Debug)]
 pub(super) struct Screen {
     pixels: GrowBuffer<u32>,
+    /// [`LISTS`] lists, one behind the other, each with room for all pixels.
     lit: GrowBuffer<u32>,
     lit_count: wgpu::Buffer,
     lit_threads: u64,
@@ -43,7 +42,7 @@ impl Screen {
             lit: GrowBuffer::new(device, "lit pixels", usage),
             lit_count: device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("number of lit pixels"),
-                size: 4,
+                size: 4 * LISTS as u64,
                 usage: usage | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             }),
@@ -55,7 +54,7 @@ impl Screen {
     pub fn fit(&mut self, gpu: &Gpu, width: u32, height: u32) {
         let pixels = width as usize * height as usize;
         self.pixels.reserve(&gpu.device, pixels);
-        self.lit.reserve(&gpu.device, pixels);
+        self.lit.reserve(&gpu.device, LISTS * pixels);
     }
 
     /// Red, green, blue and alpha of each pixel, row after row.
@@ -71,7 +70,8 @@ impl Screen {
     pub fn run(
         &self,
         gpu: &Gpu,
-        pipelines: &Pipelines,
+        picture: &Kernel,
+        kernels: &LightKernels,
         commands: &mut Commands,
         frame: &FrameResources,
         input: &ScreenInput,
@@ -85,20 +85,19 @@ impl Screen {
             (7, input.corners.as_entire_binding()),
             (8, input.hair.as_entire_binding()),
             (9, self.pixels.raw().as_entire_binding()),
-            (10, wgpu::BindingResource::TextureView(input.nearest)),
             (11, hair_area.as_entire_binding()),
             (12, self.lit.raw().as_entire_binding()),
             (13, self.lit_count.as_entire_binding()),
         ]);
         commands.encoder().clear_buffer(&self.lit_count, 0, None);
         let pixels = self.pixels.len() as u64;
-        let passes = [
-            ("draw/picture", &pipelines.picture, pixels),
-            ("draw/lit", &pipelines.picture_lit, pixels.min(self.lit_threads)),
-        ];
-        for (name, kernel, threads) in passes {
-            let group = kernel.bind(gpu, &own);
-            commands.compute(name, |pass| kernel.run(pass, &group, threads));
-        }
+        let group = picture.bind(gpu, &own);
+        commands.compute("draw/picture", |pass| picture.run(pass, &group, pixels));
+        let groups = kernels.picture_lit.each_ref().map(|kernel| kernel.bind(gpu, &own));
+        commands.compute("draw/lit", |pass| {
+            for (kernel, group) in kernels.picture_lit.iter().zip(&groups) {
+                kernel.run(pass, group, pixels.min(self.lit_threads));
+            }
+        });
     }
 }

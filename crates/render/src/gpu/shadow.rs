@@ -7,8 +7,7 @@ use std::fmt;
 use glam::{Mat4, Vec3, Vec4};
 use lovelock_gpu::{Commands, Gpu, wgpu};
 use lovelock_shadow::{
-    GpuColumns, GpuShadow, GpuShadowError, GpuShadowInput, GpuTargets, LightFrame, SUM_WORDS, ShadowMethod,
-    gpu_shadow,
+    GpuColumns, GpuShadow, GpuShadowInput, GpuTargets, LightFrame, SUM_WORDS, ShadowMethod, gpu_shadow,
 };
 
 use super::hair::HairBuffers;
@@ -144,12 +143,8 @@ impl GpuShadowStage {
 
     /// See [`GpuShadow::settle`].
     pub fn settle(&mut self, gpu: &Gpu) -> Result<bool, RenderError> {
-        match self.methods.get_mut(&self.method).map(|shadow| shadow.settle(gpu)) {
-            None => Ok(false),
-            Some(Ok(again)) => Ok(again),
-            Some(Err(GpuShadowError::Shadow(error))) => Err(error.into()),
-            Some(Err(GpuShadowError::Gpu(error))) => Err(error.into()),
-        }
+        let settled = self.methods.get_mut(&self.method).map(|shadow| shadow.settle(gpu));
+        Ok(settled.transpose()?.unwrap_or(false))
     }
 
     /// Encodes asking the map of slot `slot` of the last frame.

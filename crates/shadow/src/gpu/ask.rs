@@ -1,7 +1,7 @@
 //! Asking a map at many points, whatever its method.
 
 use bytemuck::{Pod, Zeroable};
-use lovelock_gpu::{Commands, Gpu, GpuError, Kernel, ShaderPart, ShaderSource, wgpu};
+use lovelock_gpu::{Commands, Constant, Gpu, GpuError, Kernel, ShaderPart, ShaderSource, wgpu};
 
 use super::{EXP, GpuTargets, wgsl};
 
@@ -34,12 +34,18 @@ fn source(query: &[ShaderPart], last: ShaderPart) -> ShaderSource {
 }
 
 impl Ask {
-    /// `query` defines `hair_transmittance` and, where `columns` is set, `behind_column` and `column_count`.
-    pub fn new(gpu: &Gpu, query: &[ShaderPart], columns: bool) -> Result<Self, GpuError> {
-        let points = Kernel::new(gpu, "ask", &source(query, ASK), "ask_points")?;
-        let columns = columns
-            .then(|| Kernel::new(gpu, "columns", &source(query, COLUMNS), "write_columns"))
-            .transpose()?;
+    /// `query` defines `hair_transmittance` and, where `columns` is set, `behind_column` and `column_count`; `constants` are
+    /// those of its `override`s.
+    pub fn new(
+        gpu: &Gpu,
+        query: &[ShaderPart],
+        columns: bool,
+        constants: &[Constant],
+    ) -> Result<Self, GpuError> {
+        let points = Kernel::specialised(gpu, "ask", &source(query, ASK), "ask_points", constants)?;
+        let write =
+            || Kernel::specialised(gpu, "columns", &source(query, COLUMNS), "write_columns", constants);
+        let columns = columns.then(write).transpose()?;
         let no_sum = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("no sum"),
             size: 16,

@@ -90,7 +90,8 @@ pub trait GpuShadow: Debug + Send {
     /// Encodes the passes that make the map of slot `slot`. Memory is kept from build to build.
     ///
     /// # Errors
-    /// The map would take more memory than the method may use or than the device gives to one buffer.
+    /// The map would take more memory than the method may use or than the device gives to one buffer; or the driver does not
+    /// compile what these settings need.
     fn build(
         &mut self,
         slot: usize,
@@ -98,7 +99,7 @@ pub trait GpuShadow: Debug + Send {
         commands: &mut Commands,
         input: &GpuShadowInput,
         settings: &ShadowSettings,
-    ) -> Result<(), ShadowError>;
+    ) -> Result<(), GpuShadowError>;
 
     /// Encodes asking the map of a slot, which must have been built, at many points.
     fn ask(&mut self, slot: usize, gpu: &Gpu, commands: &mut Commands, targets: &GpuTargets);
@@ -138,7 +139,7 @@ pub trait GpuShadow: Debug + Send {
     fn map_words(&self, slot: usize, gpu: &Gpu) -> Result<Vec<u32>, GpuError>;
 }
 
-/// Why a shadow failed on the GPU after it was handed over.
+/// Why a shadow failed on the GPU.
 #[derive(Debug, thiserror::Error)]
 pub enum GpuShadowError {
     /// It does not fit.

@@ -130,7 +130,11 @@ impl Built {
             let done = self.shadow.build(slot, self.gpu, &mut commands, input, settings);
             commands.submit();
             self.gpu.check().expect("the device takes it");
-            done?;
+            match done {
+                Ok(()) => {}
+                Err(GpuShadowError::Shadow(error)) => return Err(error),
+                Err(error) => panic!("{error}"),
+            }
             let wait = wgpu::PollType::wait_indefinitely();
             self.gpu.device.poll(wait).expect("the device is there");
             self.passes = self.timer.times(self.gpu);

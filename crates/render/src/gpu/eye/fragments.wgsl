@@ -5,6 +5,9 @@
 // A segment that may cover very many pixels is shared by some threads: where kernels run on the processor, one leaves its
 // loops after 65,535 rounds.
 
+// Whether a strand may be wide enough on the screen to be streaked.
+override STREAKED: bool = true;
+
 struct Fragment {
     // 1 at the near plane, falling to 0 at infinity.
     depth: f32,
@@ -111,20 +114,12 @@ fn each_fragment(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
                 continue;
             }
             let depth = a.at.z + (b.at.z - a.at.z) * along;
-            var seen = vec4<bool>(true);
-            if (depth < textureLoad(nearest, at, 0).x) {
-                seen = vec4f(depth) >= vec4f(
-                    textureLoad(depths, at, 0),
-                    textureLoad(depths, at, 1),
-                    textureLoad(depths, at, 2),
-                    textureLoad(depths, at, 3),
-                );
-                if (!any(seen)) {
-                    continue;
-                }
+            let seen = vec4f(depth) >= textureLoad(depths, at - eye.area.xy, 0);
+            if (!any(seen)) {
+                continue;
             }
             var gain = 1.0;
-            if (streaked) {
+            if (STREAKED && streaked) {
                 // A drawn strand stands for many hairs: where it is wide enough to show them, it is streaked like them.
                 let across = offset / half_width;
                 let wave = smoothstep(0.8, 2.0, half_width)

@@ -29,9 +29,9 @@ struct ShadedPoint {
 @group(0) @binding(1) var<storage, read> shaded: array<ShadedPoint>;
 // First point of each segment.
 @group(0) @binding(2) var<storage, read> segments: array<u32>;
-// The nearest depth of the body in each pixel of the picture, and the depths in its four samples.
-@group(0) @binding(3) var nearest: texture_2d<f32>;
-@group(0) @binding(8) var depths: texture_depth_multisampled_2d;
+// Depths of the body in the four samples of each pixel of the area, which behind.wgsl gathers from those of the picture.
+@group(0) @binding(3) var depths: texture_2d<f32>;
+@group(0) @binding(8) var samples: texture_depth_multisampled_2d;
 // What modes keep for the pixels of the area; everything is 0 to begin with.
 @group(0) @binding(4) var<storage, read_write> map: array<atomic<u32>>;
 // Fragments of all pixels of the area, `FRAGMENT_WORDS` each.

@@ -32,6 +32,9 @@ const FRAGMENTS: ShaderPart = part!("fragments.wgsl");
 const EACH_PIXEL: ShaderPart = part!("each_pixel.wgsl");
 const BEHIND: ShaderPart = part!("behind.wgsl");
 
+/// Half the width in pixels up to which no strand is streaked; less than what fragments.wgsl says, for rounding.
+pub(super) const WIDEST_PLAIN: f32 = 0.79;
+
 /// Words of one fragment in a list.
 const FRAGMENT_WORDS: u64 = 3;
 
@@ -50,8 +53,6 @@ pub(super) struct EyeUniform {
 
 /// What the eye's passes draw.
 pub(super) struct EyeInput<'a> {
-    pub width: u32,
-    pub height: u32,
     /// The part of the picture that may have hair.
     pub area: Area,
     /// Points as `ShadedPoint` has them.
@@ -63,6 +64,8 @@ pub(super) struct EyeInput<'a> {
     pub depth: &'a wgpu::TextureView,
     /// Half of the widest strand, pixels.
     pub reach: f32,
+    /// Whether a strand may be so wide that it is streaked.
+    pub streaked: bool,
     /// Opacity of a strand where it covers a pixel wholly.
     pub opacity: f32,
     pub transparency: Transparency,
@@ -87,8 +90,9 @@ impl EyeInput<'_> {
 #[derive(Debug)]
 pub(super) struct Eye {
     behind_kernel: Kernel,
-    modes: Vec<(Transparency, Vec<Kernel>)>,
-    nearest: Option<(wgpu::TextureView, [u32; 2])>,
+    /// By whether strands are streaked.
+    modes: Vec<((Transparency, bool), Vec<Kernel>)>,
+    depths: Option<AreaDepths>,
     map: GrowBuffer<u32>,
     list: GrowBuffer<u32>,
     total: wgpu::Buffer,
@@ -98,6 +102,14 @@ pub(super) struct Eye {
     least_bands: u32,
     /// Whether the last frame had lists.
     lists: Option<Lists>,
+}
+
+/// The depths of the body in the samples of each pixel of an area, for areas up to a size.
+#[derive(Debug)]
+struct AreaDepths {
+    view: wgpu::TextureView,
+    columns: u32,
+    rows: u32,
 }
 
 /// How the lists of a frame were cut.
@@ -119,19 +131,24 @@ impl Pass {
         ShaderSource::new(&parts)
     }
 
-    fn kernel(&self, gpu: &Gpu) -> Result<Kernel, GpuError> {
+    fn kernel(&self, gpu: &Gpu, streaked: bool) -> Result<Kernel, GpuError> {
         let entry = match self.over {
             Over::Fragments => "each_fragment",
             Over::Pixels => "each_pixel",
             Over::Groups(entry) => entry,
         };
-        Kernel::new(gpu, self.name, &self.source(), entry)
+        let constants = [("STREAKED", f64::from(u8::from(streaked)))];
+        Kernel::specialised(gpu, self.name, &self.source(), entry, &constants)
     }
+}
+
+fn behind_source() -> ShaderSource {
+    ShaderSource::new(&[FRAME, BEHIND, EACH_PIXEL])
 }
 
 /// Every composed shader with its label.
 pub(super) fn shaders() -> Vec<(String, ShaderSource)> {
-    let behind = ("behind".to_owned(), ShaderSource::new(&[BEHIND]));
+    let behind = ("behind".to_owned(), behind_source());
     let modes = Transparency::ALL.into_iter().flat_map(|transparency| {
         let passes = Mode::of(transparency).passes.iter();
         passes.map(move |pass| (format!("{transparency}: {}", pass.name), pass.source()))
@@ -144,9 +161,9 @@ impl Eye {
         let storage = wgpu::BufferUsages::STORAGE;
         let device = &gpu.device;
         Ok(Self {
-            behind_kernel: Kernel::new(gpu, "behind", &ShaderSource::new(&[BEHIND]), "read_depths")?,
+            behind_kernel: Kernel::new(gpu, "behind", &behind_source(), "each_pixel")?,
             modes: Vec::new(),
-            nearest: None,
+            depths: None,
             map: GrowBuffer::new(device, "eye maps", storage),
             list: GrowBuffer::new(device, "fragments", storage),
             total: device.create_buffer(&wgpu::BufferDescriptor {
@@ -173,35 +190,19 @@ impl Eye {
         buffers.iter().map(|buffer| buffer.size()).sum()
     }
 
-    /// The nearest depth of the body in each pixel, as `nearest` in frame.wgsl.
-    pub fn nearest(&self) -> Option<&wgpu::TextureView> {
-        self.nearest.as_ref().map(|(view, _)| view)
-    }
-
     /// Encodes drawing the hair into [`Eye::layer`].
     ///
     /// # Errors
     /// A shader that does not compile, or a picture whose rows are too long for this device's buffers.
     pub fn draw(&mut self, gpu: &Gpu, commands: &mut Commands, input: &EyeInput) -> Result<(), GpuError> {
-        let (device, pixels) = (&gpu.device, u64::from(input.width) * u64::from(input.height));
+        let device = &gpu.device;
         let mode = Mode::of(input.transparency);
         let Area { left, top, columns, rows: all_rows } = input.area;
-        if !self.modes.iter().any(|(known, _)| *known == input.transparency) {
-            let kernels = mode.passes.iter().map(|pass| pass.kernel(gpu)).collect::<Result<_, _>>()?;
-            self.modes.push((input.transparency, kernels));
+        let variant = (input.transparency, input.streaked);
+        if !self.modes.iter().any(|(known, _)| *known == variant) {
+            let kernels = mode.passes.iter().map(|pass| pass.kernel(gpu, input.streaked));
+            self.modes.push((variant, kernels.collect::<Result<_, _>>()?));
         }
-        let size = [input.width, input.height];
-        if self.nearest.as_ref().is_none_or(|(_, old)| *old != size) {
-            self.nearest = Some((nearest_texture(device, size), size));
-        }
-        let Some((nearest, _)) = &self.nearest else { return Ok(()) };
-        let resources = [
-            (0, wgpu::BindingResource::TextureView(input.depth)),
-            (1, wgpu::BindingResource::TextureView(nearest)),
-        ];
-        let group = self.behind_kernel.bind(gpu, &resources);
-        commands.compute("draw/behind", |pass| self.behind_kernel.run(pass, &group, pixels));
-
         self.lists = None;
         if input.area.is_empty() {
             return Ok(());
@@ -223,6 +224,8 @@ impl Eye {
             self.lists = Some(Lists { bands, rows: all_rows });
         }
         let rows = all_rows.div_ceil(bands);
+        self.depths.take_if(|held| held.columns < columns || held.rows < rows);
+        self.depths.get_or_insert_with(|| AreaDepths::new(device, columns, rows));
         self.map.reserve(device, (u64::from(rows) * row_bytes / 4) as usize);
         commands.encoder().clear_buffer(&self.total, 0, None);
         for first in (0..all_rows).step_by(rows as usize) {
@@ -253,18 +256,19 @@ impl Eye {
             lanes: input.lanes(),
             pad: [0; 3],
         };
-        let Some((nearest, _)) = &self.nearest else { return };
+        let Some(depths) = &self.depths else { return };
         let buffer = lovelock_gpu::constants(gpu, "eye", &uniform);
         let resources = [
             (0, buffer.as_entire_binding()),
             (1, input.shaded.as_entire_binding()),
             (2, input.segments.as_entire_binding()),
-            (3, wgpu::BindingResource::TextureView(nearest)),
+            (3, wgpu::BindingResource::TextureView(&depths.view)),
             (4, self.map.raw().as_entire_binding()),
             (5, self.list.raw().as_entire_binding()),
             (6, self.total.as_entire_binding()),
             (7, self.layer.raw().as_entire_binding()),
             (8, wgpu::BindingResource::TextureView(input.depth)),
+            (9, wgpu::BindingResource::TextureView(&depths.view)),
         ];
         let encoder = commands.encoder();
         encoder.clear_buffer(self.map.raw(), 0, Some((pixels * u64::from(mode.words) * 4).max(4)));
@@ -272,7 +276,10 @@ impl Eye {
             // Each band's list begins anew; the frame's total is the largest band's.
             encoder.clear_buffer(&self.total, 0, Some(4));
         }
-        let kernels = self.modes.iter().find(|(known, _)| *known == input.transparency);
+        let group = self.behind_kernel.bind(gpu, &resources);
+        commands.compute("draw/behind", |pass| self.behind_kernel.run(pass, &group, pixels));
+        let variant = (input.transparency, input.streaked);
+        let kernels = self.modes.iter().find(|(known, _)| *known == variant);
         let Some((_, kernels)) = kernels else { return };
         for (pass, kernel) in mode.passes.iter().zip(kernels) {
             let threads = match pass.over {
@@ -323,19 +330,23 @@ fn list_limit(gpu: &Gpu) -> u64 {
     gpu.most_storage_bytes().min(1 << 30) / (4 * FRAGMENT_WORDS)
 }
 
-/// A texture for the nearest depth of each pixel.
-fn nearest_texture(device: &wgpu::Device, [width, height]: [u32; 2]) -> wgpu::TextureView {
-    let texture = device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("nearest depths"),
-        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::R32Float,
-        usage: wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    });
-    texture.create_view(&wgpu::TextureViewDescriptor::default())
+impl AreaDepths {
+    /// For areas up to this size and a little larger, so that hair that sways needs no other one.
+    fn new(device: &wgpu::Device, columns: u32, rows: u32) -> Self {
+        let most = device.limits().max_texture_dimension_2d;
+        let [columns, rows] = [columns, rows].map(|side| side.next_multiple_of(64).min(most));
+        let texture = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("depths behind hair"),
+            size: wgpu::Extent3d { width: columns, height: rows, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba32Float,
+            usage: wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
+        Self { view: texture.create_view(&wgpu::TextureViewDescriptor::default()), columns, rows }
+    }
 }
 
 /// Says what does not fit.

@@ -32,11 +32,3 @@ fn graded(pixel: vec2u) -> vec3f {
     return mix(frame.background_top.xyz, frame.background_bottom.xyz, smoothstep(0.0, 1.0, down)) * pool;
 }
 
-// The background behind a pixel.
-fn backdrop(pixel: vec2u) -> vec3f {
-    var light = even_light(pixel);
-    if (light.w == 0.0) {
-        light = ground_light(ndc_of(pixel));
-    }
-    return graded(pixel) * light.rgb;
-}

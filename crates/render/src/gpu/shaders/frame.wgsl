@@ -42,9 +42,9 @@ struct FrameUniform {
 @group(0) @binding(2) var hair_columns: texture_2d_array<f32>;
 @group(0) @binding(3) var linear_clamp: sampler;
 
-fn light_count() -> u32 {
-    return min(u32(frame.eye_lights.w), MAX_LIGHTS);
-}
+// Lights that shine. What is done for a light is written out once for each of them: where kernels run on the processor, a number
+// that is read where its place is known is read once for all threads of a vector.
+override LIGHTS: u32 = MAX_LIGHTS;
 
 // How a surface with the unit normal `n` leans as light `i` sees it: its normal along u, v and toward the light.
 fn lean_of(i: u32, n: vec3f) -> vec3f {

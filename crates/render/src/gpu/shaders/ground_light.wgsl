@@ -1,5 +1,17 @@
 // The light that reaches the ground, as the picture sees it. Twin of `ground_place` and `ground_light` in cpu/backdrop.rs.
 
+const UP: vec3f = vec3f(0.0, 1.0, 0.0);
+
+// What light `k` sends to the ground where nothing is in its way.
+fn share_of(k: u32) -> vec3f {
+    return frame.lights[k].radiance_blur.xyz * max(-frame.lights[k].direction_specular.y, 0.0);
+}
+
+// How much of it comes there.
+fn left_on_ground(k: u32, p: vec3f) -> f32 {
+    return body_light(k, p, lean_of(k, UP), 0.004, 6u) * columns_light(k, p);
+}
+
 // The share of the light that is left on the ground behind a place of the picture, and whether there is ground: 1 or 0.
 // Where nothing is in the way, and above the horizon, the share is 1.
 fn ground_light(ndc: vec2f) -> vec4f {
@@ -10,14 +22,23 @@ fn ground_light(ndc: vec2f) -> vec4f {
         return vec4f(1.0, 1.0, 1.0, 0.0);
     }
     let p = eye - ray * (eye.y / ray.y);
-    let up = vec3f(0.0, 1.0, 0.0);
-    var full = 0.5 * ambient(up) * 3.14159;
+    var full = 0.5 * ambient(UP) * 3.14159;
     var lit = full;
-    for (var k = 0u; k < light_count(); k++) {
-        let light = frame.lights[k];
-        let share = light.radiance_blur.xyz * max(-light.direction_specular.y, 0.0);
-        full += share;
-        lit += share * body_light(k, p, lean_of(k, up), 0.004, 6u) * columns_light(k, p);
+    if (LIGHTS > 0u) {
+        full += share_of(0u);
+        lit += share_of(0u) * left_on_ground(0u, p);
+    }
+    if (LIGHTS > 1u) {
+        full += share_of(1u);
+        lit += share_of(1u) * left_on_ground(1u, p);
+    }
+    if (LIGHTS > 2u) {
+        full += share_of(2u);
+        lit += share_of(2u) * left_on_ground(2u, p);
+    }
+    if (LIGHTS > 3u) {
+        full += share_of(3u);
+        lit += share_of(3u) * left_on_ground(3u, p);
     }
     return vec4f(lit / max(full, vec3f(1e-4)), 1.0);
 }

@@ -5,8 +5,6 @@
 // 0 where there is no body.
 @group(0) @binding(6) var depths: texture_depth_multisampled_2d;
 @group(0) @binding(7) var<storage, read> corners: array<u32>;
-// The nearest of the depths in each pixel.
-@group(0) @binding(10) var nearest: texture_2d<f32>;
 // The part of the picture that may have hair: first column and row, columns and rows.
 @group(0) @binding(11) var<uniform> hair_area: vec4u;
 // The hair of each pixel of that part: its light times what it covers, and the share of the light behind that comes through, as four
@@ -14,9 +12,9 @@
 @group(0) @binding(8) var<storage, read> hair_layer: array<vec2u>;
 // Red, green, blue and alpha of each pixel.
 @group(0) @binding(9) var<storage, read_write> screen: array<u32>;
-// Pixels that are lit one by one, and how many they are.
+// Pixels that are lit one by one, in three lists one behind the other, and how many they are.
 @group(0) @binding(12) var<storage, read_write> lit_pixels: array<u32>;
-@group(0) @binding(13) var<storage, read_write> lit_count: atomic<u32>;
+@group(0) @binding(13) var<storage, read_write> lit_count: array<atomic<u32>, 3>;
 
 // Light that comes through hair and is no longer worth lighting what is behind: a fourth of a step of 8 bits.
 const UNSEEN: f32 = 1.0 / 1024.0;
@@ -75,9 +73,24 @@ fn join(group: Group, other: Seen, joins: bool) -> Group {
     return joined;
 }
 
+// What a pixel of each list shows, which decides what its kernel does: where kernels run on the processor, all threads of a
+// vector do what one of them must.
+const BODY: u32 = 0u;
+const GROUND_ONLY: u32 = 1u;
+const BODY_AND_GROUND: u32 = 2u;
+override LIST: u32 = BODY;
+
+// The background behind a pixel, whose light is not even where the list is not that of the body.
+fn backdrop(pixel: vec2u) -> vec3f {
+    if (LIST == BODY) {
+        return graded(pixel) * even_light(pixel).rgb;
+    }
+    return graded(pixel) * ground_light(ndc_of(pixel)).rgb;
+}
+
 // The body and what is behind it. Samples of one smooth piece are lit together, at the middle of the pixel.
 fn behind_hair(pixel: vec2u) -> vec3f {
-    if (textureLoad(nearest, pixel, 0).x == 0.0) {
+    if (LIST == GROUND_ONLY) {
         return backdrop(pixel);
     }
     let a = sample_at(pixel, 0, textureLoad(depths, pixel, 0));
@@ -140,8 +153,7 @@ fn write_pixel(i: u32, pixel: vec2u, light: vec3f) {
     screen[i] = pack4x8unorm(vec4f(tone_map(light, pixel), 1.0));
 }
 
-// Pixels of hair and even background. The others are listed: where kernels run on the processor, all threads of a vector pay
-// for what one of them does, and the body would be lit in the whole picture.
+// Pixels of hair and even background. The others are listed by what they show.
 @compute @workgroup_size(64)
 fn picture(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let i = id.x + id.y * groups.x * 64u;
@@ -152,21 +164,26 @@ fn picture(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) gr
     let pixel = vec2u(i % size.x, i / size.x);
     let hair = hair_of(pixel);
     let ground = even_light(pixel);
-    if (hair.w > UNSEEN && (textureLoad(nearest, pixel, 0).x > 0.0 || ground.w == 0.0)) {
-        lit_pixels[atomicAdd(&lit_count, 1u)] = i;
+    // Depths are not negative.
+    let body = textureLoad(depths, pixel, 0) + textureLoad(depths, pixel, 1) + textureLoad(depths, pixel, 2)
+        + textureLoad(depths, pixel, 3) > 0.0;
+    let uneven = ground.w == 0.0;
+    if (hair.w > UNSEEN && (body || uneven)) {
+        let list = select(GROUND_ONLY, select(BODY, BODY_AND_GROUND, uneven), body);
+        lit_pixels[list * size.x * size.y + atomicAdd(&lit_count[list], 1u)] = i;
     } else {
         write_pixel(i, pixel, hair.rgb + hair.w * graded(pixel) * ground.rgb);
     }
 }
 
-// The listed pixels, shared by the threads.
+// The pixels of a list, shared by the threads.
 @compute @workgroup_size(64)
 fn picture_lit(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
-    let width = u32(frame.size_scale_exposure.x);
-    let count = atomicLoad(&lit_count);
+    let size = vec2u(frame.size_scale_exposure.xy);
+    let count = atomicLoad(&lit_count[LIST]);
     for (var k = id.x; k < count; k += groups.x * 64u) {
-        let i = lit_pixels[k];
-        let pixel = vec2u(i % width, i / width);
+        let i = lit_pixels[LIST * size.x * size.y + k];
+        let pixel = vec2u(i % size.x, i / size.x);
         let hair = hair_of(pixel);
         write_pixel(i, pixel, hair.rgb + hair.w * behind_hair(pixel));
     }

@@ -26,6 +26,19 @@ fn project(p: vec3f) -> Projected {
     return Projected(pixel, ndc.z, clip.w);
 }
 
+// A point that is lit: its place, the unit tangent, the unit vector toward the eye, and the strand's colours there.
+struct Point { p: vec3f, t: vec3f, v: vec3f, color: StrandColor }
+
+// What light `k` makes a point send toward the eye, where hair leaves so much of it.
+fn light_of(k: u32, point: Point, lit: f32) -> vec3f {
+    let light = frame.lights[k];
+    // Roots lie on the skin: the bias keeps the skin under a strand from shadowing it.
+    let body = body_light(k, point.p, vec3f(0.0), 0.006, STRAND_TAPS);
+    let toward = -light.direction_specular.xyz;
+    return light.radiance_blur.xyz * (lit * body)
+        * strand_light(point.t, toward, point.v, point.color, light.direction_specular.w, lit);
+}
+
 @compute @workgroup_size(64)
 fn shade_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let i = id.x + id.y * groups.x * 64u;
@@ -60,20 +73,27 @@ fn shade_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroup
     let color = strand_color(frame.absorption_variation.xyz * variation * tip);
 
     let transmittance = unpack4x8unorm(light_left[i]);
+    let point = Point(p, t, v, color);
     var sum = vec3f(0.0);
-    var open = 0.0;
-    let lights = light_count();
-    for (var k = 0u; k < lights; k++) {
-        let light = frame.lights[k];
-        let lit = transmittance[k];
-        open += sqrt(lit);
-        // Roots lie on the skin: the bias keeps the skin under a strand from shadowing it.
-        let body = body_light(k, p, vec3f(0.0), 0.006, STRAND_TAPS);
-        sum += light.radiance_blur.xyz * (lit * body)
-            * strand_light(t, -light.direction_specular.xyz, v, color, light.direction_specular.w, lit);
+    var inside = 1.0;
+    if (LIGHTS > 0u) {
+        sum += light_of(0u, point, transmittance.x);
+        inside = sqrt(transmittance.x);
+    }
+    if (LIGHTS > 1u) {
+        sum += light_of(1u, point, transmittance.y);
+        inside += sqrt(transmittance.y);
+    }
+    if (LIGHTS > 2u) {
+        sum += light_of(2u, point, transmittance.z);
+        inside += sqrt(transmittance.z);
+    }
+    if (LIGHTS > 3u) {
+        sum += light_of(3u, point, transmittance.w);
+        inside += sqrt(transmittance.w);
     }
     // What comes from everywhere reaches the inside through the same hair; some of it always does.
-    let inside = select(1.0, open / f32(max(lights, 1u)), lights > 0u);
+    inside /= f32(max(LIGHTS, 1u));
     sum += 0.5 * ambient(vec3f(0.0, 0.3, 0.0)) * color.body * (0.22 + 0.78 * inside);
 
     let half_width = 0.5 * frame.width_opacity_tip_scalp.x * taper * frame.size_scale_exposure.z / max(here.w, 1e-3);

@@ -9,6 +9,30 @@ struct Surface {
     hair: vec4f,
 }
 
+// A place that is lit: its unit normal, the unit vector toward the eye, its colour, and how much of it is bare.
+struct Place { world: vec3f, n: vec3f, v: vec3f, albedo: vec3f, skin: f32 }
+
+// What light `k` makes a place send toward the eye, where hair leaves so much of it.
+fn light_of(k: u32, place: Place, left: f32) -> vec3f {
+    let light = frame.lights[k];
+    let l = -light.direction_specular.xyz;
+    let facing = dot(place.n, l);
+    // Light wraps a little round skin; the shadow map is asked only where light can come.
+    let wrapped = clamp((facing + 0.12) / 1.12, 0.0, 1.0);
+    var sum = vec3f(0.0);
+    if (wrapped > 0.0) {
+        // Where light grazes the skin, the flat triangles of a round limb keep it from each other.
+        let above = place.world + place.n * (0.002 + 0.004 * (1.0 - clamp(facing, 0.0, 1.0)));
+        let lit = body_light(k, above, lean_of(k, place.n), 0.003, SURFACE_TAPS) * left;
+        let h = normalize(l + place.v);
+        let gloss = 0.014 * place.skin * light.direction_specular.w
+            * (pow(max(dot(place.n, h), 0.0), 24.0) + 0.6 * pow(1.0 - max(dot(place.n, place.v), 0.0), 4.0));
+        sum = light.radiance_blur.xyz * lit
+            * (place.albedo * wrapped * 0.318 + vec3f(gloss) * clamp(facing, 0.0, 1.0));
+    }
+    return sum;
+}
+
 // Light that the body sends toward the eye.
 fn shade_surface(in: Surface) -> vec3f {
     let v = normalize(frame.eye_lights.xyz - in.world);
@@ -16,33 +40,26 @@ fn shade_surface(in: Surface) -> vec3f {
     // Under hair the skin is painted with the colour of the roots, so that gaps never read as baldness.
     let root = 0.3 * (exp(-2.8 * pow(max(frame.absorption_variation.xyz, vec3f(0.0)), vec3f(0.7))) + 0.012);
     let albedo = mix(in.color_scalp.rgb, root, 0.88 * smoothstep(0.15, 0.75, in.color_scalp.w));
-    let skin = 1.0 - in.color_scalp.w;
+    let place = Place(in.world, n, v, albedo, 1.0 - in.color_scalp.w);
     var sum = vec3f(0.0);
-    var open = 0.0;
-    let lights = light_count();
-    var k = 0u;
-    loop {
-        let light = frame.lights[k];
-        let l = -light.direction_specular.xyz;
-        let facing = dot(n, l);
-        open += select(0.0, in.hair[k], k < lights);
-        // Light wraps a little round skin; the shadow map is asked only where light can come.
-        let wrapped = clamp((facing + 0.12) / 1.12, 0.0, 1.0);
-        if (wrapped > 0.0 && k < lights) {
-            // Where light grazes the skin, the flat triangles of a round limb keep it from each other.
-            let above = in.world + n * (0.002 + 0.004 * (1.0 - clamp(facing, 0.0, 1.0)));
-            let lit = body_light(k, above, lean_of(k, n), 0.003, SURFACE_TAPS) * in.hair[k];
-            let h = normalize(l + v);
-            let gloss = 0.014 * skin * light.direction_specular.w
-                * (pow(max(dot(n, h), 0.0), 24.0) + 0.6 * pow(1.0 - max(dot(n, v), 0.0), 4.0));
-            sum += light.radiance_blur.xyz * lit * (albedo * wrapped * 0.318 + vec3f(gloss) * clamp(facing, 0.0, 1.0));
-        }
-        k++;
-        continuing {
-            break if k >= lights;
-        }
+    var inside = 1.0;
+    if (LIGHTS > 0u) {
+        sum += light_of(0u, place, in.hair.x);
+        inside = in.hair.x;
     }
-    let inside = select(1.0, open / f32(max(lights, 1u)), lights > 0u);
+    if (LIGHTS > 1u) {
+        sum += light_of(1u, place, in.hair.y);
+        inside += in.hair.y;
+    }
+    if (LIGHTS > 2u) {
+        sum += light_of(2u, place, in.hair.z);
+        inside += in.hair.z;
+    }
+    if (LIGHTS > 3u) {
+        sum += light_of(3u, place, in.hair.w);
+        inside += in.hair.w;
+    }
+    inside /= f32(max(LIGHTS, 1u));
     sum += 0.5 * ambient(n) * albedo * (0.35 + 0.65 * inside);
     return sum;
 }

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use lovelock_gpu::{Commands, Gpu, GpuError, ShaderPart, ShaderSource, wgpu};
 
-use crate::gpu::{Ask, GpuColumns, GpuShadow, GpuShadowInput, GpuTargets, wgsl};
+use crate::gpu::{Ask, GpuColumns, GpuShadow, GpuShadowError, GpuShadowInput, GpuTargets, wgsl};
 use crate::{ColumnMap, CpuShadow, RayStructure, ShadowError, ShadowInput, ShadowReport, ShadowSettings};
 
 /// Every point receives all light.
@@ -44,7 +44,7 @@ pub(crate) struct GpuNoShadow(Ask);
 
 impl GpuNoShadow {
     pub(crate) fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ask::new(gpu, &[QUERY], false).map(Self)
+        Ask::new(gpu, &[QUERY], false, &[]).map(Self)
     }
 
     pub(crate) fn shaders() -> Vec<(String, ShaderSource)> {
@@ -60,7 +60,7 @@ impl GpuShadow for GpuNoShadow {
         _commands: &mut Commands,
         _input: &GpuShadowInput,
         _settings: &ShadowSettings,
-    ) -> Result<(), ShadowError> {
+    ) -> Result<(), GpuShadowError> {
         Ok(())
     }
 

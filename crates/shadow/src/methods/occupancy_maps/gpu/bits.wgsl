@@ -8,8 +8,8 @@ fn put(texel: u32, depth: f32, weight: u32) {
     if ((atomicLoad(&map[word]) & bit) == 0u) {
         atomicOr(&map[word], bit);
     }
-    let slab = slice >> texels.whole.z;
-    let counts = record + 2u + (texels.whole.x >> 5u) + (slab >> 1u);
+    let slab = slice >> SLAB_SHIFT;
+    let counts = counts_of(record) + (slab >> 1u);
     let shift = 16u * (slab & 1u);
     var before = atomicLoad(&map[counts]);
     if (((before >> shift) & 0xffffu) < 0x8000u) {

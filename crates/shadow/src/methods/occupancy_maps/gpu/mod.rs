@@ -2,7 +2,7 @@
 //!
 //! A record of 128 slices and 8 slabs has 40 bytes, as published: 10 MiB at 512².
 
-use lovelock_gpu::ShaderPart;
+use lovelock_gpu::{Constant, ShaderPart};
 
 use super::Occupancy;
 use crate::gpu::wgsl;
@@ -23,11 +23,11 @@ impl GpuTexelMethod for Occupancy {
 
     fn needs(&self) -> Needs {
         let words = 2 + self.bit_words() as u32 + self.slabs / 2;
-        Needs {
-            map_words: u64::from(words),
-            scratch_words: RANGE_WORDS,
-            whole: [self.slices, self.slabs, self.slab_shift(), words],
-            ..Needs::default()
-        }
+        Needs { map_words: u64::from(words), scratch_words: RANGE_WORDS, ..Needs::default() }
+    }
+
+    fn constants(&self) -> Vec<Constant> {
+        let constants = [("SLICES", self.slices), ("SLABS", self.slabs), ("SLAB_SHIFT", self.slab_shift())];
+        constants.map(|(name, value)| (name, f64::from(value))).to_vec()
     }
 }

@@ -1,60 +1,70 @@
 // Optical depth before a point: that of the slabs before its own, and of its own the share of occupied slices before it.
+//
+// Nothing is branched on but what the pipeline is made for: every reading is done for every point.
+
+// Fragments of the slabs before one, and of itself, among two whose counts are in one word.
+fn around(counts: u32, two: u32, slab: u32) -> vec2u {
+    let words = map[counts + two];
+    let low = words & 0xffffu;
+    let high = words >> 16u;
+    let first = 2u * two;
+    return vec2u(
+        select(0u, low, first < slab) + select(0u, high, first + 1u < slab),
+        select(0u, low, first == slab) + select(0u, high, first + 1u == slab),
+    );
+}
+
+// The bits of a word of a slab that are set, and those of them that lie before the slice.
+fn occupied_in(bits: u32, first: u32, k: u32, slice: u32) -> vec2u {
+    let ones = countOneBits(map[bits + first + k]);
+    return vec2u(ones, select(0u, ones, first + k < (slice >> 5u)));
+}
 
 fn depth_before(texel: u32, depth: f32) -> f32 {
     let record = record_of(texel);
     let near_word = map[record];
     let far_word = map[record + 1u];
     let near = bitcast<f32>((near_word >> SPARE) << 3u);
-    // The mean of a texel with hair is not 0.
-    if (depth <= near || (near_word | far_word) == 0u) {
-        return 0.0;
-    }
     let far = bitcast<f32>((far_word >> SPARE) << 3u);
     let mean = f32(1023u + ((near_word & 31u) | ((far_word & 31u) << 5u)));
     let bits = record + 2u;
-    let counts = bits + (texels.whole.x >> 5u);
+    let counts = counts_of(record);
     let place = slice_of(near, far, depth);
     let slice = u32(place.x);
     // Behind all hair every slab lies before.
-    let slab = select(slice >> texels.whole.z, texels.whole.y, depth >= far);
-    // Counts, two a word: those of the slabs before, and of the slab itself.
-    var before = 0u;
-    var own = 0u;
-    for (var k = 0u; k < texels.whole.y / 2u && 2u * k <= slab; k++) {
-        let two = map[counts + k];
-        let low = two & 0xffffu;
-        let high = two >> 16u;
-        before += select(0u, low, 2u * k < slab) + select(0u, high, 2u * k + 1u < slab);
-        own += select(0u, low, 2u * k == slab) + select(0u, high, 2u * k + 1u == slab);
+    let slab = select(slice >> SLAB_SHIFT, SLABS, depth >= far);
+    var sums = around(counts, 0u, slab) + around(counts, 1u, slab);
+    if (SLABS > 4u) {
+        sums += around(counts, 2u, slab) + around(counts, 3u, slab);
     }
-    if (depth >= far) {
-        return depth_of_weight(f32(before) * mean);
-    }
-    // Fragments of one depth lie between two neighbouring numbers here. A point at this depth comes before them.
-    if ((far_word >> SPARE) - (near_word >> SPARE) <= 1u) {
-        return 0.0;
+    if (SLABS > 8u) {
+        sums += around(counts, 4u, slab) + around(counts, 5u, slab);
+        sums += around(counts, 6u, slab) + around(counts, 7u, slab);
     }
     // Bits of the slab, and those of them before the slice.
-    var occupied = 0u;
-    var passed = 0u;
     let slice_bits = map[bits + (slice >> 5u)];
     let before_slice = slice_bits & ((1u << (slice & 31u)) - 1u);
-    if (texels.whole.z <= 5u) {
+    var occupied: vec2u;
+    if (SLAB_SHIFT <= 5u) {
         // A slab lies within one word.
-        let first = (slab << texels.whole.z) & 31u;
-        let mask = (0xffffffffu >> (32u - (1u << texels.whole.z))) << first;
-        occupied = countOneBits(slice_bits & mask);
-        passed = countOneBits(before_slice & mask);
+        let first = (slice >> SLAB_SHIFT << SLAB_SHIFT) & 31u;
+        let mask = (0xffffffffu >> (32u - (1u << min(SLAB_SHIFT, 5u)))) << first;
+        occupied = vec2u(countOneBits(slice_bits & mask), countOneBits(before_slice & mask));
     } else {
-        let first = slab << (texels.whole.z - 5u);
-        passed = countOneBits(before_slice);
-        for (var k = 0u; k < (1u << (texels.whole.z - 5u)); k++) {
-            let ones = countOneBits(map[bits + first + k]);
-            occupied += ones;
-            passed += select(0u, ones, first + k < (slice >> 5u));
+        let first = slice >> SLAB_SHIFT << (max(SLAB_SHIFT, 5u) - 5u);
+        occupied = occupied_in(bits, first, 0u, slice) + occupied_in(bits, first, 1u, slice);
+        if (SLAB_SHIFT > 6u) {
+            occupied += occupied_in(bits, first, 2u, slice) + occupied_in(bits, first, 3u, slice);
         }
+        occupied.y += countOneBits(before_slice);
     }
     let own_bit = f32((slice_bits >> (slice & 31u)) & 1u);
-    let share = (f32(passed) + place.y * own_bit) / f32(max(occupied, 1u));
-    return depth_of_weight((f32(before) + share * f32(own)) * mean);
+    let share = (f32(occupied.y) + place.y * own_bit) / f32(max(occupied.x, 1u));
+    // Fragments of one depth lie between two neighbouring numbers here. A point at this depth comes before them.
+    let one_depth = (far_word >> SPARE) - (near_word >> SPARE) <= 1u;
+    let within = select(f32(sums.x) + share * f32(sums.y), 0.0, one_depth);
+    let fragments = select(within, f32(sums.x), depth >= far);
+    // The mean of a texel with hair is not 0.
+    let before_all = depth <= near || (near_word | far_word) == 0u;
+    return select(depth_of_weight(fragments * mean), 0.0, before_all);
 }

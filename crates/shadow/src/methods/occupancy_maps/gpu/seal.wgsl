@@ -7,8 +7,8 @@ fn texel_pass(texel: u32) {
     }
     let record = record_of(texel);
     var count = 0u;
-    let first = record + 2u + (texels.whole.x >> 5u);
-    for (var k = 0u; k < texels.whole.y / 2u; k++) {
+    let first = counts_of(record);
+    for (var k = 0u; k < SLABS / 2u; k++) {
         let two = atomicLoad(&map[first + k]);
         count += (two & 0xffffu) + (two >> 16u);
     }

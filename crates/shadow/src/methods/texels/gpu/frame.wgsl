@@ -7,8 +7,8 @@ struct TexelUniform {
     column: vec4f,
     row: vec4f,
     depth: vec4f,
-    // Texels along each edge, segments, filter (0 nearest, 1 bilinear, 2 jitter), texels.
-    size: vec4u,
+    // Texels along each edge, segments, texels.
+    size: vec3u,
     // What the method sets.
     whole: vec4u,
     broken: array<vec4f, 8>,

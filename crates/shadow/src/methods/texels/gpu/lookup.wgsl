@@ -3,15 +3,17 @@
 
 @group(0) @binding(3) var<storage, read> map: array<u32>;
 
+// What a point reads: the texel that it lies in (0), the mean of the four around it (1), or the texel of a place near by (2).
+override FILTER: u32 = 1u;
+
 // A depth behind all hair.
 const BEHIND: f32 = 2.0;
 
 fn texel_light(column: i32, row: i32, depth: f32) -> f32 {
     let n = i32(texels.size.x);
-    if (column < 0 || column >= n || row < 0 || row >= n) {
-        return 1.0;
-    }
-    return exp_of_minus(depth_before(u32(row * n + column), depth));
+    let at = clamp(vec2i(column, row), vec2i(0), vec2i(n - 1));
+    let light = exp_of_minus(depth_before(u32(at.y * n + at.x), depth));
+    return select(1.0, light, all(at == vec2i(column, row)));
 }
 
 // A hash of a place, the same on every device as long as it is not within a rounding of an eighth of a millimetre's
@@ -28,18 +30,12 @@ fn place_hash(p: vec3f) -> vec2f {
     return vec2f(v.xy >> vec2u(8u)) * (1.0 / 16777216.0);
 }
 
-// Share of the light that reaches a point through the hair.
-fn hair_transmittance(world_position: vec3f) -> f32 {
-    let p = texel_from_world(world_position);
-    let end = f32(texels.size.x) + 1.0;
-    // False for what is no number. Before all hair everything is lit.
-    if (!(p.x > -1.0 && p.x < end && p.y > -1.0 && p.y < end && p.z > 0.0)) {
-        return 1.0;
-    }
+// Share of the light that reaches a place of the map.
+fn light_at(p: vec3f, world_position: vec3f) -> f32 {
     let depth = min(p.z, BEHIND);
-    if (texels.size.z != 1u) {
+    if (FILTER != 1u) {
         var at = p.xy;
-        if (texels.size.z == 2u) {
+        if (FILTER == 2u) {
             at += place_hash(world_position) - 0.5;
         }
         let texel = vec2i(floor(at));
@@ -56,6 +52,16 @@ fn hair_transmittance(world_position: vec3f) -> f32 {
     let near = a + (b - a) * part.x;
     let far = c + (d - c) * part.x;
     return min(near + (far - near) * part.y, 1.0);
+}
+
+// Share of the light that reaches a point through the hair.
+fn hair_transmittance(world_position: vec3f) -> f32 {
+    let p = texel_from_world(world_position);
+    let end = f32(texels.size.x) + 1.0;
+    // False for what is no number. Before all hair everything is lit.
+    let inside = p.x > -1.0 && p.x < end && p.y > -1.0 && p.y < end && p.z > 0.0;
+    // Asked for every point: where kernels run on the processor, a branch would be no quicker.
+    return select(1.0, light_at(select(vec3f(0.0), p, inside), world_position), inside);
 }
 
 fn column_count() -> u32 {

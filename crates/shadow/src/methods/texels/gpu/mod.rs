@@ -4,6 +4,7 @@
 //! in which threads run. Each pass over the segments is lines.wgsl with its own `put`; each pass over the texels is
 //! `each_texel.wgsl` with its own `texel_pass`. A method is a list of passes and a query.
 
+mod kernels;
 pub(crate) mod list;
 #[cfg(test)]
 mod tests;
@@ -13,8 +14,9 @@ use std::marker::PhantomData;
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec4;
-use lovelock_gpu::{Commands, Gpu, GpuError, Kernel, ShaderPart, ShaderSource, read_buffer, wgpu};
+use lovelock_gpu::{Commands, Constant, Gpu, GpuError, Kernel, ShaderPart, ShaderSource, read_buffer, wgpu};
 
+use self::kernels::KernelSets;
 use self::list::{List, Share, Unsettled};
 use super::{TexelFilter, TexelFrame, TexelMethod};
 use crate::gpu::{
@@ -45,7 +47,8 @@ pub(crate) struct TexelUniform {
     column: Vec4,
     row: Vec4,
     depth: Vec4,
-    size: [u32; 4],
+    size: [u32; 3],
+    pad: u32,
     whole: [u32; 4],
     broken: [f32; 32],
 }
@@ -84,13 +87,13 @@ impl Pass {
         ShaderSource::new(&parts)
     }
 
-    fn kernel(&self, gpu: &Gpu) -> Result<Kernel, GpuError> {
+    fn kernel(&self, gpu: &Gpu, constants: &[Constant]) -> Result<Kernel, GpuError> {
         let entry = match self.over {
             Over::Segments | Over::FilteredSegments => "draw",
             Over::Texels => "each_texel",
             Over::Groups => "each_group",
         };
-        Kernel::new(gpu, self.name, &self.source(), entry)
+        Kernel::specialised(gpu, self.name, &self.source(), entry, constants)
     }
 }
 
@@ -118,6 +121,11 @@ pub(crate) trait GpuTexelMethod: TexelMethod {
 
     fn needs(&self) -> Needs;
 
+    /// The method's own constants of its shaders: settings of which there are few, for each set of them is compiled.
+    fn constants(&self) -> Vec<Constant> {
+        Vec::new()
+    }
+
     /// The passes to run, by their place in [`GpuTexelMethod::PASSES`]; one may run more than once.
     fn schedule(&self) -> Vec<usize> {
         (0..Self::PASSES.len()).collect()
@@ -127,8 +135,7 @@ pub(crate) trait GpuTexelMethod: TexelMethod {
 /// A method with a record for each texel, on the GPU.
 #[derive(Debug)]
 pub(crate) struct TexelShadow<M: GpuTexelMethod> {
-    passes: Vec<Kernel>,
-    ask: Ask,
+    kernels: KernelSets,
     scratch: Buffer,
     maps: Vec<Map>,
     _method: PhantomData<M>,
@@ -149,8 +156,12 @@ struct Map {
 impl<M: GpuTexelMethod> TexelShadow<M> {
     pub(crate) fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self {
-            passes: M::PASSES.iter().map(|pass| pass.kernel(gpu)).collect::<Result<_, _>>()?,
-            ask: Ask::new(gpu, &Self::query(), true)?,
+            kernels: KernelSets::new(
+                gpu,
+                M::PASSES,
+                &Self::query(),
+                Self::constants(&M::new(&ShadowSettings::default())),
+            )?,
             scratch: Buffer::new(gpu, "shadow scratch"),
             maps: Vec::new(),
             _method: PhantomData,
@@ -161,6 +172,16 @@ impl<M: GpuTexelMethod> TexelShadow<M> {
     pub(crate) fn shaders() -> Vec<(String, ShaderSource)> {
         let passes = M::PASSES.iter().map(|pass| (pass.name.to_owned(), pass.source()));
         passes.chain(Ask::shaders(&Self::query(), true)).collect()
+    }
+
+    /// The constants of all shaders.
+    fn constants(method: &M) -> Vec<Constant> {
+        let filter = match method.filter() {
+            TexelFilter::Nearest => 0,
+            TexelFilter::Bilinear => 1,
+            TexelFilter::Jitter => 2,
+        };
+        [("FILTER", f64::from(filter))].into_iter().chain(method.constants()).collect()
     }
 
     fn query() -> Vec<ShaderPart> {
@@ -202,26 +223,16 @@ impl Map {
 }
 
 impl TexelUniform {
-    fn new(
-        frame: &TexelFrame,
-        depth_per_texel: f32,
-        segments: u32,
-        filter: TexelFilter,
-        needs: &Needs,
-    ) -> Self {
+    fn new(frame: &TexelFrame, depth_per_texel: f32, segments: u32, needs: &Needs) -> Self {
         let axes = frame.axes();
         let texels = frame.resolution * frame.resolution;
-        let filter = match filter {
-            TexelFilter::Nearest => 0,
-            TexelFilter::Bilinear => 1,
-            TexelFilter::Jitter => 2,
-        };
         Self {
             anchor: axes.anchor.extend(depth_per_texel),
             column: axes.column.extend(axes.offset.x),
             row: axes.row.extend(axes.offset.y),
             depth: axes.depth.extend(axes.offset.z),
-            size: [frame.resolution, segments, filter, texels],
+            size: [frame.resolution, segments, texels],
+            pad: 0,
             whole: needs.whole,
             broken: needs.broken,
         }
@@ -236,7 +247,7 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
         commands: &mut Commands,
         input: &GpuShadowInput,
         settings: &ShadowSettings,
-    ) -> Result<(), ShadowError> {
+    ) -> Result<(), GpuShadowError> {
         // Lights that are gone leave nothing behind.
         self.maps.truncate(input.maps.max(1) as usize);
         let method = M::new(settings);
@@ -259,13 +270,14 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
         };
         if let Err(error) = fits {
             *self.map(gpu, slot) = Map::new(gpu, M::LISTS);
-            return Err(error);
+            return Err(error.into());
         }
+        self.kernels.choose(gpu, M::PASSES, &Self::query(), Self::constants(&method))?;
 
         self.scratch.fit(gpu, scratch_words);
         let depth = depth_per_texel(settings, input.strand_width, &frame);
         let segments = input.strands.segment_count;
-        let uniform = TexelUniform::new(&frame, depth, segments, method.filter(), &needs);
+        let uniform = TexelUniform::new(&frame, depth, segments, &needs);
         let map = self.map(gpu, slot);
         map.words.fit(gpu, map_words);
         map.used = map_words;
@@ -297,7 +309,7 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
             (4, self.scratch.raw().as_entire_binding()),
         ]);
         for at in method.schedule() {
-            let (pass, kernel) = (&M::PASSES[at], &self.passes[at]);
+            let (pass, kernel) = (&M::PASSES[at], &self.kernels.chosen().passes[at]);
             let group = kernel.bind(gpu, &resources);
             let threads = match pass.over {
                 Over::Segments | Over::FilteredSegments => u64::from(segments),
@@ -310,7 +322,7 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
 
     fn ask(&mut self, slot: usize, gpu: &Gpu, commands: &mut Commands, targets: &GpuTargets) {
         let Some(map) = self.maps.get(slot) else { return };
-        self.ask.run(gpu, commands, slot, &map.resources(), targets);
+        self.kernels.chosen().ask.run(gpu, commands, slot, &map.resources(), targets);
     }
 
     fn columns_size(&self, slot: usize) -> u32 {
@@ -326,7 +338,7 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
     ) -> Option<GpuColumns> {
         let map = self.maps.get(slot)?;
         let frame = map.frame?;
-        self.ask.write_columns(gpu, commands, &map.resources(), frame.resolution, into);
+        self.kernels.chosen().ask.write_columns(gpu, commands, &map.resources(), frame.resolution, into);
         Some(GpuColumns { size: frame.resolution, uv_from_world: frame.uv_from_world() })
     }
 

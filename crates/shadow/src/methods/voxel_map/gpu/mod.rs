@@ -8,8 +8,10 @@ use lovelock_gpu::{Commands, Gpu, GpuError, Kernel, ShaderPart, ShaderSource, re
 
 use super::cpu::fixed_point_depth;
 use super::{Lattice, VoxelDeposit, VoxelFilter};
-use crate::gpu::{Ask, Buffer, GpuColumns, GpuShadow, GpuShadowInput, GpuTargets, fits_device, wgsl};
-use crate::{ShadowError, ShadowMethod, ShadowReport, ShadowSettings};
+use crate::gpu::{
+    Ask, Buffer, GpuColumns, GpuShadow, GpuShadowError, GpuShadowInput, GpuTargets, fits_device, wgsl,
+};
+use crate::{ShadowMethod, ShadowReport, ShadowSettings};
 
 const FRAME: ShaderPart = wgsl!("methods/voxel_map/gpu/", "frame.wgsl");
 const DEPOSIT: ShaderPart = wgsl!("methods/voxel_map/gpu/", "deposit.wgsl");
@@ -104,7 +106,7 @@ impl GpuVoxelMap {
             segments: Kernel::new(gpu, DENSITY_PASS, &deposit_source(), "deposit_segments")?,
             points: Kernel::new(gpu, DENSITY_PASS, &deposit_source(), "deposit_points")?,
             sum: Kernel::new(gpu, SUM_PASS, &sum_source(), "sum_columns")?,
-            ask: Ask::new(gpu, &QUERY, true)?,
+            ask: Ask::new(gpu, &QUERY, true, &[])?,
             full: Buffer::new(gpu, "full voxels"),
             maps: Vec::new(),
         })
@@ -125,7 +127,7 @@ impl GpuShadow for GpuVoxelMap {
         commands: &mut Commands,
         input: &GpuShadowInput,
         settings: &ShadowSettings,
-    ) -> Result<(), ShadowError> {
+    ) -> Result<(), GpuShadowError> {
         let ours = &settings.voxel_map;
         let placed = (input.light, input.anchor);
         let lattice = Lattice::place(placed, || input.longest_strand, ours, &input.bounds);
@@ -137,7 +139,7 @@ impl GpuShadow for GpuVoxelMap {
         }
         if let Err(error) = fits_device(gpu, ShadowMethod::VoxelMap, 4 * cells) {
             self.maps[slot] = Map::new(gpu);
-            return Err(error);
+            return Err(error.into());
         }
         self.full.fit(gpu, cells / 32);
         let map = &mut self.maps[slot];

@@ -1,0 +1,66 @@
+//! The kernels in which lights shine, compiled for how many do.
+
+use lovelock_gpu::{Constant, Gpu, GpuError, Kernel, ShaderSource};
+
+use crate::MAX_LIGHTS;
+
+/// The lists of pixels that are lit one by one; twin of `BODY`, `GROUND_ONLY` and `BODY_AND_GROUND` in picture.wgsl.
+pub(super) const LISTS: usize = 3;
+
+/// The kernels for one number of lights.
+#[derive(Debug)]
+pub(super) struct LightKernels {
+    pub shade_points: Kernel,
+    pub ground: Kernel,
+    /// Lights the pixels of each list.
+    pub picture_lit: [Kernel; LISTS],
+}
+
+/// What these kernels are composed of.
+#[derive(Debug)]
+pub(super) struct LightShaders {
+    pub points: ShaderSource,
+    pub ground: ShaderSource,
+    pub picture: ShaderSource,
+}
+
+/// The kernels for each number of lights that has been used.
+#[derive(Debug)]
+pub(super) struct LightVariants {
+    shaders: LightShaders,
+    made: [Option<LightKernels>; MAX_LIGHTS + 1],
+}
+
+impl LightShaders {
+    fn compile(&self, gpu: &Gpu, lights: usize) -> Result<LightKernels, GpuError> {
+        let count = ("LIGHTS", lights as f64);
+        let kernel = |label, source, entry, constants: &[Constant]| {
+            Kernel::specialised(gpu, label, source, entry, constants)
+        };
+        let lit = |list: f64| kernel("picture lit", &self.picture, "picture_lit", &[count, ("LIST", list)]);
+        Ok(LightKernels {
+            shade_points: kernel("strand points", &self.points, "shade_points", &[count])?,
+            ground: kernel("ground", &self.ground, "ground_corners", &[count])?,
+            picture_lit: [lit(0.0)?, lit(1.0)?, lit(2.0)?],
+        })
+    }
+}
+
+impl LightVariants {
+    pub fn new(shaders: LightShaders) -> Self {
+        Self { shaders, made: [const { None }; MAX_LIGHTS + 1] }
+    }
+
+    /// The kernels for so many lights.
+    ///
+    /// # Errors
+    /// The driver does not compile them.
+    pub fn of(&mut self, gpu: &Gpu, lights: usize) -> Result<&LightKernels, GpuError> {
+        let lights = lights.min(MAX_LIGHTS);
+        let made = &mut self.made[lights];
+        if made.is_none() {
+            *made = Some(self.shaders.compile(gpu, lights)?);
+        }
+        made.as_ref().ok_or_else(|| GpuError::Refused("no kernels for the lights".to_owned()))
+    }
+}

@@ -1,0 +1,69 @@
+//! The kernels of a method, compiled for what its settings make the same for every thread.
+
+use lovelock_gpu::{Constant, Gpu, GpuError, Kernel, ShaderPart};
+
+use super::Pass;
+use crate::gpu::Ask;
+
+/// Sets of kernels that are kept, so that turning a setting to and fro compiles nothing anew.
+const MOST_KEPT: usize = 8;
+
+/// The kernels for some values of the shaders' constants.
+#[derive(Debug)]
+pub(super) struct Kernels {
+    constants: Vec<Constant>,
+    pub passes: Vec<Kernel>,
+    pub ask: Ask,
+}
+
+/// The sets of kernels of a method; there is always one. The set in use is the first.
+#[derive(Debug)]
+pub(super) struct KernelSets(Vec<Kernels>);
+
+impl Kernels {
+    fn new(
+        gpu: &Gpu,
+        passes: &[Pass],
+        query: &[ShaderPart],
+        constants: Vec<Constant>,
+    ) -> Result<Self, GpuError> {
+        let ask = Ask::new(gpu, query, true, &constants)?;
+        let passes = passes.iter().map(|pass| pass.kernel(gpu, &constants)).collect::<Result<_, _>>()?;
+        Ok(Self { constants, passes, ask })
+    }
+}
+
+impl KernelSets {
+    /// Compiles a first set.
+    pub fn new(
+        gpu: &Gpu,
+        passes: &[Pass],
+        query: &[ShaderPart],
+        constants: Vec<Constant>,
+    ) -> Result<Self, GpuError> {
+        Ok(Self(vec![Kernels::new(gpu, passes, query, constants)?]))
+    }
+
+    /// Uses the set for these constants, which is compiled where there is none.
+    pub fn choose(
+        &mut self,
+        gpu: &Gpu,
+        passes: &[Pass],
+        query: &[ShaderPart],
+        constants: Vec<Constant>,
+    ) -> Result<(), GpuError> {
+        if let Some(at) = self.0.iter().position(|set| set.constants == constants) {
+            self.0[..=at].rotate_right(1);
+            return Ok(());
+        }
+        let set = Kernels::new(gpu, passes, query, constants)?;
+        self.0.truncate(MOST_KEPT - 1);
+        self.0.insert(0, set);
+        Ok(())
+    }
+
+    /// The set in use.
+    pub fn chosen(&self) -> &Kernels {
+        &self.0[0]
+    }
+}
