@@ -4,7 +4,7 @@
 //! an H.264 film in an MP4 file ([`FilmWriter`]) or as a folder of PNG files with a manifest
 //! ([`SequenceWriter`]). [`PictureSink`] is the one type over both; it picks by the output's name.
 //!
-//! Three promises hold for every output:
+//! Three promises hold for every film and sequence:
 //!
 //! - Nothing unfinished ever carries the final name: a file grows as `NAME.partial` beside it and is renamed when it
 //!   is whole. An error or a cancel removes it.
@@ -12,7 +12,8 @@
 //!   `push` waits when the encoder is behind.
 //! - The same pictures give the same bytes: the encoder runs on one thread and no clock is read.
 //!
-//! A [`TakeWriter`] records the simulation itself, and a [`TakeReader`] plays it; a take that was cut short is kept.
+//! A [`TakeWriter`] records the simulation itself, and a [`TakeReader`] plays it. A take grows as `NAME.part`, and what
+//! is there is kept and can be played, whatever ends it.
 //!
 //! [`read_film`] and [`FilmReader`] read a film back without any other program.
 

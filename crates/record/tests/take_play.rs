@@ -35,6 +35,9 @@ fn a_played_frame_is_the_recorded_one() {
     assert!(!is_frame(&take.frame(10).unwrap(), 9, SIZE));
     assert!(worst(&take.frame(10).unwrap().guides.guides, &frame(9, SIZE).guides.guides) > MOST_ERROR_M);
     assert!(take.verify().unwrap().is_whole());
+    let again = folder.path().join("again.take");
+    record(&again, 150, SIZE);
+    assert!(fs::read(&again).unwrap() == fs::read(&path).unwrap(), "the same frames make the same bytes");
     assert!(matches!(take.frame(150), Err(TakeError::NoSuchFrame { frame: 150, frames: 150, .. })));
 }
 
