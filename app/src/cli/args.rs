@@ -96,7 +96,7 @@ pub(crate) struct Compare {
     /// The frame to look at; the project's first one where none is given.
     #[arg(long, value_name = "N", conflicts_with = "frames")]
     pub(crate) frame: Option<u64>,
-    /// Frames to look at, half open, such as 30..40: pictures, errors and times of the first one, pop and flicker of all.
+    /// Frames to look at, half open, such as 30..40: pictures, errors and times of the first one, swim, pop and flicker of all.
     #[arg(long, value_name = "A..B", value_parser = frames)]
     pub(crate) frames: Option<Range<u64>>,
     /// Frames a second.

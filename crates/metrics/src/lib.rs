@@ -28,5 +28,5 @@ pub use pareto::pareto;
 pub use psnr::psnr_db;
 pub use spread::{Spread, percentile};
 pub use ssim::ssim;
-pub use stability::{Stability, flicker, pop, swim};
+pub use stability::{Stability, excess, flicker, pop, swim};
 pub use ticks::{Ticks, ticks};

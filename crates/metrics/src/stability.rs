@@ -50,6 +50,17 @@ pub fn swim(shifts: &[Vec<f32>]) -> Stability {
     Stability::of((0..points(shifts)).map(deviation).collect())
 }
 
+impl Stability {
+    /// The same over all frames of which `frames` are the numbers: at each point the root of the mean square of its own.
+    pub fn over_frames(frames: &[Self]) -> Self {
+        let count = frames.len().max(1) as f64;
+        let squared =
+            |point: usize| frames.iter().map(move |frame| f64::from(frame.per_point[point]).powi(2));
+        let points = points(frames.iter().map(|frame| &frame.per_point));
+        Self::of((0..points).map(|point| (squared(point).sum::<f64>() / count).sqrt() as f32).collect())
+    }
+}
+
 /// Pop: at each point the largest change from one frame to the next. The number to quote is `max`, or `p99` where
 /// the hair itself moves.
 pub fn pop(frames: &[Vec<f32>]) -> Stability {
@@ -74,6 +85,18 @@ pub fn flicker(test: &[Vec<f32>], reference: &[Vec<f32>]) -> Stability {
     Stability::of((0..points(test.iter().chain(reference))).map(own).collect())
 }
 
+/// Excess: at each point the largest change from one frame to the next that is not the reference's own, as
+/// [`flicker`]'s of one step. The number to quote is `max`.
+pub fn excess(test: &[Vec<f32>], reference: &[Vec<f32>]) -> Stability {
+    let largest = |point: usize| {
+        let both = test.windows(2).zip(reference.windows(2));
+        let change = |pair: &[Vec<f32>]| pair[1][point] - pair[0][point];
+        both.map(|(test, truth)| (change(test) - change(truth)).abs()).fold(0.0, nan_or_larger)
+    };
+    let frames = test.len().min(reference.len());
+    Stability::of((0..points(test[..frames].iter().chain(&reference[..frames]))).map(largest).collect())
+}
+
 /// The larger of two, or NaN where either is: `f32::max` would hide it.
 fn nan_or_larger(a: f32, b: f32) -> f32 {
     if a.is_nan() || b.is_nan() { f32::NAN } else { a.max(b) }
@@ -81,7 +104,7 @@ fn nan_or_larger(a: f32, b: f32) -> f32 {
 
 #[cfg(test)]
 mod tests {
-    use super::{Stability, flicker, pop, swim};
+    use super::{Stability, excess, flicker, pop, swim};
 
     #[test]
     fn swim_is_the_deviation_under_shifts() {
@@ -125,6 +148,35 @@ mod tests {
         // Values that stand still while the truth moves flicker too.
         let still = vec![vec![0.0; 3]; 9];
         assert!(flicker(&still, &truth).rms > 0.3);
+    }
+
+    #[test]
+    fn excess_is_the_largest_step_that_the_reference_does_not_make() {
+        let truth: Vec<_> = (0..9).map(|i| vec![(i as f32 * 0.7).sin(); 2]).collect();
+        let mut test = truth.clone();
+        // An error that stays is no step but where it begins; the second point does as the truth does.
+        test.iter_mut().skip(4).for_each(|values| values[0] += 0.2);
+        let found = excess(&test, &truth);
+        assert!((found.per_point[0] - 0.2).abs() < 1e-6 && found.per_point[1] < 1e-6, "{found:?}");
+        // Negative control: the largest change by itself tells neither point from the other as clearly.
+        assert!(pop(&test).per_point[1] > 0.5);
+        assert!(pop(&truth).max > 0.5 && excess(&truth, &truth).max < 1e-9);
+    }
+
+    #[test]
+    fn many_frames_weigh_alike() {
+        let frame = |a: f32| swim(&[vec![0.0, 0.3], vec![2.0 * a, 0.3]]);
+        // Deviations of 0.3 and 0.4 at the first point, of none at the second.
+        let found = Stability::over_frames(&[frame(0.3), frame(0.4)]);
+        let expected = 0.125_f64.sqrt();
+        assert!(
+            (f64::from(found.per_point[0]) - expected).abs() < 1e-6 && found.per_point[1] == 0.0,
+            "{found:?}"
+        );
+        assert!((found.rms - expected / 2.0_f64.sqrt()).abs() < 1e-6);
+        // One frame is itself; no frame is nothing.
+        assert_eq!(Stability::over_frames(&[frame(0.3)]), frame(0.3));
+        assert_eq!(Stability::over_frames(&[]), Stability::default());
     }
 
     #[test]

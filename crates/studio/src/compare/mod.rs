@@ -14,7 +14,7 @@ pub use live::{
     ProbedHair, Sheet, SheetPane, bytes_label, pane_columns,
 };
 pub use report::{
-    BandingReport, CompareReport, FlipError, FootprintTruth, Legend, MethodFiles, MethodReport, NamedTruth,
-    PointTruth, ProbeCurve, ProbeMark, ProbeReport, Reference, SceneFacts, StabilityReport, StageMs,
-    TimeSpread, TransmittanceError,
+    BandingReport, ChangeReport, CompareReport, FlipError, FootprintTruth, Legend, MethodFiles, MethodReport,
+    NamedTruth, PointTruth, ProbeCurve, ProbeMark, ProbeReport, Reference, SceneFacts, StabilityReport,
+    StageMs, TimeSpread, TransmittanceError,
 };

@@ -5,9 +5,9 @@ use lovelock_render::{FrameInput, Renderer, ValueRenderer};
 use super::entrants::{Entrant, file_name};
 use super::maps::{self, Kind, at_pixels};
 use super::probe::Probe;
-use super::stability::swimming;
+use super::swim::swimming;
 use super::work::{Against, Tell, Work};
-use super::{banding, draw};
+use super::{banding, draw, stray};
 use crate::{StabilityReport, StudioError};
 
 impl Work<'_> {
@@ -60,8 +60,9 @@ impl Work<'_> {
         }
         report.banding = banding::slab(&entrant.contender.shadow);
 
-        let place = (against.hair, &project, &self.lights[0]);
-        let swim = swimming(renderer, place, cell_size.unwrap_or(0.0), tell)?;
+        report.stray = stray::stray(&entrant.contender.shadow);
+
+        let swim = swimming(renderer, against.shifted, (&project, &self.lights[0]), tell)?;
         report.files.swim = self.point_map(&name, maps::SWIM, &swim.per_point, (values, &input))?;
         let mut stability =
             StabilityReport { swim: swim.rms, swim_p99: swim.p99, ..StabilityReport::default() };
@@ -76,6 +77,9 @@ impl Work<'_> {
             }
         }
         report.stability = Some(stability);
+        if let Some(sweep) = against.light_sweep {
+            report.light_sweep = Some(sweep.watch(renderer, (against.hair, &project), truth, tell)?);
+        }
         Ok(())
     }
 

@@ -6,6 +6,7 @@ mod draw;
 mod entrants;
 mod folder;
 mod hair;
+mod light_sweep;
 mod maps;
 mod measure;
 mod probe;
@@ -13,7 +14,9 @@ mod reference;
 mod request;
 mod run;
 mod stability;
+mod stray;
 mod sweep;
+mod swim;
 mod truth;
 mod work;
 

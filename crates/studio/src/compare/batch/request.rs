@@ -16,7 +16,7 @@ pub struct CompareRequest {
     pub out: PathBuf,
     /// What the report calls the project.
     pub name: String,
-    /// Frames, half open: pictures, errors and times are of the first one, pop and flicker of all.
+    /// Frames, half open: pictures, errors and times are of the first one, swim, pop and flicker of all.
     pub frames: Option<Range<u64>>,
     /// Frames a second.
     pub fps: Option<f64>,

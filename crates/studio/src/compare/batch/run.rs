@@ -60,7 +60,7 @@ pub fn compare(
         size: [size.0, size.1],
         lights: lights(&project),
     };
-    match work.run(snapshots, entrants, &mut renderers, &mut report, progress) {
+    match work.run(&snapshots, entrants, &mut renderers, &mut report, progress) {
         Ok(()) => report.complete = true,
         Err(StudioError::Cancelled) => {
             report

@@ -53,7 +53,11 @@ fn every_method_is_drawn_measured_and_written() {
     assert_eq!(ids, ShadowMethod::ALL.iter().map(|method| method.id()).collect::<Vec<_>>());
     assert_eq!(report.reference.refused, [""; 0]);
     let others: Vec<&str> = report.reference.others.iter().map(|truth| truth.name.as_str()).collect();
-    assert_eq!(others, ["reference picture, light 2", "reference picture, light 3", "frame 3"]);
+    assert_eq!(
+        others,
+        ["reference picture, light 2", "reference picture, light 3", "frame 3", "light that turns"]
+    );
+    assert_eq!(report.swim_frames, [2, 3]);
     assert_eq!(report.reference.probes.len(), report.probes.len());
     for method in &report.methods {
         assert_eq!(method.refused, None, "{}", method.id);
@@ -87,6 +91,18 @@ fn every_method_is_drawn_measured_and_written() {
         assert!(rmse(other) < 0.5 * rmse(none), "{}: {} of {}", other.id, rmse(other), rmse(none));
         assert!(other.flip.map(|flip| flip.mean) < none.flip.map(|flip| flip.mean), "{}", other.id);
         assert!(other.stability.is_some_and(|stability| stability.swim > 0.0), "{}", other.id);
+    }
+    // A light that turns changes the truth a little, and nothing where there is no shadow.
+    let turned = |id: &str| method(&report, id).light_sweep.expect("a light that turns");
+    let still = turned("none");
+    assert_eq!((still.pop, still.excess, still.jitter), (0.0, still.truth_pop, still.truth_rms));
+    assert!(
+        still.truth_pop.is_some_and(|pop| pop > 0.0) && still.points > 0 && still.steps == 8,
+        "{still:?}"
+    );
+    assert_eq!(turned("exact").truth_pop, still.truth_pop, "one truth for one size of texel");
+    for other in report.methods.iter().filter(|other| other.id != "none") {
+        assert!(other.light_sweep.is_some_and(|found| found.pop > 0.0), "{}", other.id);
     }
     // One truth ranks all, and for the texels that it is of it is no other than their own.
     let common = |id: &str| method(&report, id).transmittance_common;
@@ -132,7 +148,7 @@ fn the_truth_of_every_light_counts() {
     // Negative control: one light has no second.
     project.lights.truncate(1);
     let report = run(&project, &wanted).expect("a report");
-    assert!(report.reference.others.iter().all(|truth| !truth.name.contains("light")));
+    assert!(report.reference.others.iter().all(|truth| !truth.name.contains("light 2")));
 }
 
 #[test]

@@ -7,7 +7,9 @@
 use glam::Vec3;
 use lovelock_metrics::errors;
 use lovelock_render::{Light, ShadowMethod, ShadowSettings, TEXEL_RESOLUTIONS, TexelFilter};
-use lovelock_shadow::{CONVERGED_CHANGE, CpuShadow, ExactMap, ShadowError, converged, cpu_shadow};
+use lovelock_shadow::{
+    CONVERGED_CHANGE, CpuShadow, ExactMap, ShadowError, ShadowInput, converged, cpu_shadow,
+};
 
 use super::hair::Hair;
 use crate::{FootprintTruth, PointTruth, Project};
@@ -99,14 +101,27 @@ fn footprint(
     (footprint, has_map.then_some(report.cell_size))
 }
 
+/// Edge of a texel (of a cell) of the method's map, metres; none where it has no map, and where it cannot be made.
+pub(super) fn cell_size(place: (&Hair, &Project, &Light), settings: &ShadowSettings) -> Option<f32> {
+    footprint(place, settings).1
+}
+
 /// Converged transmittance at every strand point, and how well it converged.
 pub(super) fn converge(
     (hair, project, light): (&Hair, &Project, &Light),
     settings: &ShadowSettings,
 ) -> (Result<Vec<f32>, String>, FootprintTruth) {
     let strands = &hair.strands;
-    let input = hair.shadow_input(project, light);
-    match converged(&input, settings, [&strands.x, &strands.y, &strands.z]) {
+    converge_at(&hair.shadow_input(project, light), settings, [&strands.x, &strands.y, &strands.z])
+}
+
+/// The same at any points, world space, metres.
+pub(super) fn converge_at(
+    input: &ShadowInput,
+    settings: &ShadowSettings,
+    points: [&[f32]; 3],
+) -> (Result<Vec<f32>, String>, FootprintTruth) {
+    match converged(input, settings, points) {
         Ok(found) => {
             let facts = FootprintTruth {
                 methods: Vec::new(),

@@ -11,9 +11,11 @@ use super::CompareRequest;
 use super::entrants::Entrant;
 use super::folder::Folder;
 use super::hair::Hair;
+use super::light_sweep::LightSweep;
 use super::maps;
 use super::probe::{self, Probe};
-use super::stability::Film;
+use super::stability::{Film, fits};
+use super::swim::frames_shifted;
 use super::truth::{Points, Truths};
 use crate::headless::tell;
 use crate::{CompareReport, FrameSnapshot, MethodReport, Progress, Project, StudioError};
@@ -40,6 +42,9 @@ pub(super) struct Against<'a> {
     pub points: Option<&'a Points>,
     pub picture: Option<&'a Picture>,
     pub film: Option<&'a Film>,
+    /// The frames in which maps are shifted.
+    pub shifted: &'a [Arc<FrameSnapshot>],
+    pub light_sweep: Option<&'a LightSweep>,
     /// A number for each pixel, finite where it shows hair.
     pub hair_pixels: &'a [f32],
 }
@@ -51,7 +56,7 @@ impl Work<'_> {
     /// [`StudioError::Cancelled`], or what cannot be written.
     pub(super) fn run(
         &self,
-        snapshots: Vec<Arc<FrameSnapshot>>,
+        snapshots: &[Arc<FrameSnapshot>],
         entrants: Vec<Entrant>,
         renderers: &mut [Renderer],
         report: &mut CompareReport,
@@ -86,6 +91,13 @@ impl Work<'_> {
         let picture = self.reference(&hair, &truths.0[common], report)?;
         note_truths(report, &truths, points.as_ref());
         let film = self.film(snapshots, &truths, report, &mut part)?;
+        let shifted = frames_shifted(snapshots.len());
+        report.swim_frames = shifted.iter().map(|at| report.frames[0] + *at as u64).collect();
+        let shifted: Vec<_> = shifted.iter().map(|at| Arc::clone(&snapshots[*at])).collect();
+        let place = (&hair, self.project, &self.lights[0]);
+        let tell = || part("the truth under a light that turns".to_owned(), false);
+        let light_sweep = LightSweep::new(place, &truths.0, &mut report.reference, tell)?;
+        let light_sweep = light_sweep.map_err(|refused| report.notes.push(refused)).ok();
 
         let mut values = ValueRenderer::default();
         let input = hair.frame_input(self.project);
@@ -104,6 +116,8 @@ impl Work<'_> {
             points: points.as_ref(),
             picture: picture.as_ref(),
             film: film.as_ref(),
+            shifted: &shifted,
+            light_sweep: light_sweep.as_ref(),
             hair_pixels: &hair_pixels,
         };
         report.legends = maps::kinds(film.is_some()).map(|kind| kind.legend()).collect();
@@ -180,7 +194,7 @@ impl Work<'_> {
     /// The frames for pop and flicker; none for a single one.
     fn film(
         &self,
-        snapshots: Vec<Arc<FrameSnapshot>>,
+        snapshots: &[Arc<FrameSnapshot>],
         truths: &Truths,
         report: &mut CompareReport,
         part: &mut dyn FnMut(String, bool) -> Result<(), StudioError>,
@@ -189,7 +203,7 @@ impl Work<'_> {
             return Ok(None);
         }
         let points = report.scene.points as usize;
-        if let Err(refused) = Film::check(snapshots.len() as u64, points, truths.0.len()) {
+        if let Err(refused) = fits("pop and flicker", snapshots.len() as u64, points, truths.0.len()) {
             report.notes.push(refused);
             return Ok(None);
         }

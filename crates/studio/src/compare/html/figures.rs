@@ -69,6 +69,7 @@ pub(super) fn cost(group: &Group<'_>, names: &Names, cost: Cost) -> Option<Strin
     let mut front: Vec<(f64, f64)> = on_front.map(|&(x, y, _)| (x, y)).collect();
     front.sort_by(|a, b| a.0.total_cmp(&b.0));
     plot.line(&front, Stroke { color: "#b4bcc6", width: 5.0, dashed: false }, None);
+    plot.keep_free(&front);
     let mut trails: BTreeMap<&str, Vec<(f64, f64)>> = BTreeMap::new();
     for (x, y, method) in points.iter().filter(|(.., method)| !method.sweep.is_empty()) {
         trails.entry(&method.id).or_default().push((*x, *y));
@@ -160,7 +161,7 @@ pub(super) fn banding(method: &MethodReport) -> Option<String> {
     let round = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5];
     let scale = round.into_iter().find(|&scale| scale >= largest).unwrap_or(1.0);
     let y = Axis::even("error", -scale, scale);
-    let mut plot = Plot::new(300.0, 120.0, Axis::even("depth, part of the slab", 0.0, 1.0), y);
+    let mut plot = Plot::new(272.0, 120.0, Axis::even("depth, part of the slab", 0.0, 1.0), y);
     plot.level(0.0, "");
     plot.line(&errors, thin(color(method)), None);
     Some(plot.svg(&format!("Error of {} in a slab of even density", method.label), 0.0))

@@ -8,7 +8,7 @@ mod plot;
 mod tables;
 mod words;
 
-use crate::compare::report::{CompareReport, ProbeReport};
+use crate::compare::report::{ChangeReport, CompareReport, MethodReport, ProbeReport};
 use figures::Cost;
 use names::{Group, Names, groups};
 use std::fmt::Write as _;
@@ -132,7 +132,7 @@ fn coarse_points(report: &CompareReport) -> String {
     let Some(change) = report.reference.doubt_at_points() else { return String::new() };
     format!(
         "<div class=\"banner\"><b>The truth at points is not fine enough.</b> Errors at points below {} may be the truth's own: \
-         so much it differs from the same on half as many texels along the edge (root mean square).</div>",
+         by that much (root mean square) it changes when its map has half as many texels along each edge.</div>",
         fixed(Some(f64::from(change)), 4)
     )
 }
@@ -154,8 +154,8 @@ fn overview(report: &CompareReport, groups: &[Group<'_>], names: &Names) -> Stri
         out += &tables::overview(group, names, report);
     }
     if !out.is_empty() {
-        out += "<p class=\"note\">A click on a heading sorts. Costs on a shaded ground are on the front: no other method of the \
-                table is both more right and cheaper.</p>";
+        out += "<p class=\"note\">Click a heading to sort by it; hover over one to see what it means. Shaded costs are on the front: \
+                no other method of the table is both more accurate (by <i>One truth</i>) and cheaper.</p>";
     }
     if !report.notes.is_empty() {
         out += "<ul class=\"notes\">";
@@ -189,8 +189,8 @@ fn costs(groups: &[Group<'_>], names: &Names) -> String {
         };
         let _ = write!(
             out,
-            "<p class=\"note\">{error} Lower is more right, further left is cheaper. Filled dots, joined by the grey band, are \
-             the front; dashed lines join the settings of a sweep. A method that lies far off is on the rim.</p>"
+            "<p class=\"note\">{error} Lower is more accurate, further left is cheaper. Filled dots, joined by the grey band, are \
+             the front; dashed lines join the settings of a sweep. A method that would lie outside of a plot is put on its edge.</p>"
         );
     }
     out
@@ -218,12 +218,15 @@ fn probes(report: &CompareReport, names: &Names) -> String {
             truth.samples
         );
     }
-    if !out.is_empty() {
-        out += "<p class=\"note\">Black: the exact step function of the single ray. Dashed: the mean over a texel around it. The \
-                lanes show what each method keeps along the ray (slices, layers, cells, slabs, clusters, fragments), darker where \
-                more hair is counted. The pointer on a lane lifts its curve.</p>";
+    if out.is_empty() {
+        return out;
     }
-    out
+    format!(
+        "<p>A probe is a ray of light through a point of hair. Thin black steps: the light along that very ray, strand by \
+         strand. Dashed: its mean over a texel around the ray. Each coloured curve: what a method answers along the ray. The \
+         lanes below show what the method keeps there (slices, layers, cells, slabs, clusters, fragments), darker where more \
+         hair is counted. Point at a lane to highlight its curve.</p>{out}"
+    )
 }
 
 /// The surroundings of a probe in the reference picture, with its pixel marked.
@@ -266,7 +269,7 @@ fn values(report: &CompareReport, names: &Names, probe: &ProbeReport) -> String 
         );
     }
     format!(
-        "<table><thead><tr><th scope=\"col\">At the point</th><th scope=\"col\">T</th><th scope=\"col\">Error</th></tr></thead>\
+        "<table><thead><tr><th scope=\"col\">At the point</th><th scope=\"col\">Transmittance</th><th scope=\"col\">Error</th></tr></thead>\
          <tbody>{rows}</tbody></table>"
     )
 }
@@ -286,13 +289,54 @@ fn stability(report: &CompareReport, groups: &[Group<'_>], names: &Names) -> Str
     }
     let [first, end] = report.frames;
     let frames = if end > first + 1 {
-        format!("Pop and flicker are those of frames {first} to {}.", end - 1)
+        format!(
+            "the film of frames {first} to {}, and how much of that the reference does not show.",
+            end - 1
+        )
     } else {
-        "Pop and flicker need several frames.".into()
+        "several frames; here there is one (see <code>--frames</code>).".into()
     };
+    let steps = |of: fn(&MethodReport) -> Option<ChangeReport>| report.methods.iter().find_map(of);
+    let mut items = vec![
+        format!(
+            "<b>Map shifted</b> (swim): the map is shifted by less than a texel, six times, {}",
+            shifted(report)
+        ),
+        format!("<b>Frame to frame</b> (pop, flicker): the change from one frame to the next of {frames}"),
+    ];
+    if let Some(ChangeReport { steps, points, .. }) = steps(|method| method.light_sweep) {
+        items.push(format!(
+            "<b>Light turned</b>: the first light turns sideways by 0.1° a step, {steps} times, and nothing else moves; looked \
+             at are {} points. The truth changes a little; <i>Excess</i> and <i>Jitter</i> are what a method adds to that.",
+            grouped(points)
+        ));
+    }
+    if let Some(ChangeReport { steps, points, .. }) = steps(|method| method.stray) {
+        items.push(format!(
+            "<b>Stray hair</b>: a bundle made for this test, the same in every report, into which a single hair moves from the \
+             light, {steps} steps of 1 mm. At the {} points behind it the truth does not change at all, so every change is the \
+             method's. Asked of the method's definition on the CPU, on rows of the GPU too.",
+            grouped(points)
+        ));
+    }
     format!(
-        "<p>How much transmittance moves that should not. {frames} The maps are among the pictures above.</p>{tables}"
+        "<p>How much transmittance moves that should not. Less is better, and 0 is none.</p><ul class=\"tests\"><li>{}</li></ul>{tables}\
+         <p class=\"note\">Maps of swim, pop and flicker are among the pictures above.</p>",
+        items.join("</li><li>")
     )
+}
+
+/// In which frames maps were shifted, to end a sentence.
+fn shifted(report: &CompareReport) -> String {
+    let [first, end] = report.frames;
+    let shifted = &report.swim_frames;
+    let named = || shifted.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+    match shifted.len() as u64 {
+        0 => String::new(),
+        1 => format!("in frame {} alone.", named()),
+        count if count == end - first => format!("in each of the {count} frames."),
+        count => format!("in {count} of the {} frames, evenly spaced: {}.", end - first, named()),
+    }
 }
 
 fn banding(report: &CompareReport, groups: &[Group<'_>], names: &Names) -> String {
@@ -308,8 +352,8 @@ fn banding(report: &CompareReport, groups: &[Group<'_>], names: &Names) -> Strin
         }
     }
     format!(
-        "<p>A slab of even density is lit from the front; its transmittance should be an exponential. Layers show as waves in \
-         the error. Mind the scale of each plot.</p>{tables}<div class=\"small\">{plots}</div>"
+        "<p>A slab of even density, made for this test, is lit from the front: transmittance should fall as an exponential. \
+         Slices and layers show as waves in the error. The plots differ in scale.</p>{tables}<div class=\"small\">{plots}</div>"
     )
 }
 
@@ -348,8 +392,8 @@ fn reference(report: &CompareReport, names: &Names) -> String {
     if let Some(points) = &reference.points {
         let _ = write!(
             out,
-            "<p>The truth at points is the exact method on a map of {} × {} texels ({}). The same on half of that differs by {} \
-             (root mean square).</p>",
+            "<p>The truth at points is the exact method on a map of {} × {} texels ({}). With half as many texels along each edge it \
+             changes by {} (root mean square).</p>",
             points.resolution,
             points.resolution,
             words::bytes(Some(points.memory_bytes)),

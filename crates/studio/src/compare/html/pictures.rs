@@ -55,7 +55,7 @@ pub(super) fn section(report: &CompareReport, names: &Names) -> String {
          <div class=\"box\"><div id=\"wipe\" tabindex=\"0\" role=\"slider\" aria-label=\"Split between left and right\" \
          aria-valuemin=\"0\" aria-valuemax=\"100\" aria-valuenow=\"50\"><img id=\"under\" alt=\"\" draggable=\"false\">\
          <img id=\"over\" alt=\"\" draggable=\"false\"><i id=\"split\"></i></div></div>\
-         <p class=\"note\" id=\"hint\">Drag the line, or move it with the arrow keys; hold F to see the left one in whole. At first \
+         <p class=\"note\" id=\"hint\">Drag the line, or move it with the arrow keys; hold F to see the left picture alone. At first \
          {first} is on the left.</p>\
          <div id=\"cards\" class=\"cards\" data-kind=\"picture\">{cards}</div>"
     )

@@ -1,7 +1,7 @@
 //! The tables of the page. Each backend has tables of its own, so that no column mixes their times.
 
 use super::names::{Group, Names};
-use super::words::{bytes, escaped, fixed, grouped, ms, signed};
+use super::words::{bytes, escaped, fixed, grouped, ms, signed, small};
 use crate::{CompareReport, MethodReport, TimeSpread};
 use std::fmt::Write as _;
 
@@ -48,7 +48,10 @@ fn table(caption: &str, spans: &[(&str, usize)], columns: &[Column], rows: &str)
 const AT_POINTS: &str =
     "Root mean square error against the truth at the points themselves, which no map can reach";
 
-/// Errors, pictures, costs and stillness of the methods of one group.
+/// What the columns of swim say.
+const SWIM: &str = "Deviation of transmittance while the map is shifted by less than a texel, root mean square over points and frames";
+
+/// Errors, pictures, costs and stability of the methods of one group.
 pub(super) fn overview(group: &Group<'_>, names: &Names, report: &CompareReport) -> String {
     const COLUMNS: [Column; 15] = [
         Column(
@@ -74,17 +77,14 @@ pub(super) fn overview(group: &Group<'_>, names: &Names, report: &CompareReport)
         Column("Build", "To make the shadow maps of all lights, milliseconds, median"),
         Column("Ask", "To ask them at every strand point and body vertex, milliseconds, median"),
         Column("Memory", "Shadow maps of all lights"),
-        Column(
-            "Swim",
-            "Root mean square deviation of transmittance under shifts of the map by less than a texel",
-        ),
+        Column("Swim", SWIM),
     ];
-    let cost = format!("Cost on the {}, ms", group.backend);
+    let cost = format!("Cost on the {} (times: ms)", group.backend);
     let spans = [
         ("Error of transmittance", 6),
         ("Difference of the picture", 5),
         (cost.as_str(), 3),
-        ("Stillness", 1),
+        ("Stability", 1),
     ];
     let mut rows = String::new();
     for (_, method) in &group.methods {
@@ -100,33 +100,35 @@ pub(super) fn overview(group: &Group<'_>, names: &Names, report: &CompareReport)
             continue;
         }
         let error = method.transmittance;
-        let at_points = method.transmittance_at_points.map(|error| error.rmse);
         let flip = method.flip;
         let stages = method.ms;
-        let swim = method.stability.map(|stability| stability.swim);
-        let mut put = |text: String, value: Option<f64>, class: &str| rows += &cell(&text, value, class);
-        let four = |value: Option<f64>| fixed(value, 4);
-        put(four(error.map(|e| e.rmse)), error.map(|e| e.rmse), "");
-        put(signed(error.map(|e| e.bias), 4), error.map(|e| e.bias), "");
-        put(fixed(error.map(|e| e.p99), 3), error.map(|e| e.p99), "");
-        put(four(error.and_then(|e| e.first10_rmse)), error.and_then(|e| e.first10_rmse), "");
-        let common = method.transmittance_common.map(|error| error.rmse);
-        put(four(common), common, "strong");
-        put(four(at_points), at_points, "");
-        put(four(flip.map(|f| f.mean)), flip.map(|f| f.mean), "first");
-        put(four(flip.and_then(|f| f.hair_mean)), flip.and_then(|f| f.hair_mean), "");
-        put(fixed(flip.map(|f| f.p99), 3), flip.map(|f| f.p99), "");
+        let four = |value: Option<f64>| (fixed(value, 4), value);
+        let three = |value: Option<f64>| (fixed(value, 3), value);
+        let time = |value: Option<f64>| (ms(value), value);
+        let bias = error.map(|e| e.bias);
         let equal = flip.is_some_and(|flip| flip.mean == 0.0) && method.psnr_db.is_none();
-        let psnr = if equal { "∞".into() } else { fixed(method.psnr_db, 1) };
-        put(psnr, if equal { Some(f64::MAX) } else { method.psnr_db }, "");
-        put(four(method.ssim), method.ssim, "");
-        let time_front = if method.front_of_time { "first front" } else { "first" };
-        put(ms(stages.and_then(|s| s.build)), stages.and_then(|s| s.build), time_front);
-        let time_front = if method.front_of_time { "front" } else { "" };
-        put(ms(stages.and_then(|s| s.query)), stages.and_then(|s| s.query), time_front);
+        let psnr =
+            if equal { ("∞".into(), Some(f64::MAX)) } else { (fixed(method.psnr_db, 1), method.psnr_db) };
         let memory = method.memory_bytes;
-        put(bytes(memory), memory.map(|b| b as f64), if method.front_of_memory { "front" } else { "" });
-        put(four(swim), swim, "first");
+        let (quick, little) = (method.front_of_time, method.front_of_memory);
+        let cells = [
+            (four(error.map(|e| e.rmse)), ""),
+            ((signed(bias, 4), bias), ""),
+            (three(error.map(|e| e.p99)), ""),
+            (four(error.and_then(|e| e.first10_rmse)), ""),
+            (four(method.transmittance_common.map(|error| error.rmse)), "strong"),
+            (four(method.transmittance_at_points.map(|error| error.rmse)), ""),
+            (four(flip.map(|f| f.mean)), "first"),
+            (four(flip.and_then(|f| f.hair_mean)), ""),
+            (three(flip.map(|f| f.p99)), ""),
+            (psnr, ""),
+            (four(method.ssim), ""),
+            (time(stages.and_then(|s| s.build)), if quick { "first front" } else { "first" }),
+            (time(stages.and_then(|s| s.query)), if quick { "front" } else { "" }),
+            ((bytes(memory), memory.map(|b| b as f64)), if little { "front" } else { "" }),
+            (four(method.stability.map(|stability| stability.swim)), "first"),
+        ];
+        rows += &cells.map(|((text, value), class)| cell(&text, value, class)).concat();
         rows += "</tr>";
     }
     let title = format!("{}. Times are medians of {} draws.", group.title, report.scene.draws);
@@ -143,30 +145,56 @@ pub(super) fn overview(group: &Group<'_>, names: &Names, report: &CompareReport)
 
 /// How still the methods of one group stand.
 pub(super) fn stability(group: &Group<'_>, names: &Names) -> String {
-    const COLUMNS: [Column; 5] = [
+    const COLUMNS: [Column; 11] = [
+        Column("Swim", SWIM),
+        Column("p99", "99th percentile over the points, of each its deviation over the frames"),
         Column(
-            "Swim",
-            "Deviation under shifts of the map by less than a texel, root mean square over the points",
+            "Pop",
+            "Largest change of any point from one frame to the next; it includes what the moving hair does",
         ),
-        Column("Swim p99", "99th percentile of the deviation over the points"),
-        Column("Pop", "Largest change of any point from one frame to the next"),
-        Column("Pop p99", "99th percentile of that over the points"),
+        Column("p99", "99th percentile over the points, of each its largest change"),
         Column(
             "Flicker",
             "Root mean square of the change from frame to frame that is not the reference's own",
         ),
+        Column("Pop", "Largest change of any point from one step to the next"),
+        Column("Of the truth", "Largest change of the reference at any of these points"),
+        Column("Excess", "Largest change of any point that is not the reference's own"),
+        Column("Jitter", "Root mean square of the change that is not the reference's own"),
+        Column("Pop", "Largest change of any point from one step to the next; the truth does not change"),
+        Column(
+            "Jitter",
+            "Root mean square of the change from one step to the next; the truth does not change",
+        ),
     ];
+    const SPANS: [(&str, usize); 4] =
+        [("Map shifted", 2), ("Frame to frame", 3), ("Light turned by 0.1° a step", 4), ("Stray hair", 2)];
     let mut rows = String::new();
-    for (_, method) in group.methods.iter().filter(|(_, method)| method.stability.is_some()) {
-        let Some(found) = method.stability else { continue };
-        let numbers = [Some(found.swim), Some(found.swim_p99), found.pop, found.pop_p99, found.flicker];
-        let cells: String = numbers.map(|value| cell(&fixed(value, 4), value, "")).concat();
+    for (_, method) in &group.methods {
+        let (found, turned, stray) = (method.stability, method.light_sweep, method.stray);
+        if found.is_none() && turned.is_none() {
+            continue;
+        }
+        let numbers = [
+            (found.map(|f| f.swim), ""),
+            (found.map(|f| f.swim_p99), ""),
+            (found.and_then(|f| f.pop), "first"),
+            (found.and_then(|f| f.pop_p99), ""),
+            (found.and_then(|f| f.flicker), ""),
+            (turned.map(|t| t.pop), "first"),
+            (turned.and_then(|t| t.truth_pop), ""),
+            (turned.and_then(|t| t.excess), ""),
+            (turned.and_then(|t| t.jitter), ""),
+            (stray.map(|s| s.pop), "first"),
+            (stray.and_then(|s| s.jitter), ""),
+        ];
+        let cells = numbers.map(|(value, class)| cell(&small(value), value, class)).concat();
         let _ = write!(rows, "<tr>{}{cells}</tr>", names.cell(method));
     }
     if rows.is_empty() {
         return String::new();
     }
-    table(&group.title, &[], &COLUMNS, &rows)
+    table(&group.title, &SPANS, &COLUMNS, &rows)
 }
 
 /// What the slices of the methods of one group show in even density.
@@ -175,11 +203,14 @@ pub(super) fn banding(group: &Group<'_>, names: &Names) -> String {
         Column("RMSE", "Root mean square error of transmittance in the slab"),
         Column(
             "Curvature",
-            "Largest deviation of the second derivative, as a multiple of the exponential's own at the entry",
+            "Largest error of the second derivative, as a multiple of the exponential's own where light enters",
         ),
-        Column("Largest wave", "The largest amplitude of all waves in the error"),
-        Column("Its period", "Part of the slab's depth"),
-        Column("Slice distance", "Part of the slab's depth; none where slices have no one depth"),
+        Column("Largest wave", "The largest amplitude of all waves in the error of transmittance"),
+        Column("Its period", "As a part of the slab's depth"),
+        Column(
+            "Slice distance",
+            "As a part of the slab's depth; none where slices differ in depth, or where there are none",
+        ),
         Column("Slice wave", "Amplitude of the wave with the period of the slices"),
     ];
     let mut rows = String::new();
@@ -187,14 +218,14 @@ pub(super) fn banding(group: &Group<'_>, names: &Names) -> String {
         let Some(found) = &method.banding else { continue };
         let _ = write!(rows, "<tr>{}", names.cell(method));
         let numbers = [
-            (Some(found.rmse), 4),
-            (Some(found.residual), 1),
-            (Some(found.amplitude), 4),
-            (Some(found.period), 3),
-            (found.slice, 4),
-            (found.slice_amplitude, 5),
+            (small(Some(found.rmse)), Some(found.rmse)),
+            (fixed(Some(found.residual), 1), Some(found.residual)),
+            (small(Some(found.amplitude)), Some(found.amplitude)),
+            (fixed(Some(found.period), 3), Some(found.period)),
+            (fixed(found.slice, 4), found.slice),
+            (small(found.slice_amplitude), found.slice_amplitude),
         ];
-        rows += &numbers.map(|(value, places)| cell(&fixed(value, places), value, "")).concat();
+        rows += &numbers.map(|(text, value)| cell(&text, value, "")).concat();
         rows += "</tr>";
     }
     if rows.is_empty() {
@@ -224,7 +255,13 @@ pub(super) fn times(group: &Group<'_>, names: &Names) -> String {
     let mut rows = String::new();
     for pass in passes.iter().take(80) {
         let stage = if pass.contains('/') { "" } else { " class=\"stage\"" };
-        let _ = write!(rows, "<tr{stage}><th scope=\"row\">{}</th>", escaped(pass));
+        let name = match *pass {
+            "query" => "ask",
+            "draw" => "draw (the rest)",
+            "whole" => "whole picture",
+            pass => pass,
+        };
+        let _ = write!(rows, "<tr{stage}><th scope=\"row\">{}</th>", escaped(name));
         for method in &measured {
             let time = method.times.iter().find(|time| time.name == **pass);
             let (median, text) = time.map_or((None, String::new()), |time| (Some(time.median), spread(time)));

@@ -8,6 +8,7 @@ fn report() -> CompareReport {
         version: "1.2.3".into(),
         machine: "a processor, 2 threads".into(),
         frames: [12, 15],
+        swim_frames: vec![12, 13, 14],
         scene: SceneFacts {
             name: "curls <of> \"mine\".lovelock".into(),
             width: 320,
@@ -70,6 +71,21 @@ fn report() -> CompareReport {
                     count: 30,
                 }],
                 memory_bytes: Some(3 << 20),
+                light_sweep: Some(ChangeReport {
+                    steps: 8,
+                    points: 6_543,
+                    pop: 0.234_56,
+                    truth_pop: Some(0.0456),
+                    excess: Some(0.211),
+                    jitter: Some(6.54e-5),
+                    ..ChangeReport::default()
+                }),
+                stray: Some(ChangeReport {
+                    steps: 26,
+                    points: 1024,
+                    jitter: Some(0.0),
+                    ..ChangeReport::default()
+                }),
                 stability: Some(StabilityReport {
                     swim: 0.0123,
                     swim_p99: 0.05,
@@ -139,6 +155,11 @@ fn the_page_is_whole_and_names_everything() {
         "−0.0040",
         "3.00 MiB",
         "Probe 1: pixel 100, 80",
+        "in each of the 3 frames.",
+        "looked at are 6\u{202f}543 points",
+        "26 steps of 1 mm",
+        ">0.2346</td>",
+        ">6.5e−5</td>",
         "It converged",
         "<b>128</b> · size <b>0.24</b>",
     ] {
@@ -230,6 +251,28 @@ fn a_coarse_truth_at_points_is_said_at_the_top_and_at_its_column() {
     // Negative control.
     coarse.reference.points = points(0.0009);
     assert!(!page(&coarse).contains("may be the truth"));
+}
+
+#[test]
+fn swim_says_of_which_frames_it_is() {
+    let mut some = report();
+    some.frames = [12, 112];
+    some.swim_frames = vec![12, 61, 111];
+    assert!(page(&some).contains("in 3 of the 100 frames, evenly spaced: 12, 61, 111."));
+    (some.frames, some.swim_frames) = ([12, 13], vec![12]);
+    let text = page(&some);
+    assert!(text.contains("in frame 12 alone.") && text.contains("several frames; here there is one"));
+    assert!(!text.contains("evenly spaced"));
+}
+
+#[test]
+fn tests_that_were_not_done_are_not_spoken_of() {
+    let mut less = report();
+    less.methods.iter_mut().for_each(|method| (method.light_sweep, method.stray) = (None, None));
+    let text = page(&less);
+    assert!(!text.contains("<b>Light turned</b>") && !text.contains("<b>Stray hair</b>"));
+    assert!(text.contains("<b>Map shifted</b>"));
+    balanced(&text);
 }
 
 #[test]

@@ -47,6 +47,16 @@ pub(super) fn fixed(value: Option<f64>, places: usize) -> String {
     }
 }
 
+/// A number of which nobody knows how small it is, with two digits that mean something at least: four places after the point,
+/// and a power of ten below a thousandth.
+pub(super) fn small(value: Option<f64>) -> String {
+    match value.filter(|value| value.is_finite()) {
+        Some(0.0) => "0".into(),
+        Some(value) if value.abs() < 9.995e-4 => format!("{value:.1e}").replace('-', "−"),
+        value => fixed(value, 4),
+    }
+}
+
 /// As [`fixed`], with a plus where it is above zero.
 pub(super) fn signed(value: Option<f64>, places: usize) -> String {
     let text = fixed(value, places);
@@ -92,7 +102,7 @@ pub(super) fn grouped(value: u64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{address, bytes, escaped, fixed, grouped, ms, signed};
+    use super::{address, bytes, escaped, fixed, grouped, ms, signed, small};
 
     #[test]
     fn numbers_read_as_they_should() {
@@ -100,6 +110,9 @@ mod tests {
         assert_eq!(fixed(Some(-0.5), 2), "−0.50");
         assert_eq!(fixed(Some(-0.000_01), 2), "0.00");
         assert_eq!((fixed(None, 2), fixed(Some(f64::NAN), 2)), ("–".into(), "–".into()));
+        let smalls = [0.0, 6.525e-5, -0.000_999_4, 0.000_999_6, 0.0123, 1.5, f64::NAN];
+        let words = ["0", "6.5e−5", "−1.0e−3", "0.0010", "0.0123", "1.5000", "–"];
+        assert_eq!(smalls.map(|value| small(Some(value))), words);
         assert_eq!(signed(Some(0.25), 2), "+0.25");
         assert_eq!((signed(Some(-0.25), 2), signed(Some(0.0), 2)), ("−0.25".into(), "0.00".into()));
         assert_eq!([0.123, 12.34, 456.7].map(|value| ms(Some(value))), ["0.12", "12.3", "457"]);

@@ -21,16 +21,21 @@ pub(in super::super) enum Label {
 /// The part of a word that may be covered before it is left out.
 const COVERED: f64 = 0.2;
 
+/// Pixels of a piece of line that words keep off.
+const PIECE: f64 = 6.0;
+
 /// Words beside dots. All dots are known before a word is placed, so that none covers a dot.
 pub(super) struct Labels {
     field: (f64, f64),
     dots: Vec<(f64, f64, Label)>,
+    /// Pieces of lines that are better not covered.
+    lines: Vec<Box4>,
 }
 
 impl Labels {
     /// For a field of this size.
     pub(super) fn new(width: f64, height: f64) -> Self {
-        Self { field: (width, height), dots: Vec::new() }
+        Self { field: (width, height), dots: Vec::new(), lines: Vec::new() }
     }
 
     /// A dot and its word.
@@ -38,11 +43,24 @@ impl Labels {
         self.dots.push((x, y, label));
     }
 
+    /// Keeps words off a line, where they can be.
+    pub(super) fn keep_free(&mut self, from: (f64, f64), to: (f64, f64)) {
+        let [across, down] = [to.0 - from.0, to.1 - from.1];
+        // No line is longer than the diagonal of its field.
+        let pieces = (across.hypot(down) / PIECE).ceil().clamp(1.0, 400.0);
+        for piece in 0..pieces as u32 {
+            let part = (f64::from(piece) + 0.5) / pieces;
+            let (x, y) = (from.0 + part * across, from.1 + part * down);
+            self.lines.push([x - PIECE / 2.0, y - PIECE / 2.0, x + PIECE / 2.0, y + PIECE / 2.0]);
+        }
+    }
+
     /// All words, each at the one of eight places that covers the least; those that must be there come first.
     pub(super) fn svg(&self) -> String {
         // A covered dot is worse than a covered word.
         let mut taken: Vec<(Box4, f64)> =
             self.dots.iter().map(|(x, y, _)| ([x - 7.0, y - 7.0, x + 7.0, y + 7.0], 3.0)).collect();
+        taken.extend(self.lines.iter().map(|piece| (*piece, 0.5)));
         let mut out = String::new();
         let words = |always: bool| {
             self.dots.iter().filter_map(move |(x, y, label)| match label {
@@ -149,6 +167,21 @@ mod tests {
         assert!(svg.contains("the name"));
         let words = svg.matches("word").count();
         assert!((1..16).contains(&words), "{words}");
+    }
+
+    #[test]
+    fn words_keep_off_a_line() {
+        let word = |free: bool| {
+            let mut labels = Labels::new(300.0, 300.0);
+            labels.add(150.0, 150.0, Label::Always("a name".into()));
+            if free {
+                labels.keep_free((150.0, 150.0), (290.0, 150.0));
+            }
+            labels.svg()
+        };
+        // Negative control: without a line it begins beside its dot.
+        assert!(word(false).contains("x=\"159.0\"") && word(false).contains("\"start\""), "{}", word(false));
+        assert!(word(true).contains("x=\"141.0\"") && word(true).contains("\"end\""), "{}", word(true));
     }
 
     #[test]

@@ -14,7 +14,7 @@ use std::fmt::Write as _;
 const CORNERS: usize = 2000;
 
 /// Room around the field, pixels: left, top, right, bottom.
-const MARGINS: [f64; 4] = [62.0, 12.0, 16.0, 46.0];
+const MARGINS: [f64; 4] = [70.0, 12.0, 16.0, 46.0];
 
 /// A plot that is being drawn.
 pub(super) struct Plot {
@@ -122,6 +122,12 @@ impl Plot {
         }
     }
 
+    /// Keeps words off a line through points, where they can be.
+    pub(super) fn keep_free(&mut self, points: &[(f64, f64)]) {
+        let places = self.places(points);
+        places.windows(2).for_each(|pair| self.labels.keep_free(pair[0], pair[1]));
+    }
+
     /// A step function: each value holds from its x to the next one's, the last to the end of the field.
     pub(super) fn steps(&mut self, points: &[(f64, f64)], stroke: Stroke<'_>) {
         let mut d = String::new();
@@ -218,7 +224,7 @@ impl Plot {
         let extra = if self.below > 0.0 { self.below + 14.0 } else { 0.0 };
         let (width, height) = (left + self.width + right, top + self.height + bottom + extra);
         let middle = self.height / 2.0;
-        let away = -47.0;
+        let away = -54.0;
         format!(
             "<svg class=\"plot\" role=\"img\" aria-label=\"{}\" viewBox=\"0 0 {width:.0} {height:.0}\" \
              width=\"{width:.0}\" height=\"{height:.0}\"><g transform=\"translate({left:.0} {top:.0})\">{}\
