@@ -6,11 +6,16 @@ use super::frame_resources::FrameResources;
 use super::light_kernels::LightKernels;
 
 /// Pixels along each edge of a cell; twin of `CELL` in `ground_light.wgsl`.
-const CELL: u32 = 4;
+pub(super) const CELL: u32 = 4;
 
 /// The corners of one picture.
 #[derive(Debug)]
 pub(super) struct Ground(GrowBuffer<u32>);
+
+/// Cells of a picture.
+pub(super) fn cells(width: u32, height: u32) -> usize {
+    width.div_ceil(CELL) as usize * height.div_ceil(CELL) as usize
+}
 
 impl Ground {
     pub fn new(gpu: &Gpu) -> Self {

@@ -4,15 +4,15 @@ use lovelock_gpu::{Constant, Gpu, GpuError, Kernel, ShaderSource};
 
 use crate::MAX_LIGHTS;
 
-/// The lists of pixels that are lit one by one; twin of `BODY`, `GROUND_ONLY` and `BODY_AND_GROUND` in picture.wgsl.
-pub(super) const LISTS: usize = 3;
+/// The lists of pixels that are drawn one by one; twin of `BODY` and the constants below it in picture.wgsl.
+pub(super) const LISTS: usize = 4;
 
 /// The kernels for one number of lights.
 #[derive(Debug)]
 pub(super) struct LightKernels {
     pub shade_points: Kernel,
     pub ground: Kernel,
-    /// Lights the pixels of each list.
+    /// Draws the pixels of each list.
     pub picture_lit: [Kernel; LISTS],
 }
 
@@ -41,7 +41,7 @@ impl LightShaders {
         Ok(LightKernels {
             shade_points: kernel("strand points", &self.points, "shade_points", &[count])?,
             ground: kernel("ground", &self.ground, "ground_corners", &[count])?,
-            picture_lit: [lit(0.0)?, lit(1.0)?, lit(2.0)?],
+            picture_lit: [lit(0.0)?, lit(1.0)?, lit(2.0)?, lit(3.0)?],
         })
     }
 }

@@ -1,8 +1,9 @@
 //! Shaders, kernels and pipelines, made once a device.
 
-use lovelock_gpu::{Gpu, GpuError, Kernel, ShaderPart, ShaderSource, wgpu};
+use lovelock_gpu::{Gpu, GpuError, ShaderPart, ShaderSource, wgpu};
 
 use super::light_kernels::{LightShaders, LightVariants};
+use super::screen::ScreenKernels;
 use super::targets::{COLOR_FORMAT, DEPTH_FORMAT, NORMAL_FORMAT, SAMPLES};
 use super::{eye, interpolate};
 
@@ -50,8 +51,7 @@ pub fn all_shaders() -> Vec<(String, ShaderSource)> {
 pub(super) struct Pipelines {
     /// Those that light something.
     pub lit: LightVariants,
-    /// Hair and even background, and lists of the pixels that are left.
-    pub picture: Kernel,
+    pub screen: ScreenKernels,
     /// A uniform for the vertices.
     pub uniform_layout: wgpu::BindGroupLayout,
     /// The body as the eye sees it: all of it, and where it is closed what faces the eye.
@@ -92,7 +92,7 @@ impl Pipelines {
         });
         let (surface, depth) = (gpu.shader(surface.0, &surface.1)?, gpu.shader(depth.0, &depth.1)?);
         Ok(Self {
-            picture: Kernel::new(gpu, picture.0, &picture.1, "picture")?,
+            screen: ScreenKernels::new(gpu, &picture.1)?,
             lit: LightVariants::new(LightShaders { points: points.1, ground: ground.1, picture: picture.1 }),
             surface: CULLS.map(|cull| surface_pipeline(device, &layout, &surface, cull)),
             depth: CULLS.map(|cull| depth_pipeline(device, &layout, &depth, cull)),

@@ -4,12 +4,13 @@ mod inspect;
 
 use std::sync::Arc;
 
+use glam::Vec4;
 use lovelock_gpu::{Commands, Gpu, GpuError, PassTimer, Readback, Stopwatch, wgpu};
 use lovelock_shadow::SUM_WORDS;
 
 use super::eye::{Area, Eye, EyeInput, WIDEST_PLAIN, too_large};
 use super::frame_resources::FrameResources;
-use super::ground::Ground;
+use super::ground::{CELL, Ground};
 use super::hair::HairBuffers;
 use super::pipelines::Pipelines;
 use super::screen::{Screen, ScreenInput};
@@ -238,8 +239,22 @@ impl GpuRenderer {
             transparency: input.picture.transparency,
         };
         self.eye.draw(gpu, &mut commands, &eye)?;
-        let screen = ScreenInput { targets, corners: self.ground.corners(), area, hair: self.eye.layer() };
-        self.screen.run(gpu, &self.pipelines.picture, lit, &mut commands, &frame, &screen);
+        let body = input.body.map_or(&[][..], |(_, skin)| &skin.positions);
+        let figure = area.with(Area::of_points(input.camera, [width, height], body));
+        let exposure = uniform.size_scale_exposure.w;
+        let screen = ScreenInput {
+            targets,
+            corners: self.ground.corners(),
+            area,
+            hair: self.eye.layer(),
+            figure: figure.widened(CELL, [width, height]),
+            background: [
+                Vec4::new(width as f32, height as f32, exposure, 0.0),
+                uniform.background_top,
+                uniform.background_bottom,
+            ],
+        };
+        self.screen.run(gpu, &self.pipelines.screen, lit, &mut commands, &frame, &screen);
         let wanted = [(self.screen.pixels(), 4 * pixels), (self.shadow.sum(), 4 * SUM_WORDS)];
         self.readback.copy(gpu, commands.encoder(), &wanted);
         commands.submit();

@@ -1,15 +1,36 @@
 //! The finished pixels of one picture: hair over the body over the background.
 
-use lovelock_gpu::{Commands, Gpu, GrowBuffer, Kernel, constants, wgpu};
+use glam::Vec4;
+use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, Kernel, ShaderSource, constants, wgpu};
 
 use super::eye::Area;
 use super::frame_resources::FrameResources;
+use super::ground::cells;
 use super::light_kernels::{LISTS, LightKernels};
 use super::targets::Targets;
 
 /// Threads that share the pixels that are lit one by one: enough to fill a card, and few enough that those without a pixel cost
 /// little where kernels run on the processor.
 const LIT_THREADS: [u64; 2] = [1 << 18, 1 << 15];
+
+/// The kernels that find out what the pixels show.
+#[derive(Debug)]
+pub(super) struct ScreenKernels {
+    /// The background where nothing is before it.
+    plain_background: Kernel,
+    list_cells: Kernel,
+    list_pixels: Kernel,
+}
+
+impl ScreenKernels {
+    pub fn new(gpu: &Gpu, source: &ShaderSource) -> Result<Self, GpuError> {
+        Ok(Self {
+            plain_background: Kernel::new(gpu, "plain background", source, "plain_background")?,
+            list_cells: Kernel::new(gpu, "cells", source, "list_cells")?,
+            list_pixels: Kernel::new(gpu, "pixels of the figure", source, "list_pixels")?,
+        })
+    }
+}
 
 /// What the last kernels put together.
 #[derive(Clone, Copy, Debug)]
@@ -21,15 +42,23 @@ pub(super) struct ScreenInput<'a> {
     /// The part of the picture that may have hair, and the hair of each of its pixels.
     pub area: Area,
     pub hair: &'a wgpu::Buffer,
+    /// The part that may have hair or body, of whole cells.
+    pub figure: Area,
+    /// The picture's size and exposure and the colours of the background: what the plain background follows from.
+    pub background: [Vec4; 3],
 }
 
-/// The pixels, and which of them are lit one by one.
+/// The pixels, and which of them are drawn one by one.
 #[derive(Debug)]
 pub(super) struct Screen {
     pixels: GrowBuffer<u32>,
-    /// [`LISTS`] lists, one behind the other, each with room for all pixels.
-    lit: GrowBuffer<u32>,
-    lit_count: wgpu::Buffer,
+    /// The background where nothing is before it, and of what.
+    plain: GrowBuffer<u32>,
+    plain_of: Option<[Vec4; 3]>,
+    cells: GrowBuffer<u32>,
+    /// Lists, two of which share the room of a picture.
+    listed: GrowBuffer<u32>,
+    list_count: wgpu::Buffer,
     lit_threads: u64,
 }
 
@@ -39,9 +68,12 @@ impl Screen {
         let usage = wgpu::BufferUsages::STORAGE;
         Self {
             pixels: GrowBuffer::new(device, "screen", usage),
-            lit: GrowBuffer::new(device, "lit pixels", usage),
-            lit_count: device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("number of lit pixels"),
+            plain: GrowBuffer::new(device, "plain background", usage),
+            plain_of: None,
+            cells: GrowBuffer::new(device, "light of cells", usage),
+            listed: GrowBuffer::new(device, "listed pixels", usage),
+            list_count: device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("numbers of listed pixels"),
                 size: 4 * LISTS as u64,
                 usage: usage | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
@@ -54,7 +86,9 @@ impl Screen {
     pub fn fit(&mut self, gpu: &Gpu, width: u32, height: u32) {
         let pixels = width as usize * height as usize;
         self.pixels.reserve(&gpu.device, pixels);
-        self.lit.reserve(&gpu.device, LISTS * pixels);
+        self.plain.reserve(&gpu.device, pixels);
+        self.listed.reserve(&gpu.device, LISTS / 2 * pixels);
+        self.cells.reserve(&gpu.device, cells(width, height));
     }
 
     /// Red, green, blue and alpha of each pixel, row after row.
@@ -63,39 +97,60 @@ impl Screen {
     }
 
     pub fn memory_bytes(&self) -> u64 {
-        self.pixels.raw().size() + self.lit.raw().size()
+        [&self.pixels, &self.plain, &self.cells, &self.listed].iter().map(|buffer| buffer.raw().size()).sum()
     }
 
     /// Encodes making them.
     pub fn run(
-        &self,
+        &mut self,
         gpu: &Gpu,
-        picture: &Kernel,
-        kernels: &LightKernels,
+        kernels: &ScreenKernels,
+        lit: &LightKernels,
         commands: &mut Commands,
         frame: &FrameResources,
         input: &ScreenInput,
     ) {
-        let ScreenInput { targets, area, .. } = *input;
-        let hair_area = constants(gpu, "hair area", &[area.left, area.top, area.columns, area.rows]);
-        let own = frame.with([
-            (4, wgpu::BindingResource::TextureView(&targets.normals)),
-            (5, wgpu::BindingResource::TextureView(&targets.colors)),
-            (6, wgpu::BindingResource::TextureView(&targets.depth)),
-            (7, input.corners.as_entire_binding()),
-            (8, input.hair.as_entire_binding()),
-            (9, self.pixels.raw().as_entire_binding()),
-            (11, hair_area.as_entire_binding()),
-            (12, self.lit.raw().as_entire_binding()),
-            (13, self.lit_count.as_entire_binding()),
-        ]);
-        commands.encoder().clear_buffer(&self.lit_count, 0, None);
+        let ScreenInput { targets, area, figure, .. } = *input;
+        let area_of =
+            |label, area: Area| constants(gpu, label, &[area.left, area.top, area.columns, area.rows]);
+        let (hair_area, figure_area) = (area_of("hair area", area), area_of("area of the figure", figure));
+        let own = |screen| {
+            frame.with([
+                (4, wgpu::BindingResource::TextureView(&targets.normals)),
+                (5, wgpu::BindingResource::TextureView(&targets.colors)),
+                (6, wgpu::BindingResource::TextureView(&targets.depth)),
+                (7, input.corners.as_entire_binding()),
+                (8, input.hair.as_entire_binding()),
+                (9, screen),
+                (10, self.cells.raw().as_entire_binding()),
+                (11, hair_area.as_entire_binding()),
+                (12, self.listed.raw().as_entire_binding()),
+                (13, self.list_count.as_entire_binding()),
+                (14, figure_area.as_entire_binding()),
+            ])
+        };
         let pixels = self.pixels.len() as u64;
-        let group = picture.bind(gpu, &own);
-        commands.compute("draw/picture", |pass| picture.run(pass, &group, pixels));
-        let groups = kernels.picture_lit.each_ref().map(|kernel| kernel.bind(gpu, &own));
+        if self.plain_of != Some(input.background) {
+            let kernel = &kernels.plain_background;
+            let group = kernel.bind(gpu, &own(self.plain.raw().as_entire_binding()));
+            commands.compute("draw/background", |pass| kernel.run(pass, &group, pixels));
+            self.plain_of = Some(input.background);
+        }
+        let own = own(self.pixels.raw().as_entire_binding());
+        let encoder = commands.encoder();
+        encoder.copy_buffer_to_buffer(self.plain.raw(), 0, self.pixels.raw(), 0, 4 * pixels);
+        encoder.clear_buffer(&self.list_count, 0, None);
+        let passes =
+            [(&kernels.list_cells, self.cells.len() as u64), (&kernels.list_pixels, figure.pixels())];
+        let groups = passes.map(|(kernel, _)| kernel.bind(gpu, &own));
+        commands.compute("draw/picture", |pass| {
+            for ((kernel, threads), group) in passes.iter().zip(&groups) {
+                kernel.run(pass, group, *threads);
+            }
+        });
+        let groups = lit.picture_lit.each_ref().map(|kernel| kernel.bind(gpu, &own));
         commands.compute("draw/lit", |pass| {
-            for (kernel, group) in kernels.picture_lit.iter().zip(&groups) {
+            for (kernel, group) in lit.picture_lit.iter().zip(&groups) {
                 kernel.run(pass, group, pixels.min(self.lit_threads));
             }
         });

@@ -19,6 +19,25 @@ impl Area {
         u64::from(self.columns) * u64::from(self.rows)
     }
 
+    /// What holds both.
+    pub fn with(self, other: Self) -> Self {
+        if self.is_empty() || other.is_empty() {
+            return if self.is_empty() { other } else { self };
+        }
+        let (left, top) = (self.left.min(other.left), self.top.min(other.top));
+        let right = (self.left + self.columns).max(other.left + other.columns);
+        let bottom = (self.top + self.rows).max(other.top + other.rows);
+        Self { left, top, columns: right - left, rows: bottom - top }
+    }
+
+    /// It with the rest of the cells of so many pixels along each edge that it touches, within a picture.
+    pub fn widened(self, cell: u32, [width, height]: [u32; 2]) -> Self {
+        let (left, top) = (self.left / cell * cell, self.top / cell * cell);
+        let right = (self.left + self.columns).next_multiple_of(cell).min(width);
+        let bottom = (self.top + self.rows).next_multiple_of(cell).min(height);
+        Self { left, top, columns: right.saturating_sub(left), rows: bottom.saturating_sub(top) }
+    }
+
     pub fn is_empty(self) -> bool {
         self.pixels() == 0
     }
@@ -26,6 +45,17 @@ impl Area {
     /// The axes along which [`Area::of`] wants bounds: forward, and two across.
     pub fn axes(camera: &Camera) -> LightFrame {
         LightFrame::new(camera.target - camera.eye)
+    }
+
+    /// The part of a picture in which points may lie, world space. The whole picture where one is no number or close to the eye.
+    pub fn of_points(camera: &Camera, size: [u32; 2], points: &[Vec3]) -> Self {
+        let axes = Self::axes(camera);
+        let empty = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        let bounds = points.iter().try_fold(empty, |(low, high), &p| {
+            let along = axes.light_from_world(p - camera.eye);
+            along.is_finite().then(|| (low.min(along), high.max(along)))
+        });
+        Self::of(camera, size, bounds.unwrap_or((Vec3::NAN, Vec3::NAN)), 0.0)
     }
 
     /// The part of a picture in which hair may lie that is bounded, from the eye on, by `min` and `max` along the axes of
@@ -78,6 +108,31 @@ mod tests {
 
     fn camera() -> Camera {
         Camera { eye: Vec3::new(0.3, 1.2, 2.0), target: Vec3::new(0.0, 1.0, 0.0), fov_y: 0.6 }
+    }
+
+    #[test]
+    fn areas_are_put_together_and_widened_to_whole_cells() {
+        let a = Area { left: 5, top: 9, columns: 10, rows: 3 };
+        let b = Area { left: 12, top: 2, columns: 20, rows: 4 };
+        let both = Area { left: 5, top: 2, columns: 27, rows: 10 };
+        assert_eq!((a.with(b), b.with(a)), (both, both));
+        assert_eq!((a.with(Area::default()), Area::default().with(a)), (a, a));
+        assert_eq!(both.widened(4, [64, 48]), Area { left: 4, top: 0, columns: 28, rows: 12 });
+        assert_eq!(both.widened(4, [31, 11]), Area { left: 4, top: 0, columns: 27, rows: 11 });
+        assert!(Area::default().widened(4, [64, 48]).is_empty());
+    }
+
+    #[test]
+    fn the_area_of_points_holds_them_and_is_the_picture_where_one_is_no_number() {
+        let camera = camera();
+        let points = [camera.target, camera.target + Vec3::new(0.1, 0.05, 0.02)];
+        let area = Area::of_points(&camera, [640, 360], &points);
+        assert_eq!(area, Area::of(&camera, [640, 360], bounds(&camera, &points), 0.0));
+        assert!(!area.is_empty() && area.columns < 100, "{area:?}");
+        let whole = Area { left: 0, top: 0, columns: 640, rows: 360 };
+        let broken = [points[0], Vec3::new(f32::NAN, 0.0, 0.0), points[1]];
+        assert_eq!(Area::of_points(&camera, [640, 360], &broken), whole);
+        assert!(Area::of_points(&camera, [640, 360], &[]).is_empty());
     }
 
     /// Bounds of some points, as `Area::of` wants them.

@@ -3,20 +3,31 @@
 // Difference of two corners' light that is not worth a look between them: half a step of 8 bits.
 const ALIKE: f32 = 1.0 / 512.0;
 
-// The share of the light that is left on the ground at a pixel, where the corners of its cell agree on it: w is 1 then.
-fn even_light(pixel: vec2u) -> vec4f {
-    if (frame.ambient_up_ground.w <= 0.5) {
-        return vec4f(1.0);
-    }
+// The light on the ground of each cell of pixels, packed as that of the corners; the highest bit but one says that it is even.
+@group(0) @binding(10) var<storage, read_write> cells: array<u32>;
+
+const EVEN_LIGHT: u32 = 0x40000000u;
+// Even, and all of it.
+const ALL_LIGHT: u32 = 0x7fffffffu;
+
+// The light on the ground of a cell by that at its corners.
+fn light_of_cell(cell: vec2u) -> u32 {
     let columns = corner_columns();
-    let first = pixel.y / CELL * columns + pixel.x / CELL;
-    let a = unpack_share(corners[first]);
+    let first = cell.y * columns + cell.x;
+    let packed = corners[first];
+    let a = unpack_share(packed);
     let b = unpack_share(corners[first + 1u]);
     let c = unpack_share(corners[first + columns]);
     let d = unpack_share(corners[first + columns + 1u]);
     // Corners on both sides of the horizon do not speak for what is between them.
     let spread = max(max(abs(a - b), abs(a - c)), abs(a - d));
-    return vec4f(a.rgb, select(0.0, 1.0, all(spread < vec4f(ALIKE))));
+    let light = (packed & 0x3fffffffu) | select(0u, EVEN_LIGHT, all(spread < vec4f(ALIKE)));
+    return select(ALL_LIGHT, light, frame.ambient_up_ground.w > 0.5);
+}
+
+// The packed light on the ground at a pixel.
+fn light_at(pixel: vec2u) -> u32 {
+    return cells[pixel.y / CELL * (corner_columns() - 1u) + pixel.x / CELL];
 }
 
 fn ndc_of(pixel: vec2u) -> vec2f {

@@ -12,9 +12,11 @@
 @group(0) @binding(8) var<storage, read> hair_layer: array<vec2u>;
 // Red, green, blue and alpha of each pixel.
 @group(0) @binding(9) var<storage, read_write> screen: array<u32>;
-// Pixels that are lit one by one, in three lists one behind the other, and how many they are.
-@group(0) @binding(12) var<storage, read_write> lit_pixels: array<u32>;
-@group(0) @binding(13) var<storage, read_write> lit_count: array<atomic<u32>, 3>;
+// Pixels that are drawn one by one, in four lists, and how many each has.
+@group(0) @binding(12) var<storage, read_write> listed: array<u32>;
+@group(0) @binding(13) var<storage, read_write> list_count: array<atomic<u32>, 4>;
+// The part of the picture that may have hair or body, as `hair_area`; of whole cells.
+@group(0) @binding(14) var<uniform> figure_area: vec4u;
 
 // Light that comes through hair and is no longer worth lighting what is behind: a fourth of a step of 8 bits.
 const UNSEEN: f32 = 1.0 / 1024.0;
@@ -78,19 +80,26 @@ fn join(group: Group, other: Seen, joins: bool) -> Group {
 const BODY: u32 = 0u;
 const GROUND_ONLY: u32 = 1u;
 const BODY_AND_GROUND: u32 = 2u;
+// Hair before an even background.
+const EVEN_GROUND: u32 = 3u;
 override LIST: u32 = BODY;
 
-// The background behind a pixel, whose light is not even where the list is not that of the body.
+// Where an item of a list is. No pixel is in two lists: they grow toward each other, two in the room of a picture.
+fn place_in_list(list: u32, item: u32, pixels: u32) -> u32 {
+    return (list >> 1u) * pixels + select(item, pixels - 1u - item, (list & 1u) == 1u);
+}
+
+// The background behind a pixel.
 fn backdrop(pixel: vec2u) -> vec3f {
-    if (LIST == BODY) {
-        return graded(pixel) * even_light(pixel).rgb;
+    if (LIST == BODY || LIST == EVEN_GROUND) {
+        return graded(pixel) * unpack_share(light_at(pixel)).rgb;
     }
     return graded(pixel) * ground_light(ndc_of(pixel)).rgb;
 }
 
 // The body and what is behind it. Samples of one smooth piece are lit together, at the middle of the pixel.
 fn behind_hair(pixel: vec2u) -> vec3f {
-    if (LIST == GROUND_ONLY) {
+    if (LIST == GROUND_ONLY || LIST == EVEN_GROUND) {
         return backdrop(pixel);
     }
     let a = sample_at(pixel, 0, textureLoad(depths, pixel, 0));
@@ -149,42 +158,84 @@ fn hair_of(pixel: vec2u) -> vec4f {
     return vec4f(0.0, 0.0, 0.0, 1.0);
 }
 
-fn write_pixel(i: u32, pixel: vec2u, light: vec3f) {
-    screen[i] = pack4x8unorm(vec4f(tone_map(light, pixel), 1.0));
+fn pack_pixel(pixel: vec2u, light: vec3f) -> u32 {
+    return pack4x8unorm(vec4f(tone_map(light, pixel), 1.0));
 }
 
-// Pixels of hair and even background. The others are listed by what they show.
+fn picture_size() -> vec2u {
+    return vec2u(frame.size_scale_exposure.xy);
+}
+
+// The picture without anything before the background and without shadow on the ground, which is kept from frame to frame.
 @compute @workgroup_size(64)
-fn picture(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+fn plain_background(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let i = id.x + id.y * groups.x * 64u;
-    let size = vec2u(frame.size_scale_exposure.xy);
-    if (i >= size.x * size.y) {
+    let size = picture_size();
+    if (i < size.x * size.y) {
+        let pixel = vec2u(i % size.x, i / size.x);
+        screen[i] = pack_pixel(pixel, graded(pixel));
+    }
+}
+
+// Finds out how the cells are lit, and lists the pixels of those beside the figure that are not plain.
+@compute @workgroup_size(64)
+fn list_cells(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    let i = id.x + id.y * groups.x * 64u;
+    let size = picture_size();
+    let columns = corner_columns() - 1u;
+    if (i >= columns * ((size.y + CELL - 1u) / CELL)) {
         return;
     }
-    let pixel = vec2u(i % size.x, i / size.x);
+    let cell = vec2u(i % columns, i / columns);
+    let light = light_of_cell(cell);
+    cells[i] = light;
+    let first = cell * CELL;
+    let place = first - figure_area.xy;
+    if (light == ALL_LIGHT || (place.x < figure_area.z && place.y < figure_area.w)) {
+        return;
+    }
+    let extent = min(vec2u(CELL), size - first);
+    let count = extent.x * extent.y;
+    let list = select(GROUND_ONLY, EVEN_GROUND, (light & EVEN_LIGHT) != 0u);
+    let before = atomicAdd(&list_count[list], count);
+    for (var k = 0u; k < count; k++) {
+        let pixel = first + vec2u(k % extent.x, k / extent.x);
+        listed[place_in_list(list, before + k, size.x * size.y)] = pixel.y * size.x + pixel.x;
+    }
+}
+
+// Lists the pixels of the figure's area that are not plain.
+@compute @workgroup_size(64)
+fn list_pixels(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    let i = id.x + id.y * groups.x * 64u;
+    if (i >= figure_area.z * figure_area.w) {
+        return;
+    }
+    let pixel = figure_area.xy + vec2u(i % figure_area.z, i / figure_area.z);
     let hair = hair_of(pixel);
-    let ground = even_light(pixel);
+    let light = light_at(pixel);
     // Depths are not negative.
     let body = textureLoad(depths, pixel, 0) + textureLoad(depths, pixel, 1) + textureLoad(depths, pixel, 2)
         + textureLoad(depths, pixel, 3) > 0.0;
-    let uneven = ground.w == 0.0;
-    if (hair.w > UNSEEN && (body || uneven)) {
-        let list = select(GROUND_ONLY, select(BODY, BODY_AND_GROUND, uneven), body);
-        lit_pixels[list * size.x * size.y + atomicAdd(&lit_count[list], 1u)] = i;
-    } else {
-        write_pixel(i, pixel, hair.rgb + hair.w * graded(pixel) * ground.rgb);
+    let uneven = (light & EVEN_LIGHT) == 0u;
+    let shown = select(select(EVEN_GROUND, GROUND_ONLY, uneven), select(BODY, BODY_AND_GROUND, uneven), body);
+    let list = select(EVEN_GROUND, shown, hair.w > UNSEEN);
+    if (list != EVEN_GROUND || light != ALL_LIGHT || any(hair != vec4f(0.0, 0.0, 0.0, 1.0))) {
+        let size = picture_size();
+        let item = atomicAdd(&list_count[list], 1u);
+        listed[place_in_list(list, item, size.x * size.y)] = pixel.y * size.x + pixel.x;
     }
 }
 
 // The pixels of a list, shared by the threads.
 @compute @workgroup_size(64)
 fn picture_lit(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
-    let size = vec2u(frame.size_scale_exposure.xy);
-    let count = atomicLoad(&lit_count[LIST]);
+    let size = picture_size();
+    let count = atomicLoad(&list_count[LIST]);
     for (var k = id.x; k < count; k += groups.x * 64u) {
-        let i = lit_pixels[LIST * size.x * size.y + k];
+        let i = listed[place_in_list(LIST, k, size.x * size.y)];
         let pixel = vec2u(i % size.x, i / size.x);
         let hair = hair_of(pixel);
-        write_pixel(i, pixel, hair.rgb + hair.w * behind_hair(pixel));
+        screen[i] = pack_pixel(pixel, hair.rgb + hair.w * behind_hair(pixel));
     }
 }
