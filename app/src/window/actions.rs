@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use lovelock_studio::groom::Preset;
 use lovelock_studio::{
-    Access, CameraMode, CameraSection, Command, FileKind, Problem, Project, StudioError, frame_points,
-    load_project_with, project_of_take, recording, save_project,
+    Access, CameraMode, CameraSection, Command, FileKind, Marker, Problem, Project, StudioError,
+    TimelineSection, frame_points, load_project_with, project_of_take, recording, save_project,
 };
 
 use super::path_dialog::Purpose;
@@ -63,6 +63,23 @@ impl Window {
                 self.change("loop", |project| project.motion.looping = !project.motion.looping);
             }
             Command::SettleHair => self.session.worker().settle(),
+            Command::RecordTake => self.record_take(),
+            Command::PlayTake => {
+                if let Some(path) = self.session.saved_take.clone() {
+                    self.open_take(&path);
+                }
+            }
+            Command::LeaveTake => {
+                self.session.set_backwards(false);
+                self.change("take", |project| project.take.file = None);
+            }
+            Command::PlayBackwards => {
+                let backwards = !self.session.backwards;
+                self.session.set_backwards(backwards);
+                self.session.set_playing(true);
+            }
+            Command::AddMarker => self.add_marker(),
+            Command::MarkIn | Command::MarkOut => self.mark_end(command == Command::MarkIn),
             Command::Record if self.recorder.is_running() => self.recorder.cancel(),
             Command::Record => self.ask(Purpose::Film),
             Command::SavePicture => self.ask(Purpose::Picture),
@@ -107,6 +124,52 @@ impl Window {
         self.gestures.next();
         self.edit(label, project);
         self.gestures.next();
+    }
+
+    /// Begins a take in a file of its own, or ends the one that is being recorded.
+    fn record_take(&mut self) {
+        if self.session.worker().take_progress().is_some() {
+            self.session.worker().finish_take();
+            return;
+        }
+        match new_take(self.project_path.as_deref()) {
+            Ok(path) => {
+                self.session.set_playing(true);
+                self.session.worker().record_take(path);
+            }
+            Err(error) => self.tell([error]),
+        }
+    }
+
+    /// Where the dance is, seconds.
+    fn now_secs(&self) -> f64 {
+        self.session.frame.as_ref().map_or(0.0, |frame| frame.position_secs)
+    }
+
+    fn add_marker(&mut self) {
+        let secs = self.now_secs();
+        self.change("marker", |project| {
+            let markers = &mut project.timeline.markers;
+            if markers.len() < TimelineSection::MOST_MARKERS {
+                markers.push(Marker { secs, name: format!("{}", markers.len() + 1) });
+            }
+        });
+    }
+
+    /// The in or the out point of recordings, where the dance is.
+    fn mark_end(&mut self, first: bool) {
+        let secs = self.now_secs();
+        self.change("recording", |project| {
+            let recording = &mut project.recording;
+            let frame = (secs * recording.fps).round() as u64;
+            if first {
+                recording.first_frame = frame;
+                recording.end_frame = recording.end_frame.filter(|end| *end > frame);
+            } else {
+                recording.end_frame = Some(frame.max(1));
+                recording.first_frame = recording.first_frame.min(frame.max(1) - 1);
+            }
+        });
     }
 
     fn frame_hair(&mut self) {
@@ -273,5 +336,43 @@ impl Window {
             ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
             self.pending = Some(Pending::Quit);
         }
+    }
+}
+
+/// A name for a take that is not there yet: `takes/NAME-1.take` beside the project, or among the user's own data where
+/// the project has no file.
+fn new_take(project: Option<&Path>) -> Result<PathBuf, String> {
+    let (folder, name) = match project {
+        Some(path) => {
+            let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            (path.parent().unwrap_or_else(|| Path::new(".")).to_owned(), name)
+        }
+        None => {
+            let folder = eframe::storage_dir("lovelock")
+                .ok_or("there is no folder for takes: save the project first, they then lie beside it")?;
+            (folder, "take".to_owned())
+        }
+    };
+    let folder = folder.join("takes");
+    let free = |path: &PathBuf| !path.exists() && !path.with_extension("take.part").exists();
+    (1..100_000)
+        .map(|number| folder.join(format!("{name}-{number}.take")))
+        .find(free)
+        .ok_or_else(|| format!("{}: holds 100,000 takes of this name", folder.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn takes_lie_beside_their_project_and_replace_nothing() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let project = folder.path().join("red hair.lovelock");
+        let first = new_take(Some(&project)).expect("a name");
+        assert_eq!(first, folder.path().join("takes/red hair-1.take"));
+        std::fs::create_dir_all(first.parent().expect("a folder")).expect("a folder");
+        std::fs::write(first.with_extension("take.part"), b"cut").expect("a file");
+        assert_eq!(new_take(Some(&project)).expect("a name"), folder.path().join("takes/red hair-2.take"));
     }
 }

@@ -15,6 +15,9 @@ impl Window {
         self.gestures.begin_pass(&ctx);
         let said = self.session.update();
         self.tell(said);
+        for done in std::mem::take(&mut self.session.done) {
+            self.notices.tell(notices::Kind::Done, done);
+        }
         let said = self.compare.update(self.session.live());
         self.tell(said);
         self.tell_saved();
@@ -41,9 +44,9 @@ impl Window {
         }
 
         self.menu_bar(ui);
-        let playback = self.timeline(ui);
         // Copied after the menus, which may have changed it: the panels must not put back what was there before.
         let mut project = copy(self.history.project());
+        let playback = self.timeline(ui, &mut project);
         if !self.layout.panels_hidden {
             self.left_panel(ui, &mut project);
             self.right_panel(ui, &mut project, &ctx);
@@ -59,6 +62,7 @@ impl Window {
             match ask {
                 timeline::Ask::Run(command) => self.run(command, &ctx),
                 timeline::Ask::Seek(time_secs) => self.session.worker().seek(time_secs),
+                timeline::Ask::Rate(rate) => self.session.set_rate(rate),
             }
         }
         let mut palette = std::mem::take(&mut self.palette);
@@ -132,17 +136,34 @@ impl Window {
         }
     }
 
-    fn timeline(&mut self, ui: &mut Ui) -> Option<timeline::Ask> {
+    fn timeline(&mut self, ui: &mut Ui, project: &mut Project) -> Option<timeline::Ask> {
+        let session = &self.session;
+        let frame = session.frame.as_ref();
+        let clip = frame.and_then(|frame| frame.scene.clip.as_ref());
         let view = timeline::View {
-            time_secs: self.session.frame.as_ref().map_or(0.0, |frame| frame.position_secs),
-            duration_secs: self.session.frame.as_ref().map_or(0.0, |frame| frame.duration_secs),
-            playing: self.session.playing,
-            looping: self.history.project().motion.looping,
+            time_secs: frame.map_or(0.0, |frame| frame.position_secs),
+            duration_secs: frame.map_or(0.0, |frame| frame.duration_secs),
+            playing: session.playing,
+            looping: project.motion.looping,
+            rate: session.rate,
+            clip: clip.map_or_else(String::new, |clip| clip.name.clone()),
+            take: project.take.file.as_ref().map(|file| timeline::Take {
+                name: file.path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
+                backwards: session.backwards,
+            }),
+            can_play_take: session.saved_take.is_some(),
+            recording: session.worker().take_progress().map(|take| {
+                let kept = take.kept as f64 / take.frames.max(1) as f64;
+                [take.secs, take.secs * kept]
+            }),
         };
+        let zoom = &mut self.layout.timeline;
+        let mut edited =
+            timeline::Edited { recording: &mut project.recording, markers: &mut project.timeline.markers };
         Panel::bottom("timeline")
-            .exact_size(40.0)
+            .exact_size(timeline::HEIGHT)
             .resizable(false)
-            .show(ui, |ui| timeline::ui(ui, view))
+            .show(ui, |ui| timeline::ui(ui, &view, zoom, &mut edited))
             .inner
     }
 
@@ -150,6 +171,14 @@ impl Window {
         let mut asked = None;
         Panel::left("left").default_size(312.0).size_range(260.0..=460.0).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                if project.take.file.is_some() {
+                    self.problems(ui, &[Place::Take]);
+                    super::control::note(
+                        ui,
+                        "A take plays: body and hair are as they were recorded. Leave it (Shift+R) to change them.",
+                    );
+                    ui.disable();
+                }
                 section(ui, "Hairstyle", true, |ui| {
                     self.problems(ui, &[Place::Hair]);
                     let ask = panels::hair::ui(ui, project, &self.session.hair);
@@ -400,6 +429,7 @@ fn changed_part(before: &Project, after: &Project) -> &'static str {
         (before.motion != after.motion, "motion"),
         (before.recording != after.recording, "recording"),
         (before.compare != after.compare, "compare"),
+        (before.timeline != after.timeline, "marker"),
     ];
     parts.iter().find(|(differs, _)| *differs).map_or("change", |(_, name)| name)
 }

@@ -87,10 +87,18 @@ fn part_of(command: Command) -> u8 {
         Command::Save
         | Command::SaveAs
         | Command::ToggleLoop
+        | Command::PlayBackwards
+        | Command::PlayTake
+        | Command::LeaveTake
         | Command::Palette
         | Command::TogglePanels
         | Command::Compare => 1,
-        Command::Record | Command::SavePicture => 2,
+        Command::RecordTake
+        | Command::Record
+        | Command::SavePicture
+        | Command::AddMarker
+        | Command::MarkIn
+        | Command::MarkOut => 2,
         Command::Quit => 3,
         _ => 0,
     }

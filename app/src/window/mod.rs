@@ -52,6 +52,7 @@ struct Layout {
     /// Pixels drawn a pixel of the screen; 0 chooses by the device.
     view_scale: f32,
     compare: CompareLayout,
+    timeline: timeline::Zoom,
 }
 
 /// What is asked before changes are lost.
@@ -188,6 +189,11 @@ impl Window {
             Command::Undo => self.history.undo_len() > 0,
             Command::Redo => self.history.redo_len() > 0,
             Command::SavePicture if self.layout.compare.shown => self.compare.has_pictures(),
+            Command::RecordTake => self.session.frame.is_some() && self.history.project().take.file.is_none(),
+            Command::PlayTake => {
+                self.session.saved_take.is_some() && self.history.project().take.file.is_none()
+            }
+            Command::LeaveTake | Command::PlayBackwards => self.history.project().take.file.is_some(),
             Command::FrameHair => self.session.frame.is_some(),
             Command::SavePicture => self.session.painted.is_some(),
             _ => true,

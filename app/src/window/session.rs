@@ -34,7 +34,13 @@ pub(crate) struct Session {
     pub(crate) stages: StageHistory,
     pub(crate) passes: PassHistory,
     pub(crate) playing: bool,
+    /// Seconds of the dance a second.
+    pub(crate) rate: f64,
+    /// Whether a take plays from its end to its start.
+    pub(crate) backwards: bool,
     pub(crate) draw_error: Option<String>,
+    /// Sentences about what is done, not told yet.
+    pub(crate) done: Vec<String>,
     /// The take that was recorded last.
     pub(crate) saved_take: Option<PathBuf>,
 }
@@ -79,7 +85,10 @@ impl Session {
             stages: StageHistory::new(PLOTTED_FRAMES),
             passes: PassHistory::new(PLOTTED_FRAMES),
             playing: true,
+            rate: 1.0,
+            backwards: false,
             draw_error: None,
+            done: Vec::new(),
             saved_take: None,
         })
     }
@@ -120,6 +129,18 @@ impl Session {
         self.worker.set_playing(playing);
     }
 
+    /// Seconds of the dance a second.
+    pub(crate) fn set_rate(&mut self, rate: f64) {
+        self.rate = rate;
+        self.worker.set_rate(rate);
+    }
+
+    /// Whether a take plays from its end to its start.
+    pub(crate) fn set_backwards(&mut self, backwards: bool) {
+        self.backwards = backwards;
+        self.worker.set_backwards(backwards);
+    }
+
     /// Takes what the threads left. Returns sentences that the user should see.
     pub(crate) fn update(&mut self) -> Vec<String> {
         let mut said = Vec::new();
@@ -133,7 +154,7 @@ impl Session {
                 Event::EndReached => self.playing = false,
                 Event::TakeSaved { report, because } => {
                     let why = because.map_or_else(String::new, |why| format!(", ended because {why}"));
-                    said.push(format!(
+                    self.done.push(format!(
                         "The take is in {}: {:.1} s, {} frames{why}.",
                         report.path.display(),
                         report.duration_secs,

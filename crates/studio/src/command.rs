@@ -17,8 +17,22 @@ pub enum Command {
     ToggleLoop,
     /// Lets the hair fall into place again.
     SettleHair,
-    /// Starts or cancels a recording.
+    /// Starts or ends the recording of a take.
+    RecordTake,
+    /// Starts or cancels the recording of a film or of pictures.
     Record,
+    /// Plays the take that was recorded last.
+    PlayTake,
+    /// Simulates again in place of the take that plays.
+    LeaveTake,
+    /// Whether a take plays from its end to its start.
+    PlayBackwards,
+    /// A named time where the dance is.
+    AddMarker,
+    /// Recordings begin where the dance is.
+    MarkIn,
+    /// Recordings end where the dance is.
+    MarkOut,
     /// Saves the picture in the viewport as a PNG file.
     SavePicture,
     /// Moves the camera until the hair fills the picture.
@@ -213,12 +227,68 @@ pub const COMMANDS: &[CommandInfo] = {
             G::Hair,
         ),
         entry(
-            C::Record,
-            "record",
-            "Record",
-            "Records the dance as a film or as pictures; asked again while it runs, it cancels.",
+            C::RecordTake,
+            "record-take",
+            "Record a take",
+            "Records the simulation as it plays, to be played, lit and drawn later; asked again, it ends.",
             &["R"],
             G::File,
+        ),
+        entry(
+            C::Record,
+            "record",
+            "Record a film…",
+            "Records the dance as a film or as pictures; asked again while it runs, it cancels.",
+            &["Ctrl+R"],
+            G::File,
+        ),
+        entry(
+            C::PlayTake,
+            "play-take",
+            "Play the last take",
+            "Plays the take that was recorded last in place of the simulation.",
+            &["P"],
+            G::Playback,
+        ),
+        entry(
+            C::LeaveTake,
+            "leave-take",
+            "Leave the take",
+            "Simulates the hair again in place of the take that plays.",
+            &["Shift+R"],
+            G::Playback,
+        ),
+        entry(
+            C::PlayBackwards,
+            "play-backwards",
+            "Play backwards",
+            "Plays a take from its end to its start.",
+            &["Shift+Space"],
+            G::Playback,
+        ),
+        entry(
+            C::AddMarker,
+            "add-marker",
+            "Add a marker",
+            "Puts a flag on the timeline where the dance is.",
+            &["M"],
+            G::Playback,
+        ),
+        entry(
+            C::MarkIn,
+            "mark-in",
+            "In point here",
+            "Lets films and pictures begin where the dance is.",
+            &["I"],
+            G::Playback,
+        ),
+        entry(
+            C::MarkOut,
+            "mark-out",
+            "Out point here",
+            "Lets films and pictures end where the dance is.",
+            &["O"],
+            G::Playback,
         ),
         entry(
             C::SavePicture,
@@ -273,7 +343,7 @@ pub const COMMANDS: &[CommandInfo] = {
             C::Open,
             "open",
             "Open…",
-            "Opens a project, a hairstyle (.hair, .tfx), a character (.glb, .gltf) or a motion (.bvh).",
+            "Opens a project, a hairstyle (.hair, .tfx), a character (.glb, .gltf), a motion (.bvh) or a take (.take).",
             &["Ctrl+O"],
             G::File,
         ),
@@ -396,7 +466,8 @@ mod tests {
             ("Left", Command::StepBack),
             ("Home", Command::JumpToStart),
             ("End", Command::JumpToEnd),
-            ("R", Command::Record),
+            ("R", Command::RecordTake),
+            ("Ctrl+R", Command::Record),
             ("C", Command::Compare),
             ("F", Command::FrameHair),
             ("Ctrl+Z", Command::Undo),

@@ -118,7 +118,7 @@ pub(super) fn ui(
             ui,
             icons::ICON_VIDEOCAM,
             "Record comparison",
-            "Records the dance as a film of all panes (R).",
+            "Records the dance as a film of all panes (Ctrl+R).",
             true,
             Ask::Film,
         );

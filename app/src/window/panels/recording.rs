@@ -155,7 +155,7 @@ pub(crate) fn ui(
     } else {
         ui.horizontal(|ui| {
             let dot = RichText::new("Record film…").color(theme::RECORDING);
-            if ui.button(dot).on_hover_text("Records the dance as H.264 in MP4 (R).").clicked() {
+            if ui.button(dot).on_hover_text("Records the dance as H.264 in MP4 (Ctrl+R).").clicked() {
                 ask = Some(Ask::Film);
             }
             if ui.button("Pictures…").on_hover_text("Records the dance as a folder of PNG files.").clicked()

@@ -6,6 +6,7 @@ mod keyboard;
 mod notices;
 mod playback;
 mod rows;
+mod takes;
 mod whole;
 
 use egui::accesskit::{Role, Toggled};

@@ -1,73 +1,176 @@
 //! The timeline.
 
 use egui::accesskit::Role;
-use egui::{Rect, pos2, vec2};
+use egui::{Event, Modifiers, MouseWheelUnit, PointerButton, Rect, TouchPhase, pos2, vec2};
 use egui_kittest::Harness;
-use lovelock_studio::Command;
+use lovelock_studio::{Command, Marker, RecordingSection};
 
 use super::{Shown, click, control, drag, screen_of, tooltip_at};
-use crate::window::timeline::{self, Ask, View};
+use crate::window::timeline::{self, Ask, Edited, Take, View, Zoom};
 
-fn bar(view: View) -> Harness<'static, Shown<(View, Vec<Ask>)>> {
-    screen_of(vec2(900.0, 44.0), (view, Vec::new()), |ui, (view, asked): &mut (View, Vec<Ask>)| {
-        asked.extend(timeline::ui(ui, *view));
+struct State {
+    view: View,
+    zoom: Zoom,
+    recording: RecordingSection,
+    markers: Vec<Marker>,
+    asked: Vec<Ask>,
+}
+
+fn bar(view: View) -> Harness<'static, Shown<State>> {
+    let state = State {
+        view,
+        zoom: Zoom::default(),
+        recording: RecordingSection::default(),
+        markers: vec![Marker { secs: 6.0, name: "turn".to_owned() }],
+        asked: Vec::new(),
+    };
+    screen_of(vec2(900.0, timeline::HEIGHT), state, |ui, state: &mut State| {
+        let mut edited = Edited { recording: &mut state.recording, markers: &mut state.markers };
+        state.asked.extend(timeline::ui(ui, &state.view, &mut state.zoom, &mut edited));
     })
 }
 
-const VIEW: View = View { time_secs: 2.0, duration_secs: 8.0, playing: true, looping: true };
+fn view() -> View {
+    View {
+        time_secs: 2.0,
+        duration_secs: 8.0,
+        playing: true,
+        looping: true,
+        rate: 1.0,
+        clip: "dance".to_owned(),
+        take: None,
+        can_play_take: true,
+        recording: None,
+    }
+}
+
+fn take() -> View {
+    View { take: Some(Take { name: "first".to_owned(), backwards: false }), ..view() }
+}
 
 #[test]
 fn every_button_asks_for_its_command() {
-    let mut harness = bar(VIEW);
-    for command in [
-        Command::JumpToStart,
-        Command::StepBack,
-        Command::PlayPause,
-        Command::StepForward,
-        Command::JumpToEnd,
+    for (view, commands) in [
+        (
+            view(),
+            vec![
+                Command::JumpToStart,
+                Command::StepBack,
+                Command::PlayPause,
+                Command::StepForward,
+                Command::JumpToEnd,
+                Command::RecordTake,
+                Command::PlayTake,
+            ],
+        ),
+        (take(), vec![Command::StepBack, Command::LeaveTake]),
     ] {
-        let rect = control(&harness, Role::Button, command.info().label).rect();
-        harness.state_mut().state.1.clear();
-        click(&mut harness, rect.center());
-        assert_eq!(harness.state().state.1, [Ask::Run(command)]);
-        let said = tooltip_at(&mut harness, rect.center()).expect("a tooltip");
-        assert!(said.contains(command.info().shortcuts[0]), "{command:?}: {said}");
+        let mut harness = bar(view);
+        for command in commands {
+            let rect = control(&harness, Role::Button, command.info().label).rect();
+            harness.state_mut().state.asked.clear();
+            click(&mut harness, rect.center());
+            assert_eq!(harness.state().state.asked, [Ask::Run(command)]);
+            let said = tooltip_at(&mut harness, rect.center()).expect("a tooltip");
+            assert!(said.contains(command.info().shortcuts[0]), "{command:?}: {said}");
+        }
     }
-    harness.state_mut().state.1.clear();
-    let rect = control(&harness, Role::CheckBox, "Loop").rect();
-    click(&mut harness, rect.center());
-    assert_eq!(harness.state().state.1, [Ask::Run(Command::ToggleLoop)]);
+    let mut harness = bar(take());
+    for command in [Command::ToggleLoop, Command::PlayBackwards] {
+        let rect = control(&harness, Role::CheckBox, command.info().label).rect();
+        harness.state_mut().state.asked.clear();
+        click(&mut harness, rect.center());
+        assert_eq!(harness.state().state.asked, [Ask::Run(command)]);
+    }
 }
 
 #[test]
 fn a_click_goes_to_its_time_and_a_drag_stays_inside() {
-    let mut harness = bar(VIEW);
+    let mut harness = bar(view());
     let rect: Rect = control(&harness, Role::Slider, "Time").rect();
-    click(&mut harness, rect.center());
-    let Some(Ask::Seek(secs)) = harness.state().state.1.last().copied() else {
+    // The names of the lanes stand left of the ruler.
+    let (left, right) = (rect.left() + 44.0, rect.right());
+    let at = pos2(0.5 * (left + right), rect.bottom() - 4.0);
+    click(&mut harness, at);
+    let Some(Ask::Seek(secs)) = harness.state().state.asked.last().copied() else {
         panic!("no time was asked for")
     };
     // A point of the bar is a hundredth of a second here.
     assert!((secs - 4.0).abs() < 0.02, "{secs}");
-    drag(&mut harness, rect.center(), pos2(1e6, rect.center().y));
-    assert_eq!(harness.state().state.1.last(), Some(&Ask::Seek(8.0)));
-    drag(&mut harness, rect.center(), pos2(-1e6, rect.center().y));
-    assert_eq!(harness.state().state.1.last(), Some(&Ask::Seek(0.0)));
-    let said = tooltip_at(&mut harness, rect.center() + vec2(40.0, 0.0));
+    drag(&mut harness, at, pos2(1e6, at.y));
+    assert_eq!(harness.state().state.asked.last(), Some(&Ask::Seek(8.0)));
+    drag(&mut harness, at, pos2(-1e6, at.y));
+    assert_eq!(harness.state().state.asked.last(), Some(&Ask::Seek(0.0)));
+    let said = tooltip_at(&mut harness, at + vec2(40.0, 0.0));
     assert!(said.is_some(), "the bar says what it does");
+}
+
+#[test]
+fn the_wheel_magnifies_and_a_click_then_goes_to_what_is_shown() {
+    let mut harness = bar(view());
+    let rect: Rect = control(&harness, Role::Slider, "Time").rect();
+    let right = pos2(rect.right() - 1.0, rect.bottom() - 4.0);
+    harness.hover_at(right);
+    for _ in 0..12 {
+        harness.event(Event::MouseWheel {
+            unit: MouseWheelUnit::Point,
+            delta: vec2(0.0, 100.0),
+            phase: TouchPhase::Move,
+            source: egui::MouseWheelSource::Wheel,
+            modifiers: Modifiers::NONE,
+        });
+        harness.run_steps(4);
+    }
+    assert_ne!(harness.state().state.zoom, Zoom::default());
+    harness.state_mut().state.asked.clear();
+    click(&mut harness, pos2(rect.left() + 46.0, right.y));
+    let Some(Ask::Seek(secs)) = harness.state().state.asked.last().copied() else {
+        panic!("no time was asked for")
+    };
+    assert!((6.0..8.0).contains(&secs), "magnified about the end, the left edge is near it: {secs}");
+}
+
+#[test]
+fn in_and_out_points_are_dragged_and_never_cross() {
+    let mut harness = bar(view());
+    let out = control(&harness, Role::Slider, "Out point").rect().center();
+    let middle = pos2(out.x - 400.0, out.y);
+    drag(&mut harness, out, middle);
+    let end = harness.state().state.recording.end_frame.expect("an out point");
+    assert!((110..150).contains(&end), "{end} of 240 frames");
+    let point = control(&harness, Role::Slider, "In point").rect().center();
+    drag(&mut harness, point, pos2(1e6, point.y));
+    let recording = harness.state().state.recording.clone();
+    assert_eq!((recording.first_frame, recording.end_frame), (end - 1, Some(end)));
+}
+
+#[test]
+fn markers_are_gone_to_and_removed() {
+    let mut harness = bar(view());
+    let flag = control(&harness, Role::Button, "Marker turn").rect().center();
+    click(&mut harness, flag);
+    assert_eq!(harness.state().state.asked.last(), Some(&Ask::Seek(6.0)));
+    for pressed in [true, false] {
+        let button = PointerButton::Secondary;
+        harness.event(Event::PointerButton { pos: flag, button, pressed, modifiers: Modifiers::NONE });
+    }
+    harness.run_steps(3);
+    assert_eq!(harness.state().state.markers, []);
 }
 
 #[test]
 fn a_dance_of_no_length_and_one_of_days_are_shown() {
     for (time_secs, duration_secs) in
-        [(0.0, 0.0), (5.0, 0.0), (1e6, 3e5), (f64::NAN, f64::NAN), (0.5, 1.0 / 60.0)]
+        [(0.0, 0.0), (5.0, 0.0), (1e6, 3e5), (f64::NAN, f64::NAN), (0.5, 1.0 / 60.0), (0.0, f64::INFINITY)]
     {
-        let mut harness = bar(View { time_secs, duration_secs, ..VIEW });
-        let rect = control(&harness, Role::Slider, "Time").rect();
-        click(&mut harness, rect.center());
-        for ask in &harness.state().state.1 {
-            assert!(matches!(ask, Ask::Seek(secs) if secs.is_finite()), "{duration_secs}: {ask:?}");
+        for view in [view(), take(), View { recording: Some([2.5, 2.0]), ..view() }] {
+            let mut harness = bar(View { time_secs, duration_secs, ..view });
+            let rect = control(&harness, Role::Slider, "Time").rect();
+            click(&mut harness, pos2(rect.center().x, rect.bottom() - 4.0));
+            for ask in &harness.state().state.asked {
+                assert!(matches!(ask, Ask::Seek(secs) if secs.is_finite()), "{duration_secs}: {ask:?}");
+            }
+            assert!(harness.state().taken.right() <= 900.0);
         }
-        assert!(harness.state().taken.right() <= 900.0);
     }
 }

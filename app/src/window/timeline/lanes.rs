@@ -1,0 +1,226 @@
+//! The ruler with its lanes: a click or a drag goes to a time, the wheel magnifies, brackets and flags can be moved.
+
+use egui::{Align2, FontId, Id, PointerButton, Pos2, Rect, Response, Sense, Stroke, Ui, Vec2, pos2, vec2};
+use lovelock_studio::Marker;
+
+use super::zoom::tick_secs;
+use super::{Ask, Edited, View, Zoom};
+use crate::window::theme;
+
+const RULER: f32 = 22.0;
+const LANE: f32 = 15.0;
+/// Room for the names of lanes.
+const NAMES: f32 = 44.0;
+
+/// Where times stand on the screen.
+#[derive(Clone, Copy)]
+struct Scale {
+    left: f32,
+    width: f32,
+    from: f64,
+    to: f64,
+}
+
+impl Scale {
+    fn x(&self, secs: f64) -> f32 {
+        let span = (self.to - self.from).max(1e-9);
+        self.left + self.width * (((secs - self.from) / span).clamp(-1.0, 2.0)) as f32
+    }
+
+    fn secs(&self, x: f32) -> f64 {
+        let part = f64::from(((x - self.left) / self.width.max(1.0)).clamp(0.0, 1.0));
+        self.from + (self.to - self.from) * part
+    }
+}
+
+pub(super) fn ui(ui: &mut Ui, view: &View, zoom: &mut Zoom, edited: &mut Edited<'_>) -> Option<Ask> {
+    let lanes = 1.0 + if view.take.is_some() || view.recording.is_some() { 1.0 } else { 0.0 };
+    let size = vec2((ui.available_width() - 8.0).max(NAMES + 60.0), RULER + lanes * LANE);
+    let (whole, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "Time"));
+    let rect = Rect::from_min_max(whole.min + vec2(NAMES, 0.0), whole.max);
+    let finite = |secs: f64| if secs.is_finite() { secs.max(0.0) } else { 0.0 };
+    let (duration, now) = (finite(view.duration_secs).max(1e-3), finite(view.time_secs));
+    magnify(ui, &response, rect, zoom, duration);
+    let [from, to] = zoom.shown(duration);
+    let scale = Scale { left: rect.left(), width: rect.width(), from, to };
+
+    ruler(ui, rect, scale);
+    let lane = |i: f32| {
+        let top = rect.top() + RULER + i * LANE;
+        Rect::from_min_max(pos2(rect.left(), top + 1.0), pos2(rect.right(), top + LANE - 1.0))
+    };
+    name(ui, whole, lane(0.0), "Clip");
+    let clip = if view.clip.is_empty() { "rest" } else { &view.clip };
+    bar(ui, lane(0.0), scale, [0.0, duration], theme::LINE, clip);
+    if let Some(take) = &view.take {
+        name(ui, whole, lane(1.0), "Take");
+        bar(ui, lane(1.0), scale, [0.0, duration], theme::ACCENT.gamma_multiply(0.45), &take.name);
+    } else if let Some([secs, kept]) = view.recording {
+        name(ui, whole, lane(1.0), "Take");
+        // A take goes on in time where the clip goes round: its length, from the left.
+        let end = secs.min(duration);
+        bar(ui, lane(1.0), scale, [0.0, end], theme::RECORDING.gamma_multiply(0.35), "");
+        bar(ui, lane(1.0), scale, [0.0, kept.min(end)], theme::RECORDING.gamma_multiply(0.6), "recording");
+    }
+    points(ui, rect, scale, edited, duration);
+    let flagged = flags(ui, rect, scale, edited.markers);
+    let painter = ui.painter_at(rect);
+    if (from..=to).contains(&now) {
+        let x = scale.x(now);
+        painter.line_segment([pos2(x, rect.top()), pos2(x, rect.bottom())], Stroke::new(2.0, theme::ACCENT));
+        painter.circle_filled(pos2(x, rect.top() + RULER - 5.0), 4.0, theme::BRIGHT);
+    }
+    let response = response
+        .on_hover_text("Drag to move through the dance; the wheel magnifies, the right button moves, a double-click shows all.");
+    if response.double_clicked() {
+        *zoom = Zoom::default();
+    }
+    let primary = response.dragged_by(PointerButton::Primary) || response.clicked();
+    let at = response.interact_pointer_pos().filter(|_| primary).map(|at| scale.secs(at.x));
+    flagged.or(at).map(Ask::Seek)
+}
+
+/// The wheel over the ruler magnifies about the pointer; the right or middle button moves.
+fn magnify(ui: &Ui, response: &Response, rect: Rect, zoom: &mut Zoom, duration: f64) {
+    if let Some(at) = response.hover_pos() {
+        let wheel = ui.input(|input| input.smooth_scroll_delta);
+        if wheel.y != 0.0 {
+            let at = f64::from((at.x - rect.left()) / rect.width().max(1.0));
+            zoom.by(f64::from(-wheel.y * 0.005).exp(), at, duration);
+        }
+        if wheel.x != 0.0 {
+            zoom.pan(f64::from(-wheel.x / rect.width().max(1.0)));
+        }
+    }
+    if response.dragged_by(PointerButton::Secondary) || response.dragged_by(PointerButton::Middle) {
+        zoom.pan(f64::from(-response.drag_delta().x / rect.width().max(1.0)));
+    }
+}
+
+/// A tick and a number at round times, or at frames where there is room.
+fn ruler(ui: &Ui, rect: Rect, scale: Scale) {
+    let painter = ui.painter_at(rect);
+    let ground = Rect::from_min_max(rect.min, pos2(rect.right(), rect.top() + RULER));
+    painter.rect_filled(ground, 2.0, theme::PAGE);
+    let every = tick_secs(f64::from(scale.width) / (scale.to - scale.from).max(1e-9), 44.0);
+    let first = (scale.from / every).floor() as i64;
+    // At most one number a step that has room: bounded by the width.
+    let count = ((scale.to - scale.from) / every).ceil().clamp(0.0, 1000.0) as i64 + 1;
+    for i in first..=first + count {
+        let secs = i as f64 * every;
+        let x = scale.x(secs);
+        let ends = [pos2(x, ground.bottom() - 6.0), pos2(x, ground.bottom())];
+        painter.line_segment(ends, Stroke::new(1.0, theme::QUIET));
+        let text = match every {
+            e if e < 0.09 => format!("f{}", (secs * super::FRAMES_PER_SEC).round()),
+            e if e < 0.99 => format!("{secs:.1}"),
+            e if e < 60.0 => format!("{secs:.0}"),
+            _ => format!("{}:{:02}", secs as i64 / 60, secs as i64 % 60),
+        };
+        let font = FontId::proportional(9.5);
+        painter.text(pos2(x + 3.0, ground.top() + 2.0), Align2::LEFT_TOP, text, font, theme::QUIET);
+    }
+}
+
+fn name(ui: &Ui, whole: Rect, lane: Rect, text: &str) {
+    let at = pos2(whole.left() + 2.0, lane.center().y);
+    ui.painter().text(at, Align2::LEFT_CENTER, text, FontId::proportional(10.5), theme::QUIET);
+}
+
+fn bar(ui: &Ui, lane: Rect, scale: Scale, [from, to]: [f64; 2], color: egui::Color32, text: &str) {
+    let painter = ui.painter_at(lane);
+    let rect = Rect::from_x_y_ranges(scale.x(from)..=scale.x(to), lane.y_range());
+    painter.rect_filled(rect, 3.0, color);
+    let at = pos2(rect.left().max(lane.left()) + 5.0, lane.center().y);
+    painter.text(at, Align2::LEFT_CENTER, text, FontId::proportional(10.5), theme::BRIGHT);
+}
+
+/// In and out points: the frames of a recording, as brackets that can be dragged.
+fn points(ui: &Ui, rect: Rect, scale: Scale, edited: &mut Edited<'_>, duration: f64) {
+    let recording = &mut *edited.recording;
+    let fps = if recording.fps > 0.0 { recording.fps } else { 30.0 };
+    let last = ((duration * fps).round() as u64).max(1);
+    let mut ends = [recording.first_frame, recording.end_frame.unwrap_or(last)];
+    let before = ends;
+    for (i, label) in ["In point", "Out point"].into_iter().enumerate() {
+        let x = scale.x(ends[i] as f64 / fps);
+        let handle = Rect::from_center_size(pos2(x, rect.top() + RULER * 0.5), vec2(10.0, RULER));
+        let response = ui.interact(handle, Id::unique(("timeline", label)), Sense::drag());
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, label));
+        if let Some(at) = response.interact_pointer_pos().filter(|_| response.dragged()) {
+            let frame = (scale.secs(at.x) * fps).round() as u64;
+            ends[i] = if i == 0 { frame.min(ends[1].saturating_sub(1)) } else { frame.max(ends[0] + 1) };
+        }
+        let response =
+            response.on_hover_text(format!("{label} of recordings: frame {} at {fps} a second.", ends[i]));
+        let hot = response.hovered() || response.dragged();
+        let color = if hot { theme::BRIGHT } else { theme::ACCENT };
+        let (x, inward) = (scale.x(ends[i] as f64 / fps), if i == 0 { 4.0 } else { -4.0 });
+        let painter = ui.painter_at(rect.expand2(Vec2::new(5.0, 0.0)));
+        let (top, bottom) = (rect.top() + 1.0, rect.top() + RULER - 1.0);
+        let stroke = Stroke::new(if hot { 2.0 } else { 1.5 }, color);
+        painter.line_segment([pos2(x, top), pos2(x, bottom)], stroke);
+        painter.line_segment([pos2(x, top), pos2(x + inward, top)], stroke);
+        painter.line_segment([pos2(x, bottom), pos2(x + inward, bottom)], stroke);
+    }
+    if ends[0] != before[0] {
+        recording.first_frame = ends[0];
+    }
+    if ends[1] != before[1] {
+        recording.end_frame = (ends[1] != last).then_some(ends[1]);
+    }
+    // What is not recorded is dimmed.
+    let painter = ui.painter_at(rect);
+    for [from, to] in
+        [[0.0, ends[0] as f64 / fps], [ends[1] as f64 / fps, duration.max(ends[1] as f64 / fps)]]
+    {
+        let dim = Rect::from_x_y_ranges(scale.x(from)..=scale.x(to), rect.top() + RULER..=rect.bottom());
+        painter.rect_filled(dim, 0.0, theme::PANEL.gamma_multiply(0.6));
+    }
+}
+
+/// Markers: flags on the ruler. A click goes there, a drag moves, the right button removes.
+fn flags(ui: &Ui, rect: Rect, scale: Scale, markers: &mut Vec<Marker>) -> Option<f64> {
+    let mut sought = None;
+    let mut removed = None;
+    for (i, marker) in markers.iter_mut().enumerate() {
+        if !(scale.from..=scale.to).contains(&marker.secs) {
+            continue;
+        }
+        let x = scale.x(marker.secs);
+        let flag = Rect::from_min_size(pos2(x, rect.top() + 2.0), vec2(9.0, 9.0));
+        let response = ui.interact(flag, Id::unique(("timeline marker", i)), Sense::click_and_drag());
+        response.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Marker {}", marker.name))
+        });
+        if let Some(at) =
+            response.interact_pointer_pos().filter(|_| response.dragged_by(PointerButton::Primary))
+        {
+            marker.secs = scale.secs(at.x);
+        }
+        if response.clicked() {
+            sought = Some(marker.secs);
+        }
+        if response.secondary_clicked() {
+            removed = Some(i);
+        }
+        let hot = response.hovered();
+        response.on_hover_text(format!(
+            "{} at {:.2} s. Click to go there, drag to move it, right-click to remove it.",
+            marker.name, marker.secs
+        ));
+        let painter = ui.painter_at(rect);
+        let color = if hot { theme::BRIGHT } else { theme::PLOT[1] };
+        painter.line_segment([pos2(x, rect.top() + 2.0), pos2(x, rect.bottom())], Stroke::new(1.0, color));
+        let corners: Vec<Pos2> =
+            [(0.0, 0.0), (9.0, 3.5), (0.0, 7.0)].map(|(dx, dy)| flag.min + vec2(dx, dy)).to_vec();
+        painter.add(egui::Shape::convex_polygon(corners, color, Stroke::NONE));
+        let font = FontId::proportional(9.5);
+        painter.text(pos2(x + 11.0, rect.top() + 9.0), Align2::LEFT_TOP, &marker.name, font, color);
+    }
+    if let Some(i) = removed {
+        markers.remove(i);
+    }
+    sought
+}

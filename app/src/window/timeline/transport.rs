@@ -1,0 +1,100 @@
+//! The row of buttons: play, step, rate, record.
+
+use egui::{RichText, Ui, Vec2};
+use egui_material_icons::icons;
+use lovelock_studio::{Command, CommandInfo};
+
+use super::{Ask, FRAMES_PER_SEC, View};
+use crate::window::theme;
+
+/// Rates that are offered, with their names.
+const RATES: [(f64, &str); 6] =
+    [(0.1, "1/10 ×"), (0.25, "1/4 ×"), (0.5, "1/2 ×"), (1.0, "1 ×"), (1.5, "1 1/2 ×"), (2.0, "2 ×")];
+
+pub(super) fn ui(ui: &mut Ui, view: &View) -> Option<Ask> {
+    let mut ask = None;
+    let play = if view.playing { icons::ICON_PAUSE } else { icons::ICON_PLAY_ARROW };
+    for (icon, command) in [
+        (icons::ICON_SKIP_PREVIOUS, Command::JumpToStart),
+        (icons::ICON_CHEVRON_LEFT, Command::StepBack),
+        (play, Command::PlayPause),
+        (icons::ICON_CHEVRON_RIGHT, Command::StepForward),
+        (icons::ICON_SKIP_NEXT, Command::JumpToEnd),
+    ] {
+        if button(ui, icon.into(), command.info()) {
+            ask = Some(Ask::Run(command));
+        }
+    }
+    if toggle(ui, view.looping, icons::ICON_REPEAT, Command::ToggleLoop.info()) {
+        ask = Some(Ask::Run(Command::ToggleLoop));
+    }
+    if let Some(take) = &view.take
+        && toggle(ui, take.backwards, icons::ICON_FAST_REWIND, Command::PlayBackwards.info())
+    {
+        ask = Some(Ask::Run(Command::PlayBackwards));
+    }
+    ask = rate(ui, view.rate).or(ask);
+    ui.monospace(format!("{:6.2} s", view.time_secs));
+    let frame = (view.time_secs * FRAMES_PER_SEC).round() as i64;
+    ui.label(RichText::new(format!("frame {frame}")).small().color(theme::QUIET));
+    ui.add_space(12.0);
+    match (&view.take, view.recording) {
+        (Some(take), _) => {
+            ui.label(RichText::new(format!("Take {}", take.name)).color(theme::ACCENT))
+                .on_hover_text("Body and hair move as they were recorded; light, look and camera are free.");
+            if button(ui, icons::ICON_CLOSE.into(), Command::LeaveTake.info()) {
+                ask = Some(Ask::Run(Command::LeaveTake));
+            }
+        }
+        (None, recording) => {
+            let running = recording.is_some();
+            let icon = if running { icons::ICON_STOP } else { icons::ICON_FIBER_MANUAL_RECORD };
+            if button(ui, RichText::from(icon).color(theme::RECORDING), Command::RecordTake.info()) {
+                ask = Some(Ask::Run(Command::RecordTake));
+            }
+            if !running && view.can_play_take && button(ui, "Play the take".into(), Command::PlayTake.info())
+            {
+                ask = Some(Ask::Run(Command::PlayTake));
+            }
+            if let Some([secs, kept]) = recording {
+                ui.label(RichText::new(format!("{secs:.1} s")).color(theme::RECORDING))
+                    .on_hover_text(format!("{kept:.1} s of them are on the disk, whatever happens now."));
+            }
+        }
+    }
+    ask
+}
+
+/// A button for a command, told by its name to those who do not see it.
+fn button(ui: &mut Ui, icon: RichText, info: &CommandInfo) -> bool {
+    let response = ui.add(egui::Button::new(icon).min_size(Vec2::splat(24.0))).on_hover_text(tip(info));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, info.label));
+    response.clicked()
+}
+
+fn toggle(ui: &mut Ui, on: bool, icon: egui_material_icons::MaterialIcon, info: &CommandInfo) -> bool {
+    let response = ui.selectable_label(on, icon).on_hover_text(tip(info));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::CheckBox, true, info.label));
+    response.clicked()
+}
+
+fn tip(info: &CommandInfo) -> String {
+    if info.shortcuts.is_empty() {
+        info.tooltip.to_owned()
+    } else {
+        format!("{} ({})", info.tooltip, info.shortcuts.join(", "))
+    }
+}
+
+fn rate(ui: &mut Ui, rate: f64) -> Option<Ask> {
+    let mut chosen = rate;
+    let name = RATES.iter().find(|(value, _)| *value == rate).map_or("other", |(_, name)| *name);
+    let response = egui::ComboBox::from_id_salt("rate").width(64.0).selected_text(name).show_ui(ui, |ui| {
+        for (value, name) in RATES {
+            ui.selectable_value(&mut chosen, value, name);
+        }
+    });
+    response.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Rate"));
+    response.response.on_hover_text("Seconds of the dance in a second: slow motion, of the hair too.");
+    (chosen != rate).then_some(Ask::Rate(chosen))
+}
