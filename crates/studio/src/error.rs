@@ -103,6 +103,8 @@ pub enum Place {
     Compare,
     /// The take that plays.
     Take,
+    /// What stands on the timeline.
+    Timeline,
 }
 
 impl Place {
@@ -122,6 +124,7 @@ impl Place {
             Self::Recording => "recording",
             Self::Compare => "comparison",
             Self::Take => "take",
+            Self::Timeline => "timeline",
         }
     }
 }

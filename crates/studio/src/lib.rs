@@ -39,8 +39,9 @@ pub use info::{Content, FileKind, Info, ProjectInfo, TakeInfo, info};
 pub use painter::{Adapter, PaintRequest, Painted, Painter};
 pub use project::{
     Access, BodySection, BodySource, CameraMode, CameraSection, CompareSection, FileRef, HairSection,
-    HairSource, MotionSection, MotionSource, PROJECT_EXTENSION, PROJECT_VERSION, Project, RecordingSection,
-    TakeSection, load_project, load_project_with, parse_project, save_project, write_whole,
+    HairSource, Marker, MotionSection, MotionSource, PROJECT_EXTENSION, PROJECT_VERSION, Project,
+    RecordingSection, TakeSection, TimelineSection, load_project, load_project_with, parse_project,
+    save_project, write_whole,
 };
 pub use session::{
     BodyObstacle, Engine, Event, FrameSnapshot, HeadPath, LoadControl, LoadProgress, SETTLE_SECS, Scene,

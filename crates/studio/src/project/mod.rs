@@ -20,8 +20,8 @@ pub use file::{
 pub(crate) use file::{project_of_text, text_of_project};
 pub use path::{Access, FileRef};
 pub use sections::{
-    BodySection, BodySource, CameraMode, CameraSection, CompareSection, HairSection, HairSource,
-    MotionSection, MotionSource, RecordingSection, TakeSection,
+    BodySection, BodySource, CameraMode, CameraSection, CompareSection, HairSection, HairSource, Marker,
+    MotionSection, MotionSource, RecordingSection, TakeSection, TimelineSection,
 };
 
 use lovelock_groom::{GroomSettings, HairLook, Preset};
@@ -59,6 +59,8 @@ pub struct Project {
     pub compare: CompareSection,
     /// A recorded simulation that plays.
     pub take: TakeSection,
+    /// What stands on the timeline.
+    pub timeline: TimelineSection,
 }
 
 impl Default for Project {
@@ -77,6 +79,7 @@ impl Default for Project {
             recording: RecordingSection::default(),
             compare: CompareSection::default(),
             take: TakeSection::default(),
+            timeline: TimelineSection::default(),
         }
     }
 }

@@ -6,7 +6,10 @@ use glam::Vec3;
 use lovelock_render::{Light, MAX_LIGHTS, MOST_PIXELS, MOST_SIDE, ShadowSettings};
 
 use super::generic::differences;
-use super::{CameraSection, CompareSection, MotionSection, PROJECT_VERSION, Project, RecordingSection};
+use super::{
+    CameraSection, CompareSection, Marker, MotionSection, PROJECT_VERSION, Project, RecordingSection,
+    TimelineSection,
+};
 use crate::{Contender, Place, Problem, ProblemKind};
 
 impl Project {
@@ -25,6 +28,7 @@ impl Project {
         project.picture = self.picture.clamped();
         project.recording = recording(&self.recording);
         project.compare = compare(&self.compare);
+        project.timeline = timeline(&self.timeline);
 
         let mut problems = Vec::new();
         let mut note = |place, changes: Vec<String>| {
@@ -46,6 +50,10 @@ impl Project {
         if found != kept {
             note(Place::Compare, vec![format!("there were {found} panes; there are {kept} now")]);
         }
+        let lost = self.timeline.markers.len() - project.timeline.markers.len();
+        if lost > 0 {
+            note(Place::Timeline, vec![format!("{lost} markers without a time, or too many, were left out")]);
+        }
         for (before, after) in self.lights.iter().zip(&project.lights) {
             // Any length of direction is fine; it is only told where it was no direction at all.
             let mut before = before.clone();
@@ -65,6 +73,16 @@ impl Project {
         }
         (project, problems)
     }
+}
+
+/// Markers that have a time, each name of a length that can be shown.
+fn timeline(timeline: &TimelineSection) -> TimelineSection {
+    let good = timeline.markers.iter().filter(|marker| marker.secs.is_finite() && marker.secs >= 0.0);
+    let markers = good.take(TimelineSection::MOST_MARKERS).map(|marker| Marker {
+        secs: marker.secs,
+        name: marker.name.chars().take(TimelineSection::LONGEST_NAME).collect(),
+    });
+    TimelineSection { markers: markers.collect() }
 }
 
 fn within(value: f32, low: f32, high: f32, default: f32) -> f32 {

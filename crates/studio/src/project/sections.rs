@@ -208,6 +208,31 @@ pub struct TakeSection {
     pub file: Option<FileRef>,
 }
 
+/// A named time of the dance.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Marker {
+    /// Seconds from the start of the timeline.
+    pub secs: f64,
+    /// What it is called.
+    pub name: String,
+}
+
+/// What stands on the timeline.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct TimelineSection {
+    /// Named times, at most [`TimelineSection::MOST_MARKERS`].
+    pub markers: Vec<Marker>,
+}
+
+impl TimelineSection {
+    /// The most markers.
+    pub const MOST_MARKERS: usize = 200;
+    /// The longest name of a marker, characters.
+    pub const LONGEST_NAME: usize = 80;
+}
+
 /// What is compared beside each other.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
