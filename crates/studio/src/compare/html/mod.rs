@@ -290,7 +290,7 @@ fn stability(report: &CompareReport, groups: &[Group<'_>], names: &Names) -> Str
     let [first, end] = report.frames;
     let frames = if end > first + 1 {
         format!(
-            "the film of frames {first} to {}, and how much of that the reference does not show.",
+            "the film of frames {first} to {}; flicker is what of it the reference does not show.",
             end - 1
         )
     } else {
@@ -306,8 +306,8 @@ fn stability(report: &CompareReport, groups: &[Group<'_>], names: &Names) -> Str
     ];
     if let Some(ChangeReport { steps, points, .. }) = steps(|method| method.light_sweep) {
         items.push(format!(
-            "<b>Light turned</b>: the first light turns sideways by 0.1° a step, {steps} times, and nothing else moves; looked \
-             at are {} points. The truth changes a little; <i>Excess</i> and <i>Jitter</i> are what a method adds to that.",
+            "<b>Light turned</b>: the first light turns sideways by 0.1° a step, {steps} times, and nothing else moves; {} \
+             points are looked at. The truth changes a little; <i>Excess</i> and <i>Jitter</i> are what a method adds to that.",
             grouped(points)
         ));
     }
@@ -315,7 +315,7 @@ fn stability(report: &CompareReport, groups: &[Group<'_>], names: &Names) -> Str
         items.push(format!(
             "<b>Stray hair</b>: a bundle made for this test, the same in every report, into which a single hair moves from the \
              light, {steps} steps of 1 mm. At the {} points behind it the truth does not change at all, so every change is the \
-             method's. Asked of the method's definition on the CPU, on rows of the GPU too.",
+             method's. Measured with the method's definition on the CPU, on rows of the GPU too.",
             grouped(points)
         ));
     }

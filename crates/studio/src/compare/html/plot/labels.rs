@@ -171,17 +171,16 @@ mod tests {
 
     #[test]
     fn words_keep_off_a_line() {
-        let word = |free: bool| {
+        let word = |ends: &[(f64, f64)]| {
             let mut labels = Labels::new(300.0, 300.0);
             labels.add(150.0, 150.0, Label::Always("a name".into()));
-            if free {
-                labels.keep_free((150.0, 150.0), (290.0, 150.0));
-            }
+            ends.iter().for_each(|end| labels.keep_free((150.0, 150.0), *end));
             labels.svg()
         };
-        // Negative control: without a line it begins beside its dot.
-        assert!(word(false).contains("x=\"159.0\"") && word(false).contains("\"start\""), "{}", word(false));
-        assert!(word(true).contains("x=\"141.0\"") && word(true).contains("\"end\""), "{}", word(true));
+        let above = "y=\"139.0\" text-anchor=\"middle\"";
+        assert!(!word(&[(150.0, 20.0)]).contains(above), "{}", word(&[(150.0, 20.0)]));
+        // Negative controls: no line, and one that leaves the other way.
+        assert!(word(&[]).contains(above) && word(&[(150.0, 290.0)]).contains(above), "{}", word(&[]));
     }
 
     #[test]
