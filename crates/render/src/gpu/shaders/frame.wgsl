@@ -55,13 +55,11 @@ fn lean_of(i: u32, n: vec3f) -> vec3f {
     return vec3f(u, v, -dot(n, light.direction_specular.xyz));
 }
 
-// Taps of a soft shadow's edge on a surface, where six show their steps as bands, and on a strand's point.
+// Taps of a soft shadow's edge on a surface, where six show their steps as bands.
 const SURFACE_TAPS: u32 = 12u;
-const STRAND_TAPS: u32 = 3u;
 
 // Share of light `i` that the body lets through to `p`, which is moved `bias` metres toward the light first. The taps
-// lie on a disc in the plane of the surface, which leans as `lean` says: a flat surface keeps no light from itself. For
-// what has no surface `lean` is zero and the disc lies across the light.
+// lie on a disc in the plane of the surface, which leans as `lean` says: a flat surface keeps no light from itself.
 fn body_light(i: u32, p: vec3f, lean: vec3f, bias: f32, taps: u32) -> f32 {
     let light = frame.lights[i];
     let at = light.shadow_from_world * vec4f(p - light.direction_specular.xyz * bias, 1.0);

@@ -29,11 +29,28 @@ fn project(p: vec3f) -> Projected {
 // A point that is lit: its place, the unit tangent, the unit vector toward the eye, and the strand's colours there.
 struct Point { p: vec3f, t: vec3f, v: vec3f, color: StrandColor }
 
+// As `body_light`, for what has no surface: three taps, one after the other, on a disc that lies across the light.
+fn body_light_on_strand(k: u32, p: vec3f) -> f32 {
+    let light = frame.lights[k];
+    // Roots lie on the skin: the bias keeps the skin under a strand from shadowing it.
+    let at = light.shadow_from_world * vec4f(p - light.direction_specular.xyz * 0.006, 1.0);
+    let uv = at.xy * vec2f(0.5, -0.5) + 0.5;
+    let radius = max(light.radiance_blur.w, 1.0) / frame.ambient_down_texels.w;
+    let z = min(at.z, 1.0);
+    let first = radius * sqrt(2.5 / 3.0) * vec2f(1.0, 0.0);
+    let second = radius * sqrt(1.5 / 3.0) * vec2f(-0.737368878, 0.675490294);
+    let third = radius * sqrt(0.5 / 3.0) * vec2f(0.0874257, -0.9961710);
+    let sum = textureSampleCompareLevel(body_depth, compare, uv + first, k, z)
+        + textureSampleCompareLevel(body_depth, compare, uv + second, k, z)
+        + textureSampleCompareLevel(body_depth, compare, uv + third, k, z);
+    let outside = any(uv < vec2f(0.0)) || any(uv > vec2f(1.0));
+    return select(sum / 3.0, 1.0, outside);
+}
+
 // What light `k` makes a point send toward the eye, where hair leaves so much of it.
 fn light_of(k: u32, point: Point, lit: f32) -> vec3f {
     let light = frame.lights[k];
-    // Roots lie on the skin: the bias keeps the skin under a strand from shadowing it.
-    let body = body_light(k, point.p, vec3f(0.0), 0.006, STRAND_TAPS);
+    let body = body_light_on_strand(k, point.p);
     let toward = -light.direction_specular.xyz;
     return light.radiance_blur.xyz * (lit * body)
         * strand_light(point.t, toward, point.v, point.color, light.direction_specular.w, lit);
@@ -41,10 +58,9 @@ fn light_of(k: u32, point: Point, lit: f32) -> vec3f {
 
 @compute @workgroup_size(64)
 fn shade_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
-    let i = id.x + id.y * groups.x * 64u;
-    if (i >= arrayLength(&details)) {
-        return;
-    }
+    let thread = id.x + id.y * groups.x * 64u;
+    // Threads beyond the last point go along with it: where kernels run on the processor, what comes after a branch is slow.
+    let i = min(thread, arrayLength(&details) - 1u);
     let detail = details[i];
     let taper = f32(detail & 0xffu) / 255.0;
     let along = f32((detail >> 8u) & 0xffu) / 255.0;
@@ -98,10 +114,12 @@ fn shade_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroup
 
     let half_width = 0.5 * frame.width_opacity_tip_scalp.x * taper * frame.size_scale_exposure.z / max(here.w, 1e-3);
     let visible = here.w > 0.02 && a.w > 0.02 && b.w > 0.02;
-    shaded[i] = ShadedPoint(
-        vec3f(here.pixel, here.depth),
-        select(-1.0, half_width, visible),
-        vec2f(-run.y, run.x),
-        vec2u(pack2x16float(sum.rg), pack2x16float(vec2f(sum.b, fract(shade * 37.0)))),
-    );
+    if (thread < arrayLength(&details)) {
+        shaded[i] = ShadedPoint(
+            vec3f(here.pixel, here.depth),
+            select(-1.0, half_width, visible),
+            vec2f(-run.y, run.x),
+            vec2u(pack2x16float(sum.rg), pack2x16float(vec2f(sum.b, fract(shade * 37.0)))),
+        );
+    }
 }

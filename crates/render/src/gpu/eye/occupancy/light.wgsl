@@ -5,14 +5,8 @@ fn take(pixel: u32, fragment: Fragment) {
     let place = slice_of(record, fragment.depth);
     let slice = min(u32(place), u32(SLICES) - 1u);
     let slab = slice >> 4u;
-    var before = 0.0;
-    if (slab > 0u) {
-        before = f32(atomicLoad(&map[record + SLABS_AT + slab - 1u]));
-    }
-    if (before > 8.0 * DEPTH_ONE) {
-        // A three-thousandth comes past.
-        return;
-    }
+    let last = f32(atomicLoad(&map[record + SLABS_AT + max(slab, 1u) - 1u]));
+    let before = select(0.0, last, slab > 0u);
     let bits = (atomicLoad(&map[record + BITS_AT + (slice >> 5u)]) >> (16u * (slab & 1u))) & 0xffffu;
     let at = slice & 15u;
     let passed = countOneBits(bits & ((1u << at) - 1u));
@@ -21,6 +15,10 @@ fn take(pixel: u32, fragment: Fragment) {
     let own_slab = f32(atomicLoad(&map[record + SLABS_AT + slab])) - before;
     let depth = (before + share * own_slab) / DEPTH_ONE;
     let weight = exp(-depth) * opacity_of(fragment) * LIGHT_ONE;
+    if (before > 8.0 * DEPTH_ONE) {
+        // A three-thousandth comes past.
+        return;
+    }
     let light = vec3u(clamp(fragment.color, vec3f(0.0), vec3f(64.0)) * weight + 0.5);
     atomicAdd(&map[record + LIGHT_AT], light.r);
     atomicAdd(&map[record + LIGHT_AT + 1u], light.g);
