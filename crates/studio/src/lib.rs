@@ -8,6 +8,7 @@ mod bench;
 mod clock;
 mod command;
 mod compare;
+mod desk;
 mod error;
 mod headless;
 mod history;

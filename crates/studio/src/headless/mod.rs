@@ -10,8 +10,9 @@ mod record_take;
 mod report;
 mod request;
 
+pub(crate) use dance::Dance;
 pub(crate) use new_folders::NewFolders;
-pub(crate) use prepare::{load, open_renderer, simulate_to, tell};
+pub(crate) use prepare::{open_renderer, tell};
 
 pub use job::RecordJob;
 pub use record::record;

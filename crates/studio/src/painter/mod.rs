@@ -1,12 +1,13 @@
 //! The drawing thread: takes the newest frame when it is free, and leaves its picture in a slot.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use std::thread::JoinHandle;
 
 use lovelock_render::{Backend, Camera, FrameStats, GpuError, Picture, RenderError, Renderer};
 
+use crate::desk::Desk;
 use crate::{FrameSnapshot, Project, Slot, StageTimes};
 
 /// What to draw.
@@ -56,9 +57,6 @@ struct Failure {
     pictures: u64,
 }
 
-/// The request that waits; `None` in `Some` ends the thread.
-type Mailbox = Arc<(Mutex<Option<Option<PaintRequest>>>, Condvar)>;
-
 /// Opens what draws on the backend that was chosen.
 type Open = Box<dyn FnMut(Backend) -> Result<Renderer, RenderError> + Send>;
 
@@ -68,12 +66,11 @@ const MOST_FAILURES: u32 = 3;
 /// Draws on a thread of its own. Requests that come while it draws replace each other.
 #[derive(Debug)]
 pub struct Painter {
-    mailbox: Mailbox,
+    desk: Desk<PaintRequest>,
     painted: Slot<Painted>,
     failures: Slot<Failure>,
     notices: Slot<String>,
     adapter: Slot<Adapter>,
-    busy: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -88,13 +85,11 @@ impl Painter {
 
     /// As [`Painter::start`], on what `open` opens.
     fn start_with(open: Open, on_painted: impl Fn() + Send + 'static) -> std::io::Result<Self> {
-        let mailbox = Mailbox::default();
+        let desk = Desk::default();
         let (painted, failures, notices) = (Slot::default(), Slot::default(), Slot::default());
         let adapter = Slot::default();
-        let busy = Arc::new(AtomicBool::new(false));
         let worker = Worker {
-            busy: Arc::clone(&busy),
-            mailbox: Arc::clone(&mailbox),
+            desk: desk.clone(),
             painted: painted.clone(),
             failures: failures.clone(),
             notices: notices.clone(),
@@ -106,13 +101,12 @@ impl Painter {
             card_given_up: false,
         };
         let thread = std::thread::Builder::new().name("draw".to_owned()).spawn(move || worker.run())?;
-        Ok(Self { mailbox, painted, failures, notices, adapter, busy, thread: Some(thread) })
+        Ok(Self { desk, painted, failures, notices, adapter, thread: Some(thread) })
     }
 
     /// Asks for a picture; a request that still waits is forgotten.
     pub fn request(&self, request: PaintRequest) {
-        self.busy.store(true, Ordering::Relaxed);
-        self.post(Some(request));
+        self.desk.put(request);
     }
 
     /// Where finished pictures are left.
@@ -139,19 +133,13 @@ impl Painter {
 
     /// Whether a picture is being drawn or waits: its end will call `on_painted`.
     pub fn busy(&self) -> Arc<AtomicBool> {
-        Arc::clone(&self.busy)
-    }
-
-    fn post(&self, request: Option<PaintRequest>) {
-        let (waiting, wake) = &*self.mailbox;
-        *waiting.lock().unwrap_or_else(PoisonError::into_inner) = Some(request);
-        wake.notify_one();
+        Arc::clone(self.desk.busy())
     }
 }
 
 impl Drop for Painter {
     fn drop(&mut self) {
-        self.post(None);
+        self.desk.close();
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
         }
@@ -159,8 +147,7 @@ impl Drop for Painter {
 }
 
 struct Worker {
-    mailbox: Mailbox,
-    busy: Arc<AtomicBool>,
+    desk: Desk<PaintRequest>,
     painted: Slot<Painted>,
     failures: Slot<Failure>,
     notices: Slot<String>,
@@ -177,7 +164,7 @@ struct Worker {
 
 impl Worker {
     fn run(mut self) {
-        while let Some(request) = self.next() {
+        while let Some(request) = self.desk.next() {
             // A panic while drawing costs the device and one picture, not the window.
             let result = catch_unwind(AssertUnwindSafe(|| self.paint(&request)));
             let again = match result {
@@ -197,11 +184,7 @@ impl Worker {
                     again
                 }
             };
-            if again {
-                self.repeat(request);
-            } else {
-                self.busy.store(false, Ordering::Relaxed);
-            }
+            self.desk.done(again.then_some(request));
             (self.on_painted)();
         }
     }
@@ -227,24 +210,6 @@ impl Worker {
             Backend::Gpu.label()
         )));
         true
-    }
-
-    /// Asks for the same picture again, where no other is asked for.
-    fn repeat(&self, request: PaintRequest) {
-        let mut waiting = self.mailbox.0.lock().unwrap_or_else(PoisonError::into_inner);
-        waiting.get_or_insert(Some(request));
-    }
-
-    /// Waits for a request.
-    fn next(&self) -> Option<PaintRequest> {
-        let (waiting, wake) = &*self.mailbox;
-        let mut waiting = waiting.lock().unwrap_or_else(PoisonError::into_inner);
-        loop {
-            if let Some(request) = waiting.take() {
-                return request;
-            }
-            waiting = wake.wait(waiting).unwrap_or_else(PoisonError::into_inner);
-        }
     }
 
     fn paint(&mut self, request: &PaintRequest) -> Result<Painted, RenderError> {

@@ -1,5 +1,7 @@
 //! Devices that go and devices that never work. Those of the first kind need an adapter; software will do.
 
+use std::sync::Mutex;
+use std::sync::atomic::Ordering;
 use std::sync::mpsc::{Receiver, sync_channel};
 use std::time::Duration;
 

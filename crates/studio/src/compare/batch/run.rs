@@ -10,10 +10,8 @@ use super::entrants::entrants;
 use super::folder::Folder;
 use super::hair::lights;
 use super::work::Work;
-use crate::headless::{load, open_renderer, simulate_to, tell};
-use crate::{
-    CompareReport, Engine, FrameClock, FrameSnapshot, Progress, Project, Scene, SceneFacts, StudioError,
-};
+use crate::headless::{Dance, open_renderer, tell};
+use crate::{CompareReport, FrameSnapshot, Progress, Project, Scene, SceneFacts, StudioError};
 
 /// Compares methods on one instant of a project's dance, and over the frames after it where there are several. The report
 /// grows in `request.out` while it runs; each file is written beside its name and renamed.
@@ -38,21 +36,21 @@ pub fn compare(
     let entrants = entrants(&project, &request.methods, &request.transparencies, &backends, &request.sweeps)?;
     let folder = Folder::new(&request.out)?;
 
-    let (scene, problems) = load(&project, &request.access, progress)?;
+    let (mut dance, problems) = Dance::open(&project, &request.access, fps, progress)?;
     tell(progress, Progress::Loaded { problems: problems.clone() })?;
     notes.extend(problems.iter().map(ToString::to_string));
-    let frames = frames(&project, request, &scene, fps)?;
+    let frames = frames(&project, request, &dance, fps)?;
     let mut report = CompareReport {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         machine: crate::bench::machine(),
         frames: [frames.start, frames.end],
-        scene: facts(&project, request, &scene, fps, size),
+        scene: facts(&project, request, dance.scene(), fps, size),
         notes,
         ..CompareReport::default()
     };
     // A report of before does not stand beside pictures of now.
     folder.report(&report)?;
-    let snapshots = simulate(&scene, &project, fps, &frames, progress)?;
+    let snapshots = instants(&mut dance, &frames, progress)?;
     let work = Work {
         project: &project,
         request,
@@ -134,10 +132,10 @@ fn open(project: &Project, request: &CompareRequest) -> Result<(Vec<Renderer>, V
 fn frames(
     project: &Project,
     request: &CompareRequest,
-    scene: &Scene,
+    dance: &Dance,
     fps: f64,
 ) -> Result<Range<u64>, StudioError> {
-    let in_clip = scene.frames(fps);
+    let in_clip = dance.frames();
     let first = project.recording.first_frame.min(in_clip - 1);
     let frames = request.frames.clone().unwrap_or(first..first + 1);
     if frames.end > in_clip {
@@ -173,20 +171,15 @@ fn facts(
 }
 
 /// Lives through the dance up to the last frame, and keeps those that are asked for.
-fn simulate(
-    scene: &Arc<Scene>,
-    project: &Project,
-    fps: f64,
+fn instants(
+    dance: &mut Dance,
     frames: &Range<u64>,
     progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<Vec<Arc<FrameSnapshot>>, StudioError> {
-    let clock = FrameClock::new(fps);
-    let mut engine = Engine::with_step(Arc::clone(scene), project.simulation, clock.step_secs);
-    simulate_to(&mut engine, clock.step_of_frame(frames.start), progress)?;
+    dance.begin(frames.start, progress)?;
     let mut snapshots = Vec::new();
     for frame in frames.clone() {
-        engine.advance_to_step(clock.step_of_frame(frame));
-        snapshots.push(engine.snapshot());
+        snapshots.push(dance.snapshot(frame)?);
         tell(progress, Progress::Frame { done: frame + 1 - frames.start, total: frames.end - frames.start })?;
     }
     Ok(snapshots)

@@ -15,8 +15,8 @@ mod sheet;
 mod thread;
 mod view;
 
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use std::thread::JoinHandle;
 
 pub(crate) use film::FilmOfPanes;
@@ -28,10 +28,8 @@ pub use request::{LiveError, LivePane, LiveRequest, LiveTimes};
 pub use sheet::{Sheet, SheetPane, pane_columns};
 pub use view::{LiveShows, LiveView};
 
+use crate::desk::Desk;
 use crate::{CompareSection, Slot};
-
-/// The request that waits; `None` in `Some` ends the thread.
-type Mailbox = Arc<(Mutex<Option<Option<LiveRequest>>>, Condvar)>;
 
 /// What the thread leaves.
 #[derive(Clone, Debug, Default)]
@@ -39,14 +37,13 @@ struct Left {
     panes: [Slot<LivePane>; CompareSection::MOST_PANES],
     probe: Slot<LiveProbe>,
     notices: Slot<String>,
-    busy: Arc<AtomicBool>,
 }
 
 /// Draws panes on a thread of its own. A request that comes while a round is drawn waits for its end; a later one
 /// replaces it.
 #[derive(Debug)]
 pub struct Live {
-    mailbox: Mailbox,
+    desk: Desk<LiveRequest>,
     left: Left,
     thread: Option<JoinHandle<()>>,
 }
@@ -62,17 +59,17 @@ impl Live {
 
     /// As [`Live::start`], on what `open` opens.
     fn start_with(open: Open, on_drawn: impl Fn() + Send + 'static) -> std::io::Result<Self> {
-        let mailbox = Mailbox::default();
+        let desk = Desk::default();
         let left = Left::default();
         let renderers = Renderers::new(open);
-        let worker = thread::Worker::new(Arc::clone(&mailbox), left.clone(), Box::new(on_drawn), renderers);
+        let worker = thread::Worker::new(desk.clone(), left.clone(), Box::new(on_drawn), renderers);
         let thread = std::thread::Builder::new().name("compare".to_owned()).spawn(move || worker.run())?;
-        Ok(Self { mailbox, left, thread: Some(thread) })
+        Ok(Self { desk, left, thread: Some(thread) })
     }
 
     /// Asks for a round; a request that still waits is forgotten.
     pub fn request(&self, request: LiveRequest) {
-        self.post(Some(request));
+        self.desk.put(request);
     }
 
     /// Where pane `index` is left; none past [`CompareSection::MOST_PANES`].
@@ -92,22 +89,13 @@ impl Live {
 
     /// Whether a round is being drawn or waits: its end will call `on_drawn`.
     pub fn busy(&self) -> Arc<AtomicBool> {
-        Arc::clone(&self.left.busy)
-    }
-
-    fn post(&self, request: Option<LiveRequest>) {
-        let (waiting, wake) = &*self.mailbox;
-        let mut waiting = waiting.lock().unwrap_or_else(PoisonError::into_inner);
-        *waiting = Some(request);
-        // Under the lock, as the thread takes it back.
-        self.left.busy.store(true, Ordering::Relaxed);
-        wake.notify_one();
+        Arc::clone(self.desk.busy())
     }
 }
 
 impl Drop for Live {
     fn drop(&mut self) {
-        self.post(None);
+        self.desk.close();
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
         }

@@ -1,18 +1,18 @@
 //! The thread: takes the newest request when it is free, and draws its panes in turn.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::atomic::Ordering;
-use std::sync::{Arc, PoisonError};
+use std::sync::Arc;
 
 use thread_priority::{ThreadPriority, ThreadPriorityValue, set_current_thread_priority};
 
 use super::renderers::{Broken, Renderers};
 use super::round::Rounds;
-use super::{Left, LiveRequest, Mailbox};
+use super::{Left, LiveRequest};
 use crate::CompareSection;
+use crate::desk::Desk;
 
 pub(super) struct Worker {
-    mailbox: Mailbox,
+    desk: Desk<LiveRequest>,
     left: Left,
     on_drawn: Box<dyn Fn() + Send>,
     rounds: Rounds,
@@ -20,12 +20,12 @@ pub(super) struct Worker {
 
 impl Worker {
     pub(super) fn new(
-        mailbox: Mailbox,
+        desk: Desk<LiveRequest>,
         left: Left,
         on_drawn: Box<dyn Fn() + Send>,
         renderers: Renderers,
     ) -> Self {
-        Self { mailbox, left, on_drawn, rounds: Rounds::new(renderers) }
+        Self { desk, left, on_drawn, rounds: Rounds::new(renderers) }
     }
 
     /// Draws until the window is closed, on workers of its own that give way to everybody else's: the window and its
@@ -46,20 +46,14 @@ impl Worker {
     }
 
     fn draw(mut self) {
-        while let Some(request) = self.next() {
+        while let Some(request) = self.desk.next() {
             // A panic beside the drawing of a pane, which catches its own, costs a round and not the window.
             let again = catch_unwind(AssertUnwindSafe(|| self.round(&request))).unwrap_or_else(|_| {
                 let message = "Comparing met an error and went on; save your project.";
                 self.left.notices.put(Arc::new(message.to_owned()));
                 false
             });
-            {
-                let mut waiting = self.mailbox.0.lock().unwrap_or_else(PoisonError::into_inner);
-                if again {
-                    waiting.get_or_insert(Some(request));
-                }
-                self.left.busy.store(waiting.is_some(), Ordering::Relaxed);
-            }
+            self.desk.done(again.then_some(request));
             (self.on_drawn)();
         }
     }
@@ -76,7 +70,7 @@ impl Worker {
                 continue;
             };
             // Whoever closes the window does not wait for the other panes.
-            if self.ends() {
+            if self.desk.is_closed() {
                 return false;
             }
             let (pane, broken) = self.rounds.pane(request, index);
@@ -100,22 +94,6 @@ impl Worker {
             self.left.probe.put(Arc::new(probe));
         }
         again
-    }
-
-    fn ends(&self) -> bool {
-        matches!(*self.mailbox.0.lock().unwrap_or_else(PoisonError::into_inner), Some(None))
-    }
-
-    /// Waits for a request.
-    fn next(&self) -> Option<LiveRequest> {
-        let (waiting, wake) = &*self.mailbox;
-        let mut waiting = waiting.lock().unwrap_or_else(PoisonError::into_inner);
-        loop {
-            if let Some(request) = waiting.take() {
-                return request;
-            }
-            waiting = wake.wait(waiting).unwrap_or_else(PoisonError::into_inner);
-        }
     }
 }
 
