@@ -320,7 +320,11 @@ pub(super) fn settings(group: &Group<'_>, names: &Names) -> String {
     for (_, method) in &group.methods {
         let settings: Vec<String> = (method.settings.iter())
             .map(|(name, value)| {
-                format!("{} <b>{}</b>", escaped(&name.replace('_', " ")), escaped(&shortened(value)))
+                let (name, value) = match (name.strip_suffix("_bytes"), value.parse::<u64>()) {
+                    (Some(name), Ok(size)) => (name, bytes(Some(size))),
+                    _ => (name.as_str(), shortened(value)),
+                };
+                format!("{} <b>{}</b>", escaped(&name.replace('_', " ")), escaped(&value))
             })
             .collect();
         let settings: Vec<String> = settings.into_iter().chain(effective(method)).collect();

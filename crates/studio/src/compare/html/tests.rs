@@ -52,6 +52,7 @@ fn report() -> CompareReport {
                 settings: vec![
                     ("resolution".into(), "128".into()),
                     ("size".into(), "0.23999999463558197".into()),
+                    ("memory_limit_bytes".into(), "8589934592".into()),
                 ],
                 transmittance: Some(error),
                 flip: Some(FlipError { mean: 0.031, p99: 0.2, ..FlipError::default() }),
@@ -161,7 +162,7 @@ fn the_page_is_whole_and_names_everything() {
         ">0.2346</td>",
         ">6.5e−5</td>",
         "It converged",
-        "<b>128</b> · size <b>0.24</b>",
+        "<b>128</b> · size <b>0.24</b> · memory limit <b>8.00 GiB</b>",
     ] {
         assert!(page.contains(text), "{text}");
     }

@@ -174,7 +174,9 @@ mod tests {
         let word = |ends: &[(f64, f64)]| {
             let mut labels = Labels::new(300.0, 300.0);
             labels.add(150.0, 150.0, Label::Always("a name".into()));
-            ends.iter().for_each(|end| labels.keep_free((150.0, 150.0), *end));
+            for end in ends {
+                labels.keep_free((150.0, 150.0), *end);
+            }
             labels.svg()
         };
         let above = "y=\"139.0\" text-anchor=\"middle\"";
