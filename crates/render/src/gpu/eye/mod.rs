@@ -187,7 +187,9 @@ impl Eye {
     /// Memory that is held, bytes.
     pub fn memory_bytes(&self) -> u64 {
         let buffers = [self.map.raw(), self.list.raw(), self.layer.raw()];
-        buffers.iter().map(|buffer| buffer.size()).sum()
+        let depths =
+            self.depths.as_ref().map_or(0, |held| 16 * u64::from(held.columns) * u64::from(held.rows));
+        buffers.iter().map(|buffer| buffer.size()).sum::<u64>() + depths
     }
 
     /// Encodes drawing the hair into [`Eye::layer`].
