@@ -1,5 +1,6 @@
 use super::page;
 use crate::compare::report::*;
+use crate::{ChangeReport, StabilityReport};
 
 /// A report with something of everything, as if two methods had been measured on two backends.
 fn report() -> CompareReport {
