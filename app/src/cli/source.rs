@@ -37,6 +37,12 @@ impl Source {
             None => (Project::default(), Vec::new()),
         };
         tell(&problems);
+        if let (Some(take), Some(option)) = (&project.take.file, task.replacement()) {
+            return Err(StudioError::option(format!(
+                "{option}: {} plays as it was recorded; leave the option out, or name a project in place of the take",
+                take.path.display()
+            )));
+        }
         let file_name = |path: &PathBuf| {
             path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
         };

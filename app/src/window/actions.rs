@@ -57,7 +57,10 @@ impl Window {
             Command::JumpToStart => self.session.worker().restart(),
             Command::JumpToEnd => {
                 let duration = self.session.frame.as_ref().map_or(0.0, |frame| frame.duration_secs);
-                self.session.worker().seek((duration - lovelock_studio::STEP_SECS).max(0.0));
+                // The clip's end is its start again; a take ends with its last frame.
+                let takes = self.history.project().take.file.is_some();
+                let last = if takes { duration } else { duration - lovelock_studio::STEP_SECS };
+                self.session.worker().seek(last.max(0.0));
             }
             Command::ToggleLoop => {
                 self.change("loop", |project| project.motion.looping = !project.motion.looping);
@@ -67,6 +70,7 @@ impl Window {
             Command::PlayTake => {
                 if let Some(path) = self.session.saved_take.clone() {
                     self.open_take(&path);
+                    self.session.set_playing(true);
                 }
             }
             Command::LeaveTake => {
@@ -191,7 +195,12 @@ impl Window {
                 self.pending = Some(Pending::Open(path.to_owned()));
             }
             Ok(FileKind::Project) => self.open_project(path),
-            Ok(FileKind::Take) => self.open_take(path),
+            Ok(FileKind::Take) => {
+                self.open_take(path);
+                // Saving is not to put the take's project into the file of the one before.
+                self.project_path = None;
+                self.session.set_project_path(None);
+            }
             Ok(kind) => {
                 self.session.pick(path);
                 self.change("file", |project| match kind {

@@ -215,8 +215,7 @@ impl Window {
                 });
                 section(ui, "Picture", false, |ui| panels::look::picture(ui, &mut project.picture));
                 section(ui, "Recording", false, |ui| {
-                    let frames =
-                        self.session.scene.as_ref().map_or(1, |scene| scene.frames(project.recording.fps));
+                    let frames = self.session.frames(project.recording.fps);
                     recording =
                         panels::recording::ui(ui, &mut project.recording, self.recorder.state(), frames);
                 });
@@ -389,7 +388,7 @@ impl Window {
     /// What a recording that starts now would hold.
     fn recording_in_words(&self) -> String {
         let recording = &self.history.project().recording;
-        let clip = self.session.scene.as_ref().map_or(1, |scene| scene.frames(recording.fps));
+        let clip = self.session.frames(recording.fps);
         let first = recording.first_frame;
         let frames = recording.end_frame.unwrap_or(clip.max(first + 1)).saturating_sub(first);
         let what = if self.layout.compare.shown { "The panes with their labels: " } else { "" };

@@ -24,7 +24,7 @@ pub(crate) enum Purpose {
 }
 
 /// What the program reads, for the system's dialog.
-const READABLE: [&str; 7] = [PROJECT_EXTENSION, "ron", "hair", "tfx", "glb", "gltf", "bvh"];
+const READABLE: [&str; 9] = [PROJECT_EXTENSION, "ron", "hair", "tfx", "glb", "gltf", "bvh", "take", "part"];
 
 /// Nobody leaves a dialog sooner than this after asking for it: one that does so never came up. The system's
 /// answer does not tell the two apart.
@@ -33,7 +33,7 @@ const NO_DIALOG_SECS: f64 = 0.5;
 impl Purpose {
     fn title(self) -> &'static str {
         match self {
-            Self::Open => "Open a project, hairstyle, character or motion",
+            Self::Open => "Open a project, take, hairstyle, character or motion",
             Self::SaveProject => "Save the project",
             Self::Film => "Record a film",
             Self::Sequence => "Record pictures into a folder",

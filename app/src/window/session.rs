@@ -141,6 +141,17 @@ impl Session {
         self.worker.set_backwards(backwards);
     }
 
+    /// Frames that the dance, or the take that plays, lasts at `fps` frames a second; at least one.
+    pub(crate) fn frames(&self, fps: f64) -> u64 {
+        match (&self.frame, &self.simulated.take.file) {
+            // Its last frame is shown for its length.
+            (Some(frame), Some(_)) => {
+                ((frame.duration_secs + lovelock_studio::STEP_SECS) * fps).floor().max(1.0) as u64
+            }
+            _ => self.scene.as_ref().map_or(1, |scene| scene.frames(fps)),
+        }
+    }
+
     /// Takes what the threads left. Returns sentences that the user should see.
     pub(crate) fn update(&mut self) -> Vec<String> {
         let mut said = Vec::new();
@@ -192,6 +203,9 @@ impl Session {
         if !Arc::ptr_eq(project, &self.simulated) {
             self.simulated = Arc::clone(project);
             self.worker.set_project(Arc::clone(project), self.access.clone());
+        }
+        if self.backwards && project.take.file.is_none() {
+            self.set_backwards(false);
         }
         let Some(frame) = &self.frame else { return };
         // Frames are told apart by what they are and not by their step, which only passing time raises: going to

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use super::Progress;
 use super::prepare::{load, simulate_to, tell};
 use crate::{
-    Access, Engine, FrameClock, FrameSnapshot, Place, Problem, Project, Scene, StudioError, TakePlayer,
-    Totals,
+    Access, Engine, FrameClock, FrameSnapshot, Place, Problem, ProblemKind, Project, Scene, StudioError,
+    TakePlayer, Totals,
 };
 
 /// A dance, frame by frame.
@@ -119,6 +119,13 @@ impl Dance {
             }
             Self::Taken { player, fps } => player.snapshot(frame as f64 / *fps),
         }
+    }
+
+    /// Frames of a take that were lost, and what was drawn in their place.
+    pub(crate) fn notices(&mut self) -> Vec<Problem> {
+        let Self::Taken { player, .. } = self else { return Vec::new() };
+        let told = player.notices().into_iter();
+        told.map(|notice| Problem::new(Place::Take, ProblemKind::Note, notice)).collect()
     }
 
     /// The worst of the steps since [`Dance::begin`]; none of a take.

@@ -1,6 +1,6 @@
 //! What all work without a window begins with: a loaded scene, hair that has lived, and something that draws.
 
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -45,6 +45,24 @@ pub(crate) fn load(
     let (scene, mut problems) = SceneLoader::new().load(project, access, &mut control)?;
     problems.extend(scene.notes.iter().cloned());
     Ok((scene, problems))
+}
+
+/// Refuses frames that nobody can mean.
+///
+/// # Errors
+/// An empty range, and one that goes on for weeks.
+pub(super) fn check_frames(frames: &Range<u64>) -> Result<(), StudioError> {
+    if frames.is_empty() {
+        return Err(StudioError::option(format!(
+            "frames {}..{}: an empty range; the second number is one past the last frame",
+            frames.start, frames.end
+        )));
+    }
+    // About two weeks at 30 frames a second: a slip of the finger.
+    if frames.end > 40_000_000 {
+        return Err(StudioError::option(format!("frame {} is farther than any dance goes", frames.end)));
+    }
+    Ok(())
 }
 
 /// Lives through the frames before the first one that is drawn, so that frame 100 is the same in every recording.

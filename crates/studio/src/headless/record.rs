@@ -9,7 +9,7 @@ use lovelock_render::Picture;
 use super::dance::Dance;
 use super::drawer::Drawer;
 use super::new_folders::NewFolders;
-use super::prepare::tell;
+use super::prepare::{check_frames, tell};
 use super::{Progress, RecordReport, RecordRequest};
 use crate::{PassHistory, Project, StageHistory, Stopwatch, StudioError};
 
@@ -31,7 +31,7 @@ pub fn record(
     progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<RecordReport, StudioError> {
     let job = Job::new(project, request)?;
-    let (mut dance, problems) = Dance::open(&job.project, &request.access, job.fps, progress)?;
+    let (mut dance, mut problems) = Dance::open(&job.project, &request.access, job.fps, progress)?;
     tell(progress, Progress::Loaded { problems: problems.clone() })?;
 
     let frames = job.frames(&dance)?;
@@ -67,6 +67,7 @@ pub fn record(
     tell(progress, Progress::Finishing)?;
     let written = sink.finish().map_err(refused)?;
 
+    problems.extend(dance.notices());
     let totals = dance.totals();
     let strands = &dance.scene().style.strands;
     Ok(RecordReport {
@@ -121,13 +122,8 @@ impl<'a> Job<'a> {
         let job = Self { project, request, fps, width, height };
         lovelock_render::check_size(width, height)?;
         FrameRate::from_fps(fps).map_err(|error| job.refused(&error))?;
-        if let Some(frames) = &request.frames
-            && frames.is_empty()
-        {
-            return Err(StudioError::option(format!(
-                "frames {}..{}: an empty range; the second number is one past the last frame",
-                frames.start, frames.end
-            )));
+        if let Some(frames) = &request.frames {
+            check_frames(frames)?;
         }
         let kind = OutputKind::of(&request.out).map_err(|error| job.refused(&error))?;
         if kind == OutputKind::Film {
@@ -146,10 +142,7 @@ impl<'a> Job<'a> {
             let first = recording.first_frame;
             first..recording.end_frame.unwrap_or_else(|| dance.frames().max(first + 1))
         });
-        // About two weeks at 30 frames a second: a slip of the finger.
-        if frames.end > 40_000_000 {
-            return Err(StudioError::option(format!("frame {} is farther than any dance goes", frames.end)));
-        }
+        check_frames(&frames)?;
         dance.check(&frames)?;
         Ok(frames)
     }

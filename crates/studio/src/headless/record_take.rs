@@ -4,10 +4,10 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
 
-use lovelock_record::{TAKE_EXTENSION, TakeReport};
+use lovelock_record::{FrameRate, TAKE_EXTENSION, TakeReport};
 use serde::Serialize;
 
-use super::prepare::{load, simulate_to, tell};
+use super::prepare::{check_frames, load, simulate_to, tell};
 use super::{Progress, RecordRequest};
 use crate::{Engine, FrameClock, Project, Stopwatch, StudioError, TakeRecording};
 
@@ -64,7 +64,23 @@ pub fn record_take(
             file.path.display()
         )));
     }
+    let pictures = [
+        (request.size.is_some(), "--size"),
+        (request.shadow.is_some(), "--shadow"),
+        (request.transparency.is_some(), "--transparency"),
+        (request.backend.is_some(), "--backend"),
+    ];
+    if let Some((_, option)) = pictures.iter().find(|(given, _)| *given) {
+        return Err(StudioError::option(format!(
+            "{option}: {} is a take, which holds the simulation alone and no pictures",
+            request.out.display()
+        )));
+    }
     let fps = request.fps.unwrap_or(project.recording.fps);
+    FrameRate::from_fps(fps).map_err(StudioError::option)?;
+    if let Some(frames) = &request.frames {
+        check_frames(frames)?;
+    }
     let (scene, problems) = load(&project, &request.access, progress)?;
     tell(progress, Progress::Loaded { problems: problems.clone() })?;
     let recording = &project.recording;
@@ -72,12 +88,7 @@ pub fn record_take(
         recording.first_frame
             ..recording.end_frame.unwrap_or_else(|| scene.frames(fps).max(recording.first_frame + 1))
     });
-    if frames.is_empty() {
-        return Err(StudioError::option(format!(
-            "frames {}..{}: an empty range; the second number is one past the last frame",
-            frames.start, frames.end
-        )));
-    }
+    check_frames(&frames)?;
     let clock = FrameClock::new(fps);
     let mut engine = Engine::with_step(Arc::clone(&scene), project.simulation, clock.step_secs);
     simulate_to(&mut engine, clock.step_of_frame(frames.start), progress)?;

@@ -50,6 +50,8 @@ impl FileRef {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Access {
     folder: Option<PathBuf>,
+    /// The folder of the take that plays.
+    take_folder: Option<PathBuf>,
     picked: BTreeSet<PathBuf>,
 }
 
@@ -71,6 +73,14 @@ impl Access {
         self.folder = path.map(folder_of).map(|folder| canonical(&folder));
     }
 
+    /// The take at `path` plays: it may reach what lies beside it and below, as a project; where its folder is called
+    /// `takes`, which is where the window puts them, that is the folder above, its project's.
+    pub fn set_take(&mut self, path: &Path) {
+        let folder = canonical(&folder_of(path));
+        let above = folder.parent().filter(|_| folder.ends_with("takes")).map(Path::to_owned);
+        self.take_folder = Some(above.unwrap_or(folder));
+    }
+
     /// The user picked this file in a dialog, dropped it on the window or named it on the command line.
     pub fn pick(&mut self, path: &Path) {
         self.picked.insert(canonical(path));
@@ -79,7 +89,8 @@ impl Access {
     /// Whether the project may reach `path`. Links are followed first.
     pub fn allows(&self, path: &Path) -> bool {
         let path = canonical(path);
-        self.picked.contains(&path) || self.folder.as_ref().is_some_and(|folder| path.starts_with(folder))
+        let folders = [&self.folder, &self.take_folder];
+        self.picked.contains(&path) || folders.into_iter().flatten().any(|folder| path.starts_with(folder))
     }
 
     /// The path of a file that is to be read.

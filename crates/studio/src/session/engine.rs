@@ -68,6 +68,10 @@ pub struct Engine {
     report: StepReport,
     totals: Totals,
     times: StageTimes,
+    /// Whether time or the motion jumped since the last step: nothing lies between the instants before and after.
+    jumped_since: bool,
+    /// The same, as the last step found it.
+    cut: bool,
     pool: SnapshotPool,
 }
 
@@ -93,6 +97,8 @@ impl Engine {
             report: StepReport::default(),
             totals: Totals::default(),
             times: StageTimes::default(),
+            jumped_since: false,
+            cut: false,
             pool: SnapshotPool::default(),
         };
         engine.restart();
@@ -197,6 +203,7 @@ impl Engine {
     fn fall_into_place(&mut self, fall_secs: f64, lead_secs: f64) {
         let steps = |secs: f64| (secs / self.step_secs).round() as i64;
         let (fall, lead) = (steps(fall_secs), steps(lead_secs));
+        self.jumped_since = true;
         self.at_step -= lead;
         self.simulated_secs += JUMP_SECS;
         self.place_body();
@@ -215,6 +222,7 @@ impl Engine {
 
     /// One step on.
     pub fn step(&mut self) {
+        self.cut = std::mem::take(&mut self.jumped_since);
         let before = self.scene.repetition(self.time_secs());
         self.at_step += 1;
         let mut watch = Stopwatch::start();
@@ -255,7 +263,8 @@ impl Engine {
         self.simulation.frame(&mut out.guides);
         out.guides.time_secs = self.time_secs();
         out.clip_secs = self.scene.clip_secs(self.time_secs());
-        (out.wall_frame, out.substeps, out.jumped) = (self.taken, self.report.substeps, self.report.jumped);
+        (out.wall_frame, out.substeps) = (self.taken, self.report.substeps);
+        out.jumped = self.report.jumped || self.cut;
     }
 
     /// The instant as it is, for drawing. Resets the times that it carries.
@@ -319,6 +328,7 @@ impl Engine {
 
     /// The body is elsewhere at once: moves the hair along.
     fn jump(&mut self) {
+        self.jumped_since = true;
         self.simulated_secs += JUMP_SECS;
         self.place_body();
         self.simulate();

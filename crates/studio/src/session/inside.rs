@@ -3,6 +3,7 @@
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, SystemTime};
 
 use lovelock_wisp::SimulationSettings;
 
@@ -12,7 +13,7 @@ use super::worker::{Event, Outbox};
 use super::{Engine, FrameSnapshot, Scene};
 use crate::take::TakeTransport;
 use crate::{
-    Access, BodySection, FileRef, HairSection, MotionSection, Playback, Project, Slot, Stopwatch,
+    Access, BodySection, FileRef, HairSection, MotionSection, Playback, Project, STEP_SECS, Slot, Stopwatch,
     TakeProgress, TakeRecording,
 };
 
@@ -22,8 +23,18 @@ const MOST_PANICS: u32 = 3;
 /// What a scene is made from: other sections of a project need no load.
 #[derive(Clone, Debug, PartialEq)]
 enum SceneInputs {
-    Simulated { body: BodySection, motion: MotionSection, hair: HairSection, access: Access },
-    Take { file: FileRef, access: Access },
+    Simulated {
+        body: BodySection,
+        motion: MotionSection,
+        hair: HairSection,
+        access: Access,
+    },
+    /// With what tells a file from one that was put in its place.
+    Take {
+        file: FileRef,
+        version: Option<(u64, SystemTime)>,
+        access: Access,
+    },
 }
 
 impl SceneInputs {
@@ -31,7 +42,11 @@ impl SceneInputs {
         let Project { body, motion, hair, take, .. } = project.clone();
         let access = access.clone();
         match take.file {
-            Some(file) => Self::Take { file, access },
+            Some(file) => {
+                let data = std::fs::metadata(&file.path).ok();
+                let version = data.and_then(|data| Some((data.len(), data.modified().ok()?)));
+                Self::Take { file, version, access }
+            }
             None => Self::Simulated { body, motion, hair, access },
         }
     }
@@ -90,8 +105,12 @@ impl Inside {
         let threads = rayon::ThreadPoolBuilder::new().thread_name(|i| format!("simulate {i}")).build().ok();
         let mut watch = Stopwatch::start();
         loop {
-            let moves = self.engine.is_some() || self.take.is_some();
-            let timeout = if moves { self.playback.until_next_step() } else { None };
+            let timeout = match (&self.take, &self.engine) {
+                // A take is smooth at any rate: sixty instants a second, whatever lies between two recorded ones.
+                (Some(_), _) => self.playback.is_playing().then(|| Duration::from_secs_f64(STEP_SECS)),
+                (None, Some(_)) => self.playback.until_next_step(),
+                (None, None) => None,
+            };
             let wishes = self.mailbox.take(timeout);
             if wishes.stop {
                 // What was recorded is not to be lost because the window closes.
@@ -158,6 +177,9 @@ impl Inside {
                 Ok(snapshot) => {
                     self.frames.put(snapshot);
                     self.outbox.wake();
+                    for message in take.notices() {
+                        self.outbox.send(Event::TakeUnreadable { message });
+                    }
                 }
                 Err(error) => {
                     // Once, and not for every frame of a damaged second.
@@ -336,8 +358,12 @@ impl Inside {
     fn record_step(&mut self) {
         let (Some(recording), Some(engine)) = (&mut self.recording, &self.engine) else { return };
         if let Err(error) = recording.push(engine) {
-            self.recording = None;
             self.outbox.send(Event::TakeFailed { message: error.to_string() });
+            // What is there is worth having; where the disk refused it, the message said what is kept.
+            let ended = self.recording.take().map(TakeRecording::finish);
+            if let Some(Ok(report)) = ended {
+                self.outbox.send(Event::TakeSaved { report, because: Some(error.to_string()) });
+            }
         }
         self.tell_progress();
     }
@@ -370,12 +396,12 @@ impl Inside {
     fn recover(&mut self, panic: &(dyn Any + Send)) {
         self.outbox.panicked("simulation", panic);
         self.panics += 1;
-        self.take = None;
+        let played = self.take.take().is_some();
         let scene = self.engine.take().map(|engine| Arc::clone(engine.scene()));
         if let (Some(scene), true) = (scene, self.panics < MOST_PANICS) {
             self.engine = catch_unwind(AssertUnwindSafe(|| Engine::new(scene, self.settings))).ok();
         }
-        if self.engine.is_none() {
+        if self.engine.is_none() || played {
             // The same project may be asked for again.
             self.inputs = None;
         }

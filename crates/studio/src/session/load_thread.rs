@@ -168,6 +168,7 @@ impl Inside {
         if let Some(file) = &project.take.file {
             progress("opening the take", 0.0);
             match access.read(Place::Take, file).map(|path| TakePlayer::open(&path, access)) {
+                Ok(Ok(_)) if self.cancelled.load(Ordering::Relaxed) => return Err(StudioError::Cancelled),
                 Ok(Ok((player, problems))) => return Ok((Loaded::Take(Box::new(player)), problems)),
                 Ok(Err(error)) => untaken = Some(Problem::not_loaded(Place::Take, error)),
                 Err(problem) => untaken = Some(problem),

@@ -25,9 +25,15 @@ use crate::{Problem, Project, StudioError};
 pub fn project_of_take(path: &Path) -> Result<(Project, Vec<Problem>), StudioError> {
     let mut reader = TakeReader::open(path)?;
     let start = reader.nearest(0).unwrap_or(0);
-    let text = reader.project_at(start)?;
+    let text = match reader.project_at(start) {
+        Ok(text) => text,
+        Err(_) => reader.header().project.as_str().into(),
+    };
     let (mut project, problems) = project_of_text(path, &text)?;
     project.set_take(path);
+    // These stand on the dance's timeline, and the take has its own.
+    (project.recording.first_frame, project.recording.end_frame) = (0, None);
+    project.timeline.markers.clear();
     Ok((project, problems))
 }
 

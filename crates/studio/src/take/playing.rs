@@ -5,7 +5,9 @@ use std::sync::Arc;
 
 use lovelock_groom::{GuideFrame, Hairstyle};
 use lovelock_motion::{Pose, Skin, pose_at, skin};
-use lovelock_record::{AssetState, TakeCondition, TakeFrame, TakeHeader, TakeReader, hairstyle_fingerprint};
+use lovelock_record::{
+    AssetState, TakeCondition, TakeError, TakeFrame, TakeHeader, TakeReader, hairstyle_fingerprint,
+};
 use lovelock_wisp::StepReport;
 
 use crate::project::project_of_text;
@@ -34,6 +36,9 @@ pub struct TakePlayer {
     pose: Pose,
     pool: SnapshotPool,
     shown: u64,
+    /// First frame of the lost run that was told last.
+    told_lost: Option<u64>,
+    notices: Vec<String>,
 }
 
 impl TakePlayer {
@@ -49,13 +54,13 @@ impl TakePlayer {
         project.take.file = None;
         // What lies beside the take may be read, as what lies beside a project.
         let mut access = access.clone();
-        access.set_project(Some(path));
+        access.set_take(path);
         let mut loader = SceneLoader::new();
         let (scene, of_scene) = loader.load_now(&project, &access)?;
         let header = reader.header();
-        fits(path, header, &scene.style)?;
+        fits(path, header, &scene.style, &of_scene)?;
         problems.extend(of_scene);
-        problems.extend(differences(path, header, &reader.condition(), &scene.style));
+        problems.extend(differences(path, header, &access, &reader.condition(), &scene.style));
         let player = Self {
             reader,
             access,
@@ -68,6 +73,8 @@ impl TakePlayer {
             pose: Pose::default(),
             pool: SnapshotPool::default(),
             shown: 0,
+            told_lost: None,
+            notices: Vec::new(),
         };
         Ok((player, problems))
     }
@@ -119,8 +126,11 @@ impl TakePlayer {
     pub fn snapshot(&mut self, secs: f64) -> Result<Arc<FrameSnapshot>, StudioError> {
         let watch = Stopwatch::start();
         let secs = if secs.is_finite() { secs.clamp(0.0, self.duration_secs()) } else { 0.0 };
-        self.follow((secs / self.frame_secs()).round() as u64)?;
-        self.reader.frame_at(secs, &mut self.frame)?;
+        let frame = (secs / self.frame_secs()).round() as u64;
+        self.follow(frame)?;
+        if let Err(error) = self.reader.frame_at(secs, &mut self.frame) {
+            self.play_over(frame, error)?;
+        }
         pose_at(&self.scene.body, self.scene.clip.as_deref(), self.frame.clip_secs, &mut self.pose);
         self.shown += 1;
         let duration_secs = self.duration_secs();
@@ -155,10 +165,28 @@ impl TakePlayer {
         }))
     }
 
+    /// In place of frames that are lost, the nearest one that is there; said once for each run of them.
+    fn play_over(&mut self, frame: u64, error: TakeError) -> Result<(), StudioError> {
+        let TakeError::Lost { first, .. } = error else { return Err(error.into()) };
+        let Some(near) = self.reader.nearest(frame) else { return Err(error.into()) };
+        self.reader.frame_into(near, &mut self.frame)?;
+        if self.told_lost != Some(first) {
+            self.told_lost = Some(first);
+            self.notices.push(format!("{error}; frame {near} is shown in their place"));
+        }
+        Ok(())
+    }
+
+    /// What was noticed since this was asked last: frames that are lost.
+    pub fn notices(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.notices)
+    }
+
     /// Makes the scene that of the project at a frame.
     fn follow(&mut self, frame: u64) -> Result<(), StudioError> {
         let frame = self.reader.nearest(frame).unwrap_or(frame);
-        let text = self.reader.project_at(frame)?;
+        // Where the text is lost the scene stays.
+        let Ok(text) = self.reader.project_at(frame) else { return Ok(()) };
         if Arc::ptr_eq(&text, &self.text) || text == self.text {
             return Ok(());
         }
@@ -167,8 +195,8 @@ impl TakePlayer {
         if let Some(place) = self.scenes.iter().position(|(of, _)| *of == key) {
             self.scenes[place..].rotate_left(1);
         } else {
-            let (scene, _) = self.loader.load_now(&project, &self.access)?;
-            fits(self.reader.path(), self.reader.header(), &scene.style)?;
+            let (scene, problems) = self.loader.load_now(&project, &self.access)?;
+            fits(self.reader.path(), self.reader.header(), &scene.style, &problems)?;
             if self.scenes.len() == MOST_SCENES {
                 self.scenes.remove(0);
             }
@@ -189,15 +217,23 @@ fn made_of(project: &Project) -> Project {
 }
 
 /// Whether recorded guides are those of a hairstyle.
-fn fits(path: &Path, header: &TakeHeader, style: &Hairstyle) -> Result<(), StudioError> {
+fn fits(
+    path: &Path,
+    header: &TakeHeader,
+    style: &Hairstyle,
+    problems: &[Problem],
+) -> Result<(), StudioError> {
     let (guides, points) = (style.guides.count(), style.guides.points_per_guide);
     if (guides, points) == (header.guides as usize, header.points_per_guide as usize) {
         return Ok(());
     }
+    let why: Vec<_> =
+        problems.iter().filter(|problem| problem.is_failure()).map(|p| p.cause.as_str()).collect();
+    let why = if why.is_empty() { String::new() } else { format!(" ({})", why.join("; ")) };
     Err(StudioError::input(
         path,
         format!(
-            "{}: its hairstyle is another one now: {guides} guides of {points} points, and the take has {} of {}",
+            "{}: its hairstyle is another one now: {guides} guides of {points} points, and the take has {} of {}{why}",
             path.display(),
             header.guides,
             header.points_per_guide
@@ -209,6 +245,7 @@ fn fits(path: &Path, header: &TakeHeader, style: &Hairstyle) -> Result<(), Studi
 fn differences(
     path: &Path,
     header: &TakeHeader,
+    access: &Access,
     condition: &TakeCondition,
     style: &Hairstyle,
 ) -> Vec<Problem> {
@@ -220,6 +257,16 @@ fn differences(
     }
     for asset in &header.assets {
         let (role, file) = (&asset.role, asset.path.display());
+        // What may not be read is not looked at either: the loader has said so. Nor is what is no file, which may be
+        // without end.
+        let data = std::fs::metadata(&asset.path);
+        if !access.allows(&asset.path) || data.as_ref().is_ok_and(|data| !data.is_file()) {
+            continue;
+        }
+        if data.is_ok_and(|data| data.len() != asset.bytes) {
+            problems.push(note(format!("the {role} file {file} has changed since the take was recorded")));
+            continue;
+        }
         match asset.state() {
             AssetState::Same => {}
             AssetState::Changed { .. } => {

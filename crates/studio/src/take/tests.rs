@@ -190,6 +190,69 @@ fn hair_that_the_guides_do_not_fit_is_refused_and_other_hair_is_told() {
 }
 
 #[test]
+fn a_take_in_takes_reaches_the_files_of_its_project() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut access = Access::new();
+    for (take, inside) in [("takes/p-1.take", true), ("other/p-1.take", false), ("p-1.take", true)] {
+        access.set_take(&folder.path().join(take));
+        assert_eq!(access.allows(&folder.path().join("x.hair")), inside, "{take}");
+        assert!(!access.allows(&folder.path().with_file_name("x.hair")), "{take}: not above the project");
+    }
+}
+
+#[test]
+fn where_time_jumped_nothing_lies_between() {
+    let (_folder, path) = folder();
+    let project = small_project();
+    let (scene, _) = SceneLoader::new().load_now(&project, &Access::new()).expect("a scene");
+    let mut engine = Engine::new(scene, project.simulation);
+    let mut take = TakeRecording::start(&path, &Arc::new(project), &engine).expect("a take");
+    for step in 1..20 {
+        if step == 10 {
+            engine.seek(4.0);
+        }
+        engine.step();
+        take.push(&engine).expect("a frame");
+    }
+    take.finish().expect("a whole take");
+    let mut player = played(&path);
+    let at =
+        |player: &mut TakePlayer, frame: f64| player.snapshot(frame / 60.0).expect("an instant").time_secs;
+    let (before, after) = (at(&mut player, 9.0), at(&mut player, 10.0));
+    assert!(after - before > 3.0, "{before} to {after}");
+    for frame in [9.3, 9.7] {
+        let time = at(&mut player, frame);
+        assert!(time == before || time == after, "frame {frame} is at {time}, between {before} and {after}");
+    }
+    let between = at(&mut player, 8.5);
+    assert!(
+        between > at(&mut player, 8.0) && between < before,
+        "the control: frames beside each other are mixed"
+    );
+}
+
+#[test]
+fn a_lost_second_is_played_over_and_told_once() {
+    let (_folder, path) = folder();
+    recorded(&path, &small_project(), 150, |_, _| {});
+    let mut bytes = std::fs::read(&path).expect("a file");
+    // In the middle of the frames: the header is at the start, the index at the end.
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 0x10;
+    std::fs::write(&path, bytes).expect("a file");
+    let (mut player, _) = TakePlayer::open(&path, &Access::new()).expect("a take that plays");
+    let mut told = Vec::new();
+    for frame in 0..150 {
+        let snapshot = player.snapshot(f64::from(frame) / 60.0).expect("every instant shows something");
+        assert!((snapshot.position_secs - f64::from(frame) / 60.0).abs() < 1e-9);
+        told.extend(player.notices());
+    }
+    assert_eq!(told.len(), 1, "{told:?}");
+    assert!(told[0].contains("dance.take") && told[0].contains("lost"), "{}", told[0]);
+    assert!(!player.condition().is_whole());
+}
+
+#[test]
 fn without_a_window_every_step_is_recorded_and_a_cancelled_take_leaves_nothing() {
     let (folder, path) = folder();
     let request =

@@ -53,12 +53,22 @@ impl TakeTransport {
 
     /// Whether it stands at the end that it plays to.
     pub(crate) fn is_at_end(&self, backwards: bool) -> bool {
-        !self.looping && if backwards { self.secs <= 0.0 } else { self.secs >= self.player.duration_secs() }
+        !self.looping
+            && if backwards {
+                self.secs <= 0.0
+            } else {
+                self.secs >= self.player.duration_secs() - 0.5 * self.player.frame_secs()
+            }
     }
 
     /// To the end that it plays from.
     pub(crate) fn restart(&mut self, backwards: bool) {
         self.secs = if backwards { self.player.duration_secs() } else { 0.0 };
+    }
+
+    /// As [`TakePlayer::notices`].
+    pub(crate) fn notices(&mut self) -> Vec<String> {
+        self.player.notices()
     }
 
     /// The instant where it stands.

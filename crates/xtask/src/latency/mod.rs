@@ -25,7 +25,6 @@ pub(crate) fn run(inputs: usize) -> anyhow::Result<()> {
     system::prepare_screen()?;
     tool::run(&mut tool::cargo(&["build", "--release", "--package", "lovelock"]))?;
     let folder = tool::root().join("target/latency");
-    fs::create_dir_all(&folder).with_context(|| format!("could not make {}", folder.display()))?;
     for (what, panes, paused) in [
         ("one picture, playing", false, false),
         ("six panes, playing", true, false),
@@ -48,11 +47,15 @@ pub(crate) fn run(inputs: usize) -> anyhow::Result<()> {
 
 /// Milliseconds from each input to the screen.
 fn window(panes: bool, paused: bool, inputs: usize, folder: &std::path::Path) -> anyhow::Result<Vec<f64>> {
+    // An empty home: the layout is that of a first start, and the user's own is left alone.
+    if folder.exists() {
+        fs::remove_dir_all(folder).with_context(|| format!("could not empty {}", folder.display()))?;
+    }
+    fs::create_dir_all(folder).with_context(|| format!("could not make {}", folder.display()))?;
     let project = folder.join("six.lovelock");
     fs::write(&project, include_str!("six.lovelock"))?;
     let screen = Screen::start(WINDOW.0 + 40, WINDOW.1 + 40)?;
     let program = tool::root().join("target/release/lovelock");
-    // A home of its own: the layout is that of a first start, and the user's own is left alone.
     let child = Command::new(&program)
         .arg(&project)
         .env("DISPLAY", screen.name())
