@@ -351,16 +351,13 @@ impl Window {
 /// A name for a take that is not there yet: `takes/NAME-1.take` beside the project, or among the user's own data where
 /// the project has no file.
 fn new_take(project: Option<&Path>) -> Result<PathBuf, String> {
-    let (folder, name) = match project {
-        Some(path) => {
-            let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-            (path.parent().unwrap_or_else(|| Path::new(".")).to_owned(), name)
-        }
-        None => {
-            let folder = eframe::storage_dir("lovelock")
-                .ok_or("there is no folder for takes: save the project first, they then lie beside it")?;
-            (folder, "take".to_owned())
-        }
+    let (folder, name) = if let Some(path) = project {
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        (path.parent().unwrap_or_else(|| Path::new(".")).to_owned(), name)
+    } else {
+        let folder = eframe::storage_dir("lovelock")
+            .ok_or("there is no folder for takes: save the project first, they then lie beside it")?;
+        (folder, "take".to_owned())
     };
     let folder = folder.join("takes");
     let free = |path: &PathBuf| !path.exists() && !path.with_extension("take.part").exists();

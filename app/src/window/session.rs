@@ -161,7 +161,7 @@ impl Session {
                 Event::LoadCancelled => {
                     said.push("Loading was cancelled; the scene stays as it was.".to_owned());
                 }
-                Event::LoadFailed { message } => said.push(message),
+                Event::LoadFailed { message } | Event::TakeFailed { message } => said.push(message),
                 Event::EndReached => self.playing = false,
                 Event::TakeSaved { report, because } => {
                     let why = because.map_or_else(String::new, |why| format!(", ended because {why}"));
@@ -173,7 +173,6 @@ impl Session {
                     ));
                     self.saved_take = Some(report.path);
                 }
-                Event::TakeFailed { message } => said.push(message),
                 Event::TakeUnreadable { message } => {
                     self.playing = false;
                     said.push(message);

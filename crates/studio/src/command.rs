@@ -230,7 +230,7 @@ pub const COMMANDS: &[CommandInfo] = {
             C::RecordTake,
             "record-take",
             "Record a take",
-            "Records the simulation as it plays, to be played, lit and drawn later; asked again, it ends.",
+            "Records the simulation, to be played and lit again; asked again, it ends.",
             &["R"],
             G::File,
         ),

@@ -23,12 +23,7 @@ const MOST_PANICS: u32 = 3;
 /// What a scene is made from: other sections of a project need no load.
 #[derive(Clone, Debug, PartialEq)]
 enum SceneInputs {
-    Simulated {
-        body: BodySection,
-        motion: MotionSection,
-        hair: HairSection,
-        access: Access,
-    },
+    Simulated(Box<(BodySection, MotionSection, HairSection, Access)>),
     /// With what tells a file from one that was put in its place.
     Take {
         file: FileRef,
@@ -47,7 +42,7 @@ impl SceneInputs {
                 let version = data.and_then(|data| Some((data.len(), data.modified().ok()?)));
                 Self::Take { file, version, access }
             }
-            None => Self::Simulated { body, motion, hair, access },
+            None => Self::Simulated(Box::new((body, motion, hair, access))),
         }
     }
 }
