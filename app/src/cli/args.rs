@@ -19,6 +19,9 @@ pub(crate) struct Arguments {
     /// Save a picture of the window as a PNG file and leave.
     #[arg(long, value_name = "FILE")]
     pub(crate) screenshot: Option<PathBuf>,
+    /// Open the window with the project's panes beside each other, as key C does.
+    #[arg(long)]
+    pub(crate) panes: bool,
     /// Seconds between the first hair on the screen and that picture.
     #[arg(long, value_name = "SECONDS", default_value_t = 6.0, requires = "screenshot")]
     pub(crate) after: f64,

@@ -38,7 +38,7 @@ pub(crate) fn run() -> ExitCode {
     let result = match arguments.task {
         None => {
             let screenshot = arguments.screenshot.map(|out| (out, arguments.after));
-            crate::window::open(arguments.project.as_deref(), screenshot)
+            crate::window::open(arguments.project.as_deref(), arguments.panes, screenshot)
         }
         Some(Task::Record(task)) => record::run(&task, output),
         Some(Task::Compare(task)) => compare::run(&task, output),

@@ -83,8 +83,12 @@ pub(crate) struct Window {
     screenshot: Option<Screenshot>,
 }
 
-/// Opens the window, on a file where one is given.
-pub(crate) fn open(path: Option<&Path>, screenshot: Option<(PathBuf, f64)>) -> Result<(), StudioError> {
+/// Opens the window, on a file where one is given; with panes beside each other, where that is asked for.
+pub(crate) fn open(
+    path: Option<&Path>,
+    panes: bool,
+    screenshot: Option<(PathBuf, f64)>,
+) -> Result<(), StudioError> {
     // A file that cannot be opened is an error of the command line: no window is needed to say so.
     let opened = path.map(actions::open_for_start).transpose()?;
     let options = eframe::NativeOptions {
@@ -102,7 +106,11 @@ pub(crate) fn open(path: Option<&Path>, screenshot: Option<(PathBuf, f64)>) -> R
     eframe::run_native(
         "lovelock",
         options,
-        Box::new(move |creation| Ok(Box::new(Window::new(creation, opened, screenshot)?))),
+        Box::new(move |creation| {
+            let mut window = Window::new(creation, opened, screenshot)?;
+            window.layout.compare.shown |= panes;
+            Ok(Box::new(window))
+        }),
     )
     .map_err(|error| {
         StudioError::work(format!(
