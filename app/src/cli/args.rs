@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{Args, Parser, Subcommand};
+use lovelock_studio::recording::FilmQuality;
 use lovelock_studio::render::{Backend, ShadowMethod, Transparency};
 
 /// Hair styled, simulated, shadowed and judged live. Opens the window where no command is given.
@@ -77,8 +78,8 @@ impl SourceArguments {
 pub(crate) struct Record {
     #[command(flatten)]
     pub(crate) source: SourceArguments,
-    /// Where it goes: a name ending in `.mp4` is a film, in `.take` the simulation alone, any other a folder of PNG files with
-    /// a manifest.
+    /// Where it goes: a name ending in `.mp4` is a film, in `.apng` a small animated preview, in `.take` the simulation
+    /// alone, any other a folder of PNG files with a manifest.
     #[arg(short, long, value_name = "OUT")]
     pub(crate) out: PathBuf,
     /// Frames to record, half open, such as 0..240; the whole clip where none are given.
@@ -100,6 +101,12 @@ pub(crate) struct Record {
     /// processor, without any driver); the project's choice where none is given.
     #[arg(long, value_name = "BACKEND")]
     pub(crate) backend: Option<Backend>,
+    /// How finely a film is coded: draft, good, high or best; the project's choice where none is given.
+    #[arg(long, value_name = "ID", value_parser = quality)]
+    pub(crate) quality: Option<FilmQuality>,
+    /// Write the shadow method, the transparency and the frame's number into each picture.
+    #[arg(long)]
+    pub(crate) label: bool,
 }
 
 #[derive(Debug, Args)]
@@ -221,6 +228,14 @@ fn pixel(text: &str) -> Result<[u32; 2], String> {
     let (x, y) = text.split_once(',').ok_or_else(wanted)?;
     let number = |text: &str| u32::from_str(text.trim()).map_err(|_| wanted());
     Ok([number(x)?, number(y)?])
+}
+
+/// A quality of a film, by its id.
+fn quality(text: &str) -> Result<FilmQuality, String> {
+    FilmQuality::ALL.into_iter().find(|quality| quality.id() == text).ok_or_else(|| {
+        let known: Vec<_> = FilmQuality::ALL.iter().map(|quality| quality.id()).collect();
+        format!("expected one of {}", known.join(", "))
+    })
 }
 
 fn rate(text: &str) -> Result<f64, String> {

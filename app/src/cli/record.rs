@@ -18,6 +18,8 @@ pub(crate) fn run(task: &Record, output: Output) -> Result<(), StudioError> {
         size: task.size,
         shadow: task.shadow,
         transparency: task.transparency,
+        quality: task.quality,
+        label: task.label,
         backend: task.backend,
         access: std::mem::take(&mut scene.access),
         ..RecordRequest::default()

@@ -2,7 +2,8 @@
 //!
 //! A picture comes in as 8-bit sRGB, four bytes a pixel (RGBA, row by row from the top), and goes out either as
 //! an H.264 film in an MP4 file ([`FilmWriter`]) or as a folder of PNG files with a manifest
-//! ([`SequenceWriter`]). [`PictureSink`] is the one type over both; it picks by the output's name.
+//! ([`SequenceWriter`]), or as a small animated PNG ([`PreviewWriter`]). [`PictureSink`] is the one type over them; it picks
+//! by the output's name.
 //!
 //! Three promises hold for every film and sequence:
 //!
@@ -22,6 +23,7 @@ mod film;
 mod manifest;
 mod mp4;
 mod partial;
+mod preview;
 mod rate;
 mod reader;
 mod sequence;
@@ -33,6 +35,7 @@ mod yuv;
 pub use error::RecordError;
 pub use film::{FilmQuality, FilmReport, FilmSettings, FilmWriter, MAX_FILM_SIDES};
 pub use manifest::{MANIFEST_NAME, Manifest, ManifestFrame, read_manifest};
+pub use preview::{MOST_PREVIEW_FRAMES, MOST_PREVIEW_SIDE, PreviewReport, PreviewSettings, PreviewWriter};
 pub use rate::FrameRate;
 pub use reader::{FilmInfo, FilmReader, read_film};
 pub use sequence::{SequenceReport, SequenceSettings, SequenceWriter, frame_name};

@@ -1,8 +1,8 @@
 //! One type over films and sequences.
 
 use crate::{
-    FilmQuality, FilmReport, FilmSettings, FilmWriter, RecordError, SequenceReport, SequenceSettings,
-    SequenceWriter,
+    FilmQuality, FilmReport, FilmSettings, FilmWriter, PreviewReport, PreviewSettings, PreviewWriter,
+    RecordError, SequenceReport, SequenceSettings, SequenceWriter,
 };
 use std::path::Path;
 
@@ -11,12 +11,14 @@ use std::path::Path;
 pub enum OutputKind {
     /// `.mp4`: a film.
     Film,
+    /// `.apng`: an animated preview.
+    Preview,
     /// A folder: a PNG sequence with a manifest.
     Sequence,
 }
 
 impl OutputKind {
-    /// The kind that `path` asks for: `.mp4` (in any case) is a film; a folder that exists, a name that ends in a
+    /// The kind that `path` asks for: `.mp4` (in any case) is a film, `.apng` a preview; a folder that exists, a name that ends in a
     /// separator, or a name without an extension is a sequence. `v1.2` has no extension: digits are none.
     ///
     /// # Errors
@@ -24,7 +26,7 @@ impl OutputKind {
     pub fn of(path: &Path) -> Result<Self, RecordError> {
         if path.as_os_str().is_empty() {
             return Err(RecordError::request(
-                "the output has no name: wanted a name ending in .mp4, or a folder",
+                "the output has no name: wanted a name ending in .mp4 or .apng, or a folder",
             ));
         }
         let ends_in_separator = path
@@ -37,10 +39,11 @@ impl OutputKind {
         }
         match path.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase()) {
             Some(extension) if extension == "mp4" => Ok(Self::Film),
+            Some(extension) if extension == "apng" => Ok(Self::Preview),
             Some(extension) if extension.chars().any(|letter| !letter.is_ascii_digit()) => {
                 Err(RecordError::request(format!(
-                    "{}: cannot record to `.{extension}`: wanted a name ending in .mp4 (a film), or a folder \
-                     (a PNG sequence; end it with / if its name holds a dot)",
+                    "{}: cannot record to `.{extension}`: wanted a name ending in .mp4 (a film) or .apng (a preview), \
+                     or a folder (a PNG sequence; end it with / if its name holds a dot)",
                     path.display()
                 )))
             }
@@ -60,22 +63,25 @@ pub struct SinkSettings {
     pub fps: f64,
     /// Number of the first frame; names the files of a sequence.
     pub first_frame: u64,
+    /// Frames that will come; a preview says so at its start.
+    pub frames: u64,
     /// How finely a film is coded.
     pub quality: FilmQuality,
-    /// Whether a sequence keeps the alpha channel.
+    /// Whether a sequence or a preview keeps the alpha channel.
     pub alpha: bool,
     /// What draws the frames, for a sequence's manifest.
     pub settings: serde_json::Value,
 }
 
 impl SinkSettings {
-    /// Settings of a size and rate, the rest as usual: from frame 0, high quality, no alpha.
+    /// Settings of a size and rate, the rest as usual: one frame, from frame 0, high quality, no alpha.
     pub fn new(width: u32, height: u32, fps: f64) -> Self {
         Self {
             width,
             height,
             fps,
             first_frame: 0,
+            frames: 1,
             quality: FilmQuality::default(),
             alpha: false,
             settings: serde_json::Value::Null,
@@ -88,6 +94,8 @@ impl SinkSettings {
 pub enum SinkReport {
     /// A film.
     Film(FilmReport),
+    /// A preview.
+    Preview(PreviewReport),
     /// A sequence.
     Sequence(SequenceReport),
 }
@@ -97,6 +105,7 @@ impl SinkReport {
     pub fn frames(&self) -> u64 {
         match self {
             Self::Film(report) => report.frames,
+            Self::Preview(report) => report.frames,
             Self::Sequence(report) => report.frames,
         }
     }
@@ -105,6 +114,7 @@ impl SinkReport {
     pub fn bytes(&self) -> u64 {
         match self {
             Self::Film(report) => report.bytes,
+            Self::Preview(report) => report.bytes,
             Self::Sequence(report) => report.bytes,
         }
     }
@@ -113,6 +123,7 @@ impl SinkReport {
     pub fn path(&self) -> &Path {
         match self {
             Self::Film(report) => &report.path,
+            Self::Preview(report) => &report.path,
             Self::Sequence(report) => &report.folder,
         }
     }
@@ -123,6 +134,8 @@ impl SinkReport {
 pub enum PictureSink {
     /// Into a film.
     Film(FilmWriter),
+    /// Into a preview.
+    Preview(PreviewWriter),
     /// Into a folder.
     Sequence(SequenceWriter),
 }
@@ -131,12 +144,16 @@ impl PictureSink {
     /// Starts the output that `path` asks for (see [`OutputKind::of`]), creating missing folders.
     ///
     /// # Errors
-    /// As [`FilmWriter::create`], [`SequenceWriter::create`] and [`OutputKind::of`].
+    /// As [`FilmWriter::create`], [`PreviewWriter::create`], [`SequenceWriter::create`] and [`OutputKind::of`].
     pub fn for_path(path: &Path, settings: SinkSettings) -> Result<Self, RecordError> {
-        let SinkSettings { width, height, fps, first_frame, quality, alpha, settings } = settings;
+        let SinkSettings { width, height, fps, first_frame, frames, quality, alpha, settings } = settings;
         match OutputKind::of(path)? {
             OutputKind::Film => {
                 FilmWriter::create(path, FilmSettings { width, height, fps, quality }).map(Self::Film)
+            }
+            OutputKind::Preview => {
+                PreviewWriter::create(path, PreviewSettings { width, height, fps, frames, alpha })
+                    .map(Self::Preview)
             }
             OutputKind::Sequence => {
                 let settings = SequenceSettings { width, height, fps, first_frame, alpha, settings };
@@ -148,10 +165,11 @@ impl PictureSink {
     /// Hands over the next frame: RGBA, 8 bits sRGB, rows from the top, `width × height × 4` bytes.
     ///
     /// # Errors
-    /// As [`FilmWriter::push`] and [`SequenceWriter::push`].
+    /// As [`FilmWriter::push`], [`PreviewWriter::push`] and [`SequenceWriter::push`].
     pub fn push(&mut self, rgba: &[u8]) -> Result<(), RecordError> {
         match self {
             Self::Film(writer) => writer.push(rgba),
+            Self::Preview(writer) => writer.push(rgba),
             Self::Sequence(writer) => writer.push(rgba),
         }
     }
@@ -159,15 +177,16 @@ impl PictureSink {
     /// Makes the output whole.
     ///
     /// # Errors
-    /// As [`FilmWriter::finish`] and [`SequenceWriter::finish`].
+    /// As [`FilmWriter::finish`], [`PreviewWriter::finish`] and [`SequenceWriter::finish`].
     pub fn finish(self) -> Result<SinkReport, RecordError> {
         match self {
             Self::Film(writer) => writer.finish().map(SinkReport::Film),
+            Self::Preview(writer) => writer.finish().map(SinkReport::Preview),
             Self::Sequence(writer) => writer.finish().map(SinkReport::Sequence),
         }
     }
 
-    /// Gives up: a film leaves nothing, a sequence the frames that are whole.
+    /// Gives up: a film and a preview leave nothing, a sequence the frames that are whole.
     pub fn cancel(self) {}
 }
 
@@ -193,9 +212,11 @@ mod tests {
     #[test]
     fn both_kinds_are_made_in_missing_folders() {
         let folder = tempfile::tempdir().unwrap();
-        for (name, file) in
-            [("new/ö film/dance.mp4", "new/ö film/dance.mp4"), ("new/frames", "new/frames/manifest.json")]
-        {
+        for (name, file) in [
+            ("new/ö film/dance.mp4", "new/ö film/dance.mp4"),
+            ("new/dance.APNG", "new/dance.APNG"),
+            ("new/frames", "new/frames/manifest.json"),
+        ] {
             let settings = SinkSettings::new(16, 16, 30.0);
             let mut sink = PictureSink::for_path(&folder.path().join(name), settings).unwrap();
             sink.push(&[7; 16 * 16 * 4]).unwrap();

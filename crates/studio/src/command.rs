@@ -343,7 +343,7 @@ pub const COMMANDS: &[CommandInfo] = {
             C::Open,
             "open",
             "Open…",
-            "Opens a project, a hairstyle (.hair, .tfx), a character (.glb, .gltf), a motion (.bvh) or a take (.take).",
+            "Opens a project, take, hair (.hair, .tfx), character (.glb, .gltf) or motion (.bvh) file.",
             &["Ctrl+O"],
             G::File,
         ),

@@ -1,5 +1,6 @@
 //! Recording without a window.
 
+mod burn_in;
 mod dance;
 mod drawer;
 mod job;

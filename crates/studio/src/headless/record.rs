@@ -6,6 +6,7 @@ use std::path::Path;
 use lovelock_record::{FrameRate, OutputKind, PictureSink, RecordError, SinkSettings};
 use lovelock_render::Picture;
 
+use super::burn_in::burn_in;
 use super::dance::Dance;
 use super::drawer::Drawer;
 use super::new_folders::NewFolders;
@@ -42,7 +43,7 @@ pub fn record(
     let refused = |error: RecordError| job.refused(&error);
     // Before the sink, to be dropped after it.
     let _new_folders = NewFolders::missing_on(&request.out);
-    let mut sink = PictureSink::for_path(&request.out, job.sink_settings(frames.start)).map_err(refused)?;
+    let mut sink = PictureSink::for_path(&request.out, job.sink_settings(&frames)).map_err(refused)?;
     let mut picture = Picture::default();
     let most_times = ((frames.end - frames.start) as usize).min(MOST_TIMES);
     let (mut history, mut passes) = (StageHistory::new(most_times), PassHistory::new(most_times));
@@ -52,6 +53,9 @@ pub fn record(
         let watch = Stopwatch::start();
         let snapshot = dance.snapshot(frame)?;
         let stats = drawer.picture(&job.project, &snapshot, [job.width, job.height], &mut picture)?;
+        if request.label {
+            burn_in(&mut picture, &job.label(frame));
+        }
         let encoding = Stopwatch::start();
         sink.push(&picture.rgba).map_err(refused)?;
         let mut times = snapshot.times;
@@ -114,6 +118,9 @@ impl<'a> Job<'a> {
         if let Some(shadow) = request.shadow {
             project.shadow.method = shadow;
         }
+        if let Some(quality) = request.quality {
+            project.recording.quality = quality;
+        }
         if let Some(transparency) = request.transparency {
             project.picture.transparency = transparency;
         }
@@ -126,6 +133,13 @@ impl<'a> Job<'a> {
             check_frames(frames)?;
         }
         let kind = OutputKind::of(&request.out).map_err(|error| job.refused(&error))?;
+        if kind == OutputKind::Preview {
+            // Their number is known when the dance is.
+            let frames = request.frames.as_ref().map_or(1, |frames| frames.end - frames.start);
+            lovelock_record::PreviewSettings { width, height, fps, frames, alpha: false }
+                .check()
+                .map_err(|error| job.refused(&error))?;
+        }
         if kind == OutputKind::Film {
             let quality = job.project.recording.quality;
             lovelock_record::FilmSettings { width, height, fps, quality }
@@ -147,15 +161,22 @@ impl<'a> Job<'a> {
         Ok(frames)
     }
 
-    fn sink_settings(&self, first_frame: u64) -> SinkSettings {
+    fn sink_settings(&self, frames: &std::ops::Range<u64>) -> SinkSettings {
         let mut settings = SinkSettings::new(self.width, self.height, self.fps);
-        settings.first_frame = first_frame;
+        (settings.first_frame, settings.frames) = (frames.start, frames.end - frames.start);
         settings.quality = self.project.recording.quality;
         settings.settings = serde_json::json!({
             "shadow": self.project.shadow.method.id(),
             "transparency": self.project.picture.transparency.id(),
         });
         settings
+    }
+
+    /// What is written into a frame.
+    fn label(&self, frame: u64) -> String {
+        let (shadow, transparency) =
+            (self.project.shadow.method.label(), self.project.picture.transparency.label());
+        format!("{shadow} · {transparency} · frame {frame} · {:.2} s", frame as f64 / self.fps)
     }
 
     fn refused(&self, error: &RecordError) -> StudioError {

@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use lovelock_record::FilmQuality;
 use lovelock_render::{Backend, Gpu, ShadowMethod, Transparency};
 
 use crate::{Access, Problem, Sheet};
@@ -23,6 +24,10 @@ pub struct RecordRequest {
     pub shadow: Option<ShadowMethod>,
     /// Transparency mode.
     pub transparency: Option<Transparency>,
+    /// How finely a film is coded.
+    pub quality: Option<FilmQuality>,
+    /// Whether the shadow method, the transparency and the frame's number are written into each picture.
+    pub label: bool,
     /// What draws; the project says where none.
     pub backend: Option<Backend>,
     /// What the project may read.

@@ -1,0 +1,275 @@
+//! Animated previews: PNG that moves (APNG), for web pages and messages. Every colour is kept.
+
+use std::path::{Path, PathBuf};
+
+use png::{BitDepth, ColorType, Compression, Encoder, Writer};
+
+use crate::film::check_frame;
+use crate::partial::{PartialFile, create_parent, open_file};
+use crate::{FrameRate, RecordError};
+
+/// The largest side in pixels: previews are small, and a browser holds all their frames in memory.
+pub const MOST_PREVIEW_SIDE: u32 = 2048;
+
+/// The most frames: a minute and a half at 24 a second.
+pub const MOST_PREVIEW_FRAMES: u64 = 2160;
+
+/// What a preview is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PreviewSettings {
+    /// Width in pixels, 1 to [`MOST_PREVIEW_SIDE`].
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// Frames per second, 1 to 240.
+    pub fps: f64,
+    /// Frames, 1 to [`MOST_PREVIEW_FRAMES`]: the file says so before the first of them.
+    pub frames: u64,
+    /// Whether the alpha channel is kept (not premultiplied).
+    pub alpha: bool,
+}
+
+impl PreviewSettings {
+    /// Whether there can be such a preview.
+    ///
+    /// # Errors
+    /// [`RecordError::Request`] with what was asked and what would be right.
+    pub fn check(&self) -> Result<FrameRate, RecordError> {
+        let Self { width, height, fps, frames, .. } = *self;
+        if width.min(height) == 0 || width.max(height) > MOST_PREVIEW_SIDE {
+            return Err(RecordError::request(format!(
+                "a preview of {width}x{height} pixels: wanted sides of 1 to {MOST_PREVIEW_SIDE}"
+            )));
+        }
+        if frames == 0 || frames > MOST_PREVIEW_FRAMES {
+            return Err(RecordError::request(format!(
+                "a preview of {frames} frames: wanted 1 to {MOST_PREVIEW_FRAMES}; a film (.mp4) takes any number"
+            )));
+        }
+        FrameRate::from_fps(fps)
+    }
+}
+
+/// What was written.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PreviewReport {
+    /// The file.
+    pub path: PathBuf,
+    /// Frames in it.
+    pub frames: u64,
+    /// Its length in bytes.
+    pub bytes: u64,
+}
+
+/// A preview in the making. It grows as `NAME.partial`; dropped before [`PreviewWriter::finish`] it leaves nothing.
+pub struct PreviewWriter {
+    path: PathBuf,
+    settings: PreviewSettings,
+    writer: Option<Writer<Shared>>,
+    file: Shared,
+    pushed: u64,
+    opaque: Vec<u8>,
+}
+
+/// The file, which the encoder writes to and the writer commits.
+#[derive(Clone)]
+struct Shared(std::sync::Arc<std::sync::Mutex<Option<PartialFile>>>);
+
+impl std::fmt::Debug for PreviewWriter {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("PreviewWriter")
+            .field("path", &self.path)
+            .field("pushed", &self.pushed)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Shared {
+    fn take(&self) -> Option<PartialFile> {
+        self.0.lock().unwrap_or_else(std::sync::PoisonError::into_inner).take()
+    }
+
+    fn with<T>(&self, act: impl FnOnce(&mut PartialFile) -> std::io::Result<T>) -> std::io::Result<T> {
+        let mut file = self.0.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        act(file.as_mut().ok_or_else(|| std::io::Error::other("the file is closed"))?)
+    }
+}
+
+impl std::io::Write for Shared {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.with(|file| file.write(bytes))
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.with(std::io::Write::flush)
+    }
+}
+
+impl PreviewWriter {
+    /// Starts a preview at `path`, creating its folder where missing. A file already there stays until the new one is
+    /// whole.
+    ///
+    /// # Errors
+    /// As [`PreviewSettings::check`]; [`RecordError::Io`] where the file cannot be made.
+    pub fn create(path: &Path, settings: PreviewSettings) -> Result<Self, RecordError> {
+        let rate = settings.check()?;
+        let failed = |error| RecordError::io(path, "create the preview", error);
+        create_parent(path).map_err(failed)?;
+        let file = PartialFile::create(path, &open_file).map_err(failed)?;
+        let file = Shared(std::sync::Arc::new(std::sync::Mutex::new(Some(file))));
+        let coded = |error: png::EncodingError| failed(std::io::Error::other(error));
+        let mut encoder = Encoder::new(file.clone(), settings.width, settings.height);
+        encoder.set_color(if settings.alpha { ColorType::Rgba } else { ColorType::Rgb });
+        encoder.set_depth(BitDepth::Eight);
+        encoder.set_compression(Compression::Balanced);
+        // Round and round; each frame is shown `den / num` seconds.
+        encoder.set_animated(settings.frames as u32, 0).map_err(coded)?;
+        let (num, den) = delay(rate);
+        encoder.set_frame_delay(num, den).map_err(coded)?;
+        let writer = encoder.write_header().map_err(coded)?;
+        Ok(Self {
+            path: path.to_owned(),
+            settings,
+            writer: Some(writer),
+            file,
+            pushed: 0,
+            opaque: Vec::new(),
+        })
+    }
+
+    /// Hands over the next frame: RGBA, 8 bits sRGB, rows from the top, `width × height × 4` bytes.
+    ///
+    /// # Errors
+    /// [`RecordError::FrameSize`] for another number of bytes; [`RecordError::Request`] for more frames than were promised;
+    /// [`RecordError::Io`] for a full disk and the like, and [`RecordError::Stopped`] after that.
+    pub fn push(&mut self, rgba: &[u8]) -> Result<(), RecordError> {
+        check_frame(rgba, self.settings.width, self.settings.height)?;
+        if self.pushed == self.settings.frames {
+            return Err(RecordError::request(format!(
+                "{}: more than the {} frames that were promised",
+                self.path.display(),
+                self.settings.frames
+            )));
+        }
+        let Some(writer) = &mut self.writer else {
+            return Err(RecordError::Stopped { path: self.path.clone() });
+        };
+        let pixels = if self.settings.alpha {
+            rgba
+        } else {
+            self.opaque.clear();
+            self.opaque.extend(rgba.chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]));
+            &self.opaque
+        };
+        if let Err(error) = writer.write_image_data(pixels) {
+            self.writer = None;
+            drop(self.file.take());
+            let what = format!("write frame {}", self.pushed);
+            return Err(RecordError::io(&self.path, &what, std::io::Error::other(error)));
+        }
+        self.pushed += 1;
+        Ok(())
+    }
+
+    /// Makes the preview whole and gives it its name.
+    ///
+    /// # Errors
+    /// As [`PreviewWriter::push`]; also [`RecordError::Request`] for fewer frames than were promised.
+    pub fn finish(mut self) -> Result<PreviewReport, RecordError> {
+        let Some(writer) = self.writer.take() else {
+            return Err(RecordError::Stopped { path: self.path.clone() });
+        };
+        if self.pushed < self.settings.frames {
+            return Err(RecordError::request(format!(
+                "{}: {} frames of the {} that were promised",
+                self.path.display(),
+                self.pushed,
+                self.settings.frames
+            )));
+        }
+        let failed = |error| RecordError::io(&self.path, "finish the preview", error);
+        writer.finish().map_err(|error| failed(std::io::Error::other(error)))?;
+        let file = self.file.take().ok_or_else(|| RecordError::Stopped { path: self.path.clone() })?;
+        file.commit(true).map_err(failed)?;
+        let bytes = std::fs::metadata(&self.path).map_or(0, |data| data.len());
+        Ok(PreviewReport { path: self.path.clone(), frames: self.pushed, bytes })
+    }
+}
+
+/// How long a frame is shown, as two numbers of 16 bits.
+fn delay(rate: FrameRate) -> (u16, u16) {
+    match (u16::try_from(rate.den), u16::try_from(rate.num)) {
+        (Ok(den), Ok(num)) => (den, num),
+        // Such as 24000/1001: to a 65,000th of a second, the nearest.
+        _ => ((65_000.0 / rate.as_f64()).round().clamp(1.0, 65_000.0) as u16, 65_000),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn settings(frames: u64) -> PreviewSettings {
+        PreviewSettings { width: 5, height: 3, fps: 24.0, frames, alpha: false }
+    }
+
+    fn frame(number: u8) -> Vec<u8> {
+        (0..5 * 3 * 4).map(|i| if i % 4 == 3 { 255 } else { i as u8 * 3 + number * 7 }).collect()
+    }
+
+    #[test]
+    fn every_frame_and_its_time_come_back() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("new/preview.apng");
+        let mut writer = PreviewWriter::create(&path, settings(4)).unwrap();
+        for number in 0..4 {
+            assert!(!path.exists(), "nothing unfinished has the name");
+            writer.push(&frame(number)).unwrap();
+        }
+        let report = writer.finish().unwrap();
+        assert_eq!((report.frames, report.bytes), (4, std::fs::metadata(&path).unwrap().len()));
+        let file = std::io::BufReader::new(std::fs::File::open(&path).unwrap());
+        let mut reader = png::Decoder::new(file).read_info().unwrap();
+        let animation = reader.info().animation_control().unwrap();
+        assert_eq!((animation.num_frames, animation.num_plays), (4, 0));
+        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+        for number in 0..4 {
+            reader.next_frame(&mut pixels).unwrap();
+            let shown = reader.info().frame_control().unwrap();
+            assert_eq!((shown.delay_num, shown.delay_den), (1, 24));
+            let wanted: Vec<u8> = frame(number).chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
+            assert_eq!(pixels, wanted, "frame {number}");
+        }
+    }
+
+    #[test]
+    fn what_is_not_finished_leaves_nothing_and_a_wrong_number_of_frames_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("preview.apng");
+        let mut writer = PreviewWriter::create(&path, settings(2)).unwrap();
+        writer.push(&frame(0)).unwrap();
+        assert!(matches!(writer.push(&[0; 3]), Err(RecordError::FrameSize { .. })));
+        let error = writer.finish().unwrap_err();
+        assert!(error.is_request() && error.to_string().contains("1 frames of the 2"), "{error}");
+        let mut writer = PreviewWriter::create(&path, settings(1)).unwrap();
+        writer.push(&frame(0)).unwrap();
+        assert!(writer.push(&frame(1)).unwrap_err().is_request());
+        drop(writer);
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn sizes_and_lengths_that_no_browser_holds_are_refused() {
+        for wrong in [
+            PreviewSettings { width: 0, ..settings(1) },
+            PreviewSettings { height: MOST_PREVIEW_SIDE + 1, ..settings(1) },
+            PreviewSettings { fps: 0.0, ..settings(1) },
+            settings(0),
+            settings(MOST_PREVIEW_FRAMES + 1),
+        ] {
+            assert!(wrong.check().is_err_and(|error| error.is_request()), "{wrong:?}");
+        }
+        assert_eq!(delay(FrameRate { num: 24_000, den: 1001 }), (1001, 24_000));
+        assert_eq!(delay(FrameRate { num: 120_000, den: 1001 }), (542, 65_000));
+    }
+}

@@ -1,0 +1,64 @@
+//! Words burned into a picture: what it shows, and which frame it is.
+
+use lovelock_metrics::Canvas;
+use lovelock_render::Picture;
+
+/// Pixels between the words and the edge of their box, and between the box and that of the picture.
+const MARGIN: usize = 6;
+const PAPER: [u8; 3] = [19, 20, 23];
+const INK: [u8; 3] = [236, 238, 242];
+
+/// Writes one line into the lower left corner, as far as it fits.
+pub(super) fn burn_in(picture: &mut Picture, words: &str) {
+    let (width, height) = (picture.width as usize, picture.height as usize);
+    let box_width = (Canvas::text_width(words) + 2 * MARGIN).min(width.saturating_sub(2 * MARGIN));
+    let box_height = Canvas::LINE + 2 * MARGIN;
+    if box_width <= 2 * MARGIN || height < box_height + 2 * MARGIN || picture.rgba.len() != width * height * 4
+    {
+        return;
+    }
+    let mut canvas = Canvas::new(box_width, box_height, PAPER);
+    canvas.text(MARGIN as i32, MARGIN as i32, words, INK);
+    let top = height - MARGIN - box_height;
+    let rows = picture.rgba.chunks_exact_mut(width * 4).skip(top);
+    for (row, written) in rows.zip(canvas.rgba().chunks_exact(box_width * 4)) {
+        row[MARGIN * 4..][..box_width * 4].copy_from_slice(written);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grey(width: u32, height: u32) -> Picture {
+        Picture { width, height, rgba: vec![128; (width * height * 4) as usize], ..Picture::default() }
+    }
+
+    #[test]
+    fn words_stand_in_the_lower_left_corner_and_nowhere_else() {
+        let mut picture = grey(300, 80);
+        burn_in(&mut picture, "frame 12");
+        let changed = |x: usize, y: usize| picture.rgba[(y * 300 + x) * 4..][..4] != [128; 4];
+        assert!(changed(8, 70), "the box");
+        let bright = picture.rgba.chunks_exact(4).filter(|pixel| pixel[0] > 200).count();
+        assert!(bright > 20, "letters: {bright} bright pixels");
+        for (x, y) in [(2, 70), (290, 70), (8, 10), (8, 78)] {
+            assert!(!changed(x, y), "{x}, {y}");
+        }
+        let mut other = grey(300, 80);
+        burn_in(&mut other, "frame 13");
+        assert_ne!(picture, other, "the control: another number is another picture");
+    }
+
+    #[test]
+    fn a_picture_without_room_stays_as_it_is_and_long_words_are_cut() {
+        for (width, height) in [(0, 0), (8, 200), (200, 20)] {
+            let mut picture = grey(width, height);
+            burn_in(&mut picture, "frame 12");
+            assert_eq!(picture, grey(width, height));
+        }
+        let mut picture = grey(60, 60);
+        burn_in(&mut picture, &"long words ".repeat(50));
+        assert_ne!(picture, grey(60, 60));
+    }
+}
