@@ -31,7 +31,7 @@ mod tests {
     use super::*;
 
     fn grey(width: u32, height: u32) -> Picture {
-        Picture { width, height, rgba: vec![128; (width * height * 4) as usize], ..Picture::default() }
+        Picture { width, height, rgba: vec![128; (width * height * 4) as usize] }
     }
 
     #[test]
