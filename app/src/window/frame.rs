@@ -84,7 +84,8 @@ impl Window {
         ctx.send_viewport_cmd(egui::ViewportCommand::Title(title));
         self.notices.show(&ctx);
         if let Some(screenshot) = &mut self.screenshot {
-            screenshot.update(&ctx, self.session.painted.is_some());
+            let shown = if compares { self.compare.has_pictures() } else { self.session.painted.is_some() };
+            screenshot.update(&ctx, shown);
         }
         self.watch_close(&ctx);
     }
