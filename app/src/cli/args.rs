@@ -61,19 +61,6 @@ pub(crate) struct SourceArguments {
     pub(crate) motion: Option<PathBuf>,
 }
 
-impl SourceArguments {
-    /// The first option that puts something else into the project.
-    pub(crate) fn replacement(&self) -> Option<&'static str> {
-        let given = [
-            (self.preset.is_some(), "--preset"),
-            (self.hair.is_some(), "--hair"),
-            (self.body.is_some(), "--body"),
-            (self.motion.is_some(), "--motion"),
-        ];
-        given.into_iter().find_map(|(given, option)| given.then_some(option))
-    }
-}
-
 #[derive(Debug, Args)]
 pub(crate) struct Record {
     #[command(flatten)]

@@ -1,7 +1,7 @@
 //! What is simulated: a project, with what the command line changes of it.
 
 use std::ops::ControlFlow;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use lovelock_studio::groom::Preset;
 use lovelock_studio::{
@@ -37,11 +37,10 @@ impl Source {
             None => (Project::default(), Vec::new()),
         };
         tell(&problems);
-        if let (Some(take), Some(option)) = (&project.take.file, task.replacement()) {
-            return Err(StudioError::option(format!(
-                "{option}: {} plays as it was recorded; leave the option out, or name a project in place of the take",
-                take.path.display()
-            )));
+        if let Some(take) = project.take.file.clone() {
+            allow(task, &project, &take.path, &mut access)?;
+            let name = task.project.as_ref().unwrap_or(&take.path).display().to_string();
+            return Ok(Self { project, access, name, named: Vec::new() });
         }
         let file_name = |path: &PathBuf| {
             path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
@@ -98,6 +97,37 @@ impl Source {
         bar.done();
         refused.map_or(result, Err)
     }
+}
+
+/// A take plays as it was recorded: files that are named beside it are allowed to be read, and have to be its own.
+fn allow(
+    task: &SourceArguments,
+    project: &Project,
+    take: &Path,
+    access: &mut Access,
+) -> Result<(), StudioError> {
+    let refused = |option: &str| {
+        let take = take.display();
+        StudioError::option(format!(
+            "{option}: {take} plays as it was recorded, and this is not what it was recorded with; leave the option out"
+        ))
+    };
+    if task.preset.is_some() {
+        return Err(refused("--preset"));
+    }
+    let real = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    for (option, named, own) in [
+        ("--hair", &task.hair, &project.hair.file),
+        ("--body", &task.body, &project.body.file),
+        ("--motion", &task.motion, &project.motion.file),
+    ] {
+        let Some(named) = named else { continue };
+        if own.as_ref().is_none_or(|own| real(&own.path) != real(named)) {
+            return Err(refused(option));
+        }
+        access.pick(named);
+    }
+    Ok(())
 }
 
 fn preset(id: &str) -> Result<Preset, StudioError> {

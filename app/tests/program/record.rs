@@ -326,3 +326,40 @@ fn the_card_records_any_combination_and_tells_its_passes() {
     assert!(json["passes_ms"]["draw/tiles"].as_f64() > Some(0.0), "{json}");
     assert!(json["passes_ms"]["shadow/range"].is_null());
 }
+
+/// A tuft of 40 strands of three points in Yuksel's layout: a header of 128 bytes, then points.
+fn tuft() -> Vec<u8> {
+    let mut bytes = b"HAIR".to_vec();
+    for number in [40_u32, 120, 2, 2] {
+        bytes.extend(number.to_le_bytes());
+    }
+    bytes.resize(128, 0);
+    for (root, point) in (0..40).flat_map(|root| (0..3).map(move |point| (root, point))) {
+        for v in [root as f32 * 0.4, 170.0 - 8.0 * point as f32, 0.0] {
+            bytes.extend(v.to_le_bytes());
+        }
+    }
+    bytes
+}
+
+#[test]
+fn a_take_reads_the_files_elsewhere_that_are_named_beside_it_and_no_others() {
+    let (hair, takes) = (tempfile::tempdir().expect("a folder"), tempfile::tempdir().expect("a folder"));
+    let (file, other) = (hair.path().join("tuft.hair"), hair.path().join("other.hair"));
+    std::fs::write(&file, tuft()).expect("a file");
+    std::fs::write(&other, tuft()).expect("a file");
+    let run = |args: &[&str]| run(takes.path(), args);
+    let (file, other) = (file.to_string_lossy().into_owned(), other.to_string_lossy().into_owned());
+    run(&["record", "--hair", &file, "--frames", "0..2", "-o", "d.take", "--json"]).done();
+    let info = run(&["info", "d.take", "--json"]).done().json();
+    assert_eq!((&info["kind"], &info["condition"]), (&Value::from("take"), &Value::from("whole")));
+    let draw = ["record", "d.take", "--size", "32x32", "--backend", "cpu", "--json", "-o", "film.mp4"];
+    let refused = run(&draw);
+    assert!(refused.refused(2).contains("tuft.hair"), "{refused:?}");
+    let refused = run(&[&draw[..], &["--hair", &other]].concat());
+    assert!(refused.refused(2).contains("--hair"), "{refused:?}");
+    let refused = run(&[&draw[..], &["--preset", "curly"]].concat());
+    assert!(refused.refused(2).contains("--preset"), "{refused:?}");
+    let drawn = run(&[&draw[..], &["--hair", &file]].concat()).done().json();
+    assert_eq!((&drawn["frames"], &drawn["strands"]), (&Value::from(2), &Value::from(40)));
+}

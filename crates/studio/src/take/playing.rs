@@ -216,7 +216,7 @@ fn made_of(project: &Project) -> Project {
     Project { body, motion, hair, ..Project::default() }
 }
 
-/// Whether recorded guides are those of a hairstyle.
+/// Whether the scene is the one that was recorded: none of its files is missing, and the guides are its hairstyle's.
 fn fits(
     path: &Path,
     header: &TakeHeader,
@@ -224,12 +224,20 @@ fn fits(
     problems: &[Problem],
 ) -> Result<(), StudioError> {
     let (guides, points) = (style.guides.count(), style.guides.points_per_guide);
-    if (guides, points) == (header.guides as usize, header.points_per_guide as usize) {
+    let fits = (guides, points) == (header.guides as usize, header.points_per_guide as usize);
+    if fits && !problems.iter().any(Problem::is_failure) {
         return Ok(());
     }
     let why: Vec<_> =
         problems.iter().filter(|problem| problem.is_failure()).map(|p| p.cause.as_str()).collect();
     let why = if why.is_empty() { String::new() } else { format!(" ({})", why.join("; ")) };
+    if fits {
+        // Another body or another dance under recorded hair would be a picture of nothing that was.
+        return Err(StudioError::input(
+            path,
+            format!("{}: a part of its scene is missing{why}", path.display()),
+        ));
+    }
     Err(StudioError::input(
         path,
         format!(
