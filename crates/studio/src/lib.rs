@@ -19,6 +19,7 @@ mod session;
 mod slot;
 mod stats;
 mod take;
+mod tracks;
 
 pub use bench::{BenchReport, BenchRequest, BenchScene, SceneReport, StageReport, bench};
 pub use clock::{FrameClock, MAX_STEPS_PER_TICK, Playback, STEP_SECS, Stopwatch};
@@ -51,6 +52,7 @@ pub use session::{
 pub use slot::Slot;
 pub use stats::{PassHistory, Stage, StageHistory, StageTimes, median};
 pub use take::{TakePlayer, TakeProgress, TakeRecording, project_of_take};
+pub use tracks::{Animation, Key, Moment, Overdub, Track};
 
 /// Gives the threads that share parallel work their names; without it they bear that of whoever came first.
 ///

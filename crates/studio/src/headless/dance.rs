@@ -97,6 +97,7 @@ impl Dance {
         if let Self::Simulated { scene, project, clock, engine } = self {
             let mut made =
                 Box::new(Engine::with_step(Arc::clone(scene), project.simulation, clock.step_secs));
+            made.follow(project);
             simulate_to(&mut made, clock.step_of_frame(frame), progress)?;
             made.clear_totals();
             *engine = Some(made);
@@ -112,7 +113,9 @@ impl Dance {
         match self {
             Self::Simulated { scene, project, clock, engine } => {
                 let engine = engine.get_or_insert_with(|| {
-                    Box::new(Engine::with_step(Arc::clone(scene), project.simulation, clock.step_secs))
+                    let mut made = Engine::with_step(Arc::clone(scene), project.simulation, clock.step_secs);
+                    made.follow(project);
+                    Box::new(made)
                 });
                 engine.advance_to_step(clock.step_of_frame(frame));
                 Ok(engine.snapshot())

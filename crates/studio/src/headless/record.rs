@@ -52,7 +52,8 @@ pub fn record(
     for frame in frames.clone() {
         let watch = Stopwatch::start();
         let snapshot = dance.snapshot(frame)?;
-        let stats = drawer.picture(&job.project, &snapshot, [job.width, job.height], &mut picture)?;
+        let at = job.project.seen_at(&snapshot);
+        let stats = drawer.picture(&at, &snapshot, [job.width, job.height], &mut picture)?;
         if request.label {
             burn_in(&mut picture, &job.label(frame));
         }

@@ -91,6 +91,7 @@ pub fn record_take(
     check_frames(&frames)?;
     let clock = FrameClock::new(fps);
     let mut engine = Engine::with_step(Arc::clone(&scene), project.simulation, clock.step_secs);
+    engine.follow(&project);
     simulate_to(&mut engine, clock.step_of_frame(frames.start), progress)?;
     engine.clear_totals();
     let watch = Stopwatch::start();

@@ -10,11 +10,11 @@ use super::{
     CameraSection, CompareSection, Marker, MotionSection, PROJECT_VERSION, Project, RecordingSection,
     TimelineSection,
 };
-use crate::{Contender, Place, Problem, ProblemKind};
+use crate::{Contender, Place, Problem, ProblemKind, Track};
 
 impl Project {
-    /// The project with every value inside its range, and what had to be moved.
-    pub fn sanitised(&self) -> (Self, Vec<Problem>) {
+    /// The project with every value inside its range.
+    pub(crate) fn in_range(&self) -> Self {
         let mut project = self.clone();
         project.version = PROJECT_VERSION;
         project.motion = motion(&self.motion);
@@ -29,6 +29,12 @@ impl Project {
         project.recording = recording(&self.recording);
         project.compare = compare(&self.compare);
         project.timeline = timeline(&self.timeline);
+        project
+    }
+
+    /// The project with every value inside its range, and what had to be moved.
+    pub fn sanitised(&self) -> (Self, Vec<Problem>) {
+        let project = self.in_range();
 
         let mut problems = Vec::new();
         let mut note = |place, changes: Vec<String>| {
@@ -54,6 +60,15 @@ impl Project {
         if lost > 0 {
             note(Place::Timeline, vec![format!("{lost} markers without a time, or too many, were left out")]);
         }
+        let keys =
+            |project: &Self| project.timeline.tracks.iter().map(|track| track.keys.len()).sum::<usize>();
+        let lost = keys(self) - keys(&project);
+        if lost > 0 {
+            note(
+                Place::Timeline,
+                vec![format!("{lost} keys of tracks without a time or a value, or too many, were left out")],
+            );
+        }
         for (before, after) in self.lights.iter().zip(&project.lights) {
             // Any length of direction is fine; it is only told where it was no direction at all.
             let mut before = before.clone();
@@ -75,14 +90,15 @@ impl Project {
     }
 }
 
-/// Markers that have a time, each name of a length that can be shown.
+/// Markers that have a time, each name of a length that can be shown, and tracks that have keys.
 fn timeline(timeline: &TimelineSection) -> TimelineSection {
     let good = timeline.markers.iter().filter(|marker| marker.secs.is_finite() && marker.secs >= 0.0);
     let markers = good.take(TimelineSection::MOST_MARKERS).map(|marker| Marker {
         secs: marker.secs,
         name: marker.name.chars().take(TimelineSection::LONGEST_NAME).collect(),
     });
-    TimelineSection { markers: markers.collect() }
+    let tracks = timeline.tracks.iter().filter_map(Track::in_range).take(Track::MOST);
+    TimelineSection { markers: markers.collect(), tracks: tracks.collect() }
 }
 
 fn within(value: f32, low: f32, high: f32, default: f32) -> f32 {

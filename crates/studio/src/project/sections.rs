@@ -8,7 +8,7 @@ use lovelock_render::{Backend, ShadowMethod, ShadowSettings, Transparency};
 use serde::{Deserialize, Serialize};
 
 use super::FileRef;
-use crate::Contender;
+use crate::{Contender, Track};
 
 /// Where the body comes from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -224,6 +224,8 @@ pub struct Marker {
 pub struct TimelineSection {
     /// Named times, at most [`TimelineSection::MOST_MARKERS`].
     pub markers: Vec<Marker>,
+    /// Numbers of the project that follow the timeline, at most [`Track::MOST`].
+    pub tracks: Vec<Track>,
 }
 
 impl TimelineSection {

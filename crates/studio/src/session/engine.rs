@@ -10,7 +10,7 @@ use lovelock_wisp::{Simulation, SimulationSettings, StepInput, StepReport};
 
 use super::snapshot::SnapshotPool;
 use super::{FrameSnapshot, Scene};
-use crate::{STEP_SECS, StageTimes, Stopwatch};
+use crate::{Animation, Project, STEP_SECS, StageTimes, Stopwatch};
 
 /// How long hair falls into place before the first frame, seconds.
 pub const SETTLE_SECS: f64 = 1.0;
@@ -55,6 +55,8 @@ impl Totals {
 pub struct Engine {
     scene: Arc<Scene>,
     settings: SimulationSettings,
+    /// What of the settings follows the timeline.
+    animation: Option<Animation>,
     step_secs: f64,
     simulation: Simulation,
     /// Steps from the scene's time zero.
@@ -87,6 +89,7 @@ impl Engine {
         let mut engine = Self {
             scene,
             settings: settings.clamped(),
+            animation: None,
             step_secs,
             simulation,
             at_step: 0,
@@ -133,6 +136,12 @@ impl Engine {
     /// Settings for the steps to come.
     pub fn set_settings(&mut self, settings: &SimulationSettings) {
         self.settings = settings.clamped();
+    }
+
+    /// Settings for the steps to come, and what of them follows the timeline.
+    pub fn follow(&mut self, project: &Project) {
+        self.set_settings(&project.simulation);
+        self.animation = Animation::of(project);
     }
 
     /// The worst of all steps since the hair was last settled.
@@ -228,6 +237,9 @@ impl Engine {
         let mut watch = Stopwatch::start();
         if !self.scene.loops_smoothly() && self.scene.repetition(self.time_secs()) != before {
             self.simulated_secs += JUMP_SECS;
+        }
+        if let Some(animation) = &self.animation {
+            self.settings = animation.simulation_at(self.position_secs());
         }
         self.place_body();
         self.times.motion += watch.lap_ms();

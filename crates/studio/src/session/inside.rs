@@ -266,7 +266,7 @@ impl Inside {
     fn set_project(&mut self, project: Arc<Project>, access: Access) {
         self.settings = project.simulation;
         if let Some(engine) = &mut self.engine {
-            engine.set_settings(&self.settings);
+            engine.follow(&project);
         }
         if let Some(take) = &mut self.take {
             take.set_looping(project.motion.looping);
@@ -306,7 +306,13 @@ impl Inside {
     fn set_scene(&mut self, scene: Arc<Scene>) {
         match &mut self.engine {
             Some(engine) => engine.set_scene(scene),
-            None => self.engine = Some(Engine::new(scene, self.settings)),
+            None => {
+                let mut engine = Engine::new(scene, self.settings);
+                if let Some(project) = &self.project {
+                    engine.follow(project);
+                }
+                self.engine = Some(engine);
+            }
         }
     }
 
@@ -395,6 +401,9 @@ impl Inside {
         let scene = self.engine.take().map(|engine| Arc::clone(engine.scene()));
         if let (Some(scene), true) = (scene, self.panics < MOST_PANICS) {
             self.engine = catch_unwind(AssertUnwindSafe(|| Engine::new(scene, self.settings))).ok();
+            if let (Some(engine), Some(project)) = (&mut self.engine, &self.project) {
+                engine.follow(project);
+            }
         }
         if self.engine.is_none() || played {
             // The same project may be asked for again.

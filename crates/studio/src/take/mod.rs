@@ -13,7 +13,7 @@ pub(crate) use transport::TakeTransport;
 
 use std::path::Path;
 
-use lovelock_record::{TakeError, TakeReader};
+use lovelock_record::{TakeError, TakeHeader, TakeReader};
 
 use crate::project::project_of_text;
 use crate::{Problem, Project, StudioError};
@@ -34,7 +34,20 @@ pub fn project_of_take(path: &Path) -> Result<(Project, Vec<Problem>), StudioErr
     // These stand on the dance's timeline, and the take has its own.
     (project.recording.first_frame, project.recording.end_frame) = (0, None);
     project.timeline.markers.clear();
+    let start = start_on_timeline(reader.header(), &project);
+    for track in &mut project.timeline.tracks {
+        track.keys.retain(|key| key.secs >= start);
+        track.keys.iter_mut().for_each(|key| key.secs -= start);
+    }
+    project.timeline.tracks.retain(|track| !track.keys.is_empty());
     Ok((project, problems))
+}
+
+/// Where on the dance's timeline a take begins, seconds.
+fn start_on_timeline(header: &TakeHeader, project: &Project) -> f64 {
+    let length = header.clip_secs / f64::from(project.motion.speed.max(0.1));
+    let start = header.start_secs.max(0.0);
+    if project.motion.looping && length > 0.0 { start.rem_euclid(length) } else { start }
 }
 
 impl From<TakeError> for StudioError {

@@ -94,7 +94,7 @@ impl TakeRecording {
     /// # Errors
     /// A project that no take can hold.
     pub fn change(&mut self, project: &Arc<Project>) -> Result<(), StudioError> {
-        if **project != *self.project {
+        if !same_but_tracks(project, &self.project) {
             self.project = Arc::clone(project);
             self.writer.change(&text_of(self.writer.path(), project)?)?;
         }
@@ -127,6 +127,20 @@ impl TakeRecording {
     pub fn discard(self) -> Result<(), StudioError> {
         Ok(self.writer.discard()?)
     }
+}
+
+/// Whether two projects are the same but for their tracks, which grow with every frame while they are written and are not
+/// of the simulation.
+fn same_but_tracks(a: &Project, b: &Project) -> bool {
+    if a.timeline.tracks == b.timeline.tracks {
+        return a == b;
+    }
+    let without = |project: &Project| {
+        let mut project = project.clone();
+        project.timeline.tracks.clear();
+        project
+    };
+    without(a) == without(b)
 }
 
 /// A project as a take at `path` holds it: one that plays no take itself.

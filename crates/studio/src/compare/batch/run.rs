@@ -51,6 +51,13 @@ pub fn compare(
     // A report of before does not stand beside pictures of now.
     folder.report(&report)?;
     let snapshots = instants(&mut dance, &frames, progress)?;
+    let animated = project.is_animated();
+    // Frames of one film are drawn alike: what differs between them is then the method's and not a track's.
+    let project =
+        snapshots.first().map_or_else(|| project.clone(), |first| project.seen_at(first).into_owned());
+    if animated && snapshots.len() > 1 {
+        report.notes.push("Tracks stand still at their values of the first frame.".to_owned());
+    }
     let work = Work {
         project: &project,
         request,

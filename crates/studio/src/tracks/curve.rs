@@ -1,0 +1,120 @@
+//! What lies between keys, and keys that say the same in fewer.
+
+use super::{Key, Track};
+
+/// How far a thinned track may be from what was moved, as a share of the range that it moves over.
+const THINNED: f64 = 0.002;
+/// Half the width of the window that smooths, as the deviation of a Gaussian, seconds.
+const SMOOTH_SECS: f64 = 0.1;
+/// Distance of the points at which a track is read to be smoothed, seconds.
+const SAMPLE_SECS: f64 = 1.0 / 60.0;
+
+/// The value at a time: monotone cubic pieces (Fritsch and Butland 1984), which pass no key by.
+pub(super) fn value_at(keys: &[Key], secs: f64) -> Option<Vec<f64>> {
+    let (first, last) = (keys.first()?, keys.last()?);
+    // Not a number goes to the start.
+    if secs.is_nan() || secs <= first.secs {
+        return Some(first.value.clone());
+    }
+    if secs >= last.secs {
+        return Some(last.value.clone());
+    }
+    let i = keys.partition_point(|key| key.secs <= secs) - 1;
+    let (a, b) = (&keys[i], &keys[i + 1]);
+    let length = b.secs - a.secs;
+    if length <= 0.0 {
+        return Some(b.value.clone());
+    }
+    let t = (secs - a.secs) / length;
+    let number = |n: usize| {
+        let (from, to) = (a.value[n], b.value[n]);
+        let slope_a = slope_at(keys, i, n);
+        let slope_b = slope_at(keys, i + 1, n);
+        let (t2, t3) = (t * t, t * t * t);
+        from * (2.0 * t3 - 3.0 * t2 + 1.0)
+            + to * (3.0 * t2 - 2.0 * t3)
+            + length * (slope_a * (t3 - 2.0 * t2 + t) + slope_b * (t3 - t2))
+    };
+    Some((0..a.value.len().min(b.value.len())).map(number).collect())
+}
+
+/// Slope of number `n` at key `i`: the harmonic mean of those beside it, none where they point two ways.
+fn slope_at(keys: &[Key], i: usize, n: usize) -> f64 {
+    let slope = |a: usize, b: usize| {
+        let (a, b) = (&keys[a], &keys[b]);
+        match (a.value.get(n), b.value.get(n)) {
+            (Some(from), Some(to)) if b.secs > a.secs => (to - from) / (b.secs - a.secs),
+            _ => 0.0,
+        }
+    };
+    match (i.checked_sub(1), i + 1 < keys.len()) {
+        (Some(before), true) => {
+            let (left, right) = (slope(before, i), slope(i, i + 1));
+            if left * right <= 0.0 { 0.0 } else { 2.0 * left * right / (left + right) }
+        }
+        (None, true) => slope(i, i + 1),
+        (Some(before), false) => slope(before, i),
+        (None, false) => 0.0,
+    }
+}
+
+/// Fewer keys that say the same: a key goes where the way between its neighbours passes it by closely
+/// (Ramer 1972; Douglas and Peucker 1973, in value and not in distance).
+pub(super) fn thinned(keys: &[Key]) -> Vec<Key> {
+    let Some(width) = keys.first().map(|key| key.value.len()) else { return Vec::new() };
+    let allowed: Vec<f64> = (0..width)
+        .map(|n| {
+            let values = || keys.iter().map(|key| key.value[n]);
+            let (low, high) =
+                (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+            (THINNED * (high - low)).max(1e-9 * high.abs().max(low.abs()))
+        })
+        .collect();
+    let mut keep = vec![false; keys.len()];
+    (keep[0], keep[keys.len() - 1]) = (true, true);
+    let mut open = vec![(0, keys.len() - 1)];
+    while let Some((from, to)) = open.pop() {
+        let (a, b) = (&keys[from], &keys[to]);
+        let far = |key: &Key| {
+            let t = (key.secs - a.secs) / (b.secs - a.secs).max(1e-12);
+            let of = |n: usize| {
+                (a.value[n] + t * (b.value[n] - a.value[n]) - key.value[n]).abs() / allowed[n].max(1e-300)
+            };
+            (0..width).map(of).fold(0.0, f64::max)
+        };
+        let worst = (from + 1..to).map(|i| (i, far(&keys[i]))).max_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some((i, far)) = worst
+            && far > 1.0
+        {
+            keep[i] = true;
+            open.extend([(from, i), (i, to)]);
+        }
+    }
+    keys.iter().zip(keep).filter(|(_, keep)| *keep).map(|(key, _)| key.clone()).collect()
+}
+
+/// The track after a Gaussian window; its ends stay where they are.
+pub(super) fn smoothed(keys: &[Key]) -> Vec<Key> {
+    let (Some(first), Some(last)) = (keys.first(), keys.last()) else { return Vec::new() };
+    let length = last.secs - first.secs;
+    if keys.len() < 3 || length < 2.0 * SAMPLE_SECS {
+        return keys.to_vec();
+    }
+    // As many as a track may have; a long track is read in larger steps.
+    let count = ((length / SAMPLE_SECS).ceil() as usize).min(Track::MOST_KEYS - 1);
+    let step = length / count as f64;
+    let at = |i: usize| first.secs + step * i as f64;
+    let samples: Vec<Vec<f64>> = (0..=count).filter_map(|i| value_at(keys, at(i))).collect();
+    let reach = ((3.0 * SMOOTH_SECS / step).ceil() as usize).min(count);
+    let weight = |d: usize| (-0.5 * (d as f64 * step / SMOOTH_SECS).powi(2)).exp();
+    let smooth = |i: usize| -> Vec<f64> {
+        // Narrower near the ends, so that they stay.
+        let reach = reach.min(i).min(count - i);
+        let near = i - reach..=i + reach;
+        let total: f64 = near.clone().map(|j| weight(j.abs_diff(i))).sum();
+        let sum = |n: usize| near.clone().map(|j| weight(j.abs_diff(i)) * samples[j][n]).sum::<f64>();
+        (0..first.value.len()).map(|n| sum(n) / total).collect()
+    };
+    let dense: Vec<Key> = (0..=count).map(|i| Key { secs: at(i), value: smooth(i) }).collect();
+    thinned(&dense)
+}

@@ -1,0 +1,198 @@
+//! What is moved while the dance plays becomes keys.
+
+use super::leaf::{changed, numbers_at, set_all};
+use super::{Key, Track, curve};
+use crate::Project;
+
+/// Distance of the keys that keep a track's rest as it was from the part that was written, seconds.
+const EDGE_SECS: f64 = 1.0 / 60.0;
+
+/// When something was changed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moment {
+    /// Time of the timeline, seconds.
+    pub secs: f64,
+    /// Whether the dance plays.
+    pub playing: bool,
+    /// Whether the pointer holds what was changed: it goes on until it is let go.
+    pub held: bool,
+}
+
+/// A control that is held while its track is written.
+#[derive(Clone, Debug)]
+struct Touch {
+    target: String,
+    /// The track as it was; without keys where there was none.
+    before: Vec<Key>,
+    /// From where to where it has been written, seconds.
+    from: f64,
+    to: f64,
+    written: Vec<Key>,
+    value: Vec<f64>,
+}
+
+/// Writes tracks.
+#[derive(Clone, Debug, Default)]
+pub struct Overdub {
+    armed: bool,
+    touches: Vec<Touch>,
+    refused: Option<String>,
+}
+
+impl Overdub {
+    /// Whether what is moved while the dance plays is written.
+    pub fn is_armed(&self) -> bool {
+        self.armed
+    }
+
+    /// Whether what is moved from now on is written. What is held goes on until it is let go.
+    pub fn set_armed(&mut self, armed: bool) {
+        self.armed = armed;
+    }
+
+    /// What is being written.
+    pub fn writes(&self) -> impl Iterator<Item = &str> {
+        self.touches.iter().map(|touch| touch.target.as_str())
+    }
+
+    /// A control that was moved although its track plays, told once: its label.
+    pub fn take_refused(&mut self) -> Option<String> {
+        self.refused.take()
+    }
+
+    /// The project as it is seen: that of the timeline, but what is held as the hand has it.
+    pub fn shown(&self, base: &Project, secs: f64) -> Project {
+        let mut shown = base.at(secs);
+        if !self.touches.is_empty() {
+            set_all(
+                &mut shown,
+                self.touches.iter().map(|touch| (touch.target.as_str(), touch.value.clone())),
+            );
+        }
+        shown
+    }
+
+    /// The project after a pass in which `shown` became `edited`: keys where a track is written, and the project's own
+    /// values as they were where a track stands for them.
+    pub fn edit(&mut self, base: &Project, shown: &Project, mut edited: Project, now: Moment) -> Project {
+        let moved = changed(shown, &edited);
+        // Whoever removed a track, or all of them, meant the one that is held too.
+        self.touches.retain(|touch| {
+            touch.before.is_empty() || edited.timeline.tracks.iter().any(|track| track.target == touch.target)
+        });
+        let tracked: Vec<String> =
+            base.timeline.tracks.iter().filter(|track| track.is_active()).map(|t| t.target.clone()).collect();
+        let writes = self.armed && now.playing;
+        let mut keep: Vec<String> = tracked.clone();
+        for (target, value) in moved {
+            let is_tracked = tracked.contains(&target);
+            let held = self.touches.iter_mut().find(|touch| touch.target == target);
+            if let Some(touch) = held {
+                touch.value = unwrapped(&target, value, Some(&touch.value));
+            } else if writes && has_room(&edited, &target) {
+                let from = numbers_at(shown, &target).unwrap_or_else(|| value.clone());
+                self.touches.push(Touch::begin(&edited, target.clone(), now.secs, from, value));
+                keep.push(target);
+            } else if is_tracked && !now.playing {
+                let before = numbers_at(shown, &target);
+                if let Some(track) = edited.timeline.tracks.iter_mut().find(|t| t.target == target) {
+                    let value = unwrapped(&target, value, before.as_ref());
+                    track.put(now.secs, value);
+                }
+            } else if is_tracked {
+                let label = Track::new(target).label();
+                self.refused.get_or_insert(label);
+            }
+        }
+        for touch in &mut self.touches {
+            keep.push(touch.target.clone());
+            touch.go_on(&mut edited, now);
+        }
+        self.touches.retain(|_| now.held && now.playing);
+        let own = keep.iter().filter_map(|target| Some((target.as_str(), numbers_at(base, target)?)));
+        let own: Vec<_> = own.collect();
+        set_all(&mut edited, own);
+        edited
+    }
+}
+
+/// Whether the project has a track for it, or room for one more.
+fn has_room(project: &Project, target: &str) -> bool {
+    let tracks = &project.timeline.tracks;
+    tracks.len() < Track::MOST || tracks.iter().any(|track| track.target == target)
+}
+
+/// An angle that goes round goes on from the one before it, and not back by a whole turn.
+fn unwrapped(target: &str, mut value: Vec<f64>, before: Option<&Vec<f64>>) -> Vec<f64> {
+    use std::f64::consts::TAU;
+    if target == "camera/azimuth"
+        && let (Some(now), Some(before)) = (value.first_mut(), before.and_then(|before| before.first()))
+    {
+        *now += TAU * ((before - *now) / TAU).round();
+    }
+    value
+}
+
+impl Touch {
+    /// A control is touched that had the value `from`.
+    fn begin(project: &Project, target: String, secs: f64, from: Vec<f64>, value: Vec<f64>) -> Self {
+        let track = project.timeline.tracks.iter().find(|track| track.target == target);
+        let before = track.map_or_else(Vec::new, |track| track.keys.clone());
+        let value = unwrapped(&target, value, Some(&from));
+        // Where it came from, so that it does not glide there from the key before.
+        let start = Key { secs: (secs - EDGE_SECS).max(0.0), value: from };
+        Self { target, before, from: start.secs, to: start.secs, written: vec![start], value }
+    }
+
+    /// Writes the value at `now`, and puts the track together from what was and what is written.
+    fn go_on(&mut self, project: &mut Project, now: Moment) {
+        // Round the loop, or back: what is written ends where it came to, and goes on from the start.
+        if now.secs < self.to {
+            let track = self.joined(true);
+            *self = Self {
+                before: track,
+                from: now.secs,
+                to: now.secs,
+                written: Vec::new(),
+                target: std::mem::take(&mut self.target),
+                value: std::mem::take(&mut self.value),
+            };
+        }
+        let near = self.written.last().is_some_and(|last| now.secs - last.secs < Track::NEAREST_SECS);
+        if near && self.written.len() > 1 {
+            self.written.pop();
+        }
+        if self.written.len() < Track::MOST_KEYS / 2 {
+            self.written.push(Key { secs: now.secs.max(self.from), value: self.value.clone() });
+        }
+        self.to = now.secs;
+        let keys = self.joined(!now.held || !now.playing);
+        let tracks = &mut project.timeline.tracks;
+        match tracks.iter_mut().find(|track| track.target == self.target) {
+            Some(track) => (track.keys, track.muted) = (keys, false),
+            None => tracks.push(Track { keys, ..Track::new(self.target.clone()) }),
+        }
+    }
+
+    /// The track as it was outside what is written. `ended`: with fewer keys, and going back to what was after them.
+    fn joined(&self, ended: bool) -> Vec<Key> {
+        let written = if ended { curve::thinned(&self.written) } else { self.written.clone() };
+        if self.before.is_empty() {
+            return written;
+        }
+        let edge = |secs: f64| curve::value_at(&self.before, secs).map(|value| Key { secs, value });
+        let (from, to) = (self.from, self.to);
+        let mut keys: Vec<Key> =
+            self.before.iter().filter(|key| key.secs < from - EDGE_SECS).cloned().collect();
+        if self.before.first().is_some_and(|key| key.secs < from) {
+            keys.extend(edge(from - 0.5 * EDGE_SECS).filter(|key| key.secs >= 0.0));
+        }
+        keys.extend(written);
+        if self.before.last().is_some_and(|key| key.secs > to + EDGE_SECS) {
+            keys.extend(edge(to + EDGE_SECS));
+        }
+        keys.extend(self.before.iter().filter(|key| key.secs > to + 1.5 * EDGE_SECS).cloned());
+        keys.truncate(Track::MOST_KEYS);
+        keys
+    }
+}
