@@ -82,6 +82,10 @@ impl Window {
                 self.session.set_backwards(backwards);
                 self.session.set_playing(true);
             }
+            Command::WriteTracks => {
+                let armed = !self.overdub.is_armed();
+                self.overdub.set_armed(armed);
+            }
             Command::AddMarker => self.add_marker(),
             Command::MarkIn | Command::MarkOut => self.mark_end(command == Command::MarkIn),
             Command::Record if self.recorder.is_running() => self.recorder.cancel(),
@@ -146,7 +150,7 @@ impl Window {
     }
 
     /// Where the dance is, seconds.
-    fn now_secs(&self) -> f64 {
+    pub(super) fn now_secs(&self) -> f64 {
         self.session.frame.as_ref().map_or(0.0, |frame| frame.position_secs)
     }
 

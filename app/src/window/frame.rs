@@ -45,7 +45,8 @@ impl Window {
 
         self.menu_bar(ui);
         // Copied after the menus, which may have changed it: the panels must not put back what was there before.
-        let mut project = copy(self.history.project());
+        let seen = self.seen();
+        let mut project = copy(&seen);
         let playback = self.timeline(ui, &mut project);
         if !self.layout.panels_hidden {
             self.left_panel(ui, &mut project);
@@ -56,8 +57,7 @@ impl Window {
         } else {
             self.picture(ui, &mut project);
         }
-        let label = changed_part(self.history.project(), &project);
-        self.edit(label, project);
+        self.take_edit(&seen, project, &ctx);
         if let Some(ask) = playback {
             match ask {
                 timeline::Ask::Run(command) => self.run(command, &ctx),
@@ -74,11 +74,13 @@ impl Window {
         self.windows(&ctx);
         // While panes are shown nobody looks at the one picture.
         let compares = self.layout.compare.shown;
-        self.session.send(self.history.project(), if compares { [0, 0] } else { self.viewport.wanted });
+        let seen = self.seen();
+        let size = if compares { [0, 0] } else { self.viewport.wanted };
+        self.session.send(self.history.project(), &seen, size);
         if compares {
             let (live, frame) = (self.session.live(), self.session.frame.as_ref());
             let playing = self.session.playing;
-            self.compare.send(live, self.history.project(), frame, &self.layout.compare, playing);
+            self.compare.send(live, &seen, frame, &self.layout.compare, playing);
         }
         let title = title(self.project_path.as_deref(), self.history.is_modified());
         ctx.send_viewport_cmd(egui::ViewportCommand::Title(title));
@@ -153,16 +155,21 @@ impl Window {
                 backwards: session.backwards,
             }),
             can_play_take: session.saved_take.is_some(),
+            writing: timeline::Writing {
+                armed: self.overdub.is_armed(),
+                targets: self.overdub.writes().map(str::to_owned).collect(),
+            },
             recording: session.worker().take_progress().map(|take| {
                 let kept = take.kept as f64 / take.frames.max(1) as f64;
                 [take.secs, take.secs * kept]
             }),
         };
         let zoom = &mut self.layout.timeline;
-        let mut edited =
-            timeline::Edited { recording: &mut project.recording, markers: &mut project.timeline.markers };
+        let lovelock_studio::TimelineSection { markers, tracks } = &mut project.timeline;
+        let height = timeline::height(tracks.len());
+        let mut edited = timeline::Edited { recording: &mut project.recording, markers, tracks };
         Panel::bottom("timeline")
-            .exact_size(timeline::HEIGHT)
+            .exact_size(height)
             .resizable(false)
             .show(ui, |ui| timeline::ui(ui, &view, zoom, &mut edited))
             .inner
@@ -416,7 +423,7 @@ fn over_picture(ui: &mut Ui, picture: Rect, row: u8, fraction: f32, text: &str, 
 }
 
 /// The name of the part that differs, for undo.
-fn changed_part(before: &Project, after: &Project) -> &'static str {
+pub(super) fn changed_part(before: &Project, after: &Project) -> &'static str {
     let parts = [
         (before.camera != after.camera, "camera"),
         (before.hair != after.hair, "hairstyle"),
@@ -429,7 +436,8 @@ fn changed_part(before: &Project, after: &Project) -> &'static str {
         (before.motion != after.motion, "motion"),
         (before.recording != after.recording, "recording"),
         (before.compare != after.compare, "compare"),
-        (before.timeline != after.timeline, "marker"),
+        (before.timeline.markers != after.timeline.markers, "marker"),
+        (before.timeline.tracks != after.timeline.tracks, "track"),
     ];
     parts.iter().find(|(differs, _)| *differs).map_or("change", |(_, name)| name)
 }

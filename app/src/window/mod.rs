@@ -24,7 +24,7 @@ mod viewport;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use lovelock_studio::{Access, Command, History, Project, StudioError};
+use lovelock_studio::{Access, Command, History, Moment, Overdub, Project, StudioError};
 use serde::{Deserialize, Serialize};
 
 use compare::{Compare, CompareLayout};
@@ -63,6 +63,13 @@ enum Pending {
     Open(PathBuf),
 }
 
+/// A project at a time of its timeline.
+struct Seen {
+    of: Arc<Project>,
+    secs: f64,
+    project: Arc<Project>,
+}
+
 /// The window and everything behind it.
 pub(crate) struct Window {
     history: History,
@@ -79,6 +86,9 @@ pub(crate) struct Window {
     keys_shown: bool,
     selected_light: usize,
     gestures: Gestures,
+    overdub: Overdub,
+    /// The project as it is seen, and the project and the time that it was made of.
+    seen: Option<Seen>,
     quitting: bool,
     screenshot: Option<Screenshot>,
 }
@@ -169,6 +179,8 @@ impl Window {
             keys_shown: false,
             selected_light: 0,
             gestures: Gestures::default(),
+            overdub: Overdub::default(),
+            seen: None,
             quitting: false,
             screenshot: None,
         };
@@ -188,6 +200,43 @@ impl Window {
     fn edit(&mut self, label: &str, project: Project) {
         if self.history.edit(label, Some(self.gestures.id()), project) {
             tracing::debug!(label, "edited");
+        }
+    }
+
+    /// The project as it is where the dance is: its tracks have moved it. The same as long as nothing changes.
+    fn seen(&mut self) -> Arc<Project> {
+        let (of, secs) = (Arc::clone(self.history.project()), self.now_secs());
+        let writes = self.overdub.writes().next().is_some();
+        if !of.is_animated() && !writes {
+            self.seen = None;
+            return of;
+        }
+        if let Some(seen) = &self.seen
+            && Arc::ptr_eq(&seen.of, &of)
+            && seen.secs.to_bits() == secs.to_bits()
+        {
+            return Arc::clone(&seen.project);
+        }
+        let project = Arc::new(self.overdub.shown(&of, secs));
+        self.seen = Some(Seen { of, secs, project: Arc::clone(&project) });
+        project
+    }
+
+    /// Takes what the panels made of the project as it was seen: tracks keep what they move.
+    fn take_edit(&mut self, seen: &Project, edited: Project, ctx: &egui::Context) {
+        let now = Moment {
+            secs: self.now_secs(),
+            playing: self.session.playing,
+            held: ctx.input(|input| input.pointer.any_down()),
+        };
+        let label = frame::changed_part(seen, &edited);
+        let project = self.overdub.edit(self.history.project(), seen, edited, now);
+        self.edit(label, project);
+        if let Some(control) = self.overdub.take_refused() {
+            self.tell([format!(
+                "{control} follows its track while the dance plays. Pause to set a key, press W to write the track anew, \
+                 or mute it on the timeline."
+            )]);
         }
     }
 

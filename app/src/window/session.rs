@@ -197,8 +197,9 @@ impl Session {
         said
     }
 
-    /// Hands on what has changed: the project to the simulation, the frame to the drawing.
-    pub(crate) fn send(&mut self, project: &Arc<Project>, size: [u32; 2]) {
+    /// Hands on what has changed: the project to the simulation, the frame to the drawing, with the project as it is `seen`
+    /// where the dance is.
+    pub(crate) fn send(&mut self, project: &Arc<Project>, seen: &Arc<Project>, size: [u32; 2]) {
         if !Arc::ptr_eq(project, &self.simulated) {
             self.simulated = Arc::clone(project);
             self.worker.set_project(Arc::clone(project), self.access.clone());
@@ -210,16 +211,16 @@ impl Session {
         // Frames are told apart by what they are and not by their step, which only passing time raises: going to
         // another time, settling and other hair make new frames of the same step.
         let fresh = self.drawn.as_ref().is_some_and(|(drawn, drawn_frame, drawn_size)| {
-            Arc::ptr_eq(drawn, project) && Arc::ptr_eq(drawn_frame, frame) && *drawn_size == size
+            Arc::ptr_eq(drawn, seen) && Arc::ptr_eq(drawn_frame, frame) && *drawn_size == size
         });
         if !fresh && size[0] > 0 && size[1] > 0 {
             self.painter.request(PaintRequest {
-                project: Arc::clone(project),
+                project: Arc::clone(seen),
                 snapshot: Arc::clone(frame),
                 width: size[0],
                 height: size[1],
             });
-            self.drawn = Some((Arc::clone(project), Arc::clone(frame), size));
+            self.drawn = Some((Arc::clone(seen), Arc::clone(frame), size));
         }
     }
 

@@ -32,6 +32,14 @@ pub(crate) const PLOT: [Color32; 6] = [
     Color32::from_rgb(204, 121, 167),
 ];
 
+/// Lines of numbers that belong together: x, y, z and one more.
+pub(crate) const AXES: [Color32; 4] = [
+    Color32::from_rgb(226, 112, 96),
+    Color32::from_rgb(118, 190, 112),
+    Color32::from_rgb(104, 152, 232),
+    QUIET,
+];
+
 /// A linear colour on the screen.
 pub(crate) fn from_linear(linear: [f32; 3]) -> Color32 {
     let [r, g, b] = linear.map(|v| (v.clamp(0.0, 1.0).powf(1.0 / 2.2) * 255.0) as u8);

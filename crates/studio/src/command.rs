@@ -27,6 +27,8 @@ pub enum Command {
     LeaveTake,
     /// Whether a take plays from its end to its start.
     PlayBackwards,
+    /// Whether controls that are moved while the dance plays write tracks.
+    WriteTracks,
     /// A named time where the dance is.
     AddMarker,
     /// Recordings begin where the dance is.
@@ -264,6 +266,14 @@ pub const COMMANDS: &[CommandInfo] = {
             "Play backwards",
             "Plays a take from its end to its start.",
             &["Shift+Space"],
+            G::Playback,
+        ),
+        entry(
+            C::WriteTracks,
+            "write-tracks",
+            "Write tracks",
+            "Controls that you move while the dance plays become tracks; asked again, it ends.",
+            &["W"],
             G::Playback,
         ),
         entry(

@@ -7,6 +7,7 @@ mod notices;
 mod playback;
 mod rows;
 mod takes;
+mod tracks;
 mod whole;
 
 use egui::accesskit::{Role, Toggled};

@@ -3,29 +3,39 @@
 use egui::accesskit::Role;
 use egui::{Event, Modifiers, MouseWheelUnit, PointerButton, Rect, TouchPhase, pos2, vec2};
 use egui_kittest::Harness;
-use lovelock_studio::{Command, Marker, RecordingSection};
+use lovelock_studio::{Command, Marker, RecordingSection, Track};
 
 use super::{Shown, click, control, drag, screen_of, tooltip_at};
-use crate::window::timeline::{self, Ask, Edited, Take, View, Zoom};
+use crate::window::timeline::{self, Ask, Edited, Take, View, Writing, Zoom};
 
 struct State {
     view: View,
     zoom: Zoom,
     recording: RecordingSection,
     markers: Vec<Marker>,
+    tracks: Vec<Track>,
     asked: Vec<Ask>,
 }
 
-fn bar(view: View) -> Harness<'static, Shown<State>> {
-    let state = State {
+fn state(view: View) -> State {
+    State {
         view,
         zoom: Zoom::default(),
         recording: RecordingSection::default(),
         markers: vec![Marker { secs: 6.0, name: "turn".to_owned() }],
+        tracks: Vec::new(),
         asked: Vec::new(),
-    };
-    screen_of(vec2(900.0, timeline::HEIGHT), state, |ui, state: &mut State| {
-        let mut edited = Edited { recording: &mut state.recording, markers: &mut state.markers };
+    }
+}
+
+fn bar(view: View) -> Harness<'static, Shown<State>> {
+    with_tracks(state(view))
+}
+
+fn with_tracks(state: State) -> Harness<'static, Shown<State>> {
+    screen_of(vec2(900.0, timeline::height(state.tracks.len())), state, |ui, state: &mut State| {
+        let State { recording, markers, tracks, .. } = state;
+        let mut edited = Edited { recording, markers, tracks };
         state.asked.extend(timeline::ui(ui, &state.view, &mut state.zoom, &mut edited));
     })
 }
@@ -41,6 +51,7 @@ fn view() -> View {
         take: None,
         can_play_take: true,
         recording: None,
+        writing: Writing::default(),
     }
 }
 
@@ -76,7 +87,7 @@ fn every_button_asks_for_its_command() {
         }
     }
     let mut harness = bar(take());
-    for command in [Command::ToggleLoop, Command::PlayBackwards] {
+    for command in [Command::ToggleLoop, Command::PlayBackwards, Command::WriteTracks] {
         let rect = control(&harness, Role::CheckBox, command.info().label).rect();
         harness.state_mut().state.asked.clear();
         click(&mut harness, rect.center());
@@ -173,4 +184,87 @@ fn a_dance_of_no_length_and_one_of_days_are_shown() {
             assert!(harness.state().taken.right() <= 900.0);
         }
     }
+}
+
+/// A timeline with a track of the camera and one of the light.
+fn tracked() -> Harness<'static, Shown<State>> {
+    let key = |secs, value: &[f64]| lovelock_studio::Key { secs, value: value.to_vec() };
+    let mut state = state(view());
+    state.tracks = vec![
+        Track {
+            keys: vec![key(0.0, &[1.0]), key(4.0, &[3.0]), key(8.0, &[1.0])],
+            ..Track::new("camera/distance")
+        },
+        Track {
+            keys: vec![key(2.0, &[0.0, -1.0, 0.0]), key(6.0, &[1.0, 0.0, 0.5])],
+            ..Track::new("lights/0/direction")
+        },
+    ];
+    with_tracks(state)
+}
+
+/// Where the key at a time of the camera's track is on the screen.
+fn key_at(harness: &Harness<'_, Shown<State>>, secs: f32, height: f32) -> egui::Pos2 {
+    let lane = control(harness, Role::Slider, "Track Camera distance").rect();
+    pos2(lane.left() + lane.width() * secs / 8.0, lane.bottom() - 4.0 - (lane.height() - 8.0) * height)
+}
+
+#[test]
+fn tracks_are_muted_smoothed_and_deleted() {
+    let mut harness = tracked();
+    harness.check_accessibility();
+    assert!(harness.state().taken.right() <= 900.0 && harness.state().taken.bottom() <= timeline::height(2));
+    for (button, says) in [("Mute", "own value"), ("Smooth", "jitter"), ("Delete", "Removes")] {
+        let name = format!("{button} track Camera distance");
+        let at = control(&harness, Role::Button, &name).rect().center();
+        assert!(tooltip_at(&mut harness, at).is_some_and(|tip| tip.contains(says)));
+    }
+    let press = |harness: &mut Harness<'_, Shown<State>>, name: &str| {
+        let at = control(harness, Role::Button, name).rect().center();
+        click(harness, at);
+    };
+    press(&mut harness, "Mute track Camera distance");
+    assert!(harness.state().state.tracks[0].muted);
+    press(&mut harness, "Mute track Camera distance");
+    assert!(!harness.state().state.tracks[0].muted);
+    let before = harness.state().state.tracks[0].clone();
+    press(&mut harness, "Smooth track Camera distance");
+    let smoothed = harness.state().state.tracks[0].clone();
+    assert!(smoothed != before && smoothed.keys[0] == before.keys[0]);
+    press(&mut harness, "Delete track Camera distance");
+    let left: Vec<_> = harness.state().state.tracks.iter().map(|track| track.target.clone()).collect();
+    assert_eq!(left, ["lights/0/direction"]);
+}
+
+#[test]
+fn keys_are_dragged_set_and_removed() {
+    let mut harness = tracked();
+    let key = |harness: &Harness<'_, Shown<State>>, i: usize| harness.state().state.tracks[0].keys[i].clone();
+    // From the top of its lane to the middle, a second later.
+    let (from, to) = (key_at(&harness, 4.0, 1.0), key_at(&harness, 5.0, 0.5));
+    drag(&mut harness, from, to);
+    let moved = key(&harness, 1);
+    // A point of the lane is a hundredth of a second, and a tenth of the value.
+    assert!((moved.secs - 5.0).abs() < 0.02 && (moved.value[0] - 2.0).abs() < 0.1, "{moved:?}");
+    // It never passes the next one.
+    let from = key_at(&harness, moved.secs as f32, 1.0);
+    drag(&mut harness, from, pos2(1e6, from.y));
+    let moved = key(&harness, 1);
+    assert!(moved.secs < key(&harness, 2).secs && moved.secs > 7.9, "{moved:?}");
+    // A click beside the keys goes there, a double-click sets one where the curve is.
+    let beside = key_at(&harness, 3.0, 0.1);
+    click(&mut harness, beside);
+    assert!(matches!(harness.state().state.asked.last(), Some(Ask::Seek(secs)) if (secs - 3.0).abs() < 0.02));
+    let curve = harness.state().state.tracks[0].value_at(3.0).expect("keys");
+    super::double_click(&mut harness, beside);
+    let set = key(&harness, 1);
+    assert!((set.secs - 3.0).abs() < 0.02 && (set.value[0] - curve[0]).abs() < 0.02, "{set:?} on {curve:?}");
+    for pressed in [true, false] {
+        let modifiers = Modifiers::NONE;
+        let pos = key_at(&harness, 0.0, 0.0);
+        harness.hover_at(pos);
+        harness.event(Event::PointerButton { pos, button: PointerButton::Secondary, pressed, modifiers });
+    }
+    harness.run_steps(3);
+    assert_eq!(key(&harness, 0), set, "the first one is gone");
 }

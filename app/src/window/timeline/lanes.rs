@@ -9,12 +9,13 @@ use crate::window::theme;
 
 const RULER: f32 = 22.0;
 const LANE: f32 = 15.0;
-/// Room for the names of lanes.
+/// Room for the names of lanes, and where there are tracks, which have longer ones.
 const NAMES: f32 = 44.0;
+const NAMES_OF_TRACKS: f32 = 150.0;
 
 /// Where times stand on the screen.
 #[derive(Clone, Copy)]
-struct Scale {
+pub(super) struct Scale {
     left: f32,
     width: f32,
     from: f64,
@@ -22,12 +23,22 @@ struct Scale {
 }
 
 impl Scale {
-    fn x(&self, secs: f64) -> f32 {
+    pub(super) fn x(&self, secs: f64) -> f32 {
         let span = (self.to - self.from).max(1e-9);
         self.left + self.width * (((secs - self.from) / span).clamp(-1.0, 2.0)) as f32
     }
 
-    fn secs(&self, x: f32) -> f64 {
+    /// Where a time stands, if it is shown.
+    pub(super) fn x_of(&self, secs: f64) -> Option<f32> {
+        (self.from..=self.to).contains(&secs).then(|| self.x(secs))
+    }
+
+    /// From the first time that is shown to the last one, points.
+    pub(super) fn x_range(&self) -> egui::Rangef {
+        egui::Rangef::new(self.left, self.left + self.width)
+    }
+
+    pub(super) fn secs(&self, x: f32) -> f64 {
         let part = f64::from(((x - self.left) / self.width.max(1.0)).clamp(0.0, 1.0));
         self.from + (self.to - self.from) * part
     }
@@ -35,10 +46,11 @@ impl Scale {
 
 pub(super) fn ui(ui: &mut Ui, view: &View, zoom: &mut Zoom, edited: &mut Edited<'_>) -> Option<Ask> {
     let lanes = 1.0 + if view.take.is_some() || view.recording.is_some() { 1.0 } else { 0.0 };
-    let size = vec2((ui.available_width() - 8.0).max(NAMES + 60.0), RULER + lanes * LANE);
+    let names = if edited.tracks.is_empty() { NAMES } else { NAMES_OF_TRACKS };
+    let size = vec2((ui.available_width() - 8.0).max(names + 60.0), RULER + lanes * LANE);
     let (whole, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "Time"));
-    let rect = Rect::from_min_max(whole.min + vec2(NAMES, 0.0), whole.max);
+    let rect = Rect::from_min_max(whole.min + vec2(names, 0.0), whole.max);
     let finite = |secs: f64| if secs.is_finite() { secs.max(0.0) } else { 0.0 };
     let (duration, now) = (finite(view.duration_secs).max(1e-3), finite(view.time_secs));
     magnify(ui, &response, rect, zoom, duration);
@@ -78,7 +90,8 @@ pub(super) fn ui(ui: &mut Ui, view: &View, zoom: &mut Zoom, edited: &mut Edited<
     }
     let primary = response.dragged_by(PointerButton::Primary) || response.clicked();
     let at = response.interact_pointer_pos().filter(|_| primary).map(|at| scale.secs(at.x));
-    flagged.or(at).map(Ask::Seek)
+    let at_track = super::tracks::ui(ui, names, scale, view, edited.tracks);
+    flagged.or(at).or(at_track).map(Ask::Seek)
 }
 
 /// The wheel over the ruler magnifies about the pointer; the right or middle button moves.

@@ -1,19 +1,25 @@
 //! The dance's time: play, step, scrub, record; the clip, the take, in and out points and markers on one ruler.
 
 mod lanes;
+mod tracks;
 mod transport;
 mod zoom;
 
 use egui::Ui;
-use lovelock_studio::{Command, Marker, RecordingSection};
+use lovelock_studio::{Command, Marker, RecordingSection, Track};
 
 pub(crate) use zoom::Zoom;
 
 /// Frames a second that times are counted in: the steps of the simulation.
 const FRAMES_PER_SEC: f64 = 1.0 / lovelock_studio::STEP_SECS;
 
-/// Height of the whole panel, points.
+/// Height of the panel without tracks, points.
 pub(crate) const HEIGHT: f32 = 92.0;
+
+/// Height of the panel with so many tracks, points; more of them scroll.
+pub(crate) fn height(tracks: usize) -> f32 {
+    HEIGHT + tracks::height(tracks)
+}
 
 /// What the timeline shows.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,6 +42,17 @@ pub(crate) struct View {
     pub(crate) can_play_take: bool,
     /// Seconds of the take that is being recorded, and of those that are on the disk.
     pub(crate) recording: Option<[f64; 2]>,
+    /// Whether tracks are written, and which.
+    pub(crate) writing: Writing,
+}
+
+/// Whether controls that are moved write tracks.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Writing {
+    /// Whether what is moved from now on is written.
+    pub(crate) armed: bool,
+    /// Targets of the tracks that are being written.
+    pub(crate) targets: Vec<String>,
 }
 
 /// A take that plays.
@@ -64,6 +81,8 @@ pub(crate) struct Edited<'a> {
     pub(crate) recording: &'a mut RecordingSection,
     /// Named times.
     pub(crate) markers: &'a mut Vec<Marker>,
+    /// Numbers that follow the timeline.
+    pub(crate) tracks: &'a mut Vec<Track>,
 }
 
 /// The row of buttons, and the ruler with its lanes.

@@ -33,6 +33,9 @@ pub(super) fn ui(ui: &mut Ui, view: &View) -> Option<Ask> {
     {
         ask = Some(Ask::Run(Command::PlayBackwards));
     }
+    if toggle(ui, view.writing.armed, icons::ICON_TIMELINE, Command::WriteTracks.info()) {
+        ask = Some(Ask::Run(Command::WriteTracks));
+    }
     ask = rate(ui, view.rate).or(ask);
     ui.monospace(format!("{:6.2} s", view.time_secs));
     let frame = (view.time_secs * FRAMES_PER_SEC).round() as i64;

@@ -50,7 +50,7 @@ impl Drawer {
             }
             Self::Panes(panes, adapters) => {
                 let watch = Stopwatch::start();
-                *adapters = panes.frame(snapshot, [width, height], picture)?.join(", ");
+                *adapters = panes.frame(project, snapshot, [width, height], picture)?.join(", ");
                 Ok(FrameStats { draw_ms: watch.ms(), ..FrameStats::default() })
             }
         }

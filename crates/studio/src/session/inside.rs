@@ -304,16 +304,14 @@ impl Inside {
     }
 
     fn set_scene(&mut self, scene: Arc<Scene>) {
-        match &mut self.engine {
-            Some(engine) => engine.set_scene(scene),
-            None => {
-                let mut engine = Engine::new(scene, self.settings);
-                if let Some(project) = &self.project {
-                    engine.follow(project);
-                }
-                self.engine = Some(engine);
-            }
+        if let Some(engine) = &mut self.engine {
+            return engine.set_scene(scene);
         }
+        let mut engine = Engine::new(scene, self.settings);
+        if let Some(project) = &self.project {
+            engine.follow(project);
+        }
+        self.engine = Some(engine);
     }
 
     /// Before playing: from an end at which nothing can follow, to the other one.

@@ -75,6 +75,9 @@ impl Overdub {
     /// The project after a pass in which `shown` became `edited`: keys where a track is written, and the project's own
     /// values as they were where a track stands for them.
     pub fn edit(&mut self, base: &Project, shown: &Project, mut edited: Project, now: Moment) -> Project {
+        if !self.armed && self.touches.is_empty() && !base.is_animated() {
+            return edited;
+        }
         let moved = changed(shown, &edited);
         // Whoever removed a track, or all of them, meant the one that is held too.
         self.touches.retain(|touch| {

@@ -23,16 +23,20 @@ impl FilmOfPanes {
         Self { rounds, sheet, project: Arc::new(project.clone()) }
     }
 
-    /// One frame. Returns what drew it.
+    /// One frame of `project`, whose tracks have moved it. Returns what drew it.
     ///
     /// # Errors
     /// No pane can be drawn; a pane that cannot be drawn beside others says so in its place.
     pub(crate) fn frame(
         &mut self,
+        project: &Project,
         snapshot: &Arc<FrameSnapshot>,
         whole: [u32; 2],
         picture: &mut Picture,
     ) -> Result<Vec<String>, StudioError> {
+        if *self.project != *project {
+            self.project = Arc::new(project.clone());
+        }
         let panes = self.sheet.panes(self.project.compare.panes.len());
         let [width, height] = self.sheet.pane_size(panes.len(), whole);
         let request = LiveRequest {

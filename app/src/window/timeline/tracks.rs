@@ -1,0 +1,252 @@
+//! Tracks under the ruler: their curves, their keys, and what can be done with each.
+
+use egui::{Id, PointerButton, Pos2, Rect, Response, RichText, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
+use egui_material_icons::icons;
+use lovelock_studio::Track;
+
+use super::View;
+use super::lanes::Scale;
+use crate::window::theme;
+
+/// Height of a track, points.
+const TRACK: f32 = 30.0;
+/// The most that all of them take; more scroll.
+const MOST: f32 = 124.0;
+/// How near the pointer must be to a key, points.
+const REACH: f32 = 6.0;
+/// Height of so many tracks, points.
+pub(super) fn height(tracks: usize) -> f32 {
+    (tracks as f32 * TRACK).min(MOST)
+}
+
+/// A key that is being dragged: which, which of its numbers, and the range that its lane had when the drag began.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Dragged {
+    key: usize,
+    number: usize,
+    range: [f64; 2],
+}
+
+/// What is done with a whole track.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Whole {
+    Mute,
+    Smooth,
+    Delete,
+}
+
+/// All tracks. Returns a time to go to.
+pub(super) fn ui(ui: &mut Ui, names: f32, scale: Scale, view: &View, tracks: &mut Vec<Track>) -> Option<f64> {
+    if tracks.is_empty() {
+        return None;
+    }
+    let mut sought = None;
+    let mut asked = None;
+    ScrollArea::vertical().id_salt("tracks").max_height(MOST).auto_shrink(false).show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        for (i, track) in tracks.iter_mut().enumerate() {
+            let width = names + scale.x_range().span();
+            let (whole, _) = ui.allocate_exact_size(vec2(width, TRACK), Sense::hover());
+            let head = Rect::from_min_max(whole.min, pos2(scale.x_range().min - 4.0, whole.bottom()));
+            let lane = Rect::from_x_y_ranges(scale.x_range(), whole.y_range().shrink(1.0));
+            let writes = view.writing.targets.contains(&track.target);
+            asked = head_ui(ui, head, i, track, writes).map(|what| (i, what)).or(asked);
+            sought = lane_ui(ui, lane, scale, i, track, writes).or(sought);
+            if let Some(x) = scale.x_of(view.time_secs) {
+                let line = [pos2(x, lane.top() - 1.0), pos2(x, lane.bottom() + 1.0)];
+                ui.painter_at(lane.expand(1.0)).line_segment(line, Stroke::new(1.5, theme::ACCENT));
+            }
+        }
+    });
+    match asked {
+        Some((i, Whole::Mute)) => tracks[i].muted = !tracks[i].muted,
+        Some((i, Whole::Smooth)) => tracks[i].smooth(),
+        Some((i, Whole::Delete)) => {
+            tracks.remove(i);
+        }
+        None => {}
+    }
+    sought
+}
+
+/// The name of a track, and its buttons.
+fn head_ui(ui: &mut Ui, head: Rect, index: usize, track: &Track, writes: bool) -> Option<Whole> {
+    let mut asked = None;
+    let label = track.label();
+    let layout = egui::Layout::right_to_left(egui::Align::Center);
+    let id = ("track head", index);
+    ui.scope_builder(egui::UiBuilder::new().id_salt(id).max_rect(head).layout(layout), |ui| {
+        ui.spacing_mut().item_spacing.x = 1.0;
+        let mute = if track.muted { icons::ICON_VISIBILITY_OFF } else { icons::ICON_VISIBILITY };
+        let many = track.keys.len() > 2;
+        for (icon, name, tip, enabled, what) in [
+            (
+                icons::ICON_DELETE,
+                "Delete track",
+                "Removes the track; the project's own value counts again.",
+                true,
+                Whole::Delete,
+            ),
+            (
+                icons::ICON_WAVES,
+                "Smooth track",
+                "Takes the jitter of a hand out of the track.",
+                many,
+                Whole::Smooth,
+            ),
+            (mute, "Mute track", "Whether the project's own value counts for now.", true, Whole::Mute),
+        ] {
+            let button = egui::Button::new(RichText::from(icon).size(13.0)).frame(false);
+            let response = ui.add_enabled(enabled, button).on_hover_text(tip);
+            let name = format!("{name} {label}");
+            response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, enabled, &name));
+            if response.clicked() {
+                asked = Some(what);
+            }
+        }
+        let color = if writes {
+            theme::RECORDING
+        } else if track.muted {
+            theme::QUIET
+        } else {
+            theme::BRIGHT
+        };
+        let text = egui::Label::new(RichText::new(&label).size(10.5).color(color)).truncate();
+        let room = vec2(ui.available_width(), head.height());
+        ui.allocate_ui_with_layout(room, egui::Layout::left_to_right(egui::Align::Center), |ui| {
+            ui.add(text).on_hover_text(format!("{label}: {} keys", track.keys.len()));
+        });
+    });
+    asked
+}
+
+/// The curve of a track and its keys. Returns a time to go to.
+fn lane_ui(ui: &Ui, lane: Rect, scale: Scale, index: usize, track: &mut Track, writes: bool) -> Option<f64> {
+    let id = Id::unique(("track", index));
+    let response = ui.interact(lane, id, Sense::click_and_drag());
+    let label = format!("Track {}", track.label());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, &label));
+    let own = range_of(track);
+    let dragged = ui.data(|data| data.get_temp::<Dragged>(id));
+    let range = dragged.map_or(own, |dragged| dragged.range);
+    let y = |value: f64| {
+        let part = (value - range[0]) / (range[1] - range[0]);
+        lane.bottom() - 4.0 - (lane.height() - 8.0) * part.clamp(-0.1, 1.1) as f32
+    };
+    let near_to = |at: Option<Pos2>| {
+        let at = at?;
+        let distance =
+            |key: &lovelock_studio::Key, value: f64| pos2(scale.x(key.secs), y(value)).distance(at);
+        let keys = track.keys.iter().enumerate();
+        keys.flat_map(|(i, key)| key.value.iter().enumerate().map(move |(n, &v)| (i, n, distance(key, v))))
+            .filter(|(.., distance)| *distance <= REACH)
+            .min_by(|a, b| a.2.total_cmp(&b.2))
+            .map(|(i, n, _)| (i, n))
+    };
+    let near = near_to(response.hover_pos().or(response.interact_pointer_pos()));
+    // A drag begins where the button went down, and is known to be one some points later.
+    let taken = near_to(ui.input(|input| input.pointer.press_origin()));
+    let moved = drag(ui, id, &response, taken, dragged, own, (lane, scale, range), track);
+    paint(ui, lane, scale, track, writes, near.or(moved), y);
+    if response.secondary_clicked()
+        && let Some((key, _)) = near
+        && track.keys.len() > 1
+    {
+        track.keys.remove(key);
+    }
+    if response.double_clicked()
+        && near.is_none()
+        && let Some(at) = response.interact_pointer_pos()
+        && let Some(value) = track.value_at(scale.secs(at.x))
+    {
+        track.put(scale.secs(at.x), value);
+    }
+    let tip = "Drag a key to move it, right-click removes it, a double-click sets one; a click elsewhere goes there.";
+    let at = response.interact_pointer_pos().filter(|_| response.clicked() && near.is_none());
+    response.on_hover_text(tip);
+    at.map(|at| scale.secs(at.x))
+}
+
+/// Moves the key that is dragged, within its neighbours. Returns which it is.
+#[expect(clippy::too_many_arguments, reason = "called once; the parts of a lane")]
+fn drag(
+    ui: &Ui,
+    id: Id,
+    response: &Response,
+    taken: Option<(usize, usize)>,
+    dragged: Option<Dragged>,
+    own: [f64; 2],
+    (lane, scale, range): (Rect, Scale, [f64; 2]),
+    track: &mut Track,
+) -> Option<(usize, usize)> {
+    if response.drag_started_by(PointerButton::Primary)
+        && let Some((key, number)) = taken
+    {
+        ui.data_mut(|data| data.insert_temp(id, Dragged { key, number, range: own }));
+    }
+    if !response.dragged_by(PointerButton::Primary) {
+        ui.data_mut(|data| data.remove::<Dragged>(id));
+        return None;
+    }
+    let Dragged { key, number, .. } = dragged?;
+    let at = response.interact_pointer_pos()?;
+    let gap = 1.5 * Track::NEAREST_SECS;
+    let after = key.checked_sub(1).and_then(|i| track.keys.get(i)).map_or(0.0, |before| before.secs + gap);
+    let before = track.keys.get(key + 1).map_or(f64::INFINITY, |next| next.secs - gap);
+    let moved = track.keys.get_mut(key)?;
+    if after <= before {
+        moved.secs = scale.secs(at.x).clamp(after, before);
+    }
+    let part = f64::from((lane.bottom() - 4.0 - at.y) / (lane.height() - 8.0)).clamp(-0.1, 1.1);
+    *moved.value.get_mut(number)? = range[0] + part * (range[1] - range[0]);
+    Some((key, number))
+}
+
+/// The least and the greatest number of a track, never the same.
+fn range_of(track: &Track) -> [f64; 2] {
+    let ranges = track.range();
+    let low = ranges.iter().map(|range| range[0]).fold(f64::INFINITY, f64::min);
+    let high = ranges.iter().map(|range| range[1]).fold(f64::NEG_INFINITY, f64::max);
+    let half = (0.5 * (high - low)).max(1e-3 * high.abs().max(low.abs())).max(1e-6);
+    let middle = 0.5 * (high + low);
+    [middle - half, middle + half]
+}
+
+fn paint(
+    ui: &Ui,
+    lane: Rect,
+    scale: Scale,
+    track: &Track,
+    writes: bool,
+    hot: Option<(usize, usize)>,
+    y: impl Fn(f64) -> f32,
+) {
+    let painter = ui.painter_at(lane.expand(1.0));
+    let ground = if writes { theme::RECORDING.gamma_multiply(0.18) } else { theme::PAGE };
+    painter.rect_filled(lane, 2.0, ground);
+    let dim = if track.muted { 0.35 } else { 1.0 };
+    let numbers = track.keys.first().map_or(0, |key| key.value.len());
+    let steps = (lane.width() / 3.0).ceil().clamp(1.0, 2000.0) as usize;
+    let at = |i: usize| lane.left() + lane.width() * (i as f32 / steps as f32);
+    let values: Vec<_> = (0..=steps).map(|i| (at(i), track.value_at(scale.secs(at(i))))).collect();
+    for number in 0..numbers {
+        let color = if numbers == 1 { theme::ACCENT } else { theme::AXES[number % theme::AXES.len()] };
+        let color = color.gamma_multiply(dim);
+        let point = |(x, value): &(f32, Option<Vec<f64>>)| {
+            value.as_ref().and_then(|value| Some(pos2(*x, y(*value.get(number)?))))
+        };
+        painter.line(values.iter().filter_map(point).collect(), Stroke::new(1.3, color));
+        // Dots so dense that they touch say nothing.
+        let shown = track.keys.iter().filter(|key| scale.x_of(key.secs).is_some()).count();
+        if shown as f32 * 5.0 > lane.width() {
+            continue;
+        }
+        for (i, key) in track.keys.iter().enumerate() {
+            let Some(x) = scale.x_of(key.secs) else { continue };
+            let Some(&value) = key.value.get(number) else { continue };
+            let is_hot = hot == Some((i, number));
+            let (radius, color) = if is_hot { (4.0, theme::BRIGHT) } else { (2.5, color) };
+            painter.circle_filled(pos2(x, y(value)), radius, color);
+        }
+    }
+}
