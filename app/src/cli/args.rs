@@ -94,6 +94,9 @@ pub(crate) struct Record {
     /// Write the shadow method, the transparency and the frame's number into each picture.
     #[arg(long)]
     pub(crate) label: bool,
+    /// A take to be shown beside the project, at the same time; up to five.
+    #[arg(long, value_name = "TAKE")]
+    pub(crate) beside: Vec<PathBuf>,
 }
 
 #[derive(Debug, Args)]

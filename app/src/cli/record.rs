@@ -11,6 +11,7 @@ use super::source::Source;
 /// Simulates and draws a project's dance.
 pub(crate) fn run(task: &Record, output: Output) -> Result<(), StudioError> {
     let mut scene = Source::open(&task.source)?;
+    let panes = (!task.beside.is_empty()).then(|| scene.beside(&task.beside)).transpose()?;
     let request = RecordRequest {
         out: task.out.clone(),
         frames: task.frames.clone(),
@@ -21,6 +22,7 @@ pub(crate) fn run(task: &Record, output: Output) -> Result<(), StudioError> {
         quality: task.quality,
         label: task.label,
         backend: task.backend,
+        panes,
         access: std::mem::take(&mut scene.access),
         ..RecordRequest::default()
     };

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use lovelock_studio::groom::Preset;
 use lovelock_studio::{
-    Access, FileKind, Place, Problem, Progress, Project, StudioError, load_project_with, project_of_take,
+    Access, CompareSection, Contender, FileKind, FileRef, Place, Problem, Progress, Project, Sheet,
+    StudioError, load_project_with, project_of_take,
 };
 
 use super::args::SourceArguments;
@@ -72,6 +73,34 @@ impl Source {
             project.set_motion_file(path);
         }
         Ok(Self { project, access, name: names.join(", "), named })
+    }
+
+    /// Puts takes beside the project, a pane each; returns how the panes are put together.
+    pub(super) fn beside(&mut self, takes: &[PathBuf]) -> Result<Sheet, StudioError> {
+        let most = CompareSection::MOST_PANES - 1;
+        if takes.len() > most {
+            let found = takes.len();
+            return Err(StudioError::option(format!("--beside: {found} takes; at most {most} have room")));
+        }
+        let own = Contender::of(&self.project);
+        let mut panes = vec![own.clone()];
+        for take in takes {
+            match FileKind::of(take)? {
+                FileKind::Take => {}
+                kind => {
+                    let message = format!(
+                        "--beside {}: a {} file, and a take was wanted",
+                        take.display(),
+                        kind.label()
+                    );
+                    return Err(StudioError::input(take, message));
+                }
+            }
+            self.access.pick(take);
+            panes.push(Contender { take: Some(FileRef::new(take)), ..own.clone() });
+        }
+        self.project.compare.panes = panes;
+        Ok(crate::window::sheet_of_panes())
     }
 
     /// Does the work with its progress shown.

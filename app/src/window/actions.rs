@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use lovelock_studio::groom::Preset;
 use lovelock_studio::{
-    Access, CameraMode, CameraSection, Command, FileKind, Marker, Problem, Project, StudioError,
-    TimelineSection, frame_points, load_project_with, project_of_take, recording, save_project,
+    Access, CameraMode, CameraSection, Command, Contender, FileKind, FileRef, Marker, Problem, Project,
+    StudioError, TimelineSection, frame_points, load_project_with, project_of_take, recording, save_project,
 };
 
 use super::path_dialog::Purpose;
@@ -118,6 +118,7 @@ impl Window {
             Command::PresetCurly => self.change("hairstyle", |project| project.set_preset(Preset::Curly)),
             Command::PresetLong => self.change("hairstyle", |project| project.set_preset(Preset::Long)),
             Command::Palette => self.palette.toggle(),
+            Command::CompareTakes => self.ask(Purpose::Beside),
             Command::Compare => self.layout.compare.shown = !self.layout.compare.shown,
             Command::TogglePanels => self.layout.panels_hidden = !self.layout.panels_hidden,
             Command::ShowKeys => self.keys_shown = !self.keys_shown,
@@ -234,6 +235,26 @@ impl Window {
         }
     }
 
+    /// Shows a take beside what is shown, each drawn as the project is.
+    fn compare_with(&mut self, path: &Path) {
+        match FileKind::of(path) {
+            Ok(FileKind::Take) => {
+                self.session.pick(path);
+                let file = FileRef::new(path);
+                self.change("compare", |project| {
+                    let own = Contender::of(project);
+                    let other = Contender { take: Some(file), ..own.clone() };
+                    project.compare.panes = vec![own, other];
+                });
+                self.layout.compare.shown = true;
+            }
+            Ok(kind) => {
+                self.tell([format!("{}: a {} file, and a take was wanted", path.display(), kind.label())]);
+            }
+            Err(error) => self.tell([error.to_string()]),
+        }
+    }
+
     fn open_project(&mut self, path: &Path) {
         let mut access = self.session.access().clone();
         access.set_project(Some(path));
@@ -266,6 +287,7 @@ impl Window {
     pub(super) fn answer(&mut self, purpose: Purpose, path: &Path, ctx: &egui::Context) {
         match purpose {
             Purpose::Open => self.open_any(path),
+            Purpose::Beside => self.compare_with(path),
             Purpose::SaveProject => self.save_to(path),
             Purpose::Film | Purpose::Sequence => {
                 let access = self.session.access().clone();

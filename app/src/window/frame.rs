@@ -80,7 +80,7 @@ impl Window {
         if compares {
             let (live, frame) = (self.session.live(), self.session.frame.as_ref());
             let playing = self.session.playing;
-            self.compare.send(live, &seen, frame, &self.layout.compare, playing);
+            self.compare.send(live, (&seen, self.session.access()), frame, &self.layout.compare, playing);
         }
         let title = title(self.project_path.as_deref(), self.history.is_modified());
         ctx.send_viewport_cmd(egui::ViewportCommand::Title(title));
@@ -375,7 +375,7 @@ impl Window {
             .and_then(std::path::Path::parent)
             .map_or_else(|| std::env::current_dir().unwrap_or_default(), std::path::Path::to_owned);
         let suggestion = match purpose {
-            Purpose::Open => folder,
+            Purpose::Open | Purpose::Beside => folder,
             Purpose::SaveProject => self
                 .project_path
                 .clone()
@@ -389,7 +389,7 @@ impl Window {
         let dialog = PathDialog::new(purpose, &suggestion);
         self.dialog = Some(match purpose {
             Purpose::Film | Purpose::Sequence => dialog.about(self.recording_in_words()),
-            Purpose::Open | Purpose::SaveProject | Purpose::Picture => dialog,
+            Purpose::Open | Purpose::Beside | Purpose::SaveProject | Purpose::Picture => dialog,
         });
     }
 

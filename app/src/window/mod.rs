@@ -274,6 +274,12 @@ impl eframe::App for Window {
     }
 }
 
+/// How panes are put together where no window says: beside each other, with the colours of the window and without times,
+/// so that the same panes are the same pixels.
+pub(crate) fn sheet_of_panes() -> lovelock_studio::Sheet {
+    lovelock_studio::Sheet { figures: false, ..CompareLayout::default().sheet() }
+}
+
 /// A title that names the project and marks unsaved changes.
 fn title(path: Option<&Path>, modified: bool) -> String {
     let name = path

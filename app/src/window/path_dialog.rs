@@ -13,6 +13,8 @@ use super::theme;
 pub(crate) enum Purpose {
     /// Open any file that the program reads.
     Open,
+    /// Compare with a take.
+    Beside,
     /// Save the project.
     SaveProject,
     /// Record a film.
@@ -34,6 +36,7 @@ impl Purpose {
     fn title(self) -> &'static str {
         match self {
             Self::Open => "Open a project, take, hairstyle, character or motion",
+            Self::Beside => "Compare with a take",
             Self::SaveProject => "Save the project",
             Self::Film => "Record a film",
             Self::Sequence => "Record pictures into a folder",
@@ -44,6 +47,7 @@ impl Purpose {
     fn button(self) -> &'static str {
         match self {
             Self::Open => "Open file",
+            Self::Beside => "Compare",
             Self::SaveProject | Self::Picture => "Save file",
             Self::Film | Self::Sequence => "Start recording",
         }
@@ -52,7 +56,7 @@ impl Purpose {
     /// The extension that is added where none is given.
     fn extension(self) -> Option<&'static str> {
         match self {
-            Self::Open | Self::Sequence => None,
+            Self::Open | Self::Beside | Self::Sequence => None,
             Self::SaveProject => Some(PROJECT_EXTENSION),
             Self::Film => Some("mp4"),
             Self::Picture => Some("png"),
@@ -184,6 +188,7 @@ impl PathDialog {
         // The dialog is made here, on the window's thread, as some systems demand.
         let future: std::pin::Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> = match purpose {
             Purpose::Open => Box::pin(dialog.add_filter("Lovelock reads", &READABLE).pick_file()),
+            Purpose::Beside => Box::pin(dialog.add_filter("Take", &["take", "part"]).pick_file()),
             Purpose::Sequence => Box::pin(dialog.pick_folder()),
             Purpose::SaveProject => Box::pin(dialog.add_filter("Project", &[PROJECT_EXTENSION]).save_file()),
             Purpose::Film => Box::pin(dialog.add_filter("Film", &["mp4"]).save_file()),

@@ -363,3 +363,55 @@ fn a_take_reads_the_files_elsewhere_that_are_named_beside_it_and_no_others() {
     let drawn = run(&[&draw[..], &["--hair", &file]].concat()).done().json();
     assert_eq!((&drawn["frames"], &drawn["strands"]), (&Value::from(2), &Value::from(40)));
 }
+
+#[test]
+fn takes_are_drawn_beside_each_other_the_same_each_time() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let run = |args: &[&str]| run(dir.path(), args);
+    let mut project = small_project();
+    saved(dir.path(), "calm.lovelock", &project);
+    project.simulation.wind.speed = 12.0;
+    saved(dir.path(), "windy.lovelock", &project);
+    for name in ["calm", "windy"] {
+        let (project, out) = (format!("{name}.lovelock"), format!("{name}.take"));
+        run(&["record", &project, "-o", &out, "--frames", "0..10", "--json"]).done();
+    }
+    let draw = |beside: &str, out: &str| {
+        let args =
+            ["record", "calm.take", "--beside", beside, "-o", out, "--frames", "8..9", "--size", "320x160"];
+        run(&[&args[..], &["--backend", "cpu", "--json"]].concat()).done();
+        let picture = std::fs::read_dir(dir.path().join(out)).expect("a folder").filter_map(Result::ok);
+        let picture =
+            picture.map(|entry| entry.path()).find(|path| path.extension().is_some_and(|e| e == "png"));
+        let decoded = image_of(&picture.expect("a picture"));
+        let half = |from: usize| -> Vec<u8> {
+            decoded.chunks_exact(4 * 320).flat_map(|row| row[4 * from..4 * (from + 150)].to_vec()).collect()
+        };
+        // The last columns of each pane of 158, with a gap of 4 between them.
+        [half(8), half(170)]
+    };
+    let [calm, windy] = draw("windy.take", "a");
+    assert!(draw("windy.take", "b") == [calm.clone(), windy.clone()], "no time of drawing is in it");
+    assert!(calm != windy);
+    // The control: beside itself the takes differ in their labels alone, which stand in the uppermost rows.
+    let [same, itself] = draw("calm.take", "c");
+    assert!(same == calm);
+    let below = |half: &[u8]| half[4 * 150 * 40..].to_vec();
+    assert!(below(&itself) == below(&calm));
+    let refused = run(&["record", "calm.take", "--beside", "calm.lovelock", "-o", "d"]);
+    assert!(refused.refused(2).contains("a take was wanted"), "{refused:?}");
+}
+
+/// The pixels of a PNG file, four bytes each.
+fn image_of(path: &std::path::Path) -> Vec<u8> {
+    let file = std::io::BufReader::new(std::fs::File::open(path).expect("a file"));
+    let mut reader = png::Decoder::new(file).read_info().expect("a PNG file");
+    let mut bytes = vec![0; reader.output_buffer_size().expect("a size")];
+    let info = reader.next_frame(&mut bytes).expect("a picture");
+    let channels = info.color_type.samples();
+    bytes.truncate(info.buffer_size());
+    bytes
+        .chunks_exact(channels)
+        .flat_map(|p| [p[0], p[1], p[2], if channels == 4 { p[3] } else { 255 }])
+        .collect()
+}

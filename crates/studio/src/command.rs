@@ -65,6 +65,8 @@ pub enum Command {
     Palette,
     /// Several ways to draw the hair beside each other, or one picture.
     Compare,
+    /// What is shown beside a take of one's choice.
+    CompareTakes,
     /// Hides or shows all panels.
     TogglePanels,
     /// The list of keys.
@@ -407,6 +409,14 @@ pub const COMMANDS: &[CommandInfo] = {
             "Compare methods",
             "Shows several ways to draw the hair beside each other.",
             &["C"],
+            G::View,
+        ),
+        entry(
+            C::CompareTakes,
+            "compare-takes",
+            "Compare with a take…",
+            "Shows a take beside what is shown now, at the same time of the dance.",
+            &["Shift+C"],
             G::View,
         ),
         entry(

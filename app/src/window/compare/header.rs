@@ -115,6 +115,15 @@ fn settings(ui: &mut Ui, index: usize, pane: &mut Contender) {
 
 /// All settings of a pane.
 pub(super) fn all_settings(ui: &mut Ui, pane: &mut Contender) {
+    if let Some(take) = pane.take_name() {
+        ui.horizontal(|ui| {
+            ui.label(format!("Shows the {take}"));
+            let tip = "Shows what the other panes show, in place of the take.";
+            if ui.button("Leave it").on_hover_text(tip).clicked() {
+                pane.take = None;
+            }
+        });
+    }
     ui.label(RichText::new(pane.shadow.method.label()).strong());
     note(ui, pane.shadow.method.description());
     let modes = Transparency::ALL.map(|mode| (mode, mode.label()));

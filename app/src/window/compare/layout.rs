@@ -108,6 +108,7 @@ impl CompareLayout {
         Sheet {
             wipe: self.wipe.then_some((self.pair, self.split)),
             view: self.view(),
+            figures: true,
             colors: theme::PLOT.map(theme::to_srgb),
         }
     }

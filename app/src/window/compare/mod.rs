@@ -17,8 +17,8 @@ use std::sync::Arc;
 
 use egui::{CentralPanel, Frame, Key, Panel, Popup, Rect, Ui};
 use lovelock_studio::{
-    Command, CompareSection, Contender, FrameSnapshot, Live, LivePane, LiveProbe, LiveRequest, ProbePlace,
-    Project,
+    Access, Command, CompareSection, Contender, FrameSnapshot, Live, LivePane, LiveProbe, LiveRequest,
+    ProbePlace, Project,
 };
 
 use super::Window;
@@ -72,7 +72,7 @@ impl Compare {
     pub(crate) fn send(
         &mut self,
         live: &Live,
-        project: &Arc<Project>,
+        (project, access): (&Arc<Project>, &Access),
         frame: Option<&Arc<FrameSnapshot>>,
         layout: &CompareLayout,
         playing: bool,
@@ -81,6 +81,7 @@ impl Compare {
         let Some(frame) = frame.filter(|_| width > 0 && height > 0) else { return };
         let request = LiveRequest {
             project: Arc::clone(project),
+            access: access.clone(),
             snapshot: Arc::clone(frame),
             panes: layout.visible(project.compare.panes.len()),
             width,
@@ -135,6 +136,7 @@ impl Compare {
 fn is_same(a: &LiveRequest, b: &LiveRequest) -> bool {
     Arc::ptr_eq(&a.project, &b.project)
         && Arc::ptr_eq(&a.snapshot, &b.snapshot)
+        && a.access == b.access
         && (&a.panes, a.width, a.height, a.together, a.view, a.probe)
             == (&b.panes, b.width, b.height, b.together, b.view, b.probe)
 }

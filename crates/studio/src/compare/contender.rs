@@ -3,9 +3,9 @@
 use lovelock_render::{Backend, PictureSettings, ShadowSettings, Transparency};
 use serde::{Deserialize, Serialize};
 
-use crate::Project;
+use crate::{FileRef, Project};
 
-/// One way to draw hair among those that are compared: everything else of the picture is shared.
+/// One way to draw hair among those that are compared, or another take of it: everything else of the picture is shared.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Contender {
@@ -17,6 +17,8 @@ pub struct Contender {
     pub backend: Backend,
     /// Pixels that are drawn for one pixel of the pane along each edge, 0.1 to 1.
     pub scale: f32,
+    /// A take that it shows at the time of all, in place of what the others show.
+    pub take: Option<FileRef>,
 }
 
 impl Default for Contender {
@@ -32,7 +34,7 @@ impl Contender {
     /// What `project` itself does.
     pub fn of(project: &Project) -> Self {
         let PictureSettings { transparency, backend, .. } = project.picture;
-        Self { shadow: project.shadow, transparency, backend, scale: 1.0 }
+        Self { shadow: project.shadow, transparency, backend, scale: 1.0, take: None }
     }
 
     /// The project drawn this way.

@@ -24,7 +24,7 @@ impl Drawer {
     /// No adapter for the backend that was asked for, or one that cannot be used.
     pub(super) fn open(project: &Project, request: &RecordRequest) -> Result<Self, StudioError> {
         if let Some(sheet) = &request.panes {
-            let panes = Box::new(FilmOfPanes::new(project, sheet.clone()));
+            let panes = Box::new(FilmOfPanes::new(project, sheet.clone(), request.access.clone()));
             return Ok(Self::Panes(panes, String::new()));
         }
         let choice = request.backend.unwrap_or(project.picture.backend);

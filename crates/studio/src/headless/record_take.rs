@@ -69,6 +69,7 @@ pub fn record_take(
         (request.shadow.is_some(), "--shadow"),
         (request.transparency.is_some(), "--transparency"),
         (request.backend.is_some(), "--backend"),
+        (request.panes.is_some(), "--beside"),
     ];
     if let Some((_, option)) = pictures.iter().find(|(given, _)| *given) {
         return Err(StudioError::option(format!(

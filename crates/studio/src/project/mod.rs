@@ -139,9 +139,10 @@ impl Project {
 
     /// Every file that the project names, used or not.
     pub(crate) fn file_refs_mut(&mut self) -> impl Iterator<Item = &mut FileRef> {
-        let Self { body, motion, hair, recording, take, .. } = self;
+        let Self { body, motion, hair, recording, take, compare, .. } = self;
         [&mut body.file, &mut motion.file, &mut hair.file, &mut recording.output, &mut take.file]
             .into_iter()
+            .chain(compare.panes.iter_mut().map(|pane| &mut pane.take))
             .flatten()
     }
 }

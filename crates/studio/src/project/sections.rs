@@ -256,6 +256,7 @@ impl Default for CompareSection {
             transparency: Transparency::default(),
             backend: Backend::default(),
             scale: 1.0,
+            take: None,
         };
         let methods = [
             ShadowMethod::VoxelMap,

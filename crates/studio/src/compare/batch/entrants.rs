@@ -40,7 +40,7 @@ pub(super) fn entrants(
         for (shadow, swept) in runs(&ShadowSettings { method, ..project.shadow }, sweeps)? {
             for &transparency in &transparencies {
                 for &backend in backends {
-                    let contender = Contender { shadow, transparency, backend, scale: 1.0 };
+                    let contender = Contender { shadow, transparency, backend, scale: 1.0, take: None };
                     let changes = swept.iter().map(|(setting, value)| format!("{setting}={value}"));
                     let mut name: Vec<String> = [method.id().to_owned()].into_iter().chain(changes).collect();
                     name.extend((transparencies.len() > 1).then(|| transparency.to_string()));

@@ -7,20 +7,21 @@ use lovelock_render::{Picture, Renderer};
 use super::renderers::Renderers;
 use super::round::Rounds;
 use super::{LiveRequest, Sheet};
-use crate::{FrameSnapshot, Project, StudioError};
+use crate::{Access, FrameSnapshot, Project, StudioError};
 
 /// Draws all panes of a frame and puts them together.
 pub(crate) struct FilmOfPanes {
     rounds: Rounds,
     sheet: Sheet,
     project: Arc<Project>,
+    access: Access,
 }
 
 impl FilmOfPanes {
-    /// The panes of `project`, put together as `sheet` says.
-    pub(crate) fn new(project: &Project, sheet: Sheet) -> Self {
+    /// The panes of `project`, put together as `sheet` says, with takes that `access` allows.
+    pub(crate) fn new(project: &Project, sheet: Sheet, access: Access) -> Self {
         let rounds = Rounds::new(Renderers::new(Box::new(Renderer::open)));
-        Self { rounds, sheet, project: Arc::new(project.clone()) }
+        Self { rounds, sheet, project: Arc::new(project.clone()), access }
     }
 
     /// One frame of `project`, whose tracks have moved it. Returns what drew it.
@@ -41,6 +42,7 @@ impl FilmOfPanes {
         let [width, height] = self.sheet.pane_size(panes.len(), whole);
         let request = LiveRequest {
             project: Arc::clone(&self.project),
+            access: self.access.clone(),
             snapshot: Arc::clone(snapshot),
             panes,
             width,

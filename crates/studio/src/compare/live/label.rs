@@ -31,6 +31,7 @@ impl Contender {
     /// What it is beside its method, such as `128³ · sorted · CPU`.
     pub fn settings_label(&self) -> String {
         let mut parts = vec![
+            self.take_name().unwrap_or_default(),
             self.size_label(),
             self.transparency.id().to_owned(),
             backend_label(self.backend).to_owned(),
@@ -40,6 +41,12 @@ impl Contender {
         }
         parts.retain(|part| !part.is_empty());
         parts.join(" · ")
+    }
+
+    /// The name of the take that it shows.
+    pub fn take_name(&self) -> Option<String> {
+        let file = self.take.as_ref()?;
+        Some(format!("take {}", file.path.file_stem().unwrap_or_default().to_string_lossy()))
     }
 
     /// All of it, such as `Voxel map · 128³ · sorted · CPU`.

@@ -12,6 +12,7 @@ mod renderers;
 mod request;
 mod round;
 mod sheet;
+mod takes;
 mod thread;
 mod view;
 

@@ -5,13 +5,15 @@ use std::sync::Arc;
 use lovelock_render::{Camera, FrameStats, Picture};
 
 use super::{LiveView, ProbePlace};
-use crate::{Adapter, Contender, FrameSnapshot, Project};
+use crate::{Access, Adapter, Contender, FrameSnapshot, Project};
 
 /// A round of panes on one instant.
 #[derive(Clone, Debug)]
 pub struct LiveRequest {
     /// The panes, and everything that they share.
     pub project: Arc<Project>,
+    /// What panes with takes of their own may read.
+    pub access: Access,
     /// The instant.
     pub snapshot: Arc<FrameSnapshot>,
     /// Which panes of the project are drawn, in this order.

@@ -14,6 +14,7 @@ use lovelock_shadow::{LightFrame, ShadowInput, cpu_shadow};
 use super::probe::{Probes, curve, direction};
 use super::reference::ExactReference;
 use super::renderers::{Broken, Renderers, device_is_gone};
+use super::takes::PaneTakes;
 use super::{LiveError, LivePane, LiveProbe, LiveRequest, LiveShows, LiveTimes, heat};
 use crate::{Adapter, Contender, FrameSnapshot, Project};
 
@@ -28,6 +29,7 @@ pub(super) struct Rounds {
     values: ValueRenderer,
     reference: ExactReference,
     probes: Probes,
+    takes: PaneTakes,
 }
 
 impl Rounds {
@@ -41,6 +43,7 @@ impl Rounds {
             values: ValueRenderer::default(),
             reference: ExactReference::default(),
             probes: Probes::default(),
+            takes: PaneTakes::default(),
         }
     }
 
@@ -55,6 +58,7 @@ impl Rounds {
             request.snapshot.interpolate(&mut self.strands);
             self.strands_of = Some(Arc::clone(&request.snapshot));
         }
+        self.takes.begin(request);
         self.renderers.keep(request.project.compare.panes.len());
         self.shown = Some(request.clone());
     }
@@ -63,7 +67,14 @@ impl Rounds {
     pub(super) fn pane(&mut self, request: &LiveRequest, index: usize) -> (LivePane, Option<Broken>) {
         let project = &request.project;
         let contender = project.compare.panes.get(index).cloned().unwrap_or_default();
-        let camera = request.snapshot.camera(&project.camera);
+        // Of a pane's own take, whose head may be elsewhere.
+        let own = self.takes.instant(index);
+        let (snapshot, unplayable) = match own {
+            Some(Ok((snapshot, _))) => (snapshot, None),
+            Some(Err(why)) => (&request.snapshot, Some(why.to_owned())),
+            None => (&request.snapshot, None),
+        };
+        let camera = snapshot.camera(&project.camera);
         let mut pane = LivePane {
             contender: contender.clone(),
             project: Arc::clone(project),
@@ -72,8 +83,8 @@ impl Rounds {
             problem: None,
             colors_problem: None,
             camera,
-            step: request.snapshot.step,
-            time_secs: request.snapshot.time_secs,
+            step: snapshot.step,
+            time_secs: snapshot.time_secs,
             times: LiveTimes::default(),
             shadow_bytes: 0,
             draw_bytes: 0,
@@ -82,6 +93,10 @@ impl Rounds {
             flip: None,
             shows: request.view.shows,
         };
+        if unplayable.is_some() {
+            pane.problem = unplayable;
+            return (pane, None);
+        }
         // A panic while drawing costs the device and one picture, not the window.
         let drawn = catch_unwind(AssertUnwindSafe(|| self.draw(request, index, &contender, &mut pane)));
         let broken = match drawn {
@@ -115,7 +130,9 @@ impl Rounds {
         let (name, backend) = (renderer.adapter().to_owned(), renderer.backend());
         pane.adapter = Adapter { name, backend, software: renderer.is_software() };
         let project = drawn_as(&request.project, contender);
-        let input = input_of(&request.snapshot, &project, &self.strands, &pane.camera);
+        let shared = (&request.snapshot, &self.strands);
+        let (snapshot, strands) = self.takes.instant(index).and_then(Result::ok).unwrap_or(shared);
+        let input = input_of(snapshot, &project, strands, &pane.camera);
         let [width, height] = pixels(request, contender);
         let stats = renderer.picture(&input, width, height, &mut pane.picture)?;
         pane.times = LiveTimes::of(&stats);
@@ -125,7 +142,7 @@ impl Rounds {
         }
         // A light that is not there has no transmittance, and the picture is as good without.
         let found = renderer.transmittance(request.view.light).map_err(|error| error.to_string());
-        let measured = found.and_then(|found| self.measure(request, &project, &found, pane));
+        let measured = found.and_then(|found| self.measure(request, index, (&project, &found), pane));
         // The picture itself under a scale of colours would be taken for an error.
         if let Err(why) = measured
             && request.view.shows.colors().is_some()
@@ -143,12 +160,14 @@ impl Rounds {
     fn measure(
         &mut self,
         request: &LiveRequest,
-        drawn: &Project,
-        found: &[f32],
+        index: usize,
+        (drawn, found): (&Project, &[f32]),
         pane: &mut LivePane,
     ) -> Result<(), String> {
-        let (shared, snapshot) = (&request.project, &request.snapshot);
-        let exact = self.reference.transmittance(shared, snapshot, &self.strands, request.view.light);
+        let shared = &request.project;
+        let own = self.takes.instant(index).and_then(Result::ok);
+        let (snapshot, strands) = own.unwrap_or((&request.snapshot, &self.strands));
+        let exact = self.reference.transmittance(shared, snapshot, strands, request.view.light);
         let exact = match exact {
             Ok(exact) => exact,
             Err(why) => {
@@ -167,7 +186,7 @@ impl Rounds {
         let largest = if request.view.largest > 0.0 { request.view.largest } else { 1.0 };
         if request.view.shows == LiveShows::PictureError {
             let size = [request.width, request.height];
-            let exact = self.reference.picture(shared, snapshot, &self.strands, size)?;
+            let exact = self.reference.picture(shared, snapshot, strands, size)?;
             let is_itself = pane.error == LiveError::Reference
                 && pane.contender.transparency == Transparency::Exact
                 && pane.picture == *exact;
@@ -182,7 +201,7 @@ impl Rounds {
         // A pixel shows the foremost hairs in every pane alike, whatever puts the strands of the pane together.
         let mut shown = drawn.clone();
         shown.picture.transparency = Transparency::Sorted;
-        let input = input_of(snapshot, &shown, &self.strands, &pane.camera);
+        let input = input_of(snapshot, &shown, strands, &pane.camera);
         let colored = heat::on_hair(&mut self.values, &input, &values, (colors, largest), &mut pane.picture);
         colored.map_err(|error| error.to_string())
     }
@@ -199,6 +218,10 @@ impl Rounds {
                 hair.steps = self.reference.steps(hair.position);
             }
             for &pane in &request.panes {
+                // The hair of another take is not the one that was chosen.
+                if self.takes.instant(pane).is_some() {
+                    continue;
+                }
                 let Some(renderer) = self.renderers.last(pane) else { continue };
                 // A pane that could not be drawn has no maps, and says so itself.
                 let strands = &self.strands;

@@ -26,6 +26,8 @@ pub struct Sheet {
     pub wipe: Option<([usize; 2], f32)>,
     /// What they show.
     pub view: LiveView,
+    /// Whether times and errors are written under the panes: times are never the same twice.
+    pub figures: bool,
     /// The colour of each pane's mark, sRGB.
     pub colors: [[u8; 3]; CompareSection::MOST_PANES],
 }
@@ -119,7 +121,7 @@ impl Sheet {
     fn put(&self, canvas: &mut Canvas, pane: &SheetPane<'_>, place: Place) {
         picture(canvas, pane.1, place, 0..place[2]);
         self.header(canvas, pane, [place[0], place[1] - HEADER, place[2]]);
-        figures(canvas, pane, place, false);
+        self.figures(canvas, pane, place, false);
     }
 
     /// Two panes, divided by a line.
@@ -132,8 +134,35 @@ impl Sheet {
         self.header(canvas, left, [x, y - HEADER, half]);
         self.header(canvas, right, [x + half, y - HEADER, width - half]);
         canvas.fill((x + at) as i32 - 1, y as i32, 2, height as usize, [255; 3]);
-        figures(canvas, left, [x, y, half, height], false);
-        figures(canvas, right, [x + half, y, width - half, height], true);
+        self.figures(canvas, left, [x, y, half, height], false);
+        self.figures(canvas, right, [x + half, y, width - half, height], true);
+    }
+
+    /// What a pane costs, or why it is empty, at the foot of its place.
+    fn figures(
+        &self,
+        canvas: &mut Canvas,
+        (_, pane, ms): &SheetPane<'_>,
+        [x, y, width, height]: Place,
+        at_right: bool,
+    ) {
+        let lines = if let Some(problem) = &pane.problem {
+            vec![problem.clone()]
+        } else {
+            let figures = self.figures.then(|| pane.figures_label(*ms));
+            [figures, pane.colors_problem.clone()].into_iter().flatten().collect()
+        };
+        for (text, up) in lines.iter().zip([28, 52]) {
+            let text = fitted(text, (width as usize).saturating_sub(32));
+            let wide = Canvas::text_width(text);
+            if wide == 0 || height < up + 12 {
+                return;
+            }
+            let left = if at_right { (x + width) as i32 - wide as i32 - 16 } else { x as i32 + 16 };
+            let top = (y + height - up) as i32;
+            canvas.fill(left - 8, top - 3, wide + 16, 22, LINE);
+            canvas.text(left, top, text, INK);
+        }
     }
 
     /// The line over a pane.
@@ -166,25 +195,6 @@ fn picture(canvas: &mut Canvas, pane: &LivePane, [x, y, width, height]: Place, f
         .collect();
     if let Ok(image) = Image::new(columns.end - columns.start, height, &part) {
         canvas.put((x + columns.start) as i32, y as i32, &image);
-    }
-}
-
-/// What a pane costs, or why it is empty, at the foot of its place.
-fn figures(canvas: &mut Canvas, (_, pane, ms): &SheetPane<'_>, [x, y, width, height]: Place, at_right: bool) {
-    let lines = match &pane.problem {
-        Some(problem) => vec![problem.clone()],
-        None => [Some(pane.figures_label(*ms)), pane.colors_problem.clone()].into_iter().flatten().collect(),
-    };
-    for (text, up) in lines.iter().zip([28, 52]) {
-        let text = fitted(text, (width as usize).saturating_sub(32));
-        let wide = Canvas::text_width(text);
-        if wide == 0 || height < up + 12 {
-            return;
-        }
-        let left = if at_right { (x + width) as i32 - wide as i32 - 16 } else { x as i32 + 16 };
-        let top = (y + height - up) as i32;
-        canvas.fill(left - 8, top - 3, wide + 16, 22, LINE);
-        canvas.text(left, top, text, INK);
     }
 }
 
@@ -240,7 +250,12 @@ mod tests {
     }
 
     fn sheet(wipe: Option<([usize; 2], f32)>) -> Sheet {
-        Sheet { wipe, view: LiveView::default(), colors: [[9, 9, 9]; CompareSection::MOST_PANES] }
+        Sheet {
+            wipe,
+            view: LiveView::default(),
+            figures: true,
+            colors: [[9, 9, 9]; CompareSection::MOST_PANES],
+        }
     }
 
     fn at(picture: &Picture, x: u32, y: u32) -> [u8; 3] {

@@ -1,6 +1,7 @@
 //! Panes on a small scene, on the processor; a lost device on an adapter.
 
 mod against_exact;
+mod takes;
 
 use std::sync::Mutex;
 use std::sync::atomic::Ordering;
@@ -42,6 +43,7 @@ impl Rig {
 
     fn request(&self, panes: &[usize]) -> LiveRequest {
         LiveRequest {
+            access: Access::new(),
             project: Arc::new(self.project.clone()),
             snapshot: Arc::clone(&self.snapshot),
             panes: panes.to_vec(),
