@@ -94,6 +94,10 @@ pub(crate) struct Record {
     /// Write the shadow method, the transparency and the frame's number into each picture.
     #[arg(long)]
     pub(crate) label: bool,
+    /// Let the hair at the end of the film go over into the hair at its start: a film of one round of a looping dance then
+    /// goes round without a jump.
+    #[arg(long = "loop")]
+    pub(crate) seamless: bool,
     /// A take to be shown beside the project, at the same time; up to five.
     #[arg(long, value_name = "TAKE")]
     pub(crate) beside: Vec<PathBuf>,

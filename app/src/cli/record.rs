@@ -21,6 +21,7 @@ pub(crate) fn run(task: &Record, output: Output) -> Result<(), StudioError> {
         transparency: task.transparency,
         quality: task.quality,
         label: task.label,
+        seamless: task.seamless,
         backend: task.backend,
         panes,
         access: std::mem::take(&mut scene.access),

@@ -127,7 +127,7 @@ impl Window {
     }
 
     /// A change that is a step of undo by itself.
-    fn change(&mut self, label: &str, change: impl FnOnce(&mut Project)) {
+    pub(super) fn change(&mut self, label: &str, change: impl FnOnce(&mut Project)) {
         let mut project = copy(self.history.project());
         change(&mut project);
         self.gestures.next();

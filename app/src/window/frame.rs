@@ -63,6 +63,9 @@ impl Window {
                 timeline::Ask::Run(command) => self.run(command, &ctx),
                 timeline::Ask::Seek(time_secs) => self.session.worker().seek(time_secs),
                 timeline::Ask::Rate(rate) => self.session.set_rate(rate),
+                timeline::Ask::Trim => self.change("trim", Project::trim_to_points),
+                timeline::Ask::Untrim => self.change("trim", Project::trim_nothing),
+                timeline::Ask::PickMotion => self.ask(Purpose::Open),
             }
         }
         let mut palette = std::mem::take(&mut self.palette);
@@ -142,19 +145,26 @@ impl Window {
     fn timeline(&mut self, ui: &mut Ui, project: &mut Project) -> Option<timeline::Ask> {
         let session = &self.session;
         let frame = session.frame.as_ref();
+        let duration_secs = frame.map_or(0.0, |frame| frame.duration_secs);
+        let (project_and_access, painted) =
+            ((self.history.project(), session.access()), session.painted.as_ref());
+        let shown = (self.layout.timeline, duration_secs, ui.available_width());
+        self.thumbnails.update(ui.ctx(), project_and_access, painted, shown);
         let clip = frame.and_then(|frame| frame.scene.clip.as_ref());
         let view = timeline::View {
             time_secs: frame.map_or(0.0, |frame| frame.position_secs),
-            duration_secs: frame.map_or(0.0, |frame| frame.duration_secs),
+            duration_secs,
             playing: session.playing,
             looping: project.motion.looping,
             rate: session.rate,
             clip: clip.map_or_else(String::new, |clip| clip.name.clone()),
+            clips: session.body.clips.clone(),
             take: project.take.file.as_ref().map(|file| timeline::Take {
                 name: file.path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
                 backwards: session.backwards,
             }),
             can_play_take: session.saved_take.is_some(),
+            thumbs: self.thumbnails.shown(),
             writing: timeline::Writing {
                 armed: self.overdub.is_armed(),
                 targets: self.overdub.writes().map(str::to_owned).collect(),
@@ -165,9 +175,10 @@ impl Window {
             }),
         };
         let zoom = &mut self.layout.timeline;
-        let lovelock_studio::TimelineSection { markers, tracks } = &mut project.timeline;
+        let Project { recording, motion, timeline: section, .. } = project;
+        let lovelock_studio::TimelineSection { markers, tracks } = section;
         let height = timeline::height(tracks.len());
-        let mut edited = timeline::Edited { recording: &mut project.recording, markers, tracks };
+        let mut edited = timeline::Edited { recording, markers, tracks, motion };
         Panel::bottom("timeline")
             .exact_size(height)
             .resizable(false)

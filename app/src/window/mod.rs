@@ -87,6 +87,7 @@ pub(crate) struct Window {
     selected_light: usize,
     gestures: Gestures,
     overdub: Overdub,
+    thumbnails: timeline::Thumbnails,
     /// The project as it is seen, and the project and the time that it was made of.
     seen: Option<Seen>,
     quitting: bool,
@@ -180,6 +181,7 @@ impl Window {
             selected_light: 0,
             gestures: Gestures::default(),
             overdub: Overdub::default(),
+            thumbnails: timeline::Thumbnails::new(ctx)?,
             seen: None,
             quitting: false,
             screenshot: None,

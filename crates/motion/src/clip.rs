@@ -71,6 +71,8 @@ pub struct Clip {
     pub duration_secs: f64,
     /// True where it starts again without a jump.
     pub loops: bool,
+    /// The part of the keys that plays, first and last second; all of them where none.
+    pub part_secs: Option<[f64; 2]>,
     /// For this long after each start the end of the keys fades into their beginning, seconds; 0 for no fade.
     pub loop_blend_secs: f64,
     /// Tracks of joints, sorted by joint.
@@ -101,9 +103,29 @@ impl Clip {
             .fold(0.0_f64, |end, &t| end.max(f64::from(t)))
     }
 
+    /// First and last second of the keys that play.
+    pub fn part(&self) -> [f64; 2] {
+        self.part_secs.unwrap_or([0.0, self.keys_end_secs()])
+    }
+
+    /// The same clip from one second of its keys to another, without a fade: at least a tenth of a second of what there is.
+    /// Whether it loops has to be found out anew ([`Clip::detect_loop`]).
+    #[must_use]
+    pub fn trimmed(mut self, start_secs: f64, end_secs: Option<f64>) -> Self {
+        const LEAST_SECS: f64 = 0.1;
+        let whole = self.keys_end_secs();
+        let finite = |secs: f64, otherwise: f64| if secs.is_finite() { secs } else { otherwise };
+        let start = finite(start_secs, 0.0).clamp(0.0, (whole - LEAST_SECS).max(0.0));
+        let end = finite(end_secs.unwrap_or(whole), whole).clamp((start + LEAST_SECS).min(whole), whole);
+        self.part_secs = Some([start, end]);
+        (self.duration_secs, self.loop_blend_secs, self.loops) = (end - start, 0.0, false);
+        self
+    }
+
     /// Measures the jump from the last pose to the first.
     pub fn seam(&self, body: &Body) -> Seam {
-        let unfaded = Self { duration_secs: self.keys_end_secs(), loop_blend_secs: 0.0, ..self.clone() };
+        let [start, end] = self.part();
+        let unfaded = Self { duration_secs: end - start, loop_blend_secs: 0.0, ..self.clone() };
         let (mut first, mut last) = (Pose::default(), Pose::default());
         pose_at(body, Some(&unfaded), 0.0, &mut first);
         // Wrapping would bring the end itself back to the start.
@@ -130,9 +152,10 @@ impl Clip {
     /// gets shorter by that time, of which at most half its length is taken; 0 removes the fade.
     #[must_use]
     pub fn with_loop_blend(mut self, blend_secs: f64) -> Self {
-        let end = self.keys_end_secs();
-        self.loop_blend_secs = if blend_secs.is_finite() { blend_secs.clamp(0.0, end / 2.0) } else { 0.0 };
-        self.duration_secs = end - self.loop_blend_secs;
+        let [start, end] = self.part();
+        let length = end - start;
+        self.loop_blend_secs = if blend_secs.is_finite() { blend_secs.clamp(0.0, length / 2.0) } else { 0.0 };
+        self.duration_secs = length - self.loop_blend_secs;
         self.loops |= self.loop_blend_secs > 0.0;
         self
     }

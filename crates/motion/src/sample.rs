@@ -142,11 +142,12 @@ impl Instant {
     fn new(clip: &Clip, time_secs: f64) -> Self {
         let time = if time_secs.is_finite() && clip.duration_secs > 0.0 { time_secs } else { 0.0 };
         let main = if clip.duration_secs > 0.0 { time.rem_euclid(clip.duration_secs) } else { 0.0 };
+        let start = clip.part_secs.map_or(0.0, |[start, _]| start);
         let fade = (main < clip.loop_blend_secs).then(|| {
             let u = (main / clip.loop_blend_secs) as f32;
-            (clip.duration_secs + main, u * u * (3.0 - 2.0 * u))
+            (start + clip.duration_secs + main, u * u * (3.0 - 2.0 * u))
         });
-        Self { main, fade }
+        Self { main: start + main, fade }
     }
 }
 

@@ -153,3 +153,34 @@ fn cubic_and_step_forms_of_a_walk_agree_with_it_at_its_keys() {
         assert!(worst(&a, &b) < 1e-4, "step at {t}: {}", worst(&a, &b));
     }
 }
+
+#[test]
+fn a_trimmed_clip_is_a_part_of_the_whole_one() {
+    let times: Vec<f32> = (0..=8).map(|i| 0.5 * i as f32).collect();
+    let values = times.iter().map(|&t| Vec3::new(t, 0.0, 0.0)).collect();
+    let clip = moving(Track { times: times.into(), values, interpolation: Interpolation::Linear });
+    let body = body();
+    let x = |clip: &Clip, secs: f64| {
+        let mut pose = Pose::default();
+        pose_at(&body, Some(clip), secs, &mut pose);
+        pose.world_from_joint[0].translation.x
+    };
+    let start = x(&clip, 0.0);
+    let part = clip.clone().trimmed(1.0, Some(3.0));
+    assert_eq!((part.duration_secs, part.keys_end_secs()), (2.0, 4.0));
+    for secs in [0.0, 0.3, 1.0, 1.99] {
+        assert!((x(&part, secs) - start - (1.0 + secs) as f32).abs() < 1e-5, "{secs}");
+    }
+    assert!((x(&part, 2.0) - x(&part, 0.0)).abs() < 1e-5, "and round");
+    // With its end faded into its start it reads keys of the part alone.
+    let faded = part.with_loop_blend(0.5);
+    assert_eq!(faded.duration_secs, 1.5);
+    assert!((x(&faded, 0.0) - start - 2.5).abs() < 1e-5, "the tail begins the round");
+    assert!((x(&faded, 0.5) - start - 1.5).abs() < 1e-5, "and is gone after the fade");
+    // What makes no sense is brought into the keys.
+    for (from, to) in [(f64::NAN, None), (9.0, Some(1.0)), (-3.0, Some(f64::INFINITY)), (3.0, Some(2.0))] {
+        let odd = clip.clone().trimmed(from, to);
+        let [first, last] = odd.part();
+        assert!(first >= 0.0 && last <= 4.0 && odd.duration_secs >= 0.0999, "{from} {to:?}: {first} {last}");
+    }
+}

@@ -44,5 +44,5 @@ pub use still::write_png;
 pub use take::{
     AssetState, MOST_ERROR_M, MOST_GUIDE_POINTS, MOST_PROJECT_BYTES, TAKE_EXTENSION, TAKE_VERSION, TakeAsset,
     TakeCondition, TakeError, TakeFrame, TakeHeader, TakeReader, TakeReport, TakeWriter,
-    hairstyle_fingerprint,
+    hairstyle_fingerprint, mix_guides,
 };

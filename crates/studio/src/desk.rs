@@ -46,6 +46,11 @@ impl<T> Desk<T> {
         self.place.1.notify_one();
     }
 
+    /// Whether something newer waits than what is worked on.
+    pub(crate) fn has_newer(&self) -> bool {
+        self.lock().request.is_some()
+    }
+
     /// Whether the thread is to end.
     pub(crate) fn is_closed(&self) -> bool {
         self.lock().closed

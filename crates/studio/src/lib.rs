@@ -10,10 +10,12 @@ mod command;
 mod compare;
 mod desk;
 mod error;
+mod filmstrip;
 mod headless;
 mod history;
 mod info;
 mod painter;
+mod priority;
 mod project;
 mod session;
 mod slot;
@@ -32,6 +34,7 @@ pub use compare::{
     bytes_label, compare, pane_columns,
 };
 pub use error::{Place, Problem, ProblemKind, StudioError};
+pub use filmstrip::{Filmstrip, FilmstripPicture, FilmstripRequest};
 pub use headless::{
     Progress, RecordJob, RecordReport, RecordRequest, StageMedians, TakeRecordReport, is_take, record,
     record_take,
@@ -39,6 +42,7 @@ pub use headless::{
 pub use history::{GestureId, History};
 pub use info::{Content, FileKind, Info, ProjectInfo, TakeInfo, info};
 pub use painter::{Adapter, PaintRequest, Painted, Painter};
+pub(crate) use priority::give_way;
 pub use project::{
     Access, BodySection, BodySource, CameraMode, CameraSection, CompareSection, FileRef, HairSection,
     HairSource, Marker, MotionSection, MotionSource, PROJECT_EXTENSION, PROJECT_VERSION, Project,

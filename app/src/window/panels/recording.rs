@@ -4,7 +4,7 @@ use egui::{ProgressBar, RichText, Ui};
 use lovelock_studio::RecordingSection;
 use lovelock_studio::recording::FilmQuality;
 
-use crate::window::control::{choice, is_left, note, row, typed};
+use crate::window::control::{choice, is_left, note, row, toggle, typed};
 use crate::window::theme;
 
 /// A recording that runs or has ended.
@@ -146,6 +146,13 @@ pub(crate) fn ui(
     if let Some(end) = &mut section.end_frame {
         *end = (*end).max(section.first_frame + 1);
     }
+    toggle(
+        ui,
+        "Seamless loop",
+        "Lets the hair at the end go over into the hair at the start: a film of one round of a looping dance then goes round without a jump.",
+        &mut section.seamless,
+        d.seamless,
+    );
     if let Some((fraction, text)) = state.progress() {
         ui.add(ProgressBar::new(fraction).text(text).corner_radius(4));
         if ui.button("Cancel").on_hover_text("Stops the recording; an unfinished film is removed.").clicked()

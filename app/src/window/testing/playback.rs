@@ -3,7 +3,7 @@
 use egui::accesskit::Role;
 use egui::{Event, Modifiers, MouseWheelUnit, PointerButton, Rect, TouchPhase, pos2, vec2};
 use egui_kittest::Harness;
-use lovelock_studio::{Command, Marker, RecordingSection, Track};
+use lovelock_studio::{Command, Marker, MotionSection, MotionSource, RecordingSection, Track};
 
 use super::{Shown, click, control, drag, screen_of, tooltip_at};
 use crate::window::timeline::{self, Ask, Edited, Take, View, Writing, Zoom};
@@ -14,6 +14,7 @@ struct State {
     recording: RecordingSection,
     markers: Vec<Marker>,
     tracks: Vec<Track>,
+    motion: MotionSection,
     asked: Vec<Ask>,
 }
 
@@ -24,6 +25,7 @@ fn state(view: View) -> State {
         recording: RecordingSection::default(),
         markers: vec![Marker { secs: 6.0, name: "turn".to_owned() }],
         tracks: Vec::new(),
+        motion: MotionSection::default(),
         asked: Vec::new(),
     }
 }
@@ -34,8 +36,8 @@ fn bar(view: View) -> Harness<'static, Shown<State>> {
 
 fn with_tracks(state: State) -> Harness<'static, Shown<State>> {
     screen_of(vec2(900.0, timeline::height(state.tracks.len())), state, |ui, state: &mut State| {
-        let State { recording, markers, tracks, .. } = state;
-        let mut edited = Edited { recording, markers, tracks };
+        let State { recording, markers, tracks, motion, .. } = state;
+        let mut edited = Edited { recording, markers, tracks, motion };
         state.asked.extend(timeline::ui(ui, &state.view, &mut state.zoom, &mut edited));
     })
 }
@@ -48,9 +50,11 @@ fn view() -> View {
         looping: true,
         rate: 1.0,
         clip: "dance".to_owned(),
+        clips: vec!["dance".to_owned(), "idle".to_owned()],
         take: None,
         can_play_take: true,
         recording: None,
+        thumbs: Vec::new(),
         writing: Writing::default(),
     }
 }
@@ -267,4 +271,38 @@ fn keys_are_dragged_set_and_removed() {
     }
     harness.run_steps(3);
     assert_eq!(key(&harness, 0), set, "the first one is gone");
+}
+
+#[test]
+fn the_clip_is_swapped_slowed_and_trimmed_from_its_lane() {
+    let mut harness = bar(view());
+    let open = |harness: &mut Harness<'_, Shown<State>>| {
+        let at = control(harness, Role::Button, "Clip").rect().center();
+        click(harness, at);
+        harness.run_ok();
+    };
+    let press = |harness: &mut Harness<'_, Shown<State>>, role: Role, name: &str| {
+        let at = control(harness, role, name).rect().center();
+        click(harness, at);
+    };
+    open(&mut harness);
+    press(&mut harness, Role::Button, "idle");
+    assert_eq!(harness.state().state.motion.clip, "idle");
+    harness.state_mut().state.motion.source = MotionSource::Rest;
+    for (name, ask) in [("Trim to in and out points", Ask::Trim), ("Motion file…", Ask::PickMotion)] {
+        harness.state_mut().state.recording.first_frame = 30;
+        let mut fresh = bar(view());
+        fresh.state_mut().state.recording.first_frame = 30;
+        fresh.run_ok();
+        open(&mut fresh);
+        press(&mut fresh, Role::Button, name);
+        assert_eq!(fresh.state().state.asked.last(), Some(&ask), "{name}");
+    }
+    // Without points there is nothing to trim, and without a trim nothing to take back.
+    let mut fresh = bar(view());
+    open(&mut fresh);
+    for name in ["Trim to in and out points", "Whole clip"] {
+        press(&mut fresh, Role::Button, name);
+    }
+    assert_eq!(fresh.state().state.asked, []);
 }

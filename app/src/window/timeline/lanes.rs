@@ -3,6 +3,7 @@
 use egui::{Align2, FontId, Id, PointerButton, Pos2, Rect, Response, Sense, Stroke, Ui, Vec2, pos2, vec2};
 use lovelock_studio::Marker;
 
+use super::thumbnails;
 use super::zoom::tick_secs;
 use super::{Ask, Edited, View, Zoom};
 use crate::window::theme;
@@ -47,7 +48,8 @@ impl Scale {
 pub(super) fn ui(ui: &mut Ui, view: &View, zoom: &mut Zoom, edited: &mut Edited<'_>) -> Option<Ask> {
     let lanes = 1.0 + if view.take.is_some() || view.recording.is_some() { 1.0 } else { 0.0 };
     let names = if edited.tracks.is_empty() { NAMES } else { NAMES_OF_TRACKS };
-    let size = vec2((ui.available_width() - 8.0).max(names + 60.0), RULER + lanes * LANE);
+    let size =
+        vec2((ui.available_width() - 8.0).max(names + 60.0), RULER + lanes * LANE + thumbnails::HEIGHT);
     let (whole, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "Time"));
     let rect = Rect::from_min_max(whole.min + vec2(names, 0.0), whole.max);
@@ -58,11 +60,21 @@ pub(super) fn ui(ui: &mut Ui, view: &View, zoom: &mut Zoom, edited: &mut Edited<
     let scale = Scale { left: rect.left(), width: rect.width(), from, to };
 
     ruler(ui, rect, scale);
+    let strip =
+        Rect::from_x_y_ranges(rect.x_range(), rect.top() + RULER..=rect.top() + RULER + thumbnails::HEIGHT);
+    thumbnails::lane(ui, strip, scale, *zoom, duration, &view.thumbs);
     let lane = |i: f32| {
-        let top = rect.top() + RULER + i * LANE;
+        let top = rect.top() + RULER + thumbnails::HEIGHT + i * LANE;
         Rect::from_min_max(pos2(rect.left(), top + 1.0), pos2(rect.right(), top + LANE - 1.0))
     };
-    name(ui, whole, lane(0.0), "Clip");
+    let head =
+        Rect::from_min_max(pos2(whole.left(), lane(0.0).top()), pos2(rect.left() - 4.0, lane(0.0).bottom()));
+    let of_clip = if view.take.is_some() {
+        name(ui, whole, lane(0.0), "Clip");
+        None
+    } else {
+        super::clip::menu(ui, head, view, edited)
+    };
     let clip = if view.clip.is_empty() { "rest" } else { &view.clip };
     bar(ui, lane(0.0), scale, [0.0, duration], theme::LINE, clip);
     if let Some(take) = &view.take {
@@ -91,7 +103,7 @@ pub(super) fn ui(ui: &mut Ui, view: &View, zoom: &mut Zoom, edited: &mut Edited<
     let primary = response.dragged_by(PointerButton::Primary) || response.clicked();
     let at = response.interact_pointer_pos().filter(|_| primary).map(|at| scale.secs(at.x));
     let at_track = super::tracks::ui(ui, names, scale, view, edited.tracks);
-    flagged.or(at).or(at_track).map(Ask::Seek)
+    of_clip.or(flagged.or(at).or(at_track).map(Ask::Seek))
 }
 
 /// The wheel over the ruler magnifies about the pointer; the right or middle button moves.

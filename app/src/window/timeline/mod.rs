@@ -1,20 +1,23 @@
 //! The dance's time: play, step, scrub, record; the clip, the take, in and out points and markers on one ruler.
 
+mod clip;
 mod lanes;
+mod thumbnails;
 mod tracks;
 mod transport;
 mod zoom;
 
 use egui::Ui;
-use lovelock_studio::{Command, Marker, RecordingSection, Track};
+use lovelock_studio::{Command, Marker, MotionSection, RecordingSection, Track};
 
+pub(crate) use thumbnails::Thumbnails;
 pub(crate) use zoom::Zoom;
 
 /// Frames a second that times are counted in: the steps of the simulation.
 const FRAMES_PER_SEC: f64 = 1.0 / lovelock_studio::STEP_SECS;
 
 /// Height of the panel without tracks, points.
-pub(crate) const HEIGHT: f32 = 92.0;
+pub(crate) const HEIGHT: f32 = 92.0 + thumbnails::HEIGHT;
 
 /// Height of the panel with so many tracks, points; more of them scroll.
 pub(crate) fn height(tracks: usize) -> f32 {
@@ -36,12 +39,16 @@ pub(crate) struct View {
     pub(crate) rate: f64,
     /// Name of the clip; empty where the body rests.
     pub(crate) clip: String,
+    /// The body's own clips.
+    pub(crate) clips: Vec<String>,
     /// The take that plays in place of the simulation.
     pub(crate) take: Option<Take>,
     /// Whether a take was recorded that can be played.
     pub(crate) can_play_take: bool,
     /// Seconds of the take that is being recorded, and of those that are on the disk.
     pub(crate) recording: Option<[f64; 2]>,
+    /// Small pictures by their times.
+    pub(crate) thumbs: Vec<(f64, egui::TextureId)>,
     /// Whether tracks are written, and which.
     pub(crate) writing: Writing,
 }
@@ -73,6 +80,12 @@ pub(crate) enum Ask {
     Seek(f64),
     /// To play at another rate.
     Rate(f64),
+    /// To dance what lies between the in and the out point.
+    Trim,
+    /// To dance the whole clip again.
+    Untrim,
+    /// A motion file in place of the clip.
+    PickMotion,
 }
 
 /// The parts of the project that stand on the timeline.
@@ -83,6 +96,8 @@ pub(crate) struct Edited<'a> {
     pub(crate) markers: &'a mut Vec<Marker>,
     /// Numbers that follow the timeline.
     pub(crate) tracks: &'a mut Vec<Track>,
+    /// Which clip is danced, and how.
+    pub(crate) motion: &'a mut MotionSection,
 }
 
 /// The row of buttons, and the ruler with its lanes.

@@ -1,6 +1,7 @@
 //! Between two frames of a take.
 
 use glam::{Affine3A, DMat3, DQuat, DVec3};
+use lovelock_groom::GuideFrame;
 
 use super::TakeFrame;
 
@@ -15,15 +16,23 @@ pub(super) fn between(a: &TakeFrame, b: &TakeFrame, t: f64, clip_secs: f64, out:
     out.guides.time_secs = a.guides.time_secs + (b.guides.time_secs - a.guides.time_secs) * t;
     out.clip_secs = mix_clip(a.clip_secs, b.clip_secs, t, clip_secs);
 
-    let (from, to) = (Head::new(&a.guides.world_from_head), Head::new(&b.guides.world_from_head));
+    mix_guides(&a.guides, &b.guides, t, &mut out.guides);
+}
+
+/// Writes the guides at the fraction `t` (0 to 1) from `a` to `b`, which have the same layout, into `out`: the head turns
+/// and moves, each point goes straight in the head's space, and links keep a length between those of the two. The time of
+/// `out` stays.
+pub fn mix_guides(a: &GuideFrame, b: &GuideFrame, t: f64, out: &mut GuideFrame) {
+    let (from, to) = (Head::new(&a.world_from_head), Head::new(&b.world_from_head));
     let turn = from.turn.slerp(to.turn, t);
     let place = from.place.lerp(to.place, t);
-    out.guides.world_from_head = Affine3A::from_rotation_translation(turn.as_quat(), place.as_vec3());
+    out.world_from_head = Affine3A::from_rotation_translation(turn.as_quat(), place.as_vec3());
     let matrix = DMat3::from_quat(turn);
 
-    let points = out.guides.guides.points_per_guide;
-    let (old, new) = (&a.guides.guides, &b.guides.guides);
-    let into = &mut out.guides.guides;
+    let (old, new) = (&a.guides, &b.guides);
+    let into = &mut out.guides;
+    into.clone_from(old);
+    let points = into.points_per_guide;
     for guide in 0..old.count() {
         let mut last = (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
         for point in 0..points {

@@ -37,6 +37,7 @@ pub use frame::TakeFrame;
 pub use header::{
     AssetState, MOST_GUIDE_POINTS, MOST_PROJECT_BYTES, TakeAsset, TakeHeader, hairstyle_fingerprint,
 };
+pub use interpolate::mix_guides;
 pub use reader::TakeReader;
 pub use writer::{TakeReport, TakeWriter};
 

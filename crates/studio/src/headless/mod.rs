@@ -10,6 +10,7 @@ mod record;
 mod record_take;
 mod report;
 mod request;
+mod seam;
 
 pub(crate) use dance::Dance;
 pub(crate) use new_folders::NewFolders;

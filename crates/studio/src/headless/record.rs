@@ -38,6 +38,9 @@ pub fn record(
     let frames = job.frames(&dance)?;
     // After what the request may get wrong: drivers speak on standard error while they are tried.
     let mut drawer = Drawer::open(&job.project, request)?;
+    if job.project.recording.seamless {
+        dance.close(&frames)?;
+    }
     dance.begin(frames.start, progress)?;
 
     let refused = |error: RecordError| job.refused(&error);
@@ -122,6 +125,7 @@ impl<'a> Job<'a> {
         if let Some(quality) = request.quality {
             project.recording.quality = quality;
         }
+        project.recording.seamless |= request.seamless;
         if let Some(transparency) = request.transparency {
             project.picture.transparency = transparency;
         }

@@ -28,6 +28,8 @@ pub struct RecordRequest {
     pub quality: Option<FilmQuality>,
     /// Whether the shadow method, the transparency and the frame's number are written into each picture.
     pub label: bool,
+    /// Whether the end of the film goes over into its start, hair and all; the project may say so too.
+    pub seamless: bool,
     /// What draws; the project says where none.
     pub backend: Option<Backend>,
     /// What the project may read.

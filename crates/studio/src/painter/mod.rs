@@ -36,6 +36,8 @@ pub struct Painted {
     pub times: StageTimes,
     /// [`FrameSnapshot::step`] of the instant.
     pub step: u64,
+    /// [`FrameSnapshot::position_secs`] of the instant.
+    pub position_secs: f64,
 }
 
 /// What draws.
@@ -236,7 +238,8 @@ impl Worker {
         let input = snapshot.frame_input(project, &camera);
         let stats = renderer.picture(&input, *width, *height, &mut picture)?;
         times.take_picture(&stats);
-        Ok(Painted { picture, camera, stats, times, step: snapshot.step })
+        let (step, position_secs) = (snapshot.step, snapshot.position_secs);
+        Ok(Painted { picture, camera, stats, times, step, position_secs })
     }
 }
 

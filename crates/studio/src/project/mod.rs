@@ -9,6 +9,7 @@ mod generic;
 mod path;
 mod sanitise;
 mod sections;
+mod trim;
 
 use lovelock_render::{Light, PictureSettings, ShadowSettings};
 use lovelock_wisp::SimulationSettings;

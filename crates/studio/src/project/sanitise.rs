@@ -109,10 +109,15 @@ fn within_cube(value: Vec3, half: f32, default: Vec3) -> Vec3 {
     if value.is_nan() { default } else { value.clamp(Vec3::splat(-half), Vec3::splat(half)) }
 }
 
+/// The farthest second of a clip that can be named: a day.
+const MOST_CLIP_SECS: f32 = 86_400.0;
+
 fn motion(motion: &MotionSection) -> MotionSection {
     MotionSection {
         speed: within(motion.speed, 0.1, 4.0, 1.0),
         loop_blend_secs: within(motion.loop_blend_secs, 0.0, 2.0, 0.5),
+        start_secs: within(motion.start_secs, 0.0, MOST_CLIP_SECS, 0.0),
+        end_secs: motion.end_secs.filter(|end| !end.is_nan()).map(|end| end.clamp(0.0, MOST_CLIP_SECS)),
         ..motion.clone()
     }
 }

@@ -60,6 +60,10 @@ pub struct MotionSection {
     pub settings: MotionSettings,
     /// Tempo: how many seconds of the clip pass in a second, 0.1 to 4.
     pub speed: f32,
+    /// Second of the clip at which it begins.
+    pub start_secs: f32,
+    /// Second of the clip at which it ends; that of its last key where none.
+    pub end_secs: Option<f32>,
     /// Whether the clip starts again at its end; it holds its last pose otherwise.
     pub looping: bool,
     /// How long the end of a clip that does not loop by itself is faded into its beginning, seconds, 0 to 2.
@@ -74,6 +78,8 @@ impl Default for MotionSection {
             file: None,
             settings: MotionSettings::default(),
             speed: 1.0,
+            start_secs: 0.0,
+            end_secs: None,
             looping: true,
             loop_blend_secs: 0.5,
         }
@@ -180,6 +186,8 @@ pub struct RecordingSection {
     pub first_frame: u64,
     /// One past the number of the last frame; all of the clip's where none.
     pub end_frame: Option<u64>,
+    /// Whether the hair at the end of a film of one whole round of a looping dance is faded into the hair at its start.
+    pub seamless: bool,
     /// How finely a film is coded.
     pub quality: FilmQuality,
     /// Where it goes: a name ending in `.mp4`, or a folder.
@@ -194,6 +202,7 @@ impl Default for RecordingSection {
             fps: 30.0,
             first_frame: 0,
             end_frame: None,
+            seamless: false,
             quality: FilmQuality::default(),
             output: None,
         }

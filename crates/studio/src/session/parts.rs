@@ -147,8 +147,38 @@ fn file_notes(place: Place, dropped: &BTreeMap<String, u64>, notes: &[String]) -
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum MotionKey {
     Rest,
-    Clip { name: String, blend_secs: f32 },
-    File { stamp: Stamp, settings: MotionSettings, blend_secs: f32 },
+    Clip { name: String, shape: Shape },
+    File { stamp: Stamp, settings: MotionSettings, shape: Shape },
+}
+
+/// Which part of a clip plays, and how its end meets its start.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Shape {
+    /// First second, and last one where it is not the clip's own.
+    part: (f32, Option<f32>),
+    blend_secs: f32,
+}
+
+impl Shape {
+    fn of(section: &MotionSection) -> Self {
+        let blend_secs = if section.looping { section.loop_blend_secs } else { 0.0 };
+        Self { part: (section.start_secs, section.end_secs), blend_secs }
+    }
+
+    /// The clip trimmed, and with its end faded into its beginning where it does not loop by itself.
+    fn applied(self, clip: &Arc<Clip>, body: &Body) -> Arc<Clip> {
+        let mut clip = Arc::clone(clip);
+        let (start, end) = self.part;
+        if start > 0.0 || end.is_some() {
+            let mut part = (*clip).clone().trimmed(f64::from(start), end.map(f64::from));
+            part.detect_loop(body);
+            clip = Arc::new(part);
+        }
+        if clip.loops || self.blend_secs <= 0.0 || clip.duration_secs <= 0.0 {
+            return clip;
+        }
+        Arc::new((*clip).clone().with_loop_blend(f64::from(self.blend_secs)))
+    }
 }
 
 /// A motion of one body.
@@ -160,13 +190,13 @@ pub(super) struct MotionPart {
 
 impl MotionKey {
     pub(super) fn of(section: &MotionSection, access: &Access) -> Result<Self, Problem> {
-        let blend_secs = if section.looping { section.loop_blend_secs } else { 0.0 };
+        let shape = Shape::of(section);
         match (section.source, &section.file) {
             (MotionSource::Rest, _) => Ok(Self::Rest),
-            (MotionSource::Clip, _) => Ok(Self::Clip { name: section.clip.clone(), blend_secs }),
+            (MotionSource::Clip, _) => Ok(Self::Clip { name: section.clip.clone(), shape }),
             (MotionSource::File, Some(file)) => {
                 let stamp = Stamp::of(&access.read(Place::Motion, file)?);
-                Ok(Self::File { stamp, settings: section.settings, blend_secs })
+                Ok(Self::File { stamp, settings: section.settings, shape })
             }
             (MotionSource::File, None) => {
                 Err(Problem::not_loaded(Place::Motion, "no motion file is set; pick one"))
@@ -176,13 +206,13 @@ impl MotionKey {
 
     /// The body's first clip, or rest where it has none.
     pub(super) fn first_clip() -> Self {
-        Self::Clip { name: String::new(), blend_secs: 0.0 }
+        Self::Clip { name: String::new(), shape: Shape::default() }
     }
 
     pub(super) fn load(&self, part: &BodyPart) -> Result<MotionPart, Problem> {
         match self {
             Self::Rest => Ok(MotionPart { clip: None, notes: Vec::new() }),
-            Self::Clip { name, blend_secs } => {
+            Self::Clip { name, shape } => {
                 let clip = if name.is_empty() {
                     part.clips.first()
                 } else {
@@ -199,30 +229,22 @@ impl MotionKey {
                         ))
                     }
                     clip => Ok(MotionPart {
-                        clip: clip.map(|clip| blended(clip, *blend_secs)),
+                        clip: clip.map(|clip| shape.applied(clip, &part.body)),
                         notes: Vec::new(),
                     }),
                 }
             }
-            Self::File { stamp, settings, blend_secs } => {
+            Self::File { stamp, settings, shape } => {
                 let refuse = |error| Problem::not_loaded(Place::Motion, error);
                 let file = load_motion_with(&stamp.path, *settings).map_err(refuse)?;
                 let clip = retarget(&file, &part.body).map_err(refuse)?;
                 Ok(MotionPart {
-                    clip: Some(blended(&Arc::new(clip), *blend_secs)),
+                    clip: Some(shape.applied(&Arc::new(clip), &part.body)),
                     notes: file_notes(Place::Motion, &file.dropped, &file.notes),
                 })
             }
         }
     }
-}
-
-/// The clip with its end faded into its beginning, where it does not loop by itself.
-fn blended(clip: &Arc<Clip>, blend_secs: f32) -> Arc<Clip> {
-    if clip.loops || blend_secs <= 0.0 || clip.duration_secs <= 0.0 {
-        return Arc::clone(clip);
-    }
-    Arc::new((**clip).clone().with_loop_blend(f64::from(blend_secs)))
 }
 
 /// What a hairstyle is made from, besides the body.

@@ -31,15 +31,10 @@ pub fn project_of_take(path: &Path) -> Result<(Project, Vec<Problem>), StudioErr
     };
     let (mut project, problems) = project_of_text(path, &text)?;
     project.set_take(path);
-    // These stand on the dance's timeline, and the take has its own.
+    // What stands on the dance's timeline goes to the take's own, on which points of a recording mean nothing.
     (project.recording.first_frame, project.recording.end_frame) = (0, None);
-    project.timeline.markers.clear();
     let start = start_on_timeline(reader.header(), &project);
-    for track in &mut project.timeline.tracks {
-        track.keys.retain(|key| key.secs >= start);
-        track.keys.iter_mut().for_each(|key| key.secs -= start);
-    }
-    project.timeline.tracks.retain(|track| !track.keys.is_empty());
+    project.timeline.shift(-start, f64::INFINITY);
     Ok((project, problems))
 }
 

@@ -3,13 +3,11 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
-use thread_priority::{ThreadPriority, ThreadPriorityValue, set_current_thread_priority};
-
 use super::renderers::{Broken, Renderers};
 use super::round::Rounds;
 use super::{Left, LiveRequest};
-use crate::CompareSection;
 use crate::desk::Desk;
+use crate::{CompareSection, give_way};
 
 pub(super) struct Worker {
     desk: Desk<LiveRequest>,
@@ -94,15 +92,5 @@ impl Worker {
             self.left.probe.put(Arc::new(probe));
         }
         again
-    }
-}
-
-/// Lets other threads go first, where the system takes such wishes: without it panes are drawn as well.
-fn give_way() {
-    // A quarter of the scale from its low end: a niceness of 9 where there is such a thing.
-    if let Ok(low) = ThreadPriorityValue::try_from(25_u8)
-        && let Err(error) = set_current_thread_priority(ThreadPriority::Crossplatform(low))
-    {
-        tracing::debug!(?error, "no lower priority for panes");
     }
 }

@@ -1,0 +1,74 @@
+//! The menu of the clip's lane: which clip is danced, which part of it, how fast, and round and round.
+
+use egui::containers::menu::{MenuButton, MenuConfig};
+use egui::{PopupCloseBehavior, Rect, RichText, Ui, UiBuilder};
+use lovelock_studio::{MotionSection, MotionSource};
+
+use super::{Ask, Edited, View};
+use crate::window::control::{Number, toggle};
+use crate::window::theme;
+
+/// The name of the lane, which opens the menu. Returns what is asked for beyond the motion itself.
+pub(super) fn menu(ui: &mut Ui, place: Rect, view: &View, edited: &mut Edited<'_>) -> Option<Ask> {
+    let mut ask = None;
+    let button = egui::Button::new(RichText::new("Clip…").size(10.5).color(theme::QUIET)).frame(false);
+    let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+    ui.scope_builder(UiBuilder::new().id_salt("clip").max_rect(place), |ui| {
+        ui.spacing_mut().button_padding = egui::vec2(2.0, 0.0);
+        let (response, _) = MenuButton::from_button(button).config(config).ui(ui, |ui| {
+            ui.set_width(270.0);
+            ask = contents(ui, view, edited);
+        });
+        let response = response.on_hover_text("Which clip is danced, which part of it, and how fast.");
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Clip"));
+    });
+    ask
+}
+
+fn contents(ui: &mut Ui, view: &View, edited: &mut Edited<'_>) -> Option<Ask> {
+    let mut ask = None;
+    let d = MotionSection::default();
+    let recording = &*edited.recording;
+    let pointed = recording.first_frame > 0 || recording.end_frame.is_some();
+    let motion = &mut *edited.motion;
+    for clip in &view.clips {
+        let on = motion.source == MotionSource::Clip && motion.clip == *clip;
+        if ui.selectable_label(on, clip).clicked() {
+            (motion.source, motion.clip) = (MotionSource::Clip, clip.clone());
+            (motion.start_secs, motion.end_secs) = (d.start_secs, d.end_secs);
+        }
+    }
+    if ui.selectable_label(motion.source == MotionSource::File, "Motion file…").clicked() {
+        ask = Some(Ask::PickMotion);
+        ui.close();
+    }
+    ui.separator();
+    let trim = ui.add_enabled(pointed, egui::Button::new("Trim to in and out points"));
+    if trim.on_hover_text("Dances what lies between the brackets on the ruler.").clicked() {
+        ask = Some(Ask::Trim);
+        ui.close();
+    }
+    let trimmed = motion.start_secs > 0.0 || motion.end_secs.is_some();
+    let whole = ui.add_enabled(trimmed, egui::Button::new("Whole clip"));
+    if whole.on_hover_text("Takes the trim back.").clicked() {
+        ask = Some(Ask::Untrim);
+        ui.close();
+    }
+    if trimmed {
+        let end = motion.end_secs.map_or_else(|| "its end".to_owned(), |end| format!("{end:.2} s"));
+        ui.label(RichText::new(format!("From {:.2} s to {end}", motion.start_secs)).color(theme::QUIET));
+    }
+    ui.separator();
+    Number::new("Tempo", 0.1..=4.0, "How fast the dance is; the hair feels it.")
+        .unit(" ×", 1.0)
+        .logarithmic()
+        .show(ui, &mut motion.speed, d.speed);
+    toggle(ui, "Loop", "Whether the dance starts again at its end.", &mut motion.looping, d.looping);
+    let blend = "How long the end of a clip that does not loop by itself is faded into its beginning.";
+    Number::new("Loop blend", 0.0..=2.0, blend).unit(" s", 1.0).show(
+        ui,
+        &mut motion.loop_blend_secs,
+        d.loop_blend_secs,
+    );
+    ask
+}

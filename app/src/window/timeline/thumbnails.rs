@@ -1,0 +1,244 @@
+//! Small pictures along the timeline: of what has been played, and of a take whatever has been played of it.
+
+use std::sync::Arc;
+
+use egui::{Color32, ColorImage, Context, Rect, TextureHandle, TextureId, TextureOptions, Ui, pos2, vec2};
+use lovelock_studio::render::Picture;
+use lovelock_studio::{Access, Filmstrip, FilmstripRequest, Painted, Project, Stopwatch, StudioError};
+
+use super::Zoom;
+use super::lanes::Scale;
+use crate::window::theme;
+
+/// Size of a small picture, pixels; on the screen, points.
+const SIZE: [u32; 2] = [64, 36];
+/// Height of the lane, points.
+pub(super) const HEIGHT: f32 = SIZE[1] as f32 + 4.0;
+/// The most that are kept.
+const MOST: usize = 256;
+/// Pictures of a take are drawn when nothing has changed for so long, seconds.
+const STILL_SECS: f64 = 0.6;
+
+/// A small picture and its time.
+pub(crate) struct Thumb {
+    secs: f64,
+    texture: TextureHandle,
+}
+
+/// What a request for pictures of a take was made of.
+type Asked = (Arc<Project>, Vec<u64>);
+
+/// The small pictures that there are.
+pub(crate) struct Thumbnails {
+    strip: Filmstrip,
+    thumbs: Vec<Thumb>,
+    /// What moves as the pictures show it: other hair, another body, another dance, another take.
+    of: Option<Arc<Project>>,
+    /// The picture that was looked at last.
+    seen: Option<Arc<Painted>>,
+    /// The slot that was filled last by a picture of the window.
+    filled: Option<i64>,
+    wanted: Option<(Asked, Stopwatch)>,
+    asked: Option<Asked>,
+}
+
+impl Thumbnails {
+    /// None yet; `ctx` is repainted when a take's are drawn.
+    ///
+    /// # Errors
+    /// The system makes no thread.
+    pub(crate) fn new(ctx: &Context) -> Result<Self, StudioError> {
+        let wake = ctx.clone();
+        let strip = Filmstrip::start(move || wake.request_repaint());
+        let strip =
+            strip.map_err(|error| StudioError::work(format!("no thread for small pictures: {error}")))?;
+        Ok(Self { strip, thumbs: Vec::new(), of: None, seen: None, filled: None, wanted: None, asked: None })
+    }
+
+    /// Takes what has been drawn, in the window or aside, and asks for what a take still lacks. The lane is `width` points
+    /// wide and shows the part `zoom` of `duration_secs`.
+    pub(crate) fn update(
+        &mut self,
+        ctx: &Context,
+        (project, access): (&Arc<Project>, &Access),
+        painted: Option<&Arc<Painted>>,
+        (zoom, duration_secs, width): (Zoom, f64, f32),
+    ) {
+        let moves = |a: &Project, b: &Project| {
+            (&a.hair, &a.body, &a.motion, &a.take) != (&b.hair, &b.body, &b.motion, &b.take)
+        };
+        if self.of.as_ref().is_none_or(|of| moves(of, project)) {
+            self.thumbs.clear();
+            self.filled = None;
+            self.of = Some(Arc::clone(project));
+            // What is painted now is still of before.
+            self.seen = painted.cloned();
+        }
+        let duration = if duration_secs.is_finite() { duration_secs.max(1e-3) } else { 1e-3 };
+        let slots = slots(zoom, duration, width);
+        let slot_secs = slot_secs(zoom, duration, width);
+        if let Some(painted) = painted
+            && !self.seen.as_ref().is_some_and(|seen| Arc::ptr_eq(seen, painted))
+        {
+            self.seen = Some(Arc::clone(painted));
+            let slot = (painted.position_secs / slot_secs).floor() as i64;
+            if self.filled != Some(slot) {
+                self.filled = Some(slot);
+                self.put(ctx, painted.position_secs, &painted.picture, 0.5 * slot_secs);
+            }
+        }
+        for drawn in self.strip.pictures() {
+            if self.of.as_ref().is_some_and(|of| !moves(of, &drawn.project)) {
+                self.put(ctx, drawn.secs, &drawn.picture, 0.25 * slot_secs);
+            }
+        }
+        self.ask(ctx, project, access, &slots);
+    }
+
+    /// Asks for the pictures of a take in the slots that are shown, when the hand rests.
+    fn ask(&mut self, ctx: &Context, project: &Arc<Project>, access: &Access, slots: &[f64]) {
+        if project.take.file.is_none() {
+            (self.wanted, self.asked) = (None, None);
+            return;
+        }
+        let key: Asked = (Arc::clone(project), slots.iter().map(|secs| secs.to_bits()).collect());
+        let same = |a: &Asked| Arc::ptr_eq(&a.0, &key.0) && a.1 == key.1;
+        if self.asked.as_ref().is_some_and(same) {
+            return;
+        }
+        match &self.wanted {
+            Some((wanted, since)) if same(wanted) => {
+                if since.secs() >= STILL_SECS {
+                    let secs = slots.to_vec();
+                    let (project, access) = (Arc::clone(project), access.clone());
+                    self.strip.request(FilmstripRequest { project, access, secs, size: SIZE });
+                    self.asked = Some(key);
+                    self.wanted = None;
+                }
+            }
+            _ => self.wanted = Some((key, Stopwatch::start())),
+        }
+        ctx.request_repaint_after(std::time::Duration::from_secs_f64(STILL_SECS));
+    }
+
+    /// Puts a picture in place of those that are nearer than `near_secs`.
+    fn put(&mut self, ctx: &Context, secs: f64, picture: &Picture, near_secs: f64) {
+        let Some(image) = small(picture) else { return };
+        self.thumbs.retain(|thumb| (thumb.secs - secs).abs() > near_secs);
+        if self.thumbs.len() >= MOST {
+            self.thumbs.remove(0);
+        }
+        let texture = ctx.load_texture("thumbnail", image, TextureOptions::LINEAR);
+        self.thumbs.push(Thumb { secs, texture });
+    }
+
+    /// Times and textures of all.
+    pub(crate) fn shown(&self) -> Vec<(f64, TextureId)> {
+        self.thumbs.iter().map(|thumb| (thumb.secs, thumb.texture.id())).collect()
+    }
+}
+
+/// Seconds of a slot.
+fn slot_secs(zoom: Zoom, duration: f64, width: f32) -> f64 {
+    let [from, to] = zoom.shown(duration);
+    let count = (width / (SIZE[0] as f32 + 2.0)).floor().clamp(1.0, 64.0);
+    ((to - from) / f64::from(count)).max(1e-3)
+}
+
+/// Middles of the slots that are shown, seconds.
+fn slots(zoom: Zoom, duration: f64, width: f32) -> Vec<f64> {
+    let ([from, to], each) = (zoom.shown(duration), slot_secs(zoom, duration, width));
+    let first = (from / each).floor() as i64;
+    let count = ((to - from) / each).ceil().clamp(1.0, 65.0) as i64;
+    let middles = (first..=first + count).map(|slot| (slot as f64 + 0.5) * each);
+    middles.filter(|secs| *secs < to.min(duration)).collect()
+}
+
+/// The middle of a picture, as wide as small pictures are, each pixel the mean of some.
+fn small(picture: &Picture) -> Option<ColorImage> {
+    const SAMPLES: u32 = 4;
+    let (width, height) = (picture.width, picture.height);
+    if width == 0 || height == 0 || picture.rgba.len() < (width * height * 4) as usize {
+        return None;
+    }
+    let aspect = SIZE[0] as f32 / SIZE[1] as f32;
+    let shown = [(height as f32 * aspect).min(width as f32), (width as f32 / aspect).min(height as f32)];
+    let corner = [0.5 * (width as f32 - shown[0]), 0.5 * (height as f32 - shown[1])];
+    let at = |x: u32, y: u32| {
+        let place = |i: u32, axis: usize, most: u32| {
+            let part = (i as f32 + 0.5) / (SIZE[axis] * SAMPLES) as f32;
+            ((corner[axis] + part * shown[axis]) as u32).min(most - 1)
+        };
+        let i = ((place(y, 1, height) * width + place(x, 0, width)) * 4) as usize;
+        [picture.rgba[i], picture.rgba[i + 1], picture.rgba[i + 2]]
+    };
+    let mut bytes = Vec::with_capacity((SIZE[0] * SIZE[1] * 4) as usize);
+    for y in 0..SIZE[1] {
+        for x in 0..SIZE[0] {
+            let mut sum = [0_u32; 3];
+            for (dx, dy) in (0..SAMPLES).flat_map(|dy| (0..SAMPLES).map(move |dx| (dx, dy))) {
+                let pixel = at(x * SAMPLES + dx, y * SAMPLES + dy);
+                sum.iter_mut().zip(pixel).for_each(|(sum, v)| *sum += u32::from(v));
+            }
+            bytes.extend(sum.map(|sum| (sum / (SAMPLES * SAMPLES)) as u8));
+            bytes.push(255);
+        }
+    }
+    Some(ColorImage::from_rgba_premultiplied(SIZE.map(|side| side as usize), &bytes))
+}
+
+/// The lane: in each slot the picture that is nearest to its middle.
+pub(super) fn lane(
+    ui: &Ui,
+    lane: Rect,
+    scale: Scale,
+    zoom: Zoom,
+    duration: f64,
+    thumbs: &[(f64, TextureId)],
+) {
+    let painter = ui.painter_at(lane);
+    painter.rect_filled(lane, 2.0, theme::PAGE);
+    let each = slot_secs(zoom, duration, lane.width());
+    for middle in slots(zoom, duration, lane.width()) {
+        let off = |thumb: &&(f64, TextureId)| (thumb.0 - middle).abs();
+        let near = thumbs.iter().min_by(|a, b| off(a).total_cmp(&off(b)));
+        let Some((_, texture)) = near.filter(|thumb| off(thumb) <= 0.75 * each) else { continue };
+        let size = vec2(SIZE[0] as f32, SIZE[1] as f32);
+        let place = Rect::from_center_size(pos2(scale.x(middle), lane.center().y), size);
+        let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+        painter.image(*texture, place, whole, Color32::WHITE);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slots_fill_the_lane_and_stay_inside_the_dance() {
+        for (duration, width) in [(9.6, 1200.0), (0.001, 40.0), (36_000.0, 900.0), (2.0, 0.0)] {
+            let slots = slots(Zoom::default(), duration, width);
+            let each = slot_secs(Zoom::default(), duration, width);
+            assert!(!slots.is_empty() && slots.len() <= 65, "{duration} {width}: {}", slots.len());
+            assert!(slots.iter().all(|secs| (0.0..duration).contains(secs)));
+            assert!(slots.windows(2).all(|pair| (pair[1] - pair[0] - each).abs() < 1e-9 * duration));
+        }
+    }
+
+    #[test]
+    fn a_small_picture_is_the_mean_of_the_middle() {
+        // Left half red, right half blue; the upper and lower edge, which are cut, green.
+        let (width, height) = (128, 128);
+        let pixel = |i: u32| match (i % width, i / width) {
+            (_, y) if !(28..100).contains(&y) => [0, 255, 0, 255],
+            (x, _) if x < 64 => [200, 0, 0, 255],
+            _ => [0, 0, 100, 255],
+        };
+        let rgba = (0..width * height).flat_map(pixel).collect();
+        let image = small(&Picture { width, height, rgba }).expect("a picture");
+        assert_eq!(image.size, [64, 36]);
+        assert!(image.pixels.iter().all(|pixel| pixel.g() == 0), "the edges are cut");
+        assert_eq!((image.pixels[0].r(), image.pixels[63].b()), (200, 100));
+        assert!(small(&Picture::default()).is_none());
+    }
+}

@@ -1,0 +1,283 @@
+//! A film that goes round: the body of a looping clip is where it was after one round, and its hair is not. The hair at the
+//! end of the film therefore goes over into the hair as it was one round before, which is what the first frame goes on from.
+
+use std::ops::{ControlFlow, Range};
+use std::sync::Arc;
+
+use lovelock_groom::GuideFrame;
+use lovelock_record::mix_guides;
+
+use super::Progress;
+use super::prepare::tell;
+use crate::{Engine, FrameClock, FrameSnapshot, Scene, StudioError, TakePlayer};
+
+/// How long hair goes over, seconds, and the most of a round.
+const FADE_SECS: f64 = 0.75;
+const MOST_OF_ROUND: f64 = 0.4;
+
+/// How far the head may be from where it was one round before, metres: hair is then mixed on one head.
+const SAME_PLACE_M: f32 = 1e-3;
+
+/// How far over the hair is, 0 to 1, `left_secs` before the round ends.
+fn share(left_secs: f64, fade_secs: f64) -> f64 {
+    let u = (1.0 - left_secs / fade_secs.max(1e-9)).clamp(0.0, 1.0);
+    u * u * (3.0 - 2.0 * u)
+}
+
+fn fade_secs(round_secs: f64) -> f64 {
+    FADE_SECS.min(MOST_OF_ROUND * round_secs)
+}
+
+/// The snapshot with its hair gone over by `share` into `before`.
+fn mixed(now: &Arc<FrameSnapshot>, before: &GuideFrame, share: f64) -> Arc<FrameSnapshot> {
+    let mut snapshot = FrameSnapshot::clone(now);
+    mix_guides(&now.guides, before, share, &mut snapshot.guides);
+    // The head is the body's, to the last bit.
+    snapshot.guides.world_from_head = now.guides.world_from_head;
+    Arc::new(snapshot)
+}
+
+/// One round of a simulation, of which the hair of the last frames is kept.
+pub(crate) struct Seam {
+    frames: Range<u64>,
+    frame_secs: f64,
+    fade_secs: f64,
+    /// Hair of the round before at the frames that go over, the last ones of the round.
+    before: Vec<GuideFrame>,
+}
+
+impl Seam {
+    /// Frames of a scene that are one round, or some.
+    ///
+    /// # Errors
+    /// A motion that does not loop, and frames that are no whole rounds of it.
+    pub(super) fn of(scene: &Scene, frames: &Range<u64>, frame_secs: f64) -> Result<Self, StudioError> {
+        if !scene.loops_smoothly() {
+            return Err(StudioError::option(
+                "a seamless loop: the dance does not go over into its start; let it loop, with a loop blend",
+            ));
+        }
+        let (count, round) = (frames.end - frames.start, scene.duration_secs());
+        let length = count as f64 * frame_secs;
+        let rounds = if round > 0.0 { (length / round).round() } else { 1.0 };
+        // A round is seldom a whole number of frames; by half of one at most the film is quicker or slower there.
+        if round > 0.0 && (rounds < 1.0 || (length - rounds * round).abs() > 0.5001 * frame_secs) {
+            let whole = (round / frame_secs).round();
+            return Err(StudioError::option(format!(
+                "a seamless loop: frames {}..{} are {length:.2} s, and the dance goes round in {round:.2} s, which are {whole} frames",
+                frames.start, frames.end
+            )));
+        }
+        Ok(Self { frames: frames.clone(), frame_secs, fade_secs: fade_secs(length), before: Vec::new() })
+    }
+
+    /// Frames of a round: the film is of the second one.
+    pub(super) fn frames(&self) -> u64 {
+        self.frames.end - self.frames.start
+    }
+
+    /// Lives through the first round, and keeps the hair of its end.
+    ///
+    /// # Errors
+    /// [`StudioError::Cancelled`].
+    pub(super) fn live_round(
+        &mut self,
+        engine: &mut Engine,
+        clock: &FrameClock,
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<(), StudioError> {
+        let first = self.first_faded();
+        for frame in self.frames.clone() {
+            engine.advance_to_step(clock.step_of_frame(frame));
+            if frame >= first {
+                self.before.push(engine.snapshot().guides.clone());
+            }
+            if frame % 30 == 0 {
+                let (done, total) = (frame - self.frames.start, self.frames());
+                tell(progress, Progress::Simulating { done, total })?;
+            }
+        }
+        Ok(())
+    }
+
+    fn first_faded(&self) -> u64 {
+        let count = (self.fade_secs / self.frame_secs).ceil() as u64;
+        self.frames.end.saturating_sub(count).max(self.frames.start)
+    }
+
+    /// A frame of the second round with its hair gone over.
+    pub(super) fn faded(&self, frame: u64, now: &Arc<FrameSnapshot>) -> Arc<FrameSnapshot> {
+        let before = frame.checked_sub(self.first_faded()).and_then(|i| self.before.get(i as usize));
+        let Some(before) = before else { return Arc::clone(now) };
+        let left = (self.frames.end - frame) as f64 * self.frame_secs;
+        mixed(now, before, share(left, self.fade_secs))
+    }
+}
+
+/// A part of a take that goes round.
+///
+/// All in seconds.
+pub(crate) struct SeamOfTake {
+    end: f64,
+    round: f64,
+    fade: f64,
+}
+
+impl SeamOfTake {
+    /// The part from `start_secs`, `round_secs` long.
+    ///
+    /// # Errors
+    /// A take that does not reach far enough before the part, and a part at whose ends the body stands elsewhere.
+    pub(super) fn of(player: &mut TakePlayer, start_secs: f64, round_secs: f64) -> Result<Self, StudioError> {
+        let fade = fade_secs(round_secs);
+        let name = player.path().display().to_string();
+        if start_secs < fade {
+            return Err(StudioError::option(format!(
+                "a seamless loop: {name} has {start_secs:.2} s before the first frame, and the hair comes from the {fade:.2} s before it"
+            )));
+        }
+        let end_secs = start_secs + round_secs;
+        for secs in [end_secs - fade, end_secs - 0.5 * fade, end_secs] {
+            let now = player.snapshot(secs)?.guides.world_from_head.translation;
+            let before = player.snapshot(secs - round_secs)?.guides.world_from_head.translation;
+            let off = now.distance(before);
+            if off > SAME_PLACE_M {
+                return Err(StudioError::option(format!(
+                    "a seamless loop: at {secs:.2} s of {name} the head is {:.0} mm from where it was {round_secs:.2} s before; \
+                     the frames have to be one round of the dance",
+                    1e3 * off
+                )));
+            }
+        }
+        Ok(Self { end: end_secs, round: round_secs, fade })
+    }
+
+    /// The instant `secs` after the take's start.
+    ///
+    /// # Errors
+    /// As [`TakePlayer::snapshot`].
+    pub(super) fn snapshot(
+        &self,
+        player: &mut TakePlayer,
+        secs: f64,
+    ) -> Result<Arc<FrameSnapshot>, StudioError> {
+        let left = self.end - secs;
+        if left >= self.fade {
+            return player.snapshot(secs);
+        }
+        let before = player.snapshot(secs - self.round)?.guides.clone();
+        let now = player.snapshot(secs)?;
+        if before.guides.points_per_guide != now.guides.guides.points_per_guide
+            || before.guides.count() != now.guides.guides.count()
+        {
+            return Ok(now);
+        }
+        Ok(mixed(&now, &before, share(left, self.fade)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::super::dance::Dance;
+    use super::*;
+    use crate::session::tests::small_project;
+    use crate::{Access, Project, RecordRequest, record_take};
+
+    fn go_on(_: Progress) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+
+    /// A dance of a second in a wind that is not the same twice.
+    fn windy() -> Project {
+        let mut project = small_project();
+        (project.motion.start_secs, project.motion.end_secs) = (1.0, Some(2.5));
+        (project.simulation.wind.speed, project.simulation.wind.gusts) = (6.0, 1.0);
+        project.simulation.wind.turbulence = 1.0;
+        project
+    }
+
+    /// Hair of frames, in the space of the head.
+    fn hair(dance: &mut Dance, frames: Range<u64>) -> Vec<Vec<Vec3>> {
+        dance.begin(frames.start, &mut go_on).expect("a dance");
+        let points = |frame| {
+            let snapshot = dance.snapshot(frame).expect("a frame");
+            let (guides, head) = (&snapshot.guides.guides, snapshot.guides.world_from_head.inverse());
+            let points = (0..guides.x.len()).map(|i| Vec3::new(guides.x[i], guides.y[i], guides.z[i]));
+            points.map(|p| head.transform_point3(p)).collect()
+        };
+        frames.map(points).collect()
+    }
+
+    /// Mean distance of hair, metres.
+    fn off(a: &[Vec3], b: &[Vec3]) -> f32 {
+        a.iter().zip(b).map(|(a, b)| a.distance(*b)).sum::<f32>() / a.len() as f32
+    }
+
+    fn opened(project: &Project) -> Dance {
+        Dance::open(project, &Access::new(), 30.0, &mut go_on).expect("a dance").0
+    }
+
+    #[test]
+    fn a_round_of_a_simulation_ends_where_it_began() {
+        let project = windy();
+        let frames = 0..opened(&project).frames();
+        let n = frames.end as usize;
+        let free = hair(&mut opened(&project), 0..2 * frames.end);
+        let mut closed = opened(&project);
+        closed.close(&frames).expect("a round");
+        let film = hair(&mut closed, frames.clone());
+        assert!(
+            film[0] == free[n] && film[n / 2] == free[n + n / 2],
+            "before the fade it is the second round"
+        );
+        // From its last frame to its first it goes as far as it went there one round before. The last frame is a hundredth
+        // short of the end of the fade, which is a few hundredths of that way.
+        let (seam, natural) = (off(&film[n - 1], &film[0]), off(&free[n - 1], &free[n]));
+        assert!((seam - natural).abs() < 0.05 * natural, "{seam} at the seam, {natural} one round before");
+        // The control: without it hair jumps.
+        let jump = off(&free[2 * n - 1], &free[n]);
+        assert!(jump > 1.5 * natural, "{jump} without, {natural} one round before");
+        // It goes over evenly: no frame of the fade goes farther than those beside it would let it.
+        let most = film.windows(2).map(|pair| off(&pair[0], &pair[1])).fold(0.0, f32::max);
+        let free_most = free[n..].windows(2).map(|pair| off(&pair[0], &pair[1])).fold(0.0, f32::max);
+        assert!(most < 1.2 * free_most, "{most} against {free_most}");
+        let refused = opened(&project).close(&(0..frames.end - 5)).expect_err("no whole round");
+        assert!(refused.to_string().contains("goes round in"), "{refused}");
+        let mut once = project;
+        once.motion.looping = false;
+        assert!(opened(&once).close(&frames).is_err());
+    }
+
+    #[test]
+    fn a_round_of_a_take_ends_where_it_began_and_needs_the_time_before_it() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let mut project = windy();
+        let round = opened(&project).frames();
+        let out = folder.path().join("windy.take");
+        let frames = Some(0..2 * round + 20);
+        let request = RecordRequest { out: out.clone(), frames, fps: Some(30.0), ..RecordRequest::default() };
+        record_take(&project, &request, &mut go_on).expect("a take");
+        project.set_take(&out);
+        let mut access = Access::new();
+        access.pick(&out);
+        let opened = || Dance::open(&project, &access, 30.0, &mut go_on).expect("a take").0;
+        let start = 26;
+        let frames = start..start + round;
+        let (n, first) = (round as usize, start as usize);
+        let free = hair(&mut opened(), 0..start + round);
+        let mut closed = opened();
+        closed.close(&frames).expect("a round");
+        let film = hair(&mut closed, frames);
+        assert!(film[0] == free[first] && film[n / 2] == free[first + n / 2]);
+        let (seam, natural) = (off(&film[n - 1], &film[0]), off(&free[first - 1], &free[first]));
+        assert!((seam - natural).abs() < 0.05 * natural, "{seam} at the seam, {natural} one round before");
+        let jump = off(&free[first + n - 1], &free[first]);
+        assert!(jump > 1.5 * natural, "{jump} without, {natural} one round before");
+        let early = opened().close(&(2..2 + round)).expect_err("no time before it");
+        assert!(early.to_string().contains("before the first frame"), "{early}");
+        let other = opened().close(&(start..start + round - 6)).expect_err("the body is elsewhere");
+        assert!(other.to_string().contains("mm from where it was"), "{other}");
+    }
+}
