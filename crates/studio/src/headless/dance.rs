@@ -3,6 +3,9 @@
 use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
 
+use lovelock_motion::{pose_at, skin};
+use lovelock_record::{TakeAsset, TakeFrame};
+
 use super::Progress;
 use super::prepare::{load, simulate_to, tell};
 use crate::{
@@ -13,7 +16,14 @@ use crate::{
 /// A dance, frame by frame.
 pub(crate) enum Dance {
     /// The window's engine with a fixed clock; made when the first frame is asked for.
-    Simulated { scene: Arc<Scene>, project: Box<Project>, clock: FrameClock, engine: Option<Box<Engine>> },
+    Simulated {
+        scene: Arc<Scene>,
+        project: Box<Project>,
+        clock: FrameClock,
+        engine: Option<Box<Engine>>,
+        /// Where instants between two steps are asked for: the last steps.
+        steps: Option<Box<Steps>>,
+    },
     /// A take: nothing is simulated.
     Taken { player: Box<TakePlayer>, fps: f64 },
 }
@@ -36,6 +46,7 @@ impl Dance {
                 project: Box::new(project.clone()),
                 clock: FrameClock::new(fps),
                 engine: None,
+                steps: None,
             };
             return Ok((dance, problems));
         };
@@ -67,6 +78,14 @@ impl Dance {
         }
     }
 
+    /// When a frame is, seconds.
+    pub(crate) fn secs_of(&self, frame: u64) -> f64 {
+        match self {
+            Self::Simulated { clock, .. } => clock.time_of_frame(frame),
+            Self::Taken { fps, .. } => frame as f64 / fps,
+        }
+    }
+
     /// Refuses frames that there are not. A simulation goes on for ever.
     ///
     /// # Errors
@@ -85,22 +104,20 @@ impl Dance {
         }
     }
 
-    /// Lives through the frames before `frame`, so that it is the same whatever is recorded.
+    /// Lives through the time before `first_secs`, so that a frame is the same whatever is recorded.
     ///
     /// # Errors
     /// [`StudioError::Cancelled`].
     pub(crate) fn begin(
         &mut self,
-        frame: u64,
+        first_secs: f64,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<(), StudioError> {
-        if let Self::Simulated { scene, project, clock, engine } = self {
-            let mut made =
-                Box::new(Engine::with_step(Arc::clone(scene), project.simulation, clock.step_secs));
-            made.follow(project);
-            simulate_to(&mut made, clock.step_of_frame(frame), progress)?;
+        if let Self::Simulated { scene, project, clock, engine, steps } = self {
+            let mut made = engine_of(scene, project, clock);
+            simulate_to(&mut made, step_before(first_secs, clock).0, progress)?;
             made.clear_totals();
-            *engine = Some(made);
+            (*engine, *steps) = (Some(made), None);
         }
         Ok(())
     }
@@ -111,16 +128,38 @@ impl Dance {
     /// A take whose frames there are damaged.
     pub(crate) fn snapshot(&mut self, frame: u64) -> Result<Arc<FrameSnapshot>, StudioError> {
         match self {
-            Self::Simulated { scene, project, clock, engine } => {
-                let engine = engine.get_or_insert_with(|| {
-                    let mut made = Engine::with_step(Arc::clone(scene), project.simulation, clock.step_secs);
-                    made.follow(project);
-                    Box::new(made)
-                });
+            Self::Simulated { scene, project, clock, engine, .. } => {
+                let engine = engine.get_or_insert_with(|| engine_of(scene, project, clock));
                 engine.advance_to_step(clock.step_of_frame(frame));
                 Ok(engine.snapshot())
             }
             Self::Taken { player, fps } => player.snapshot(frame as f64 / *fps),
+        }
+    }
+
+    /// The instant at a time, seconds; of a simulation, after [`Dance::begin`] and in rising order. Between two steps of it hair is
+    /// interpolated as between two frames of a take.
+    ///
+    /// # Errors
+    /// As [`Dance::snapshot`].
+    pub(crate) fn snapshot_at(&mut self, secs: f64) -> Result<Arc<FrameSnapshot>, StudioError> {
+        match self {
+            Self::Simulated { scene, project, clock, engine, steps } => {
+                let engine = engine.get_or_insert_with(|| engine_of(scene, project, clock));
+                let (step, t) = step_before(secs, clock);
+                let steps = steps.get_or_insert_default();
+                steps.bring(engine, step + u64::from(t > 0.0));
+                Ok(steps.between(engine, scene, step, t))
+            }
+            Self::Taken { player, .. } => player.snapshot(secs),
+        }
+    }
+
+    /// The files that a take was made from.
+    pub(crate) fn take_assets(&self) -> &[TakeAsset] {
+        match self {
+            Self::Simulated { .. } => &[],
+            Self::Taken { player, .. } => &player.header().assets,
         }
     }
 
@@ -153,5 +192,66 @@ impl Dance {
             Self::Simulated { clock, .. } => clock.steps_per_frame,
             Self::Taken { .. } => 0,
         }
+    }
+}
+
+/// A simulation at its first frame.
+fn engine_of(scene: &Arc<Scene>, project: &Project, clock: &FrameClock) -> Box<Engine> {
+    let mut made = Box::new(Engine::with_step(Arc::clone(scene), project.simulation, clock.step_secs));
+    made.follow(project);
+    made
+}
+
+/// The step at or before a time, and how far on to the next one it is, 0 to 1.
+fn step_before(secs: f64, clock: &FrameClock) -> (u64, f64) {
+    let steps = (secs / clock.step_secs).max(0.0);
+    // A hair's breadth beside a step is the step.
+    let (step, t) = ((steps + 1e-6).floor(), steps - (steps + 1e-6).floor());
+    (step as u64, if t < 1e-6 { 0.0 } else { t })
+}
+
+/// The last two steps of a simulation.
+#[derive(Default)]
+pub(crate) struct Steps {
+    before: TakeFrame,
+    /// The engine's present step.
+    now: TakeFrame,
+    /// Which one that is.
+    at: Option<u64>,
+    mixed: TakeFrame,
+}
+
+impl Steps {
+    /// Goes on to a step, one by one, so that the one before it is known.
+    fn bring(&mut self, engine: &mut Engine, step: u64) {
+        let mut at = self.at.unwrap_or_else(|| {
+            engine.advance_to_step(step.saturating_sub(1));
+            engine.take_frame(&mut self.now);
+            (engine.time_secs() / engine.step_secs()).round() as u64
+        });
+        while at < step {
+            at += 1;
+            engine.advance_to_step(at);
+            std::mem::swap(&mut self.before, &mut self.now);
+            engine.take_frame(&mut self.now);
+        }
+        self.at = Some(at);
+    }
+
+    /// The instant `t` after `step`, which is the last one or the one before it.
+    fn between(&mut self, engine: &mut Engine, scene: &Arc<Scene>, step: u64, t: f64) -> Arc<FrameSnapshot> {
+        let drawn = engine.snapshot();
+        if t == 0.0 && self.at == Some(step) {
+            return drawn;
+        }
+        let clip_secs = scene.clip.as_ref().map_or(0.0, |clip| clip.duration_secs);
+        self.mixed.set_between(&self.before, &self.now, t, clip_secs);
+        let mut snapshot = FrameSnapshot::clone(&drawn);
+        pose_at(&scene.body, scene.clip.as_deref(), self.mixed.clip_secs, &mut snapshot.pose);
+        skin(&scene.body, &snapshot.pose, &mut snapshot.skin);
+        snapshot.time_secs = self.mixed.guides.time_secs;
+        snapshot.position_secs = scene.position_secs(snapshot.time_secs);
+        snapshot.guides.clone_from(&self.mixed.guides);
+        Arc::new(snapshot)
     }
 }
