@@ -30,8 +30,7 @@ impl Window {
                     self.notices.tell(notices::Kind::Failed, format!("Recording: {why}"));
                 }
                 panels::recording::State::Cancelled => {
-                    self.notices
-                        .tell(notices::Kind::Done, panels::recording::CANCELLED);
+                    self.notices.tell(notices::Kind::Done, panels::recording::CANCELLED);
                 }
                 panels::recording::State::Idle | panels::recording::State::Running { .. } => {}
             }

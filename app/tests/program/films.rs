@@ -25,7 +25,18 @@ fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
 #[test]
 fn exr_files_blur_and_clear_backgrounds_are_told_in_the_report() {
     let dir = folder();
-    let more = ["x", "--frames", "3..5", "--format", "exr", "--transparent", "--motion-blur", "3", "--shutter", "90"];
+    let more = [
+        "x",
+        "--frames",
+        "3..5",
+        "--format",
+        "exr",
+        "--transparent",
+        "--motion-blur",
+        "3",
+        "--shutter",
+        "90",
+    ];
     let json = run(dir.path(), RECORD.iter().chain(&more)).done().json();
     assert_eq!((&json["format"], &json["transparent"]), (&"exr".into(), &true.into()));
     assert_eq!((&json["motion_blur"], &json["shutter_degrees"]), (&3.into(), &90.0.into()));
@@ -36,7 +47,9 @@ fn exr_files_blur_and_clear_backgrounds_are_told_in_the_report() {
     assert_eq!(bytes[..4], [0x76, 0x2f, 0x31, 0x01]);
     let film = run(dir.path(), RECORD.iter().chain(&["a.mp4", "--frames", "0..1", "--transparent"]));
     assert!(film.refused(2).contains("no alpha"), "{film:?}");
-    for (option, value) in [("--motion-blur", "65"), ("--shutter", "-1"), ("--shutter", "nan"), ("--format", "tiff")] {
+    for (option, value) in
+        [("--motion-blur", "65"), ("--shutter", "-1"), ("--shutter", "nan"), ("--format", "tiff")]
+    {
         let ran = run(dir.path(), RECORD.iter().chain(&["y", option, value]));
         assert_eq!(ran.code, Some(2), "{ran:?}");
         assert!(ran.stderr.contains(value), "{ran:?}");
@@ -47,7 +60,8 @@ fn exr_files_blur_and_clear_backgrounds_are_told_in_the_report() {
 #[test]
 fn a_recording_that_was_killed_goes_on_to_the_same_bytes() {
     let dir = folder();
-    let more = |out: &'static str| [out, "--frames", "0..40", "--size", "200x150", "--motion-blur", "2", "--resume"];
+    let more =
+        |out: &'static str| [out, "--frames", "0..40", "--size", "200x150", "--motion-blur", "2", "--resume"];
     run(dir.path(), RECORD.iter().chain(&more("whole"))).done();
     let mut child = lovelock()
         .current_dir(dir.path())
@@ -137,6 +151,7 @@ fn ranges_beyond_a_take_are_refused_with_what_it_holds() {
     }
     assert!(!dir.path().join("x").exists());
     // Sub-frames past the last one show the last one.
-    let more = ["record", "d.take", "-o", "x", "--frames", "11..12", "--motion-blur", "4", "--shutter", "360"];
+    let more =
+        ["record", "d.take", "-o", "x", "--frames", "11..12", "--motion-blur", "4", "--shutter", "360"];
     run(dir.path(), more.iter().chain(&["--backend", "cpu", "--json"])).done();
 }

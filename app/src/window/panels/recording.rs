@@ -107,10 +107,14 @@ fn pictures(ui: &mut Ui, section: &mut RecordingSection, d: &RecordingSection) {
         &mut section.subframes,
         d.subframes,
     );
-    Number::new("Shutter", 0.0..=360.0, "How long the shutter is open for motion blur: 360° is all of a frame.")
-        .unit("°", 1.0)
-        .decimals(0)
-        .show(ui, &mut section.shutter_degrees, d.shutter_degrees);
+    Number::new(
+        "Shutter",
+        0.0..=360.0,
+        "How long the shutter is open for motion blur: 360° is all of a frame.",
+    )
+    .unit("°", 1.0)
+    .decimals(0)
+    .show(ui, &mut section.shutter_degrees, d.shutter_degrees);
     toggle(
         ui,
         "Label",

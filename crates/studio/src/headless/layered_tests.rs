@@ -243,10 +243,7 @@ fn what_cannot_be_is_refused_with_words() {
         (RecordRequest { shutter_degrees: Some(f32::NAN), ..request(&at("x")) }, "wanted 0 to 360"),
         (RecordRequest { format: exr, ..request(&at("x.mp4")) }, "EXR files need a folder"),
         (RecordRequest { size: Some((63, 47)), ..request(&at("x.mp4")) }, "such as 62x46"),
-        (
-            RecordRequest { format: exr, panes: Some(sheet), ..request(&at("x")) },
-            "panes beside each other",
-        ),
+        (RecordRequest { format: exr, panes: Some(sheet), ..request(&at("x")) }, "panes beside each other"),
     ] {
         let error = refused(&small_project(), &wrong);
         assert!(error.contains(said), "{error}");
