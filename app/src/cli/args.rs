@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{Args, Parser, Subcommand};
-use lovelock_studio::recording::FilmQuality;
+use lovelock_studio::RecordingSection;
+use lovelock_studio::recording::{FilmQuality, SequenceFormat};
 use lovelock_studio::render::{Backend, ShadowMethod, Transparency};
 
 /// Hair styled, simulated, shadowed and judged live. Opens the window where no command is given.
@@ -62,11 +63,12 @@ pub(crate) struct SourceArguments {
 }
 
 #[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch by itself")]
 pub(crate) struct Record {
     #[command(flatten)]
     pub(crate) source: SourceArguments,
     /// Where it goes: a name ending in `.mp4` is a film, in `.apng` a small animated preview, in `.take` the simulation
-    /// alone, any other a folder of PNG files with a manifest.
+    /// alone, any other a folder of PNG or EXR files with a manifest.
     #[arg(short, long, value_name = "OUT")]
     pub(crate) out: PathBuf,
     /// Frames to record, half open, such as 0..240; the whole clip where none are given.
@@ -101,6 +103,24 @@ pub(crate) struct Record {
     /// A take to be shown beside the project, at the same time; up to five.
     #[arg(long, value_name = "TAKE")]
     pub(crate) beside: Vec<PathBuf>,
+    /// What the files of a folder are: png (as the screen shows it), or exr (linear half floats with depth and the light that
+    /// reaches the hair); the project's choice where none is given.
+    #[arg(long, value_name = "ID", value_parser = format)]
+    pub(crate) format: Option<SequenceFormat>,
+    /// Leave background and ground out: alpha says what hair and body cover. Not in a film (.mp4), which has no alpha.
+    #[arg(long)]
+    pub(crate) transparent: bool,
+    /// Blur what moves: each frame is the mean of N pictures while the shutter is open, 1 (none) to 64.
+    #[arg(long, value_name = "N",
+        value_parser = clap::value_parser!(u32).range(1..=i64::from(RecordingSection::MOST_SUBFRAMES)))]
+    pub(crate) motion_blur: Option<u32>,
+    /// How long the shutter is open, degrees of 360 a frame, centred on the frame; 180 where the project says nothing else.
+    #[arg(long, value_name = "DEGREES", value_parser = degrees)]
+    pub(crate) shutter: Option<f32>,
+    /// Go on with the sequence in the folder: frames of it that are whole are kept, the rest is drawn. Refused where the
+    /// project, its files, the size or another setting has changed since.
+    #[arg(long)]
+    pub(crate) resume: bool,
 }
 
 #[derive(Debug, Args)]
@@ -230,6 +250,21 @@ fn quality(text: &str) -> Result<FilmQuality, String> {
         let known: Vec<_> = FilmQuality::ALL.iter().map(|quality| quality.id()).collect();
         format!("expected one of {}", known.join(", "))
     })
+}
+
+/// What the files of a folder are, by id.
+fn format(text: &str) -> Result<SequenceFormat, String> {
+    SequenceFormat::ALL.into_iter().find(|format| format.id() == text).ok_or_else(|| {
+        let known: Vec<_> = SequenceFormat::ALL.iter().map(|format| format.id()).collect();
+        format!("expected one of {}", known.join(", "))
+    })
+}
+
+fn degrees(text: &str) -> Result<f32, String> {
+    f32::from_str(text)
+        .ok()
+        .filter(|degrees| (0.0..=360.0).contains(degrees))
+        .ok_or_else(|| format!("`{text}` is no angle of a shutter: expected degrees from 0 to 360"))
 }
 
 fn rate(text: &str) -> Result<f64, String> {

@@ -3,12 +3,13 @@
 use std::io::IsTerminal;
 
 use indicatif::{ProgressBar, ProgressStyle};
-use lovelock_studio::Progress;
+use lovelock_studio::{Pace, Progress};
 
 /// Progress on standard error: a bar on a terminal, plain lines elsewhere.
 pub(super) struct Bar {
     drawn: Option<ProgressBar>,
     said: u64,
+    pace: Pace,
     /// The part of a comparison that was told last.
     part: String,
 }
@@ -16,11 +17,11 @@ pub(super) struct Bar {
 impl Bar {
     pub(super) fn new() -> Self {
         let bar = std::io::stderr().is_terminal().then(|| {
-            let style = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} {eta} left")
+            let style = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}{prefix}")
                 .unwrap_or_else(|_| ProgressStyle::default_bar());
             ProgressBar::new(1).with_style(style)
         });
-        Self { drawn: bar, said: 0, part: String::new() }
+        Self { drawn: bar, said: 0, pace: Pace::default(), part: String::new() }
     }
 
     pub(super) fn show(&mut self, progress: &Progress) {
@@ -34,6 +35,7 @@ impl Bar {
             }
             Progress::Simulating { done, total } => ("simulating", *done, *total),
             Progress::Frame { done, total } => ("frame", *done, *total),
+            Progress::Kept { done, total } => ("kept", *done, *total),
             Progress::Comparing { what, done, total } => {
                 if self.drawn.is_none() && self.part != *what {
                     eprintln!("{what} ({done} of {total})");
@@ -43,7 +45,11 @@ impl Bar {
             }
             Progress::Finishing => ("finishing", 1, 1),
         };
+        // Told from what was done at the same work: frames that are there already take no time.
+        let left = self.pace.left_secs(what, done, total);
+        let left = left.map_or_else(String::new, |secs| format!(", {} left", Pace::in_words(secs)));
         if let Some(bar) = &self.drawn {
+            bar.set_prefix(left);
             bar.set_length(total.max(1));
             bar.set_position(done);
             bar.set_message(what.to_owned());
@@ -53,7 +59,7 @@ impl Bar {
         let tenth = (20 * done).checked_div(total).unwrap_or(0);
         if matches!(progress, Progress::Frame { .. }) && tenth != self.said {
             self.said = tenth;
-            eprintln!("{what} {done} of {total}");
+            eprintln!("{what} {done} of {total}{left}");
         }
     }
 

@@ -22,6 +22,11 @@ pub(crate) fn run(task: &Record, output: Output) -> Result<(), StudioError> {
         quality: task.quality,
         label: task.label,
         seamless: task.seamless,
+        format: task.format,
+        transparent: task.transparent,
+        motion_blur: task.motion_blur,
+        shutter_degrees: task.shutter,
+        resume: task.resume,
         backend: task.backend,
         panes,
         access: std::mem::take(&mut scene.access),
@@ -41,8 +46,12 @@ fn summary(report: &RecordReport) -> String {
         .map(|&stage| format!("{} {:.2}", stage.label().to_lowercase(), report.stage_ms.get(stage)))
         .collect::<Vec<_>>()
         .join(", ");
+    let kept = match report.frames_kept {
+        0 => String::new(),
+        kept => format!(" ({kept} of them were there)"),
+    };
     format!(
-        "{}: {} frames of {}x{} at {} a second, {} strands, {} segments\n\
+        "{}: {} frames of {}x{} at {} a second{kept}, {} strands, {} segments\n\
          {:.1} ms a frame on {} ({stages})\n\
          largest stretch {:.1e}, deepest in the body {:.2} mm, {} guides put back",
         report.out.display(),

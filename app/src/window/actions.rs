@@ -289,10 +289,11 @@ impl Window {
             Purpose::Open => self.open_any(path),
             Purpose::Beside => self.compare_with(path),
             Purpose::SaveProject => self.save_to(path),
-            Purpose::Film | Purpose::Sequence => {
+            Purpose::Film | Purpose::Sequence | Purpose::Preview | Purpose::Resume => {
                 let access = self.session.access().clone();
                 let panes = self.layout.compare.shown.then(|| self.layout.compare.sheet());
-                self.recorder.start(self.history.project().clone(), access, path, panes, ctx);
+                let resume = purpose == Purpose::Resume;
+                self.recorder.start(self.history.project().clone(), access, path, panes, resume, ctx);
             }
             Purpose::Picture if self.layout.compare.shown => self.save_panes(path, ctx),
             Purpose::Picture => {

@@ -30,8 +30,7 @@ impl Window {
                     self.notices.tell(notices::Kind::Failed, format!("Recording: {why}"));
                 }
                 panels::recording::State::Cancelled => {
-                    self.notices
-                        .tell(notices::Kind::Done, "The recording was cancelled; nothing of it is left.");
+                    self.notices.tell(notices::Kind::Done, panels::recording::CANCELLED);
                 }
                 panels::recording::State::Idle | panels::recording::State::Running { .. } => {}
             }
@@ -252,6 +251,8 @@ impl Window {
         match recording {
             Some(panels::recording::Ask::Film) => self.ask(Purpose::Film),
             Some(panels::recording::Ask::Sequence) => self.ask(Purpose::Sequence),
+            Some(panels::recording::Ask::Preview) => self.ask(Purpose::Preview),
+            Some(panels::recording::Ask::Resume) => self.ask(Purpose::Resume),
             Some(panels::recording::Ask::Cancel) => self.run(lovelock_studio::Command::Record, ctx),
             None => {}
         }
@@ -393,13 +394,16 @@ impl Window {
                 .unwrap_or_else(|| folder.join("hair").with_extension(PROJECT_EXTENSION)),
             Purpose::Film if self.layout.compare.shown => folder.join("out").join("comparison.mp4"),
             Purpose::Film => folder.join("out").join("dance.mp4"),
-            Purpose::Sequence => folder.join("out").join("frames"),
+            Purpose::Sequence | Purpose::Resume => folder.join("out").join("frames"),
+            Purpose::Preview => folder.join("out").join("dance.apng"),
             Purpose::Picture if self.layout.compare.shown => folder.join("comparison.png"),
             Purpose::Picture => folder.join("hair.png"),
         };
         let dialog = PathDialog::new(purpose, &suggestion);
         self.dialog = Some(match purpose {
-            Purpose::Film | Purpose::Sequence => dialog.about(self.recording_in_words()),
+            Purpose::Film | Purpose::Sequence | Purpose::Preview | Purpose::Resume => {
+                dialog.about(self.recording_in_words())
+            }
             Purpose::Open | Purpose::Beside | Purpose::SaveProject | Purpose::Picture => dialog,
         });
     }

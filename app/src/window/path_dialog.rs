@@ -21,6 +21,10 @@ pub(crate) enum Purpose {
     Film,
     /// Record a folder of pictures.
     Sequence,
+    /// Record an animated preview.
+    Preview,
+    /// Go on with a folder of pictures.
+    Resume,
     /// Save the picture in the viewport.
     Picture,
 }
@@ -40,6 +44,8 @@ impl Purpose {
             Self::SaveProject => "Save the project",
             Self::Film => "Record a film",
             Self::Sequence => "Record pictures into a folder",
+            Self::Preview => "Record an animated preview",
+            Self::Resume => "Go on with the pictures in a folder",
             Self::Picture => "Save the picture",
         }
     }
@@ -49,16 +55,18 @@ impl Purpose {
             Self::Open => "Open file",
             Self::Beside => "Compare",
             Self::SaveProject | Self::Picture => "Save file",
-            Self::Film | Self::Sequence => "Start recording",
+            Self::Film | Self::Sequence | Self::Preview => "Start recording",
+            Self::Resume => "Go on recording",
         }
     }
 
     /// The extension that is added where none is given.
     fn extension(self) -> Option<&'static str> {
         match self {
-            Self::Open | Self::Beside | Self::Sequence => None,
+            Self::Open | Self::Beside | Self::Sequence | Self::Resume => None,
             Self::SaveProject => Some(PROJECT_EXTENSION),
             Self::Film => Some("mp4"),
+            Self::Preview => Some("apng"),
             Self::Picture => Some("png"),
         }
     }
@@ -139,7 +147,8 @@ impl PathDialog {
                 ui.label(RichText::new(about).color(theme::QUIET));
             }
             let path = self.path();
-            if self.purpose == Purpose::Film && path.as_ref().is_some_and(|path| path.exists()) {
+            let is_file = matches!(self.purpose, Purpose::Film | Purpose::Preview);
+            if is_file && path.as_ref().is_some_and(|path| path.exists()) {
                 ui.label(RichText::new("The film of this name will be replaced.").color(theme::ACCENT));
             }
             ui.horizontal(|ui| {
@@ -189,9 +198,10 @@ impl PathDialog {
         let future: std::pin::Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> = match purpose {
             Purpose::Open => Box::pin(dialog.add_filter("Lovelock reads", &READABLE).pick_file()),
             Purpose::Beside => Box::pin(dialog.add_filter("Take", &["take", "part"]).pick_file()),
-            Purpose::Sequence => Box::pin(dialog.pick_folder()),
+            Purpose::Sequence | Purpose::Resume => Box::pin(dialog.pick_folder()),
             Purpose::SaveProject => Box::pin(dialog.add_filter("Project", &[PROJECT_EXTENSION]).save_file()),
             Purpose::Film => Box::pin(dialog.add_filter("Film", &["mp4"]).save_file()),
+            Purpose::Preview => Box::pin(dialog.add_filter("Preview", &["apng"]).save_file()),
             Purpose::Picture => Box::pin(dialog.add_filter("Picture", &["png"]).save_file()),
         };
         let spawned = std::thread::Builder::new().name("file dialog".to_owned()).spawn(move || {

@@ -3,13 +3,13 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use lovelock_studio::{Access, Progress, Project, RecordJob, RecordRequest, Sheet, Stopwatch};
+use lovelock_studio::{Access, Pace, Progress, Project, RecordJob, RecordRequest, Sheet};
 
 use super::panels::recording::State;
 
 /// The recording that runs, if one does, and what became of the last one. Dropping it cancels.
 pub(crate) struct Recorder {
-    running: Option<(RecordJob, Stopwatch)>,
+    running: Option<(RecordJob, Pace)>,
     /// Whether the one that runs was asked to stop.
     cancelled: bool,
     state: State,
@@ -22,26 +22,29 @@ impl Default for Recorder {
 }
 
 impl Recorder {
-    /// Starts to record `project`, or its panes put together, to `out`, unless one runs.
+    /// Starts to record `project`, or its panes put together, to `out`, unless one runs; `resume` goes on with the sequence that
+    /// is there.
     pub(crate) fn start(
         &mut self,
         project: Arc<Project>,
         access: Access,
         out: &Path,
         panes: Option<Sheet>,
+        resume: bool,
         ctx: &egui::Context,
     ) {
         if self.running.is_some() {
             return;
         }
-        let request = RecordRequest { out: out.to_owned(), access, panes, ..RecordRequest::default() };
+        let request =
+            RecordRequest { out: out.to_owned(), access, panes, resume, ..RecordRequest::default() };
         let ctx = ctx.clone();
         match RecordJob::start(project, request, Arc::new(move || ctx.request_repaint())) {
             Ok(job) => {
                 self.state =
                     State::Running { what: "Loading".to_owned(), done: 0, total: 1, left_secs: None };
                 self.cancelled = false;
-                self.running = Some((job, Stopwatch::start()));
+                self.running = Some((job, Pace::default()));
             }
             Err(error) => self.state = State::Failed(error.to_string()),
         }
@@ -62,7 +65,7 @@ impl Recorder {
 
     /// Takes note of what has happened since. Returns the end of a recording once.
     pub(crate) fn update(&mut self) -> Option<&State> {
-        let (job, watch) = self.running.as_mut()?;
+        let (job, pace) = self.running.as_mut()?;
         if let Some(progress) = job.progress() {
             let (what, done, total) = match progress {
                 Progress::Loading { what } => (what, 0, 1),
@@ -71,14 +74,11 @@ impl Recorder {
                     ("Simulating up to the first frame".to_owned(), done, total)
                 }
                 Progress::Frame { done, total } => ("Frame".to_owned(), done, total),
+                Progress::Kept { done, total } => ("Kept".to_owned(), done, total),
                 Progress::Comparing { what, done, total } => (what, done, total),
                 Progress::Finishing => ("Finishing".to_owned(), 1, 1),
             };
-            if matches!(&self.state, State::Running { what: before, .. } if *before != what) {
-                // Time left is told from the frames alone, not from what came before them.
-                *watch = Stopwatch::start();
-            }
-            let left_secs = (done > 0).then(|| watch.secs() / done as f64 * (total - done) as f64);
+            let left_secs = pace.left_secs(&what, done, total);
             self.state = State::Running { what, done, total, left_secs };
         }
         if !job.is_finished() {
@@ -86,7 +86,13 @@ impl Recorder {
         }
         let (job, _) = self.running.take()?;
         self.state = match job.finish() {
-            Ok(report) => State::Done(format!("{} frames in {}", report.frames, report.out.display())),
+            Ok(report) => {
+                let kept = match report.frames_kept {
+                    0 => String::new(),
+                    kept => format!(", {kept} of which were there"),
+                };
+                State::Done(format!("{} frames in {}{kept}", report.frames, report.out.display()))
+            }
             Err(_) if self.cancelled => State::Cancelled,
             Err(error) => State::Failed(error.to_string()),
         };

@@ -2,6 +2,7 @@
 
 mod bench;
 mod compare;
+mod films;
 mod info;
 mod projects;
 mod record;

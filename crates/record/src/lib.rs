@@ -2,7 +2,7 @@
 //!
 //! A picture comes in as 8-bit sRGB, four bytes a pixel (RGBA, row by row from the top), and goes out either as
 //! an H.264 film in an MP4 file ([`FilmWriter`]) or as a folder of PNG files with a manifest
-//! ([`SequenceWriter`]), or as a small animated PNG ([`PreviewWriter`]). [`PictureSink`] is the one type over them; it picks
+//! ([`SequenceWriter`], which writes EXR files of linear light and its layers as well), or as a small animated PNG ([`PreviewWriter`]). [`PictureSink`] is the one type over them; it picks
 //! by the output's name.
 //!
 //! Three promises hold for every film and sequence:
@@ -18,6 +18,7 @@
 //!
 //! [`read_film`] and [`FilmReader`] read a film back without any other program.
 
+mod claim;
 mod error;
 mod film;
 mod manifest;
@@ -38,7 +39,9 @@ pub use manifest::{MANIFEST_NAME, Manifest, ManifestFrame, read_manifest};
 pub use preview::{MOST_PREVIEW_FRAMES, MOST_PREVIEW_SIDE, PreviewReport, PreviewSettings, PreviewWriter};
 pub use rate::FrameRate;
 pub use reader::{FilmInfo, FilmReader, read_film};
-pub use sequence::{SequenceReport, SequenceSettings, SequenceWriter, frame_name};
+pub use sequence::{
+    FrameLayers, SequenceFormat, SequenceReport, SequenceSettings, SequenceWriter, frame_name,
+};
 pub use sink::{OutputKind, PictureSink, SinkReport, SinkSettings};
 pub use still::write_png;
 pub use take::{

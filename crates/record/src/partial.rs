@@ -1,5 +1,6 @@
 //! A file that grows as `NAME.partial` and gets its name when it is whole.
 
+use crate::claim::claim;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -19,14 +20,12 @@ impl Medium for File {
 /// Opens the medium for the path of the unfinished file.
 pub(crate) type Opener = dyn Fn(&Path) -> io::Result<Box<dyn Medium>> + Send + Sync;
 
-/// The opener of every real recording: a new file.
+/// The opener of every real recording: an empty file that no other recording has.
 pub(crate) fn open_file(partial: &Path) -> io::Result<Box<dyn Medium>> {
-    // A crash may have left one behind.
-    match fs::remove_file(partial) {
-        Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
-        _ => {}
-    }
-    Ok(Box::new(File::create_new(partial)?))
+    let file = claim(partial)?;
+    // A crash may have left something behind.
+    file.set_len(0)?;
+    Ok(Box::new(file))
 }
 
 /// An unfinished file. Dropped before [`PartialFile::commit`], it leaves nothing.
@@ -50,8 +49,9 @@ impl PartialFile {
         if durable {
             medium.get_mut().sync()?;
         }
-        self.close();
+        // Before it is closed: no other recording begins with it in between.
         fs::rename(&self.partial, &self.target)?;
+        self.close();
         if durable && let Some(folder) = self.target.parent() {
             // The rename itself lives in the folder. Not every system lets a folder be opened; the file is safe anyway.
             let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
@@ -90,9 +90,12 @@ impl Seek for PartialFile {
 
 impl Drop for PartialFile {
     fn drop(&mut self) {
-        self.close();
-        // After a commit the name is gone already; otherwise this is the cleaning up, and there is no one to tell.
-        let _ = fs::remove_file(&self.partial);
+        // After a commit the name is gone already, and may be another's; otherwise this is the cleaning up, and there is no one
+        // to tell.
+        if self.medium.is_some() {
+            let _ = fs::remove_file(&self.partial);
+            self.close();
+        }
     }
 }
 

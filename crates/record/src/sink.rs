@@ -1,8 +1,8 @@
 //! One type over films and sequences.
 
 use crate::{
-    FilmQuality, FilmReport, FilmSettings, FilmWriter, PreviewReport, PreviewSettings, PreviewWriter,
-    RecordError, SequenceReport, SequenceSettings, SequenceWriter,
+    FilmQuality, FilmReport, FilmSettings, FilmWriter, FrameLayers, PreviewReport, PreviewSettings,
+    PreviewWriter, RecordError, SequenceFormat, SequenceReport, SequenceSettings, SequenceWriter,
 };
 use std::path::Path;
 
@@ -13,7 +13,7 @@ pub enum OutputKind {
     Film,
     /// `.apng`: an animated preview.
     Preview,
-    /// A folder: a PNG sequence with a manifest.
+    /// A folder: a sequence of PNG or EXR files with a manifest.
     Sequence,
 }
 
@@ -43,7 +43,7 @@ impl OutputKind {
             Some(extension) if extension.chars().any(|letter| !letter.is_ascii_digit()) => {
                 Err(RecordError::request(format!(
                     "{}: cannot record to `.{extension}`: wanted a name ending in .mp4 (a film) or .apng (a preview), \
-                     or a folder (a PNG sequence; end it with / if its name holds a dot)",
+                     or a folder (a sequence of pictures; end it with / if its name holds a dot)",
                     path.display()
                 )))
             }
@@ -67,8 +67,12 @@ pub struct SinkSettings {
     pub frames: u64,
     /// How finely a film is coded.
     pub quality: FilmQuality,
+    /// What the files of a sequence are.
+    pub format: SequenceFormat,
     /// Whether a sequence or a preview keeps the alpha channel.
     pub alpha: bool,
+    /// Whether to go on with a sequence that is there.
+    pub resume: bool,
     /// What draws the frames, for a sequence's manifest.
     pub settings: serde_json::Value,
 }
@@ -83,8 +87,32 @@ impl SinkSettings {
             first_frame: 0,
             frames: 1,
             quality: FilmQuality::default(),
+            format: SequenceFormat::default(),
             alpha: false,
+            resume: false,
             settings: serde_json::Value::Null,
+        }
+    }
+}
+
+impl SinkSettings {
+    /// Whether this kind of output can be so.
+    ///
+    /// # Errors
+    /// [`RecordError::Request`] with what it cannot be and what can.
+    pub fn check_kind(&self, kind: OutputKind) -> Result<(), RecordError> {
+        let refuse = |what: &str| Err(RecordError::request(what));
+        match kind {
+            OutputKind::Sequence => Ok(()),
+            OutputKind::Film if self.alpha => refuse(
+                "a film (.mp4) has no transparent background: H.264 keeps no alpha; record a folder of pictures or a \
+                 preview (.apng)",
+            ),
+            _ if self.resume => refuse("only a folder of pictures can be gone on with, not a single file"),
+            _ if self.format == SequenceFormat::Exr => {
+                refuse("EXR files need a folder to lie in, not the name of a film or a preview")
+            }
+            OutputKind::Film | OutputKind::Preview => Ok(()),
         }
     }
 }
@@ -107,6 +135,14 @@ impl SinkReport {
             Self::Film(report) => report.frames,
             Self::Preview(report) => report.frames,
             Self::Sequence(report) => report.frames,
+        }
+    }
+
+    /// Frames of a sequence that were there and are kept.
+    pub fn kept(&self) -> u64 {
+        match self {
+            Self::Film(_) | Self::Preview(_) => 0,
+            Self::Sequence(report) => report.kept,
         }
     }
 
@@ -144,10 +180,24 @@ impl PictureSink {
     /// Starts the output that `path` asks for (see [`OutputKind::of`]), creating missing folders.
     ///
     /// # Errors
-    /// As [`FilmWriter::create`], [`PreviewWriter::create`], [`SequenceWriter::create`] and [`OutputKind::of`].
+    /// As [`FilmWriter::create`], [`PreviewWriter::create`], [`SequenceWriter::create`] and [`OutputKind::of`]; also
+    /// [`RecordError::Request`] for what the kind of output cannot keep: alpha in a film, and going on with one.
     pub fn for_path(path: &Path, settings: SinkSettings) -> Result<Self, RecordError> {
-        let SinkSettings { width, height, fps, first_frame, frames, quality, alpha, settings } = settings;
-        match OutputKind::of(path)? {
+        let kind = OutputKind::of(path)?;
+        settings.check_kind(kind)?;
+        let SinkSettings {
+            width,
+            height,
+            fps,
+            first_frame,
+            frames,
+            quality,
+            format,
+            alpha,
+            resume,
+            settings,
+        } = settings;
+        match kind {
             OutputKind::Film => {
                 FilmWriter::create(path, FilmSettings { width, height, fps, quality }).map(Self::Film)
             }
@@ -156,7 +206,8 @@ impl PictureSink {
                     .map(Self::Preview)
             }
             OutputKind::Sequence => {
-                let settings = SequenceSettings { width, height, fps, first_frame, alpha, settings };
+                let settings =
+                    SequenceSettings { width, height, fps, first_frame, format, alpha, resume, settings };
                 SequenceWriter::create(path, settings).map(Self::Sequence)
             }
         }
@@ -171,6 +222,31 @@ impl PictureSink {
             Self::Film(writer) => writer.push(rgba),
             Self::Preview(writer) => writer.push(rgba),
             Self::Sequence(writer) => writer.push(rgba),
+        }
+    }
+
+    /// Hands over the next frame of EXR files.
+    ///
+    /// # Errors
+    /// As [`SequenceWriter::push_layers`]; [`RecordError::Request`] for any other output.
+    pub fn push_layers(&mut self, layers: &FrameLayers) -> Result<(), RecordError> {
+        match self {
+            Self::Sequence(writer) => writer.push_layers(layers),
+            Self::Film(_) | Self::Preview(_) => {
+                Err(RecordError::request("layers of pictures go into EXR files alone"))
+            }
+        }
+    }
+
+    /// Whether the next frame is there and whole: see [`SequenceWriter::next_is_kept`].
+    pub fn next_is_kept(&self) -> bool {
+        matches!(self, Self::Sequence(writer) if writer.next_is_kept())
+    }
+
+    /// Goes on to the frame after it.
+    pub fn keep_next(&mut self) {
+        if let Self::Sequence(writer) = self {
+            writer.keep_next();
         }
     }
 

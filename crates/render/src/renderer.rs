@@ -5,7 +5,9 @@ use std::sync::Arc;
 use glam::Vec3;
 use lovelock_gpu::Gpu;
 
-use crate::{Backend, CpuRenderer, FrameInput, FrameStats, GpuRenderer, Picture, RayStructure, RenderError};
+use crate::{
+    Backend, CpuRenderer, FrameInput, FrameStats, GpuRenderer, Layers, Picture, RayStructure, RenderError,
+};
 
 /// Draws pictures on the backend that was chosen, and keeps what it needs for the next one.
 #[derive(Debug)]
@@ -94,6 +96,26 @@ impl Renderer {
         match &mut self.gpu {
             Some(gpu) => gpu.picture(input, width, height, picture),
             None => self.cpu.get_or_insert_default().picture(input, width, height, picture),
+        }
+    }
+
+    /// Draws the layers of a picture of `input`: what an exchange with a compositor, a transparent background or a shutter that is
+    /// open for a while needs. Costs about twice a picture. `over_background` draws the background and the ground behind hair and
+    /// body; without, there is nothing behind them, and no shadow on the ground.
+    ///
+    /// # Errors
+    /// As [`Renderer::picture`].
+    pub fn layers(
+        &mut self,
+        input: &FrameInput,
+        width: u32,
+        height: u32,
+        over_background: bool,
+        layers: &mut Layers,
+    ) -> Result<FrameStats, RenderError> {
+        match &mut self.gpu {
+            Some(gpu) => gpu.layers(input, width, height, over_background, layers),
+            None => self.cpu.get_or_insert_default().layers(input, width, height, over_background, layers),
         }
     }
 

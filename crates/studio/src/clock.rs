@@ -38,6 +38,40 @@ impl Stopwatch {
     }
 }
 
+/// How long work still takes, told from the parts of it that are done.
+#[derive(Clone, Debug, Default)]
+pub struct Pace {
+    /// The work, how much of it was done when it began, and since when.
+    of: Option<(String, u64, Stopwatch)>,
+}
+
+impl Pace {
+    /// Seconds that are left of `total` parts of which `done` are done; none until that can be said. Work of another name is
+    /// told from its own beginning: what came before it, and what was there already, says nothing of it.
+    pub fn left_secs(&mut self, what: &str, done: u64, total: u64) -> Option<f64> {
+        if self.of.as_ref().is_none_or(|(of, first, _)| of != what || done < *first) {
+            // The first report of a part comes when it is done: what it took is not known.
+            self.of = Some((what.to_owned(), done, Stopwatch::start()));
+        }
+        let (_, first, since) = self.of.as_ref()?;
+        Self::left(done - first, total.saturating_sub(done), since.secs())
+    }
+
+    fn left(done: u64, rest: u64, secs: f64) -> Option<f64> {
+        (done > 0).then(|| secs / done as f64 * rest as f64)
+    }
+
+    /// Seconds as people say them.
+    pub fn in_words(secs: f64) -> String {
+        let secs = secs.clamp(0.0, 1e9).round() as u64;
+        match secs {
+            0..=99 => format!("{secs} s"),
+            100..=5999 => format!("{} min", secs.div_ceil(60)),
+            _ => format!("{} h {} min", secs / 3600, secs % 3600 / 60),
+        }
+    }
+}
+
 /// How the window plays: turns time that passes into whole steps of the simulation.
 ///
 /// It holds no clock itself: [`Playback::advance`] is told how much time has passed.
@@ -131,6 +165,20 @@ impl FrameClock {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_left_is_told_from_the_same_work_alone() {
+        assert_eq!(Pace::left(4, 12, 2.0), Some(6.0));
+        assert_eq!(Pace::left(0, 12, 2.0), None);
+        let mut pace = Pace::default();
+        assert_eq!(pace.left_secs("kept", 30, 48), None);
+        assert!(pace.left_secs("kept", 31, 48).is_some());
+        assert_eq!(pace.left_secs("frame", 32, 48), None, "other work");
+        assert_eq!(pace.left_secs("frame", 48, 48), Some(0.0));
+        assert_eq!(Pace::in_words(30.4), "30 s");
+        assert_eq!(Pace::in_words(340.0), "6 min");
+        assert_eq!(Pace::in_words(f64::INFINITY), "277777 h 46 min");
+    }
 
     #[test]
     fn sixty_frames_of_a_sixtieth_are_sixty_steps() {

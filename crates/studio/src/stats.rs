@@ -88,6 +88,13 @@ impl StageTimes {
         (self.interpolate, self.shadow, self.draw) = (stats.interpolate_ms, stats.shadow_ms, stats.draw_ms);
     }
 
+    /// Adds what another picture of the same frame cost.
+    pub fn add_picture(&mut self, stats: &FrameStats) {
+        self.interpolate += stats.interpolate_ms;
+        self.shadow += stats.shadow_ms;
+        self.draw += stats.draw_ms;
+    }
+
     /// The sum of all stages.
     pub fn total(&self) -> f64 {
         Stage::ALL.iter().map(|&stage| self.get(stage)).sum()

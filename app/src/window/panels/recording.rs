@@ -1,10 +1,10 @@
 //! What a recording is, and the one that runs.
 
 use egui::{ProgressBar, RichText, Ui};
-use lovelock_studio::RecordingSection;
-use lovelock_studio::recording::FilmQuality;
+use lovelock_studio::recording::{FilmQuality, SequenceFormat};
+use lovelock_studio::{Pace, RecordingSection};
 
-use crate::window::control::{choice, is_left, note, row, toggle, typed};
+use crate::window::control::{Number, choice, count, is_left, note, row, toggle, typed};
 use crate::window::theme;
 
 /// A recording that runs or has ended.
@@ -38,18 +38,8 @@ impl State {
         let fraction = *done as f32 / (*total).max(1) as f32;
         // What has no parts to count is said in its own words.
         let count = if *total > 1 { format!(" {done} of {total}") } else { String::new() };
-        let left = left_secs.map_or_else(String::new, |secs| format!(", {} left", duration(secs)));
+        let left = left_secs.map_or_else(String::new, |secs| format!(", {} left", Pace::in_words(secs)));
         Some((fraction, format!("{what}{count}{left}")))
-    }
-}
-
-/// Seconds as people say them.
-fn duration(secs: f64) -> String {
-    let secs = secs.clamp(0.0, 1e9).round() as u64;
-    match secs {
-        0..=99 => format!("{secs} s"),
-        100..=5999 => format!("{} min", secs.div_ceil(60)),
-        _ => format!("{} h {} min", secs / 3600, secs % 3600 / 60),
     }
 }
 
@@ -60,6 +50,10 @@ pub(crate) enum Ask {
     Film,
     /// The same: a folder of pictures.
     Sequence,
+    /// The same: an animated preview.
+    Preview,
+    /// Go on with a folder of pictures that a dialog picks.
+    Resume,
     /// Stop the one that runs.
     Cancel,
 }
@@ -82,6 +76,52 @@ fn frame_number(ui: &mut Ui, frame: &mut u64) -> egui::Response {
         .update_while_editing(false)
         .custom_parser(move |text| typed(text, "").filter(|_| !left));
     ui.add(field)
+}
+
+/// What is left of a recording that was stopped.
+pub(crate) const CANCELLED: &str = "Cancelled: of a film nothing is left, of pictures those that are whole.";
+
+/// What each picture is.
+fn pictures(ui: &mut Ui, section: &mut RecordingSection, d: &RecordingSection) {
+    let formats = SequenceFormat::ALL.map(|format| (format, format.label()));
+    choice(
+        ui,
+        "Pictures as",
+        "What the files of a folder are: PNG as the screen shows it, or EXR for a compositor: linear light with depth and the light that reaches the hair.",
+        &mut section.format,
+        d.format,
+        &formats,
+    );
+    toggle(
+        ui,
+        "Clear behind",
+        "Leaves background and ground out, so that pictures can be laid over others. A film has no alpha and is refused.",
+        &mut section.transparent,
+        d.transparent,
+    );
+    count(
+        ui,
+        "Motion blur",
+        1..=RecordingSection::MOST_SUBFRAMES,
+        "Pictures that a frame is the mean of while the shutter is open: 1 is none, 8 to 16 are smooth. A frame takes as many times as long.",
+        &mut section.subframes,
+        d.subframes,
+    );
+    Number::new(
+        "Shutter",
+        0.0..=360.0,
+        "How long the shutter is open for motion blur: 360° is all of a frame.",
+    )
+    .unit("°", 1.0)
+    .decimals(0)
+    .show(ui, &mut section.shutter_degrees, d.shutter_degrees);
+    toggle(
+        ui,
+        "Label",
+        "Writes the shadow method, the transparency and the frame's number into each picture.",
+        &mut section.label,
+        d.label,
+    );
 }
 
 /// The controls of `section`; `clip_frames` is the number of frames of the whole clip.
@@ -142,6 +182,7 @@ pub(crate) fn ui(
             response
         },
     );
+    pictures(ui, section, &d);
     // A range is never empty, whichever end was moved.
     if let Some(end) = &mut section.end_frame {
         *end = (*end).max(section.first_frame + 1);
@@ -165,9 +206,19 @@ pub(crate) fn ui(
             if ui.button(dot).on_hover_text("Records the dance as H.264 in MP4 (Ctrl+R).").clicked() {
                 ask = Some(Ask::Film);
             }
-            if ui.button("Pictures…").on_hover_text("Records the dance as a folder of PNG files.").clicked()
-            {
+            let tip = "Records the dance as a folder of PNG or EXR files.";
+            if ui.button("Pictures…").on_hover_text(tip).clicked() {
                 ask = Some(Ask::Sequence);
+            }
+        });
+        ui.horizontal(|ui| {
+            let tip = "Records the dance as an animated PNG, for a page or a message.";
+            if ui.button("Preview…").on_hover_text(tip).clicked() {
+                ask = Some(Ask::Preview);
+            }
+            let tip = "Goes on with a folder of pictures whose recording was stopped: whole frames stay.";
+            if ui.button("Go on…").on_hover_text(tip).clicked() {
+                ask = Some(Ask::Resume);
             }
         });
     }
@@ -176,7 +227,7 @@ pub(crate) fn ui(
         State::Failed(why) => {
             ui.label(RichText::new(why).color(theme::WRONG));
         }
-        State::Cancelled => note(ui, "Cancelled; nothing of it is left."),
+        State::Cancelled => note(ui, CANCELLED),
         State::Idle | State::Running { .. } => {}
     }
     ask

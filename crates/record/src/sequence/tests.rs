@@ -1,4 +1,4 @@
-use super::{SequenceSettings, SequenceWriter, frame_name};
+use super::{FrameLayers, SequenceFormat, SequenceSettings, SequenceWriter, frame_name};
 use crate::partial::Opener;
 use crate::partial::failing::small_disk;
 use crate::{Manifest, RecordError, read_manifest};
@@ -12,7 +12,9 @@ fn settings() -> SequenceSettings {
         height: 7,
         fps: 24.0,
         first_frame: 0,
+        format: SequenceFormat::Png,
         alpha: false,
+        resume: false,
         settings: serde_json::json!({ "shadow": "voxel-map", "resolution": 128 }),
     }
 }
@@ -58,7 +60,10 @@ fn frames_come_back_exactly() {
         assert_eq!(manifest.settings["resolution"], 128);
         check_files(&folder, &manifest);
         for (index, frame) in manifest.frames.iter().enumerate() {
-            assert_eq!((frame.number, &frame.file), (index as u64 + 7, &frame_name(index as u64 + 7)));
+            assert_eq!(
+                (frame.number, &frame.file),
+                (index as u64 + 7, &frame_name(index as u64 + 7, SequenceFormat::Png))
+            );
             let image = image::open(folder.join(&frame.file)).unwrap();
             let wanted = picture(index as u8);
             if alpha {
@@ -163,4 +168,199 @@ fn foreign_manifests_are_refused_by_name() {
         let error = read_manifest(folder.path()).unwrap_err();
         assert!(error.is_request() && error.to_string().contains("manifest.json"), "{error}");
     }
+}
+
+/// Light, depth and transmittance of a frame.
+type Numbers = (Vec<[f32; 4]>, Vec<f32>, Vec<f32>);
+
+fn layers(seed: f32) -> Numbers {
+    let light = |i: u32| [seed + i as f32 * 0.37, 0.001 * i as f32, 3.0, (i % 5) as f32 * 0.25];
+    (
+        (0..33 * 7).map(light).collect(),
+        (0..33 * 7).map(|i| 1.0 + i as f32 * 1.234_567e-3).collect(),
+        (0..33 * 7).map(|i| (i % 11) as f32 / 10.0).collect(),
+    )
+}
+
+fn exr() -> SequenceSettings {
+    SequenceSettings { format: SequenceFormat::Exr, first_frame: 3, fps: 23.976, ..settings() }
+}
+
+fn write_exr(folder: &Path, frames: u32) -> Manifest {
+    let mut writer = SequenceWriter::create(folder, exr()).unwrap();
+    for frame in 0..frames {
+        let (light, depth, transmittance) = layers(frame as f32);
+        let layers = FrameLayers { light: &light, depth: &depth, transmittance: &transmittance };
+        writer.push_layers(&layers).unwrap();
+    }
+    writer.finish().unwrap();
+    read_manifest(folder).unwrap()
+}
+
+#[test]
+fn exr_files_hold_every_channel_and_say_what_they_are() {
+    use exr::prelude::{FlatSamples, ReadChannels as _, ReadLayers as _, Text, read};
+    let folder = tempfile::tempdir().unwrap();
+    let manifest = write_exr(folder.path(), 3);
+    check_files(folder.path(), &manifest);
+    assert_eq!(files(folder.path()).len(), 4);
+    for frame in 0..3_u32 {
+        let path = folder.path().join(format!("frame_{:06}.exr", frame + 3));
+        let image =
+            read().no_deep_data().largest_resolution_level().all_channels().all_layers().all_attributes();
+        let image = image.from_file(&path).unwrap();
+        assert_eq!(image.layer_data.len(), 1);
+        let layer = &image.layer_data[0];
+        let (light, depth, transmittance) = layers(frame as f32);
+        let channel = |name: &str| {
+            let channel = layer.channel_data.list.iter().find(|c| c.name == name);
+            &channel.unwrap_or_else(|| panic!("no {name}")).sample_data
+        };
+        for (c, name) in ["R", "G", "B", "A"].into_iter().enumerate() {
+            assert!(matches!(channel(name), FlatSamples::F16(_)), "{name} is half");
+            for (read, wanted) in channel(name).values_as_f32().zip(&light) {
+                // Half a unit in the last place of 11 bits.
+                assert!(
+                    (read - wanted[c]).abs() <= wanted[c].abs() / 2048.0 + 1e-7,
+                    "{name}: {read} {wanted:?}"
+                );
+            }
+        }
+        assert!(channel("Z").values_as_f32().eq(depth.iter().copied()), "depth is exact");
+        let read = channel("transmittance.Y").values_as_f32();
+        assert!(read.zip(&transmittance).all(|(a, b)| (a - b).abs() < 5e-4));
+        assert_eq!(image.attributes.chromaticities.unwrap().red.0, 0.64);
+        assert_eq!(layer.attributes.frames_per_second, Some((24_000, 1001)));
+        let number = &layer.attributes.other[&Text::from("frame")];
+        assert_eq!(format!("{number:?}"), format!("I32({})", frame + 3));
+        let comments = layer.attributes.comments.as_ref().unwrap().to_string();
+        assert_eq!(comments, "shadow voxel-map");
+    }
+}
+
+#[test]
+fn exr_files_are_the_same_bytes_each_time_and_other_light_others() {
+    let (a, b) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let (first, second) = (write_exr(a.path(), 2), write_exr(b.path(), 2));
+    assert_eq!(first.frames, second.frames);
+    assert_ne!(first.frames[0].crc32, first.frames[1].crc32, "the control");
+}
+
+#[test]
+fn light_beyond_half_floats_is_held_and_frames_of_the_wrong_kind_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let settings = SequenceSettings { width: 2, height: 1, ..exr() };
+    let mut writer = SequenceWriter::create(folder.path(), settings.clone()).unwrap();
+    let light = [[1e9, f32::NAN, -1e9, 1.0], [f32::INFINITY, 0.0, 0.0, 0.0]];
+    let (depth, transmittance) = ([1e10, 2.0], [1.0, f32::NAN]);
+    let good = FrameLayers { light: &light, depth: &depth, transmittance: &transmittance };
+    writer.push_layers(&good).unwrap();
+    let short = FrameLayers { depth: &depth[1..], ..good };
+    assert!(matches!(writer.push_layers(&short), Err(RecordError::FrameSize { .. })));
+    assert!(writer.push(&[0; 8]).unwrap_err().is_request());
+    writer.finish().unwrap();
+    let image = exr::prelude::read_first_rgba_layer_from_file(
+        folder.path().join("frame_000003.exr"),
+        |size, _| vec![[0.0_f32; 4]; size.area()],
+        |pixels, at, (r, g, b, a): (f32, f32, f32, f32)| pixels[at.y() * 2 + at.x()] = [r, g, b, a],
+    );
+    let pixels = image.unwrap().layer_data.channel_data.pixels;
+    assert_eq!(pixels, [[65504.0, 0.0, -65504.0, 1.0], [65504.0, 0.0, 0.0, 0.0]]);
+    let mut png = SequenceWriter::create(&folder.path().join("png"), self::settings()).unwrap();
+    assert!(png.push_layers(&good).unwrap_err().is_request());
+}
+
+/// Writes frames until the writer is dropped; returns those that were drawn.
+fn go_on(folder: &Path, settings: SequenceSettings, frames: u8) -> Result<Vec<u8>, RecordError> {
+    let mut writer = SequenceWriter::create(folder, settings)?;
+    let mut drawn = Vec::new();
+    for frame in 0..frames {
+        if writer.next_is_kept() {
+            writer.keep_next();
+        } else {
+            writer.push(&picture(frame))?;
+            drawn.push(frame);
+        }
+    }
+    writer.finish().map(|_| drawn)
+}
+
+/// All files of a folder with their bytes.
+fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    files(folder).into_iter().map(|name| (name.clone(), fs::read(folder.join(name)).unwrap())).collect()
+}
+
+#[test]
+fn what_was_begun_is_gone_on_with_and_damaged_frames_are_drawn_anew() {
+    let (whole, folder) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let resume = SequenceSettings { resume: true, ..settings() };
+    assert_eq!(go_on(whole.path(), resume.clone(), 8).unwrap(), [0, 1, 2, 3, 4, 5, 6, 7], "nothing is there");
+    let mut writer = SequenceWriter::create(folder.path(), settings()).unwrap();
+    (0..5).for_each(|frame| writer.push(&picture(frame)).unwrap());
+    writer.cancel();
+    // One is cut, one changed, one gone.
+    let at = |n: u64| folder.path().join(frame_name(n, SequenceFormat::Png));
+    let bytes = fs::read(at(1)).unwrap();
+    fs::write(at(1), &bytes[..bytes.len() - 5]).unwrap();
+    fs::write(at(2), fs::read(at(3)).unwrap()).unwrap();
+    fs::remove_file(at(4)).unwrap();
+    assert_eq!(go_on(folder.path(), resume.clone(), 8).unwrap(), [1, 2, 4, 5, 6, 7]);
+    assert!(contents(folder.path()) == contents(whole.path()), "as if it had never stopped");
+    // Once more there is nothing to do, and a longer one goes on.
+    assert_eq!(go_on(folder.path(), resume.clone(), 8).unwrap(), [0_u8; 0]);
+    assert_eq!(go_on(folder.path(), resume, 9).unwrap(), [8]);
+    assert_eq!(go_on(folder.path(), settings(), 2).unwrap(), [0, 1], "the control: not asked to go on");
+}
+
+#[test]
+fn another_sequence_is_not_gone_on_with_and_stays_as_it_is() {
+    let folder = tempfile::tempdir().unwrap();
+    go_on(folder.path(), settings(), 3).unwrap();
+    let before = contents(folder.path());
+    let resume = SequenceSettings { resume: true, ..settings() };
+    let with = |settings| SequenceSettings { settings, ..resume.clone() };
+    for (wanted, said) in [
+        (SequenceSettings { width: 31, ..resume.clone() }, "size was 33x7 and is 31x7 now"),
+        (SequenceSettings { fps: 25.0, ..resume.clone() }, "rate was 24 and is 25 now"),
+        (SequenceSettings { first_frame: 1, ..resume.clone() }, "it holds frame 0"),
+        (
+            with(serde_json::json!({ "shadow": "exact", "resolution": 128 })),
+            "shadow was voxel-map and is exact now",
+        ),
+        (with(serde_json::json!({ "shadow": "voxel-map" })), "resolution was 128 and is none now"),
+    ] {
+        let error = go_on(folder.path(), wanted, 3).unwrap_err();
+        assert!(error.is_request() && error.to_string().contains(said), "{error}");
+        assert!(contents(folder.path()) == before, "{said}");
+    }
+    // Parts are named, not their fingerprints.
+    let parts = |lights: &str| serde_json::json!({ "project": { "lights": lights, "camera": "aa" } });
+    go_on(folder.path(), SequenceSettings { settings: parts("12"), ..settings() }, 1).unwrap();
+    let error = go_on(folder.path(), with(parts("34")), 1).unwrap_err().to_string();
+    assert!(error.contains("lights changed") && !error.contains("camera"), "{error}");
+}
+
+#[test]
+fn one_recording_at_a_time_writes_to_a_folder_or_a_film() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut first = SequenceWriter::create(folder.path(), settings()).unwrap();
+    for resume in [false, true] {
+        let error =
+            SequenceWriter::create(folder.path(), SequenceSettings { resume, ..settings() }).unwrap_err();
+        assert!(error.to_string().contains("another recording is writing"), "{error}");
+    }
+    first.push(&picture(0)).unwrap();
+    assert_eq!(first.finish().unwrap().frames, 1);
+    go_on(folder.path(), settings(), 1).unwrap();
+
+    let path = folder.path().join("a.mp4");
+    let film = crate::FilmSettings { width: 32, height: 32, fps: 24.0, quality: crate::FilmQuality::Good };
+    let mut first = crate::FilmWriter::create(&path, film).unwrap();
+    let error = crate::FilmWriter::create(&path, film).unwrap_err();
+    assert!(
+        error.to_string().contains("a.mp4") && error.to_string().contains("another recording"),
+        "{error}"
+    );
+    first.push(&[90; 32 * 32 * 4]).unwrap();
+    assert_eq!(first.finish().unwrap().frames, 1);
 }

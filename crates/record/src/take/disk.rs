@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use super::TakeError;
+use crate::claim::is_still;
 
 /// What a take is written to. A file, except in tests of full disks.
 pub(super) trait Disk: Write + Send {
@@ -75,22 +76,6 @@ fn lock(file: &File, part: &Path) -> Result<(), TakeError> {
         Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => Ok(()),
         Err(TryLockError::Error(error)) => Err(TakeError::io(part, "lock", error)),
     }
-}
-
-/// Whether the open file is the one of that name.
-#[cfg(unix)]
-fn is_still(file: &File, path: &Path) -> bool {
-    use std::os::unix::fs::MetadataExt;
-    match (file.metadata(), fs::metadata(path)) {
-        (Ok(open), Ok(named)) => (open.dev(), open.ino()) == (named.dev(), named.ino()),
-        _ => false,
-    }
-}
-
-/// Elsewhere a file that is open keeps its name.
-#[cfg(not(unix))]
-fn is_still(_: &File, _: &Path) -> bool {
-    true
 }
 
 /// Gives the file of an earlier recording a name of its own; an empty one goes.

@@ -23,6 +23,15 @@ pub struct TakeFrame {
     pub jumped: bool,
 }
 
+impl TakeFrame {
+    /// Becomes the instant at the fraction `t` (0 to 1) from `a` to `b`, which follows it, as a take shows it: heads turn, and
+    /// hair is mixed as the head sees it and keeps its length. `clip_secs` is the length of the clip, over whose end the time of
+    /// the clip may run between the two; 0 where it has none.
+    pub fn set_between(&mut self, a: &Self, b: &Self, t: f64, clip_secs: f64) {
+        super::interpolate::between(a, b, t, clip_secs, self);
+    }
+}
+
 impl Default for TakeFrame {
     fn default() -> Self {
         Self {

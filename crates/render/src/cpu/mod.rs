@@ -21,6 +21,7 @@ mod bins;
 mod body_depth;
 mod dispatch;
 mod hair;
+mod layers;
 mod math;
 mod placed;
 mod points;
@@ -33,5 +34,6 @@ mod transparency;
 mod values;
 mod view;
 
+pub(crate) use layers::show_row;
 pub use renderer::CpuRenderer;
 pub use values::{HairHit, ValuePicture, ValueRenderer};

@@ -11,16 +11,17 @@ use rayon::prelude::*;
 use super::backdrop::Ground;
 use super::body_depth::{self, DepthMap};
 use super::dispatch;
+use super::layers::{LayerTiles, finish_light};
 use super::placed::{Placed, TileScratch, copy_rows, posed_body, surface_of};
 use super::pool::Pool;
 use super::surface::light::SurfaceLight;
-use super::tile::{Grid, PixelsIn, SurfacePlanes, TILE_BYTES};
+use super::tile::{Grid, PixelsIn, SurfacePlanes, TILE, TILE_BYTES};
 use super::view::View;
 use crate::light_view::{bounding_sphere, light_view};
 use crate::picture::check_size;
 use crate::shadow_stage::ShadowStage;
 use crate::uniform::{FrameUniform, LightMaps};
-use crate::{FrameInput, FrameStats, MAX_LIGHTS, Picture, RenderError};
+use crate::{FrameInput, FrameStats, Layers, MAX_LIGHTS, Picture, RenderError};
 
 /// Texels along each edge of the body's depth maps.
 const DEPTH_TEXELS: u32 = body_depth::SIZE as u32;
@@ -34,7 +35,15 @@ pub struct CpuRenderer {
     depth: Vec<DepthMap>,
     tiles: Vec<u8>,
     plain: PlainTiles,
+    layers: LayerTiles,
     scratch: Pool<Scratch>,
+}
+
+/// What is drawn.
+enum Target<'a> {
+    Picture(&'a mut Picture),
+    /// Its layers, over the background or nothing.
+    Layers(&'a mut Layers, bool),
 }
 
 /// What a thread needs to draw a tile.
@@ -43,6 +52,13 @@ struct Scratch {
     tile: TileScratch,
     surface: SurfacePlanes,
     light: SurfaceLight,
+}
+
+impl Scratch {
+    /// What a finished tile is made of.
+    fn seen<'a>(&'a self, origin: [f32; 2], ground: Option<&'a Ground>) -> PixelsIn<'a> {
+        PixelsIn { origin, hair: &self.tile.hair, surface: &self.surface, ground }
+    }
 }
 
 impl Default for CpuRenderer {
@@ -54,6 +70,7 @@ impl Default for CpuRenderer {
             depth: Vec::new(),
             tiles: Vec::new(),
             plain: PlainTiles::default(),
+            layers: LayerTiles::default(),
             scratch: Pool::default(),
         }
     }
@@ -86,12 +103,37 @@ impl CpuRenderer {
         height: u32,
         picture: &mut Picture,
     ) -> Result<FrameStats, RenderError> {
+        self.draw_to(input, width, height, Target::Picture(picture))
+    }
+
+    /// Draws the layers of `input` at `width` by `height` pixels, over the background or nothing.
+    ///
+    /// # Errors
+    /// As [`CpuRenderer::picture`].
+    pub fn layers(
+        &mut self,
+        input: &FrameInput,
+        width: u32,
+        height: u32,
+        over_background: bool,
+        layers: &mut Layers,
+    ) -> Result<FrameStats, RenderError> {
+        self.draw_to(input, width, height, Target::Layers(layers, over_background))
+    }
+
+    fn draw_to(
+        &mut self,
+        input: &FrameInput,
+        width: u32,
+        height: u32,
+        target: Target,
+    ) -> Result<FrameStats, RenderError> {
         check_size(width, height)?;
         let mut made = std::mem::take(&mut self.strands);
         let watch = Stopwatch::start();
         let strands = input.hair.strands(input.style, &mut made);
         let interpolate_ms = watch.ms();
-        let stats = self.draw(input, strands, width, height, picture);
+        let stats = self.draw(input, strands, width, height, target);
         self.strands = made;
         stats.map(|stats| FrameStats { interpolate_ms, ..stats })
     }
@@ -102,7 +144,7 @@ impl CpuRenderer {
         strands: &Strands,
         width: u32,
         height: u32,
-        picture: &mut Picture,
+        target: Target,
     ) -> Result<FrameStats, RenderError> {
         let watch = Stopwatch::start();
         self.shadow.run(input, strands)?;
@@ -128,6 +170,33 @@ impl CpuRenderer {
         self.placed.sort(&view, &grid, input, strands, &self.shadow.at_vertices);
         passed("draw/sort", &part);
 
+        let picture = match target {
+            Target::Picture(picture) => picture,
+            Target::Layers(layers, over_background) => {
+                let part = Stopwatch::start();
+                let mut held = std::mem::take(&mut self.layers);
+                held.fit(&grid);
+                held.light.par_chunks_mut(TILE * TILE).enumerate().for_each_init(
+                    || self.scratch.take(),
+                    |lease, (tile, out)| {
+                        let ground = dispatch::ground(self.placed.width, &view, grid.origin(tile));
+                        let scratch = lease.get();
+                        self.draw_seen(&view, &grid, input, tile, scratch);
+                        finish_light(
+                            &view,
+                            &scratch.seen(grid.origin(tile), ground.as_ref()),
+                            over_background,
+                            out,
+                        );
+                    },
+                );
+                held.draw_values(&view, &grid, input, &mut self.placed, &self.shadow.at_points);
+                held.write(&grid, layers);
+                self.layers = held;
+                passed("draw/layers", &part);
+                return Ok(self.stats(shadow_ms, &watch, passes));
+            }
+        };
         let part = Stopwatch::start();
         self.tiles.resize(grid.columns * grid.rows * TILE_BYTES, 0);
         let mut tiles = std::mem::take(&mut self.tiles);
@@ -159,16 +228,20 @@ impl CpuRenderer {
         copy_rows(&tiles, 4, &grid, &mut picture.rgba);
         self.tiles = tiles;
         passed("draw/tiles", &part);
-        Ok(FrameStats {
+        Ok(self.stats(shadow_ms, &watch, passes))
+    }
+
+    fn stats(&self, shadow_ms: f64, drawing: &Stopwatch, passes: Vec<PassTime>) -> FrameStats {
+        FrameStats {
             interpolate_ms: 0.0,
             shadow_ms,
-            draw_ms: watch.ms(),
+            draw_ms: drawing.ms(),
             passes,
             segments: self.placed.details.segments.len() as u64,
             shadow_bytes: self.shadow.bytes,
-            draw_bytes: (self.tiles.capacity() + self.plain.bytes.capacity()) as u64,
+            draw_bytes: (self.tiles.capacity() + self.plain.bytes.capacity()) as u64 + self.layers.bytes(),
             mean_transmittance: self.shadow.mean,
-        })
+        }
     }
 
     /// Draws the body as each light sees it.
@@ -198,6 +271,12 @@ impl CpuRenderer {
         scratch: &mut Scratch,
         out: &mut [u8],
     ) {
+        self.draw_seen(view, grid, input, tile, scratch);
+        dispatch::finish(self.placed.width, view, &scratch.seen(grid.origin(tile), ground), out);
+    }
+
+    /// Draws the body and the hair of a tile.
+    fn draw_seen(&self, view: &View, grid: &Grid, input: &FrameInput, tile: usize, scratch: &mut Scratch) {
         let (placed, origin) = (&self.placed, grid.origin(tile));
         placed.draw_tile(view, grid, input, tile, &mut scratch.tile);
         scratch.surface.clear();
@@ -213,8 +292,6 @@ impl CpuRenderer {
                 &mut scratch.surface,
             );
         }
-        let pixels = PixelsIn { origin, hair: &scratch.tile.hair, surface: &scratch.surface, ground };
-        dispatch::finish(placed.width, view, &pixels, out);
     }
 }
 

@@ -108,45 +108,56 @@ pub(super) struct PixelsIn<'a> {
     pub ground: Option<&'a Ground>,
 }
 
+/// The light of a row of a tile, and the share of it that neither hair nor body covers. Without `over_background` nothing comes
+/// through from behind them.
+#[inline(always)]
+pub(super) fn compose_row(
+    view: &View,
+    input: &PixelsIn,
+    y: usize,
+    over_background: bool,
+) -> ([[f32; TILE]; 3], [f32; TILE]) {
+    let PixelsIn { origin, hair, surface, ground } = *input;
+    let at = y * STRIDE;
+    let mut row = [[0.0_f32; TILE]; 3];
+    let mut open = [0.0_f32; TILE];
+    let mut most = 0.0;
+    for x in 0..TILE {
+        open[x] = hair.through[at + x] * (1.0 - surface.cover[at + x]);
+        most = max(open[x], most);
+    }
+    if most > UNSEEN && over_background {
+        backdrop(view, origin[0] + 0.5, origin[1] + y as f32 + 0.5, &mut row);
+        if let Some(ground) = ground {
+            for x in 0..TILE {
+                if open[x] > UNSEEN {
+                    let light = ground.light(view, x, y);
+                    (row[0][x], row[1][x], row[2][x]) =
+                        (row[0][x] * light[0], row[1][x] * light[1], row[2][x] * light[2]);
+                }
+            }
+        }
+    }
+    for ((row, hair_color), surface_color) in row.iter_mut().zip(&hair.color).zip(&surface.color) {
+        for x in 0..TILE {
+            row[x] = hair_color[at + x] + hair.through[at + x] * surface_color[at + x] + open[x] * row[x];
+        }
+    }
+    (row, open)
+}
+
 /// Puts a tile together and writes its bytes, [`TILE_BYTES`] of them.
 #[inline(always)]
 pub(super) fn finish_pixels(view: &View, input: &PixelsIn, out: &mut [u8]) {
     let exposure = view.uniform.size_scale_exposure.w;
-    let PixelsIn { origin, hair, surface, ground } = *input;
+    let origin = input.origin;
     for y in 0..TILE {
-        let at = y * STRIDE;
-        let mut row = [[0.0_f32; TILE]; 3];
-        let mut open = [0.0_f32; TILE];
-        let mut most = 0.0;
-        for x in 0..TILE {
-            open[x] = hair.through[at + x] * (1.0 - surface.cover[at + x]);
-            most = max(open[x], most);
-        }
-        if most > UNSEEN {
-            backdrop(view, origin[0] + 0.5, origin[1] + y as f32 + 0.5, &mut row);
-            if let Some(ground) = ground {
-                for x in 0..TILE {
-                    if open[x] > UNSEEN {
-                        let light = ground.light(view, x, y);
-                        (row[0][x], row[1][x], row[2][x]) =
-                            (row[0][x] * light[0], row[1][x] * light[1], row[2][x] * light[2]);
-                    }
-                }
-            }
-        }
-        for ((row, hair_color), surface_color) in row.iter_mut().zip(&hair.color).zip(&surface.color) {
-            for x in 0..TILE {
-                row[x] = hair_color[at + x] + hair.through[at + x] * surface_color[at + x] + open[x] * row[x];
-            }
-        }
+        let (mut row, _) = compose_row(view, input, y, true);
         encode(&mut row, exposure);
         let mut bytes = [[0_i32; TILE]; 3];
         for (bytes, row) in bytes.iter_mut().zip(&row) {
             for x in 0..TILE {
-                // Half a step of ordered noise, so that smooth gradients do not band.
-                let inner = (origin[0] + x as f32) * 0.067_110_56 + (origin[1] + y as f32) * 0.005_837_15;
-                let inner = (inner - floor(inner)) * 52.982_918_9;
-                let noise = inner - floor(inner) - 0.5;
+                let noise = noise_at(origin[0] + x as f32, origin[1] + y as f32);
                 // Rounded to the nearest, as a card stores what it is given.
                 bytes[x] = index_of(floor(clamp(row[x] * 255.0 + noise + 0.5, 0.0, 255.0))) as i32;
             }
@@ -156,6 +167,14 @@ pub(super) fn finish_pixels(view: &View, input: &PixelsIn, out: &mut [u8]) {
             *pixel = (bytes[0][x] | bytes[1][x] << 8 | bytes[2][x] << 16 | 0xff << 24).to_le_bytes();
         }
     }
+}
+
+/// Half a step of ordered noise at a pixel, so that smooth gradients do not band.
+#[inline(always)]
+pub(super) fn noise_at(x: f32, y: f32) -> f32 {
+    let inner = x * 0.067_110_56 + y * 0.005_837_15;
+    let inner = (inner - floor(inner)) * 52.982_918_9;
+    inner - floor(inner) - 0.5
 }
 
 #[cfg(test)]

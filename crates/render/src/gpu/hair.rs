@@ -2,7 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
-use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, wgpu};
+use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, Kernel, wgpu};
 use lovelock_groom::StrandBounds;
 use lovelock_shadow::{Bounds, GpuStrands, LightFrame, ShadowInput};
 use rayon::prelude::*;
@@ -138,8 +138,24 @@ impl HairBuffers {
         self.shaded.raw()
     }
 
+    /// Puts the first light's transmittance in the place of the colours of points that are shaded.
+    pub fn shade_values(&self, gpu: &Gpu, kernel: &Kernel, commands: &mut Commands, frame: &FrameResources) {
+        self.run_over_points(gpu, kernel, "draw/values", commands, frame);
+    }
+
     /// Projects and shades every point.
     pub fn shade(&self, gpu: &Gpu, kernels: &LightKernels, commands: &mut Commands, frame: &FrameResources) {
+        self.run_over_points(gpu, &kernels.shade_points, "draw/points", commands, frame);
+    }
+
+    fn run_over_points(
+        &self,
+        gpu: &Gpu,
+        kernel: &Kernel,
+        name: &'static str,
+        commands: &mut Commands,
+        frame: &FrameResources,
+    ) {
         let points = self.details.len() as u64;
         if points == 0 {
             return;
@@ -156,7 +172,7 @@ impl HairBuffers {
             (6, self.transmittance.raw().as_entire_binding()),
             (7, self.shaded.raw().as_entire_binding()),
         ];
-        let group = kernels.shade_points.bind(gpu, &frame.with(own));
-        commands.compute("draw/points", |pass| kernels.shade_points.run(pass, &group, points));
+        let group = kernel.bind(gpu, &frame.with(own));
+        commands.compute(name, |pass| kernel.run(pass, &group, points));
     }
 }

@@ -5,6 +5,7 @@ mod frame_resources;
 mod ground;
 mod hair;
 mod interpolate;
+mod layers;
 mod light_kernels;
 mod pipelines;
 mod renderer;

@@ -2,6 +2,7 @@
 
 use lovelock_gpu::{Gpu, GpuError, ShaderPart, ShaderSource, wgpu};
 
+use super::layers::LayerShaders;
 use super::light_kernels::{LightShaders, LightVariants};
 use super::screen::ScreenKernels;
 use super::targets::{COLOR_FORMAT, DEPTH_FORMAT, NORMAL_FORMAT, SAMPLES};
@@ -27,15 +28,19 @@ const GROUND: ShaderPart = part!("ground.wgsl");
 const BACKDROP: ShaderPart = part!("backdrop.wgsl");
 const TONE_MAP: ShaderPart = part!("tone_map.wgsl");
 const PICTURE: ShaderPart = part!("picture.wgsl");
+const LAYERS: ShaderPart = part!("layers.wgsl");
+const VALUE_POINTS: ShaderPart = part!("value_points.wgsl");
 
 /// The shaders of what is made here.
-fn own_shaders() -> [(&'static str, ShaderSource); 5] {
+fn own_shaders() -> [(&'static str, ShaderSource); 7] {
     [
         ("strand points", &[FRAME, STRAND_SHADING, STRAND_POINTS][..]),
         ("ground", &[FRAME, GROUND_LIGHT, GROUND]),
         ("picture", &[FRAME, SURFACE_SHADING, GROUND_LIGHT, BACKDROP, TONE_MAP, PICTURE]),
         ("surface", &[FRAME, SURFACE]),
         ("depth", &[DEPTH]),
+        ("layers", &[FRAME, SURFACE_SHADING, GROUND_LIGHT, BACKDROP, TONE_MAP, PICTURE, LAYERS]),
+        ("values of points", &[FRAME, STRAND_SHADING, STRAND_POINTS, VALUE_POINTS]),
     ]
     .map(|(label, parts)| (label, ShaderSource::new(parts)))
 }
@@ -52,6 +57,8 @@ pub(super) struct Pipelines {
     /// Those that light something.
     pub lit: LightVariants,
     pub screen: ScreenKernels,
+    /// What kernels of layers are compiled of where they are wanted.
+    pub layers: LayerShaders,
     /// A uniform for the vertices.
     pub uniform_layout: wgpu::BindGroupLayout,
     /// The body as the eye sees it: all of it, and where it is closed what faces the eye.
@@ -71,7 +78,7 @@ const CULLS: [Option<wgpu::Face>; 2] = [None, Some(wgpu::Face::Back)];
 impl Pipelines {
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let device = &gpu.device;
-        let [points, ground, picture, surface, depth] = own_shaders();
+        let [points, ground, picture, surface, depth, layers, values] = own_shaders();
         let uniform_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("uniform"),
             entries: &[wgpu::BindGroupLayoutEntry {
@@ -93,6 +100,7 @@ impl Pipelines {
         let (surface, depth) = (gpu.shader(surface.0, &surface.1)?, gpu.shader(depth.0, &depth.1)?);
         Ok(Self {
             screen: ScreenKernels::new(gpu, &picture.1)?,
+            layers: LayerShaders { layers: layers.1, values: values.1 },
             lit: LightVariants::new(LightShaders { points: points.1, ground: ground.1, picture: picture.1 }),
             surface: CULLS.map(|cull| surface_pipeline(device, &layout, &surface, cull)),
             depth: CULLS.map(|cull| depth_pipeline(device, &layout, &depth, cull)),

@@ -1,6 +1,7 @@
 //! One picture from top to bottom.
 
 mod inspect;
+mod layers;
 
 use std::sync::Arc;
 
@@ -8,10 +9,11 @@ use glam::Vec4;
 use lovelock_gpu::{Commands, Gpu, GpuError, PassTimer, Readback, Stopwatch, wgpu};
 use lovelock_shadow::SUM_WORDS;
 
-use super::eye::{Area, Eye, EyeInput, WIDEST_PLAIN, too_large};
+use super::eye::{Area, Drawn, Eye, EyeInput, WIDEST_PLAIN, too_large};
 use super::frame_resources::FrameResources;
 use super::ground::{CELL, Ground};
 use super::hair::HairBuffers;
+use super::layers::LayerBuffers;
 use super::pipelines::Pipelines;
 use super::screen::{Screen, ScreenInput};
 use super::shadow::GpuShadowStage;
@@ -42,8 +44,13 @@ pub struct GpuRenderer {
     uniform_group: wgpu::BindGroup,
     targets: Option<Targets>,
     screen: Screen,
+    layers: LayerBuffers,
+    /// What the last picture knew of itself.
+    last: FrameUniform,
     readback: Readback,
     numbers: Vec<u8>,
+    /// The bytes of a picture of which layers alone are wanted.
+    spare: Vec<u8>,
     /// Whether the last picture came to its end.
     is_whole: bool,
 }
@@ -87,8 +94,11 @@ impl GpuRenderer {
             uniform,
             targets: None,
             screen: Screen::new(&gpu),
+            layers: LayerBuffers::new(&gpu),
+            last: FrameUniform::default(),
             readback: Readback::default(),
             numbers: Vec::new(),
+            spare: Vec::new(),
             is_whole: false,
             pipelines,
             gpu,
@@ -188,7 +198,6 @@ impl GpuRenderer {
             self.targets = None;
             self.targets = Some(Targets::new(device, width, height));
         }
-        let Some(targets) = &self.targets else { return Ok(()) };
         self.ground.fit(gpu, width, height);
         self.screen.fit(gpu, width, height);
         self.hair.write(gpu, &mut commands, input)?;
@@ -204,6 +213,9 @@ impl GpuRenderer {
         }
         let uniform = FrameUniform::new(input, width, height, &maps, self.surface.texels);
         gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
+        self.last = uniform;
+        let seen = self.seen_hair(input, &uniform, [width, height]);
+        let Some(targets) = &self.targets else { return Ok(()) };
         let frame = FrameResources {
             uniform: &self.uniform,
             body_depth: &self.surface.depth,
@@ -220,25 +232,9 @@ impl GpuRenderer {
         if input.picture.ground {
             self.ground.run(gpu, lit, &mut commands, &frame);
         }
-        let (bounds, _) = self.hair.bounds(input, Area::axes(input.camera), input.camera.eye);
-        let strand_width = uniform.width_opacity_tip_scalp.x;
-        let area = Area::of(input.camera, [width, height], (bounds.min, bounds.max), strand_width);
-        let strands = self.hair.strands();
-        let reach_at =
-            |least: f32| 0.5 * strand_width * uniform.size_scale_exposure.z / bounds.min.x.max(least);
-        let eye = EyeInput {
-            area,
-            reach: reach_at(0.05),
-            // What is nearer than this is not drawn.
-            streaked: reach_at(0.02) > WIDEST_PLAIN,
-            shaded: self.hair.shaded(),
-            segments: strands.segments,
-            segment_count: strands.segment_count,
-            depth: &targets.depth,
-            opacity: uniform.width_opacity_tip_scalp.y,
-            transparency: input.picture.transparency,
-        };
+        let eye = eye_input(&seen, &self.hair, targets, &uniform, Drawn::Blended(input.picture.transparency));
         self.eye.draw(gpu, &mut commands, &eye)?;
+        let area = seen.area;
         let body = input.body.map_or(&[][..], |(_, skin)| &skin.positions);
         let figure = area.with(Area::of_points(input.camera, [width, height], body));
         let exposure = uniform.size_scale_exposure.w;
@@ -259,6 +255,20 @@ impl GpuRenderer {
         self.readback.copy(gpu, commands.encoder(), &wanted);
         commands.submit();
         Ok(())
+    }
+
+    /// Where the eye may see hair, and how wide.
+    fn seen_hair(&mut self, input: &FrameInput, uniform: &FrameUniform, size: [u32; 2]) -> SeenHair {
+        let (bounds, _) = self.hair.bounds(input, Area::axes(input.camera), input.camera.eye);
+        let strand_width = uniform.width_opacity_tip_scalp.x;
+        let reach_at =
+            |least: f32| 0.5 * strand_width * uniform.size_scale_exposure.z / bounds.min.x.max(least);
+        SeenHair {
+            area: Area::of(input.camera, size, (bounds.min, bounds.max), strand_width),
+            reach: reach_at(0.05),
+            // What is nearer than this is not drawn.
+            streaked: reach_at(0.02) > WIDEST_PLAIN,
+        }
     }
 
     /// The body as the eye sees it, sample by sample, to be lit later.
@@ -290,5 +300,34 @@ impl GpuRenderer {
         commands.render("draw/body", &descriptor, |pass| {
             self.surface.draw(&self.pipelines, pass, &self.uniform_group);
         });
+    }
+}
+
+/// Where the eye may see hair: see [`EyeInput`].
+#[derive(Clone, Copy, Debug)]
+struct SeenHair {
+    area: Area,
+    reach: f32,
+    streaked: bool,
+}
+
+fn eye_input<'a>(
+    seen: &SeenHair,
+    hair: &'a HairBuffers,
+    targets: &'a Targets,
+    uniform: &FrameUniform,
+    drawn: Drawn,
+) -> EyeInput<'a> {
+    let strands = hair.strands();
+    EyeInput {
+        area: seen.area,
+        reach: seen.reach,
+        streaked: seen.streaked,
+        shaded: hair.shaded(),
+        segments: strands.segments,
+        segment_count: strands.segment_count,
+        depth: &targets.depth,
+        opacity: uniform.width_opacity_tip_scalp.y,
+        drawn,
     }
 }

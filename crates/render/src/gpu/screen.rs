@@ -100,6 +100,33 @@ impl Screen {
         [&self.pixels, &self.plain, &self.cells, &self.listed].iter().map(|buffer| buffer.raw().size()).sum()
     }
 
+    /// Threads that share the pixels that are lit one by one in a picture of so many.
+    pub fn lit_threads(&self, pixels: u64) -> u64 {
+        pixels.min(self.lit_threads)
+    }
+
+    /// What the kernels of layers read of the last picture; `hair_area` is its part that may have hair.
+    pub fn bindings_of_last<'a>(
+        &'a self,
+        frame: &FrameResources<'a>,
+        targets: &'a Targets,
+        corners: &'a wgpu::Buffer,
+        hair: &'a wgpu::Buffer,
+        hair_area: &'a wgpu::Buffer,
+    ) -> Vec<(u32, wgpu::BindingResource<'a>)> {
+        frame.with([
+            (4, wgpu::BindingResource::TextureView(&targets.normals)),
+            (5, wgpu::BindingResource::TextureView(&targets.colors)),
+            (6, wgpu::BindingResource::TextureView(&targets.depth)),
+            (7, corners.as_entire_binding()),
+            (8, hair.as_entire_binding()),
+            (10, self.cells.raw().as_entire_binding()),
+            (11, hair_area.as_entire_binding()),
+            (12, self.listed.raw().as_entire_binding()),
+            (13, self.list_count.as_entire_binding()),
+        ])
+    }
+
     /// Encodes making them.
     pub fn run(
         &mut self,
@@ -151,7 +178,7 @@ impl Screen {
         let groups = lit.picture_lit.each_ref().map(|kernel| kernel.bind(gpu, &own));
         commands.compute("draw/lit", |pass| {
             for (kernel, group) in lit.picture_lit.iter().zip(&groups) {
-                kernel.run(pass, group, pixels.min(self.lit_threads));
+                kernel.run(pass, group, self.lit_threads(pixels));
             }
         });
     }

@@ -1,7 +1,7 @@
 //! Words burned into a picture: what it shows, and which frame it is.
 
 use lovelock_metrics::Canvas;
-use lovelock_render::Picture;
+use lovelock_render::{Layers, Picture};
 
 /// Pixels between the words and the edge of their box, and between the box and that of the picture.
 const MARGIN: usize = 6;
@@ -11,19 +11,43 @@ const INK: [u8; 3] = [236, 238, 242];
 /// Writes one line into the lower left corner, as far as it fits.
 pub(super) fn burn_in(picture: &mut Picture, words: &str) {
     let (width, height) = (picture.width as usize, picture.height as usize);
-    let box_width = (Canvas::text_width(words) + 2 * MARGIN).min(width.saturating_sub(2 * MARGIN));
-    let box_height = Canvas::LINE + 2 * MARGIN;
-    if box_width <= 2 * MARGIN || height < box_height + 2 * MARGIN || picture.rgba.len() != width * height * 4
-    {
+    let Some((canvas, box_width)) = written(words, width, height) else { return };
+    if picture.rgba.len() != width * height * 4 {
         return;
     }
-    let mut canvas = Canvas::new(box_width, box_height, PAPER);
-    canvas.text(MARGIN as i32, MARGIN as i32, words, INK);
-    let top = height - MARGIN - box_height;
-    let rows = picture.rgba.chunks_exact_mut(width * 4).skip(top);
+    let rows = picture.rgba.chunks_exact_mut(width * 4).skip(height - MARGIN - BOX_HEIGHT);
     for (row, written) in rows.zip(canvas.rgba().chunks_exact(box_width * 4)) {
         row[MARGIN * 4..][..box_width * 4].copy_from_slice(written);
     }
+}
+
+/// The same into linear light; depth and transmittance stay.
+pub(super) fn burn_in_light(layers: &mut Layers, words: &str) {
+    let (width, height) = (layers.width as usize, layers.height as usize);
+    let Some((canvas, box_width)) = written(words, width, height) else { return };
+    let linear = |byte: u8| {
+        let c = f32::from(byte) / 255.0;
+        if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
+    };
+    let rows = layers.light.chunks_exact_mut(width).skip(height - MARGIN - BOX_HEIGHT);
+    for (row, written) in rows.zip(canvas.rgba().chunks_exact(box_width * 4)) {
+        for (pixel, &[r, g, b, _]) in row[MARGIN..].iter_mut().zip(written.as_chunks::<4>().0) {
+            *pixel = [linear(r), linear(g), linear(b), 1.0];
+        }
+    }
+}
+
+const BOX_HEIGHT: usize = Canvas::LINE + 2 * MARGIN;
+
+/// The box with its words and how wide it is; none where the picture has no room for it.
+fn written(words: &str, width: usize, height: usize) -> Option<(Canvas, usize)> {
+    let box_width = (Canvas::text_width(words) + 2 * MARGIN).min(width.saturating_sub(2 * MARGIN));
+    if box_width <= 2 * MARGIN || height < BOX_HEIGHT + 2 * MARGIN {
+        return None;
+    }
+    let mut canvas = Canvas::new(box_width, BOX_HEIGHT, PAPER);
+    canvas.text(MARGIN as i32, MARGIN as i32, words, INK);
+    Some((canvas, box_width))
 }
 
 #[cfg(test)]
@@ -48,6 +72,25 @@ mod tests {
         let mut other = grey(300, 80);
         burn_in(&mut other, "frame 13");
         assert_ne!(picture, other, "the control: another number is another picture");
+    }
+
+    #[test]
+    fn words_in_light_stand_where_those_in_bytes_do() {
+        let mut picture = grey(300, 80);
+        burn_in(&mut picture, "frame 12");
+        let mut layers = Layers {
+            width: 300,
+            height: 80,
+            light: vec![[7.0, 7.0, 7.0, 0.5]; 300 * 80],
+            ..Layers::default()
+        };
+        burn_in_light(&mut layers, "frame 12");
+        for (light, pixel) in layers.light.iter().zip(picture.rgba.chunks_exact(4)) {
+            assert_eq!(light[3] == 0.5, pixel == [128; 4], "{light:?} {pixel:?}");
+        }
+        let brightest = layers.light.iter().filter(|p| p[3] == 1.0).map(|p| p[0]).fold(0.0, f32::max);
+        // 236 of 255, decoded.
+        assert!((brightest - 0.839).abs() < 0.002, "{brightest}");
     }
 
     #[test]

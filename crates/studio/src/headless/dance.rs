@@ -3,6 +3,9 @@
 use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
 
+use lovelock_motion::{pose_at, skin};
+use lovelock_record::{TakeAsset, TakeFrame};
+
 use super::Progress;
 use super::prepare::{load, simulate_to, tell};
 use super::seam::{Seam, SeamOfTake};
@@ -21,6 +24,8 @@ pub(crate) enum Dance {
         engine: Option<Box<Engine>>,
         /// Where the film goes round, and the hair with it.
         seam: Option<Seam>,
+        /// Where instants between two steps are asked for: the last steps.
+        steps: Option<Box<Steps>>,
     },
     /// A take: nothing is simulated.
     Taken { player: Box<TakePlayer>, fps: f64, seam: Option<SeamOfTake> },
@@ -45,6 +50,7 @@ impl Dance {
                 clock: FrameClock::new(fps),
                 engine: None,
                 seam: None,
+                steps: None,
             };
             return Ok((dance, problems));
         };
@@ -73,6 +79,14 @@ impl Dance {
             Self::Taken { player, fps, .. } => {
                 ((player.frames() as f64 * player.frame_secs() * fps) + 1e-6).floor().max(1.0) as u64
             }
+        }
+    }
+
+    /// When a frame is, seconds.
+    pub(crate) fn secs_of(&self, frame: u64) -> f64 {
+        match self {
+            Self::Simulated { clock, .. } => clock.time_of_frame(frame),
+            Self::Taken { fps, .. } => frame as f64 / fps,
         }
     }
 
@@ -115,25 +129,23 @@ impl Dance {
         Ok(())
     }
 
-    /// Lives through the frames before `frame`, so that it is the same whatever is recorded.
+    /// Lives through the time before `first_secs`, so that a frame is the same whatever is recorded.
     ///
     /// # Errors
     /// [`StudioError::Cancelled`].
     pub(crate) fn begin(
         &mut self,
-        frame: u64,
+        first_secs: f64,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<(), StudioError> {
-        if let Self::Simulated { scene, project, clock, engine, seam } = self {
-            let mut made =
-                Box::new(Engine::with_step(Arc::clone(scene), project.simulation, clock.step_secs));
-            made.follow(project);
-            simulate_to(&mut made, clock.step_of_frame(frame), progress)?;
-            if let Some(seam) = seam {
-                seam.live_round(&mut made, clock, progress)?;
+        if let Self::Simulated { scene, project, clock, engine, steps, seam } = self {
+            let mut made = engine_of(scene, project, clock);
+            match seam {
+                Some(seam) => seam.live_round(&mut made, clock, first_secs, progress)?,
+                None => simulate_to(&mut made, step_before(first_secs, clock).0, progress)?,
             }
             made.clear_totals();
-            *engine = Some(made);
+            (*engine, *steps) = (Some(made), None);
         }
         Ok(())
     }
@@ -144,16 +156,14 @@ impl Dance {
     /// A take whose frames there are damaged.
     pub(crate) fn snapshot(&mut self, frame: u64) -> Result<Arc<FrameSnapshot>, StudioError> {
         match self {
-            Self::Simulated { scene, project, clock, engine, seam } => {
-                let engine = engine.get_or_insert_with(|| {
-                    let mut made = Engine::with_step(Arc::clone(scene), project.simulation, clock.step_secs);
-                    made.follow(project);
-                    Box::new(made)
-                });
-                let rounds = seam.as_ref().map_or(0, Seam::frames);
-                engine.advance_to_step(clock.step_of_frame(frame + rounds));
-                let snapshot = engine.snapshot();
-                Ok(seam.as_ref().map_or(Arc::clone(&snapshot), |seam| seam.faded(frame, &snapshot)))
+            Self::Simulated { scene, project, clock, engine, seam, .. } => {
+                let engine = engine.get_or_insert_with(|| engine_of(scene, project, clock));
+                let Some(seam) = seam else {
+                    engine.advance_to_step(clock.step_of_frame(frame));
+                    return Ok(engine.snapshot());
+                };
+                engine.advance_to_step(clock.step_of_frame(frame + seam.frames()));
+                Ok(seam.faded(seam.secs_of(frame), &engine.snapshot()))
             }
             Self::Taken { player, fps, seam } => {
                 let secs = frame as f64 / *fps;
@@ -162,6 +172,40 @@ impl Dance {
                     None => player.snapshot(secs),
                 }
             }
+        }
+    }
+
+    /// The instant at a time, seconds; of a simulation, after [`Dance::begin`] and in rising order. Between two steps of it hair is
+    /// interpolated as between two frames of a take.
+    ///
+    /// # Errors
+    /// As [`Dance::snapshot`].
+    pub(crate) fn snapshot_at(&mut self, secs: f64) -> Result<Arc<FrameSnapshot>, StudioError> {
+        match self {
+            Self::Simulated { scene, project, clock, engine, steps, seam } => {
+                let engine = engine.get_or_insert_with(|| engine_of(scene, project, clock));
+                let round = seam.as_ref().map_or(0.0, Seam::round_secs);
+                let (step, t) = step_before(secs + round, clock);
+                let steps = steps.get_or_insert_default();
+                steps.bring(engine, step + u64::from(t > 0.0));
+                let snapshot = steps.between(engine, scene, step, t);
+                Ok(match seam {
+                    Some(seam) => seam.faded(secs, &snapshot),
+                    None => snapshot,
+                })
+            }
+            Self::Taken { player, seam, .. } => match seam {
+                Some(seam) => seam.snapshot(player, secs),
+                None => player.snapshot(secs),
+            },
+        }
+    }
+
+    /// The files that a take was made from.
+    pub(crate) fn take_assets(&self) -> &[TakeAsset] {
+        match self {
+            Self::Simulated { .. } => &[],
+            Self::Taken { player, .. } => &player.header().assets,
         }
     }
 
@@ -194,5 +238,66 @@ impl Dance {
             Self::Simulated { clock, .. } => clock.steps_per_frame,
             Self::Taken { .. } => 0,
         }
+    }
+}
+
+/// A simulation at its first frame.
+fn engine_of(scene: &Arc<Scene>, project: &Project, clock: &FrameClock) -> Box<Engine> {
+    let mut made = Box::new(Engine::with_step(Arc::clone(scene), project.simulation, clock.step_secs));
+    made.follow(project);
+    made
+}
+
+/// The step at or before a time, and how far on to the next one it is, 0 to 1.
+pub(super) fn step_before(secs: f64, clock: &FrameClock) -> (u64, f64) {
+    let steps = (secs / clock.step_secs).max(0.0);
+    // A hair's breadth beside a step is the step.
+    let (step, t) = ((steps + 1e-6).floor(), steps - (steps + 1e-6).floor());
+    (step as u64, if t < 1e-6 { 0.0 } else { t })
+}
+
+/// The last two steps of a simulation.
+#[derive(Default)]
+pub(crate) struct Steps {
+    before: TakeFrame,
+    /// The engine's present step.
+    now: TakeFrame,
+    /// Which one that is.
+    at: Option<u64>,
+    mixed: TakeFrame,
+}
+
+impl Steps {
+    /// Goes on to a step, one by one, so that the one before it is known.
+    fn bring(&mut self, engine: &mut Engine, step: u64) {
+        let mut at = self.at.unwrap_or_else(|| {
+            engine.advance_to_step(step.saturating_sub(1));
+            engine.take_frame(&mut self.now);
+            (engine.time_secs() / engine.step_secs()).round() as u64
+        });
+        while at < step {
+            at += 1;
+            engine.advance_to_step(at);
+            std::mem::swap(&mut self.before, &mut self.now);
+            engine.take_frame(&mut self.now);
+        }
+        self.at = Some(at);
+    }
+
+    /// The instant `t` after `step`, which is the last one or the one before it.
+    fn between(&mut self, engine: &mut Engine, scene: &Arc<Scene>, step: u64, t: f64) -> Arc<FrameSnapshot> {
+        let drawn = engine.snapshot();
+        if t == 0.0 && self.at == Some(step) {
+            return drawn;
+        }
+        let clip_secs = scene.clip.as_ref().map_or(0.0, |clip| clip.duration_secs);
+        self.mixed.set_between(&self.before, &self.now, t, clip_secs);
+        let mut snapshot = FrameSnapshot::clone(&drawn);
+        pose_at(&scene.body, scene.clip.as_deref(), self.mixed.clip_secs, &mut snapshot.pose);
+        skin(&scene.body, &snapshot.pose, &mut snapshot.skin);
+        snapshot.time_secs = self.mixed.guides.time_secs;
+        snapshot.position_secs = scene.position_secs(snapshot.time_secs);
+        snapshot.guides.clone_from(&self.mixed.guides);
+        Arc::new(snapshot)
     }
 }

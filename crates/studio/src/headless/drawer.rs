@@ -2,12 +2,16 @@
 
 use std::sync::Arc;
 
-use lovelock_render::{FrameStats, Picture, Renderer};
+use lovelock_render::{FrameStats, Layers, Picture, Renderer};
 
 use super::RecordRequest;
 use super::prepare::open_renderer;
 use crate::compare::FilmOfPanes;
 use crate::{FrameSnapshot, Project, Stopwatch, StudioError};
+
+/// What panes cannot be.
+pub(super) const PANES_ALONE: &str = "panes beside each other are recorded as a film or PNG files, without a transparent \
+    background and motion blur: switch those off, or record the one picture";
 
 /// What draws the frames of a recording.
 pub(super) enum Drawer {
@@ -53,6 +57,37 @@ impl Drawer {
                 *adapters = panes.frame(project, snapshot, [width, height], picture)?.join(", ");
                 Ok(FrameStats { draw_ms: watch.ms(), ..FrameStats::default() })
             }
+        }
+    }
+
+    /// Draws the layers of a frame, over the background or nothing.
+    ///
+    /// # Errors
+    /// As [`Drawer::picture`]; panes have none.
+    pub(super) fn layers(
+        &mut self,
+        project: &Project,
+        snapshot: &Arc<FrameSnapshot>,
+        [width, height]: [u32; 2],
+        over_background: bool,
+        layers: &mut Layers,
+    ) -> Result<FrameStats, StudioError> {
+        match self {
+            Self::One(renderer) => {
+                let camera = snapshot.camera(&project.camera);
+                let input = snapshot.frame_input(project, &camera);
+                Ok(renderer.layers(&input, width, height, over_background, layers)?)
+            }
+            Self::Panes(..) => Err(StudioError::option(PANES_ALONE)),
+        }
+    }
+
+    /// What draws, as far as its pixels depend on it: the processor gives the same on any machine.
+    pub(super) fn kind(&self) -> String {
+        match self {
+            Self::One(renderer) if renderer.gpu().is_none() => "cpu".to_owned(),
+            Self::One(renderer) => renderer.adapter().to_owned(),
+            Self::Panes(..) => "panes".to_owned(),
         }
     }
 

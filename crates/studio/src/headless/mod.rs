@@ -3,8 +3,10 @@
 mod burn_in;
 mod dance;
 mod drawer;
+mod fingerprint;
 mod job;
 mod new_folders;
+mod options;
 mod prepare;
 mod record;
 mod record_take;
@@ -22,5 +24,7 @@ pub use record_take::{TakeRecordReport, is_take, record_take};
 pub use report::{RecordReport, StageMedians};
 pub use request::{Progress, RecordRequest};
 
+#[cfg(test)]
+mod layered_tests;
 #[cfg(test)]
 mod tests;

@@ -70,6 +70,11 @@ pub fn record_take(
         (request.transparency.is_some(), "--transparency"),
         (request.backend.is_some(), "--backend"),
         (request.panes.is_some(), "--beside"),
+        (request.format.is_some(), "--format"),
+        (request.transparent, "--transparent"),
+        (request.motion_blur.is_some(), "--motion-blur"),
+        (request.shutter_degrees.is_some(), "--shutter"),
+        (request.resume, "--resume"),
     ];
     if let Some((_, option)) = pictures.iter().find(|(given, _)| *given) {
         return Err(StudioError::option(format!(

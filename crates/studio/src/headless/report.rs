@@ -18,6 +18,8 @@ pub struct RecordReport {
     pub out: PathBuf,
     /// Frames written.
     pub frames: u64,
+    /// Those of them that were there already and were kept.
+    pub frames_kept: u64,
     /// Number of the first one.
     pub first_frame: u64,
     /// Frames a second.
@@ -34,6 +36,14 @@ pub struct RecordReport {
     pub shadow: String,
     /// Id of the transparency mode.
     pub transparency: String,
+    /// What was written: `mp4`, `apng`, `png` or `exr`.
+    pub format: String,
+    /// Whether there is nothing behind hair and body.
+    pub transparent: bool,
+    /// Pictures that each frame is the mean of.
+    pub motion_blur: u32,
+    /// How long the shutter was open for them, degrees of 360 a frame.
+    pub shutter_degrees: f32,
     /// Strands drawn.
     pub strands: u64,
     /// Their segments.
@@ -42,7 +52,8 @@ pub struct RecordReport {
     pub frame_ms: f64,
     /// Medians of the stages, milliseconds.
     pub stage_ms: StageMedians,
-    /// Medians of the passes of drawing, milliseconds, by their names; as far as what drew measures them.
+    /// Medians of the passes of drawing, milliseconds, by their names; as far as what drew measures them. Of one picture, where
+    /// a frame is the mean of several.
     pub passes_ms: BTreeMap<String, f64>,
     /// The most bytes that shadow maps held.
     pub shadow_bytes: u64,

@@ -4,15 +4,16 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use lovelock_record::FilmQuality;
+use lovelock_record::{FilmQuality, SequenceFormat};
 use lovelock_render::{Backend, Gpu, ShadowMethod, Transparency};
 
 use crate::{Access, Problem, Sheet};
 
 /// What to record; where a field is none, the project says.
 #[derive(Clone, Debug, Default)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line by itself")]
 pub struct RecordRequest {
-    /// Where it goes: a name ending in `.mp4` is a film, a folder a PNG sequence.
+    /// Where it goes: a name ending in `.mp4` is a film, a folder a sequence of PNG or EXR files.
     pub out: PathBuf,
     /// Frames, half open.
     pub frames: Option<Range<u64>>,
@@ -30,6 +31,16 @@ pub struct RecordRequest {
     pub label: bool,
     /// Whether the end of the film goes over into its start, hair and all; the project may say so too.
     pub seamless: bool,
+    /// What the files of a folder are.
+    pub format: Option<SequenceFormat>,
+    /// Whether there is nothing behind hair and body, also where the project draws a background.
+    pub transparent: bool,
+    /// Pictures that a frame is the mean of, 1 to [`crate::RecordingSection::MOST_SUBFRAMES`].
+    pub motion_blur: Option<u32>,
+    /// How long the shutter is open, degrees of 360 a frame.
+    pub shutter_degrees: Option<f32>,
+    /// Whether to go on with the sequence that is in the folder.
+    pub resume: bool,
     /// What draws; the project says where none.
     pub backend: Option<Backend>,
     /// What the project may read.
@@ -62,6 +73,13 @@ pub enum Progress {
     },
     /// A frame is done.
     Frame {
+        /// Frames done.
+        done: u64,
+        /// Frames in all.
+        total: u64,
+    },
+    /// A frame is there already, from an earlier recording.
+    Kept {
         /// Frames done.
         done: u64,
         /// Frames in all.

@@ -8,7 +8,8 @@ use lovelock_groom::GuideFrame;
 use lovelock_record::mix_guides;
 
 use super::Progress;
-use super::prepare::tell;
+use super::dance::step_before;
+use super::prepare::{simulate_to, tell};
 use crate::{Engine, FrameClock, FrameSnapshot, Scene, StudioError, TakePlayer};
 
 /// How long hair goes over, seconds, and the most of a round.
@@ -37,13 +38,13 @@ fn mixed(now: &Arc<FrameSnapshot>, before: &GuideFrame, share: f64) -> Arc<Frame
     Arc::new(snapshot)
 }
 
-/// One round of a simulation, of which the hair of the last frames is kept.
+/// One round of a simulation: the film is of the second one, and the hair around the end of the first is kept.
 pub(crate) struct Seam {
     frames: Range<u64>,
     frame_secs: f64,
     fade_secs: f64,
-    /// Hair of the round before at the frames that go over, the last ones of the round.
-    before: Vec<GuideFrame>,
+    /// Hair of the first round from where it goes over, and of what follows it, by the time of the film.
+    before: Vec<(f64, GuideFrame)>,
 }
 
 impl Seam {
@@ -68,15 +69,30 @@ impl Seam {
                 frames.start, frames.end
             )));
         }
-        Ok(Self { frames: frames.clone(), frame_secs, fade_secs: fade_secs(length), before: Vec::new() })
+        let fade_secs = fade_secs(length);
+        Ok(Self { frames: frames.clone(), frame_secs, fade_secs, before: Vec::new() })
     }
 
-    /// Frames of a round: the film is of the second one.
+    /// Frames of a round.
     pub(super) fn frames(&self) -> u64 {
         self.frames.end - self.frames.start
     }
 
-    /// Lives through the first round, and keeps the hair of its end.
+    /// Length of a round, seconds.
+    pub(super) fn round_secs(&self) -> f64 {
+        self.frames() as f64 * self.frame_secs
+    }
+
+    /// Time of a frame of the film, seconds.
+    pub(super) fn secs_of(&self, frame: u64) -> f64 {
+        frame as f64 * self.frame_secs
+    }
+
+    fn end_secs(&self) -> f64 {
+        self.secs_of(self.frames.end)
+    }
+
+    /// Lives through the first round, up to where the film is at `first_secs` in the second, and keeps the hair of its end.
     ///
     /// # Errors
     /// [`StudioError::Cancelled`].
@@ -84,33 +100,54 @@ impl Seam {
         &mut self,
         engine: &mut Engine,
         clock: &FrameClock,
+        first_secs: f64,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<(), StudioError> {
-        let first = self.first_faded();
-        for frame in self.frames.clone() {
-            engine.advance_to_step(clock.step_of_frame(frame));
-            if frame >= first {
-                self.before.push(engine.snapshot().guides.clone());
-            }
-            if frame % 30 == 0 {
-                let (done, total) = (frame - self.frames.start, self.frames());
-                tell(progress, Progress::Simulating { done, total })?;
+        const STEPS_A_REPORT: u64 = 60;
+        let last = step_before(first_secs + self.round_secs(), clock).0;
+        let kept = step_before(self.end_secs() - self.fade_secs, clock).0.min(last);
+        self.before.clear();
+        simulate_to(engine, kept, progress)?;
+        for step in kept..=last {
+            engine.advance_to_step(step);
+            self.keep(step as f64 * clock.step_secs, engine.snapshot().as_ref());
+            if step % STEPS_A_REPORT == 0 {
+                tell(progress, Progress::Simulating { done: step, total: last })?;
             }
         }
         Ok(())
     }
 
-    fn first_faded(&self) -> u64 {
-        let count = (self.fade_secs / self.frame_secs).ceil() as u64;
-        self.frames.end.saturating_sub(count).max(self.frames.start)
+    /// Keeps the hair at a time of the simulation, up to two frames after the end of the first round.
+    fn keep(&mut self, secs: f64, snapshot: &FrameSnapshot) {
+        let newer = self.before.last().is_none_or(|(last, _)| secs > last + 1e-9);
+        if newer && secs <= self.end_secs() + 2.0 * self.frame_secs {
+            self.before.push((secs, snapshot.guides.clone()));
+        }
     }
 
-    /// A frame of the second round with its hair gone over.
-    pub(super) fn faded(&self, frame: u64, now: &Arc<FrameSnapshot>) -> Arc<FrameSnapshot> {
-        let before = frame.checked_sub(self.first_faded()).and_then(|i| self.before.get(i as usize));
-        let Some(before) = before else { return Arc::clone(now) };
-        let left = (self.frames.end - frame) as f64 * self.frame_secs;
-        mixed(now, before, share(left, self.fade_secs))
+    /// An instant of the second round, `secs` in the time of the film, with its hair gone over.
+    pub(super) fn faded(&mut self, secs: f64, now: &Arc<FrameSnapshot>) -> Arc<FrameSnapshot> {
+        // What follows the first round is the start of the film; its last shutter may look there.
+        self.keep(secs + self.round_secs(), now);
+        let share = share(self.end_secs() - secs, self.fade_secs);
+        if share <= 0.0 {
+            return Arc::clone(now);
+        }
+        let after = self.before.partition_point(|(at, _)| *at < secs - 1e-9);
+        let last = self.before.len().saturating_sub(1);
+        let (Some((to, b)), Some((from, a))) =
+            (self.before.get(after.min(last)), self.before.get(after.saturating_sub(1)))
+        else {
+            return Arc::clone(now);
+        };
+        let t = if to > from { ((secs - from) / (to - from)).clamp(0.0, 1.0) } else { 0.0 };
+        if t >= 1.0 {
+            return mixed(now, b, share);
+        }
+        let mut between = a.clone();
+        mix_guides(a, b, t, &mut between);
+        mixed(now, &between, share)
     }
 }
 
@@ -200,7 +237,7 @@ mod tests {
 
     /// Hair of frames, in the space of the head.
     fn hair(dance: &mut Dance, frames: Range<u64>) -> Vec<Vec<Vec3>> {
-        dance.begin(frames.start, &mut go_on).expect("a dance");
+        dance.begin(dance.secs_of(frames.start), &mut go_on).expect("a dance");
         let points = |frame| {
             let snapshot = dance.snapshot(frame).expect("a frame");
             let (guides, head) = (&snapshot.guides.guides, snapshot.guides.world_from_head.inverse());

@@ -127,6 +127,7 @@ fn the_report_has_the_keys_that_were_promised() {
     let report = RecordReport {
         out: "a b/ü.mp4".into(),
         frames: 1,
+        frames_kept: 0,
         first_frame: 0,
         fps: 30.0,
         width: 2,
@@ -135,6 +136,10 @@ fn the_report_has_the_keys_that_were_promised() {
         adapter: "x".to_owned(),
         shadow: "voxel-map".to_owned(),
         transparency: "sorted".to_owned(),
+        format: "mp4".to_owned(),
+        transparent: false,
+        motion_blur: 1,
+        shutter_degrees: 180.0,
         strands: 1,
         segments: 1,
         frame_ms: 1.0,

@@ -207,6 +207,8 @@ fn recording(recording: &RecordingSection) -> RecordingSection {
         height,
         fps,
         first_frame,
+        subframes: recording.subframes.clamp(1, RecordingSection::MOST_SUBFRAMES),
+        shutter_degrees: within(recording.shutter_degrees, 0.0, 360.0, 180.0),
         end_frame: recording.end_frame.map(|end| end.clamp(first_frame + 1, 20_000_000)),
         ..recording.clone()
     }

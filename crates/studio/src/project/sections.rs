@@ -3,7 +3,7 @@
 use glam::Vec3;
 use lovelock_groom::{GroomSettings, ImportSettings, Preset};
 use lovelock_motion::{BodySettings, MotionSettings};
-use lovelock_record::FilmQuality;
+use lovelock_record::{FilmQuality, SequenceFormat};
 use lovelock_render::{Backend, ShadowMethod, ShadowSettings, Transparency};
 use serde::{Deserialize, Serialize};
 
@@ -190,6 +190,16 @@ pub struct RecordingSection {
     pub seamless: bool,
     /// How finely a film is coded.
     pub quality: FilmQuality,
+    /// What the files of a folder are.
+    pub format: SequenceFormat,
+    /// Whether there is nothing behind hair and body: neither background nor ground.
+    pub transparent: bool,
+    /// Pictures that a frame is the mean of, for motion blur: 1 (none) to [`RecordingSection::MOST_SUBFRAMES`].
+    pub subframes: u32,
+    /// How long the shutter is open, degrees of 360 a frame, 0 to 360.
+    pub shutter_degrees: f32,
+    /// Whether the shadow method, the transparency and the frame's number are written into each picture.
+    pub label: bool,
     /// Where it goes: a name ending in `.mp4`, or a folder.
     pub output: Option<FileRef>,
 }
@@ -204,9 +214,19 @@ impl Default for RecordingSection {
             end_frame: None,
             seamless: false,
             quality: FilmQuality::default(),
+            format: SequenceFormat::default(),
+            transparent: false,
+            subframes: 1,
+            shutter_degrees: 180.0,
+            label: false,
             output: None,
         }
     }
+}
+
+impl RecordingSection {
+    /// The most pictures that a frame is the mean of.
+    pub const MOST_SUBFRAMES: u32 = 64;
 }
 
 /// A recorded simulation that plays in place of one that runs.

@@ -4,6 +4,7 @@ use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable;
 use glam::Vec3;
 use lovelock_studio::groom::{GroomSettings, Preset, Unit};
+use lovelock_studio::recording::SequenceFormat;
 use lovelock_studio::render::{MAX_LIGHTS, ShadowMethod, VoxelDeposit};
 use lovelock_studio::wisp::SimulationSettings;
 use lovelock_studio::{BodySource, HairSource, MotionSource, Project, RecordingSection, Stage};
@@ -244,6 +245,24 @@ fn recording_keeps_a_range_that_is_not_empty() {
 }
 
 #[test]
+fn recording_offers_what_the_command_line_does() {
+    let mut harness = panel("Recording", Project::default());
+    choose(&mut harness, "Pictures as", "EXR, linear");
+    for name in ["Clear behind", "Label"] {
+        control(&harness, Role::CheckBox, name).click();
+        harness.run();
+    }
+    for (name, typed) in [("Motion blur", "12"), ("Shutter", "270")] {
+        let at = control(&harness, Role::SpinButton, name).rect().center();
+        type_at(&mut harness, at, typed);
+    }
+    let recording = &harness.state().state.project.recording;
+    assert_eq!(recording.format, SequenceFormat::Exr);
+    assert!(recording.transparent && recording.label);
+    assert_eq!((recording.subframes, recording.shutter_degrees), (12, 270.0));
+}
+
+#[test]
 fn recording_names_a_size_that_is_in_no_list() {
     let mut project = Project::default();
     (project.recording.width, project.recording.height, project.recording.fps) = (96, 64, 29.97);
@@ -259,7 +278,12 @@ fn recording_starts_shows_progress_and_stops() {
         let mut section = RecordingSection::default();
         *asked = recording::ui(ui, &mut section, state, 480).or(*asked);
     });
-    for (button, ask) in [("Record film…", Ask::Film), ("Pictures…", Ask::Sequence)] {
+    for (button, ask) in [
+        ("Record film…", Ask::Film),
+        ("Pictures…", Ask::Sequence),
+        ("Preview…", Ask::Preview),
+        ("Go on…", Ask::Resume),
+    ] {
         harness.get_by_label(button).click();
         harness.run();
         assert_eq!(harness.state().state.1, Some(ask));

@@ -68,7 +68,16 @@ pub(super) struct EyeInput<'a> {
     pub streaked: bool,
     /// Opacity of a strand where it covers a pixel wholly.
     pub opacity: f32,
-    pub transparency: Transparency,
+    pub drawn: Drawn,
+}
+
+/// What is left of the fragments of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Drawn {
+    /// Their light, put together in this way.
+    Blended(Transparency),
+    /// The depth of the nearest, its bits in the place of red and green.
+    NearestDepth,
 }
 
 /// Most pixels that one thread walks over: half of what software adapters allow.
@@ -91,7 +100,7 @@ impl EyeInput<'_> {
 pub(super) struct Eye {
     behind_kernel: Kernel,
     /// By whether strands are streaked.
-    modes: Vec<((Transparency, bool), Vec<Kernel>)>,
+    modes: Vec<((Drawn, bool), Vec<Kernel>)>,
     depths: Option<AreaDepths>,
     map: GrowBuffer<u32>,
     list: GrowBuffer<u32>,
@@ -149,9 +158,11 @@ fn behind_source() -> ShaderSource {
 /// Every composed shader with its label.
 pub(super) fn shaders() -> Vec<(String, ShaderSource)> {
     let behind = ("behind".to_owned(), behind_source());
-    let modes = Transparency::ALL.into_iter().flat_map(|transparency| {
-        let passes = Mode::of(transparency).passes.iter();
-        passes.map(move |pass| (format!("{transparency}: {}", pass.name), pass.source()))
+    let blended = Transparency::ALL.into_iter().map(|mode| (mode.to_string(), Drawn::Blended(mode)));
+    let all = blended.chain([("nearest".to_owned(), Drawn::NearestDepth)]);
+    let modes = all.flat_map(|(name, drawn)| {
+        let passes = Mode::of(drawn).passes.iter();
+        passes.map(move |pass| (format!("{name}: {}", pass.name), pass.source()))
     });
     std::iter::once(behind).chain(modes).collect()
 }
@@ -198,9 +209,9 @@ impl Eye {
     /// A shader that does not compile, or a picture whose rows are too long for this device's buffers.
     pub fn draw(&mut self, gpu: &Gpu, commands: &mut Commands, input: &EyeInput) -> Result<(), GpuError> {
         let device = &gpu.device;
-        let mode = Mode::of(input.transparency);
+        let mode = Mode::of(input.drawn);
         let Area { left, top, columns, rows: all_rows } = input.area;
-        let variant = (input.transparency, input.streaked);
+        let variant = (input.drawn, input.streaked);
         if !self.modes.iter().any(|(known, _)| *known == variant) {
             let kernels = mode.passes.iter().map(|pass| pass.kernel(gpu, input.streaked));
             self.modes.push((variant, kernels.collect::<Result<_, _>>()?));
@@ -280,7 +291,7 @@ impl Eye {
         }
         let group = self.behind_kernel.bind(gpu, &resources);
         commands.compute("draw/behind", |pass| self.behind_kernel.run(pass, &group, pixels));
-        let variant = (input.transparency, input.streaked);
+        let variant = (input.drawn, input.streaked);
         let kernels = self.modes.iter().find(|(known, _)| *known == variant);
         let Some((_, kernels)) = kernels else { return };
         for (pass, kernel) in mode.passes.iter().zip(kernels) {

@@ -2,7 +2,7 @@
 
 use lovelock_gpu::ShaderPart;
 
-use super::part;
+use super::{Drawn, part};
 use crate::Transparency;
 
 /// What a pass goes over.
@@ -117,14 +117,27 @@ const EXACT_MODE: Mode = Mode {
     ],
 };
 
+/// The nearest depth, for the layers of a picture.
+const NEAR_MODE: Mode = Mode {
+    words: 1,
+    lists: false,
+    passes: &[
+        fragments("draw/nearest-depth", &[part!("near/depth.wgsl")]),
+        resolve(&[part!("near/resolve.wgsl")]),
+    ],
+};
+
 impl Mode {
-    pub const fn of(transparency: Transparency) -> &'static Self {
-        match transparency {
-            Transparency::Opaque => &OPAQUE_MODE,
-            Transparency::WeightedAverage => &WEIGHTED_MODE,
-            Transparency::OccupancyOrder => &OCCUPANCY_MODE,
-            Transparency::Sorted => &SORTED_MODE,
-            Transparency::Exact => &EXACT_MODE,
+    pub const fn of(drawn: Drawn) -> &'static Self {
+        match drawn {
+            Drawn::NearestDepth => &NEAR_MODE,
+            Drawn::Blended(transparency) => match transparency {
+                Transparency::Opaque => &OPAQUE_MODE,
+                Transparency::WeightedAverage => &WEIGHTED_MODE,
+                Transparency::OccupancyOrder => &OCCUPANCY_MODE,
+                Transparency::Sorted => &SORTED_MODE,
+                Transparency::Exact => &EXACT_MODE,
+            },
         }
     }
 }

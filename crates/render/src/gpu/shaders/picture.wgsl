@@ -84,6 +84,9 @@ const BODY_AND_GROUND: u32 = 2u;
 const EVEN_GROUND: u32 = 3u;
 override LIST: u32 = BODY;
 
+// Whether there is a background behind hair and body; always but in layers.wgsl.
+override OVER_BACKGROUND: bool = true;
+
 // Where an item of a list is. No pixel is in two lists: they grow toward each other, two in the room of a picture.
 fn place_in_list(list: u32, item: u32, pixels: u32) -> u32 {
     return (list >> 1u) * pixels + select(item, pixels - 1u - item, (list & 1u) == 1u);
@@ -91,6 +94,9 @@ fn place_in_list(list: u32, item: u32, pixels: u32) -> u32 {
 
 // The background behind a pixel.
 fn backdrop(pixel: vec2u) -> vec3f {
+    if (!OVER_BACKGROUND) {
+        return vec3f(0.0);
+    }
     if (LIST == BODY || LIST == EVEN_GROUND) {
         return graded(pixel) * unpack_share(light_at(pixel)).rgb;
     }

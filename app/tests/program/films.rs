@@ -1,0 +1,157 @@
+//! `lovelock record`: pictures for a compositor, blurred ones, and recordings that something ended.
+
+use std::path::Path;
+use std::process::Stdio;
+
+use crate::tool::{lovelock, names, run, run_command, saved, small_project};
+
+/// A folder with a small project.
+fn folder() -> tempfile::TempDir {
+    let dir = tempfile::tempdir().expect("a folder");
+    saved(dir.path(), "p.lovelock", &small_project());
+    dir
+}
+
+/// What every recording here begins with.
+const RECORD: [&str; 6] = ["record", "p.lovelock", "--backend", "cpu", "--json", "-o"];
+
+fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    names(folder)
+        .into_iter()
+        .map(|name| (name.clone(), std::fs::read(folder.join(name)).expect("a file")))
+        .collect()
+}
+
+#[test]
+fn exr_files_blur_and_clear_backgrounds_are_told_in_the_report() {
+    let dir = folder();
+    let more = [
+        "x",
+        "--frames",
+        "3..5",
+        "--format",
+        "exr",
+        "--transparent",
+        "--motion-blur",
+        "3",
+        "--shutter",
+        "90",
+    ];
+    let json = run(dir.path(), RECORD.iter().chain(&more)).done().json();
+    assert_eq!((&json["format"], &json["transparent"]), (&"exr".into(), &true.into()));
+    assert_eq!((&json["motion_blur"], &json["shutter_degrees"]), (&3.into(), &90.0.into()));
+    assert_eq!((&json["frames"], &json["frames_kept"]), (&2.into(), &0.into()));
+    assert_eq!(names(&dir.path().join("x")), ["frame_000003.exr", "frame_000004.exr", "manifest.json"]);
+    // The magic number of OpenEXR.
+    let bytes = std::fs::read(dir.path().join("x/frame_000003.exr")).expect("a file");
+    assert_eq!(bytes[..4], [0x76, 0x2f, 0x31, 0x01]);
+    let film = run(dir.path(), RECORD.iter().chain(&["a.mp4", "--frames", "0..1", "--transparent"]));
+    assert!(film.refused(2).contains("no alpha"), "{film:?}");
+    for (option, value) in
+        [("--motion-blur", "65"), ("--shutter", "-1"), ("--shutter", "nan"), ("--format", "tiff")]
+    {
+        let ran = run(dir.path(), RECORD.iter().chain(&["y", option, value]));
+        assert_eq!(ran.code, Some(2), "{ran:?}");
+        assert!(ran.stderr.contains(value), "{ran:?}");
+    }
+    assert!(!dir.path().join("y").exists());
+}
+
+#[test]
+fn a_recording_that_was_killed_goes_on_to_the_same_bytes() {
+    let dir = folder();
+    let more =
+        |out: &'static str| [out, "--frames", "0..40", "--size", "200x150", "--motion-blur", "2", "--resume"];
+    run(dir.path(), RECORD.iter().chain(&more("whole"))).done();
+    let mut child = lovelock()
+        .current_dir(dir.path())
+        .args(RECORD.iter().chain(&more("parts")))
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the program starts");
+    let parts = dir.path().join("parts");
+    let pictures = |folder: &Path| {
+        let all = std::fs::read_dir(folder).into_iter().flatten().flatten();
+        all.filter(|entry| entry.path().extension().is_some_and(|ending| ending == "png")).count()
+    };
+    while pictures(&parts) < 5 {
+        assert!(child.try_wait().expect("its state").is_none(), "it ended by itself");
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    child.kill().expect("killed");
+    child.wait().expect("gone");
+    assert!(!parts.join("manifest.json").exists(), "nothing says that it is whole");
+    let there = pictures(&parts);
+    let json = run(dir.path(), RECORD.iter().chain(&more("parts"))).done().json();
+    let kept = json["frames_kept"].as_u64().expect("a number");
+    println!("{there} pictures were there, {kept} were kept");
+    assert!(kept >= 1 && kept as usize <= there, "{kept} of {there}");
+    assert!(contents(&parts) == contents(&dir.path().join("whole")), "byte for byte");
+    let mut other = small_project();
+    other.look.roughness += 0.1;
+    saved(dir.path(), "p.lovelock", &other);
+    let refused = run(dir.path(), RECORD.iter().chain(&more("parts")));
+    assert!(refused.refused(2).contains("look changed"), "{refused:?}");
+}
+
+#[test]
+fn a_second_recording_to_one_place_is_refused_and_the_first_is_whole() {
+    let dir = folder();
+    for (out, finished) in [("one", "one/manifest.json"), ("one.mp4", "one.mp4")] {
+        let more = [out, "--frames", "0..60", "--size", "200x150"];
+        let mut first = lovelock()
+            .current_dir(dir.path())
+            .args(RECORD.iter().chain(&more))
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("the program starts");
+        let begun = ["one/frame_000000.png", "one.mp4.partial"].map(|name| dir.path().join(name));
+        while !begun[usize::from(out == "one.mp4")].exists() {
+            std::thread::sleep(std::time::Duration::from_millis(2));
+        }
+        let second = run(dir.path(), RECORD.iter().chain(&more));
+        assert!(second.refused(1).contains("another recording is writing"), "{second:?}");
+        assert!(first.wait().expect("its end").success());
+        assert!(dir.path().join(finished).exists());
+    }
+    assert_eq!(names(&dir.path().join("one")).len(), 61);
+}
+
+/// A disk on which no file gets longer than 4 kB. A shell's limit stands for it: the system then refuses a write as a full disk does.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_disk_that_fills_ends_a_recording_with_a_line_and_nothing_under_its_name() {
+    let dir = folder();
+    for (out, more) in [("a.mp4", ""), ("a.apng", ""), ("a", ""), ("e", "--format exr")] {
+        let program = env!("CARGO_BIN_EXE_lovelock");
+        let script = format!(
+            "trap '' XFSZ; ulimit -f 8; exec {program} record p.lovelock --backend cpu --size 320x240 --frames 0..9 -o {out} {more}"
+        );
+        let mut command = std::process::Command::new("sh");
+        let ran = run_command(command.current_dir(dir.path()).args(["-c", &script]).env_remove("DISPLAY"));
+        assert_eq!(ran.code, Some(1), "{out}: {ran:?}");
+        let last = ran.stderr.lines().last().unwrap_or_default();
+        assert!(last.contains(out) && last.contains("could not"), "{out}: {ran:?}");
+        assert!(!ran.stderr.contains("panicked"), "{ran:?}");
+    }
+    let left = names(dir.path());
+    assert_eq!(left, ["p.lovelock"], "nothing unfinished stays");
+}
+
+#[test]
+fn ranges_beyond_a_take_are_refused_with_what_it_holds() {
+    let dir = folder();
+    run(dir.path(), ["record", "p.lovelock", "-o", "d.take", "--frames", "0..12", "--json"]).done();
+    for wrong in ["0..99", "90..95"] {
+        let ran = run(dir.path(), ["record", "d.take", "-o", "x", "--frames", wrong, "--backend", "cpu"]);
+        let said = ran.refused(2);
+        assert!(said.contains(wrong) && said.contains("d.take") && said.contains("frames 0.."), "{said}");
+    }
+    assert!(!dir.path().join("x").exists());
+    // Sub-frames past the last one show the last one.
+    let more =
+        ["record", "d.take", "-o", "x", "--frames", "11..12", "--motion-blur", "4", "--shutter", "360"];
+    run(dir.path(), more.iter().chain(&["--backend", "cpu", "--json"])).done();
+}

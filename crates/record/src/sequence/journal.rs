@@ -1,0 +1,145 @@
+//! The record of a sequence that is not finished: what it is, and which of its frames are whole.
+//!
+//! It lies in the folder as long as frames are written, and is kept by what ends the program before they are. A line of JSON each: a
+//! manifest without frames first, then a frame as soon as it has its name.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs::{self, File};
+use std::io::{self, Read, Seek, Write};
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+use crate::RecordError;
+use crate::claim::claim;
+use crate::manifest::{Manifest, ManifestFrame, read_manifest};
+
+/// Its name inside the folder.
+pub(super) const JOURNAL_NAME: &str = "manifest.partial";
+
+/// The longest that is read: a few million frames.
+const MOST_BYTES: u64 = 1 << 29;
+
+/// The record, held open so that no other recording writes to the folder.
+pub(super) struct Journal {
+    path: PathBuf,
+    file: File,
+    /// Whether nothing was in it.
+    is_new: bool,
+}
+
+impl Journal {
+    /// Takes the folder for this recording.
+    ///
+    /// # Errors
+    /// Another one has it, or it cannot be written.
+    pub fn claim(folder: &Path) -> Result<Self, RecordError> {
+        let path = folder.join(JOURNAL_NAME);
+        let file =
+            claim(&path).map_err(|error| RecordError::io(folder, "start a sequence in the folder", error))?;
+        let is_new = file.metadata().is_ok_and(|data| data.len() == 0);
+        Ok(Self { path, file, is_new })
+    }
+
+    /// What an earlier recording has left in the folder, in the record or, where it could say so itself, in the manifest.
+    pub fn left(&mut self, folder: &Path) -> Option<Manifest> {
+        let mut text = Vec::new();
+        let read = self.file.rewind().and_then(|()| (&self.file).take(MOST_BYTES).read_to_end(&mut text));
+        let recorded = read.ok().and_then(|_| parse(&text));
+        recorded.or_else(|| read_manifest(folder).ok())
+    }
+
+    /// Begins anew with what is kept.
+    ///
+    /// # Errors
+    /// The disk is full, and the like.
+    pub fn begin(&mut self, head: &Manifest, kept: &BTreeMap<u64, ManifestFrame>) -> io::Result<()> {
+        let mut text = serde_json::to_vec(head)?;
+        text.push(b'\n');
+        for frame in kept.values() {
+            text.extend(serde_json::to_vec(frame)?);
+            text.push(b'\n');
+        }
+        self.file.set_len(0)?;
+        self.file.rewind()?;
+        self.file.write_all(&text)?;
+        self.file.sync_all()
+    }
+
+    /// Notes a frame that has its name.
+    ///
+    /// # Errors
+    /// As [`Journal::begin`].
+    pub fn add(&mut self, frame: &ManifestFrame) -> io::Result<()> {
+        let mut line = serde_json::to_vec(frame)?;
+        line.push(b'\n');
+        self.file.write_all(&line)
+    }
+
+    /// Gives the folder back as it was.
+    pub fn give_back(self) {
+        if self.is_new {
+            self.remove();
+        }
+    }
+
+    /// Removes it: the manifest says all there is.
+    pub fn remove(self) {
+        // Before it is closed, so that no other recording has begun with it.
+        let _ = fs::remove_file(&self.path);
+    }
+}
+
+/// The manifest of a record; a last line that was cut is left out.
+fn parse(text: &[u8]) -> Option<Manifest> {
+    let mut lines = text.split_inclusive(|&byte| byte == b'\n').filter(|line| line.ends_with(b"\n"));
+    let mut manifest: Manifest = serde_json::from_slice(lines.next()?).ok()?;
+    manifest.frames = lines.map_while(|line| serde_json::from_slice(line).ok()).collect();
+    Some(manifest)
+}
+
+/// The frames of a manifest that are in the folder as it says, byte for byte.
+pub(super) fn whole_frames(folder: &Path, frames: Vec<ManifestFrame>) -> BTreeMap<u64, ManifestFrame> {
+    let is_whole = |frame: &ManifestFrame| {
+        let path = folder.join(&frame.file);
+        let is_long = fs::metadata(&path).is_ok_and(|data| data.is_file() && data.len() == frame.bytes);
+        is_long
+            && fs::read(&path).is_ok_and(|bytes| format!("{:08x}", crc32fast::hash(&bytes)) == frame.crc32)
+    };
+    frames.into_iter().filter(is_whole).map(|frame| (frame.number, frame)).collect()
+}
+
+/// In what a sequence that is there differs from the one that is to go on; none where it is the same.
+pub(super) fn differences(there: &Manifest, wanted: &Manifest) -> Vec<String> {
+    let size = |of: &Manifest| format!("{}x{}", of.width, of.height);
+    let mut found = Vec::new();
+    found.extend(difference("size", &size(there), &size(wanted)));
+    found.extend(difference("rate", &there.fps.to_string(), &wanted.fps.to_string()));
+    let keys_of = |of: &Value| of.as_object().map(|map| map.keys().cloned().collect::<Vec<_>>());
+    let keys: BTreeSet<String> =
+        [&there.settings, &wanted.settings].into_iter().filter_map(keys_of).flatten().collect();
+    for key in keys {
+        let (there, wanted) = (&there.settings[&key], &wanted.settings[&key]);
+        if let (Some(parts), Some(others)) = (keys_of(there), keys_of(wanted)) {
+            // Fingerprints say nothing to anyone: that they differ does.
+            let parts: BTreeSet<String> = parts.into_iter().chain(others).collect();
+            let changed = parts.into_iter().filter(|part| there[part] != wanted[part]);
+            found.extend(changed.map(|part| format!("{part} changed")));
+        } else {
+            found.extend(difference(&key, &text_of(there), &text_of(wanted)));
+        }
+    }
+    found
+}
+
+fn difference(what: &str, there: &str, wanted: &str) -> Option<String> {
+    (there != wanted).then(|| format!("{what} was {there} and is {wanted} now"))
+}
+
+fn text_of(value: &Value) -> String {
+    match value {
+        Value::Null => "none".to_owned(),
+        Value::String(text) => text.clone(),
+        other => other.to_string(),
+    }
+}

@@ -1,0 +1,458 @@
+//! Picture sequences: a folder of PNG or EXR files and a manifest.
+
+mod exr;
+mod journal;
+mod worker;
+
+pub use self::exr::FrameLayers;
+
+use crate::film::check_frame;
+use crate::manifest::{MANIFEST_NAME, Manifest, ManifestFrame, VERSION, read_manifest};
+use crate::partial::{Opener, PartialFile, open_file};
+use crate::{FrameRate, RecordError};
+use journal::Journal;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
+use worker::{Job, Pixels, Worker};
+
+/// Threads that code frames: PNG takes some milliseconds each, and drawing needs the other cores.
+const MOST_THREADS: usize = 4;
+
+/// The largest side in pixels, a guard against slips of the finger.
+const LARGEST_SIDE: u32 = 16_384;
+
+/// Pixels of a picture of layers from which on two threads code it: each holds 14 bytes a pixel and more.
+const LARGE: u64 = 4_000_000;
+
+/// What the files of a sequence are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SequenceFormat {
+    /// PNG: as the screen shows it, 8 bits, sRGB.
+    #[default]
+    Png,
+    /// `OpenEXR`: linear half floats with depth and transmittance ([`FrameLayers`]).
+    Exr,
+}
+
+impl SequenceFormat {
+    /// All, in the order of menus.
+    pub const ALL: [Self; 2] = [Self::Png, Self::Exr];
+
+    /// Stable name for files and the command line; the ending of the files.
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::Png => "png",
+            Self::Exr => "exr",
+        }
+    }
+
+    /// Name for people.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Png => "PNG",
+            Self::Exr => "EXR, linear",
+        }
+    }
+}
+
+/// What a sequence is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SequenceSettings {
+    /// Width in pixels, 1 to 16,384.
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// Frames per second, 1 to 240; for the manifest.
+    pub fps: f64,
+    /// Number of the first frame, which names its file.
+    pub first_frame: u64,
+    /// What the files are.
+    pub format: SequenceFormat,
+    /// Whether PNG files keep the alpha channel (not premultiplied). Without, they are smaller.
+    pub alpha: bool,
+    /// Whether to go on with a sequence of the same settings that is there, of which whole frames are kept.
+    pub resume: bool,
+    /// What drew the frames, for the manifest: an object whose keys say in what another sequence differs.
+    pub settings: serde_json::Value,
+}
+
+/// What was written.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SequenceReport {
+    /// The folder.
+    pub folder: PathBuf,
+    /// Frames in it.
+    pub frames: u64,
+    /// Those of them that an earlier recording had left whole.
+    pub kept: u64,
+    /// Length of all frames together, in bytes.
+    pub bytes: u64,
+}
+
+/// The file name of a frame: `frame_000042.png`.
+pub fn frame_name(number: u64, format: SequenceFormat) -> String {
+    format!("frame_{number:06}.{}", format.id())
+}
+
+/// A sequence in the making.
+///
+/// Each frame gets its name when its file is whole, so frames can be used while later ones are drawn. The manifest comes
+/// last; `manifest.partial` takes its place until then, and keeps a second recording out of the folder. A cancel (dropping
+/// without [`SequenceWriter::finish`]) or an error keeps the frames that are whole, and the manifest says `"complete": false`.
+pub struct SequenceWriter {
+    folder: PathBuf,
+    settings: SequenceSettings,
+    rate: FrameRate,
+    /// Frames handed over or kept.
+    at: u64,
+    /// Frames that are there and whole.
+    kept: BTreeMap<u64, ManifestFrame>,
+    jobs: Option<SyncSender<Job>>,
+    spent: Receiver<Vec<u8>>,
+    threads: Vec<JoinHandle<()>>,
+    shared: Arc<Mutex<Progress>>,
+    /// Files of the sequence that lay in the folder before.
+    old_files: Vec<String>,
+    ended: bool,
+}
+
+/// What the threads have done so far.
+#[derive(Default)]
+struct Progress {
+    frames: BTreeMap<u64, ManifestFrame>,
+    error: Option<RecordError>,
+    /// Until the end.
+    journal: Option<Journal>,
+}
+
+impl SequenceWriter {
+    /// Starts a sequence in `folder`, which is created where missing.
+    ///
+    /// Frames of the same numbers are replaced as the new ones come, and the manifest of a sequence already there goes
+    /// at once. The frames that it lists and the new sequence lacks go at the end, so that the folder holds one sequence. With
+    /// [`SequenceSettings::resume`] frames that are there and whole stay instead: see [`SequenceWriter::next_is_kept`].
+    ///
+    /// # Errors
+    /// [`RecordError::Request`] for a size, a rate or a `folder` that cannot be (it is a file), and for another sequence than
+    /// the one to go on with; [`RecordError::Io`] where the folder cannot be written or another recording writes to it.
+    pub fn create(folder: &Path, settings: SequenceSettings) -> Result<Self, RecordError> {
+        Self::create_on(folder, settings, &(Arc::new(open_file) as Arc<Opener>))
+    }
+
+    pub(crate) fn create_on(
+        folder: &Path,
+        settings: SequenceSettings,
+        opener: &Arc<Opener>,
+    ) -> Result<Self, RecordError> {
+        let SequenceSettings { width, height, fps, format, .. } = settings;
+        if width.min(height) == 0 || width.max(height) > LARGEST_SIDE {
+            return Err(RecordError::request(format!(
+                "a sequence of {width}x{height} pixels: wanted sides of 1 to {LARGEST_SIDE}"
+            )));
+        }
+        let rate = FrameRate::from_fps(fps)?;
+        if folder.is_file() {
+            return Err(RecordError::request(format!(
+                "{}: is a file, a sequence needs a folder",
+                folder.display()
+            )));
+        }
+        fs::create_dir_all(folder).map_err(|error| RecordError::io(folder, "create the folder", error))?;
+        let mut writer = Self {
+            folder: folder.to_owned(),
+            settings,
+            rate,
+            at: 0,
+            kept: BTreeMap::new(),
+            jobs: None,
+            spent: sync_channel(0).1,
+            threads: Vec::new(),
+            shared: Arc::new(Mutex::new(Progress::default())),
+            old_files: Vec::new(),
+            ended: true,
+        };
+        let journal = writer.begin()?;
+        lock(&writer.shared).journal = Some(journal);
+        (writer.ended, lock(&writer.shared).frames) = (false, writer.kept.clone());
+        writer.start_threads(format, opener)?;
+        Ok(writer)
+    }
+
+    /// Takes the folder, finds out what is kept of what it holds, and forgets the rest.
+    fn begin(&mut self) -> Result<Journal, RecordError> {
+        let folder = self.folder.clone();
+        let mut journal = Journal::claim(&folder)?;
+        let there = journal.left(&folder);
+        let head = self.manifest(false, Vec::new());
+        if let Some(there) = there {
+            let listed = there.frames.iter();
+            // A name of one's own making is never removed, nor taken for a frame.
+            let ours = |f: &&ManifestFrame| {
+                SequenceFormat::ALL.iter().any(|&format| f.file == frame_name(f.number, format))
+            };
+            self.old_files = listed.filter(ours).map(|f| f.file.clone()).collect();
+            if self.settings.resume {
+                match self.kept_of(there, &head) {
+                    Ok(kept) => self.kept = kept,
+                    Err(error) => {
+                        journal.give_back();
+                        return Err(error);
+                    }
+                }
+            }
+        }
+        if let Err(error) = journal.begin(&head, &self.kept) {
+            journal.remove();
+            return Err(RecordError::io(&folder, "start a sequence in the folder", error));
+        }
+        let manifest_path = folder.join(MANIFEST_NAME);
+        if read_manifest(&folder).is_ok() {
+            fs::remove_file(&manifest_path)
+                .map_err(|error| RecordError::io(&manifest_path, "remove the old manifest", error))?;
+        }
+        Ok(journal)
+    }
+
+    /// The frames to go on with, of a sequence that is there.
+    fn kept_of(
+        &self,
+        there: Manifest,
+        wanted: &Manifest,
+    ) -> Result<BTreeMap<u64, ManifestFrame>, RecordError> {
+        let refuse = |what: String| {
+            Err(RecordError::request(format!(
+                "{}: cannot go on with the sequence that is there: {what}; record without resuming to replace it, or to \
+                 another folder",
+                self.folder.display()
+            )))
+        };
+        let differences = journal::differences(&there, wanted);
+        if !differences.is_empty() {
+            return refuse(differences.join("; "));
+        }
+        let format = self.settings.format;
+        let own = |frame: &ManifestFrame| frame.file == frame_name(frame.number, format);
+        let frames: Vec<_> = there.frames.into_iter().filter(own).collect();
+        if let Some(early) = frames.iter().find(|frame| frame.number < self.settings.first_frame) {
+            return refuse(format!(
+                "it holds frame {}, before the first one that is wanted, {}",
+                early.number, self.settings.first_frame
+            ));
+        }
+        Ok(journal::whole_frames(&self.folder, frames))
+    }
+
+    fn start_threads(&mut self, format: SequenceFormat, opener: &Arc<Opener>) -> Result<(), RecordError> {
+        let SequenceSettings { width, height, .. } = self.settings;
+        let is_large = format == SequenceFormat::Exr && u64::from(width) * u64::from(height) > LARGE;
+        let most = if is_large { 2 } else { MOST_THREADS };
+        let count = std::thread::available_parallelism().map_or(1, usize::from).min(most);
+        let (jobs, todo) = sync_channel(if is_large { 1 } else { count });
+        let (done, spent) = sync_channel(2 * count + 2);
+        (self.jobs, self.spent) = (Some(jobs), spent);
+        let todo = Arc::new(Mutex::new(todo));
+        for index in 0..count {
+            let worker = Worker {
+                folder: self.folder.clone(),
+                width,
+                height,
+                rate: self.rate,
+                format,
+                alpha: self.settings.alpha,
+                comments: self.comments(),
+                opener: opener.clone(),
+                shared: self.shared.clone(),
+            };
+            let (todo, done) = (todo.clone(), done.clone());
+            let thread = std::thread::Builder::new()
+                .name(format!("lovelock-frames-{index}"))
+                .spawn(move || worker.run(&todo, &done))
+                .map_err(|error| RecordError::io(&self.folder, "start a thread for its frames", error))?;
+            self.threads.push(thread);
+        }
+        Ok(())
+    }
+
+    /// What drew the frames, in a line of ASCII for files that keep one.
+    fn comments(&self) -> String {
+        let texts = self.settings.settings.as_object().into_iter().flatten();
+        let said = texts.filter_map(|(key, value)| Some(format!("{key} {}", value.as_str()?)));
+        said.collect::<Vec<_>>().join(", ").replace(|c: char| !c.is_ascii(), "?")
+    }
+
+    /// Whether the frame that comes next is there and whole: it need not be drawn, [`SequenceWriter::keep_next`] it is.
+    pub fn next_is_kept(&self) -> bool {
+        self.kept.contains_key(&(self.settings.first_frame + self.at))
+    }
+
+    /// Goes on to the frame after the next, which is kept; does nothing where it is not.
+    pub fn keep_next(&mut self) {
+        self.at += u64::from(self.next_is_kept());
+    }
+
+    /// Hands over the next frame: RGBA, 8 bits sRGB, rows from the top, `width × height × 4` bytes.
+    ///
+    /// Returns as soon as the frame waits to be coded; an error may therefore belong to an earlier frame, and names it.
+    ///
+    /// # Errors
+    /// [`RecordError::FrameSize`] for another number of bytes (the sequence goes on); [`RecordError::Request`] where the files
+    /// are EXR; [`RecordError::Io`] for a full disk and the like, and [`RecordError::Stopped`] after that.
+    pub fn push(&mut self, rgba: &[u8]) -> Result<(), RecordError> {
+        check_frame(rgba, self.settings.width, self.settings.height)?;
+        self.check_format(SequenceFormat::Png)?;
+        let mut buffer = self.spent.try_recv().unwrap_or_default();
+        buffer.clear();
+        buffer.extend_from_slice(rgba);
+        self.hand_over(Pixels::Rgba(buffer))
+    }
+
+    /// As [`SequenceWriter::push`] for EXR files: `width × height` items of each layer.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn push_layers(&mut self, layers: &FrameLayers) -> Result<(), RecordError> {
+        self.check_format(SequenceFormat::Exr)?;
+        let SequenceSettings { width, height, .. } = self.settings;
+        let wanted = width as usize * height as usize;
+        for found in [layers.light.len(), layers.depth.len(), layers.transmittance.len()] {
+            if found != wanted {
+                let (found, wanted) = (found * 16, wanted * 16);
+                return Err(RecordError::FrameSize { found, wanted, width, height });
+            }
+        }
+        self.hand_over(Pixels::Layers(Box::new(exr::Planes::new(layers))))
+    }
+
+    fn check_format(&self, given: SequenceFormat) -> Result<(), RecordError> {
+        if self.settings.format == given {
+            return Ok(());
+        }
+        let wanted = self.settings.format.label();
+        Err(RecordError::request(format!(
+            "frames for {} were handed to a sequence of {wanted}",
+            given.label()
+        )))
+    }
+
+    fn hand_over(&mut self, pixels: Pixels) -> Result<(), RecordError> {
+        let Some(jobs) = &self.jobs else {
+            return Err(RecordError::Stopped { path: self.folder.clone() });
+        };
+        let number = self.settings.first_frame + self.at;
+        if jobs.send(Job { number, pixels }).is_ok() && lock(&self.shared).error.is_none() {
+            self.at += 1;
+            return Ok(());
+        }
+        self.end(false).map(drop)
+    }
+
+    /// Codes what still waits, writes the manifest, and removes frames of an older sequence that this one lacks.
+    ///
+    /// # Errors
+    /// As [`SequenceWriter::push`]; also [`RecordError::Request`] for a sequence of no frames.
+    pub fn finish(mut self) -> Result<SequenceReport, RecordError> {
+        if self.at == 0 && self.jobs.is_some() {
+            let what = format!("{}: a sequence needs one frame or more", self.folder.display());
+            return Err(RecordError::request(what));
+        }
+        self.end(true)
+    }
+
+    /// Gives up: the same as dropping, for the reader's sake.
+    pub fn cancel(self) {}
+
+    /// Ends the threads and writes the manifest.
+    fn end(&mut self, finished: bool) -> Result<SequenceReport, RecordError> {
+        if std::mem::replace(&mut self.ended, true) {
+            return Err(RecordError::Stopped { path: self.folder.clone() });
+        }
+        self.jobs = None;
+        let panicked = self.threads.drain(..).map(JoinHandle::join).filter(Result::is_err).count() > 0;
+        let Progress { frames, error, journal } = std::mem::take(&mut *lock(&self.shared));
+        let first = self.settings.first_frame;
+        let all = (first..first + self.at).all(|number| frames.contains_key(&number));
+        let whole = finished && error.is_none() && !panicked && all;
+        let manifest = self.manifest(whole, frames.into_values().collect());
+        // A folder without a single frame needs no manifest, and after an error there may be no room for one: the error
+        // that came first is the one to tell.
+        let written = if manifest.frames.is_empty() { Ok(()) } else { self.write_manifest(&manifest) };
+        // Where the manifest could not be written, the record of the frames stays.
+        if let Some(journal) = journal.filter(|_| written.is_ok()) {
+            journal.remove();
+        }
+        match error {
+            Some(error) => return Err(error),
+            None if panicked => {
+                return Err(RecordError::Stopped { path: self.folder.clone() });
+            }
+            None => written?,
+        }
+        if whole {
+            self.remove_old_frames(&manifest);
+        }
+        let bytes = manifest.frames.iter().map(|frame| frame.bytes).sum();
+        let (frames, kept) = (manifest.frames.len() as u64, self.kept.len() as u64);
+        Ok(SequenceReport { folder: self.folder.clone(), frames, kept, bytes })
+    }
+
+    fn manifest(&self, complete: bool, frames: Vec<ManifestFrame>) -> Manifest {
+        Manifest {
+            format: "lovelock-sequence".into(),
+            version: VERSION,
+            complete,
+            width: self.settings.width,
+            height: self.settings.height,
+            fps: self.settings.fps,
+            first_frame: self.settings.first_frame,
+            frames,
+            settings: self.settings.settings.clone(),
+        }
+    }
+
+    fn write_manifest(&self, manifest: &Manifest) -> Result<(), RecordError> {
+        let path = self.folder.join(MANIFEST_NAME);
+        let write = || {
+            let mut file = PartialFile::create(&path, &open_file)?;
+            serde_json::to_writer_pretty(&mut file, manifest)?;
+            file.write_all(b"\n")?;
+            file.commit(true)
+        };
+        write().map_err(|error| RecordError::io(&path, "write the manifest", error))
+    }
+
+    fn remove_old_frames(&self, manifest: &Manifest) {
+        for file in &self.old_files {
+            if manifest.frames.iter().all(|frame| frame.file != *file) {
+                // One that is gone already, or cannot go, does no harm: the manifest is what counts.
+                let _ = fs::remove_file(self.folder.join(file));
+            }
+        }
+    }
+}
+
+impl Drop for SequenceWriter {
+    fn drop(&mut self) {
+        let _ = self.end(false);
+    }
+}
+
+impl std::fmt::Debug for SequenceWriter {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("SequenceWriter").field("folder", &self.folder).finish_non_exhaustive()
+    }
+}
+
+/// The progress, also after a thread has died holding it: every change to it is a single step.
+fn lock(shared: &Mutex<Progress>) -> std::sync::MutexGuard<'_, Progress> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,180 @@
+//! A picture's layers on the processor: the twin of `layers.wgsl`, `value_points.wgsl` and `eye/near/`.
+//!
+//! The hair is drawn a second time with its transmittance in the place of its colour, so that every way of transparency weighs
+//! it as it weighs light; and a third time for what is nearest.
+
+use rayon::prelude::*;
+
+use super::hair::segment::{LANES, Span, SpanSink, each_span, pixel_of};
+use super::math::{clamp, floor, index_of};
+use super::placed::{Placed, TileScratch, copy_rows};
+use super::points::ShadedPoint;
+use super::pool::Pool;
+use super::surface::raster::SurfaceSamples;
+use super::tile::{Grid, PixelsIn, STRIDE, TILE, compose_row, noise_at};
+use super::tone::encode;
+use super::view::View;
+use crate::camera::NEAR_METRES;
+use crate::{FrameInput, Layers};
+
+/// The share of hair from which on a pixel has a mean; less is rounding.
+const LEAST_SHARE: f32 = 1e-6;
+
+/// Finished tiles, kept from frame to frame.
+#[derive(Debug, Default)]
+pub(super) struct LayerTiles {
+    pub light: Vec<[f32; 4]>,
+    depth: Vec<f32>,
+    transmittance: Vec<f32>,
+    scratch: Pool<TileScratch>,
+}
+
+impl LayerTiles {
+    /// Makes room for the tiles of a picture.
+    pub fn fit(&mut self, grid: &Grid) {
+        let places = grid.columns * grid.rows * TILE * TILE;
+        self.light.resize(places, [0.0; 4]);
+        self.depth.resize(places, 0.0);
+        self.transmittance.resize(places, 0.0);
+    }
+
+    /// Memory that is held, bytes.
+    pub fn bytes(&self) -> u64 {
+        16 * self.light.capacity() as u64 + 4 * (self.depth.capacity() + self.transmittance.capacity()) as u64
+    }
+
+    /// Draws depth and transmittance. The points lose their colours to it: `at_points` has four packed transmittances each.
+    pub fn draw_values(
+        &mut self,
+        view: &View,
+        grid: &Grid,
+        input: &FrameInput,
+        placed: &mut Placed,
+        at_points: &[u32],
+    ) {
+        let lit = view.lights.is_empty();
+        placed.points.par_iter_mut().zip(at_points).with_min_len(8192).for_each(|(point, &packed)| {
+            let left = if lit { 1.0 } else { (packed & 0xff) as f32 * (1.0 / 255.0) };
+            // The value and 1 in the place of colours: their quotient is the mean, whatever multiplies both.
+            point.color = [left, 1.0, 0.0];
+        });
+        let Self { depth, transmittance, scratch, .. } = self;
+        let placed = &*placed;
+        let tiles = depth.par_chunks_mut(TILE * TILE).zip(transmittance.par_chunks_mut(TILE * TILE));
+        tiles.enumerate().for_each_init(
+            || scratch.take(),
+            |lease, (tile, (depth, transmittance))| {
+                depth.fill(Layers::NOTHING_METRES);
+                transmittance.fill(1.0);
+                if placed.is_empty(tile) {
+                    return;
+                }
+                let scratch = lease.get();
+                placed.draw_tile(view, grid, input, tile, scratch);
+                let nearest = nearest_of(view, grid, placed, tile, &scratch.samples);
+                for (i, (depth, transmittance)) in depth.iter_mut().zip(transmittance).enumerate() {
+                    let at = i / TILE * STRIDE + i % TILE;
+                    if nearest[at] > 0.0 {
+                        *depth = NEAR_METRES / nearest[at];
+                    }
+                    let (sum, share) = (scratch.hair.color[0][at], scratch.hair.color[1][at]);
+                    if share > LEAST_SHARE {
+                        let mean = clamp(sum / share, 0.0, 1.0);
+                        *transmittance = 1.0 - clamp(1.0 - scratch.hair.through[at], 0.0, 1.0) * (1.0 - mean);
+                    }
+                }
+            },
+        );
+    }
+
+    /// Puts the tiles into rows.
+    pub fn write(&self, grid: &Grid, out: &mut Layers) {
+        out.resize(grid.width, grid.height);
+        copy_rows(&self.light, 1, grid, &mut out.light);
+        copy_rows(&self.depth, 1, grid, &mut out.depth);
+        copy_rows(&self.transmittance, 1, grid, &mut out.transmittance);
+    }
+}
+
+/// Puts a tile together as linear light, exposed.
+pub(super) fn finish_light(view: &View, input: &PixelsIn, over_background: bool, out: &mut [[f32; 4]]) {
+    let exposure = view.uniform.size_scale_exposure.w;
+    for (y, out) in out.chunks_exact_mut(TILE).enumerate() {
+        let (row, open) = compose_row(view, input, y, over_background);
+        for (x, out) in out.iter_mut().enumerate() {
+            let alpha = if over_background { 1.0 } else { clamp(1.0 - open[x], 0.0, 1.0) };
+            *out = [row[0][x] * exposure, row[1][x] * exposure, row[2][x] * exposure, alpha];
+        }
+    }
+}
+
+/// The nearest depth of each pixel of a tile, in the numbers of the depth map: 0 where there is nothing.
+fn nearest_of(view: &View, grid: &Grid, placed: &Placed, tile: usize, samples: &SurfaceSamples) -> Vec<f32> {
+    let mut near = vec![0.0; TILE * STRIDE];
+    for (at, near) in near.iter_mut().enumerate() {
+        *near = samples.depths(at).into_iter().fold(0.0, f32::max);
+    }
+    let opacity = view.uniform.width_opacity_tip_scalp.y;
+    let mut sink = Nearest { samples, near: &mut near };
+    let firsts = placed.segments();
+    for &segment in placed.segment_bins.of(tile) {
+        let first = firsts[segment as usize] as usize;
+        let (a, b) = (&placed.points[first], &placed.points[first + 1]);
+        each_span(a, b, grid.origin(tile), opacity, &mut sink);
+    }
+    near
+}
+
+struct Nearest<'a> {
+    samples: &'a SurfaceSamples,
+    near: &'a mut [f32],
+}
+
+impl SpanSink for Nearest<'_> {
+    fn is_row_open(&self, _row: usize) -> bool {
+        true
+    }
+
+    fn is_open(&self, _block: usize) -> bool {
+        true
+    }
+
+    fn take(&mut self, _: &ShadedPoint, _: &ShadedPoint, span: &Span) {
+        for lane in 0..LANES {
+            let (alpha, depth) = (span.alpha[lane], span.depth[lane]);
+            if alpha < Layers::LEAST_COVER {
+                continue;
+            }
+            let (x, y) = pixel_of(span.block, lane);
+            let at = y * STRIDE + x;
+            let seen = self.samples.depths(at).into_iter().filter(|&body| depth >= body).count();
+            if alpha * 0.25 * seen as f32 >= Layers::LEAST_COVER && depth > self.near[at] {
+                self.near[at] = depth;
+            }
+        }
+    }
+}
+
+/// Pixels that are shown together.
+const SHOWN: usize = 16;
+
+/// Row `y` of a picture as the screen shows it, of light that is exposed and multiplied by alpha.
+pub(crate) fn show_row(light: &[[f32; 4]], y: u32, out: &mut [u8]) {
+    for (group, (light, out)) in light.chunks(SHOWN).zip(out.chunks_mut(4 * SHOWN)).enumerate() {
+        let mut row = [[0.0; SHOWN]; 3];
+        for (x, &[r, g, b, alpha]) in light.iter().enumerate() {
+            let scale = if alpha == 1.0 { 1.0 } else { 1.0 / alpha.max(LEAST_SHARE) };
+            (row[0][x], row[1][x], row[2][x]) = (r * scale, g * scale, b * scale);
+        }
+        encode(&mut row, 1.0);
+        for (x, (&[.., alpha], pixel)) in light.iter().zip(out.as_chunks_mut::<4>().0).enumerate() {
+            let noise = noise_at((group * SHOWN + x) as f32, y as f32);
+            let byte = |v: f32| index_of(floor(clamp(v, 0.0, 255.0))) as u8;
+            let [r, g, b] = [0, 1, 2].map(|c| byte(row[c][x] * 255.0 + noise + 0.5));
+            *pixel = match byte(alpha * 255.0 + 0.5) {
+                0 => [0; 4],
+                alpha => [r, g, b, alpha],
+            };
+        }
+    }
+}

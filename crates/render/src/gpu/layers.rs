@@ -1,0 +1,140 @@
+//! A picture's layers on the GPU: kernels over what a picture has left on the device.
+
+use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, Kernel, Readback, ShaderSource, wgpu};
+
+use super::light_kernels::LISTS;
+use crate::{Layers, MAX_LIGHTS};
+
+/// Bytes of a pixel of the two buffers.
+const LIGHT_BYTES: u64 = 16;
+const DATA_BYTES: u64 = 8;
+
+/// What the kernels are composed of.
+#[derive(Debug)]
+pub(super) struct LayerShaders {
+    pub layers: ShaderSource,
+    pub values: ShaderSource,
+}
+
+/// The kernels for a number of lights, over the background or nothing.
+#[derive(Debug)]
+pub(super) struct LayerKernels {
+    pub background: Kernel,
+    /// Draws the pixels of each list.
+    pub lit: [Kernel; LISTS],
+    pub values: Kernel,
+    pub transmittance: Kernel,
+    pub depth: Kernel,
+}
+
+impl LayerKernels {
+    fn compile(
+        gpu: &Gpu,
+        shaders: &LayerShaders,
+        lights: usize,
+        over_background: bool,
+    ) -> Result<Self, GpuError> {
+        let over = ("OVER_BACKGROUND", f64::from(u8::from(over_background)));
+        let kernel = |label, entry, list: f64| {
+            let constants = [("LIGHTS", lights as f64), ("LIST", list), over];
+            Kernel::specialised(gpu, label, &shaders.layers, entry, &constants)
+        };
+        let lit = |list| kernel("layer lit", "layer_lit", list);
+        Ok(Self {
+            background: kernel("layer background", "layer_background", 0.0)?,
+            lit: [lit(0.0)?, lit(1.0)?, lit(2.0)?, lit(3.0)?],
+            values: Kernel::new(gpu, "values of points", &shaders.values, "value_points")?,
+            transmittance: kernel("layer transmittance", "layer_transmittance", 0.0)?,
+            depth: kernel("layer depth", "layer_depth", 0.0)?,
+        })
+    }
+}
+
+/// The kernels that were used, and the memory of the pixels.
+#[derive(Debug)]
+pub(super) struct LayerBuffers {
+    kernels: Vec<((usize, bool), LayerKernels)>,
+    light: GrowBuffer<[f32; 4]>,
+    data: GrowBuffer<[f32; 2]>,
+    readback: Readback,
+    bytes: [Vec<u8>; 2],
+}
+
+impl LayerBuffers {
+    pub fn new(gpu: &Gpu) -> Self {
+        let (device, storage) = (&gpu.device, wgpu::BufferUsages::STORAGE);
+        Self {
+            kernels: Vec::new(),
+            light: GrowBuffer::new(device, "light layer", storage),
+            data: GrowBuffer::new(device, "data layer", storage),
+            readback: Readback::default(),
+            bytes: [const { Vec::new() }; 2],
+        }
+    }
+
+    /// Bytes of the largest buffer of a picture of so many pixels.
+    pub fn needed(pixels: u64) -> u64 {
+        LIGHT_BYTES * pixels
+    }
+
+    /// Makes room for a picture, and compiles what its kind needs.
+    ///
+    /// # Errors
+    /// A shader that does not compile.
+    pub fn fit(
+        &mut self,
+        gpu: &Gpu,
+        shaders: &LayerShaders,
+        pixels: u64,
+        (lights, over_background): (usize, bool),
+    ) -> Result<(), GpuError> {
+        self.light.reserve(&gpu.device, pixels as usize);
+        self.data.reserve(&gpu.device, pixels as usize);
+        let variant = (lights.min(MAX_LIGHTS), over_background);
+        if !self.kernels.iter().any(|(known, _)| *known == variant) {
+            let kernels = LayerKernels::compile(gpu, shaders, variant.0, over_background)?;
+            self.kernels.push((variant, kernels));
+        }
+        Ok(())
+    }
+
+    /// The kernels of a kind that [`LayerBuffers::fit`] has made.
+    pub fn kernels(&self, (lights, over_background): (usize, bool)) -> Option<&LayerKernels> {
+        let variant = (lights.min(MAX_LIGHTS), over_background);
+        self.kernels.iter().find(|(known, _)| *known == variant).map(|(_, kernels)| kernels)
+    }
+
+    /// The buffers by their bindings.
+    pub fn bindings(&self) -> [(u32, wgpu::BindingResource<'_>); 2] {
+        [(16, self.light.raw().as_entire_binding()), (17, self.data.raw().as_entire_binding())]
+    }
+
+    /// Encodes bringing them back.
+    pub fn copy(&mut self, gpu: &Gpu, commands: &mut Commands, pixels: u64) {
+        let wanted = [(self.light.raw(), LIGHT_BYTES * pixels), (self.data.raw(), DATA_BYTES * pixels)];
+        self.readback.copy(gpu, commands.encoder(), &wanted);
+    }
+
+    /// Waits for them.
+    ///
+    /// # Errors
+    /// A device that is lost.
+    pub fn read(
+        &mut self,
+        gpu: &Gpu,
+        [width, height]: [u32; 2],
+        layers: &mut Layers,
+    ) -> Result<(), GpuError> {
+        let [light, data] = &mut self.bytes;
+        self.readback.read(gpu, &mut [light, data])?;
+        layers.resize(width, height);
+        for (to, from) in layers.light.iter_mut().zip(light.as_chunks::<16>().0) {
+            *to = bytemuck::pod_read_unaligned(from);
+        }
+        let places = layers.depth.iter_mut().zip(&mut layers.transmittance);
+        for ((depth, transmittance), from) in places.zip(data.as_chunks::<8>().0) {
+            [*depth, *transmittance] = bytemuck::pod_read_unaligned(from);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,94 @@
+//! The layers of a picture.
+
+use std::sync::Arc;
+
+use lovelock_gpu::{PassTimer, constants};
+
+use super::{GpuRenderer, eye_input};
+use crate::gpu::eye::{Drawn, too_large};
+use crate::gpu::frame_resources::FrameResources;
+use crate::gpu::layers::LayerBuffers;
+use crate::{FrameInput, FrameStats, Layers, Picture, RenderError};
+
+impl GpuRenderer {
+    /// See [`Renderer::layers`](crate::Renderer::layers). The picture is drawn first, and the layers from what it leaves on the
+    /// device; its statistics are those of both.
+    ///
+    /// # Errors
+    /// As there; also a picture whose layers are larger than the device's buffers.
+    pub fn layers(
+        &mut self,
+        input: &FrameInput,
+        width: u32,
+        height: u32,
+        over_background: bool,
+        layers: &mut Layers,
+    ) -> Result<FrameStats, RenderError> {
+        let gpu = Arc::clone(&self.gpu);
+        let pixels = u64::from(width) * u64::from(height);
+        let needed = LayerBuffers::needed(pixels);
+        if needed > gpu.most_storage_bytes() {
+            return Err(too_large(&gpu, needed).into());
+        }
+        let mut picture = Picture { rgba: std::mem::take(&mut self.spare), ..Picture::default() };
+        let drawn = self.picture(input, width, height, &mut picture);
+        self.spare = picture.rgba;
+        let mut stats = drawn?;
+
+        let uniform = self.last;
+        let kind = (uniform.eye_lights.w as usize, over_background);
+        let seen = self.seen_hair(input, &uniform, [width, height]);
+        self.layers.fit(&gpu, &self.pipelines.layers, pixels, kind)?;
+        let (Some(kernels), Some(targets)) = (self.layers.kernels(kind), &self.targets) else {
+            return Err(RenderError::NoPicture);
+        };
+        let frame = FrameResources {
+            uniform: &self.uniform,
+            body_depth: &self.surface.depth,
+            columns: self.shadow.columns_view(),
+            linear: &self.linear,
+            compare: &self.compare,
+        };
+        let area = [seen.area.left, seen.area.top, seen.area.columns, seen.area.rows];
+        let hair_area = constants(&gpu, "hair area", &area);
+        let mut timer = PassTimer::new(&gpu)?;
+        let mut commands = timer.begin(&gpu, "layers");
+        // What the eye has drawn is bound anew each time.
+        macro_rules! bound {
+            () => {{
+                let (corners, hair) = (self.ground.corners(), self.eye.layer());
+                let mut all = self.screen.bindings_of_last(&frame, targets, corners, hair, &hair_area);
+                all.extend(self.layers.bindings());
+                all
+            }};
+        }
+        let all = bound!();
+        let background = kernels.background.bind(&gpu, &all);
+        let lit = kernels.lit.each_ref().map(|kernel| kernel.bind(&gpu, &all));
+        drop(all);
+        commands.compute("draw/layer-light", |pass| {
+            kernels.background.run(pass, &background, pixels);
+            for (kernel, group) in kernels.lit.iter().zip(&lit) {
+                kernel.run(pass, group, self.screen.lit_threads(pixels));
+            }
+        });
+
+        self.hair.shade_values(&gpu, &kernels.values, &mut commands, &frame);
+        let blended = Drawn::Blended(input.picture.transparency);
+        for (drawn, kernel, threads) in [
+            (blended, &kernels.transmittance, seen.area.pixels()),
+            (Drawn::NearestDepth, &kernels.depth, pixels),
+        ] {
+            let eye = eye_input(&seen, &self.hair, targets, &uniform, drawn);
+            self.eye.draw(&gpu, &mut commands, &eye)?;
+            let group = kernel.bind(&gpu, &bound!());
+            commands.compute("draw/layers", |pass| kernel.run(pass, &group, threads));
+        }
+        self.layers.copy(&gpu, &mut commands, pixels);
+        commands.submit();
+        self.layers.read(&gpu, [width, height], layers)?;
+        gpu.check()?;
+        stats.passes.extend(timer.times(&gpu));
+        Ok(stats)
+    }
+}

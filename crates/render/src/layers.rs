@@ -1,0 +1,120 @@
+//! A picture as numbers for a compositor: linear light with what it covers, depth, and the light that reaches the hair.
+
+use rayon::prelude::*;
+
+use crate::Picture;
+
+/// What one picture shows, before any curve of a screen. Rows from the top; one item a pixel in each list.
+///
+/// All that is averaged over a pixel adds up as light does, so that the mean of several of them ([`Layers::add`]) is the
+/// picture of a shutter that was open for as long.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Layers {
+    /// Width, pixels.
+    pub width: u32,
+    /// Height, pixels.
+    pub height: u32,
+    /// Red, green, blue and alpha. The light is that of the scene, linear, in the primaries of sRGB (Rec. 709), times the
+    /// exposure ([`crate::PictureSettings::exposure_stops`]) and before the view's curve; it is not bounded above. Alpha is the
+    /// share of the pixel that hair and body cover, and colour is multiplied by it; over a background both are whole: alpha is 1.
+    pub light: Vec<[f32; 4]>,
+    /// Distance along the camera's axis of the nearest surface in the pixel, metres: the body in any of its four samples, or a
+    /// strand that covers at least [`Layers::LEAST_COVER`] of the pixel. [`Layers::NOTHING_METRES`] where there is none.
+    pub depth: Vec<f32>,
+    /// How much of the first light that is switched on the hair before it lets come to the hair of the pixel, 0 to 1:
+    /// `1 - Σ w (1 - T)` over what is seen of each strand, `w` of the pixel, with transmittance `T` in steps of 1/255. So it is 1
+    /// where there is no hair.
+    pub transmittance: Vec<f32>,
+}
+
+impl Layers {
+    /// The depth where there is nothing, metres: large, as Blender writes it, and not infinite, so that no filter makes it a NaN.
+    pub const NOTHING_METRES: f32 = 1e10;
+    /// The least part of a pixel that a strand must cover to count for its depth: a step of 8 bits.
+    pub const LEAST_COVER: f32 = 1.0 / 255.0;
+
+    /// Makes room for a picture of this size.
+    pub(crate) fn resize(&mut self, width: u32, height: u32) {
+        let pixels = width as usize * height as usize;
+        (self.width, self.height) = (width, height);
+        self.light.resize(pixels, [0.0; 4]);
+        self.depth.resize(pixels, Self::NOTHING_METRES);
+        self.transmittance.resize(pixels, 1.0);
+    }
+
+    /// Begins a mean: nothing is in it yet.
+    pub fn clear_to(&mut self, width: u32, height: u32) {
+        self.resize(width, height);
+        self.light.fill([0.0; 4]);
+        self.depth.fill(Self::NOTHING_METRES);
+        self.transmittance.fill(0.0);
+    }
+
+    /// Adds another of the same size with this weight; the weights of all that are added should add up to 1. Depth is that of
+    /// the nearest.
+    pub fn add(&mut self, other: &Self, weight: f32) {
+        let light = self.light.par_iter_mut().zip(&other.light).with_min_len(4096);
+        light.for_each(|(sum, light)| {
+            for (sum, light) in sum.iter_mut().zip(light) {
+                *sum += weight * light;
+            }
+        });
+        for (depth, other) in self.depth.iter_mut().zip(&other.depth) {
+            *depth = depth.min(*other);
+        }
+        for (sum, transmittance) in self.transmittance.iter_mut().zip(&other.transmittance) {
+            *sum += weight * transmittance;
+        }
+    }
+
+    /// The picture as the screen shows it, with the curve that every picture has; straight alpha, not premultiplied. Over a
+    /// background its bytes are those of the picture, but for rounding of the exposure.
+    pub fn tone_map(&self, picture: &mut Picture) {
+        (picture.width, picture.height) = (self.width, self.height);
+        let row = self.width as usize;
+        picture.rgba.resize(self.light.len() * 4, 0);
+        let rows = picture.rgba.par_chunks_mut(4 * row.max(1)).zip(self.light.par_chunks(row.max(1)));
+        rows.enumerate().for_each(|(y, (out, light))| crate::cpu::show_row(light, y as u32, out));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grey(light: f32, alpha: f32, depth: f32) -> Layers {
+        Layers {
+            width: 2,
+            height: 1,
+            light: vec![[light, light, light, alpha]; 2],
+            depth: vec![depth; 2],
+            transmittance: vec![alpha; 2],
+        }
+    }
+
+    #[test]
+    fn a_mean_is_that_of_light_and_the_depth_is_the_nearest() {
+        let mut mean = Layers::default();
+        mean.clear_to(2, 1);
+        for (layers, weight) in [(grey(1.0, 1.0, 3.0), 0.25), (grey(0.2, 0.5, 2.0), 0.75)] {
+            mean.add(&layers, weight);
+        }
+        assert!((mean.light[1][0] - 0.4).abs() < 1e-6 && (mean.light[0][3] - 0.625).abs() < 1e-6, "{mean:?}");
+        assert_eq!(mean.depth, [2.0; 2]);
+        assert!((mean.transmittance[0] - 0.625).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_screen_shows_straight_alpha() {
+        let show = |layers: &Layers| {
+            let mut picture = Picture::default();
+            layers.tone_map(&mut picture);
+            picture.rgba
+        };
+        let (half, whole) = (show(&grey(0.1, 0.5, 1.0)), show(&grey(0.2, 1.0, 1.0)));
+        assert_eq!((half[3], whole[3]), (128, 255));
+        assert_eq!(half[..3], whole[..3], "the colour is that of what covers");
+        assert_ne!(show(&grey(0.1, 1.0, 1.0))[..3], whole[..3], "the control");
+        assert_eq!(show(&grey(0.0, 0.0, 1.0)), [0; 8], "nothing is black and clear");
+    }
+}
