@@ -91,6 +91,7 @@ impl Window {
             Command::Record if self.recorder.is_running() => self.recorder.cancel(),
             Command::Record => self.ask(Purpose::Film),
             Command::SavePicture => self.ask(Purpose::Picture),
+            Command::ExportCurves => self.ask(Purpose::Curves),
             Command::FrameHair => self.frame_hair(),
             Command::ToggleFollow => self.change("camera", |project| {
                 project.camera.mode = match project.camera.mode {
@@ -289,9 +290,10 @@ impl Window {
             Purpose::Open => self.open_any(path),
             Purpose::Beside => self.compare_with(path),
             Purpose::SaveProject => self.save_to(path),
-            Purpose::Film | Purpose::Sequence => {
+            Purpose::Film | Purpose::Sequence | Purpose::Curves => {
                 let access = self.session.access().clone();
-                let panes = self.layout.compare.shown.then(|| self.layout.compare.sheet());
+                let panes = (self.layout.compare.shown && purpose != Purpose::Curves)
+                    .then(|| self.layout.compare.sheet());
                 self.recorder.start(self.history.project().clone(), access, path, panes, ctx);
             }
             Purpose::Picture if self.layout.compare.shown => self.save_panes(path, ctx),

@@ -252,6 +252,7 @@ impl Window {
         match recording {
             Some(panels::recording::Ask::Film) => self.ask(Purpose::Film),
             Some(panels::recording::Ask::Sequence) => self.ask(Purpose::Sequence),
+            Some(panels::recording::Ask::Curves) => self.ask(Purpose::Curves),
             Some(panels::recording::Ask::Cancel) => self.run(lovelock_studio::Command::Record, ctx),
             None => {}
         }
@@ -394,12 +395,17 @@ impl Window {
             Purpose::Film if self.layout.compare.shown => folder.join("out").join("comparison.mp4"),
             Purpose::Film => folder.join("out").join("dance.mp4"),
             Purpose::Sequence => folder.join("out").join("frames"),
+            Purpose::Curves => folder.join("out").join("dance.usdc"),
             Purpose::Picture if self.layout.compare.shown => folder.join("comparison.png"),
             Purpose::Picture => folder.join("hair.png"),
         };
         let dialog = PathDialog::new(purpose, &suggestion);
         self.dialog = Some(match purpose {
             Purpose::Film | Purpose::Sequence => dialog.about(self.recording_in_words()),
+            Purpose::Curves => dialog.about(
+                "All strands in USD, the guides in .glb, with the body; the Recording panel sets the frames."
+                    .to_owned(),
+            ),
             Purpose::Open | Purpose::Beside | Purpose::SaveProject | Purpose::Picture => dialog,
         });
     }

@@ -21,12 +21,15 @@ pub(crate) enum Purpose {
     Film,
     /// Record a folder of pictures.
     Sequence,
+    /// Write the hair and the body for other programs.
+    Curves,
     /// Save the picture in the viewport.
     Picture,
 }
 
 /// What the program reads, for the system's dialog.
-const READABLE: [&str; 9] = [PROJECT_EXTENSION, "ron", "hair", "tfx", "glb", "gltf", "bvh", "take", "part"];
+const READABLE: [&str; 12] =
+    [PROJECT_EXTENSION, "ron", "hair", "tfx", "usdc", "usda", "usd", "glb", "gltf", "bvh", "take", "part"];
 
 /// Nobody leaves a dialog sooner than this after asking for it: one that does so never came up. The system's
 /// answer does not tell the two apart.
@@ -40,6 +43,7 @@ impl Purpose {
             Self::SaveProject => "Save the project",
             Self::Film => "Record a film",
             Self::Sequence => "Record pictures into a folder",
+            Self::Curves => "Export curves: .usdc, .usda or .glb",
             Self::Picture => "Save the picture",
         }
     }
@@ -48,7 +52,7 @@ impl Purpose {
         match self {
             Self::Open => "Open file",
             Self::Beside => "Compare",
-            Self::SaveProject | Self::Picture => "Save file",
+            Self::SaveProject | Self::Picture | Self::Curves => "Save file",
             Self::Film | Self::Sequence => "Start recording",
         }
     }
@@ -59,6 +63,7 @@ impl Purpose {
             Self::Open | Self::Beside | Self::Sequence => None,
             Self::SaveProject => Some(PROJECT_EXTENSION),
             Self::Film => Some("mp4"),
+            Self::Curves => Some("usdc"),
             Self::Picture => Some("png"),
         }
     }
@@ -142,6 +147,9 @@ impl PathDialog {
             if self.purpose == Purpose::Film && path.as_ref().is_some_and(|path| path.exists()) {
                 ui.label(RichText::new("The film of this name will be replaced.").color(theme::ACCENT));
             }
+            if self.purpose == Purpose::Curves && path.as_ref().is_some_and(|path| path.exists()) {
+                ui.label(RichText::new("The file of this name will be replaced.").color(theme::ACCENT));
+            }
             ui.horizontal(|ui| {
                 let go = ui.add_enabled(path.is_some(), egui::Button::new(self.purpose.button()));
                 if let Some(path) = path.filter(|_| go.clicked() || entered) {
@@ -192,6 +200,11 @@ impl PathDialog {
             Purpose::Sequence => Box::pin(dialog.pick_folder()),
             Purpose::SaveProject => Box::pin(dialog.add_filter("Project", &[PROJECT_EXTENSION]).save_file()),
             Purpose::Film => Box::pin(dialog.add_filter("Film", &["mp4"]).save_file()),
+            Purpose::Curves => {
+                let dialog =
+                    dialog.add_filter("Curves", &lovelock_studio::recording::CurveFormat::EXTENSIONS);
+                Box::pin(dialog.save_file())
+            }
             Purpose::Picture => Box::pin(dialog.add_filter("Picture", &["png"]).save_file()),
         };
         let spawned = std::thread::Builder::new().name("file dialog".to_owned()).spawn(move || {

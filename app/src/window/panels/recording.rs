@@ -60,6 +60,8 @@ pub(crate) enum Ask {
     Film,
     /// The same: a folder of pictures.
     Sequence,
+    /// The same: curves for other programs.
+    Curves,
     /// Stop the one that runs.
     Cancel,
 }
@@ -168,6 +170,11 @@ pub(crate) fn ui(
             if ui.button("Pictures…").on_hover_text("Records the dance as a folder of PNG files.").clicked()
             {
                 ask = Some(Ask::Sequence);
+            }
+            let curves =
+                "Writes the hair as curves that move, with the body, for other programs: USD or glTF.";
+            if ui.button("Curves…").on_hover_text(curves).clicked() {
+                ask = Some(Ask::Curves);
             }
         });
     }

@@ -30,6 +30,10 @@ pub struct RecordRequest {
     pub label: bool,
     /// Whether the end of the film goes over into its start, hair and all; the project may say so too.
     pub seamless: bool,
+    /// Which curves an output of curves holds; by its format where none.
+    pub curves: Option<super::CurveSource>,
+    /// Whether an output of curves leaves the body out.
+    pub no_body: bool,
     /// What draws; the project says where none.
     pub backend: Option<Backend>,
     /// What the project may read.
