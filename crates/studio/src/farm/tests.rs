@@ -54,7 +54,7 @@ fn wrong_requests_are_refused_and_leave_nothing() {
     let at = |name: &str| dir.path().join(name);
     let request = || FarmRequest { out: at("job"), frames: Some(0..4), ..FarmRequest::default() };
     let mut lost = small_project();
-    lost.set_hair_file(&at("gone.hair"));
+    lost.set_hair_file(at("gone.hair"));
     for (project, request, wanted) in [
         (small_project(), FarmRequest { frames: Some(4..4), ..request() }, "an empty range"),
         (small_project(), FarmRequest { chunk: Some(0), ..request() }, "--chunk 0"),

@@ -12,12 +12,12 @@ pub(super) fn build() -> anyhow::Result<PathBuf> {
     let output = cargo.stderr(Stdio::inherit()).output().context("could not start cargo")?;
     ensure!(output.status.success(), "Lovelock could not be built");
     let messages = String::from_utf8_lossy(&output.stdout);
-    let programs = messages.lines().filter_map(|line| {
+    let mut programs = messages.lines().filter_map(|line| {
         let message: Value = serde_json::from_str(line).ok()?;
         let is_program = message["target"]["name"] == "lovelock";
         message["executable"].as_str().filter(|_| is_program).map(PathBuf::from)
     });
-    programs.last().context("cargo named no program")
+    programs.next_back().context("cargo named no program")
 }
 
 /// A command of Lovelock that answers in JSON.

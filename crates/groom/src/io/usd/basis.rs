@@ -210,7 +210,7 @@ impl Shape {
 
 impl Spread {
     /// As the attribute says, where so many values are right for it; else what they are right for.
-    pub(super) fn of(said: Option<&str>, values: usize, counts: &[usize], shape: &Shape) -> Option<Self> {
+    pub(super) fn of(said: Option<&str>, values: usize, counts: &[usize], shape: Shape) -> Option<Self> {
         let wanted = |spread: Self| match spread {
             Self::Constant => 1,
             Self::Uniform => counts.len(),
@@ -291,7 +291,7 @@ mod tests {
             (Some("vertex"), 2, Some(Spread::Uniform)),
             (None, 4, None),
         ] {
-            assert_eq!(Spread::of(said, values, &counts, &shape), wanted, "{said:?} of {values}");
+            assert_eq!(Spread::of(said, values, &counts, shape), wanted, "{said:?} of {values}");
         }
         let varying: Vec<Vec3> = [0.0, 4.0, 8.0, 100.0, 200.0].map(Vec3::splat).to_vec();
         let out = shape.spread(Spread::Varying, &varying, &counts);

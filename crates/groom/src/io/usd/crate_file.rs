@@ -236,7 +236,7 @@ impl<'a> CrateLayer<'a> {
     /// Whether a prim is defined and not switched off.
     fn is_on(&mut self, node: u32) -> Result<bool, HairFileError> {
         // `def`; `over` and `class` define nothing to draw.
-        let defined = self.field(node, "specifier").is_some_and(|value| value & 0xff == 0);
+        let defined = self.field(node, "specifier").is_some_and(|value| value as u8 == 0);
         let active = match self.field(node, "active") {
             Some(value) => self.value(value, 1)? != Some(Value::Bool(false)),
             None => true,

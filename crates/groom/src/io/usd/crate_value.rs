@@ -91,8 +91,9 @@ impl CrateLayer<'_> {
             kind::TOKEN => Value::Token(self.tokens.get(inlined as usize).cloned().unwrap_or_default()),
             kind::INT => Value::Numbers(vec![f64::from(inlined as i32)]),
             kind::HALF => Value::Numbers(vec![f64::from(half(inlined as u16))]),
-            kind::FLOAT if is_inlined => Value::Numbers(vec![f64::from(f32::from_bits(inlined))]),
-            kind::DOUBLE if is_inlined => Value::Numbers(vec![f64::from(f32::from_bits(inlined))]),
+            kind::FLOAT | kind::DOUBLE if is_inlined => {
+                Value::Numbers(vec![f64::from(f32::from_bits(inlined))])
+            }
             // Small whole components are inlined, a byte each; of a matrix its diagonal.
             kind::VEC3D | kind::VEC3F | kind::VEC3H if is_inlined => {
                 Value::Numbers(inlined.to_le_bytes()[..3].iter().map(|&b| f64::from(b as i8)).collect())
@@ -164,9 +165,9 @@ impl CrateLayer<'_> {
             };
         }
         let (number, per) = match kind {
-            kind::INT => (Number::Float, 1),
             kind::HALF => (Number::Half, 1),
-            kind::FLOAT => (Number::Float, 1),
+            // Whole numbers are as long.
+            kind::FLOAT | kind::INT => (Number::Float, 1),
             kind::DOUBLE => (Number::Double, 1),
             kind::VEC3H => (Number::Half, 3),
             kind::VEC3F => (Number::Float, 3),

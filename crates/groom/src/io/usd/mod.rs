@@ -122,18 +122,15 @@ fn read(layer: &mut impl Layer) -> Result<RawHair, HairFileError> {
 
 /// Carries the stage to metres with Y up.
 fn stage_transform(layer: &mut impl Layer, notes: &mut Vec<String>) -> Result<DMat4, HairFileError> {
-    let metres = match layer.metadata("metersPerUnit")? {
-        Some(value) => {
-            let found = value.numbers().first().copied().unwrap_or(f64::NAN);
-            if !(1e-9..=1e9).contains(&found) {
-                return Err(layer.malformed(format!("metersPerUnit {found}"), "1e-9 to 1e9"));
-            }
-            found
+    let metres = if let Some(value) = layer.metadata("metersPerUnit")? {
+        let found = value.numbers().first().copied().unwrap_or(f64::NAN);
+        if !(1e-9..=1e9).contains(&found) {
+            return Err(layer.malformed(format!("metersPerUnit {found}"), "1e-9 to 1e9"));
         }
-        None => {
-            notes.push("The file states no metersPerUnit; a centimetre was taken, as USD says.".to_owned());
-            0.01
-        }
+        found
+    } else {
+        notes.push("The file states no metersPerUnit; a centimetre was taken, as USD says.".to_owned());
+        0.01
     };
     let z_up = layer.metadata("upAxis")?.is_some_and(|axis| axis.token() == Some("Z"));
     let turn = if z_up { DMat4::from_rotation_x(-std::f64::consts::FRAC_PI_2) } else { DMat4::IDENTITY };
@@ -151,9 +148,6 @@ struct Curves {
 
 impl Curves {
     fn read(layer: &mut impl Layer, prim: usize, notes: &mut Vec<String>) -> Result<Self, HairFileError> {
-        let wrong = |layer: &dyn Fn(String, &str) -> HairFileError, what: String, wanted: &str| {
-            Err(layer(what, wanted))
-        };
         let path = layer.path(prim);
         let points = layer.attribute(prim, "points", usize::MAX)?.map_or_else(Vec::new, Value::into_vectors);
         let counts = layer.attribute(prim, "curveVertexCounts", points.len())?;
@@ -163,11 +157,7 @@ impl Curves {
             counts.iter().try_fold(0_usize, |sum, &count| sum.checked_add(usize::try_from(count).ok()?));
         if sum != Some(points.len()) {
             let found = format!("{path}: {} points in {} curves", points.len(), counts.len());
-            return wrong(
-                &|found, wanted| layer.malformed(found, wanted),
-                found,
-                "as many points as curveVertexCounts add up to",
-            );
+            return Err(layer.malformed(found, "as many points as curveVertexCounts add up to"));
         }
         let counts: Vec<usize> = counts.iter().map(|&count| count as usize).collect();
         let made: usize = counts.iter().map(|&count| shape.made_of(count)).sum();
@@ -181,7 +171,7 @@ impl Curves {
                 let indices = layer.attribute(prim, &format!("{name}:indices"), points.len().max(1))?;
                 if let Some(indices) = indices.map(Value::into_ints) {
                     let picked = indices.iter().map(|&i| usize::try_from(i).ok().and_then(|i| values.get(i)));
-                    let picked: Option<Vec<Vec3>> = picked.map(|value| value.copied()).collect();
+                    let picked: Option<Vec<Vec3>> = picked.map(Option::<&Vec3>::copied).collect();
                     let Some(picked) = picked else {
                         let found = format!("{path}: an index of {name} that is out of range");
                         return Err(layer.malformed(found, "indices of its values"));
@@ -189,7 +179,7 @@ impl Curves {
                     values = picked;
                 }
                 let said = layer.interpolation(prim, name)?;
-                let spread = Spread::of(said.as_deref(), values.len(), &counts, &shape);
+                let spread = Spread::of(said.as_deref(), values.len(), &counts, shape);
                 let Some(spread) = spread else {
                     notes.push(format!(
                         "{path}: {} values of {name} fit no interpolation and were left out.",
