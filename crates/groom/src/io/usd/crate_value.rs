@@ -3,7 +3,8 @@
 use glam::Vec3;
 
 use super::HairFileError;
-use super::crate_file::{CrateLayer, u64_of};
+use super::crate_bytes::u64_of;
+use super::crate_file::CrateLayer;
 use super::value::{Value, half};
 
 const IS_ARRAY: u64 = 1 << 63;

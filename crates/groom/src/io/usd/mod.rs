@@ -5,6 +5,7 @@
 //! variants are not followed; a note says so.
 
 mod basis;
+mod crate_bytes;
 mod crate_file;
 mod crate_value;
 mod text;
@@ -18,8 +19,9 @@ use glam::{DMat4, Vec3};
 use super::clean::RawHair;
 use super::{HairFileError, HairFormat};
 use basis::{Shape, Spread};
+pub(super) use crate_bytes::Input;
+pub(super) use crate_file::CRATE_MAGIC;
 use crate_file::CrateLayer;
-pub(super) use crate_file::{CRATE_MAGIC, Input};
 use text::TextLayer;
 use value::Value;
 
