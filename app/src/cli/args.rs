@@ -6,6 +6,7 @@ use std::str::FromStr;
 
 use clap::{Args, Parser, Subcommand};
 use lovelock_studio::RecordingSection;
+use lovelock_studio::groom::{Unit, UpAxis};
 use lovelock_studio::recording::{FilmQuality, SequenceFormat};
 use lovelock_studio::render::{Backend, ShadowMethod, Transparency};
 
@@ -13,7 +14,7 @@ use lovelock_studio::render::{Backend, ShadowMethod, Transparency};
 #[derive(Debug, Parser)]
 #[command(name = "lovelock", version, subcommand_precedence_over_arg = true)]
 pub(crate) struct Arguments {
-    /// A project, take, hairstyle (.hair, .tfx), character (.glb, .gltf) or motion (.bvh) to open in the window.
+    /// A project, take, hairstyle (.hair, .tfx, .usdc), character (.glb, .gltf) or motion (.bvh) to open in the window.
     pub(crate) project: Option<PathBuf>,
     /// Print one JSON object on standard output and nothing else there.
     #[arg(long, global = true)]
@@ -41,6 +42,12 @@ pub(crate) enum Task {
     Bench(Bench),
     /// Says what a hair, character, motion, project or take file holds.
     Info(Info),
+    /// Writes hair in another format.
+    Convert(Convert),
+    /// Writes a job that draws the frames on many machines, for any scheduler of the Open Job Description.
+    Farm(Farm),
+    /// Puts the parts that a farm has drawn together into one sequence of pictures.
+    Assemble(Assemble),
 }
 
 /// What is simulated.
@@ -68,7 +75,8 @@ pub(crate) struct Record {
     #[command(flatten)]
     pub(crate) source: SourceArguments,
     /// Where it goes: a name ending in `.mp4` is a film, in `.apng` a small animated preview, in `.take` the simulation
-    /// alone, any other a folder of PNG or EXR files with a manifest.
+    /// alone, in `.usdc`, `.usd`, `.usda` or `.glb` the hair as curves that move with the body, any other a folder of PNG or
+    /// EXR files with a manifest.
     #[arg(short, long, value_name = "OUT")]
     pub(crate) out: PathBuf,
     /// Frames to record, half open, such as 0..240; the whole clip where none are given.
@@ -121,6 +129,13 @@ pub(crate) struct Record {
     /// project, its files, the size or another setting has changed since.
     #[arg(long)]
     pub(crate) resume: bool,
+    /// Which curves a .usdc, .usda or .glb file holds: guides or strands; strands in USD and guides in glTF where none
+    /// is given.
+    #[arg(long, value_name = "ID")]
+    pub(crate) curves: Option<lovelock_studio::CurveSource>,
+    /// Leave the body out of a .usdc, .usda or .glb file.
+    #[arg(long)]
+    pub(crate) no_body: bool,
 }
 
 #[derive(Debug, Args)]
@@ -202,6 +217,54 @@ pub(crate) struct Info {
     pub(crate) file: PathBuf,
 }
 
+#[derive(Debug, Args)]
+pub(crate) struct Convert {
+    /// The hair file: .hair, .tfx, .usda, .usdc or .usd.
+    #[arg(value_name = "IN")]
+    pub(crate) input: PathBuf,
+    /// The new file; its name says the format: .hair, .tfx, .usda, .usdc, .usd or .glb.
+    pub(crate) out: PathBuf,
+    /// Unit of IN: auto, m, cm, mm or in.
+    #[arg(long, default_value = "auto", value_parser = unit)]
+    pub(crate) unit: Unit,
+    /// Axis of IN that points up: auto, y or z.
+    #[arg(long, default_value = "auto", value_parser = up_axis)]
+    pub(crate) up: UpAxis,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Farm {
+    #[command(flatten)]
+    pub(crate) source: SourceArguments,
+    /// The folder for the job, new or empty: template.json and the project with its files.
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    /// Frames to draw, half open, such as 0..240; the whole clip where none are given.
+    #[arg(long, value_name = "A..B", value_parser = frames)]
+    pub(crate) frames: Option<Range<u64>>,
+    /// Frames a second.
+    #[arg(long, value_parser = rate)]
+    pub(crate) fps: Option<f64>,
+    /// Size in pixels, such as 1280x720.
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub(crate) size: Option<(u32, u32)>,
+    /// Frames that one task draws; 10, or more where that would be over 1024 tasks.
+    #[arg(long, value_name = "N")]
+    pub(crate) chunk: Option<u64>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Assemble {
+    /// The folder whose folders hold the parts.
+    pub(crate) parts: PathBuf,
+    /// The folder for the whole sequence.
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    /// The frames that are to be there, half open.
+    #[arg(long, value_name = "A..B", value_parser = frames)]
+    pub(crate) frames: Range<u64>,
+}
+
 /// `A..B`, half open and not empty.
 fn frames(text: &str) -> Result<Range<u64>, String> {
     let wanted = || format!("`{text}` is no range of frames: expected A..B with A below B, such as 0..240");
@@ -242,6 +305,14 @@ fn pixel(text: &str) -> Result<[u32; 2], String> {
     let (x, y) = text.split_once(',').ok_or_else(wanted)?;
     let number = |text: &str| u32::from_str(text.trim()).map_err(|_| wanted());
     Ok([number(x)?, number(y)?])
+}
+
+fn unit(text: &str) -> Result<Unit, String> {
+    Unit::from_id(text).ok_or_else(|| format!("unknown unit `{text}`: expected auto, m, cm, mm or in"))
+}
+
+fn up_axis(text: &str) -> Result<UpAxis, String> {
+    UpAxis::from_id(text).ok_or_else(|| format!("unknown axis `{text}`: expected auto, y or z"))
 }
 
 /// A quality of a film, by its id.

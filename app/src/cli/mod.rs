@@ -4,6 +4,8 @@ mod args;
 mod bar;
 mod bench;
 mod compare;
+mod convert;
+mod farm;
 mod info;
 mod output;
 mod record;
@@ -44,6 +46,9 @@ pub(crate) fn run() -> ExitCode {
         Some(Task::Compare(task)) => compare::run(&task, output),
         Some(Task::Bench(task)) => bench::run(&task, output),
         Some(Task::Info(task)) => info::run(&task, output),
+        Some(Task::Convert(task)) => convert::run(&task, output),
+        Some(Task::Farm(task)) => farm::run(&task, output),
+        Some(Task::Assemble(task)) => farm::run_assemble(&task, output),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,7 +1,8 @@
 //! `lovelock record`.
 
 use lovelock_studio::{
-    RecordReport, RecordRequest, Stage, StudioError, TakeRecordReport, is_take, record_take,
+    CurveRecordReport, RecordReport, RecordRequest, Stage, StudioError, TakeRecordReport, is_curves, is_take,
+    record_curves, record_take,
 };
 
 use super::args::Record;
@@ -27,11 +28,25 @@ pub(crate) fn run(task: &Record, output: Output) -> Result<(), StudioError> {
         motion_blur: task.motion_blur,
         shutter_degrees: task.shutter,
         resume: task.resume,
+        curves: task.curves,
+        no_body: task.no_body,
         backend: task.backend,
         panes,
         access: std::mem::take(&mut scene.access),
         ..RecordRequest::default()
     };
+    if is_curves(&request.out) {
+        let report = scene.watched(|project, progress| record_curves(project, &request, progress))?;
+        return output.result(&report, || curve_summary(&report));
+    }
+    for (given, option) in [(request.curves.is_some(), "--curves"), (request.no_body, "--no-body")] {
+        if given {
+            let out = request.out.display();
+            return Err(StudioError::option(format!(
+                "{option}: {out} holds no curves; wanted a name ending in .usdc, .usd, .usda or .glb"
+            )));
+        }
+    }
     if is_take(&request.out) {
         let report = scene.watched(|project, progress| record_take(project, &request, progress))?;
         return output.result(&report, || take_summary(&report));
@@ -83,5 +98,24 @@ fn take_summary(report: &TakeRecordReport) -> String {
         report.max_stretch,
         1e3 * report.max_penetration_m,
         report.recovered_guides,
+    )
+}
+
+fn curve_summary(report: &CurveRecordReport) -> String {
+    let body = match report.vertices {
+        0 => "no body".to_owned(),
+        vertices => format!("a body of {vertices} vertices"),
+    };
+    format!(
+        "{}: {} frames from {} on at {} a second, {} {} of {} points in all, {body}\n{:.1} MB in {:.1} s",
+        report.out,
+        report.frames,
+        report.first_frame,
+        report.fps,
+        report.strands,
+        report.curves,
+        report.points,
+        report.bytes as f64 / 1e6,
+        report.ms / 1e3,
     )
 }

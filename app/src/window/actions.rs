@@ -91,6 +91,7 @@ impl Window {
             Command::Record if self.recorder.is_running() => self.recorder.cancel(),
             Command::Record => self.ask(Purpose::Film),
             Command::SavePicture => self.ask(Purpose::Picture),
+            Command::ExportCurves => self.ask(Purpose::Curves),
             Command::FrameHair => self.frame_hair(),
             Command::ToggleFollow => self.change("camera", |project| {
                 project.camera.mode = match project.camera.mode {
@@ -289,9 +290,10 @@ impl Window {
             Purpose::Open => self.open_any(path),
             Purpose::Beside => self.compare_with(path),
             Purpose::SaveProject => self.save_to(path),
-            Purpose::Film | Purpose::Sequence | Purpose::Preview | Purpose::Resume => {
+            Purpose::Film | Purpose::Sequence | Purpose::Preview | Purpose::Resume | Purpose::Curves => {
                 let access = self.session.access().clone();
-                let panes = self.layout.compare.shown.then(|| self.layout.compare.sheet());
+                let pictures = purpose != Purpose::Curves;
+                let panes = (self.layout.compare.shown && pictures).then(|| self.layout.compare.sheet());
                 let resume = purpose == Purpose::Resume;
                 self.recorder.start(self.history.project().clone(), access, path, panes, resume, ctx);
             }

@@ -253,6 +253,7 @@ impl Window {
             Some(panels::recording::Ask::Sequence) => self.ask(Purpose::Sequence),
             Some(panels::recording::Ask::Preview) => self.ask(Purpose::Preview),
             Some(panels::recording::Ask::Resume) => self.ask(Purpose::Resume),
+            Some(panels::recording::Ask::Curves) => self.ask(Purpose::Curves),
             Some(panels::recording::Ask::Cancel) => self.run(lovelock_studio::Command::Record, ctx),
             None => {}
         }
@@ -396,6 +397,7 @@ impl Window {
             Purpose::Film => folder.join("out").join("dance.mp4"),
             Purpose::Sequence | Purpose::Resume => folder.join("out").join("frames"),
             Purpose::Preview => folder.join("out").join("dance.apng"),
+            Purpose::Curves => folder.join("out").join("dance.usdc"),
             Purpose::Picture if self.layout.compare.shown => folder.join("comparison.png"),
             Purpose::Picture => folder.join("hair.png"),
         };
@@ -404,6 +406,10 @@ impl Window {
             Purpose::Film | Purpose::Sequence | Purpose::Preview | Purpose::Resume => {
                 dialog.about(self.recording_in_words())
             }
+            Purpose::Curves => dialog.about(
+                "All strands in USD, the guides in .glb, with the body; the Recording panel sets the frames."
+                    .to_owned(),
+            ),
             Purpose::Open | Purpose::Beside | Purpose::SaveProject | Purpose::Picture => dialog,
         });
     }

@@ -96,6 +96,7 @@ fn part_of(command: Command) -> u8 {
         Command::RecordTake
         | Command::Record
         | Command::SavePicture
+        | Command::ExportCurves
         | Command::AddMarker
         | Command::MarkIn
         | Command::MarkOut => 2,

@@ -255,6 +255,7 @@ impl Window {
             Command::LeaveTake | Command::PlayBackwards => self.history.project().take.file.is_some(),
             Command::FrameHair => self.session.frame.is_some(),
             Command::SavePicture => self.session.painted.is_some(),
+            Command::ExportCurves => !self.recorder.is_running(),
             _ => true,
         }
     }

@@ -25,12 +25,15 @@ pub(crate) enum Purpose {
     Preview,
     /// Go on with a folder of pictures.
     Resume,
+    /// Write the hair and the body for other programs.
+    Curves,
     /// Save the picture in the viewport.
     Picture,
 }
 
 /// What the program reads, for the system's dialog.
-const READABLE: [&str; 9] = [PROJECT_EXTENSION, "ron", "hair", "tfx", "glb", "gltf", "bvh", "take", "part"];
+const READABLE: [&str; 12] =
+    [PROJECT_EXTENSION, "ron", "hair", "tfx", "usdc", "usda", "usd", "glb", "gltf", "bvh", "take", "part"];
 
 /// Nobody leaves a dialog sooner than this after asking for it: one that does so never came up. The system's
 /// answer does not tell the two apart.
@@ -46,6 +49,7 @@ impl Purpose {
             Self::Sequence => "Record pictures into a folder",
             Self::Preview => "Record an animated preview",
             Self::Resume => "Go on with the pictures in a folder",
+            Self::Curves => "Export curves: .usdc, .usda or .glb",
             Self::Picture => "Save the picture",
         }
     }
@@ -54,7 +58,7 @@ impl Purpose {
         match self {
             Self::Open => "Open file",
             Self::Beside => "Compare",
-            Self::SaveProject | Self::Picture => "Save file",
+            Self::SaveProject | Self::Picture | Self::Curves => "Save file",
             Self::Film | Self::Sequence | Self::Preview => "Start recording",
             Self::Resume => "Go on recording",
         }
@@ -67,6 +71,7 @@ impl Purpose {
             Self::SaveProject => Some(PROJECT_EXTENSION),
             Self::Film => Some("mp4"),
             Self::Preview => Some("apng"),
+            Self::Curves => Some("usdc"),
             Self::Picture => Some("png"),
         }
     }
@@ -151,6 +156,9 @@ impl PathDialog {
             if is_file && path.as_ref().is_some_and(|path| path.exists()) {
                 ui.label(RichText::new("The film of this name will be replaced.").color(theme::ACCENT));
             }
+            if self.purpose == Purpose::Curves && path.as_ref().is_some_and(|path| path.exists()) {
+                ui.label(RichText::new("The file of this name will be replaced.").color(theme::ACCENT));
+            }
             ui.horizontal(|ui| {
                 let go = ui.add_enabled(path.is_some(), egui::Button::new(self.purpose.button()));
                 if let Some(path) = path.filter(|_| go.clicked() || entered) {
@@ -202,6 +210,11 @@ impl PathDialog {
             Purpose::SaveProject => Box::pin(dialog.add_filter("Project", &[PROJECT_EXTENSION]).save_file()),
             Purpose::Film => Box::pin(dialog.add_filter("Film", &["mp4"]).save_file()),
             Purpose::Preview => Box::pin(dialog.add_filter("Preview", &["apng"]).save_file()),
+            Purpose::Curves => {
+                let dialog =
+                    dialog.add_filter("Curves", &lovelock_studio::recording::CurveFormat::EXTENSIONS);
+                Box::pin(dialog.save_file())
+            }
             Purpose::Picture => Box::pin(dialog.add_filter("Picture", &["png"]).save_file()),
         };
         let spawned = std::thread::Builder::new().name("file dialog".to_owned()).spawn(move || {

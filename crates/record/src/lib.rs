@@ -1,4 +1,4 @@
-//! Films, picture sequences and takes, written beside their final name and renamed when whole.
+//! Films, picture sequences, takes and curves, written beside their final name and renamed when whole.
 //!
 //! A picture comes in as 8-bit sRGB, four bytes a pixel (RGBA, row by row from the top), and goes out either as
 //! an H.264 film in an MP4 file ([`FilmWriter`]) or as a folder of PNG files with a manifest
@@ -16,11 +16,15 @@
 //! A [`TakeWriter`] records the simulation itself, and a [`TakeReader`] plays it. A take grows as `NAME.part`, and what
 //! is there is kept and can be played, whatever ends it.
 //!
+//! A [`CurveWriter`] hands the hair and the body on to other programs, as USD or glTF.
+//!
 //! [`read_film`] and [`FilmReader`] read a film back without any other program.
 
 mod claim;
+mod curves;
 mod error;
 mod film;
+mod join;
 mod manifest;
 mod mp4;
 mod partial;
@@ -33,8 +37,10 @@ mod still;
 mod take;
 mod yuv;
 
+pub use curves::{BodyFrame, CurveBody, CurveFormat, CurveFrame, CurveReport, CurveScene, CurveWriter};
 pub use error::RecordError;
 pub use film::{FilmQuality, FilmReport, FilmSettings, FilmWriter, MAX_FILM_SIDES};
+pub use join::join_sequences;
 pub use manifest::{MANIFEST_NAME, Manifest, ManifestFrame, read_manifest};
 pub use preview::{MOST_PREVIEW_FRAMES, MOST_PREVIEW_SIDE, PreviewReport, PreviewSettings, PreviewWriter};
 pub use rate::FrameRate;

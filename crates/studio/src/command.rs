@@ -37,6 +37,8 @@ pub enum Command {
     MarkOut,
     /// Saves the picture in the viewport as a PNG file.
     SavePicture,
+    /// Writes the hair and the body as curves that move, for other programs.
+    ExportCurves,
     /// Moves the camera until the hair fills the picture.
     FrameHair,
     /// Whether the camera follows the head.
@@ -308,6 +310,14 @@ pub const COMMANDS: &[CommandInfo] = {
             "Save picture",
             "Saves the frame in the viewport as a PNG file.",
             &["Ctrl+P"],
+            G::File,
+        ),
+        entry(
+            C::ExportCurves,
+            "export-curves",
+            "Export curves",
+            "Writes the hair as curves that move, with the body, for other programs: USD or glTF.",
+            &[],
             G::File,
         ),
         entry(

@@ -8,8 +8,10 @@ mod bench;
 mod clock;
 mod command;
 mod compare;
+mod convert;
 mod desk;
 mod error;
+mod farm;
 mod filmstrip;
 mod headless;
 mod history;
@@ -33,11 +35,13 @@ pub use compare::{
     Reference, SceneFacts, Sheet, SheetPane, StabilityReport, StageMs, Sweep, TimeSpread, TransmittanceError,
     bytes_label, compare, pane_columns,
 };
+pub use convert::{ConvertReport, convert};
 pub use error::{Place, Problem, ProblemKind, StudioError};
+pub use farm::{FARM_TEMPLATE, FarmReport, FarmRequest, assemble, farm};
 pub use filmstrip::{Filmstrip, FilmstripPicture, FilmstripRequest};
 pub use headless::{
-    Progress, RecordJob, RecordReport, RecordRequest, StageMedians, TakeRecordReport, is_take, record,
-    record_take,
+    CurveRecordReport, CurveSource, Progress, RecordJob, RecordReport, RecordRequest, Recorded, StageMedians,
+    TakeRecordReport, is_curves, is_take, record, record_curves, record_take,
 };
 pub use history::{GestureId, History};
 pub use info::{Content, FileKind, Info, ProjectInfo, TakeInfo, info};

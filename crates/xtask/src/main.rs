@@ -39,7 +39,7 @@ enum Chore {
         /// Only the tests of this package
         #[arg(short, long)]
         package: Option<String>,
-        /// Instead, holds FLIP against its authors' program in Python, which it installs below target
+        /// Instead, holds FLIP, USD and farm jobs against other people's programs in Python, which it installs below target
         #[arg(long, conflicts_with_all = ["filter", "package"])]
         interchange: bool,
         /// Instead, opens the page of a comparison in Chromium, which it installs where it may

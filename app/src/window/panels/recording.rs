@@ -54,6 +54,8 @@ pub(crate) enum Ask {
     Preview,
     /// Go on with a folder of pictures that a dialog picks.
     Resume,
+    /// The same: curves for other programs.
+    Curves,
     /// Stop the one that runs.
     Cancel,
 }
@@ -209,6 +211,11 @@ pub(crate) fn ui(
             let tip = "Records the dance as a folder of PNG or EXR files.";
             if ui.button("Pictures…").on_hover_text(tip).clicked() {
                 ask = Some(Ask::Sequence);
+            }
+            let curves =
+                "Writes the hair as curves that move, with the body, for other programs: USD or glTF.";
+            if ui.button("Curves…").on_hover_text(curves).clicked() {
+                ask = Some(Ask::Curves);
             }
         });
         ui.horizontal(|ui| {

@@ -4,7 +4,7 @@ use glam::{Quat, Vec3};
 
 use super::ImportSettings;
 use crate::io::{guess_facing, rotation_to_head_axes};
-use crate::{Facing, HairFile, UpAxis, guess_units};
+use crate::{Facing, HairFile, HairFormat, UpAxis, guess_units};
 
 /// The unit and axes that a file is read in: as set, else as guessed.
 #[derive(Clone, Copy, Debug)]
@@ -31,7 +31,7 @@ impl Orientation {
         };
         Self {
             metres_per_unit: settings.unit.metres().unwrap_or(guess.metres_per_unit),
-            unit_guessed: settings.unit.metres().is_none(),
+            unit_guessed: settings.unit.metres().is_none() && file.format != HairFormat::Usd,
             up,
             facing,
             rotation: rotation_to_head_axes(up, facing),

@@ -185,6 +185,8 @@ pub struct UnitGuess {
 /// where none does, the roots are scaled to span 0.15 m, the width of an adult scalp. The span is the
 /// middle one of the root box's three sides, so that neither a mohawk's length nor a fringe's height counts.
 ///
+/// USD says both, and its points are in metres with Y up already.
+///
 /// Up: Z for `.hair` and Y for TressFX, unless the strands clearly hang along the other axis.
 ///
 /// The face: hair leans away from it, and grows lower at the back of a head than at its front.
@@ -194,7 +196,9 @@ pub fn guess_units(file: &HairFile) -> UnitGuess {
     let facing = guess_facing(file, up);
     let span = roots.span();
     let across = "0.09 to 0.30 m across";
-    let (metres_per_unit, unit, reason) = if span > 0.0 {
+    let (metres_per_unit, unit, reason) = if file.format == HairFormat::Usd {
+        (1.0, Some(Unit::Metre), "The file says its unit.".to_owned())
+    } else if span > 0.0 {
         let named = Unit::NAMED
             .into_iter()
             .find(|unit| unit.metres().is_some_and(|metres| (0.09..=0.30).contains(&(metres * span))));
@@ -257,9 +261,12 @@ fn samples(file: &HairFile) -> impl Iterator<Item = &[Vec3]> {
 
 /// Z or Y: the axis that the strands hang along and the roots dome toward, where that is clear.
 fn guess_up(file: &HairFile, roots: &RootShape) -> UpAxis {
+    if file.format == HairFormat::Usd {
+        return UpAxis::Y;
+    }
     let usual = match file.format {
         HairFormat::Yuksel => UpAxis::Z,
-        HairFormat::TressFx3(_) | HairFormat::TressFx4(_) => UpAxis::Y,
+        HairFormat::TressFx3(_) | HairFormat::TressFx4(_) | HairFormat::Usd => UpAxis::Y,
     };
     let hang = mean(samples(file).map(|strand| (strand[strand.len() - 1] - strand[0]).normalize_or_zero()));
     let dome = roots.sphere.map_or(Vec3::ZERO, |sphere| {

@@ -1,4 +1,4 @@
-//! Hair files: Cem Yuksel's `.hair` and AMD's TressFX `.tfx`.
+//! Hair files: Cem Yuksel's `.hair`, AMD's TressFX `.tfx`, and curves of USD.
 //!
 //! A [`HairFile`] holds what a file says, in the file's own unit and axes, less what cannot be hair (see
 //! [`HairFile::dropped`]). [`guess_units`] reads its size and orientation, and [`crate::import`] makes a
@@ -10,6 +10,8 @@ mod error;
 mod guess;
 mod info;
 mod tressfx;
+mod usd;
+mod write;
 mod yuksel;
 
 use std::collections::BTreeMap;
@@ -34,6 +36,8 @@ pub enum HairFormat {
     TressFx3(f32),
     /// AMD TressFX 4.x `.tfx`, with its version.
     TressFx4(f32),
+    /// `BasisCurves` of a USD stage. It says its unit and axes: its points come in metres, Y up.
+    Usd,
 }
 
 impl std::fmt::Display for HairFormat {
@@ -41,6 +45,7 @@ impl std::fmt::Display for HairFormat {
         match self {
             Self::Yuksel => write!(f, "Yuksel .hair"),
             Self::TressFx3(version) | Self::TressFx4(version) => write!(f, "TressFX .tfx {version:.1}"),
+            Self::Usd => write!(f, "USD BasisCurves"),
         }
     }
 }
@@ -114,6 +119,9 @@ pub fn load_hair(path: &Path) -> Result<HairFile, HairFileError> {
     // Look at the start before reading the rest, so that a film dropped by mistake is refused at once.
     let mut data = Vec::new();
     file.by_ref().take(bytes::LONGEST_HEADER).read_to_end(&mut data).map_err(io_error)?;
+    if is_crate(&data) {
+        return clean::clean(&name, usd::read_crate_file(&name, file)?);
+    }
     format_of(&name, &data)?;
     file.read_to_end(&mut data).map_err(io_error)?;
     load_hair_bytes(&name, &data)
@@ -128,23 +136,33 @@ pub fn load_hair_bytes(name: &str, data: &[u8]) -> Result<HairFile, HairFileErro
         HairFormat::Yuksel => yuksel::read(name, data)?,
         HairFormat::TressFx3(version) => tressfx::read_v3(name, data, version)?,
         HairFormat::TressFx4(version) => tressfx::read_v4(name, data, version)?,
+        HairFormat::Usd if is_crate(data) => usd::read_crate(name, usd::Input::Memory(data))?,
+        HairFormat::Usd => usd::read_text(name, data)?,
     };
     clean::clean(name, raw)
 }
 
-/// Tells the formats apart by their first four bytes: `HAIR`, or TressFX's version as a float.
+fn is_crate(data: &[u8]) -> bool {
+    data.starts_with(usd::CRATE_MAGIC)
+}
+
+/// Tells the formats apart by their first bytes: `HAIR`, USD's names, or TressFX's version as a float.
 fn format_of(name: &str, data: &[u8]) -> Result<HairFormat, HairFileError> {
     let refuse = |found: String| HairFileError::Malformed {
         name: name.to_owned(),
         offset: 0,
         found,
-        wanted: "`HAIR` (Yuksel) or a TressFX version from 3.0 to 4.9".to_owned(),
+        wanted: "`HAIR` (Yuksel), `#usda` or `PXR-USDC` (USD), or a TressFX version from 3.0 to 4.9"
+            .to_owned(),
     };
     let Some(start) = data.first_chunk::<4>() else {
         return Err(refuse(format!("a file of {} bytes", data.len())));
     };
     if start == b"HAIR" {
         return Ok(HairFormat::Yuksel);
+    }
+    if is_crate(data) || data.starts_with(usd::TEXT_MAGIC) {
+        return Ok(HairFormat::Usd);
     }
     match f32::from_le_bytes(*start) {
         version if (3.0..4.0).contains(&version) => Ok(HairFormat::TressFx3(version)),

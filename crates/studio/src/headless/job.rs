@@ -2,22 +2,34 @@
 
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
-use super::{Progress, RecordReport, RecordRequest, record};
+use super::{Progress, RecordRequest, is_curves, record, record_curves};
 use crate::{Project, StudioError, Wake};
+
+/// What a [`RecordJob`] has written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Recorded {
+    /// The film, the folder or the file of curves.
+    pub out: PathBuf,
+    /// Frames in it.
+    pub frames: u64,
+    /// Those of them that an earlier recording had left whole.
+    pub frames_kept: u64,
+}
 
 /// A recording that runs on its own thread. Dropping it cancels it and waits until nothing unfinished is left.
 pub struct RecordJob {
     cancelled: Arc<AtomicBool>,
     progress: Arc<Mutex<Option<Progress>>>,
-    thread: Option<JoinHandle<Result<RecordReport, StudioError>>>,
+    thread: Option<JoinHandle<Result<Recorded, StudioError>>>,
 }
 
 impl RecordJob {
-    /// Starts to record; `wake` is called with every progress and at the end.
+    /// Starts to record pictures, or curves where the output's name asks for them; `wake` is called with every progress and at the end.
     ///
     /// # Errors
     /// Where the system gives no thread.
@@ -37,7 +49,15 @@ impl RecordJob {
                         ControlFlow::Continue(())
                     }
                 };
-                let done = catch_unwind(AssertUnwindSafe(|| record(&project, &request, &mut tell)));
+                let done = catch_unwind(AssertUnwindSafe(|| {
+                    let (frames, frames_kept) = if is_curves(&request.out) {
+                        (record_curves(&project, &request, &mut tell)?.frames, 0)
+                    } else {
+                        let report = record(&project, &request, &mut tell)?;
+                        (report.frames, report.frames_kept)
+                    };
+                    Ok(Recorded { out: request.out.clone(), frames, frames_kept })
+                }));
                 wake();
                 done.unwrap_or_else(|_| {
                     Err(StudioError::work("the recording met a defect of the program and stopped"))
@@ -65,8 +85,8 @@ impl RecordJob {
     /// Waits for its end and says how it went.
     ///
     /// # Errors
-    /// As [`record`].
-    pub fn finish(mut self) -> Result<RecordReport, StudioError> {
+    /// As [`record`] and [`record_curves`].
+    pub fn finish(mut self) -> Result<Recorded, StudioError> {
         match self.thread.take().map(JoinHandle::join) {
             Some(Ok(result)) => result,
             Some(Err(_)) | None => Err(StudioError::work("the recording thread ended without a word")),

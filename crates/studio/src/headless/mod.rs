@@ -9,6 +9,7 @@ mod new_folders;
 mod options;
 mod prepare;
 mod record;
+mod record_curves;
 mod record_take;
 mod report;
 mod request;
@@ -16,10 +17,11 @@ mod seam;
 
 pub(crate) use dance::Dance;
 pub(crate) use new_folders::NewFolders;
-pub(crate) use prepare::{open_renderer, tell};
+pub(crate) use prepare::{check_frames, open_renderer, tell};
 
-pub use job::RecordJob;
+pub use job::{RecordJob, Recorded};
 pub use record::record;
+pub use record_curves::{CurveRecordReport, CurveSource, is_curves, record_curves};
 pub use record_take::{TakeRecordReport, is_take, record_take};
 pub use report::{RecordReport, StageMedians};
 pub use request::{Progress, RecordRequest};

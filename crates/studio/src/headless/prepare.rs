@@ -51,7 +51,7 @@ pub(crate) fn load(
 ///
 /// # Errors
 /// An empty range, and one that goes on for weeks.
-pub(super) fn check_frames(frames: &Range<u64>) -> Result<(), StudioError> {
+pub(crate) fn check_frames(frames: &Range<u64>) -> Result<(), StudioError> {
     if frames.is_empty() {
         return Err(StudioError::option(format!(
             "frames {}..{}: an empty range; the second number is one past the last frame",

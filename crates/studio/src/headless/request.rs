@@ -41,6 +41,10 @@ pub struct RecordRequest {
     pub shutter_degrees: Option<f32>,
     /// Whether to go on with the sequence that is in the folder.
     pub resume: bool,
+    /// Which curves an output of curves holds; by its format where none.
+    pub curves: Option<super::CurveSource>,
+    /// Whether an output of curves leaves the body out.
+    pub no_body: bool,
     /// What draws; the project says where none.
     pub backend: Option<Backend>,
     /// What the project may read.

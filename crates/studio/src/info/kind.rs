@@ -11,7 +11,7 @@ use crate::{PROJECT_EXTENSION, StudioError};
 /// A kind of file that is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum FileKind {
-    /// Yuksel `.hair`, TressFX `.tfx`.
+    /// Yuksel `.hair`, TressFX `.tfx`, curves of USD.
     Hair,
     /// glTF 2: `.glb`, `.gltf`.
     Character,
@@ -24,7 +24,7 @@ pub enum FileKind {
 }
 
 /// What is read, for messages.
-const READ: &str = "hair (.hair, .tfx), characters (.glb, .gltf), motion (.bvh), projects (.lovelock) and takes \
+const READ: &str = "hair (.hair, .tfx, .usd, .usda, .usdc), characters (.glb, .gltf), motion (.bvh), projects (.lovelock) and takes \
                     (.take)";
 
 impl FileKind {
@@ -45,7 +45,7 @@ impl FileKind {
     /// Endings of such files, for dialogs, without the dot.
     pub fn extensions(self) -> &'static [&'static str] {
         match self {
-            Self::Hair => &["hair", "tfx"],
+            Self::Hair => &["hair", "tfx", "usdc", "usda", "usd"],
             Self::Character => &["glb", "gltf"],
             Self::Motion => &["bvh"],
             Self::Project => &[PROJECT_EXTENSION, "ron"],
@@ -90,6 +90,9 @@ impl FileKind {
     fn by_content(start: &[u8]) -> Option<Self> {
         match start {
             [b'H', b'A', b'I', b'R', ..] => return Some(Self::Hair),
+            [b'P', b'X', b'R', b'-', b'U', b'S', b'D', b'C', ..] | [b'#', b'u', b's', b'd', b'a', ..] => {
+                return Some(Self::Hair);
+            }
             [b'g', b'l', b'T', b'F', ..] => return Some(Self::Character),
             // As `record::take` begins every chunk.
             [0x9a, b'L', b'T', b'A', b'K', b'E', ..] => return Some(Self::Take),

@@ -66,4 +66,6 @@ impl From<TakeError> for StudioError {
 }
 
 #[cfg(test)]
+mod curve_tests;
+#[cfg(test)]
 mod tests;

@@ -22,7 +22,7 @@ fn farthest(a: &FrameSnapshot, b: &FrameSnapshot) -> f32 {
 }
 
 /// Records `steps` of a project and returns each instant as it was simulated. `change` may change the project.
-fn recorded(
+pub(super) fn recorded(
     path: &Path,
     project: &Project,
     steps: u64,
@@ -51,13 +51,13 @@ fn recorded(
     frames
 }
 
-fn played(path: &Path) -> TakePlayer {
+pub(super) fn played(path: &Path) -> TakePlayer {
     let (player, problems) = TakePlayer::open(path, &Access::new()).expect("a take that plays");
     assert_eq!(problems, []);
     player
 }
 
-fn folder() -> (tempfile::TempDir, PathBuf) {
+pub(super) fn folder() -> (tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("dance.take");
     (folder, path)

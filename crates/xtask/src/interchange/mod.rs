@@ -1,7 +1,10 @@
 //! `cargo xtask test --interchange`: numbers held against other people's programs, which come from their package
 //! registry into a virtual environment below `target`.
 
+mod farm;
 mod pictures;
+mod program;
+mod stage;
 
 use crate::{system, tool};
 use anyhow::{Context as _, ensure};
@@ -13,23 +16,40 @@ use std::process::Command;
 
 /// The program of FLIP's authors, as the Python Package Index has it.
 const PACKAGE: &str = "flip-evaluator==1.7";
-/// It wants this and does not say so; which release fits depends on the Python.
-const BESIDE: &str = "numpy<3";
+/// What FLIP wants and does not say so, Pixar's reader of USD with its validators, and the command line of the Open Job
+/// Description. Which release fits depends on the Python.
+const BESIDE: [&str; 3] = ["numpy<3", "usd-core>=25.5", "openjd-cli>=0.7"];
 
 /// The largest difference between two means of FLIP. Measured: 8e-5, as theirs looks with 67.02 pixels a degree.
 const LIMIT: f64 = 1e-3;
 
-/// Compares the means of FLIP of pairs of pictures, and fails where one is off.
+/// Holds FLIP, USD and the job for many machines against the programs of others, and fails where one is off.
 pub(crate) fn run() -> anyhow::Result<()> {
     system::prepare_interchange()?;
     let folder = tool::root().join("target/interchange");
     let python = environment(&folder.join("python"))?;
+    check_flip(&python, &folder)?;
+    let lovelock = program::build()?;
+    stage::check(&python, &folder, &lovelock)?;
+    farm::check(&python, &folder, &lovelock)
+}
+
+/// A folder with nothing in it.
+fn empty(folder: &Path) -> anyhow::Result<()> {
+    if folder.exists() {
+        fs::remove_dir_all(folder).with_context(|| format!("could not remove {}", folder.display()))?;
+    }
+    fs::create_dir_all(folder).with_context(|| format!("could not make {}", folder.display()))
+}
+
+/// Compares the means of FLIP of pairs of pictures.
+fn check_flip(python: &Path, folder: &Path) -> anyhow::Result<()> {
     let pictures = Picture::all();
     for picture in &pictures {
-        picture.save(&folder)?;
+        picture.save(folder)?;
     }
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/interchange/flip_means.py");
-    let mut program = Command::new(&python);
+    let mut program = Command::new(python);
     program.arg(&script).args(pictures.iter().map(|picture| folder.join(picture.file())));
     let output = program.output().with_context(|| format!("could not start {}", python.display()))?;
     ensure!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr).trim());
@@ -72,17 +92,18 @@ fn environment(folder: &Path) -> anyhow::Result<PathBuf> {
     let python = folder.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
     // Written last, so that an environment that was left half made is made anew.
     let made = folder.join("made");
-    if fs::read_to_string(&made).is_ok_and(|packages| packages == format!("{PACKAGE} {BESIDE}")) {
+    let wanted = [&[PACKAGE][..], &BESIDE].concat();
+    if fs::read_to_string(&made).is_ok_and(|packages| packages == wanted.join(" ")) {
         return Ok(python);
     }
     if folder.exists() {
         fs::remove_dir_all(folder).with_context(|| format!("could not remove {}", folder.display()))?;
     }
-    println!("Making a Python environment with {PACKAGE}.");
+    println!("Making a Python environment with {}.", wanted.join(", "));
     tool::run(Command::new("python3").args(["-m", "venv"]).arg(folder))?;
-    let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", PACKAGE, BESIDE];
-    tool::run(Command::new(&python).args(pip))?;
-    fs::write(&made, format!("{PACKAGE} {BESIDE}"))?;
+    let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
+    tool::run(Command::new(&python).args(pip).args(&wanted))?;
+    fs::write(&made, wanted.join(" "))?;
     Ok(python)
 }
 

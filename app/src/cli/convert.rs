@@ -1,0 +1,15 @@
+//! `lovelock convert`.
+
+use lovelock_studio::{StudioError, convert};
+
+use super::args::Convert;
+use super::output::Output;
+
+/// Writes hair in another format.
+pub(crate) fn run(task: &Convert, output: Output) -> Result<(), StudioError> {
+    let report = convert(&task.input, &task.out, task.unit, task.up)?;
+    output.result(&report, || {
+        let lines: Vec<String> = report.notes.iter().map(|note| format!("\n{note}")).collect();
+        format!("{}: {} strands of {} points{}", report.out, report.strands, report.points, lines.concat())
+    })
+}

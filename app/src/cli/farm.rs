@@ -1,0 +1,49 @@
+//! `lovelock farm` and `lovelock assemble`.
+
+use lovelock_studio::{FarmReport, FarmRequest, StudioError, assemble, farm};
+
+use super::args::{Assemble, Farm};
+use super::output::Output;
+use super::source::Source;
+
+/// Writes the folder of a job for many machines.
+pub(crate) fn run(task: &Farm, output: Output) -> Result<(), StudioError> {
+    let mut scene = Source::open(&task.source)?;
+    let request = FarmRequest {
+        out: task.out.clone(),
+        frames: task.frames.clone(),
+        fps: task.fps,
+        size: task.size,
+        chunk: task.chunk,
+        access: std::mem::take(&mut scene.access),
+    };
+    let report = scene.watched(|project, progress| farm(project, &request, progress))?;
+    output.result(&report, || summary(&report))
+}
+
+/// Puts drawn parts together.
+pub(crate) fn run_assemble(task: &Assemble, output: Output) -> Result<(), StudioError> {
+    let report = assemble(&task.parts, task.frames.clone(), &task.out)?;
+    let json = serde_json::json!({
+        "out": report.folder.display().to_string(),
+        "first_frame": task.frames.start,
+        "frames": report.frames,
+        "bytes": report.bytes,
+    });
+    output.result(&json, || format!("{}: {} frames", report.folder.display(), report.frames))
+}
+
+fn summary(report: &FarmReport) -> String {
+    format!(
+        "{}: frames {}..{} at {} a second in {} tasks of {} frames; steps {}\n\
+         try it here with: openjd run {} --step Assemble --run-dependencies",
+        report.template,
+        report.first_frame,
+        report.first_frame + report.frames,
+        report.fps,
+        report.tasks,
+        report.chunk,
+        report.steps.join(", "),
+        report.template,
+    )
+}

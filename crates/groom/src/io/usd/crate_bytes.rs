@@ -1,0 +1,144 @@
+//! Places of a crate, each held against the bytes that are there.
+
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom};
+
+use super::HairFileError;
+use super::crate_file::CrateLayer;
+
+/// Paths, fields or specs of one crate.
+const MOST_ENTRIES: u64 = 1 << 24;
+/// The best that LZ4 can do.
+const BEST_RATIO: u64 = 255;
+
+/// Where the bytes of a crate are.
+pub(in crate::io) enum Input<'a> {
+    /// In memory.
+    Memory(&'a [u8]),
+    /// In a file of that length.
+    File(File, u64),
+}
+
+impl Input<'_> {
+    pub(super) fn of_file(file: File) -> io::Result<Self> {
+        let length = file.metadata()?.len();
+        Ok(Self::File(file, length))
+    }
+
+    fn len(&self) -> u64 {
+        match self {
+            Self::Memory(data) => data.len() as u64,
+            Self::File(_, length) => *length,
+        }
+    }
+}
+
+impl CrateLayer<'_> {
+    /// A count at a place, held against what any file holds, and the place behind it.
+    pub(super) fn counted(&mut self, at: u64) -> Result<(u64, u64), HairFileError> {
+        let count = self.u64(at)?;
+        // Four whole numbers take a byte at least before they are compressed.
+        if count > MOST_ENTRIES || count / 4 > self.input.len().saturating_mul(BEST_RATIO) {
+            return Err(self.at(
+                at,
+                format!("{count} entries"),
+                "as many as the file can hold, 16777216 at most",
+            ));
+        }
+        Ok((at + 8, count))
+    }
+
+    /// Compressed whole numbers: each is said by its difference from the one before.
+    pub(super) fn ints(&mut self, at: u64, count: u64) -> Result<(Vec<u32>, u64), HairFileError> {
+        let codes = count.div_ceil(4);
+        // Where all differences are the common one, nothing follows the codes.
+        let [least, most] = if count == 0 { [0; 2] } else { [4 + codes, 4 + codes + 4 * count] };
+        let (packed, next) = self.unpacked(at, least, most)?;
+        let mut out = Vec::with_capacity(count as usize);
+        let short = || self.at(at, format!("{} bytes", packed.len()), &format!("{count} whole numbers"));
+        if count > 0 {
+            let (common, rest) = packed.split_first_chunk::<4>().ok_or_else(short)?;
+            let common = i32::from_le_bytes(*common);
+            let (codes, mut rest) = rest.split_at_checked(codes as usize).ok_or_else(short)?;
+            let mut last = 0_i32;
+            for i in 0..count as usize {
+                let code = codes[i / 4] >> (2 * (i % 4)) & 3;
+                let size = [0, 1, 2, 4][usize::from(code)];
+                let (bytes, after) = rest.split_at_checked(size).ok_or_else(short)?;
+                rest = after;
+                let step = match *bytes {
+                    [] => common,
+                    [a] => i32::from(a as i8),
+                    [a, b] => i32::from(i16::from_le_bytes([a, b])),
+                    [a, b, c, d] => i32::from_le_bytes([a, b, c, d]),
+                    _ => 0,
+                };
+                last = last.wrapping_add(step);
+                out.push(last as u32);
+            }
+        }
+        Ok((out, next))
+    }
+
+    /// A compressed block, `least` to `most` bytes long when it is unpacked, and the place behind it.
+    pub(super) fn unpacked(
+        &mut self,
+        at: u64,
+        least: u64,
+        most: u64,
+    ) -> Result<(Vec<u8>, u64), HairFileError> {
+        let length = self.u64(at)?;
+        let block = self.bytes(at + 8, length, "bytes of a compressed block")?;
+        let next = at + 8 + length;
+        if least > (length + 16).saturating_mul(BEST_RATIO) {
+            return Err(self.at(at, format!("{length} compressed bytes"), &format!("enough for {least}")));
+        }
+        let mut out = vec![0; most as usize];
+        let broken = || self.at(at, "a block that is not LZ4".to_owned(), "compressed bytes");
+        let Some((&chunks, mut rest)) = block.split_first() else { return Ok((Vec::new(), next)) };
+        let mut filled = 0;
+        for _ in 0..chunks.max(1) {
+            let chunk = if chunks == 0 {
+                rest
+            } else {
+                let (size, after) = rest.split_first_chunk::<4>().ok_or_else(broken)?;
+                let (chunk, after) =
+                    after.split_at_checked(u32::from_le_bytes(*size) as usize).ok_or_else(broken)?;
+                rest = after;
+                chunk
+            };
+            filled += lz4_flex::block::decompress_into(chunk, &mut out[filled..]).map_err(|_| broken())?;
+        }
+        out.truncate(filled);
+        Ok((out, next))
+    }
+
+    pub(super) fn u64(&mut self, at: u64) -> Result<u64, HairFileError> {
+        Ok(u64_of(&self.bytes(at, 8, "bytes of a number")?))
+    }
+
+    /// `count` bytes at `at`, where they are there.
+    pub(super) fn bytes(&mut self, at: u64, count: u64, what: &str) -> Result<Vec<u8>, HairFileError> {
+        let length = self.input.len();
+        if at.checked_add(count).is_none_or(|end| end > length) {
+            return Err(self.at(at, format!("a file of {length} bytes"), &format!("{count} {what}")));
+        }
+        match &mut self.input {
+            Input::Memory(data) => Ok(data[at as usize..(at + count) as usize].to_vec()),
+            Input::File(file, _) => {
+                let mut bytes = vec![0; count as usize];
+                let read = file.seek(SeekFrom::Start(at)).and_then(|_| file.read_exact(&mut bytes));
+                read.map_err(|source| HairFileError::Io { name: self.name.clone(), source })?;
+                Ok(bytes)
+            }
+        }
+    }
+
+    pub(super) fn at(&self, offset: u64, found: String, wanted: &str) -> HairFileError {
+        HairFileError::Malformed { name: self.name.clone(), offset, found, wanted: wanted.to_owned() }
+    }
+}
+
+pub(super) fn u64_of(bytes: &[u8]) -> u64 {
+    bytes.first_chunk::<8>().map_or(0, |&eight| u64::from_le_bytes(eight))
+}

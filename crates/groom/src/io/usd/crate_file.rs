@@ -1,0 +1,296 @@
+//! A stage as a binary crate (<https://openusd.org/release/api/crate_file_8h_source.html>), read as far as it is needed.
+//!
+//! The `openusd` library writes our crates, and is not asked to read those of others: it takes counts and indices of a
+//! file as they are, so that a broken one makes it panic, allocate without bound or walk a tree for ever. Here
+//! every count is held against the bytes that are there, and every place of the tree of paths is visited once.
+
+use std::collections::HashMap;
+
+use super::crate_bytes::{Input, u64_of};
+use super::transform::DEEPEST;
+use super::value::Value;
+use super::{HairFileError, Layer};
+
+/// What a crate starts with.
+pub(in crate::io) const CRATE_MAGIC: &[u8] = b"PXR-USDC";
+
+const NOTHING: u32 = u32::MAX;
+
+const PRIM: u32 = 6;
+
+/// A node of the tree of paths.
+#[derive(Clone, Copy)]
+struct Node {
+    parent: u32,
+    /// Index of its name.
+    token: u32,
+    depth: u32,
+    /// Index of its first field among the fieldsets; [`NOTHING`] where it has no spec.
+    fieldset: u32,
+    spec_type: u32,
+}
+
+pub(super) struct CrateLayer<'a> {
+    pub(super) name: String,
+    pub(super) input: Input<'a>,
+    pub(super) version: [u8; 3],
+    pub(super) tokens: Vec<String>,
+    /// Token and value of each field.
+    fields: Vec<(u32, u64)>,
+    /// Runs of fields, each ended by [`NOTHING`].
+    fieldsets: Vec<u32>,
+    nodes: Vec<Node>,
+    /// Properties by their prim and name.
+    properties: HashMap<(u32, u32), u32>,
+    root: u32,
+}
+
+impl<'a> CrateLayer<'a> {
+    pub(super) fn open(name: &str, input: Input<'a>) -> Result<Self, HairFileError> {
+        let mut layer = Self {
+            name: name.to_owned(),
+            input,
+            version: [0; 3],
+            tokens: Vec::new(),
+            fields: Vec::new(),
+            fieldsets: Vec::new(),
+            nodes: Vec::new(),
+            properties: HashMap::new(),
+            root: 0,
+        };
+        let head = layer.bytes(0, 24, "bytes of header")?;
+        layer.version = [head[8], head[9], head[10]];
+        if layer.version[0] != 0 || !(4..=13).contains(&layer.version[1]) {
+            let [major, minor, patch] = layer.version;
+            return Err(layer.at(8, format!("a crate of version {major}.{minor}.{patch}"), "0.4 to 0.13"));
+        }
+        let toc = layer.u64(16)?;
+        let count = layer.u64(toc)?;
+        if count > 64 {
+            return Err(layer.at(toc, format!("{count} sections"), "64 at most"));
+        }
+        let mut sections = HashMap::new();
+        for section in 0..count {
+            let entry = layer.bytes(toc + 8 + 32 * section, 32, "bytes of a section's entry")?;
+            let name = entry[..16].split(|&byte| byte == 0).next().unwrap_or_default().to_vec();
+            sections.insert(name, u64_of(&entry[16..]));
+        }
+        let mut section = |layer: &Self, name: &str| {
+            sections
+                .remove(name.as_bytes())
+                .ok_or_else(|| layer.at(toc, "sections without it".to_owned(), &format!("a section {name}")))
+        };
+        let [tokens, fields, fieldsets, paths, specs] =
+            ["TOKENS", "FIELDS", "FIELDSETS", "PATHS", "SPECS"].map(|name| section(&layer, name));
+        layer.read_tokens(tokens?)?;
+        layer.read_fields(fields?)?;
+        let (at, count) = layer.counted(fieldsets?)?;
+        layer.fieldsets = layer.ints(at, count)?.0;
+        layer.read_paths(paths?)?;
+        layer.read_specs(specs?)?;
+        Ok(layer)
+    }
+
+    fn read_tokens(&mut self, at: u64) -> Result<(), HairFileError> {
+        let (count, length) = (self.u64(at)?, self.u64(at + 8)?);
+        let (text, _) = self.unpacked(at + 16, length, length)?;
+        if text.len() as u64 != length || text.last().is_some_and(|&byte| byte != 0) {
+            return Err(self.at(
+                at,
+                format!("{} bytes of words", text.len()),
+                "as many as it says, and an end",
+            ));
+        }
+        let words = text.strip_suffix(&[0]).unwrap_or(&text).split(|&byte| byte == 0);
+        self.tokens = words.map(|word| String::from_utf8_lossy(word).into_owned()).collect();
+        if !text.is_empty() && self.tokens.len() as u64 != count {
+            return Err(self.at(at, format!("{} words", self.tokens.len()), &format!("{count}")));
+        }
+        Ok(())
+    }
+
+    fn read_fields(&mut self, at: u64) -> Result<(), HairFileError> {
+        let (at, count) = self.counted(at)?;
+        let (tokens, at) = self.ints(at, count)?;
+        let (values, _) = self.unpacked(at, 8 * count, 8 * count)?;
+        self.fields = tokens.into_iter().zip(values.chunks_exact(8).map(u64_of)).collect();
+        Ok(())
+    }
+
+    /// The tree of paths: each entry is followed by its children, and says how far its next sibling is.
+    fn read_paths(&mut self, at: u64) -> Result<(), HairFileError> {
+        let (start, count) = self.counted(at)?;
+        let (start, encoded) = self.counted(start)?;
+        let (indices, next) = self.ints(start, encoded)?;
+        let (names, next) = self.ints(next, encoded)?;
+        let (jumps, _) = self.ints(next, encoded)?;
+        let wrong = |what: &str| self.at(at, format!("a tree of paths with {what}"), "a tree");
+        let empty = Node { parent: NOTHING, token: NOTHING, depth: 0, fieldset: NOTHING, spec_type: 0 };
+        let mut nodes = vec![empty; count as usize];
+        let mut visited = vec![false; indices.len()];
+        let mut pending = if indices.is_empty() { Vec::new() } else { vec![(0_usize, NOTHING)] };
+        let (mut root, mut properties) = (0, HashMap::new());
+        while let Some((mut entry, mut parent)) = pending.pop() {
+            loop {
+                if visited.get(entry).is_none_or(|&visited| visited) {
+                    return Err(wrong("a jump that leads nowhere new"));
+                }
+                visited[entry] = true;
+                let (node, name, jump) = (indices[entry], names[entry] as i32, jumps[entry] as i32);
+                let depth = if parent == NOTHING { 0 } else { nodes[parent as usize].depth + 1 };
+                let token = name.unsigned_abs();
+                if node as usize >= nodes.len() || depth as usize > DEEPEST {
+                    return Err(wrong("a path out of range"));
+                }
+                nodes[node as usize] = Node { parent, token, depth, ..empty };
+                if parent == NOTHING {
+                    root = node;
+                } else if token as usize >= self.tokens.len() {
+                    return Err(wrong("a name out of range"));
+                } else if name < 0 {
+                    properties.insert((parent, token), node);
+                }
+                let (has_child, has_sibling) = (jump > 0 || jump == -1, jump >= 0);
+                if has_child {
+                    if has_sibling {
+                        pending.push((entry + jump as usize, parent));
+                    }
+                    parent = node;
+                } else if !has_sibling {
+                    break;
+                }
+                entry += 1;
+            }
+        }
+        (self.nodes, self.root, self.properties) = (nodes, root, properties);
+        Ok(())
+    }
+
+    fn read_specs(&mut self, at: u64) -> Result<(), HairFileError> {
+        let (start, count) = self.counted(at)?;
+        let (paths, next) = self.ints(start, count)?;
+        let (fieldsets, next) = self.ints(next, count)?;
+        let (types, _) = self.ints(next, count)?;
+        for ((path, fieldset), spec_type) in paths.into_iter().zip(fieldsets).zip(types) {
+            if fieldset as usize >= self.fieldsets.len() {
+                return Err(self.at(at, format!("fields from {fieldset} on"), "fields that there are"));
+            }
+            let Some(node) = self.nodes.get_mut(path as usize) else {
+                return Err(self.at(at, format!("path {path}"), "a path that there is"));
+            };
+            (node.fieldset, node.spec_type) = (fieldset, spec_type);
+        }
+        Ok(())
+    }
+
+    /// The value of a field of a spec, as it is kept.
+    fn field(&self, node: u32, name: &str) -> Option<u64> {
+        let start = self.nodes.get(node as usize)?.fieldset as usize;
+        let run = self.fieldsets.get(start..)?.iter().take_while(|&&field| field != NOTHING);
+        let mut fields = run.filter_map(|&field| self.fields.get(field as usize));
+        fields
+            .find(|(token, _)| self.tokens.get(*token as usize).is_some_and(|token| token == name))
+            .map(|&(_, value)| value)
+    }
+
+    fn property(&self, prim: usize, name: &str) -> Option<u32> {
+        let token = self.tokens.iter().position(|token| token == name)?;
+        self.properties.get(&(prim as u32, token as u32)).copied()
+    }
+
+    fn token_of(&mut self, node: u32, field: &str) -> Result<Option<String>, HairFileError> {
+        let Some(value) = self.field(node, field) else { return Ok(None) };
+        Ok(match self.value(value, 1)? {
+            Some(Value::Token(token)) => Some(token),
+            _ => None,
+        })
+    }
+
+    /// Whether a prim is defined and not switched off.
+    fn is_on(&mut self, node: u32) -> Result<bool, HairFileError> {
+        // `def`; `over` and `class` define nothing to draw.
+        let defined = self.field(node, "specifier").is_some_and(|value| value as u8 == 0);
+        let active = match self.field(node, "active") {
+            Some(value) => self.value(value, 1)? != Some(Value::Bool(false)),
+            None => true,
+        };
+        Ok(defined && active)
+    }
+}
+
+impl Layer for CrateLayer<'_> {
+    fn curves(&mut self) -> Result<Vec<usize>, HairFileError> {
+        let mut curves = Vec::new();
+        for node in 0..self.nodes.len() as u32 {
+            let is_prim = self.nodes[node as usize].spec_type == PRIM;
+            if !is_prim || self.token_of(node, "typeName")?.as_deref() != Some("BasisCurves") {
+                continue;
+            }
+            let (mut at, mut on) = (node, true);
+            while on && at != NOTHING && at != self.root {
+                on = self.is_on(at)?;
+                at = self.nodes[at as usize].parent;
+            }
+            if on {
+                curves.push((self.path(node as usize), node as usize));
+            }
+        }
+        curves.sort();
+        Ok(curves.into_iter().map(|(_, prim)| prim).collect())
+    }
+
+    fn parent(&self, prim: usize) -> Option<usize> {
+        let parent = self.nodes[prim].parent;
+        (parent != NOTHING && parent != self.root).then_some(parent as usize)
+    }
+
+    fn path(&self, prim: usize) -> String {
+        let mut names = Vec::new();
+        let mut at = prim as u32;
+        while at != NOTHING && at != self.root {
+            let node = self.nodes[at as usize];
+            names.push(self.tokens.get(node.token as usize).map_or("", String::as_str));
+            at = node.parent;
+        }
+        names.iter().rev().fold(String::new(), |path, name| path + "/" + name)
+    }
+
+    fn attribute(&mut self, prim: usize, name: &str, most: usize) -> Result<Option<Value>, HairFileError> {
+        let Some(property) = self.property(prim, name) else { return Ok(None) };
+        if let Some(samples) = self.field(property, "timeSamples")
+            && let Some(first) = self.first_sample(samples)?
+            && let Some(value) = self.value(first, most)?
+        {
+            return Ok(Some(value));
+        }
+        match self.field(property, "default") {
+            Some(value) => self.value(value, most),
+            None => Ok(None),
+        }
+    }
+
+    fn interpolation(&mut self, prim: usize, name: &str) -> Result<Option<String>, HairFileError> {
+        match self.property(prim, name) {
+            Some(property) => self.token_of(property, "interpolation"),
+            None => Ok(None),
+        }
+    }
+
+    fn metadata(&mut self, name: &str) -> Result<Option<Value>, HairFileError> {
+        match self.field(self.root, name) {
+            Some(value) => self.value(value, 1),
+            None => Ok(None),
+        }
+    }
+
+    fn composes(&self) -> bool {
+        let refers = ["references", "payload", "subLayers", "variantSetNames"];
+        self.fields.iter().any(|(token, _)| {
+            self.tokens.get(*token as usize).is_some_and(|token| refers.contains(&token.as_str()))
+        })
+    }
+
+    fn malformed(&self, found: String, wanted: &str) -> HairFileError {
+        self.at(0, found, wanted)
+    }
+}

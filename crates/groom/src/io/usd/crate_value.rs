@@ -1,0 +1,224 @@
+//! Values of a crate.
+
+use glam::Vec3;
+
+use super::HairFileError;
+use super::crate_bytes::u64_of;
+use super::crate_file::CrateLayer;
+use super::value::{Value, half};
+
+const IS_ARRAY: u64 = 1 << 63;
+const IS_INLINED: u64 = 1 << 62;
+const IS_COMPRESSED: u64 = 1 << 61;
+const PAYLOAD: u64 = (1 << 48) - 1;
+
+/// Types of values, by their numbers in a crate.
+mod kind {
+    pub(super) const BOOL: u64 = 1;
+    pub(super) const INT: u64 = 3;
+    pub(super) const HALF: u64 = 7;
+    pub(super) const FLOAT: u64 = 8;
+    pub(super) const DOUBLE: u64 = 9;
+    pub(super) const TOKEN: u64 = 11;
+    pub(super) const MATRIX4D: u64 = 15;
+    pub(super) const QUATD: u64 = 16;
+    pub(super) const QUATF: u64 = 17;
+    pub(super) const QUATH: u64 = 18;
+    pub(super) const VEC3D: u64 = 23;
+    pub(super) const VEC3F: u64 = 24;
+    pub(super) const VEC3H: u64 = 25;
+    pub(super) const TOKEN_VECTOR: u64 = 41;
+    pub(super) const TIME_SAMPLES: u64 = 46;
+}
+
+/// A number that vectors and arrays are made of.
+#[derive(Clone, Copy)]
+enum Number {
+    Half,
+    Float,
+    Double,
+}
+
+impl Number {
+    fn size(self) -> usize {
+        match self {
+            Self::Half => 2,
+            Self::Float => 4,
+            Self::Double => 8,
+        }
+    }
+
+    fn of(self, bytes: &[u8]) -> f64 {
+        match (self, bytes) {
+            (Self::Half, &[a, b, ..]) => f64::from(half(u16::from_le_bytes([a, b]))),
+            (Self::Float, &[a, b, c, d, ..]) => f64::from(f32::from_le_bytes([a, b, c, d])),
+            (Self::Double, bytes) => f64::from_bits(u64_of(bytes)),
+            _ => f64::NAN,
+        }
+    }
+}
+
+impl CrateLayer<'_> {
+    /// The value of the first time sample; none where there is none.
+    pub(super) fn first_sample(&mut self, samples: u64) -> Result<Option<u64>, HairFileError> {
+        if samples >> 48 & 0xff != kind::TIME_SAMPLES {
+            return Ok(None);
+        }
+        let at = samples & PAYLOAD;
+        // Two relative jumps: to the times, and behind their value to the number of samples and their values.
+        let times = at.wrapping_add(self.u64(at)?);
+        let at = times.saturating_add(8);
+        let values = at.wrapping_add(self.u64(at)?);
+        if self.u64(values)? == 0 {
+            return Ok(None);
+        }
+        self.u64(values.saturating_add(8)).map(Some)
+    }
+
+    /// Reads a value; none of a type that curves and transforms do not have. Arrays that are compressed have `most`
+    /// elements at most.
+    pub(super) fn value(&mut self, value: u64, most: usize) -> Result<Option<Value>, HairFileError> {
+        let (is_array, is_inlined) = (value & IS_ARRAY != 0, value & IS_INLINED != 0);
+        let (at, kind) = (value & PAYLOAD, value >> 48 & 0xff);
+        if kind == kind::TOKEN_VECTOR || is_array && kind == kind::TOKEN {
+            return self.words(at, kind == kind::TOKEN, most).map(Some);
+        }
+        if is_array {
+            return self.array(value, most);
+        }
+        let inlined = at as u32;
+        Ok(Some(match kind {
+            kind::BOOL => Value::Bool(inlined != 0),
+            kind::TOKEN => Value::Token(self.tokens.get(inlined as usize).cloned().unwrap_or_default()),
+            kind::INT => Value::Numbers(vec![f64::from(inlined as i32)]),
+            kind::HALF => Value::Numbers(vec![f64::from(half(inlined as u16))]),
+            kind::FLOAT | kind::DOUBLE if is_inlined => {
+                Value::Numbers(vec![f64::from(f32::from_bits(inlined))])
+            }
+            // Small whole components are inlined, a byte each; of a matrix its diagonal.
+            kind::VEC3D | kind::VEC3F | kind::VEC3H if is_inlined => {
+                Value::Numbers(inlined.to_le_bytes()[..3].iter().map(|&b| f64::from(b as i8)).collect())
+            }
+            kind::MATRIX4D if is_inlined => {
+                let mut rows = vec![0.0; 16];
+                for (i, byte) in inlined.to_le_bytes().into_iter().enumerate() {
+                    rows[5 * i] = f64::from(byte as i8);
+                }
+                Value::Numbers(rows)
+            }
+            kind::FLOAT => self.numbers(at, Number::Float, 1)?,
+            kind::DOUBLE => self.numbers(at, Number::Double, 1)?,
+            kind::VEC3H => self.numbers(at, Number::Half, 3)?,
+            kind::VEC3F => self.numbers(at, Number::Float, 3)?,
+            kind::VEC3D => self.numbers(at, Number::Double, 3)?,
+            kind::MATRIX4D => self.numbers(at, Number::Double, 16)?,
+            kind::QUATH => self.quaternion(at, Number::Half)?,
+            kind::QUATF => self.quaternion(at, Number::Float)?,
+            kind::QUATD => self.quaternion(at, Number::Double)?,
+            _ => return Ok(None),
+        }))
+    }
+
+    fn numbers(&mut self, at: u64, number: Number, count: usize) -> Result<Value, HairFileError> {
+        let bytes = self.bytes(at, (count * number.size()) as u64, "bytes of a value")?;
+        Ok(Value::Numbers(bytes.chunks_exact(number.size()).map(|bytes| number.of(bytes)).collect()))
+    }
+
+    /// Kept with its real part last.
+    fn quaternion(&mut self, at: u64, number: Number) -> Result<Value, HairFileError> {
+        let value = self.numbers(at, number, 4)?;
+        let &[x, y, z, w] = value.numbers() else { return Ok(value) };
+        Ok(Value::Numbers(vec![w, x, y, z]))
+    }
+
+    fn words(&mut self, at: u64, is_array: bool, most: usize) -> Result<Value, HairFileError> {
+        if at == 0 {
+            return Ok(Value::Tokens(Vec::new()));
+        }
+        let (count, start) = if is_array { self.length(at)? } else { (self.u64(at)?, at + 8) };
+        if count > most as u64 {
+            return Err(self.at(at, format!("{count} words"), &format!("{most} at most")));
+        }
+        let indices = self.bytes(start, 4 * count, "bytes of words")?;
+        let words = indices.as_chunks::<4>().0.iter().map(|&index| u32::from_le_bytes(index));
+        Ok(Value::Tokens(
+            words.map(|index| self.tokens.get(index as usize).cloned().unwrap_or_default()).collect(),
+        ))
+    }
+
+    fn array(&mut self, value: u64, most: usize) -> Result<Option<Value>, HairFileError> {
+        let (at, kind) = (value & PAYLOAD, value >> 48 & 0xff);
+        let (count, start) = if at == 0 { (0, 0) } else { self.length(at)? };
+        let compressed = value & IS_COMPRESSED != 0 && count >= if self.version[1] < 7 { 16 } else { 4 };
+        if compressed && count > most as u64 {
+            return Err(self.at(at, format!("{count} values"), &format!("{most} at most")));
+        }
+        if compressed {
+            return match kind {
+                kind::INT => {
+                    let ints = self.ints(start, count)?.0;
+                    Ok(Some(Value::Ints(ints.into_iter().map(|v| v as i32).collect())))
+                }
+                kind::HALF => self.packed_floats(start, count, Number::Half).map(Some),
+                kind::FLOAT => self.packed_floats(start, count, Number::Float).map(Some),
+                kind::DOUBLE => self.packed_floats(start, count, Number::Double).map(Some),
+                _ => Ok(None),
+            };
+        }
+        let (number, per) = match kind {
+            kind::HALF => (Number::Half, 1),
+            // Whole numbers are as long.
+            kind::FLOAT | kind::INT => (Number::Float, 1),
+            kind::DOUBLE => (Number::Double, 1),
+            kind::VEC3H => (Number::Half, 3),
+            kind::VEC3F => (Number::Float, 3),
+            kind::VEC3D => (Number::Double, 3),
+            _ => return Ok(None),
+        };
+        let size = per * number.size();
+        let bytes = self.bytes(start, count.saturating_mul(size as u64), "bytes of an array")?;
+        let items = bytes.chunks_exact(size);
+        Ok(Some(if kind == kind::INT {
+            Value::Ints(bytes.as_chunks::<4>().0.iter().map(|&four| i32::from_le_bytes(four)).collect())
+        } else if per == 1 {
+            Value::Floats(items.map(|item| number.of(item) as f32).collect())
+        } else {
+            let part = |item: &[u8], k: usize| number.of(&item[k * number.size()..]) as f32;
+            Value::Vectors(items.map(|item| Vec3::new(part(item, 0), part(item, 1), part(item, 2))).collect())
+        }))
+    }
+
+    /// Numbers that are whole, or of few different values.
+    fn packed_floats(&mut self, at: u64, count: u64, number: Number) -> Result<Value, HairFileError> {
+        let code = self.bytes(at, 1, "byte that says how numbers are compressed")?[0];
+        match code {
+            b'i' => {
+                let ints = self.ints(at + 1, count)?.0;
+                Ok(Value::Floats(ints.into_iter().map(|v| v as i32 as f32).collect()))
+            }
+            b't' => {
+                let size = self.bytes(at + 1, 4, "bytes of a number")?;
+                let different = u64::from(u32::from_le_bytes([size[0], size[1], size[2], size[3]]));
+                let length = different * number.size() as u64;
+                let table = self.bytes(at + 5, length, "bytes of a table")?;
+                let indices = self.ints(at + 5 + length, count)?.0;
+                let pick = |index: u32| {
+                    table.get(index as usize * number.size()..).map_or(f64::NAN, |b| number.of(b))
+                };
+                Ok(Value::Floats(indices.into_iter().map(|index| pick(index) as f32).collect()))
+            }
+            _ => Err(self.at(at, format!("numbers compressed by `{}`", code.escape_ascii()), "`i` or `t`")),
+        }
+    }
+
+    /// The length of an array, and where its elements begin.
+    fn length(&mut self, at: u64) -> Result<(u64, u64), HairFileError> {
+        // Before version 0.5 the number of dimensions came first, which always was one.
+        let at = if self.version[1] < 5 { at + 4 } else { at };
+        if self.version[1] < 7 {
+            let four = self.bytes(at, 4, "bytes of a length")?;
+            return Ok((u64::from(u32::from_le_bytes([four[0], four[1], four[2], four[3]])), at + 4));
+        }
+        Ok((self.u64(at)?, at + 8))
+    }
+}

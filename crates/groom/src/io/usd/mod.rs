@@ -1,0 +1,216 @@
+//! `BasisCurves` of a USD stage: text (`.usda`) and binary crates (`.usdc`), one file, its first time sample.
+//!
+//! A stage says its unit and its up axis, so the points come in metres with Y up, in the space of the stage: the
+//! transforms above each prim are applied. Cubic curves become polylines. References, payloads, sublayers and
+//! variants are not followed; a note says so.
+
+mod basis;
+mod crate_bytes;
+mod crate_file;
+mod crate_value;
+mod text;
+mod transform;
+mod value;
+
+use std::fs::File;
+
+use glam::{DMat4, Vec3};
+
+use super::clean::RawHair;
+use super::{HairFileError, HairFormat};
+use basis::{Shape, Spread};
+pub(super) use crate_bytes::Input;
+pub(super) use crate_file::CRATE_MAGIC;
+use crate_file::CrateLayer;
+use text::TextLayer;
+use value::Value;
+
+/// What a text file starts with.
+pub(super) const TEXT_MAGIC: &[u8] = b"#usda";
+
+/// The most points that curves are tessellated into.
+const MOST_POINTS: usize = 1 << 28;
+
+/// What a stage of one file is asked for. Prims are numbers of the layer's own.
+trait Layer {
+    /// The prims of type `BasisCurves`, in the order of their paths, without those that are off.
+    fn curves(&mut self) -> Result<Vec<usize>, HairFileError>;
+
+    /// The prim above a prim.
+    fn parent(&self, prim: usize) -> Option<usize>;
+
+    /// Path of a prim, for messages.
+    fn path(&self, prim: usize) -> String;
+
+    /// Value of an attribute at its first time sample, else its default. `most` bounds compressed arrays.
+    fn attribute(&mut self, prim: usize, name: &str, most: usize) -> Result<Option<Value>, HairFileError>;
+
+    /// How an attribute is spread over a prim, where it says so.
+    fn interpolation(&mut self, prim: usize, name: &str) -> Result<Option<String>, HairFileError>;
+
+    /// A field of the stage.
+    fn metadata(&mut self, name: &str) -> Result<Option<Value>, HairFileError>;
+
+    /// Whether the file refers to others.
+    fn composes(&self) -> bool;
+
+    /// An error about this file.
+    fn malformed(&self, found: String, wanted: &str) -> HairFileError;
+}
+
+/// Reads a text file that is in memory.
+pub(super) fn read_text(name: &str, data: &[u8]) -> Result<RawHair, HairFileError> {
+    read(&mut TextLayer::parse(name, data)?)
+}
+
+/// Reads a crate, as far as it is needed.
+pub(super) fn read_crate(name: &str, input: Input<'_>) -> Result<RawHair, HairFileError> {
+    read(&mut CrateLayer::open(name, input)?)
+}
+
+/// Reads a crate in a file.
+pub(super) fn read_crate_file(name: &str, file: File) -> Result<RawHair, HairFileError> {
+    let input = Input::of_file(file).map_err(|source| HairFileError::Io { name: name.to_owned(), source })?;
+    read_crate(name, input)
+}
+
+fn read(layer: &mut impl Layer) -> Result<RawHair, HairFileError> {
+    let mut raw = RawHair {
+        format: HairFormat::Usd,
+        point_counts: Vec::new(),
+        points: Vec::new(),
+        thickness: None,
+        transparency: None,
+        colours: None,
+        default_thickness: None,
+        default_transparency: None,
+        default_colour: None,
+        both_ends_pinned: false,
+        trailing_bytes: 0,
+        notes: Vec::new(),
+    };
+    let metres_from_stage = stage_transform(layer, &mut raw.notes)?;
+    let prims = layer.curves()?;
+    if prims.is_empty() {
+        return Err(layer.malformed("no curves".to_owned(), "one prim of type BasisCurves or more"));
+    }
+    if layer.composes() {
+        raw.notes.push("What the file refers to in other files or in variants was not looked at.".to_owned());
+    }
+    let (mut widths, mut colours) = (Vec::new(), Vec::new());
+    let (mut all_widths, mut all_colours) = (true, true);
+    for prim in prims {
+        let transform = metres_from_stage * transform::to_stage(layer, prim)?;
+        let curves = Curves::read(layer, prim, &mut raw.notes)?;
+        let scale = transform.determinant().abs().cbrt() as f32;
+        raw.point_counts.extend(&curves.counts);
+        raw.points.extend(curves.points.iter().map(|p| transform.transform_point3(p.as_dvec3()).as_vec3()));
+        match curves.widths {
+            Some(of_prim) => widths.extend(of_prim.iter().map(|width| width.x * scale)),
+            None => all_widths = false,
+        }
+        match curves.colours {
+            Some(of_prim) => colours.extend(of_prim.iter().map(|&colour| display(colour))),
+            None => all_colours = false,
+        }
+        if raw.points.len() > MOST_POINTS {
+            return Err(layer.malformed(format!("{} points", raw.points.len()), "268435456 at most"));
+        }
+    }
+    raw.thickness = Some(widths).filter(|_| all_widths);
+    raw.colours = Some(colours).filter(|_| all_colours);
+    Ok(raw)
+}
+
+/// Carries the stage to metres with Y up.
+fn stage_transform(layer: &mut impl Layer, notes: &mut Vec<String>) -> Result<DMat4, HairFileError> {
+    let metres = if let Some(value) = layer.metadata("metersPerUnit")? {
+        let found = value.numbers().first().copied().unwrap_or(f64::NAN);
+        if !(1e-9..=1e9).contains(&found) {
+            return Err(layer.malformed(format!("metersPerUnit {found}"), "1e-9 to 1e9"));
+        }
+        found
+    } else {
+        notes.push("The file states no metersPerUnit; a centimetre was taken, as USD says.".to_owned());
+        0.01
+    };
+    let z_up = layer.metadata("upAxis")?.is_some_and(|axis| axis.token() == Some("Z"));
+    let turn = if z_up { DMat4::from_rotation_x(-std::f64::consts::FRAC_PI_2) } else { DMat4::IDENTITY };
+    Ok(turn * DMat4::from_scale(glam::DVec3::splat(metres)))
+}
+
+/// The polylines of one prim, in its own space.
+struct Curves {
+    counts: Vec<u32>,
+    points: Vec<Vec3>,
+    /// Width of each point, in each component.
+    widths: Option<Vec<Vec3>>,
+    colours: Option<Vec<Vec3>>,
+}
+
+impl Curves {
+    fn read(layer: &mut impl Layer, prim: usize, notes: &mut Vec<String>) -> Result<Self, HairFileError> {
+        let path = layer.path(prim);
+        let points = layer.attribute(prim, "points", usize::MAX)?.map_or_else(Vec::new, Value::into_vectors);
+        let counts = layer.attribute(prim, "curveVertexCounts", points.len())?;
+        let counts = counts.map_or_else(Vec::new, Value::into_ints);
+        let shape = Shape::read(layer, prim)?;
+        let sum =
+            counts.iter().try_fold(0_usize, |sum, &count| sum.checked_add(usize::try_from(count).ok()?));
+        if sum != Some(points.len()) {
+            let found = format!("{path}: {} points in {} curves", points.len(), counts.len());
+            return Err(layer.malformed(found, "as many points as curveVertexCounts add up to"));
+        }
+        let counts: Vec<usize> = counts.iter().map(|&count| count as usize).collect();
+        let made: usize = counts.iter().map(|&count| shape.made_of(count)).sum();
+        if made > MOST_POINTS {
+            return Err(layer.malformed(format!("{path}: curves of {made} points"), "268435456 at most"));
+        }
+        let mut primvar = |names: [&str; 2]| -> Result<Option<Vec<Vec3>>, HairFileError> {
+            for name in names {
+                let Some(values) = layer.attribute(prim, name, points.len().max(1))? else { continue };
+                let mut values = values.into_vectors();
+                let indices = layer.attribute(prim, &format!("{name}:indices"), points.len().max(1))?;
+                if let Some(indices) = indices.map(Value::into_ints) {
+                    let picked = indices.iter().map(|&i| usize::try_from(i).ok().and_then(|i| values.get(i)));
+                    let picked: Option<Vec<Vec3>> = picked.map(Option::<&Vec3>::copied).collect();
+                    let Some(picked) = picked else {
+                        let found = format!("{path}: an index of {name} that is out of range");
+                        return Err(layer.malformed(found, "indices of its values"));
+                    };
+                    values = picked;
+                }
+                let said = layer.interpolation(prim, name)?;
+                let spread = Spread::of(said.as_deref(), values.len(), &counts, shape);
+                let Some(spread) = spread else {
+                    notes.push(format!(
+                        "{path}: {} values of {name} fit no interpolation and were left out.",
+                        values.len()
+                    ));
+                    return Ok(None);
+                };
+                return Ok(Some(shape.spread(spread, &values, &counts)));
+            }
+            Ok(None)
+        };
+        let widths = primvar(["widths", "primvars:widths"])?;
+        let colours = primvar(["primvars:displayColor", "displayColor"])?;
+        Ok(Self {
+            counts: counts.iter().map(|&count| shape.made_of(count) as u32).collect(),
+            points: shape.spread(Spread::Vertex, &points, &counts),
+            widths,
+            colours,
+        })
+    }
+}
+
+/// From linear sRGB, which a stage has, to display values, which hair files have.
+fn display(colour: Vec3) -> [f32; 3] {
+    colour.to_array().map(|v| {
+        let v = v.clamp(0.0, 1.0);
+        if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 }
+    })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,204 @@
+//! A stage as text, parsed by the `openusd` library.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use glam::Vec3;
+use logos::Logos;
+use openusd::sdf::{AbstractData, Data, Path, SpecType, Specifier, Value as Sdf};
+use openusd::usda::parser::Parser;
+use openusd::usda::token::Token;
+
+use super::transform::DEEPEST;
+use super::value::{Value, half};
+use super::{HairFileError, Layer};
+
+/// The longest text: parsed, it takes some times as much memory.
+const LONGEST: usize = 512 << 20;
+/// The most statements. The library looks through all names of a prim for every one that it adds.
+const MOST_STATEMENTS: usize = 100_000;
+
+pub(super) struct TextLayer {
+    name: String,
+    data: Data,
+    prims: Vec<Path>,
+}
+
+impl TextLayer {
+    pub(super) fn parse(name: &str, bytes: &[u8]) -> Result<Self, HairFileError> {
+        let malformed = |offset: usize, found: String, wanted: &str| HairFileError::Malformed {
+            name: name.to_owned(),
+            offset: offset as u64,
+            found,
+            wanted: wanted.to_owned(),
+        };
+        if bytes.len() > LONGEST {
+            return Err(malformed(
+                0,
+                format!("{} bytes of text", bytes.len()),
+                "536870912 at most: .usdc is smaller",
+            ));
+        }
+        let text = std::str::from_utf8(bytes)
+            .map_err(|error| malformed(error.valid_up_to(), "bytes that are no text".to_owned(), "UTF-8"))?;
+        check(text).map_err(|(offset, found, wanted)| malformed(offset, found, wanted))?;
+        let mut parser = Parser::new(text);
+        // What could end the program was looked for above. A fault of the library that is left becomes an error here.
+        let parsed = catch_unwind(AssertUnwindSafe(|| parser.parse()));
+        let found = match parsed {
+            Ok(Ok(specs)) => {
+                let data = Data::from_specs(specs);
+                let mut prims: Vec<Path> = data
+                    .iter()
+                    .filter(|(_, spec)| spec.ty == SpecType::Prim)
+                    .map(|(path, _)| path.clone())
+                    .collect();
+                prims.sort_by(|a, b| a.as_str().cmp(b.as_str()));
+                return Ok(Self { name: name.to_owned(), data, prims });
+            }
+            Ok(Err(error)) => format!("{error:#}").split_whitespace().collect::<Vec<_>>().join(" "),
+            Err(_) => "text that the reader does not understand".to_owned(),
+        };
+        let line = parser.last_error_highlight().map_or(1, |highlight| highlight.line);
+        let offset = text.split_inclusive('\n').take(line - 1).map(str::len).sum();
+        Err(malformed(offset, format!("in line {line}: {found}"), "a USD stage as text"))
+    }
+
+    fn field(&self, path: &Path, field: &str) -> Option<&Sdf> {
+        self.data.spec(path).and_then(|spec| spec.get(field))
+    }
+
+    fn is_off(&self, path: &Path) -> bool {
+        let defined = matches!(self.field(path, "specifier"), Some(Sdf::Specifier(Specifier::Def)));
+        !defined || matches!(self.field(path, "active"), Some(Sdf::Bool(false)))
+    }
+}
+
+/// Looks for what the library's parser has no limit for: nesting, which it follows on the stack, and statements.
+fn check(text: &str) -> Result<(), (usize, String, &'static str)> {
+    let (mut depth, mut statements) = (0_usize, 0_usize);
+    for (token, span) in Token::lexer(text).spanned() {
+        match token {
+            Ok(Token::Punctuation('{' | '(' | '[')) => depth += 1,
+            Ok(Token::Punctuation('}' | ')' | ']')) => depth = depth.saturating_sub(1),
+            Ok(Token::Punctuation('=') | Token::Def | Token::Over | Token::Class) => statements += 1,
+            _ => {}
+        }
+        if depth > DEEPEST {
+            return Err((
+                span.start,
+                format!("brackets in more than {DEEPEST} brackets"),
+                "a stage that is less deep",
+            ));
+        }
+        if statements > MOST_STATEMENTS {
+            return Err((
+                span.start,
+                format!("more than {MOST_STATEMENTS} statements"),
+                "fewer, or a .usdc file",
+            ));
+        }
+    }
+    Ok(())
+}
+
+impl Layer for TextLayer {
+    fn curves(&mut self) -> Result<Vec<usize>, HairFileError> {
+        let is_curves = |path: &Path| matches!(self.field(path, "typeName"), Some(Sdf::Token(name)) if name.as_str() == "BasisCurves");
+        let is_on = |path: &Path| {
+            let mut at = Some(path.clone());
+            std::iter::from_fn(|| {
+                let path = at.take()?;
+                at = path.parent();
+                Some(path)
+            })
+            .filter(|path| path.as_str() != "/")
+            .take(DEEPEST)
+            .all(|path| !self.is_off(&path))
+        };
+        let prims = self.prims.iter().enumerate();
+        Ok(prims.filter(|(_, path)| is_curves(path) && is_on(path)).map(|(prim, _)| prim).collect())
+    }
+
+    fn parent(&self, prim: usize) -> Option<usize> {
+        let parent = self.prims[prim].parent()?;
+        self.prims.binary_search_by(|path| path.as_str().cmp(parent.as_str())).ok()
+    }
+
+    fn path(&self, prim: usize) -> String {
+        self.prims[prim].as_str().to_owned()
+    }
+
+    fn attribute(&mut self, prim: usize, name: &str, _: usize) -> Result<Option<Value>, HairFileError> {
+        let Ok(path) = self.prims[prim].append_property(name.to_owned()) else { return Ok(None) };
+        let first = match self.field(&path, "timeSamples") {
+            Some(Sdf::TimeSamples(samples)) => {
+                samples.iter().min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, value)| value)
+            }
+            _ => None,
+        };
+        let value = first.and_then(value_of);
+        Ok(value.or_else(|| self.field(&path, "default").and_then(value_of)))
+    }
+
+    fn interpolation(&mut self, prim: usize, name: &str) -> Result<Option<String>, HairFileError> {
+        let Ok(path) = self.prims[prim].append_property(name.to_owned()) else { return Ok(None) };
+        Ok(match self.field(&path, "interpolation").and_then(value_of) {
+            Some(Value::Token(token)) => Some(token),
+            _ => None,
+        })
+    }
+
+    fn metadata(&mut self, name: &str) -> Result<Option<Value>, HairFileError> {
+        Ok(self.field(&Path::abs_root(), name).and_then(value_of))
+    }
+
+    fn composes(&self) -> bool {
+        let refers = ["references", "payload", "subLayers", "variantSetNames"];
+        self.data.iter().any(|(path, _)| refers.iter().any(|field| self.data.has_field(path, field)))
+    }
+
+    fn malformed(&self, found: String, wanted: &str) -> HairFileError {
+        HairFileError::Malformed { name: self.name.clone(), offset: 0, found, wanted: wanted.to_owned() }
+    }
+}
+
+fn value_of(value: &Sdf) -> Option<Value> {
+    let vector = |x: f64, y: f64, z: f64| Vec3::new(x as f32, y as f32, z as f32);
+    Some(match value {
+        Sdf::Token(token) => Value::Token(token.as_str().to_owned()),
+        // Metadata without a type is read as a string.
+        Sdf::String(text) => Value::Token(text.clone()),
+        Sdf::TokenVec(tokens) => {
+            Value::Tokens(tokens.iter().map(|token| token.as_str().to_owned()).collect())
+        }
+        Sdf::Bool(value) => Value::Bool(*value),
+        Sdf::IntVec(ints) => Value::Ints(ints.clone()),
+        Sdf::Int(v) => Value::Numbers(vec![f64::from(*v)]),
+        Sdf::Int64(v) => Value::Numbers(vec![*v as f64]),
+        Sdf::Half(v) => Value::Numbers(vec![f64::from(half(v.to_bits()))]),
+        Sdf::Float(v) => Value::Numbers(vec![f64::from(*v)]),
+        Sdf::Double(v) => Value::Numbers(vec![*v]),
+        Sdf::Vec3h(v) => {
+            Value::Numbers([v.x, v.y, v.z].iter().map(|v| f64::from(half(v.to_bits()))).collect())
+        }
+        Sdf::Vec3f(v) => Value::Numbers([v.x, v.y, v.z].map(f64::from).to_vec()),
+        Sdf::Vec3d(v) => Value::Numbers(vec![v.x, v.y, v.z]),
+        Sdf::Quath(q) => {
+            Value::Numbers([q.w, q.x, q.y, q.z].iter().map(|v| f64::from(half(v.to_bits()))).collect())
+        }
+        Sdf::Quatf(q) => Value::Numbers([q.w, q.x, q.y, q.z].map(f64::from).to_vec()),
+        Sdf::Quatd(q) => Value::Numbers(vec![q.w, q.x, q.y, q.z]),
+        Sdf::Matrix4d(m) => Value::Numbers(m.0.to_vec()),
+        Sdf::HalfVec(v) => Value::Floats(v.iter().map(|v| half(v.to_bits())).collect()),
+        Sdf::FloatVec(v) => Value::Floats(v.clone()),
+        Sdf::DoubleVec(v) => Value::Floats(v.iter().map(|&v| v as f32).collect()),
+        Sdf::Vec3hVec(v) => Value::Vectors(
+            v.iter()
+                .map(|v| Vec3::new(half(v.x.to_bits()), half(v.y.to_bits()), half(v.z.to_bits())))
+                .collect(),
+        ),
+        Sdf::Vec3fVec(v) => Value::Vectors(v.iter().map(|v| Vec3::new(v.x, v.y, v.z)).collect()),
+        Sdf::Vec3dVec(v) => Value::Vectors(v.iter().map(|v| vector(v.x, v.y, v.z)).collect()),
+        _ => return None,
+    })
+}

@@ -1,0 +1,111 @@
+//! Where a prim stands in its stage.
+
+use glam::{DMat4, DQuat, DVec3};
+
+use super::{HairFileError, Layer, Value};
+
+/// The most prims above each other.
+pub(super) const DEEPEST: usize = 128;
+
+/// The most operations of one prim.
+const MOST_OPS: usize = 256;
+
+/// Carries a prim's own space to the stage: its operations and those of all prims above it.
+pub(super) fn to_stage(layer: &mut impl Layer, prim: usize) -> Result<DMat4, HairFileError> {
+    let mut transform = DMat4::IDENTITY;
+    let mut at = Some(prim);
+    for _ in 0..DEEPEST {
+        let Some(prim) = at else { break };
+        let (own, resets) = own(layer, prim)?;
+        transform = own * transform;
+        if resets {
+            break;
+        }
+        at = layer.parent(prim);
+    }
+    if !transform.is_finite() {
+        return Err(
+            layer.malformed(format!("{}: a transform that is not finite", layer.path(prim)), "numbers")
+        );
+    }
+    Ok(transform)
+}
+
+/// The operations of one prim, and whether they stand for those above it too.
+fn own(layer: &mut impl Layer, prim: usize) -> Result<(DMat4, bool), HairFileError> {
+    let order = layer.attribute(prim, "xformOpOrder", MOST_OPS)?.map_or_else(Vec::new, Value::into_tokens);
+    let (mut transform, mut resets) = (DMat4::IDENTITY, false);
+    for op in order.iter().take(MOST_OPS) {
+        if op == "!resetXformStack!" {
+            (transform, resets) = (DMat4::IDENTITY, true);
+            continue;
+        }
+        let (name, inverted) = op.strip_prefix("!invert!").map_or((op.as_str(), false), |name| (name, true));
+        let Some(value) = layer.attribute(prim, name, 1)? else { continue };
+        let kind = name.strip_prefix("xformOp:").unwrap_or(name).split(':').next().unwrap_or_default();
+        let Some(matrix) = matrix(kind, value.numbers()) else {
+            let found = format!("{}: {name} of {} numbers", layer.path(prim), value.numbers().len());
+            return Err(layer.malformed(found, "an operation of USD"));
+        };
+        transform *= if inverted { matrix.inverse() } else { matrix };
+    }
+    Ok((transform, resets))
+}
+
+/// The matrix of one operation, for columns; none of what is no operation.
+fn matrix(kind: &str, numbers: &[f64]) -> Option<DMat4> {
+    Some(match (kind, numbers) {
+        ("translate", &[x, y, z]) => DMat4::from_translation(DVec3::new(x, y, z)),
+        ("translateX", &[x]) => DMat4::from_translation(DVec3::new(x, 0.0, 0.0)),
+        ("translateY", &[y]) => DMat4::from_translation(DVec3::new(0.0, y, 0.0)),
+        ("translateZ", &[z]) => DMat4::from_translation(DVec3::new(0.0, 0.0, z)),
+        ("scale", &[x, y, z]) => DMat4::from_scale(DVec3::new(x, y, z)),
+        ("scaleX", &[x]) => DMat4::from_scale(DVec3::new(x, 1.0, 1.0)),
+        ("scaleY", &[y]) => DMat4::from_scale(DVec3::new(1.0, y, 1.0)),
+        ("scaleZ", &[z]) => DMat4::from_scale(DVec3::new(1.0, 1.0, z)),
+        ("rotateX", &[degrees]) => DMat4::from_rotation_x(degrees.to_radians()),
+        ("rotateY", &[degrees]) => DMat4::from_rotation_y(degrees.to_radians()),
+        ("rotateZ", &[degrees]) => DMat4::from_rotation_z(degrees.to_radians()),
+        ("orient", &[w, x, y, z]) => DMat4::from_quat(DQuat::from_xyzw(x, y, z, w).normalize()),
+        // USD multiplies rows, so that its rows are the columns here.
+        ("transform", numbers) => DMat4::from_cols_array(numbers.first_chunk::<16>()?),
+        (kind, &[x, y, z]) => {
+            let order = kind.strip_prefix("rotate").filter(|order| order.len() == 3)?;
+            // The first one named is the first one done.
+            order.chars().try_fold(DMat4::IDENTITY, |done, axis| {
+                Some(
+                    match axis {
+                        'X' => DMat4::from_rotation_x(x.to_radians()),
+                        'Y' => DMat4::from_rotation_y(y.to_radians()),
+                        'Z' => DMat4::from_rotation_z(z.to_radians()),
+                        _ => return None,
+                    } * done,
+                )
+            })?
+        }
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rotations_are_done_in_the_order_of_their_name() {
+        let turned =
+            |kind| matrix(kind, &[90.0, 90.0, 0.0]).expect("an operation").transform_point3(DVec3::Y);
+        // X carries y to z, then Y carries z to x; the other way round Y leaves y, and X carries it to z.
+        assert!(turned("rotateXYZ").abs_diff_eq(DVec3::X, 1e-12));
+        assert!(turned("rotateYXZ").abs_diff_eq(DVec3::Z, 1e-12));
+        assert_eq!(matrix("rotateXYW", &[0.0; 3]), None);
+        assert_eq!(matrix("transform", &[1.0; 3]), None);
+    }
+
+    #[test]
+    fn matrices_have_their_translation_in_the_last_row() {
+        let rows = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 3.0, 4.0, 5.0, 1.0];
+        let at = matrix("transform", &rows).expect("an operation").transform_point3(DVec3::ZERO);
+        assert_eq!(at, DVec3::new(3.0, 4.0, 5.0));
+    }
+}

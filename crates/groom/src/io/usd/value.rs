@@ -1,0 +1,98 @@
+//! Values of attributes, as far as curves and transforms have them.
+
+use glam::Vec3;
+
+/// A value.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Value {
+    /// A word.
+    Token(String),
+    /// Words.
+    Tokens(Vec<String>),
+    /// Whether.
+    Bool(bool),
+    /// An array of whole numbers.
+    Ints(Vec<i32>),
+    /// One number, or the components of one vector, quaternion (w first) or matrix (row after row).
+    Numbers(Vec<f64>),
+    /// An array of numbers.
+    Floats(Vec<f32>),
+    /// An array of vectors of three.
+    Vectors(Vec<Vec3>),
+}
+
+impl Value {
+    pub(super) fn token(&self) -> Option<&str> {
+        match self {
+            Self::Token(token) => Some(token),
+            _ => None,
+        }
+    }
+
+    pub(super) fn numbers(&self) -> &[f64] {
+        match self {
+            Self::Numbers(numbers) => numbers,
+            _ => &[],
+        }
+    }
+
+    pub(super) fn into_tokens(self) -> Vec<String> {
+        match self {
+            Self::Tokens(tokens) => tokens,
+            _ => Vec::new(),
+        }
+    }
+
+    pub(super) fn into_ints(self) -> Vec<i32> {
+        match self {
+            Self::Ints(ints) => ints,
+            _ => Vec::new(),
+        }
+    }
+
+    /// Vectors, or numbers in each component of one.
+    pub(super) fn into_vectors(self) -> Vec<Vec3> {
+        match self {
+            Self::Vectors(vectors) => vectors,
+            Self::Floats(floats) => floats.into_iter().map(Vec3::splat).collect(),
+            Self::Numbers(numbers) => match numbers[..] {
+                [one] => vec![Vec3::splat(one as f32)],
+                [x, y, z] => vec![Vec3::new(x as f32, y as f32, z as f32)],
+                _ => Vec::new(),
+            },
+            _ => Vec::new(),
+        }
+    }
+}
+
+/// The number that 16 bits stand for (IEEE 754 binary16).
+pub(super) fn half(bits: u16) -> f32 {
+    let sign = if bits & 0x8000 == 0 { 1.0 } else { -1.0 };
+    let (exponent, fraction) = (i32::from(bits >> 10 & 0x1f), f32::from(bits & 0x3ff));
+    match exponent {
+        0 => sign * fraction * 2_f32.powi(-24),
+        31 if fraction == 0.0 => sign * f32::INFINITY,
+        31 => f32::NAN,
+        _ => sign * (1.0 + fraction / 1024.0) * 2_f32.powi(exponent - 15),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::half;
+
+    #[test]
+    fn halves_are_what_their_bits_say() {
+        for (bits, value) in [
+            (0, 0.0),
+            (0x3c00, 1.0),
+            (0xc000, -2.0),
+            (0x3555, 0.333_251_95),
+            (0x7bff, 65504.0),
+            (1, 5.960_464_5e-8),
+        ] {
+            assert_eq!(half(bits), value, "{bits:#x}");
+        }
+        assert!(half(0x7e00).is_nan() && half(0xfc00) == f32::NEG_INFINITY);
+    }
+}

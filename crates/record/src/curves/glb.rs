@@ -1,0 +1,385 @@
+//! glTF 2 in one file: the curves as lines, the body as a skinned mesh.
+//!
+//! Viewers skin triangles alone, so lines cannot hang on joints. Each frame of the curves is a mesh of its own on a node
+//! of its own, and an animation shows one after the other by scaling its node from nothing to one and back, in
+//! steps. The points are exact at every frame, and any viewer that plays animations of nodes shows them.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use glam::{Affine3A, Mat4, Quat, Vec3};
+use serde_json::{Value, json};
+
+use super::spool::{Spool, bounds};
+use super::{CurveBody, CurveFrame, CurveReport, CurveScene};
+use crate::RecordError;
+use crate::partial::{Opener, PartialFile};
+
+const FLOAT: u32 = 5126;
+const UNSIGNED_SHORT: u32 = 5123;
+const UNSIGNED_INT: u32 = 5125;
+const ARRAY_BUFFER: u32 = 34962;
+const ELEMENT_ARRAY_BUFFER: u32 = 34963;
+const LINES: u32 = 1;
+
+pub(super) struct GlbWriter {
+    target: PathBuf,
+    file: PartialFile,
+    scene: CurveScene,
+    spool: Spool,
+    /// Box of the curves in each frame.
+    boxes: Vec<[[f32; 3]; 2]>,
+    /// Transform of each joint to the world, frame after frame.
+    joints: Vec<Affine3A>,
+}
+
+impl GlbWriter {
+    pub(super) fn create(path: &Path, scene: CurveScene, opener: &Opener) -> Result<Self, RecordError> {
+        let file = PartialFile::create(path, opener)
+            .map_err(|error| RecordError::io(path, "make the file", error))?;
+        let spool = Spool::create(path, &scene, false)?;
+        let target = path.to_owned();
+        Ok(Self { target, file, scene, spool, boxes: Vec::new(), joints: Vec::new() })
+    }
+
+    pub(super) fn push(&mut self, frame: &CurveFrame<'_>) -> Result<(), RecordError> {
+        let wanted = self.scene.body.as_ref().map_or(0, |body| body.joint_from_bind.len());
+        let joints = frame.body.map_or(&[][..], |body| body.joints);
+        if self.scene.body.is_some() && joints.len() != wanted {
+            return Err(RecordError::request(format!(
+                "{}: a body of {} joints; wanted {wanted}",
+                self.target.display(),
+                joints.len()
+            )));
+        }
+        self.spool.push(frame)?;
+        let [x, y, z] = frame.points;
+        self.boxes.push(bounds((0..x.len()).map(|i| [x[i], y[i], z[i]])));
+        if self.scene.body.is_some() {
+            self.joints.extend_from_slice(joints);
+        }
+        Ok(())
+    }
+
+    pub(super) fn finish(mut self) -> Result<CurveReport, RecordError> {
+        self.spool.close()?;
+        let frames = self.spool.frames;
+        let points = self.scene.points();
+        let spooled = 12 * points as u64 * frames;
+        let mut asset = Asset::new(spooled);
+        asset.hair(&self.scene, &self.boxes);
+        if let Some(body) = &self.scene.body {
+            asset.body(body, &self.joints, &self.scene);
+        }
+        let mut json = asset.json();
+        // Parts of a binary glTF end on a multiple of four bytes.
+        json.resize(json.len().next_multiple_of(4), b' ');
+        asset.rest.resize(asset.rest.len().next_multiple_of(4), 0);
+        let binary = spooled + asset.rest.len() as u64;
+        let whole = 12 + 8 + json.len() as u64 + 8 + binary;
+        let too_long = || {
+            RecordError::request(format!(
+                "{}: {whole} bytes, and a binary glTF has {} at most: write fewer frames",
+                self.target.display(),
+                u32::MAX
+            ))
+        };
+        let whole_length = u32::try_from(whole).map_err(|_| too_long())?;
+        let (file, spool) = (&mut self.file, &mut self.spool);
+        let mut write = || -> io::Result<()> {
+            for word in [0x4654_6c67, 2, whole_length, json.len() as u32, 0x4e4f_534a] {
+                file.write_all(&u32::to_le_bytes(word))?;
+            }
+            file.write_all(&json)?;
+            for word in [binary as u32, 0x004e_4942] {
+                file.write_all(&u32::to_le_bytes(word))?;
+            }
+            let mut row = vec![[0.0; 3]; points];
+            for frame in 0..frames {
+                spool.read(frame, 0, &mut row)?;
+                file.write_all(bytemuck::cast_slice(&row))?;
+            }
+            file.write_all(&asset.rest)
+        };
+        let target = &self.target;
+        let failed = |error| RecordError::io(target, "write the file", error);
+        write().map_err(failed)?;
+        self.file.commit(true).map_err(failed)?;
+        Ok(CurveReport { frames, bytes: whole })
+    }
+}
+
+/// A glTF asset as it is put together. Its buffer begins with the curves' points, frame after frame, which are not
+/// held here.
+struct Asset {
+    spooled: u64,
+    /// The buffer behind the curves' points.
+    rest: Vec<u8>,
+    views: Vec<Value>,
+    accessors: Vec<Value>,
+    meshes: Vec<Value>,
+    nodes: Vec<Value>,
+    roots: Vec<usize>,
+    skins: Vec<Value>,
+    samplers: Vec<Value>,
+    channels: Vec<Value>,
+}
+
+impl Asset {
+    fn new(spooled: u64) -> Self {
+        let views = vec![json!({
+            "buffer": 0, "byteOffset": 0, "byteLength": spooled, "byteStride": 12, "target": ARRAY_BUFFER,
+            "name": "points of the hair, frame after frame",
+        })];
+        Self {
+            spooled,
+            rest: Vec::new(),
+            views,
+            accessors: Vec::new(),
+            meshes: Vec::new(),
+            nodes: Vec::new(),
+            roots: Vec::new(),
+            skins: Vec::new(),
+            samplers: Vec::new(),
+            channels: Vec::new(),
+        }
+    }
+
+    /// Puts an array into the buffer; the index of its accessor.
+    fn array<T: bytemuck::NoUninit>(
+        &mut self,
+        values: &[T],
+        component: u32,
+        kind: &str,
+        target: Option<u32>,
+        more: Value,
+    ) -> usize {
+        self.rest.resize(self.rest.len().next_multiple_of(4), 0);
+        let bytes: &[u8] = bytemuck::cast_slice(values);
+        let mut view = json!({
+            "buffer": 0, "byteOffset": self.spooled + self.rest.len() as u64, "byteLength": bytes.len(),
+        });
+        if let Some(target) = target {
+            view["target"] = target.into();
+        }
+        self.rest.extend_from_slice(bytes);
+        self.views.push(view);
+        let mut accessor = json!({
+            "bufferView": self.views.len() - 1, "componentType": component, "count": values.len(), "type": kind,
+        });
+        merge(&mut accessor, more);
+        self.accessors.push(accessor);
+        self.accessors.len() - 1
+    }
+
+    /// Times and values of an animated property of a node.
+    fn animate(&mut self, node: usize, property: &str, way: &str, input: usize, output: usize) {
+        self.samplers.push(json!({ "input": input, "output": output, "interpolation": way }));
+        let target = json!({ "node": node, "path": property });
+        self.channels.push(json!({ "sampler": self.samplers.len() - 1, "target": target }));
+    }
+
+    fn hair(&mut self, scene: &CurveScene, boxes: &[[[f32; 3]; 2]]) {
+        let points = scene.points();
+        let mut segments: Vec<u32> = Vec::with_capacity(2 * points);
+        for &[start, end] in scene.first_point.array_windows() {
+            segments.extend((start + 1..end).flat_map(|point| [point - 1, point]));
+        }
+        let segments = self.array(&segments, UNSIGNED_INT, "SCALAR", Some(ELEMENT_ARRAY_BUFFER), Value::Null);
+        let colors = self.colors(&scene.colors);
+        // One second of a flip-book: nothing, shown, nothing.
+        let shown = |keys: &[f32]| keys.iter().map(|&key| [key; 3]).collect::<Vec<_>>();
+        let [at_first, at_last, between] = [&[1.0, 0.0][..], &[0.0, 1.0], &[0.0, 1.0, 0.0]]
+            .map(|keys| self.array(&shown(keys), FLOAT, "VEC3", None, Value::Null));
+        let frames = boxes.len();
+        let mut children = Vec::with_capacity(frames);
+        for (frame, [low, high]) in boxes.iter().enumerate() {
+            self.accessors.push(json!({
+                "bufferView": 0, "byteOffset": 12 * points as u64 * frame as u64,
+                "componentType": FLOAT, "count": points, "type": "VEC3", "min": low, "max": high,
+            }));
+            let positions = self.accessors.len() - 1;
+            let number = scene.first_frame + frame as u64;
+            self.meshes.push(json!({
+                "name": format!("Hair of frame {number}"),
+                "primitives": [{
+                    "mode": LINES, "indices": segments, "material": 0,
+                    "attributes": { "POSITION": positions, "COLOR_0": colors },
+                }],
+            }));
+            let mut node = json!({ "name": format!("Hair {number}"), "mesh": self.meshes.len() - 1 });
+            if frame > 0 {
+                // Viewers that play nothing show the first frame.
+                node["scale"] = json!([0, 0, 0]);
+            }
+            self.nodes.push(node);
+            let node = self.nodes.len() - 1;
+            children.push(node);
+            if frames == 1 {
+                continue;
+            }
+            let (now, next) = (secs(scene, frame), secs(scene, frame + 1));
+            let (times, values) = match frame {
+                0 => (vec![0.0, next], at_first),
+                last if last + 1 == frames => (vec![0.0, now], at_last),
+                _ => (vec![0.0, now, next], between),
+            };
+            let times = self.times(&times);
+            self.animate(node, "scale", "STEP", times, values);
+        }
+        self.nodes.push(json!({ "name": "Hair", "children": children }));
+        self.roots.push(self.nodes.len() - 1);
+    }
+
+    fn body(&mut self, body: &CurveBody, transforms: &[Affine3A], scene: &CurveScene) {
+        let vectors = |vectors: &[Vec3]| vectors.iter().map(Vec3::to_array).collect::<Vec<_>>();
+        let positions = vectors(&body.bind_positions);
+        let [low, high] = bounds(positions.iter().copied());
+        let attributes = Some(ARRAY_BUFFER);
+        let position = self.array(&positions, FLOAT, "VEC3", attributes, json!({ "min": low, "max": high }));
+        let normals: Vec<Vec3> =
+            body.bind_normals.iter().map(|normal| normal.normalize_or(Vec3::Y)).collect();
+        let normal = self.array(&vectors(&normals), FLOAT, "VEC3", attributes, Value::Null);
+        let color = self.colors(&body.colors);
+        let corners = self.array(
+            body.triangles.as_flattened(),
+            UNSIGNED_INT,
+            "SCALAR",
+            Some(ELEMENT_ARRAY_BUFFER),
+            Value::Null,
+        );
+        let mut set = json!({ "POSITION": position, "NORMAL": normal, "COLOR_0": color });
+        let halves =
+            1 + usize::from(body.weights.iter().any(|weights| weights[4..].iter().any(|&w| w > 0.0)));
+        for half in 0..halves {
+            let at = 4 * half;
+            let weights: Vec<[f32; 4]> =
+                body.weights.iter().map(|all| [all[at], all[at + 1], all[at + 2], all[at + 3]]).collect();
+            let joints = body.joints.iter().zip(&weights).map(|(all, weights)| {
+                // Joints without weight are to be the first one.
+                std::array::from_fn::<u16, 4, _>(|k| if weights[k] > 0.0 { all[at + k] } else { 0 })
+            });
+            let joints: Vec<_> = joints.collect();
+            let joints = self.array(&joints, UNSIGNED_SHORT, "VEC4", attributes, Value::Null);
+            let weights = self.array(&weights, FLOAT, "VEC4", attributes, Value::Null);
+            (set[format!("JOINTS_{half}")], set[format!("WEIGHTS_{half}")]) = (joints.into(), weights.into());
+        }
+        let primitive = json!({ "attributes": set, "indices": corners, "material": 1 });
+        self.meshes.push(json!({ "name": "Body", "primitives": [primitive] }));
+        let mesh = self.meshes.len() - 1;
+
+        let count = body.joint_from_bind.len();
+        let inverse: Vec<Mat4> = body.joint_from_bind.iter().map(|&bind| Mat4::from(bind)).collect();
+        let inverse: Vec<[f32; 16]> = inverse.iter().map(Mat4::to_cols_array).collect();
+        let inverse = self.array(&inverse, FLOAT, "MAT4", None, Value::Null);
+        let frames = transforms.len() / count.max(1);
+        let times: Vec<f32> = (0..frames).map(|frame| secs(scene, frame)).collect();
+        let input = (frames > 1).then(|| self.times(&times));
+        let first = self.nodes.len();
+        for joint in 0..count {
+            let mut keys = Keys::default();
+            for frame in 0..frames {
+                keys.push(&transforms[frame * count + joint]);
+            }
+            self.nodes.push(json!({
+                "name": format!("Joint {joint}"), "translation": keys.translations[0],
+                "rotation": keys.rotations[0], "scale": keys.scales[0],
+            }));
+            let Some(input) = input else { continue };
+            let node = first + joint;
+            let output = self.array(&keys.translations, FLOAT, "VEC3", None, Value::Null);
+            self.animate(node, "translation", "LINEAR", input, output);
+            let output = self.array(&keys.rotations, FLOAT, "VEC4", None, Value::Null);
+            self.animate(node, "rotation", "LINEAR", input, output);
+            if keys.scales.iter().any(|scale| *scale != keys.scales[0]) {
+                let output = self.array(&keys.scales, FLOAT, "VEC3", None, Value::Null);
+                self.animate(node, "scale", "LINEAR", input, output);
+            }
+        }
+        let joints: Vec<usize> = (first..first + count).collect();
+        self.nodes.push(json!({ "name": "Joints", "children": joints }));
+        let skeleton = self.nodes.len() - 1;
+        self.skins.push(json!({ "joints": joints, "inverseBindMatrices": inverse, "skeleton": skeleton }));
+        self.nodes.push(json!({ "name": "Body", "mesh": mesh, "skin": 0 }));
+        self.roots.extend([skeleton, skeleton + 1]);
+    }
+
+    fn times(&mut self, times: &[f32]) -> usize {
+        let range = json!({ "min": [times[0]], "max": [times[times.len() - 1]] });
+        self.array(times, FLOAT, "SCALAR", None, range)
+    }
+
+    fn colors(&mut self, colors: &[Vec3]) -> usize {
+        let short = |v: f32| (v.clamp(0.0, 1.0) * 65535.0).round() as u16;
+        let colors: Vec<[u16; 4]> =
+            colors.iter().map(|c| [short(c.x), short(c.y), short(c.z), u16::MAX]).collect();
+        self.array(&colors, UNSIGNED_SHORT, "VEC4", Some(ARRAY_BUFFER), json!({ "normalized": true }))
+    }
+
+    fn json(&self) -> Vec<u8> {
+        let mut asset = json!({
+            "asset": { "version": "2.0", "generator": concat!("Lovelock ", env!("CARGO_PKG_VERSION")) },
+            "extensionsUsed": ["KHR_materials_unlit"],
+            "scene": 0,
+            "scenes": [{ "nodes": self.roots }],
+            "nodes": self.nodes,
+            "meshes": self.meshes,
+            "materials": [
+                // Lines have no side that light could fall on.
+                { "name": "Hair", "extensions": { "KHR_materials_unlit": {} } },
+                { "name": "Body", "pbrMetallicRoughness": { "metallicFactor": 0.0, "roughnessFactor": 0.8 } },
+            ],
+            "accessors": self.accessors,
+            "bufferViews": self.views,
+            "buffers": [{ "byteLength": self.spooled + self.rest.len() as u64 }],
+        });
+        if self.skins.is_empty() {
+            // What nothing uses is noted by validators.
+            if let Some(materials) = asset["materials"].as_array_mut() {
+                materials.truncate(1);
+            }
+        } else {
+            asset["skins"] = json!(self.skins);
+        }
+        if !self.channels.is_empty() {
+            let dance = json!({ "name": "Dance", "samplers": self.samplers, "channels": self.channels });
+            asset["animations"] = json!([dance]);
+        }
+        asset.to_string().into_bytes()
+    }
+}
+
+/// Keys of one joint.
+#[derive(Default)]
+struct Keys {
+    translations: Vec<[f32; 3]>,
+    rotations: Vec<[f32; 4]>,
+    scales: Vec<[f32; 3]>,
+}
+
+impl Keys {
+    fn push(&mut self, transform: &Affine3A) {
+        let (scale, rotation, translation) = transform.to_scale_rotation_translation();
+        let mut rotation = rotation.normalize();
+        // Of two ways to say a rotation, the one near the key before: between them it is interpolated.
+        if self.rotations.last().is_some_and(|&last| Quat::from_array(last).dot(rotation) < 0.0) {
+            rotation = -rotation;
+        }
+        self.translations.push(translation.to_array());
+        self.rotations.push(rotation.to_array());
+        // Poses round a scale of one in the last bits, which would be an animation of nothing.
+        let round = |s: f32| if (s - 1.0).abs() < 1e-5 { 1.0 } else { s };
+        self.scales.push(scale.to_array().map(round));
+    }
+}
+
+/// When a frame is shown, seconds after the first.
+fn secs(scene: &CurveScene, frame: usize) -> f32 {
+    (frame as f64 / scene.rate.as_f64()) as f32
+}
+
+fn merge(into: &mut Value, more: Value) {
+    if let (Some(into), Value::Object(more)) = (into.as_object_mut(), more) {
+        into.extend(more);
+    }
+}

@@ -1,0 +1,292 @@
+use std::fs;
+use std::path::Path;
+
+use glam::{Affine3A, Mat4, Quat, Vec3};
+use lovelock_groom::{HairFile, load_hair, load_hair_bytes};
+
+use super::*;
+use crate::partial::failing::small_disk;
+
+/// The largest distance that a point may be off, metres.
+const LIMIT_M: f32 = 1e-4;
+
+struct Dance {
+    scene: CurveScene,
+    frames: Vec<Vec<Vec3>>,
+    joints: Vec<Vec<Affine3A>>,
+}
+
+/// Curves that swing, and a body of one triangle on two joints.
+fn dance(frames: u64, curves: u32) -> Dance {
+    let counts = (0..curves).map(|curve| 2 + curve % 4);
+    let mut first_point = vec![0];
+    first_point.extend(counts.scan(0, |end, count| {
+        *end += count;
+        Some(*end)
+    }));
+    let points = first_point[curves as usize];
+    let at = |frame: u64, i: u32| {
+        let turn = Quat::from_rotation_y(0.1 * frame as f32) * Quat::from_rotation_z(0.02 * i as f32);
+        turn * Vec3::new(0.1, 1.7 - 0.003 * i as f32, 0.07)
+    };
+    let corner = |x: f32| Vec3::new(x, 1.0, 0.2);
+    let body = CurveBody {
+        triangles: vec![[0, 1, 2]],
+        colors: vec![Vec3::new(0.8, 0.5, 0.4); 3],
+        bind_positions: vec![corner(0.0), corner(0.5), corner(1.0)],
+        bind_normals: vec![Vec3::Z; 3],
+        joints: vec![[0, 1, 0, 0, 0, 0, 0, 0]; 3],
+        weights: [0.0, 0.3, 1.0].map(|w| [1.0 - w, w, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]).to_vec(),
+        joint_from_bind: vec![Affine3A::IDENTITY, Affine3A::from_translation(Vec3::new(-0.5, -1.0, 0.0))],
+    };
+    let joints = |frame: u64| {
+        let turn =
+            |angle: f32, at: Vec3| Affine3A::from_rotation_translation(Quat::from_rotation_x(angle), at);
+        vec![turn(0.05 * frame as f32, Vec3::ZERO), turn(2.0 * frame as f32, Vec3::new(0.5, 1.0, 0.0))]
+    };
+    Dance {
+        scene: CurveScene {
+            rate: FrameRate { num: 30, den: 1 },
+            first_frame: 12,
+            frames,
+            first_point,
+            widths: (0..points).map(|i| 1e-4 + 1e-6 * i as f32).collect(),
+            colors: (0..points).map(|i| Vec3::new(0.2, 0.01 * (i % 50) as f32, 0.05)).collect(),
+            body: Some(body),
+        },
+        frames: (0..frames).map(|frame| (0..points).map(|i| at(frame, i)).collect()).collect(),
+        joints: (0..frames).map(joints).collect(),
+    }
+}
+
+impl Dance {
+    /// The body in a frame, by linear blend skinning.
+    fn skinned(&self, frame: usize) -> Vec<Vec3> {
+        let body = self.scene.body.as_ref().expect("a body");
+        let map = |joint: usize| self.joints[frame][joint] * body.joint_from_bind[joint];
+        let vertices = body.bind_positions.iter().zip(&body.weights);
+        vertices
+            .map(|(&p, w)| w[0] * map(0).transform_point3(p) + w[1] * map(1).transform_point3(p))
+            .collect()
+    }
+
+    fn write(&self, path: &Path) -> Result<CurveReport, RecordError> {
+        self.write_with(path, &open_file)
+    }
+
+    fn write_with(&self, path: &Path, opener: &Opener) -> Result<CurveReport, RecordError> {
+        let mut writer = CurveWriter::create_with(path, self.scene.clone(), opener)?;
+        for (frame, points) in self.frames.iter().enumerate() {
+            let axis = |k: usize| points.iter().map(|p| p[k]).collect::<Vec<_>>();
+            let [x, y, z] = [0, 1, 2].map(axis);
+            let positions = self.skinned(frame);
+            let body =
+                BodyFrame { positions: &positions, normals: &[Vec3::Z; 3], joints: &self.joints[frame] };
+            let body = self.scene.body.is_some().then_some(body);
+            writer.push(&CurveFrame { points: [&x, &y, &z], body })?;
+        }
+        writer.finish()
+    }
+}
+
+/// The farthest that a point of the first frame is off.
+fn farthest(file: &HairFile, points: &[Vec3]) -> f32 {
+    assert_eq!(file.points.len(), points.len());
+    file.points.iter().zip(points).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max)
+}
+
+#[test]
+fn usd_comes_back_through_our_own_importer() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let dance = dance(5, 40);
+    for name in ["a.usda", "b.usdc", "ü c.USD"] {
+        let path = folder.path().join("new").join(name);
+        let report = dance.write(&path).expect(name);
+        assert_eq!((report.frames, report.bytes), (5, fs::metadata(&path).expect("a file").len()), "{name}");
+        let file = load_hair(&path).expect(name);
+        assert_eq!(file.first_point, dance.scene.first_point, "{name}");
+        let off = farthest(&file, &dance.frames[0]);
+        assert!(off <= LIMIT_M, "{name}: {off} m");
+        // The control: the next frame is farther away than that.
+        assert!(farthest(&file, &dance.frames[1]) > 10.0 * LIMIT_M, "{name}");
+        let widths = file.thickness.expect("widths");
+        assert!(widths.iter().zip(&dance.scene.widths).all(|(a, b)| (a - b).abs() < 1e-9), "{name}");
+        let colours = file.colours.expect("colours");
+        assert!((colours[0][0] - 0.484_53).abs() < 1e-3, "{name}: {:?} is sRGB of 0.2", colours[0]);
+    }
+    let left = fs::read_dir(folder.path().join("new")).expect("a folder").count();
+    assert_eq!(left, 3, "nothing beside the files");
+}
+
+#[test]
+fn a_crate_says_a_version_that_older_programs_read() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a.usdc");
+    dance(2, 3).write(&path).expect("a file");
+    let bytes = fs::read(&path).expect("a file");
+    assert_eq!((&bytes[..8], &bytes[8..11]), (&b"PXR-USDC"[..], &[0, 8, 0][..]));
+}
+
+#[test]
+fn broken_files_are_refused_or_read_and_nothing_else() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for name in ["a.usda", "b.usdc"] {
+        let path = folder.path().join(name);
+        dance(2, 6).write(&path).expect(name);
+        let whole = fs::read(&path).expect("a file");
+        let strands = load_hair_bytes(name, &whole).expect(name).strands();
+        for length in (0..whole.len() - 8).step_by(whole.len().div_ceil(400)) {
+            assert!(load_hair_bytes(name, &whole[..length]).is_err(), "{name}: {length} bytes of it");
+        }
+        // Every byte in turn, to values that make counts and places large, small and negative.
+        let mut broken = whole.clone();
+        let mut refused = 0;
+        for at in 0..whole.len() {
+            for value in [0, 0x7f, 0xff, whole[at] ^ 1] {
+                broken[at] = value;
+                match load_hair_bytes(name, &broken) {
+                    Ok(file) => assert!(file.strands() <= strands + 1, "{name}: byte {at}"),
+                    Err(error) => {
+                        refused += 1;
+                        assert!(error.to_string().lines().count() == 1, "{name}: {error}");
+                    }
+                }
+            }
+            broken[at] = whole[at];
+        }
+        assert!(refused > whole.len() / 10, "{name}: {refused} changes are refused");
+    }
+}
+
+#[test]
+fn gltf_is_valid_and_comes_back() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a.glb");
+    let dance = dance(4, 9);
+    let report = dance.write(&path).expect("a file");
+    let bytes = fs::read(&path).expect("a file");
+    assert_eq!(report, CurveReport { frames: 4, bytes: bytes.len() as u64 });
+    // The library checks indices, required fields and the sizes of the parts.
+    let glb = gltf::Gltf::from_slice(&bytes).expect("valid");
+    let blob = glb.blob.as_deref().expect("a binary part");
+    let clip = glb.animations().next().expect("an animation");
+    for frame in 0..4_usize {
+        let secs = frame as f32 / 30.0;
+        let shown: Vec<_> = glb.nodes().filter(|n| n.mesh().is_some() && n.skin().is_none()).collect();
+        let visible: Vec<_> =
+            shown.iter().filter(|node| scale_at(&clip, blob, node, secs) == [1.0; 3]).collect();
+        assert_eq!(visible.len(), 1, "one mesh of hair at {secs} s");
+        assert!(shown.iter().all(|node| [[0.0; 3], [1.0; 3]].contains(&scale_at(&clip, blob, node, secs))));
+        let primitive = visible[0].mesh().expect("a mesh").primitives().next().expect("lines");
+        assert_eq!(primitive.mode(), gltf::mesh::Mode::Lines);
+        let reader = primitive.reader(|_| Some(blob));
+        let points: Vec<Vec3> = reader.read_positions().expect("positions").map(Vec3::from).collect();
+        let off = points.iter().zip(&dance.frames[frame]).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+        assert!(off <= LIMIT_M && points.len() == dance.frames[frame].len(), "frame {frame}: {off} m");
+        let lines = reader.read_indices().expect("indices").into_u32().count();
+        assert_eq!(lines, 2 * (dance.scene.points() - dance.scene.curves()));
+
+        let body = skin_of(&glb, blob, &clip, secs);
+        let off = body.iter().zip(dance.skinned(frame)).map(|(a, b)| a.distance(b)).fold(0.0, f32::max);
+        assert!(off <= LIMIT_M, "frame {frame}: the body is {off} m off");
+        let next = dance.skinned((frame + 1) % 4);
+        let off = body.iter().zip(next).map(|(a, b)| a.distance(b)).fold(0.0, f32::max);
+        assert!(off > 10.0 * LIMIT_M, "the control: another frame is another body, {off} m off");
+    }
+}
+
+/// Scale of a node at a time, by the last key before it.
+fn scale_at(clip: &gltf::Animation<'_>, blob: &[u8], node: &gltf::Node<'_>, secs: f32) -> [f32; 3] {
+    for channel in clip.channels().filter(|channel| channel.target().node().index() == node.index()) {
+        assert_eq!(channel.sampler().interpolation(), gltf::animation::Interpolation::Step);
+        let reader = channel.reader(|_| Some(blob));
+        let key = reader.read_inputs().expect("times").filter(|&time| time <= secs + 1e-5).count() - 1;
+        if let Some(gltf::animation::util::ReadOutputs::Scales(mut scales)) = reader.read_outputs() {
+            return scales.nth(key).expect("a key");
+        }
+    }
+    panic!("a node of hair without its animation");
+}
+
+/// The skinned mesh at the time of a key, as a viewer computes it.
+fn skin_of(glb: &gltf::Gltf, blob: &[u8], clip: &gltf::Animation<'_>, secs: f32) -> Vec<Vec3> {
+    use gltf::animation::util::ReadOutputs;
+    let skin = glb.skins().next().expect("a skin");
+    let node = glb.nodes().find(|node| node.skin().is_some()).expect("a skinned node");
+    let inverse = skin.reader(|_| Some(blob)).read_inverse_bind_matrices().expect("matrices");
+    let joints = skin.joints().zip(inverse).map(|(joint, inverse)| {
+        let (mut translation, mut rotation, scale) = joint.transform().decomposed();
+        for channel in clip.channels().filter(|channel| channel.target().node().index() == joint.index()) {
+            let reader = channel.reader(|_| Some(blob));
+            let times: Vec<f32> = reader.read_inputs().expect("times").collect();
+            let key = times.iter().position(|time| (time - secs).abs() < 1e-5).expect("a key at each frame");
+            match reader.read_outputs().expect("values") {
+                ReadOutputs::Translations(mut values) => translation = values.nth(key).expect("a value"),
+                ReadOutputs::Rotations(values) => rotation = values.into_f32().nth(key).expect("a value"),
+                ReadOutputs::Scales(_) | ReadOutputs::MorphTargetWeights(_) => panic!("not animated here"),
+            }
+        }
+        let world = Mat4::from_scale_rotation_translation(
+            scale.into(),
+            Quat::from_array(rotation),
+            translation.into(),
+        );
+        world * Mat4::from_cols_array_2d(&inverse)
+    });
+    let joints: Vec<Mat4> = joints.collect();
+    let primitive = node.mesh().expect("a mesh").primitives().next().expect("triangles");
+    let reader = primitive.reader(|_| Some(blob));
+    let bound = reader.read_joints(0).expect("joints").into_u16();
+    let weights = reader.read_weights(0).expect("weights").into_f32();
+    let points = reader.read_positions().expect("positions").zip(bound).zip(weights);
+    points
+        .map(|((p, joint), weight)| {
+            (0..4).map(|k| weight[k] * joints[usize::from(joint[k])].transform_point3(p.into())).sum()
+        })
+        .collect()
+}
+
+#[test]
+fn a_full_disk_leaves_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for name in ["a.usda", "a.usdc", "a.glb"] {
+        let path = folder.path().join(name);
+        fs::write(&path, b"old").expect("a file");
+        let error = dance(3, 9).write_with(&path, &small_disk(1000)).expect_err(name);
+        assert!(!error.is_request() && error.to_string().contains("write the file"), "{name}: {error}");
+        assert_eq!(fs::read(&path).expect("a file"), b"old", "{name}");
+        fs::remove_file(&path).expect("a file");
+    }
+    assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 0);
+}
+
+#[test]
+fn wrong_requests_are_refused_in_words() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    let refused = |dance: &Dance, name: &str, wanted: &str| {
+        let error = dance.write(&at(name)).expect_err(wanted);
+        assert!(error.is_request() && error.to_string().contains(wanted), "{error}");
+    };
+    let good = || dance(3, 4);
+    refused(&good(), "a.abc", "wanted a name ending in .usda");
+    let change = |change: &dyn Fn(&mut Dance)| {
+        let mut dance = good();
+        change(&mut dance);
+        dance
+    };
+    refused(&change(&|dance| dance.scene.frames = 0), "a.usdc", "no frame");
+    refused(&change(&|dance| dance.scene.first_point = vec![0]), "a.usdc", "no curves");
+    refused(&change(&|dance| dance.scene.widths.truncate(3)), "a.glb", "differ in length");
+    refused(&change(&|dance| dance.scene.frames = 4), "a.usdc", "3 frames, and 4 were said");
+    refused(&change(&|dance| dance.scene.frames = 2), "a.usda", "a frame more than the 2");
+    refused(&change(&|dance| dance.frames[1].truncate(13)), "a.glb", "a frame of 13 points; wanted 14");
+    for (name, frames, instead) in [
+        ("a.usda", 1 << 30, "--curves guides"),
+        ("a.usdc", 1 << 30, "--no-body"),
+        ("a.glb", 1 << 30, "--curves guides"),
+    ] {
+        refused(&change(&|dance| dance.scene.frames = frames), name, instead);
+    }
+    assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 0, "nothing was begun");
+}

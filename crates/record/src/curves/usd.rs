@@ -1,0 +1,236 @@
+//! USD: `BasisCurves` and a `Mesh` with time samples, as text or as a binary crate, by the `openusd` library.
+//!
+//! Curves are linear: strands are drawn as straight segments between their points here, and any cubic basis would
+//! bend them between the points.
+
+use std::fs::File;
+use std::io::{Seek, SeekFrom, Write};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use glam::Vec3;
+use openusd::gf::Vec3f;
+use openusd::sdf::{self, ChildrenKey, SpecData, SpecType, Value, Variability};
+use openusd::tf::Token;
+use openusd::usda::TextWriter;
+use openusd::usdc::CrateWriter;
+
+use super::layer::{SpooledLayer, Track};
+use super::spool::{Spool, bounds};
+use super::{CurveBody, CurveFrame, CurveReport, CurveScene, crate_tail};
+use crate::RecordError;
+use crate::partial::{Opener, PartialFile, partial_path};
+
+/// The most bytes of one array of points with all its times: a groom of more is divided into several prims, so that
+/// memory stays bounded however long the recording is.
+const PRIM_BYTES: u64 = 256 << 20;
+
+pub(super) struct UsdWriter {
+    target: PathBuf,
+    file: PartialFile,
+    text: bool,
+    scene: CurveScene,
+    prims: Vec<Range<usize>>,
+    spool: Spool,
+    /// Box of each prim in each frame: frame after frame, the body last where there is one.
+    extents: Vec<[[f32; 3]; 2]>,
+}
+
+impl UsdWriter {
+    pub(super) fn create(
+        path: &Path,
+        scene: CurveScene,
+        text: bool,
+        opener: &Opener,
+    ) -> Result<Self, RecordError> {
+        let file = PartialFile::create(path, opener)
+            .map_err(|error| RecordError::io(path, "make the file", error))?;
+        let spool = Spool::create(path, &scene, true)?;
+        let prims = divide(&scene.first_point, (PRIM_BYTES / (12 * scene.frames)) as usize);
+        Ok(Self { target: path.to_owned(), file, text, scene, prims, spool, extents: Vec::new() })
+    }
+
+    pub(super) fn push(&mut self, frame: &CurveFrame<'_>) -> Result<(), RecordError> {
+        self.spool.push(frame)?;
+        let [x, y, z] = frame.points;
+        for prim in &self.prims {
+            let points = points_of(&self.scene.first_point, prim);
+            // A point reaches half its width to every side.
+            let half = self.scene.widths[points.clone()].iter().copied().fold(0.0, f32::max) / 2.0;
+            let [low, high] = bounds(points.map(|i| [x[i], y[i], z[i]]));
+            self.extents.push([low.map(|v| v - half), high.map(|v| v + half)]);
+        }
+        if let Some(body) = frame.body.filter(|_| self.spool.vertices() > 0) {
+            self.extents.push(bounds(body.positions.iter().map(Vec3::to_array)));
+        }
+        Ok(())
+    }
+
+    pub(super) fn finish(mut self) -> Result<CurveReport, RecordError> {
+        self.spool.close()?;
+        let frames = self.spool.frames;
+        let layer = build(self.spool, &self.scene, &self.prims, &self.extents);
+        let written = if self.text {
+            TextWriter::write(&layer, &mut self.file)
+        } else {
+            CrateWriter::write(&layer, &mut self.file)
+        };
+        let target = &self.target;
+        let failed = |error| RecordError::io(target, "write the file", error);
+        if let Some(error) = layer.take_failure() {
+            return Err(failed(error));
+        }
+        written.map_err(|error| {
+            failed(error.downcast().unwrap_or_else(|error| std::io::Error::other(format!("{error:#}"))))
+        })?;
+        let mut seal = || {
+            if !self.text {
+                self.file.flush()?;
+                crate_tail::mend(&mut File::open(partial_path(target))?, &mut self.file)?;
+            }
+            self.file.seek(SeekFrom::End(0))
+        };
+        let bytes = seal().map_err(failed)?;
+        self.file.commit(true).map_err(failed)?;
+        Ok(CurveReport { frames, bytes })
+    }
+}
+
+/// Runs of curves whose points are `most` together at most, and one curve at least.
+fn divide(first_point: &[u32], most: usize) -> Vec<Range<usize>> {
+    let mut prims = Vec::new();
+    let mut start = 0;
+    for curve in 0..first_point.len() - 1 {
+        if curve > start && (first_point[curve + 1] - first_point[start]) as usize > most {
+            prims.push(start..curve);
+            start = curve;
+        }
+    }
+    prims.push(start..first_point.len() - 1);
+    prims
+}
+
+fn points_of(first_point: &[u32], prim: &Range<usize>) -> Range<usize> {
+    first_point[prim.start] as usize..first_point[prim.end] as usize
+}
+
+/// Path of a prim of one of this module's own names.
+fn child(parent: &sdf::Path, name: &str) -> sdf::Path {
+    parent.append_path(name).unwrap_or_else(|_| parent.clone())
+}
+
+fn build(
+    spool: Spool,
+    scene: &CurveScene,
+    prims: &[Range<usize>],
+    extents: &[[[f32; 3]; 2]],
+) -> SpooledLayer {
+    let [positions_at, normals_at] = spool.body_at();
+    let mut layer = SpooledLayer::new(spool, scene.first_frame);
+    let times: Vec<f64> = layer.times().collect();
+    let a_frame = prims.len() + usize::from(scene.body.is_some());
+    let extent = |index: usize| {
+        let of_frame = extents.iter().skip(index).step_by(a_frame);
+        let corners = of_frame.map(|corners| Value::Vec3fVec(corners.map(Vec3f::from).to_vec()));
+        Value::TimeSamples(times.iter().copied().zip(corners).collect())
+    };
+
+    let root = sdf::Path::abs_root();
+    let rate = scene.rate.as_f64();
+    let pseudo_root = layer.spec(root.clone(), SpecType::PseudoRoot);
+    for (name, value) in [
+        ("defaultPrim", Value::Token(Token::from("Lovelock"))),
+        ("upAxis", Value::Token(Token::from("Y"))),
+        ("metersPerUnit", Value::Double(1.0)),
+        ("timeCodesPerSecond", Value::Double(rate)),
+        ("framesPerSecond", Value::Double(rate)),
+        ("startTimeCode", Value::Double(scene.first_frame as f64)),
+        ("endTimeCode", Value::Double((scene.first_frame + scene.frames - 1) as f64)),
+    ] {
+        pseudo_root.add(name, value);
+    }
+    pseudo_root.add(ChildrenKey::PrimChildren, Value::TokenVec(vec![Token::from("Lovelock")]));
+
+    let top = child(&root, "Lovelock");
+    let mut children = Vec::new();
+    if let Some(body) = &scene.body {
+        children.push(Token::from("Body"));
+        mesh(&mut layer, child(&top, "Body"), body, [positions_at, normals_at], extent(prims.len()));
+    }
+    children.push(Token::from("Hair"));
+    let hair = child(&top, "Hair");
+    let names: Vec<String> = (0..prims.len()).map(|index| format!("Strands_{index}")).collect();
+    for (index, (prim, name)) in prims.iter().zip(&names).enumerate() {
+        curves(&mut layer, child(&hair, name), scene, prim, extent(index));
+    }
+    layer.prim(hair, "Xform").finish(names.iter().map(|name| Token::from(name.as_str())).collect());
+    layer.prim(top, "Xform").kind("component").finish(children);
+    layer
+}
+
+fn curves(layer: &mut SpooledLayer, path: sdf::Path, scene: &CurveScene, prim: &Range<usize>, extent: Value) {
+    let points = points_of(&scene.first_point, prim);
+    let mut curves = layer.prim(path, "BasisCurves");
+    uniform(curves.attribute("type", "token"), "linear");
+    uniform(curves.attribute("wrap", "token"), "nonperiodic");
+    let counts = scene.first_point[prim.start..=prim.end].array_windows().map(|[a, b]| (b - a) as i32);
+    curves.attribute("curveVertexCounts", "int[]").add("default", Value::IntVec(counts.collect()));
+    curves.track("points", "point3f[]", Track { first: points.start, count: points.len() });
+    let widths = curves.attribute("widths", "float[]");
+    widths.add("default", Value::FloatVec(scene.widths[points.clone()].to_vec()));
+    per_vertex(widths);
+    let colors = curves.attribute("primvars:displayColor", "color3f[]");
+    colors.add("default", triples(&scene.colors[points]));
+    per_vertex(colors);
+    curves.attribute("extent", "float3[]").add("timeSamples", extent);
+    curves.finish(Vec::new());
+}
+
+fn mesh(
+    layer: &mut SpooledLayer,
+    path: sdf::Path,
+    body: &CurveBody,
+    [positions, normals]: [usize; 2],
+    extent: Value,
+) {
+    let count = body.bind_positions.len();
+    let mut mesh = layer.prim(path, "Mesh");
+    uniform(mesh.attribute("subdivisionScheme", "token"), "none");
+    mesh.attribute("faceVertexCounts", "int[]").add("default", Value::IntVec(vec![3; body.triangles.len()]));
+    let corners = body.triangles.as_flattened().iter().map(|&vertex| vertex as i32).collect();
+    mesh.attribute("faceVertexIndices", "int[]").add("default", Value::IntVec(corners));
+    mesh.track("points", "point3f[]", Track { first: positions, count });
+    per_vertex(mesh.track("normals", "normal3f[]", Track { first: normals, count }));
+    let colors = mesh.attribute("primvars:displayColor", "color3f[]");
+    colors.add("default", triples(&body.colors));
+    per_vertex(colors);
+    mesh.attribute("extent", "float3[]").add("timeSamples", extent);
+    mesh.finish(Vec::new());
+}
+
+fn uniform(spec: &mut SpecData, value: &'static str) {
+    spec.add("variability", Value::Variability(Variability::Uniform));
+    spec.add("default", Value::Token(Token::from(value)));
+}
+
+fn per_vertex(spec: &mut SpecData) {
+    spec.add("interpolation", Value::Token(Token::from("vertex")));
+}
+
+fn triples(values: &[Vec3]) -> Value {
+    Value::Vec3fVec(values.iter().map(|value| Vec3f::from(value.to_array())).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::divide;
+
+    #[test]
+    fn curves_are_divided_into_runs_that_fit() {
+        let first_point = [0, 4, 8, 12, 20, 22];
+        assert_eq!(divide(&first_point, 100).first(), Some(&(0..5)));
+        assert_eq!(divide(&first_point, 8), [0..2, 2..3, 3..4, 4..5]);
+        // A curve that is too long stands alone.
+        assert_eq!(divide(&first_point, 1), [0..1, 1..2, 2..3, 3..4, 4..5]);
+    }
+}

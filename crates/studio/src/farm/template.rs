@@ -1,0 +1,131 @@
+//! The job itself: <https://github.com/OpenJobDescription/openjd-specifications>, `jobtemplate-2023-09`.
+
+use std::ops::Range;
+use std::path::PathBuf;
+
+use serde_json::{Value, json};
+
+use super::TAKE;
+
+/// What the frames are drawn from.
+pub(super) enum Source {
+    /// The project in the folder, which is simulated once.
+    Project,
+    /// A take that is there already.
+    Take(PathBuf),
+}
+
+pub(super) struct Template {
+    pub(super) name: String,
+    pub(super) source: Source,
+    pub(super) frames: Range<u64>,
+    pub(super) fps: f64,
+    pub(super) chunk: u64,
+}
+
+impl Template {
+    pub(super) fn steps(&self) -> Vec<&'static str> {
+        match self.source {
+            Source::Project => vec!["Simulate", "Draw", "Assemble"],
+            Source::Take(_) => vec!["Draw", "Assemble"],
+        }
+    }
+
+    /// Ranges of frames as the command line takes them, one a task.
+    fn ranges(&self) -> Vec<String> {
+        let Range { start, end } = self.frames;
+        let starts = (start..end).step_by(self.chunk as usize);
+        starts.map(|first| format!("{first}..{}", (first + self.chunk).min(end))).collect()
+    }
+
+    pub(super) fn json(&self) -> Value {
+        // Names of jobs are 128 characters at most, and none of them is a control.
+        let name: String = self.name.chars().filter(|letter| !letter.is_control()).take(100).collect();
+        // Braces would be read as a value to put in.
+        let name = name.replace("{{", "(").replace("}}", ")");
+        let mut parameters = vec![
+            json!({
+                "name": "Folder",
+                "type": "PATH",
+                "objectType": "DIRECTORY",
+                "dataFlow": "INOUT",
+                "default": ".",
+                "description": "The folder of this job, where every machine reaches it; pictures go into its folder frames.",
+            }),
+            json!({
+                "name": "Lovelock",
+                "type": "STRING",
+                "default": "lovelock",
+                "description": "The program: a name that is found, or its path on the machines that draw.",
+            }),
+            json!({
+                "name": "Backend",
+                "type": "STRING",
+                "default": "cpu",
+                "allowedValues": ["cpu", "gpu", "auto"],
+                "description": "What draws. The processor draws the same bytes on every machine.",
+            }),
+        ];
+        let take = match &self.source {
+            Source::Project => format!("{{{{Param.Folder}}}}/{TAKE}"),
+            Source::Take(path) => {
+                parameters.push(json!({
+                    "name": "Take",
+                    "type": "PATH",
+                    "objectType": "FILE",
+                    "dataFlow": "IN",
+                    "default": path.to_string_lossy(),
+                    "description": "The take that is drawn, with the files that it was made from where it names them.",
+                }));
+                "{{Param.Take}}".to_owned()
+            }
+        };
+        let Range { start, end } = self.frames;
+        let fps = self.fps.to_string();
+        let simulate = json!({
+            "name": "Simulate",
+            "description": "Simulates from the first frame, once, into a take.",
+            "script": run(&[
+                "record", "{{Param.Folder}}/project.lovelock", "-o", &take,
+                "--frames", &format!("0..{end}"), "--fps", &fps,
+            ]),
+        });
+        let mut draw = json!({
+            "name": "Draw",
+            "description": "Draws ranges of frames, in any order and on any number of machines.",
+            "parameterSpace": {
+                "taskParameterDefinitions": [{ "name": "Frames", "type": "STRING", "range": self.ranges() }],
+            },
+            "script": run(&[
+                "record", &take, "-o", "{{Param.Folder}}/parts/{{Task.Param.Frames}}/",
+                "--frames", "{{Task.Param.Frames}}", "--fps", &fps, "--backend", "{{Param.Backend}}",
+            ]),
+        });
+        let assemble = json!({
+            "name": "Assemble",
+            "description": "Puts the parts together into one sequence with its manifest.",
+            "dependencies": [{ "dependsOn": "Draw" }],
+            "script": run(&[
+                "assemble", "{{Param.Folder}}/parts", "-o", "{{Param.Folder}}/frames",
+                "--frames", &format!("{start}..{end}"),
+            ]),
+        });
+        let mut steps = Vec::new();
+        if matches!(self.source, Source::Project) {
+            draw["dependencies"] = json!([{ "dependsOn": "Simulate" }]);
+            steps.push(simulate);
+        }
+        steps.extend([draw, assemble]);
+        json!({
+            "specificationVersion": "jobtemplate-2023-09",
+            "name": format!("Lovelock {name}"),
+            "description": format!("Frames {start}..{end} at {fps} a second, {} a task.", self.chunk),
+            "parameterDefinitions": parameters,
+            "steps": steps,
+        })
+    }
+}
+
+fn run(arguments: &[&str]) -> Value {
+    json!({ "actions": { "onRun": { "command": "{{Param.Lovelock}}", "args": arguments } } })
+}

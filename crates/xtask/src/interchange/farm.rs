@@ -1,0 +1,100 @@
+//! A job for many machines, run here by the command line of the Open Job Description.
+
+use super::program::{lovelock, run_json};
+use crate::tool;
+use anyhow::{Context as _, ensure};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+const FRAMES: &str = "2..9";
+const SIZE: &str = "96x72";
+
+/// Runs the job's steps and tasks, each as a scheduler would, and compares the frames with those of a single machine.
+pub(super) fn check(python: &Path, folder: &Path, program: &Path) -> anyhow::Result<()> {
+    let folder = folder.join("farm");
+    super::empty(&folder)?;
+    let project = folder.join("small.lovelock");
+    fs::write(&project, include_str!("../browser/small.lovelock"))?;
+    let job = folder.join("job");
+    let mut farm = lovelock(program, "farm");
+    farm.arg(&project).arg("-o").arg(&job);
+    let report = run_json(farm.args(["--frames", FRAMES, "--size", SIZE, "--fps", "24", "--chunk", "3"]))?;
+    ensure!(report["tasks"] == 3, "{} tasks", report["tasks"]);
+    // Somewhere else, as on another machine.
+    let moved = folder.join("moved job");
+    fs::rename(&job, &moved)?;
+    let template = moved.join("template.json");
+
+    openjd(python, &["check"], &template, &[])?;
+    let broken = folder.join("broken.json");
+    fs::write(&broken, fs::read_to_string(&template)?.replace("\"Simulate\"", "\"Draw\""))?;
+    ensure!(
+        openjd(python, &["check"], &broken, &[]).is_err(),
+        "control: a job with two steps of one name was found good"
+    );
+
+    let parameter = format!("Lovelock={}", program.display());
+    let step = |step: &str, more: &[&str]| {
+        let arguments = [&["--step", step, "--no-run-dependencies", "-p", &parameter], more].concat();
+        openjd(python, &["run"], &template, &arguments)
+    };
+    step("Simulate", &[])?;
+    // The last task first: their order is the scheduler's.
+    for frames in ["8..9", "2..5", "5..8"] {
+        step("Draw", &["--task-param", &format!("Frames={frames}")])?;
+    }
+    step("Assemble", &[])?;
+
+    let (take, single) = (folder.join("single.take"), folder.join("single"));
+    let mut record = lovelock(program, "record");
+    run_json(record.arg(&project).arg("-o").arg(&take).args(["--frames", "0..9", "--fps", "24"]))?;
+    let mut record = lovelock(program, "record");
+    record.arg(&take).arg("-o").arg(&single);
+    run_json(record.args(["--frames", FRAMES, "--fps", "24", "--size", SIZE, "--backend", "cpu"]))?;
+    let (theirs, ours) = (files(&moved.join("frames"))?, files(&single)?);
+    ensure!(ours.len() == 8, "{} files of a single machine; wanted 7 frames and a manifest", ours.len());
+    compare(&theirs, &ours)?;
+    let mut altered = theirs.clone();
+    if let Some(bytes) = altered.get_mut(Path::new("frame_000005.png")) {
+        let middle = bytes.len() / 2;
+        bytes[middle] ^= 1;
+    }
+    ensure!(compare(&altered, &ours).is_err(), "control: an altered frame was found the same");
+    println!("interchange: openjd draws the same {} files as a single machine", ours.len());
+    Ok(())
+}
+
+fn compare(theirs: &BTreeMap<PathBuf, Vec<u8>>, ours: &BTreeMap<PathBuf, Vec<u8>>) -> anyhow::Result<()> {
+    ensure!(theirs.keys().eq(ours.keys()), "other files: {:?} and {:?}", theirs.keys(), ours.keys());
+    for (name, bytes) in ours {
+        ensure!(theirs[name] == *bytes, "{} is another file than that of a single machine", name.display());
+    }
+    Ok(())
+}
+
+fn files(folder: &Path) -> anyhow::Result<BTreeMap<PathBuf, Vec<u8>>> {
+    let mut files = BTreeMap::new();
+    for entry in fs::read_dir(folder).with_context(|| format!("could not list {}", folder.display()))? {
+        let path = entry?.path();
+        files.insert(path.file_name().unwrap_or_default().into(), fs::read(&path)?);
+    }
+    Ok(files)
+}
+
+fn openjd(python: &Path, verb: &[&str], template: &Path, arguments: &[&str]) -> anyhow::Result<()> {
+    let mut command =
+        Command::new(python.with_file_name(if cfg!(windows) { "openjd.exe" } else { "openjd" }));
+    command.args(verb).arg(template).args(arguments).stdin(Stdio::null());
+    let output = command.output().with_context(|| format!("could not start `{}`", tool::shown(&command)))?;
+    let told = [output.stdout, output.stderr].concat();
+    ensure!(
+        output.status.success(),
+        "`{}` failed ({}): {}",
+        tool::shown(&command),
+        output.status,
+        String::from_utf8_lossy(&told).trim()
+    );
+    Ok(())
+}
