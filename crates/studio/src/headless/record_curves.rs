@@ -173,17 +173,8 @@ pub fn record_curves(
 }
 
 fn refuse_options_of_pictures(request: &RecordRequest) -> Result<(), StudioError> {
-    let pictures = [
-        (request.size.is_some(), "--size"),
-        (request.shadow.is_some(), "--shadow"),
-        (request.transparency.is_some(), "--transparency"),
-        (request.backend.is_some(), "--backend"),
-        (request.label, "--label"),
-        (request.seamless, "--loop"),
-        (request.panes.is_some(), "--beside"),
-    ];
-    match pictures.iter().find(|(given, _)| *given) {
-        Some((_, option)) => Err(StudioError::option(format!(
+    match request.option_of_pictures() {
+        Some(option) => Err(StudioError::option(format!(
             "{option}: {} holds curves and no pictures",
             request.out.display()
         ))),

@@ -64,19 +64,8 @@ pub fn record_take(
             file.path.display()
         )));
     }
-    let pictures = [
-        (request.size.is_some(), "--size"),
-        (request.shadow.is_some(), "--shadow"),
-        (request.transparency.is_some(), "--transparency"),
-        (request.backend.is_some(), "--backend"),
-        (request.panes.is_some(), "--beside"),
-        (request.format.is_some(), "--format"),
-        (request.transparent, "--transparent"),
-        (request.motion_blur.is_some(), "--motion-blur"),
-        (request.shutter_degrees.is_some(), "--shutter"),
-        (request.resume, "--resume"),
-    ];
-    if let Some((_, option)) = pictures.iter().find(|(given, _)| *given) {
+    let of_films = request.seamless.then_some("--loop");
+    if let Some(option) = request.option_of_pictures().or(of_films) {
         return Err(StudioError::option(format!(
             "{option}: {} is a take, which holds the simulation alone and no pictures",
             request.out.display()

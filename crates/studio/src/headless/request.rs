@@ -55,6 +55,27 @@ pub struct RecordRequest {
     pub panes: Option<Sheet>,
 }
 
+impl RecordRequest {
+    /// The first option given that is of pictures alone: what holds none refuses it.
+    pub(super) fn option_of_pictures(&self) -> Option<&'static str> {
+        let given = [
+            (self.size.is_some(), "--size"),
+            (self.shadow.is_some(), "--shadow"),
+            (self.transparency.is_some(), "--transparency"),
+            (self.backend.is_some(), "--backend"),
+            (self.quality.is_some(), "--quality"),
+            (self.label, "--label"),
+            (self.panes.is_some(), "--beside"),
+            (self.format.is_some(), "--format"),
+            (self.transparent, "--transparent"),
+            (self.motion_blur.is_some(), "--motion-blur"),
+            (self.shutter_degrees.is_some(), "--shutter"),
+            (self.resume, "--resume"),
+        ];
+        given.into_iter().find(|(given, _)| *given).map(|(_, option)| option)
+    }
+}
+
 /// How far a recording or a comparison is.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Progress {
