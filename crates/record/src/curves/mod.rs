@@ -175,6 +175,14 @@ impl CurveScene {
                 most as f64 / 1e9,
             )))
         };
+        let most_frames = if format == CurveFormat::Glb { MOST_GLB_FRAMES } else { MOST_FRAMES };
+        if self.frames > most_frames {
+            return Err(RecordError::request(format!(
+                "{}: {} frames, and {most_frames} are the most: write them in parts, with --frames",
+                path.display(),
+                self.frames
+            )));
+        }
         let vertices = self.body.as_ref().map_or(0, |body| body.bind_positions.len() as u64);
         let points = self.points() as u64;
         let bytes = |size: u64, count: u64| self.frames.saturating_mul(count).saturating_mul(size);
@@ -215,6 +223,10 @@ impl CurveScene {
     }
 }
 
+/// The most frames: their times and boxes are held in memory.
+const MOST_FRAMES: u64 = 1 << 20;
+/// The most frames of a glTF, which has a node and a mesh for each in its description.
+const MOST_GLB_FRAMES: u64 = 1 << 16;
 /// The most bytes of text: more is no file that a program would open.
 const MOST_TEXT: u64 = 8 << 30;
 /// The most bytes of one array with all its times, which is held in memory while it is written.

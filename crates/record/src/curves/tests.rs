@@ -281,12 +281,29 @@ fn wrong_requests_are_refused_in_words() {
     refused(&change(&|dance| dance.scene.frames = 4), "a.usdc", "3 frames, and 4 were said");
     refused(&change(&|dance| dance.scene.frames = 2), "a.usda", "a frame more than the 2");
     refused(&change(&|dance| dance.frames[1].truncate(13)), "a.glb", "a frame of 13 points; wanted 14");
-    for (name, frames, instead) in [
-        ("a.usda", 1 << 30, "--curves guides"),
-        ("a.usdc", 1 << 30, "--no-body"),
-        ("a.glb", 1 << 30, "--curves guides"),
-    ] {
-        refused(&change(&|dance| dance.scene.frames = frames), name, instead);
+    for name in ["a.usda", "a.usdc", "a.glb"] {
+        refused(&change(&|dance| dance.scene.frames = 1 << 30), name, "--frames");
     }
+    // Many curves, so that few frames are too large.
+    let large = |frames: u64| {
+        let mut dance = good();
+        let (points, curves) = (1 << 20, 1 << 19);
+        dance.scene.first_point = (0..=curves).map(|curve| 2 * curve).collect();
+        (dance.scene.widths, dance.scene.colors) = (vec![1e-4; points], vec![Vec3::ONE; points]);
+        dance.scene.frames = frames;
+        dance
+    };
+    for (name, frames) in [("a.usda", 200), ("a.glb", 400)] {
+        refused(&large(frames), name, "--curves guides");
+    }
+    let mut body = good();
+    body.scene.frames = 1 << 20;
+    if let Some(body) = &mut body.scene.body {
+        let vertices = 200;
+        (body.colors, body.bind_positions) = (vec![Vec3::ONE; vertices], vec![Vec3::ZERO; vertices]);
+        (body.bind_normals, body.weights) = (vec![Vec3::Z; vertices], vec![[0.125; 8]; vertices]);
+        body.joints = vec![[0; 8]; vertices];
+    }
+    refused(&body, "a.usdc", "--no-body");
     assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 0, "nothing was begun");
 }
