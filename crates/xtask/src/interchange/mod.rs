@@ -1,6 +1,7 @@
 //! `cargo xtask test --interchange`: numbers held against other people's programs, which come from their package
 //! registry into a virtual environment below `target`.
 
+mod exr;
 mod pictures;
 
 use crate::{system, tool};
@@ -38,7 +39,7 @@ pub(crate) fn run() -> anyhow::Result<()> {
         pairs(&pictures).map(|(reference, test)| mean(reference, test)).collect::<Result<Vec<_>, _>>()?;
     compare(&means, &theirs)?;
     println!("interchange: {} means of FLIP as {PACKAGE} has them, to {LIMIT}", means.len());
-    Ok(())
+    exr::run(&folder)
 }
 
 /// Every picture as the reference of every other, in the order of the script.
