@@ -235,7 +235,8 @@ fn what_cannot_be_is_refused_with_words() {
     let dir = tempfile::tempdir().expect("a folder");
     let at = |name: &str| dir.path().join(name);
     let exr = Some(SequenceFormat::Exr);
-    let sheet = crate::Sheet { wipe: None, view: crate::LiveView::default(), colors: [[0; 3]; 6] };
+    let sheet =
+        crate::Sheet { wipe: None, figures: false, view: crate::LiveView::default(), colors: [[0; 3]; 6] };
     for (wrong, said) in [
         (RecordRequest { motion_blur: Some(0), ..request(&at("x")) }, "wanted 1 (none) to 64"),
         (RecordRequest { motion_blur: Some(65), ..request(&at("x")) }, "65 pictures"),

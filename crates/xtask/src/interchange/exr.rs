@@ -1,4 +1,4 @@
-//! EXR files of the program, read by OpenEXR's own Python package.
+//! EXR files of the program, read by `OpenEXR`'s own Python package.
 
 use crate::tool;
 use anyhow::{Context as _, ensure};
