@@ -143,7 +143,7 @@ fn copy(folder: &Path, frame: &ManifestFrame, out: &Path) -> Result<(), RecordEr
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{SequenceSettings, SequenceWriter, frame_name};
+    use crate::{SequenceFormat, SequenceSettings, SequenceWriter, frame_name};
 
     fn draw(folder: &Path, frames: Range<u64>, width: u32) {
         let settings = SequenceSettings {
@@ -152,6 +152,8 @@ mod tests {
             fps: 30.0,
             first_frame: frames.start,
             alpha: false,
+            format: SequenceFormat::Png,
+            resume: false,
             settings: serde_json::json!({ "shadow": "none" }),
         };
         let mut writer = SequenceWriter::create(folder, settings).expect("a sequence");
@@ -185,7 +187,7 @@ mod tests {
         // The control: one frame that is another is found, by the comparison and by its checksum.
         draw(&at("parts/c"), 8..9, 8);
         draw(&at("parts/d"), 7..8, 8);
-        let frame = at("parts/d").join(frame_name(7));
+        let frame = at("parts/d").join(frame_name(7, SequenceFormat::Png));
         let mut bytes = fs::read(&frame).expect("a file");
         let last = bytes.len() - 1;
         bytes[last] ^= 1;

@@ -87,7 +87,8 @@ fn a_sequence_that_was_killed_again_and_again_is_that_of_one_run() {
         child.kill().unwrap();
         child.wait().unwrap();
         // What has a name is whole, at any moment.
-        for (name, bytes) in contents(folder.path()).into_iter().filter(|(name, _)| name.ends_with(".png")) {
+        let is_frame = |name: &str| Path::new(name).extension().is_some_and(|ending| ending == "png");
+        for (name, bytes) in contents(folder.path()).into_iter().filter(|(name, _)| is_frame(name)) {
             let same =
                 contents(whole.path()).into_iter().any(|(other, there)| other == name && there == bytes);
             assert!(same, "{name} is not whole");

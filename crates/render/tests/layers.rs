@@ -113,6 +113,39 @@ fn a_wall_and_a_strand_have_the_depths_at_which_they_are() {
 }
 
 #[test]
+fn surfaces_seen_from_their_edge_are_no_nearer_than_their_corners() {
+    // Triangles a hair's breadth from edge-on, at every slant, between 0.9 and 1.1 m before the camera.
+    let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+    for i in 0..20_000_u32 {
+        let t = i as f32 * 0.618_034;
+        let middle = Vec3::new(0.4 * (t.fract() - 0.5), 0.4 * ((7.0 * t).fract() - 0.5), 0.0);
+        let toward = (Vec3::Z - middle).normalize_or_zero();
+        let across = Vec3::new((3.0 * t).sin(), (3.0 * t).cos(), 0.0) * 0.01;
+        let lean = Vec3::new(across.y, -across.x, 0.0) * 10_f32.powf(-4.0 + 0.1 * (i % 40) as f32);
+        positions.extend([middle - 0.09 * toward, middle + 0.09 * toward + lean, middle + across]);
+        triangles.push([3 * i, 3 * i + 1, 3 * i + 2]);
+    }
+    let normals = vec![Vec3::Z; positions.len()];
+    let mesh = lovelock_motion::Mesh {
+        colors: vec![Vec3::splat(0.4); positions.len()],
+        positions: positions.clone(),
+        normals: normals.clone(),
+        triangles,
+        ..lovelock_motion::Mesh::default()
+    };
+    let mut s = scene(&[]);
+    let mut skin = lovelock_motion::Skin::default();
+    (skin.positions, skin.normals) = (positions, normals);
+    s.body =
+        Some((std::sync::Arc::new(lovelock_motion::Body { mesh, ..lovelock_motion::Body::default() }), skin));
+    let (layers, _) = drawn(Backend::Cpu, &s, false, [320, 240]).expect("the processor draws");
+    let seen: Vec<f32> = layers.depth.iter().copied().filter(|depth| *depth < 1e9).collect();
+    let (near, far) = seen.iter().fold((f32::MAX, 0.0_f32), |(near, far), &d| (near.min(d), far.max(d)));
+    println!("{} pixels from {near} to {far} m", seen.len());
+    assert!(seen.len() > 500 && near > 0.85 && far < 1.15, "{near} {far}");
+}
+
+#[test]
 fn half_a_strand_covers_half_and_the_rest_is_clear() {
     for backend in [Backend::Cpu, Backend::Gpu] {
         let line = (0..=10).map(|j| Vec3::new(0.02 * (j as f32 - 5.0), 0.0, 0.0)).collect();

@@ -213,7 +213,7 @@ fn exr_files_hold_every_channel_and_say_what_they_are() {
         let layer = &image.layer_data[0];
         let (light, depth, transmittance) = layers(frame as f32);
         let channel = |name: &str| {
-            let channel = layer.channel_data.list.iter().find(|c| c.name == name);
+            let channel = layer.channel_data.list.iter().find(|c| c.name.eq(name));
             &channel.unwrap_or_else(|| panic!("no {name}")).sample_data
         };
         for (c, name) in ["R", "G", "B", "A"].into_iter().enumerate() {

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::hair::segment::{LANES, Span, SpanSink, each_span, pixel_of};
 use super::math::{clamp, floor, index_of};
-use super::placed::{Placed, TileScratch, copy_rows};
+use super::placed::{Placed, PosedBody, TileScratch, copy_rows, posed_body};
 use super::points::ShadedPoint;
 use super::pool::Pool;
 use super::surface::raster::SurfaceSamples;
@@ -71,7 +71,7 @@ impl LayerTiles {
                 }
                 let scratch = lease.get();
                 placed.draw_tile(view, grid, input, tile, scratch);
-                let nearest = nearest_of(view, grid, placed, tile, &scratch.samples);
+                let nearest = nearest_of(view, grid, placed, (tile, posed_body(input)), &scratch.samples);
                 for (i, (depth, transmittance)) in depth.iter_mut().zip(transmittance).enumerate() {
                     let at = i / TILE * STRIDE + i % TILE;
                     if nearest[at] > 0.0 {
@@ -109,10 +109,25 @@ pub(super) fn finish_light(view: &View, input: &PixelsIn, over_background: bool,
 }
 
 /// The nearest depth of each pixel of a tile, in the numbers of the depth map: 0 where there is nothing.
-fn nearest_of(view: &View, grid: &Grid, placed: &Placed, tile: usize, samples: &SurfaceSamples) -> Vec<f32> {
+fn nearest_of(
+    view: &View,
+    grid: &Grid,
+    placed: &Placed,
+    (tile, body): (usize, PosedBody),
+    samples: &SurfaceSamples,
+) -> Vec<f32> {
+    let triangles = body.map_or(&[][..], |(body, _)| &body.mesh.triangles);
+    // The plane of a triangle that is seen from its edge rises without bound beside it: no farther than its corners.
+    let held = |(depth, id): (f32, u32)| {
+        let Some(corners) = triangles.get(id as usize) else { return depth };
+        let [a, b, c] = corners.map(|i| placed.surface.vertices[i as usize][2]);
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+        if low > NEAR_METRES { depth.clamp(NEAR_METRES / high, NEAR_METRES / low) } else { depth }
+    };
     let mut near = vec![0.0; TILE * STRIDE];
     for (at, near) in near.iter_mut().enumerate() {
-        *near = samples.depths(at).into_iter().fold(0.0, f32::max);
+        let shown = samples.depths(at).into_iter().zip(samples.triangles(at));
+        *near = shown.map(held).fold(0.0, f32::max);
     }
     let opacity = view.uniform.width_opacity_tip_scalp.y;
     let mut sink = Nearest { samples, near: &mut near };

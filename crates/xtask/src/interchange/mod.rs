@@ -1,6 +1,7 @@
 //! `cargo xtask test --interchange`: numbers held against other people's programs, which come from their package
 //! registry into a virtual environment below `target`.
 
+mod exr;
 mod farm;
 mod pictures;
 mod program;
@@ -29,6 +30,7 @@ pub(crate) fn run() -> anyhow::Result<()> {
     let folder = tool::root().join("target/interchange");
     let python = environment(&folder.join("python"))?;
     check_flip(&python, &folder)?;
+    exr::run(&folder)?;
     let lovelock = program::build()?;
     stage::check(&python, &folder, &lovelock)?;
     farm::check(&python, &folder, &lovelock)
@@ -58,7 +60,7 @@ fn check_flip(python: &Path, folder: &Path) -> anyhow::Result<()> {
         pairs(&pictures).map(|(reference, test)| mean(reference, test)).collect::<Result<Vec<_>, _>>()?;
     compare(&means, &theirs)?;
     println!("interchange: {} means of FLIP as {PACKAGE} has them, to {LIMIT}", means.len());
-    Ok(())
+    exr::run(folder)
 }
 
 /// Every picture as the reference of every other, in the order of the script.

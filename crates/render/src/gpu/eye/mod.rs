@@ -15,6 +15,7 @@ use lovelock_gpu::{
 
 use crate::Transparency;
 pub(super) use area::Area;
+pub(super) use modes::Drawn;
 use modes::{Mode, Over, Pass};
 
 macro_rules! part {
@@ -69,15 +70,6 @@ pub(super) struct EyeInput<'a> {
     /// Opacity of a strand where it covers a pixel wholly.
     pub opacity: f32,
     pub drawn: Drawn,
-}
-
-/// What is left of the fragments of a pixel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Drawn {
-    /// Their light, put together in this way.
-    Blended(Transparency),
-    /// The depth of the nearest, its bits in the place of red and green.
-    NearestDepth,
 }
 
 /// Most pixels that one thread walks over: half of what software adapters allow.

@@ -2,8 +2,17 @@
 
 use lovelock_gpu::ShaderPart;
 
-use super::{Drawn, part};
+use super::part;
 use crate::Transparency;
+
+/// What is left of the fragments of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::gpu) enum Drawn {
+    /// Their light, put together in this way.
+    Blended(Transparency),
+    /// The depth of the nearest, its bits in the place of red and green.
+    NearestDepth,
+}
 
 /// What a pass goes over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
