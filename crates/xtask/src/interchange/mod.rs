@@ -60,7 +60,7 @@ fn check_flip(python: &Path, folder: &Path) -> anyhow::Result<()> {
         pairs(&pictures).map(|(reference, test)| mean(reference, test)).collect::<Result<Vec<_>, _>>()?;
     compare(&means, &theirs)?;
     println!("interchange: {} means of FLIP as {PACKAGE} has them, to {LIMIT}", means.len());
-    exr::run(folder)
+    Ok(())
 }
 
 /// Every picture as the reference of every other, in the order of the script.
