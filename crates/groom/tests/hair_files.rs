@@ -121,7 +121,10 @@ fn other_files_are_refused() {
         assert!(refusal(bytes).contains(found), "{}", refusal(bytes));
     }
     // 5.0 and 2.9 are no versions that are known.
-    assert!(refusal(&tressfx(5.0, 1, 4)).contains("wanted `HAIR` (Yuksel) or a TressFX version"));
+    assert!(
+        refusal(&tressfx(5.0, 1, 4))
+            .contains("wanted `HAIR` (Yuksel), `#usda` or `PXR-USDC` (USD), or a TressFX")
+    );
     assert!(refusal(&tressfx(2.9, 1, 4)).contains("wanted"));
     let missing = load_hair(std::path::Path::new("no/such/file.hair")).expect_err("no such file");
     assert!(missing.to_string().starts_with("no/such/file.hair: cannot be read: "));

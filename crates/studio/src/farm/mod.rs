@@ -91,6 +91,12 @@ pub fn farm(
     if let Some(frames) = &request.frames {
         check_frames(frames)?;
     }
+    if project.recording.seamless {
+        return Err(StudioError::option(
+            "a seamless loop: its end goes over into its start, which parts know nothing of; record it on one machine, or \
+             switch it off in the project",
+        ));
+    }
     project.recording.fps = fps;
     // What is missing here is missing on every machine. To ask now is cheaper than to find out there.
     for (place, file) in project.files() {

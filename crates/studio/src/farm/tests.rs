@@ -55,7 +55,10 @@ fn wrong_requests_are_refused_and_leave_nothing() {
     let request = || FarmRequest { out: at("job"), frames: Some(0..4), ..FarmRequest::default() };
     let mut lost = small_project();
     lost.set_hair_file(at("gone.hair"));
+    let mut seamless = small_project();
+    seamless.recording.seamless = true;
     for (project, request, wanted) in [
+        (seamless, request(), "a seamless loop"),
         (small_project(), FarmRequest { frames: Some(4..4), ..request() }, "an empty range"),
         (small_project(), FarmRequest { chunk: Some(0), ..request() }, "--chunk 0"),
         (
