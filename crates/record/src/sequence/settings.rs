@@ -11,7 +11,7 @@ pub enum SequenceFormat {
     /// PNG: as the screen shows it, 8 bits, sRGB.
     #[default]
     Png,
-    /// `OpenEXR`: linear half floats with depth and transmittance ([`FrameLayers`]).
+    /// `OpenEXR`: linear half floats with depth and transmittance ([`FrameLayers`](crate::FrameLayers)).
     Exr,
 }
 

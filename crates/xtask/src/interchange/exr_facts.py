@@ -20,7 +20,7 @@ with OpenEXR.File(sys.argv[1], separate_channels=True) as file:
                 "size": [alpha.shape[1], alpha.shape[0]],
                 "compression": str(header["compression"]).split(".")[-1],
                 "chromaticities": chromaticities,
-                "rate": [int(getattr(rate, "n", rate)), int(getattr(rate, "d", 1))],
+                "rate": [rate.numerator, rate.denominator],
                 "frame": int(header["frame"]),
                 "comments": header["comments"],
                 "finite": all(bool(numpy.isfinite(plane).all()) for plane in pixels.values()),
