@@ -47,15 +47,23 @@ pub(super) fn check(python: &Path, folder: &Path, program: &Path) -> anyhow::Res
     }
     step("Assemble", &[])?;
 
-    let (take, single) = (folder.join("single.take"), folder.join("single"));
+    // A single machine that simulates and draws by itself makes the same pictures, and one that draws the job's take the same
+    // folder: its manifest names the take by what the file holds.
+    let take = folder.join("single.take");
     let mut record = lovelock(program, "record");
     run_json(record.arg(&project).arg("-o").arg(&take).args(["--frames", "0..9", "--fps", "24"]))?;
-    let mut record = lovelock(program, "record");
-    record.arg(&take).arg("-o").arg(&single);
-    run_json(record.args(["--frames", FRAMES, "--fps", "24", "--size", SIZE, "--backend", "cpu"]))?;
-    let (theirs, ours) = (files(&moved.join("frames"))?, files(&single)?);
+    let draw = |take: &Path, out: &str| {
+        let out = folder.join(out);
+        let mut record = lovelock(program, "record");
+        record.arg(take).arg("-o").arg(&out);
+        run_json(record.args(["--frames", FRAMES, "--fps", "24", "--size", SIZE, "--backend", "cpu"]))?;
+        files(&out)
+    };
+    let (own, ours) = (draw(&take, "single")?, draw(&moved.join("dance.take"), "same take")?);
+    let theirs = files(&moved.join("frames"))?;
     ensure!(ours.len() == 8, "{} files of a single machine; wanted 7 frames and a manifest", ours.len());
     compare(&theirs, &ours)?;
+    compare(&pictures(&theirs), &pictures(&own))?;
     let mut altered = theirs.clone();
     if let Some(bytes) = altered.get_mut(Path::new("frame_000005.png")) {
         let middle = bytes.len() / 2;
@@ -64,6 +72,16 @@ pub(super) fn check(python: &Path, folder: &Path, program: &Path) -> anyhow::Res
     ensure!(compare(&altered, &ours).is_err(), "control: an altered frame was found the same");
     println!("interchange: openjd draws the same {} files as a single machine", ours.len());
     Ok(())
+}
+
+/// The files but the manifest.
+fn pictures(files: &BTreeMap<PathBuf, Vec<u8>>) -> BTreeMap<PathBuf, Vec<u8>> {
+    let is_picture = |name: &Path| name.extension().is_some_and(|ending| ending == "png");
+    files
+        .iter()
+        .filter(|(name, _)| is_picture(name))
+        .map(|(name, bytes)| (name.clone(), bytes.clone()))
+        .collect()
 }
 
 fn compare(theirs: &BTreeMap<PathBuf, Vec<u8>>, ours: &BTreeMap<PathBuf, Vec<u8>>) -> anyhow::Result<()> {
