@@ -13,7 +13,8 @@ pub(super) fn menu(ui: &mut Ui, place: Rect, view: &View, edited: &mut Edited<'_
     let mut ask = None;
     let button = egui::Button::new(RichText::new("Clip…").size(10.5).color(theme::QUIET)).frame(false);
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-    ui.scope_builder(UiBuilder::new().id_salt("clip").max_rect(place), |ui| {
+    let middle = egui::Layout::left_to_right(egui::Align::Center);
+    ui.scope_builder(UiBuilder::new().id_salt("clip").max_rect(place).layout(middle), |ui| {
         ui.spacing_mut().button_padding = egui::vec2(2.0, 0.0);
         let (response, _) = MenuButton::from_button(button).config(config).ui(ui, |ui| {
             ui.set_width(270.0);
