@@ -126,7 +126,8 @@ pub fn farm(
     let building = Building::start(out)?;
     let mut copied = Vec::new();
     let source = if let Some(take) = &project.take.file {
-        Source::Take(take.path.clone())
+        as_recorded(&project, &take.path)?;
+        Source::Take(take.path.clone(), [project.recording.width, project.recording.height])
     } else {
         copied = assets::copy(&mut project, &building.folder, progress)?;
         project.recording.output = None::<FileRef>;
@@ -169,6 +170,39 @@ pub fn assemble(parts: &Path, frames: Range<u64>, out: &Path) -> Result<Sequence
     })
 }
 
+/// Refuses a project that shows a take in another way than the take's own project, which is what the machines draw.
+fn as_recorded(project: &Project, take: &Path) -> Result<(), StudioError> {
+    let (own, _) = crate::project_of_take(take)?;
+    let (own, _) = own.sanitised();
+    let drawn = |project: &Project| crate::RecordingSection {
+        // Size and rate go into the job, and the rest of these draws nothing.
+        width: 0,
+        height: 0,
+        fps: 0.0,
+        first_frame: 0,
+        end_frame: None,
+        output: None,
+        ..project.recording.clone()
+    };
+    let parts = [
+        (drawn(project) == drawn(&own), "recording settings"),
+        (project.look == own.look, "look"),
+        (project.lights == own.lights, "lights"),
+        (project.shadow == own.shadow, "shadow"),
+        (project.camera == own.camera, "camera"),
+        (project.picture == own.picture, "picture"),
+        (project.timeline.tracks == own.timeline.tracks, "tracks"),
+    ];
+    match parts.iter().find(|(same, _)| !same) {
+        None => Ok(()),
+        Some((_, part)) => Err(StudioError::option(format!(
+            "the {part} of the project are not those that {} was recorded with, and a job draws a take as it was recorded; \
+             leave the take, and the job simulates the project itself",
+            take.display()
+        ))),
+    }
+}
+
 /// Refuses a name that is taken, so that nothing is lost.
 fn check_folder(out: &Path) -> Result<(), StudioError> {
     if out.file_name().is_none() {
@@ -203,8 +237,13 @@ impl Building {
             StudioError::output(&folder, format!("{}: could not be made: {error}", folder.display()))
         };
         if folder.exists() {
-            // A crash may have left one behind.
-            fs::remove_dir_all(&folder).map_err(failed)?;
+            return Err(StudioError::input(
+                &folder,
+                format!(
+                    "{}: is there already, from a job that is being written or was cut short; remove it or name another folder",
+                    folder.display()
+                ),
+            ));
         }
         fs::create_dir_all(&folder).map_err(failed)?;
         Ok(Self { folder: folder.clone(), target: target.to_owned(), done: false })

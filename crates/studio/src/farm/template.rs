@@ -12,7 +12,7 @@ pub(super) enum Source {
     /// The project in the folder, which is simulated once.
     Project,
     /// A take that is there already.
-    Take(PathBuf),
+    Take(PathBuf, [u32; 2]),
 }
 
 pub(super) struct Template {
@@ -27,7 +27,7 @@ impl Template {
     pub(super) fn steps(&self) -> Vec<&'static str> {
         match self.source {
             Source::Project => vec!["Simulate", "Draw", "Assemble"],
-            Source::Take(_) => vec!["Draw", "Assemble"],
+            Source::Take(..) => vec!["Draw", "Assemble"],
         }
     }
 
@@ -68,7 +68,7 @@ impl Template {
         ];
         let take = match &self.source {
             Source::Project => format!("{{{{Param.Folder}}}}/{TAKE}"),
-            Source::Take(path) => {
+            Source::Take(path, _) => {
                 parameters.push(json!({
                     "name": "Take",
                     "type": "PATH",
@@ -90,16 +90,22 @@ impl Template {
                 "--frames", &format!("0..{end}"), "--fps", &fps,
             ]),
         });
+        let frames = "{{Param.Folder}}/parts/{{Task.Param.Frames}}/";
+        let mut drawing = vec!["record", &take, "-o", frames, "--frames", "{{Task.Param.Frames}}"];
+        drawing.extend(["--fps", &fps, "--backend", "{{Param.Backend}}"]);
+        // A project says its size itself.
+        let size = match &self.source {
+            Source::Project => None,
+            Source::Take(_, [width, height]) => Some(format!("{width}x{height}")),
+        };
+        drawing.extend(size.iter().flat_map(|size| ["--size", size]));
         let mut draw = json!({
             "name": "Draw",
             "description": "Draws ranges of frames, in any order and on any number of machines.",
             "parameterSpace": {
                 "taskParameterDefinitions": [{ "name": "Frames", "type": "STRING", "range": self.ranges() }],
             },
-            "script": run(&[
-                "record", &take, "-o", "{{Param.Folder}}/parts/{{Task.Param.Frames}}/",
-                "--frames", "{{Task.Param.Frames}}", "--fps", &fps, "--backend", "{{Param.Backend}}",
-            ]),
+            "script": run(&drawing),
         });
         let assemble = json!({
             "name": "Assemble",

@@ -175,6 +175,8 @@ impl SeamOfTake {
         }
         let end_secs = start_secs + round_secs;
         for secs in [end_secs - fade, end_secs - 0.5 * fade, end_secs] {
+            // The last frame of a take is shown for its length.
+            let secs = secs.min(player.duration_secs());
             let now = player.snapshot(secs)?.guides.world_from_head.translation;
             let before = player.snapshot(secs - round_secs)?.guides.world_from_head.translation;
             let off = now.distance(before);

@@ -39,6 +39,8 @@ impl super::TimelineSection {
         for track in &mut self.tracks {
             // A track that has no key left inside keeps the value that it had there.
             let at_start = track.value_at(-secs);
+            let beyond = track.keys.last().is_some_and(|key| key.secs + secs > end_secs + 1e-9);
+            let at_end = track.value_at(end_secs - secs).filter(|_| beyond && end_secs.is_finite());
             track.keys.iter_mut().for_each(|key| key.secs += secs);
             track.keys.retain(|key| inside(key.secs));
             track.keys.iter_mut().for_each(|key| key.secs = key.secs.max(0.0));
@@ -46,6 +48,9 @@ impl super::TimelineSection {
                 && track.keys.first().is_none_or(|key| key.secs > 0.0)
             {
                 track.put(0.0, value);
+            }
+            if let Some(value) = at_end {
+                track.put(end_secs, value);
             }
         }
     }
@@ -75,6 +80,7 @@ mod tests {
         assert_eq!(project.timeline.markers, [marker(1.0)]);
         assert_eq!(value(&project, 0.0), value(&before, 2.0));
         assert_eq!(value(&project, 2.0), value(&before, 4.0));
+        assert!((value(&project, 3.0) - value(&before, 5.0)).abs() < 1e-9, "at the end as well");
         // Again, of what is left: seconds of the clip count from its own start.
         (project.recording.first_frame, project.recording.end_frame) = (30, None);
         project.trim_to_points();

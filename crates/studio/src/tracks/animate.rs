@@ -23,7 +23,17 @@ impl Project {
             return project;
         }
         set_all(&mut project, values);
-        project.in_range()
+        let ranged = project.in_range();
+        // Only what tracks can move: the rest is the project's, to the last bit.
+        Self {
+            look: ranged.look,
+            simulation: ranged.simulation,
+            shadow: ranged.shadow,
+            lights: ranged.lights,
+            camera: ranged.camera,
+            picture: ranged.picture,
+            ..project
+        }
     }
 
     /// The project as it is at an instant of the dance.

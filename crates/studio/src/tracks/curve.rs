@@ -9,7 +9,7 @@ const SMOOTH_SECS: f64 = 0.1;
 /// Distance of the points at which a track is read to be smoothed, seconds.
 const SAMPLE_SECS: f64 = 1.0 / 60.0;
 
-/// The value at a time: monotone cubic pieces (Fritsch and Butland 1984), which pass no key by.
+/// The value at a time: straight from key to key, so that a track is what the hand did and what thinning keeps.
 pub(super) fn value_at(keys: &[Key], secs: f64) -> Option<Vec<f64>> {
     let (first, last) = (keys.first()?, keys.last()?);
     // Not a number goes to the start.
@@ -26,36 +26,7 @@ pub(super) fn value_at(keys: &[Key], secs: f64) -> Option<Vec<f64>> {
         return Some(b.value.clone());
     }
     let t = (secs - a.secs) / length;
-    let number = |n: usize| {
-        let (from, to) = (a.value[n], b.value[n]);
-        let slope_a = slope_at(keys, i, n);
-        let slope_b = slope_at(keys, i + 1, n);
-        let (t2, t3) = (t * t, t * t * t);
-        from * (2.0 * t3 - 3.0 * t2 + 1.0)
-            + to * (3.0 * t2 - 2.0 * t3)
-            + length * (slope_a * (t3 - 2.0 * t2 + t) + slope_b * (t3 - t2))
-    };
-    Some((0..a.value.len().min(b.value.len())).map(number).collect())
-}
-
-/// Slope of number `n` at key `i`: the harmonic mean of those beside it, none where they point two ways.
-fn slope_at(keys: &[Key], i: usize, n: usize) -> f64 {
-    let slope = |a: usize, b: usize| {
-        let (a, b) = (&keys[a], &keys[b]);
-        match (a.value.get(n), b.value.get(n)) {
-            (Some(from), Some(to)) if b.secs > a.secs => (to - from) / (b.secs - a.secs),
-            _ => 0.0,
-        }
-    };
-    match (i.checked_sub(1), i + 1 < keys.len()) {
-        (Some(before), true) => {
-            let (left, right) = (slope(before, i), slope(i, i + 1));
-            if left * right <= 0.0 { 0.0 } else { 2.0 * left * right / (left + right) }
-        }
-        (None, true) => slope(i, i + 1),
-        (Some(before), false) => slope(before, i),
-        (None, false) => 0.0,
-    }
+    Some(a.value.iter().zip(&b.value).map(|(from, to)| from + (to - from) * t).collect())
 }
 
 /// Fewer keys that say the same: a key goes where the way between its neighbours passes it by closely

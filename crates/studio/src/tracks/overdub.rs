@@ -7,6 +7,9 @@ use crate::Project;
 /// Distance of the keys that keep a track's rest as it was from the part that was written, seconds.
 const EDGE_SECS: f64 = 1.0 / 60.0;
 
+/// A step back in time that is no jump: a take that plays backwards, seconds.
+const BACKWARDS_SECS: f64 = 0.5;
+
 /// When something was changed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
@@ -27,6 +30,9 @@ struct Touch {
     /// From where to where it has been written, seconds.
     from: f64,
     to: f64,
+    /// Where the hand was last, and until it has gone backwards the time of the key that it came from.
+    last: f64,
+    start: Option<f64>,
     written: Vec<Key>,
     value: Vec<f64>,
 }
@@ -144,36 +150,69 @@ impl Touch {
         let value = unwrapped(&target, value, Some(&from));
         // Where it came from, so that it does not glide there from the key before.
         let start = Key { secs: (secs - EDGE_SECS).max(0.0), value: from };
-        Self { target, before, from: start.secs, to: start.secs, written: vec![start], value }
+        let (at, first) = (start.secs, Some(start.secs));
+        Self { target, before, from: at, to: at, last: secs, start: first, written: vec![start], value }
     }
 
     /// Writes the value at `now`, and puts the track together from what was and what is written.
     fn go_on(&mut self, project: &mut Project, now: Moment) {
-        // Round the loop, or back: what is written ends where it came to, and goes on from the start.
-        if now.secs < self.to {
+        if now.secs < self.last && self.last - now.secs < BACKWARDS_SECS {
+            self.go_back(now.secs);
+            return self.put(project, now);
+        }
+        // Round the loop: what is written ends where it came to, and goes on from the start.
+        if now.secs < self.last {
             let track = self.joined(true);
             *self = Self {
                 before: track,
                 from: now.secs,
                 to: now.secs,
+                last: now.secs,
+                start: None,
                 written: Vec::new(),
                 target: std::mem::take(&mut self.target),
                 value: std::mem::take(&mut self.value),
             };
         }
-        let near = self.written.last().is_some_and(|last| now.secs - last.secs < Track::NEAREST_SECS);
-        if near && self.written.len() > 1 {
+        // However slowly time passes, keys stay apart: the last one goes while it is too near to the one before it.
+        let apart = |a: &Key, secs: f64| secs - a.secs >= Track::NEAREST_SECS;
+        let crowded = match self.written.as_slice() {
+            [] => false,
+            [only] => !apart(only, now.secs),
+            [.., before, last] => !apart(before, last.secs),
+        };
+        if crowded {
             self.written.pop();
         }
         if self.written.len() < Track::MOST_KEYS / 2 {
             self.written.push(Key { secs: now.secs.max(self.from), value: self.value.clone() });
         }
-        self.to = now.secs;
+        (self.to, self.last) = (self.to.max(now.secs), now.secs);
+        self.put(project, now);
+    }
+
+    /// Time runs backwards: what is written grows at its start.
+    fn go_back(&mut self, secs: f64) {
+        if let Some(start) = self.start.take() {
+            self.written.retain(|key| key.secs != start);
+            (self.from, self.to) = (self.last, self.last);
+        }
+        self.written.retain(|key| key.secs >= secs + Track::NEAREST_SECS);
+        if self.written.len() < Track::MOST_KEYS / 2 {
+            self.written.insert(0, Key { secs, value: self.value.clone() });
+        }
+        (self.from, self.last) = (self.from.min(secs), secs);
+    }
+
+    /// Puts the track together.
+    fn put(&self, project: &mut Project, now: Moment) {
         let keys = self.joined(!now.held || !now.playing);
         let tracks = &mut project.timeline.tracks;
+        // As a project keeps it, so that reading it again changes nothing.
+        let Some(track) = (Track { keys, ..Track::new(self.target.clone()) }).in_range() else { return };
         match tracks.iter_mut().find(|track| track.target == self.target) {
-            Some(track) => (track.keys, track.muted) = (keys, false),
-            None => tracks.push(Track { keys, ..Track::new(self.target.clone()) }),
+            Some(old) => *old = track,
+            None => tracks.push(track),
         }
     }
 

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::curve;
 
-/// Where a track has a value: it moves smoothly from key to key and stands still before the first and after the last.
+/// Where a track has a value: it goes straight from key to key and stands still before the first and after the last.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Key {

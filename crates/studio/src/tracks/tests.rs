@@ -103,8 +103,8 @@ fn what_is_moved_becomes_a_track_that_plays_the_same() {
     assert_eq!((track.label().as_str(), track.target.as_str()), ("Camera distance", "camera/distance"));
     for (secs, value) in hand(1.0, 3.0) {
         let off = (one(track, secs) - f64::from(value.expect("moved"))).abs();
-        // A fifth of a percent of the way was allowed; the cubic between fewer keys may pass it by as much again.
-        assert!(off <= 2.0 * 0.002 * 2.0 + 1e-6, "{off} at {secs}");
+        // A fifth of a percent of the way was allowed.
+        assert!(off <= 0.002 * 2.0 + 1e-6, "{off} at {secs}");
     }
     assert!(track.keys.len() < 12, "a straight way needs few keys: {}", track.keys.len());
     assert!(
@@ -155,6 +155,41 @@ fn a_hand_that_rests_holds_and_a_loop_goes_on_from_the_start() {
     let project = dub(&mut overdub, base, &round);
     let round = &project.timeline.tracks[0];
     assert_eq!((one(round, 7.85), one(round, 0.2), one(round, 4.0)), (2.0, 2.0, 1.0));
+}
+
+#[test]
+fn a_ride_where_time_stands_or_hardly_passes_keeps_what_the_hand_did() {
+    let mut overdub = Overdub::default();
+    overdub.set_armed(true);
+    // A body at rest has no timeline: all of the ride is at its start.
+    let still: Vec<_> = (0..30).map(|i| (0.0, Some(2.0 + 0.1 * i as f32))).collect();
+    let project = dub(&mut overdub, Project::default(), &still);
+    assert!((project.at(0.0).camera.distance - 4.9).abs() < 1e-5);
+    assert_eq!(project.in_range().timeline, project.timeline, "reading it again changes nothing");
+    // A tenth of the rate, up and down again.
+    let slow: Vec<_> = (0..=600)
+        .map(|i| (1.0 + f64::from(i) / 600.0, Some(2.0 + (f64::from(i) / 300.0 - 1.0).abs() as f32)))
+        .collect();
+    let project = dub(&mut overdub, Project::default(), &slow);
+    for (secs, value) in [(1.0, 3.0), (1.25, 2.5), (1.5, 2.0), (1.75, 2.5), (2.0, 3.0)] {
+        let at = f64::from(project.at(secs).camera.distance);
+        assert!((at - value).abs() < 0.02, "{at} at {secs}, wanted {value}");
+    }
+    assert_eq!(project.in_range().timeline, project.timeline);
+}
+
+#[test]
+fn a_ride_on_a_take_that_plays_backwards_is_written_where_it_was() {
+    let mut overdub = Overdub::default();
+    overdub.set_armed(true);
+    let mut base = Project::default();
+    base.timeline.tracks = vec![track("camera/distance", &[(0.0, 1.0), (8.0, 1.0)])];
+    let back: Vec<_> = hand(3.0, 5.0).into_iter().map(|(secs, value)| (8.0 - secs, value)).collect();
+    let project = dub(&mut overdub, base, &back);
+    for (secs, value) in [(5.0, 2.0), (4.0, 3.0), (3.0, 4.0), (1.0, 1.0), (7.0, 1.0)] {
+        let at = f64::from(project.at(secs).camera.distance);
+        assert!((at - value).abs() < 0.03, "{at} at {secs}, wanted {value}");
+    }
 }
 
 #[test]
