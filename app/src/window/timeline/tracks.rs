@@ -94,7 +94,13 @@ fn head_ui(ui: &mut Ui, head: Rect, index: usize, track: &Track, writes: bool) -
                 many,
                 Whole::Smooth,
             ),
-            (mute, "Mute track", "Whether the project's own value counts for now.", true, Whole::Mute),
+            (
+                mute,
+                "Mute track",
+                "Whether the project's own value counts in place of the track's.",
+                true,
+                Whole::Mute,
+            ),
         ] {
             let button = egui::Button::new(RichText::from(icon).size(13.0)).frame(false);
             let response = ui.add_enabled(enabled, button).on_hover_text(tip);

@@ -271,17 +271,17 @@ mod tests {
             film[0] == free[n] && film[n / 2] == free[n + n / 2],
             "before the fade it is the second round"
         );
-        // From its last frame to its first it goes as far as it went there one round before. The last frame is a hundredth
-        // short of the end of the fade, which is a few hundredths of that way.
+        // From its last frame to its first it goes as far as it went there one round before: measured 1.7 % more, and 1.0 %
+        // of a take, as the last frame is a frame short of the end of the fade.
         let (seam, natural) = (off(&film[n - 1], &film[0]), off(&free[n - 1], &free[n]));
-        assert!((seam - natural).abs() < 0.05 * natural, "{seam} at the seam, {natural} one round before");
-        // The control: without it hair jumps.
+        assert!((seam - natural).abs() < 0.025 * natural, "{seam} at the seam, {natural} one round before");
+        // The control: without it hair jumps, measured 2.4 times as far.
         let jump = off(&free[2 * n - 1], &free[n]);
         assert!(jump > 1.5 * natural, "{jump} without, {natural} one round before");
-        // It goes over evenly: no frame of the fade goes farther than those beside it would let it.
+        // It goes over evenly: measured, no frame of the film goes farther than without the fade.
         let most = film.windows(2).map(|pair| off(&pair[0], &pair[1])).fold(0.0, f32::max);
         let free_most = free[n..].windows(2).map(|pair| off(&pair[0], &pair[1])).fold(0.0, f32::max);
-        assert!(most < 1.2 * free_most, "{most} against {free_most}");
+        assert!(most < 1.05 * free_most, "{most} against {free_most}");
         let refused = opened(&project).close(&(0..frames.end - 5)).expect_err("no whole round");
         assert!(refused.to_string().contains("goes round in"), "{refused}");
         let mut once = project;
@@ -311,7 +311,8 @@ mod tests {
         let film = hair(&mut closed, frames);
         assert!(film[0] == free[first] && film[n / 2] == free[first + n / 2]);
         let (seam, natural) = (off(&film[n - 1], &film[0]), off(&free[first - 1], &free[first]));
-        assert!((seam - natural).abs() < 0.05 * natural, "{seam} at the seam, {natural} one round before");
+        assert!((seam - natural).abs() < 0.025 * natural, "{seam} at the seam, {natural} one round before");
+        // Measured 1.7 times.
         let jump = off(&free[first + n - 1], &free[first]);
         assert!(jump > 1.5 * natural, "{jump} without, {natural} one round before");
         let early = opened().close(&(2..2 + round)).expect_err("no time before it");

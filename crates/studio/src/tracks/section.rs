@@ -20,7 +20,7 @@ pub struct Key {
 pub struct Track {
     /// Which: names from the project down, such as `lights/0/direction`. A target that the project lacks does nothing.
     pub target: String,
-    /// Whether the project's own value counts for now.
+    /// Whether the project's own value counts in place of the track's.
     pub muted: bool,
     /// In rising order of time.
     pub keys: Vec<Key>,

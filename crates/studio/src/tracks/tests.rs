@@ -134,8 +134,8 @@ fn punching_in_leaves_the_rest_as_it_was() {
         if !(2.8..=4.2).contains(&secs) {
             assert_eq!(off(secs), 0.0, "untouched at {secs}");
         } else if !(2.97..=4.03).contains(&secs) {
-            // Within a key of the edge only the slopes at the edge differ.
-            assert!(off(secs) < 0.08, "{} at {secs}", off(secs));
+            // The key at the edge lies on the old way: measured 4e-16 off.
+            assert!(off(secs) < 1e-12, "{} at {secs}", off(secs));
         }
     }
     assert!((one(after, 3.5) - 3.0).abs() < 0.01 && off(3.5) > 0.1, "the hand's in between");
@@ -173,7 +173,7 @@ fn a_ride_where_time_stands_or_hardly_passes_keeps_what_the_hand_did() {
     let project = dub(&mut overdub, Project::default(), &slow);
     for (secs, value) in [(1.0, 3.0), (1.25, 2.5), (1.5, 2.0), (1.75, 2.5), (2.0, 3.0)] {
         let at = f64::from(project.at(secs).camera.distance);
-        assert!((at - value).abs() < 0.02, "{at} at {secs}, wanted {value}");
+        assert!((at - value).abs() < 1e-6, "{at} at {secs}, wanted {value}");
     }
     assert_eq!(project.in_range().timeline, project.timeline);
 }
@@ -188,7 +188,7 @@ fn a_ride_on_a_take_that_plays_backwards_is_written_where_it_was() {
     let project = dub(&mut overdub, base, &back);
     for (secs, value) in [(5.0, 2.0), (4.0, 3.0), (3.0, 4.0), (1.0, 1.0), (7.0, 1.0)] {
         let at = f64::from(project.at(secs).camera.distance);
-        assert!((at - value).abs() < 0.03, "{at} at {secs}, wanted {value}");
+        assert!((at - value).abs() < 1e-6, "{at} at {secs}, wanted {value}");
     }
 }
 
@@ -248,10 +248,10 @@ fn smoothing_takes_jitter_out_and_leaves_slow_movement_and_the_ends() {
     let (before, ends) = (roughness(&track), [track.keys[0].clone(), track.keys[480].clone()]);
     track.smooth();
     assert_eq!([&track.keys[0], track.keys.last().expect("keys")], [&ends[0], &ends[1]]);
-    // Measured 0.026 of 0.200, which is at the ends: they stay, and the window there is narrow.
-    assert!(roughness(&track) < 0.2 * before, "{} of {before}", roughness(&track));
+    // Measured 0.030 of 0.200, which is at the ends: they stay, and the window there is narrow. The way is 0.0068 off.
+    assert!(roughness(&track) < 0.16 * before, "{} of {before}", roughness(&track));
     let off = (60..420).map(|i| (one(&track, f64::from(i) / 60.0) - way(f64::from(i) / 60.0)).abs());
-    assert!(off.fold(0.0, f64::max) < 0.02);
+    assert!(off.fold(0.0, f64::max) < 0.01);
     assert!(track.keys.len() < 200, "{}", track.keys.len());
 }
 
