@@ -5,7 +5,7 @@ use lovelock_groom::Guides;
 
 use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, put};
 use crate::rest::RestShape;
-use crate::solver::{Bending, LengthScratch};
+use crate::solver::{Bending, Coupled, LengthScratch};
 
 /// `LANES` guides. Rows are points, root first. Positions are in working space: the axes of the world, the
 /// origin where the head was at the end of the last step, so that single precision is spent on hair and not
@@ -34,6 +34,7 @@ pub(crate) struct Block {
     pub(crate) residual: Vec<Lane3>,
     pub(crate) lengths: LengthScratch,
     pub(crate) bending: Bending,
+    pub(crate) coupled: Coupled,
     /// The colliders near the block, and how deep they have closed over the roots.
     pub(crate) active: Vec<u32>,
     pub(crate) buried: Vec<Lane>,
@@ -70,6 +71,7 @@ impl Block {
             residual: vec![ZERO3; points],
             lengths: LengthScratch::new(points),
             bending: Bending::new(points),
+            coupled: Coupled::default(),
             active: Vec::new(),
             buried: Vec::new(),
             outcome: Outcome::default(),

@@ -19,6 +19,9 @@ pub struct SimulationSettings {
     pub stiffness_root: f32,
     /// Bending stiffness at the tips, 1/s, as `stiffness_root`: 0 to 200.
     pub stiffness_tip: f32,
+    /// How much of the way from the root's stiffness to the tip's is gone at the middle of a lock: 0.05 (it is
+    /// stiff nearly to the tip) to 0.95 (only the roots are); 0.5 is a straight ramp.
+    pub stiffness_bias: f32,
     /// Damping of bending, seconds: 0 to 0.2. A sway of frequency f is damped by the ratio pi * f * this.
     pub bend_damping: f32,
     /// Pull of the roots' half toward the style as it was drawn, as an angular frequency, 1/s; it falls to
@@ -53,6 +56,7 @@ impl Default for SimulationSettings {
             substeps: 4,
             stiffness_root: 14.0,
             stiffness_tip: 5.0,
+            stiffness_bias: 0.5,
             bend_damping: 0.03,
             hold: 5.0,
             settle: 2.0,
@@ -78,6 +82,7 @@ impl SimulationSettings {
             substeps: self.substeps.clamp(1, MAX_SUBSTEPS),
             stiffness_root: within(self.stiffness_root, 0.0, 200.0, d.stiffness_root),
             stiffness_tip: within(self.stiffness_tip, 0.0, 200.0, d.stiffness_tip),
+            stiffness_bias: within(self.stiffness_bias, 0.05, 0.95, d.stiffness_bias),
             bend_damping: within(self.bend_damping, 0.0, 0.2, d.bend_damping),
             hold: within(self.hold, 0.0, 60.0, d.hold),
             settle: within(self.settle, 0.0, 20.0, d.settle),
@@ -89,6 +94,16 @@ impl SimulationSettings {
             repulsion: self.repulsion.clamped(),
             clamped_links: self.clamped_links.min(2),
         }
+    }
+}
+
+impl SimulationSettings {
+    /// Bending stiffness at a fraction `along` of a lock, 0 at the root and 1 at the tip, 1/s: the ramp from root
+    /// to tip, bent by the bias (Schlick 1994, *Fast alternatives to Perlin's bias and gain functions*).
+    #[must_use]
+    pub fn stiffness_at(&self, along: f32) -> f32 {
+        let gone = along / ((1.0 / self.stiffness_bias - 2.0) * (1.0 - along) + 1.0);
+        self.stiffness_root + (self.stiffness_tip - self.stiffness_root) * gone
     }
 }
 
@@ -186,6 +201,18 @@ mod tests {
     fn the_defaults_lie_inside_their_ranges() {
         let d = SimulationSettings::default();
         assert_eq!(d, d.clamped());
+    }
+
+    #[test]
+    fn the_ramp_goes_from_root_to_tip_and_its_bias_is_its_middle() {
+        let ramp =
+            SimulationSettings { stiffness_root: 20.0, stiffness_tip: 4.0, ..SimulationSettings::default() };
+        for bias in [0.05, 0.3, 0.5, 0.95] {
+            let s = SimulationSettings { stiffness_bias: bias, ..ramp };
+            assert!((s.stiffness_at(0.0) - 20.0).abs() < 1e-5 && (s.stiffness_at(1.0) - 4.0).abs() < 1e-5);
+            assert!((s.stiffness_at(0.5) - (20.0 - 16.0 * bias)).abs() < 1e-4, "{}", s.stiffness_at(0.5));
+        }
+        assert!((ramp.stiffness_at(0.25) - 16.0).abs() < 1e-5, "a bias of a half is a straight line");
     }
 
     #[test]

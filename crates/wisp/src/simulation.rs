@@ -187,14 +187,7 @@ impl Simulation {
                 friction: settings.friction,
                 h,
             },
-            bending: BendingKey {
-                h,
-                stiffness_root: settings.stiffness_root,
-                stiffness_tip: settings.stiffness_tip,
-                damping_secs: settings.bend_damping,
-                hold: settings.hold,
-                first_free,
-            },
+            bending: BendingKey::new(settings, h, first_free),
             grid: &self.grid,
             wind: &wind,
         };

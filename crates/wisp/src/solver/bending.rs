@@ -10,6 +10,7 @@
 //! The coefficient is `c = h^2 B / l^4` with `B = EI / (rho A)`, the bending stiffness per mass of a fibre
 //! (Euler and Bernoulli's beam).
 
+use crate::SimulationSettings;
 use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, lesser, put};
 
 /// The largest `c (1 + gamma)`: beyond it single precision loses the answer and hair is a wire anyway.
@@ -31,12 +32,36 @@ pub(crate) struct BendingKey {
     pub(crate) h: f32,
     pub(crate) stiffness_root: f32,
     pub(crate) stiffness_tip: f32,
+    pub(crate) stiffness_bias: f32,
     pub(crate) damping_secs: f32,
     pub(crate) hold: f32,
     pub(crate) first_free: usize,
 }
 
 impl BendingKey {
+    /// What `settings` ask for in substeps of `h` seconds.
+    pub(crate) fn new(settings: &SimulationSettings, h: f32, first_free: usize) -> Self {
+        Self {
+            h,
+            stiffness_root: settings.stiffness_root,
+            stiffness_tip: settings.stiffness_tip,
+            stiffness_bias: settings.stiffness_bias,
+            damping_secs: settings.bend_damping,
+            hold: settings.hold,
+            first_free,
+        }
+    }
+
+    fn stiffness_at(&self, along: f32) -> f32 {
+        let ramp = SimulationSettings {
+            stiffness_root: self.stiffness_root,
+            stiffness_tip: self.stiffness_tip,
+            stiffness_bias: self.stiffness_bias,
+            ..SimulationSettings::default()
+        };
+        ramp.stiffness_at(along)
+    }
+
     /// How much stronger the damping is than the stiffness in one substep.
     pub(crate) fn gamma(&self) -> f32 {
         self.damping_secs / self.h
@@ -61,6 +86,9 @@ pub(crate) struct Bending {
     inv_pivot: Vec<Lane>,
     below: Vec<Lane>,
     below2: Vec<Lane>,
+    /// How the free part beyond a point follows it: the factors of the same matrix from the tip on.
+    follow: Vec<Lane>,
+    follow2: Vec<Lane>,
 }
 
 impl Bending {
@@ -73,6 +101,8 @@ impl Bending {
             inv_pivot: vec![ZERO; points],
             below: vec![ZERO; points],
             below2: vec![ZERO; points],
+            follow: vec![ZERO; points],
+            follow2: vec![ZERO; points],
         }
     }
 
@@ -88,19 +118,19 @@ impl Bending {
         &self.fixed[point]
     }
 
-    /// Factorises anew where the settings or the time step have changed. `link` is each guide's mean link and
+    /// Factorises anew where the settings or the time step have changed, and says whether it did. `link` is each guide's mean link and
     /// `rest_bend` the bends at rest.
     #[inline(always)]
-    pub(crate) fn prepare(&mut self, key: BendingKey, link: &Lane, rest_bend: &[Lane3]) {
+    pub(crate) fn prepare(&mut self, key: BendingKey, link: &Lane, rest_bend: &[Lane3]) -> bool {
         if self.key == Some(key) {
-            return;
+            return false;
         }
         self.key = Some(key);
         let count = self.stiffness.len();
         let gain = 1.0 + key.gamma();
         for i in 0..count {
             let along = i as f32 / (count - 1).max(1) as f32;
-            let omega = key.stiffness_root + (key.stiffness_tip - key.stiffness_root) * along;
+            let omega = key.stiffness_at(along);
             let root_b = omega * REFERENCE_LENGTH * REFERENCE_LENGTH / CANTILEVER;
             let pull = key.h * key.hold * (1.0 - along) * (1.0 - along);
             let bends = i > 0 && i + 1 < count;
@@ -114,6 +144,43 @@ impl Bending {
             }
         }
         self.factorise(key.first_free, gain);
+        self.factorise_from_tip(key.first_free, gain);
+        true
+    }
+
+    /// Whether nothing resists a bend: the matrix is the identity.
+    pub(crate) fn is_chain(&self) -> bool {
+        self.key.is_some_and(|k| k.stiffness_root == 0.0 && k.stiffness_tip == 0.0 && k.hold == 0.0)
+    }
+
+    /// Fills the lower triangle of `H = D A^-1 D^T`: rows and columns are the links from the first with a free
+    /// end on, `D` takes the difference of a link's ends.
+    #[inline(always)]
+    pub(crate) fn response(&self, first_free: usize, out: &mut [Lane]) {
+        let count = self.stiffness.len();
+        let first = first_free.max(1);
+        let packed = |r: usize| r * (r + 1) / 2;
+        // Three columns of A^-1 D^T at a time.
+        let mut rows = vec![ZERO3; count];
+        for from in (first..count).step_by(3) {
+            rows.fill(ZERO3);
+            for (axis, link) in (from..count.min(from + 3)).enumerate() {
+                rows[link][axis] = [1.0; LANES];
+                if link > first_free {
+                    rows[link - 1][axis] = [-1.0; LANES];
+                }
+            }
+            self.solve(first_free, &mut rows);
+            for (axis, link) in (from..count.min(from + 3)).enumerate() {
+                for r in link..count {
+                    let (low, high) = (rows[r - 1][axis], rows[r][axis]);
+                    let to = &mut out[packed(r - first) + link - first];
+                    for k in 0..LANES {
+                        to[k] = high[k] - if r > first_free { low[k] } else { 0.0 };
+                    }
+                }
+            }
+        }
     }
 
     /// `L D L^T` of `1 + hold + gain * D2^T c D2` on the free points.
@@ -145,6 +212,49 @@ impl Bending {
                 self.inv_pivot[i][k] = 1.0 / pivot;
             }
         }
+    }
+
+    /// `U D U^T` of the same matrix, from the tip to the root. Row `i` of `follow` holds what point `i + 1` takes
+    /// from point `i`, and of `follow2` what point `i + 2` takes from it.
+    #[inline(always)]
+    fn factorise_from_tip(&mut self, first_free: usize, gain: f32) {
+        let count = self.stiffness.len();
+        let (mut inv, mut inv2, mut beyond) = (ZERO, ZERO, ZERO);
+        for i in (first_free.saturating_sub(1)..count).rev() {
+            let c = |i: usize, k: usize| if i < count { gain * self.stiffness[i][k] } else { 0.0 };
+            let (mut one, mut two) = (ZERO, ZERO);
+            for k in 0..LANES {
+                let left = if i > 0 { c(i - 1, k) } else { 0.0 };
+                let (here, right) = (c(i, k), c(i + 1, k));
+                let mut pivot = 1.0 + self.hold[i][k] + left + 4.0 * here + right;
+                if i + 2 < count {
+                    two[k] = right * inv2[k];
+                    pivot -= two[k] * right;
+                }
+                if i + 1 < count {
+                    let off = -2.0 * (here + right) - if i + 2 < count { right * beyond[k] } else { 0.0 };
+                    one[k] = off * inv[k];
+                    pivot -= one[k] * off;
+                }
+                (inv2[k], inv[k]) = (inv[k], 1.0 / pivot);
+            }
+            self.follow[i] = one;
+            self.follow2[i] = two;
+            beyond = one;
+        }
+    }
+
+    /// Where the point after two others goes when they are moved by `before` and `here`, the one before `point` and
+    /// `point` itself, and nothing else acts on what lies beyond.
+    #[inline(always)]
+    pub(crate) fn follow(&self, point: usize, before: &Lane3, here: &Lane3) -> Lane3 {
+        let mut out = ZERO3;
+        let (one, two) = (&self.follow[point], &self.follow2[point.saturating_sub(1)]);
+        for k in 0..LANES {
+            let d = at(here, k) * -one[k] - at(before, k) * two[k];
+            put(&mut out, k, d);
+        }
+        out
     }
 
     /// Solves for the displacement that the force `rhs` gives, in place.
@@ -187,6 +297,7 @@ mod tests {
             h: 1.0 / 240.0,
             stiffness_root: 14.0,
             stiffness_tip: 5.0,
+            stiffness_bias: 0.5,
             damping_secs: 0.02,
             hold: 4.0,
             first_free,
@@ -227,6 +338,26 @@ mod tests {
                 assert!((at(row, 5) - *want).length() < 1e-3, "{} against {want}", at(row, 5));
             }
         }
+    }
+
+    #[test]
+    fn what_hangs_from_a_moved_point_follows_without_force() {
+        let mut b = Bending::new(12);
+        b.prepare(key(2), &[0.01; LANES], &[ZERO3; 12]);
+        let splat = |v: Vec3| [[v.x; LANES], [v.y; LANES], [v.z; LANES]];
+        let mut rows = vec![ZERO3; 12];
+        rows[4] = splat(Vec3::new(0.2, -0.1, 0.05));
+        rows[5] = splat(Vec3::new(0.5, 0.3, -0.2));
+        for i in 6..12 {
+            rows[i] = b.follow(i - 1, &rows[i - 2], &rows[i - 1]);
+        }
+        let x: Vec<Vec3> = rows.iter().map(|r| at(r, 7)).collect();
+        let forces = multiply(&b, 1.0 + key(0).gamma(), 0, &x);
+        let size = forces[4].length();
+        assert!(size > 1.0, "what moves them is a force");
+        // Rounding of numbers of the size of those forces.
+        assert!(forces[6..].iter().all(|f| f.length() < 1e-3 * size), "{forces:?}");
+        assert!(x[11].length() > 0.1, "a stiff lock goes along");
     }
 
     #[test]

@@ -11,16 +11,40 @@ use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, put};
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LengthScratch {
     /// Right side on the way in, multiplier on the way out.
-    multiplier: Vec<Lane>,
+    pub(super) multiplier: Vec<Lane>,
     /// The upper diagonal after elimination.
     upper: Vec<Lane>,
     /// Unit directions of the links; link `i` ends at point `i`.
-    direction: Vec<Lane3>,
+    pub(super) direction: Vec<Lane3>,
 }
 
 impl LengthScratch {
     pub(crate) fn new(points: usize) -> Self {
         Self { multiplier: vec![ZERO; points], upper: vec![ZERO; points], direction: vec![ZERO3; points] }
+    }
+
+    /// Directions of the links from `first` on, and by how much each is too short.
+    #[inline(always)]
+    pub(crate) fn errors(&mut self, first: usize, length: &[Lane], position: &[Lane3]) {
+        for i in first..position.len() {
+            let (a, b, wanted) = (position[i - 1], position[i], length[i]);
+            let (mut direction, mut rhs) = (ZERO3, ZERO);
+            for k in 0..LANES {
+                let link = at(&b, k) - at(&a, k);
+                let now = link.length_squared().sqrt();
+                // A link of no length has no direction; it gets one from the clean-up pass.
+                put(&mut direction, k, link * (1.0 / (now + 1e-20)));
+                rhs[k] = wanted[k] - now;
+            }
+            self.direction[i] = direction;
+            self.multiplier[i] = rhs;
+        }
+    }
+
+    /// Direction and multiplier of link `i`.
+    #[inline(always)]
+    pub(crate) fn link(&self, i: usize) -> (&Lane3, &Lane) {
+        (&self.direction[i], &self.multiplier[i])
     }
 }
 
@@ -58,19 +82,7 @@ pub(crate) fn project_position(
     position: &mut [Lane3],
     scratch: &mut LengthScratch,
 ) {
-    for i in first_free.max(1)..position.len() {
-        let (a, b, wanted) = (position[i - 1], position[i], length[i]);
-        let (mut direction, mut rhs) = (ZERO3, ZERO);
-        for k in 0..LANES {
-            let link = at(&b, k) - at(&a, k);
-            let now = link.length_squared().sqrt();
-            // A link of no length has no direction; it gets one from the clean-up pass.
-            put(&mut direction, k, link * (1.0 / (now + 1e-20)));
-            rhs[k] = wanted[k] - now;
-        }
-        scratch.direction[i] = direction;
-        scratch.multiplier[i] = rhs;
-    }
+    scratch.errors(first_free.max(1), length, position);
     solve(first_free, scratch);
     apply(first_free, position, scratch);
 }

@@ -5,12 +5,14 @@
 //! lengths exact and keeps points out of the body. Velocities then are what positions did.
 
 mod bending;
+mod coupled;
 mod forces;
 mod lengths;
 mod plan;
 mod substep;
 
 pub(crate) use bending::{Bending, BendingKey};
+pub(crate) use coupled::Coupled;
 pub(crate) use lengths::LengthScratch;
 pub(crate) use plan::{Plan, Substep};
 

@@ -11,7 +11,18 @@ use crate::lanes::{LANES, Turns, ZERO3, at, direction_or, greater, lesser, put};
 pub(crate) fn run(block: &mut Block, plan: &Plan, s: usize) {
     velocities(block, plan, s);
     shape_memory(block, plan, s);
-    project_position(plan.first_free, &block.rest.length, &mut block.next, &mut block.lengths);
+    if block.bending.is_chain() {
+        project_position(plan.first_free, &block.rest.length, &mut block.next, &mut block.lengths);
+    } else {
+        block.coupled.project(
+            plan.first_free,
+            &block.rest.length,
+            &mut block.next,
+            &block.bending,
+            &mut block.lengths,
+            &mut block.residual,
+        );
+    }
     find_near(block, plan, s);
     lay_out(block, plan, s);
 }
@@ -164,9 +175,19 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize) {
     let mut deepest = [0.0_f32; LANES];
     let mut before = ZERO3;
     let mut was_before = ZERO3;
+    // What bodies and lengths have moved a point by, what hangs from it follows as its stiffness has it. Otherwise a
+    // stiff lock that leans on a shoulder would be bent there anew in every substep, and the shoulder do work on it.
+    let (mut moved, mut moved_before) = (ZERO3, ZERO3);
     for i in 0..count {
         let was = block.position[i];
         let mut placed = block.next[i];
+        if i >= plan.first_free.max(1) {
+            let shift = block.bending.follow(i - 1, &moved_before, &moved);
+            for k in 0..LANES {
+                let p = at(&placed, k) + at(&shift, k);
+                put(&mut placed, k, p);
+            }
+        }
         if i >= plan.first_free.max(1) {
             let (inv, length) = (block.rest.inv_length[i], block.rest.length[i]);
             let mut fallback = ZERO3;
@@ -181,8 +202,11 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize) {
                 }
             }
         }
+        moved_before = moved;
+        let wanted = block.next[i];
         let mut velocity = ZERO3;
         for k in 0..LANES {
+            put(&mut moved, k, at(&placed, k) - at(&wanted, k));
             put(&mut velocity, k, (at(&placed, k) - at(&was, k)) * inv_h);
         }
         block.position[i] = placed;
