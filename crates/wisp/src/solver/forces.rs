@@ -52,8 +52,8 @@ pub(crate) fn prepare(block: &mut Block, plan: &Plan) {
         let (mut push, mut keep) = (block.push[i], block.keep[i]);
         let air = if windy { plan.wind.velocity(&position) } else { ZERO3 };
         for k in 0..LANES {
-            let relaxed = at(&push, k) * (1.0 - drag) + at(&air, k) * drag;
-            put(&mut push, k, relaxed);
+            let pushed = at(&push, k) + at(&air, k) * drag;
+            put(&mut push, k, pushed);
             keep[k] *= 1.0 - drag;
         }
         block.push[i] = push;

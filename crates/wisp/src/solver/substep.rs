@@ -44,9 +44,9 @@ fn velocities(block: &mut Block, plan: &Plan, s: usize) {
         let (x, push, keep) = (block.position[i], block.push[i], block.keep[i]);
         let mut v = block.velocity[i];
         for k in 0..LANES {
-            let pushed = at(&v, k) * keep[k] + at(&push, k);
-            let settled = pushed + (substep.rigid_velocity(at(&x, k)) - pushed) * settle;
-            put(&mut v, k, settled);
+            let was = at(&v, k);
+            let settled = was + (substep.rigid_velocity(at(&x, k)) - was) * settle;
+            put(&mut v, k, settled * keep[k] + at(&push, k));
         }
         block.velocity[i] = v;
     }

@@ -1,12 +1,13 @@
 //! What tests, the benchmark and the example share: the dancer with hair on, and hairstyles of plain chains.
 #![allow(dead_code, missing_docs, reason = "every user takes its part")]
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::{Affine3A, Vec3};
 use lovelock_groom::{
-    GroomSettings, GuideFrame, Guides, Hairstyle, Obstacle, Preset, Scalp, StrandSet, grow,
+    GroomSettings, GuideFrame, Guides, Hairstyle, ImportSettings, Obstacle, Preset, Scalp, StrandSet, grow,
+    import_around, load_hair,
 };
 use lovelock_motion::{
     Body, Clip, Collider, PlacedCollider, Pose, RestDistance, fit_colliders, head_mesh, load_character,
@@ -27,7 +28,7 @@ pub struct Stage {
     pub placed: Vec<PlacedCollider>,
 }
 
-struct RestBody(RestDistance);
+pub struct RestBody(RestDistance);
 
 impl Obstacle for RestBody {
     fn distance(&self, p: Vec3) -> (f32, Vec3) {
@@ -40,7 +41,19 @@ impl Stage {
         Self::grown(&GroomSettings::preset(preset))
     }
 
+    /// The dancer with the hair of a file.
+    pub fn with_file(hair: &Path) -> Self {
+        let file = load_hair(hair).expect("the hair loads");
+        Self::dressed(|scalp, body| {
+            import_around(&file, &ImportSettings::default(), scalp, Some(body)).expect("the hair fits")
+        })
+    }
+
     pub fn grown(groom: &GroomSettings) -> Self {
+        Self::dressed(|scalp, body| grow(groom, scalp, body).expect("the preset grows"))
+    }
+
+    fn dressed(hair: impl FnOnce(&Scalp, &RestBody) -> Hairstyle) -> Self {
         let file = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../assets/dancer.glb");
         let character = load_character(&file).expect("the shipped dancer loads");
         let dance = character.clips.iter().find(|c| c.name == "dance").expect("the shipped dancer dances");
@@ -52,7 +65,7 @@ impl Stage {
             mask: head.scalp,
         };
         let obstacle = RestBody(RestDistance::new(&character.body));
-        let style = grow(groom, &scalp, &obstacle).expect("the preset grows");
+        let style = hair(&scalp, &obstacle);
         Self {
             dance: Arc::clone(dance),
             colliders: fit_colliders(&character.body),
