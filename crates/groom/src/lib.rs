@@ -22,6 +22,7 @@ mod scalp_index;
 mod settings;
 mod strand_bounds;
 mod strands;
+mod ties;
 
 pub mod simd;
 
@@ -36,6 +37,7 @@ pub use io::{
     hair_info, load_hair, load_hair_bytes,
 };
 pub use look::HairLook;
+pub(crate) use obstacle::Bounded;
 pub use obstacle::{NoObstacle, Obstacle};
 pub use plain_head::PlainHead;
 pub use presets::Preset;
@@ -44,3 +46,4 @@ pub use scalp_index::ScalpIndex;
 pub use settings::{GroomSettings, MOST_POINTS};
 pub use strand_bounds::StrandBounds;
 pub use strands::Strands;
+pub use ties::{HairTie, TieKind, TieReach, tied};

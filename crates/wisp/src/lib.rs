@@ -25,6 +25,7 @@ mod rest;
 mod settings;
 mod simulation;
 mod solver;
+mod ties;
 mod wind;
 
 pub use input::StepInput;

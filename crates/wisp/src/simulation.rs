@@ -64,6 +64,7 @@ impl Simulation {
                 slots[guide as usize] = (b as u32, lane as u32);
             }
             let mut block = Block::new(guides, lanes, used, first_free);
+            block.held = crate::ties::rows(&style, &lanes);
             block.place_at_rest(&Map::IDENTITY);
             blocks.push(block);
         }

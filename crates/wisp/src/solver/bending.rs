@@ -89,9 +89,9 @@ impl Bending {
     }
 
     /// Factorises anew where the settings or the time step have changed. `link` is each guide's mean link and
-    /// `rest_bend` the bends at rest.
+    /// `rest_bend` the bends at rest; `held` says how firmly ties hold each point, and is negative elsewhere.
     #[inline(always)]
-    pub(crate) fn prepare(&mut self, key: BendingKey, link: &Lane, rest_bend: &[Lane3]) {
+    pub(crate) fn prepare(&mut self, key: BendingKey, link: &Lane, rest_bend: &[Lane3], held: &[Lane]) {
         if self.key == Some(key) {
             return;
         }
@@ -107,6 +107,7 @@ impl Bending {
             for k in 0..LANES {
                 let c = key.h * root_b / (link[k] * link[k] + 1e-12);
                 self.stiffness[i][k] = if bends { lesser(c * c, STIFFEST / gain) } else { 0.0 };
+                let pull = if held[i][k] >= 0.0 { key.h * held[i][k] } else { pull };
                 self.hold[i][k] = pull * pull;
                 let bend = at(&rest_bend[i], k).length_squared().sqrt() / (link[k] + 1e-9);
                 let sharpness = self.stiffness[i][k] * gain * bend;
@@ -210,7 +211,7 @@ mod tests {
     fn the_solution_solves_the_system() {
         for first_free in 0..3 {
             let mut b = Bending::new(9);
-            b.prepare(key(first_free), &[0.01; LANES], &[ZERO3; 9]);
+            b.prepare(key(first_free), &[0.01; LANES], &[ZERO3; 9], &[[-1.0; LANES]; 9]);
             let mut x: Vec<Vec3> =
                 (0..9).map(|i| Vec3::new((i as f32).sin(), (i as f32 * 2.0).cos(), 0.1 * i as f32)).collect();
             x[..first_free].fill(Vec3::ZERO);
@@ -233,7 +234,7 @@ mod tests {
     fn without_stiffness_it_is_the_identity() {
         let mut b = Bending::new(5);
         let soft = BendingKey { stiffness_root: 0.0, stiffness_tip: 0.0, hold: 0.0, ..key(1) };
-        b.prepare(soft, &[0.01; LANES], &[ZERO3; 5]);
+        b.prepare(soft, &[0.01; LANES], &[ZERO3; 5], &[[-1.0; LANES]; 5]);
         let mut rows = vec![[[0.25; LANES]; 3]; 5];
         b.solve(1, &mut rows);
         assert!(rows[1..].iter().all(|r| *r == [[0.25; LANES]; 3]));
@@ -242,7 +243,7 @@ mod tests {
     #[test]
     fn links_of_no_length_give_finite_factors() {
         let mut b = Bending::new(5);
-        b.prepare(key(1), &ZERO, &[ZERO3; 5]);
+        b.prepare(key(1), &ZERO, &[ZERO3; 5], &[[-1.0; LANES]; 5]);
         assert!(b.inv_pivot[1..].iter().flatten().all(|v| v.is_finite()));
     }
 }

@@ -15,7 +15,7 @@ pub(crate) fn prepare(block: &mut Block, plan: &Plan) {
     let settings = &plan.settings;
     let take = |rate: f32| 1.0 - (-rate * plan.h).exp();
     let (drag, cohesion) = (take(settings.drag), take(settings.repulsion.cohesion));
-    block.bending.prepare(plan.bending, &block.rest.mean_link, &block.rest.bend);
+    block.bending.prepare(plan.bending, &block.rest.mean_link, &block.rest.bend, &block.held);
     let gravity = Vec3::new(0.0, -settings.gravity, 0.0);
     let carried = settings.style_support * settings.gravity;
     let windy = plan.wind.blows();

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use glam::{Affine3A, Vec3};
 use lovelock_groom::{
-    GroomSettings, GuideFrame, Guides, Hairstyle, Obstacle, Preset, Scalp, StrandSet, grow,
+    GroomSettings, GuideFrame, Guides, HairTie, Hairstyle, Obstacle, Preset, Scalp, StrandSet, grow, tied,
 };
 use lovelock_motion::{
     Body, Clip, Collider, PlacedCollider, Pose, RestDistance, fit_colliders, head_mesh, load_character,
@@ -61,6 +61,12 @@ impl Stage {
             pose: Pose::default(),
             placed: Vec::new(),
         }
+    }
+
+    /// Gathers the hair by ties.
+    pub fn tie(&mut self, ties: &[HairTie]) {
+        self.style = Arc::new(tied(&self.style, ties, &RestBody(RestDistance::new(&self.body))));
+        self.style.check().expect("a tied style is sound");
     }
 
     /// The body at a time of the dance, or at rest.
