@@ -181,7 +181,8 @@ fn copy(set: &StrandSet, strand: usize, end: f32, out: &mut StrandSet) -> f32 {
     let range = set.first_point[strand] as usize..set.first_point[strand + 1] as usize;
     let inside = range.clone().skip(1).take_while(|&i| set.guide_param[i] < end - 1e-4).count() + 1;
     let mut push = |i: usize, t: f32| {
-        let mix = |values: &[f32]| if t > 0.0 { values[i] + (values[i + 1] - values[i]) * t } else { values[i] };
+        let mix =
+            |values: &[f32]| if t > 0.0 { values[i] + (values[i + 1] - values[i]) * t } else { values[i] };
         out.guide_param.push(mix(&set.guide_param));
         out.offset_normal.push(mix(&set.offset_normal));
         out.offset_binormal.push(mix(&set.offset_binormal));

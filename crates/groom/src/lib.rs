@@ -8,6 +8,7 @@
 mod frame;
 mod grow;
 mod guides;
+mod haircut;
 mod hairstyle;
 mod import;
 mod interpolate;
@@ -29,6 +30,7 @@ pub mod simd;
 pub use frame::WispCurve;
 pub use grow::{GUIDE_POINTS, GrowError, grow};
 pub use guides::{GuideFrame, Guides};
+pub use haircut::{Blade, Haircut, trimmed};
 pub use hairstyle::{Hairstyle, HairstyleError, StrandSet, Wisp};
 pub use import::{ImportError, ImportSettings, PlacedGroom, Placement, import, import_around, place};
 pub use interpolate::interpolate;

@@ -26,6 +26,7 @@ mod settings;
 mod simulation;
 mod solver;
 mod ties;
+mod wake;
 mod wind;
 
 pub use input::StepInput;

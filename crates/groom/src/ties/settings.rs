@@ -65,7 +65,7 @@ impl Default for HairTie {
     fn default() -> Self {
         Self {
             kind: TieKind::Ponytail,
-            at: Vec3::new(0.0, 0.14, -0.12),
+            at: Vec3::new(0.0, 0.14, -0.09),
             axis: Vec3::new(0.0, 0.3, -1.0),
             radius: 0.014,
             tightness: 0.7,

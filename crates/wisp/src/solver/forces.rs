@@ -15,7 +15,8 @@ pub(crate) fn prepare(block: &mut Block, plan: &Plan) {
     let settings = &plan.settings;
     let take = |rate: f32| 1.0 - (-rate * plan.h).exp();
     let (drag, cohesion) = (take(settings.drag), take(settings.repulsion.cohesion));
-    block.bending.prepare(plan.bending, &block.rest.mean_link, &block.rest.bend, &block.held);
+    let rest = &block.rest;
+    block.bending.prepare(plan.bending, &rest.mean_link, &rest.inv_length, &rest.bend, &block.held);
     let gravity = Vec3::new(0.0, -settings.gravity, 0.0);
     let carried = settings.style_support * settings.gravity;
     let windy = plan.wind.blows();
@@ -48,9 +49,12 @@ pub(crate) fn prepare(block: &mut Block, plan: &Plan) {
         }
         block.position[i] = position;
         let (mut push, mut keep) = (block.push[i], block.keep[i]);
-        let air = if windy { plan.wind.velocity(&position) } else { ZERO3 };
+        let (mut air, mut open) = (ZERO3, [1.0; LANES]);
+        if windy {
+            (air, open) = (plan.wind.velocity(&position), plan.wakes.exposure(&position));
+        }
         for k in 0..LANES {
-            let relaxed = at(&push, k) * (1.0 - drag) + at(&air, k) * drag;
+            let relaxed = at(&push, k) * (1.0 - drag) + at(&air, k) * (open[k] * drag);
             put(&mut push, k, relaxed);
             keep[k] *= 1.0 - drag;
         }

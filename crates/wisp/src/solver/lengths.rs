@@ -64,8 +64,10 @@ pub(crate) fn project_position(
         for k in 0..LANES {
             let link = at(&b, k) - at(&a, k);
             let now = link.length_squared().sqrt();
-            // A link of no length has no direction; it gets one from the clean-up pass.
-            put(&mut direction, k, link * (1.0 / (now + 1e-20)));
+            // A link of no length has no direction; it gets one from the clean-up pass. One that shall have none lies
+            // beyond the end of a guide that was cut, and pulls nothing.
+            let inv = if wanted[k] > 0.0 { 1.0 / (now + 1e-20) } else { 0.0 };
+            put(&mut direction, k, link * inv);
             rhs[k] = wanted[k] - now;
         }
         scratch.direction[i] = direction;

@@ -167,6 +167,8 @@ pub fn worse(a: StepReport, b: StepReport) -> StepReport {
         max_penetration_m: a.max_penetration_m.max(b.max_penetration_m),
         recovered_guides: a.recovered_guides + b.recovered_guides,
         over_dense_cells: a.over_dense_cells.max(b.over_dense_cells),
+        hair_volume: a.hair_volume.min(b.hair_volume),
+        hair_volume_at_rest: b.hair_volume_at_rest,
         kinetic_energy: a.kinetic_energy.max(b.kinetic_energy),
         max_speed: a.max_speed.max(b.max_speed),
         jumped: a.jumped || b.jumped,
