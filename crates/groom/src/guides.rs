@@ -5,7 +5,8 @@ use glam::{Affine3A, Vec3};
 /// The guide strands of a hairstyle at rest, in head space.
 ///
 /// Structure of arrays, guide after guide, root first: point `p` of guide `g` is at index
-/// `g * points_per_guide + p`. All guides have the same number of points, equally spaced along each guide.
+/// `g * points_per_guide + p`. All guides have the same number of points, equally spaced along each guide; the
+/// points beyond the end of a guide that was cut lie on its end (see [`crate::trimmed`]).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Guides {
     /// Points of one guide, at least 2; links are one fewer.

@@ -71,6 +71,10 @@ pub struct Hairstyle {
     pub wisps: Vec<Wisp>,
     /// The guides at rest, in head space.
     pub guides: Guides,
+    /// How firmly each guide point is held to its place at rest in head space, as an angular frequency, 1/s, where
+    /// ties hold it; a negative value leaves that to the simulation's own settings. Laid out as [`Guides`], or empty
+    /// where there are no ties.
+    pub held: Vec<f32>,
     /// The rendered strands, expressed by the guides.
     pub strands: StrandSet,
     /// Colour and width that the style suggests; a project may override them.
@@ -83,8 +87,8 @@ pub enum HairstyleError {
     /// Guides of fewer than 2 points, or arrays that are not a whole number of guides.
     #[error("the guides do not hold whole guides of 2 points or more")]
     Guides,
-    /// An array of the strands that has a length of its own.
-    #[error("the strands' array `{0}` has the wrong length")]
+    /// An array of the strands, or of what ties hold, that has a length of its own.
+    #[error("the hairstyle's array `{0}` has the wrong length")]
     Length(&'static str),
     /// Strands that do not follow each other, or of fewer than 2 points.
     #[error("strand {0} is out of order or has fewer than 2 points")]
@@ -105,6 +109,9 @@ impl Hairstyle {
         let whole = guides.points_per_guide >= 2 && n.is_multiple_of(guides.points_per_guide);
         if !whole || guides.y.len() != n || guides.z.len() != n {
             return Err(HairstyleError::Guides);
+        }
+        if !self.held.is_empty() && self.held.len() != n {
+            return Err(HairstyleError::Length("held"));
         }
         let set = &self.strands;
         let (count, points) = (set.count(), set.points());

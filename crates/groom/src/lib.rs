@@ -8,6 +8,7 @@
 mod frame;
 mod grow;
 mod guides;
+mod haircut;
 mod hairstyle;
 mod import;
 mod interpolate;
@@ -22,12 +23,14 @@ mod scalp_index;
 mod settings;
 mod strand_bounds;
 mod strands;
+mod ties;
 
 pub mod simd;
 
 pub use frame::WispCurve;
 pub use grow::{GUIDE_POINTS, GrowError, grow};
 pub use guides::{GuideFrame, Guides};
+pub use haircut::{Blade, Haircut, trimmed};
 pub use hairstyle::{Hairstyle, HairstyleError, StrandSet, Wisp};
 pub use import::{ImportError, ImportSettings, PlacedGroom, Placement, import, import_around, place};
 pub use interpolate::interpolate;
@@ -36,6 +39,7 @@ pub use io::{
     hair_info, load_hair, load_hair_bytes,
 };
 pub use look::HairLook;
+pub(crate) use obstacle::Bounded;
 pub use obstacle::{NoObstacle, Obstacle};
 pub use plain_head::PlainHead;
 pub use presets::Preset;
@@ -44,3 +48,4 @@ pub use scalp_index::ScalpIndex;
 pub use settings::{GroomSettings, MOST_POINTS};
 pub use strand_bounds::StrandBounds;
 pub use strands::Strands;
+pub use ties::{HairTie, TieKind, TieReach, tied};

@@ -2,6 +2,8 @@
 
 use glam::Vec3;
 
+use crate::settings::within;
+
 /// A solid that hair is combed around: the body without its hair, in head space.
 pub trait Obstacle: Sync {
     /// Signed distance in metres from `p` to the surface (negative inside), and the outward unit normal of the
@@ -17,5 +19,21 @@ pub struct NoObstacle;
 impl Obstacle for NoObstacle {
     fn distance(&self, _: Vec3) -> (f32, Vec3) {
         (1.0, Vec3::Y)
+    }
+}
+
+/// How far inside a body hair is believed to be, metres.
+const DEEPEST: f32 = 0.02;
+
+/// An obstacle whose answers are finite and never throw hair far, whatever those of the one inside are.
+///
+/// Near the open edges of clothes the sign of a mesh's distance may be wrong in places: what claims to lie deep
+/// inside is moved in small steps, and so is back on its way when the place is passed.
+pub(crate) struct Bounded<'a>(pub(crate) &'a dyn Obstacle);
+
+impl Obstacle for Bounded<'_> {
+    fn distance(&self, p: Vec3) -> (f32, Vec3) {
+        let (distance, normal) = self.0.distance(p);
+        (within(distance, -DEEPEST, 1.0, 1.0), if normal.is_finite() { normal } else { Vec3::Y })
     }
 }

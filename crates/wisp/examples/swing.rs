@@ -1,10 +1,11 @@
 //! Simulates a preset on the dancer and draws its guides as a strip of frames, from the front, the side and behind.
 //!
-//! `swing PRESET OUT.png [--still] [--from SECS] [--frames N] [--every SECS] [--set '{"settings": "as JSON"}']`
+//! `swing PRESET OUT.png [--still] [--from SECS] [--frames N] [--every SECS] [--set '{"settings": "as JSON"}']
+//! [--ties '[{"kind": "Bun"}]']`
 
 use glam::Vec3;
 use image::{Rgb, RgbImage};
-use lovelock_groom::Preset;
+use lovelock_groom::{HairTie, Preset};
 use lovelock_motion::{Skin, skin};
 use lovelock_wisp::{Simulation, SimulationSettings, StepReport};
 
@@ -18,11 +19,13 @@ const VIEW_HEIGHT: f32 = 1.0;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut args = std::env::args().skip(1);
-    let usage = "swing PRESET OUT.png [--still] [--from SECS] [--frames N] [--every SECS] [--set JSON]";
+    let usage =
+        "swing PRESET OUT.png [--still] [--from SECS] [--frames N] [--every SECS] [--set JSON] [--ties JSON]";
     let preset = args.next().and_then(|p| Preset::from_id(&p)).ok_or(usage)?;
     let out = args.next().ok_or(usage)?;
     let (mut still, mut from, mut frames, mut every) = (false, 0.0, 10_u32, 0.2_f64);
     let mut settings = SimulationSettings::default();
+    let mut ties: Vec<HairTie> = Vec::new();
     while let Some(arg) = args.next() {
         let mut value = || args.next().ok_or(usage);
         match arg.as_str() {
@@ -30,11 +33,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             "--from" => from = value()?.parse()?,
             "--frames" => frames = value()?.parse()?,
             "--every" => every = value()?.parse()?,
+            "--ties" => ties = serde_json::from_str(&value()?)?,
             "--set" => settings = serde_json::from_str(&value()?)?,
             _ => return Err(usage.into()),
         }
     }
     let mut stage = Stage::new(preset);
+    stage.tie(&ties);
     println!(
         "{} guides of {} points, {} colliders, dance of {:.2} s",
         stage.style.guides.count(),
@@ -48,11 +53,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let end = from + f64::from(frames - 1) * every;
     let steps = (end / f64::from(STEP_SECS)).round().max(stage.dance.duration_secs * 60.0) as u32;
     let (mut all, mut drawn, mut real_stretch) = (StepReport::default(), 0, 0.0_f32);
+    let mut volume = 0.0;
     for step in 0..=steps {
         let time = f64::from(step) * f64::from(STEP_SECS);
         if step > 0 {
             let input = stage.at((!still).then_some(time));
-            all = worse(all, simulation.step(&input, &settings, STEP_SECS));
+            let report = simulation.step(&input, &settings, STEP_SECS);
+            volume += report.hair_volume / report.hair_volume_at_rest / steps as f32;
+            all = worse(all, report);
             real_stretch = real_stretch.max(stretch(&simulation));
         }
         if drawn < frames && time >= from + f64::from(drawn) * every - 1e-6 {
@@ -73,6 +81,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
     }
     println!("{all:#?}");
+    println!("mean volume of the hair: {:.1} % of that at rest", 100.0 * volume);
     println!("stretch from the frames {real_stretch:.2e}");
     picture.save(out)?;
     Ok(())

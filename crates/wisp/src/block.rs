@@ -19,6 +19,9 @@ pub(crate) struct Block {
     /// Signed distance at rest of point `i` to collider `c` at `c * points + i`, metres.
     pub(crate) rest_distance: Vec<Lane>,
 
+    /// How firmly ties hold each point; negative where none does.
+    pub(crate) held: Vec<Lane>,
+
     pub(crate) position: Vec<Lane3>,
     pub(crate) velocity: Vec<Lane3>,
     /// The bend at rest in the frame of the last substep.
@@ -60,6 +63,7 @@ impl Block {
             used,
             rest: RestShape::new(guides, &lanes, first_free),
             rest_distance: Vec::new(),
+            held: vec![[-1.0; LANES]; points],
             position: vec![ZERO3; points],
             velocity: vec![ZERO3; points],
             bend: vec![ZERO3; points],

@@ -4,7 +4,12 @@
 //! its own and turns with the head, so that no light changes the motion, and so that hair at rest lies still
 //! in its cells. Sums are in integers: the order of the guides does not matter.
 
+mod direction;
+mod volume;
+
 use glam::{IVec3, Mat3, Vec3};
+
+use direction::{Tensor, crossing, drawn_to, outer, push_across};
 
 use crate::block::Block;
 use crate::lanes::{LANES, Lane3, ZERO3, at, put};
@@ -36,6 +41,8 @@ pub(crate) struct Sample {
     pub(crate) push: Vec3,
     /// Mean velocity of the hair around, metres per second, in the axes that were deposited.
     pub(crate) mean_velocity: Vec3,
+    /// How much of the hair around crosses the direction that was asked for; 0 where that is heeded by nothing.
+    pub(crate) crossing: f32,
 }
 
 /// Hair density and momentum on a lattice in head space.
@@ -49,8 +56,11 @@ pub(crate) struct DensityGrid {
     units: f32,
     /// Mass, and momentum along each axis.
     cells: Vec<[i32; 4]>,
+    /// The directions of the hair in each cell; all 0 where nothing heeds them.
+    directions: Vec<Tensor<i32>>,
     /// One over the density at rest, where there is some, and over a typical one elsewhere.
     inv_rest: Vec<f32>,
+    rest_volume: f32,
     /// The box of cells that hold hair, inclusive; empty where `low > high`.
     low: IVec3,
     high: IVec3,
@@ -86,13 +96,16 @@ impl DensityGrid {
             stride: ((1.4 * cell / link) as usize).clamp(1, 8),
             units: FULL / total.max(1e-3),
             cells: vec![[0; 4]; size],
+            directions: vec![[0; 6]; size],
             inv_rest: vec![0.0; size],
+            rest_volume: 0.0,
             low: IVec3::MAX,
             high: IVec3::MIN,
             repulsion: Repulsion::default(),
         };
-        grid.fill(blocks, |block, i, k| (at(&block.rest.position[i], k), Vec3::ZERO));
+        grid.fill(blocks, |block, i, k| (at(&block.rest.position[i], k), Vec3::ZERO, Vec3::ZERO));
         grid.learn_rest();
+        grid.rest_volume = grid.volume();
         grid
     }
 
@@ -119,52 +132,66 @@ impl DensityGrid {
         repulsion: Repulsion,
     ) -> u32 {
         self.repulsion = repulsion;
-        if repulsion.strength == 0.0 && repulsion.cohesion == 0.0 {
-            self.clear();
-            return 0;
-        }
+        let directed = repulsion.anisotropy > 0.0;
         self.fill(blocks, |block, i, k| {
-            (head_from_last.apply(at(&block.position[i], k)), at(&block.velocity[i], k))
+            let (p, t) =
+                (at(&block.position[i], k), if directed { tangent(block, i, k) } else { Vec3::ZERO });
+            (head_from_last.apply(p), at(&block.velocity[i], k), head_from_last.rotate(t))
         });
         self.over_dense()
     }
 
+    /// The volume that the hair in the grid fills, cubic metres; see [`volume::volume`].
+    pub(crate) fn volume(&self) -> f32 {
+        volume::volume(self.held_rows().flat_map(|row| &self.cells[row]).map(|cell| cell[0]), self.cell)
+    }
+
+    /// The volume that the hair fills at rest, cubic metres.
+    pub(crate) fn volume_at_rest(&self) -> f32 {
+        self.rest_volume
+    }
+
+    /// Whether hair learns anything from the grid.
+    fn acts(&self) -> bool {
+        (self.repulsion.strength > 0.0 || self.repulsion.cohesion > 0.0) && self.low.cmple(self.high).all()
+    }
+
+    /// The runs of cells that may hold hair.
+    fn held_rows(&self) -> impl Iterator<Item = std::ops::RangeInclusive<usize>> + use<> {
+        let (low, high) = (self.low, self.high);
+        (low.z..=high.z).flat_map(move |z| {
+            (low.y..=high.y).map(move |y| {
+                let row = index(IVec3::new(low.x, y, z));
+                row..=row + (high.x - low.x) as usize
+            })
+        })
+    }
+
     fn clear(&mut self) {
-        if self.low.cmple(self.high).all() {
-            for z in self.low.z..=self.high.z {
-                for y in self.low.y..=self.high.y {
-                    let row = index(IVec3::new(self.low.x, y, z));
-                    self.cells[row..=row + (self.high.x - self.low.x) as usize].fill([0; 4]);
-                }
-            }
+        for row in self.held_rows() {
+            self.cells[row.clone()].fill([0; 4]);
+            self.directions[row].fill([0; 6]);
         }
         (self.low, self.high) = (IVec3::MAX, IVec3::MIN);
     }
 
     fn over_dense(&self) -> u32 {
-        let mut count = 0;
-        if self.low.cmple(self.high).all() {
-            let inv_threshold = 1.0 / self.repulsion.threshold;
-            for z in self.low.z..=self.high.z {
-                for y in self.low.y..=self.high.y {
-                    let row = index(IVec3::new(self.low.x, y, z));
-                    for i in row..=row + (self.high.x - self.low.x) as usize {
-                        count += u32::from(self.cells[i][0] as f32 * self.inv_rest[i] * inv_threshold > 1.0);
-                    }
-                }
-            }
-        }
-        count
+        let inv_threshold = 1.0 / self.repulsion.threshold;
+        let over = |i: &usize| self.cells[*i][0] as f32 * self.inv_rest[*i] * inv_threshold > 1.0;
+        self.held_rows().flatten().filter(over).count() as u32
     }
 
-    fn fill(&mut self, blocks: &[Block], mut state: impl FnMut(&Block, usize, usize) -> (Vec3, Vec3)) {
+    fn fill(&mut self, blocks: &[Block], mut state: impl FnMut(&Block, usize, usize) -> (Vec3, Vec3, Vec3)) {
         self.clear();
         for block in blocks {
             // The middle of each run of points, so that the whole chain is covered evenly.
             for i in (1 + (self.stride - 1) / 2..block.points()).step_by(self.stride) {
                 for k in 0..block.used {
-                    let (p, v) = state(block, i, k);
-                    self.deposit(p, v, block.rest.mean_link[k] * self.stride as f32);
+                    // Beyond the end of a guide that was cut there is no hair.
+                    if block.rest.inv_length[i][k] > 0.0 {
+                        let (p, v, t) = state(block, i, k);
+                        self.deposit(p, v, t, block.rest.mean_link[k] * self.stride as f32);
+                    }
                 }
             }
         }
@@ -184,18 +211,24 @@ impl DensityGrid {
     }
 
     #[inline]
-    fn deposit(&mut self, p: Vec3, v: Vec3, length: f32) {
+    fn deposit(&mut self, p: Vec3, v: Vec3, t: Vec3, length: f32) {
         let Some((corner, f)) = self.around(p) else { return };
         let v = v.clamp(Vec3::splat(-FASTEST), Vec3::splat(FASTEST)) * MOMENTUM;
-        if !v.is_finite() {
+        if !(v.is_finite() && t.is_finite()) {
             return;
         }
         self.low = self.low.min(corner);
         self.high = self.high.max(corner + 1);
         let mass = length * self.units;
         let base = index(corner);
+        let tt = outer(t);
         for (offset, weight) in OFFSETS.iter().zip(weights(f)) {
             let m = mass * weight;
+            if t != Vec3::ZERO {
+                for (sum, part) in self.directions[base + offset].iter_mut().zip(tt) {
+                    *sum = sum.wrapping_add((m * part) as i32);
+                }
+            }
             let add = [m as i32, (m * v.x) as i32, (m * v.y) as i32, (m * v.z) as i32];
             let cell = &mut self.cells[base + offset];
             for (sum, add) in cell.iter_mut().zip(add) {
@@ -204,9 +237,10 @@ impl DensityGrid {
         }
     }
 
-    /// What hair at `p`, head space, learns from the grid; `None` where there is none around.
+    /// What hair at `p` that runs along `t`, both in head space, learns from the grid; `None` where there is none
+    /// around.
     #[inline]
-    pub(crate) fn sample(&self, p: Vec3) -> Option<Sample> {
+    pub(crate) fn sample(&self, p: Vec3, t: Vec3) -> Option<Sample> {
         let (corner, f) = self.around(p)?;
         let base = index(corner);
         let inv_threshold = 1.0 / self.repulsion.threshold;
@@ -226,12 +260,22 @@ impl DensityGrid {
             return None;
         }
         let mean_velocity = Vec3::new(sums[1], sums[2], sums[3]) / (sums[0] * MOMENTUM);
+        let mut across = 0.0;
+        if crowded && self.repulsion.anisotropy > 0.0 {
+            let mut directions = [0.0_f32; 6];
+            for (offset, weight) in OFFSETS.iter().zip(weights(f)) {
+                for (sum, value) in directions.iter_mut().zip(&self.directions[base + offset]) {
+                    *sum += weight * *value as f32;
+                }
+            }
+            across = crossing(&directions, sums[0], t);
+        }
         let push = match self.repulsion.mode {
             _ if !crowded => Vec3::ZERO,
             RepulsionMode::Pressure => -gradient(&excess, f) / self.cell,
             RepulsionMode::Centre => self.away_from_centre(p),
         };
-        Some(Sample { push, mean_velocity })
+        Some(Sample { push, mean_velocity, crossing: across })
     }
 
     /// The published force: away from the centre of the cell that `p` is in, where that cell is over-dense;
@@ -250,7 +294,7 @@ impl DensityGrid {
         for keep in &mut block.keep {
             *keep = [1.0; LANES];
         }
-        if self.low.cmpgt(self.high).any() {
+        if !self.acts() {
             return;
         }
         let count = block.points();
@@ -280,12 +324,20 @@ impl DensityGrid {
         let mut out = SampleRow { dv: ZERO3, mean: block.velocity[i] };
         let most = MOST_OF_A_CELL * self.cell / plan.h;
         let turn: Mat3 = plan.last_head.turn;
+        // The published force knows no directions.
+        let anisotropy = match self.repulsion.mode {
+            RepulsionMode::Pressure => self.repulsion.anisotropy,
+            RepulsionMode::Centre => 0.0,
+        };
         for k in 0..LANES {
+            let t = tangent(block, i, k);
             let p = plan.head_from_last.apply(at(&block.position[i], k));
-            if let Some(sample) = self.sample(p) {
-                let dv = turn * (sample.push * (self.repulsion.strength * plan.h));
+            if let Some(sample) = self.sample(p, plan.head_from_last.rotate(t)) {
+                let push = push_across(turn * sample.push, t, sample.crossing, anisotropy);
+                let dv = push * (self.repulsion.strength * plan.h);
                 put(&mut out.dv, k, dv.clamp_length_max(most));
-                put(&mut out.mean, k, sample.mean_velocity);
+                let mean = drawn_to(sample.mean_velocity, at(&block.velocity[i], k), t, anisotropy);
+                put(&mut out.mean, k, mean);
             }
         }
         out
@@ -296,6 +348,13 @@ impl DensityGrid {
 struct SampleRow {
     dv: Lane3,
     mean: Lane3,
+}
+
+/// Unit direction of the hair at a point; 0 where it has none.
+#[inline]
+fn tangent(block: &Block, i: usize, k: usize) -> Vec3 {
+    let (a, b) = (i.saturating_sub(1), (i + 1).min(block.points() - 1));
+    (at(&block.position[b], k) - at(&block.position[a], k)).normalize_or_zero()
 }
 
 /// Where the eight cells of a corner are from the first, x fastest.

@@ -25,6 +25,8 @@ mod rest;
 mod settings;
 mod simulation;
 mod solver;
+mod ties;
+mod wake;
 mod wind;
 
 pub use input::StepInput;

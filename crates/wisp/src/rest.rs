@@ -39,6 +39,8 @@ impl RestShape {
         for (k, &guide) in lanes.iter().enumerate() {
             let points: Vec<Vec3> = (0..count).map(|i| guides.point(guide as usize, i)).collect();
             let directions = directions(&points);
+            // Beyond the end of a guide that was cut there is no hair.
+            let links = (1..count).rfind(|&i| points[i] != points[i - 1]).unwrap_or(count - 1);
             for (i, &p) in points.iter().enumerate() {
                 put(&mut rest.position[i], k, p);
                 put(&mut rest.direction[i], k, directions[i]);
@@ -46,13 +48,13 @@ impl RestShape {
                     let length = (p - points[i - 1]).length();
                     rest.length[i][k] = length;
                     rest.inv_length[i][k] = if length > 1e-9 { 1.0 / length } else { 0.0 };
-                    rest.mean_link[k] += length / (count - 1) as f32;
+                    rest.mean_link[k] += length / links as f32;
                     if i + 1 < count {
                         put(&mut rest.bend[i], k, points[i - 1] - 2.0 * p + points[i + 1]);
                     }
                 }
             }
-            for (i, support) in support(&directions, first_free).into_iter().enumerate() {
+            for (i, support) in support(&directions[..=links], first_free).into_iter().enumerate() {
                 put(&mut rest.support[i], k, support);
             }
         }

@@ -122,13 +122,15 @@ pub struct Wind {
     pub gusts: f32,
     /// Speed of the eddies as a fraction of the mean speed: 0 to 1.
     pub turbulence: f32,
+    /// How much of the wind the body keeps from the hair behind it: 0 (none) to 1.
+    pub sheltering: f32,
     /// Which wind.
     pub seed: u32,
 }
 
 impl Default for Wind {
     fn default() -> Self {
-        Self { direction: [1.0, 0.0, 0.0], speed: 0.0, gusts: 0.5, turbulence: 0.3, seed: 1 }
+        Self { direction: [1.0, 0.0, 0.0], speed: 0.0, gusts: 0.5, turbulence: 0.3, sheltering: 0.8, seed: 1 }
     }
 }
 
@@ -141,6 +143,7 @@ impl Wind {
             speed: within(self.speed, 0.0, 30.0, d.speed),
             gusts: within(self.gusts, 0.0, 1.0, d.gusts),
             turbulence: within(self.turbulence, 0.0, 1.0, d.turbulence),
+            sheltering: within(self.sheltering, 0.0, 1.0, d.sheltering),
             seed: self.seed,
         }
     }
@@ -159,11 +162,14 @@ pub struct Repulsion {
     pub threshold: f32,
     /// Rate at which hair takes on the mean velocity of the hair around it, 1/s: 0 to 20.
     pub cohesion: f32,
+    /// How much hair heeds the direction of the hair around it: 1 pushes across itself alone, harder where wisps
+    /// cross than where they run along each other, and lets them slide along each other; 0 heeds none. 0 to 1.
+    pub anisotropy: f32,
 }
 
 impl Default for Repulsion {
     fn default() -> Self {
-        Self { mode: RepulsionMode::Pressure, strength: 0.05, threshold: 1.3, cohesion: 2.0 }
+        Self { mode: RepulsionMode::Pressure, strength: 0.05, threshold: 1.3, cohesion: 2.0, anisotropy: 1.0 }
     }
 }
 
@@ -175,6 +181,7 @@ impl Repulsion {
             strength: within(self.strength, 0.0, 1.0, d.strength),
             threshold: within(self.threshold, 1.0, 10.0, d.threshold),
             cohesion: within(self.cohesion, 0.0, 20.0, d.cohesion),
+            anisotropy: within(self.anisotropy, 0.0, 1.0, d.anisotropy),
         }
     }
 }

@@ -18,6 +18,7 @@ use crate::lanes::{LANES, Map, ZERO, at, put};
 use crate::motion::{HeadPose, rigid_between, substep};
 use crate::rest::{RestShape, blocks_of};
 use crate::solver::{BendingKey, Plan, Substep};
+use crate::wake::Wakes;
 use crate::wind::WindField;
 use crate::{MAX_SUBSTEPS, SimulationSettings, StepInput, StepReport};
 
@@ -64,6 +65,7 @@ impl Simulation {
                 slots[guide as usize] = (b as u32, lane as u32);
             }
             let mut block = Block::new(guides, lanes, used, first_free);
+            block.held = crate::ties::rows(&style, &lanes);
             block.place_at_rest(&Map::IDENTITY);
             blocks.push(block);
         }
@@ -168,6 +170,9 @@ impl Simulation {
         let head_from_last = head_from(&self.head, self.head.place);
         let over_dense_cells = self.grid.update(&self.blocks, &head_from_last, settings.repulsion);
         let wind = WindField::new(&settings.wind, self.elapsed_secs, origin);
+        let shelter = if wind.blows() { settings.wind.sheltering } else { 0.0 };
+        let along = Vec3::from_array(settings.wind.direction);
+        let wakes = Wakes::new(&self.shapes[..colliders.len()], along, shelter);
         let first_free = first_free(self.clamped_links, self.style.guides.points_per_guide);
         let plan = Plan {
             wide: self.wide,
@@ -190,9 +195,12 @@ impl Simulation {
             bending: BendingKey::new(settings, h, first_free),
             grid: &self.grid,
             wind: &wind,
+            wakes: &wakes,
         };
         self.blocks.par_iter_mut().for_each(|block| step_block(block, &plan));
-        StepReport { substeps: count, over_dense_cells, ..self.outcome(first_free) }
+        let (hair_volume, hair_volume_at_rest) = (self.grid.volume(), self.grid.volume_at_rest());
+        let all = self.outcome(first_free);
+        StepReport { substeps: count, over_dense_cells, hair_volume, hair_volume_at_rest, ..all }
     }
 
     /// Sums up the blocks, always in the same order.

@@ -14,13 +14,12 @@ mod guides;
 mod path;
 mod strands;
 
-use glam::Vec3;
 use rayon::prelude::*;
 use thiserror::Error;
 
-use crate::settings::within;
 use crate::{
-    GroomSettings, Guides, Hairstyle, Obstacle, Preset, Scalp, ScalpError, ScalpIndex, StrandSet, Wisp,
+    Bounded, GroomSettings, Guides, Hairstyle, Obstacle, Preset, Scalp, ScalpError, ScalpIndex, StrandSet,
+    Wisp,
 };
 
 /// Points of each grown guide: 30 links, as in Bertails et al. 2005.
@@ -90,25 +89,10 @@ pub fn grow(
         scalp: scalp.clone(),
         wisps,
         guides,
+        held: Vec::new(),
         strands: set,
         look: settings.look,
     })
-}
-
-/// How far inside a body hair is believed to be, metres.
-const DEEPEST: f32 = 0.02;
-
-/// An obstacle whose answers are finite and never throw hair far, whatever those of the one inside are.
-///
-/// Near the open edges of clothes the sign of a mesh's distance may be wrong in places: what claims to lie deep
-/// inside is moved in small steps, and so is back on its way when the place is passed.
-struct Bounded<'a>(&'a dyn Obstacle);
-
-impl Obstacle for Bounded<'_> {
-    fn distance(&self, p: Vec3) -> (f32, Vec3) {
-        let (distance, normal) = self.0.distance(p);
-        (within(distance, -DEEPEST, 1.0, 1.0), if normal.is_finite() { normal } else { Vec3::Y })
-    }
 }
 
 /// The smooth step from 0 at `low` to 1 at `high`.

@@ -106,6 +106,7 @@ fn hairstyle_of(
         scalp: scalp.clone(),
         wisps,
         guides,
+        held: Vec::new(),
         strands,
         look: colour::look(file),
     };

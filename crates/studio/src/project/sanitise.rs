@@ -3,6 +3,7 @@
 use std::f32::consts::PI;
 
 use glam::Vec3;
+use lovelock_groom::HairTie;
 use lovelock_render::{Light, MAX_LIGHTS, MOST_PIXELS, MOST_SIDE, ShadowSettings};
 
 use super::generic::differences;
@@ -20,6 +21,7 @@ impl Project {
         project.motion = motion(&self.motion);
         project.hair.groom = self.hair.groom.clamped();
         project.hair.import = self.hair.import.in_range();
+        project.hair.ties = self.hair.ties.iter().take(HairTie::MOST).map(HairTie::clamped).collect();
         project.look = self.look.clamped();
         project.simulation = self.simulation.clamped();
         project.shadow = shadow(&self.shadow);

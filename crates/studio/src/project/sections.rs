@@ -1,7 +1,7 @@
 //! The sections of a project that are the studio's own.
 
 use glam::Vec3;
-use lovelock_groom::{GroomSettings, ImportSettings, Preset};
+use lovelock_groom::{GroomSettings, HairTie, ImportSettings, Preset};
 use lovelock_motion::{BodySettings, MotionSettings};
 use lovelock_record::{FilmQuality, SequenceFormat};
 use lovelock_render::{Backend, ShadowMethod, ShadowSettings, Transparency};
@@ -110,6 +110,8 @@ pub struct HairSection {
     pub file: Option<FileRef>,
     /// How that file becomes a hairstyle.
     pub import: ImportSettings,
+    /// What gathers the hair, at most [`HairTie::MOST`].
+    pub ties: Vec<HairTie>,
 }
 
 impl Default for HairSection {
@@ -120,6 +122,7 @@ impl Default for HairSection {
             groom: GroomSettings::preset(Preset::Smooth),
             file: None,
             import: ImportSettings::default(),
+            ties: Vec::new(),
         }
     }
 }

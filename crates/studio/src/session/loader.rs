@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use super::dress::Dressed;
 use super::parts::{BodyKey, BodyPart, HairFileCache, HairKey, HairPart, MotionKey, MotionPart};
 use super::{HeadPath, Scene};
 use crate::{Access, Place, Problem, ProblemKind, Project, StudioError};
@@ -41,6 +42,7 @@ pub struct SceneLoader {
     motion: Option<Kept<MotionKey, MotionPart>>,
     hair: Option<Kept<HairKey, HairPart>>,
     hair_file: HairFileCache,
+    dressed: Option<Dressed>,
     head_path: Option<(Arc<MotionPart>, bool, Arc<HeadPath>)>,
 }
 
@@ -83,6 +85,7 @@ impl SceneLoader {
         let motion = self.motion(&project, access, &body, &mut problems)?;
         control.at("making the hair", 0.5)?;
         let hair = self.hair(&project, access, &body, &mut problems);
+        let style = Dressed::style(&mut self.dressed, &hair, &project.hair, &body);
         control.at("following the head", 0.9)?;
         let looping = project.motion.looping;
         let head_path = self.head_path(&body, &motion, looping);
@@ -97,7 +100,7 @@ impl SceneLoader {
             speed: f64::from(project.motion.speed),
             looping,
             colliders: Arc::clone(&body.colliders),
-            style: Arc::clone(&hair.style),
+            style,
             head_path,
             notes: notes.into(),
         };

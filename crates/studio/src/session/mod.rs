@@ -2,6 +2,7 @@
 
 mod camera;
 mod dancer;
+mod dress;
 mod engine;
 mod head_path;
 mod inside;

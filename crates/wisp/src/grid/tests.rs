@@ -56,7 +56,7 @@ fn crowded_hair_is_pushed_apart() {
         for block in &blocks {
             for k in 0..block.used {
                 let p = squeeze.apply(at(&block.position[10], k));
-                let sample = grid.sample(p).expect("hair");
+                let sample = grid.sample(p, Vec3::Y).expect("hair");
                 let from_axis = p - Vec3::new(0.012, p.y, 0.012);
                 outward += sample.push.dot(from_axis);
             }
@@ -77,10 +77,10 @@ fn the_mean_velocity_is_that_of_the_hair_around() {
         }
     }
     grid.update(&blocks, &Map::IDENTITY, Repulsion::default());
-    let sample = grid.sample(Vec3::new(0.015, -0.1, 0.015)).expect("hair");
+    let sample = grid.sample(Vec3::new(0.015, -0.1, 0.015), Vec3::Y).expect("hair");
     // Momentum is rounded down to about a thousandth.
     assert!((sample.mean_velocity - Vec3::new(1.0, -2.0, 0.5)).length() < 0.01, "{sample:?}");
-    assert!(grid.sample(Vec3::splat(0.25)).is_none(), "where no hair is there is no mean");
+    assert!(grid.sample(Vec3::splat(0.25), Vec3::Y).is_none(), "where no hair is there is no mean");
 }
 
 #[test]
@@ -92,4 +92,42 @@ fn hair_outside_the_grid_and_nonsense_are_left_out() {
     let nonsense = Map { turn: Mat3::IDENTITY, shift: Vec3::splat(f32::NAN) };
     assert_eq!(grid.update(&blocks, &nonsense, Repulsion::default()), 0);
     assert!(grid.cells.iter().all(|c| c[0] == 0));
+}
+
+#[test]
+fn crossing_hair_pushes_harder_than_parallel_hair_and_none_along_itself() {
+    let blocks = lattice(5, 0.02);
+    let mut grid = DensityGrid::new(&blocks);
+    let squeeze = Map { turn: Mat3::from_diagonal(Vec3::new(0.3, 1.0, 0.3)), shift: Vec3::ZERO };
+    grid.update(&blocks, &squeeze, Repulsion::default());
+    let p = Vec3::new(0.02, -0.1, 0.012);
+    let (along, across) = (grid.sample(p, Vec3::Y).expect("hair"), grid.sample(p, Vec3::X).expect("hair"));
+    // The guides run along Y; rounding to integers leaves a thousandth.
+    assert!(along.crossing < 0.01 && across.crossing > 0.99, "{along:?} {across:?}");
+    assert!(along.push.length() > 1.0);
+    let push = |t: Vec3, crossing: f32, a: f32| push_across(along.push, t, crossing, a);
+    assert!(push(Vec3::Y, 1.0, 1.0).length() > 3.9 * push(Vec3::Y, 0.0, 1.0).length());
+    let out = along.push.normalize();
+    assert!(push(out, 0.0, 1.0).length() < 1e-5 * along.push.length());
+    assert_eq!(push(out, 0.3, 0.0), along.push, "without anisotropy nothing changes");
+    // Friction lets hair slide along itself.
+    let (v, mean) = (Vec3::ZERO, Vec3::new(1.0, 1.0, 0.0));
+    let drawn = drawn_to(mean, v, Vec3::Y, 1.0);
+    assert!((drawn - Vec3::new(1.0, 0.3, 0.0)).length() < 1e-6);
+}
+
+#[test]
+fn hair_in_half_the_room_has_half_the_volume() {
+    let blocks = lattice(12, 0.015);
+    let mut grid = DensityGrid::new(&blocks);
+    let rest = grid.volume_at_rest();
+    // Twelve by twelve guides 15 mm apart and 20 cm long, seen through cells of 12 mm.
+    let exact = (12.0 * 0.015_f32).powi(2) * 0.2;
+    assert!((rest / exact - 1.0).abs() < 0.25, "{rest} against {exact}");
+    let off = Repulsion { strength: 0.0, cohesion: 0.0, ..Repulsion::default() };
+    grid.update(&blocks, &Map::IDENTITY, off);
+    assert_eq!(grid.volume(), rest);
+    let squeeze = Map { turn: Mat3::from_diagonal(Vec3::new(0.5, 1.0, 1.0)), shift: Vec3::ZERO };
+    grid.update(&blocks, &squeeze, off);
+    assert!((grid.volume() / rest - 0.5).abs() < 0.08, "{}", grid.volume() / rest);
 }

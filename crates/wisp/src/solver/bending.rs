@@ -118,10 +118,18 @@ impl Bending {
         &self.fixed[point]
     }
 
-    /// Factorises anew where the settings or the time step have changed, and says whether it did. `link` is each guide's mean link and
-    /// `rest_bend` the bends at rest.
+    /// Factorises anew where the settings or the time step have changed, and says whether it did. `link` is each
+    /// guide's mean link, `inv_length` one over every link or 0 beyond a guide's end, and `rest_bend` the bends at
+    /// rest; `held` says how firmly ties hold each point, and is negative elsewhere.
     #[inline(always)]
-    pub(crate) fn prepare(&mut self, key: BendingKey, link: &Lane, rest_bend: &[Lane3]) -> bool {
+    pub(crate) fn prepare(
+        &mut self,
+        key: BendingKey,
+        link: &Lane,
+        inv_length: &[Lane],
+        rest_bend: &[Lane3],
+        held: &[Lane],
+    ) -> bool {
         if self.key == Some(key) {
             return false;
         }
@@ -136,7 +144,10 @@ impl Bending {
             let bends = i > 0 && i + 1 < count;
             for k in 0..LANES {
                 let c = key.h * root_b / (link[k] * link[k] + 1e-12);
+                // The end of a guide that was cut is a tip.
+                let bends = bends && inv_length[i + 1][k] > 0.0;
                 self.stiffness[i][k] = if bends { lesser(c * c, STIFFEST / gain) } else { 0.0 };
+                let pull = if held[i][k] >= 0.0 { key.h * held[i][k] } else { pull };
                 self.hold[i][k] = pull * pull;
                 let bend = at(&rest_bend[i], k).length_squared().sqrt() / (link[k] + 1e-9);
                 let sharpness = self.stiffness[i][k] * gain * bend;
@@ -150,7 +161,7 @@ impl Bending {
 
     /// Whether nothing resists a bend: the matrix is the identity.
     pub(crate) fn is_chain(&self) -> bool {
-        self.key.is_some_and(|k| k.stiffness_root == 0.0 && k.stiffness_tip == 0.0 && k.hold == 0.0)
+        self.stiffness.iter().chain(&self.hold).all(|row| *row == ZERO)
     }
 
     /// Fills the lower triangle of `H = D A^-1 D^T`: rows and columns are the links from the first with a free
@@ -321,7 +332,13 @@ mod tests {
     fn the_solution_solves_the_system() {
         for first_free in 0..3 {
             let mut b = Bending::new(9);
-            b.prepare(key(first_free), &[0.01; LANES], &[ZERO3; 9]);
+            b.prepare(
+                key(first_free),
+                &[0.01; LANES],
+                &[[100.0; LANES]; 9],
+                &[ZERO3; 9],
+                &[[-1.0; LANES]; 9],
+            );
             let mut x: Vec<Vec3> =
                 (0..9).map(|i| Vec3::new((i as f32).sin(), (i as f32 * 2.0).cos(), 0.1 * i as f32)).collect();
             x[..first_free].fill(Vec3::ZERO);
@@ -343,7 +360,7 @@ mod tests {
     #[test]
     fn what_hangs_from_a_moved_point_follows_without_force() {
         let mut b = Bending::new(12);
-        b.prepare(key(2), &[0.01; LANES], &[ZERO3; 12]);
+        b.prepare(key(2), &[0.01; LANES], &[[100.0; LANES]; 12], &[ZERO3; 12], &[[-1.0; LANES]; 12]);
         let splat = |v: Vec3| [[v.x; LANES], [v.y; LANES], [v.z; LANES]];
         let mut rows = vec![ZERO3; 12];
         rows[4] = splat(Vec3::new(0.2, -0.1, 0.05));
@@ -364,7 +381,7 @@ mod tests {
     fn without_stiffness_it_is_the_identity() {
         let mut b = Bending::new(5);
         let soft = BendingKey { stiffness_root: 0.0, stiffness_tip: 0.0, hold: 0.0, ..key(1) };
-        b.prepare(soft, &[0.01; LANES], &[ZERO3; 5]);
+        b.prepare(soft, &[0.01; LANES], &[[100.0; LANES]; 5], &[ZERO3; 5], &[[-1.0; LANES]; 5]);
         let mut rows = vec![[[0.25; LANES]; 3]; 5];
         b.solve(1, &mut rows);
         assert!(rows[1..].iter().all(|r| *r == [[0.25; LANES]; 3]));
@@ -373,7 +390,7 @@ mod tests {
     #[test]
     fn links_of_no_length_give_finite_factors() {
         let mut b = Bending::new(5);
-        b.prepare(key(1), &ZERO, &[ZERO3; 5]);
+        b.prepare(key(1), &ZERO, &[[100.0; LANES]; 5], &[ZERO3; 5], &[[-1.0; LANES]; 5]);
         assert!(b.inv_pivot[1..].iter().flatten().all(|v| v.is_finite()));
     }
 }

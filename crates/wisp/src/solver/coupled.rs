@@ -120,7 +120,7 @@ impl Coupled {
                 } else {
                     let mut inv = ZERO;
                     for k in 0..LANES {
-                        inv[k] = 1.0 / greater(s[k], greater(LEAST_PIVOT * least[k], 1e-30)).sqrt();
+                        inv[k] = 1.0 / greater(s[k], greater(LEAST_PIVOT * least[k], 1e-9)).sqrt();
                         y[k] *= inv[k];
                     }
                     self.inv_diagonal[r] = inv;
@@ -167,7 +167,13 @@ mod tests {
             hold: 5.0,
             first_free,
         };
-        b.prepare(key, &[LINK; LANES], &[ZERO3; POINTS]);
+        b.prepare(
+            key,
+            &[LINK; LANES],
+            &[[1.0 / LINK; LANES]; POINTS],
+            &[ZERO3; POINTS],
+            &[[-1.0; LANES]; POINTS],
+        );
         b
     }
 

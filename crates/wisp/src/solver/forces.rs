@@ -15,7 +15,8 @@ pub(crate) fn prepare(block: &mut Block, plan: &Plan) {
     let settings = &plan.settings;
     let take = |rate: f32| 1.0 - (-rate * plan.h).exp();
     let (drag, cohesion) = (take(settings.drag), take(settings.repulsion.cohesion));
-    if block.bending.prepare(plan.bending, &block.rest.mean_link, &block.rest.bend) {
+    let rest = &block.rest;
+    if block.bending.prepare(plan.bending, &rest.mean_link, &rest.inv_length, &rest.bend, &block.held) {
         block.coupled.prepare(&block.bending, plan.first_free, block.position.len());
     }
     let gravity = Vec3::new(0.0, -settings.gravity, 0.0);
@@ -50,9 +51,12 @@ pub(crate) fn prepare(block: &mut Block, plan: &Plan) {
         }
         block.position[i] = position;
         let (mut push, mut keep) = (block.push[i], block.keep[i]);
-        let air = if windy { plan.wind.velocity(&position) } else { ZERO3 };
+        let (mut air, mut open) = (ZERO3, [1.0; LANES]);
+        if windy {
+            (air, open) = (plan.wind.velocity(&position), plan.wakes.exposure(&position));
+        }
         for k in 0..LANES {
-            let pushed = at(&push, k) + at(&air, k) * drag;
+            let pushed = at(&push, k) + at(&air, k) * (open[k] * drag);
             put(&mut push, k, pushed);
             keep[k] *= 1.0 - drag;
         }

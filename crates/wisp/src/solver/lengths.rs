@@ -32,9 +32,11 @@ impl LengthScratch {
             for k in 0..LANES {
                 let link = at(&b, k) - at(&a, k);
                 let now = link.length_squared().sqrt();
-                // A link of no length has no direction; it gets one from the clean-up pass.
-                put(&mut direction, k, link * (1.0 / (now + 1e-20)));
-                rhs[k] = wanted[k] - now;
+                // A link of no length has no direction; it gets one from the clean-up pass. One that shall have none lies
+                // beyond the end of a guide that was cut, and pulls nothing.
+                let there = wanted[k] > 0.0;
+                put(&mut direction, k, link * if there { 1.0 / (now + 1e-20) } else { 0.0 });
+                rhs[k] = if there { wanted[k] - now } else { 0.0 };
             }
             self.direction[i] = direction;
             self.multiplier[i] = rhs;

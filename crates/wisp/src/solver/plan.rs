@@ -8,6 +8,7 @@ use crate::colliders::MovingShape;
 use crate::colliders::contact::ContactRules;
 use crate::grid::DensityGrid;
 use crate::lanes::{Map, Turn};
+use crate::wake::Wakes;
 use crate::wind::WindField;
 
 /// The head at one substep, in working space.
@@ -51,4 +52,5 @@ pub(crate) struct Plan<'a> {
     pub(crate) bending: BendingKey,
     pub(crate) grid: &'a DensityGrid,
     pub(crate) wind: &'a WindField,
+    pub(crate) wakes: &'a Wakes,
 }

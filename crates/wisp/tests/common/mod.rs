@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use glam::{Affine3A, Vec3};
 use lovelock_groom::{
-    GroomSettings, GuideFrame, Guides, Hairstyle, ImportSettings, Obstacle, Preset, Scalp, StrandSet, grow,
-    import_around, load_hair,
+    GroomSettings, GuideFrame, Guides, HairTie, Hairstyle, ImportSettings, Obstacle, Preset, Scalp,
+    StrandSet, grow, import_around, load_hair, tied,
 };
 use lovelock_motion::{
     Body, Clip, Collider, PlacedCollider, Pose, RestDistance, fit_colliders, head_mesh, load_character,
@@ -74,6 +74,12 @@ impl Stage {
             pose: Pose::default(),
             placed: Vec::new(),
         }
+    }
+
+    /// Gathers the hair by ties.
+    pub fn tie(&mut self, ties: &[HairTie]) {
+        self.style = Arc::new(tied(&self.style, ties, &RestBody(RestDistance::new(&self.body))));
+        self.style.check().expect("a tied style is sound");
     }
 
     /// The body at a time of the dance, or at rest.
@@ -174,6 +180,8 @@ pub fn worse(a: StepReport, b: StepReport) -> StepReport {
         max_penetration_m: a.max_penetration_m.max(b.max_penetration_m),
         recovered_guides: a.recovered_guides + b.recovered_guides,
         over_dense_cells: a.over_dense_cells.max(b.over_dense_cells),
+        hair_volume: a.hair_volume.min(b.hair_volume),
+        hair_volume_at_rest: b.hair_volume_at_rest,
         kinetic_energy: a.kinetic_energy.max(b.kinetic_energy),
         max_speed: a.max_speed.max(b.max_speed),
         jumped: a.jumped || b.jumped,

@@ -1,0 +1,164 @@
+//! The guides of a wisp along its way through a ring.
+
+use glam::Vec3;
+
+use super::route::{Ring, STEP};
+use super::{CAUGHT, Gathered};
+use crate::frame::{reference_normal, transport};
+use crate::{Guides, Hairstyle, Obstacle};
+
+/// How far above the skin the hair nearest to it lies that a tie holds, metres.
+const SKIN: f32 = 0.002;
+/// How far above that hair the last of it lies, metres, at a tightness of 1 and of 0.
+const THICKNESS: [f32; 2] = [0.006, 0.014];
+/// How wide a wisp is in the ring, in radii of the ring.
+const WISP: f32 = 0.2;
+
+/// A wisp's guides as a tie lays them.
+pub(super) struct Laid {
+    /// The points of the three guides, head space.
+    pub(super) guides: [Vec<Vec3>; 3],
+    /// The first point of each that is beyond the ring.
+    pub(super) ring_point: [usize; 3],
+}
+
+/// Length of a guide, metres.
+pub(super) fn length(guides: &Guides, guide: usize) -> f32 {
+    (1..guides.points_per_guide).map(|i| guides.point(guide, i).distance(guides.point(guide, i - 1))).sum()
+}
+
+/// Lays the guides of a wisp; `None` where one of them cannot reach beyond the ring.
+pub(super) fn wisp(
+    style: &Hairstyle,
+    ring: &Ring,
+    caught: &Gathered,
+    middle: Vec3,
+    obstacle: &dyn Obstacle,
+) -> Option<Laid> {
+    let guides = style.wisps[caught.wisp].guides.map(|g| g as usize);
+    let roots = guides.map(|g| style.guides.point(g, 0));
+    let lengths = guides.map(|g| length(&style.guides, g));
+    let root = (roots[0] + roots[1] + roots[2]) / 3.0;
+    let [a, b] = ring.across;
+    let through = ring.centre + (a * caught.disc[0] + b * caught.disc[1]) * ring.tie.radius;
+    let thick = THICKNESS[1] + (THICKNESS[0] - THICKNESS[1]) * ring.tie.tightness;
+    let height = |arc: f32| {
+        let rises = 1.0 - (-arc / 0.05).exp();
+        (SKIN + thick * caught.layer * rises).min(0.6 * arc + 0.0005)
+    };
+    let mut way = Ring::over_head(obstacle, middle, root, through, &height);
+    let to_ring = way.len() - 1;
+    let arc: f32 = way.windows(2).map(|p| p[0].distance(p[1])).sum();
+    let most = lengths.iter().copied().fold(0.0, f32::max);
+    if !lengths.iter().all(|l| *l > arc + CAUGHT) {
+        return None;
+    }
+    way.extend(ring.beyond(caught.disc, most - arc + 0.05));
+
+    let frames = frames(&way);
+    let local = roots.map(|own| {
+        let d = own - way[0];
+        let [n, b, t] = frames[0];
+        [d.dot(n), d.dot(b), d.dot(t)]
+    });
+    let widest = local.iter().map(|l| Vec3::from_array(*l).length()).fold(1e-4, f32::max);
+    let in_ring = (WISP * ring.tie.radius / widest).min(1.0);
+    let mut laid = Laid { guides: Default::default(), ring_point: [0; 3] };
+    for n in 0..3 {
+        let target: Vec<Vec3> = (0..way.len())
+            .map(|i| {
+                // It gathers on its way to the ring and opens a little beyond it.
+                let before = (i as f32 / to_ring as f32).min(1.0);
+                let beyond = i.saturating_sub(to_ring) as f32 * STEP;
+                let opens = in_ring * ring.spread(beyond);
+                let wide = 1.0 + (opens - 1.0) * before.powf(0.7);
+                let [normal, binormal, tangent] = frames[i];
+                let [x, y, z] = local[n];
+                way[i] + (normal * x + binormal * y + tangent * (z * (1.0 - before))) * wide
+            })
+            .collect();
+        let (guide, passed) = along(&target, to_ring, &style.guides, guides[n], roots[n], obstacle)?;
+        laid.guides[n] = guide;
+        laid.ring_point[n] = passed;
+    }
+    Some(laid)
+}
+
+/// Normal, binormal and tangent at each point of a way, carried along it by the smallest turns.
+fn frames(way: &[Vec3]) -> Vec<[Vec3; 3]> {
+    let mut out: Vec<[Vec3; 3]> = Vec::with_capacity(way.len());
+    let mut tangent = (way[1] - way[0]).normalize_or(Vec3::Y);
+    let mut normal = Vec3::from(reference_normal(tangent.into()));
+    for i in 0..way.len() {
+        let next = (way[(i + 1).min(way.len() - 1)] - way[i.saturating_sub(1)]).normalize_or(tangent);
+        normal = transport(normal.into(), tangent.into(), next.into()).into();
+        tangent = next;
+        out.push([normal, tangent.cross(normal), tangent]);
+    }
+    out
+}
+
+/// Lays a chain with the links of `guide` along `target`, outside `obstacle`; and the first of its points that is
+/// beyond point `ring` of the target, if it comes so far.
+fn along(
+    target: &[Vec3],
+    ring: usize,
+    guides: &Guides,
+    guide: usize,
+    root: Vec3,
+    obstacle: &dyn Obstacle,
+) -> Option<(Vec<Vec3>, usize)> {
+    let points = guides.points_per_guide;
+    let mut out = vec![root];
+    let mut at = 0.0_f32;
+    let mut passed = None;
+    let mut direction = (target[1] - root).normalize_or(Vec3::Y);
+    for i in 1..points {
+        let from = out[i - 1];
+        let link = guides.point(guide, i).distance(guides.point(guide, i - 1));
+        at = next_at(target, at, from, link);
+        direction = (sample(target, at) - from).normalize_or(direction);
+        let mut p = from + direction * link;
+        let margin = 0.0015_f32.min(0.3 * link * i as f32);
+        for _ in 0..8 {
+            let (distance, n) = obstacle.distance(p);
+            if distance >= margin || link <= 0.0 {
+                break;
+            }
+            direction = (p + n * (1.3 * (margin - distance) + 1e-5) - from).normalize_or(direction);
+            p = from + direction * link;
+        }
+        // The last point has nothing beyond it that could be held.
+        if at >= ring as f32 && passed.is_none() && i + 1 < points {
+            passed = Some(i);
+        }
+        out.push(p);
+    }
+    Some((out, passed?))
+}
+
+/// The first place on the polyline beyond `at` that is `link` from `from`; past its end, along its last piece.
+fn next_at(target: &[Vec3], at: f32, from: Vec3, link: f32) -> f32 {
+    let last = (target.len() - 1) as f32 + link / STEP + 2.0;
+    let mut low = at;
+    let mut high = at;
+    while high < last && sample(target, high).distance(from) < link {
+        low = high;
+        high += 0.5;
+    }
+    for _ in 0..14 {
+        let middle = 0.5 * (low + high);
+        if sample(target, middle).distance(from) < link {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    high
+}
+
+/// A point of the polyline, extended straight past its end.
+fn sample(target: &[Vec3], at: f32) -> Vec3 {
+    let i = (at as usize).min(target.len() - 2);
+    target[i] + (target[i + 1] - target[i]) * (at - i as f32)
+}

@@ -1,0 +1,145 @@
+//! Hair ties: a ponytail or a bun as another rest shape of the same guides.
+//!
+//! 1. [`HairTie`]: what an artist sets.
+//! 2. [`route`]: the way of each wisp's middle over the head to the ring, pulled tight around the skull, and beyond
+//!    the ring as a tail or wound as a bun.
+//! 3. [`lay`]: the wisp's guides along that way, each link as long as it was, outside of the body.
+//! 4. [`offsets`]: the strands' offsets, combed flat before the ring.
+//!
+//! What the tie holds, the simulator reads from [`Hairstyle::held`].
+
+mod lay;
+mod offsets;
+mod route;
+mod settings;
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+pub use settings::{HairTie, TieKind, TieReach};
+
+use crate::{Bounded, Hairstyle, Obstacle, Wisp};
+use route::Ring;
+
+/// How firmly a tie holds what passes through it, 1/s: hair accelerated by 300 m/s^2 moves 0.3 mm in it.
+const RING_HOLD: f32 = 1000.0;
+/// How firmly hair lies on the head before the tie, and how firmly a bun is pinned, 1/s, at a tightness of 0 and 1.
+const TAUT_HOLD: [f32; 2] = [60.0, 500.0];
+/// Hair has to reach this far beyond the ring to be caught, metres.
+const CAUGHT: f32 = 0.02;
+
+/// A wisp that a ring gathers.
+struct Gathered {
+    wisp: usize,
+    ring: usize,
+    /// Where it lies in the ring, whose opening is the unit disc.
+    disc: [f32; 2],
+    /// Share of the gathered hair that lies below it, 0 to 1.
+    layer: f32,
+}
+
+/// `style` with its hair gathered by `ties`: as many guides of as many points and the same lengths, at rest as a
+/// ponytail or a bun. Wisps go to the first tie that wants them and that all their guides can reach; what none
+/// catches stays as it was. The first [`HairTie::MOST`] ties count. `obstacle` is the body without hair.
+#[must_use]
+pub fn tied(style: &Hairstyle, ties: &[HairTie], obstacle: &dyn Obstacle) -> Hairstyle {
+    let mut out = style.clone();
+    let points = style.guides.points_per_guide;
+    let Some((middle, half)) = settings::hairy_box(&style.scalp) else { return out };
+    if ties.is_empty() || points < 3 {
+        return out;
+    }
+    let obstacle = &Bounded(obstacle);
+    let longest = (0..style.guides.count()).map(|g| lay::length(&style.guides, g)).fold(0.0, f32::max);
+    if !longest.is_finite() {
+        return out;
+    }
+    let rings: Vec<Ring> =
+        ties.iter().take(HairTie::MOST).map(|tie| Ring::new(tie, obstacle, longest)).collect();
+    let ears = middle.z - 0.1 * half.z;
+    // From below the middle the shortest way over the head is over its top.
+    let middle = middle - Vec3::Y * (0.5 * half.y);
+    let gathered = gather(style, &rings, ears);
+
+    let laid: Vec<Option<lay::Laid>> = gathered
+        .par_iter()
+        .map(|caught| lay::wisp(style, &rings[caught.ring], caught, middle, obstacle))
+        .collect();
+    let mut caught = Vec::new();
+    out.held = vec![-1.0; style.guides.x.len()];
+    for (of, laid) in gathered.iter().zip(laid) {
+        let Some(laid) = laid else { continue };
+        let tie = &rings[of.ring].tie;
+        let taut = TAUT_HOLD[0] + (TAUT_HOLD[1] - TAUT_HOLD[0]) * tie.tightness;
+        for (n, &guide) in style.wisps[of.wisp].guides.iter().enumerate() {
+            let first = guide as usize * points;
+            for (i, p) in laid.guides[n].iter().enumerate() {
+                (out.guides.x[first + i], out.guides.y[first + i], out.guides.z[first + i]) = (p.x, p.y, p.z);
+                let through = laid.ring_point[n];
+                out.held[first + i] = match tie.kind {
+                    _ if i + 1 == through || i == through => RING_HOLD,
+                    _ if i < through => taut,
+                    TieKind::Bun => taut,
+                    TieKind::Ponytail => 0.0,
+                };
+            }
+        }
+        caught.push((of, laid));
+    }
+    let moved: Vec<(usize, Vec<Vec3>)> = caught
+        .par_iter()
+        .map(|(of, laid)| {
+            let first = style.strands.first_point[style.wisps[of.wisp].first_strand as usize] as usize;
+            (first, offsets::of_wisp(style, &out, of.wisp, laid, &rings[of.ring].tie, obstacle))
+        })
+        .collect();
+    for (first, offsets) in moved {
+        for (k, offset) in offsets.into_iter().enumerate() {
+            let set = &mut out.strands;
+            set.offset_normal[first + k] = offset.x;
+            set.offset_binormal[first + k] = offset.y;
+            set.offset_tangent[first + k] = offset.z;
+        }
+    }
+    out
+}
+
+/// Which wisps go to which ring, and where in it they lie: hair from afar lies around hair from nearby, on the side
+/// from which it comes.
+fn gather(style: &Hairstyle, rings: &[Ring], ears: f32) -> Vec<Gathered> {
+    let root_of =
+        |wisp: &Wisp| wisp.guides.iter().map(|&g| style.guides.point(g as usize, 0)).sum::<Vec3>() / 3.0;
+    let mut out = Vec::new();
+    let mut taken = vec![false; style.wisps.len()];
+    for (r, ring) in rings.iter().enumerate() {
+        let mut of_ring: Vec<(f32, usize, Vec3)> = Vec::new();
+        for (w, wisp) in style.wisps.iter().enumerate() {
+            let root = root_of(wisp);
+            if taken[w] || !root.is_finite() || !ring.tie.wants(root, ears) {
+                continue;
+            }
+            let straight = root.distance(ring.centre);
+            let shortest =
+                wisp.guides.iter().map(|&g| lay::length(&style.guides, g as usize)).fold(f32::MAX, f32::min);
+            if shortest > straight + CAUGHT {
+                of_ring.push((straight, w, root));
+            }
+        }
+        of_ring.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let count = of_ring.len() as f32;
+        for (rank, (_, w, root)) in of_ring.into_iter().enumerate() {
+            let layer = (rank as f32 + 0.5) / count;
+            let from = root - ring.centre;
+            let angle = from.dot(ring.across[1]).atan2(from.dot(ring.across[0]));
+            // A little of the ring is left to the width of the wisps themselves.
+            let out_of_middle = 0.8 * layer.sqrt();
+            let disc = [out_of_middle * angle.cos(), out_of_middle * angle.sin()];
+            taken[w] = true;
+            out.push(Gathered { wisp: w, ring: r, disc, layer });
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,191 @@
+//! Ways of the middle of a wisp: over the head to the tie, and beyond it.
+
+use glam::{Quat, Vec3};
+
+use super::HairTie;
+use crate::Obstacle;
+
+/// Distance between the points of ways, metres.
+pub(super) const STEP: f32 = 0.003;
+/// Points of the way over the head while it is pulled tight.
+const KNOTS: usize = 28;
+/// Rounds of pulling.
+const PULLS: usize = 90;
+/// How soon a tail that leaves its tie gives in to gravity, metres.
+const FALL: f32 = 0.04;
+
+/// A tie made ready: what all its hair has in common.
+pub(super) struct Ring {
+    pub(super) tie: HairTie,
+    pub(super) centre: Vec3,
+    pub(super) axis: Vec3,
+    /// Two directions across the axis.
+    pub(super) across: [Vec3; 2],
+    /// The middle of the tail from the ring on, and its direction, every [`STEP`].
+    tail: Vec<(Vec3, Vec3)>,
+    /// The directions across at each of its points.
+    tail_across: Vec<[Vec3; 2]>,
+}
+
+impl Ring {
+    /// `longest` is how far the tail may reach, metres.
+    pub(super) fn new(tie: &HairTie, obstacle: &dyn Obstacle, longest: f32) -> Self {
+        let tie = tie.clamped();
+        let axis = tie.axis.normalize_or(Vec3::NEG_Z);
+        let mut centre = tie.at;
+        for _ in 0..16 {
+            let (distance, n) = obstacle.distance(centre);
+            let lies = n.dot(axis).clamp(-1.0, 1.0);
+            let clear = 0.006 + tie.radius * (1.0 - lies * lies).sqrt();
+            if distance >= clear {
+                break;
+            }
+            centre += n * (clear - distance);
+        }
+        let (a, b) = axis.any_orthonormal_pair();
+        let mut ring = Self { tie, centre, axis, across: [a, b], tail: Vec::new(), tail_across: Vec::new() };
+        ring.hang(obstacle, longest);
+        ring
+    }
+
+    /// The middle of the tail: out along the axis, then down, and around the body.
+    fn hang(&mut self, obstacle: &dyn Obstacle, longest: f32) {
+        let (mut p, mut direction, mut across) = (self.centre, self.axis, self.across);
+        let steps = (longest / STEP).ceil().clamp(2.0, 2000.0) as usize;
+        for step in 0..=steps {
+            self.tail.push((p, direction));
+            self.tail_across.push(across);
+            let before = direction;
+            let arc = step as f32 * STEP;
+            // A tail is stiff where it is bound.
+            let yields = (arc / 0.02).min(1.0) * (1.0 - (-STEP / FALL).exp());
+            direction = direction.lerp(Vec3::NEG_Y, yields).normalize_or(direction);
+            let next = p + direction * STEP;
+            let (distance, n) = obstacle.distance(next);
+            let clear = 0.003 + self.tie.radius * self.spread(arc);
+            let pushed = next + n * ((clear - distance).max(0.0) * (arc / 0.03).min(1.0)).min(0.8 * STEP);
+            direction = (pushed - p).normalize_or(direction);
+            p += direction * STEP;
+            let turn = Quat::from_rotation_arc(before, direction);
+            across = across.map(|v| turn * v);
+        }
+    }
+
+    /// How wide the tail is, in radii of the ring, `arc` metres beyond it.
+    pub(super) fn spread(&self, arc: f32) -> f32 {
+        let t = (arc / 0.07).clamp(0.0, 1.0);
+        let end = (self.tail.len().max(1) as f32 * STEP).max(0.05);
+        let narrows = (arc / end).clamp(0.0, 1.0);
+        (1.0 + 0.9 * t * t * (3.0 - 2.0 * t)) * (1.0 - 0.45 * narrows * narrows)
+    }
+
+    /// The point of the tail `arc` metres beyond the ring at the place `disc` of its cross-section, where the
+    /// ring's opening is the unit disc.
+    fn tail_at(&self, arc: f32, disc: [f32; 2]) -> Vec3 {
+        let u = (arc / STEP).max(0.0);
+        let i = (u as usize).min(self.tail.len() - 2);
+        let t = u - i as f32;
+        let ((p, _), (q, _)) = (self.tail[i], self.tail[i + 1]);
+        let across = |k: usize| self.tail_across[i][k].lerp(self.tail_across[i + 1][k], t.min(1.0));
+        let wide = self.tie.radius * self.spread(arc);
+        p + (q - p) * t + (across(0) * disc[0] + across(1) * disc[1]) * wide
+    }
+
+    /// The point of a bun `angle` radians along the rope that is wound around the axis.
+    fn coil_at(&self, angle: f32, disc: [f32; 2]) -> Vec3 {
+        let thick = 0.42 * self.tie.bun_radius;
+        let wide = self.tie.bun_radius - thick;
+        // It leaves the ring and reaches its circle in a third of a turn.
+        let t = (angle / 2.1).clamp(0.0, 1.0);
+        let out = t * t * (3.0 - 2.0 * t);
+        let [a, b] = self.across;
+        let (around, ahead) = (a * angle.cos() + b * angle.sin(), angle / self.tie.bun_coils);
+        let radius = self.tie.radius + (thick - self.tie.radius) * out;
+        // The rope turns about itself as it goes around.
+        let (sin, cos) = ahead.sin_cos();
+        let turned = [disc[0] * cos - disc[1] * sin, disc[0] * sin + disc[1] * cos];
+        let middle = self.centre + around * (wide * out) + self.axis * (0.85 * thick * out);
+        let at_ring = self.across[0] * disc[0] + self.across[1] * disc[1];
+        let in_rope = around * turned[0] + self.axis * turned[1];
+        middle + at_ring.lerp(in_rope, out) * radius
+    }
+
+    /// The way of hair at the place `disc`, beyond the ring, `length` metres long, in steps of about [`STEP`].
+    pub(super) fn beyond(&self, disc: [f32; 2], length: f32) -> Vec<Vec3> {
+        let steps = (length / STEP).ceil().clamp(1.0, 2000.0) as usize;
+        match self.tie.kind {
+            super::TieKind::Ponytail => (1..=steps).map(|i| self.tail_at(i as f32 * STEP, disc)).collect(),
+            super::TieKind::Bun => {
+                let mut angle = 0.0_f32;
+                let mut out = Vec::with_capacity(steps);
+                let mut p = self.coil_at(0.0, disc);
+                for _ in 0..steps {
+                    // As far in angle as makes a step, from how fast the point moves there.
+                    let speed = (self.coil_at(angle + 0.02, disc) - p).length() / 0.02;
+                    angle += (STEP / speed.max(1e-3)).min(0.3);
+                    p = self.coil_at(angle, disc);
+                    out.push(p);
+                }
+                out
+            }
+        }
+    }
+
+    /// The way from `root` over the head to `end`, pulled tight: points about [`STEP`] apart, both ends included.
+    ///
+    /// `middle` is a point deep in the head, and `height(arc)` how far above the skin hair lies that has come
+    /// `arc` metres.
+    pub(super) fn over_head(
+        obstacle: &dyn Obstacle,
+        middle: Vec3,
+        root: Vec3,
+        end: Vec3,
+        height: &dyn Fn(f32) -> f32,
+    ) -> Vec<Vec3> {
+        // First around the head by way of the top: the string then finds the shortest way from there.
+        let (from, to) = ((root - middle).normalize_or(Vec3::Y), (end - middle).normalize_or(Vec3::NEG_Z));
+        let via = (from + to + Vec3::Y * 0.5).normalize_or(Vec3::Y);
+        let reach = [(root - middle).length(), (end - middle).length()];
+        let mut knots: Vec<Vec3> = (0..KNOTS)
+            .map(|i| {
+                let t = i as f32 / (KNOTS - 1) as f32;
+                let d = if t < 0.5 { arc(from, via, 2.0 * t) } else { arc(via, to, 2.0 * t - 1.0) };
+                middle + d * (reach[0] + (reach[1] - reach[0]) * t)
+            })
+            .collect();
+        (knots[0], knots[KNOTS - 1]) = (root, end);
+        for _ in 0..PULLS {
+            let mut come = 0.0;
+            for i in 1..KNOTS - 1 {
+                let pulled = 0.5 * (knots[i - 1] + knots[i + 1]);
+                come += knots[i].distance(knots[i - 1]);
+                let mut p = pulled;
+                for _ in 0..2 {
+                    let (distance, n) = obstacle.distance(p);
+                    let short = height(come) - distance;
+                    if short <= 0.0 {
+                        break;
+                    }
+                    p += n * short;
+                }
+                knots[i] = p;
+            }
+        }
+        spaced(&knots)
+    }
+}
+
+/// A fraction `t` of the way from the unit vector `a` to the unit vector `b` along the sphere.
+fn arc(a: Vec3, b: Vec3, t: f32) -> Vec3 {
+    Quat::IDENTITY.slerp(Quat::from_rotation_arc(a, b), t) * a
+}
+
+/// A polyline cut into pieces of about [`STEP`].
+fn spaced(knots: &[Vec3]) -> Vec<Vec3> {
+    let mut out = vec![knots[0]];
+    for pair in knots.windows(2) {
+        let pieces = (pair[0].distance(pair[1]) / STEP).ceil().clamp(1.0, 200.0) as usize;
+        out.extend((1..=pieces).map(|k| pair[0].lerp(pair[1], k as f32 / pieces as f32)));
+    }
+    out
+}

@@ -1,0 +1,163 @@
+use glam::Vec3;
+
+use super::*;
+use crate::{GroomSettings, PlainHead, Preset, Scalp, grow};
+
+fn long() -> Hairstyle {
+    let settings = GroomSettings { wisps: 60, strands_per_wisp: 6, ..GroomSettings::preset(Preset::Long) };
+    grow(&settings, &PlainHead.scalp(32), &PlainHead).expect("it grows")
+}
+
+fn lengths(style: &Hairstyle) -> Vec<f32> {
+    let n = style.guides.points_per_guide;
+    (0..style.guides.count())
+        .flat_map(|g| (1..n).map(move |i| (g, i)))
+        .map(|(g, i)| style.guides.point(g, i).distance(style.guides.point(g, i - 1)))
+        .collect()
+}
+
+/// Where the guides of gathered wisps cross the plane of the ring from the head's side, as distances from its axis.
+fn crossings(style: &Hairstyle, tie: &HairTie) -> Vec<f32> {
+    let ring = Ring::new(tie, &PlainHead, 0.6);
+    let n = style.guides.points_per_guide;
+    let mut out = Vec::new();
+    for g in 0..style.guides.count() {
+        let Some(i) = (1..n).find(|i| style.held[g * n + i] >= RING_HOLD) else { continue };
+        // The ring is passed between the two points that it holds.
+        let (a, b) = (style.guides.point(g, i), style.guides.point(g, (i + 1).min(n - 1)));
+        let nearest = (0..=20).map(|t| {
+            let from = a.lerp(b, t as f32 / 20.0) - ring.centre;
+            (from - ring.axis * from.dot(ring.axis)).length()
+        });
+        out.push(nearest.fold(f32::MAX, f32::min));
+    }
+    out
+}
+
+#[test]
+fn a_tied_style_keeps_lengths_and_roots_and_stays_out_of_the_head() {
+    let style = long();
+    for kind in [TieKind::Ponytail, TieKind::Bun] {
+        let tie = HairTie { kind, ..HairTie::default() };
+        let tied = tied(&style, &[tie], &PlainHead);
+        tied.check().expect("sound");
+        for (a, b) in lengths(&style).iter().zip(lengths(&tied)) {
+            // Positions of half a metre in f32 and links of 1 cm.
+            assert!((a - b).abs() < 1e-6, "{a} became {b}");
+        }
+        let n = style.guides.points_per_guide;
+        let mut deepest = 0.0_f32;
+        for g in 0..style.guides.count() {
+            assert_eq!(style.guides.point(g, 0), tied.guides.point(g, 0));
+            for i in 1..n {
+                deepest = deepest.min(PlainHead.distance(tied.guides.point(g, i)).0);
+            }
+        }
+        // The plain head's distance is a first-order estimate; points are pushed out in eight rounds.
+        assert!(deepest > -0.002, "{kind:?}: {deepest}");
+        // Strands leave the scalp where they did.
+        let roots = |style: &Hairstyle| -> Vec<Vec3> {
+            style
+                .wisps
+                .iter()
+                .flat_map(|w| {
+                    let curve = crate::WispCurve::at_rest(&style.guides, w);
+                    (w.first_strand..w.first_strand + w.strand_count).map(move |s| {
+                        let i = style.strands.first_point[s as usize] as usize;
+                        let set = &style.strands;
+                        let o =
+                            Vec3::new(set.offset_normal[i], set.offset_binormal[i], set.offset_tangent[i]);
+                        curve.point(set.weights[s as usize], set.guide_param[i], o)
+                    })
+                })
+                .collect()
+        };
+        for (a, b) in roots(&style).iter().zip(roots(&tied)) {
+            assert!((*a - b).length() < 1e-5);
+        }
+    }
+}
+
+#[test]
+fn hair_passes_through_the_ring() {
+    let style = long();
+    let tie = HairTie::default();
+    let tied = tied(&style, &[tie], &PlainHead);
+    let crossings = crossings(&tied, &tie);
+    assert!(crossings.len() > style.guides.count() * 9 / 10, "only {} are gathered", crossings.len());
+    // The discs of the wisps in the ring are 0.2 of it wide.
+    let outside = crossings.iter().filter(|d| **d > 1.15 * tie.radius).count();
+    assert!(outside == 0, "{outside} of {} pass beside it: {crossings:?}", crossings.len());
+}
+
+#[test]
+fn reach_says_what_is_gathered_and_the_rest_stays() {
+    let style = long();
+    let n = style.guides.points_per_guide;
+    let all = tied(&style, &[HairTie::default()], &PlainHead);
+    let half = HairTie { reach: TieReach::AbovePlane, plane_point: Vec3::Y * 0.13, ..HairTie::default() };
+    let half = tied(&style, &[half], &PlainHead);
+    let count = |s: &Hairstyle| (0..s.guides.count()).filter(|g| s.held[g * n + 1] >= 0.0).count();
+    assert!(count(&half) > 30 && count(&half) < count(&all) - 30, "{} of {}", count(&half), count(&all));
+    for g in (0..style.guides.count()).filter(|g| half.held[g * n + 1] < 0.0) {
+        assert_eq!(style.guides.point(g, n - 1), half.guides.point(g, n - 1));
+    }
+    let none = HairTie { reach: TieReach::InSphere, sphere_centre: Vec3::ONE * 0.5, ..HairTie::default() };
+    assert_eq!(tied(&style, &[none], &PlainHead).guides, style.guides);
+}
+
+#[test]
+fn two_ties_share_the_hair_and_short_hair_is_left_out() {
+    let style = long();
+    let plait = |side: f32| HairTie {
+        at: Vec3::new(0.07 * side, 0.06, -0.07),
+        axis: Vec3::new(side, -0.3, -0.5),
+        reach: TieReach::InSphere,
+        sphere_centre: Vec3::new(0.1 * side, 0.1, 0.0),
+        sphere_radius: 0.13,
+        ..HairTie::default()
+    };
+    let two = tied(&style, &[plait(1.0), plait(-1.0)], &PlainHead);
+    let n = style.guides.points_per_guide;
+    let tips = |sign: f32| {
+        (0..style.guides.count())
+            .filter(|g| two.held[g * n + 1] >= 0.0 && sign * two.guides.point(*g, n - 1).x > 0.02)
+            .count()
+    };
+    assert!(tips(1.0) > 30 && tips(-1.0) > 30, "{} and {}", tips(1.0), tips(-1.0));
+    let short = grow(
+        &GroomSettings { wisps: 60, length: 0.04, ..GroomSettings::default() },
+        &PlainHead.scalp(32),
+        &PlainHead,
+    )
+    .expect("it grows");
+    let tied = tied(&short, &[HairTie::default()], &PlainHead);
+    assert!(tied.held.iter().filter(|h| **h >= 0.0).count() < tied.held.len() / 10);
+}
+
+#[test]
+fn nonsense_ties_nothing_harmful() {
+    let style = long();
+    let bad = HairTie {
+        at: Vec3::NAN,
+        axis: Vec3::ZERO,
+        radius: f32::INFINITY,
+        bun_coils: f32::NAN,
+        kind: TieKind::Bun,
+        ..HairTie::default()
+    };
+    let tied = tied(&style, &[bad; 20], &PlainHead);
+    assert!(tied.guides.x.iter().chain(&tied.strands.offset_normal).all(|v| v.is_finite()));
+    assert_eq!(HairTie::default(), HairTie::default().clamped());
+}
+
+#[test]
+fn a_tie_is_placed_on_any_head() {
+    let tie = HairTie::on(&PlainHead.scalp(32), Vec3::new(0.0, 0.5, -1.0), TieKind::Bun);
+    let (distance, n) = PlainHead.distance(tie.at);
+    // The estimate of the distance is of first order.
+    assert!((distance - 0.012).abs() < 0.002, "{distance}");
+    assert!(tie.axis.dot(n) > 0.9 && tie.at.z < -0.06 && tie.at.y > 0.12, "{tie:?}");
+    let nowhere = HairTie::on(&Scalp::default(), Vec3::NEG_Z, TieKind::Bun);
+    assert_eq!(nowhere, HairTie { kind: TieKind::Bun, ..HairTie::default() });
+}

@@ -1,0 +1,177 @@
+//! Shelter from the wind: hair behind the body, as the wind sees it, is in its wake.
+//!
+//! From each point a ray goes upwind. Where it passes through a collider, the point is in that collider's wake:
+//! fully right behind it, less the further away, and not at all to its sides or in front of it. With `x` the nearest
+//! distance of the ray to the collider's axis in radii, reached `s` metres upwind, and `r` the radius, a collider lets
+//! through `1 - w(x) b(s / r) f(s / r)`: `w` falls from 1 to 0 between 0.7 and 1.2 radii, `b` rises from 0 in front
+//! and beside to 1 behind, `f` is the wake's recovery over [`LENGTH`] radii. What all colliders let through is
+//! multiplied.
+
+use glam::Vec3;
+
+use crate::colliders::MovingShape;
+use crate::colliders::contact::bounds;
+use crate::colliders::shape::Shape;
+use crate::lanes::{LANES, Lane, Lane3, at, greater, lesser};
+
+/// Length of a wake, in radii of what makes it.
+const LENGTH: f32 = 10.0;
+
+/// The wakes of all colliders at one moment, in working space.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Wakes {
+    /// Unit vector against the wind.
+    upwind: Vec3,
+    /// How much of the wind a wake takes away, 0 to 1.
+    strength: f32,
+    solids: Vec<Solid>,
+}
+
+/// A collider as the wind meets it.
+#[derive(Clone, Copy, Debug)]
+struct Solid {
+    shape: Shape,
+    centre: Vec3,
+    /// Of the sphere around it, metres.
+    reach: f32,
+}
+
+impl Wakes {
+    /// Prepares the wakes of `shapes` in a wind along `along`; `strength` 0 makes none.
+    pub(crate) fn new(shapes: &[MovingShape], along: Vec3, strength: f32) -> Self {
+        let Some(along) = along.try_normalize().filter(|_| strength > 0.0) else { return Self::default() };
+        let solid = |mover: &MovingShape| {
+            let (centre, half) = (0.5 * (mover.min + mover.max), 0.5 * (mover.max - mover.min));
+            mover.shape.map(|shape| Solid { shape, centre, reach: half.length() })
+        };
+        Self { upwind: -along, strength, solids: shapes.iter().filter_map(solid).collect() }
+    }
+
+    /// The share of the wind that reaches each lane of a row of points.
+    #[inline(always)]
+    pub(crate) fn exposure(&self, points: &Lane3) -> Lane {
+        let mut open = [1.0; LANES];
+        if self.solids.is_empty() {
+            return open;
+        }
+        let (min, max) = bounds(points);
+        let (middle, reach) = (0.5 * (min + max), 0.5 * (max - min).length());
+        for solid in &self.solids {
+            let ahead = solid.centre - middle;
+            let s = ahead.dot(self.upwind);
+            let (aside, near) = ((ahead - self.upwind * s).length(), 1.2 * solid.reach + reach);
+            if s < -near || s > near + LENGTH * solid.reach || aside > near {
+                continue;
+            }
+            for k in 0..LANES {
+                let (x, s, radius) = solid.passed(at(points, k), self.upwind);
+                let within = smooth((1.2 - x) * 2.0);
+                let behind = smooth(s / (0.6 * radius));
+                let fades = greater(1.0 - s / (LENGTH * radius), 0.0);
+                open[k] *= 1.0 - within * behind * fades;
+            }
+        }
+        for share in &mut open {
+            *share = 1.0 - self.strength * (1.0 - *share);
+        }
+        open
+    }
+}
+
+impl Solid {
+    /// How near the ray from `p` along the unit vector `u` comes to the axis, in radii; how far along the ray; and
+    /// the radius there.
+    #[inline(always)]
+    fn passed(&self, p: Vec3, u: Vec3) -> (f32, f32, f32) {
+        match self.shape {
+            Shape::Capsule { a, axis, inv_axis_squared, radius_a, radius_change, .. } => {
+                // Nearest points of a ray and a segment (Ericson, Real-Time Collision Detection, 5.1.9).
+                let r = p - a;
+                let (b, c, f, e) = (u.dot(axis), u.dot(r), axis.dot(r), axis.dot(axis));
+                let cross = e - b * b;
+                let s = greater((b * f - c * e) / (cross + 1e-9), 0.0);
+                let t = lesser(greater((b * s + f) * inv_axis_squared, 0.0), 1.0);
+                let s = greater(b * t - c, 0.0);
+                let radius = radius_a + t * radius_change;
+                ((r + u * s - axis * t).length_squared().sqrt() / (radius + 1e-6), s, radius + 1e-6)
+            }
+            Shape::Ellipsoid { centre, axes: [ax, ay, az], radii } => {
+                let (r, inv) = (p - centre, 1.0 / radii);
+                let q = Vec3::new(r.dot(ax), r.dot(ay), r.dot(az)) * inv;
+                let v = Vec3::new(u.dot(ax), u.dot(ay), u.dot(az)) * inv;
+                let s = greater(-q.dot(v) / v.length_squared(), 0.0);
+                let radius = 1.0 / v.length_squared().sqrt();
+                ((q + v * s).length_squared().sqrt(), s, radius)
+            }
+        }
+    }
+}
+
+/// The smooth step from 0 at 0 to 1 at 1.
+#[inline(always)]
+fn smooth(t: f32) -> f32 {
+    let t = lesser(greater(t, 0.0), 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Affine3A;
+    use lovelock_motion::ColliderShape;
+
+    use super::*;
+    use crate::lanes::Map;
+
+    fn mover(shape: &ColliderShape) -> MovingShape {
+        let shape = Shape::new(shape).expect("a shape");
+        let (min, max) = shape.bounds();
+        MovingShape { shape: Some(shape), min, max, velocity_at: Map::IDENTITY, on_head: true }
+    }
+
+    /// A head, as an ellipsoid and as a capsule.
+    fn heads() -> [MovingShape; 2] {
+        let round = Affine3A::from_scale(Vec3::new(0.08, 0.11, 0.1));
+        let (a, b) = (Vec3::Y * 0.03, Vec3::Y * -0.03);
+        [
+            mover(&ColliderShape::Ellipsoid { from_unit: round }),
+            mover(&ColliderShape::Capsule { a, b, radius_a: 0.08, radius_b: 0.08 }),
+        ]
+    }
+
+    fn open(wakes: &Wakes, p: Vec3) -> f32 {
+        wakes.exposure(&[[p.x; LANES], [p.y; LANES], [p.z; LANES]])[0]
+    }
+
+    #[test]
+    fn behind_the_head_there_is_less_wind_and_before_and_beside_it_all() {
+        for head in heads() {
+            let wakes = Wakes::new(&[head], Vec3::X * 5.0, 1.0);
+            assert!(open(&wakes, Vec3::X * 0.1) < 0.2, "right behind: {}", open(&wakes, Vec3::X * 0.1));
+            let further = open(&wakes, Vec3::X * 0.5);
+            assert!(further > 0.4 && further < 0.9, "further behind: {further}");
+            for p in [Vec3::X * -0.1, Vec3::X * -0.5, Vec3::Z * 0.15, Vec3::Y * 0.2, Vec3::X * 2.0] {
+                assert_eq!(open(&wakes, p), 1.0, "at {p}");
+            }
+            // The wind decides what is behind.
+            let other = Wakes::new(&[head], Vec3::NEG_X, 1.0);
+            assert!(open(&other, Vec3::X * -0.1) < 0.2 && open(&other, Vec3::X * 0.1) == 1.0);
+        }
+    }
+
+    #[test]
+    fn shelter_fades_smoothly_and_its_strength_is_the_setting() {
+        let [head, _] = heads();
+        let wakes = Wakes::new(&[head], Vec3::X, 1.0);
+        let mut last = open(&wakes, Vec3::new(0.12, 0.0, -0.2));
+        for i in 0..400 {
+            let now = open(&wakes, Vec3::new(0.12, 0.0, -0.2 + 0.001 * i as f32));
+            assert!((now - last).abs() < 0.04, "a jump of {} in a millimetre", now - last);
+            last = now;
+        }
+        let (full, half) = (open(&wakes, Vec3::X * 0.15), Vec3::X * 0.15);
+        let half = open(&Wakes::new(&[head], Vec3::X, 0.5), half);
+        assert!((1.0 - half - 0.5 * (1.0 - full)).abs() < 1e-6);
+        assert_eq!(open(&Wakes::new(&[head], Vec3::X, 0.0), Vec3::X * 0.15), 1.0);
+        assert_eq!(open(&Wakes::new(&[head], Vec3::ZERO, 1.0), Vec3::X * 0.15), 1.0);
+    }
+}
