@@ -3,6 +3,7 @@
 //! A [`Body`] is immutable and shared by `Arc`. Everything is in metres, right-handed, Y up, the face of the
 //! rest pose toward +Z; loaders convert.
 
+mod backflip;
 mod body;
 mod bvh;
 mod clip;
@@ -10,6 +11,7 @@ mod collide;
 mod collider;
 mod distance;
 mod error;
+mod field;
 mod gltf;
 mod head;
 mod info;
@@ -19,13 +21,17 @@ mod sample;
 mod settings;
 mod skinning;
 
+pub use backflip::backflip;
 pub use body::{Bind, Body, Joint, Mesh, MorphTarget, Skeleton, SkinData};
 pub use bvh::{MotionFile, MotionJoint, load_motion, load_motion_bytes, load_motion_with};
 pub use clip::{Clip, Interpolation, JointTracks, MorphTrack, Seam, Track};
-pub use collide::{fit_colliders, place_colliders, signed_distance};
+pub use collide::{
+    ColliderEdit, ColliderEdits, FieldEdit, collider_lines, fit_colliders, place_colliders, signed_distance,
+};
 pub use collider::{Collider, ColliderShape, PlacedCollider};
-pub use distance::RestDistance;
+pub use distance::{RestDistance, SurfaceDistance};
 pub use error::MotionError;
+pub use field::{BodyField, FIELD_JOINTS, FieldLattice, FieldPose, FieldWeights};
 pub use gltf::{
     Character, load_character, load_character_bytes, load_character_bytes_with, load_character_with,
 };

@@ -42,8 +42,7 @@ fn step(c: &mut Criterion) {
                 b.iter(|| {
                     next = (next + 1) % poses.len();
                     let (time_secs, world_from_head, colliders) = &poses[next];
-                    let input =
-                        StepInput { time_secs: *time_secs, world_from_head: *world_from_head, colliders };
+                    let input = StepInput::new(*time_secs, *world_from_head, colliders);
                     black_box(simulation.step(&input, &settings, STEP_SECS))
                 });
             });

@@ -18,6 +18,8 @@ pub(crate) struct Block {
     pub(crate) rest: RestShape,
     /// Signed distance at rest of point `i` to collider `c` at `c * points + i`, metres.
     pub(crate) rest_distance: Vec<Lane>,
+    /// Signed distance at rest of each point to the field of head and shoulders, metres; empty without one.
+    pub(crate) field_distance: Vec<Lane>,
 
     /// How firmly ties hold each point; negative where none does.
     pub(crate) held: Vec<Lane>,
@@ -48,11 +50,21 @@ pub(crate) struct Block {
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Outcome {
     pub(crate) max_stretch: f32,
-    pub(crate) max_penetration_m: f32,
+    pub(crate) deepest: Depth,
+    pub(crate) deepest_guide: u32,
     pub(crate) recovered: u32,
     /// Sum of `v^2 / 2` over the free points.
     pub(crate) energy: f64,
     pub(crate) max_speed_squared: f32,
+}
+
+/// How deep a point is inside a collider.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Depth {
+    pub(crate) depth_m: f32,
+    pub(crate) point: u32,
+    /// Its index; [`crate::colliders::contact::FIELD`] for the field.
+    pub(crate) collider: u32,
 }
 
 impl Block {
@@ -64,6 +76,7 @@ impl Block {
             rest: RestShape::new(guides, &lanes, first_free),
             rest_distance: Vec::new(),
             held: vec![[-1.0; LANES]; points],
+            field_distance: Vec::new(),
             position: vec![ZERO3; points],
             velocity: vec![ZERO3; points],
             bend: vec![ZERO3; points],

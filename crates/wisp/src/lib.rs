@@ -29,7 +29,7 @@ mod ties;
 mod wake;
 mod wind;
 
-pub use input::StepInput;
-pub use report::StepReport;
+pub use input::{PlacedField, StepInput};
+pub use report::{BodyPart, InsidePoint, StepReport};
 pub use settings::{MAX_SUBSTEPS, Repulsion, RepulsionMode, SimulationSettings, Wind};
 pub use simulation::Simulation;

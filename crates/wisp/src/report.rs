@@ -11,6 +11,8 @@ pub struct StepReport {
     pub max_stretch: f32,
     /// Deepest point inside a collider, beyond what its place at rest allows, metres.
     pub max_penetration_m: f32,
+    /// Where that point is; `None` where no point is inside.
+    pub deepest: Option<InsidePoint>,
     /// Guides that were not finite and were put back to their last good pose.
     pub recovered_guides: u32,
     /// Cells of the density grid above their threshold at the start of the step.
@@ -26,4 +28,33 @@ pub struct StepReport {
     pub max_speed: f32,
     /// Whether the motion jumped, so that hair was moved along with the head and not simulated.
     pub jumped: bool,
+}
+
+/// A point of the hair inside the body.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct InsidePoint {
+    /// The guide, as the hairstyle counts them.
+    pub guide: u32,
+    /// Its point, root first.
+    pub point: u32,
+    /// How deep, metres.
+    pub depth_m: f32,
+    /// What it is in.
+    pub within: BodyPart,
+}
+
+/// What hair collides with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum BodyPart {
+    /// One of [`crate::StepInput::colliders`], by its index.
+    Collider(u32),
+    /// The field of head and shoulders.
+    Field,
+}
+
+impl BodyPart {
+    pub(crate) fn of(collider: u32) -> Self {
+        if collider == crate::colliders::contact::FIELD { Self::Field } else { Self::Collider(collider) }
+    }
 }

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 
 use crate::block::Block;
 use crate::colliders::contact::ContactRules;
+use crate::colliders::field::MovingField;
 use crate::colliders::shape::Shape;
 use crate::colliders::{MovingShape, RestColliders, place};
 use crate::dispatch::step_block;
@@ -20,7 +21,7 @@ use crate::rest::{RestShape, blocks_of};
 use crate::solver::{BendingKey, Plan, Substep};
 use crate::wake::Wakes;
 use crate::wind::WindField;
-use crate::{MAX_SUBSTEPS, SimulationSettings, StepInput, StepReport};
+use crate::{BodyPart, InsidePoint, MAX_SUBSTEPS, SimulationSettings, StepInput, StepReport};
 
 /// Hair in motion: the guides of one hairstyle as chains of rigid links.
 ///
@@ -38,6 +39,7 @@ pub struct Simulation {
     time_secs: f64,
     colliders: Vec<PlacedCollider>,
     rest_colliders: RestColliders,
+    field: Option<MovingField>,
     /// Simulated since the last reset, for the wind.
     elapsed_secs: f64,
     /// The links at the root that the blocks are prepared for.
@@ -45,6 +47,8 @@ pub struct Simulation {
     mean_link: f32,
     /// Whether to use the instructions of this processor and not those of every one; the bits are the same.
     wide: bool,
+    /// Whether to leave out tests that cannot find a contact; the bits are the same.
+    spare: bool,
     substeps: Vec<Substep>,
     shapes: Vec<MovingShape>,
 }
@@ -82,10 +86,12 @@ impl Simulation {
             time_secs: 0.0,
             colliders: Vec::new(),
             rest_colliders: RestColliders::default(),
+            field: None,
             elapsed_secs: 0.0,
             clamped_links,
             mean_link,
             wide: true,
+            spare: true,
             substeps: Vec::new(),
             shapes: Vec::new(),
         }
@@ -104,6 +110,8 @@ impl Simulation {
         self.colliders.clear();
         self.colliders.extend_from_slice(input.colliders);
         self.learn_colliders();
+        self.meet_field(input);
+        self.reset_field(input);
         let from_head = self.head.map_from_head(self.head.place);
         self.blocks.par_iter_mut().for_each(|block| block.place_at_rest(&from_head));
     }
@@ -127,10 +135,22 @@ impl Simulation {
         if self.clamped_links != settings.clamped_links {
             self.clamp_links(settings.clamped_links);
         }
+        let met = self.meet_field(input);
         if jumped || !(dt_secs > 0.0 && dt_secs.is_finite()) {
-            return self.carry_to(head, input.colliders, jumped);
+            let report = self.carry_to(head, input.colliders, jumped);
+            self.reset_field(input);
+            return report;
         }
-        let report = self.simulate(&head, input.colliders, &settings, dt_secs.min(0.1));
+        let dt_secs = dt_secs.min(0.1);
+        let rules = ContactRules::of(&settings);
+        if let (Some(field), Some(placed)) = (&mut self.field, input.field) {
+            if met {
+                // It begins where it is.
+                field.reset(&head, placed.pose);
+            }
+            field.advance(&head, placed.pose, rules.reach(), dt_secs, self.spare);
+        }
+        let report = self.simulate(&head, input.colliders, &settings, dt_secs);
         self.head = head;
         self.colliders.copy_from_slice(input.colliders);
         self.elapsed_secs += f64::from(dt_secs);
@@ -186,12 +206,8 @@ impl Simulation {
             substeps: &self.substeps,
             shapes: &self.shapes,
             shapes_per_substep: colliders.len(),
-            rules: ContactRules {
-                margin: settings.skin_margin,
-                layering: settings.layering,
-                friction: settings.friction,
-                h,
-            },
+            field: self.field.as_ref(),
+            rules: ContactRules { h, ..ContactRules::of(settings) },
             bending: BendingKey::new(settings, h, first_free),
             grid: &self.grid,
             wind: &wind,
@@ -210,7 +226,15 @@ impl Simulation {
         for block in &self.blocks {
             let out = &block.outcome;
             report.max_stretch = report.max_stretch.max(out.max_stretch);
-            report.max_penetration_m = report.max_penetration_m.max(out.max_penetration_m);
+            if out.deepest.depth_m > report.max_penetration_m {
+                report.max_penetration_m = out.deepest.depth_m;
+                report.deepest = Some(InsidePoint {
+                    guide: out.deepest_guide,
+                    point: out.deepest.point,
+                    depth_m: out.deepest.depth_m,
+                    within: BodyPart::of(out.deepest.collider),
+                });
+            }
             report.recovered_guides += out.recovered;
             energy += out.energy;
             fastest = fastest.max(out.max_speed_squared);
@@ -361,7 +385,9 @@ impl Simulation {
                 block.adopt(old, &from_head);
             }
         }
+        next.field = self.field.take();
         next.learn_rest_distances();
+        next.learn_field_distances();
         *self = next;
     }
 }
@@ -377,5 +403,6 @@ fn head_from(head: &HeadPose, origin: Vec3) -> Map {
     Map { turn, shift: turn * (origin - head.place) }
 }
 
+mod body;
 #[cfg(test)]
 mod tests;

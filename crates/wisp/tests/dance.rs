@@ -40,7 +40,7 @@ fn without_colliders_the_same_dance_does_enter_the_body() {
     let (mut deepest, settings) = (0.0_f32, SimulationSettings::default());
     for step in 1..=180 {
         let mut input = stage.at(Some(f64::from(step) / 60.0));
-        input.colliders = &[];
+        (input.colliders, input.field) = (&[], None);
         simulation.step(&input, &settings, STEP_SECS);
         let guides = frame(&simulation).guides;
         for g in 0..guides.count() {

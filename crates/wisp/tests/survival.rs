@@ -27,11 +27,7 @@ fn skull(radius: f32) -> PlacedCollider {
 
 fn input(step: i32, colliders: &[PlacedCollider]) -> StepInput<'_> {
     let sway = 0.1 * (step as f32 * 0.3).sin();
-    StepInput {
-        time_secs: f64::from(step) / 60.0,
-        world_from_head: Affine3A::from_translation(Vec3::X * sway),
-        colliders,
-    }
+    StepInput::new(f64::from(step) / 60.0, Affine3A::from_translation(Vec3::X * sway), colliders)
 }
 
 fn all_finite(simulation: &Simulation) -> bool {

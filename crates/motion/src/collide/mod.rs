@@ -1,7 +1,9 @@
 //! Colliders: fitted to the resting body once, then placed in every pose.
 
+mod edits;
 mod fit;
 mod groups;
+mod lines;
 mod refine;
 mod shape;
 
@@ -9,7 +11,10 @@ use glam::{Affine3A, Vec3};
 
 use crate::{Body, Collider, ColliderShape, PlacedCollider, Pose};
 
+pub(crate) use edits::shape_bounds;
+pub use edits::{ColliderEdit, ColliderEdits, FieldEdit};
 pub use fit::fit_colliders;
+pub use lines::collider_lines;
 pub use shape::signed_distance;
 
 /// Carries colliders along with their joints into a pose. Nothing is allocated where `placed` was used with them

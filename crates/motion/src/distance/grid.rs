@@ -181,7 +181,7 @@ impl Grid {
 }
 
 /// Trilinear interpolation between the corners of a cell, x fastest, and its slope in units of the cell.
-pub(super) fn interpolate(c: &[f32; 8], Vec3 { x, y, z }: Vec3) -> (f32, Vec3) {
+pub(crate) fn interpolate(c: &[f32; 8], Vec3 { x, y, z }: Vec3) -> (f32, Vec3) {
     let along_x = [c[1] - c[0], c[3] - c[2], c[5] - c[4], c[7] - c[6]];
     let edge = [0, 1, 2, 3].map(|k| c[2 * k] + along_x[k] * x);
     let along_y = [edge[1] - edge[0], edge[3] - edge[2]];

@@ -321,7 +321,7 @@ impl Engine {
     }
 
     fn input(time_secs: f64, world_from_head: Affine3A, colliders: &[PlacedCollider]) -> StepInput<'_> {
-        StepInput { time_secs, world_from_head, colliders }
+        StepInput::new(time_secs, world_from_head, colliders)
     }
 
     /// Poses the body at the present step.

@@ -180,7 +180,7 @@ fn a_head_that_is_torn_away_would_whip_the_hair() {
     let scene = scene();
     let mut simulation = lovelock_wisp::Simulation::new(Arc::clone(&scene.style));
     let at = |x: f32| glam::Affine3A::from_translation(Vec3::new(x, 1.5, 0.0));
-    let input = |time_secs, x| lovelock_wisp::StepInput { time_secs, world_from_head: at(x), colliders: &[] };
+    let input = |time_secs, x| lovelock_wisp::StepInput::new(time_secs, at(x), &[]);
     simulation.reset(&input(0.0, 0.0));
     let report = simulation.step(&input(1.0 / 60.0, 0.45), &SimulationSettings::default(), 1.0 / 60.0);
     assert!(!report.jumped && report.max_speed > WHIP_METRES_PER_SEC, "{report:?}");

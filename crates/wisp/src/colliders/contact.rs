@@ -4,7 +4,10 @@
 use glam::Vec3;
 
 use super::MovingShape;
+use super::field::{FieldRow, MovingField};
+use crate::SimulationSettings;
 use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, direction_or, greater, lesser, put};
+use crate::solver::Substep;
 
 /// How contacts behave in one step.
 #[derive(Clone, Copy, Debug)]
@@ -20,7 +23,7 @@ pub(crate) struct ContactRules {
 }
 
 /// Height above the head up to which layers keep their order, metres.
-const LAYER_HEIGHT: f32 = 0.025;
+pub(crate) const LAYER_HEIGHT: f32 = 0.025;
 
 /// A point's own clearance at rest is undercut by this, so that rounding makes no contact of it, metres.
 const SLACK: f32 = 1e-4;
@@ -36,6 +39,12 @@ const TIGHT: usize = 2;
 const CLOSE_ENOUGH: f32 = 1e-5;
 
 impl ContactRules {
+    /// The rules that settings make, for a step of a second.
+    pub(crate) fn of(settings: &SimulationSettings) -> Self {
+        let SimulationSettings { skin_margin: margin, layering, friction, .. } = *settings;
+        Self { margin, layering, friction, h: 1.0 }
+    }
+
     /// The most that any point stays away from a surface, metres.
     pub(crate) fn reach(&self) -> f32 {
         self.margin + self.layering * LAYER_HEIGHT
@@ -75,6 +84,46 @@ pub(crate) struct Near<'a> {
     pub(crate) buried: &'a [Lane],
     /// Mean link of each guide, metres.
     pub(crate) link: &'a Lane,
+    /// The field of head and shoulders.
+    pub(crate) field: Option<NearField<'a>>,
+}
+
+/// The field in a substep, and each point's distance to it at rest.
+#[derive(Clone, Copy)]
+pub(crate) struct NearField<'a> {
+    pub(crate) moving: &'a MovingField,
+    pub(crate) substep: &'a Substep,
+    /// How much of the step has passed.
+    pub(crate) passed: f32,
+    pub(crate) rest_distance: &'a [Lane],
+    /// How much deeper than at rest the last carried point is inside, metres; see [`buried`].
+    pub(crate) buried: Lane,
+}
+
+impl NearField<'_> {
+    #[inline(always)]
+    fn row(&self, placed: &Lane3, reach: f32) -> Option<FieldRow> {
+        self.moving.row(placed, self.substep, self.passed, reach)
+    }
+}
+
+/// How much deeper than at rest points that the scalp carries are inside the field, metres: where neck and shoulders
+/// move under roots that the head carries.
+#[inline(always)]
+pub(crate) fn buried_in_field(
+    carried: &Lane3,
+    moving: &MovingField,
+    substep: &Substep,
+    passed: f32,
+    rest: &Lane,
+) -> Lane {
+    let mut out = ZERO;
+    if let Some(row) = moving.row(carried, substep, passed, LAYER_HEIGHT) {
+        for k in 0..LANES {
+            out[k] = greater(lesser(rest[k], 0.0) - row.distance[k], 0.0);
+        }
+    }
+    out
 }
 
 /// How steeply a lock leaves a collider that its root has been carried into: the sine of its angle.
@@ -106,11 +155,35 @@ impl Near<'_> {
     fn allowed(&self, n: usize, point: usize, rules: &ContactRules) -> Lane {
         let c = self.active[n];
         let mut out = rules.allowed(self.shapes[c as usize].on_head, self.rest(c, point));
-        for k in 0..LANES {
-            out[k] -=
-                greater(self.buried[n][k] - WAY_OUT * self.link[k] * (point - self.carried) as f32, 0.0);
-        }
+        self.let_out(&mut out, &self.buried[n], point);
         out
+    }
+
+    /// The same for the field. Only the skin that goes with the head keeps layers in order.
+    #[inline(always)]
+    fn allowed_by_field(
+        &self,
+        field: &NearField,
+        row: &FieldRow,
+        point: usize,
+        rules: &ContactRules,
+    ) -> Lane {
+        let rest = &field.rest_distance[point];
+        let mut out = ZERO;
+        for k in 0..LANES {
+            let height = lesser(greater(rest[k], 0.0), LAYER_HEIGHT);
+            out[k] = lesser(rest[k] - SLACK, rules.margin + rules.layering * row.head[k] * height);
+        }
+        self.let_out(&mut out, &field.buried, point);
+        out
+    }
+
+    /// Lets points of a guide whose root is buried come out along a slope.
+    #[inline(always)]
+    fn let_out(&self, allowed: &mut Lane, buried: &Lane, point: usize) {
+        for k in 0..LANES {
+            allowed[k] -= greater(buried[k] - WAY_OUT * self.link[k] * (point - self.carried) as f32, 0.0);
+        }
     }
 }
 
@@ -134,14 +207,14 @@ pub(crate) fn lay_point(
         let (d, _) = direction_or(at(wanted, k) - from, at(fallback, k));
         put(&mut placed, k, from + d * length[k]);
     }
-    if near.active.is_empty() {
+    if near.active.is_empty() && near.field.is_none() {
         return placed;
     }
     for round in 0..ROUNDS {
         let rules = if round < TIGHT { *rules } else { rules.bare() };
         let enough = if round == 0 { 0.0 } else { CLOSE_ENOUGH };
+        let mut pushed = push_out_of_field(point, before, was, length, near, &rules, round, &mut placed);
         let (min, max) = bounds(&placed);
-        let mut pushed = false;
         for (n, &c) in near.active.iter().enumerate() {
             let mover = &near.shapes[c as usize];
             let reach = rules.reach();
@@ -171,7 +244,7 @@ pub(crate) fn lay_point(
                 let depth = allowed[k] - nearest.distance[k];
                 let (p, from, l) = (at(&placed, k), at(before, k), length[k]);
                 let centre = at(&nearest.centre, k);
-                let slid = slide(p, at(was, k), centre, depth, friction, mover, rules.h);
+                let slid = slide(p, at(was, k), centre, depth, friction, mover.velocity_at.apply(p), rules.h);
                 let out = push_out(from, slid, l, centre, nearest.radius[k] + allowed[k]);
                 let touching = depth > 0.0;
                 let pick = |a: f32, b: f32| if touching { a } else { b };
@@ -185,12 +258,48 @@ pub(crate) fn lay_point(
     placed
 }
 
+/// Pushes the lanes of a point out of the field; whether there was anything to push.
+#[inline(always)]
+fn push_out_of_field(
+    point: usize,
+    before: &Lane3,
+    was: &Lane3,
+    length: &Lane,
+    near: &Near,
+    rules: &ContactRules,
+    round: usize,
+    placed: &mut Lane3,
+) -> bool {
+    let Some(field) = &near.field else { return false };
+    let Some(row) = field.row(placed, rules.reach()) else { return false };
+    let allowed = near.allowed_by_field(field, &row, point, rules);
+    let (mut deepest, enough) = (0.0, if round == 0 { 0.0 } else { CLOSE_ENOUGH });
+    for k in 0..LANES {
+        deepest = greater(deepest, allowed[k] - row.distance[k]);
+    }
+    if deepest <= enough {
+        return false;
+    }
+    let friction = if round == 0 { rules.friction } else { 0.0 };
+    for k in 0..LANES {
+        let depth = allowed[k] - row.distance[k];
+        let (p, from, l) = (at(placed, k), at(before, k), length[k]);
+        let (centre, radius) = row.sphere(k, p);
+        let slid = slide(p, at(was, k), centre, depth, friction, at(&row.velocity, k), rules.h);
+        let out = push_out(from, slid, l, centre, radius + allowed[k]);
+        let touching = depth > 0.0;
+        let pick = |a: f32, b: f32| if touching { a } else { b };
+        put(placed, k, Vec3::new(pick(out.x, p.x), pick(out.y, p.y), pick(out.z, p.z)));
+    }
+    true
+}
+
 /// Coulomb friction: the velocity along the surface, relative to it, loses `friction` times the velocity that
 /// the push-out takes away across it, and at most all.
 #[inline(always)]
-fn slide(p: Vec3, was: Vec3, centre: Vec3, depth: f32, friction: f32, mover: &MovingShape, h: f32) -> Vec3 {
+fn slide(p: Vec3, was: Vec3, centre: Vec3, depth: f32, friction: f32, surface: Vec3, h: f32) -> Vec3 {
     let (normal, _) = direction_or(p - centre, Vec3::Y);
-    let relative = p - was - mover.velocity_at.apply(p) * h;
+    let relative = p - was - surface * h;
     let tangential = relative - normal * relative.dot(normal);
     let size = tangential.length_squared().sqrt();
     let lost = lesser(1.0, friction * greater(depth, 0.0) / (size + 1e-9));
@@ -218,10 +327,32 @@ pub(crate) fn push_out(from: Vec3, p: Vec3, length: f32, centre: Vec3, radius: f
     from + turned * length
 }
 
-/// The deepest that any lane of point `i` is inside what it may touch, metres; 0 outside.
+/// How deep lanes are inside what they may touch.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Depths {
+    /// The deepest of each lane, metres; 0 outside.
+    pub(crate) depth: Lane,
+    /// The collider of that depth; [`FIELD`] for the field.
+    pub(crate) collider: [u32; LANES],
+}
+
+/// Stands for the field among colliders.
+pub(crate) const FIELD: u32 = u32::MAX;
+
+/// How deep the lanes of point `i` are inside what they may touch.
 #[inline(always)]
-pub(crate) fn penetration(point: usize, placed: &Lane3, near: &Near, rules: &ContactRules) -> Lane {
-    let mut worst = ZERO;
+pub(crate) fn penetration(point: usize, placed: &Lane3, near: &Near, rules: &ContactRules) -> Depths {
+    let mut worst = Depths { depth: ZERO, collider: [FIELD; LANES] };
+    // What counts is the surface, or the distance at rest where that is less.
+    let bare = rules.bare();
+    if let Some(field) = &near.field
+        && let Some(row) = field.row(placed, rules.reach())
+    {
+        let allowed = near.allowed_by_field(field, &row, point, &bare);
+        for k in 0..LANES {
+            worst.depth[k] = greater(0.0, allowed[k] - row.distance[k]);
+        }
+    }
     let (min, max) = bounds(placed);
     for (n, &c) in near.active.iter().enumerate() {
         let mover = &near.shapes[c as usize];
@@ -233,10 +364,12 @@ pub(crate) fn penetration(point: usize, placed: &Lane3, near: &Near, rules: &Con
             continue;
         }
         let nearest = shape.nearest(placed, &ZERO3);
-        // What counts is the surface, or the distance at rest where that is less.
-        let allowed = near.allowed(n, point, &rules.bare());
+        let allowed = near.allowed(n, point, &bare);
         for k in 0..LANES {
-            worst[k] = greater(worst[k], allowed[k] - nearest.distance[k]);
+            let depth = allowed[k] - nearest.distance[k];
+            if depth > worst.depth[k] {
+                (worst.depth[k], worst.collider[k]) = (depth, c);
+            }
         }
     }
     worst

@@ -1,6 +1,7 @@
 //! Colliders over one step: how they lie at rest, and where they are at each substep.
 
 pub(crate) mod contact;
+pub(crate) mod field;
 pub(crate) mod shape;
 
 use glam::{Affine3A, Mat3, Quat, Vec3};

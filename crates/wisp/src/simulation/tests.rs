@@ -21,7 +21,7 @@ fn head_of_hair() -> (Simulation, PlacedCollider) {
 
 fn input(step: i32, colliders: &[PlacedCollider]) -> StepInput<'_> {
     let turn = Quat::from_rotation_y((step as f32 * 0.1).sin());
-    StepInput { time_secs: f64::from(step) / 60.0, world_from_head: Affine3A::from_quat(turn), colliders }
+    StepInput::new(f64::from(step) / 60.0, Affine3A::from_quat(turn), colliders)
 }
 
 fn settings() -> SimulationSettings {

@@ -6,6 +6,7 @@ use super::BendingKey;
 use crate::SimulationSettings;
 use crate::colliders::MovingShape;
 use crate::colliders::contact::ContactRules;
+use crate::colliders::field::MovingField;
 use crate::grid::DensityGrid;
 use crate::lanes::{Map, Turn};
 use crate::wake::Wakes;
@@ -48,6 +49,7 @@ pub(crate) struct Plan<'a> {
     /// The colliders of every substep, one substep after the other.
     pub(crate) shapes: &'a [MovingShape],
     pub(crate) shapes_per_substep: usize,
+    pub(crate) field: Option<&'a MovingField>,
     pub(crate) rules: ContactRules,
     pub(crate) bending: BendingKey,
     pub(crate) grid: &'a DensityGrid,

@@ -2,8 +2,10 @@
 
 use super::Plan;
 use super::lengths::{project_position, project_velocity};
-use crate::block::Block;
-use crate::colliders::contact::{Near, apart, bounds, buried, lay_point, penetration};
+use crate::block::{Block, Depth};
+use crate::colliders::contact::{
+    Near, NearField, apart, bounds, buried, buried_in_field, lay_point, penetration,
+};
 use crate::lanes::{LANES, Turns, ZERO3, at, direction_or, greater, lesser, put};
 
 /// Takes the block through substep `s`.
@@ -162,17 +164,25 @@ fn find_near(block: &mut Block, plan: &Plan, s: usize) {
 #[inline(always)]
 fn lay_out(block: &mut Block, plan: &Plan, s: usize) {
     let (count, inv_h) = (block.points(), 1.0 / plan.h);
+    let carried = plan.first_free.saturating_sub(1);
+    let field = plan.field.map(|moving| {
+        let (substep, passed) = (&plan.substeps[s], (s + 1) as f32 / plan.substeps.len() as f32);
+        let (rest_distance, root) = (&block.field_distance[..], &block.next[carried]);
+        let buried = buried_in_field(root, moving, substep, passed, &rest_distance[carried]);
+        NearField { moving, substep, passed, rest_distance, buried }
+    });
     let near = Near {
         shapes: &plan.shapes[s * plan.shapes_per_substep..][..plan.shapes_per_substep],
         active: &block.active,
         rest_distance: &block.rest_distance,
         points: count,
-        carried: plan.first_free.saturating_sub(1),
+        carried,
         buried: &block.buried,
         link: &block.rest.mean_link,
+        field,
     };
     let last = s + 1 == plan.substeps.len();
-    let mut deepest = [0.0_f32; LANES];
+    let mut deepest = [Depth::default(); LANES];
     let mut before = ZERO3;
     let mut was_before = ZERO3;
     // What bodies and lengths have moved a point by, what hangs from it follows as its stiffness has it. Otherwise a
@@ -195,10 +205,13 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize) {
                 put(&mut fallback, k, (at(&was, k) - at(&was_before, k)) * inv[k]);
             }
             placed = lay_point(i, &before, &placed, &was, &fallback, &length, &near, &plan.rules);
-            if last && !near.active.is_empty() {
-                let depth = penetration(i, &placed, &near, &plan.rules);
+            if last && (near.field.is_some() || !near.active.is_empty()) {
+                let found = penetration(i, &placed, &near, &plan.rules);
                 for k in 0..LANES {
-                    deepest[k] = greater(deepest[k], depth[k]);
+                    if found.depth[k] > deepest[k].depth_m {
+                        deepest[k] =
+                            Depth { depth_m: found.depth[k], point: i as u32, collider: found.collider[k] };
+                    }
                 }
             }
         }
@@ -214,7 +227,9 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize) {
         (before, was_before) = (placed, was);
     }
     std::mem::swap(&mut block.bend, &mut block.next_bend);
-    for depth in &deepest[..block.used] {
-        block.outcome.max_penetration_m = greater(block.outcome.max_penetration_m, *depth);
+    for (depth, &guide) in deepest.iter().zip(&block.guides).take(block.used) {
+        if depth.depth_m > block.outcome.deepest.depth_m {
+            (block.outcome.deepest, block.outcome.deepest_guide) = (*depth, guide);
+        }
     }
 }

@@ -10,10 +10,12 @@ use lovelock_groom::{
     StrandSet, grow, import_around, load_hair, tied,
 };
 use lovelock_motion::{
-    Body, Clip, Collider, PlacedCollider, Pose, RestDistance, fit_colliders, head_mesh, load_character,
-    place_colliders, pose_at,
+    Body, BodyField, Clip, Collider, ColliderEdits, FieldPose, PlacedCollider, Pose, RestDistance,
+    SurfaceDistance, backflip, fit_colliders, head_mesh, load_character, load_motion, place_colliders,
+    pose_at, retarget,
 };
-use lovelock_wisp::{Simulation, SimulationSettings, StepInput, StepReport};
+use lovelock_wisp::{PlacedField, Simulation, SimulationSettings, StepInput, StepReport};
+use rayon::prelude::*;
 
 /// The step of the product, seconds.
 pub const STEP_SECS: f32 = 1.0 / 60.0;
@@ -23,9 +25,11 @@ pub struct Stage {
     pub body: Arc<Body>,
     pub dance: Arc<Clip>,
     pub colliders: Vec<Collider>,
+    pub field: Option<Arc<BodyField>>,
     pub style: Arc<Hairstyle>,
     pub pose: Pose,
     pub placed: Vec<PlacedCollider>,
+    pub field_pose: FieldPose,
 }
 
 pub struct RestBody(RestDistance);
@@ -65,14 +69,18 @@ impl Stage {
             mask: head.scalp,
         };
         let obstacle = RestBody(RestDistance::new(&character.body));
+        let field = BodyField::new(&character.body, &obstacle.0).map(Arc::new);
+        let colliders = ColliderEdits::default().apply(&fit_colliders(&character.body), field.as_deref());
         let style = hair(&scalp, &obstacle);
         Self {
             dance: Arc::clone(dance),
-            colliders: fit_colliders(&character.body),
+            colliders,
+            field,
             style: Arc::new(style),
             body: character.body,
             pose: Pose::default(),
             placed: Vec::new(),
+            field_pose: FieldPose::default(),
         }
     }
 
@@ -88,7 +96,28 @@ impl Stage {
         let time_secs = time_secs.unwrap_or_default();
         pose_at(&self.body, clip, time_secs, &mut self.pose);
         place_colliders(&self.colliders, &self.body, &self.pose, &mut self.placed);
-        StepInput { time_secs, world_from_head: self.pose.world_from_head, colliders: &self.placed }
+        let field = self.field.as_ref().map(|field| {
+            field.place(&self.body, &self.pose, 0.0, &mut self.field_pose);
+            PlacedField { field, pose: &self.field_pose }
+        });
+        StepInput { field, ..StepInput::new(time_secs, self.pose.world_from_head, &self.placed) }
+    }
+
+    /// Takes another motion: `dance`, `backflip`, or a file that is retargeted.
+    pub fn play(&mut self, motion: &str) -> Result<(), Box<dyn std::error::Error>> {
+        self.dance = match motion {
+            "dance" => return Ok(()),
+            "backflip" => Arc::new(backflip(&self.body).ok_or("the figure has no limbs")?),
+            file => Arc::new(retarget(&load_motion(std::path::Path::new(file))?, &self.body)?),
+        };
+        Ok(())
+    }
+
+    /// The same body without its field: with all the colliders that are fitted to it.
+    pub fn without_field(mut self) -> Self {
+        self.colliders = fit_colliders(&self.body);
+        self.field = None;
+        self
     }
 
     /// Hair at rest on the body at that time.
@@ -134,7 +163,7 @@ pub fn bare() -> SimulationSettings {
 
 /// A head without a body.
 pub fn head(time_secs: f64, world_from_head: Affine3A) -> StepInput<'static> {
-    StepInput { time_secs, world_from_head, colliders: &[] }
+    StepInput::new(time_secs, world_from_head, &[])
 }
 
 /// Where the guides are.
@@ -178,6 +207,7 @@ pub fn worse(a: StepReport, b: StepReport) -> StepReport {
         substeps: a.substeps.max(b.substeps),
         max_stretch: a.max_stretch.max(b.max_stretch),
         max_penetration_m: a.max_penetration_m.max(b.max_penetration_m),
+        deepest: if b.max_penetration_m > a.max_penetration_m { b.deepest } else { a.deepest },
         recovered_guides: a.recovered_guides + b.recovered_guides,
         over_dense_cells: a.over_dense_cells.max(b.over_dense_cells),
         hair_volume: a.hair_volume.min(b.hair_volume),
@@ -185,5 +215,87 @@ pub fn worse(a: StepReport, b: StepReport) -> StepReport {
         kinetic_energy: a.kinetic_energy.max(b.kinetic_energy),
         max_speed: a.max_speed.max(b.max_speed),
         jumped: a.jumped || b.jumped,
+    }
+}
+
+/// How deep hair is in the skin of a frame, beyond what it is at rest, and what roots that the skin closes over allow.
+pub struct Depths {
+    /// Depth at rest of every point, metres, guide by guide; 0 outside.
+    rest: Vec<f32>,
+    pub worst: Depth,
+    /// The same without any allowance but that of the point itself at rest.
+    pub worst_of_all: Depth,
+    /// How many points were deeper than each of [`Depths::LIMITS`], and how many there were.
+    pub over: [usize; 4],
+    pub count: usize,
+}
+
+/// One place in the skin.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Depth {
+    pub depth: f32,
+    pub guide: usize,
+    pub point: usize,
+    pub step: u32,
+    /// In the axes of the world, from the head joint, metres.
+    pub at: Vec3,
+}
+
+impl Depths {
+    pub const LIMITS: [f32; 4] = [0.0005, 0.001, 0.002, 0.005];
+
+    pub fn new(stage: &Stage) -> Self {
+        let (guides, mesh) = (&stage.style.guides, &stage.body.mesh);
+        let origin = stage.body.skeleton.rest_position(stage.body.head_joint);
+        let rest = SurfaceDistance::new(&mesh.positions, &mesh.triangles);
+        let depth = |i: usize| {
+            let p = Vec3::new(guides.x[i], guides.y[i], guides.z[i]) + origin;
+            (-rest.distance(p)).max(0.0)
+        };
+        Self {
+            rest: (0..guides.x.len()).into_par_iter().map(depth).collect(),
+            worst: Depth::default(),
+            worst_of_all: Depth::default(),
+            over: [0; 4],
+            count: 0,
+        }
+    }
+
+    /// Measures the hair of a step against the skin then.
+    pub fn measure(&mut self, stage: &Stage, simulation: &Simulation, skin: &SurfaceDistance, step: u32) {
+        let (now, rest) = (frame(simulation), &stage.style.guides);
+        let points = rest.points_per_guide;
+        let head = Vec3::from(now.world_from_head.translation);
+        let found: Vec<[Depth; 2]> = (0..rest.count() * points)
+            .into_par_iter()
+            .filter(|i| i % points >= 2)
+            .map(|i| {
+                let (guide, point) = (i / points, i % points);
+                let p = now.guides.point(guide, point);
+                let all = -skin.distance(p) - self.rest[i];
+                let mut depth = all;
+                if all > 0.0 {
+                    // The scalp carries the first two points; see `buried` of the contacts.
+                    let root = -skin.distance(now.guides.point(guide, 1)) - self.rest[guide * points + 1];
+                    let link: f32 =
+                        (1..points).map(|k| (rest.point(guide, k) - rest.point(guide, k - 1)).length()).sum();
+                    let slope = 0.5 * link / (points - 1) as f32 * (point - 1) as f32;
+                    depth -= (root.max(0.0) - slope).max(0.0);
+                }
+                [depth, all].map(|depth| Depth { depth, guide, point, step, at: p - head })
+            })
+            .collect();
+        self.count += found.len();
+        for [depth, all] in found {
+            for (over, limit) in self.over.iter_mut().zip(Self::LIMITS) {
+                *over += usize::from(depth.depth > limit);
+            }
+            if depth.depth > self.worst.depth {
+                self.worst = depth;
+            }
+            if all.depth > self.worst_of_all.depth {
+                self.worst_of_all = all;
+            }
+        }
     }
 }

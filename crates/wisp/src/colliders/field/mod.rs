@@ -1,0 +1,326 @@
+//! The field of head and shoulders in one step: points near it are taken back to rest and measured there.
+//!
+//! All of it happens in head space, where the skull never moves: a point over it is at rest where it is now. What
+//! the other joints move has a map from head space now to rest for each weighting that occurs, at the start and at
+//! the end of the step; in between, maps are mixed, and the head itself turns exactly.
+
+mod occupancy;
+#[cfg(test)]
+mod tests;
+
+use std::sync::Arc;
+
+use glam::{Affine3A, Mat3A, UVec3, Vec3};
+use lovelock_motion::{BodyField, FieldLattice, FieldPose};
+
+use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, put};
+use crate::motion::HeadPose;
+use crate::solver::Substep;
+use occupancy::{Candidates, Occupancy};
+
+/// Radius of the sphere that stands for the surface where hair touches it, metres: nearly a plane.
+const FLAT: f32 = 1.0;
+
+/// A point taken back to rest is near enough when it moves less than this in a round, metres.
+const SETTLED: f32 = 3e-4;
+
+/// Most rounds of taking a point back.
+const ROUNDS: usize = 4;
+
+/// The way back to rest of one weighting: a matrix by columns, a shift, and the head's share of the weights.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(align(64))]
+struct Back([f32; 16]);
+
+impl Back {
+    const IDENTITY: Self =
+        Self([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]);
+
+    fn new(m: &Affine3A, head: f32) -> Self {
+        let mut out = [0.0; 16];
+        out[..12].copy_from_slice(&m.to_cols_array());
+        out[12] = head;
+        Self(out)
+    }
+
+    #[inline(always)]
+    fn add(&mut self, other: &Self, weight: f32) {
+        for (sum, value) in self.0.iter_mut().zip(&other.0) {
+            *sum += weight * value;
+        }
+    }
+
+    #[inline(always)]
+    fn apply(&self, p: Vec3) -> Vec3 {
+        let m = &self.0;
+        Vec3::new(
+            m[0] * p.x + m[3] * p.y + m[6] * p.z + m[9],
+            m[1] * p.x + m[4] * p.y + m[7] * p.z + m[10],
+            m[2] * p.x + m[5] * p.y + m[8] * p.z + m[11],
+        )
+    }
+
+    /// The transpose of the matrix times a vector: gradients at rest become gradients now.
+    #[inline(always)]
+    fn turn_forth(&self, v: Vec3) -> Vec3 {
+        let m = &self.0;
+        Vec3::new(
+            m[0] * v.x + m[1] * v.y + m[2] * v.z,
+            m[3] * v.x + m[4] * v.y + m[5] * v.z,
+            m[6] * v.x + m[7] * v.y + m[8] * v.z,
+        )
+    }
+}
+
+/// A field with its motion in the present step.
+#[derive(Clone, Debug)]
+pub(crate) struct MovingField {
+    field: Arc<BodyField>,
+    lift: f32,
+    /// For each slot, at the start and at the end of the step; the first is the head's and never changes.
+    before: Vec<Back>,
+    now: Vec<Back>,
+    /// The other way, from rest to head space.
+    forth_before: Vec<Affine3A>,
+    forth: Vec<Affine3A>,
+    occupancy: Occupancy,
+    inv_spacing: f32,
+    inv_node: f32,
+    dt_secs: f32,
+}
+
+/// What one point learns of the field, in head space.
+#[derive(Clone, Copy, Debug)]
+struct Touch {
+    distance: f32,
+    normal: Vec3,
+    /// The head's share of the skin there.
+    head: f32,
+    /// Velocity of the skin against the head, metres per second.
+    drift: Vec3,
+}
+
+/// What a row of points learns of the field, in working space; lanes far from it have [`f32::MAX`] for a distance.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FieldRow {
+    pub(crate) distance: Lane,
+    pub(crate) normal: Lane3,
+    pub(crate) head: Lane,
+    /// Velocity of the skin, metres per second.
+    pub(crate) velocity: Lane3,
+}
+
+impl FieldRow {
+    /// The sphere that stands for the surface near lane `k`, a point of which is at `p`.
+    #[inline(always)]
+    pub(crate) fn sphere(&self, k: usize, p: Vec3) -> (Vec3, f32) {
+        (p - at(&self.normal, k) * (self.distance[k] + FLAT), FLAT)
+    }
+}
+
+impl MovingField {
+    /// A field at rest around the head. `reach` is the distance within which hair may touch it, metres.
+    pub(crate) fn new(field: &Arc<BodyField>, lift: f32, reach: f32) -> Self {
+        let slots = field.slots().len();
+        Self {
+            lift,
+            before: vec![Back::IDENTITY; slots],
+            now: vec![Back::IDENTITY; slots],
+            forth_before: vec![Affine3A::IDENTITY; slots],
+            forth: vec![Affine3A::IDENTITY; slots],
+            occupancy: Occupancy::new(field, lift.max(0.0) + reach),
+            inv_spacing: 1.0 / field.distance_lattice().spacing,
+            inv_node: 1.0 / field.node_lattice().spacing,
+            dt_secs: 1.0,
+            field: Arc::clone(field),
+        }
+    }
+
+    /// Whether this is the field that is wanted.
+    pub(crate) fn is(&self, field: &Arc<BodyField>, lift: f32) -> bool {
+        Arc::ptr_eq(&self.field, field) && self.lift == lift
+    }
+
+    /// Distance at rest of every lane of a row in head space; [`f32::MAX`] where the field ends.
+    pub(crate) fn rest_distance(&self, row: &Lane3) -> Lane {
+        std::array::from_fn(|k| self.field.sample(at(row, k)).map_or(f32::MAX, |(d, _)| d - self.lift))
+    }
+
+    /// Goes on from where the last step ended to `pose`.
+    pub(crate) fn advance(
+        &mut self,
+        head: &HeadPose,
+        pose: &FieldPose,
+        reach: f32,
+        dt_secs: f32,
+        spare: bool,
+    ) {
+        std::mem::swap(&mut self.before, &mut self.now);
+        std::mem::swap(&mut self.forth_before, &mut self.forth);
+        self.dt_secs = dt_secs;
+        self.learn(head, pose);
+        self.occupancy.update(self.lift.max(0.0) + reach, [&self.forth_before, &self.forth], spare);
+    }
+
+    /// Starts anew at `pose`.
+    pub(crate) fn reset(&mut self, head: &HeadPose, pose: &FieldPose) {
+        self.learn(head, pose);
+        self.before.copy_from_slice(&self.now);
+        self.forth_before.copy_from_slice(&self.forth);
+    }
+
+    /// Works out `now` and `forth`.
+    fn learn(&mut self, head: &HeadPose, pose: &FieldPose) {
+        let head_from_world = head.affine().inverse();
+        let rest_from_head = Affine3A::from_translation(self.field.rest_from_head());
+        let mut joints = [Affine3A::IDENTITY; lovelock_motion::FIELD_JOINTS];
+        for (joint, world_from_rest) in joints.iter_mut().zip(&pose.world_from_rest).skip(1) {
+            *joint = head_from_world * *world_from_rest * rest_from_head;
+        }
+        for (slot, weights) in self.field.slots().iter().enumerate().skip(1) {
+            let mut map = Affine3A { matrix3: Mat3A::ZERO, translation: glam::Vec3A::ZERO };
+            for (&weight, joint) in weights.iter().zip(&joints) {
+                if weight > 0.0 {
+                    map.matrix3 += joint.matrix3 * weight;
+                    map.translation += joint.translation * weight;
+                }
+            }
+            let back = map.inverse();
+            // A skin folded flat has no way back; it is left at rest.
+            let sound = map.is_finite() && back.is_finite() && back.matrix3.determinant().abs() < 1e3;
+            let (map, back) = if sound { (map, back) } else { (Affine3A::IDENTITY, Affine3A::IDENTITY) };
+            self.forth[slot] = map;
+            self.now[slot] = Back::new(&back, weights[0]);
+        }
+    }
+
+    /// What a row of points in working space learns at the end of substep `s` of `count`; nothing further away than
+    /// `reach` is of interest. `None` where all lanes are far.
+    #[inline(always)]
+    pub(crate) fn row(&self, row: &Lane3, substep: &Substep, t: f32, reach: f32) -> Option<FieldRow> {
+        let Map { turn, shift } = substep.head;
+        let mut local = ZERO3;
+        for k in 0..LANES {
+            let p = at(row, k) - shift;
+            put(&mut local, k, Vec3::new(turn.x_axis.dot(p), turn.y_axis.dot(p), turn.z_axis.dot(p)));
+        }
+        let mut out = FieldRow { distance: [f32::MAX; LANES], normal: ZERO3, head: ZERO, velocity: ZERO3 };
+        let mut any = false;
+        for k in 0..LANES {
+            let p = at(&local, k);
+            let Some(near) = self.occupancy.at(p) else { continue };
+            let Some(touch) = self.touch(p, near, t, reach) else { continue };
+            any = true;
+            out.distance[k] = touch.distance;
+            out.head[k] = touch.head;
+            put(&mut out.normal, k, substep.head.rotate(touch.normal));
+            put(&mut out.velocity, k, substep.rigid_velocity(at(row, k)) + substep.head.rotate(touch.drift));
+        }
+        any.then_some(out)
+    }
+
+    /// The nearer of the skin that goes with the head and the skin that the other joints move.
+    #[inline(always)]
+    fn touch(&self, p: Vec3, near: Candidates, t: f32, reach: f32) -> Option<Touch> {
+        let head = if near.head { self.try_from(p, p, t, reach) } else { None };
+        let Some(slot) = near.slot else { return head };
+        let guess = mixed(&self.before[slot], &self.now[slot], t).apply(p);
+        match (head, self.try_from(p, guess, t, reach)) {
+            (Some(a), Some(b)) => Some(if b.distance < a.distance { b } else { a }),
+            (a, b) => a.or(b),
+        }
+    }
+
+    /// Takes `p` back to rest from a first guess of where that is, and measures there.
+    #[inline(always)]
+    fn try_from(&self, p: Vec3, guess: Vec3, t: f32, reach: f32) -> Option<Touch> {
+        let nodes = self.field.node_lattice();
+        let (mut rest, mut back, mut drift) = (guess, Back::IDENTITY, Vec3::ZERO);
+        for _ in 0..ROUNDS {
+            let (corners, fraction) = around(nodes, self.inv_node, rest)?;
+            let slots = corners.map(|c| self.field.slot_of_node()[c]);
+            if slots == [0; 8] {
+                (rest, back, drift) = (p, Back::IDENTITY, Vec3::ZERO);
+                break;
+            }
+            let (mut start, mut end) = (Back([0.0; 16]), Back([0.0; 16]));
+            for (&slot, weight) in slots.iter().zip(weights(fraction)) {
+                start.add(&self.before[usize::from(slot)], weight);
+                end.add(&self.now[usize::from(slot)], weight);
+            }
+            back = mixed(&start, &end, t);
+            let next = back.apply(p);
+            drift = start.apply(p) - end.apply(p);
+            let moved = (next - rest).length_squared();
+            rest = next;
+            if moved < SETTLED * SETTLED {
+                break;
+            }
+        }
+        let lattice = self.field.distance_lattice();
+        let (corners, fraction) = around(lattice, self.inv_spacing, rest)?;
+        let d = corners.map(|c| self.field.distances()[c]);
+        let value: f32 = d.iter().zip(weights(fraction)).map(|(d, w)| d * w).sum();
+        // A stretched skin is further away than it was at rest, by half at most.
+        if value - self.lift > 2.0 * reach {
+            return None;
+        }
+        let slope = back.turn_forth(gradient(&d, fraction) * self.inv_spacing);
+        let steepness = slope.length_squared().sqrt();
+        let normal = if steepness > 1e-6 { slope * (1.0 / steepness) } else { Vec3::Y };
+        let distance = value / steepness.clamp(0.5, 2.0) - self.lift;
+        let drift = back.turn_forth(drift) * (1.0 / self.dt_secs);
+        (distance < reach).then_some(Touch { distance, normal, head: back.0[12], drift })
+    }
+}
+
+#[inline(always)]
+fn mixed(a: &Back, b: &Back, t: f32) -> Back {
+    let mut out = Back([0.0; 16]);
+    for i in 0..16 {
+        out.0[i] = a.0[i] + (b.0[i] - a.0[i]) * t;
+    }
+    out
+}
+
+/// The eight points of a lattice around a place, x fastest, and where between them it is.
+#[inline(always)]
+fn around(lattice: &FieldLattice, inv_spacing: f32, p: Vec3) -> Option<([usize; 8], Vec3)> {
+    let q = (p - lattice.low) * inv_spacing;
+    let last = lattice.size - 1;
+    // Written so that what is not a number is outside.
+    let inside = q.x >= 0.0
+        && q.y >= 0.0
+        && q.z >= 0.0
+        && q.x < last.x as f32
+        && q.y < last.y as f32
+        && q.z < last.z as f32;
+    if !inside {
+        return None;
+    }
+    let cell = UVec3::new(q.x as u32, q.y as u32, q.z as u32);
+    let first = lattice.index(cell);
+    let (row, layer) = (lattice.size.x as usize, (lattice.size.x * lattice.size.y) as usize);
+    let corners = [0, 1, row, row + 1, layer, layer + 1, layer + row, layer + row + 1].map(|o| first + o);
+    Some((corners, q - cell.as_vec3()))
+}
+
+/// Trilinear weights of the points that [`around`] gives.
+#[inline(always)]
+fn weights(f: Vec3) -> [f32; 8] {
+    let g = Vec3::ONE - f;
+    let (a, b, c, d) = (g.y * g.z, f.y * g.z, g.y * f.z, f.y * f.z);
+    [g.x * a, f.x * a, g.x * b, f.x * b, g.x * c, f.x * c, g.x * d, f.x * d]
+}
+
+/// Gradient of the trilinear interpolant of eight values, per cell.
+#[inline(always)]
+fn gradient(v: &[f32; 8], f: Vec3) -> Vec3 {
+    let mix = |a: f32, b: f32, t: f32| a + (b - a) * t;
+    let square = |a: f32, b: f32, c: f32, d: f32, s: f32, t: f32| mix(mix(a, b, s), mix(c, d, s), t);
+    Vec3::new(
+        square(v[1] - v[0], v[3] - v[2], v[5] - v[4], v[7] - v[6], f.y, f.z),
+        square(v[2] - v[0], v[3] - v[1], v[6] - v[4], v[7] - v[5], f.x, f.z),
+        square(v[4] - v[0], v[5] - v[1], v[6] - v[2], v[7] - v[3], f.x, f.y),
+    )
+}

@@ -1,0 +1,196 @@
+//! Where the body is, once a step: cells of a grid that turns with the head say which points need to be measured.
+//!
+//! Every place near the skin or inside is deposited into the cells around it, where it is at the start of the step
+//! and at its end; a point in a cell without any is further from the skin than hair can touch, all step long.
+
+use glam::{Affine3A, IVec3, UVec3, Vec3};
+use lovelock_motion::BodyField;
+
+/// A cell in spacings of the field's nodes.
+const CELL: f32 = 2.0;
+/// How far beyond the resting field the grid goes on, as a part of the field's longest side.
+const BEYOND: f32 = 0.35;
+/// Most cells to each side that a place is deposited into.
+const WIDEST: i32 = 4;
+/// Where nothing is tested for sparing's sake, so many cells more to each side are tested.
+const UNSPARING: i32 = 3;
+/// No skin but the head's.
+const NONE: u16 = u16::MAX;
+
+/// What may be near a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Candidates {
+    /// Skin that only the head moves.
+    pub(super) head: bool,
+    /// The weighting of the nearest other skin.
+    pub(super) slot: Option<usize>,
+}
+
+/// A place that is deposited: where it is at rest, and its weighting.
+#[derive(Clone, Copy, Debug)]
+struct Probe {
+    rest: Vec3,
+    slot: u16,
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct Occupancy {
+    low: Vec3,
+    inv_cell: f32,
+    cell: f32,
+    size: UVec3,
+    probes: Vec<Probe>,
+    head_probes: Vec<Vec3>,
+    /// So many cells to each side the head was deposited into.
+    head_width: i32,
+    head: Vec<bool>,
+    /// Slot of the nearest probe to the middle of each cell, and the square of its distance.
+    slot: Vec<u16>,
+    nearest: Vec<f32>,
+    touched: Vec<u32>,
+    /// How far a point may be from the nearest probe and still be at the skin, metres.
+    cover: f32,
+}
+
+impl Occupancy {
+    pub(super) fn new(field: &BodyField, reach: f32) -> Self {
+        let (nodes, lattice) = (field.node_lattice(), field.distance_lattice());
+        let side = (nodes.high() - nodes.low).max_element();
+        let centre = nodes.low.midpoint(nodes.high());
+        let cell = CELL * nodes.spacing;
+        let half = (0.5 + BEYOND) * side;
+        let size = UVec3::splat(((2.0 * half / cell).ceil() as u32).clamp(1, 96));
+        let count = size.as_usizevec3().element_product();
+        let (mut probes, mut head_probes) = (Vec::new(), Vec::new());
+        for i in 0..nodes.count() {
+            let rest = nodes.place(i);
+            let at = ((rest - nodes.low) / nodes.spacing).round().as_uvec3();
+            let depth = field.distances()[lattice.index(at * 2)] / nodes.spacing;
+            // All near the skin, and every second one deep inside.
+            let kept = depth < 1.0 && (depth > -1.5 || at % 2 == UVec3::ZERO);
+            if kept {
+                match field.slot_of_node()[i] {
+                    0 => head_probes.push(rest),
+                    slot => probes.push(Probe { rest, slot }),
+                }
+            }
+        }
+        let mut occupancy = Self {
+            low: centre - half,
+            inv_cell: 1.0 / cell,
+            cell,
+            size,
+            probes,
+            head_probes,
+            head_width: 0,
+            head: vec![false; count],
+            slot: vec![NONE; count],
+            nearest: vec![f32::INFINITY; count],
+            touched: Vec::new(),
+            cover: nodes.spacing,
+        };
+        occupancy.place_head(occupancy.width(reach));
+        occupancy
+    }
+
+    /// So many cells to each side hold all that is within `reach` of a probe.
+    fn width(&self, reach: f32) -> i32 {
+        (((reach + self.cover) * self.inv_cell).ceil() as i32).clamp(1, WIDEST)
+    }
+
+    fn place_head(&mut self, width: i32) {
+        if self.head_width == width {
+            return;
+        }
+        self.head_width = width;
+        self.head.fill(false);
+        for i in 0..self.head_probes.len() {
+            let middle = self.cell_of(self.head_probes[i]);
+            self.each_cell(middle, width, |this, index, _| this.head[index] = true);
+        }
+    }
+
+    /// Deposits the body at both ends of the step, to which `ends` carry the slots from rest. Where `spare` is false
+    /// the cells around are to be tested too.
+    pub(super) fn update(&mut self, reach: f32, ends: [&[Affine3A]; 2], spare: bool) {
+        for &i in &self.touched {
+            (self.slot[i as usize], self.nearest[i as usize]) = (NONE, f32::INFINITY);
+        }
+        self.touched.clear();
+        let [start, end] = ends;
+        let mut moved = 0.0_f32;
+        for probe in &self.probes {
+            let slot = usize::from(probe.slot);
+            let (a, b) = (start[slot].transform_point3(probe.rest), end[slot].transform_point3(probe.rest));
+            moved = moved.max((b - a).length_squared());
+        }
+        let moved = moved.sqrt();
+        // What is on its way is nearest to one end, by half the way at most.
+        let width = self.width(reach + 0.5 * moved);
+        let ends = if moved > 1e-5 { &ends[..] } else { &ends[1..] };
+        let widths: &[i32] = if spare { &[0] } else { &[0, UNSPARING] };
+        for &more in widths {
+            // The second round only fills what the first has left, and so changes nothing there.
+            let known: Vec<bool> =
+                if more > 0 { self.slot.iter().map(|&s| s != NONE).collect() } else { Vec::new() };
+            for maps in ends {
+                for i in 0..self.probes.len() {
+                    let Probe { rest, slot } = self.probes[i];
+                    let p = maps[usize::from(slot)].transform_point3(rest);
+                    let middle = self.cell_of(p);
+                    self.each_cell(middle, width + more, |this, index, centre| {
+                        let squared = (centre - p).length_squared();
+                        if squared < this.nearest[index] && !known.get(index).copied().unwrap_or(false) {
+                            if this.slot[index] == NONE {
+                                this.touched.push(index as u32);
+                            }
+                            (this.nearest[index], this.slot[index]) = (squared, slot);
+                        }
+                    });
+                }
+            }
+        }
+        self.place_head(self.width(reach) + if spare { 0 } else { UNSPARING });
+    }
+
+    fn cell_of(&self, p: Vec3) -> IVec3 {
+        // What is not a number is outside.
+        let q = (p - self.low) * self.inv_cell;
+        if q.is_finite() && q.abs().max_element() < 1e6 { q.floor().as_ivec3() } else { IVec3::splat(-1000) }
+    }
+
+    /// The cells within `width` of one, as far as there are any.
+    #[inline(always)]
+    fn each_cell(&mut self, middle: IVec3, width: i32, mut visit: impl FnMut(&mut Self, usize, Vec3)) {
+        let last = self.size.as_ivec3() - 1;
+        let (from, to) = ((middle - width).max(IVec3::ZERO), (middle + width).min(last));
+        for z in from.z..=to.z {
+            for y in from.y..=to.y {
+                let row = ((z * self.size.y as i32 + y) * self.size.x as i32) as usize;
+                for x in from.x..=to.x {
+                    let centre = self.low + (Vec3::new(x as f32, y as f32, z as f32) + 0.5) * self.cell;
+                    visit(self, row + x as usize, centre);
+                }
+            }
+        }
+    }
+
+    /// What may be near a point of head space; `None` where nothing is.
+    #[inline(always)]
+    pub(super) fn at(&self, p: Vec3) -> Option<Candidates> {
+        let q = (p - self.low) * self.inv_cell;
+        let inside = q.x >= 0.0
+            && q.y >= 0.0
+            && q.z >= 0.0
+            && q.x < self.size.x as f32
+            && q.y < self.size.y as f32
+            && q.z < self.size.z as f32;
+        if !inside {
+            return None;
+        }
+        let index = ((q.z as u32 * self.size.y + q.y as u32) * self.size.x + q.x as u32) as usize;
+        let (head, slot) = (self.head[index], self.slot[index]);
+        let slot = (slot != NONE).then_some(usize::from(slot));
+        (head || slot.is_some()).then_some(Candidates { head, slot })
+    }
+}

@@ -1,0 +1,81 @@
+use lovelock_motion::{Body, Clip, Pose, RestDistance, Skin, load_character, pose_at, skin};
+
+use super::*;
+use crate::motion::substep;
+
+fn dancer() -> (Arc<Body>, Arc<Clip>, Arc<BodyField>) {
+    let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/dancer.glb");
+    let character = load_character(&file).expect("the shipped dancer loads");
+    let dance = character.clips.iter().find(|c| c.name == "dance").expect("she dances");
+    let field = BodyField::new(&character.body, &RestDistance::new(&character.body)).expect("a field");
+    (Arc::clone(&character.body), Arc::clone(dance), Arc::new(field))
+}
+
+/// The dancer at one time, and her field there after a step.
+struct Moment {
+    head: HeadPose,
+    pose: Pose,
+    placed: FieldPose,
+}
+
+fn moment(body: &Body, dance: &Clip, field: &BodyField, time_secs: f64) -> Moment {
+    let (mut pose, mut placed) = (Pose::default(), FieldPose::default());
+    pose_at(body, Some(dance), time_secs, &mut pose);
+    field.place(body, &pose, 0.0, &mut placed);
+    Moment { head: HeadPose::new(&pose.world_from_head).expect("a head"), pose, placed }
+}
+
+/// Distances of the places `out` above the vertices of head, neck and shoulders at the end of a step of the dance.
+fn distances(spare: bool, moved: bool, out: f32) -> Vec<f32> {
+    let (body, dance, field) = dancer();
+    let mut all = Vec::new();
+    for time in [0.7, 2.3, 3.9, 5.2, 7.7] {
+        let (was, now) =
+            (moment(&body, &dance, &field, time - 1.0 / 60.0), moment(&body, &dance, &field, time));
+        let mut moving = MovingField::new(&field, 0.0, 0.012);
+        moving.reset(&was.head, &was.placed);
+        if moved {
+            moving.advance(&now.head, &now.placed, 0.012, 1.0 / 60.0, spare);
+        } else {
+            moving.advance(&was.head, &was.placed, 0.012, 1.0 / 60.0, spare);
+        }
+        let origin = now.head.place;
+        let step = substep(&was.head, &now.head, origin, 1.0 / 60.0);
+        let mut surface = Skin::default();
+        skin(&body, &now.pose, &mut surface);
+        for (v, rest) in body.mesh.positions.iter().enumerate().step_by(7) {
+            let q = *rest - field.rest_from_head();
+            let inner = q.y > -0.3 && q.x.abs() < 0.2;
+            // The lashes and the inside of the mouth are no skin.
+            let skin = field.sample(q).is_some_and(|(d, _)| d.abs() < 2e-4);
+            if inner && skin {
+                let p = surface.positions[v] + surface.normals[v] * out - origin;
+                let row = [[p.x; LANES], [p.y; LANES], [p.z; LANES]];
+                let distance = moving.row(&row, &step, 1.0, 0.012).map_or(f32::MAX, |r| r.distance[3]);
+                all.push(distance);
+            }
+        }
+    }
+    all.sort_by(f32::total_cmp);
+    all
+}
+
+#[test]
+fn the_skin_is_where_the_field_says_in_the_midst_of_a_dance() {
+    let d = distances(true, true, 0.0);
+    let (low, high) = (d[d.len() / 200], d[d.len() - 1 - d.len() / 200]);
+    println!("{} vertices: {} to {}, 99 % from {low} to {high}", d.len(), d[0], d[d.len() - 1]);
+    assert!(d.len() > 5000);
+    assert!(low > -1e-3 && high < 1e-3, "99 % from {low} to {high}");
+    assert_eq!(d, distances(false, true, 0.0), "what is tested besides changes nothing");
+    // The control: the field where it was a frame before.
+    let late = distances(true, false, 0.0);
+    assert!(late[late.len() / 200] < -2e-3, "a frame before it was {}", late[late.len() / 200]);
+}
+
+#[test]
+fn distances_grow_above_the_skin() {
+    let d = distances(true, true, 0.006);
+    let middle = d[d.len() / 2];
+    assert!((middle - 0.006).abs() < 3e-4, "{middle} at 6 mm");
+}
