@@ -1,12 +1,13 @@
 //! How hair moves.
 
 use egui::Ui;
+use lovelock_studio::TimelineSection;
 use lovelock_studio::wisp::{RepulsionMode, SimulationSettings};
 
 use crate::window::control::{Number, choice, count, row, section};
 
-/// The controls of `settings`.
-pub(crate) fn ui(ui: &mut Ui, settings: &mut SimulationSettings) {
+/// The controls of `settings`, and of how long hair lives before an instant that one goes to.
+pub(crate) fn ui(ui: &mut Ui, settings: &mut SimulationSettings, preroll_secs: &mut f32) {
     let d = SimulationSettings::default();
     let s = settings;
     Number::new(
@@ -139,6 +140,16 @@ pub(crate) fn ui(ui: &mut Ui, settings: &mut SimulationSettings) {
         &mut s.substeps,
         d.substeps,
     );
+    let default = TimelineSection::default().preroll_secs;
+    Number::new(
+        "Pre-roll",
+        0.0..=TimelineSection::MOST_PREROLL_SECS,
+        "How long, at least, hair has lived where you go on the timeline and where a recording starts: long enough to be settled. \
+         0 shows the style at rest.",
+    )
+    .unit(" s", 1.0)
+    .decimals(1)
+    .show(ui, preroll_secs, default);
     row(ui, "Defaults", "Restores every control of this panel.", false, s, d, |ui, s| {
         let response = ui.button("Restore all");
         if response.clicked() {

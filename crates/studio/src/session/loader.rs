@@ -3,9 +3,12 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use lovelock_groom::Hairstyle;
+use lovelock_motion::Collider;
+
 use super::parts::{BodyKey, BodyPart, HairFileCache, HairKey, HairPart, MotionKey, MotionPart};
 use super::{HeadPath, Scene};
-use crate::{Access, Place, Problem, ProblemKind, Project, StudioError};
+use crate::{Access, Place, Problem, ProblemKind, Project, RestInside, StudioError};
 
 /// How a load tells how far it is, and learns that nobody wants it any more.
 pub struct LoadControl<'a> {
@@ -42,6 +45,7 @@ pub struct SceneLoader {
     hair: Option<Kept<HairKey, HairPart>>,
     hair_file: HairFileCache,
     head_path: Option<(Arc<MotionPart>, bool, Arc<HeadPath>)>,
+    rest_inside: Option<(Arc<Hairstyle>, Arc<[Collider]>, Option<RestInside>)>,
 }
 
 impl SceneLoader {
@@ -98,6 +102,7 @@ impl SceneLoader {
             looping,
             colliders: Arc::clone(&body.colliders),
             style: Arc::clone(&hair.style),
+            rest_inside: self.rest_inside(&body, &hair),
             head_path,
             notes: notes.into(),
         };
@@ -206,6 +211,19 @@ impl SceneLoader {
         let part = Arc::new(part);
         self.hair = Some(Kept { key, body: Some(Arc::clone(body)), part: Arc::clone(&part) });
         part
+    }
+
+    /// Where the style lies inside the body; looked for once for a style and a body.
+    fn rest_inside(&mut self, body: &BodyPart, hair: &HairPart) -> Option<RestInside> {
+        if let Some((style, colliders, found)) = &self.rest_inside
+            && Arc::ptr_eq(style, &hair.style)
+            && Arc::ptr_eq(colliders, &body.colliders)
+        {
+            return found.clone();
+        }
+        let found = RestInside::find(&hair.style, &body.body, &body.colliders);
+        self.rest_inside = Some((Arc::clone(&hair.style), Arc::clone(&body.colliders), found.clone()));
+        found
     }
 
     fn head_path(&mut self, body: &BodyPart, motion: &Arc<MotionPart>, looping: bool) -> Arc<HeadPath> {
