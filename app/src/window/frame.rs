@@ -206,7 +206,9 @@ impl Window {
                     asked = asked.or(ask.map(|_| Purpose::Open));
                 });
                 section(ui, "Simulation", true, |ui| {
-                    panels::simulation::ui(ui, &mut project.simulation, &mut project.timeline.preroll_secs);
+                    let axes = camera_control::axes(&project.camera);
+                    let Project { simulation, timeline, .. } = project;
+                    panels::simulation::ui(ui, simulation, &mut timeline.preroll_secs, axes);
                 });
                 section(ui, "Body and motion", false, |ui| {
                     self.problems(ui, &[Place::Body, Place::Motion]);

@@ -13,6 +13,7 @@ mod overlay;
 mod palette;
 mod panels;
 mod path_dialog;
+mod ramp;
 mod recorder;
 mod screenshot;
 mod session;
