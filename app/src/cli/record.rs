@@ -1,8 +1,8 @@
 //! `lovelock record`.
 
 use lovelock_studio::{
-    CurveRecordReport, RecordReport, RecordRequest, Stage, StudioError, TakeRecordReport, is_curves, is_take,
-    record_curves, record_take,
+    CurveRecordReport, Gauge, HealthLevel, RecordReport, RecordRequest, Stage, StudioError, TakeRecordReport,
+    is_curves, is_take, record_curves, record_take,
 };
 
 use super::args::Record;
@@ -81,7 +81,16 @@ fn summary(report: &RecordReport) -> String {
         report.max_stretch,
         1e3 * report.max_penetration_m,
         report.recovered_guides,
-    )
+    ) + &advice(&report.health)
+}
+
+/// What to change, a line for each gauge that is over its limits.
+fn advice(health: &[Gauge]) -> String {
+    let over = health.iter().filter(|gauge| gauge.level != HealthLevel::Good);
+    over.map(|gauge| {
+        format!("\n{}, {}: {}", gauge.kind.label(), gauge.kind.in_words(gauge.value), gauge.advice)
+    })
+    .collect()
 }
 
 fn take_summary(report: &TakeRecordReport) -> String {
@@ -98,7 +107,7 @@ fn take_summary(report: &TakeRecordReport) -> String {
         report.max_stretch,
         1e3 * report.max_penetration_m,
         report.recovered_guides,
-    )
+    ) + &advice(&report.health)
 }
 
 fn curve_summary(report: &CurveRecordReport) -> String {

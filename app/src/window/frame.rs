@@ -1,12 +1,15 @@
 //! One pass of the window, from top to bottom.
 
 use egui::{Align2, CentralPanel, Frame, Panel, ProgressBar, Rect, RichText, ScrollArea, Ui, vec2};
-use lovelock_studio::{PROJECT_EXTENSION, Painted, Place, Project};
+use lovelock_studio::{PROJECT_EXTENSION, Place, Project};
 
 use super::control::section;
 use super::path_dialog::{Answer, PathDialog, Purpose};
 use super::viewport::{self, Viewport};
 use super::{Window, camera_control, copy, keys, notices, panels, theme, timeline, title};
+
+/// Hair that settles sooner is not worth a word.
+const SHOW_SETTLING_SECS: f64 = 0.15;
 
 impl Window {
     /// One pass.
@@ -175,7 +178,7 @@ impl Window {
         };
         let zoom = &mut self.layout.timeline;
         let Project { recording, motion, timeline: section, .. } = project;
-        let lovelock_studio::TimelineSection { markers, tracks } = section;
+        let lovelock_studio::TimelineSection { markers, tracks, .. } = section;
         let height = timeline::height(tracks.len());
         let mut edited = timeline::Edited { recording, markers, tracks, motion };
         Panel::bottom("timeline")
@@ -202,7 +205,11 @@ impl Window {
                     let ask = panels::hair::ui(ui, project, &self.session.hair);
                     asked = asked.or(ask.map(|_| Purpose::Open));
                 });
-                section(ui, "Simulation", true, |ui| panels::simulation::ui(ui, &mut project.simulation));
+                section(ui, "Simulation", true, |ui| {
+                    let axes = camera_control::axes(&project.camera);
+                    let Project { simulation, timeline, .. } = project;
+                    panels::simulation::ui(ui, simulation, &mut timeline.preroll_secs, axes);
+                });
                 section(ui, "Body and motion", false, |ui| {
                     self.problems(ui, &[Place::Body, Place::Motion]);
                     let ask = panels::body::ui(ui, project, &self.session.body);
@@ -237,6 +244,7 @@ impl Window {
                     recording =
                         panels::recording::ui(ui, &mut project.recording, self.recorder.state(), frames);
                 });
+                section(ui, "Health", true, |ui| self.health_panel(ui, project));
                 // Panes have their own: nobody draws the one picture beside them.
                 let compares = self.layout.compare.shown;
                 section(ui, "Statistics", true, |ui| {
@@ -266,6 +274,7 @@ impl Window {
             let response = self.viewport.show(ui, painted, most_pixels, self.layout.view_scale);
             camera_control::apply(&mut project.camera, &response);
             let rect = response.rect;
+            self.paint_over(ui, rect);
             if let Some(error) = &self.session.draw_error {
                 Viewport::caption(ui, rect, Align2::LEFT_BOTTOM, error, theme::WRONG);
             }
@@ -293,6 +302,17 @@ impl Window {
                 if over_picture(ui, rect, row, progress.fraction, &progress.what, tip) {
                     self.session.worker().cancel_load();
                 }
+                row += 1;
+            }
+            if let Some(settling) = self.session.worker().settling()
+                && settling.taken_secs > SHOW_SETTLING_SECS
+            {
+                let tip = "Time goes on at once, with the hair as it was carried here.";
+                let fraction = settling.done as f32 / settling.total.max(1) as f32;
+                let text = format!("Settling the hair at {:.2} s", settling.to_secs);
+                if over_picture(ui, rect, row, fraction, &text, tip) {
+                    self.session.worker().cancel_settle();
+                }
             }
         }
     }
@@ -302,59 +322,6 @@ impl Window {
         for problem in self.session.problems.iter().filter(|problem| places.contains(&problem.place)) {
             ui.label(RichText::new(&problem.message).color(theme::WRONG));
         }
-    }
-
-    fn facts(&self) -> Vec<panels::statistics::Fact> {
-        let mut facts = Vec::new();
-        let mut fact = |name, tip, value| facts.push(panels::statistics::Fact { name, tip, value });
-        if let Some(Painted { picture, stats, .. }) = self.session.painted.as_deref() {
-            let mib = |bytes: u64| format!("{:.1} MiB", bytes as f64 / f64::from(1 << 20));
-            let size = format!("{} × {}", picture.width, picture.height);
-            fact("Picture", "Size of the picture as it is drawn, pixels.", size);
-            fact(
-                "Segments drawn",
-                "Straight pieces of all strands in the picture.",
-                stats.segments.to_string(),
-            );
-            fact(
-                "Shadow maps",
-                "Memory that the shadow method holds, for all lights together.",
-                mib(stats.shadow_bytes),
-            );
-            fact(
-                "Strands and pixels",
-                "Memory for the strands as they are drawn, and for each pixel to put them together.",
-                mib(stats.draw_bytes),
-            );
-            fact(
-                "Mean transmittance",
-                "Share of the first light that reaches a point of the hair through other hair, on average.",
-                format!("{:.3}", stats.mean_transmittance),
-            );
-        }
-        if let Some(frame) = &self.session.frame {
-            fact(
-                "Substeps",
-                "Parts in which the last step was simulated: more when hair is fast.",
-                frame.report.substeps.to_string(),
-            );
-            fact(
-                "Largest stretch",
-                "How far a link has been from its length at most.",
-                format!("{:.4} %", 100.0 * frame.totals.max_stretch),
-            );
-            fact(
-                "Deepest in the body",
-                "How far hair has been inside the body at most.",
-                format!("{:.1} mm", 1e3 * frame.totals.max_penetration_m),
-            );
-            fact(
-                "Guides put back",
-                "Guides that the simulation lost and set on their style again.",
-                frame.totals.recovered_guides.to_string(),
-            );
-        }
-        facts
     }
 
     /// Dialogs over everything.
@@ -458,6 +425,7 @@ pub(super) fn changed_part(before: &Project, after: &Project) -> &'static str {
         (before.recording != after.recording, "recording"),
         (before.compare != after.compare, "compare"),
         (before.timeline.markers != after.timeline.markers, "marker"),
+        (before.timeline.preroll_secs != after.timeline.preroll_secs, "pre-roll"),
         (before.timeline.tracks != after.timeline.tracks, "track"),
     ];
     parts.iter().find(|(differs, _)| *differs).map_or("change", |(_, name)| name)

@@ -1,14 +1,33 @@
-//! A sphere with a handle that shows and sets where a light comes from.
+//! A sphere with a handle that shows and sets where a light or the wind comes from.
 
 use egui::{Color32, Pos2, Response, Sense, Stroke, Ui, Vec2};
 use glam::Vec3;
 
 use super::theme;
 
+/// What a sphere is about.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sphere {
+    /// The name of the control.
+    pub(crate) name: &'static str,
+    /// What comes from there, such as `the light`.
+    pub(crate) what: &'static str,
+}
+
+/// Shows the sphere of a light.
+pub(crate) fn light_sphere(ui: &mut Ui, direction: &mut Vec3, axes: [Vec3; 3]) -> Response {
+    sphere(ui, Sphere { name: "Light direction", what: "the light" }, direction, axes)
+}
+
 /// Shows the sphere as the camera sees it. `right`, `up` and `back` are the camera's axes in the world; the
 /// handle is where the light comes from, and is hollow where that is behind the sphere. Returns the response;
-/// `direction` is the way that the light travels.
-pub(crate) fn light_sphere(ui: &mut Ui, direction: &mut Vec3, [right, up, back]: [Vec3; 3]) -> Response {
+/// `direction` is the way that the light or the wind travels.
+pub(crate) fn sphere(
+    ui: &mut Ui,
+    of: Sphere,
+    direction: &mut Vec3,
+    [right, up, back]: [Vec3; 3],
+) -> Response {
     let (rect, mut response) = ui.allocate_exact_size(Vec2::splat(104.0), Sense::click_and_drag());
     let center = rect.center();
     let radius = 46.0;
@@ -36,10 +55,11 @@ pub(crate) fn light_sphere(ui: &mut Ui, direction: &mut Vec3, [right, up, back]:
     } else {
         painter.circle_stroke(handle, 6.0, Stroke::new(2.0, theme::ACCENT));
     }
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "Light direction"));
-    response.on_hover_text(
-        "Drag to say where the light comes from, as the camera sees it. A hollow handle is behind.",
-    )
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, of.name));
+    response.on_hover_text(format!(
+        "Drag to say where {} comes from, as the camera sees it. A hollow handle is behind.",
+        of.what
+    ))
 }
 
 /// The point of the unit sphere under `x`, `y`: before it, or behind it where `behind`; on its rim outside.

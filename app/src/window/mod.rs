@@ -9,12 +9,15 @@ mod gesture;
 mod keys;
 mod light_sphere;
 mod notices;
+mod overlay;
 mod palette;
 mod panels;
 mod path_dialog;
+mod ramp;
 mod recorder;
 mod screenshot;
 mod session;
+mod state_of_hair;
 #[cfg(test)]
 mod testing;
 mod theme;
@@ -24,7 +27,7 @@ mod viewport;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use lovelock_studio::{Access, Command, History, Moment, Overdub, Project, StudioError};
+use lovelock_studio::{Access, Command, GaugeKind, History, Moment, Overdub, Project, StudioError};
 use serde::{Deserialize, Serialize};
 
 use compare::{Compare, CompareLayout};
@@ -85,6 +88,8 @@ pub(crate) struct Window {
     notices: Notices,
     keys_shown: bool,
     selected_light: usize,
+    /// The gauge whose place is ringed in the picture.
+    pointed: Option<GaugeKind>,
     gestures: Gestures,
     overdub: Overdub,
     thumbnails: timeline::Thumbnails,
@@ -179,6 +184,7 @@ impl Window {
             notices: Notices::default(),
             keys_shown: false,
             selected_light: 0,
+            pointed: None,
             gestures: Gestures::default(),
             overdub: Overdub::default(),
             thumbnails: timeline::Thumbnails::new(ctx)?,

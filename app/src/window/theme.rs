@@ -10,6 +10,10 @@ pub(crate) const ACCENT: Color32 = Color32::from_rgb(232, 164, 92);
 pub(crate) const QUIET: Color32 = Color32::from_rgb(142, 146, 154);
 /// Something is wrong.
 pub(crate) const WRONG: Color32 = Color32::from_rgb(236, 106, 94);
+/// All is well.
+pub(crate) const GOOD: Color32 = Color32::from_rgb(112, 178, 130);
+/// Something may be seen.
+pub(crate) const WATCH: Color32 = Color32::from_rgb(232, 204, 96);
 /// A recording runs.
 pub(crate) const RECORDING: Color32 = Color32::from_rgb(226, 72, 62);
 /// Behind everything.

@@ -79,6 +79,11 @@ impl Viewport {
         response
     }
 
+    /// Where in `rect` the picture is; none before there is one.
+    pub(crate) fn place(&self, rect: Rect) -> Option<Rect> {
+        self.texture.as_ref().map(|texture| fit(texture.size_vec2(), rect))
+    }
+
     /// A line in a corner of the picture.
     pub(crate) fn caption(ui: &Ui, rect: Rect, align: Align2, text: &str, color: Color32) {
         if text.is_empty() {

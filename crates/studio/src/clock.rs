@@ -158,7 +158,12 @@ impl FrameClock {
 
     /// The time of frame `frame`, seconds.
     pub fn time_of_frame(&self, frame: u64) -> f64 {
-        self.step_of_frame(frame) as f64 * self.step_secs
+        self.time_of_step(self.step_of_frame(frame))
+    }
+
+    /// The time of step `step`, seconds.
+    pub fn time_of_step(&self, step: u64) -> f64 {
+        step as f64 * self.step_secs
     }
 }
 

@@ -14,6 +14,7 @@ mod error;
 mod farm;
 mod filmstrip;
 mod headless;
+mod health;
 mod history;
 mod info;
 mod painter;
@@ -43,6 +44,7 @@ pub use headless::{
     CurveRecordReport, CurveSource, Progress, RecordJob, RecordReport, RecordRequest, Recorded, StageMedians,
     TakeRecordReport, is_curves, is_take, record, record_curves, record_take,
 };
+pub use health::{Gauge, GaugeKind, HealthLevel, RestInside, health};
 pub use history::{GestureId, History};
 pub use info::{Content, FileKind, Info, ProjectInfo, TakeInfo, info};
 pub use painter::{Adapter, PaintRequest, Painted, Painter};
@@ -54,8 +56,8 @@ pub use project::{
     save_project, write_whole,
 };
 pub use session::{
-    BodyObstacle, Engine, Event, FrameSnapshot, HeadPath, LoadControl, LoadProgress, SETTLE_SECS, Scene,
-    SceneLoader, Totals, Wake, Worker, camera_at, dancer, frame_points,
+    BodyObstacle, Engine, Event, FrameSnapshot, HeadPath, LoadControl, LoadProgress, Preroll,
+    PrerollProgress, Scene, SceneLoader, Totals, Wake, Worker, camera_at, dancer, frame_points,
 };
 pub use slot::Slot;
 pub use stats::{PassHistory, Stage, StageHistory, StageTimes, median};

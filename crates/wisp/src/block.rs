@@ -53,6 +53,8 @@ pub(crate) struct Outcome {
     pub(crate) deepest: Depth,
     pub(crate) deepest_guide: u32,
     pub(crate) recovered: u32,
+    /// The first lane that was put back.
+    pub(crate) first_recovered: Option<usize>,
     /// Sum of `v^2 / 2` over the free points.
     pub(crate) energy: f64,
     pub(crate) max_speed_squared: f32,
@@ -97,6 +99,27 @@ impl Block {
 
     pub(crate) fn points(&self) -> usize {
         self.position.len()
+    }
+
+    /// The guide and the point at which `of` a lane and a point is largest, beginning with the point `first`; what is not a
+    /// number is none.
+    pub(crate) fn most(&self, first: usize, of: impl Fn(&Self, usize, usize) -> f32) -> Option<(u32, u32)> {
+        let places = (0..self.used).flat_map(|k| (first..self.points()).map(move |i| (k, i)));
+        let (mut most, mut found) = (0.0, None);
+        for (k, i) in places {
+            let value = of(self, k, i);
+            if value > most {
+                (most, found) = (value, Some((self.guides[k], i as u32)));
+            }
+        }
+        found
+    }
+
+    /// Relative change of the length of the link that ends at point `i` of lane `k`.
+    pub(crate) fn stretch(&self, k: usize, i: usize) -> f32 {
+        let (a, b, inv) =
+            (at(&self.position[i - 1], k), at(&self.position[i], k), self.rest.inv_length[i][k]);
+        if inv > 0.0 { ((b - a).length_squared().sqrt() * inv - 1.0).abs() } else { 0.0 }
     }
 
     /// Puts the rest shape, without motion, where `from_head` carries it.

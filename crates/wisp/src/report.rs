@@ -26,6 +26,15 @@ pub struct StepReport {
     pub kinetic_energy: f32,
     /// Fastest point, metres per second, world space.
     pub max_speed: f32,
+    /// The guide whose link has `max_stretch`, and the point at that link's end.
+    #[serde(default)]
+    pub worst_stretch_at: Option<(u32, u32)>,
+    /// The guide and its point that has `max_speed`.
+    #[serde(default)]
+    pub fastest_at: Option<(u32, u32)>,
+    /// The first of the guides that were put back.
+    #[serde(default)]
+    pub recovered_at: Option<u32>,
     /// Whether the motion jumped, so that hair was moved along with the head and not simulated.
     pub jumped: bool,
 }

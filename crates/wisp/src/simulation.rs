@@ -116,6 +116,14 @@ impl Simulation {
         self.blocks.par_iter_mut().for_each(|block| block.place_at_rest(&from_head));
     }
 
+    /// Tells the wind what time it is, seconds: the same wind blows at the same time. Without it, time counts from the last
+    /// reset.
+    pub fn set_wind_secs(&mut self, secs: f64) {
+        if secs.is_finite() {
+            self.elapsed_secs = secs;
+        }
+    }
+
     /// Moves on by `dt_secs`, while the body moves from where it was to `input`.
     ///
     /// Roots, frames and colliders are taken through the substeps in between. Where the motion jumps (see
@@ -223,9 +231,12 @@ impl Simulation {
     fn outcome(&self, first_free: usize) -> StepReport {
         let mut report = StepReport::default();
         let (mut energy, mut fastest) = (0.0, 0.0_f32);
+        let (mut stretched, mut quick) = (None, None);
         for block in &self.blocks {
             let out = &block.outcome;
-            report.max_stretch = report.max_stretch.max(out.max_stretch);
+            if out.max_stretch > report.max_stretch {
+                (report.max_stretch, stretched) = (out.max_stretch, Some(block));
+            }
             if out.deepest.depth_m > report.max_penetration_m {
                 report.max_penetration_m = out.deepest.depth_m;
                 report.deepest = Some(InsidePoint {
@@ -236,9 +247,17 @@ impl Simulation {
                 });
             }
             report.recovered_guides += out.recovered;
+            report.recovered_at = report.recovered_at.or(out.first_recovered.map(|lane| block.guides[lane]));
             energy += out.energy;
-            fastest = fastest.max(out.max_speed_squared);
+            if out.max_speed_squared > fastest {
+                (fastest, quick) = (out.max_speed_squared, Some(block));
+            }
         }
+        // Where it is, is looked for in one block alone.
+        let first = first_free.max(1);
+        report.worst_stretch_at = stretched.and_then(|block: &Block| block.most(first, Block::stretch));
+        let speed = |block: &Block, k: usize, i: usize| at(&block.velocity[i], k).length_squared();
+        report.fastest_at = quick.and_then(|block: &Block| block.most(first, speed));
         let free = self.slots.len() * self.style.guides.points_per_guide.saturating_sub(first_free);
         report.kinetic_energy = (energy / free.max(1) as f64) as f32;
         report.max_speed = fastest.sqrt();

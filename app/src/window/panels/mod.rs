@@ -2,6 +2,7 @@
 
 pub(crate) mod body;
 pub(crate) mod hair;
+pub(crate) mod health;
 pub(crate) mod light;
 pub(crate) mod look;
 pub(crate) mod recording;

@@ -2,6 +2,7 @@
 
 mod compare;
 mod dialogs;
+mod health;
 mod keyboard;
 mod notices;
 mod playback;

@@ -7,11 +7,11 @@ use lovelock_motion::{pose_at, skin};
 use lovelock_record::{TakeAsset, TakeFrame};
 
 use super::Progress;
-use super::prepare::{load, simulate_to, tell};
+use super::prepare::{load, settled_at, simulate_to, tell};
 use super::seam::{Seam, SeamOfTake};
 use crate::{
-    Access, Engine, FrameClock, FrameSnapshot, Place, Problem, ProblemKind, Project, Scene, StudioError,
-    TakePlayer, Totals,
+    Access, Engine, FrameClock, FrameSnapshot, Gauge, Place, Problem, ProblemKind, Project, Scene,
+    StudioError, TakePlayer, Totals, health,
 };
 
 /// A dance, frame by frame.
@@ -129,20 +129,24 @@ impl Dance {
         Ok(())
     }
 
-    /// Lives through the time before `first_secs`, so that a frame is the same whatever is recorded.
+    /// Gives the hair its life before the frame `start`, and lives on to `first_secs` in what is recorded from there: a frame is
+    /// the same whatever of a recording is kept.
     ///
     /// # Errors
     /// [`StudioError::Cancelled`].
     pub(crate) fn begin(
         &mut self,
+        start: u64,
         first_secs: f64,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<(), StudioError> {
         if let Self::Simulated { scene, project, clock, engine, steps, seam } = self {
-            let mut made = engine_of(scene, project, clock);
+            let first = step_before(first_secs, clock).0;
+            let mut made =
+                Box::new(settled_at(scene, project, clock, [clock.step_of_frame(start), first], progress)?);
             match seam {
                 Some(seam) => seam.live_round(&mut made, clock, first_secs, progress)?,
-                None => simulate_to(&mut made, step_before(first_secs, clock).0, progress)?,
+                None => simulate_to(&mut made, first, progress)?,
             }
             made.clear_totals();
             (*engine, *steps) = (Some(made), None);
@@ -157,7 +161,7 @@ impl Dance {
     pub(crate) fn snapshot(&mut self, frame: u64) -> Result<Arc<FrameSnapshot>, StudioError> {
         match self {
             Self::Simulated { scene, project, clock, engine, seam, .. } => {
-                let engine = engine.get_or_insert_with(|| engine_of(scene, project, clock));
+                let engine = engine.get_or_insert_with(|| engine_at(scene, project, clock, frame));
                 let Some(seam) = seam else {
                     engine.advance_to_step(clock.step_of_frame(frame));
                     return Ok(engine.snapshot());
@@ -183,7 +187,8 @@ impl Dance {
     pub(crate) fn snapshot_at(&mut self, secs: f64) -> Result<Arc<FrameSnapshot>, StudioError> {
         match self {
             Self::Simulated { scene, project, clock, engine, steps, seam } => {
-                let engine = engine.get_or_insert_with(|| engine_of(scene, project, clock));
+                let first = || engine_at(scene, project, clock, 0);
+                let engine = engine.get_or_insert_with(first);
                 let round = seam.as_ref().map_or(0.0, Seam::round_secs);
                 let (step, t) = step_before(secs + round, clock);
                 let steps = steps.get_or_insert_default();
@@ -224,6 +229,16 @@ impl Dance {
         }
     }
 
+    /// The gauges of the steps since [`Dance::begin`]; none of a take.
+    pub(crate) fn health(&self) -> Vec<Gauge> {
+        match self {
+            Self::Simulated { scene, project, engine: Some(engine), .. } => {
+                health(&engine.totals(), scene.rest_inside.as_ref(), &project.simulation)
+            }
+            _ => Vec::new(),
+        }
+    }
+
     /// A fingerprint of the simulated state; none of a take.
     pub(crate) fn state_hash(&self) -> Option<u64> {
         match self {
@@ -241,11 +256,13 @@ impl Dance {
     }
 }
 
-/// A simulation at its first frame.
-fn engine_of(scene: &Arc<Scene>, project: &Project, clock: &FrameClock) -> Box<Engine> {
-    let mut made = Box::new(Engine::with_step(Arc::clone(scene), project.simulation, clock.step_secs));
+/// A simulation whose hair is settled at a frame.
+fn engine_at(scene: &Arc<Scene>, project: &Project, clock: &FrameClock, frame: u64) -> Box<Engine> {
+    let mut made = Engine::at_rest(Arc::clone(scene), project.simulation, clock.step_secs);
     made.follow(project);
-    made
+    made.seek(clock.time_of_frame(frame));
+    made.settle();
+    Box::new(made)
 }
 
 /// The step at or before a time, and how far on to the next one it is, 0 to 1.

@@ -147,7 +147,7 @@ fn instants_between_steps_lie_between_them() {
         let mut progress = |_| ControlFlow::Continue(());
         let (mut dance, _) =
             Dance::open(&project, &crate::Access::new(), 30.0, &mut progress).expect("a dance");
-        dance.begin(0.1, &mut progress).expect("begun");
+        dance.begin(0, 0.1, &mut progress).expect("begun");
         dance
     };
     let tip = |snapshot: &crate::FrameSnapshot| {

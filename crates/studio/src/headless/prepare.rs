@@ -7,7 +7,7 @@ use std::sync::atomic::AtomicBool;
 use lovelock_render::{Backend, Gpu, GpuError, RenderError, Renderer};
 
 use super::Progress;
-use crate::{Access, Engine, LoadControl, Problem, Project, Scene, SceneLoader, StudioError};
+use crate::{Access, Engine, FrameClock, LoadControl, Problem, Project, Scene, SceneLoader, StudioError};
 
 /// Opens what draws: `gpu` where one is given.
 ///
@@ -65,18 +65,54 @@ pub(crate) fn check_frames(frames: &Range<u64>) -> Result<(), StudioError> {
     Ok(())
 }
 
-/// Lives through the frames before the first one that is drawn, so that frame 100 is the same in every recording.
+/// Steps between two reports of progress.
+pub(crate) const STEPS_A_REPORT: u64 = 60;
+
+/// A simulation whose hair is settled at the step `start`, the same hair as in the window where one goes to that time; or on its
+/// way there at `first`, where that is earlier: a shutter may open before its frame.
+///
+/// # Errors
+/// [`StudioError::Cancelled`].
+pub(crate) fn settled_at(
+    scene: &Arc<Scene>,
+    project: &Project,
+    clock: &FrameClock,
+    [start, first]: [u64; 2],
+    progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+) -> Result<Engine, StudioError> {
+    let mut engine = Engine::at_rest(Arc::clone(scene), project.simulation, clock.step_secs);
+    engine.follow(project);
+    engine.seek(clock.time_of_step(start.min(first)));
+    let mut preroll = engine.preroll_of(start as i64);
+    loop {
+        let (done, total) = preroll.steps();
+        if done % STEPS_A_REPORT == 0 {
+            tell(progress, Progress::Simulating { done, total })?;
+        }
+        if preroll.advance() {
+            break;
+        }
+    }
+    engine.take_settled(preroll);
+    engine.begin_here();
+    Ok(engine)
+}
+
+/// Lives through the steps before the first one that is drawn.
+///
+/// # Errors
+/// [`StudioError::Cancelled`].
 pub(crate) fn simulate_to(
     engine: &mut Engine,
     step: u64,
     progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<(), StudioError> {
-    const STEPS_A_REPORT: u64 = 60;
-    let mut done = 0;
-    while done < step {
-        tell(progress, Progress::Simulating { done, total: step })?;
-        done = (done + STEPS_A_REPORT).min(step);
-        engine.advance_to_step(done);
+    let first = engine.at_step().max(0).unsigned_abs();
+    let mut at = first;
+    while at < step {
+        tell(progress, Progress::Simulating { done: at - first, total: step - first })?;
+        at = (at + STEPS_A_REPORT).min(step);
+        engine.advance_to_step(at);
     }
     Ok(())
 }

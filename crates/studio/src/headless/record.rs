@@ -21,7 +21,7 @@ use crate::{PassHistory, Project, StageHistory, StageTimes, Stopwatch, StudioErr
 /// The most frames of which times are kept for the medians.
 const MOST_TIMES: usize = 1 << 20;
 
-/// Records a project: simulates from its first frame, draws the frames asked for, and writes them.
+/// Records a project: gives the hair its life before the first frame, draws the frames asked for, and writes them.
 ///
 /// `progress` is told each stage and frame, and may stop the recording. The simulation's bytes depend on the
 /// project and the frame rate alone.
@@ -65,8 +65,8 @@ pub fn record(
             continue;
         }
         if !std::mem::replace(&mut begun, true) {
-            // Through all of the dance before, whatever of it is kept.
-            dance.begin(job.options.instants(frame, job.fps)[0], progress)?;
+            // Through all of the recording before, whatever of it is kept.
+            dance.begin(frames.start, job.options.instants(frame, job.fps)[0], progress)?;
         }
         let watch = Stopwatch::start();
         let (mut times, stats) = job.draw(frame, &mut dance, &mut drawer, &mut drawn)?;
@@ -111,6 +111,7 @@ pub fn record(
         max_stretch: totals.max_stretch,
         max_penetration_m: totals.max_penetration_m,
         recovered_guides: totals.recovered_guides,
+        health: dance.health(),
         state_hash: dance.state_hash().map_or_else(String::new, |hash| format!("{hash:016x}")),
         bytes: written.bytes(),
         steps_per_frame: dance.steps_per_frame(),

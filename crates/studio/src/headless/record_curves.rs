@@ -122,7 +122,7 @@ pub fn record_curves(
     if request.seamless || project.recording.seamless {
         dance.close(&frames)?;
     }
-    dance.begin(dance.secs_of(frames.start), progress)?;
+    dance.begin(frames.start, dance.secs_of(frames.start), progress)?;
 
     let watch = Stopwatch::start();
     let first = dance.snapshot(frames.start)?;

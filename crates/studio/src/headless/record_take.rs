@@ -7,9 +7,9 @@ use std::sync::Arc;
 use lovelock_record::{FrameRate, TAKE_EXTENSION, TakeReport};
 use serde::Serialize;
 
-use super::prepare::{check_frames, load, simulate_to, tell};
+use super::prepare::{check_frames, load, settled_at, tell};
 use super::{Progress, RecordRequest};
-use crate::{Engine, FrameClock, Project, Stopwatch, StudioError, TakeRecording};
+use crate::{FrameClock, Gauge, Project, Stopwatch, StudioError, TakeRecording, health};
 
 /// What was recorded as a take, as `record --json` prints it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -36,6 +36,8 @@ pub struct TakeRecordReport {
     pub max_penetration_m: f32,
     /// Guides that were not finite and were put back.
     pub recovered_guides: u64,
+    /// The gauges of the simulation, with what to change where one is over its limits.
+    pub health: Vec<Gauge>,
     /// Fingerprint of the last simulated state: 16 hexadecimal digits.
     pub state_hash: String,
     /// What could not be loaded and other things to know, in sentences.
@@ -85,10 +87,8 @@ pub fn record_take(
     });
     check_frames(&frames)?;
     let clock = FrameClock::new(fps);
-    let mut engine = Engine::with_step(Arc::clone(&scene), project.simulation, clock.step_secs);
-    engine.follow(&project);
-    simulate_to(&mut engine, clock.step_of_frame(frames.start), progress)?;
-    engine.clear_totals();
+    let first = clock.step_of_frame(frames.start);
+    let mut engine = settled_at(&scene, &project, &clock, [first, first], progress)?;
     let watch = Stopwatch::start();
     let project = Arc::new(project);
     let mut take = TakeRecording::start(&request.out, &project, &engine)?;
@@ -121,6 +121,7 @@ pub fn record_take(
         max_stretch: totals.max_stretch,
         max_penetration_m: totals.max_penetration_m,
         recovered_guides: totals.recovered_guides,
+        health: health(&totals, scene.rest_inside.as_ref(), &project.simulation),
         state_hash: format!("{:016x}", engine.state_hash()),
         notes: problems.iter().map(ToString::to_string).collect(),
     })

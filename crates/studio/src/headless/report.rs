@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use serde::{Serialize, Serializer};
 
-use crate::StageTimes;
+use crate::{Gauge, StageTimes};
 
 /// Medians over the frames of a recording, milliseconds.
 pub type StageMedians = StageTimes;
@@ -65,6 +65,8 @@ pub struct RecordReport {
     pub max_penetration_m: f32,
     /// Guides that were not finite and were put back.
     pub recovered_guides: u64,
+    /// The gauges of the simulation with what to change where one is over its limits; none of a take.
+    pub health: Vec<Gauge>,
     /// Fingerprint of the last simulated state: 16 hexadecimal digits; empty where a take was drawn.
     pub state_hash: String,
     /// Bytes written.

@@ -89,7 +89,7 @@ pub enum Progress {
         /// What could not be loaded, and notes of the files.
         problems: Vec<Problem>,
     },
-    /// The hair lives through the frames before the first one that is drawn.
+    /// The hair lives through the seconds before the first frame that is drawn.
     Simulating {
         /// Steps done.
         done: u64,

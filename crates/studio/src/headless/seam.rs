@@ -9,7 +9,7 @@ use lovelock_record::mix_guides;
 
 use super::Progress;
 use super::dance::step_before;
-use super::prepare::{simulate_to, tell};
+use super::prepare::{STEPS_A_REPORT, simulate_to, tell};
 use crate::{Engine, FrameClock, FrameSnapshot, Scene, StudioError, TakePlayer};
 
 /// How long hair goes over, seconds, and the most of a round.
@@ -103,7 +103,6 @@ impl Seam {
         first_secs: f64,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<(), StudioError> {
-        const STEPS_A_REPORT: u64 = 60;
         let last = step_before(first_secs + self.round_secs(), clock).0;
         let kept = step_before(self.end_secs() - self.fade_secs, clock).0.min(last);
         self.before.clear();
@@ -239,7 +238,7 @@ mod tests {
 
     /// Hair of frames, in the space of the head.
     fn hair(dance: &mut Dance, frames: Range<u64>) -> Vec<Vec<Vec3>> {
-        dance.begin(dance.secs_of(frames.start), &mut go_on).expect("a dance");
+        dance.begin(frames.start, dance.secs_of(frames.start), &mut go_on).expect("a dance");
         let points = |frame| {
             let snapshot = dance.snapshot(frame).expect("a frame");
             let (guides, head) = (&snapshot.guides.guides, snapshot.guides.world_from_head.inverse());

@@ -150,6 +150,7 @@ fn the_report_has_the_keys_that_were_promised() {
         max_stretch: 0.0,
         max_penetration_m: 0.0,
         recovered_guides: 0,
+        health: Vec::new(),
         state_hash: "0000000000000abc".to_owned(),
         bytes: 1,
         steps_per_frame: 2,
@@ -176,6 +177,7 @@ fn the_report_has_the_keys_that_were_promised() {
         "max_stretch",
         "max_penetration_m",
         "recovered_guides",
+        "health",
         "state_hash",
     ] {
         assert!(!json[key].is_null(), "no `{key}` in {json}");

@@ -34,6 +34,8 @@ pub struct Painted {
     pub stats: FrameStats,
     /// Times of all stages of this frame but `encode`.
     pub times: StageTimes,
+    /// The instant.
+    pub snapshot: Arc<FrameSnapshot>,
     /// [`FrameSnapshot::step`] of the instant.
     pub step: u64,
     /// [`FrameSnapshot::position_secs`] of the instant.
@@ -239,7 +241,8 @@ impl Worker {
         let stats = renderer.picture(&input, *width, *height, &mut picture)?;
         times.take_picture(&stats);
         let (step, position_secs) = (snapshot.step, snapshot.position_secs);
-        Ok(Painted { picture, camera, stats, times, step, position_secs })
+        let snapshot = Arc::clone(snapshot);
+        Ok(Painted { picture, camera, stats, times, snapshot, step, position_secs })
     }
 }
 

@@ -58,6 +58,11 @@ impl Project {
         if found != kept {
             note(Place::Compare, vec![format!("there were {found} panes; there are {kept} now")]);
         }
+        let preroll_of = |timeline: &TimelineSection| TimelineSection {
+            preroll_secs: timeline.preroll_secs,
+            ..TimelineSection::default()
+        };
+        note(Place::Timeline, differences(&preroll_of(&self.timeline), &preroll_of(&project.timeline)));
         let lost = self.timeline.markers.len() - project.timeline.markers.len();
         if lost > 0 {
             note(Place::Timeline, vec![format!("{lost} markers without a time, or too many, were left out")]);
@@ -100,7 +105,12 @@ fn timeline(timeline: &TimelineSection) -> TimelineSection {
         name: marker.name.chars().take(TimelineSection::LONGEST_NAME).collect(),
     });
     let tracks = timeline.tracks.iter().filter_map(Track::in_range).take(Track::MOST);
-    TimelineSection { markers: markers.collect(), tracks: tracks.collect() }
+    let default = TimelineSection::default().preroll_secs;
+    TimelineSection {
+        markers: markers.collect(),
+        tracks: tracks.collect(),
+        preroll_secs: within(timeline.preroll_secs, 0.0, TimelineSection::MOST_PREROLL_SECS, default),
+    }
 }
 
 fn within(value: f32, low: f32, high: f32, default: f32) -> f32 {

@@ -251,16 +251,27 @@ pub struct Marker {
 }
 
 /// What stands on the timeline.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct TimelineSection {
     /// Named times, at most [`TimelineSection::MOST_MARKERS`].
     pub markers: Vec<Marker>,
     /// Numbers of the project that follow the timeline, at most [`Track::MOST`].
     pub tracks: Vec<Track>,
+    /// How long hair lives, at least, before an instant that is gone to or recorded from, seconds, 0 to
+    /// [`TimelineSection::MOST_PREROLL_SECS`]: it comes from rest, and is settled after that. 0 shows the style at rest.
+    pub preroll_secs: f32,
+}
+
+impl Default for TimelineSection {
+    fn default() -> Self {
+        Self { markers: Vec::new(), tracks: Vec::new(), preroll_secs: 2.0 }
+    }
 }
 
 impl TimelineSection {
+    /// The longest life before an instant, seconds.
+    pub const MOST_PREROLL_SECS: f32 = 30.0;
     /// The most markers.
     pub const MOST_MARKERS: usize = 200;
     /// The longest name of a marker, characters.

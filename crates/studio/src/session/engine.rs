@@ -8,15 +8,10 @@ use lovelock_motion::{PlacedCollider, Pose, Skin, place_colliders, pose_at, skin
 use lovelock_record::TakeFrame;
 use lovelock_wisp::{Simulation, SimulationSettings, StepInput, StepReport};
 
+use super::preroll::Preroll;
 use super::snapshot::SnapshotPool;
 use super::{FrameSnapshot, Scene};
-use crate::{Animation, Project, STEP_SECS, StageTimes, Stopwatch};
-
-/// How long hair falls into place before the first frame, seconds.
-pub const SETTLE_SECS: f64 = 1.0;
-
-/// How much of the dance before the first frame hair lives through, where the clip loops, seconds.
-const LEAD_SECS: f64 = 1.0;
+use crate::{Animation, Project, STEP_SECS, StageTimes, Stopwatch, TimelineSection};
 
 /// What the simulator is told that has passed where the motion jumps, seconds: it then moves hair along with the
 /// head instead of simulating it ([`StepInput::time_secs`]).
@@ -29,10 +24,20 @@ pub struct Totals {
     pub steps: u64,
     /// Largest relative change of a link's length.
     pub max_stretch: f32,
+    /// The guide whose link that is, and the point at its end.
+    pub worst_stretch_at: Option<(u32, u32)>,
     /// Deepest point inside a collider, metres.
     pub max_penetration_m: f32,
+    /// The guide and its point that was as deep.
+    pub deepest_at: Option<(u32, u32)>,
+    /// Largest mean kinetic energy, joules per kilogram.
+    pub max_kinetic_energy: f32,
+    /// The fastest guide and its point in that step.
+    pub fastest_at: Option<(u32, u32)>,
     /// Guides put back to their last good pose, counted at each step.
     pub recovered_guides: u64,
+    /// The guide that was put back last.
+    pub recovered_at: Option<u32>,
     /// Steps at which the motion jumped.
     pub jumps: u64,
 }
@@ -40,9 +45,17 @@ pub struct Totals {
 impl Totals {
     fn add(&mut self, report: &StepReport) {
         self.steps += 1;
-        self.max_stretch = self.max_stretch.max(report.max_stretch);
-        self.max_penetration_m = self.max_penetration_m.max(report.max_penetration_m);
+        if report.max_stretch > self.max_stretch {
+            (self.max_stretch, self.worst_stretch_at) = (report.max_stretch, report.worst_stretch_at);
+        }
+        if report.max_penetration_m > self.max_penetration_m {
+            (self.max_penetration_m, self.deepest_at) = (report.max_penetration_m, None);
+        }
+        if report.kinetic_energy > self.max_kinetic_energy {
+            (self.max_kinetic_energy, self.fastest_at) = (report.kinetic_energy, report.fastest_at);
+        }
         self.recovered_guides += u64::from(report.recovered_guides);
+        self.recovered_at = report.recovered_at.or(self.recovered_at);
         self.jumps += u64::from(report.jumped);
     }
 }
@@ -51,12 +64,17 @@ impl Totals {
 ///
 /// Time runs in equal steps from the first frame: the state after a number of steps depends on the scene, the
 /// settings and that number alone, not on the number of threads nor on the clock.
+///
+/// Going to another time carries the hair along rigidly, at once; [`Engine::settle`], or [`Engine::preroll`] aside, then gives
+/// it the shape that it has there.
 #[derive(Debug)]
 pub struct Engine {
     scene: Arc<Scene>,
     settings: SimulationSettings,
     /// What of the settings follows the timeline.
     animation: Option<Animation>,
+    /// How long hair lives before an instant that is gone to, seconds.
+    preroll_secs: f64,
     step_secs: f64,
     simulation: Simulation,
     /// Steps from the scene's time zero.
@@ -85,11 +103,19 @@ impl Engine {
 
     /// As [`Engine::new`], in steps of `step_secs`.
     pub fn with_step(scene: Arc<Scene>, settings: SimulationSettings, step_secs: f64) -> Self {
+        let mut engine = Self::at_rest(scene, settings, step_secs);
+        engine.settle();
+        engine
+    }
+
+    /// A scene at its first frame, its hair in its style and not yet settled.
+    pub fn at_rest(scene: Arc<Scene>, settings: SimulationSettings, step_secs: f64) -> Self {
         let simulation = Simulation::new(Arc::clone(&scene.style));
         let mut engine = Self {
             scene,
             settings: settings.clamped(),
             animation: None,
+            preroll_secs: f64::from(TimelineSection::default().preroll_secs),
             step_secs,
             simulation,
             at_step: 0,
@@ -104,7 +130,7 @@ impl Engine {
             cut: false,
             pool: SnapshotPool::default(),
         };
-        engine.restart();
+        engine.lay_at_rest(0, f64::NEG_INFINITY);
         engine
     }
 
@@ -142,6 +168,7 @@ impl Engine {
     pub fn follow(&mut self, project: &Project) {
         self.set_settings(&project.simulation);
         self.animation = Animation::of(project);
+        self.preroll_secs = f64::from(project.timeline.preroll_secs);
     }
 
     /// The worst of all steps since the hair was last settled.
@@ -159,9 +186,9 @@ impl Engine {
         self.simulation.state_hash()
     }
 
-    /// Takes another scene at the same time. Hair of the same layout goes on moving; other hair starts in its
-    /// style and falls into place.
-    pub fn set_scene(&mut self, scene: Arc<Scene>) {
+    /// Takes another scene at the same time. Hair of the same layout goes on moving; other hair starts in its style. Returns
+    /// whether the hair is now as it was laid and not as it has lived, so that it wants to be settled.
+    pub fn set_scene(&mut self, scene: Arc<Scene>) -> bool {
         let before = std::mem::replace(&mut self.scene, scene);
         let same_layout = before.style.guides.points_per_guide == self.scene.style.guides.points_per_guide
             && before.style.guides.count() == self.scene.style.guides.count();
@@ -187,11 +214,11 @@ impl Engine {
         };
         self.at_step = (self.scene.position_secs(time_secs) / self.step_secs).round() as i64;
         if !same_layout || !same_body {
-            // Briefly: a slider that is dragged brings many such scenes, and the rest of the fall may be seen.
-            self.fall_into_place(0.2, 0.0);
+            self.lay_at_rest(self.at_step, f64::NEG_INFINITY);
         } else if !same_clip {
             self.jump();
         }
+        !(same_layout && same_body && same_clip)
     }
 
     /// Back to the first frame, the hair settled.
@@ -200,33 +227,80 @@ impl Engine {
         self.settle();
     }
 
-    /// Puts the hair to its style and lets it fall into place. Where the clip loops, it then lives through the
-    /// dance before this time, so that the first frame moves like all others.
+    /// Gives the hair the shape that it has at this time: see [`Engine::preroll`].
     pub fn settle(&mut self) {
-        let lead_secs =
-            if self.scene.loops_smoothly() && self.scene.clip.is_some() { LEAD_SECS } else { 0.0 };
-        self.fall_into_place(SETTLE_SECS, lead_secs);
+        let mut preroll = self.preroll();
+        while !preroll.advance() {}
+        self.take_settled(preroll);
     }
 
-    /// From the style at rest: `fall_secs` in the pose `lead_secs` before now, then the motion until now.
-    fn fall_into_place(&mut self, fall_secs: f64, lead_secs: f64) {
-        let steps = |secs: f64| (secs / self.step_secs).round() as i64;
-        let (fall, lead) = (steps(fall_secs), steps(lead_secs));
+    /// A copy that lives through the seconds before this instant, from the style at rest. A motion that cannot be reached
+    /// from before (the start of a clip that does not loop, or whose end does not go over into its start) is waited for in
+    /// its first pose.
+    pub fn preroll(&self) -> Preroll {
+        self.preroll_of(self.at_step)
+    }
+
+    /// The life of the hair of a later step, as far as this instant.
+    pub(crate) fn preroll_of(&self, step: i64) -> Preroll {
+        let aside = Self {
+            scene: Arc::clone(&self.scene),
+            animation: self.animation.clone(),
+            simulation: self.simulation.clone(),
+            pose: Pose::default(),
+            colliders: Vec::new(),
+            pool: SnapshotPool::default(),
+            ..*self
+        };
+        Preroll::new(aside, step, self.preroll_secs)
+    }
+
+    /// Takes the hair of a copy that has arrived where this engine still is; returns whether it was taken.
+    pub fn take_settled(&mut self, preroll: Preroll) -> bool {
+        let aside = preroll.into_engine();
+        if !Arc::ptr_eq(&aside.scene, &self.scene) || aside.at_step != self.at_step {
+            return false;
+        }
         self.jumped_since = true;
-        self.at_step -= lead;
-        self.simulated_secs += JUMP_SECS;
-        self.place_body();
-        self.simulation.reset(&Self::input(self.simulated_secs, self.pose.world_from_head, &self.colliders));
-        for _ in 0..fall {
-            self.simulate();
-        }
-        for _ in 0..lead {
-            self.at_step += 1;
-            self.place_body();
-            self.simulate();
-        }
+        (self.simulation, self.simulated_secs) = (aside.simulation, aside.simulated_secs);
+        (self.pose, self.colliders, self.report) = (aside.pose, aside.colliders, aside.report);
         self.totals = Totals::default();
         self.times = StageTimes::default();
+        true
+    }
+
+    /// What is recorded begins here: the next step follows this instant without a jump.
+    pub(crate) fn begin_here(&mut self) {
+        self.jumped_since = false;
+    }
+
+    /// Puts the hair into its style at a step. Before `lead_in_secs` the body stands as it does then.
+    pub(super) fn lay_at_rest(&mut self, step: i64, lead_in_secs: f64) {
+        self.jumped_since = true;
+        self.at_step = step;
+        self.simulated_secs += JUMP_SECS;
+        self.place_body(lead_in_secs);
+        self.simulation.reset(&Self::input(self.simulated_secs, self.pose.world_from_head, &self.colliders));
+        self.report = StepReport::default();
+    }
+
+    /// A step of a life that leads to another instant.
+    pub(super) fn live_step(&mut self, lead_in_secs: f64) {
+        self.at_step += 1;
+        self.follow_timeline();
+        self.place_body(lead_in_secs);
+        self.simulate();
+    }
+
+    /// What the last step had to say.
+    #[cfg(test)]
+    pub(super) fn report(&self) -> StepReport {
+        self.report
+    }
+
+    /// Steps from the scene's time zero.
+    pub(crate) fn at_step(&self) -> i64 {
+        self.at_step
     }
 
     /// One step on.
@@ -238,10 +312,8 @@ impl Engine {
         if !self.scene.loops_smoothly() && self.scene.repetition(self.time_secs()) != before {
             self.simulated_secs += JUMP_SECS;
         }
-        if let Some(animation) = &self.animation {
-            self.settings = animation.simulation_at(self.position_secs());
-        }
-        self.place_body();
+        self.follow_timeline();
+        self.place_body(f64::NEG_INFINITY);
         self.times.motion += watch.lap_ms();
         self.simulate();
         self.times.simulate += watch.ms();
@@ -256,7 +328,7 @@ impl Engine {
         }
     }
 
-    /// To a time of the scene: the hair keeps its shape and moves along with the head.
+    /// To a time of the scene: the hair keeps its shape and moves along with the head, until it is settled there.
     pub fn seek(&mut self, time_secs: f64) {
         let time_secs = if time_secs.is_finite() { time_secs.max(0.0) } else { 0.0 };
         self.at_step = (time_secs / self.step_secs).round() as i64;
@@ -324,15 +396,24 @@ impl Engine {
         StepInput::new(time_secs, world_from_head, colliders)
     }
 
-    /// Poses the body at the present step.
-    fn place_body(&mut self) {
-        let clip_secs = self.scene.clip_secs(self.time_secs());
+    /// The settings of the present step.
+    fn follow_timeline(&mut self) {
+        if let Some(animation) = &self.animation {
+            self.settings = animation.simulation_at(self.position_secs());
+        }
+    }
+
+    /// Poses the body at the present step, or at `lead_in_secs` where that is later.
+    fn place_body(&mut self, lead_in_secs: f64) {
+        let clip_secs = self.scene.clip_secs(self.time_secs().max(lead_in_secs));
         pose_at(&self.scene.body, self.scene.clip.as_deref(), clip_secs, &mut self.pose);
         place_colliders(&self.scene.colliders, &self.scene.body, &self.pose, &mut self.colliders);
     }
 
     /// One step of the hair to where the body is.
     fn simulate(&mut self) {
+        // The same wind blows at the same time, however the hair came there.
+        self.simulation.set_wind_secs(self.time_secs() - self.step_secs);
         self.simulated_secs += self.step_secs;
         let input = Self::input(self.simulated_secs, self.pose.world_from_head, &self.colliders);
         self.report = self.simulation.step(&input, &self.settings, self.step_secs as f32);
@@ -342,7 +423,7 @@ impl Engine {
     fn jump(&mut self) {
         self.jumped_since = true;
         self.simulated_secs += JUMP_SECS;
-        self.place_body();
+        self.place_body(f64::NEG_INFINITY);
         self.simulate();
         self.totals.add(&self.report);
     }

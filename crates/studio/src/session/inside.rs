@@ -10,7 +10,7 @@ use lovelock_wisp::SimulationSettings;
 use super::load_thread::{LoadThread, Loaded};
 use super::mailbox::{Mailbox, TakeWish, Wishes};
 use super::worker::{Event, Outbox};
-use super::{Engine, FrameSnapshot, Scene};
+use super::{Engine, FrameSnapshot, Preroll, PrerollProgress, Scene};
 use crate::take::TakeTransport;
 use crate::{
     Access, BodySection, FileRef, HairSection, MotionSection, Playback, Project, STEP_SECS, Slot, Stopwatch,
@@ -19,6 +19,9 @@ use crate::{
 
 /// Panics in a row after which the simulation rests until something changes.
 const MOST_PANICS: u32 = 3;
+
+/// How long the life before an instant goes on before wishes are looked at again, milliseconds.
+const SLICE_MS: f64 = 8.0;
 
 /// What a scene is made from: other sections of a project need no load.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,6 +50,14 @@ impl SceneInputs {
     }
 }
 
+/// A life on its way.
+struct Aside {
+    preroll: Box<Preroll>,
+    since: Stopwatch,
+    /// Steps to go on once it has arrived.
+    steps: u32,
+}
+
 /// The simulation thread's own state.
 pub(super) struct Inside {
     mailbox: Mailbox,
@@ -54,7 +65,10 @@ pub(super) struct Inside {
     loader: Arc<LoadThread>,
     outbox: Outbox,
     recorded: Arc<Mutex<Option<TakeProgress>>>,
+    settling: Arc<Mutex<Option<PrerollProgress>>>,
     engine: Option<Engine>,
+    /// The life of the hair before the instant where the engine stands; time waits for it.
+    preroll: Option<Aside>,
     /// The take that plays in place of the engine.
     take: Option<TakeTransport>,
     recording: Option<TakeRecording>,
@@ -75,6 +89,7 @@ impl Inside {
         loader: Arc<LoadThread>,
         outbox: Outbox,
         recorded: Arc<Mutex<Option<TakeProgress>>>,
+        settling: Arc<Mutex<Option<PrerollProgress>>>,
     ) -> Self {
         Self {
             mailbox,
@@ -82,7 +97,9 @@ impl Inside {
             loader,
             outbox,
             recorded,
+            settling,
             engine: None,
+            preroll: None,
             take: None,
             recording: None,
             project: None,
@@ -101,6 +118,7 @@ impl Inside {
         let mut watch = Stopwatch::start();
         loop {
             let timeout = match (&self.take, &self.engine) {
+                _ if self.preroll.is_some() => Some(Duration::ZERO),
                 // A take is smooth at any rate: sixty instants a second, whatever lies between two recorded ones.
                 (Some(_), _) => self.playback.is_playing().then(|| Duration::from_secs_f64(STEP_SECS)),
                 (None, Some(_)) => self.playback.until_next_step(),
@@ -128,30 +146,105 @@ impl Inside {
     /// Does what is asked for and what time asks for, and shows the result.
     fn turn(&mut self, wishes: Wishes, elapsed_secs: f64) {
         let changed = self.obey(wishes);
+        // Before its frame is: whoever sees hair that was carried knows that it is not settled.
+        self.tell_settling();
         if self.take.is_some() {
+            self.preroll = None;
             self.play(changed, elapsed_secs);
+        } else if self.preroll.is_some() {
+            self.live_aside(changed);
         } else {
             self.simulate(changed, elapsed_secs);
+        }
+        self.tell_settling();
+    }
+
+    /// Begins the life before the instant where the engine stands, in place of another that is under way.
+    fn begin_preroll(&mut self) {
+        self.preroll = self.engine.as_ref().map(|engine| Aside {
+            preroll: Box::new(engine.preroll()),
+            since: Stopwatch::start(),
+            steps: 0,
+        });
+    }
+
+    /// A slice of the life aside. Before it is over the hair is seen as it was carried here.
+    fn live_aside(&mut self, changed: bool) {
+        if changed {
+            self.show();
+        }
+        let slice = Stopwatch::start();
+        while let Some(aside) = &mut self.preroll {
+            if aside.preroll.advance() {
+                self.arrive();
+                self.show();
+            } else if slice.ms() > SLICE_MS {
+                break;
+            }
+        }
+    }
+
+    /// Takes over the hair that has arrived, and goes on as was asked for meanwhile.
+    fn arrive(&mut self) {
+        let (Some(aside), Some(engine)) = (self.preroll.take(), &mut self.engine) else { return };
+        engine.take_settled(*aside.preroll);
+        // The time that it took is not to be caught up with.
+        self.playback.set_playing(self.playback.is_playing());
+        for _ in 0..aside.steps {
+            self.step();
+        }
+    }
+
+    /// Lives through what is left of it at once: where hair is about to be written down.
+    fn finish_preroll(&mut self) {
+        while self.preroll.as_mut().is_some_and(|aside| !aside.preroll.advance()) {}
+        if self.preroll.is_some() {
+            self.arrive();
+            self.show();
+        }
+    }
+
+    fn step(&mut self) {
+        if let Some(engine) = &mut self.engine {
+            engine.step();
+            self.record_step();
+        }
+    }
+
+    fn show(&mut self) {
+        if let Some(engine) = &mut self.engine {
+            self.frames.put(engine.snapshot());
+            self.outbox.wake();
+        }
+    }
+
+    fn tell_settling(&mut self) {
+        let progress = self.preroll.as_ref().map(|aside| {
+            let (done, total) = aside.preroll.steps();
+            let (to_secs, taken_secs) = (aside.preroll.to_secs(), aside.since.secs());
+            PrerollProgress { done, total, to_secs, taken_secs }
+        });
+        let mut told = self.settling.lock().unwrap_or_else(PoisonError::into_inner);
+        if progress.is_some() || told.is_some() {
+            *told = progress;
+            self.outbox.wake();
         }
     }
 
     fn simulate(&mut self, mut changed: bool, elapsed_secs: f64) {
         let due = self.playback.advance(elapsed_secs);
         for _ in 0..due {
-            let Some(engine) = &mut self.engine else { return };
+            let Some(engine) = &self.engine else { return };
             if engine.is_at_end() {
                 self.playback.set_playing(false);
                 self.outbox.send(Event::EndReached);
                 break;
             }
-            engine.step();
-            self.record_step();
+            self.step();
             changed = true;
         }
-        let Some(engine) = &mut self.engine else { return };
         if changed {
-            self.frames.put(engine.snapshot());
-            self.outbox.wake();
+            self.show();
         }
     }
 
@@ -197,6 +290,7 @@ impl Inside {
             steps,
             restart,
             settle,
+            cancel_settle,
             take,
             stop: _,
         } = wishes;
@@ -232,7 +326,7 @@ impl Inside {
             }
             (None, Some(engine)) => {
                 if restart {
-                    engine.restart();
+                    engine.seek(0.0);
                 }
                 if let Some(secs) = seek_secs {
                     engine.seek(secs);
@@ -240,18 +334,21 @@ impl Inside {
                 if steps < 0 {
                     engine.step_back(steps.unsigned_abs());
                 }
-                if settle {
-                    engine.settle();
+                let gone_to = restart || seek_secs.is_some() || steps < 0;
+                if gone_to || settle {
+                    self.begin_preroll();
+                } else if cancel_settle && self.preroll.take().is_some() {
+                    self.playback.set_playing(self.playback.is_playing());
                 }
-                restart || seek_secs.is_some() || settle || steps != 0
+                gone_to || steps != 0
             }
             (None, None) => false,
         };
         if self.take.is_none() {
             for _ in 0..steps {
-                if let Some(engine) = &mut self.engine {
-                    engine.step();
-                    self.record_step();
+                match &mut self.preroll {
+                    Some(aside) => aside.steps = aside.steps.saturating_add(1),
+                    None => self.step(),
                 }
             }
         }
@@ -267,6 +364,16 @@ impl Inside {
         self.settings = project.simulation;
         if let Some(engine) = &mut self.engine {
             engine.follow(&project);
+        }
+        // A life under way is one of the settings as they are now.
+        if self.preroll.is_some()
+            && self.project.as_ref().is_some_and(|before| before.simulation != project.simulation)
+        {
+            let steps = self.preroll.as_ref().map_or(0, |aside| aside.steps);
+            self.begin_preroll();
+            if let Some(aside) = &mut self.preroll {
+                aside.steps = steps;
+            }
         }
         if let Some(take) = &mut self.take {
             take.set_looping(project.motion.looping);
@@ -305,13 +412,20 @@ impl Inside {
 
     fn set_scene(&mut self, scene: Arc<Scene>) {
         if let Some(engine) = &mut self.engine {
-            return engine.set_scene(scene);
+            let other_hair = !Arc::ptr_eq(&engine.scene().style, &scene.style);
+            let laid = engine.set_scene(scene);
+            // Locks that are only changed go on moving while time passes. Where it stands, they are seen as they settle.
+            if laid || self.preroll.is_some() || (other_hair && !self.playback.is_playing()) {
+                self.begin_preroll();
+            }
+            return;
         }
-        let mut engine = Engine::new(scene, self.settings);
+        let mut engine = Engine::at_rest(scene, self.settings, STEP_SECS);
         if let Some(project) = &self.project {
             engine.follow(project);
         }
         self.engine = Some(engine);
+        self.begin_preroll();
     }
 
     /// Before playing: from an end at which nothing can follow, to the other one.
@@ -323,7 +437,8 @@ impl Inside {
         } else if let Some(engine) = &mut self.engine
             && engine.is_at_end()
         {
-            engine.restart();
+            engine.seek(0.0);
+            self.begin_preroll();
         }
     }
 
@@ -333,6 +448,7 @@ impl Inside {
             return self.outbox.send(Event::TakeFailed { message });
         }
         self.end_take(None);
+        self.finish_preroll();
         let (Some(engine), Some(project)) = (&self.engine, self.recorded_project()) else {
             let message = format!("{}: there is nothing to record yet", path.display());
             return self.outbox.send(Event::TakeFailed { message });
@@ -396,6 +512,7 @@ impl Inside {
         self.outbox.panicked("simulation", panic);
         self.panics += 1;
         let played = self.take.take().is_some();
+        self.preroll = None;
         let scene = self.engine.take().map(|engine| Arc::clone(engine.scene()));
         if let (Some(scene), true) = (scene, self.panics < MOST_PANICS) {
             self.engine = catch_unwind(AssertUnwindSafe(|| Engine::new(scene, self.settings))).ok();

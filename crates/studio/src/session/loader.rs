@@ -3,10 +3,13 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use lovelock_groom::Hairstyle;
+use lovelock_motion::Collider;
+
 use super::dress::Dressed;
 use super::parts::{BodyKey, BodyPart, HairFileCache, HairKey, HairPart, MotionKey, MotionPart};
 use super::{HeadPath, Scene};
-use crate::{Access, Place, Problem, ProblemKind, Project, StudioError};
+use crate::{Access, Place, Problem, ProblemKind, Project, RestInside, StudioError};
 
 /// How a load tells how far it is, and learns that nobody wants it any more.
 pub struct LoadControl<'a> {
@@ -44,6 +47,7 @@ pub struct SceneLoader {
     hair_file: HairFileCache,
     dressed: Option<Dressed>,
     head_path: Option<(Arc<MotionPart>, bool, Arc<HeadPath>)>,
+    rest_inside: Option<(Arc<Hairstyle>, Arc<[Collider]>, Option<RestInside>)>,
 }
 
 impl SceneLoader {
@@ -100,6 +104,7 @@ impl SceneLoader {
             speed: f64::from(project.motion.speed),
             looping,
             colliders: Arc::clone(&body.colliders),
+            rest_inside: self.rest_inside(&body, &style),
             style,
             head_path,
             notes: notes.into(),
@@ -209,6 +214,19 @@ impl SceneLoader {
         let part = Arc::new(part);
         self.hair = Some(Kept { key, body: Some(Arc::clone(body)), part: Arc::clone(&part) });
         part
+    }
+
+    /// Where the style lies inside the body; looked for once for a style and a body.
+    fn rest_inside(&mut self, body: &BodyPart, hair: &Arc<Hairstyle>) -> Option<RestInside> {
+        if let Some((style, colliders, found)) = &self.rest_inside
+            && Arc::ptr_eq(style, hair)
+            && Arc::ptr_eq(colliders, &body.colliders)
+        {
+            return found.clone();
+        }
+        let found = RestInside::find(hair, &body.body, &body.colliders);
+        self.rest_inside = Some((Arc::clone(hair), Arc::clone(&body.colliders), found.clone()));
+        found
     }
 
     fn head_path(&mut self, body: &BodyPart, motion: &Arc<MotionPart>, looping: bool) -> Arc<HeadPath> {

@@ -40,6 +40,8 @@ pub(super) struct Wishes {
     pub(super) restart: bool,
     /// The hair settled where it is.
     pub(super) settle: bool,
+    /// The hair as it is, and not settled.
+    pub(super) cancel_settle: bool,
     /// A take is to be recorded, or enough of it is.
     pub(super) take: Option<TakeWish>,
     /// The thread shall end.
@@ -48,8 +50,20 @@ pub(super) struct Wishes {
 
 impl Wishes {
     fn is_empty(&self) -> bool {
-        let Self { project, loaded, playing, rate, backwards, seek_secs, steps, restart, settle, take, stop } =
-            self;
+        let Self {
+            project,
+            loaded,
+            playing,
+            rate,
+            backwards,
+            seek_secs,
+            steps,
+            restart,
+            settle,
+            cancel_settle,
+            take,
+            stop,
+        } = self;
         project.is_none()
             && loaded.is_none()
             && playing.is_none()
@@ -59,6 +73,7 @@ impl Wishes {
             && *steps == 0
             && !restart
             && !settle
+            && !cancel_settle
             && take.is_none()
             && !stop
     }

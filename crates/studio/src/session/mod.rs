@@ -10,21 +10,25 @@ mod load_thread;
 mod loader;
 mod mailbox;
 mod parts;
+mod preroll;
 mod scene;
 mod snapshot;
 mod worker;
 
 pub use camera::{camera_at, frame_points};
 pub use dancer::dancer;
-pub use engine::{Engine, SETTLE_SECS, Totals};
+pub use engine::{Engine, Totals};
 pub use head_path::HeadPath;
 pub use load_thread::LoadProgress;
 pub use loader::{LoadControl, SceneLoader};
+pub use preroll::{Preroll, PrerollProgress};
 pub use scene::{BodyObstacle, Scene};
 pub use snapshot::FrameSnapshot;
 pub(crate) use snapshot::SnapshotPool;
 pub use worker::{Event, Wake, Worker};
 
+#[cfg(test)]
+mod preroll_tests;
 #[cfg(test)]
 pub(crate) mod tests;
 #[cfg(test)]

@@ -7,6 +7,7 @@ use lovelock_groom::{Hairstyle, Obstacle};
 use lovelock_motion::{Body, Clip, Collider, RestDistance};
 
 use super::HeadPath;
+use crate::RestInside;
 
 /// The resting body as what hair is combed around.
 #[derive(Debug)]
@@ -35,6 +36,8 @@ pub struct Scene {
     pub colliders: Arc<[Collider]>,
     /// The hairstyle.
     pub style: Arc<Hairstyle>,
+    /// Where the style at rest lies inside what it collides with; none where it does not.
+    pub rest_inside: Option<RestInside>,
     /// Where the head goes.
     pub head_path: Arc<HeadPath>,
     /// What the body's file, the motion's file and the hair's file had to say: guesses, and what was dropped.
@@ -76,6 +79,15 @@ impl Scene {
             time_secs.rem_euclid(duration)
         } else {
             time_secs.clamp(0.0, duration)
+        }
+    }
+
+    /// The earliest time from which the motion goes on to `time_secs` without a jump.
+    pub fn lead_in_secs(&self, time_secs: f64) -> f64 {
+        if self.loops_smoothly() || !self.looping {
+            f64::NEG_INFINITY
+        } else {
+            self.repetition(time_secs) as f64 * self.duration_secs()
         }
     }
 

@@ -22,18 +22,18 @@ pub(crate) fn small_project() -> Project {
     project
 }
 
-fn load(project: &Project) -> (Arc<Scene>, Vec<Problem>) {
+pub(crate) fn load(project: &Project) -> (Arc<Scene>, Vec<Problem>) {
     SceneLoader::new().load_now(project, &Access::new()).expect("a scene")
 }
 
 /// The small project's scene, loaded once for all tests.
-fn scene() -> Arc<Scene> {
+pub(crate) fn scene() -> Arc<Scene> {
     static SCENE: OnceLock<Arc<Scene>> = OnceLock::new();
     Arc::clone(SCENE.get_or_init(|| load(&small_project()).0))
 }
 
 /// The guides' points relative to the head.
-fn in_head_space(frame: &FrameSnapshot) -> Vec<Vec3> {
+pub(super) fn in_head_space(frame: &FrameSnapshot) -> Vec<Vec3> {
     let head_from_world = frame.guides.world_from_head.inverse();
     let guides = &frame.guides.guides;
     (0..guides.x.len())
@@ -41,7 +41,7 @@ fn in_head_space(frame: &FrameSnapshot) -> Vec<Vec3> {
         .collect()
 }
 
-fn farthest(a: &[Vec3], b: &[Vec3]) -> f32 {
+pub(super) fn farthest(a: &[Vec3], b: &[Vec3]) -> f32 {
     a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max)
 }
 
@@ -306,7 +306,9 @@ fn other_hair_comes_in_without_a_whip_and_time_goes_on() {
     ] {
         let clip_secs = engine.scene().clip_secs(engine.time_secs());
         change(&mut project);
-        engine.set_scene(loader.load_now(&project, &access).expect("a scene").0);
+        if engine.set_scene(loader.load_now(&project, &access).expect("a scene").0) {
+            engine.settle();
+        }
         let now = engine.scene().clip_secs(engine.time_secs());
         assert!((now - clip_secs).abs() < 2.0 * crate::STEP_SECS, "the pose goes on: {clip_secs} to {now}");
         for step in 0..20 {

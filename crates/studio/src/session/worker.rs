@@ -11,7 +11,7 @@ use lovelock_record::TakeReport;
 use super::inside::Inside;
 use super::load_thread::LoadThread;
 use super::mailbox::{Mailbox, TakeWish};
-use super::{FrameSnapshot, LoadProgress, Scene};
+use super::{FrameSnapshot, LoadProgress, PrerollProgress, Scene};
 use crate::{Access, Problem, Project, Slot, StudioError, TakeProgress};
 
 /// Events that may wait for the interface; more are dropped, and logged.
@@ -105,6 +105,7 @@ pub struct Worker {
     events: Mutex<Receiver<Event>>,
     loader: Arc<LoadThread>,
     recorded: Arc<Mutex<Option<TakeProgress>>>,
+    settling: Arc<Mutex<Option<PrerollProgress>>>,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -123,14 +124,28 @@ impl Worker {
             to_simulation.ask(|wishes| wishes.loaded = Some(loaded));
         })?);
         mailbox.ask(|wishes| wishes.project = Some((project, access)));
-        let recorded = Arc::default();
-        let inside =
-            Inside::new(mailbox.clone(), frames.clone(), Arc::clone(&loader), outbox, Arc::clone(&recorded));
+        let (recorded, settling) = (Arc::default(), Arc::default());
+        let inside = Inside::new(
+            mailbox.clone(),
+            frames.clone(),
+            Arc::clone(&loader),
+            outbox,
+            Arc::clone(&recorded),
+            Arc::clone(&settling),
+        );
         let thread = std::thread::Builder::new()
             .name("lovelock simulation".to_owned())
             .spawn(move || inside.run())
             .map_err(|error| StudioError::work(format!("the simulation thread could not start: {error}")))?;
-        Ok(Self { mailbox, frames, events: Mutex::new(events), loader, recorded, thread: Some(thread) })
+        Ok(Self {
+            mailbox,
+            frames,
+            events: Mutex::new(events),
+            loader,
+            recorded,
+            settling,
+            thread: Some(thread),
+        })
     }
 
     /// The project has changed. What needs loading is loaded aside; the old scene dances on meanwhile.
@@ -169,7 +184,17 @@ impl Worker {
         self.recorded.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// Goes to a time, seconds; the hair moves along.
+    /// How far the hair is that settles where one has gone to; none where it is settled.
+    pub fn settling(&self) -> Option<PrerollProgress> {
+        *self.settling.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Goes on with the hair as it is, not settled.
+    pub fn cancel_settle(&self) {
+        self.mailbox.ask(|wishes| wishes.cancel_settle = true);
+    }
+
+    /// Goes to a time, seconds; the hair moves along at once, and settles there aside. Time waits for it.
     pub fn seek(&self, time_secs: f64) {
         self.mailbox.ask(|wishes| {
             wishes.seek_secs = Some(time_secs);
@@ -177,7 +202,7 @@ impl Worker {
         });
     }
 
-    /// Goes on by a number of steps of 1/60 s, or back. On, the hair is simulated; back, it moves along.
+    /// Goes on by a number of steps of 1/60 s, or back. On, the hair is simulated; back, it settles as for [`Worker::seek`].
     pub fn step(&self, steps: i64) {
         self.mailbox.ask(|wishes| wishes.steps = wishes.steps.saturating_add(steps).clamp(-600, 600));
     }

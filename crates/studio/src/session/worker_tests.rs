@@ -99,3 +99,69 @@ fn a_panic_becomes_an_event_and_the_thread_lives() {
     worker.seek(1.0);
     wait("frames again", || worker.frame().filter(|frame| frame.step != step || frame.time_secs >= 1.0));
 }
+
+/// Waits until the hair is settled at a time, and returns that frame.
+fn settled_at(worker: &Worker, secs: f64) -> Arc<FrameSnapshot> {
+    wait("settled hair", || {
+        let there = worker.frame().filter(|frame| (frame.time_secs - secs).abs() < 1e-6);
+        // What is told of the hair is told after its frame.
+        there.filter(|_| worker.settling().is_none()).and(worker.frame())
+    })
+}
+
+#[test]
+fn whoever_scrubs_sees_settled_hair_where_he_ends() {
+    let (worker, _) = start(small_project());
+    let first = wait("a frame", || worker.frame());
+    worker.set_playing(false);
+    let end = 250.0 * crate::STEP_SECS;
+    for step in 0..60 {
+        worker.seek(end - f64::from(60 - step) * crate::STEP_SECS);
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    worker.seek(end);
+    let shown = settled_at(&worker, end);
+    let mut engine = Engine::new(Arc::clone(&first.scene), lovelock_wisp::SimulationSettings::default());
+    engine.seek(end);
+    assert_ne!(engine.snapshot().guides, shown.guides, "the control: hair that is only carried");
+    engine.settle();
+    assert_eq!(engine.snapshot().guides, shown.guides);
+    worker.step(-2);
+    engine.step_back(2);
+    engine.settle();
+    assert_eq!(engine.snapshot().guides, settled_at(&worker, 248.0 * crate::STEP_SECS).guides);
+}
+
+#[test]
+fn hair_that_comes_while_time_stands_is_settled() {
+    let mut project = small_project();
+    let (worker, _) = start(project.clone());
+    wait("a frame", || worker.frame());
+    worker.set_playing(false);
+    let secs = 100.0 * crate::STEP_SECS;
+    worker.seek(secs);
+    let before = settled_at(&worker, secs);
+    project.hair.groom.wisps = 20;
+    worker.set_project(Arc::new(project.clone()), Access::new());
+    wait("the other hair", || worker.frame().filter(|frame| !Arc::ptr_eq(&frame.scene, &before.scene)));
+    let shown = settled_at(&worker, secs);
+    let mut engine = Engine::new(Arc::clone(&shown.scene), project.simulation);
+    engine.seek(secs);
+    engine.settle();
+    assert_eq!(engine.snapshot().guides, shown.guides);
+}
+
+#[test]
+fn settling_can_be_given_up_and_time_goes_on() {
+    let mut project = small_project();
+    // Long enough to be in the middle of it.
+    project.timeline.preroll_secs = 30.0;
+    project.hair.groom.wisps = 200;
+    let (worker, _) = start(project);
+    let progress = wait("a life that is told", || worker.settling());
+    assert!(progress.done < progress.total && progress.total >= 1800, "{progress:?}");
+    assert_eq!(wait("hair in its style meanwhile", || worker.frame()).step, 0);
+    worker.cancel_settle();
+    wait("time to pass", || worker.frame().filter(|frame| frame.step > 2));
+    assert_eq!(worker.settling(), None);
+}

@@ -54,7 +54,7 @@ fn a_guide_gone_non_finite_is_put_back_counted_and_moves_on() {
     }
     let report = hurt.step(&input(20, &[skull]), &settings(), 1.0 / 60.0);
     sound.step(&input(20, &[skull]), &settings(), 1.0 / 60.0);
-    assert_eq!(report.recovered_guides, 1);
+    assert_eq!((report.recovered_guides, report.recovered_at), (1, Some(17)));
     let tip = |s: &Simulation, guide: usize| {
         let (block, lane) = s.slots[guide];
         at(&s.blocks[block as usize].position[15], lane as usize)
@@ -90,4 +90,23 @@ fn links_that_are_too_many_for_a_guide_hold_it_whole() {
     }
     let tip = input(19, &[]).world_from_head.transform_point3(Vec3::X * 0.1);
     assert!((at(&simulation.blocks[0].position[1], 0) - tip).length() < 1e-6);
+}
+
+#[test]
+fn a_report_says_where_its_worst_is() {
+    let (mut simulation, skull) = head_of_hair();
+    for step in 1..40 {
+        let report = simulation.step(&input(step, &[skull]), &settings(), 1.0 / 60.0);
+        let points = |guide: u32| {
+            let (block, lane) = simulation.slots[guide as usize];
+            (&simulation.blocks[block as usize], lane as usize)
+        };
+        let (guide, point) = report.worst_stretch_at.expect("rounding stretches some link");
+        let (block, lane) = points(guide);
+        assert_eq!(block.stretch(lane, point as usize), report.max_stretch);
+        let (guide, point) = report.fastest_at.expect("hair that moves");
+        let (block, lane) = points(guide);
+        assert_eq!(at(&block.velocity[point as usize], lane).length_squared().sqrt(), report.max_speed);
+        assert_eq!(report.recovered_at, None);
+    }
 }

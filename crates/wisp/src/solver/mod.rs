@@ -45,7 +45,10 @@ fn measure(block: &mut Block, plan: &Plan) {
         // Hair further than 300 m from its head has been lost as surely as one at infinity.
         if size[k].is_nan() || size[k] > 1e5 * count as f32 {
             restore(block, plan, k);
-            block.outcome.recovered += u32::from(k < block.used);
+            if k < block.used {
+                block.outcome.recovered += 1;
+                block.outcome.first_recovered.get_or_insert(k);
+            }
         }
     }
     let (mut stretch, mut energy, mut fastest) = ([0.0_f32; LANES], [0.0_f32; LANES], [0.0_f32; LANES]);

@@ -215,6 +215,7 @@ pub fn worse(a: StepReport, b: StepReport) -> StepReport {
         kinetic_energy: a.kinetic_energy.max(b.kinetic_energy),
         max_speed: a.max_speed.max(b.max_speed),
         jumped: a.jumped || b.jumped,
+        ..a
     }
 }
 

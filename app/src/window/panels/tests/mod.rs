@@ -67,7 +67,14 @@ pub(super) const PANELS: [(&str, Show); 9] = [
     ("Hairstyle", |ui, b| {
         super::hair::ui(ui, &mut b.project, &b.hair);
     }),
-    ("Simulation", |ui, b| super::simulation::ui(ui, &mut b.project.simulation)),
+    ("Simulation", |ui, b| {
+        super::simulation::ui(
+            ui,
+            &mut b.project.simulation,
+            &mut b.project.timeline.preroll_secs,
+            [Vec3::X, Vec3::Y, Vec3::Z],
+        );
+    }),
     ("Body and motion", |ui, b| {
         super::body::ui(ui, &mut b.project, &b.body);
     }),

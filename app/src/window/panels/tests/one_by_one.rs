@@ -123,6 +123,60 @@ fn simulation_sets_numbers_and_restores_them() {
 }
 
 #[test]
+fn the_ramp_of_stiffness_is_dragged_bent_and_moved_by_keys() {
+    let mut harness = panel("Simulation", Project::default());
+    let settings =
+        |harness: &egui_kittest::Harness<'_, Shown<Bench>>| harness.state().state.project.simulation;
+    let handle = |harness: &egui_kittest::Harness<'_, Shown<Bench>>, name: &str| {
+        control(harness, Role::Slider, name).rect().center()
+    };
+    let (roots, middle, tips) =
+        ("Stiffness curve, roots", "Stiffness curve, middle", "Stiffness curve, tips");
+    let before = settings(&harness);
+    for name in [roots, middle, tips] {
+        let at = handle(&harness, name);
+        assert!(tooltip_at(&mut harness, at).is_some_and(|tip| tip.contains("keys")), "{name}");
+    }
+    let from = handle(&harness, roots);
+    drag(&mut harness, from, from - egui::vec2(0.0, 20.0));
+    let lifted = settings(&harness);
+    assert!(lifted.stiffness_root > before.stiffness_root + 10.0, "{lifted:?}");
+    assert_eq!((lifted.stiffness_tip, lifted.stiffness_bias), (before.stiffness_tip, before.stiffness_bias));
+    // The middle goes to where it is dragged, and the curve with it.
+    let from = handle(&harness, middle);
+    let to = from + egui::vec2(0.0, 8.0);
+    drag(&mut harness, from, to);
+    let bent = settings(&harness);
+    assert!(bent.stiffness_bias > 0.55, "{bent:?}");
+    assert!((handle(&harness, middle) - to).length() < 1.5);
+    // A click takes the focus, and keys move what has it.
+    let from = handle(&harness, tips);
+    crate::window::testing::click(&mut harness, from);
+    harness.key_press(egui::Key::ArrowUp);
+    harness.run();
+    assert!((settings(&harness).stiffness_tip - bent.stiffness_tip - 0.6).abs() < 1e-4);
+    harness.key_press_modifiers(egui::Modifiers::SHIFT, egui::Key::ArrowDown);
+    harness.run();
+    assert_eq!(settings(&harness).stiffness_tip, 0.0, "no further than its range");
+    let at = handle(&harness, middle);
+    crate::window::testing::double_click(&mut harness, at);
+    assert_eq!(settings(&harness).stiffness_bias, before.stiffness_bias);
+}
+
+#[test]
+fn the_wind_is_turned_on_its_sphere() {
+    let mut harness = panel("Simulation", Project::default());
+    let sphere = control(&harness, Role::Slider, "Wind direction").rect();
+    drag(&mut harness, sphere.center(), sphere.center() + egui::vec2(0.0, -30.0));
+    let [x, y, z] = harness.state().state.project.simulation.wind.direction;
+    assert!(y < -0.5 && x.abs() < 0.1 && z.abs() < 0.9, "it comes from above: {x} {y} {z}");
+    let at = control(&harness, Role::SpinButton, "Wind toward").rect().center();
+    type_at(&mut harness, at, "180");
+    let turned = harness.state().state.project.simulation.wind.direction;
+    assert!((turned[1] - y).abs() < 1e-6 && turned[2] < 0.0, "as steep as before: {turned:?}");
+}
+
+#[test]
 fn shadow_shows_what_its_method_has() {
     let mut harness = panel("Shadow", Project::default());
     choose(&mut harness, "Map resolution", "64³");

@@ -3,6 +3,7 @@
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, MouseWheelUnit, TouchPhase, vec2};
 use egui_kittest::Harness;
+use glam::Vec3;
 use lovelock_studio::{History, Project};
 
 use crate::window::camera_control;
@@ -22,7 +23,12 @@ fn editor() -> Harness<'static, Shown<Edited>> {
     screen(state, |ui, edited: &mut Edited| {
         edited.gestures.begin_pass(ui.ctx());
         let mut project = (**edited.history.project()).clone();
-        simulation::ui(ui, &mut project.simulation);
+        simulation::ui(
+            ui,
+            &mut project.simulation,
+            &mut project.timeline.preroll_secs,
+            [Vec3::X, Vec3::Y, Vec3::Z],
+        );
         let (_, viewport) = ui.allocate_exact_size(vec2(200.0, 200.0), egui::Sense::click_and_drag());
         viewport.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Viewport"));
         camera_control::apply(&mut project.camera, &viewport);

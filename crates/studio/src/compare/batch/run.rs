@@ -183,7 +183,7 @@ fn instants(
     frames: &Range<u64>,
     progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<Vec<Arc<FrameSnapshot>>, StudioError> {
-    dance.begin(dance.secs_of(frames.start), progress)?;
+    dance.begin(frames.start, dance.secs_of(frames.start), progress)?;
     let mut snapshots = Vec::new();
     for frame in frames.clone() {
         snapshots.push(dance.snapshot(frame)?);

@@ -1,0 +1,89 @@
+//! What is painted over the picture, where the picture shows it: the same instant and the same camera.
+
+pub(crate) mod mark;
+
+use egui::{Pos2, Rect, pos2};
+use glam::{Mat4, Vec3};
+use lovelock_studio::Painted;
+
+/// The picture on the screen and the camera that it was taken with.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct View {
+    /// Where the picture is on the screen, points.
+    pub(crate) place: Rect,
+    clip_from_world: Mat4,
+    world_from_clip: Mat4,
+    /// Where the camera is, world space.
+    pub(crate) eye: Vec3,
+}
+
+impl View {
+    /// Of a picture that is shown at `place`; none where it has no size.
+    pub(crate) fn new(painted: &Painted, place: Rect) -> Option<Self> {
+        let aspect = place.width() / place.height();
+        if !(aspect.is_finite() && aspect > 0.0) {
+            return None;
+        }
+        let clip_from_world = painted.camera.clip_from_world(aspect);
+        let world_from_clip = clip_from_world.inverse();
+        (world_from_clip.is_finite() && painted.camera.eye.is_finite()).then_some(Self {
+            place,
+            clip_from_world,
+            world_from_clip,
+            eye: painted.camera.eye,
+        })
+    }
+
+    /// Where a point of the world is on the screen, also beside the picture; none behind the camera.
+    pub(crate) fn to_screen(self, world: Vec3) -> Option<Pos2> {
+        let clip = self.clip_from_world * world.extend(1.0);
+        // Nearer than this, lines would leave the screen by more than numbers can say.
+        if !clip.is_finite() || clip.w < 1e-2 {
+            return None;
+        }
+        let (x, y) = (0.5 + 0.5 * clip.x / clip.w, 0.5 - 0.5 * clip.y / clip.w);
+        Some(self.place.min + self.place.size() * pos2(x, y).to_vec2())
+    }
+
+    /// The direction from the eye through a point of the screen.
+    pub(crate) fn ray(self, at: Pos2) -> Vec3 {
+        let share = (at - self.place.min) / self.place.size();
+        let clip = glam::Vec4::new(2.0 * share.x - 1.0, 1.0 - 2.0 * share.y, 0.5, 1.0);
+        let world = self.world_from_clip * clip;
+        (world.truncate() / world.w - self.eye).normalize_or(Vec3::NEG_Z)
+    }
+
+    /// The place under a point of the screen that is as far from the camera as `depth_of`.
+    pub(crate) fn at_depth_of(self, at: Pos2, depth_of: Vec3) -> Vec3 {
+        let forward = self.ray(self.place.center());
+        let ray = self.ray(at);
+        self.eye + ray * ((depth_of - self.eye).dot(forward) / ray.dot(forward).max(1e-3))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui::vec2;
+    use lovelock_studio::render::Camera;
+
+    fn view() -> View {
+        let camera = Camera { eye: Vec3::new(0.4, 1.6, 2.0), target: Vec3::new(0.0, 1.5, 0.0), fov_y: 0.5 };
+        let place = Rect::from_min_size(pos2(100.0, 50.0), vec2(800.0, 450.0));
+        let clip_from_world = camera.clip_from_world(800.0 / 450.0);
+        View { place, clip_from_world, world_from_clip: clip_from_world.inverse(), eye: camera.eye }
+    }
+
+    #[test]
+    fn the_target_is_in_the_middle_and_rays_go_where_points_are() {
+        let view = view();
+        let middle = view.to_screen(Vec3::new(0.0, 1.5, 0.0)).expect("before the camera");
+        assert!((middle - view.place.center()).length() < 0.1, "{middle:?}");
+        for p in [Vec3::new(0.2, 1.4, 0.1), Vec3::new(-0.3, 1.7, -0.2)] {
+            let at = view.to_screen(p).expect("before the camera");
+            assert!((view.ray(at) - (p - view.eye).normalize()).length() < 1e-4);
+            assert!(view.at_depth_of(at, p).distance(p) < 1e-3);
+        }
+        assert!(view.to_screen(Vec3::new(0.8, 1.7, 4.0)).is_none(), "behind");
+    }
+}

@@ -1,0 +1,74 @@
+//! How well the hair is simulated.
+
+use egui::{Align, Color32, Layout, Rect, RichText, Sense, Ui, Vec2, WidgetInfo};
+use egui_material_icons::icons;
+use lovelock_studio::{Gauge, GaugeKind, HealthLevel};
+
+use crate::window::control::note;
+use crate::window::theme;
+
+/// The colour of a level.
+pub(crate) fn color(level: HealthLevel) -> Color32 {
+    match level {
+        HealthLevel::Good => theme::GOOD,
+        HealthLevel::Watch => theme::WATCH,
+        HealthLevel::Wrong => theme::WRONG,
+    }
+}
+
+/// The gauges, each with a button that shows where its value is. `shown` is the one that is pointed at in the picture. Returns
+/// the gauge whose place is to be shown.
+pub(crate) fn ui(ui: &mut Ui, gauges: &[Gauge], shown: Option<GaugeKind>) -> Option<GaugeKind> {
+    if gauges.is_empty() {
+        note(ui, "Nothing is simulated while a take plays.");
+        return None;
+    }
+    let worst = gauges.iter().map(|gauge| gauge.level).max().unwrap_or(HealthLevel::Good);
+    let words = match worst {
+        HealthLevel::Good => "All is well.",
+        HealthLevel::Watch => "Something may be seen:",
+        HealthLevel::Wrong => "Something is wrong:",
+    };
+    ui.label(RichText::new(words).color(color(worst)));
+    let mut asked = None;
+    for gauge in gauges {
+        if row(ui, gauge, shown == Some(gauge.kind)) {
+            asked = Some(gauge.kind);
+        }
+    }
+    asked
+}
+
+/// One gauge; returns whether its place is asked for.
+fn row(ui: &mut Ui, gauge: &Gauge, shown: bool) -> bool {
+    let kind = gauge.kind;
+    let color = color(gauge.level);
+    let mut asked = false;
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(kind.label()).small()).on_hover_text(kind.tooltip());
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let name = format!("Show: {}", kind.label());
+            let icon = RichText::new(icons::ICON_MY_LOCATION.codepoint).small();
+            let button = egui::Button::selectable(shown, icon).frame_when_inactive(true);
+            let button = ui.add_enabled(gauge.at.is_some(), button);
+            button.widget_info(|| {
+                WidgetInfo::selected(egui::Role::Button, gauge.at.is_some(), shown, name.as_str())
+            });
+            let tip = if shown {
+                "Takes the ring away."
+            } else {
+                "Rings the place in the picture, and goes there."
+            };
+            asked = button.on_hover_text(tip).on_disabled_hover_text("There is no such place.").clicked();
+            ui.label(RichText::new(kind.in_words(gauge.value)).small().color(color));
+        });
+    });
+    let (bar, _) = ui.allocate_exact_size(Vec2::new(ui.available_width(), 3.0), Sense::hover());
+    ui.painter().rect_filled(bar, 1.5, theme::LINE);
+    let full = Rect::from_min_size(bar.min, Vec2::new(bar.width() * gauge.fill(), bar.height()));
+    ui.painter().rect_filled(full, 1.5, color);
+    if !gauge.advice.is_empty() {
+        ui.label(RichText::new(&gauge.advice).small().color(color));
+    }
+    asked
+}

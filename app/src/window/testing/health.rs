@@ -1,0 +1,72 @@
+//! The gauges of the simulation, and the way to their places.
+
+use egui::accesskit::Role;
+use egui_kittest::kittest::Queryable;
+use lovelock_studio::wisp::SimulationSettings;
+use lovelock_studio::{Gauge, GaugeKind, HealthLevel, RestInside, Totals, health};
+
+use super::whole::{go, of, press_button, project, wait, window};
+use super::{control, screen, texts, tooltip_at};
+use crate::window::panels;
+
+/// Gauges of hair that goes 3 mm into the body and begins deep in the neck.
+fn ill() -> Vec<Gauge> {
+    let totals = Totals { max_penetration_m: 3e-3, deepest_at: Some((4, 7)), ..Totals::default() };
+    let rest = RestInside { depth_m: 0.03, guide: 2, point: 5, collider: "neck".to_owned() };
+    health(&totals, Some(&rest), &SimulationSettings::default())
+}
+
+#[test]
+fn gauges_say_what_to_change_and_where() {
+    let state = (ill(), None, Vec::new());
+    let mut harness = screen(state, |ui, (gauges, shown, asked): &mut (Vec<Gauge>, _, Vec<_>)| {
+        asked.extend(panels::health::ui(ui, gauges, *shown));
+    });
+    assert!(harness.query_by_label("Something is wrong:").is_some());
+    let said = texts(&harness);
+    for words in ["3.0 mm", "30.0 mm", "0.0 J/kg"] {
+        assert!(said.iter().any(|(text, ..)| text == words), "{words}");
+    }
+    let advice: Vec<_> = ill().into_iter().filter(|gauge| !gauge.advice.is_empty()).collect();
+    assert_eq!(advice.len(), 2);
+    for gauge in &advice {
+        let color = panels::health::color(gauge.level);
+        let told = said.iter().find(|(text, ..)| text.replace('\n', " ") == gauge.advice);
+        assert_eq!(told.map(|(.., found)| *found), Some(color), "{}", gauge.advice);
+    }
+    for kind in GaugeKind::ALL {
+        let name = format!("Show: {}", kind.label());
+        let at = control(&harness, Role::Button, &name).rect().center();
+        assert!(tooltip_at(&mut harness, at).is_some_and(|tip| tip.ends_with('.')), "{name}");
+        control(&harness, Role::Button, &name).click();
+        harness.run();
+    }
+    assert_eq!(
+        harness.state().state.2,
+        [GaugeKind::Penetration, GaugeKind::RestInside],
+        "the others have no place"
+    );
+    harness.state_mut().state.0.retain(|gauge| gauge.level == HealthLevel::Good);
+    harness.run();
+    assert!(harness.query_by_label("All is well.").is_some());
+    harness.state_mut().state.0.clear();
+    harness.run();
+    assert!(harness.query_by_label_contains("a take plays").is_some());
+}
+
+#[test]
+fn the_way_to_a_place_rings_it_and_can_be_undone() {
+    let mut harness = window();
+    wait(&mut harness, "hair that has moved", |window| {
+        window.session.frame.as_ref().is_some_and(|frame| frame.totals.worst_stretch_at.is_some())
+    });
+    let before = project(&harness);
+    press_button(&mut harness, "Show: Largest stretch");
+    assert_eq!(of(&harness).pointed, Some(GaugeKind::Stretch));
+    assert_ne!(project(&harness).camera, before.camera);
+    assert!(project(&harness).camera.distance < before.camera.distance, "it goes nearer");
+    assert_eq!(of(&harness).history.undo_label(), Some("camera"));
+    press_button(&mut harness, "Show: Largest stretch");
+    assert_eq!((of(&harness).pointed, of(&harness).history.undo_len()), (None, 1));
+    go(&mut harness);
+}

@@ -1,0 +1,209 @@
+//! How well the hair is simulated, in plain words: gauges with limits, and what to change where one is over them.
+
+mod rest;
+
+use lovelock_wisp::SimulationSettings;
+use serde::Serialize;
+
+use crate::{FrameSnapshot, Totals};
+
+pub use rest::RestInside;
+
+/// What is watched.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum GaugeKind {
+    /// The largest relative change of a link's length.
+    Stretch,
+    /// The deepest point inside the body.
+    Penetration,
+    /// Mean kinetic energy.
+    Energy,
+    /// Guides that were not finite and were put back.
+    PutBack,
+    /// How deep the style at rest lies inside a collider.
+    RestInside,
+}
+
+impl GaugeKind {
+    /// All, in the order in which they are shown.
+    pub const ALL: [Self; 5] =
+        [Self::Stretch, Self::Penetration, Self::Energy, Self::PutBack, Self::RestInside];
+
+    /// The name in the interface.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Stretch => "Largest stretch",
+            Self::Penetration => "Deepest in the body",
+            Self::Energy => "Energy",
+            Self::PutBack => "Guides put back",
+            Self::RestInside => "Style in the body",
+        }
+    }
+
+    /// What it is, in a sentence.
+    pub fn tooltip(self) -> &'static str {
+        match self {
+            Self::Stretch => {
+                "How far a link of a guide has been from its length at most, since the hair was last settled."
+            }
+            Self::Penetration => {
+                "How far hair has been inside the body at most, since the hair was last settled."
+            }
+            Self::Energy => {
+                "Mean energy of the movement of the hair now, for a kilogram of it: 5 J/kg is a brisk turn of the head."
+            }
+            Self::PutBack => {
+                "Guides that the simulation lost and set on their style again, since the hair was last settled."
+            }
+            Self::RestInside => "How deep the style as it was drawn lies inside what it collides with.",
+        }
+    }
+
+    /// Up to the first number all is well; over the second one something is wrong.
+    ///
+    /// Stretch: the solver leaves 3e-6, and a thousandth of a lock is a pixel of a large picture. Penetration: a millimetre is
+    /// what skin hides. Energy: 30 J/kg are 8 m/s on average, faster than any head turns. The style at rest: it stays as near
+    /// as it was drawn, and round shapes stand for the neck to about a centimetre.
+    fn limits(self) -> [f64; 2] {
+        match self {
+            Self::Stretch => [1e-4, 1e-3],
+            Self::Penetration => [1e-3, 5e-3],
+            Self::Energy => [30.0, 100.0],
+            Self::PutBack => [0.0, 0.0],
+            Self::RestInside => [10e-3, 25e-3],
+        }
+    }
+
+    /// A value with its unit.
+    pub fn in_words(self, value: f64) -> String {
+        match self {
+            Self::Stretch => format!("{:.4} %", 1e2 * value),
+            Self::Penetration | Self::RestInside => format!("{:.1} mm", 1e3 * value),
+            Self::Energy => format!("{value:.1} J/kg"),
+            Self::PutBack => format!("{value:.0}"),
+        }
+    }
+}
+
+/// How a gauge stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum HealthLevel {
+    /// All is well.
+    Good,
+    /// It may be seen.
+    Watch,
+    /// Something is wrong.
+    Wrong,
+}
+
+/// One gauge.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Gauge {
+    /// What is watched.
+    pub kind: GaugeKind,
+    /// Its value: a fraction, metres, joules per kilogram, or a number of guides.
+    pub value: f64,
+    /// How it stands.
+    pub level: HealthLevel,
+    /// The guide that it is about, and its point; none where it is about none.
+    pub at: Option<(u32, u32)>,
+    /// What it means and what to change, in sentences; empty where all is well.
+    pub advice: String,
+}
+
+impl Gauge {
+    /// Part of the way to where something is wrong, 0 to 1.
+    pub fn fill(&self) -> f32 {
+        let [_, wrong] = self.kind.limits();
+        if wrong > 0.0 { (self.value / wrong).clamp(0.0, 1.0) as f32 } else { f32::from(self.value > 0.0) }
+    }
+
+    fn new(kind: GaugeKind, value: f64, at: Option<(u32, u32)>, advice: impl FnOnce() -> String) -> Self {
+        let [good, wrong] = kind.limits();
+        let level = if value <= good {
+            HealthLevel::Good
+        } else if value <= wrong {
+            HealthLevel::Watch
+        } else {
+            HealthLevel::Wrong
+        };
+        let advice = if level == HealthLevel::Good { String::new() } else { advice() };
+        Self { kind, value, level, at, advice }
+    }
+}
+
+/// The gauges of all steps of a recording: energy is the most there was.
+pub fn health(totals: &Totals, rest: Option<&RestInside>, settings: &SimulationSettings) -> Vec<Gauge> {
+    gauges((totals.max_kinetic_energy, totals.fastest_at), totals, rest, settings)
+}
+
+fn gauges(
+    (energy, fastest_at): (f32, Option<(u32, u32)>),
+    totals: &Totals,
+    rest: Option<&RestInside>,
+    settings: &SimulationSettings,
+) -> Vec<Gauge> {
+    vec![
+        Gauge::new(GaugeKind::Stretch, f64::from(totals.max_stretch), totals.worst_stretch_at, || {
+            let more = if settings.substeps < lovelock_wisp::MAX_SUBSTEPS {
+                "Raise the substeps"
+            } else {
+                "Slow the motion down"
+            };
+            format!("Locks are drawn out. {more}, and look whether the motion leaps there.")
+        }),
+        Gauge::new(GaugeKind::Penetration, f64::from(totals.max_penetration_m), totals.deepest_at, || {
+            "Hair goes into the body. Raise the skin margin or the substeps, or fit the body's colliders there.".to_owned()
+        }),
+        Gauge::new(GaugeKind::Energy, f64::from(energy), fastest_at, || {
+            if settings.wind.speed > 15.0 {
+                "The hair is torn about. Calm the wind, or lower the air drag that it takes hold of."
+                    .to_owned()
+            } else {
+                "The hair flies. Slow the motion down, or raise Settle and the air drag.".to_owned()
+            }
+        }),
+        Gauge::new(
+            GaugeKind::PutBack,
+            totals.recovered_guides as f64,
+            totals.recovered_at.map(|guide| (guide, u32::MAX)),
+            || {
+                "The simulation lost guides and set them on their style again. Raise the substeps, or lower stiffness, wind and \
+                 repulsion; a guide that is lost again and again has points that lie on each other."
+                    .to_owned()
+            },
+        ),
+        Gauge::new(
+            GaugeKind::RestInside,
+            rest.map_or(0.0, |rest| f64::from(rest.depth_m)),
+            rest.map(|rest| (rest.guide, rest.point)),
+            || {
+                let name = rest.map_or("the body", |rest| &rest.collider);
+                format!(
+                    "The style begins inside {name} and is pushed out where it starts to move. Lift it off the body, or make that \
+                     collider smaller."
+                )
+            },
+        ),
+    ]
+}
+
+impl FrameSnapshot {
+    /// The gauges of this instant, which was simulated with `settings`.
+    pub fn health(&self, settings: &SimulationSettings) -> Vec<Gauge> {
+        let now = (self.report.kinetic_energy, self.report.fastest_at);
+        gauges(now, &self.totals, self.scene.rest_inside.as_ref(), settings)
+    }
+
+    /// Where a point of a guide is now, world space; its tip where it has fewer points. None where there is no such guide.
+    pub fn guide_point(&self, (guide, point): (u32, u32)) -> Option<glam::Vec3> {
+        let guides = &self.guides.guides;
+        let last = guides.points_per_guide.checked_sub(1)?;
+        ((guide as usize) < guides.count()).then(|| guides.point(guide as usize, (point as usize).min(last)))
+    }
+}
+
+#[cfg(test)]
+mod tests;
