@@ -37,7 +37,7 @@ pub fn fall(settings: &SimulationSettings, steps: u32) -> (Guides, f32) {
         for n in 0..across {
             // Like bristles that hang already a little, so that they fall all to the same side.
             let root = Vec3::new(n as f32 * GAP, row as f32 * GAP, 0.0);
-            let along = Vec3::new(0.0, -0.5, 1.0).normalize();
+            let along = Vec3::new(0.0, -0.5, 1.0).normalize_or(Vec3::Z);
             let hair: Vec<Vec3> =
                 (0..points).map(|i| root + along * (LENGTH * i as f32 / (points - 1) as f32)).collect();
             guides.push(&hair);
