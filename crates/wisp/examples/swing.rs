@@ -53,7 +53,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let end = from + f64::from(frames - 1) * every;
     let steps = (end / f64::from(STEP_SECS)).round().max(stage.dance.duration_secs * 60.0) as u32;
     let (mut all, mut drawn, mut real_stretch) = (StepReport::default(), 0, 0.0_f32);
-    let mut volume = 0.0;
+    let (mut volume, mut last) = (0.0, (0.0, 1.0));
     for step in 0..=steps {
         let time = f64::from(step) * f64::from(STEP_SECS);
         if step > 0 {
@@ -61,6 +61,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let report = simulation.step(&input, &settings, STEP_SECS);
             volume += report.hair_volume / report.hair_volume_at_rest / steps as f32;
             all = worse(all, report);
+            last = (report.hair_volume, report.hair_volume_at_rest);
             real_stretch = real_stretch.max(stretch(&simulation));
         }
         if drawn < frames && time >= from + f64::from(drawn) * every - 1e-6 {
@@ -81,6 +82,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
     }
     println!("{all:#?}");
+    println!("volume of the hair at last: {:.1} % of that at rest", 100.0 * last.0 / last.1);
     println!("mean volume of the hair: {:.1} % of that at rest", 100.0 * volume);
     println!("stretch from the frames {real_stretch:.2e}");
     picture.save(out)?;

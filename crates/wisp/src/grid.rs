@@ -61,6 +61,8 @@ pub(crate) struct DensityGrid {
     /// One over the density at rest, where there is some, and over a typical one elsewhere.
     inv_rest: Vec<f32>,
     rest_volume: f32,
+    /// Mass of a cell as dense as hair at rest typically finds the hair around itself.
+    full: f32,
     /// The box of cells that hold hair, inclusive; empty where `low > high`.
     low: IVec3,
     high: IVec3,
@@ -99,6 +101,7 @@ impl DensityGrid {
             directions: vec![[0; 6]; size],
             inv_rest: vec![0.0; size],
             rest_volume: 0.0,
+            full: FULL,
             low: IVec3::MAX,
             high: IVec3::MIN,
             repulsion: Repulsion::default(),
@@ -118,6 +121,7 @@ impl DensityGrid {
             squares += f64::from(c[0]) * f64::from(c[0]);
         }
         let typical = if sum > 0.0 { (squares / sum) as f32 } else { FULL };
+        self.full = typical;
         for (inv, c) in self.inv_rest.iter_mut().zip(&self.cells) {
             *inv = 1.0 / (c[0] as f32).max(typical);
         }
@@ -143,7 +147,11 @@ impl DensityGrid {
 
     /// The volume that the hair in the grid fills, cubic metres; see [`volume::volume`].
     pub(crate) fn volume(&self) -> f32 {
-        volume::volume(self.held_rows().flat_map(|row| &self.cells[row]).map(|cell| cell[0]), self.cell)
+        volume::volume(
+            self.held_rows().flat_map(|row| &self.cells[row]).map(|cell| cell[0]),
+            self.full,
+            self.cell,
+        )
     }
 
     /// The volume that the hair fills at rest, cubic metres.

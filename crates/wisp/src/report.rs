@@ -17,8 +17,8 @@ pub struct StepReport {
     pub recovered_guides: u32,
     /// Cells of the density grid above their threshold at the start of the step.
     pub over_dense_cells: u32,
-    /// Volume that the hair fills at the start of the step, cubic metres: `(sum m)^2 / sum m^2` cells of the density
-    /// grid with the lengths of hair `m` in them, as if it were everywhere as dense as it is around itself on average.
+    /// Volume that the hair fills at the start of the step, cubic metres: cells of the density grid, each counted by
+    /// how full it is, where hair at rest typically fills a cell, and at most once.
     pub hair_volume: f32,
     /// The same at rest.
     pub hair_volume_at_rest: f32,

@@ -21,10 +21,10 @@ pub use settings::{HairTie, TieKind, TieReach};
 use crate::{Bounded, Hairstyle, Obstacle, Wisp};
 use route::Ring;
 
-/// How firmly a tie holds what passes through it, 1/s: hair accelerated by 300 m/s^2 moves 0.3 mm in it.
-const RING_HOLD: f32 = 1000.0;
+/// How firmly a tie holds what passes through it, 1/s: hair accelerated by 300 m/s^2 would move 0.02 mm in it.
+const RING_HOLD: f32 = 4000.0;
 /// How firmly hair lies on the head before the tie, and how firmly a bun is pinned, 1/s, at a tightness of 0 and 1.
-const TAUT_HOLD: [f32; 2] = [60.0, 500.0];
+const TAUT_HOLD: [f32; 2] = [60.0, 1000.0];
 /// Hair has to reach this far beyond the ring to be caught, metres.
 const CAUGHT: f32 = 0.02;
 

@@ -25,7 +25,7 @@ pub use sections::{
     MotionSection, MotionSource, RecordingSection, TakeSection, TimelineSection,
 };
 
-use lovelock_groom::{GroomSettings, HairLook, Preset};
+use lovelock_groom::{GroomSettings, HairLook, Haircut, Preset};
 
 /// Version of the project file that this program writes, and the newest that it reads.
 pub const PROJECT_VERSION: u32 = 1;
@@ -92,6 +92,8 @@ impl Project {
         self.hair.preset = preset;
         self.hair.groom = GroomSettings::preset(preset);
         self.look = self.hair.groom.look;
+        // Other hair is not cut.
+        self.hair.cut = Haircut::default();
     }
 
     /// Takes a hair file, which the user picked.

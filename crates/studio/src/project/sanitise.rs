@@ -22,6 +22,7 @@ impl Project {
         project.hair.groom = self.hair.groom.clamped();
         project.hair.import = self.hair.import.in_range();
         project.hair.ties = self.hair.ties.iter().take(HairTie::MOST).map(HairTie::clamped).collect();
+        project.hair.cut = self.hair.cut.clamped();
         project.look = self.look.clamped();
         project.simulation = self.simulation.clamped();
         project.shadow = shadow(&self.shadow);

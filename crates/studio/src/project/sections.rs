@@ -1,7 +1,7 @@
 //! The sections of a project that are the studio's own.
 
 use glam::Vec3;
-use lovelock_groom::{GroomSettings, HairTie, ImportSettings, Preset};
+use lovelock_groom::{GroomSettings, HairTie, Haircut, ImportSettings, Preset};
 use lovelock_motion::{BodySettings, MotionSettings};
 use lovelock_record::{FilmQuality, SequenceFormat};
 use lovelock_render::{Backend, ShadowMethod, ShadowSettings, Transparency};
@@ -112,6 +112,8 @@ pub struct HairSection {
     pub import: ImportSettings,
     /// What gathers the hair, at most [`HairTie::MOST`].
     pub ties: Vec<HairTie>,
+    /// What was cut off while it moved; made by [`Haircut::of`] from an instant, and added up by [`Haircut::and`].
+    pub cut: Haircut,
 }
 
 impl Default for HairSection {
@@ -123,6 +125,7 @@ impl Default for HairSection {
             file: None,
             import: ImportSettings::default(),
             ties: Vec::new(),
+            cut: Haircut::default(),
         }
     }
 }

@@ -89,7 +89,7 @@ impl SceneLoader {
         let motion = self.motion(&project, access, &body, &mut problems)?;
         control.at("making the hair", 0.5)?;
         let hair = self.hair(&project, access, &body, &mut problems);
-        let style = Dressed::style(&mut self.dressed, &hair, &project.hair, &body);
+        let style = Dressed::style(&mut self.dressed, &hair, &project.hair, &body, &mut problems);
         control.at("following the head", 0.9)?;
         let looping = project.motion.looping;
         let head_path = self.head_path(&body, &motion, looping);

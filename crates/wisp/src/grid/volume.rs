@@ -1,19 +1,13 @@
 //! The volume that hair fills.
 
-/// The volume of hair whose mass lies in `cells` of `cell` metres: `V = (sum m)^2 / sum m^2` cells.
+/// The volume of hair whose mass lies in `cells` of `cell` metres: `V = sum(min(m / m_full, 1))` cells.
 ///
-/// That is the volume it would fill if it were everywhere as dense as it is, on the average over the hair, where the
-/// hair is. It needs no threshold, does not change with the number of guides, and halves where hair is pressed into
-/// half the room. Masses are summed exactly, so the order does not matter.
-pub(super) fn volume(masses: impl Iterator<Item = i32>, cell: f32) -> f32 {
-    let (mut sum, mut squares) = (0_i64, 0_u128);
-    for m in masses {
-        sum += i64::from(m);
-        squares += u128::from(m.unsigned_abs()).pow(2);
-    }
-    if squares == 0 {
-        return 0.0;
-    }
-    let cells = (sum as f64) * (sum as f64) / squares as f64;
-    (cells * f64::from(cell).powi(3)) as f32
+/// `full` is the mass of a cell that is as dense as hair at rest, on the average over the hair, finds the hair around
+/// itself: `m_full = sum m^2 / sum m` at rest. A cell that is fuller counts once, one that is emptier by its fullness.
+/// So hair that is pressed together loses volume, and hair that flies apart gains none beyond what it would have if
+/// it were nowhere denser than that. The sum is of integers: the order does not matter.
+pub(super) fn volume(masses: impl Iterator<Item = i32>, full: f32, cell: f32) -> f32 {
+    let most = full.clamp(1.0, 2e9) as i32;
+    let sum: i64 = masses.map(|m| i64::from(m.min(most))).sum();
+    (sum as f64 / f64::from(most) * f64::from(cell).powi(3)) as f32
 }
