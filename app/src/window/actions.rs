@@ -66,6 +66,8 @@ impl Window {
                 self.change("loop", |project| project.motion.looping = !project.motion.looping);
             }
             Command::SettleHair => self.session.worker().settle(),
+            Command::Scissors => self.scissors.held = !self.scissors.held,
+            Command::ShowColliders => self.colliders.on = !self.colliders.on,
             Command::RecordTake => self.record_take(),
             Command::PlayTake => {
                 if let Some(path) = self.session.saved_take.clone() {

@@ -242,8 +242,10 @@ pub(crate) fn row<T>(
 }
 
 /// A titled part of a panel that folds.
-pub(crate) fn section<R>(ui: &mut Ui, title: &str, open: bool, add: impl FnOnce(&mut Ui) -> R) {
-    egui::CollapsingHeader::new(RichText::new(title).strong()).default_open(open).show(ui, add);
+///
+/// Returns what `add` made of it where it is unfolded.
+pub(crate) fn section<R>(ui: &mut Ui, title: &str, open: bool, add: impl FnOnce(&mut Ui) -> R) -> Option<R> {
+    egui::CollapsingHeader::new(RichText::new(title).strong()).default_open(open).show(ui, add).body_returned
 }
 
 /// A line of quiet text.

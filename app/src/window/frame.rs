@@ -205,10 +205,23 @@ impl Window {
                     let ask = panels::hair::ui(ui, project, &self.session.hair);
                     asked = asked.or(ask.map(|_| Purpose::Open));
                 });
+                let unfolded = section(ui, "Ties and scissors", false, |ui| {
+                    let scalp = self.session.scene.as_ref().map(|scene| &scene.style.scalp);
+                    panels::ties::ui(ui, &mut project.hair.ties, &mut self.selected_tie, scalp);
+                    panels::ties::scissors(ui, &mut project.hair.cut, &mut self.scissors.held);
+                });
+                self.ties_shown = unfolded.is_some();
                 section(ui, "Simulation", true, |ui| {
                     let axes = camera_control::axes(&project.camera);
                     let Project { simulation, timeline, .. } = project;
                     panels::simulation::ui(ui, simulation, &mut timeline.preroll_secs, axes);
+                });
+                section(ui, "Colliders", false, |ui| {
+                    let scene = self.session.scene.as_ref();
+                    let names: Vec<&str> = scene.map_or_else(Vec::new, |scene| {
+                        scene.fitted.iter().map(|collider| collider.name.as_str()).collect()
+                    });
+                    panels::colliders::ui(ui, &mut project.body.colliders, &names, &mut self.colliders);
                 });
                 section(ui, "Body and motion", false, |ui| {
                     self.problems(ui, &[Place::Body, Place::Motion]);
@@ -272,9 +285,10 @@ impl Window {
             let most_pixels = viewport::most_pixels(self.session.painter().adapter().as_deref());
             let painted = self.session.painted.as_ref();
             let response = self.viewport.show(ui, painted, most_pixels, self.layout.view_scale);
-            camera_control::apply(&mut project.camera, &response);
+            if self.tools(ui, &response, project) {
+                camera_control::apply(&mut project.camera, &response);
+            }
             let rect = response.rect;
-            self.paint_over(ui, rect);
             if let Some(error) = &self.session.draw_error {
                 Viewport::caption(ui, rect, Align2::LEFT_BOTTOM, error, theme::WRONG);
             }

@@ -22,6 +22,7 @@ mod state_of_hair;
 mod testing;
 mod theme;
 mod timeline;
+mod tools;
 mod viewport;
 
 use std::path::{Path, PathBuf};
@@ -33,6 +34,7 @@ use serde::{Deserialize, Serialize};
 use compare::{Compare, CompareLayout};
 use gesture::Gestures;
 use notices::Notices;
+use overlay::scissors::Scissors;
 use palette::Palette;
 use path_dialog::PathDialog;
 use recorder::Recorder;
@@ -90,6 +92,11 @@ pub(crate) struct Window {
     selected_light: usize,
     /// The gauge whose place is ringed in the picture.
     pointed: Option<GaugeKind>,
+    colliders: panels::colliders::Shown,
+    selected_tie: usize,
+    /// Whether the panel of ties is unfolded: their handles are seen then.
+    ties_shown: bool,
+    scissors: Scissors,
     gestures: Gestures,
     overdub: Overdub,
     thumbnails: timeline::Thumbnails,
@@ -185,6 +192,10 @@ impl Window {
             keys_shown: false,
             selected_light: 0,
             pointed: None,
+            colliders: panels::colliders::Shown::default(),
+            selected_tie: 0,
+            ties_shown: false,
+            scissors: Scissors::default(),
             gestures: Gestures::default(),
             overdub: Overdub::default(),
             thumbnails: timeline::Thumbnails::new(ctx)?,
@@ -260,6 +271,7 @@ impl Window {
             }
             Command::LeaveTake | Command::PlayBackwards => self.history.project().take.file.is_some(),
             Command::FrameHair => self.session.frame.is_some(),
+            Command::Scissors => self.history.project().take.file.is_none(),
             Command::SavePicture => self.session.painted.is_some(),
             Command::ExportCurves => !self.recorder.is_running(),
             _ => true,

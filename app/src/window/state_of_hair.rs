@@ -1,6 +1,6 @@
 //! How the hair is, beside the picture and over it.
 
-use egui::{Rect, Ui};
+use egui::Ui;
 use lovelock_studio::{Gauge, GaugeKind, Painted, Project, frame_points};
 
 use super::overlay::{self, View};
@@ -43,15 +43,8 @@ impl Window {
             frame_points(&project.camera, &frame.scene, frame.time_secs, around.into_iter(), aspect);
     }
 
-    /// What is painted over the picture that fills `rect`.
-    pub(super) fn paint_over(&self, ui: &Ui, rect: Rect) {
-        let (Some(painted), Some(place)) = (&self.session.painted, self.viewport.place(rect)) else { return };
-        let Some(view) = View::new(painted, place) else { return };
-        self.paint_pointed(ui, view, painted);
-    }
-
     /// The ring around the place of the gauge that is pointed at.
-    fn paint_pointed(&self, ui: &Ui, view: View, painted: &Painted) {
+    pub(super) fn paint_pointed(&self, ui: &Ui, view: View, painted: &Painted) {
         let Some(kind) = self.pointed else { return };
         let gauges = self.gauges(self.history.project());
         let Some(gauge) = gauges.iter().find(|gauge| gauge.kind == kind) else { return };

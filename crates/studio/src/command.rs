@@ -17,6 +17,10 @@ pub enum Command {
     ToggleLoop,
     /// Lets the hair fall into place again.
     SettleHair,
+    /// Takes the scissors, or puts them away.
+    Scissors,
+    /// Shows or hides what hair collides with.
+    ShowColliders,
     /// Starts or ends the recording of a take.
     RecordTake,
     /// Starts or cancels the recording of a film or of pictures.
@@ -231,6 +235,22 @@ pub const COMMANDS: &[CommandInfo] = {
             "Puts the hair back to its style and lets it fall into place.",
             &["Shift+S"],
             G::Hair,
+        ),
+        entry(
+            C::Scissors,
+            "scissors",
+            "Scissors",
+            "Takes the scissors: a line drawn across the hair cuts off what is beyond it; asked again, puts them away.",
+            &["X"],
+            G::Hair,
+        ),
+        entry(
+            C::ShowColliders,
+            "show-colliders",
+            "Show colliders",
+            "Shows what hair collides with over the picture, or hides it.",
+            &["B"],
+            G::View,
         ),
         entry(
             C::RecordTake,

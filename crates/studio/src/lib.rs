@@ -44,7 +44,7 @@ pub use headless::{
     CurveRecordReport, CurveSource, Progress, RecordJob, RecordReport, RecordRequest, Recorded, StageMedians,
     TakeRecordReport, is_curves, is_take, record, record_curves, record_take,
 };
-pub use health::{Gauge, GaugeKind, HealthLevel, RestInside, health};
+pub use health::{Gauge, GaugeKind, HealthLevel, health};
 pub use history::{GestureId, History};
 pub use info::{Content, FileKind, Info, ProjectInfo, TakeInfo, info};
 pub use painter::{Adapter, PaintRequest, Painted, Painter};

@@ -116,6 +116,12 @@ impl Simulation {
         self.blocks.par_iter_mut().for_each(|block| block.place_at_rest(&from_head));
     }
 
+    /// Takes the colliders of the next step for other ones, as many as they are: how they lie around the hair at rest is
+    /// found anew.
+    pub fn forget_colliders(&mut self) {
+        self.colliders.clear();
+    }
+
     /// Tells the wind what time it is, seconds: the same wind blows at the same time. Without it, time counts from the last
     /// reset.
     pub fn set_wind_secs(&mut self, secs: f64) {

@@ -1,6 +1,9 @@
 //! What is painted over the picture, where the picture shows it: the same instant and the same camera.
 
+pub(crate) mod colliders;
 pub(crate) mod mark;
+pub(crate) mod scissors;
+pub(crate) mod ties;
 
 use egui::{Pos2, Rect, pos2};
 use glam::{Mat4, Vec3};

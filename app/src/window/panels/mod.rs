@@ -1,6 +1,7 @@
 //! The panels: each a function of the part of the project that it edits.
 
 pub(crate) mod body;
+pub(crate) mod colliders;
 pub(crate) mod hair;
 pub(crate) mod health;
 pub(crate) mod light;
@@ -9,6 +10,7 @@ pub(crate) mod recording;
 pub(crate) mod shadow;
 pub(crate) mod simulation;
 pub(crate) mod statistics;
+pub(crate) mod ties;
 
 #[cfg(test)]
 mod tests;

@@ -169,6 +169,9 @@ fn wind(ui: &mut Ui, wind: &mut Wind, d: &Wind, axes: [Vec3; 3]) {
         &mut wind.turbulence,
         d.turbulence,
     );
+    Number::new("Sheltering", 0.0..=1.0, "How much of the wind the body keeps from the hair behind it.")
+        .percent()
+        .show(ui, &mut wind.sheltering, d.sheltering);
     count(
         ui,
         "Which wind",
@@ -215,6 +218,14 @@ fn hair_against_hair(ui: &mut Ui, s: &mut SimulationSettings, d: &SimulationSett
         .unit(" ×", 1.0)
         .decimals(1)
         .show(ui, &mut s.repulsion.threshold, d.repulsion.threshold);
+    Number::new(
+        "Across",
+        0.0..=1.0,
+        "How much hair heeds the direction of the hair around it: at 100 % it pushes across strands alone, crossing wisps more \
+         than parallel ones, and lets them slide along each other.",
+    )
+    .percent()
+    .show(ui, &mut s.repulsion.anisotropy, d.repulsion.anisotropy);
     Number::new("Cohesion", 0.0..=20.0, "How much locks take on the movement of their neighbours.")
         .unit(" /s", 1.0)
         .decimals(1)

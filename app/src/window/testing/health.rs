@@ -2,8 +2,8 @@
 
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable;
-use lovelock_studio::wisp::SimulationSettings;
-use lovelock_studio::{Gauge, GaugeKind, HealthLevel, RestInside, Totals, health};
+use lovelock_studio::wisp::{BodyPart, InsidePoint, SimulationSettings};
+use lovelock_studio::{Access, Gauge, GaugeKind, HealthLevel, Project, SceneLoader, Totals, health};
 
 use super::whole::{go, of, press_button, project, wait, window};
 use super::{control, screen, texts, tooltip_at};
@@ -11,9 +11,18 @@ use crate::window::panels;
 
 /// Gauges of hair that goes 3 mm into the body and begins deep in the neck.
 fn ill() -> Vec<Gauge> {
-    let totals = Totals { max_penetration_m: 3e-3, deepest_at: Some((4, 7)), ..Totals::default() };
-    let rest = RestInside { depth_m: 0.03, guide: 2, point: 5, collider: "neck".to_owned() };
-    health(&totals, Some(&rest), &SimulationSettings::default())
+    let (scene, _) = SceneLoader::new().load_now(&small(), &Access::new()).expect("a scene");
+    let inside = |depth_m, guide| InsidePoint { depth_m, guide, point: 5, within: BodyPart::Field };
+    let deepest = Some(inside(3e-3, 4));
+    let totals = Totals { max_penetration_m: 3e-3, deepest, ..Totals::default() };
+    health(&totals, Some(inside(0.03, 2)), &scene, &SimulationSettings::default())
+}
+
+fn small() -> Project {
+    let mut project = Project::default();
+    project.hair.groom.wisps = 4;
+    project.hair.groom.strands_per_wisp = 3;
+    project
 }
 
 #[test]
@@ -27,7 +36,8 @@ fn gauges_say_what_to_change_and_where() {
     for words in ["3.0 mm", "30.0 mm", "0.0 J/kg"] {
         assert!(said.iter().any(|(text, ..)| text == words), "{words}");
     }
-    let advice: Vec<_> = ill().into_iter().filter(|gauge| !gauge.advice.is_empty()).collect();
+    let advice: Vec<_> =
+        harness.state().state.0.clone().into_iter().filter(|gauge| !gauge.advice.is_empty()).collect();
     assert_eq!(advice.len(), 2);
     for gauge in &advice {
         let color = panels::health::color(gauge.level);

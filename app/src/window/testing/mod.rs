@@ -8,6 +8,7 @@ mod notices;
 mod playback;
 mod rows;
 mod takes;
+mod tools;
 mod tracks;
 mod whole;
 

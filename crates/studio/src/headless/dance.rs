@@ -233,7 +233,7 @@ impl Dance {
     pub(crate) fn health(&self) -> Vec<Gauge> {
         match self {
             Self::Simulated { scene, project, engine: Some(engine), .. } => {
-                health(&engine.totals(), scene.rest_inside.as_ref(), &project.simulation)
+                health(&engine.totals(), engine.rest_inside(), scene, &project.simulation)
             }
             _ => Vec::new(),
         }

@@ -121,7 +121,7 @@ pub fn record_take(
         max_stretch: totals.max_stretch,
         max_penetration_m: totals.max_penetration_m,
         recovered_guides: totals.recovered_guides,
-        health: health(&totals, scene.rest_inside.as_ref(), &project.simulation),
+        health: health(&totals, engine.rest_inside(), &scene, &project.simulation),
         state_hash: format!("{:016x}", engine.state_hash()),
         notes: problems.iter().map(ToString::to_string).collect(),
     })

@@ -1,13 +1,9 @@
 //! How well the hair is simulated, in plain words: gauges with limits, and what to change where one is over them.
 
-mod rest;
-
-use lovelock_wisp::SimulationSettings;
+use lovelock_wisp::{InsidePoint, SimulationSettings};
 use serde::Serialize;
 
-use crate::{FrameSnapshot, Totals};
-
-pub use rest::RestInside;
+use crate::{FrameSnapshot, Scene, Totals};
 
 /// What is watched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
@@ -135,16 +131,24 @@ impl Gauge {
 }
 
 /// The gauges of all steps of a recording: energy is the most there was.
-pub fn health(totals: &Totals, rest: Option<&RestInside>, settings: &SimulationSettings) -> Vec<Gauge> {
-    gauges((totals.max_kinetic_energy, totals.fastest_at), totals, rest, settings)
+pub fn health(
+    totals: &Totals,
+    rest: Option<InsidePoint>,
+    scene: &Scene,
+    settings: &SimulationSettings,
+) -> Vec<Gauge> {
+    gauges((totals.max_kinetic_energy, totals.fastest_at), totals, rest, scene, settings)
 }
 
 fn gauges(
     (energy, fastest_at): (f32, Option<(u32, u32)>),
     totals: &Totals,
-    rest: Option<&RestInside>,
+    rest: Option<InsidePoint>,
+    scene: &Scene,
     settings: &SimulationSettings,
 ) -> Vec<Gauge> {
+    let place = |inside: Option<InsidePoint>| inside.map(|inside| (inside.guide, inside.point));
+    let part = |inside: Option<InsidePoint>| inside.map_or("the body", |inside| scene.name_of(inside.within));
     vec![
         Gauge::new(GaugeKind::Stretch, f64::from(totals.max_stretch), totals.worst_stretch_at, || {
             let more = if settings.substeps < lovelock_wisp::MAX_SUBSTEPS {
@@ -154,9 +158,17 @@ fn gauges(
             };
             format!("Locks are drawn out. {more}, and look whether the motion leaps there.")
         }),
-        Gauge::new(GaugeKind::Penetration, f64::from(totals.max_penetration_m), totals.deepest_at, || {
-            "Hair goes into the body. Raise the skin margin or the substeps, or fit the body's colliders there.".to_owned()
-        }),
+        Gauge::new(
+            GaugeKind::Penetration,
+            f64::from(totals.max_penetration_m),
+            place(totals.deepest),
+            || {
+                let part = part(totals.deepest);
+                format!(
+                    "Hair goes into the body: {part}. Raise the skin margin or the substeps, or fit that collider better."
+                )
+            },
+        ),
         Gauge::new(GaugeKind::Energy, f64::from(energy), fastest_at, || {
             if settings.wind.speed > 15.0 {
                 "The hair is torn about. Calm the wind, or lower the air drag that it takes hold of."
@@ -178,12 +190,12 @@ fn gauges(
         Gauge::new(
             GaugeKind::RestInside,
             rest.map_or(0.0, |rest| f64::from(rest.depth_m)),
-            rest.map(|rest| (rest.guide, rest.point)),
+            place(rest),
             || {
-                let name = rest.map_or("the body", |rest| &rest.collider);
+                let part = part(rest);
                 format!(
-                    "The style begins inside {name} and is pushed out where it starts to move. Lift it off the body, or make that \
-                     collider smaller."
+                    "The style begins inside the body: {part}. It stays as near as it was drawn; lift it off the body, or make \
+                     that collider smaller."
                 )
             },
         ),
@@ -194,7 +206,7 @@ impl FrameSnapshot {
     /// The gauges of this instant, which was simulated with `settings`.
     pub fn health(&self, settings: &SimulationSettings) -> Vec<Gauge> {
         let now = (self.report.kinetic_energy, self.report.fastest_at);
-        gauges(now, &self.totals, self.scene.rest_inside.as_ref(), settings)
+        gauges(now, &self.totals, self.rest_inside, &self.scene, settings)
     }
 
     /// Where a point of a guide is now, world space; its tip where it has fewer points. None where there is no such guide.

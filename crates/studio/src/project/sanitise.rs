@@ -4,6 +4,7 @@ use std::f32::consts::PI;
 
 use glam::Vec3;
 use lovelock_groom::HairTie;
+use lovelock_motion::{ColliderEdits, FieldEdit};
 use lovelock_render::{Light, MAX_LIGHTS, MOST_PIXELS, MOST_SIDE, ShadowSettings};
 
 use super::generic::differences;
@@ -19,6 +20,7 @@ impl Project {
         let mut project = self.clone();
         project.version = PROJECT_VERSION;
         project.motion = motion(&self.motion);
+        project.body.colliders = colliders(&self.body.colliders);
         project.hair.groom = self.hair.groom.clamped();
         project.hair.import = self.hair.import.in_range();
         project.hair.ties = self.hair.ties.iter().take(HairTie::MOST).map(HairTie::clamped).collect();
@@ -97,6 +99,18 @@ impl Project {
         (project, problems)
     }
 }
+
+/// Changes of shapes inside their ranges, each name of a length that can be shown.
+fn colliders(edits: &ColliderEdits) -> ColliderEdits {
+    let named = edits.shapes.iter().filter(|(name, _)| name.chars().count() <= LONGEST_COLLIDER);
+    let shapes = named.take(MOST_COLLIDERS).map(|(name, edit)| (name.clone(), edit.clamped()));
+    let field = FieldEdit { lift: edits.field.lift_m(), ..edits.field };
+    ColliderEdits { shapes: shapes.collect(), field }
+}
+
+/// As many shapes as a body can have, and as long a name as a joint.
+const MOST_COLLIDERS: usize = 1000;
+const LONGEST_COLLIDER: usize = 400;
 
 /// Markers that have a time, each name of a length that can be shown, and tracks that have keys.
 fn timeline(timeline: &TimelineSection) -> TimelineSection {

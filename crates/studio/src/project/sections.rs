@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use lovelock_groom::{GroomSettings, HairTie, Haircut, ImportSettings, Preset};
-use lovelock_motion::{BodySettings, MotionSettings};
+use lovelock_motion::{BodySettings, ColliderEdits, MotionSettings};
 use lovelock_record::{FilmQuality, SequenceFormat};
 use lovelock_render::{Backend, ShadowMethod, ShadowSettings, Transparency};
 use serde::{Deserialize, Serialize};
@@ -32,6 +32,8 @@ pub struct BodySection {
     pub settings: BodySettings,
     /// The joint that carries the hair, by its name or its path (`hips/spine/neck/head`); the guess where none.
     pub head_joint: Option<String>,
+    /// What is changed about the shapes that hair collides with.
+    pub colliders: ColliderEdits,
 }
 
 /// Where the motion comes from.

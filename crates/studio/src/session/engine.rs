@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use glam::Affine3A;
 use lovelock_groom::GuideFrame;
-use lovelock_motion::{PlacedCollider, Pose, Skin, place_colliders, pose_at, skin};
+use lovelock_motion::{FieldPose, PlacedCollider, Pose, Skin, place_colliders, pose_at, skin};
 use lovelock_record::TakeFrame;
-use lovelock_wisp::{Simulation, SimulationSettings, StepInput, StepReport};
+use lovelock_wisp::{InsidePoint, PlacedField, Simulation, SimulationSettings, StepInput, StepReport};
 
 use super::preroll::Preroll;
 use super::snapshot::SnapshotPool;
@@ -28,8 +28,8 @@ pub struct Totals {
     pub worst_stretch_at: Option<(u32, u32)>,
     /// Deepest point inside a collider, metres.
     pub max_penetration_m: f32,
-    /// The guide and its point that was as deep.
-    pub deepest_at: Option<(u32, u32)>,
+    /// Where that was; none where no point was inside.
+    pub deepest: Option<InsidePoint>,
     /// Largest mean kinetic energy, joules per kilogram.
     pub max_kinetic_energy: f32,
     /// The fastest guide and its point in that step.
@@ -49,7 +49,7 @@ impl Totals {
             (self.max_stretch, self.worst_stretch_at) = (report.max_stretch, report.worst_stretch_at);
         }
         if report.max_penetration_m > self.max_penetration_m {
-            (self.max_penetration_m, self.deepest_at) = (report.max_penetration_m, None);
+            (self.max_penetration_m, self.deepest) = (report.max_penetration_m, report.deepest);
         }
         if report.kinetic_energy > self.max_kinetic_energy {
             (self.max_kinetic_energy, self.fastest_at) = (report.kinetic_energy, report.fastest_at);
@@ -85,6 +85,9 @@ pub struct Engine {
     simulated_secs: f64,
     pose: Pose,
     colliders: Vec<PlacedCollider>,
+    field: FieldPose,
+    /// Where the style at rest lies inside the body.
+    rest_inside: Option<InsidePoint>,
     report: StepReport,
     totals: Totals,
     times: StageTimes,
@@ -123,6 +126,8 @@ impl Engine {
             simulated_secs: 0.0,
             pose: Pose::default(),
             colliders: Vec::new(),
+            field: FieldPose::default(),
+            rest_inside: None,
             report: StepReport::default(),
             totals: Totals::default(),
             times: StageTimes::default(),
@@ -131,6 +136,7 @@ impl Engine {
             pool: SnapshotPool::default(),
         };
         engine.lay_at_rest(0, f64::NEG_INFINITY);
+        engine.rest_inside = engine.simulation.rest_inside();
         engine
     }
 
@@ -181,6 +187,11 @@ impl Engine {
         self.totals = Totals::default();
     }
 
+    /// Where the style at rest lies deepest inside the body; none where it does not.
+    pub fn rest_inside(&self) -> Option<InsidePoint> {
+        self.rest_inside
+    }
+
     /// A fingerprint of the simulated state.
     pub fn state_hash(&self) -> u64 {
         self.simulation.state_hash()
@@ -213,11 +224,16 @@ impl Engine {
             before.position_secs(old_secs)
         };
         self.at_step = (self.scene.position_secs(time_secs) / self.step_secs).round() as i64;
+        if !Arc::ptr_eq(&before.colliders, &self.scene.colliders) {
+            // As many of them may be other ones.
+            self.simulation.forget_colliders();
+        }
         if !same_layout || !same_body {
             self.lay_at_rest(self.at_step, f64::NEG_INFINITY);
         } else if !same_clip {
             self.jump();
         }
+        self.rest_inside = self.simulation.rest_inside();
         !(same_layout && same_body && same_clip)
     }
 
@@ -249,6 +265,7 @@ impl Engine {
             simulation: self.simulation.clone(),
             pose: Pose::default(),
             colliders: Vec::new(),
+            field: FieldPose::default(),
             pool: SnapshotPool::default(),
             ..*self
         };
@@ -263,7 +280,8 @@ impl Engine {
         }
         self.jumped_since = true;
         (self.simulation, self.simulated_secs) = (aside.simulation, aside.simulated_secs);
-        (self.pose, self.colliders, self.report) = (aside.pose, aside.colliders, aside.report);
+        (self.pose, self.colliders, self.field) = (aside.pose, aside.colliders, aside.field);
+        self.report = aside.report;
         self.totals = Totals::default();
         self.times = StageTimes::default();
         true
@@ -280,7 +298,8 @@ impl Engine {
         self.at_step = step;
         self.simulated_secs += JUMP_SECS;
         self.place_body(lead_in_secs);
-        self.simulation.reset(&Self::input(self.simulated_secs, self.pose.world_from_head, &self.colliders));
+        let input = body_at(self.simulated_secs, &self.scene, &self.pose, &self.colliders, &self.field);
+        self.simulation.reset(&input);
         self.report = StepReport::default();
     }
 
@@ -356,6 +375,7 @@ impl Engine {
         let watch = Stopwatch::start();
         let (scene, pose, times) = (&self.scene, &self.pose, &mut self.times);
         let (simulation, report, totals) = (&self.simulation, self.report, self.totals);
+        let rest_inside = self.rest_inside;
         let (step, time_secs) = (self.taken, self.at_step as f64 * self.step_secs);
         let new = || FrameSnapshot {
             scene: Arc::clone(scene),
@@ -371,6 +391,7 @@ impl Engine {
                 guides: scene.style.guides.clone(),
             },
             report,
+            rest_inside,
             totals,
             times: StageTimes::default(),
         };
@@ -386,14 +407,10 @@ impl Engine {
             simulation.frame(&mut frame.guides);
             // The simulator's clock has jumps in it; the frame's is the scene's.
             frame.guides.time_secs = time_secs;
-            (frame.report, frame.totals) = (report, totals);
+            (frame.report, frame.totals, frame.rest_inside) = (report, totals, rest_inside);
             times.motion += watch.ms();
             frame.times = std::mem::take(times);
         })
-    }
-
-    fn input(time_secs: f64, world_from_head: Affine3A, colliders: &[PlacedCollider]) -> StepInput<'_> {
-        StepInput::new(time_secs, world_from_head, colliders)
     }
 
     /// The settings of the present step.
@@ -408,6 +425,9 @@ impl Engine {
         let clip_secs = self.scene.clip_secs(self.time_secs().max(lead_in_secs));
         pose_at(&self.scene.body, self.scene.clip.as_deref(), clip_secs, &mut self.pose);
         place_colliders(&self.scene.colliders, &self.scene.body, &self.pose, &mut self.colliders);
+        if let Some(field) = &self.scene.field {
+            field.place(&self.scene.body, &self.pose, self.scene.field_lift_m, &mut self.field);
+        }
     }
 
     /// One step of the hair to where the body is.
@@ -415,7 +435,7 @@ impl Engine {
         // The same wind blows at the same time, however the hair came there.
         self.simulation.set_wind_secs(self.time_secs() - self.step_secs);
         self.simulated_secs += self.step_secs;
-        let input = Self::input(self.simulated_secs, self.pose.world_from_head, &self.colliders);
+        let input = body_at(self.simulated_secs, &self.scene, &self.pose, &self.colliders, &self.field);
         self.report = self.simulation.step(&input, &self.settings, self.step_secs as f32);
     }
 
@@ -427,4 +447,16 @@ impl Engine {
         self.simulate();
         self.totals.add(&self.report);
     }
+}
+
+/// The body at a time of the simulator's clock.
+fn body_at<'a>(
+    time_secs: f64,
+    scene: &'a Scene,
+    pose: &Pose,
+    colliders: &'a [PlacedCollider],
+    field: &'a FieldPose,
+) -> StepInput<'a> {
+    let placed = scene.field.as_ref().map(|of| PlacedField { field: of, pose: field });
+    StepInput { field: placed, ..StepInput::new(time_secs, pose.world_from_head, colliders) }
 }

@@ -3,13 +3,12 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use lovelock_groom::Hairstyle;
-use lovelock_motion::Collider;
+use lovelock_motion::{Collider, ColliderEdits};
 
 use super::dress::Dressed;
 use super::parts::{BodyKey, BodyPart, HairFileCache, HairKey, HairPart, MotionKey, MotionPart};
 use super::{HeadPath, Scene};
-use crate::{Access, Place, Problem, ProblemKind, Project, RestInside, StudioError};
+use crate::{Access, Place, Problem, ProblemKind, Project, StudioError};
 
 /// How a load tells how far it is, and learns that nobody wants it any more.
 pub struct LoadControl<'a> {
@@ -47,7 +46,7 @@ pub struct SceneLoader {
     hair_file: HairFileCache,
     dressed: Option<Dressed>,
     head_path: Option<(Arc<MotionPart>, bool, Arc<HeadPath>)>,
-    rest_inside: Option<(Arc<Hairstyle>, Arc<[Collider]>, Option<RestInside>)>,
+    colliders: Option<(Arc<BodyPart>, ColliderEdits, Arc<[Collider]>)>,
 }
 
 impl SceneLoader {
@@ -103,8 +102,10 @@ impl SceneLoader {
             clip: motion.clip.clone(),
             speed: f64::from(project.motion.speed),
             looping,
-            colliders: Arc::clone(&body.colliders),
-            rest_inside: self.rest_inside(&body, &style),
+            colliders: self.colliders(&body, &project.body.colliders),
+            fitted: Arc::clone(&body.colliders),
+            field: body.field.clone().filter(|_| project.body.colliders.field.enabled),
+            field_lift_m: project.body.colliders.field.lift_m(),
             style,
             head_path,
             notes: notes.into(),
@@ -216,17 +217,17 @@ impl SceneLoader {
         part
     }
 
-    /// Where the style lies inside the body; looked for once for a style and a body.
-    fn rest_inside(&mut self, body: &BodyPart, hair: &Arc<Hairstyle>) -> Option<RestInside> {
-        if let Some((style, colliders, found)) = &self.rest_inside
-            && Arc::ptr_eq(style, hair)
-            && Arc::ptr_eq(colliders, &body.colliders)
+    /// The shapes that hair meets, as the project changes them.
+    fn colliders(&mut self, body: &Arc<BodyPart>, edits: &ColliderEdits) -> Arc<[Collider]> {
+        if let Some((of, kept, met)) = &self.colliders
+            && Arc::ptr_eq(of, body)
+            && kept == edits
         {
-            return found.clone();
+            return Arc::clone(met);
         }
-        let found = RestInside::find(hair, &body.body, &body.colliders);
-        self.rest_inside = Some((Arc::clone(hair), Arc::clone(&body.colliders), found.clone()));
-        found
+        let met: Arc<[Collider]> = edits.apply(&body.colliders, body.field.as_deref()).into();
+        self.colliders = Some((Arc::clone(body), edits.clone(), Arc::clone(&met)));
+        met
     }
 
     fn head_path(&mut self, body: &BodyPart, motion: &Arc<MotionPart>, looping: bool) -> Arc<HeadPath> {

@@ -10,8 +10,8 @@ use lovelock_groom::{
     import_around, load_hair,
 };
 use lovelock_motion::{
-    Body, BodySettings, Character, Clip, Collider, MotionSettings, RestDistance, Skeleton, fit_colliders,
-    head_mesh, joint_paths, load_character_with, load_motion_with, retarget,
+    Body, BodyField, BodySettings, Character, Clip, Collider, MotionSettings, RestDistance, Skeleton,
+    fit_colliders, head_mesh, joint_paths, load_character_with, load_motion_with, retarget,
 };
 
 use super::{BodyObstacle, dancer};
@@ -54,6 +54,8 @@ pub(super) struct BodyPart {
     pub(super) colliders: Arc<[Collider]>,
     pub(super) scalp: Arc<Scalp>,
     pub(super) obstacle: Arc<BodyObstacle>,
+    /// Head and shoulders, where the body has them.
+    pub(super) field: Option<Arc<BodyField>>,
     pub(super) notes: Vec<Problem>,
 }
 
@@ -111,9 +113,11 @@ impl BodyKey {
             triangles: head.triangles,
             mask: head.scalp,
         };
+        let rest = RestDistance::new(&body);
         Ok(BodyPart {
             colliders: fit_colliders(&body).into(),
-            obstacle: Arc::new(BodyObstacle(RestDistance::new(&body))),
+            field: BodyField::new(&body, &rest).map(Arc::new),
+            obstacle: Arc::new(BodyObstacle(rest)),
             scalp: Arc::new(scalp),
             clips: clips.into(),
             body,

@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use glam::Vec3;
 use lovelock_groom::{Hairstyle, Obstacle};
-use lovelock_motion::{Body, Clip, Collider, RestDistance};
+use lovelock_motion::{Body, BodyField, Clip, Collider, RestDistance};
+
+use lovelock_wisp::BodyPart;
 
 use super::HeadPath;
-use crate::RestInside;
 
 /// The resting body as what hair is combed around.
 #[derive(Debug)]
@@ -32,12 +33,16 @@ pub struct Scene {
     pub speed: f64,
     /// Whether the clip starts again at its end.
     pub looping: bool,
-    /// What hair collides with.
+    /// What hair collides with, beside the field.
     pub colliders: Arc<[Collider]>,
+    /// All shapes that were fitted to the body, as they were.
+    pub fitted: Arc<[Collider]>,
+    /// The skin of head and shoulders, where hair meets it.
+    pub field: Option<Arc<BodyField>>,
+    /// By how much the skin is moved outward, metres.
+    pub field_lift_m: f32,
     /// The hairstyle.
     pub style: Arc<Hairstyle>,
-    /// Where the style at rest lies inside what it collides with; none where it does not.
-    pub rest_inside: Option<RestInside>,
     /// Where the head goes.
     pub head_path: Arc<HeadPath>,
     /// What the body's file, the motion's file and the hair's file had to say: guesses, and what was dropped.
@@ -79,6 +84,16 @@ impl Scene {
             time_secs.rem_euclid(duration)
         } else {
             time_secs.clamp(0.0, duration)
+        }
+    }
+
+    /// What a part of the body is called that hair collides with.
+    pub fn name_of(&self, part: BodyPart) -> &str {
+        match part {
+            BodyPart::Field => "head and shoulders",
+            BodyPart::Collider(i) => {
+                self.colliders.get(i as usize).map_or("the body", |collider| collider.name.as_str())
+            }
         }
     }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use lovelock_groom::{GuideFrame, Strands, interpolate};
 use lovelock_motion::{Pose, Skin};
 use lovelock_render::{Camera, FrameInput, HairPose};
-use lovelock_wisp::StepReport;
+use lovelock_wisp::{InsidePoint, StepReport};
 
 use super::{Scene, Totals, camera_at};
 use crate::{CameraSection, Project, StageTimes};
@@ -31,6 +31,8 @@ pub struct FrameSnapshot {
     pub guides: GuideFrame,
     /// Measured in the last step.
     pub report: StepReport,
+    /// Where the style at rest lies deepest inside the body; none where it does not.
+    pub rest_inside: Option<InsidePoint>,
     /// Measured since the hair was last settled.
     pub totals: Totals,
     /// Times of `motion` and `simulate` for this instant; the other stages are the drawer's.

@@ -146,6 +146,7 @@ impl TakePlayer {
             skin: Skin::default(),
             guides: GuideFrame::clone(&frame.guides),
             report,
+            rest_inside: None,
             totals: Totals::default(),
             times: StageTimes::default(),
         };

@@ -6,7 +6,8 @@ mod untouched;
 use egui::Ui;
 use egui_kittest::Harness;
 use glam::Vec3;
-use lovelock_studio::groom::Preset;
+use lovelock_studio::groom::{HairTie, Preset, TieKind, TieReach};
+use lovelock_studio::motion::ColliderEdit;
 use lovelock_studio::render::{PassTime, VoxelDeposit};
 use lovelock_studio::{HairSource, PassHistory, Project, StageHistory, StageTimes};
 
@@ -24,6 +25,9 @@ pub(super) struct Bench {
     pub(super) stages: StageHistory,
     pub(super) passes: PassHistory,
     pub(super) clip_frames: u64,
+    pub(super) colliders: super::colliders::Shown,
+    pub(super) selected_tie: usize,
+    pub(super) scissors: bool,
 }
 
 impl Bench {
@@ -56,6 +60,9 @@ impl Bench {
             stages,
             passes,
             clip_frames: 480,
+            colliders: super::colliders::Shown::default(),
+            selected_tie: 0,
+            scissors: false,
         }
     }
 }
@@ -63,7 +70,7 @@ impl Bench {
 pub(super) type Show = fn(&mut Ui, &mut Bench);
 
 /// Every panel, inside its section as the window has it.
-pub(super) const PANELS: [(&str, Show); 9] = [
+pub(super) const PANELS: [(&str, Show); 11] = [
     ("Hairstyle", |ui, b| {
         super::hair::ui(ui, &mut b.project, &b.hair);
     }),
@@ -77,6 +84,14 @@ pub(super) const PANELS: [(&str, Show); 9] = [
     }),
     ("Body and motion", |ui, b| {
         super::body::ui(ui, &mut b.project, &b.body);
+    }),
+    ("Colliders", |ui, b| {
+        let names = ["neck", "upper arm left of a rather long name"];
+        super::colliders::ui(ui, &mut b.project.body.colliders, &names, &mut b.colliders);
+    }),
+    ("Ties and scissors", |ui, b| {
+        super::ties::ui(ui, &mut b.project.hair.ties, &mut b.selected_tie, None);
+        super::ties::scissors(ui, &mut b.project.hair.cut, &mut b.scissors);
     }),
     ("Shadow", |ui, b| super::shadow::ui(ui, &mut b.project.shadow, 1 << 21)),
     ("Light", |ui, b| {
@@ -121,6 +136,12 @@ pub(super) fn projects() -> Vec<(&'static str, Project)> {
     files.set_body_file("/a/b c/a character of a rather long name that says much.glb");
     files.set_motion_file("/a/b c/ü.bvh");
     files.shadow.voxel_map.deposit = VoxelDeposit::PointCount;
+    files.hair.ties.push(HairTie { kind: TieKind::Bun, reach: TieReach::InSphere, ..HairTie::default() });
+    files
+        .body
+        .colliders
+        .shapes
+        .insert("neck".to_owned(), ColliderEdit { scale: 1.2, ..ColliderEdit::default() });
     assert_eq!(files.hair.source, HairSource::File);
     projects.push(("files", files));
     projects

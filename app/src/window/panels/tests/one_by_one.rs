@@ -3,7 +3,7 @@
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable;
 use glam::Vec3;
-use lovelock_studio::groom::{GroomSettings, Preset, Unit};
+use lovelock_studio::groom::{GroomSettings, HairTie, Preset, TieKind, Unit};
 use lovelock_studio::recording::SequenceFormat;
 use lovelock_studio::render::{MAX_LIGHTS, ShadowMethod, VoxelDeposit};
 use lovelock_studio::wisp::SimulationSettings;
@@ -174,6 +174,63 @@ fn the_wind_is_turned_on_its_sphere() {
     type_at(&mut harness, at, "180");
     let turned = harness.state().state.project.simulation.wind.direction;
     assert!((turned[1] - y).abs() < 1e-6 && turned[2] < 0.0, "as steep as before: {turned:?}");
+}
+
+#[test]
+fn colliders_are_changed_by_name_and_restored() {
+    let mut harness = panel("Colliders", Project::default());
+    choose(&mut harness, "Collider", "upper arm left of a rather long name");
+    let size = control(&harness, Role::SpinButton, "Size").rect().center();
+    type_at(&mut harness, size, "150");
+    control(&harness, Role::CheckBox, "On").click();
+    harness.run();
+    let edits = harness.state().state.project.body.colliders.clone();
+    let edit = edits.shapes["upper arm left of a rather long name"];
+    assert_eq!((edits.shapes.len(), edit.enabled, edit.scale), (1, false, 1.5));
+    choose(&mut harness, "Collider", "neck");
+    assert!(is_on(&control(&harness, Role::CheckBox, "On")), "the other one is as it was");
+    control(&harness, Role::CheckBox, "Show").click();
+    harness.run();
+    assert!(harness.state().state.colliders.on);
+    assert_eq!(harness.state().state.project.body.colliders, edits, "to look is no change");
+    control(&harness, Role::Button, "Colliders").click();
+    harness.run();
+    assert_eq!(harness.state().state.project.body.colliders, Project::default().body.colliders);
+}
+
+#[test]
+fn ties_are_added_chosen_and_removed() {
+    let mut harness = panel("Ties and scissors", Project::default());
+    for kind in ["+ Ponytail", "+ Bun"] {
+        control(&harness, Role::Button, kind).click();
+        harness.run();
+    }
+    let kinds = |harness: &egui_kittest::Harness<'_, Shown<Bench>>| -> Vec<TieKind> {
+        harness.state().state.project.hair.ties.iter().map(|tie| tie.kind).collect()
+    };
+    assert_eq!(kinds(&harness), [TieKind::Ponytail, TieKind::Bun]);
+    let coils = control(&harness, Role::SpinButton, "Coils").rect().center();
+    type_at(&mut harness, coils, "5");
+    assert_eq!(harness.state().state.project.hair.ties[1].bun_coils, 5.0, "the new one is chosen");
+    harness.get_by_label("Ponytail 1").click();
+    harness.run();
+    assert!(harness.query_by_role_and_label(Role::SpinButton, "Coils").is_none());
+    control(&harness, Role::Button, "Remove").click();
+    harness.run();
+    assert_eq!(kinds(&harness), [TieKind::Bun]);
+    for _ in 0..12 {
+        control(&harness, Role::Button, "+ Bun").click();
+        harness.run();
+    }
+    assert_eq!(kinds(&harness).len(), HairTie::MOST);
+    harness.get_by_label("Scissors").click();
+    harness.run();
+    assert!(harness.state().state.scissors);
+    harness.state_mut().state.project.hair.cut.kept = vec![0.5];
+    harness.run();
+    control(&harness, Role::Button, "Grow back").click();
+    harness.run();
+    assert!(harness.state().state.project.hair.cut.is_empty());
 }
 
 #[test]

@@ -1,0 +1,74 @@
+//! Scissors: a line that is drawn across the hair in the picture, and what it cuts off.
+
+use egui::{CursorIcon, PointerButton, Pos2, Response, Stroke, Ui};
+use glam::Vec3;
+use lovelock_studio::FrameSnapshot;
+use lovelock_studio::groom::{Blade, Haircut};
+
+use super::View;
+use crate::window::theme;
+
+/// The shortest line that cuts, points.
+const SHORTEST: f32 = 12.0;
+
+/// The line that is being drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Scissors {
+    /// Whether they are in the hand.
+    pub(crate) held: bool,
+    from: Option<Pos2>,
+}
+
+impl Scissors {
+    /// Draws the line while the pointer is dragged over the picture; returns its ends when it is let go.
+    pub(crate) fn drag(&mut self, ui: &Ui, view: View, response: &Response) -> Option<[Pos2; 2]> {
+        if !self.held {
+            self.from = None;
+            return None;
+        }
+        if response.hovered() {
+            ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
+        }
+        if response.drag_started_by(PointerButton::Primary) {
+            self.from = ui.input(|input| input.pointer.press_origin());
+        }
+        let (from, to) = (self.from?, ui.input(|input| input.pointer.latest_pos())?);
+        let painter = ui.painter_at(view.place);
+        painter.line_segment([from, to], Stroke::new(4.0, theme::PAGE.gamma_multiply(0.6)));
+        painter.line_segment([from, to], Stroke::new(1.5, theme::WRONG));
+        if response.drag_stopped() {
+            self.from = None;
+            return ((to - from).length() >= SHORTEST).then_some([from, to]);
+        }
+        None
+    }
+}
+
+/// What a line on the screen leaves of the hair of `snapshot`: hair is cut where it first comes to the far side of the plane
+/// through the eye and the line, seen from the head, if it does so within the line. None where it meets no hair.
+pub(crate) fn cut(view: View, snapshot: &FrameSnapshot, [from, to]: [Pos2; 2]) -> Option<Haircut> {
+    let normal = view.ray(from).cross(view.ray(to)).try_normalize()?;
+    // The middle of the head keeps its hair.
+    let head = snapshot.guides.world_from_head.transform_point3(Vec3::Y * 0.1);
+    let normal = if (head - view.eye).dot(normal) > 0.0 { -normal } else { normal };
+    let blade = Blade::Plane { point: view.eye, normal };
+    let mut cut = Haircut::of(&snapshot.scene.style, &snapshot.guides, &blade)?;
+    let guides = &snapshot.guides.guides;
+    let links = guides.points_per_guide.checked_sub(1)?;
+    for (guide, kept) in cut.kept.iter_mut().enumerate().filter(|(_, kept)| **kept < 1.0) {
+        let along = *kept * links as f32;
+        let i = (along as usize).min(links.saturating_sub(1));
+        let met = guides.point(guide, i).lerp(guides.point(guide, i + 1), along - i as f32);
+        if !view.to_screen(met).is_some_and(|at| is_beside(at, from, to)) {
+            *kept = 1.0;
+        }
+    }
+    cut.kept.iter().any(|kept| *kept < 1.0).then_some(cut)
+}
+
+/// Whether a place is beside a line, and not beyond its ends.
+fn is_beside(at: Pos2, from: Pos2, to: Pos2) -> bool {
+    let along = to - from;
+    let t = (at - from).dot(along) / along.length_sq().max(1e-6);
+    (0.0..=1.0).contains(&t)
+}

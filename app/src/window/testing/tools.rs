@@ -1,0 +1,131 @@
+//! Ties, scissors and colliders in the picture of the whole window.
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers, Pos2};
+use egui_kittest::Harness;
+use lovelock_studio::groom::{HairTie, TieKind};
+
+use super::whole::{CTRL, go, key, of, press_button, project, wait, window};
+use super::{Shown, click_at, control, press};
+use crate::window::Window;
+use crate::window::overlay::View;
+
+/// The window with a picture, paused; none where nothing can draw.
+fn with_picture() -> Option<Harness<'static, Shown<Option<Window>>>> {
+    let mut harness = window();
+    wait(&mut harness, "a picture or why there is none", |window| {
+        window.session.painted.is_some() || window.session.draw_error.is_some()
+    });
+    of(&harness).session.painted.as_ref()?;
+    key(&mut harness, Modifiers::NONE, Key::Space);
+    Some(harness)
+}
+
+/// Unfolds a section of a panel.
+fn unfold(harness: &mut Harness<'_, Shown<Option<Window>>>, title: &str) {
+    control(harness, Role::DisclosureTriangle, title).click();
+    harness.run_steps(30);
+}
+
+/// The picture as it is seen.
+fn view(harness: &Harness<'_, Shown<Option<Window>>>) -> View {
+    let window = of(harness);
+    let rect = control(harness, Role::Image, "Viewport").rect();
+    let painted = window.session.painted.as_ref().expect("a picture");
+    View::new(painted, window.viewport.place(rect).expect("a place")).expect("a view")
+}
+
+fn drag_over(harness: &mut Harness<'_, Shown<Option<Window>>>, from: Pos2, to: Pos2) {
+    harness.hover_at(from);
+    harness.run_steps(1);
+    press(harness, from, true);
+    harness.run_steps(1);
+    for i in 1..=6_u8 {
+        harness.hover_at(from + (to - from) * (f32::from(i) / 6.0));
+        harness.run_steps(1);
+    }
+    press(harness, to, false);
+    go(harness);
+}
+
+#[test]
+fn scissors_cut_what_is_beyond_a_line_and_undo_grows_it_back() {
+    let Some(mut harness) = with_picture() else { return };
+    let before = project(&harness);
+    let painted = of(&harness).session.painted.clone().expect("a picture");
+    let head = glam::Vec3::from(painted.snapshot.guides.world_from_head.translation);
+    // Below the chin, across the whole hair.
+    let middle = view(&harness).to_screen(head - glam::Vec3::Y * 0.04).expect("in the picture");
+    let ends = [middle - egui::vec2(220.0, 0.0), middle + egui::vec2(220.0, 0.0)];
+    // Without the scissors it is the camera that moves.
+    drag_over(&mut harness, ends[0], ends[1]);
+    assert!(project(&harness).hair == before.hair && project(&harness).camera != before.camera);
+    key(&mut harness, CTRL, Key::Z);
+    wait(&mut harness, "the picture of before", |window| {
+        window.session.painted.as_ref().is_some_and(|now| now.camera.fov_y == painted.camera.fov_y)
+            && window.session.drawn.as_ref().is_some_and(|(drawn, ..)| drawn.camera == before.camera)
+    });
+    key(&mut harness, Modifiers::NONE, Key::X);
+    assert!(of(&harness).scissors.held);
+    let points =
+        |window: &Window| window.session.frame.as_ref().map_or(0, |frame| frame.scene.style.strands.points());
+    let whole = points(of(&harness));
+    drag_over(&mut harness, ends[0], ends[1]);
+    let cut = project(&harness);
+    assert_eq!(cut.camera, before.camera, "the camera stands while they cut");
+    assert!(cut.hair.cut.kept.iter().any(|kept| (0.05..0.98).contains(kept)), "{:?}", cut.hair.cut);
+    assert_eq!(of(&harness).history.undo_len(), 1);
+    wait(&mut harness, "shorter hair", |window| points(window) < whole);
+    // A line beside the hair cuts none.
+    let corner = control(&harness, Role::Image, "Viewport").rect().left_bottom() + egui::vec2(30.0, -40.0);
+    drag_over(&mut harness, corner, corner + egui::vec2(25.0, 0.0));
+    assert_eq!(project(&harness), cut);
+    key(&mut harness, CTRL, Key::Z);
+    assert_eq!(project(&harness), before);
+    wait(&mut harness, "long hair", |window| points(window) == whole);
+}
+
+#[test]
+fn a_tie_is_added_and_dragged_in_the_picture() {
+    let Some(mut harness) = with_picture() else { return };
+    unfold(&mut harness, "Ties and scissors");
+    press_button(&mut harness, "+ Ponytail");
+    let tie = project(&harness).hair.ties[0];
+    assert_eq!(tie.kind, TieKind::Ponytail);
+    assert_ne!(tie.at, HairTie::default().at, "it is placed on this head");
+    wait(&mut harness, "tied hair", |window| {
+        window.session.frame.as_ref().is_some_and(|frame| !frame.scene.style.held.is_empty())
+    });
+    let at = control(&harness, Role::Button, "Tie 1 in the picture").rect().center();
+    drag_over(&mut harness, at, at + egui::vec2(0.0, -30.0));
+    let moved = project(&harness).hair.ties[0];
+    assert!(moved.at.y > tie.at.y + 0.01, "{:?} from {:?}", moved.at, tie.at);
+    assert_eq!(of(&harness).history.undo_len(), 2, "one drag is one step");
+}
+
+#[test]
+fn colliders_are_seen_and_changed() {
+    let mut harness = window();
+    key(&mut harness, Modifiers::NONE, Key::B);
+    assert!(of(&harness).colliders.on);
+    let scene = of(&harness).session.scene.clone().expect("a scene");
+    assert!(scene.field.is_some() && !scene.fitted.is_empty());
+    assert!(scene.colliders.len() < scene.fitted.len(), "the skin stands for some");
+    unfold(&mut harness, "Colliders");
+    let before = project(&harness);
+    // A shape that is changed is met, whatever stands for it.
+    let size = control(&harness, Role::SpinButton, "Size").rect().center();
+    click_at(&mut harness, size);
+    harness.event(egui::Event::Text("130".to_owned()));
+    harness.key_press(Key::Enter);
+    go(&mut harness);
+    assert_eq!(project(&harness).body.colliders.shapes.len(), 1);
+    wait(&mut harness, "the changed shape", |window| {
+        window.session.scene.as_ref().is_some_and(|now| !std::sync::Arc::ptr_eq(now, &scene))
+    });
+    let name = &scene.fitted[0].name;
+    let met = of(&harness).session.scene.clone().expect("a scene");
+    assert!(met.colliders.iter().any(|collider| collider.name == *name), "{name}");
+    key(&mut harness, CTRL, Key::Z);
+    assert_eq!(project(&harness), before);
+}
