@@ -50,9 +50,11 @@ fn uneven(n: u32) -> f32 {
     1.0 / 144.0 + unit * (1.0 / 30.0 - 1.0 / 144.0)
 }
 
+type StepOf = fn(u32) -> f32;
+
 fn at_every_rate(stage: &mut Stage, name: &str) {
     let settings = SimulationSettings::default();
-    let rates: [(&str, fn(u32) -> f32); 4] = [
+    let rates: [(&str, StepOf); 4] = [
         ("30 Hz", |_| 1.0 / 30.0),
         ("60 Hz", |_| 1.0 / 60.0),
         ("144 Hz", |_| 1.0 / 144.0),
