@@ -18,6 +18,7 @@ mod dispatch;
 mod grid;
 mod hash;
 mod input;
+mod integrator;
 mod lanes;
 mod motion;
 mod report;
@@ -30,6 +31,7 @@ mod wake;
 mod wind;
 
 pub use input::{PlacedField, StepInput};
+pub use integrator::{Integrator, MAX_SWEEPS};
 pub use report::{BodyPart, InsidePoint, StepReport};
 pub use settings::{MAX_SUBSTEPS, Repulsion, RepulsionMode, SimulationSettings, Wind};
-pub use simulation::Simulation;
+pub use simulation::{RestoreError, Simulation};

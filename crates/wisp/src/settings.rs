@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::integrator::{Integrator, MAX_SWEEPS};
+
 /// How hair moves. Every field has a range that cannot break the motion; [`SimulationSettings::clamped`]
 /// puts a value into it, and the simulator does so itself.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -46,6 +48,13 @@ pub struct SimulationSettings {
     pub repulsion: Repulsion,
     /// How many links at the root leave the scalp in the direction of rest: 0 (a hinge), 1 or 2.
     pub clamped_links: u32,
+    /// The method that keeps links at their length.
+    pub integrator: Integrator,
+    /// Sweeps along the chain in a substep of [`Integrator::Relaxation`]: 1 to 200.
+    pub relaxation_sweeps: u32,
+    /// How much of the correction of its follower a point's velocity takes in
+    /// [`Integrator::FollowTheLeader`]: 0 (chains gain energy) to 1.
+    pub follow_damping: f32,
 }
 
 impl Default for SimulationSettings {
@@ -67,6 +76,9 @@ impl Default for SimulationSettings {
             layering: 0.35,
             repulsion: Repulsion::default(),
             clamped_links: 1,
+            integrator: Integrator::Direct,
+            relaxation_sweeps: 20,
+            follow_damping: 0.9,
         }
     }
 }
@@ -93,6 +105,9 @@ impl SimulationSettings {
             layering: within(self.layering, 0.0, 1.0, d.layering),
             repulsion: self.repulsion.clamped(),
             clamped_links: self.clamped_links.min(2),
+            integrator: self.integrator,
+            relaxation_sweeps: self.relaxation_sweeps.clamp(1, MAX_SWEEPS),
+            follow_damping: within(self.follow_damping, 0.0, 1.0, d.follow_damping),
         }
     }
 }
@@ -230,6 +245,8 @@ mod tests {
             drag: -3.0,
             substeps: 0,
             clamped_links: 99,
+            relaxation_sweeps: 0,
+            follow_damping: 7.0,
             ..SimulationSettings::default()
         };
         s.wind.direction = [f32::NAN, 0.0, 1.0];
@@ -237,6 +254,7 @@ mod tests {
         let c = s.clamped();
         assert_eq!(c.gravity, SimulationSettings::default().gravity);
         assert_eq!((c.stiffness_root, c.drag, c.substeps, c.clamped_links), (200.0, 0.0, 1, 2));
+        assert_eq!((c.relaxation_sweeps, c.follow_damping), (1, 1.0));
         assert_eq!(c.wind.direction, Wind::default().direction);
         assert_eq!(c.repulsion.strength, 0.0);
     }

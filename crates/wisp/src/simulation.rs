@@ -23,6 +23,9 @@ use crate::wake::Wakes;
 use crate::wind::WindField;
 use crate::{BodyPart, InsidePoint, MAX_SUBSTEPS, SimulationSettings, StepInput, StepReport};
 
+/// In less than this no time passes: velocities are differences over a step, and rounding would be all of them.
+const SHORTEST_SECS: f32 = 1e-6;
+
 /// Hair in motion: the guides of one hairstyle as chains of rigid links.
 ///
 /// A step depends on the state, the input and the settings alone: not on a clock, and not on how many threads
@@ -133,7 +136,8 @@ impl Simulation {
     /// Moves on by `dt_secs`, while the body moves from where it was to `input`.
     ///
     /// Roots, frames and colliders are taken through the substeps in between. Where the motion jumps (see
-    /// [`StepInput`]) hair is carried along with the head, velocities and all, and time stands still.
+    /// [`StepInput`]) hair is carried along with the head, velocities and all, and time stands still. So it is
+    /// where `dt_secs` is not a number or below a microsecond; one above 0.1 s counts as 0.1 s.
     pub fn step(&mut self, input: &StepInput, settings: &SimulationSettings, dt_secs: f32) -> StepReport {
         let settings = settings.clamped();
         let head = HeadPose::new(&input.world_from_head).unwrap_or(self.head);
@@ -150,7 +154,7 @@ impl Simulation {
             self.clamp_links(settings.clamped_links);
         }
         let met = self.meet_field(input);
-        if jumped || !(dt_secs > 0.0 && dt_secs.is_finite()) {
+        if jumped || !(dt_secs >= SHORTEST_SECS && dt_secs.is_finite()) {
             let report = self.carry_to(head, input.colliders, jumped);
             self.reset_field(input);
             return report;
@@ -429,5 +433,9 @@ fn head_from(head: &HeadPose, origin: Vec3) -> Map {
 }
 
 mod body;
+mod snapshot;
+
+pub use snapshot::RestoreError;
+
 #[cfg(test)]
 mod tests;

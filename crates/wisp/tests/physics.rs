@@ -1,10 +1,10 @@
 //! Chains against answers known on paper.
 
-use glam::{Affine3A, Quat, Vec3};
+use glam::{Affine3A, Vec3};
 use lovelock_wisp::{Simulation, SimulationSettings, Wind};
 
 mod common;
-use common::{STEP_SECS, away_from_style, bare, frame, head, straight, stretch, style};
+use common::{STEP_SECS, away_from_style, bare, frame, head, straight, stretch, style, violent};
 
 const G: f32 = 9.81;
 
@@ -102,15 +102,6 @@ fn an_undriven_chain_never_gains_energy() {
         }
         assert!(moved > 0.3 * fall, "a chain that does not move shows nothing");
     }
-}
-
-/// A sway of 25 cm at 2.2 Hz with a bob and a spin: roots at 3.5 m/s.
-fn violent(time: f64) -> Affine3A {
-    let t = time as f32 * core::f32::consts::TAU;
-    Affine3A::from_rotation_translation(
-        Quat::from_rotation_y(1.2 * (1.3 * t).sin()) * Quat::from_rotation_x(0.6 * (2.1 * t).sin()),
-        Vec3::new(0.25 * (2.2 * t).sin(), 0.1 * (1.7 * t).sin(), 0.0),
-    )
 }
 
 #[test]

@@ -3,6 +3,7 @@ use lovelock_groom::Guides;
 use lovelock_motion::ColliderShape;
 
 use super::*;
+use crate::Integrator;
 
 /// Thirty locks around a head of 8 cm, and what they collide with.
 fn head_of_hair() -> (Simulation, PlacedCollider) {
@@ -32,12 +33,15 @@ fn settings() -> SimulationSettings {
 
 #[test]
 fn the_processor_s_own_instructions_and_everyone_s_give_the_same_bits() {
-    let (mut wide, skull) = head_of_hair();
-    let mut portable = Simulation { wide: false, ..wide.clone() };
-    for step in 1..90 {
-        wide.step(&input(step, &[skull]), &settings(), 1.0 / 60.0);
-        portable.step(&input(step, &[skull]), &settings(), 1.0 / 60.0);
-        assert_eq!(wide.state_hash(), portable.state_hash(), "step {step}");
+    for integrator in Integrator::ALL {
+        let (mut wide, skull) = head_of_hair();
+        let mut portable = Simulation { wide: false, ..wide.clone() };
+        let settings = SimulationSettings { integrator, ..settings() };
+        for step in 1..90 {
+            wide.step(&input(step, &[skull]), &settings, 1.0 / 60.0);
+            portable.step(&input(step, &[skull]), &settings, 1.0 / 60.0);
+            assert_eq!(wide.state_hash(), portable.state_hash(), "{integrator:?}, step {step}");
+        }
     }
 }
 

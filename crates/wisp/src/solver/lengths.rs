@@ -16,11 +16,18 @@ pub(crate) struct LengthScratch {
     upper: Vec<Lane>,
     /// Unit directions of the links; link `i` ends at point `i`.
     pub(super) direction: Vec<Lane3>,
+    /// `w` of the last point: 1, or 0 where it is held too.
+    tip_weight: f32,
 }
 
 impl LengthScratch {
     pub(crate) fn new(points: usize) -> Self {
-        Self { multiplier: vec![ZERO; points], upper: vec![ZERO; points], direction: vec![ZERO3; points] }
+        Self {
+            multiplier: vec![ZERO; points],
+            upper: vec![ZERO; points],
+            direction: vec![ZERO3; points],
+            tip_weight: 1.0,
+        }
     }
 
     /// Directions of the links from `first` on, and by how much each is too short.
@@ -96,8 +103,8 @@ fn solve(first_free: usize, scratch: &mut LengthScratch) {
     let (mut upper, mut rhs, mut off) = (ZERO, ZERO, ZERO);
     for i in first..count {
         // The carried end of the first link has no weight.
-        let diagonal = if i == first_free { 1.0 } else { 2.0 };
         let last = i + 1 == count;
+        let diagonal = if i == first_free { 0.0 } else { 1.0 } + if last { scratch.tip_weight } else { 1.0 };
         let n = scratch.direction[i];
         let n_next = scratch.direction[if last { i } else { i + 1 }];
         let mut r = scratch.multiplier[i];
@@ -129,7 +136,10 @@ fn apply(first_free: usize, rows: &mut [Lane3], scratch: &LengthScratch) {
     for i in first_free..count {
         let mut row = rows[i];
         if i > 0 {
-            let (n, l) = (scratch.direction[i], scratch.multiplier[i]);
+            let (n, mut l) = (scratch.direction[i], scratch.multiplier[i]);
+            if i + 1 == count {
+                l = l.map(|l| l * scratch.tip_weight);
+            }
             for k in 0..LANES {
                 let moved = at(&row, k) + at(&n, k) * l[k];
                 put(&mut row, k, moved);
@@ -147,87 +157,4 @@ fn apply(first_free: usize, rows: &mut [Lane3], scratch: &LengthScratch) {
 }
 
 #[cfg(test)]
-mod tests {
-    use glam::Vec3;
-
-    use super::*;
-
-    /// A zigzag of `points` points with links of 1 cm, the same in every lane.
-    fn zigzag(points: usize) -> Vec<Lane3> {
-        let mut rows = vec![ZERO3; points];
-        let mut p = Vec3::ZERO;
-        for (i, row) in rows.iter_mut().enumerate() {
-            let angle = i as f32 * 1.3;
-            if i > 0 {
-                p += 0.01 * Vec3::new(angle.cos(), angle.sin(), 0.0);
-            }
-            for k in 0..LANES {
-                put(row, k, p);
-            }
-        }
-        rows
-    }
-
-    fn velocities(points: usize) -> Vec<Lane3> {
-        let mut rows = vec![ZERO3; points];
-        for (i, row) in rows.iter_mut().enumerate() {
-            for k in 0..LANES {
-                let s = (i * 7 + k * 3) as f32;
-                put(row, k, Vec3::new(s.sin(), (2.0 * s).cos(), (0.5 * s).sin()));
-            }
-        }
-        rows
-    }
-
-    #[test]
-    fn projected_velocities_stretch_no_link() {
-        for first_free in 0..3 {
-            let (x, mut v) = (zigzag(12), velocities(12));
-            for carried in &mut v[..first_free] {
-                *carried = ZERO3;
-            }
-            project_velocity(first_free, &x, &[[100.0; LANES]; 12], &mut v, &mut LengthScratch::new(12));
-            for i in first_free.max(1)..12 {
-                for k in 0..LANES {
-                    let n = (at(&x[i], k) - at(&x[i - 1], k)) * 100.0;
-                    let rate = n.dot(at(&v[i], k) - at(&v[i - 1], k));
-                    // Speeds of 1 m/s in f32, twelve rows of elimination.
-                    assert!(rate.abs() < 1e-5, "link {i} of lane {k} stretches by {rate} m/s");
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn a_chain_cut_loose_keeps_its_momentum() {
-        let (x, mut v) = (zigzag(12), velocities(12));
-        let sum = |v: &[Lane3]| v.iter().fold(Vec3::ZERO, |s, row| s + at(row, 3));
-        let before = sum(&v);
-        project_velocity(0, &x, &[[100.0; LANES]; 12], &mut v, &mut LengthScratch::new(12));
-        assert!((sum(&v) - before).length() < 1e-6 * 12.0, "{before} became {}", sum(&v));
-        let mut held = velocities(12);
-        project_velocity(1, &x, &[[100.0; LANES]; 12], &mut held, &mut LengthScratch::new(12));
-        assert!((sum(&held) - before).length() > 0.01, "a chain that is held must not keep it");
-    }
-
-    #[test]
-    fn a_newton_step_squares_the_error_of_lengths() {
-        let mut x = zigzag(12);
-        let length = [[0.01; LANES]; 12];
-        let worst = |x: &[Lane3]| {
-            (1..12)
-                .map(|i| ((at(&x[i], 0) - at(&x[i - 1], 0)).length() / 0.01 - 1.0).abs())
-                .fold(0.0, f32::max)
-        };
-        for (i, row) in x.iter_mut().enumerate().skip(1) {
-            for k in 0..LANES {
-                let p = at(row, k) + 0.0004 * Vec3::new((i as f32).sin(), (3.0 * i as f32).cos(), 0.3);
-                put(row, k, p);
-            }
-        }
-        let before = worst(&x);
-        project_position(1, &length, &mut x, &mut LengthScratch::new(12));
-        let after = worst(&x);
-        assert!(before > 0.02 && after < 4.0 * before * before, "{before} became {after}");
-    }
-}
+mod tests;

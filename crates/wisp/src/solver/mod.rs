@@ -6,9 +6,11 @@
 
 mod bending;
 mod coupled;
+mod follow;
 mod forces;
 mod lengths;
 mod plan;
+mod relaxation;
 mod substep;
 
 pub(crate) use bending::{Bending, BendingKey};

@@ -1,7 +1,10 @@
 //! One substep of one block.
 
 use super::Plan;
+use super::follow::correct_velocities;
 use super::lengths::{project_position, project_velocity};
+use super::relaxation::relax;
+use crate::Integrator;
 use crate::block::{Block, Depth};
 use crate::colliders::contact::{
     Near, NearField, apart, bounds, buried, buried_in_field, lay_point, penetration,
@@ -11,8 +14,51 @@ use crate::lanes::{LANES, Turns, ZERO3, at, direction_or, greater, lesser, put};
 /// Takes the block through substep `s`.
 #[inline(always)]
 pub(crate) fn run(block: &mut Block, plan: &Plan, s: usize) {
-    velocities(block, plan, s);
+    forces(block, plan, s);
+    if plan.settings.integrator == Integrator::Direct {
+        project_velocity(
+            plan.first_free,
+            &block.position,
+            &block.rest.inv_length,
+            &mut block.velocity,
+            &mut block.lengths,
+        );
+    }
+    step_positions(block, plan.h);
     shape_memory(block, plan, s);
+    match plan.settings.integrator {
+        Integrator::Direct => {
+            lengths(block, plan);
+            find_near(block, plan, s);
+            lay_out(block, plan, s, Lay::AtLength);
+        }
+        Integrator::Relaxation => {
+            relax(plan, &block.rest.length, &mut block.next);
+            find_near(block, plan, s);
+            lay_out(block, plan, s, Lay::AsIs);
+        }
+        Integrator::FollowTheLeader => {
+            find_near(block, plan, s);
+            lay_out(block, plan, s, Lay::Behind);
+            correct_velocities(block, plan);
+        }
+    }
+}
+
+/// How long the pass from root to tip makes links.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Lay {
+    /// As long as they are at rest.
+    AtLength,
+    /// The same, but nothing that hangs from a point follows what has moved it: the next link pulls it.
+    Behind,
+    /// As long as they have become.
+    AsIs,
+}
+
+/// One Newton step of the lengths, in the metric of the bends.
+#[inline(always)]
+fn lengths(block: &mut Block, plan: &Plan) {
     if block.bending.is_chain() {
         project_position(plan.first_free, &block.rest.length, &mut block.next, &mut block.lengths);
     } else {
@@ -25,13 +71,11 @@ pub(crate) fn run(block: &mut Block, plan: &Plan, s: usize) {
             &mut block.residual,
         );
     }
-    find_near(block, plan, s);
-    lay_out(block, plan, s);
 }
 
-/// Forces, the projection of velocities, and the step of positions into `next`.
+/// Forces on velocities, and the velocities of points that the scalp carries.
 #[inline(always)]
-fn velocities(block: &mut Block, plan: &Plan, s: usize) {
+fn forces(block: &mut Block, plan: &Plan, s: usize) {
     let (substep, h, inv_h) = (&plan.substeps[s], plan.h, 1.0 / plan.h);
     let settle = 1.0 - (-plan.settings.settle * h).exp();
     for i in 0..plan.first_free {
@@ -52,13 +96,11 @@ fn velocities(block: &mut Block, plan: &Plan, s: usize) {
         }
         block.velocity[i] = v;
     }
-    project_velocity(
-        plan.first_free,
-        &block.position,
-        &block.rest.inv_length,
-        &mut block.velocity,
-        &mut block.lengths,
-    );
+}
+
+/// The step of positions into `next`.
+#[inline(always)]
+fn step_positions(block: &mut Block, h: f32) {
     for i in 0..block.points() {
         let (x, v) = (block.position[i], block.velocity[i]);
         let mut next = ZERO3;
@@ -162,7 +204,7 @@ fn find_near(block: &mut Block, plan: &Plan, s: usize) {
 
 /// The clean-up pass, and the velocities that follow from it.
 #[inline(always)]
-fn lay_out(block: &mut Block, plan: &Plan, s: usize) {
+fn lay_out(block: &mut Block, plan: &Plan, s: usize, lay: Lay) {
     let (count, inv_h) = (block.points(), 1.0 / plan.h);
     let carried = plan.first_free.saturating_sub(1);
     let field = plan.field.map(|moving| {
@@ -191,7 +233,7 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize) {
     for i in 0..count {
         let was = block.position[i];
         let mut placed = block.next[i];
-        if i >= plan.first_free.max(1) {
+        if i >= plan.first_free.max(1) && lay != Lay::Behind {
             let shift = block.bending.follow(i - 1, &moved_before, &moved);
             for k in 0..LANES {
                 let p = at(&placed, k) + at(&shift, k);
@@ -199,7 +241,12 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize) {
             }
         }
         if i >= plan.first_free.max(1) {
-            let (inv, length) = (block.rest.inv_length[i], block.rest.length[i]);
+            let (inv, mut length) = (block.rest.inv_length[i], block.rest.length[i]);
+            if lay == Lay::AsIs {
+                for k in 0..LANES {
+                    length[k] = (at(&placed, k) - at(&before, k)).length_squared().sqrt();
+                }
+            }
             let mut fallback = ZERO3;
             for k in 0..LANES {
                 put(&mut fallback, k, (at(&was, k) - at(&was_before, k)) * inv[k]);

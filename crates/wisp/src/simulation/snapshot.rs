@@ -1,0 +1,281 @@
+//! The state as bytes: [`Simulation::save`] and [`Simulation::restore`].
+//!
+//! Little-endian: the four bytes `LLWS`, the version (u32), a fingerprint of the guides at rest (u64), the state,
+//! and a fingerprint of all before it (u64). What follows from style and state is worked out again.
+
+use glam::{Affine3A, Mat3A, Quat, Vec3, Vec3A};
+use lovelock_groom::Guides;
+use lovelock_motion::{ColliderShape, PlacedCollider};
+
+use super::{Simulation, first_free};
+use crate::block::Block;
+use crate::hash::Hasher;
+use crate::lanes::{LANES, Lane3};
+use crate::motion::HeadPose;
+use crate::rest::RestShape;
+
+const MAGIC: [u8; 4] = *b"LLWS";
+
+/// Raised whenever the bytes change their meaning.
+const VERSION: u32 = 1;
+
+/// The most colliders that a state may speak of: beyond it the bytes are no state.
+const MOST_COLLIDERS: u32 = 4096;
+
+/// Why bytes are not a state of this simulation.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum RestoreError {
+    /// The bytes are not a saved state at all.
+    #[error("the state of the simulation begins with {found:02x?}; a saved state begins with {MAGIC:02x?}")]
+    Foreign {
+        /// The first bytes, four at the most.
+        found: Vec<u8>,
+    },
+    /// Another version of the program wrote them.
+    #[error("the state of the simulation has version {found}; this program reads version {VERSION}")]
+    Version {
+        /// The version that was found.
+        found: u32,
+    },
+    /// It is the state of other guides.
+    #[error(
+        "the state of the simulation is that of another hairstyle; restore it with the style it was saved with"
+    )]
+    Style,
+    /// The bytes end too early, go on too long, or have changed.
+    #[error("the state of the simulation is damaged: {problem}")]
+    Damaged {
+        /// What was found and what was wanted.
+        problem: String,
+    },
+}
+
+impl Simulation {
+    /// All of the state as bytes, from which [`Simulation::restore`] goes on with the same bits.
+    ///
+    /// Settings, style and how far the body has moved on are not in it: those come with the next step.
+    pub fn save(&self) -> Vec<u8> {
+        let mut out = Writer(Vec::with_capacity(self.blocks.len() * 4 * LANES * 3 * 4 * 32));
+        out.0.extend_from_slice(&MAGIC);
+        out.u32(VERSION);
+        out.u64(fingerprint(&self.style.guides));
+        out.floats(&self.head.turn.to_array());
+        out.floats(&self.head.place.to_array());
+        out.u64(self.time_secs.to_bits());
+        out.u64(self.elapsed_secs.to_bits());
+        out.u32(self.clamped_links);
+        out.u32(self.colliders.len() as u32);
+        for collider in &self.colliders {
+            out.affine(&collider.world_from_rest);
+            out.shape(&collider.shape);
+        }
+        out.u32(self.rest_colliders.shapes.len() as u32);
+        for (shape, on_head) in self.rest_colliders.shapes.iter().zip(&self.rest_colliders.on_head) {
+            out.shape(shape);
+            out.u32(u32::from(*on_head));
+        }
+        for rows in self.blocks.iter().flat_map(rows_of) {
+            for axis in rows.iter().flatten() {
+                out.floats(axis);
+            }
+        }
+        out.u64(sum(&out.0));
+        out.0
+    }
+
+    /// Goes back to the state that `bytes` hold, saved from a simulation of the same guides.
+    ///
+    /// # Errors
+    /// [`RestoreError`]; the simulation then is as it was.
+    pub fn restore(&mut self, bytes: &[u8]) -> Result<(), RestoreError> {
+        let mut input = Reader(bytes);
+        match input.take::<4>() {
+            Ok(MAGIC) => {}
+            _ => return Err(RestoreError::Foreign { found: bytes[..bytes.len().min(4)].to_vec() }),
+        }
+        let version = input.u32()?;
+        if version != VERSION {
+            return Err(RestoreError::Version { found: version });
+        }
+        if input.u64()? != fingerprint(&self.style.guides) {
+            return Err(RestoreError::Style);
+        }
+        let Some((held, check)) = bytes.split_last_chunk::<8>() else { return Err(short()) };
+        if u64::from_le_bytes(*check) != sum(held) {
+            return Err(damaged("its bytes do not give the fingerprint at its end"));
+        }
+        let mut next = self.clone();
+        let turn = Quat::from_array(input.floats()?);
+        let place = Vec3::from_array(input.floats()?);
+        if !(turn.is_finite() && place.is_finite() && (turn.length_squared() - 1.0).abs() < 1e-3) {
+            return Err(damaged("the place of the head is not one"));
+        }
+        next.head = HeadPose { turn, place };
+        next.time_secs = f64::from_bits(input.u64()?);
+        next.elapsed_secs = f64::from_bits(input.u64()?);
+        next.clamped_links = input.u32()?;
+        if next.clamped_links > 2 {
+            return Err(damaged("it clamps more than two links"));
+        }
+        next.colliders.clear();
+        for _ in 0..input.count()? {
+            let world_from_rest = input.affine()?;
+            next.colliders.push(PlacedCollider { shape: input.shape()?, world_from_rest });
+        }
+        let rest = &mut next.rest_colliders;
+        rest.shapes.clear();
+        rest.on_head.clear();
+        for _ in 0..input.count()? {
+            rest.shapes.push(input.shape()?);
+            rest.on_head.push(input.u32()? != 0);
+        }
+        if rest.shapes.len() != next.colliders.len() {
+            return Err(damaged("it knows other colliders at rest than in motion"));
+        }
+        let (guides, clamped_links) = (&self.style.guides, next.clamped_links);
+        let first_free = first_free(clamped_links, guides.points_per_guide);
+        for block in &mut next.blocks {
+            if clamped_links != self.clamped_links {
+                block.rest = RestShape::new(guides, &block.guides, first_free);
+            }
+            for rows in rows_of_mut(block) {
+                for axis in rows.iter_mut().flatten() {
+                    *axis = input.floats()?;
+                }
+            }
+        }
+        if input.0.len() != 8 {
+            return Err(damaged("it goes on after its end"));
+        }
+        next.learn_rest_distances();
+        *self = next;
+        Ok(())
+    }
+}
+
+/// What of a block is state and not working memory.
+fn rows_of(block: &Block) -> [&[Lane3]; 4] {
+    [&block.position, &block.velocity, &block.bend, &block.good]
+}
+
+fn rows_of_mut(block: &mut Block) -> [&mut [Lane3]; 4] {
+    [&mut block.position, &mut block.velocity, &mut block.bend, &mut block.good]
+}
+
+fn fingerprint(guides: &Guides) -> u64 {
+    let mut hasher = Hasher::default();
+    hasher.add(guides.points_per_guide as u32);
+    hasher.add(guides.x.len() as u32);
+    for v in [&guides.x, &guides.y, &guides.z].into_iter().flatten() {
+        hasher.add(v.to_bits());
+    }
+    hasher.finish()
+}
+
+fn sum(bytes: &[u8]) -> u64 {
+    let mut hasher = Hasher::default();
+    hasher.add(bytes.len() as u32);
+    let (words, rest) = bytes.as_chunks::<4>();
+    for word in words {
+        hasher.add(u32::from_le_bytes(*word));
+    }
+    for byte in rest {
+        hasher.add(u32::from(*byte));
+    }
+    hasher.finish()
+}
+
+fn damaged(problem: &str) -> RestoreError {
+    RestoreError::Damaged { problem: problem.to_owned() }
+}
+
+fn short() -> RestoreError {
+    damaged("it ends too early")
+}
+
+struct Writer(Vec<u8>);
+
+impl Writer {
+    fn u32(&mut self, v: u32) {
+        self.0.extend_from_slice(&v.to_le_bytes());
+    }
+
+    fn u64(&mut self, v: u64) {
+        self.0.extend_from_slice(&v.to_le_bytes());
+    }
+
+    fn floats(&mut self, values: &[f32]) {
+        for v in values {
+            self.u32(v.to_bits());
+        }
+    }
+
+    fn affine(&mut self, m: &Affine3A) {
+        self.floats(&m.to_cols_array());
+    }
+
+    fn shape(&mut self, shape: &ColliderShape) {
+        match *shape {
+            ColliderShape::Capsule { a, b, radius_a, radius_b } => {
+                self.u32(0);
+                self.floats(&[a.x, a.y, a.z, b.x, b.y, b.z, radius_a, radius_b]);
+            }
+            ColliderShape::Ellipsoid { from_unit } => {
+                self.u32(1);
+                self.affine(&from_unit);
+            }
+        }
+    }
+}
+
+struct Reader<'a>(&'a [u8]);
+
+impl Reader<'_> {
+    fn take<const N: usize>(&mut self) -> Result<[u8; N], RestoreError> {
+        let (head, rest) = self.0.split_first_chunk::<N>().ok_or_else(short)?;
+        self.0 = rest;
+        Ok(*head)
+    }
+
+    fn u32(&mut self) -> Result<u32, RestoreError> {
+        self.take().map(u32::from_le_bytes)
+    }
+
+    fn u64(&mut self) -> Result<u64, RestoreError> {
+        self.take().map(u64::from_le_bytes)
+    }
+
+    fn floats<const N: usize>(&mut self) -> Result<[f32; N], RestoreError> {
+        let mut out = [0.0; N];
+        for v in &mut out {
+            *v = f32::from_bits(self.u32()?);
+        }
+        Ok(out)
+    }
+
+    fn count(&mut self) -> Result<u32, RestoreError> {
+        let count = self.u32()?;
+        if count > MOST_COLLIDERS {
+            return Err(damaged(&format!("{count} colliders, where {MOST_COLLIDERS} are the most")));
+        }
+        Ok(count)
+    }
+
+    fn affine(&mut self) -> Result<Affine3A, RestoreError> {
+        let m: [f32; 12] = self.floats()?;
+        let column = |c: usize| Vec3A::new(m[3 * c], m[3 * c + 1], m[3 * c + 2]);
+        Ok(Affine3A { matrix3: Mat3A::from_cols(column(0), column(1), column(2)), translation: column(3) })
+    }
+
+    fn shape(&mut self) -> Result<ColliderShape, RestoreError> {
+        match self.u32()? {
+            0 => {
+                let [ax, ay, az, bx, by, bz, radius_a, radius_b] = self.floats()?;
+                let (a, b) = (Vec3::new(ax, ay, az), Vec3::new(bx, by, bz));
+                Ok(ColliderShape::Capsule { a, b, radius_a, radius_b })
+            }
+            1 => Ok(ColliderShape::Ellipsoid { from_unit: self.affine()? }),
+            other => Err(damaged(&format!("a collider of the kind {other}, where 0 or 1 was wanted"))),
+        }
+    }
+}

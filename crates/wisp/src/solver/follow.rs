@@ -1,0 +1,28 @@
+//! Dynamic follow-the-leader: what laying a chain from root to tip does to velocities, and its correction.
+//!
+//! In the pass from root to tip only the follower of a link moves, as if every point were infinitely heavier
+//! than the next. With velocities taken from positions alone a chain gains energy. Müller, Kim and Chentanez
+//! (2012) therefore give each leader part of its follower's correction, turned round:
+//! `v_i = (p_i - x_i) / h - s d_(i+1) / h`, where `d` is what the pass moved a point by.
+
+use super::Plan;
+use crate::block::Block;
+use crate::lanes::{LANES, at, direction_or, put};
+
+/// Corrects the velocities of the free points; positions have been laid, and `next` still holds where points
+/// wanted to be. What contacts moved them by is not a follower's and does not count.
+#[inline(always)]
+pub(crate) fn correct_velocities(block: &mut Block, plan: &Plan) {
+    let scale = plan.settings.follow_damping / plan.h;
+    for i in plan.first_free..block.points().saturating_sub(1) {
+        let (leader, wanted, length) = (block.position[i], block.next[i + 1], block.rest.length[i + 1]);
+        let mut velocity = block.velocity[i];
+        for k in 0..LANES {
+            let link = at(&wanted, k) - at(&leader, k);
+            let (direction, now) = direction_or(link, link);
+            let v = at(&velocity, k) - direction * ((length[k] - now) * scale);
+            put(&mut velocity, k, v);
+        }
+        block.velocity[i] = velocity;
+    }
+}

@@ -1,0 +1,39 @@
+//! Processor time, which other work on the machine does not add to.
+
+use std::time::Duration;
+
+/// Time that this process has spent on processors, all threads together; wall time where the system does not say.
+pub fn process_time() -> Duration {
+    #[cfg(unix)]
+    {
+        of(rustix::time::ClockId::ProcessCPUTime)
+    }
+    #[cfg(not(unix))]
+    {
+        wall()
+    }
+}
+
+/// The same of this thread alone.
+pub fn thread_time() -> Duration {
+    #[cfg(unix)]
+    {
+        of(rustix::time::ClockId::ThreadCPUTime)
+    }
+    #[cfg(not(unix))]
+    {
+        wall()
+    }
+}
+
+#[cfg(unix)]
+fn of(clock: rustix::time::ClockId) -> Duration {
+    let time = rustix::time::clock_gettime(clock);
+    Duration::new(time.tv_sec as u64, time.tv_nsec as u32)
+}
+
+#[cfg(not(unix))]
+fn wall() -> Duration {
+    static START: std::sync::LazyLock<std::time::Instant> = std::sync::LazyLock::new(std::time::Instant::now);
+    START.elapsed()
+}

@@ -1,0 +1,62 @@
+//! Random days in the life of a simulation: what the fuzz target does (`fuzz/`), on inputs that are the same on
+//! every run.
+
+use glam::{Affine3A, Vec3};
+use lovelock_groom::{GuideFrame, Guides};
+
+#[path = "common/drive.rs"]
+mod drive;
+use drive::{Met, drive, sound};
+
+/// `SplitMix64` (Steele, Lea, Flood 2014).
+fn bytes(seed: u64, count: usize) -> Vec<u8> {
+    let mut state = seed;
+    (0..count)
+        .map(|_| {
+            state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
+            let z = (state ^ (state >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+            let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+            (z >> 56) as u8
+        })
+        .collect()
+}
+
+#[test]
+fn no_order_of_settings_motions_and_edits_breaks_the_hair() {
+    let mut all = Met::default();
+    for seed in 0..400 {
+        let met = drive(&bytes(seed, 700));
+        all.steps += met.steps;
+        all.jumps += met.jumps;
+        all.recovered += met.recovered;
+        all.styles += met.styles;
+        all.resets += met.resets;
+        all.restored += met.restored;
+        all.refused += met.refused;
+        all.fastest = all.fastest.max(met.fastest);
+    }
+    println!("{all:?}");
+    // The drives meet everything they are there for.
+    assert!(all.steps > 10_000 && all.jumps > 100 && all.styles > 100 && all.resets > 100, "{all:?}");
+    assert!(all.restored > 30 && all.refused > 30 && all.fastest > 1.0, "{all:?}");
+}
+
+#[test]
+fn a_point_that_is_not_finite_or_lost_is_seen() {
+    let mut guides = Guides { points_per_guide: 2, ..Guides::default() };
+    guides.push(&[Vec3::ZERO, Vec3::X]);
+    let good = GuideFrame::at_rest(&guides, Affine3A::IDENTITY, 0.0);
+    assert!(sound(&good));
+    for wrong in [f32::NAN, f32::INFINITY, 1e6] {
+        let mut bad = good.clone();
+        bad.guides.y[1] = wrong;
+        assert!(!sound(&bad), "{wrong}");
+    }
+}
+
+#[test]
+fn inputs_that_end_early_are_inputs_too() {
+    for count in 0..40 {
+        drive(&bytes(count as u64 + 1000, count));
+    }
+}
