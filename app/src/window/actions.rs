@@ -94,20 +94,22 @@ impl Window {
             Command::Record => self.ask(Purpose::Film),
             Command::SavePicture => self.ask(Purpose::Picture),
             Command::ExportCurves => self.ask(Purpose::Curves),
-            Command::FrameHair => self.frame_hair(),
-            Command::ToggleFollow => self.change("camera", |project| {
+            Command::FrameHair => self.frame_hair(ctx),
+            Command::ToggleFollow => self.change_seen(ctx, |project| {
                 project.camera.mode = match project.camera.mode {
                     CameraMode::Follow => CameraMode::Fixed,
                     CameraMode::Fixed => CameraMode::Follow,
                 };
             }),
             Command::ResetCamera => {
-                self.change("camera", |project| project.camera = CameraSection::default());
+                self.change_seen(ctx, |project| project.camera = CameraSection::default());
             }
             Command::Undo => {
+                self.overdub.let_go();
                 self.history.undo();
             }
             Command::Redo => {
+                self.overdub.let_go();
                 self.history.redo();
             }
             Command::NewProject => self.unless_modified(Pending::New, ctx),
@@ -117,9 +119,9 @@ impl Window {
                 None => self.ask(Purpose::SaveProject),
             },
             Command::SaveAs => self.ask(Purpose::SaveProject),
-            Command::PresetSmooth => self.change("hairstyle", |project| project.set_preset(Preset::Smooth)),
-            Command::PresetCurly => self.change("hairstyle", |project| project.set_preset(Preset::Curly)),
-            Command::PresetLong => self.change("hairstyle", |project| project.set_preset(Preset::Long)),
+            Command::PresetSmooth => self.change_seen(ctx, |project| project.set_preset(Preset::Smooth)),
+            Command::PresetCurly => self.change_seen(ctx, |project| project.set_preset(Preset::Curly)),
+            Command::PresetLong => self.change_seen(ctx, |project| project.set_preset(Preset::Long)),
             Command::Palette => self.palette.toggle(),
             Command::CompareTakes => self.ask(Purpose::Beside),
             Command::Compare => self.layout.compare.shown = !self.layout.compare.shown,
@@ -136,6 +138,18 @@ impl Window {
         self.gestures.next();
         self.edit(label, project);
         self.gestures.next();
+    }
+
+    /// As [`Window::change`], for what a track may move: as if it was done by hand.
+    fn change_seen(&mut self, ctx: &egui::Context, change: impl FnOnce(&mut Project)) {
+        let seen = self.seen();
+        let mut project = copy(&seen);
+        change(&mut project);
+        self.gestures.next();
+        self.take_edit(&seen, project, ctx);
+        if self.overdub.writes().next().is_none() {
+            self.gestures.next();
+        }
     }
 
     /// Begins a take in a file of its own, or ends the one that is being recorded.
@@ -184,16 +198,15 @@ impl Window {
         });
     }
 
-    fn frame_hair(&mut self) {
+    fn frame_hair(&mut self, ctx: &egui::Context) {
         let Some(frame) = self.session.frame.clone() else { return };
         let compares = self.layout.compare.shown;
         let [width, height] = if compares { self.compare.wanted() } else { self.viewport.wanted };
         let aspect = width as f32 / height.max(1) as f32;
         let guides = &frame.guides.guides;
         let points = (0..guides.x.len()).map(|i| glam::Vec3::new(guides.x[i], guides.y[i], guides.z[i]));
-        let camera =
-            frame_points(&self.history.project().camera, &frame.scene, frame.time_secs, points, aspect);
-        self.change("camera", |project| project.camera = camera);
+        let camera = frame_points(&self.seen().camera, &frame.scene, frame.time_secs, points, aspect);
+        self.change_seen(ctx, |project| project.camera = camera);
     }
 
     /// Opens a file of any kind that is read.
@@ -263,6 +276,7 @@ impl Window {
         access.set_project(Some(path));
         match load_project_with(path, &mut access) {
             Ok((project, problems)) => {
+                self.overdub.let_go();
                 self.history = lovelock_studio::History::new(project);
                 self.project_path = Some(path.to_owned());
                 self.session.set_project_path(self.project_path.as_ref());
@@ -328,6 +342,7 @@ impl Window {
                 ctx.send_viewport_cmd(egui::ViewportCommand::Close);
             }
             Pending::New => {
+                self.overdub.let_go();
                 self.history = lovelock_studio::History::new(Project::default());
                 self.project_path = None;
                 self.session.set_project_path(None);

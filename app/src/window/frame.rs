@@ -15,7 +15,7 @@ impl Window {
     /// One pass.
     pub(super) fn pass(&mut self, ui: &mut Ui) {
         let ctx = ui.ctx().clone();
-        self.gestures.begin_pass(&ctx);
+        self.gestures.begin_pass(&ctx, self.overdub.writes().next().is_some());
         let said = self.session.update();
         self.tell(said);
         for done in std::mem::take(&mut self.session.done) {

@@ -38,8 +38,8 @@ impl Gestures {
     }
 
     /// Call at the start of each pass, before anything changes: goes on to the next gesture unless the one of the
-    /// last pass lasts.
-    pub(crate) fn begin_pass(&mut self, ctx: &egui::Context) {
+    /// last pass lasts. `riding`: what was moved is still being written to its track.
+    pub(crate) fn begin_pass(&mut self, ctx: &egui::Context, riding: bool) {
         let focused = ctx.memory(egui::Memory::focused);
         let (pressed, held, scrolled) = ctx.input(|input| {
             let pointer = &input.pointer;
@@ -56,7 +56,9 @@ impl Gestures {
             }
             (Some(_), None) => false,
             (None, _) => {
-                held || (scrolled && self.scrolled) || (focused.is_some() && focused == self.focused)
+                held || riding
+                    || (scrolled && self.scrolled)
+                    || (focused.is_some() && focused == self.focused)
             }
         };
         if !lasts {

@@ -247,6 +247,7 @@ impl Window {
             secs: self.now_secs(),
             playing: self.session.playing,
             held: ctx.input(|input| input.pointer.any_down()),
+            clock_secs: ctx.input(|input| input.time),
         };
         let label = frame::changed_part(seen, &edited);
         let project = self.overdub.edit(self.history.project(), seen, edited, now);

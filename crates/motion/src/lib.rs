@@ -33,7 +33,8 @@ pub use distance::{RestDistance, SurfaceDistance};
 pub use error::MotionError;
 pub use field::{BodyField, FIELD_JOINTS, FieldLattice, FieldPose, FieldWeights};
 pub use gltf::{
-    Character, load_character, load_character_bytes, load_character_bytes_with, load_character_with,
+    Character, gltf_reference, load_character, load_character_bytes, load_character_bytes_with,
+    load_character_with,
 };
 pub use head::{HeadMesh, guess_head, head_mesh, joint_paths};
 pub use info::{CharacterInfo, ClipInfo, MotionInfo};

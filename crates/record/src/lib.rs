@@ -52,6 +52,6 @@ pub use sink::{OutputKind, PictureSink, SinkReport, SinkSettings};
 pub use still::write_png;
 pub use take::{
     AssetState, MOST_ERROR_M, MOST_GUIDE_POINTS, MOST_PROJECT_BYTES, TAKE_EXTENSION, TAKE_VERSION, TakeAsset,
-    TakeCondition, TakeError, TakeFrame, TakeHeader, TakeReader, TakeReport, TakeWriter,
+    TakeCondition, TakeError, TakeFrame, TakeHeader, TakeLayout, TakeReader, TakeReport, TakeWriter,
     hairstyle_fingerprint, mix_guides,
 };

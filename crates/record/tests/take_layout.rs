@@ -5,7 +5,7 @@ mod take_scene;
 use lovelock_record::TakeReader;
 use std::fs;
 use std::path::Path;
-use take_scene::{Chunk, Size, chunks, frame, play_all, project, record, worst};
+use take_scene::{Chunk, Size, chunks, frame, play_all, project, record, regrown_size, worst};
 
 const SIZE: Size = Size(9, 7);
 
@@ -20,7 +20,7 @@ fn long_word(bytes: &[u8], at: usize) -> u64 {
 /// The text and the data part of a chunk.
 fn parts(file: &[u8], chunk: &Chunk) -> [Vec<u8>; 2] {
     let header = &file[chunk.start..chunk.start + 64];
-    assert_eq!(word(header, 12), 1, "the version");
+    assert_eq!(word(header, 12), 2, "the version");
     assert_eq!(word(header, 60), crc32fast::hash(&header[..60]));
     let mut at = chunk.start + 64;
     [32, 44].map(|part| {
@@ -34,7 +34,7 @@ fn parts(file: &[u8], chunk: &Chunk) -> [Vec<u8>; 2] {
     })
 }
 
-/// The positions of a chunk's data part in steps of 0.05 mm: number `((point * frames + frame) * 3 + axis) * guides + guide`.
+/// The positions of a chunk's data part after its first eight bytes, in steps of 0.05 mm: number `((point * frames + frame) * 3 + axis) * guides + guide`.
 fn positions(data: &[u8], frames: usize, Size(guides, points): Size) -> Vec<i32> {
     let coefficients = &data[80 * frames..][..12 * points];
     let coefficient = |p: usize, i: usize| {
@@ -107,11 +107,13 @@ fn another_program_reads_a_take_by_the_page_alone() {
     for chunk in &all[2..7] {
         assert_eq!((chunk.first, word(&file, chunk.start + 56)), (seen, take));
         let [text, data] = parts(&file, chunk);
+        assert_eq!((word(&data, 0), word(&data, 4)), (9, 7), "guides and their points");
+        let data = &data[8..];
         let length = word(&text, 0) as usize;
         let mut now = text[4..4 + length].to_vec();
         let mut changes = &text[4 + length..];
         let frames = chunk.frames as usize;
-        let steps = positions(&data, frames, SIZE);
+        let steps = positions(data, frames, SIZE);
         for f in 0..frames {
             let n = chunk.first + f as u64;
             if !changes.is_empty() && word(changes, 0) as usize == f {
@@ -142,7 +144,7 @@ fn another_program_reads_a_take_by_the_page_alone() {
         }
         assert!(changes.is_empty());
         // The control: what the page says of the coefficients matters.
-        let mut other = data.clone();
+        let mut other = data.to_vec();
         other[80 * frames + 12 * 3] ^= 128;
         assert_ne!(positions(&other, frames, SIZE), steps);
         seen += chunk.frames;
@@ -161,16 +163,20 @@ fn another_program_reads_a_take_by_the_page_alone() {
 }
 
 #[test]
-fn a_take_that_version_1_wrote_still_plays() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/version_1.take");
-    let mut take = TakeReader::open(&path).unwrap();
-    assert!(take.verify().unwrap().is_whole());
-    assert_eq!((take.frames(), take.header().version), (70, 1));
-    for n in 0..70 {
-        let played = take.frame(n).unwrap();
-        // Sines differ from system to system in their last place.
-        assert!(worst(&played.guides.guides, &frame(n, take_scene::SMALL).guides.guides) < 6e-5, "frame {n}");
-        assert_eq!(*take.project_at(n).unwrap(), *project(n));
+fn takes_that_older_versions_wrote_still_play() {
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
+    for (name, version, frames) in [("version_1.take", 1, 70), ("version_2.take", 2, 100)] {
+        let mut take = TakeReader::open(&data.join(name)).unwrap();
+        assert!(take.verify().unwrap().is_whole());
+        assert_eq!((take.frames(), take.header().version), (frames, version));
+        let size = |n| if version == 1 { take_scene::SMALL } else { regrown_size(n) };
+        for n in 0..frames {
+            let played = take.frame(n).unwrap();
+            // Sines differ from system to system in their last place.
+            assert!(worst(&played.guides.guides, &frame(n, size(n)).guides.guides) < 6e-5, "frame {n}");
+            assert_eq!(*take.project_at(n).unwrap(), *project(n));
+        }
+        assert_eq!(take.layouts().unwrap().len(), if version == 1 { 1 } else { 3 });
     }
     // The control: what is written now is read by the same test.
     let folder = tempfile::tempdir().unwrap();

@@ -46,7 +46,7 @@ pub use headless::{
 };
 pub use health::{Gauge, GaugeKind, HealthLevel, health};
 pub use history::{GestureId, History};
-pub use info::{Content, FileKind, Info, ProjectInfo, TakeInfo, info};
+pub use info::{Content, FileKind, Info, ProjectInfo, RegrownInfo, TakeInfo, info};
 pub use painter::{Adapter, PaintRequest, Painted, Painter};
 pub(crate) use priority::give_way;
 pub use project::{

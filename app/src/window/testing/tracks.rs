@@ -1,7 +1,7 @@
 //! Controls that are moved while the dance plays, in the whole window.
 
 use egui::accesskit::Role;
-use egui::{Key, Modifiers};
+use egui::{Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, TouchPhase, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
@@ -64,4 +64,98 @@ fn a_slider_that_is_moved_while_the_dance_plays_becomes_a_track() {
     assert!(harness.query_by_label_contains("follows its track").is_some());
     key(&mut harness, CTRL, Key::Z);
     assert_eq!(project(&harness), before);
+}
+
+/// The wheel turns by a notch over the picture.
+fn turn_wheel(harness: &mut Harness<'_, Shown<Option<Window>>>) {
+    let at = control(harness, Role::Image, "Viewport").rect().center();
+    harness.hover_at(at);
+    harness.event(Event::MouseWheel {
+        unit: MouseWheelUnit::Point,
+        delta: vec2(0.0, 60.0),
+        phase: TouchPhase::Move,
+        modifiers: Modifiers::NONE,
+        source: MouseWheelSource::Wheel,
+    });
+    harness.run_steps(2);
+}
+
+#[test]
+fn a_wheel_that_is_turned_while_the_dance_plays_is_one_ride() {
+    let mut harness = window();
+    wait(&mut harness, "a frame", |window| window.session.frame.is_some());
+    let before = project(&harness);
+    key(&mut harness, Modifiers::NONE, Key::W);
+    for _ in 0..3 {
+        turn_wheel(&mut harness);
+        let now = position(of(&harness));
+        wait(&mut harness, "time to pass", |window| (position(window) - now).abs() > 0.04);
+        assert_eq!(of(&harness).overdub.writes().collect::<Vec<_>>(), ["camera/distance"]);
+    }
+    wait(&mut harness, "the ride to end", |window| window.overdub.writes().next().is_none());
+    let written = project(&harness);
+    let [track] = written.timeline.tracks.as_slice() else { panic!("{:?}", written.timeline.tracks) };
+    let [low, high] = track.range()[0];
+    assert!(high > 1.1 * low && track.keys.len() >= 3, "{track:?}");
+    assert_eq!(written.camera, before.camera, "the project's own value stays");
+    assert_eq!(of(&harness).history.undo_len(), 1, "one ride is one step");
+    // What is taken back while it is written stays so.
+    turn_wheel(&mut harness);
+    assert!(of(&harness).overdub.writes().next().is_some());
+    key(&mut harness, CTRL, Key::Z);
+    assert_eq!(project(&harness), written);
+    assert!(of(&harness).overdub.writes().next().is_none());
+}
+
+#[test]
+fn a_command_that_moves_the_camera_is_an_edit_like_those_by_hand() {
+    let mut harness = window();
+    wait(&mut harness, "a frame", |window| window.session.frame.is_some());
+    let mut tracked = (*project(&harness)).clone();
+    tracked.camera.distance = 9.0;
+    let keys = [0.0, 60.0].map(|secs| lovelock_studio::Key { secs, value: vec![8.0] });
+    tracked.timeline.tracks = vec![lovelock_studio::Track {
+        keys: keys.to_vec(),
+        ..lovelock_studio::Track::new("camera/distance")
+    }];
+    let window = harness.state_mut().state.as_mut().expect("a window");
+    window.edit("camera", tracked.clone());
+    window.gestures.next();
+
+    // The dance plays: its distance follows the track, and the window says so; what has no track is moved.
+    key(&mut harness, Modifiers::NONE, Key::F);
+    let framed = project(&harness);
+    assert!(harness.query_by_label_contains("Camera distance follows its track").is_some());
+    assert_eq!(framed.timeline, tracked.timeline);
+    assert_eq!(framed.camera.distance, 9.0);
+    assert_ne!(framed.camera, tracked.camera);
+    key(&mut harness, CTRL, Key::Z);
+    assert_eq!(*project(&harness), tracked);
+
+    // It stands still: a key is set where it stands.
+    key(&mut harness, Modifiers::NONE, Key::Space);
+    wait(&mut harness, "the pause", |window| !window.session.playing);
+    let at = position(of(&harness));
+    key(&mut harness, Modifiers::NONE, Key::F);
+    let keyed = project(&harness);
+    let [track] = keyed.timeline.tracks.as_slice() else { panic!("{:?}", keyed.timeline.tracks) };
+    let [there] = track.keys.iter().filter(|key| (key.secs - at).abs() < 0.05).collect::<Vec<_>>()[..] else {
+        panic!("{track:?} at {at}")
+    };
+    assert!(there.value[0] < 7.0, "near enough to fill the picture: {there:?}");
+    assert_eq!(keyed.camera.distance, 9.0);
+    key(&mut harness, CTRL, Key::Z);
+    assert_eq!(*project(&harness), tracked);
+
+    // It plays, and is written.
+    key(&mut harness, Modifiers::NONE, Key::Space);
+    key(&mut harness, Modifiers::NONE, Key::W);
+    key(&mut harness, Modifiers::NONE, Key::F);
+    wait(&mut harness, "the ride to end", |window| window.overdub.writes().next().is_none());
+    let written = project(&harness);
+    let track = written.timeline.tracks.iter().find(|track| track.target == "camera/distance");
+    assert!(track.is_some_and(|track| track.keys.len() > 2 && track.range()[0][0] < 7.0), "{track:?}");
+    assert_eq!(written.camera, tracked.camera, "the project's own camera stays");
+    key(&mut harness, CTRL, Key::Z);
+    assert_eq!(*project(&harness), tracked, "one step");
 }

@@ -5,6 +5,8 @@ use std::{
     path::{Component, Path, PathBuf},
 };
 
+use percent_encoding::percent_decode_str;
+
 use super::document::{Buffer, Document};
 use crate::MotionError;
 
@@ -131,15 +133,7 @@ fn fetch(
 /// Turns a reference into a path, which must stay in the file's folder even through links.
 fn resolve(file: &str, uri: &str, folder: Option<&Path>) -> Result<PathBuf, MotionError> {
     let outside = || MotionError::Outside { file: file.to_owned(), uri: uri.chars().take(200).collect() };
-    let name = percent_decode(uri).ok_or_else(outside)?;
-    // A scheme or a drive letter, a path of another system, or one that climbs.
-    if name.contains([':', '\\', '\0']) {
-        return Err(outside());
-    }
-    let relative = Path::new(&name);
-    if !relative.components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir)) {
-        return Err(outside());
-    }
+    let relative = gltf_reference(uri).ok_or_else(outside)?;
     let folder = folder.ok_or_else(outside)?;
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let path = folder.join(relative);
@@ -151,20 +145,24 @@ fn resolve(file: &str, uri: &str, folder: Option<&Path>) -> Result<PathBuf, Moti
     Ok(path)
 }
 
-fn percent_decode(uri: &str) -> Option<String> {
-    let mut bytes = Vec::with_capacity(uri.len());
-    let mut rest = uri.as_bytes();
-    while let [first, tail @ ..] = rest {
-        if *first == b'%' {
-            let digits = std::str::from_utf8(tail.get(..2)?).ok()?;
-            bytes.push(u8::from_str_radix(digits, 16).ok()?);
-            rest = &tail[2..];
-        } else {
-            bytes.push(*first);
-            rest = tail;
+/// The file that a URI of a glTF names, as a path from the glTF's folder on: percent-encoded as RFC 3986 has it, or plain, as
+/// many programs write it (glTF 2.0, section 2.8). Nothing for a URI with data in it, for one with a scheme, and for one that
+/// leads out of the folder.
+pub fn gltf_reference(uri: &str) -> Option<PathBuf> {
+    let name = percent_decode_str(uri).decode_utf8().ok()?;
+    // A scheme or a drive letter, a path of another system, or one that climbs.
+    if name.contains([':', '\\', '\0']) {
+        return None;
+    }
+    let mut relative = PathBuf::new();
+    for part in Path::new(&*name).components() {
+        match part {
+            Component::Normal(part) => relative.push(part),
+            Component::CurDir => {}
+            _ => return None,
         }
     }
-    String::from_utf8(bytes).ok()
+    Some(relative)
 }
 
 /// Decodes base64 (RFC 4648, both alphabets); padding is optional.
@@ -214,7 +212,16 @@ mod tests {
     #[test]
     fn references_stay_in_the_folder() {
         let folder = Some(Path::new("models"));
-        assert_eq!(resolve("f", "a%20b/c.bin", folder).unwrap(), Path::new("models/a b/c.bin"));
+        for (uri, path) in [
+            ("a%20b/c.bin", "models/a b/c.bin"),
+            ("./a b/%e9%A6%99.bin", "models/a b/香.bin"),
+            ("a%23b%3Fc%25d+e.bin", "models/a#b?c%d+e.bin"),
+            // No code at all: a name that was not encoded.
+            ("100%.bin", "models/100%.bin"),
+            ("50%zz", "models/50%zz"),
+        ] {
+            assert_eq!(resolve("f", uri, folder).unwrap(), Path::new(path), "{uri}");
+        }
         for uri in [
             "../x.bin",
             "a/../../x",
@@ -224,7 +231,11 @@ mod tests {
             "C:\\x",
             "file:///x",
             "a%00",
-            "%zz",
+            "%2Fetc/passwd",
+            "a/..%2f..%2fx",
+            "c%3A\\x",
+            "%ff.bin",
+            "data:,x",
         ] {
             assert!(matches!(resolve("f", uri, folder), Err(MotionError::Outside { .. })), "{uri}");
         }

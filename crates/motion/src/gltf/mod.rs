@@ -17,6 +17,8 @@ mod skin;
 
 use std::{collections::BTreeMap, path::Path, sync::Arc};
 
+pub use buffers::gltf_reference;
+
 use crate::{Body, BodySettings, Clip, MotionError, error::read_file};
 
 /// Largest file, and largest sum of buffers, that is read.

@@ -1,6 +1,6 @@
 //! The pieces of a take's file: a header of 64 bytes and two compressed parts, each with its checksum.
 
-use std::io;
+use std::io::{self, Read};
 
 use super::TAKE_VERSION;
 
@@ -182,6 +182,17 @@ pub(super) fn unpack(packed: &[u8], part: &Part) -> Result<Vec<u8>, String> {
         return Err(format!("{} bytes unpacked, wanted {}", raw.len(), part.raw));
     }
     Ok(raw)
+}
+
+/// Packed bytes that hold the start of any part: zstd unpacks blocks of 128 KiB, and keeps those as they are that it cannot
+/// make smaller.
+pub(super) const MOST_START_BYTES: u32 = 160 << 10;
+
+/// The first bytes of a part of which `packed` is the start; nothing where they cannot be told.
+pub(super) fn unpack_start<const N: usize>(packed: &[u8]) -> Option<[u8; N]> {
+    let mut start = [0; N];
+    zstd::stream::read::Decoder::with_buffer(packed).ok()?.read_exact(&mut start).ok()?;
+    Some(start)
 }
 
 /// A compressor whose output carries zstd's own checksum of the raw bytes.

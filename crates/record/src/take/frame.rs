@@ -26,7 +26,8 @@ pub struct TakeFrame {
 impl TakeFrame {
     /// Becomes the instant at the fraction `t` (0 to 1) from `a` to `b`, which follows it, as a take shows it: heads turn, and
     /// hair is mixed as the head sees it and keeps its length. `clip_secs` is the length of the clip, over whose end the time of
-    /// the clip may run between the two; 0 where it has none.
+    /// the clip may run between the two; 0 where it has none. Of frames between which the motion jumped, or whose guides are
+    /// others, it is the nearer one.
     pub fn set_between(&mut self, a: &Self, b: &Self, t: f64, clip_secs: f64) {
         super::interpolate::between(a, b, t, clip_secs, self);
     }

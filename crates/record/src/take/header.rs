@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize, Serializer};
 use xxhash_rust::xxh3::Xxh3;
 
 use super::TAKE_VERSION;
+use super::layout::Layout;
 use crate::FrameRate;
 
 /// The most guide points that a take can hold: ten times what the largest hairstyle has.
@@ -30,13 +31,14 @@ pub struct TakeHeader {
     /// Frames a second of the take: frame `n` stands `n / rate` seconds after its start.
     #[serde(with = "Rate")]
     pub frames_per_second: FrameRate,
-    /// Guide strands, 1 or more.
+    /// Guide strands, 1 or more. As many as the take begins with: later frames may have others
+    /// ([`super::TakeWriter::set_layout`]).
     pub guides: u32,
-    /// Points of one guide, 2 or more.
+    /// Points of one guide, 2 or more, as the take begins.
     pub points_per_guide: u32,
-    /// Rendered strands of the hairstyle.
+    /// Rendered strands of the hairstyle that it begins with.
     pub strands: u32,
-    /// [`hairstyle_fingerprint`] of the hairstyle whose guides were recorded.
+    /// [`hairstyle_fingerprint`] of that hairstyle.
     pub hairstyle: u64,
     /// The project as it was at frame 0, as text; opaque here. Later states are [`super::TakeWriter::change`]'s.
     pub project: String,
@@ -73,9 +75,9 @@ impl Default for TakeHeader {
 }
 
 impl TakeHeader {
-    /// Guide points of one frame.
-    pub fn points(&self) -> usize {
-        self.guides as usize * self.points_per_guide as usize
+    /// The size of the frames that it begins with.
+    pub(super) fn layout(&self) -> Result<Layout, (String, String)> {
+        Layout::new(self.guides, self.points_per_guide)
     }
 
     /// Seconds from the start of the take to frame `frame`.
@@ -90,13 +92,7 @@ impl TakeHeader {
         if num == 0 || den == 0 || !(1.0..=240.0).contains(&self.frames_per_second.as_f64()) {
             return wrong(format!("{num}/{den} frames per second"), "1 to 240");
         }
-        let points = u64::from(self.guides) * u64::from(self.points_per_guide);
-        if self.guides == 0 || self.points_per_guide < 2 || points > MOST_GUIDE_POINTS {
-            return wrong(
-                format!("{} guides of {} points", self.guides, self.points_per_guide),
-                &format!("1 guide or more of 2 points or more, {MOST_GUIDE_POINTS} points in all at most"),
-            );
-        }
+        self.layout()?;
         if self.project.len() > MOST_PROJECT_BYTES {
             return wrong(
                 format!("a project of {} bytes", self.project.len()),

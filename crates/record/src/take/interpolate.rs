@@ -6,9 +6,11 @@ use lovelock_groom::GuideFrame;
 use super::TakeFrame;
 
 /// Writes the instant at the fraction `t` (0 to 1) from `a` to `b` into `out`. `clip_secs` is the length of the clip,
-/// over whose end the time of the clip may run between the two.
+/// over whose end the time of the clip may run between the two. Where the motion jumped or the guides are others, it is the nearer
+/// of the two.
 pub(super) fn between(a: &TakeFrame, b: &TakeFrame, t: f64, clip_secs: f64, out: &mut TakeFrame) {
-    if b.jumped {
+    let layout = |frame: &TakeFrame| (frame.guides.guides.points_per_guide, frame.guides.guides.x.len());
+    if b.jumped || layout(a) != layout(b) {
         out.clone_from(if t < 0.5 { a } else { b });
         return;
     }

@@ -1,13 +1,14 @@
 //! Where the chunks of a take are.
 
 use std::io;
+use std::path::Path;
 
-use super::chunk::{ChunkHeader, HeaderError, Kind};
+use super::chunk::{ChunkHeader, HeaderError, Kind, MAGIC};
 use super::index::{self, Entry, TRAILER_BYTES};
 use super::probe::{data_of, head_of, header_at, is_sound, trailer};
 use super::scan::by_scan;
 use super::source::Source;
-use super::{MOST_CHUNK_FRAMES, TakeHeader};
+use super::{MOST_CHUNK_FRAMES, TAKE_VERSION, TakeError, TakeHeader};
 
 /// Where everything is.
 #[derive(Debug)]
@@ -32,6 +33,21 @@ pub(super) enum MapError {
     NotATake { found: String },
     Newer(u32),
     Malformed { offset: u64, found: String, wanted: String },
+}
+
+impl MapError {
+    /// As the error of the file at `path`.
+    pub(super) fn at(self, path: &Path) -> TakeError {
+        let path = path.to_owned();
+        match self {
+            Self::Io(source) => TakeError::Io { path, action: "read".to_owned(), source },
+            Self::NotATake { found } => {
+                TakeError::NotATake { path, found, wanted: MAGIC.escape_ascii().to_string() }
+            }
+            Self::Newer(found) => TakeError::Newer { path, found, newest: TAKE_VERSION },
+            Self::Malformed { offset, found, wanted } => TakeError::Malformed { path, offset, found, wanted },
+        }
+    }
 }
 
 impl From<io::Error> for MapError {

@@ -7,6 +7,8 @@
 //! - Chunks of a second or less, each readable by itself, are on the disk as soon as they are full: whatever happens to
 //!   the program or the machine, all but the last second can be played.
 //! - Positions are whole numbers of 0.05 mm about the head: no point is off by more than [`MOST_ERROR_M`].
+//! - Hair may get other guides on the way: every chunk says how many its frames have, and nothing lies between two frames
+//!   that differ in that.
 //! - Every byte is under a checksum. Damage costs its own chunk and is told.
 
 mod bytes;
@@ -20,6 +22,7 @@ mod frame;
 mod header;
 mod index;
 mod interpolate;
+mod layout;
 mod map;
 mod predict;
 mod probe;
@@ -38,6 +41,7 @@ pub use header::{
     AssetState, MOST_GUIDE_POINTS, MOST_PROJECT_BYTES, TakeAsset, TakeHeader, hairstyle_fingerprint,
 };
 pub use interpolate::mix_guides;
+pub use layout::TakeLayout;
 pub use reader::TakeReader;
 pub use writer::{TakeReport, TakeWriter};
 
@@ -45,7 +49,7 @@ pub use writer::{TakeReport, TakeWriter};
 pub const TAKE_EXTENSION: &str = "take";
 
 /// Version of the format that this program writes, and the newest that it reads.
-pub const TAKE_VERSION: u32 = 1;
+pub const TAKE_VERSION: u32 = 2;
 
 /// The most that a point of a played frame is off, metres, within 50 m of the world's origin: half a step of 0.05 mm
 /// along each axis makes 0.0433 mm, and single precision adds less than 0.004 mm there.

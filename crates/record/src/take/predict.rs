@@ -5,7 +5,7 @@
 //! How much of each is fitted to every row of points by least squares and stored; whole-number arithmetic makes reading
 //! exact on every machine.
 
-use super::quantise::Layout;
+use super::layout::Layout;
 
 /// What a guess is made of.
 pub(super) const TAPS: usize = 6;

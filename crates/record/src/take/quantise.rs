@@ -3,26 +3,13 @@
 use glam::{Affine3A, DMat3, DVec3};
 use lovelock_groom::GuideFrame;
 
+use super::layout::Layout;
+
 /// Length of one step, metres. Rounding moves a point by half a step along each axis at most, 0.0433 mm in all.
 pub(super) const STEP_M: f64 = 5e-5;
 
 /// The furthest that a point may be from the head, in steps: 6.7 km.
 const MOST_STEPS: f64 = (1_u32 << 27) as f64;
-
-/// The size of a frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Layout {
-    pub(super) guides: usize,
-    pub(super) points: usize,
-}
-
-impl Layout {
-    /// Whole numbers of one frame. They lie axis after axis, point after point from the root, guide after guide:
-    /// number `(axis * points + point) * guides + guide`.
-    pub(super) fn numbers(self) -> usize {
-        3 * self.guides * self.points
-    }
-}
 
 /// Writes the guides of `frame` into `out`, which holds [`Layout::numbers`].
 pub(super) fn quantise(frame: &GuideFrame, layout: Layout, out: &mut [i32]) -> Result<(), String> {

@@ -7,18 +7,20 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use super::bytes::Bytes;
 use super::cache::Cache;
-use super::chunk::{HEADER_BYTES, MAGIC, Part, unpack};
+use super::chunk::{HEADER_BYTES, MOST_START_BYTES, Part, unpack, unpack_start};
 use super::codec::{self, Decoded};
 use super::disk::part_path;
 use super::index::Entry;
 use super::interpolate::between;
-use super::map::{Map, MapError, map};
+use super::layout::{LAYOUT_BYTES, Layout, TakeLayout};
+use super::map::{Map, map};
 use super::probe::is_sound;
-use super::quantise::{Layout, restore};
+use super::quantise::restore;
 use super::settings::Settings;
 use super::source::Source;
-use super::{TAKE_VERSION, TakeCondition, TakeError, TakeFrame, TakeHeader};
+use super::{TakeCondition, TakeError, TakeFrame, TakeHeader};
 
 /// Bytes of decoded chunks that are kept, unless asked for otherwise: seven seconds of a shipped hairstyle.
 const CACHE_BYTES: usize = 64 << 20;
@@ -28,7 +30,6 @@ pub struct TakeReader {
     path: PathBuf,
     source: Box<dyn Source>,
     map: Map,
-    layout: Layout,
     cache: Cache,
     project: Option<Playing>,
     /// Chunks that turned out to be damaged, by their place in the map.
@@ -75,18 +76,15 @@ impl TakeReader {
         mut source: Box<dyn Source>,
         length: u64,
     ) -> Result<Self, TakeError> {
-        let map = map(&mut *source, length).map_err(|error| map_error(path, error))?;
+        let map = map(&mut *source, length).map_err(|error| error.at(path))?;
         if map.entries.is_empty() {
             let why = map.cut.or(map.damage).unwrap_or_else(|| "its index is empty".to_owned());
             return Err(TakeError::Empty { path: path.to_owned(), why });
         }
-        let layout =
-            Layout { guides: map.header.guides as usize, points: map.header.points_per_guide as usize };
         Ok(Self {
             path: path.to_owned(),
             source,
             map,
-            layout,
             cache: Cache::new(CACHE_BYTES),
             project: None,
             bad: BTreeMap::new(),
@@ -194,18 +192,19 @@ impl TakeReader {
         out.wall_frame = meta.wall_frame;
         out.substeps = meta.substeps;
         out.jumped = meta.jumped;
-        decoded.numbers(within as usize, self.layout, &mut self.numbers);
-        restore(&self.numbers, self.layout, &mut out.guides);
+        decoded.numbers(within as usize, &mut self.numbers);
+        restore(&self.numbers, decoded.layout, &mut out.guides);
         Ok(())
     }
 
     /// The instant `secs` after the start of the take, clamped to it, between the two frames beside it: the head turns
     /// and moves evenly, points move evenly about the head, and links keep their lengths. Where the motion jumped, or
-    /// one of the two is lost, it is the other.
+    /// the guides are others, it is the nearer of the two; where one of the two is lost, it is the other. Returns the frame
+    /// whose project and whose guides it has.
     ///
     /// # Errors
     /// As [`TakeReader::frame`] where both are lost.
-    pub fn frame_at(&mut self, secs: f64, out: &mut TakeFrame) -> Result<(), TakeError> {
+    pub fn frame_at(&mut self, secs: f64, out: &mut TakeFrame) -> Result<u64, TakeError> {
         let rate = self.header().frames_per_second.as_f64();
         let last = self.frames() - 1;
         let place = if secs.is_finite() { (secs * rate).clamp(0.0, last as f64) } else { 0.0 };
@@ -213,24 +212,24 @@ impl TakeReader {
         let before = before as u64;
         // A thousandth of a frame is less than what a position is stored to.
         if t < 1e-3 || before >= last {
-            return self.frame_into(before, out);
+            return self.frame_into(before, out).map(|()| before);
         }
         if t > 1.0 - 1e-3 {
-            return self.frame_into(before + 1, out);
+            return self.frame_into(before + 1, out).map(|()| before + 1);
         }
         let mut ends = std::mem::take(&mut self.ends);
         let result = match (self.frame_into(before, &mut ends.0), self.frame_into(before + 1, &mut ends.1)) {
             (Ok(()), Ok(())) => {
                 between(&ends.0, &ends.1, t, self.map.header.clip_secs, out);
-                Ok(())
+                Ok(before + u64::from(t >= 0.5))
             }
             (Ok(()), Err(TakeError::Lost { .. })) => {
                 out.clone_from(&ends.0);
-                Ok(())
+                Ok(before)
             }
             (Err(TakeError::Lost { .. }), Ok(())) => {
                 out.clone_from(&ends.1);
-                Ok(())
+                Ok(before + 1)
             }
             (Err(error), _) | (_, Err(error)) => Err(error),
         };
@@ -332,11 +331,52 @@ impl TakeReader {
         let Entry { offset, header } = self.map.entries[chunk];
         let offset = offset + HEADER_BYTES as u64 + u64::from(header.text.packed);
         let raw = self.part(chunk, frame, offset, &header.data)?;
-        let decoded = codec::decode(&raw, header.frames as usize, self.layout)
+        let decoded = codec::decode(&raw, header.frames as usize, self.known_layout(chunk))
             .map_err(|why| self.damaged(chunk, frame, &why))?;
         let decoded = Arc::new(decoded);
         self.cache.put(chunk, &decoded);
         Ok(decoded)
+    }
+
+    /// The layout of the frames of a chunk that does not say it itself.
+    fn known_layout(&self, chunk: usize) -> Option<Layout> {
+        let version = self.map.entries[chunk].header.version;
+        if version == 1 { self.map.header.layout().ok() } else { None }
+    }
+
+    /// How many guides of how many points the frames have, in order: an entry wherever they change. What is lost is passed
+    /// over. Reads the start of every chunk.
+    ///
+    /// # Errors
+    /// [`TakeError::Io`] where the disk cannot read it.
+    pub fn layouts(&mut self) -> Result<Vec<TakeLayout>, TakeError> {
+        let mut layouts: Vec<TakeLayout> = Vec::new();
+        for chunk in 0..self.map.entries.len() {
+            let Entry { offset, header } = self.map.entries[chunk];
+            let layout = match self.known_layout(chunk) {
+                Some(layout) => layout,
+                None => {
+                    let offset = offset + HEADER_BYTES as u64 + u64::from(header.text.packed);
+                    let mut packed = vec![0; header.data.packed.min(MOST_START_BYTES) as usize];
+                    match self.source.read_at(offset, &mut packed) {
+                        Ok(()) => {}
+                        Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => continue,
+                        Err(error) => return Err(TakeError::io(&self.path, "read", error)),
+                    }
+                    let start = unpack_start::<LAYOUT_BYTES>(&packed);
+                    match start.and_then(|start| Layout::read(&mut Bytes::new(&start)).ok()) {
+                        Some(layout) => layout,
+                        None => continue,
+                    }
+                }
+            };
+            let [guides, points_per_guide] = [layout.guides, layout.points].map(|n| n as u32);
+            let same = |last: &TakeLayout| (last.guides, last.points_per_guide) == (guides, points_per_guide);
+            if !layouts.last().is_some_and(same) {
+                layouts.push(TakeLayout { first_frame: header.first, guides, points_per_guide });
+            }
+        }
+        Ok(layouts)
     }
 
     /// A part of a chunk, unpacked.
@@ -350,17 +390,5 @@ impl TakeReader {
             Err(error) => return Err(TakeError::io(&self.path, format!("read frame {frame}"), error)),
         }
         unpack(&packed, part).map_err(|why| self.damaged(chunk, frame, &why))
-    }
-}
-
-fn map_error(path: &Path, error: MapError) -> TakeError {
-    let path = path.to_owned();
-    match error {
-        MapError::Io(source) => TakeError::Io { path, action: "read".to_owned(), source },
-        MapError::NotATake { found } => {
-            TakeError::NotATake { path, found, wanted: MAGIC.escape_ascii().to_string() }
-        }
-        MapError::Newer(found) => TakeError::Newer { path, found, newest: TAKE_VERSION },
-        MapError::Malformed { offset, found, wanted } => TakeError::Malformed { path, offset, found, wanted },
     }
 }

@@ -10,7 +10,7 @@ use super::chunk::{ChunkHeader, HEADER_BYTES, Kind, Part, compressor, pack};
 use super::codec::{self, Meta};
 use super::disk::{Disk, publish};
 use super::index::{self, Entry, Trailer};
-use super::quantise::Layout;
+use super::layout::Layout;
 use super::settings::SettingsLog;
 use super::{TAKE_VERSION, TakeError};
 
@@ -23,6 +23,7 @@ const DATA_LEVEL: i32 = 1;
 
 /// The frames of one chunk, as the recording hands them over.
 pub(super) struct Load {
+    pub(super) layout: Layout,
     pub(super) metas: Vec<Meta>,
     pub(super) numbers: Vec<i32>,
     pub(super) settings: SettingsLog,
@@ -44,7 +45,6 @@ pub(super) struct TakeFile {
     part: PathBuf,
     disk: Box<dyn Disk>,
     compressor: zstd::bulk::Compressor<'static>,
-    layout: Layout,
     head: Vec<u8>,
     take: u32,
     position: u64,
@@ -59,7 +59,6 @@ impl TakeFile {
         target: &Path,
         part: &Path,
         disk: Box<dyn Disk>,
-        layout: Layout,
         head: Vec<u8>,
         kept: Arc<AtomicU64>,
     ) -> Result<Self, TakeError> {
@@ -69,7 +68,6 @@ impl TakeFile {
             part: part.to_owned(),
             disk,
             compressor,
-            layout,
             take: crc32fast::hash(&head),
             head,
             position: 0,
@@ -112,7 +110,7 @@ impl TakeFile {
     }
 
     fn write_frames(&mut self, load: &Load, first: u64) -> std::io::Result<()> {
-        let data = codec::encode(&load.metas, &load.numbers, self.layout);
+        let data = codec::encode(&load.metas, &load.numbers, load.layout);
         let mut header = self.header(Kind::Frames);
         (header.first, header.frames) = (first, load.metas.len() as u32);
         header.changes = load.settings.changes();

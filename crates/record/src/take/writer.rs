@@ -9,7 +9,8 @@ use std::thread::JoinHandle;
 
 use super::codec::{META_BYTES, Meta};
 use super::disk::{Mount, claim, mount_file, part_path, sync_folder};
-use super::quantise::{Layout, quantise};
+use super::layout::Layout;
+use super::quantise::quantise;
 use super::settings::SettingsLog;
 use super::worker::{Job, Load, TakeFile};
 use super::{MOST_PROJECT_BYTES, TAKE_VERSION, TakeError, TakeFrame, TakeHeader};
@@ -47,7 +48,6 @@ pub struct TakeWriter {
     path: PathBuf,
     part: PathBuf,
     header: TakeHeader,
-    layout: Layout,
     chunk_frames: usize,
     pending: Load,
     frames: u64,
@@ -69,8 +69,9 @@ impl TakeWriter {
 
     pub(super) fn create_on(path: &Path, mut header: TakeHeader, mount: &Mount) -> Result<Self, TakeError> {
         header.version = TAKE_VERSION;
-        header
+        let layout = header
             .check()
+            .and_then(|()| header.layout())
             .map_err(|(found, wanted)| TakeError::request(path, format!("{found}; wanted {wanted}")))?;
         if path.file_name().is_none() || path.is_dir() {
             return Err(TakeError::request(
@@ -80,11 +81,10 @@ impl TakeWriter {
         }
         let head = serde_json::to_vec(&header)
             .map_err(|error| TakeError::request(path, format!("a header that cannot be written: {error}")))?;
-        let layout = Layout { guides: header.guides as usize, points: header.points_per_guide as usize };
         let part = part_path(path);
         let disk = mount(claim(path)?);
         let kept = Arc::new(AtomicU64::new(0));
-        let file = match TakeFile::start(path, &part, disk, layout, head, Arc::clone(&kept)) {
+        let file = match TakeFile::start(path, &part, disk, head, Arc::clone(&kept)) {
             Ok(file) => file,
             Err(error) => {
                 // Nothing was recorded yet.
@@ -98,13 +98,10 @@ impl TakeWriter {
             .name("take".to_owned())
             .spawn(move || file.run(&todo))
             .map_err(|error| TakeError::io(path, "start the thread that writes it", error))?;
-        let frame_bytes = layout.numbers() * size_of::<i32>() + META_BYTES;
-        let a_second = (header.frames_per_second.as_f64() as usize).clamp(1, CHUNK_FRAMES);
-        let chunk_frames = (CHUNK_BYTES / frame_bytes).clamp(1, a_second);
+        let chunk_frames = chunk_frames(&header, layout);
         Ok(Self {
             path: path.to_owned(),
             part,
-            layout,
             chunk_frames,
             pending: Load::new(header.project.clone(), chunk_frames, layout),
             header,
@@ -118,15 +115,16 @@ impl TakeWriter {
     /// Adds a frame. Waits only where the disk is seconds behind.
     ///
     /// # Errors
-    /// [`TakeError::Request`] for a frame of another size than the header says or with a place that is not a number:
+    /// [`TakeError::Request`] for a frame of another size than the header or [`TakeWriter::set_layout`] says or with a place that is not a number:
     /// nothing is added then, and the take goes on. [`TakeError::Write`] where the disk refused an earlier frame: what
     /// is kept stays in the file of [`TakeWriter::part_path`], and the take has stopped.
     pub fn push(&mut self, frame: &TakeFrame) -> Result<(), TakeError> {
         self.check_worker()?;
-        let size = self.layout.numbers();
+        let layout = self.pending.layout;
+        let size = layout.numbers();
         let start = self.pending.numbers.len();
         self.pending.numbers.resize(start + size, 0);
-        if let Err(what) = quantise(&frame.guides, self.layout, &mut self.pending.numbers[start..]) {
+        if let Err(what) = quantise(&frame.guides, layout, &mut self.pending.numbers[start..]) {
             self.pending.numbers.truncate(start);
             return Err(TakeError::request(&self.path, format!("frame {}: {what}", self.frames)));
         }
@@ -155,6 +153,25 @@ impl TakeWriter {
             return Err(TakeError::request(&self.path, what));
         }
         self.pending.settings.change(self.pending.metas.len() as u32, project);
+        Ok(())
+    }
+
+    /// Says that from the next frame on there are so many guides of so many points. Ends the chunk where they are others
+    /// than before.
+    ///
+    /// # Errors
+    /// [`TakeError::Request`] for a size that no take can hold; [`TakeError::Write`] as [`TakeWriter::push`].
+    pub fn set_layout(&mut self, guides: usize, points_per_guide: usize) -> Result<(), TakeError> {
+        let words = [guides, points_per_guide].map(|n| u32::try_from(n).unwrap_or(u32::MAX));
+        let layout = Layout::new(words[0], words[1])
+            .map_err(|(found, wanted)| TakeError::request(&self.path, format!("{found}; wanted {wanted}")))?;
+        if layout == self.pending.layout {
+            return Ok(());
+        }
+        self.check_worker()?;
+        self.flush()?;
+        self.chunk_frames = chunk_frames(&self.header, layout);
+        self.pending = Load::new(self.pending.settings.now().to_owned(), self.chunk_frames, layout);
         Ok(())
     }
 
@@ -217,7 +234,7 @@ impl TakeWriter {
         if self.pending.metas.is_empty() {
             return Ok(());
         }
-        let next = Load::new(self.pending.settings.now().to_owned(), self.chunk_frames, self.layout);
+        let next = Load::new(self.pending.settings.now().to_owned(), self.chunk_frames, self.pending.layout);
         let load = std::mem::replace(&mut self.pending, next);
         self.send(Job::Chunk(load))
     }
@@ -268,9 +285,17 @@ impl Drop for TakeWriter {
     }
 }
 
+/// Frames in a chunk of frames of that size.
+fn chunk_frames(header: &TakeHeader, layout: Layout) -> usize {
+    let frame_bytes = layout.numbers() * size_of::<i32>() + META_BYTES;
+    let a_second = (header.frames_per_second.as_f64() as usize).clamp(1, CHUNK_FRAMES);
+    (CHUNK_BYTES / frame_bytes).clamp(1, a_second)
+}
+
 impl Load {
     fn new(project: String, frames: usize, layout: Layout) -> Self {
         Self {
+            layout,
             metas: Vec::with_capacity(frames),
             numbers: Vec::with_capacity(frames * layout.numbers()),
             settings: SettingsLog::new(project),

@@ -69,6 +69,27 @@ pub fn record(path: &Path, frames: u64, size: Size) {
     assert_eq!(report.bytes, std::fs::metadata(path).unwrap().len());
 }
 
+/// The size of a frame where the hair gets other guides twice on the way.
+pub fn regrown_size(n: u64) -> Size {
+    match n {
+        40..75 => Size(5, 6),
+        75.. => Size(2, 9),
+        _ => SMALL,
+    }
+}
+
+/// Records a take of so many frames of [`regrown_size`] and finishes it.
+pub fn record_regrown(path: &Path, frames: u64) {
+    let mut writer = TakeWriter::create(path, header(SMALL)).unwrap();
+    for n in 0..frames {
+        let size = regrown_size(n);
+        writer.set_layout(size.0, size.1).unwrap();
+        writer.change(&project(n)).unwrap();
+        writer.push(&frame(n, size)).unwrap();
+    }
+    assert_eq!(writer.finish().unwrap().frames, frames);
+}
+
 /// The furthest that a point of one is from the same point of the other, metres.
 pub fn worst(a: &Guides, b: &Guides) -> f64 {
     assert_eq!((a.points_per_guide, a.x.len()), (b.points_per_guide, b.x.len()));

@@ -2,7 +2,9 @@
 
 use std::fs;
 use std::ops::ControlFlow;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
+
+use lovelock_motion::gltf_reference;
 
 use crate::headless::tell;
 use crate::{FileRef, Place, Progress, Project, StudioError};
@@ -71,7 +73,37 @@ fn files_of_gltf(path: &Path) -> Vec<PathBuf> {
     let json: serde_json::Value = serde_json::from_slice(&text).unwrap_or_default();
     let buffers = json["buffers"].as_array().map_or(&[][..], Vec::as_slice);
     let named = buffers.iter().filter_map(|buffer| buffer["uri"].as_str());
-    let plain =
-        named.filter(|uri| !uri.starts_with("data:")).map(|uri| PathBuf::from(uri.replace("%20", " ")));
-    plain.filter(|path| path.components().all(|part| matches!(part, Component::Normal(_)))).collect()
+    named.filter_map(gltf_reference).filter(|path| !path.as_os_str().is_empty()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_that_a_gltf_names_are_found_by_encoded_names_and_go_along() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let at = |name: &str| folder.path().join(name);
+        let names = ["香 1.bin", "a#b%.bin", "plain.bin", "deep/one.bin"];
+        fs::create_dir(at("deep")).expect("a folder");
+        for name in names {
+            fs::write(at(name), name).expect("a file");
+        }
+        let uris =
+            ["%E9%A6%99%201.bin", "a%23b%25.bin", "./plain.bin", "deep/one.bin", "data:,x", "../outside.bin"];
+        let buffers: Vec<_> =
+            uris.iter().map(|uri| serde_json::json!({ "uri": uri, "byteLength": 1 })).collect();
+        let text = serde_json::json!({ "asset": { "version": "2.0" }, "buffers": buffers });
+        fs::write(at("body.gltf"), text.to_string()).expect("a file");
+        assert_eq!(files_of_gltf(&at("body.gltf")), names.map(PathBuf::from));
+
+        let mut project = Project::default();
+        project.set_body_file(at("body.gltf"));
+        let to = at("job");
+        let copied = copy(&mut project, &to, &mut |_| ControlFlow::Continue(())).expect("copies");
+        assert_eq!(copied.len(), 5, "{copied:?}");
+        for name in names {
+            assert_eq!(fs::read_to_string(to.join("assets/body").join(name)).expect(name), name);
+        }
+    }
 }

@@ -176,9 +176,19 @@ impl SeamOfTake {
         for secs in [end_secs - fade, end_secs - 0.5 * fade, end_secs] {
             // The last frame of a take is shown for its length.
             let secs = secs.min(player.duration_secs());
-            let now = player.snapshot(secs)?.guides.world_from_head.translation;
-            let before = player.snapshot(secs - round_secs)?.guides.world_from_head.translation;
-            let off = now.distance(before);
+            let at = |snapshot: &FrameSnapshot| {
+                let GuideFrame { guides, world_from_head, .. } = &snapshot.guides;
+                (world_from_head.translation, (guides.count(), guides.points_per_guide))
+            };
+            let now = at(player.snapshot(secs)?.as_ref());
+            let before = at(player.snapshot(secs - round_secs)?.as_ref());
+            if now.1 != before.1 {
+                return Err(StudioError::option(format!(
+                    "a seamless loop: at {secs:.2} s of {name} the hair has other guides than {round_secs:.2} s before; \
+                     take frames between which it stays the same"
+                )));
+            }
+            let off = now.0.distance(before.0);
             if off > SAME_PLACE_M {
                 return Err(StudioError::option(format!(
                     "a seamless loop: at {secs:.2} s of {name} the head is {:.0} mm from where it was {round_secs:.2} s before; \

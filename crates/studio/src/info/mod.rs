@@ -12,7 +12,7 @@ use lovelock_motion::{CharacterInfo, MotionInfo, load_character, load_motion};
 use serde::Serialize;
 
 pub use kind::FileKind;
-pub use take::TakeInfo;
+pub use take::{RegrownInfo, TakeInfo};
 
 use crate::{BodySource, HairSource, MotionSource, PROJECT_VERSION, StudioError, load_project};
 

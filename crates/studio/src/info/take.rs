@@ -25,10 +25,12 @@ pub struct TakeInfo {
     pub fps: f64,
     /// Frames by frames a second, seconds.
     pub duration_secs: f64,
-    /// Guides.
+    /// Guides, as the take begins.
     pub guides: u32,
-    /// Points of a guide.
+    /// Points of a guide, as the take begins.
     pub points_per_guide: u32,
+    /// Where on the way the hair gets other guides.
+    pub regrown: Vec<RegrownInfo>,
     /// Strands of the hairstyle that it was recorded with.
     pub strands: u32,
     /// The clip that was danced; empty where the body rested.
@@ -41,6 +43,17 @@ pub struct TakeInfo {
     pub files: Vec<String>,
 }
 
+/// The guides of a take from a frame on.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RegrownInfo {
+    /// The first frame that has them.
+    pub frame: u64,
+    /// Guides.
+    pub guides: u32,
+    /// Points of a guide.
+    pub points_per_guide: u32,
+}
+
 impl TakeInfo {
     /// Reads all of the take and checks it.
     ///
@@ -49,6 +62,7 @@ impl TakeInfo {
     pub(super) fn of(path: &Path) -> Result<Self, StudioError> {
         let mut reader = TakeReader::open(path)?;
         let condition = reader.verify()?;
+        let layouts = reader.layouts()?;
         let bytes = std::fs::metadata(path).map_or(0, |data| data.len());
         let header = reader.header();
         let lost = condition.lost_frames();
@@ -66,6 +80,16 @@ impl TakeInfo {
             duration_secs: reader.duration_secs(),
             guides: header.guides,
             points_per_guide: header.points_per_guide,
+            regrown: layouts
+                .iter()
+                // The first is the header's, unless it is lost.
+                .filter(|layout| layout.first_frame > 0)
+                .map(|layout| RegrownInfo {
+                    frame: layout.first_frame,
+                    guides: layout.guides,
+                    points_per_guide: layout.points_per_guide,
+                })
+                .collect(),
             strands: header.strands,
             clip: header.clip.clone(),
             program: header.program.clone(),

@@ -5,6 +5,9 @@ use std::fmt;
 
 use super::{Content, Info};
 
+/// Changes of a take's guides that are told one by one.
+const MOST_REGROWN: usize = 8;
+
 impl fmt::Display for Info {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}", self.file)?;
@@ -75,6 +78,13 @@ impl fmt::Display for Info {
                     format_args!("{} at {} a second, {:.2} s", take.frames, take.fps, take.duration_secs),
                 )?;
                 line(f, "guides", format_args!("{} of {} points", take.guides, take.points_per_guide))?;
+                for regrown in take.regrown.iter().take(MOST_REGROWN) {
+                    let (guides, points) = (regrown.guides, regrown.points_per_guide);
+                    line(f, "", format_args!("{guides} of {points} points from frame {}", regrown.frame))?;
+                }
+                if let Some(more @ 1..) = take.regrown.len().checked_sub(MOST_REGROWN) {
+                    line(f, "", format_args!("and {more} times more; --json has them all"))?;
+                }
                 line(f, "strands", take.strands)?;
                 if !take.clip.is_empty() {
                     line(f, "clip", &take.clip)?;

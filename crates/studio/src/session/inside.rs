@@ -14,7 +14,7 @@ use super::{Engine, FrameSnapshot, Preroll, PrerollProgress, Scene};
 use crate::take::TakeTransport;
 use crate::{
     Access, BodySection, FileRef, HairSection, MotionSection, Playback, Project, STEP_SECS, Slot, Stopwatch,
-    TakeProgress, TakeRecording,
+    StudioError, TakeProgress, TakeRecording,
 };
 
 /// Panics in a row after which the simulation rests until something changes.
@@ -400,8 +400,10 @@ impl Inside {
             Loaded::Scene(scene, project) => {
                 self.take = None;
                 self.backwards = false;
-                if self.recording.as_ref().is_some_and(|recording| !recording.holds(&scene)) {
-                    self.end_take(Some("the hair has other guides now"));
+                match self.recording.as_mut().map(|recording| recording.set_scene(&scene)) {
+                    None | Some(Ok(true)) => {}
+                    Some(Ok(false)) => self.end_take(Some("there is no hair any more")),
+                    Some(Err(error)) => self.fail_take(&error),
                 }
                 self.set_scene(scene);
                 self.scene_of = Some(project);
@@ -473,12 +475,18 @@ impl Inside {
     fn record_step(&mut self) {
         let (Some(recording), Some(engine)) = (&mut self.recording, &self.engine) else { return };
         if let Err(error) = recording.push(engine) {
-            self.outbox.send(Event::TakeFailed { message: error.to_string() });
-            // What is there is worth having; where the disk refused it, the message said what is kept.
-            let ended = self.recording.take().map(TakeRecording::finish);
-            if let Some(Ok(report)) = ended {
-                self.outbox.send(Event::TakeSaved { report, because: Some(error.to_string()) });
-            }
+            self.fail_take(&error);
+        }
+        self.tell_progress();
+    }
+
+    /// Ends the take that could not go on.
+    fn fail_take(&mut self, error: &StudioError) {
+        self.outbox.send(Event::TakeFailed { message: error.to_string() });
+        // What is there is worth having; where the disk refused it, the message said what is kept.
+        let ended = self.recording.take().map(TakeRecording::finish);
+        if let Some(Ok(report)) = ended {
+            self.outbox.send(Event::TakeSaved { report, because: Some(error.to_string()) });
         }
         self.tell_progress();
     }

@@ -227,7 +227,7 @@ impl Worker {
 
     /// Dances a scene that no loader has made.
     #[cfg(test)]
-    pub(super) fn put_scene(&self, scene: Arc<Scene>) {
+    pub(crate) fn put_scene(&self, scene: Arc<Scene>) {
         let project = Arc::new(Project::default());
         self.mailbox.ask(|wishes| wishes.loaded = Some(super::load_thread::Loaded::Scene(scene, project)));
     }

@@ -68,4 +68,6 @@ impl From<TakeError> for StudioError {
 #[cfg(test)]
 mod curve_tests;
 #[cfg(test)]
+mod regrown_tests;
+#[cfg(test)]
 mod tests;

@@ -57,8 +57,15 @@ impl TakePlayer {
         access.set_take(path);
         let mut loader = SceneLoader::new();
         let (scene, of_scene) = loader.load_now(&project, &access)?;
+        let mut frame = TakeFrame::default();
+        let header_guides = {
+            let header = reader.header();
+            (header.guides as usize, header.points_per_guide as usize)
+        };
+        // Where that frame is damaged, too, the take began with what its header says.
+        let guides = reader.frame_into(start, &mut frame).map_or(header_guides, |()| guides_of(&frame));
+        fits(path, guides, &scene.style, &of_scene)?;
         let header = reader.header();
-        fits(path, header, &scene.style, &of_scene)?;
         problems.extend(of_scene);
         problems.extend(differences(path, header, &access, &reader.condition(), &scene.style));
         let player = Self {
@@ -69,7 +76,7 @@ impl TakePlayer {
             text,
             scene: Arc::clone(&scene),
             scenes: vec![(made_of(&project), scene)],
-            frame: TakeFrame::default(),
+            frame,
             pose: Pose::default(),
             pool: SnapshotPool::default(),
             shown: 0,
@@ -126,10 +133,16 @@ impl TakePlayer {
     pub fn snapshot(&mut self, secs: f64) -> Result<Arc<FrameSnapshot>, StudioError> {
         let watch = Stopwatch::start();
         let secs = if secs.is_finite() { secs.clamp(0.0, self.duration_secs()) } else { 0.0 };
-        let frame = (secs / self.frame_secs()).round() as u64;
-        self.follow(frame)?;
-        if let Err(error) = self.reader.frame_at(secs, &mut self.frame) {
-            self.play_over(frame, error)?;
+        let mut shown = match self.reader.frame_at(secs, &mut self.frame) {
+            Ok(shown) => shown,
+            Err(error) => self.play_over((secs / self.frame_secs()).round() as u64, error)?,
+        };
+        // Each turn finds another part of the file damaged.
+        loop {
+            match self.reader.project_at(shown) {
+                Ok(text) => break self.follow(text)?,
+                Err(error) => shown = self.play_over(shown, error)?,
+            }
         }
         pose_at(&self.scene.body, self.scene.clip.as_deref(), self.frame.clip_secs, &mut self.pose);
         self.shown += 1;
@@ -166,16 +179,23 @@ impl TakePlayer {
         }))
     }
 
-    /// In place of frames that are lost, the nearest one that is there; said once for each run of them.
-    fn play_over(&mut self, frame: u64, error: TakeError) -> Result<(), StudioError> {
+    /// In place of frames that are lost, the nearest one that is there; said once for each run of them. Returns which it is.
+    fn play_over(&mut self, frame: u64, error: TakeError) -> Result<u64, StudioError> {
         let TakeError::Lost { first, .. } = error else { return Err(error.into()) };
-        let Some(near) = self.reader.nearest(frame) else { return Err(error.into()) };
-        self.reader.frame_into(near, &mut self.frame)?;
+        let near = loop {
+            let Some(near) = self.reader.nearest(frame) else { return Err(error.into()) };
+            match self.reader.frame_into(near, &mut self.frame) {
+                Ok(()) => break near,
+                // Now it is known, and not the nearest any more.
+                Err(TakeError::Lost { .. }) => {}
+                Err(error) => return Err(error.into()),
+            }
+        };
         if self.told_lost != Some(first) {
             self.told_lost = Some(first);
             self.notices.push(format!("{error}; frame {near} is shown in their place"));
         }
-        Ok(())
+        Ok(near)
     }
 
     /// What was noticed since this was asked last: frames that are lost.
@@ -183,13 +203,10 @@ impl TakePlayer {
         std::mem::take(&mut self.notices)
     }
 
-    /// Makes the scene that of the project at a frame.
-    fn follow(&mut self, frame: u64) -> Result<(), StudioError> {
-        let frame = self.reader.nearest(frame).unwrap_or(frame);
-        // Where the text is lost the scene stays.
-        let Ok(text) = self.reader.project_at(frame) else { return Ok(()) };
+    /// Makes the scene that of the project `text`, whose guides the present frame has.
+    fn follow(&mut self, text: Arc<str>) -> Result<(), StudioError> {
         if Arc::ptr_eq(&text, &self.text) || text == self.text {
-            return Ok(());
+            return self.check_guides();
         }
         let (project, _) = project_of_text(self.reader.path(), &text)?;
         let key = made_of(&project);
@@ -197,7 +214,7 @@ impl TakePlayer {
             self.scenes[place..].rotate_left(1);
         } else {
             let (scene, problems) = self.loader.load_now(&project, &self.access)?;
-            fits(self.reader.path(), self.reader.header(), &scene.style, &problems)?;
+            fits(self.reader.path(), guides_of(&self.frame), &scene.style, &problems)?;
             if self.scenes.len() == MOST_SCENES {
                 self.scenes.remove(0);
             }
@@ -207,7 +224,12 @@ impl TakePlayer {
             self.scene = Arc::clone(scene);
         }
         self.text = text;
-        Ok(())
+        self.check_guides()
+    }
+
+    /// Refuses guides that are not the scene's: a file may have been another one for a part of the take.
+    fn check_guides(&self) -> Result<(), StudioError> {
+        fits(self.reader.path(), guides_of(&self.frame), &self.scene.style, &[])
     }
 }
 
@@ -217,15 +239,21 @@ fn made_of(project: &Project) -> Project {
     Project { body, motion, hair, ..Project::default() }
 }
 
-/// Whether the scene is the one that was recorded: none of its files is missing, and the guides are its hairstyle's.
+/// Guides of a frame, and points of one.
+fn guides_of(frame: &TakeFrame) -> (usize, usize) {
+    (frame.guides.guides.count(), frame.guides.guides.points_per_guide)
+}
+
+/// Whether the scene is the one that was recorded: none of its files is missing, and the recorded guides, so many of so many
+/// points, are its hairstyle's.
 fn fits(
     path: &Path,
-    header: &TakeHeader,
+    recorded: (usize, usize),
     style: &Hairstyle,
     problems: &[Problem],
 ) -> Result<(), StudioError> {
     let (guides, points) = (style.guides.count(), style.guides.points_per_guide);
-    let fits = (guides, points) == (header.guides as usize, header.points_per_guide as usize);
+    let fits = (guides, points) == recorded;
     if fits && !problems.iter().any(Problem::is_failure) {
         return Ok(());
     }
@@ -244,8 +272,8 @@ fn fits(
         format!(
             "{}: its hairstyle is another one now: {guides} guides of {points} points, and the take has {} of {}{why}",
             path.display(),
-            header.guides,
-            header.points_per_guide
+            recorded.0,
+            recorded.1
         ),
     ))
 }

@@ -27,7 +27,6 @@ pub struct TakeProgress {
 pub struct TakeRecording {
     writer: TakeWriter,
     frame: TakeFrame,
-    layout: [usize; 2],
     step_secs: f64,
     project: Arc<Project>,
 }
@@ -67,7 +66,6 @@ impl TakeRecording {
         let mut recording = Self {
             writer: TakeWriter::create(path, header)?,
             frame: TakeFrame::default(),
-            layout: [guides.count(), guides.points_per_guide],
             step_secs: engine.step_secs(),
             project: Arc::clone(project),
         };
@@ -75,9 +73,16 @@ impl TakeRecording {
         Ok(recording)
     }
 
-    /// Whether a scene's guides fit into the take.
-    pub fn holds(&self, scene: &Scene) -> bool {
-        self.layout == [scene.style.guides.count(), scene.style.guides.points_per_guide]
+    /// The next instants are of `scene`, whose hair may have other guides. Returns whether it has any.
+    ///
+    /// # Errors
+    /// More guides than a take can hold; the disk refused an earlier frame.
+    pub fn set_scene(&mut self, scene: &Scene) -> Result<bool, StudioError> {
+        let guides = &scene.style.guides;
+        if guides.count() > 0 {
+            self.writer.set_layout(guides.count(), guides.points_per_guide)?;
+        }
+        Ok(guides.count() > 0)
     }
 
     /// Adds the instant that `engine` is at.

@@ -16,7 +16,7 @@ fn points(frame: &FrameSnapshot) -> Vec<Vec3> {
     (0..guides.x.len()).map(|i| Vec3::new(guides.x[i], guides.y[i], guides.z[i])).collect()
 }
 
-fn farthest(a: &FrameSnapshot, b: &FrameSnapshot) -> f32 {
+pub(super) fn farthest(a: &FrameSnapshot, b: &FrameSnapshot) -> f32 {
     assert_eq!(a.guides.guides.x.len(), b.guides.guides.x.len());
     points(a).iter().zip(points(b)).map(|(a, b)| a.distance(b)).fold(0.0, f32::max)
 }
@@ -38,7 +38,9 @@ pub(super) fn recorded(
         let before = project.clone();
         change(step, &mut project);
         if project != before {
-            engine.set_scene(loader.load_now(&project, &Access::new()).expect("a scene").0);
+            let scene = loader.load_now(&project, &Access::new()).expect("a scene").0;
+            assert!(take.set_scene(&scene).expect("a size"), "hair");
+            engine.set_scene(scene);
             engine.set_settings(&project.simulation);
             take.change(&Arc::new(project.clone())).expect("a change");
         }

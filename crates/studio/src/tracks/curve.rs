@@ -32,13 +32,31 @@ pub(super) fn value_at(keys: &[Key], secs: f64) -> Option<Vec<f64>> {
 /// Fewer keys that say the same: a key goes where the way between its neighbours passes it by closely
 /// (Ramer 1972; Douglas and Peucker 1973, in value and not in distance).
 pub(super) fn thinned(keys: &[Key]) -> Vec<Key> {
+    thinned_by(keys, THINNED)
+}
+
+/// As [`thinned`], and as much further as it takes to have `most` keys at most, two or more.
+pub(super) fn thinned_to(keys: &[Key], most: usize) -> Vec<Key> {
+    let mut share = THINNED;
+    loop {
+        let fewer = thinned_by(keys, share);
+        // A share of one is the whole range: only the ends are left.
+        if fewer.len() <= most || share > 1.0 {
+            return fewer;
+        }
+        share *= 2.0;
+    }
+}
+
+/// `share` of the range that the keys move over is what they may be off.
+fn thinned_by(keys: &[Key], share: f64) -> Vec<Key> {
     let Some(width) = keys.first().map(|key| key.value.len()) else { return Vec::new() };
     let allowed: Vec<f64> = (0..width)
         .map(|n| {
             let values = || keys.iter().map(|key| key.value[n]);
             let (low, high) =
                 (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
-            (THINNED * (high - low)).max(1e-9 * high.abs().max(low.abs()))
+            (share * (high - low)).max(1e-9 * high.abs().max(low.abs()))
         })
         .collect();
     let mut keep = vec![false; keys.len()];

@@ -14,4 +14,6 @@ pub use overdub::{Moment, Overdub};
 pub use section::{Key, Track};
 
 #[cfg(test)]
+mod ride_tests;
+#[cfg(test)]
 mod tests;

@@ -10,6 +10,14 @@ const EDGE_SECS: f64 = 1.0 / 60.0;
 /// A step back in time that is no jump: a take that plays backwards, seconds.
 const BACKWARDS_SECS: f64 = 0.5;
 
+/// How long a wheel or a key may rest before it has let go, seconds.
+const REST_SECS: f64 = 0.4;
+
+/// Keys after which the newest of a ride are thinned while it goes on: some forty seconds of them.
+const MOST_RAW: usize = Track::MOST_KEYS / 8;
+/// The most keys of what is written: from then on they are thinned further, to half as many.
+const MOST_WRITTEN: usize = Track::MOST_KEYS / 2;
+
 /// When something was changed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
@@ -17,8 +25,11 @@ pub struct Moment {
     pub secs: f64,
     /// Whether the dance plays.
     pub playing: bool,
-    /// Whether the pointer holds what was changed: it goes on until it is let go.
+    /// Whether the pointer holds what was changed: it goes on until it is let go. What a wheel or a key moved goes on until it
+    /// has rested for a while.
     pub held: bool,
+    /// Time of a clock that goes on while the dance stands still, seconds.
+    pub clock_secs: f64,
 }
 
 /// A control that is held while its track is written.
@@ -34,7 +45,13 @@ struct Touch {
     last: f64,
     start: Option<f64>,
     written: Vec<Key>,
+    /// How many of them, from the first on, have been thinned already.
+    settled: usize,
     value: Vec<f64>,
+    /// Whether the pointer holds it, and not a wheel or a key.
+    gripped: bool,
+    /// When it was moved last, by [`Moment::clock_secs`].
+    moved_secs: f64,
 }
 
 /// Writes tracks.
@@ -54,6 +71,11 @@ impl Overdub {
     /// Whether what is moved from now on is written. What is held goes on until it is let go.
     pub fn set_armed(&mut self, armed: bool) {
         self.armed = armed;
+    }
+
+    /// Lets go of what is held, without another key: its track was taken back.
+    pub fn let_go(&mut self) {
+        self.touches.clear();
     }
 
     /// What is being written.
@@ -98,9 +120,10 @@ impl Overdub {
             let held = self.touches.iter_mut().find(|touch| touch.target == target);
             if let Some(touch) = held {
                 touch.value = unwrapped(&target, value, Some(&touch.value));
+                (touch.gripped, touch.moved_secs) = (touch.gripped || now.held, now.clock_secs);
             } else if writes && has_room(&edited, &target) {
                 let from = numbers_at(shown, &target).unwrap_or_else(|| value.clone());
-                self.touches.push(Touch::begin(&edited, target.clone(), now.secs, from, value));
+                self.touches.push(Touch::begin(&edited, target.clone(), now, from, value));
                 keep.push(target);
             } else if is_tracked && !now.playing {
                 let before = numbers_at(shown, &target);
@@ -117,7 +140,7 @@ impl Overdub {
             keep.push(touch.target.clone());
             touch.go_on(&mut edited, now);
         }
-        self.touches.retain(|_| now.held && now.playing);
+        self.touches.retain(|touch| !touch.ends(now));
         let own = keep.iter().filter_map(|target| Some((target.as_str(), numbers_at(base, target)?)));
         let own: Vec<_> = own.collect();
         set_all(&mut edited, own);
@@ -144,14 +167,33 @@ fn unwrapped(target: &str, mut value: Vec<f64>, before: Option<&Vec<f64>>) -> Ve
 
 impl Touch {
     /// A control is touched that had the value `from`.
-    fn begin(project: &Project, target: String, secs: f64, from: Vec<f64>, value: Vec<f64>) -> Self {
+    fn begin(project: &Project, target: String, now: Moment, from: Vec<f64>, value: Vec<f64>) -> Self {
+        let secs = now.secs;
         let track = project.timeline.tracks.iter().find(|track| track.target == target);
         let before = track.map_or_else(Vec::new, |track| track.keys.clone());
         let value = unwrapped(&target, value, Some(&from));
         // Where it came from, so that it does not glide there from the key before.
         let start = Key { secs: (secs - EDGE_SECS).max(0.0), value: from };
         let (at, first) = (start.secs, Some(start.secs));
-        Self { target, before, from: at, to: at, last: secs, start: first, written: vec![start], value }
+        Self {
+            target,
+            before,
+            from: at,
+            to: at,
+            last: secs,
+            start: first,
+            written: vec![start],
+            settled: 0,
+            value,
+            gripped: now.held,
+            moved_secs: now.clock_secs,
+        }
+    }
+
+    /// Whether it is let go at `now`.
+    fn ends(&self, now: Moment) -> bool {
+        let lasts = if self.gripped { now.held } else { now.clock_secs - self.moved_secs < REST_SECS };
+        !(lasts && now.playing)
     }
 
     /// Writes the value at `now`, and puts the track together from what was and what is written.
@@ -170,8 +212,10 @@ impl Touch {
                 last: now.secs,
                 start: None,
                 written: Vec::new(),
+                settled: 0,
                 target: std::mem::take(&mut self.target),
                 value: std::mem::take(&mut self.value),
+                ..*self
             };
         }
         // However slowly time passes, keys stay apart: the last one goes while it is too near to the one before it.
@@ -179,14 +223,14 @@ impl Touch {
         let crowded = match self.written.as_slice() {
             [] => false,
             [only] => !apart(only, now.secs),
-            [.., before, last] => !apart(before, last.secs),
+            // Two changes in one pass are one.
+            [.., before, last] => !apart(before, last.secs) || last.secs >= now.secs,
         };
         if crowded {
             self.written.pop();
         }
-        if self.written.len() < Track::MOST_KEYS / 2 {
-            self.written.push(Key { secs: now.secs.max(self.from), value: self.value.clone() });
-        }
+        self.make_room();
+        self.written.push(Key { secs: now.secs.max(self.from), value: self.value.clone() });
         (self.to, self.last) = (self.to.max(now.secs), now.secs);
         self.put(project, now);
     }
@@ -198,15 +242,36 @@ impl Touch {
             (self.from, self.to) = (self.last, self.last);
         }
         self.written.retain(|key| key.secs >= secs + Track::NEAREST_SECS);
-        if self.written.len() < Track::MOST_KEYS / 2 {
-            self.written.insert(0, Key { secs, value: self.value.clone() });
+        if self.written.len() >= MOST_WRITTEN {
+            self.written = curve::thinned_to(&self.written, MOST_WRITTEN / 2);
         }
+        self.settled = 0;
+        self.written.insert(0, Key { secs, value: self.value.clone() });
         (self.from, self.last) = (self.from.min(secs), secs);
+    }
+
+    /// Thins what is written where it has grown long, so that a ride may last.
+    fn make_room(&mut self) {
+        self.settled = self.settled.min(self.written.len());
+        if self.written.len() - self.settled >= MOST_RAW {
+            self.written = self.thinned();
+            self.settled = self.written.len();
+        }
+        if self.written.len() >= MOST_WRITTEN {
+            self.written = curve::thinned_to(&self.written, MOST_WRITTEN / 2);
+            self.settled = self.written.len();
+        }
+    }
+
+    /// What is written in fewer keys; those that have been thinned stay, so that nothing adds up.
+    fn thinned(&self) -> Vec<Key> {
+        let (settled, new) = self.written.split_at(self.settled.saturating_sub(1).min(self.written.len()));
+        [settled.to_vec(), curve::thinned(new)].concat()
     }
 
     /// Puts the track together.
     fn put(&self, project: &mut Project, now: Moment) {
-        let keys = self.joined(!now.held || !now.playing);
+        let keys = self.joined(self.ends(now));
         let tracks = &mut project.timeline.tracks;
         // As a project keeps it, so that reading it again changes nothing.
         let Some(track) = (Track { keys, ..Track::new(self.target.clone()) }).in_range() else { return };
@@ -218,7 +283,7 @@ impl Touch {
 
     /// The track as it was outside what is written. `ended`: with fewer keys, and going back to what was after them.
     fn joined(&self, ended: bool) -> Vec<Key> {
-        let written = if ended { curve::thinned(&self.written) } else { self.written.clone() };
+        let written = if ended { self.thinned() } else { self.written.clone() };
         if self.before.is_empty() {
             return written;
         }

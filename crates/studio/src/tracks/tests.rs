@@ -74,7 +74,7 @@ fn numbers_lists_and_whole_numbers_follow_and_nothing_else_changes() {
 /// Moves `camera.distance` by `moves` (time and value) with the pointer down, and lets it go.
 fn dub(overdub: &mut Overdub, mut base: Project, moves: &[(f64, Option<f32>)]) -> Project {
     for (i, &(secs, to)) in moves.iter().enumerate() {
-        let now = Moment { secs, playing: true, held: i + 1 < moves.len() };
+        let now = Moment { secs, playing: true, held: i + 1 < moves.len(), clock_secs: secs };
         let shown = overdub.shown(&base, secs);
         let mut edited = shown.clone();
         if let Some(to) = to {
@@ -205,7 +205,7 @@ fn a_track_that_plays_is_not_moved_by_hand_but_where_time_stands_it_gets_a_key()
     assert!((shown.camera.distance - 2.0).abs() < 1e-6);
     let mut edited = shown.clone();
     edited.camera.distance = 5.0;
-    let still = Moment { secs: 4.0, playing: false, held: true };
+    let still = Moment { secs: 4.0, playing: false, held: true, clock_secs: 4.0 };
     let project = overdub.edit(&base, &shown, edited, still);
     assert_eq!(project.timeline.tracks[0].keys[1], key(4.0, 5.0));
     assert_eq!(project.camera.distance, base.camera.distance);
@@ -227,7 +227,8 @@ fn an_angle_that_goes_round_takes_the_short_way() {
         let shown = overdub.shown(&base, secs);
         let mut edited = shown.clone();
         edited.camera.azimuth = azimuth;
-        base = overdub.edit(&base, &shown, edited, Moment { secs, playing: true, held: i < 2 });
+        let now = Moment { secs, playing: true, held: i < 2, clock_secs: secs };
+        base = overdub.edit(&base, &shown, edited, now);
     }
     let track = &base.timeline.tracks[0];
     let [low, high] = track.range()[0];

@@ -21,7 +21,7 @@ struct Edited {
 fn editor() -> Harness<'static, Shown<Edited>> {
     let state = Edited { history: History::new(Project::default()), gestures: Gestures::default() };
     screen(state, |ui, edited: &mut Edited| {
-        edited.gestures.begin_pass(ui.ctx());
+        edited.gestures.begin_pass(ui.ctx(), false);
         let mut project = (**edited.history.project()).clone();
         simulation::ui(
             ui,

@@ -3,8 +3,8 @@
 use glam::{Affine3A, Mat3A, Vec3A};
 
 use super::bytes::Bytes;
+use super::layout::{LAYOUT_BYTES, Layout};
 use super::predict::{Coefficients, Rows, TAPS, fit};
-use super::quantise::Layout;
 
 /// Bytes of a frame besides its guides.
 pub(super) const META_BYTES: usize = 80;
@@ -53,6 +53,7 @@ impl Meta {
 /// Frames of a chunk, decoded.
 #[derive(Debug)]
 pub(super) struct Decoded {
+    pub(super) layout: Layout,
     pub(super) metas: Vec<Meta>,
     numbers: Rows,
 }
@@ -64,22 +65,25 @@ impl Decoded {
     }
 
     /// Copies the whole numbers of one frame into `out`, as [`Layout::numbers`] has them.
-    pub(super) fn numbers(&self, frame: usize, layout: Layout, out: &mut Vec<i32>) {
+    pub(super) fn numbers(&self, frame: usize, out: &mut Vec<i32>) {
         out.clear();
         for axis in 0..3 {
-            for point in 0..layout.points {
+            for point in 0..self.layout.points {
                 out.extend_from_slice(self.numbers.row(point, frame, axis));
             }
         }
     }
 }
 
-/// The data part of a chunk: metas, coefficients, residuals of one byte each, then the rest of those that need more.
+/// The data part of a chunk: layout, metas, coefficients, residuals of one byte each, then the rest of those that need more.
 /// `numbers` holds the frames one after the other, each as [`Layout::numbers`] says.
 pub(super) fn encode(metas: &[Meta], numbers: &[i32], layout: Layout) -> Vec<u8> {
     let frames = metas.len();
     let links = Rows::links_of(numbers, frames, layout);
-    let mut out = Vec::with_capacity(frames * (META_BYTES + layout.numbers()) + layout.points * TAPS * 2);
+    let mut out = Vec::with_capacity(
+        LAYOUT_BYTES + frames * (META_BYTES + layout.numbers()) + layout.points * TAPS * 2,
+    );
+    layout.write(&mut out);
     for meta in metas {
         meta.write(&mut out);
     }
@@ -108,9 +112,14 @@ pub(super) fn encode(metas: &[Meta], numbers: &[i32], layout: Layout) -> Vec<u8>
     out
 }
 
-/// The frames in the data part `raw` of a chunk of `frames` frames; says what is wrong where it is none.
-pub(super) fn decode(raw: &[u8], frames: usize, layout: Layout) -> Result<Decoded, String> {
+/// The frames in the data part `raw` of a chunk of `frames` frames; says what is wrong where it is none. `known` is the layout
+/// of a take of version 1, whose chunks do not say theirs.
+pub(super) fn decode(raw: &[u8], frames: usize, known: Option<Layout>) -> Result<Decoded, String> {
     let mut bytes = Bytes::new(raw);
+    let layout = match known {
+        Some(layout) => layout,
+        None => Layout::read(&mut bytes)?,
+    };
     let short = || format!("{} bytes of frames, which are too few", raw.len());
     let metas =
         (0..frames).map(|_| Meta::read(&mut bytes)).collect::<Option<Vec<Meta>>>().ok_or_else(short)?;
@@ -128,7 +137,7 @@ pub(super) fn decode(raw: &[u8], frames: usize, layout: Layout) -> Result<Decode
     let plane = bytes.take(count).ok_or_else(short)?;
     let mut rows = Rows::new(frames, layout);
     let mut predicted = vec![0; layout.guides];
-    let mut residuals = plane.chunks_exact(layout.guides.max(1));
+    let mut residuals = plane.chunks_exact(layout.guides);
     for (point, own) in coefficients.iter().enumerate() {
         for frame in 0..frames {
             for axis in 0..3 {
@@ -149,7 +158,7 @@ pub(super) fn decode(raw: &[u8], frames: usize, layout: Layout) -> Result<Decode
         return Err(format!("{} bytes after the last frame", bytes.left()));
     }
     rows.add_up();
-    Ok(Decoded { metas, numbers: rows })
+    Ok(Decoded { layout, metas, numbers: rows })
 }
 
 /// A residual of this or more goes on after the bytes of all.

@@ -1,7 +1,7 @@
 use glam::Affine3A;
 use proptest::prelude::*;
 
-use super::super::quantise::Layout;
+use super::super::layout::{LAYOUT_BYTES, Layout};
 use super::{META_BYTES, Meta, decode, encode, read_varint, unzigzag, write_varint, zigzag};
 use crate::take::bytes::Bytes;
 
@@ -19,11 +19,11 @@ fn meta(frame: usize) -> Meta {
 fn round_trip(numbers: &[i32], frames: usize, layout: Layout) -> usize {
     let metas: Vec<Meta> = (0..frames).map(meta).collect();
     let raw = encode(&metas, numbers, layout);
-    let back = decode(&raw, frames, layout).unwrap();
+    let back = decode(&raw, frames, None).unwrap();
     assert_eq!(back.metas, metas);
     let mut found = Vec::new();
     for (frame, wanted) in numbers.chunks_exact(layout.numbers()).enumerate() {
-        back.numbers(frame, layout, &mut found);
+        back.numbers(frame, &mut found);
         assert_eq!(found, wanted, "frame {frame}");
     }
     raw.len()
@@ -54,7 +54,9 @@ proptest! {
     #[test]
     fn bytes_that_are_no_frames_are_refused_or_read(raw in prop::collection::vec(any::<u8>(), 0..2000)) {
         // No panic, whatever they are.
-        let _ = decode(&raw, 3, Layout { guides: 4, points: 3 });
+        let layout = Layout { guides: 4, points: 3 };
+        let _ = decode(&raw, 3, Some(layout));
+        let _ = decode(&raw, 3, None);
     }
 
     #[test]
@@ -80,7 +82,7 @@ fn even_motion_leaves_one_byte_a_number() {
     let wave = |f: usize, i: usize| (2000.0 * (f as f64 * 0.2 + i as f64 * 0.7).sin()) as i32;
     let numbers: Vec<i32> =
         (0..60 * layout.numbers()).map(|i| wave(i / layout.numbers(), i % layout.numbers())).collect();
-    let least = 60 * (META_BYTES + layout.numbers()) + layout.points * 12;
+    let least = LAYOUT_BYTES + 60 * (META_BYTES + layout.numbers()) + layout.points * 12;
     let length = round_trip(&numbers, 60, layout);
     assert!(length < least + 15_000, "{length} bytes, of which {least} must be");
     // The control: the same numbers in another order follow nothing.
@@ -96,9 +98,9 @@ fn a_part_that_ends_early_or_late_is_refused() {
     let numbers: Vec<i32> = (0..2 * layout.numbers() as i32).map(|i| i * 1000).collect();
     let raw = encode(&[meta(0), meta(1)], &numbers, layout);
     for length in 0..raw.len() {
-        assert!(decode(&raw[..length], 2, layout).is_err(), "{length}");
+        assert!(decode(&raw[..length], 2, None).is_err(), "{length}");
     }
     let longer = [&raw[..], &[0]].concat();
-    assert!(decode(&longer, 2, layout).is_err());
-    assert!(decode(&raw, 2, layout).is_ok());
+    assert!(decode(&longer, 2, None).is_err());
+    assert!(decode(&raw, 2, None).is_ok());
 }
