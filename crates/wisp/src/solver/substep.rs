@@ -26,22 +26,22 @@ pub(crate) fn run(block: &mut Block, plan: &Plan, s: usize) {
     }
     step_positions(block, plan.h);
     shape_memory(block, plan, s);
-    match plan.settings.integrator {
+    // One pass for all: it is compiled once for each width of the processor's instructions.
+    let lay = match plan.settings.integrator {
         Integrator::Direct => {
             lengths(block, plan);
-            find_near(block, plan, s);
-            lay_out(block, plan, s, Lay::AtLength);
+            Lay::AtLength
         }
         Integrator::Relaxation => {
             relax(plan, &block.rest.length, &mut block.next);
-            find_near(block, plan, s);
-            lay_out(block, plan, s, Lay::AsIs);
+            Lay::AsIs
         }
-        Integrator::FollowTheLeader => {
-            find_near(block, plan, s);
-            lay_out(block, plan, s, Lay::Behind);
-            correct_velocities(block, plan);
-        }
+        Integrator::FollowTheLeader => Lay::Behind,
+    };
+    find_near(block, plan, s);
+    lay_out(block, plan, s, lay);
+    if plan.settings.integrator == Integrator::FollowTheLeader {
+        correct_velocities(block, plan);
     }
 }
 
