@@ -1,22 +1,52 @@
-//! One step of the published hairstyle while the dancer dances.
+//! The cost of a step: the published hairstyle on the dancer, every strand by itself, and how cost grows.
+//!
+//! Wall time as criterion has it; with `LOVELOCK_BENCH_CLOCK=process` the time of all processors together, which other
+//! work on the machine does not add to: on two cores that share the work evenly, half of it is the wall time.
 
 use std::hint::black_box;
+use std::sync::Arc;
+use std::time::Duration;
 
-use criterion::{Criterion, criterion_group, criterion_main};
+use criterion::measurement::{Measurement, ValueFormatter, WallTime};
+use criterion::{BenchmarkGroup, Criterion, Throughput};
+use glam::{Affine3A, Quat, Vec3};
 use lovelock_groom::Preset;
 use lovelock_motion::PlacedCollider;
-use lovelock_wisp::{SimulationSettings, StepInput, Wind};
+use lovelock_wisp::{Integrator, Simulation, SimulationSettings, StepInput, Wind};
 
 #[path = "../tests/common/mod.rs"]
 mod common;
-use common::{STEP_SECS, Stage};
+use common::{STEP_SECS, Stage, clock::process_time, straight, style};
 
-fn step(c: &mut Criterion) {
+type Poses = Vec<(f64, Affine3A, Vec<PlacedCollider>)>;
+
+/// Steps through `poses` again and again, back and forth, so that the clock never jumps far.
+fn bench_steps<M: Measurement>(
+    group: &mut BenchmarkGroup<M>,
+    name: &str,
+    mut simulation: Simulation,
+    settings: &SimulationSettings,
+    poses: &Poses,
+) {
+    let (mut next, mut clock) = (0, 0.0);
+    group.bench_function(name, |b| {
+        b.iter(|| {
+            next = (next + 1) % (2 * poses.len());
+            clock += f64::from(STEP_SECS);
+            let (_, world_from_head, colliders) = &poses[next.min(2 * poses.len() - 1 - next)];
+            let input = StepInput::new(clock, *world_from_head, colliders);
+            black_box(simulation.step(&input, settings, STEP_SECS))
+        });
+    });
+}
+
+/// The published hairstyle on the dancer, by every method.
+fn published<M: Measurement>(c: &mut Criterion<M>) {
     for preset in [Preset::Smooth, Preset::Long] {
         let mut stage = Stage::new(preset);
         // Two seconds of the dance, worked out before, so that only the hair is measured. At a quarter of its
         // speed four substeps are enough nearly always; at full speed quick turns take up to sixteen.
-        let mut poses = |speed: f64| -> Vec<(f64, glam::Affine3A, Vec<PlacedCollider>)> {
+        let mut poses = |speed: f64| -> Poses {
             let mut pose = |i: u32| {
                 let input = stage.at(Some(f64::from(i) / 60.0 * speed));
                 (f64::from(i) / 60.0, input.world_from_head, input.colliders.to_vec())
@@ -25,30 +55,99 @@ fn step(c: &mut Criterion) {
         };
         let (slow, quick) = (poses(0.25), poses(1.0));
         let guides = &stage.style.guides;
-        let name = format!(
+        let mut group = c.benchmark_group(format!(
             "step of {} guides x {} links, {} colliders",
             guides.count(),
             guides.points_per_guide - 1,
             stage.colliders.len()
-        );
+        ));
         let calm = SimulationSettings::default();
         let windy = SimulationSettings { wind: Wind { speed: 4.0, ..Wind::default() }, ..calm };
-        for (what, settings, poses) in
-            [(", slow", calm, &slow), (", quick", calm, &quick), (", quick, wind", windy, &quick)]
-        {
-            let mut simulation = stage.simulation(Some(0.0));
-            let mut next = 0;
-            c.bench_function(&format!("{name}{what}"), |b| {
-                b.iter(|| {
-                    next = (next + 1) % poses.len();
-                    let (time_secs, world_from_head, colliders) = &poses[next];
-                    let input = StepInput::new(*time_secs, *world_from_head, colliders);
-                    black_box(simulation.step(&input, &settings, STEP_SECS))
-                });
-            });
+        let relaxed = SimulationSettings { integrator: Integrator::Relaxation, ..calm };
+        let follows = SimulationSettings { integrator: Integrator::FollowTheLeader, ..calm };
+        for (what, settings, poses) in [
+            ("slow", calm, &slow),
+            ("slow, relaxation of 20 sweeps", relaxed, &slow),
+            ("slow, follow the leader", follows, &slow),
+            ("quick", calm, &quick),
+            ("quick, wind", windy, &quick),
+        ] {
+            bench_steps(&mut group, what, stage.simulation(Some(0.0)), &settings, poses);
         }
+        group.finish();
     }
 }
 
-criterion_group!(benches, step);
-criterion_main!(benches);
+/// Locks of 30 links on a sphere of 9 cm that turns, four substeps, without a body.
+fn strands<M: Measurement>(c: &mut Criterion<M>) {
+    let mut group = c.benchmark_group("strands of 30 links, no body");
+    group.sample_size(10).measurement_time(Duration::from_secs(2));
+    let poses: Poses = (0..60)
+        .map(|i| {
+            let time = f64::from(i) / 60.0;
+            (time, Affine3A::from_quat(Quat::from_rotation_y(0.3 * (3.0 * time).sin() as f32)), Vec::new())
+        })
+        .collect();
+    for count in [402, 1_000, 3_350, 10_000, 20_000, 50_000, 100_000] {
+        let guides: Vec<_> = (0..count)
+            .map(|g| {
+                // A spiral over the sphere (Fibonacci's lattice).
+                let y = 1.0 - 1.6 * g as f32 / count as f32;
+                let (r, turn) = ((1.0 - y * y).sqrt(), 2.399_963_2 * g as f32);
+                let out = Vec3::new(r * turn.cos(), y, r * turn.sin());
+                straight(out * 0.09, out, 30, 0.25)
+            })
+            .collect();
+        let mut simulation = Simulation::new(Arc::clone(&style(&guides)));
+        simulation.reset(&StepInput::new(0.0, Affine3A::IDENTITY, &[]));
+        group.throughput(Throughput::Elements(count));
+        bench_steps(&mut group, &format!("{count}"), simulation, &SimulationSettings::default(), &poses);
+    }
+    group.finish();
+}
+
+/// Time of all processors that this process has used.
+struct ProcessTime;
+
+impl Measurement for ProcessTime {
+    type Intermediate = Duration;
+    type Value = Duration;
+
+    fn start(&self) -> Duration {
+        process_time()
+    }
+
+    fn end(&self, start: Duration) -> Duration {
+        process_time().saturating_sub(start)
+    }
+
+    fn add(&self, a: &Duration, b: &Duration) -> Duration {
+        *a + *b
+    }
+
+    fn zero(&self) -> Duration {
+        Duration::ZERO
+    }
+
+    fn to_f64(&self, value: &Duration) -> f64 {
+        WallTime.to_f64(value)
+    }
+
+    fn formatter(&self) -> &dyn ValueFormatter {
+        WallTime.formatter()
+    }
+}
+
+fn main() {
+    if std::env::var_os("LOVELOCK_BENCH_CLOCK").is_some_and(|clock| clock == "process") {
+        let mut c = Criterion::default().with_measurement(ProcessTime).configure_from_args();
+        published(&mut c);
+        strands(&mut c);
+        c.final_summary();
+    } else {
+        let mut c = Criterion::default().configure_from_args();
+        published(&mut c);
+        strands(&mut c);
+        c.final_summary();
+    }
+}

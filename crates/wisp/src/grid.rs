@@ -5,11 +5,14 @@
 //! in its cells. Sums are in integers: the order of the guides does not matter.
 
 mod direction;
+mod pieces;
 mod volume;
 
 use glam::{IVec3, Mat3, Vec3};
 
-use direction::{Tensor, crossing, drawn_to, outer, push_across};
+use direction::{Tensor, crossing, drawn_to, push_across};
+use pieces::{CHUNK, Piece, Pieces};
+use rayon::prelude::*;
 
 use crate::block::Block;
 use crate::lanes::{LANES, Lane3, ZERO3, at, put};
@@ -58,6 +61,8 @@ pub(crate) struct DensityGrid {
     cells: Vec<[i32; 4]>,
     /// The directions of the hair in each cell; all 0 where nothing heeds them.
     directions: Vec<Tensor<i32>>,
+    /// Working memory of the deposit, one of each block.
+    pieces: Vec<Pieces>,
     /// One over the density at rest, where there is some, and over a typical one elsewhere.
     inv_rest: Vec<f32>,
     rest_volume: f32,
@@ -99,6 +104,7 @@ impl DensityGrid {
             units: FULL / total.max(1e-3),
             cells: vec![[0; 4]; size],
             directions: vec![[0; 6]; size],
+            pieces: Vec::new(),
             inv_rest: vec![0.0; size],
             rest_volume: 0.0,
             full: FULL,
@@ -189,20 +195,35 @@ impl DensityGrid {
         self.held_rows().flatten().filter(over).count() as u32
     }
 
-    fn fill(&mut self, blocks: &[Block], mut state: impl FnMut(&Block, usize, usize) -> (Vec3, Vec3, Vec3)) {
+    fn fill(&mut self, blocks: &[Block], state: impl Fn(&Block, usize, usize) -> (Vec3, Vec3, Vec3) + Sync) {
         self.clear();
-        for block in blocks {
+        let mut pieces = std::mem::take(&mut self.pieces);
+        pieces.resize_with(blocks.len(), Pieces::default);
+        let grid = &*self;
+        pieces.par_iter_mut().zip(blocks).for_each(|(pieces, block)| {
+            pieces.clear();
             // The middle of each run of points, so that the whole chain is covered evenly.
-            for i in (1 + (self.stride - 1) / 2..block.points()).step_by(self.stride) {
+            for i in (1 + (grid.stride - 1) / 2..block.points()).step_by(grid.stride) {
                 for k in 0..block.used {
                     // Beyond the end of a guide that was cut there is no hair.
                     if block.rest.inv_length[i][k] > 0.0 {
                         let (p, v, t) = state(block, i, k);
-                        self.deposit(p, v, t, block.rest.mean_link[k] * self.stride as f32);
+                        grid.place(p, v, t, block.rest.mean_link[k] * grid.stride as f32, pieces);
                     }
                 }
             }
+        });
+        for block in &pieces {
+            self.low = self.low.min(block.low);
+            self.high = self.high.max(block.high);
         }
+        let layers = self.cells.par_chunks_mut(CHUNK).zip(self.directions.par_chunks_mut(CHUNK));
+        layers.enumerate().for_each(|(chunk, (cells, directions))| {
+            for block in &pieces {
+                block.add_to(chunk, cells, directions);
+            }
+        });
+        self.pieces = pieces;
     }
 
     /// The corner of the eight cells around `p`, and the fractions in between; `None` outside the grid.
@@ -218,30 +239,17 @@ impl DensityGrid {
         Some((corner, q - corner.as_vec3()))
     }
 
+    /// Puts a piece of hair at `p` on its way into the grid.
     #[inline]
-    fn deposit(&mut self, p: Vec3, v: Vec3, t: Vec3, length: f32) {
-        let Some((corner, f)) = self.around(p) else { return };
-        let v = v.clamp(Vec3::splat(-FASTEST), Vec3::splat(FASTEST)) * MOMENTUM;
-        if !(v.is_finite() && t.is_finite()) {
-            return;
-        }
-        self.low = self.low.min(corner);
-        self.high = self.high.max(corner + 1);
-        let mass = length * self.units;
-        let base = index(corner);
-        let tt = outer(t);
-        for (offset, weight) in OFFSETS.iter().zip(weights(f)) {
-            let m = mass * weight;
-            if t != Vec3::ZERO {
-                for (sum, part) in self.directions[base + offset].iter_mut().zip(tt) {
-                    *sum = sum.wrapping_add((m * part) as i32);
-                }
-            }
-            let add = [m as i32, (m * v.x) as i32, (m * v.y) as i32, (m * v.z) as i32];
-            let cell = &mut self.cells[base + offset];
-            for (sum, add) in cell.iter_mut().zip(add) {
-                *sum = sum.wrapping_add(add);
-            }
+    fn place(&self, p: Vec3, v: Vec3, t: Vec3, length: f32, out: &mut Pieces) {
+        let Some((corner, fraction)) = self.around(p) else { return };
+        let velocity = v.clamp(Vec3::splat(-FASTEST), Vec3::splat(FASTEST)) * MOMENTUM;
+        if velocity.is_finite() && t.is_finite() {
+            let (base, layer) = (index(corner) as u32, corner.z as u32);
+            out.push(
+                corner,
+                Piece { base, layer, fraction, mass: length * self.units, velocity, tangent: t },
+            );
         }
     }
 

@@ -1,11 +1,12 @@
 //! The state saved and restored goes on with the same bits, and other bytes are refused.
 
 use glam::{Affine3A, Vec3};
+use lovelock_groom::{GroomSettings, Preset};
 use lovelock_motion::{ColliderShape, PlacedCollider};
 use lovelock_wisp::{Integrator, RestoreError, Simulation, SimulationSettings, StepInput};
 
 mod common;
-use common::{STEP_SECS, straight, style, violent};
+use common::{STEP_SECS, Stage, straight, style, violent};
 
 fn locks(count: usize, length: f32) -> Vec<Vec<Vec3>> {
     (0..count)
@@ -35,14 +36,14 @@ fn body(time: f64) -> [PlacedCollider; 2] {
 
 fn step(simulation: &mut Simulation, n: u32, settings: &SimulationSettings) {
     let time_secs = f64::from(n) / 60.0;
-    let input = StepInput { time_secs, world_from_head: violent(time_secs), colliders: &body(time_secs) };
-    simulation.step(&input, settings, STEP_SECS);
+    let colliders = body(time_secs);
+    simulation.step(&StepInput::new(time_secs, violent(time_secs), &colliders), settings, STEP_SECS);
 }
 
 fn started(count: usize, length: f32) -> Simulation {
     let mut simulation = Simulation::new(style(&locks(count, length)));
     let colliders = body(0.0);
-    simulation.reset(&StepInput { time_secs: 0.0, world_from_head: violent(0.0), colliders: &colliders });
+    simulation.reset(&StepInput::new(0.0, violent(0.0), &colliders));
     simulation
 }
 
@@ -115,4 +116,38 @@ fn a_simulation_without_hair_has_a_state_too() {
     let mut empty = Simulation::new(style(&[]));
     let bytes = empty.save();
     assert_eq!(empty.restore(&bytes), Ok(()));
+}
+
+#[test]
+fn on_the_dancer_a_restored_state_goes_on_with_the_same_bits_on_any_number_of_threads() {
+    let mut stage = Stage::grown(&GroomSettings { wisps: 12, ..GroomSettings::preset(Preset::Long) });
+    assert!(stage.field.is_some(), "the shipped dancer has a field");
+    let settings = SimulationSettings::default();
+    let on = |threads: usize, work: &mut (dyn FnMut() + Send)| {
+        rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool").install(work);
+    };
+    let mut whole = stage.simulation(Some(0.0));
+    let mut other = stage.simulation(Some(3.0));
+    let dance = |simulation: &mut Simulation, stage: &mut Stage, steps: std::ops::Range<u32>| {
+        for n in steps {
+            simulation.step(&stage.at(Some(f64::from(n) / 60.0)), &settings, STEP_SECS);
+        }
+    };
+    on(2, &mut || dance(&mut whole, &mut stage, 1..60));
+    let saved = whole.save();
+    other.restore(&saved).expect("the same hair on the same body");
+    on(1, &mut || dance(&mut whole, &mut stage, 60..100));
+    on(8, &mut || dance(&mut other, &mut stage, 60..100));
+    assert_eq!(whole.state_hash(), other.state_hash());
+    // Back to where it was, in the simulation itself.
+    whole.restore(&saved).expect("its own state");
+    dance(&mut whole, &mut stage, 60..100);
+    assert_eq!(whole.state_hash(), other.state_hash());
+    // Without the body it was saved on it is refused.
+    let mut alone = Simulation::new(std::sync::Arc::clone(&stage.style));
+    assert_eq!(alone.restore(&saved), Err(RestoreError::Body));
+    // The control: one step fewer is another state.
+    other.restore(&saved).expect("the same hair on the same body");
+    dance(&mut other, &mut stage, 60..99);
+    assert_ne!(whole.state_hash(), other.state_hash());
 }

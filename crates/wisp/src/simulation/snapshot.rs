@@ -9,6 +9,7 @@ use lovelock_motion::{ColliderShape, PlacedCollider};
 
 use super::{Simulation, first_free};
 use crate::block::Block;
+use crate::colliders::field::MovingField;
 use crate::hash::Hasher;
 use crate::lanes::{LANES, Lane3};
 use crate::motion::HeadPose;
@@ -42,6 +43,11 @@ pub enum RestoreError {
         "the state of the simulation is that of another hairstyle; restore it with the style it was saved with"
     )]
     Style,
+    /// It was saved with a field of the body, and this simulation knows none or another.
+    #[error(
+        "the state of the simulation was saved beside a body that is not here; reset the simulation on its body first"
+    )]
+    Body,
     /// The bytes end too early, go on too long, or have changed.
     #[error("the state of the simulation is damaged: {problem}")]
     Damaged {
@@ -53,7 +59,8 @@ pub enum RestoreError {
 impl Simulation {
     /// All of the state as bytes, from which [`Simulation::restore`] goes on with the same bits.
     ///
-    /// Settings, style and how far the body has moved on are not in it: those come with the next step.
+    /// Settings, style and the body's field are not in it: restore it where the same style is, and after a
+    /// [`Simulation::reset`] on the same body.
     pub fn save(&self) -> Vec<u8> {
         let mut out = Writer(Vec::with_capacity(self.blocks.len() * 4 * LANES * 3 * 4 * 32));
         out.0.extend_from_slice(&MAGIC);
@@ -74,6 +81,9 @@ impl Simulation {
             out.shape(shape);
             out.u32(u32::from(*on_head));
         }
+        let places = self.field.as_ref().map_or(&[][..], MovingField::places);
+        out.u32(places.len() as u32);
+        places.iter().for_each(|place| out.affine(place));
         for rows in self.blocks.iter().flat_map(rows_of) {
             for axis in rows.iter().flatten() {
                 out.floats(axis);
@@ -132,6 +142,12 @@ impl Simulation {
         if rest.shapes.len() != next.colliders.len() {
             return Err(damaged("it knows other colliders at rest than in motion"));
         }
+        let places = (0..input.count()?).map(|_| input.affine()).collect::<Result<Vec<_>, _>>()?;
+        if places.is_empty() {
+            next.field = None;
+        } else if !next.field.as_mut().is_some_and(|field| field.set_places(&places)) {
+            return Err(RestoreError::Body);
+        }
         let (guides, clamped_links) = (&self.style.guides, next.clamped_links);
         let first_free = first_free(clamped_links, guides.points_per_guide);
         for block in &mut next.blocks {
@@ -148,6 +164,7 @@ impl Simulation {
             return Err(damaged("it goes on after its end"));
         }
         next.learn_rest_distances();
+        next.learn_field_distances();
         *self = next;
         Ok(())
     }
@@ -256,7 +273,7 @@ impl Reader<'_> {
     fn count(&mut self) -> Result<u32, RestoreError> {
         let count = self.u32()?;
         if count > MOST_COLLIDERS {
-            return Err(damaged(&format!("{count} colliders, where {MOST_COLLIDERS} are the most")));
+            return Err(damaged(&format!("{count} shapes, where {MOST_COLLIDERS} are the most")));
         }
         Ok(count)
     }

@@ -59,7 +59,7 @@ pub fn drive(bytes: &[u8]) -> Met {
                 saved = None;
             }
             5 => {
-                let at = StepInput { time_secs, world_from_head: head, colliders: &colliders };
+                let at = StepInput::new(time_secs, head, &colliders);
                 simulation.reset(&at);
                 met.resets += 1;
             }
@@ -97,7 +97,7 @@ pub fn drive(bytes: &[u8]) -> Met {
             }
         }
         time_secs += f64::from(dt);
-        let at = StepInput { time_secs, world_from_head: head, colliders: &colliders };
+        let at = StepInput::new(time_secs, head, &colliders);
         let report = simulation.step(&at, &settings, dt);
         met.steps += 1;
         met.jumps += u32::from(report.jumped);

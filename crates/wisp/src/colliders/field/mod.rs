@@ -169,6 +169,25 @@ impl MovingField {
         self.forth_before.copy_from_slice(&self.forth);
     }
 
+    /// Where the parts of the skin are against the head: all of the motion that the next step begins with.
+    pub(crate) fn places(&self) -> &[Affine3A] {
+        &self.forth
+    }
+
+    /// Puts the parts where [`MovingField::places`] had them; whether they are as many and can be there.
+    pub(crate) fn set_places(&mut self, places: &[Affine3A]) -> bool {
+        let backs = || places.iter().map(Affine3A::inverse);
+        if places.len() != self.forth.len() || !backs().all(|back| back.is_finite()) {
+            return false;
+        }
+        self.forth.copy_from_slice(places);
+        let slots = self.field.slots().iter().zip(backs()).zip(&mut self.now);
+        for ((weights, back), now) in slots.skip(1) {
+            *now = Back::new(&back, weights[0]);
+        }
+        true
+    }
+
     /// Works out `now` and `forth`.
     fn learn(&mut self, head: &HeadPose, pose: &FieldPose) {
         let head_from_world = head.affine().inverse();
