@@ -1,23 +1,23 @@
 //! How deep hair gets into the body over a whole motion, measured against the skinned surface itself.
 //!
 //! `penetration [--preset ID] [--motion dance|FILE.bvh|backflip] [--wisps N] [--every STEPS] [--field off]
-//! [--colliders off] [--set JSON]`
+//! [--colliders off] [--verbose on] [--set JSON]`
 //!
 //! Without a preset all of them, without a motion all three of dance, the file and the backflip.
 
 use lovelock_groom::{GroomSettings, Preset};
-use lovelock_motion::{Skin, SurfaceDistance, skin};
+use lovelock_motion::{Skin, skin};
 use lovelock_wisp::{SimulationSettings, StepReport};
 
 #[path = "../tests/common/mod.rs"]
 mod common;
-use common::{Depths, STEP_SECS, Stage, worse};
+use common::{Depths, STEP_SECS, Stage, frame, worse};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut args = std::env::args().skip(1);
     let usage = "see the head of penetration.rs";
     let (mut presets, mut motions) = (Preset::ALL.to_vec(), vec!["dance".to_owned(), "backflip".to_owned()]);
-    let (mut wisps, mut every, mut field, mut colliders) = (None, 2, true, true);
+    let (mut wisps, mut every, mut field, mut colliders, mut verbose) = (None, 2, true, true, false);
     let mut settings = SimulationSettings::default();
     while let Some(arg) = args.next() {
         let value = args.next().ok_or(usage)?;
@@ -28,6 +28,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             "--every" => every = value.parse::<u32>()?.max(1),
             "--field" => field = value != "off",
             "--colliders" => colliders = value != "off",
+            "--verbose" => verbose = value == "on",
             "--set" => settings = serde_json::from_str(&value)?,
             _ => return Err(usage.into()),
         }
@@ -53,11 +54,19 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 if !colliders {
                     (input.colliders, input.field) = (&[], None);
                 }
-                all = worse(all, simulation.step(&input, &settings, STEP_SECS));
+                let report = simulation.step(&input, &settings, STEP_SECS);
+                if let Some(d) = report.deepest
+                    && d.depth_m > 1e-3
+                    && verbose
+                {
+                    let p = frame(&simulation).guides.point(d.guide as usize, d.point as usize);
+                    let at = stage.pose.world_from_head.inverse().transform_point3(p);
+                    println!("  step {step}: {d:?} at {at} of the head, {} substeps", report.substeps);
+                }
+                all = worse(all, report);
                 if step % every == 0 || step == steps {
                     skin(&stage.body, &stage.pose, &mut surface);
-                    let now = SurfaceDistance::new(&surface.positions, &stage.body.mesh.triangles);
-                    depths.measure(&stage, &simulation, &now, step);
+                    depths.measure(&stage, &simulation, &surface, step);
                 }
             }
             let name = std::path::Path::new(motion)
@@ -77,7 +86,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 1e3 * worst.at.length(),
                 worst.at
             );
-            println!("          deeper than 0.5, 1, 2, 5 mm: {:?} of {} points", depths.over, depths.count);
+            println!(
+                "          deeper than 0.5, 1, 2, 5 mm: {:?} of {} points; arms, hands and lower trunk {:.2} mm",
+                depths.over,
+                depths.count,
+                1e3 * depths.elsewhere.depth
+            );
         }
     }
     Ok(())

@@ -49,6 +49,12 @@ impl Simulation {
         });
     }
 
+    /// Whether tests against the body that cannot find a contact are left out, as they are at first. The motion is
+    /// the same, bit for bit; this is to measure what is gained.
+    pub fn spare_contacts(&mut self, spare: bool) {
+        self.spare = spare;
+    }
+
     /// The point of the hairstyle at rest that is deepest inside the body, among those that the scalp does not carry;
     /// `None` where all are outside. Known from the first [`Simulation::reset`] on.
     pub fn rest_inside(&self) -> Option<InsidePoint> {

@@ -114,3 +114,45 @@ fn a_report_says_where_its_worst_is() {
         assert_eq!(report.recovered_at, None);
     }
 }
+
+/// A skull with hair on it, its field, and a motion in which neck and shoulders turn under it.
+#[test]
+fn what_is_spared_could_not_have_touched() {
+    use lovelock_motion::{BodyField, FieldPose, Pose, RestDistance, load_character, pose_at};
+    let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/dancer.glb");
+    let character = load_character(&file).expect("the shipped dancer loads");
+    let (body, dance) = (&character.body, &character.clips[0]);
+    let field = Arc::new(BodyField::new(body, &RestDistance::new(body)).expect("a field"));
+    let mut guides = Guides { points_per_guide: 16, ..Guides::default() };
+    for g in 0..40 {
+        let around = g as f32 * 0.7;
+        let out = Vec3::new(around.sin(), 0.2, around.cos() - 0.4).normalize_or(Vec3::Y);
+        let points: Vec<Vec3> =
+            (0..16).map(|i| Vec3::new(0.0, 0.09 - 0.012 * i as f32, 0.0) + out * 0.13).collect();
+        guides.push(&points);
+    }
+    let run = |spare: bool, with_field: bool| {
+        let mut simulation =
+            Simulation::new(Arc::new(Hairstyle { guides: guides.clone(), ..Hairstyle::default() }));
+        simulation.spare = spare;
+        let (mut pose, mut placed) = (Pose::default(), FieldPose::default());
+        for step in 0..150 {
+            pose_at(body, Some(dance), f64::from(step) / 60.0, &mut pose);
+            field.place(body, &pose, 0.0, &mut placed);
+            let place = with_field.then_some(crate::PlacedField { field: &field, pose: &placed });
+            let input = StepInput {
+                field: place,
+                ..StepInput::new(f64::from(step) / 60.0, pose.world_from_head, &[])
+            };
+            if step == 0 {
+                simulation.reset(&input);
+            } else {
+                simulation.step(&input, &settings(), 1.0 / 60.0);
+            }
+        }
+        simulation.state_hash()
+    };
+    let spared = run(true, true);
+    assert_eq!(spared, run(false, true), "sparing tests changes the motion");
+    assert_ne!(spared, run(true, false), "no hair touches the field: the test shows nothing");
+}

@@ -13,7 +13,7 @@ use lovelock_groom::{
     StrandSet, grow, import_around, load_hair, tied,
 };
 use lovelock_motion::{
-    Body, BodyField, Clip, Collider, ColliderEdits, FieldPose, PlacedCollider, Pose, RestDistance,
+    Body, BodyField, Clip, Collider, ColliderEdits, FieldPose, PlacedCollider, Pose, RestDistance, Skin,
     SurfaceDistance, backflip, fit_colliders, head_mesh, load_character, load_motion, place_colliders,
     pose_at, retarget,
 };
@@ -246,6 +246,10 @@ pub struct Depths {
     /// How many points were deeper than each of [`Depths::LIMITS`], and how many there were.
     pub over: [usize; 4],
     pub count: usize,
+    /// The worst in the skin of arms, hands and the lower trunk, which the other numbers leave out.
+    pub elsewhere: Depth,
+    /// Which vertices are head, neck, shoulders and upper back.
+    region: Vec<bool>,
 }
 
 /// One place in the skin.
@@ -276,11 +280,19 @@ impl Depths {
             worst_of_all: Depth::default(),
             over: [0; 4],
             count: 0,
+            elsewhere: Depth::default(),
+            region: mesh
+                .positions
+                .iter()
+                .map(|p| *p - origin)
+                .map(|q| q.y > -0.25 && q.x.abs() < 0.17)
+                .collect(),
         }
     }
 
     /// Measures the hair of a step against the skin then.
-    pub fn measure(&mut self, stage: &Stage, simulation: &Simulation, skin: &SurfaceDistance, step: u32) {
+    pub fn measure(&mut self, stage: &Stage, simulation: &Simulation, surface: &Skin, step: u32) {
+        let skin = SurfaceDistance::new(&surface.positions, &stage.body.mesh.triangles);
         let (now, rest) = (frame(simulation), &stage.style.guides);
         let points = rest.points_per_guide;
         let head = Vec3::from(now.world_from_head.translation);
@@ -305,6 +317,17 @@ impl Depths {
             .collect();
         self.count += found.len();
         for [depth, all] in found {
+            if depth.depth > 0.0 {
+                let p = depth.at + head;
+                let away = |v: &usize| surface.positions[*v].distance_squared(p);
+                let nearest = (0..self.region.len()).min_by(|a, b| away(a).total_cmp(&away(b)));
+                if !nearest.is_some_and(|v| self.region[v]) {
+                    if depth.depth > self.elsewhere.depth {
+                        self.elsewhere = depth;
+                    }
+                    continue;
+                }
+            }
             for (over, limit) in self.over.iter_mut().zip(Self::LIMITS) {
                 *over += usize::from(depth.depth > limit);
             }

@@ -25,7 +25,16 @@ const FLAT: f32 = 1.0;
 const SETTLED: f32 = 3e-4;
 
 /// Most rounds of taking a point back.
-const ROUNDS: usize = 4;
+const ROUNDS: usize = 6;
+
+/// A way back that ends further from the first guess than this leads to another part of the skin, spacings of nodes.
+const STRAYED: f32 = 3.0;
+
+/// Nothing is deeper than this in skin of which only a guess is known, metres.
+const UNSURE: f32 = 0.002;
+
+/// Where the skin is folded more than this it has no way back: the least determinant of how it unfolds.
+const UNFOLDED: f32 = 0.05;
 
 /// The way back to rest of one weighting: a matrix by columns, a shift, and the head's share of the weights.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -241,54 +250,99 @@ impl MovingField {
     /// The nearer of the skin that goes with the head and the skin that the other joints move.
     #[inline(always)]
     fn touch(&self, p: Vec3, near: Candidates, t: f32, reach: f32) -> Option<Touch> {
-        let head = if near.head { self.try_from(p, p, t, reach) } else { None };
+        let head = if near.head { self.try_from(p, p, 0, t, reach) } else { None };
         let Some(slot) = near.slot else { return head };
         let guess = mixed(&self.before[slot], &self.now[slot], t).apply(p);
-        match (head, self.try_from(p, guess, t, reach)) {
+        match (head, self.try_from(p, guess, slot, t, reach)) {
             (Some(a), Some(b)) => Some(if b.distance < a.distance { b } else { a }),
             (a, b) => a.or(b),
         }
     }
 
     /// Takes `p` back to rest from a first guess of where that is, and measures there.
+    ///
+    /// Wanted is `X = V(X)`, where `V` mixes what the weightings of the eight nodes around `X` make of `p`. Newton's
+    /// iteration, `(1 - V') dX = V - X`, goes where a plain one would swing to and fro: around a raised arm. Where the
+    /// skin is so folded that it finds nothing near by, the weighting `slot` of the guess alone says where the point is.
     #[inline(always)]
-    fn try_from(&self, p: Vec3, guess: Vec3, t: f32, reach: f32) -> Option<Touch> {
+    fn try_from(&self, p: Vec3, guess: Vec3, slot: usize, t: f32, reach: f32) -> Option<Touch> {
         let nodes = self.field.node_lattice();
-        let (mut rest, mut back, mut drift) = (guess, Back::IDENTITY, Vec3::ZERO);
+        let mut rest = guess;
+        let mut settled = false;
+        let (mut slots, mut fraction, mut stretch) = ([0_u16; 8], Vec3::ZERO, Mat3A::IDENTITY);
         for _ in 0..ROUNDS {
-            let (corners, fraction) = around(nodes, self.inv_node, rest)?;
-            let slots = corners.map(|c| self.field.slot_of_node()[c]);
-            if slots == [0; 8] {
-                (rest, back, drift) = (p, Back::IDENTITY, Vec3::ZERO);
-                break;
-            }
-            let (mut start, mut end) = (Back([0.0; 16]), Back([0.0; 16]));
-            for (&slot, weight) in slots.iter().zip(weights(fraction)) {
-                start.add(&self.before[usize::from(slot)], weight);
-                end.add(&self.now[usize::from(slot)], weight);
-            }
-            back = mixed(&start, &end, t);
-            let next = back.apply(p);
-            drift = start.apply(p) - end.apply(p);
+            let (corners, within) = around(nodes, self.inv_node, rest)?;
+            slots = corners.map(|c| self.field.slot_of_node()[c]);
+            fraction = within;
+            stretch = Mat3A::IDENTITY;
+            let first = usize::from(slots[0]);
+            let next = if slots == [slots[0]; 8] {
+                if first == 0 { p } else { mixed(&self.before[first], &self.now[first], t).apply(p) }
+            } else {
+                let back = slots.map(|slot| {
+                    let slot = usize::from(slot);
+                    let (a, b) = (self.before[slot].apply(p), self.now[slot].apply(p));
+                    a + (b - a) * t
+                });
+                let mut value = Vec3::ZERO;
+                for (v, weight) in back.iter().zip(weights(fraction)) {
+                    value += *v * weight;
+                }
+                let along = [0, 1, 2].map(|axis| gradient(&back.map(|v| v[axis]), fraction) * self.inv_node);
+                // Rows of V' are the gradients of its components.
+                let slope = Mat3A::from_cols(along[0].into(), along[1].into(), along[2].into()).transpose();
+                let left = Mat3A::IDENTITY - slope;
+                // Where the skin is folded over itself there is no way back that keeps its sides apart.
+                if left.determinant() < UNFOLDED {
+                    value
+                } else {
+                    stretch = left.inverse();
+                    let step = Vec3::from(stretch * glam::Vec3A::from(value - rest));
+                    rest + step.clamp_length_max(nodes.spacing)
+                }
+            };
             let moved = (next - rest).length_squared();
             rest = next;
             if moved < SETTLED * SETTLED {
+                settled = true;
                 break;
             }
         }
+        let strayed = (rest - guess).length_squared() > (STRAYED * nodes.spacing).powi(2);
+        let sure = settled && !strayed;
+        if !sure {
+            if slot == 0 {
+                return None;
+            }
+            (rest, slots, stretch) = (guess, [slot as u16; 8], Mat3A::IDENTITY);
+        }
         let lattice = self.field.distance_lattice();
-        let (corners, fraction) = around(lattice, self.inv_spacing, rest)?;
+        let (corners, within) = around(lattice, self.inv_spacing, rest)?;
         let d = corners.map(|c| self.field.distances()[c]);
-        let value: f32 = d.iter().zip(weights(fraction)).map(|(d, w)| d * w).sum();
+        let value: f32 = d.iter().zip(weights(within)).map(|(d, w)| d * w).sum();
         // A stretched skin is further away than it was at rest, by half at most.
         if value - self.lift > 2.0 * reach {
             return None;
         }
-        let slope = back.turn_forth(gradient(&d, fraction) * self.inv_spacing);
+        let (mut start, mut end) = (Back::IDENTITY, Back::IDENTITY);
+        if slots != [0; 8] {
+            (start, end) = (Back([0.0; 16]), Back([0.0; 16]));
+            for (&slot, weight) in slots.iter().zip(weights(fraction)) {
+                start.add(&self.before[usize::from(slot)], weight);
+                end.add(&self.now[usize::from(slot)], weight);
+            }
+        }
+        let back = mixed(&start, &end, t);
+        // The chain rule: dX = (1 - V')^-1 B dx.
+        let at_rest = gradient(&d, within) * self.inv_spacing;
+        let slope = back.turn_forth(Vec3::from(stretch.transpose() * glam::Vec3A::from(at_rest)));
         let steepness = slope.length_squared().sqrt();
         let normal = if steepness > 1e-6 { slope * (1.0 / steepness) } else { Vec3::Y };
         let distance = value / steepness.clamp(0.5, 2.0) - self.lift;
-        let drift = back.turn_forth(drift) * (1.0 / self.dt_secs);
+        // A guess may push, but not far; nor may skin that is stretched or pressed beyond what skin can be.
+        let sound = sure && (0.5..2.0).contains(&steepness);
+        let distance = if sound { distance } else { distance.max(-UNSURE) };
+        let drift = back.turn_forth(start.apply(p) - end.apply(p)) * (1.0 / self.dt_secs);
         (distance < reach).then_some(Touch { distance, normal, head: back.0[12], drift })
     }
 }

@@ -44,6 +44,8 @@ pub(super) struct Occupancy {
     /// So many cells to each side the head was deposited into.
     head_width: i32,
     head: Vec<bool>,
+    /// Cells in which the head is tried for nothing, where nothing is spared; otherwise empty.
+    extra: Vec<bool>,
     /// Slot of the nearest probe to the middle of each cell, and the square of its distance.
     slot: Vec<u16>,
     nearest: Vec<f32>,
@@ -84,6 +86,7 @@ impl Occupancy {
             head_probes,
             head_width: 0,
             head: vec![false; count],
+            extra: Vec::new(),
             slot: vec![NONE; count],
             nearest: vec![f32::INFINITY; count],
             touched: Vec::new(),
@@ -129,10 +132,24 @@ impl Occupancy {
         let width = self.width(reach + 0.5 * moved);
         let ends = if moved > 1e-5 { &ends[..] } else { &ends[1..] };
         let widths: &[i32] = if spare { &[0] } else { &[0, UNSPARING] };
+        self.place_head(self.width(reach));
+        self.extra.clear();
         for &more in widths {
             // The second round only fills what the first has left, and so changes nothing there.
-            let known: Vec<bool> =
-                if more > 0 { self.slot.iter().map(|&s| s != NONE).collect() } else { Vec::new() };
+            let known: Vec<bool> = if more > 0 {
+                self.slot.iter().zip(&self.head).map(|(&slot, &head)| head || slot != NONE).collect()
+            } else {
+                Vec::new()
+            };
+            if more > 0 {
+                self.extra.resize(self.head.len(), false);
+                for i in 0..self.head_probes.len() {
+                    let middle = self.cell_of(self.head_probes[i]);
+                    self.each_cell(middle, self.head_width + more, |this, index, _| {
+                        this.extra[index] |= !known[index];
+                    });
+                }
+            }
             for maps in ends {
                 for i in 0..self.probes.len() {
                     let Probe { rest, slot } = self.probes[i];
@@ -150,7 +167,6 @@ impl Occupancy {
                 }
             }
         }
-        self.place_head(self.width(reach) + if spare { 0 } else { UNSPARING });
     }
 
     fn cell_of(&self, p: Vec3) -> IVec3 {
@@ -189,7 +205,8 @@ impl Occupancy {
             return None;
         }
         let index = ((q.z as u32 * self.size.y + q.y as u32) * self.size.x + q.x as u32) as usize;
-        let (head, slot) = (self.head[index], self.slot[index]);
+        let head = self.head[index] || (!self.extra.is_empty() && self.extra[index]);
+        let slot = self.slot[index];
         let slot = (slot != NONE).then_some(usize::from(slot));
         (head || slot.is_some()).then_some(Candidates { head, slot })
     }

@@ -65,8 +65,8 @@ fn the_skin_is_where_the_field_says_in_the_midst_of_a_dance() {
     let d = distances(true, true, 0.0);
     let (low, high) = (d[d.len() / 200], d[d.len() - 1 - d.len() / 200]);
     println!("{} vertices: {} to {}, 99 % from {low} to {high}", d.len(), d[0], d[d.len() - 1]);
-    assert!(d.len() > 5000);
-    assert!(low > -1e-3 && high < 1e-3, "99 % from {low} to {high}");
+    assert!(d.len() > 4000);
+    assert!(low > -1.5e-3 && high < 1.5e-3, "99 % from {low} to {high}");
     assert_eq!(d, distances(false, true, 0.0), "what is tested besides changes nothing");
     // The control: the field where it was a frame before.
     let late = distances(true, false, 0.0);
