@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::Vec3;
+use glam::{Affine3A, Vec3};
 use lovelock_groom::{GuideFrame, Hairstyle};
 use lovelock_motion::PlacedCollider;
 use rayon::prelude::*;
@@ -19,7 +19,7 @@ use crate::lanes::{LANES, Map, ZERO, at, put};
 use crate::motion::{HeadPose, rigid_between, substep};
 use crate::rest::{RestShape, blocks_of};
 use crate::solver::{BendingKey, Plan, Substep};
-use crate::wake::Wakes;
+use crate::wake::{Wakes, head_of};
 use crate::wind::WindField;
 use crate::{BodyPart, InsidePoint, MAX_SUBSTEPS, SimulationSettings, StepInput, StepReport};
 
@@ -210,7 +210,11 @@ impl Simulation {
         let wind = WindField::new(&settings.wind, self.elapsed_secs, origin);
         let shelter = if wind.blows() { settings.wind.sheltering } else { 0.0 };
         let along = Vec3::from_array(settings.wind.direction);
-        let wakes = Wakes::new(&self.shapes[..colliders.len()], along, shelter);
+        let here = Affine3A::from_rotation_translation(self.head.turn, self.head.place - origin);
+        let head_in_field = self.field.as_ref().filter(|_| shelter > 0.0);
+        let head_in_field = head_in_field.and_then(|_| head_of(&self.style.scalp, &here));
+        let solids = self.shapes[..colliders.len()].iter().filter_map(|mover| mover.shape);
+        let wakes = Wakes::new(solids.chain(head_in_field), along, shelter);
         let first_free = first_free(self.clamped_links, self.style.guides.points_per_guide);
         let plan = Plan {
             wide: self.wide,

@@ -7,9 +7,10 @@
 //! and beside to 1 behind, `f` is the wake's recovery over [`LENGTH`] radii. What all colliders let through is
 //! multiplied.
 
-use glam::Vec3;
+use glam::{Affine3A, Vec3};
+use lovelock_groom::Scalp;
+use lovelock_motion::ColliderShape;
 
-use crate::colliders::MovingShape;
 use crate::colliders::contact::bounds;
 use crate::colliders::shape::Shape;
 use crate::lanes::{LANES, Lane, Lane3, at, greater, lesser};
@@ -36,15 +37,24 @@ struct Solid {
     reach: f32,
 }
 
+/// The head as the wind meets it where it is no collider but part of a distance field: the ellipsoid in the box of
+/// its surface, which is at `head`. `None` where it has no surface.
+pub(crate) fn head_of(scalp: &Scalp, head: &Affine3A) -> Option<Shape> {
+    let low = scalp.positions.iter().fold(Vec3::INFINITY, |low, p| low.min(*p));
+    let high = scalp.positions.iter().fold(Vec3::NEG_INFINITY, |high, p| high.max(*p));
+    let box_of = Affine3A::from_translation(0.5 * (low + high)) * Affine3A::from_scale(0.5 * (high - low));
+    Shape::new(&ColliderShape::Ellipsoid { from_unit: *head * box_of })
+}
+
 impl Wakes {
     /// Prepares the wakes of `shapes` in a wind along `along`; `strength` 0 makes none.
-    pub(crate) fn new(shapes: &[MovingShape], along: Vec3, strength: f32) -> Self {
+    pub(crate) fn new(shapes: impl Iterator<Item = Shape>, along: Vec3, strength: f32) -> Self {
         let Some(along) = along.try_normalize().filter(|_| strength > 0.0) else { return Self::default() };
-        let solid = |mover: &MovingShape| {
-            let (centre, half) = (0.5 * (mover.min + mover.max), 0.5 * (mover.max - mover.min));
-            mover.shape.map(|shape| Solid { shape, centre, reach: half.length() })
+        let solid = |shape: Shape| {
+            let (min, max) = shape.bounds();
+            Solid { shape, centre: 0.5 * (min + max), reach: 0.5 * (max - min).length() }
         };
-        Self { upwind: -along, strength, solids: shapes.iter().filter_map(solid).collect() }
+        Self { upwind: -along, strength, solids: shapes.map(solid).collect() }
     }
 
     /// The share of the wind that reaches each lane of a row of points.
@@ -116,25 +126,19 @@ fn smooth(t: f32) -> f32 {
 
 #[cfg(test)]
 mod tests {
-    use glam::Affine3A;
-    use lovelock_motion::ColliderShape;
-
     use super::*;
-    use crate::lanes::Map;
 
-    fn mover(shape: &ColliderShape) -> MovingShape {
-        let shape = Shape::new(shape).expect("a shape");
-        let (min, max) = shape.bounds();
-        MovingShape { shape: Some(shape), min, max, velocity_at: Map::IDENTITY, on_head: true }
+    fn solid(shape: &ColliderShape) -> Shape {
+        Shape::new(shape).expect("a shape")
     }
 
     /// A head, as an ellipsoid and as a capsule.
-    fn heads() -> [MovingShape; 2] {
+    fn heads() -> [Shape; 2] {
         let round = Affine3A::from_scale(Vec3::new(0.08, 0.11, 0.1));
         let (a, b) = (Vec3::Y * 0.03, Vec3::Y * -0.03);
         [
-            mover(&ColliderShape::Ellipsoid { from_unit: round }),
-            mover(&ColliderShape::Capsule { a, b, radius_a: 0.08, radius_b: 0.08 }),
+            solid(&ColliderShape::Ellipsoid { from_unit: round }),
+            solid(&ColliderShape::Capsule { a, b, radius_a: 0.08, radius_b: 0.08 }),
         ]
     }
 
@@ -145,7 +149,7 @@ mod tests {
     #[test]
     fn behind_the_head_there_is_less_wind_and_before_and_beside_it_all() {
         for head in heads() {
-            let wakes = Wakes::new(&[head], Vec3::X * 5.0, 1.0);
+            let wakes = Wakes::new([head].into_iter(), Vec3::X * 5.0, 1.0);
             assert!(open(&wakes, Vec3::X * 0.1) < 0.2, "right behind: {}", open(&wakes, Vec3::X * 0.1));
             let further = open(&wakes, Vec3::X * 0.5);
             assert!(further > 0.4 && further < 0.9, "further behind: {further}");
@@ -153,7 +157,7 @@ mod tests {
                 assert_eq!(open(&wakes, p), 1.0, "at {p}");
             }
             // The wind decides what is behind.
-            let other = Wakes::new(&[head], Vec3::NEG_X, 1.0);
+            let other = Wakes::new([head].into_iter(), Vec3::NEG_X, 1.0);
             assert!(open(&other, Vec3::X * -0.1) < 0.2 && open(&other, Vec3::X * 0.1) == 1.0);
         }
     }
@@ -161,7 +165,7 @@ mod tests {
     #[test]
     fn shelter_fades_smoothly_and_its_strength_is_the_setting() {
         let [head, _] = heads();
-        let wakes = Wakes::new(&[head], Vec3::X, 1.0);
+        let wakes = Wakes::new([head].into_iter(), Vec3::X, 1.0);
         let mut last = open(&wakes, Vec3::new(0.12, 0.0, -0.2));
         for i in 0..400 {
             let now = open(&wakes, Vec3::new(0.12, 0.0, -0.2 + 0.001 * i as f32));
@@ -169,9 +173,9 @@ mod tests {
             last = now;
         }
         let (full, half) = (open(&wakes, Vec3::X * 0.15), Vec3::X * 0.15);
-        let half = open(&Wakes::new(&[head], Vec3::X, 0.5), half);
+        let half = open(&Wakes::new([head].into_iter(), Vec3::X, 0.5), half);
         assert!((1.0 - half - 0.5 * (1.0 - full)).abs() < 1e-6);
-        assert_eq!(open(&Wakes::new(&[head], Vec3::X, 0.0), Vec3::X * 0.15), 1.0);
-        assert_eq!(open(&Wakes::new(&[head], Vec3::ZERO, 1.0), Vec3::X * 0.15), 1.0);
+        assert_eq!(open(&Wakes::new([head].into_iter(), Vec3::X, 0.0), Vec3::X * 0.15), 1.0);
+        assert_eq!(open(&Wakes::new([head].into_iter(), Vec3::ZERO, 1.0), Vec3::X * 0.15), 1.0);
     }
 }

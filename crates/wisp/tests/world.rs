@@ -157,28 +157,6 @@ fn behind_the_head_hair_feels_less_wind_and_before_it_the_same() {
     assert!(behind_open > 0.03 && behind < 0.4 * behind_open, "behind: {behind} of {behind_open} m");
 }
 
-/// Volume of the hair as a share of that at rest, on the mean over the dance.
-fn volume_over_dance(preset: Preset, settings: &SimulationSettings) -> f32 {
-    let mut stage = Stage::new(preset);
-    let mut simulation = stage.simulation(Some(0.0));
-    let steps = (stage.dance.duration_secs * 60.0) as u32;
-    let mut sum = 0.0;
-    for step in 1..=steps {
-        let report = simulation.step(&stage.at(Some(f64::from(step) / 60.0)), settings, STEP_SECS);
-        sum += report.hair_volume / report.hair_volume_at_rest;
-    }
-    sum / steps as f32
-}
-
-#[test]
-fn over_the_dance_hair_keeps_its_volume() {
-    for preset in Preset::ALL {
-        let kept = volume_over_dance(preset, &SimulationSettings::default());
-        println!("{preset:?}: {kept}");
-        assert!((kept - 1.0).abs() < 0.15, "{preset:?}: {kept} of its volume at rest");
-    }
-}
-
 #[path = "../examples/brush/hair.rs"]
 mod brush;
 

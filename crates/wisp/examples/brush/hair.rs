@@ -49,6 +49,7 @@ pub fn fall(settings: &SimulationSettings, steps: u32) -> (Guides, f32) {
         time_secs: f64::from(step) / 60.0,
         world_from_head: Affine3A::IDENTITY,
         colliders: &[],
+        field: None,
     };
     simulation.reset(&input(0));
     let mut kept = 1.0;
