@@ -45,6 +45,8 @@ pub struct Engine {
     field: FieldPose,
     /// Where the style at rest lies inside the body.
     rest_inside: Option<InsidePoint>,
+    /// Whether the next step may change that.
+    rest_is_new: bool,
     report: StepReport,
     totals: Totals,
     times: StageTimes,
@@ -85,6 +87,7 @@ impl Engine {
             colliders: Vec::new(),
             field: FieldPose::default(),
             rest_inside: None,
+            rest_is_new: false,
             report: StepReport::default(),
             totals: Totals::default(),
             times: StageTimes::default(),
@@ -190,7 +193,7 @@ impl Engine {
         } else if !same_clip {
             self.jump();
         }
-        self.rest_inside = self.simulation.rest_inside();
+        self.rest_is_new = true;
         !(same_layout && same_body && same_clip)
     }
 
@@ -239,6 +242,7 @@ impl Engine {
         (self.simulation, self.simulated_secs) = (aside.simulation, aside.simulated_secs);
         (self.pose, self.colliders, self.field) = (aside.pose, aside.colliders, aside.field);
         self.report = aside.report;
+        (self.rest_inside, self.rest_is_new) = (aside.rest_inside, aside.rest_is_new);
         self.totals = Totals::default();
         self.times = StageTimes::default();
         true
@@ -394,6 +398,9 @@ impl Engine {
         self.simulated_secs += self.step_secs;
         let input = body_at(self.simulated_secs, &self.scene, &self.pose, &self.colliders, &self.field);
         self.report = self.simulation.step(&input, &self.settings, self.step_secs as f32);
+        if std::mem::take(&mut self.rest_is_new) {
+            self.rest_inside = self.simulation.rest_inside();
+        }
     }
 
     /// The body is elsewhere at once: moves the hair along.

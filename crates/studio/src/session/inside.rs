@@ -342,9 +342,14 @@ impl Inside {
 
     fn set_scene(&mut self, scene: Arc<Scene>) {
         if let Some(engine) = &mut self.engine {
-            let other_hair = !Arc::ptr_eq(&engine.scene().style, &scene.style);
+            let before = engine.scene();
+            let other_hair = !Arc::ptr_eq(&before.style, &scene.style)
+                || !Arc::ptr_eq(&before.colliders, &scene.colliders)
+                || before.field.is_some() != scene.field.is_some()
+                || before.field_lift_m.to_bits() != scene.field_lift_m.to_bits();
             let laid = engine.set_scene(scene);
-            // Locks that are only changed go on moving while time passes. Where it stands, they are seen as they settle.
+            // Locks that are only changed, or meet another body, go on moving while time passes. Where it stands, they are
+            // seen as they settle.
             if laid || self.preroll.is_some() || (other_hair && !self.playback.is_playing()) {
                 self.begin_preroll();
             }

@@ -30,6 +30,8 @@ pub use totals::Totals;
 pub use worker::{Event, Wake, Worker};
 
 #[cfg(test)]
+mod collider_tests;
+#[cfg(test)]
 mod preroll_tests;
 #[cfg(test)]
 pub(crate) mod tests;
