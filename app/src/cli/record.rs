@@ -87,10 +87,10 @@ fn summary(report: &RecordReport) -> String {
 /// What to change, a line for each gauge that is over its limits.
 fn advice(health: &[Gauge]) -> String {
     let over = health.iter().filter(|gauge| gauge.level != HealthLevel::Good);
-    over.map(|gauge| {
-        format!("\n{}, {}: {}", gauge.kind.label(), gauge.kind.in_words(gauge.value), gauge.advice)
-    })
-    .collect()
+    let line = |Gauge { kind, value, advice, .. }: &Gauge| {
+        format!("\n{}, {}: {advice}", kind.label(), kind.in_words(*value))
+    };
+    over.map(line).collect::<Vec<_>>().concat()
 }
 
 fn take_summary(report: &TakeRecordReport) -> String {

@@ -171,7 +171,11 @@ impl Ramp<'_> {
         let falls = middle_at(low) > middle_at(high);
         for _ in 0..24 {
             let middle = 0.5 * (low + high);
-            if (middle_at(middle) < wanted) == falls { high = middle } else { low = middle }
+            if (middle_at(middle) < wanted) == falls {
+                high = middle;
+            } else {
+                low = middle;
+            }
         }
         value.bias = 0.5 * (low + high);
     }

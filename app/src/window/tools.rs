@@ -17,18 +17,18 @@ impl Window {
         let painted = self.session.painted.clone();
         let view = painted.as_ref().zip(self.viewport.place(response.rect));
         let Some((painted, view)) =
-            view.and_then(|(painted, place)| Some((painted, View::new(&painted, place)?)))
+            view.and_then(|(painted, place)| Some((painted, View::new(painted, place)?)))
         else {
             return true;
         };
         self.colliders_over(ui, response, view, &painted.snapshot);
-        self.paint_pointed(ui, view, &painted);
+        self.paint_pointed(ui, view, painted);
         if project.take.file.is_some() {
             return true;
         }
         let held = self.scissors.held;
         if let Some(line) = self.scissors.drag(ui, view, response) {
-            self.cut(view, &painted, line, project);
+            self.cut(view, painted, line, project);
         }
         let ties = &mut project.hair.ties;
         if self.ties_shown && !held {

@@ -3,7 +3,7 @@
 use egui::Ui;
 use glam::Vec3;
 use lovelock_studio::TimelineSection;
-use lovelock_studio::wisp::{RepulsionMode, SimulationSettings, Wind};
+use lovelock_studio::wisp::{Integrator, MAX_SWEEPS, RepulsionMode, SimulationSettings, Wind};
 
 use crate::window::control::{Number, choice, count, row, section};
 use crate::window::light_sphere::{Sphere, sphere};
@@ -233,6 +233,41 @@ fn hair_against_hair(ui: &mut Ui, s: &mut SimulationSettings, d: &SimulationSett
 }
 
 fn accuracy(ui: &mut Ui, s: &mut SimulationSettings, d: &SimulationSettings, preroll_secs: &mut f32) {
+    choice(
+        ui,
+        "Method",
+        "What keeps locks at their length: all links at once, which is exact; one after the other as first published, where hair \
+         stretches; or each behind the one before, which is quick and moves otherwise with other substeps.",
+        &mut s.integrator,
+        d.integrator,
+        &[
+            (Integrator::Direct, "Direct"),
+            (Integrator::Relaxation, "Relaxation, as published"),
+            (Integrator::FollowTheLeader, "Follow the leader"),
+        ],
+    );
+    match s.integrator {
+        Integrator::Direct => {}
+        Integrator::Relaxation => {
+            count(
+                ui,
+                "Sweeps",
+                1..=MAX_SWEEPS,
+                "How often the links are gone through in a substep: more stretch less, and take longer.",
+                &mut s.relaxation_sweeps,
+                d.relaxation_sweeps,
+            );
+        }
+        Integrator::FollowTheLeader => {
+            Number::new(
+                "Damping",
+                0.0..=1.0,
+                "How much of what a point is pulled by its follower its speed takes on: with little, locks gain energy.",
+            )
+            .percent()
+            .show(ui, &mut s.follow_damping, d.follow_damping);
+        }
+    }
     count(
         ui,
         "Substeps",

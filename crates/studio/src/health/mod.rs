@@ -1,6 +1,6 @@
 //! How well the hair is simulated, in plain words: gauges with limits, and what to change where one is over them.
 
-use lovelock_wisp::{InsidePoint, SimulationSettings};
+use lovelock_wisp::{InsidePoint, Integrator, SimulationSettings};
 use serde::Serialize;
 
 use crate::{FrameSnapshot, Scene, Totals};
@@ -151,7 +151,9 @@ fn gauges(
     let part = |inside: Option<InsidePoint>| inside.map_or("the body", |inside| scene.name_of(inside.within));
     vec![
         Gauge::new(GaugeKind::Stretch, f64::from(totals.max_stretch), totals.worst_stretch_at, || {
-            let more = if settings.substeps < lovelock_wisp::MAX_SUBSTEPS {
+            let more = if settings.integrator == Integrator::Relaxation {
+                "Choose the direct method, or raise the sweeps"
+            } else if settings.substeps < lovelock_wisp::MAX_SUBSTEPS {
                 "Raise the substeps"
             } else {
                 "Slow the motion down"

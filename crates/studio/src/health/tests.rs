@@ -52,7 +52,7 @@ fn shipped_styles_are_well_over_the_dance_and_hair_in_a_storm_of_one_substep_is_
             assert_eq!(gauge.level, HealthLevel::Good, "{}: {gauge:?}", preset.id());
         }
         let at = totals.fastest_at.expect("a fastest point");
-        assert!(frame.guide_point(at).is_some_and(|p| p.is_finite()));
+        assert!(frame.guide_point(at).is_some_and(glam::Vec3::is_finite));
         assert_eq!(frame.guide_point((u32::MAX, 0)), None);
     }
     let mut storm = small_project();

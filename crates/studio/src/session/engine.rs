@@ -10,55 +10,12 @@ use lovelock_wisp::{InsidePoint, PlacedField, Simulation, SimulationSettings, St
 
 use super::preroll::Preroll;
 use super::snapshot::SnapshotPool;
-use super::{FrameSnapshot, Scene};
+use super::{FrameSnapshot, Scene, Totals};
 use crate::{Animation, Project, STEP_SECS, StageTimes, Stopwatch, TimelineSection};
 
 /// What the simulator is told that has passed where the motion jumps, seconds: it then moves hair along with the
 /// head instead of simulating it ([`StepInput::time_secs`]).
 const JUMP_SECS: f64 = 16.0;
-
-/// The worst of all steps since the hair was last settled.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Totals {
-    /// Steps taken.
-    pub steps: u64,
-    /// Largest relative change of a link's length.
-    pub max_stretch: f32,
-    /// The guide whose link that is, and the point at its end.
-    pub worst_stretch_at: Option<(u32, u32)>,
-    /// Deepest point inside a collider, metres.
-    pub max_penetration_m: f32,
-    /// Where that was; none where no point was inside.
-    pub deepest: Option<InsidePoint>,
-    /// Largest mean kinetic energy, joules per kilogram.
-    pub max_kinetic_energy: f32,
-    /// The fastest guide and its point in that step.
-    pub fastest_at: Option<(u32, u32)>,
-    /// Guides put back to their last good pose, counted at each step.
-    pub recovered_guides: u64,
-    /// The guide that was put back last.
-    pub recovered_at: Option<u32>,
-    /// Steps at which the motion jumped.
-    pub jumps: u64,
-}
-
-impl Totals {
-    fn add(&mut self, report: &StepReport) {
-        self.steps += 1;
-        if report.max_stretch > self.max_stretch {
-            (self.max_stretch, self.worst_stretch_at) = (report.max_stretch, report.worst_stretch_at);
-        }
-        if report.max_penetration_m > self.max_penetration_m {
-            (self.max_penetration_m, self.deepest) = (report.max_penetration_m, report.deepest);
-        }
-        if report.kinetic_energy > self.max_kinetic_energy {
-            (self.max_kinetic_energy, self.fastest_at) = (report.kinetic_energy, report.fastest_at);
-        }
-        self.recovered_guides += u64::from(report.recovered_guides);
-        self.recovered_at = report.recovered_at.or(self.recovered_at);
-        self.jumps += u64::from(report.jumped);
-    }
-}
 
 /// A scene in motion.
 ///
@@ -88,6 +45,8 @@ pub struct Engine {
     field: FieldPose,
     /// Where the style at rest lies inside the body.
     rest_inside: Option<InsidePoint>,
+    /// Whether the next step may change that.
+    rest_is_new: bool,
     report: StepReport,
     totals: Totals,
     times: StageTimes,
@@ -128,6 +87,7 @@ impl Engine {
             colliders: Vec::new(),
             field: FieldPose::default(),
             rest_inside: None,
+            rest_is_new: false,
             report: StepReport::default(),
             totals: Totals::default(),
             times: StageTimes::default(),
@@ -233,7 +193,7 @@ impl Engine {
         } else if !same_clip {
             self.jump();
         }
-        self.rest_inside = self.simulation.rest_inside();
+        self.rest_is_new = true;
         !(same_layout && same_body && same_clip)
     }
 
@@ -282,6 +242,7 @@ impl Engine {
         (self.simulation, self.simulated_secs) = (aside.simulation, aside.simulated_secs);
         (self.pose, self.colliders, self.field) = (aside.pose, aside.colliders, aside.field);
         self.report = aside.report;
+        (self.rest_inside, self.rest_is_new) = (aside.rest_inside, aside.rest_is_new);
         self.totals = Totals::default();
         self.times = StageTimes::default();
         true
@@ -437,6 +398,9 @@ impl Engine {
         self.simulated_secs += self.step_secs;
         let input = body_at(self.simulated_secs, &self.scene, &self.pose, &self.colliders, &self.field);
         self.report = self.simulation.step(&input, &self.settings, self.step_secs as f32);
+        if std::mem::take(&mut self.rest_is_new) {
+            self.rest_inside = self.simulation.rest_inside();
+        }
     }
 
     /// The body is elsewhere at once: moves the hair along.

@@ -1,27 +1,29 @@
 //! The simulation thread's own state: an engine or a take, and what is asked of it.
 
+mod recording;
+mod settling;
+
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, SystemTime};
 
 use lovelock_wisp::SimulationSettings;
 
+use settling::Aside;
+
 use super::load_thread::{LoadThread, Loaded};
 use super::mailbox::{Mailbox, TakeWish, Wishes};
 use super::worker::{Event, Outbox};
-use super::{Engine, FrameSnapshot, Preroll, PrerollProgress, Scene};
+use super::{Engine, FrameSnapshot, PrerollProgress, Scene};
 use crate::take::TakeTransport;
 use crate::{
     Access, BodySection, FileRef, HairSection, MotionSection, Playback, Project, STEP_SECS, Slot, Stopwatch,
-    StudioError, TakeProgress, TakeRecording,
+    TakeProgress, TakeRecording,
 };
 
 /// Panics in a row after which the simulation rests until something changes.
 const MOST_PANICS: u32 = 3;
-
-/// How long the life before an instant goes on before wishes are looked at again, milliseconds.
-const SLICE_MS: f64 = 8.0;
 
 /// What a scene is made from: other sections of a project need no load.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,14 +50,6 @@ impl SceneInputs {
             None => Self::Simulated(Box::new((body, motion, hair, access))),
         }
     }
-}
-
-/// A life on its way.
-struct Aside {
-    preroll: Box<Preroll>,
-    since: Stopwatch,
-    /// Steps to go on once it has arrived.
-    steps: u32,
 }
 
 /// The simulation thread's own state.
@@ -159,51 +153,6 @@ impl Inside {
         self.tell_settling();
     }
 
-    /// Begins the life before the instant where the engine stands, in place of another that is under way.
-    fn begin_preroll(&mut self) {
-        self.preroll = self.engine.as_ref().map(|engine| Aside {
-            preroll: Box::new(engine.preroll()),
-            since: Stopwatch::start(),
-            steps: 0,
-        });
-    }
-
-    /// A slice of the life aside. Before it is over the hair is seen as it was carried here.
-    fn live_aside(&mut self, changed: bool) {
-        if changed {
-            self.show();
-        }
-        let slice = Stopwatch::start();
-        while let Some(aside) = &mut self.preroll {
-            if aside.preroll.advance() {
-                self.arrive();
-                self.show();
-            } else if slice.ms() > SLICE_MS {
-                break;
-            }
-        }
-    }
-
-    /// Takes over the hair that has arrived, and goes on as was asked for meanwhile.
-    fn arrive(&mut self) {
-        let (Some(aside), Some(engine)) = (self.preroll.take(), &mut self.engine) else { return };
-        engine.take_settled(*aside.preroll);
-        // The time that it took is not to be caught up with.
-        self.playback.set_playing(self.playback.is_playing());
-        for _ in 0..aside.steps {
-            self.step();
-        }
-    }
-
-    /// Lives through what is left of it at once: where hair is about to be written down.
-    fn finish_preroll(&mut self) {
-        while self.preroll.as_mut().is_some_and(|aside| !aside.preroll.advance()) {}
-        if self.preroll.is_some() {
-            self.arrive();
-            self.show();
-        }
-    }
-
     fn step(&mut self) {
         if let Some(engine) = &mut self.engine {
             engine.step();
@@ -214,19 +163,6 @@ impl Inside {
     fn show(&mut self) {
         if let Some(engine) = &mut self.engine {
             self.frames.put(engine.snapshot());
-            self.outbox.wake();
-        }
-    }
-
-    fn tell_settling(&mut self) {
-        let progress = self.preroll.as_ref().map(|aside| {
-            let (done, total) = aside.preroll.steps();
-            let (to_secs, taken_secs) = (aside.preroll.to_secs(), aside.since.secs());
-            PrerollProgress { done, total, to_secs, taken_secs }
-        });
-        let mut told = self.settling.lock().unwrap_or_else(PoisonError::into_inner);
-        if progress.is_some() || told.is_some() {
-            *told = progress;
             self.outbox.wake();
         }
     }
@@ -290,7 +226,6 @@ impl Inside {
             steps,
             restart,
             settle,
-            cancel_settle,
             take,
             stop: _,
         } = wishes;
@@ -335,9 +270,9 @@ impl Inside {
                     engine.step_back(steps.unsigned_abs());
                 }
                 let gone_to = restart || seek_secs.is_some() || steps < 0;
-                if gone_to || settle {
+                if gone_to || settle == Some(true) {
                     self.begin_preroll();
-                } else if cancel_settle && self.preroll.take().is_some() {
+                } else if settle == Some(false) && self.preroll.take().is_some() {
                     self.playback.set_playing(self.playback.is_playing());
                 }
                 gone_to || steps != 0
@@ -365,15 +300,8 @@ impl Inside {
         if let Some(engine) = &mut self.engine {
             engine.follow(&project);
         }
-        // A life under way is one of the settings as they are now.
-        if self.preroll.is_some()
-            && self.project.as_ref().is_some_and(|before| before.simulation != project.simulation)
-        {
-            let steps = self.preroll.as_ref().map_or(0, |aside| aside.steps);
-            self.begin_preroll();
-            if let Some(aside) = &mut self.preroll {
-                aside.steps = steps;
-            }
+        if self.project.as_ref().is_some_and(|before| before.simulation != project.simulation) {
+            self.begin_preroll_anew();
         }
         if let Some(take) = &mut self.take {
             take.set_looping(project.motion.looping);
@@ -414,9 +342,14 @@ impl Inside {
 
     fn set_scene(&mut self, scene: Arc<Scene>) {
         if let Some(engine) = &mut self.engine {
-            let other_hair = !Arc::ptr_eq(&engine.scene().style, &scene.style);
+            let before = engine.scene();
+            let other_hair = !Arc::ptr_eq(&before.style, &scene.style)
+                || !Arc::ptr_eq(&before.colliders, &scene.colliders)
+                || before.field.is_some() != scene.field.is_some()
+                || before.field_lift_m.to_bits() != scene.field_lift_m.to_bits();
             let laid = engine.set_scene(scene);
-            // Locks that are only changed go on moving while time passes. Where it stands, they are seen as they settle.
+            // Locks that are only changed, or meet another body, go on moving while time passes. Where it stands, they are
+            // seen as they settle.
             if laid || self.preroll.is_some() || (other_hair && !self.playback.is_playing()) {
                 self.begin_preroll();
             }
@@ -442,77 +375,6 @@ impl Inside {
             engine.seek(0.0);
             self.begin_preroll();
         }
-    }
-
-    fn start_take(&mut self, path: &std::path::Path) {
-        if self.take.is_some() {
-            let message = format!("{}: a take plays; leave it to record another", path.display());
-            return self.outbox.send(Event::TakeFailed { message });
-        }
-        self.end_take(None);
-        self.finish_preroll();
-        let (Some(engine), Some(project)) = (&self.engine, self.recorded_project()) else {
-            let message = format!("{}: there is nothing to record yet", path.display());
-            return self.outbox.send(Event::TakeFailed { message });
-        };
-        match TakeRecording::start(path, &project, engine) {
-            Ok(recording) => self.recording = Some(recording),
-            Err(error) => self.outbox.send(Event::TakeFailed { message: error.to_string() }),
-        }
-        self.tell_progress();
-    }
-
-    /// Makes the take whole that is recorded, if one is.
-    fn end_take(&mut self, because: Option<&str>) {
-        let Some(recording) = self.recording.take() else { return };
-        match recording.finish() {
-            Ok(report) => self.outbox.send(Event::TakeSaved { report, because: because.map(str::to_owned) }),
-            Err(error) => self.outbox.send(Event::TakeFailed { message: error.to_string() }),
-        }
-        self.tell_progress();
-    }
-
-    fn record_step(&mut self) {
-        let (Some(recording), Some(engine)) = (&mut self.recording, &self.engine) else { return };
-        if let Err(error) = recording.push(engine) {
-            self.fail_take(&error);
-        }
-        self.tell_progress();
-    }
-
-    /// Ends the take that could not go on.
-    fn fail_take(&mut self, error: &StudioError) {
-        self.outbox.send(Event::TakeFailed { message: error.to_string() });
-        // What is there is worth having; where the disk refused it, the message said what is kept.
-        let ended = self.recording.take().map(TakeRecording::finish);
-        if let Some(Ok(report)) = ended {
-            self.outbox.send(Event::TakeSaved { report, because: Some(error.to_string()) });
-        }
-        self.tell_progress();
-    }
-
-    fn record_change(&mut self) {
-        let project = self.recorded_project();
-        let (Some(recording), Some(project)) = (&mut self.recording, project) else { return };
-        if let Err(error) = recording.change(&project) {
-            self.outbox.send(Event::TakeFailed { message: error.to_string() });
-        }
-    }
-
-    /// The project as it is seen: the scene is still that of the last load.
-    fn recorded_project(&self) -> Option<Arc<Project>> {
-        let project = self.project.as_ref()?;
-        let Some(of) = &self.scene_of else { return Some(Arc::clone(project)) };
-        if (&of.body, &of.motion, &of.hair) == (&project.body, &project.motion, &project.hair) {
-            return Some(Arc::clone(project));
-        }
-        let Project { body, motion, hair, .. } = Project::clone(of);
-        Some(Arc::new(Project { body, motion, hair, ..Project::clone(project) }))
-    }
-
-    fn tell_progress(&self) {
-        let progress = self.recording.as_ref().map(TakeRecording::progress);
-        *self.recorded.lock().unwrap_or_else(PoisonError::into_inner) = progress;
     }
 
     /// After a panic the engine may be half way through a step: it starts again, in the same scene.

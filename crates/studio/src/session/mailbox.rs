@@ -38,10 +38,8 @@ pub(super) struct Wishes {
     pub(super) steps: i64,
     /// Back to the first frame, the hair settled.
     pub(super) restart: bool,
-    /// The hair settled where it is.
-    pub(super) settle: bool,
-    /// The hair as it is, and not settled.
-    pub(super) cancel_settle: bool,
+    /// The hair settled where it is; or as it is, where that is under way.
+    pub(super) settle: Option<bool>,
     /// A take is to be recorded, or enough of it is.
     pub(super) take: Option<TakeWish>,
     /// The thread shall end.
@@ -50,20 +48,8 @@ pub(super) struct Wishes {
 
 impl Wishes {
     fn is_empty(&self) -> bool {
-        let Self {
-            project,
-            loaded,
-            playing,
-            rate,
-            backwards,
-            seek_secs,
-            steps,
-            restart,
-            settle,
-            cancel_settle,
-            take,
-            stop,
-        } = self;
+        let Self { project, loaded, playing, rate, backwards, seek_secs, steps, restart, settle, take, stop } =
+            self;
         project.is_none()
             && loaded.is_none()
             && playing.is_none()
@@ -72,8 +58,7 @@ impl Wishes {
             && seek_secs.is_none()
             && *steps == 0
             && !restart
-            && !settle
-            && !cancel_settle
+            && settle.is_none()
             && take.is_none()
             && !stop
     }

@@ -13,11 +13,12 @@ mod parts;
 mod preroll;
 mod scene;
 mod snapshot;
+mod totals;
 mod worker;
 
 pub use camera::{camera_at, frame_points};
 pub use dancer::dancer;
-pub use engine::{Engine, Totals};
+pub use engine::Engine;
 pub use head_path::HeadPath;
 pub use load_thread::LoadProgress;
 pub use loader::{LoadControl, SceneLoader};
@@ -25,8 +26,11 @@ pub use preroll::{Preroll, PrerollProgress};
 pub use scene::{BodyObstacle, Scene};
 pub use snapshot::FrameSnapshot;
 pub(crate) use snapshot::SnapshotPool;
+pub use totals::Totals;
 pub use worker::{Event, Wake, Worker};
 
+#[cfg(test)]
+mod collider_tests;
 #[cfg(test)]
 mod preroll_tests;
 #[cfg(test)]

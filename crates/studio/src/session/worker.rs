@@ -191,7 +191,7 @@ impl Worker {
 
     /// Goes on with the hair as it is, not settled.
     pub fn cancel_settle(&self) {
-        self.mailbox.ask(|wishes| wishes.cancel_settle = true);
+        self.mailbox.ask(|wishes| wishes.settle = Some(false));
     }
 
     /// Goes to a time, seconds; the hair moves along at once, and settles there aside. Time waits for it.
@@ -217,7 +217,7 @@ impl Worker {
 
     /// Lets the hair fall into place where it is.
     pub fn settle(&self) {
-        self.mailbox.ask(|wishes| wishes.settle = true);
+        self.mailbox.ask(|wishes| wishes.settle = Some(true));
     }
 
     /// Gives up what is being loaded.

@@ -1,0 +1,88 @@
+//! Hair that settles aside on the simulation thread, a slice at a time, while time waits for it.
+
+use std::sync::PoisonError;
+
+use super::super::{Preroll, PrerollProgress};
+use super::Inside;
+use crate::Stopwatch;
+
+/// How long the life before an instant goes on before wishes are looked at again, milliseconds.
+const SLICE_MS: f64 = 8.0;
+
+/// A life on its way.
+pub(super) struct Aside {
+    preroll: Box<Preroll>,
+    since: Stopwatch,
+    /// Steps to go on once it has arrived.
+    pub(super) steps: u32,
+}
+
+impl Inside {
+    /// Begins the life before the instant where the engine stands, in place of another that is under way.
+    pub(super) fn begin_preroll(&mut self) {
+        self.preroll = self.engine.as_ref().map(|engine| Aside {
+            preroll: Box::new(engine.preroll()),
+            since: Stopwatch::start(),
+            steps: 0,
+        });
+    }
+
+    /// A slice of the life aside. Before it is over the hair is seen as it was carried here.
+    pub(super) fn live_aside(&mut self, changed: bool) {
+        if changed {
+            self.show();
+        }
+        let slice = Stopwatch::start();
+        while let Some(aside) = &mut self.preroll {
+            if aside.preroll.advance() {
+                self.arrive();
+                self.show();
+            } else if slice.ms() > SLICE_MS {
+                break;
+            }
+        }
+    }
+
+    /// Takes over the hair that has arrived, and goes on as was asked for meanwhile.
+    pub(super) fn arrive(&mut self) {
+        let (Some(aside), Some(engine)) = (self.preroll.take(), &mut self.engine) else { return };
+        engine.take_settled(*aside.preroll);
+        // The time that it took is not to be caught up with.
+        self.playback.set_playing(self.playback.is_playing());
+        for _ in 0..aside.steps {
+            self.step();
+        }
+    }
+
+    /// Lives through what is left of it at once: where hair is about to be written down.
+    pub(super) fn finish_preroll(&mut self) {
+        while self.preroll.as_mut().is_some_and(|aside| !aside.preroll.advance()) {}
+        if self.preroll.is_some() {
+            self.arrive();
+            self.show();
+        }
+    }
+
+    /// The same anew, where one is under way: it is a life of the settings as they are now.
+    pub(super) fn begin_preroll_anew(&mut self) {
+        if let Some(Aside { steps, .. }) = self.preroll.take() {
+            self.begin_preroll();
+            if let Some(aside) = &mut self.preroll {
+                aside.steps = steps;
+            }
+        }
+    }
+
+    pub(super) fn tell_settling(&mut self) {
+        let progress = self.preroll.as_ref().map(|aside| {
+            let (done, total) = aside.preroll.steps();
+            let (to_secs, taken_secs) = (aside.preroll.to_secs(), aside.since.secs());
+            PrerollProgress { done, total, to_secs, taken_secs }
+        });
+        let mut told = self.settling.lock().unwrap_or_else(PoisonError::into_inner);
+        if progress.is_some() || told.is_some() {
+            *told = progress;
+            self.outbox.wake();
+        }
+    }
+}
