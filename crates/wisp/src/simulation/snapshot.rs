@@ -23,6 +23,9 @@ const VERSION: u32 = 1;
 /// The most colliders that a state may speak of: beyond it the bytes are no state.
 const MOST_COLLIDERS: u32 = 4096;
 
+/// The same of the parts of a field of the body.
+const MOST_PARTS: u32 = 1 << 20;
+
 /// Why bytes are not a state of this simulation.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RestoreError {
@@ -128,21 +131,21 @@ impl Simulation {
             return Err(damaged("it clamps more than two links"));
         }
         next.colliders.clear();
-        for _ in 0..input.count()? {
+        for _ in 0..input.count(MOST_COLLIDERS)? {
             let world_from_rest = input.affine()?;
             next.colliders.push(PlacedCollider { shape: input.shape()?, world_from_rest });
         }
         let rest = &mut next.rest_colliders;
         rest.shapes.clear();
         rest.on_head.clear();
-        for _ in 0..input.count()? {
+        for _ in 0..input.count(MOST_COLLIDERS)? {
             rest.shapes.push(input.shape()?);
             rest.on_head.push(input.u32()? != 0);
         }
         if rest.shapes.len() != next.colliders.len() {
             return Err(damaged("it knows other colliders at rest than in motion"));
         }
-        let places = (0..input.count()?).map(|_| input.affine()).collect::<Result<Vec<_>, _>>()?;
+        let places = (0..input.count(MOST_PARTS)?).map(|_| input.affine()).collect::<Result<Vec<_>, _>>()?;
         if places.is_empty() {
             next.field = None;
         } else if !next.field.as_mut().is_some_and(|field| field.set_places(&places)) {
@@ -270,10 +273,10 @@ impl Reader<'_> {
         Ok(out)
     }
 
-    fn count(&mut self) -> Result<u32, RestoreError> {
+    fn count(&mut self, most: u32) -> Result<u32, RestoreError> {
         let count = self.u32()?;
-        if count > MOST_COLLIDERS {
-            return Err(damaged(&format!("{count} shapes, where {MOST_COLLIDERS} are the most")));
+        if count > most {
+            return Err(damaged(&format!("{count} shapes, where {most} are the most")));
         }
         Ok(count)
     }
