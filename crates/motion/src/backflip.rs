@@ -157,7 +157,7 @@ fn hanging(body: &Body, arm: usize) -> Quat {
     let Some(child) = child else { return Quat::IDENTITY };
     let along = (skeleton.rest_position(child) - skeleton.rest_position(arm)).normalize_or(Vec3::NEG_Y);
     let aside = 0.2 * along.x.signum();
-    Quat::from_rotation_arc(along, Vec3::new(aside, -1.0, 0.0).normalize())
+    Quat::from_rotation_arc(along, Vec3::new(aside, -1.0, 0.0).normalize_or(Vec3::NEG_Y))
 }
 
 #[cfg(test)]

@@ -3,6 +3,8 @@
 //! `contacts [PRESET] [SECS]`: thread time is not to be had portably, so times are wall time on one thread; the least of
 //! five rounds counts.
 
+#![allow(clippy::disallowed_methods, reason = "this example is a stopwatch")]
+
 use std::time::{Duration, Instant};
 
 use lovelock_groom::Preset;

@@ -63,7 +63,8 @@ pub(crate) struct Outcome {
 /// How deep a point is inside a collider.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Depth {
-    pub(crate) depth_m: f32,
+    /// Metres.
+    pub(crate) metres: f32,
     pub(crate) point: u32,
     /// Its index; [`crate::colliders::contact::FIELD`] for the field.
     pub(crate) collider: u32,

@@ -251,12 +251,12 @@ impl Simulation {
             if out.max_stretch > report.max_stretch {
                 (report.max_stretch, stretched) = (out.max_stretch, Some(block));
             }
-            if out.deepest.depth_m > report.max_penetration_m {
-                report.max_penetration_m = out.deepest.depth_m;
+            if out.deepest.metres > report.max_penetration_m {
+                report.max_penetration_m = out.deepest.metres;
                 report.deepest = Some(InsidePoint {
                     guide: out.deepest_guide,
                     point: out.deepest.point,
-                    depth_m: out.deepest.depth_m,
+                    depth_m: out.deepest.metres,
                     within: BodyPart::of(out.deepest.collider),
                 });
             }

@@ -255,9 +255,9 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize, lay: Lay) {
             if last && (near.field.is_some() || !near.active.is_empty()) {
                 let found = penetration(i, &placed, &near, &plan.rules);
                 for k in 0..LANES {
-                    if found.depth[k] > deepest[k].depth_m {
+                    if found.depth[k] > deepest[k].metres {
                         deepest[k] =
-                            Depth { depth_m: found.depth[k], point: i as u32, collider: found.collider[k] };
+                            Depth { metres: found.depth[k], point: i as u32, collider: found.collider[k] };
                     }
                 }
             }
@@ -275,7 +275,7 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize, lay: Lay) {
     }
     std::mem::swap(&mut block.bend, &mut block.next_bend);
     for (depth, &guide) in deepest.iter().zip(&block.guides).take(block.used) {
-        if depth.depth_m > block.outcome.deepest.depth_m {
+        if depth.metres > block.outcome.deepest.metres {
             (block.outcome.deepest, block.outcome.deepest_guide) = (*depth, guide);
         }
     }

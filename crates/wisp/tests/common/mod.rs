@@ -240,21 +240,21 @@ pub fn worse(a: StepReport, b: StepReport) -> StepReport {
 pub struct Depths {
     /// Depth at rest of every point, metres, guide by guide; 0 outside.
     rest: Vec<f32>,
-    pub worst: Depth,
+    pub worst: InSkin,
     /// The same without any allowance but that of the point itself at rest.
-    pub worst_of_all: Depth,
+    pub worst_of_all: InSkin,
     /// How many points were deeper than each of [`Depths::LIMITS`], and how many there were.
     pub over: [usize; 4],
     pub count: usize,
     /// The worst in the skin of arms, hands and the lower trunk, which the other numbers leave out.
-    pub elsewhere: Depth,
+    pub elsewhere: InSkin,
     /// Which vertices are head, neck, shoulders and upper back.
     region: Vec<bool>,
 }
 
 /// One place in the skin.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Depth {
+pub struct InSkin {
     pub depth: f32,
     pub guide: usize,
     pub point: usize,
@@ -276,11 +276,11 @@ impl Depths {
         };
         Self {
             rest: (0..guides.x.len()).into_par_iter().map(depth).collect(),
-            worst: Depth::default(),
-            worst_of_all: Depth::default(),
+            worst: InSkin::default(),
+            worst_of_all: InSkin::default(),
             over: [0; 4],
             count: 0,
-            elsewhere: Depth::default(),
+            elsewhere: InSkin::default(),
             region: mesh
                 .positions
                 .iter()
@@ -296,7 +296,7 @@ impl Depths {
         let (now, rest) = (frame(simulation), &stage.style.guides);
         let points = rest.points_per_guide;
         let head = Vec3::from(now.world_from_head.translation);
-        let found: Vec<[Depth; 2]> = (0..rest.count() * points)
+        let found: Vec<[InSkin; 2]> = (0..rest.count() * points)
             .into_par_iter()
             .filter(|i| i % points >= 2)
             .map(|i| {
@@ -312,7 +312,7 @@ impl Depths {
                     let slope = 0.5 * link / (points - 1) as f32 * (point - 1) as f32;
                     depth -= (root.max(0.0) - slope).max(0.0);
                 }
-                [depth, all].map(|depth| Depth { depth, guide, point, step, at: p - head })
+                [depth, all].map(|depth| InSkin { depth, guide, point, step, at: p - head })
             })
             .collect();
         self.count += found.len();

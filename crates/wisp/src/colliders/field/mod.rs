@@ -33,6 +33,9 @@ const STRAYED: f32 = 3.0;
 /// Nothing is deeper than this in skin of which only a guess is known, metres.
 const UNSURE: f32 = 0.002;
 
+/// What seems deeper than this has rather been taken back to the wrong part of the skin, metres.
+const DEEP: f32 = 0.02;
+
 /// Where the skin is folded more than this it has no way back: the least determinant of how it unfolds.
 const UNFOLDED: f32 = 0.05;
 
@@ -339,8 +342,9 @@ impl MovingField {
         let steepness = slope.length_squared().sqrt();
         let normal = if steepness > 1e-6 { slope * (1.0 / steepness) } else { Vec3::Y };
         let distance = value / steepness.clamp(0.5, 2.0) - self.lift;
-        // A guess may push, but not far; nor may skin that is stretched or pressed beyond what skin can be.
-        let sound = sure && (0.5..2.0).contains(&steepness);
+        // A guess may push, but not far; nor may skin that is stretched or pressed beyond what skin can be, or that
+        // hair has never been so deep in.
+        let sound = sure && (0.5..2.0).contains(&steepness) && distance > -DEEP;
         let distance = if sound { distance } else { distance.max(-UNSURE) };
         let drift = back.turn_forth(start.apply(p) - end.apply(p)) * (1.0 / self.dt_secs);
         (distance < reach).then_some(Touch { distance, normal, head: back.0[12], drift })
