@@ -31,6 +31,7 @@ pub struct FieldLattice {
 
 impl FieldLattice {
     /// Index of a point.
+    #[inline]
     pub fn index(&self, at: UVec3) -> usize {
         ((at.z * self.size.y + at.y) * self.size.x + at.x) as usize
     }
@@ -96,21 +97,25 @@ impl BodyField {
     }
 
     /// The lattice of the distances.
+    #[inline]
     pub fn distance_lattice(&self) -> &FieldLattice {
         &self.distances
     }
 
     /// Signed distance at each point of that lattice, metres, negative inside.
+    #[inline]
     pub fn distances(&self) -> &[f32] {
         &self.distance
     }
 
     /// The lattice of the weights, which spans the same box.
+    #[inline]
     pub fn node_lattice(&self) -> &FieldLattice {
         &self.nodes
     }
 
     /// For each node the entry of [`BodyField::slots`] that it has.
+    #[inline]
     pub fn slot_of_node(&self) -> &[u16] {
         &self.slot_of_node
     }

@@ -102,8 +102,8 @@ pub(crate) struct NearField<'a> {
 
 impl NearField<'_> {
     #[inline(always)]
-    fn row(&self, placed: &Lane3, reach: f32) -> Option<FieldRow> {
-        self.moving.row(placed, self.substep, self.passed, reach)
+    fn row(&self, placed: &Lane3, reach: f32, wanted: &[bool; LANES]) -> Option<FieldRow> {
+        self.moving.row(placed, self.substep, self.passed, reach, wanted)
     }
 }
 
@@ -118,7 +118,7 @@ pub(crate) fn buried_in_field(
     rest: &Lane,
 ) -> Lane {
     let mut out = ZERO;
-    if let Some(row) = moving.row(carried, substep, passed, LAYER_HEIGHT) {
+    if let Some(row) = moving.row(carried, substep, passed, LAYER_HEIGHT, &[true; LANES]) {
         for k in 0..LANES {
             out[k] = greater(lesser(rest[k], 0.0) - row.distance[k], 0.0);
         }
@@ -210,10 +210,13 @@ pub(crate) fn lay_point(
     if near.active.is_empty() && near.field.is_none() {
         return placed;
     }
+    // Lanes that have not moved in a round need not be measured again.
+    let mut touched = [true; LANES];
     for round in 0..ROUNDS {
         let rules = if round < TIGHT { *rules } else { rules.bare() };
         let enough = if round == 0 { 0.0 } else { CLOSE_ENOUGH };
-        let mut pushed = push_out_of_field(point, before, was, length, near, &rules, round, &mut placed);
+        let mut pushed =
+            push_out_of_field(point, before, was, length, near, &rules, round, &mut touched, &mut placed);
         let (min, max) = bounds(&placed);
         for (n, &c) in near.active.iter().enumerate() {
             let mover = &near.shapes[c as usize];
@@ -247,6 +250,7 @@ pub(crate) fn lay_point(
                 let slid = slide(p, at(was, k), centre, depth, friction, mover.velocity_at.apply(p), rules.h);
                 let out = push_out(from, slid, l, centre, nearest.radius[k] + allowed[k]);
                 let touching = depth > 0.0;
+                touched[k] |= touching;
                 let pick = |a: f32, b: f32| if touching { a } else { b };
                 put(&mut placed, k, Vec3::new(pick(out.x, p.x), pick(out.y, p.y), pick(out.z, p.z)));
             }
@@ -268,16 +272,21 @@ fn push_out_of_field(
     near: &Near,
     rules: &ContactRules,
     round: usize,
+    touched: &mut [bool; LANES],
     placed: &mut Lane3,
 ) -> bool {
     let Some(field) = &near.field else { return false };
-    let Some(row) = field.row(placed, rules.reach()) else { return false };
+    let Some(row) = field.row(placed, rules.reach(), touched) else {
+        *touched = [false; LANES];
+        return false;
+    };
     let allowed = near.allowed_by_field(field, &row, point, rules);
     let (mut deepest, enough) = (0.0, if round == 0 { 0.0 } else { CLOSE_ENOUGH });
     for k in 0..LANES {
         deepest = greater(deepest, allowed[k] - row.distance[k]);
     }
     if deepest <= enough {
+        *touched = [false; LANES];
         return false;
     }
     let friction = if round == 0 { rules.friction } else { 0.0 };
@@ -288,6 +297,7 @@ fn push_out_of_field(
         let slid = slide(p, at(was, k), centre, depth, friction, at(&row.velocity, k), rules.h);
         let out = push_out(from, slid, l, centre, radius + allowed[k]);
         let touching = depth > 0.0;
+        touched[k] = touching;
         let pick = |a: f32, b: f32| if touching { a } else { b };
         put(placed, k, Vec3::new(pick(out.x, p.x), pick(out.y, p.y), pick(out.z, p.z)));
     }
@@ -346,7 +356,7 @@ pub(crate) fn penetration(point: usize, placed: &Lane3, near: &Near, rules: &Con
     // What counts is the surface, or the distance at rest where that is less.
     let bare = rules.bare();
     if let Some(field) = &near.field
-        && let Some(row) = field.row(placed, rules.reach())
+        && let Some(row) = field.row(placed, rules.reach(), &[true; LANES])
     {
         let allowed = near.allowed_by_field(field, &row, point, &bare);
         for k in 0..LANES {

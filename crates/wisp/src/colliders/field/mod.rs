@@ -96,6 +96,8 @@ pub(crate) struct MovingField {
     forth_before: Vec<Affine3A>,
     forth: Vec<Affine3A>,
     occupancy: Occupancy,
+    /// For each cell of nodes, by its first: whether all eight are the head's.
+    head_alone: Vec<bool>,
     inv_spacing: f32,
     inv_node: f32,
     dt_secs: f32,
@@ -141,6 +143,7 @@ impl MovingField {
             forth_before: vec![Affine3A::IDENTITY; slots],
             forth: vec![Affine3A::IDENTITY; slots],
             occupancy: Occupancy::new(field, lift.max(0.0) + reach),
+            head_alone: head_alone(field),
             inv_spacing: 1.0 / field.distance_lattice().spacing,
             inv_node: 1.0 / field.node_lattice().spacing,
             dt_secs: 1.0,
@@ -226,9 +229,16 @@ impl MovingField {
     }
 
     /// What a row of points in working space learns at the end of substep `s` of `count`; nothing further away than
-    /// `reach` is of interest. `None` where all lanes are far.
+    /// `reach` is of interest, nor are lanes that are not `wanted`. `None` where all lanes are far.
     #[inline(always)]
-    pub(crate) fn row(&self, row: &Lane3, substep: &Substep, t: f32, reach: f32) -> Option<FieldRow> {
+    pub(crate) fn row(
+        &self,
+        row: &Lane3,
+        substep: &Substep,
+        t: f32,
+        reach: f32,
+        wanted: &[bool; LANES],
+    ) -> Option<FieldRow> {
         let Map { turn, shift } = substep.head;
         let mut local = ZERO3;
         for k in 0..LANES {
@@ -238,6 +248,9 @@ impl MovingField {
         let mut out = FieldRow { distance: [f32::MAX; LANES], normal: ZERO3, head: ZERO, velocity: ZERO3 };
         let mut any = false;
         for k in 0..LANES {
+            if !wanted[k] {
+                continue;
+            }
             let p = at(&local, k);
             let Some(near) = self.occupancy.at(p) else { continue };
             let Some(touch) = self.touch(p, near, t, reach) else { continue };
@@ -275,18 +288,33 @@ impl MovingField {
         let (mut slots, mut fraction, mut stretch) = ([0_u16; 8], Vec3::ZERO, Mat3A::IDENTITY);
         for _ in 0..ROUNDS {
             let (corners, within) = around(nodes, self.inv_node, rest)?;
-            slots = corners.map(|c| self.field.slot_of_node()[c]);
+            if self.head_alone[corners[0]] {
+                let there = rest == p;
+                (rest, slots, stretch, settled) = (p, [0; 8], Mat3A::IDENTITY, true);
+                if there {
+                    break;
+                }
+                // Only if that is where it is.
+                let (corners, _) = around(nodes, self.inv_node, p)?;
+                settled = self.head_alone[corners[0]];
+                break;
+            }
+            let all = self.field.slot_of_node();
+            for (slot, &c) in slots.iter_mut().zip(&corners) {
+                *slot = all[c];
+            }
             fraction = within;
             stretch = Mat3A::IDENTITY;
             let first = usize::from(slots[0]);
             let next = if slots == [slots[0]; 8] {
                 if first == 0 { p } else { mixed(&self.before[first], &self.now[first], t).apply(p) }
             } else {
-                let back = slots.map(|slot| {
-                    let slot = usize::from(slot);
-                    let (a, b) = (self.before[slot].apply(p), self.now[slot].apply(p));
-                    a + (b - a) * t
-                });
+                let mut back = [Vec3::ZERO; 8];
+                for (v, &slot) in back.iter_mut().zip(&slots) {
+                    let (a, b) =
+                        (self.before[usize::from(slot)].apply(p), self.now[usize::from(slot)].apply(p));
+                    *v = a + (b - a) * t;
+                }
                 let mut value = Vec3::ZERO;
                 for (v, weight) in back.iter().zip(weights(fraction)) {
                     value += *v * weight;
@@ -321,23 +349,29 @@ impl MovingField {
         }
         let lattice = self.field.distance_lattice();
         let (corners, within) = around(lattice, self.inv_spacing, rest)?;
-        let d = corners.map(|c| self.field.distances()[c]);
-        let value: f32 = d.iter().zip(weights(within)).map(|(d, w)| d * w).sum();
+        let (all, weight, mut d, mut value) = (self.field.distances(), weights(within), [0.0; 8], 0.0);
+        for i in 0..8 {
+            d[i] = all[corners[i]];
+            value += d[i] * weight[i];
+        }
         // A stretched skin is further away than it was at rest, by half at most.
         if value - self.lift > 2.0 * reach {
             return None;
         }
-        let (mut start, mut end) = (Back::IDENTITY, Back::IDENTITY);
-        if slots != [0; 8] {
-            (start, end) = (Back([0.0; 16]), Back([0.0; 16]));
-            for (&slot, weight) in slots.iter().zip(weights(fraction)) {
-                start.add(&self.before[usize::from(slot)], weight);
-                end.add(&self.now[usize::from(slot)], weight);
-            }
+        let at_rest = gradient(&d, within) * self.inv_spacing;
+        if slots == [0; 8] {
+            let steepness = at_rest.length_squared().sqrt();
+            let distance = value / steepness.clamp(0.5, 2.0) - self.lift;
+            let normal = if steepness > 1e-6 { at_rest * (1.0 / steepness) } else { Vec3::Y };
+            return (distance < reach).then_some(Touch { distance, normal, head: 1.0, drift: Vec3::ZERO });
+        }
+        let (mut start, mut end) = (Back([0.0; 16]), Back([0.0; 16]));
+        for (&slot, weight) in slots.iter().zip(weights(fraction)) {
+            start.add(&self.before[usize::from(slot)], weight);
+            end.add(&self.now[usize::from(slot)], weight);
         }
         let back = mixed(&start, &end, t);
         // The chain rule: dX = (1 - V')^-1 B dx.
-        let at_rest = gradient(&d, within) * self.inv_spacing;
         let slope = back.turn_forth(Vec3::from(stretch.transpose() * glam::Vec3A::from(at_rest)));
         let steepness = slope.length_squared().sqrt();
         let normal = if steepness > 1e-6 { slope * (1.0 / steepness) } else { Vec3::Y };
@@ -349,6 +383,14 @@ impl MovingField {
         let drift = back.turn_forth(start.apply(p) - end.apply(p)) * (1.0 / self.dt_secs);
         (distance < reach).then_some(Touch { distance, normal, head: back.0[12], drift })
     }
+}
+
+/// For each node whether it and the seven after it are the head's.
+fn head_alone(field: &BodyField) -> Vec<bool> {
+    let (lattice, slots) = (field.node_lattice(), field.slot_of_node());
+    let (row, layer) = (lattice.size.x as usize, (lattice.size.x * lattice.size.y) as usize);
+    let offsets = [0, 1, row, row + 1, layer, layer + 1, layer + row, layer + row + 1];
+    (0..slots.len()).map(|i| offsets.iter().all(|o| slots.get(i + o).is_none_or(|&slot| slot == 0))).collect()
 }
 
 #[inline(always)]
@@ -378,7 +420,10 @@ fn around(lattice: &FieldLattice, inv_spacing: f32, p: Vec3) -> Option<([usize; 
     let cell = UVec3::new(q.x as u32, q.y as u32, q.z as u32);
     let first = lattice.index(cell);
     let (row, layer) = (lattice.size.x as usize, (lattice.size.x * lattice.size.y) as usize);
-    let corners = [0, 1, row, row + 1, layer, layer + 1, layer + row, layer + row + 1].map(|o| first + o);
+    let mut corners = [0, 1, row, row + 1, layer, layer + 1, layer + row, layer + row + 1];
+    for corner in &mut corners {
+        *corner += first;
+    }
     Some((corners, q - cell.as_vec3()))
 }
 

@@ -7,7 +7,7 @@ use glam::{Affine3A, IVec3, UVec3, Vec3};
 use lovelock_motion::BodyField;
 
 /// A cell in spacings of the field's nodes.
-const CELL: f32 = 2.0;
+const CELL: f32 = 2.5;
 /// How far beyond the resting field the grid goes on, as a part of the field's longest side.
 const BEYOND: f32 = 0.35;
 /// Most cells to each side that a place is deposited into.
@@ -69,7 +69,7 @@ impl Occupancy {
             let at = ((rest - nodes.low) / nodes.spacing).round().as_uvec3();
             let depth = field.distances()[lattice.index(at * 2)] / nodes.spacing;
             // All near the skin, and every second one deep inside.
-            let kept = depth < 1.0 && (depth > -1.5 || at % 2 == UVec3::ZERO);
+            let kept = depth < 0.9 && (depth > -0.9 || at % 2 == UVec3::ZERO);
             if kept {
                 match field.slot_of_node()[i] {
                     0 => head_probes.push(rest),
@@ -128,9 +128,10 @@ impl Occupancy {
             moved = moved.max((b - a).length_squared());
         }
         let moved = moved.sqrt();
-        // What is on its way is nearest to one end, by half the way at most.
-        let width = self.width(reach + 0.5 * moved);
-        let ends = if moved > 1e-5 { &ends[..] } else { &ends[1..] };
+        // What is on its way is nearest to one end, by half the way at most. A little more width spares one end.
+        let one = self.width(reach + moved);
+        let both = self.width(reach + 0.5 * moved);
+        let (width, ends) = if one <= self.width(reach) { (one, &ends[1..]) } else { (both, &ends[..]) };
         let widths: &[i32] = if spare { &[0] } else { &[0, UNSPARING] };
         self.place_head(self.width(reach));
         self.extra.clear();

@@ -51,7 +51,8 @@ fn distances(spare: bool, moved: bool, out: f32) -> Vec<f32> {
             if inner && skin {
                 let p = surface.positions[v] + surface.normals[v] * out - origin;
                 let row = [[p.x; LANES], [p.y; LANES], [p.z; LANES]];
-                let distance = moving.row(&row, &step, 1.0, 0.012).map_or(f32::MAX, |r| r.distance[3]);
+                let distance =
+                    moving.row(&row, &step, 1.0, 0.012, &[true; LANES]).map_or(f32::MAX, |r| r.distance[3]);
                 all.push(distance);
             }
         }
