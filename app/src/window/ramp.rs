@@ -126,7 +126,7 @@ impl Ramp<'_> {
             handle.set(value, handle.of(&default));
         } else if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) {
             let share = ((area.bottom() - pointer.y) / area.height()).clamp(0.0, 1.0);
-            let wanted = self.range.start() + share * (self.range.end() - self.range.start());
+            let wanted = self.range.start() + share * share * (self.range.end() - self.range.start());
             if handle == Handle::Middle {
                 self.bend(value, wanted);
             } else {
@@ -183,7 +183,8 @@ impl Ramp<'_> {
     /// Where a part of the way is in the drawing.
     fn at(&self, area: Rect, value: &RampValue, along: f32) -> Pos2 {
         let (low, high) = (*self.range.start(), *self.range.end());
-        let share = (((self.at)(value, along) - low) / (high - low)).clamp(0.0, 1.0);
+        // Small numbers have more room than large ones: that is where hair is told apart.
+        let share = (((self.at)(value, along) - low) / (high - low)).clamp(0.0, 1.0).sqrt();
         pos2(area.left() + along * area.width(), area.bottom() - share * area.height())
     }
 

@@ -27,6 +27,8 @@ impl Window {
             return;
         }
         self.pointed = Some(asked);
+        // What dances on would leave the picture.
+        self.session.set_playing(false);
         self.go_to(&gauges, asked, project);
     }
 

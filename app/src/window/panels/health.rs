@@ -57,7 +57,7 @@ fn row(ui: &mut Ui, gauge: &Gauge, shown: bool) -> bool {
             let tip = if shown {
                 "Takes the ring away."
             } else {
-                "Rings the place in the picture, and goes there."
+                "Pauses, rings the place in the picture, and goes there."
             };
             asked = button.on_hover_text(tip).on_disabled_hover_text("There is no such place.").clicked();
             ui.label(RichText::new(kind.in_words(gauge.value)).small().color(color));
