@@ -48,7 +48,8 @@ impl Coupled {
         bending.response(first_free, &mut self.response);
     }
 
-    /// One Newton step that brings the links of `position` to their lengths. `force` is working memory.
+    /// One Newton step that brings the links of `position` to their lengths. `force` is working memory; `fresh` says
+    /// whether to factorise `S` anew for the directions as they are, and not to take the factors of the last call.
     #[inline(always)]
     pub(crate) fn project(
         &mut self,
@@ -58,10 +59,14 @@ impl Coupled {
         bending: &Bending,
         scratch: &mut LengthScratch,
         force: &mut [Lane3],
+        fresh: bool,
     ) {
         let count = position.len();
         let first = first_free.max(1);
         scratch.errors(first, length, position);
+        if fresh {
+            self.factorise(first, scratch);
+        }
         self.solve(first, scratch);
         for i in first_free..count {
             let mut out = ZERO3;
@@ -91,19 +96,19 @@ impl Coupled {
         }
     }
 
-    /// Solves for the multipliers, in place of the right side.
+    /// Cholesky's factor of `S` for the directions in `scratch`.
     #[inline(always)]
-    fn solve(&mut self, first: usize, scratch: &mut LengthScratch) {
+    fn factorise(&mut self, first: usize, scratch: &LengthScratch) {
         let links = self.inv_diagonal.len();
         for r in 0..links {
-            let mut y = scratch.multiplier[first + r];
+            let n = scratch.direction[first + r];
             for c in 0..=r {
-                let (n, m) = (scratch.direction[first + r], scratch.direction[first + c]);
+                let m = scratch.direction[first + c];
                 let mut s = self.response[row(r) + c];
                 for k in 0..LANES {
                     s[k] *= at(&n, k).dot(at(&m, k));
                 }
-                let least = s;
+                let whole = s;
                 let (left, above) = (&self.factor[row(r)..][..c], &self.factor[row(c)..][..c]);
                 for (a, b) in left.iter().zip(above) {
                     for k in 0..LANES {
@@ -111,20 +116,35 @@ impl Coupled {
                     }
                 }
                 if c < r {
-                    let (inv, before) = (self.inv_diagonal[c], scratch.multiplier[first + c]);
+                    let inv = self.inv_diagonal[c];
                     for k in 0..LANES {
                         s[k] *= inv[k];
-                        y[k] -= s[k] * before[k];
                     }
                     self.factor[row(r) + c] = s;
                 } else {
                     let mut inv = ZERO;
                     for k in 0..LANES {
-                        inv[k] = 1.0 / greater(s[k], greater(LEAST_PIVOT * least[k], 1e-9)).sqrt();
-                        y[k] *= inv[k];
+                        inv[k] = 1.0 / greater(s[k], greater(LEAST_PIVOT * whole[k], 1e-9)).sqrt();
                     }
                     self.inv_diagonal[r] = inv;
                 }
+            }
+        }
+    }
+
+    /// Solves for the multipliers with the factors that are there, in place of the right side.
+    #[inline(always)]
+    fn solve(&self, first: usize, scratch: &mut LengthScratch) {
+        let links = self.inv_diagonal.len();
+        for r in 0..links {
+            let (mut y, inv) = (scratch.multiplier[first + r], self.inv_diagonal[r]);
+            for (l, before) in self.factor[row(r)..][..r].iter().zip(&scratch.multiplier[first..]) {
+                for k in 0..LANES {
+                    y[k] -= l[k] * before[k];
+                }
+            }
+            for k in 0..LANES {
+                y[k] *= inv[k];
             }
             scratch.multiplier[first + r] = y;
         }
@@ -134,12 +154,10 @@ impl Coupled {
                 y[k] *= inv[k];
             }
             scratch.multiplier[first + r] = y;
-            for c in 0..r {
-                let (l, mut above) = (self.factor[row(r) + c], scratch.multiplier[first + c]);
+            for (l, above) in self.factor[row(r)..][..r].iter().zip(&mut scratch.multiplier[first..]) {
                 for k in 0..LANES {
                     above[k] -= l[k] * y[k];
                 }
-                scratch.multiplier[first + c] = above;
             }
         }
     }
@@ -227,6 +245,7 @@ mod tests {
                 &b,
                 &mut LengthScratch::new(POINTS),
                 &mut force,
+                true,
             );
             let after = lengths_after(&x);
             // A step moves folded links by about their errors' size sideways: measured 3.6 times the square.
@@ -278,7 +297,7 @@ mod tests {
     fn a_folded_lock_unfolds_at_the_rate_of_its_damping() {
         let length = [[LINK; LANES]; POINTS];
         let together = left_of_fold(8, |b, x, scratch, force| {
-            coupled(b, 2).project(2, &length, x, b, scratch, force);
+            coupled(b, 2).project(2, &length, x, b, scratch, force, true);
         });
         // Without inertia a stiff bend dies by 1 - 1 / (1 + gamma) a substep: 0.37 after eight, gamma 7.2.
         assert!((0.3..0.45).contains(&together), "{together} of the fold is left");

@@ -29,7 +29,7 @@ pub(crate) fn run(block: &mut Block, plan: &Plan, s: usize) {
     // One pass for all: it is compiled once for each width of the processor's instructions.
     let lay = match plan.settings.integrator {
         Integrator::Direct => {
-            lengths(block, plan);
+            lengths(block, plan, s);
             Lay::AtLength
         }
         Integrator::Relaxation => {
@@ -56,9 +56,12 @@ enum Lay {
     AsIs,
 }
 
+/// Substeps that share the factors of the coupled lengths.
+const SAME_FACTORS: usize = 4;
+
 /// One Newton step of the lengths, in the metric of the bends.
 #[inline(always)]
-fn lengths(block: &mut Block, plan: &Plan) {
+fn lengths(block: &mut Block, plan: &Plan, s: usize) {
     if block.bending.is_chain() {
         project_position(plan.first_free, &block.rest.length, &mut block.next, &mut block.lengths);
     } else {
@@ -69,6 +72,7 @@ fn lengths(block: &mut Block, plan: &Plan) {
             &block.bending,
             &mut block.lengths,
             &mut block.residual,
+            s.is_multiple_of(SAME_FACTORS),
         );
     }
 }
