@@ -86,7 +86,9 @@ impl Simulation {
         }
         let places = self.field.as_ref().map_or(&[][..], MovingField::places);
         out.u32(places.len() as u32);
-        places.iter().for_each(|place| out.affine(place));
+        for place in places {
+            out.affine(place);
+        }
         for rows in self.blocks.iter().flat_map(rows_of) {
             for axis in rows.iter().flatten() {
                 out.floats(axis);
