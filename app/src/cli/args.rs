@@ -69,6 +69,20 @@ pub(crate) struct SourceArguments {
     pub(crate) motion: Option<PathBuf>,
 }
 
+/// Which frames of what size.
+#[derive(Debug, Args)]
+pub(crate) struct FilmArguments {
+    /// The frames, half open, such as 0..240; the whole clip where none are given.
+    #[arg(long, value_name = "A..B", value_parser = frames)]
+    pub(crate) frames: Option<Range<u64>>,
+    /// Frames a second.
+    #[arg(long, value_parser = rate)]
+    pub(crate) fps: Option<f64>,
+    /// Size in pixels, such as 1280x720.
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub(crate) size: Option<(u32, u32)>,
+}
+
 #[derive(Debug, Args)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch by itself")]
 pub(crate) struct Record {
@@ -79,15 +93,8 @@ pub(crate) struct Record {
     /// EXR files with a manifest.
     #[arg(short, long, value_name = "OUT")]
     pub(crate) out: PathBuf,
-    /// Frames to record, half open, such as 0..240; the whole clip where none are given.
-    #[arg(long, value_name = "A..B", value_parser = frames)]
-    pub(crate) frames: Option<Range<u64>>,
-    /// Frames a second.
-    #[arg(long, value_parser = rate)]
-    pub(crate) fps: Option<f64>,
-    /// Size in pixels, such as 1280x720.
-    #[arg(long, value_name = "WxH", value_parser = size)]
-    pub(crate) size: Option<(u32, u32)>,
+    #[command(flatten)]
+    pub(crate) film: FilmArguments,
     /// Shadow method.
     #[arg(long, value_name = "ID")]
     pub(crate) shadow: Option<ShadowMethod>,
@@ -239,15 +246,8 @@ pub(crate) struct Farm {
     /// The folder for the job, new or empty: template.json and the project with its files.
     #[arg(short, long, value_name = "DIR")]
     pub(crate) out: PathBuf,
-    /// Frames to draw, half open, such as 0..240; the whole clip where none are given.
-    #[arg(long, value_name = "A..B", value_parser = frames)]
-    pub(crate) frames: Option<Range<u64>>,
-    /// Frames a second.
-    #[arg(long, value_parser = rate)]
-    pub(crate) fps: Option<f64>,
-    /// Size in pixels, such as 1280x720.
-    #[arg(long, value_name = "WxH", value_parser = size)]
-    pub(crate) size: Option<(u32, u32)>,
+    #[command(flatten)]
+    pub(crate) film: FilmArguments,
     /// Frames that one task draws; 10, or more where that would be over 1024 tasks.
     #[arg(long, value_name = "N")]
     pub(crate) chunk: Option<u64>,

@@ -11,9 +11,9 @@ pub(crate) fn run(task: &Farm, output: Output) -> Result<(), StudioError> {
     let mut scene = Source::open(&task.source)?;
     let request = FarmRequest {
         out: task.out.clone(),
-        frames: task.frames.clone(),
-        fps: task.fps,
-        size: task.size,
+        frames: task.film.frames.clone(),
+        fps: task.film.fps,
+        size: task.film.size,
         chunk: task.chunk,
         access: std::mem::take(&mut scene.access),
     };

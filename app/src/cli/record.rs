@@ -15,9 +15,9 @@ pub(crate) fn run(task: &Record, output: Output) -> Result<(), StudioError> {
     let panes = (!task.beside.is_empty()).then(|| scene.beside(&task.beside)).transpose()?;
     let request = RecordRequest {
         out: task.out.clone(),
-        frames: task.frames.clone(),
-        fps: task.fps,
-        size: task.size,
+        frames: task.film.frames.clone(),
+        fps: task.film.fps,
+        size: task.film.size,
         shadow: task.shadow,
         transparency: task.transparency,
         quality: task.quality,

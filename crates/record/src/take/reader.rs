@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use super::bytes::Bytes;
 use super::cache::Cache;
-use super::chunk::{HEADER_BYTES, MOST_START_BYTES, Part, unpack, unpack_start};
+use super::chunk::{ChunkHeader, HEADER_BYTES, MOST_START_BYTES, Part, unpack, unpack_start};
 use super::codec::{self, Decoded};
 use super::disk::part_path;
 use super::index::Entry;
@@ -344,6 +344,18 @@ impl TakeReader {
         if version == 1 { self.map.header.layout().ok() } else { None }
     }
 
+    /// The layout that a chunk says, whose parts start at `offset`; nothing where it is damaged.
+    fn said_layout(&mut self, offset: u64, header: &ChunkHeader) -> Result<Option<Layout>, TakeError> {
+        let mut packed = vec![0; header.data.packed.min(MOST_START_BYTES) as usize];
+        match self.source.read_at(offset + u64::from(header.text.packed), &mut packed) {
+            Ok(()) => {}
+            Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => return Ok(None),
+            Err(error) => return Err(TakeError::io(&self.path, "read", error)),
+        }
+        let start = unpack_start::<LAYOUT_BYTES>(&packed);
+        Ok(start.and_then(|start| Layout::read(&mut Bytes::new(&start)).ok()))
+    }
+
     /// How many guides of how many points the frames have, in order: an entry wherever they change. What is lost is passed
     /// over. Reads the start of every chunk.
     ///
@@ -354,22 +366,10 @@ impl TakeReader {
         for chunk in 0..self.map.entries.len() {
             let Entry { offset, header } = self.map.entries[chunk];
             let layout = match self.known_layout(chunk) {
-                Some(layout) => layout,
-                None => {
-                    let offset = offset + HEADER_BYTES as u64 + u64::from(header.text.packed);
-                    let mut packed = vec![0; header.data.packed.min(MOST_START_BYTES) as usize];
-                    match self.source.read_at(offset, &mut packed) {
-                        Ok(()) => {}
-                        Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => continue,
-                        Err(error) => return Err(TakeError::io(&self.path, "read", error)),
-                    }
-                    let start = unpack_start::<LAYOUT_BYTES>(&packed);
-                    match start.and_then(|start| Layout::read(&mut Bytes::new(&start)).ok()) {
-                        Some(layout) => layout,
-                        None => continue,
-                    }
-                }
+                Some(layout) => Some(layout),
+                None => self.said_layout(offset + HEADER_BYTES as u64, &header)?,
             };
+            let Some(layout) = layout else { continue };
             let [guides, points_per_guide] = [layout.guides, layout.points].map(|n| n as u32);
             let same = |last: &TakeLayout| (last.guides, last.points_per_guide) == (guides, points_per_guide);
             if !layouts.last().is_some_and(same) {

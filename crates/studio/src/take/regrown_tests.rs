@@ -61,9 +61,9 @@ fn damage_beside_the_change_never_shows_guides_on_other_hair() {
     regrown(&path);
     let bytes = std::fs::read(&path).expect("a file");
     let mut lost = 0;
-    for place in 1..40 {
+    for place in 1..10 {
         let mut changed = bytes.clone();
-        changed[bytes.len() * place / 40] ^= 4;
+        changed[bytes.len() * place / 10] ^= 4;
         std::fs::write(&path, changed).expect("a file");
         let (mut player, _) = TakePlayer::open(&path, &Access::new()).expect("a take that plays");
         // From its end: nothing is known yet of what lies before.
@@ -73,7 +73,7 @@ fn damage_beside_the_change_never_shows_guides_on_other_hair() {
         }
         lost += player.notices().len();
     }
-    assert!(lost > 10, "the control: frames were lost");
+    assert!(lost > 3, "the control: frames were lost");
 }
 
 #[test]
@@ -132,6 +132,7 @@ fn films_show_it_and_curves_name_the_frame() {
             assert!(error.contains("frame 20: the hair is made of other parts from here on"), "{error}");
             assert!(!out.exists());
             write(20..22).expect("one size");
+            std::fs::remove_file(&out).expect("a file");
         }
     }
 }
