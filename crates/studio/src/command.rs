@@ -240,7 +240,7 @@ pub const COMMANDS: &[CommandInfo] = {
             C::Scissors,
             "scissors",
             "Scissors",
-            "Takes the scissors: a line drawn across the hair cuts off what is beyond it; asked again, puts them away.",
+            "Takes the scissors, or puts them away: a line drawn over hair cuts it off.",
             &["X"],
             G::Hair,
         ),

@@ -75,7 +75,9 @@ pub(crate) fn ui(ui: &mut Ui, edits: &mut ColliderEdits, names: &[&str], shown: 
             default.lift,
         );
     });
-    let changed = *edits != ColliderEdits::default();
+    if *edits == ColliderEdits::default() {
+        return;
+    }
     row(
         ui,
         "Colliders",
@@ -84,7 +86,7 @@ pub(crate) fn ui(ui: &mut Ui, edits: &mut ColliderEdits, names: &[&str], shown: 
         edits,
         ColliderEdits::default(),
         |ui, edits| {
-            let response = ui.add_enabled(changed, egui::Button::new("Restore all"));
+            let response = ui.button("Restore all");
             if response.clicked() {
                 *edits = ColliderEdits::default();
             }

@@ -113,7 +113,10 @@ fn controls(ui: &mut Ui, tie: &mut HairTie, d: &HairTie) {
     .degrees()
     .show(ui, &mut rise, self::rise(d.axis));
     if rise != before {
-        tie.axis = with_rise(tie.axis, rise);
+        let turned = with_rise(tie.axis, rise);
+        // Restored, it is the very direction that it was.
+        let restored = turned.angle_between(d.axis) < 1e-3;
+        tie.axis = if restored { d.axis } else { turned };
     }
     Number::new("Ring", 0.004..=0.05, "Radius of the tie's opening.").millimetres().show(
         ui,

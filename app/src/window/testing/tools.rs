@@ -23,7 +23,14 @@ fn with_picture() -> Option<Harness<'static, Shown<Option<Window>>>> {
 
 /// Unfolds a section of a panel.
 fn unfold(harness: &mut Harness<'_, Shown<Option<Window>>>, title: &str) {
+    into_view(harness, Role::DisclosureTriangle, title);
     control(harness, Role::DisclosureTriangle, title).click();
+    harness.run_steps(30);
+}
+
+/// Scrolls a control of a panel into view.
+fn into_view(harness: &mut Harness<'_, Shown<Option<Window>>>, role: Role, name: &str) {
+    control(harness, role, name).scroll_to_me();
     harness.run_steps(30);
 }
 
@@ -89,6 +96,7 @@ fn scissors_cut_what_is_beyond_a_line_and_undo_grows_it_back() {
 fn a_tie_is_added_and_dragged_in_the_picture() {
     let Some(mut harness) = with_picture() else { return };
     unfold(&mut harness, "Ties and scissors");
+    into_view(&mut harness, Role::Button, "+ Ponytail");
     press_button(&mut harness, "+ Ponytail");
     let tie = project(&harness).hair.ties[0];
     assert_eq!(tie.kind, TieKind::Ponytail);
@@ -114,6 +122,7 @@ fn colliders_are_seen_and_changed() {
     unfold(&mut harness, "Colliders");
     let before = project(&harness);
     // A shape that is changed is met, whatever stands for it.
+    into_view(&mut harness, Role::SpinButton, "Size");
     let size = control(&harness, Role::SpinButton, "Size").rect().center();
     click_at(&mut harness, size);
     harness.event(egui::Event::Text("130".to_owned()));

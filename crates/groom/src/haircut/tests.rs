@@ -54,14 +54,15 @@ fn what_is_left_of_the_strands_does_not_move_when_hair_is_cut() {
         for s in 0..style.strands.count() {
             let (a, b) = (before.first_point[s] as usize, after.first_point[s] as usize);
             let left = (after.first_point[s + 1] as usize) - b;
-            let whole = (before.first_point[s + 1] as usize) - a;
-            // All but the new end, which lies between two points of before.
-            for i in 0..left - usize::from(left < whole) {
+            // All but the new end, which lies between two points of before: it may be the last of as many.
+            let param = |style: &Hairstyle, i: usize| style.strands.guide_param[i];
+            let is_cut = param(&short, b + left - 1) != param(&style, a + left - 1);
+            for i in 0..left - usize::from(is_cut) {
                 assert_eq!(before.point(a + i), after.point(b + i), "strand {s}");
                 same += 1;
             }
             let end = after.point(b + left - 1);
-            if left < whole {
+            if is_cut {
                 let [p, q] = [before.point(a + left - 2), before.point(a + left - 1)];
                 let t = ((end - p).dot(q - p) / (q - p).length_squared()).clamp(0.0, 1.0);
                 // Between two points a drawn strand is straight and its curve is not.
