@@ -1,10 +1,10 @@
 //! Ten minutes of each dance, at several rates and at an uneven one: lengths hold and nothing is lost.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use lovelock_groom::{GroomSettings, Preset};
 use lovelock_motion::{Clip, load_motion, retarget};
+use lovelock_testkit::data_dir;
 use lovelock_wisp::{Integrator, SimulationSettings, StepReport};
 
 mod common;
@@ -78,15 +78,8 @@ fn ten_minutes_of_the_shipped_dance_at_every_rate() {
 
 #[test]
 fn ten_minutes_of_a_captured_dance_at_every_rate() {
-    let Some(data) = std::env::var_os("LOVELOCK_DATA") else {
-        println!("skipped: LOVELOCK_DATA does not name the folder of the data");
-        return;
-    };
-    let file = Path::new(&data).join("motion/jesse_dance.bvh");
-    if !file.exists() {
-        println!("skipped: there is no {}", file.display());
-        return;
-    }
+    let Some(data) = data_dir() else { return };
+    let file = data.join("motion/jesse_dance.bvh");
     let mut stage = stage();
     let motion = load_motion(&file).expect("the captured dance loads");
     let clip: Clip = retarget(&motion, &stage.body).expect("the captured dance fits the dancer");
