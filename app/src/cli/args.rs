@@ -55,7 +55,7 @@ pub(crate) enum Task {
 pub(crate) struct SourceArguments {
     /// The project, or a take; the default project where none is given.
     pub(crate) project: Option<PathBuf>,
-    /// A shipped hairstyle instead of the project's: smooth, curly or long.
+    /// A shipped hairstyle instead of the project's: smooth, curly, long, ponytail or bun.
     #[arg(long, value_name = "ID", conflicts_with = "hair")]
     pub(crate) preset: Option<String>,
     /// A hair file instead of the project's hairstyle.
@@ -69,18 +69,25 @@ pub(crate) struct SourceArguments {
     pub(crate) motion: Option<PathBuf>,
 }
 
-/// Which frames of what size.
+/// Pictures of what size at what rate.
 #[derive(Debug, Args)]
-pub(crate) struct FilmArguments {
-    /// The frames, half open, such as 0..240; the whole clip where none are given.
-    #[arg(long, value_name = "A..B", value_parser = frames)]
-    pub(crate) frames: Option<Range<u64>>,
+pub(crate) struct PictureArguments {
     /// Frames a second.
     #[arg(long, value_parser = rate)]
     pub(crate) fps: Option<f64>,
     /// Size in pixels, such as 1280x720.
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub(crate) size: Option<(u32, u32)>,
+}
+
+/// Which frames of what size.
+#[derive(Debug, Args)]
+pub(crate) struct FilmArguments {
+    /// The frames, half open, such as 0..240; the whole clip where none are given.
+    #[arg(long, value_name = "A..B", value_parser = frames)]
+    pub(crate) frames: Option<Range<u64>>,
+    #[command(flatten)]
+    pub(crate) picture: PictureArguments,
 }
 
 #[derive(Debug, Args)]
@@ -136,6 +143,10 @@ pub(crate) struct Record {
     /// project, its files, the size or another setting has changed since.
     #[arg(long)]
     pub(crate) resume: bool,
+    /// Count the frames of a take on the dance that it was recorded from: frame 40 is that of the dance, also where the take
+    /// begins there.
+    #[arg(long, conflicts_with = "seamless")]
+    pub(crate) dance_time: bool,
     /// Which curves a .usdc, .usda or .glb file holds: guides or strands; strands in USD and guides in glTF where none
     /// is given.
     #[arg(long, value_name = "ID")]
@@ -158,12 +169,8 @@ pub(crate) struct Compare {
     /// Frames to look at, half open, such as 30..40: pictures, errors and times of the first one, swim, pop and flicker of all.
     #[arg(long, value_name = "A..B", value_parser = frames)]
     pub(crate) frames: Option<Range<u64>>,
-    /// Frames a second.
-    #[arg(long, value_parser = rate)]
-    pub(crate) fps: Option<f64>,
-    /// Size in pixels, such as 1280x720.
-    #[arg(long, value_name = "WxH", value_parser = size)]
-    pub(crate) size: Option<(u32, u32)>,
+    #[command(flatten)]
+    pub(crate) picture: PictureArguments,
     /// Shadow methods, divided by commas, or `all`.
     #[arg(long, value_name = "ID,ID|all", default_value = "all", value_parser = methods)]
     pub(crate) methods: Methods,

@@ -12,8 +12,8 @@ pub(crate) fn run(task: &Farm, output: Output) -> Result<(), StudioError> {
     let request = FarmRequest {
         out: task.out.clone(),
         frames: task.film.frames.clone(),
-        fps: task.film.fps,
-        size: task.film.size,
+        fps: task.film.picture.fps,
+        size: task.film.picture.size,
         chunk: task.chunk,
         access: std::mem::take(&mut scene.access),
     };

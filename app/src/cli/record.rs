@@ -16,8 +16,8 @@ pub(crate) fn run(task: &Record, output: Output) -> Result<(), StudioError> {
     let request = RecordRequest {
         out: task.out.clone(),
         frames: task.film.frames.clone(),
-        fps: task.film.fps,
-        size: task.film.size,
+        fps: task.film.picture.fps,
+        size: task.film.picture.size,
         shadow: task.shadow,
         transparency: task.transparency,
         quality: task.quality,
@@ -28,6 +28,7 @@ pub(crate) fn run(task: &Record, output: Output) -> Result<(), StudioError> {
         motion_blur: task.motion_blur,
         shutter_degrees: task.shutter,
         resume: task.resume,
+        dance_time: task.dance_time,
         curves: task.curves,
         no_body: task.no_body,
         backend: task.backend,

@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 
 use lovelock_studio::groom::Preset;
 use lovelock_studio::{
-    Access, CameraMode, CameraSection, Command, Contender, FileKind, FileRef, Marker, Problem, Project,
-    StudioError, TimelineSection, frame_points, load_project_with, project_of_take, recording, save_project,
+    Access, CameraMode, CameraSection, Command, FileKind, Marker, Problem, Project, StudioError,
+    TimelineSection, frame_points, load_project_with, project_of_take, recording,
 };
 
 use super::path_dialog::Purpose;
-use super::{Pending, Window, copy, notices, remember};
+use super::{Pending, Window, copy, notices};
 
 /// A project to start with.
 #[derive(Debug)]
@@ -122,6 +122,8 @@ impl Window {
             Command::PresetSmooth => self.change_seen(ctx, |project| project.set_preset(Preset::Smooth)),
             Command::PresetCurly => self.change_seen(ctx, |project| project.set_preset(Preset::Curly)),
             Command::PresetLong => self.change_seen(ctx, |project| project.set_preset(Preset::Long)),
+            Command::PresetPonytail => self.change_seen(ctx, |project| project.set_preset(Preset::Ponytail)),
+            Command::PresetBun => self.change_seen(ctx, |project| project.set_preset(Preset::Bun)),
             Command::Palette => self.palette.toggle(),
             Command::CompareTakes => self.ask(Purpose::Beside),
             Command::Compare => self.layout.compare.shown = !self.layout.compare.shown,
@@ -207,97 +209,6 @@ impl Window {
         let points = (0..guides.x.len()).map(|i| glam::Vec3::new(guides.x[i], guides.y[i], guides.z[i]));
         let camera = frame_points(&self.seen().camera, &frame.scene, frame.time_secs, points, aspect);
         self.change_seen(ctx, |project| project.camera = camera);
-    }
-
-    /// Opens a file of any kind that is read.
-    pub(super) fn open_any(&mut self, path: &Path) {
-        match FileKind::of(path) {
-            Ok(FileKind::Project) if self.history.is_modified() => {
-                self.pending = Some(Pending::Open(path.to_owned()));
-            }
-            Ok(FileKind::Project) => self.open_project(path),
-            Ok(FileKind::Take) => {
-                self.open_take(path);
-                // Saving is not to put the take's project into the file of the one before.
-                self.project_path = None;
-                self.session.set_project_path(None);
-            }
-            Ok(kind) => {
-                self.session.pick(path);
-                self.change("file", |project| match kind {
-                    FileKind::Hair => project.set_hair_file(path),
-                    FileKind::Character => project.set_body_file(path),
-                    FileKind::Motion | FileKind::Project | FileKind::Take => project.set_motion_file(path),
-                });
-                // The file may have been named before without being allowed.
-                let project = self.history.project().clone();
-                self.session.reload(&project);
-            }
-            Err(error) => self.tell([error.to_string()]),
-        }
-    }
-
-    /// Plays a take, with the project that it was recorded from; one step of undo goes back to what was there.
-    pub(super) fn open_take(&mut self, path: &Path) {
-        match project_of_take(path) {
-            Ok((take, problems)) => {
-                self.session.pick(path);
-                self.change("take", |project| *project = take);
-                let project = self.history.project().clone();
-                self.session.reload(&project);
-                self.tell(problems.into_iter().map(|problem| problem.message));
-            }
-            Err(error) => self.tell([error.to_string()]),
-        }
-    }
-
-    /// Shows a take beside what is shown, each drawn as the project is.
-    fn compare_with(&mut self, path: &Path) {
-        match FileKind::of(path) {
-            Ok(FileKind::Take) => {
-                self.session.pick(path);
-                let file = FileRef::new(path);
-                self.change("compare", |project| {
-                    let own = Contender::of(project);
-                    let other = Contender { take: Some(file), ..own.clone() };
-                    project.compare.panes = vec![own, other];
-                });
-                self.layout.compare.shown = true;
-            }
-            Ok(kind) => {
-                self.tell([format!("{}: a {} file, and a take was wanted", path.display(), kind.label())]);
-            }
-            Err(error) => self.tell([error.to_string()]),
-        }
-    }
-
-    fn open_project(&mut self, path: &Path) {
-        let mut access = self.session.access().clone();
-        access.set_project(Some(path));
-        match load_project_with(path, &mut access) {
-            Ok((project, problems)) => {
-                self.overdub.let_go();
-                self.history = lovelock_studio::History::new(project);
-                self.project_path = Some(path.to_owned());
-                self.session.set_project_path(self.project_path.as_ref());
-                remember(&mut self.layout.recent, path);
-                self.tell(problems.into_iter().map(|problem| problem.message));
-            }
-            Err(error) => self.tell([error.to_string()]),
-        }
-    }
-
-    fn save_to(&mut self, path: &Path) {
-        match save_project(path, self.history.project()) {
-            Ok(()) => {
-                self.history.mark_saved();
-                self.project_path = Some(path.to_owned());
-                self.session.set_project_path(self.project_path.as_ref());
-                remember(&mut self.layout.recent, path);
-                self.notices.tell(notices::Kind::Done, format!("Saved {}", path.display()));
-            }
-            Err(error) => self.tell([error.to_string()]),
-        }
     }
 
     /// A path was given.

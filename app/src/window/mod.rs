@@ -4,6 +4,7 @@ mod actions;
 mod camera_control;
 mod compare;
 mod control;
+mod files;
 mod frame;
 mod gesture;
 mod keys;
@@ -17,6 +18,7 @@ mod ramp;
 mod recorder;
 mod screenshot;
 mod session;
+mod sides;
 mod state_of_hair;
 #[cfg(test)]
 mod testing;

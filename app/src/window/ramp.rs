@@ -35,6 +35,8 @@ pub(crate) struct Ramp<'a> {
     pub(crate) label: &'static str,
     /// The same in a sentence.
     pub(crate) hint: &'static str,
+    /// Of its numbers.
+    pub(crate) unit: &'static str,
     /// What the ends may be.
     pub(crate) range: RangeInclusive<f32>,
     /// What the bias may be.
@@ -195,10 +197,23 @@ impl Ramp<'_> {
     fn paint(&self, ui: &Ui, area: Rect, value: &RampValue, handles: &[(Handle, Response); 3]) {
         let painter = ui.painter();
         painter.rect_filled(area, 3.0, theme::PAGE);
-        for share in [0.25, 0.5, 0.75] {
+        let font = FontId::proportional(9.5);
+        let (low, high) = (*self.range.start(), *self.range.end());
+        for share in [0.25, 0.5, 0.75, 1.0] {
             let y = area.bottom() - share * area.height();
-            painter.hline(area.x_range(), y, Stroke::new(1.0, theme::LINE));
+            if share < 1.0 {
+                painter.hline(area.x_range(), y, Stroke::new(1.0, theme::LINE));
+            }
+            if share < 0.5 {
+                // There stands which end it is.
+                continue;
+            }
+            let value = format!("{:.0}{}", low + share * share * (high - low), self.unit);
+            let under = pos2(area.right() - 10.0, y + 1.0);
+            painter.text(under, Align2::RIGHT_TOP, value, font.clone(), theme::QUIET.gamma_multiply(0.6));
         }
+        let corner = area.left_top() + vec2(10.0, 1.0);
+        painter.text(corner, Align2::LEFT_TOP, self.label, font.clone(), theme::QUIET);
         let curve: Vec<Pos2> = (0..=48_u8).map(|i| self.at(area, value, f32::from(i) / 48.0)).collect();
         painter.line(curve, Stroke::new(2.0, theme::PLOT[1]));
         for (handle, response) in handles {
@@ -208,7 +223,6 @@ impl Ramp<'_> {
             painter.circle_filled(at, radius, if held { theme::ACCENT } else { theme::BRIGHT });
             painter.circle_stroke(at, radius, Stroke::new(1.0, theme::PAGE));
         }
-        let font = FontId::proportional(9.5);
         let ends = [
             (area.left_bottom(), Align2::LEFT_BOTTOM, "roots"),
             (area.right_bottom(), Align2::RIGHT_BOTTOM, "tips"),

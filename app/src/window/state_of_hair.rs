@@ -7,7 +7,7 @@ use super::overlay::{self, View};
 use super::{Window, panels};
 
 /// Half the width of what is shown around a place that is gone to, metres.
-const AROUND_M: f32 = 0.14;
+const AROUND_M: f32 = 0.15;
 
 impl Window {
     /// The gauges of the newest frame; none while a take plays.
@@ -51,7 +51,7 @@ impl Window {
         let gauges = self.gauges(self.history.project());
         let Some(gauge) = gauges.iter().find(|gauge| gauge.kind == kind) else { return };
         let Some(at) = gauge.at.and_then(|at| painted.snapshot.guide_point(at)) else { return };
-        let text = format!("{}: {}", kind.label(), kind.in_words(gauge.value));
+        let text = format!("{}: {}", kind.label(), gauge.in_words());
         overlay::mark::paint(ui, view, at, &text, panels::health::color(gauge.level));
     }
 

@@ -42,7 +42,7 @@ impl Window {
     fn cut(&mut self, view: View, painted: &Painted, line: [egui::Pos2; 2], project: &mut Project) {
         match overlay::scissors::cut(view, &painted.snapshot, line) {
             Some(cut) => project.hair.cut = project.hair.cut.and(&cut),
-            None => self.notices.tell(notices::Kind::Done, "The line meets no hair.".to_owned()),
+            None => self.notices.tell(notices::Kind::Warning, "The line meets no hair.".to_owned()),
         }
     }
 

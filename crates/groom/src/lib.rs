@@ -16,6 +16,7 @@ mod io;
 mod look;
 mod obstacle;
 mod plain_head;
+mod polyline;
 mod presets;
 mod rng;
 mod scalp;

@@ -1,8 +1,9 @@
 //! The shipped hairstyles.
 
+use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-use crate::{GroomSettings, HairLook};
+use crate::{GroomSettings, HairLook, HairTie, TieKind};
 
 /// A shipped hairstyle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -14,11 +15,15 @@ pub enum Preset {
     Curly,
     /// Golden waves far past the shoulders.
     Long,
+    /// Dark brown, combed back into a tie high on the back of the head.
+    Ponytail,
+    /// Dark blond, wound up on top of the head.
+    Bun,
 }
 
 impl Preset {
     /// Every preset, in the order of menus.
-    pub const ALL: [Self; 3] = [Self::Smooth, Self::Curly, Self::Long];
+    pub const ALL: [Self; 5] = [Self::Smooth, Self::Curly, Self::Long, Self::Ponytail, Self::Bun];
 
     /// The stable name in project files and on the command line.
     pub const fn id(self) -> &'static str {
@@ -26,6 +31,8 @@ impl Preset {
             Self::Smooth => "smooth",
             Self::Curly => "curly",
             Self::Long => "long",
+            Self::Ponytail => "ponytail",
+            Self::Bun => "bun",
         }
     }
 
@@ -35,12 +42,23 @@ impl Preset {
             Self::Smooth => "Smooth bob",
             Self::Curly => "Red curls",
             Self::Long => "Long waves",
+            Self::Ponytail => "Ponytail",
+            Self::Bun => "Bun",
         }
     }
 
     /// The preset of that id.
     pub fn from_id(id: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|p| p.id() == id)
+    }
+
+    /// What gathers its hair, on the head of an adult; most styles fall free.
+    pub const fn ties(self) -> &'static [HairTie] {
+        match self {
+            Self::Smooth | Self::Curly | Self::Long => &[],
+            Self::Ponytail => &[PONYTAIL_TIE],
+            Self::Bun => &[BUN_TIE],
+        }
     }
 }
 
@@ -51,6 +69,8 @@ impl GroomSettings {
             Preset::Smooth => SMOOTH,
             Preset::Curly => CURLY,
             Preset::Long => LONG,
+            Preset::Ponytail => PONYTAIL,
+            Preset::Bun => BUN,
         }
     }
 }
@@ -156,4 +176,53 @@ const LONG: GroomSettings = GroomSettings {
     wave_length: 0.10,
     look: HairLook { eumelanin: 0.35, pheomelanin: 0.1, ..SMOOTH.look },
     ..SMOOTH
+};
+
+const PONYTAIL: GroomSettings = GroomSettings {
+    wisps: 200,
+    strands_per_wisp: 36,
+    segments_per_strand: 40,
+    length: 0.55,
+    layering: 0.1,
+    length_variation: 0.08,
+    face_framing: 0.0,
+    part_position: 0.0,
+    part_strength: 0.0,
+    sweep: 1.0,
+    volume: 0.010,
+    crown_volume: 0.003,
+    root_lift: 0.4,
+    ends: 0.1,
+    clump: 0.4,
+    locks: 0.3,
+    frizz: 0.0010,
+    strays: 0.02,
+    stray_reach: 0.010,
+    wave: 0.004,
+    wave_length: 0.16,
+    taper: 0.35,
+    look: HairLook { eumelanin: 4.0, pheomelanin: 0.0, ..SMOOTH.look },
+    ..SMOOTH
+};
+
+const BUN: GroomSettings = GroomSettings {
+    length: 0.62,
+    layering: 0.0,
+    length_variation: 0.12,
+    strays: 0.01,
+    stray_reach: 0.003,
+    wave: 0.002,
+    look: HairLook { eumelanin: 0.7, pheomelanin: 0.12, ..SMOOTH.look },
+    ..PONYTAIL
+};
+
+const PONYTAIL_TIE: HairTie =
+    HairTie { at: Vec3::new(0.0, 0.125, -0.10), axis: Vec3::new(0.0, -0.1, -1.0), ..HairTie::DEFAULT };
+
+const BUN_TIE: HairTie = HairTie {
+    kind: TieKind::Bun,
+    at: Vec3::new(0.0, 0.165, -0.07),
+    axis: Vec3::new(0.0, 1.0, -0.8),
+    bun_radius: 0.046,
+    ..HairTie::DEFAULT
 };

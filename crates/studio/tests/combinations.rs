@@ -11,6 +11,9 @@ use lovelock_testkit::flip;
 
 const SIZE: (u32, u32) = (96, 72);
 
+/// Where tied hair is seen from: behind, to the left.
+const BEHIND: f32 = 2.6;
+
 /// The project half a second into the dance.
 fn instant(name: &str, project: &Project) -> Arc<FrameSnapshot> {
     let cancelled = AtomicBool::new(false);
@@ -78,6 +81,10 @@ fn grown_hairstyles() {
     for preset in Preset::ALL {
         let mut project = Project::default();
         project.set_preset(preset);
+        if !project.hair.ties.is_empty() {
+            // What is tied up is behind the head.
+            project.camera.azimuth = BEHIND;
+        }
         draw_all(preset.id(), project);
     }
 }

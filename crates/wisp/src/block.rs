@@ -3,6 +3,7 @@
 use glam::Vec3;
 use lovelock_groom::Guides;
 
+use crate::colliders::field::PlaneRow;
 use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, put};
 use crate::rest::RestShape;
 use crate::solver::{Bending, Coupled, LengthScratch};
@@ -20,6 +21,8 @@ pub(crate) struct Block {
     pub(crate) rest_distance: Vec<Lane>,
     /// Signed distance at rest of each point to the field of head and shoulders, metres; empty without one.
     pub(crate) field_distance: Vec<Lane>,
+    /// What the points have learnt of the field in the present step.
+    pub(crate) planes: Vec<PlaneRow>,
 
     /// How firmly ties hold each point; negative where none does.
     pub(crate) held: Vec<Lane>,
@@ -80,6 +83,7 @@ impl Block {
             rest_distance: Vec::new(),
             held: vec![[-1.0; LANES]; points],
             field_distance: Vec::new(),
+            planes: vec![PlaneRow::UNKNOWN; points],
             position: vec![ZERO3; points],
             velocity: vec![ZERO3; points],
             bend: vec![ZERO3; points],

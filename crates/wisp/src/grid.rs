@@ -18,6 +18,7 @@ use crate::block::Block;
 use crate::lanes::{LANES, Lane3, ZERO3, at, put};
 use crate::settings::{Repulsion, RepulsionMode};
 use crate::solver::Plan;
+use crate::trilinear::{gradient, weights};
 
 /// Cells along each axis.
 const SIDE: i32 = 48;
@@ -381,26 +382,6 @@ const OFFSETS: [usize; 8] = {
 
 fn index(cell: IVec3) -> usize {
     ((cell.z * SIDE + cell.y) * SIDE + cell.x) as usize
-}
-
-/// Trilinear weights in the order of `OFFSETS`.
-#[inline]
-fn weights(f: Vec3) -> [f32; 8] {
-    let g = Vec3::ONE - f;
-    let (a, b, c, d) = (g.y * g.z, f.y * g.z, g.y * f.z, f.y * f.z);
-    [g.x * a, f.x * a, g.x * b, f.x * b, g.x * c, f.x * c, g.x * d, f.x * d]
-}
-
-/// Gradient of the trilinear interpolant of eight values, per cell.
-#[inline]
-fn gradient(v: &[f32; 8], f: Vec3) -> Vec3 {
-    let mix = |a: f32, b: f32, t: f32| a + (b - a) * t;
-    let square = |a: f32, b: f32, c: f32, d: f32, s: f32, t: f32| mix(mix(a, b, s), mix(c, d, s), t);
-    Vec3::new(
-        square(v[1] - v[0], v[3] - v[2], v[5] - v[4], v[7] - v[6], f.y, f.z),
-        square(v[2] - v[0], v[3] - v[1], v[6] - v[4], v[7] - v[5], f.x, f.z),
-        square(v[4] - v[0], v[5] - v[1], v[6] - v[2], v[7] - v[3], f.x, f.y),
-    )
 }
 
 #[cfg(test)]

@@ -27,6 +27,7 @@ mod settings;
 mod simulation;
 mod solver;
 mod ties;
+mod trilinear;
 mod wake;
 mod wind;
 

@@ -15,9 +15,9 @@ use crate::colliders::{MovingShape, RestColliders, place};
 use crate::dispatch::step_block;
 use crate::grid::DensityGrid;
 use crate::hash::Hasher;
-use crate::lanes::{LANES, Map, ZERO, at, put};
+use crate::lanes::{LANES, Map, ZERO, at};
 use crate::motion::{HeadPose, rigid_between, substep};
-use crate::rest::{RestShape, blocks_of};
+use crate::rest::blocks_of;
 use crate::solver::{BendingKey, Plan, Substep};
 use crate::wake::{Wakes, head_of};
 use crate::wind::WindField;
@@ -43,6 +43,8 @@ pub struct Simulation {
     colliders: Vec<PlacedCollider>,
     rest_colliders: RestColliders,
     field: Option<MovingField>,
+    /// Ties that are taking hold.
+    taking_hold: Option<TakingHold>,
     /// Simulated since the last reset, for the wind.
     elapsed_secs: f64,
     /// The links at the root that the blocks are prepared for.
@@ -90,6 +92,7 @@ impl Simulation {
             colliders: Vec::new(),
             rest_colliders: RestColliders::default(),
             field: None,
+            taking_hold: None,
             elapsed_secs: 0.0,
             clamped_links,
             mean_link,
@@ -110,6 +113,7 @@ impl Simulation {
         self.head = HeadPose::new(&input.world_from_head).unwrap_or(self.head);
         self.time_secs = input.time_secs;
         self.elapsed_secs = 0.0;
+        self.take_hold(f32::INFINITY);
         self.colliders.clear();
         self.colliders.extend_from_slice(input.colliders);
         self.learn_colliders();
@@ -168,6 +172,7 @@ impl Simulation {
             }
             field.advance(&head, placed.pose, rules.reach(), dt_secs, self.spare);
         }
+        self.take_hold(dt_secs);
         let report = self.simulate(&head, input.colliders, &settings, dt_secs);
         self.head = head;
         self.colliders.copy_from_slice(input.colliders);
@@ -304,29 +309,6 @@ impl Simulation {
         asked.max(half_links.ceil().min(MAX_SUBSTEPS as f32) as u32)
     }
 
-    /// Fills `block` with the rest shape and the motion of its guides, wherever they are here.
-    fn gather(&self, block: &mut Block) {
-        for k in 0..LANES {
-            let (from, lane) = self.slots[block.guides[k] as usize];
-            let (from, lane) = (&self.blocks[from as usize], lane as usize);
-            for i in 0..block.points() {
-                put(&mut block.rest.direction[i], k, at(&from.rest.direction[i], lane));
-                put(&mut block.position[i], k, at(&from.position[i], lane));
-                put(&mut block.velocity[i], k, at(&from.velocity[i], lane));
-            }
-        }
-    }
-
-    /// Prepares the blocks for another number of carried links.
-    fn clamp_links(&mut self, clamped_links: u32) {
-        self.clamped_links = clamped_links;
-        let guides = &self.style.guides;
-        let first_free = first_free(clamped_links, guides.points_per_guide);
-        for block in &mut self.blocks {
-            block.rest = RestShape::new(guides, &block.guides, first_free);
-        }
-    }
-
     /// Finds how the colliders lie around the hair at rest.
     fn learn_colliders(&mut self) {
         self.rest_colliders.find(self.head.affine(), &self.colliders);
@@ -388,41 +370,6 @@ impl Simulation {
         }
         hasher.finish()
     }
-
-    /// Changes the hairstyle. Where the guides are as many and as finely cut as before, the motion is carried
-    /// over: every lock keeps its turns and velocities. Otherwise the new style starts at rest.
-    pub fn set_style(&mut self, style: Arc<Hairstyle>) {
-        let same = style.guides.points_per_guide == self.style.guides.points_per_guide
-            && style.guides.count() == self.style.guides.count();
-        let mut next = Self::new(style);
-        if next.clamped_links != self.clamped_links {
-            next.clamp_links(self.clamped_links);
-        }
-        next.head = self.head;
-        next.time_secs = self.time_secs;
-        next.elapsed_secs = self.elapsed_secs;
-        next.colliders = std::mem::take(&mut self.colliders);
-        next.rest_colliders = std::mem::take(&mut self.rest_colliders);
-        let from_head = next.head.map_from_head(next.head.place);
-        for block in &mut next.blocks {
-            block.place_at_rest(&from_head);
-        }
-        if same {
-            // The blocks are cut along a curve through the roots, so another style may order them otherwise:
-            // each new block first gathers its guides' old state.
-            let mut gathered = next.blocks.clone();
-            for block in &mut gathered {
-                self.gather(block);
-            }
-            for (block, old) in next.blocks.iter_mut().zip(&gathered) {
-                block.adopt(old, &from_head);
-            }
-        }
-        next.field = self.field.take();
-        next.learn_rest_distances();
-        next.learn_field_distances();
-        *self = next;
-    }
 }
 
 /// The first point that the scalp does not carry.
@@ -437,8 +384,10 @@ fn head_from(head: &HeadPose, origin: Vec3) -> Map {
 }
 
 mod body;
+mod restyle;
 mod snapshot;
 
+use restyle::TakingHold;
 pub use snapshot::RestoreError;
 
 #[cfg(test)]

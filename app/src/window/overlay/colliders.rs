@@ -9,6 +9,9 @@ use crate::window::theme;
 /// How near to a wire a click chooses its shape, points.
 const NEAR: f32 = 7.0;
 
+/// What is left of the colour of a line on the far side of its shape.
+const FAR_SIDE: f32 = 0.2;
+
 /// A shape of wires.
 pub(crate) struct Wires {
     /// Its place in the list of the panel.
@@ -26,9 +29,14 @@ pub(crate) fn paint(ui: &Ui, view: View, shapes: &[Wires], chosen: Option<usize>
     let painter = ui.painter_at(view.place);
     for shape in shapes {
         let is_chosen = shape.index.is_some() && shape.index == chosen;
-        let stroke = Stroke::new(if is_chosen { 1.8 } else { 1.0 }, color(shape, is_chosen));
-        let lines = on_screen(view, &shape.lines);
-        painter.extend(lines.map(|ends| Shape::line_segment(ends, stroke)));
+        let (width, color) = (if is_chosen { 1.8 } else { 1.0 }, color(shape, is_chosen));
+        let range = distances(view, &shape.lines);
+        let lines = shape.lines.iter().filter_map(|line| {
+            let ends = ends_on_screen(view, line)?;
+            let color = color.gamma_multiply(nearness(view, line, range));
+            Some(Shape::line_segment(ends, Stroke::new(width, color)))
+        });
+        painter.extend(lines);
     }
     let Some(shape) = shapes.iter().find(|shape| chosen.is_some() && shape.index == chosen) else { return };
     let ends: Vec<Pos2> = on_screen(view, &shape.lines).flatten().collect();
@@ -51,12 +59,26 @@ fn color(shape: &Wires, chosen: bool) -> Color32 {
     }
 }
 
+/// How near the nearest and the farthest line of a shape are to the camera, metres.
+fn distances(view: View, lines: &[[Vec3; 2]]) -> [f32; 2] {
+    let distances = lines.iter().map(|[a, _]| a.distance(view.eye));
+    distances.fold([f32::INFINITY, 0.0], |[low, high], d| [low.min(d), high.max(d)])
+}
+
+/// How strongly a line is painted: the far side of a shape is seen through its near side.
+fn nearness(view: View, [a, b]: &[Vec3; 2], [low, high]: [f32; 2]) -> f32 {
+    let far = ((a.midpoint(*b).distance(view.eye) - low) / (high - low).max(1e-4)).clamp(0.0, 1.0);
+    let behind = ((far - 0.3) / 0.35).clamp(0.0, 1.0);
+    1.0 - (1.0 - FAR_SIDE) * behind * behind * (3.0 - 2.0 * behind)
+}
+
+fn ends_on_screen(view: View, [a, b]: &[Vec3; 2]) -> Option<[Pos2; 2]> {
+    let ends = [view.to_screen(*a)?, view.to_screen(*b)?];
+    egui::Rect::from_two_pos(ends[0], ends[1]).intersects(view.place.expand(4.0)).then_some(ends)
+}
+
 fn on_screen(view: View, lines: &[[Vec3; 2]]) -> impl Iterator<Item = [Pos2; 2]> + '_ {
-    let shown = view.place.expand(4.0);
-    lines.iter().filter_map(move |[a, b]| {
-        let ends = [view.to_screen(*a)?, view.to_screen(*b)?];
-        egui::Rect::from_two_pos(ends[0], ends[1]).intersects(shown).then_some(ends)
-    })
+    lines.iter().filter_map(move |line| ends_on_screen(view, line))
 }
 
 /// The shape of the list whose wires pass nearest to a place, where any is near.

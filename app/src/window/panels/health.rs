@@ -67,6 +67,10 @@ fn row(ui: &mut Ui, gauge: &Gauge, shown: bool) -> bool {
     ui.painter().rect_filled(bar, 1.5, theme::LINE);
     let full = Rect::from_min_size(bar.min, Vec2::new(bar.width() * gauge.fill(), bar.height()));
     ui.painter().rect_filled(full, 1.5, color);
+    if let Some(within) = &gauge.within {
+        ui.label(RichText::new(format!("in {within}")).small().weak())
+            .on_hover_text("What of the body it is in.");
+    }
     if !gauge.advice.is_empty() {
         ui.label(RichText::new(&gauge.advice).small().color(color));
     }

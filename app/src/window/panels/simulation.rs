@@ -100,6 +100,7 @@ fn stiffness_ramp(ui: &mut Ui, s: &mut SimulationSettings, d: &SimulationSetting
     let ramp = Ramp {
         label: "Stiffness curve",
         hint: "How stiff locks are from their roots to their tips.",
+        unit: "/s",
         range: 0.0..=60.0,
         bias: 0.05..=0.95,
         at: &at,

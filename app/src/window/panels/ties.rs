@@ -2,13 +2,15 @@
 
 use egui::Ui;
 use glam::Vec3;
+use lovelock_studio::HairSection;
 use lovelock_studio::groom::{HairTie, Haircut, Scalp, TieKind, TieReach};
 
 use crate::window::control::{Number, choice, note};
 
-/// The controls of `ties`. `selected` is the one that is edited, and has its handle in the picture; a new one is placed on
-/// `scalp`.
-pub(crate) fn ui(ui: &mut Ui, ties: &mut Vec<HairTie>, selected: &mut usize, scalp: Option<&Scalp>) {
+/// The controls of the ties of `hair`. `selected` is the one that is edited, and has its handle in the picture; a new one is
+/// placed on `scalp`.
+pub(crate) fn ui(ui: &mut Ui, hair: &mut HairSection, selected: &mut usize, scalp: Option<&Scalp>) {
+    let ties = &mut hair.ties;
     *selected = (*selected).min(ties.len().saturating_sub(1));
     ui.horizontal_wrapped(|ui| {
         for (i, tie) in ties.iter().enumerate() {
@@ -43,7 +45,8 @@ pub(crate) fn ui(ui: &mut Ui, ties: &mut Vec<HairTie>, selected: &mut usize, sca
         note(ui, "No tie: the hair falls as it grows.");
         return;
     };
-    let d = HairTie { kind: tie.kind, ..HairTie::default() };
+    let shipped = hair.preset.ties().get(*selected).copied().unwrap_or_default();
+    let d = HairTie { kind: tie.kind, ..shipped };
     controls(ui, tie, &d);
 }
 

@@ -7,9 +7,12 @@ use super::comb::Comb;
 use super::path::Path;
 use super::{GUIDE_POINTS, smoothstep};
 use crate::frame::{reference_normal, transport};
+use crate::polyline::{Reach, next_at, sample};
 use crate::rng::Rng;
 use crate::{GroomSettings, Obstacle, ScalpIndex};
 
+/// How a guide is looked for along its way, in segments of it.
+const REACH: Reach = Reach { beyond: 8.0, step: 0.25 };
 /// Distance from the tips over which hair bends under or out, metres.
 const ENDS: f32 = 0.09;
 /// A turn from one link to the next by which a guide counts as folded, radians: it is laid anew.
@@ -164,7 +167,7 @@ fn lay(
     let mut direction = root_normal;
     for k in 1..GUIDE_POINTS {
         let from = guide[k - 1];
-        at = next_at(target, at, from, link);
+        at = next_at(target, at, from, link, REACH);
         direction = (sample(target, at) - from).normalize_or(direction);
         let margin = 0.003_f32.min(0.35 * link * k as f32);
         let mut p = from + direction * link;
@@ -180,31 +183,4 @@ fn lay(
         guide[k] = p;
     }
     guide
-}
-
-/// The first place on the polyline beyond `at` that is `link` away from `from`; past its end, along its last
-/// segment.
-fn next_at(target: &[Vec3; GUIDE_POINTS], at: f32, from: Vec3, link: f32) -> f32 {
-    let last = (GUIDE_POINTS - 1) as f32;
-    let mut low = at;
-    let mut high = at;
-    while high < last + 8.0 && sample(target, high).distance(from) < link {
-        low = high;
-        high += 0.25;
-    }
-    for _ in 0..16 {
-        let middle = 0.5 * (low + high);
-        if sample(target, middle).distance(from) < link {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    high
-}
-
-/// A point of the polyline at `at` segments, extended straight past its end.
-fn sample(target: &[Vec3; GUIDE_POINTS], at: f32) -> Vec3 {
-    let i = (at as usize).min(GUIDE_POINTS - 2);
-    target[i] + (target[i + 1] - target[i]) * (at - i as f32)
 }

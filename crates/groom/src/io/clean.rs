@@ -34,6 +34,26 @@ pub(super) struct RawHair {
     pub(super) notes: Vec<String>,
 }
 
+impl RawHair {
+    /// Strands and nothing else.
+    pub(super) fn new(format: HairFormat, point_counts: Vec<u32>, points: Vec<Vec3>) -> Self {
+        Self {
+            format,
+            point_counts,
+            points,
+            thickness: None,
+            transparency: None,
+            colours: None,
+            default_thickness: None,
+            default_transparency: None,
+            default_colour: None,
+            both_ends_pinned: false,
+            trailing_bytes: 0,
+            notes: Vec::new(),
+        }
+    }
+}
+
 /// Why a strand is left out.
 #[derive(Clone, Copy, PartialEq)]
 enum Fault {

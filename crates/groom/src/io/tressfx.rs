@@ -92,20 +92,10 @@ impl Positions {
         if strands * per_strand > u64::from(u32::MAX) {
             return Err(file.malformed(4, format!("{} points", strands * per_strand), "at most 4294967295"));
         }
-        Ok(RawHair {
-            format,
-            point_counts: vec![per_strand as u32; strands as usize],
-            points: triples(array, self.stride as usize).map(Into::into).collect(),
-            thickness: None,
-            transparency: None,
-            colours: None,
-            default_thickness: None,
-            default_transparency: None,
-            default_colour: None,
-            both_ends_pinned: false,
-            trailing_bytes: file.len() - offset - array.len() as u64,
-            notes: Vec::new(),
-        })
+        let point_counts = vec![per_strand as u32; strands as usize];
+        let points = triples(array, self.stride as usize).map(Into::into).collect();
+        let trailing_bytes = file.len() - offset - array.len() as u64;
+        Ok(RawHair { trailing_bytes, ..RawHair::new(format, point_counts, points) })
     }
 }
 

@@ -2,9 +2,10 @@
 
 use glam::Vec3;
 
-use super::route::{Ring, STEP};
+use super::route::{Ring, SPARE, STEP};
 use super::{CAUGHT, Gathered};
 use crate::frame::{reference_normal, transport};
+use crate::polyline::{Reach, next_at, sample};
 use crate::{Guides, Hairstyle, Obstacle};
 
 /// How far above the skin the hair nearest to it lies that a tie holds, metres.
@@ -53,7 +54,7 @@ pub(super) fn wisp(
     if !lengths.iter().all(|l| *l > arc + CAUGHT) {
         return None;
     }
-    way.extend(ring.beyond(caught.disc, most - arc + 0.05));
+    way.extend(ring.beyond(caught.disc, most - arc + SPARE));
 
     let frames = frames(&way);
     let local = roots.map(|own| {
@@ -116,7 +117,7 @@ fn along(
     for i in 1..points {
         let from = out[i - 1];
         let link = guides.point(guide, i).distance(guides.point(guide, i - 1));
-        at = next_at(target, at, from, link);
+        at = next_at(target, at, from, link, Reach { beyond: link / STEP + 2.0, step: 0.5 });
         direction = (sample(target, at) - from).normalize_or(direction);
         let mut p = from + direction * link;
         let margin = 0.0015_f32.min(0.3 * link * i as f32);
@@ -135,30 +136,4 @@ fn along(
         out.push(p);
     }
     Some((out, passed?))
-}
-
-/// The first place on the polyline beyond `at` that is `link` from `from`; past its end, along its last piece.
-fn next_at(target: &[Vec3], at: f32, from: Vec3, link: f32) -> f32 {
-    let last = (target.len() - 1) as f32 + link / STEP + 2.0;
-    let mut low = at;
-    let mut high = at;
-    while high < last && sample(target, high).distance(from) < link {
-        low = high;
-        high += 0.5;
-    }
-    for _ in 0..14 {
-        let middle = 0.5 * (low + high);
-        if sample(target, middle).distance(from) < link {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    high
-}
-
-/// A point of the polyline, extended straight past its end.
-fn sample(target: &[Vec3], at: f32) -> Vec3 {
-    let i = (at as usize).min(target.len() - 2);
-    target[i] + (target[i + 1] - target[i]) * (at - i as f32)
 }

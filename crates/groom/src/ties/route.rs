@@ -11,6 +11,16 @@ pub(super) const STEP: f32 = 0.003;
 const KNOTS: usize = 28;
 /// Rounds of pulling.
 const PULLS: usize = 90;
+/// Half the thickness of a bun's rope, in radii of the bun.
+const ROPE: f32 = 0.36;
+/// Angle around the axis in which it climbs from the rim of a bun to its top, and how high that is as a latitude, radians.
+const CLIMB: f32 = 9.0;
+const STEEPEST: f32 = 0.9;
+/// The last of a bun's hair, metres, is led toward its core, by this share of the way.
+const TUCK: f32 = 0.08;
+const TUCKED: f32 = 0.55;
+/// How much further ways go than the longest of a wisp's guides, metres.
+pub(super) const SPARE: f32 = 0.05;
 /// How soon a tail that leaves its tie gives in to gravity, metres.
 const FALL: f32 = 0.04;
 
@@ -91,9 +101,9 @@ impl Ring {
         p + (q - p) * t + (across(0) * disc[0] + across(1) * disc[1]) * wide
     }
 
-    /// The point of a bun `angle` radians along the rope that is wound around the axis.
+    /// The point of a bun `angle` radians along the rope that is wound around the axis: up over a dome and down again.
     fn coil_at(&self, angle: f32, disc: [f32; 2]) -> Vec3 {
-        let thick = 0.42 * self.tie.bun_radius;
+        let thick = ROPE * self.tie.bun_radius;
         let wide = self.tie.bun_radius - thick;
         // It leaves the ring and reaches its circle in a third of a turn.
         let t = (angle / 2.1).clamp(0.0, 1.0);
@@ -104,7 +114,11 @@ impl Ring {
         // The rope turns about itself as it goes around.
         let (sin, cos) = ahead.sin_cos();
         let turned = [disc[0] * cos - disc[1] * sin, disc[0] * sin + disc[1] * cos];
-        let middle = self.centre + around * (wide * out) + self.axis * (0.85 * thick * out);
+        // To and fro between the rim of the dome and its top.
+        let way = (angle / CLIMB).rem_euclid(2.0);
+        let (up, level) = (STEEPEST * way.min(2.0 - way)).sin_cos();
+        let out_of_axis = around * (wide * level * out);
+        let middle = self.centre + out_of_axis + self.axis * ((0.5 * thick + wide * up) * out);
         let at_ring = self.across[0] * disc[0] + self.across[1] * disc[1];
         let in_rope = around * turned[0] + self.axis * turned[1];
         middle + at_ring.lerp(in_rope, out) * radius
@@ -119,12 +133,16 @@ impl Ring {
                 let mut angle = 0.0_f32;
                 let mut out = Vec::with_capacity(steps);
                 let mut p = self.coil_at(0.0, disc);
-                for _ in 0..steps {
+                // Ends are tucked in, where pins would hold them.
+                let core = self.centre + self.axis * (ROPE * self.tie.bun_radius);
+                for step in 0..steps {
                     // As far in angle as makes a step, from how fast the point moves there.
                     let speed = (self.coil_at(angle + 0.02, disc) - p).length() / 0.02;
                     angle += (STEP / speed.max(1e-3)).min(0.3);
                     p = self.coil_at(angle, disc);
-                    out.push(p);
+                    let left = (steps - step) as f32 * STEP - SPARE;
+                    let tucked = (1.0 - left / TUCK).clamp(0.0, 1.0);
+                    out.push(p.lerp(core, TUCKED * tucked * tucked));
                 }
                 out
             }

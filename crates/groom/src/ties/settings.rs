@@ -61,28 +61,30 @@ pub struct HairTie {
 }
 
 impl Default for HairTie {
-    /// A ponytail at the back of an adult's head.
     fn default() -> Self {
-        Self {
-            kind: TieKind::Ponytail,
-            at: Vec3::new(0.0, 0.14, -0.09),
-            axis: Vec3::new(0.0, 0.3, -1.0),
-            radius: 0.014,
-            tightness: 0.7,
-            bun_radius: 0.05,
-            bun_coils: 3.0,
-            reach: TieReach::All,
-            plane_point: Vec3::new(0.0, 0.12, 0.0),
-            plane_normal: Vec3::Y,
-            sphere_centre: Vec3::new(0.0, 0.18, -0.06),
-            sphere_radius: 0.08,
-        }
+        Self::DEFAULT
     }
 }
 
 impl HairTie {
     /// The most ties of one hairstyle.
     pub const MOST: usize = 8;
+
+    /// A ponytail at the back of an adult's head.
+    pub const DEFAULT: Self = Self {
+        kind: TieKind::Ponytail,
+        at: Vec3::new(0.0, 0.14, -0.09),
+        axis: Vec3::new(0.0, 0.3, -1.0),
+        radius: 0.014,
+        tightness: 0.7,
+        bun_radius: 0.05,
+        bun_coils: 3.0,
+        reach: TieReach::All,
+        plane_point: Vec3::new(0.0, 0.12, 0.0),
+        plane_normal: Vec3::Y,
+        sphere_centre: Vec3::new(0.0, 0.18, -0.06),
+        sphere_radius: 0.08,
+    };
 
     /// A tie of that kind on a head, where a ray from the middle of its hair along `direction` leaves it; the
     /// default place on a scalp without hair.

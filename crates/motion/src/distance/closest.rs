@@ -89,6 +89,40 @@ impl Pack {
     }
 }
 
+impl Pack {
+    /// Cosine and sine of half the solid angle of each triangle seen from a point, times a size of their own, the sine positive
+    /// from behind (Van Oosterom and Strackee 1983, "The solid angle of a plane triangle", equation 8).
+    #[inline]
+    pub(super) fn half_solid_angles(&self, p: Vec3) -> ([f32; LANES], [f32; LANES]) {
+        let (mut cosines, mut sines) = ([0.0; LANES], [0.0; LANES]);
+        let (mut lengths, mut dots) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3]);
+        let [[abx, aby, abz], [acx, acy, acz]] = &self.edges;
+        for k in 0..LANES {
+            let a = [self.corner[0][k] - p.x, self.corner[1][k] - p.y, self.corner[2][k] - p.z];
+            let (ab, ac) = ([abx[k], aby[k], abz[k]], [acx[k], acy[k], acz[k]]);
+            let (b, c) =
+                ([a[0] + ab[0], a[1] + ab[1], a[2] + ab[2]], [a[0] + ac[0], a[1] + ac[1], a[2] + ac[2]]);
+            // The volume of three corners is that of one and the edges from it.
+            sines[k] = a[0] * (ab[1] * ac[2] - ab[2] * ac[1])
+                + a[1] * (ab[2] * ac[0] - ab[0] * ac[2])
+                + a[2] * (ab[0] * ac[1] - ab[1] * ac[0]);
+            (lengths[0][k], lengths[1][k], lengths[2][k]) = (dot(a, a), dot(b, b), dot(c, c));
+            (dots[0][k], dots[1][k], dots[2][k]) = (dot(b, c), dot(c, a), dot(a, b));
+        }
+        // Roots in loops of their own are vector instructions.
+        for row in &mut lengths {
+            for length in row {
+                *length = length.sqrt();
+            }
+        }
+        for k in 0..LANES {
+            let [a, b, c] = [lengths[0][k], lengths[1][k], lengths[2][k]];
+            cosines[k] = a * b * c + dots[0][k] * a + dots[1][k] * b + dots[2][k] * c;
+        }
+        (cosines, sines)
+    }
+}
+
 fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

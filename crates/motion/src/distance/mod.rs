@@ -12,7 +12,7 @@ mod winding;
 
 use glam::Vec3;
 
-use crate::Body;
+use crate::{Body, head_mesh};
 use grid::Grid;
 pub(crate) use grid::interpolate;
 use tree::Tree;
@@ -48,7 +48,10 @@ impl RestDistance {
         let origin =
             body.skeleton.world_at_rest.get(body.head_joint).map_or(Vec3::ZERO, |w| w.translation.into());
         let positions: Vec<Vec3> = body.mesh.positions.iter().map(|&p| p - origin).collect();
-        Self::within(&positions, &body.mesh.triangles, Some(REACH))
+        // Of machines and models of a head alone the head is larger than a person's part of the body.
+        let head = head_mesh(body).positions.into_iter().filter(|p| p.is_finite());
+        let head = head.fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |[a, b], p| [a.min(p), b.max(p)]);
+        Self::within(&positions, &body.mesh.triangles, Some(head))
     }
 
     /// Prepares any surface of counter-clockwise triangles, with the grid around all of it; distances are in the
@@ -58,15 +61,18 @@ impl RestDistance {
         Self::within(positions, triangles, None)
     }
 
-    fn within(positions: &[Vec3], triangles: &[[u32; 3]], reach: Option<[Vec3; 2]>) -> Self {
+    /// The grid is around all of the surface, or as far as hair reaches from a `head`.
+    fn within(positions: &[Vec3], triangles: &[[u32; 3]], head: Option<[Vec3; 2]>) -> Self {
         let exact = Exact::new(&surface::corners(positions, triangles));
         let grid = exact.tree.bounds().and_then(|(low, high)| {
             let size = (high - low).max_element();
             let margin = Vec3::splat(MARGIN * size);
             let (mut low, mut high) = (low - margin, high + margin);
-            if let Some(reach) = reach {
-                let [reach_low, reach_high] = reach.map(|corner| corner * (size / TALL));
-                (low, high) = (low.max(reach_low), high.min(reach_high));
+            if let Some([head_low, head_high]) = head {
+                let [reach_low, reach_high] = REACH.map(|corner| corner * (size / TALL));
+                // A person's head is well within the reach.
+                low = low.max(Vec3::select(head_low.cmplt(reach_low), head_low - margin, reach_low));
+                high = high.min(Vec3::select(head_high.cmpgt(reach_high), head_high + margin, reach_high));
             }
             (SIZES.contains(&size) && low.cmplt(high).all()).then(|| Grid::new(&exact, low, high))
         });
@@ -113,7 +119,9 @@ impl Exact {
     }
 
     fn inside(&self, p: Vec3) -> bool {
-        self.winding.inside(&self.tree, p)
+        // Nothing is inside of what it is beside.
+        let beside = self.tree.bounds().is_none_or(|(low, high)| (p.cmplt(low) | p.cmpgt(high)).any());
+        !beside && self.winding.inside(&self.tree, p)
     }
 
     fn distance(&self, p: Vec3) -> (f32, Vec3) {

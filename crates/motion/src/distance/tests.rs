@@ -315,3 +315,14 @@ fn degenerate_and_huge_surfaces() {
     let distance = RestDistance::of_triangles(&cloud, &triangles);
     assert!(distance.grid.unwrap().bytes() < 30_000_000);
 }
+
+#[test]
+fn what_is_beside_a_surface_is_outside_however_often_it_is_doubled() {
+    let corners = [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y];
+    let sheets: Vec<[u32; 3]> = (0..5).flat_map(|_| [[0, 1, 2], [0, 2, 3]]).collect();
+    let exact = Exact::new(&surface::corners(&corners, &sheets));
+    let p = Vec3::new(0.5, 0.5, -0.01);
+    let number = exact.winding.number(&exact.tree, p);
+    assert!(number.abs() > 2.0, "the control: five sheets near by wind twice around a point, {number}");
+    assert!(exact.distance(p).0 > 0.0);
+}

@@ -61,6 +61,11 @@ impl Tree {
         self.nodes.first().map(|root| (root.low, root.high))
     }
 
+    /// The triangles of a leaf.
+    pub(super) fn pack(&self, leaf: &Node) -> &Pack {
+        &self.packs[leaf.pack as usize]
+    }
+
     /// The surface's normal at a triangle, counter-clockwise.
     pub(super) fn normal(&self, triangle: u32) -> Vec3 {
         let [a, b, c] = self.corners[triangle as usize];

@@ -1,10 +1,11 @@
 //! How often a surface winds around a point: what tells inside from outside even where triangles fold over, overlap,
 //! intersect or leave holes, which mislead the normal of the closest point.
 
-use std::f32::consts::{PI, TAU};
+use std::f32::consts::TAU;
 
 use glam::Vec3;
 
+use super::closest::{LANES, Pack};
 use super::tree::Tree;
 
 /// A run of triangles is one dipole from farther away than so many of its radii; whole windings are then off by
@@ -73,6 +74,7 @@ impl Winding {
     /// 1 inside a closed surface, 0 outside, between them near holes.
     pub(super) fn number(&self, tree: &Tree, p: Vec3) -> f32 {
         let mut solid_angle = 0.0;
+        let mut near = Angles::default();
         let mut waiting = [0_u32; 64];
         let mut count = usize::from(!self.dipoles.is_empty());
         while count > 0 {
@@ -91,11 +93,9 @@ impl Winding {
                 count += 2;
                 continue;
             }
-            for corners in &tree.corners[node.at as usize..(node.at + node.count) as usize] {
-                solid_angle += solid_angle_of(corners.map(|corner| corner - p));
-            }
+            near.add(tree.pack(node), node.count as usize, p);
         }
-        solid_angle / (2.0 * TAU)
+        (solid_angle + near.solid_angle()) / (2.0 * TAU)
     }
 
     /// Whether the surface winds around a point, either way: some files turn all their triangles inside out.
@@ -104,12 +104,139 @@ impl Winding {
     }
 }
 
-/// The solid angle of a triangle seen from the origin, positive from behind (Van Oosterom and Strackee 1983, "The
-/// solid angle of a plane triangle", equation 8).
-fn solid_angle_of([a, b, c]: [Vec3; 3]) -> f32 {
-    let (la, lb, lc) = (a.length(), b.length(), c.length());
-    let volume = a.dot(b.cross(c));
-    let angle = volume.atan2(la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
-    // In the plane of the triangle the sign is that of rounding.
-    if angle.abs() < PI { 2.0 * angle } else { 0.0 }
+/// A sum of angles as a product of complex numbers, so that one arc tangent does for all: eight sums side by side.
+#[derive(Clone, Copy, Debug)]
+struct Angles {
+    re: [f32; LANES],
+    im: [f32; LANES],
+    /// How often each sum has gone around beyond what its number says.
+    rounds: [f32; LANES],
+}
+
+impl Default for Angles {
+    fn default() -> Self {
+        Self { re: [1.0; LANES], im: [0.0; LANES], rounds: [0.0; LANES] }
+    }
+}
+
+impl Angles {
+    /// Adds the half solid angles of the first `used` triangles of a pack, seen from a point.
+    #[inline]
+    #[expect(
+        clippy::needless_bitwise_bool,
+        reason = "a short circuit is a branch, and no vector instruction"
+    )]
+    fn add(&mut self, pack: &Pack, used: usize, p: Vec3) {
+        let (re, im) = pack.half_solid_angles(p);
+        let (mut unit_re, mut unit_im) = ([1.0; LANES], [0.0; LANES]);
+        for k in 0..LANES {
+            let size = re[k].abs() + im[k].abs();
+            // In the plane of the triangle the sign is that of rounding; nor counts what has no size.
+            let flat = (re[k] < 0.0) & (im[k].abs() <= f32::EPSILON * size);
+            let counts = (k < used) & (size > 0.0) & (size < f32::INFINITY) & !flat;
+            let inverse = 1.0 / size;
+            unit_re[k] = if counts { re[k] * inverse } else { 1.0 };
+            unit_im[k] = if counts { im[k] * inverse } else { 0.0 };
+        }
+        let Self { re: all_re, im: all_im, rounds } = self;
+        for k in 0..LANES {
+            let (re, im, round) = sum([all_re[k], all_im[k]], [unit_re[k], unit_im[k]]);
+            (all_re[k], all_im[k], rounds[k]) = (re, im, rounds[k] + round);
+        }
+    }
+
+    /// Twice the sum.
+    fn solid_angle(&self) -> f32 {
+        let (mut re, mut im, mut rounds) = (1.0, 0.0, 0.0);
+        for k in 0..LANES {
+            let round;
+            (re, im, round) = sum([re, im], [self.re[k], self.im[k]]);
+            rounds += self.rounds[k] + round;
+        }
+        // A minus before a zero would be another half turn.
+        2.0 * ((im + 0.0).atan2(re) + TAU * rounds)
+    }
+}
+
+/// The sum of two angles between minus and plus half a turn, as numbers of about size one, and the rounds by which it goes
+/// beyond that.
+#[inline]
+#[expect(clippy::needless_bitwise_bool, reason = "a short circuit is a branch, and no vector instruction")]
+fn sum([ar, ai]: [f32; 2], [br, bi]: [f32; 2]) -> (f32, f32, f32) {
+    let (re, im) = (ar * br - ai * bi, ar * bi + ai * br);
+    let up = if (ai >= 0.0) & (bi >= 0.0) & (im < 0.0) { 1.0 } else { 0.0 };
+    let down = if (ai < 0.0) & (bi < 0.0) & (im >= 0.0) { 1.0 } else { 0.0 };
+    // Sizes were one in the sum of their parts: this one is a half at the least.
+    let inverse = 1.0 / (re.abs() + im.abs());
+    (re * inverse, im * inverse, up - down)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f32::consts::PI;
+
+    use super::*;
+
+    /// The solid angle of a triangle seen from the origin, positive from behind (Van Oosterom and Strackee 1983, "The
+    /// solid angle of a plane triangle", equation 8).
+    fn solid_angle_of([a, b, c]: [Vec3; 3]) -> f64 {
+        let [a, b, c] = [a, b, c].map(Vec3::as_dvec3);
+        let (la, lb, lc) = (a.length(), b.length(), c.length());
+        let angle = a.dot(b.cross(c)).atan2(la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+        if (angle.abs() as f32) < PI { 2.0 * angle } else { 0.0 }
+    }
+
+    /// A number from -1 to 1.
+    fn random(seed: &mut u64) -> f32 {
+        *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((*seed >> 40) as f32 / (1 << 23) as f32) - 1.0
+    }
+
+    /// An open soup of triangles that overlap, and a patch of a surface that is wound around many times.
+    fn soups(seed: &mut u64) -> [Vec<[Vec3; 3]>; 2] {
+        let mut at = |size: f32| Vec3::new(random(seed), random(seed), random(seed)) * size;
+        let soup = (0..300)
+            .map(|_| {
+                let a = at(1.0);
+                [a, a + at(0.4), a + at(0.4)]
+            })
+            .collect();
+        let corners = [Vec3::X, Vec3::Y, Vec3::Z, Vec3::NEG_X, Vec3::NEG_Y, Vec3::NEG_Z];
+        let faces = [[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]];
+        let shells = (0..7).flat_map(|_| faces.map(|face| face.map(|corner: usize| corners[corner])));
+        [soup, shells.collect()]
+    }
+
+    #[test]
+    fn a_product_of_numbers_is_the_sum_of_the_angles() {
+        let mut seed = 5;
+        for soup in soups(&mut seed) {
+            let tree = Tree::new(&soup);
+            let mut all = Angles::default();
+            let mut most = 0.0_f64;
+            for _ in 0..2000 {
+                let p = Vec3::new(random(&mut seed), random(&mut seed), random(&mut seed)) * 1.2;
+                all = Angles::default();
+                for node in tree.nodes.iter().filter(|node| node.count > 0) {
+                    all.add(tree.pack(node), node.count as usize, p);
+                }
+                let wanted: f64 = soup.iter().map(|t| solid_angle_of(t.map(|corner| corner - p))).sum();
+                let off = (f64::from(all.solid_angle()) - wanted).abs();
+                most = most.max(wanted.abs());
+                // Measured: 4e-5. A round that is lost would be 12.6.
+                assert!(off < 1e-3, "{p}: {} for {wanted}", all.solid_angle());
+            }
+            assert!(most > 6.0, "the control: the sum goes around, {most}");
+            assert!(all.rounds.iter().all(|rounds| rounds.abs() < 20.0));
+        }
+    }
+
+    #[test]
+    fn what_is_in_the_plane_of_a_triangle_or_on_its_corner_sees_nothing_of_it() {
+        let tree = Tree::new(&[[Vec3::ZERO, Vec3::X, Vec3::Y]]);
+        let winding = Winding::new(&tree);
+        for p in [Vec3::new(0.2, 0.2, 0.0), Vec3::ZERO, Vec3::X, Vec3::new(0.5, 0.5, 0.0)] {
+            assert_eq!(winding.number(&tree, p), 0.0, "{p}");
+        }
+    }
 }

@@ -1,5 +1,6 @@
 //! Measures whole frames of known scenes, stage by stage, beside what was published of them.
 
+mod machine;
 mod report;
 mod scenes;
 
@@ -9,11 +10,13 @@ use std::sync::atomic::AtomicBool;
 
 use lovelock_render::{Backend, Picture, RenderError, Renderer, ShadowMethod, Transparency};
 
-pub(crate) use report::machine;
+pub(crate) use machine::machine;
 pub use report::{BenchReport, SceneReport, StageReport};
 pub use scenes::BenchScene;
 
-use crate::{Access, Engine, FrameClock, LoadControl, Project, Scene, SceneLoader, Stopwatch, StudioError};
+use crate::{
+    Access, Engine, FrameClock, LoadControl, Project, Scene, SceneLoader, Stopwatch, StudioError, health,
+};
 
 /// What to measure.
 #[derive(Clone, Debug)]
@@ -85,7 +88,7 @@ pub fn bench(
             scenes.push(measure(scene, &project, &loaded, renderer, request)?);
         }
     }
-    Ok(BenchReport { machine: report::machine(), scenes, notes })
+    Ok(BenchReport { machine: machine(), scenes, notes })
 }
 
 fn load(project: &Project) -> Result<Arc<Scene>, StudioError> {
@@ -107,7 +110,7 @@ fn measure(
     request: &BenchRequest,
 ) -> Result<SceneReport, StudioError> {
     let (width, height) = request.size.unwrap_or(scene.size());
-    report::reset_peak_memory();
+    machine::reset_peak_memory();
     let clock = FrameClock::new(30.0);
     let mut engine = Engine::with_step(Arc::clone(loaded), project.simulation, clock.step_secs);
     engine.advance_to_step(clock.step_of_frame(FIRST_FRAME));
@@ -127,5 +130,6 @@ fn measure(
             frames.push((watch.ms(), times, stats));
         }
     }
-    Ok(SceneReport::new(scene, project, renderer, [width, height], &loaded.style.strands, &frames))
+    let gauges = health(&engine.totals(), engine.rest_inside(), loaded, &project.simulation);
+    Ok(SceneReport::new(scene, project, renderer, [width, height], &loaded.style.strands, gauges, &frames))
 }

@@ -7,7 +7,8 @@ use lovelock_render::{Backend, FrameStats, PassTime, Renderer};
 use serde::Serialize;
 
 use super::BenchScene;
-use crate::{Project, Stage, StageTimes};
+use super::machine::peak_memory_bytes;
+use crate::{Gauge, Project, Stage, StageTimes};
 
 /// What was measured on this machine.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -55,6 +56,8 @@ pub struct SceneReport {
     pub frames_per_second: f64,
     /// What to know of the published figures.
     pub published_note: Option<&'static str>,
+    /// The gauges of the simulation, from where the hair was settled to the last frame.
+    pub health: Vec<Gauge>,
     /// Bytes that the shadow maps held.
     pub shadow_bytes: u64,
     /// Bytes that were held for the pixels, to put strands together in them.
@@ -99,6 +102,7 @@ impl SceneReport {
         renderer: &Renderer,
         [width, height]: [u32; 2],
         strands: &StrandSet,
+        health: Vec<Gauge>,
         frames: &[(f64, StageTimes, FrameStats)],
     ) -> Self {
         let own = scene.project();
@@ -145,6 +149,7 @@ impl SceneReport {
             pictures_per_second,
             frames_per_second,
             published_note: scene.published_note().filter(|_| as_published),
+            health,
             shadow_bytes: frames.iter().map(|frame| frame.2.shadow_bytes).max().unwrap_or(0),
             draw_bytes: frames.iter().map(|frame| frame.2.draw_bytes).max().unwrap_or(0),
             peak_memory_bytes: peak_memory_bytes(),
@@ -276,6 +281,13 @@ impl fmt::Display for BenchReport {
                     _ => writeln!(f)?,
                 }
             }
+            // The simulation does not know what draws: one column, and what is over its limits in a sentence.
+            for gauge in &first.health {
+                writeln!(f, "  {:<width$}{:>12}", gauge.kind.label().to_lowercase(), gauge.in_words())?;
+            }
+            for gauge in first.health.iter().filter(|gauge| !gauge.advice.is_empty()) {
+                writeln!(f, "  {}", gauge.advice)?;
+            }
             if let Some(note) = first.published_note {
                 writeln!(f, "  {note}")?;
             }
@@ -287,33 +299,10 @@ impl fmt::Display for BenchReport {
     }
 }
 
-/// The processor's name and the number of threads.
-pub(crate) fn machine() -> String {
-    let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-    let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let name =
-        info.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':')).map(|(_, name)| name);
-    format!("{}, {threads} threads", name.map_or(std::env::consts::ARCH, str::trim))
-}
-
-/// Lets [`peak_memory_bytes`] begin anew at what the process holds now.
-pub(super) fn reset_peak_memory() {
-    // Of Linux alone (man 5 proc). Where it cannot be written, the peak is that of the process so far.
-    if cfg!(target_os = "linux") {
-        let _ = std::fs::write("/proc/self/clear_refs", "5");
-    }
-}
-
-/// The most memory that this process has held since [`reset_peak_memory`], bytes.
-fn peak_memory_bytes() -> Option<u64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
-    line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok().map(|kib| kib * 1024)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::GaugeKind;
 
     fn report() -> BenchReport {
         let scene = |backend: &str, ms: f64| SceneReport {
@@ -332,6 +321,14 @@ mod tests {
             pictures_per_second: 90.9,
             frames_per_second: 80.0,
             published_note: None,
+            health: vec![Gauge {
+                kind: GaugeKind::Penetration,
+                value: 2e-3,
+                level: crate::HealthLevel::Watch,
+                at: Some((1, 2)),
+                within: Some("head and shoulders".to_owned()),
+                advice: "Hair goes into the body.".to_owned(),
+            }],
             shadow_bytes: 3 << 20,
             draw_bytes: 5 << 20,
             peak_memory_bytes: None,
@@ -352,6 +349,16 @@ mod tests {
             numbers,
             ["draw", "11.00", "(10.00", "to", "15.00)", "101.00", "(100.00", "to", "105.00)", "37"]
         );
+    }
+
+    #[test]
+    fn gauges_are_told_once_with_what_they_say() {
+        let text = report().to_string();
+        let rows: Vec<_> = text.lines().filter(|line| line.contains("deepest in the body")).collect();
+        assert!(rows.len() == 1 && rows[0].ends_with("2.0 mm in head and shoulders"), "{text}");
+        assert_eq!(text.matches("Hair goes into the body.").count(), 1, "{text}");
+        let json = serde_json::to_value(report()).expect("plain data");
+        assert_eq!(json["scenes"][1]["health"][0]["within"], "head and shoulders");
     }
 
     #[test]

@@ -135,7 +135,9 @@ pub fn farm(
         Source::Project
     };
     let name = out.file_name().map_or_else(|| "dance".to_owned(), |name| name.to_string_lossy().into_owned());
-    let template = Template { name, source, frames: frames.clone(), fps, chunk };
+    let blurred = project.recording.subframes > 1;
+    let simulated_from = frames.start.saturating_sub(u64::from(blurred));
+    let template = Template { name, source, frames: frames.clone(), fps, chunk, simulated_from };
     let text = serde_json::to_string_pretty(&template.json()).map_err(StudioError::work)?;
     write_whole(&building.folder.join(FARM_TEMPLATE), format!("{text}\n").as_bytes())?;
     tell(progress, Progress::Finishing)?;

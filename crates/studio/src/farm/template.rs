@@ -21,6 +21,8 @@ pub(super) struct Template {
     pub(super) frames: Range<u64>,
     pub(super) fps: f64,
     pub(super) chunk: u64,
+    /// The first frame that is simulated: a shutter may open before the first one that is drawn.
+    pub(super) simulated_from: u64,
 }
 
 impl Template {
@@ -84,15 +86,19 @@ impl Template {
         let fps = self.fps.to_string();
         let simulate = json!({
             "name": "Simulate",
-            "description": "Simulates from the first frame, once, into a take.",
+            "description": "Simulates the frames, once, into a take; hair lives through the pre-roll before them.",
             "script": run(&[
                 "record", "{{Param.Folder}}/project.lovelock", "-o", &take,
-                "--frames", &format!("0..{end}"), "--fps", &fps,
+                "--frames", &format!("{}..{end}", self.simulated_from), "--fps", &fps,
             ]),
         });
         let frames = "{{Param.Folder}}/parts/{{Task.Param.Frames}}/";
         let mut drawing = vec!["record", &take, "-o", frames, "--frames", "{{Task.Param.Frames}}"];
         drawing.extend(["--fps", &fps, "--backend", "{{Param.Backend}}"]);
+        if matches!(self.source, Source::Project) {
+            // The take begins where the job does.
+            drawing.push("--dance-time");
+        }
         // A project says its size itself.
         let size = match &self.source {
             Source::Project => None,

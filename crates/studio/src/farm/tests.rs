@@ -42,6 +42,10 @@ fn the_folder_holds_the_project_its_files_and_a_job_of_three_steps() {
     let ranges = &draw["parameterSpace"]["taskParameterDefinitions"][0]["range"];
     assert_eq!(*ranges, serde_json::json!(["4..12", "12..20", "20..25"]));
     assert_eq!(draw["dependencies"][0]["dependsOn"], "Simulate");
+    // Simulated from its first frame on, and drawn by the numbers of the dance.
+    let arguments = |step: &serde_json::Value| step["script"]["actions"]["onRun"]["args"].to_string();
+    assert!(arguments(&template["steps"][0]).contains("\"4..25\""), "{template}");
+    assert!(arguments(draw).contains("--dance-time"), "{template}");
     assert_eq!(fs::read_dir(dir.path()).expect("a folder").count(), 2, "nothing beside the job and the hair");
     // What is there stays.
     let error = make(&project, &request).expect_err("not empty").to_string();

@@ -82,6 +82,21 @@ impl Dance {
         }
     }
 
+    /// The first frame that there is.
+    pub(crate) fn first_frame(&self) -> u64 {
+        match self {
+            Self::Simulated { .. } => 0,
+            Self::Taken { player, fps, .. } => (player.origin_secs() * fps - 1e-6).ceil().max(0.0) as u64,
+        }
+    }
+
+    /// Counts the frames of a take on the dance that it was recorded from; those of a simulation are.
+    pub(crate) fn count_on_dance(&mut self) {
+        if let Self::Taken { player, .. } = self {
+            player.count_on_dance();
+        }
+    }
+
     /// When a frame is, seconds.
     pub(crate) fn secs_of(&self, frame: u64) -> f64 {
         match self {
@@ -96,17 +111,23 @@ impl Dance {
     /// A range that reaches beyond the take.
     pub(crate) fn check(&self, frames: &Range<u64>) -> Result<(), StudioError> {
         match self {
-            Self::Taken { player, fps, .. } if frames.end > self.frames() => {
+            Self::Taken { player, fps, .. } => {
+                let first = self.first_frame();
+                let held = first..first + self.frames();
+                if frames.start >= held.start && frames.end <= held.end {
+                    return Ok(());
+                }
                 Err(StudioError::option(format!(
-                    "frames {}..{}: {} holds {:.2} s, which at {fps} frames a second are frames 0..{}",
+                    "frames {}..{}: {} holds {:.2} s, which at {fps} frames a second are frames {}..{}",
                     frames.start,
                     frames.end,
                     player.path().display(),
                     player.frames() as f64 * player.frame_secs(),
-                    self.frames()
+                    held.start,
+                    held.end
                 )))
             }
-            _ => Ok(()),
+            Self::Simulated { .. } => Ok(()),
         }
     }
 

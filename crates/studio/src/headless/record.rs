@@ -38,6 +38,9 @@ pub fn record(
     let job = Job::new(project, request)?;
     let (mut dance, mut problems) = Dance::open(&job.project, &request.access, job.fps, progress)?;
     tell(progress, Progress::Loaded { problems: problems.clone() })?;
+    if request.dance_time {
+        dance.count_on_dance();
+    }
 
     let frames = job.frames(&dance)?;
     // After what the request may get wrong: drivers speak on standard error while they are tried.
@@ -146,6 +149,11 @@ impl<'a> Job<'a> {
         let refused = |error: &RecordError| refused(request, error);
         let kind = OutputKind::of(&request.out).map_err(|error| refused(&error))?;
         let options = Options::new(&project, request)?;
+        if request.dance_time && project.recording.seamless {
+            return Err(StudioError::option(
+                "--dance-time: the film goes round, and a round of a take is counted from the take's own start",
+            ));
+        }
         let job = Self { project, request, options, kind, fps, width, height };
         lovelock_render::check_size(width, height)?;
         FrameRate::from_fps(fps).map_err(|error| job.refused(&error))?;
@@ -182,8 +190,9 @@ impl<'a> Job<'a> {
     fn frames(&self, dance: &Dance) -> Result<std::ops::Range<u64>, StudioError> {
         let recording = &self.project.recording;
         let frames = self.request.frames.clone().unwrap_or_else(|| {
-            let first = recording.first_frame;
-            first..recording.end_frame.unwrap_or_else(|| dance.frames().max(first + 1))
+            let first = recording.first_frame.max(dance.first_frame());
+            let end = dance.first_frame() + dance.frames();
+            first..recording.end_frame.unwrap_or_else(|| end.max(first + 1))
         });
         check_frames(&frames)?;
         dance.check(&frames)?;
@@ -215,7 +224,7 @@ impl<'a> Job<'a> {
             return Ok(settings);
         }
         let with_panes = self.request.panes.is_some();
-        settings.settings = serde_json::json!({
+        let mut told = serde_json::json!({
             "program": concat!("lovelock ", env!("CARGO_PKG_VERSION")),
             "backend": drawer.kind(),
             "shadow": self.project.shadow.method.id(),
@@ -228,6 +237,10 @@ impl<'a> Job<'a> {
             "project": fingerprint::of_project(&self.project, with_panes)?,
             "files": fingerprint::of_files(&self.project, &self.request.access, dance.take_assets(), with_panes),
         });
+        if self.request.dance_time {
+            told["frames"] = "of the dance".into();
+        }
+        settings.settings = told;
         Ok(settings)
     }
 

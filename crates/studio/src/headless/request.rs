@@ -41,6 +41,8 @@ pub struct RecordRequest {
     pub shutter_degrees: Option<f32>,
     /// Whether to go on with the sequence that is in the folder.
     pub resume: bool,
+    /// Whether frames of a take are counted on the dance that it was recorded from, and not from its own start.
+    pub dance_time: bool,
     /// Which curves an output of curves holds; by its format where none.
     pub curves: Option<super::CurveSource>,
     /// Whether an output of curves leaves the body out.
@@ -71,6 +73,7 @@ impl RecordRequest {
             (self.motion_blur.is_some(), "--motion-blur"),
             (self.shutter_degrees.is_some(), "--shutter"),
             (self.resume, "--resume"),
+            (self.dance_time, "--dance-time"),
         ];
         given.into_iter().find(|(given, _)| *given).map(|(_, option)| option)
     }

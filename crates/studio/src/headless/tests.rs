@@ -187,3 +187,46 @@ fn the_report_has_the_keys_that_were_promised() {
     }
     assert_eq!((&json["out"], &json["state_hash"]), (&"a b/ü.mp4".into(), &"0000000000000abc".into()));
 }
+
+#[test]
+fn a_take_from_the_middle_is_drawn_by_the_frames_of_the_dance() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| dir.path().join(name);
+    let quiet = &mut |_| ControlFlow::Continue(());
+    let take = RecordRequest { out: at("d.take"), frames: Some(40..43), ..RecordRequest::default() };
+    crate::record_take(&small_project(), &take, quiet).expect("a take");
+    let (mut plain, _) = crate::project_of_take(&at("d.take")).expect("its project");
+    plain.set_take(at("d.take"));
+    plain.look.eumelanin = 8.0;
+    // What follows the timeline follows the dance's: black long before frame 40.
+    let mut tracked = plain.clone();
+    let keys = [(0.0, 0.1), (1.0, 8.0)].map(|(secs, value)| crate::Key { secs, value: vec![value] });
+    let track = crate::Track { target: "look/eumelanin".to_owned(), muted: false, keys: keys.into() };
+    tracked.timeline.tracks = vec![track];
+    let mut draw = |project: &crate::Project, out: &str, frames: std::ops::Range<u64>, dance_time| {
+        let mut access = crate::Access::new();
+        access.pick(&at("d.take"));
+        let frames = Some(frames);
+        let own =
+            RecordRequest { frames, backend: Some(Backend::Cpu), dance_time, access, ..request(&at(out)) };
+        record(project, &own, quiet)
+    };
+    let error = draw(&tracked, "own", 40..43, false).expect_err("by its own frames it has no frame 40");
+    assert!(error.to_string().contains("frames 0..3"), "{error}");
+    let error = draw(&tracked, "dance", 39..43, true).expect_err("nor of the dance one before");
+    assert!(error.to_string().contains("frames 40..43"), "{error}");
+    draw(&tracked, "dance", 40..43, true).expect("pictures");
+    draw(&plain, "plain", 0..3, false).expect("pictures");
+    draw(&tracked, "own", 0..3, false).expect("pictures");
+    for (dance, own) in [(40, 0), (42, 2)] {
+        let read = |folder: &str, frame: u32| {
+            std::fs::read(at(folder).join(format!("frame_{frame:06}.png"))).expect("a picture")
+        };
+        assert!(read("dance", dance) == read("plain", own), "frame {dance}");
+        assert!(read("dance", dance) != read("own", own), "the control: another place of the timeline");
+    }
+    let mut looped = plain.clone();
+    looped.recording.seamless = true;
+    let error = draw(&looped, "loop", 40..43, true).expect_err("refused");
+    assert!(error.to_string().contains("--dance-time"), "{error}");
+}

@@ -105,6 +105,8 @@ pub struct Gauge {
     pub level: HealthLevel,
     /// The guide that it is about, and its point; none where it is about none.
     pub at: Option<(u32, u32)>,
+    /// What of the body it is in: `head and shoulders`, or the name of a joint; none where it is in nothing.
+    pub within: Option<String>,
     /// What it means and what to change, in sentences; empty where all is well.
     pub advice: String,
 }
@@ -114,6 +116,12 @@ impl Gauge {
     pub fn fill(&self) -> f32 {
         let [_, wrong] = self.kind.limits();
         if wrong > 0.0 { (self.value / wrong).clamp(0.0, 1.0) as f32 } else { f32::from(self.value > 0.0) }
+    }
+
+    /// The value with its unit, and what of the body it is in.
+    pub fn in_words(&self) -> String {
+        let value = self.kind.in_words(self.value);
+        self.within.as_ref().map_or_else(|| value.clone(), |within| format!("{value} in {within}"))
     }
 
     fn new(kind: GaugeKind, value: f64, at: Option<(u32, u32)>, advice: impl FnOnce() -> String) -> Self {
@@ -126,7 +134,7 @@ impl Gauge {
             HealthLevel::Wrong
         };
         let advice = if level == HealthLevel::Good { String::new() } else { advice() };
-        Self { kind, value, level, at, advice }
+        Self { kind, value, level, at, within: None, advice }
     }
 }
 
@@ -149,7 +157,8 @@ fn gauges(
 ) -> Vec<Gauge> {
     let place = |inside: Option<InsidePoint>| inside.map(|inside| (inside.guide, inside.point));
     let part = |inside: Option<InsidePoint>| inside.map_or("the body", |inside| scene.name_of(inside.within));
-    vec![
+    let within = |inside: Option<InsidePoint>| inside.map(|inside| scene.name_of(inside.within).to_owned());
+    let mut gauges = vec![
         Gauge::new(GaugeKind::Stretch, f64::from(totals.max_stretch), totals.worst_stretch_at, || {
             let more = if settings.integrator == Integrator::Relaxation {
                 "Choose the direct method, or raise the sweeps"
@@ -201,7 +210,15 @@ fn gauges(
                 )
             },
         ),
-    ]
+    ];
+    for gauge in &mut gauges {
+        gauge.within = match gauge.kind {
+            GaugeKind::Penetration => within(totals.deepest),
+            GaugeKind::RestInside => within(rest),
+            GaugeKind::Stretch | GaugeKind::Energy | GaugeKind::PutBack => None,
+        };
+    }
+    gauges
 }
 
 impl FrameSnapshot {

@@ -24,14 +24,19 @@ fn good_hair_gets_no_advice_and_every_limit_has_a_sentence() {
     let rest = InsidePoint { depth_m: 0.05, guide: 1, point: 2, within: BodyPart::Collider(0) };
     let told = health(&ill, Some(rest), &scene, &settings);
     assert!(told[4].advice.contains(&scene.colliders[0].name), "{told:?}");
+    assert_eq!(told[4].within.as_ref(), Some(&scene.colliders[0].name));
+    assert_eq!(told[4].in_words(), format!("50.0 mm in {}", scene.colliders[0].name));
+    assert!(well.iter().chain(&told[..4]).all(|gauge| gauge.within.is_none()), "{told:?}");
     for gauge in told {
         assert_eq!(gauge.level, HealthLevel::Wrong, "{gauge:?}");
         assert!(gauge.advice.ends_with('.') && gauge.fill() == 1.0, "{gauge:?}");
         assert!(!gauge.kind.in_words(gauge.value).is_empty());
     }
-    let some = Totals { max_penetration_m: 2e-3, ..Totals::default() };
+    let inside = InsidePoint { depth_m: 2e-3, guide: 0, point: 9, within: BodyPart::Field };
+    let some = Totals { max_penetration_m: 2e-3, deepest: Some(inside), ..Totals::default() };
     let watched = health(&some, None, &scene, &settings);
     assert_eq!(watched[1].level, HealthLevel::Watch);
+    assert_eq!(watched[1].in_words(), "2.0 mm in head and shoulders");
     assert!((watched[1].fill() - 0.4).abs() < 1e-6);
 }
 

@@ -86,12 +86,13 @@ impl Default for Project {
 }
 
 impl Project {
-    /// Takes a shipped hairstyle with its colours.
+    /// Takes a shipped hairstyle with its colours and its ties.
     pub fn set_preset(&mut self, preset: Preset) {
         self.hair.source = HairSource::Grown;
         self.hair.preset = preset;
         self.hair.groom = GroomSettings::preset(preset);
         self.look = self.hair.groom.look;
+        self.hair.ties = preset.ties().to_vec();
         // Other hair is not cut.
         self.hair.cut = Haircut::default();
     }

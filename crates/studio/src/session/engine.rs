@@ -1,14 +1,16 @@
 //! The simulation and the state of a frame: synchronous, and without a clock.
 
+mod settle;
+
 use std::sync::Arc;
 
 use glam::Affine3A;
-use lovelock_groom::GuideFrame;
+use lovelock_groom::{GuideFrame, Guides};
 use lovelock_motion::{FieldPose, PlacedCollider, Pose, Skin, place_colliders, pose_at, skin};
 use lovelock_record::TakeFrame;
 use lovelock_wisp::{InsidePoint, PlacedField, Simulation, SimulationSettings, StepInput, StepReport};
 
-use super::preroll::Preroll;
+use super::combing::Combing;
 use super::snapshot::SnapshotPool;
 use super::{FrameSnapshot, Scene, Totals};
 use crate::{Animation, Project, STEP_SECS, StageTimes, Stopwatch, TimelineSection};
@@ -34,6 +36,8 @@ pub struct Engine {
     preroll_secs: f64,
     step_secs: f64,
     simulation: Simulation,
+    /// Strands that go over to other ties.
+    combing: Option<Combing>,
     /// Steps from the scene's time zero.
     at_step: i64,
     /// Steps since the engine started.
@@ -80,6 +84,7 @@ impl Engine {
             preroll_secs: f64::from(TimelineSection::default().preroll_secs),
             step_secs,
             simulation,
+            combing: None,
             at_step: 0,
             taken: 0,
             simulated_secs: 0.0,
@@ -165,6 +170,15 @@ impl Engine {
             && before.style.guides.count() == self.scene.style.guides.count();
         if !Arc::ptr_eq(&before.style, &self.scene.style) {
             if same_layout {
+                let seen = self.combing.take().map(|combing| combing.style(&before.style));
+                let mut now = GuideFrame {
+                    time_secs: 0.0,
+                    world_from_head: Affine3A::IDENTITY,
+                    guides: Guides::default(),
+                };
+                self.simulation.frame(&mut now);
+                let seen = seen.as_ref().unwrap_or(&before.style);
+                self.combing = Combing::between(seen, &self.scene.style, &now);
                 self.simulation.set_style(Arc::clone(&self.scene.style));
             } else {
                 self.simulation = Simulation::new(Arc::clone(&self.scene.style));
@@ -195,73 +209,6 @@ impl Engine {
         }
         self.rest_is_new = true;
         !(same_layout && same_body && same_clip)
-    }
-
-    /// Back to the first frame, the hair settled.
-    pub fn restart(&mut self) {
-        self.at_step = 0;
-        self.settle();
-    }
-
-    /// Gives the hair the shape that it has at this time: see [`Engine::preroll`].
-    pub fn settle(&mut self) {
-        let mut preroll = self.preroll();
-        while !preroll.advance() {}
-        self.take_settled(preroll);
-    }
-
-    /// A copy that lives through the seconds before this instant, from the style at rest. A motion that cannot be reached
-    /// from before (the start of a clip that does not loop, or whose end does not go over into its start) is waited for in
-    /// its first pose.
-    pub fn preroll(&self) -> Preroll {
-        self.preroll_of(self.at_step)
-    }
-
-    /// The life of the hair of a later step, as far as this instant.
-    pub(crate) fn preroll_of(&self, step: i64) -> Preroll {
-        let aside = Self {
-            scene: Arc::clone(&self.scene),
-            animation: self.animation.clone(),
-            simulation: self.simulation.clone(),
-            pose: Pose::default(),
-            colliders: Vec::new(),
-            field: FieldPose::default(),
-            pool: SnapshotPool::default(),
-            ..*self
-        };
-        Preroll::new(aside, step, self.preroll_secs)
-    }
-
-    /// Takes the hair of a copy that has arrived where this engine still is; returns whether it was taken.
-    pub fn take_settled(&mut self, preroll: Preroll) -> bool {
-        let aside = preroll.into_engine();
-        if !Arc::ptr_eq(&aside.scene, &self.scene) || aside.at_step != self.at_step {
-            return false;
-        }
-        self.jumped_since = true;
-        (self.simulation, self.simulated_secs) = (aside.simulation, aside.simulated_secs);
-        (self.pose, self.colliders, self.field) = (aside.pose, aside.colliders, aside.field);
-        self.report = aside.report;
-        (self.rest_inside, self.rest_is_new) = (aside.rest_inside, aside.rest_is_new);
-        self.totals = Totals::default();
-        self.times = StageTimes::default();
-        true
-    }
-
-    /// What is recorded begins here: the next step follows this instant without a jump.
-    pub(crate) fn begin_here(&mut self) {
-        self.jumped_since = false;
-    }
-
-    /// Puts the hair into its style at a step. Before `lead_in_secs` the body stands as it does then.
-    pub(super) fn lay_at_rest(&mut self, step: i64, lead_in_secs: f64) {
-        self.jumped_since = true;
-        self.at_step = step;
-        self.simulated_secs += JUMP_SECS;
-        self.place_body(lead_in_secs);
-        let input = body_at(self.simulated_secs, &self.scene, &self.pose, &self.colliders, &self.field);
-        self.simulation.reset(&input);
-        self.report = StepReport::default();
     }
 
     /// A step of a life that leads to another instant.
@@ -299,6 +246,8 @@ impl Engine {
         self.times.simulate += watch.ms();
         self.taken += 1;
         self.totals.add(&self.report);
+        let step_secs = self.step_secs;
+        self.combing.take_if(|combing| !combing.advance(step_secs));
     }
 
     /// On to the given step, counted from the scene's time zero; does nothing where time is there already.
@@ -334,7 +283,8 @@ impl Engine {
     /// The instant as it is, for drawing. Resets the times that it carries.
     pub fn snapshot(&mut self) -> Arc<FrameSnapshot> {
         let watch = Stopwatch::start();
-        let (scene, pose, times) = (&self.scene, &self.pose, &mut self.times);
+        let combed = self.combing.as_ref().map(|combing| combing.scene(&self.scene));
+        let (scene, pose, times) = (combed.as_ref().unwrap_or(&self.scene), &self.pose, &mut self.times);
         let (simulation, report, totals) = (&self.simulation, self.report, self.totals);
         let rest_inside = self.rest_inside;
         let (step, time_secs) = (self.taken, self.at_step as f64 * self.step_secs);

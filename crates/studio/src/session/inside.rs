@@ -1,56 +1,28 @@
 //! The simulation thread's own state: an engine or a take, and what is asked of it.
 
+mod inputs;
 mod recording;
 mod settling;
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex};
-use std::time::{Duration, SystemTime};
+use std::time::Duration;
 
 use lovelock_wisp::SimulationSettings;
 
-use settling::Aside;
+use inputs::SceneInputs;
+use settling::{Aside, lives_otherwise};
 
 use super::load_thread::{LoadThread, Loaded};
 use super::mailbox::{Mailbox, TakeWish, Wishes};
 use super::worker::{Event, Outbox};
 use super::{Engine, FrameSnapshot, PrerollProgress, Scene};
 use crate::take::TakeTransport;
-use crate::{
-    Access, BodySection, FileRef, HairSection, MotionSection, Playback, Project, STEP_SECS, Slot, Stopwatch,
-    TakeProgress, TakeRecording,
-};
+use crate::{Access, Playback, Project, STEP_SECS, Slot, Stopwatch, TakeProgress, TakeRecording};
 
 /// Panics in a row after which the simulation rests until something changes.
 const MOST_PANICS: u32 = 3;
-
-/// What a scene is made from: other sections of a project need no load.
-#[derive(Clone, Debug, PartialEq)]
-enum SceneInputs {
-    Simulated(Box<(BodySection, MotionSection, HairSection, Access)>),
-    /// With what tells a file from one that was put in its place.
-    Take {
-        file: FileRef,
-        version: Option<(u64, SystemTime)>,
-        access: Access,
-    },
-}
-
-impl SceneInputs {
-    fn of(project: &Project, access: &Access) -> Self {
-        let Project { body, motion, hair, take, .. } = project.clone();
-        let access = access.clone();
-        match take.file {
-            Some(file) => {
-                let data = std::fs::metadata(&file.path).ok();
-                let version = data.and_then(|data| Some((data.len(), data.modified().ok()?)));
-                Self::Take { file, version, access }
-            }
-            None => Self::Simulated(Box::new((body, motion, hair, access))),
-        }
-    }
-}
 
 /// The simulation thread's own state.
 pub(super) struct Inside {
@@ -63,6 +35,8 @@ pub(super) struct Inside {
     engine: Option<Engine>,
     /// The life of the hair before the instant where the engine stands; time waits for it.
     preroll: Option<Aside>,
+    /// Since hair that stands still was last given other settings: it settles anew once they are left alone.
+    unsettled: Option<Stopwatch>,
     /// The take that plays in place of the engine.
     take: Option<TakeTransport>,
     recording: Option<TakeRecording>,
@@ -94,6 +68,7 @@ impl Inside {
             settling,
             engine: None,
             preroll: None,
+            unsettled: None,
             take: None,
             recording: None,
             project: None,
@@ -118,7 +93,7 @@ impl Inside {
                 (None, Some(_)) => self.playback.until_next_step(),
                 (None, None) => None,
             };
-            let wishes = self.mailbox.take(timeout);
+            let wishes = self.mailbox.take(self.until_calm(timeout));
             if wishes.stop {
                 // What was recorded is not to be lost because the window closes.
                 self.end_take(None);
@@ -140,6 +115,7 @@ impl Inside {
     /// Does what is asked for and what time asks for, and shows the result.
     fn turn(&mut self, wishes: Wishes, elapsed_secs: f64) {
         let changed = self.obey(wishes);
+        self.settle_when_calm();
         // Before its frame is: whoever sees hair that was carried knows that it is not settled.
         self.tell_settling();
         if self.take.is_some() {
@@ -300,8 +276,9 @@ impl Inside {
         if let Some(engine) = &mut self.engine {
             engine.follow(&project);
         }
-        if self.project.as_ref().is_some_and(|before| before.simulation != project.simulation) {
+        if self.project.as_ref().is_some_and(|before| lives_otherwise(before, &project)) {
             self.begin_preroll_anew();
+            self.unsettled = Some(Stopwatch::start());
         }
         if let Some(take) = &mut self.take {
             take.set_looping(project.motion.looping);

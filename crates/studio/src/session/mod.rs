@@ -1,6 +1,7 @@
 //! What runs: the scene, the simulation and the threads that they live on.
 
 mod camera;
+mod combing;
 mod dancer;
 mod dress;
 mod engine;

@@ -152,6 +152,31 @@ fn hair_that_comes_while_time_stands_is_settled() {
 }
 
 #[test]
+fn settings_that_are_changed_while_time_stands_settle_the_hair_anew() {
+    let mut project = small_project();
+    let (worker, _) = start(project.clone());
+    wait("a frame", || worker.frame());
+    worker.set_playing(false);
+    let secs = 100.0 * crate::STEP_SECS;
+    worker.seek(secs);
+    let before = settled_at(&worker, secs);
+    // Dragged: one change after the other.
+    for gravity in [5.0, 4.0, 3.0, 2.0] {
+        project.simulation.gravity = gravity;
+        project.simulation.style_support = 0.0;
+        worker.set_project(Arc::new(project.clone()), Access::new());
+        std::thread::sleep(Duration::from_millis(3));
+    }
+    let mut engine = Engine::new(Arc::clone(&before.scene), project.simulation);
+    engine.seek(secs);
+    engine.settle();
+    let wanted = engine.snapshot();
+    assert_ne!(wanted.guides, before.guides, "the control: other settings, other hair");
+    wait("hair by the last settings", || worker.frame().filter(|frame| frame.guides == wanted.guides));
+    assert!((wanted.time_secs - secs).abs() < 1e-6, "time stands");
+}
+
+#[test]
 fn settling_can_be_given_up_and_time_goes_on() {
     let mut project = small_project();
     // Long enough to be in the middle of it.

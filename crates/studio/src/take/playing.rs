@@ -38,6 +38,8 @@ pub struct TakePlayer {
     shown: u64,
     /// First frame of the lost run that was told last.
     told_lost: Option<u64>,
+    /// The time of its first frame, seconds.
+    origin_secs: f64,
     notices: Vec<String>,
 }
 
@@ -81,6 +83,7 @@ impl TakePlayer {
             pool: SnapshotPool::default(),
             shown: 0,
             told_lost: None,
+            origin_secs: 0.0,
             notices: Vec::new(),
         };
         Ok((player, problems))
@@ -126,13 +129,26 @@ impl TakePlayer {
         self.header().secs_of(self.frames() - 1)
     }
 
+    /// Counts its time on the dance that it was recorded from, and not from its own start; its timeline, too.
+    pub fn count_on_dance(&mut self) {
+        let secs = self.header().start_secs;
+        self.origin_secs = if secs.is_finite() { secs.max(0.0) } else { 0.0 };
+    }
+
+    /// The time of its first frame: 0, or that of the dance where it is counted so.
+    pub fn origin_secs(&self) -> f64 {
+        self.origin_secs
+    }
+
     /// The instant `secs` after the start, clamped to the take; between frames it is interpolated.
     ///
     /// # Errors
     /// The frames around it are damaged, or the disk cannot read them.
     pub fn snapshot(&mut self, secs: f64) -> Result<Arc<FrameSnapshot>, StudioError> {
         let watch = Stopwatch::start();
+        let secs = secs - self.origin_secs;
         let secs = if secs.is_finite() { secs.clamp(0.0, self.duration_secs()) } else { 0.0 };
+        let position_secs = secs + self.origin_secs;
         let mut shown = match self.reader.frame_at(secs, &mut self.frame) {
             Ok(shown) => shown,
             Err(error) => self.play_over((secs / self.frame_secs()).round() as u64, error)?,
@@ -169,7 +185,7 @@ impl TakePlayer {
             }
             snapshot.step = shown;
             // The camera follows the head of the scene's time; the timeline stands at the take's.
-            (snapshot.time_secs, snapshot.position_secs) = (frame.guides.time_secs, secs);
+            (snapshot.time_secs, snapshot.position_secs) = (frame.guides.time_secs, position_secs);
             snapshot.duration_secs = duration_secs;
             snapshot.pose.clone_from(pose);
             skin(&scene.body, pose, &mut snapshot.skin);

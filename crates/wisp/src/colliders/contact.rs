@@ -4,7 +4,7 @@
 use glam::Vec3;
 
 use super::MovingShape;
-use super::field::{FieldRow, MovingField};
+use super::field::{FieldRow, MovingField, PlaneRow};
 use crate::SimulationSettings;
 use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, direction_or, greater, lesser, put};
 use crate::solver::Substep;
@@ -21,6 +21,9 @@ pub(crate) struct ContactRules {
     /// Time step of the substep, seconds.
     pub(crate) h: f32,
 }
+
+/// Radius of the sphere that stands for the field's surface where hair touches it, metres: nearly a plane.
+const FLAT: f32 = 1.0;
 
 /// Height above the head up to which layers keep their order, metres.
 pub(crate) const LAYER_HEIGHT: f32 = 0.025;
@@ -102,8 +105,8 @@ pub(crate) struct NearField<'a> {
 
 impl NearField<'_> {
     #[inline(always)]
-    fn row(&self, placed: &Lane3, reach: f32, wanted: &[bool; LANES]) -> Option<FieldRow> {
-        self.moving.row(placed, self.substep, self.passed, reach, wanted)
+    fn row(&self, placed: &Lane3, reach: f32, planes: &mut PlaneRow) -> Option<FieldRow> {
+        self.moving.row(placed, self.substep, self.passed, reach, planes)
     }
 }
 
@@ -116,9 +119,10 @@ pub(crate) fn buried_in_field(
     substep: &Substep,
     passed: f32,
     rest: &Lane,
+    planes: &mut PlaneRow,
 ) -> Lane {
     let mut out = ZERO;
-    if let Some(row) = moving.row(carried, substep, passed, LAYER_HEIGHT, &[true; LANES]) {
+    if let Some(row) = moving.row(carried, substep, passed, LAYER_HEIGHT, planes) {
         for k in 0..LANES {
             out[k] = greater(lesser(rest[k], 0.0) - row.distance[k], 0.0);
         }
@@ -200,6 +204,7 @@ pub(crate) fn lay_point(
     length: &Lane,
     near: &Near,
     rules: &ContactRules,
+    planes: &mut PlaneRow,
 ) -> Lane3 {
     let mut placed = ZERO3;
     for k in 0..LANES {
@@ -210,13 +215,11 @@ pub(crate) fn lay_point(
     if near.active.is_empty() && near.field.is_none() {
         return placed;
     }
-    // Lanes that have not moved in a round need not be measured again.
-    let mut touched = [true; LANES];
     for round in 0..ROUNDS {
         let rules = if round < TIGHT { *rules } else { rules.bare() };
         let enough = if round == 0 { 0.0 } else { CLOSE_ENOUGH };
         let mut pushed =
-            push_out_of_field(point, before, was, length, near, &rules, round, &mut touched, &mut placed);
+            push_out_of_field(point, before, was, length, near, &rules, round, planes, &mut placed);
         let (min, max) = bounds(&placed);
         for (n, &c) in near.active.iter().enumerate() {
             let mover = &near.shapes[c as usize];
@@ -250,7 +253,6 @@ pub(crate) fn lay_point(
                 let slid = slide(p, at(was, k), centre, depth, friction, mover.velocity_at.apply(p), rules.h);
                 let out = push_out(from, slid, l, centre, nearest.radius[k] + allowed[k]);
                 let touching = depth > 0.0;
-                touched[k] |= touching;
                 let pick = |a: f32, b: f32| if touching { a } else { b };
                 put(&mut placed, k, Vec3::new(pick(out.x, p.x), pick(out.y, p.y), pick(out.z, p.z)));
             }
@@ -272,32 +274,29 @@ fn push_out_of_field(
     near: &Near,
     rules: &ContactRules,
     round: usize,
-    touched: &mut [bool; LANES],
+    planes: &mut PlaneRow,
     placed: &mut Lane3,
 ) -> bool {
     let Some(field) = &near.field else { return false };
-    let Some(row) = field.row(placed, rules.reach(), touched) else {
-        *touched = [false; LANES];
-        return false;
-    };
+    let Some(row) = field.row(placed, rules.reach(), planes) else { return false };
     let allowed = near.allowed_by_field(field, &row, point, rules);
     let (mut deepest, enough) = (0.0, if round == 0 { 0.0 } else { CLOSE_ENOUGH });
     for k in 0..LANES {
         deepest = greater(deepest, allowed[k] - row.distance[k]);
     }
     if deepest <= enough {
-        *touched = [false; LANES];
         return false;
     }
     let friction = if round == 0 { rules.friction } else { 0.0 };
     for k in 0..LANES {
         let depth = allowed[k] - row.distance[k];
         let (p, from, l) = (at(placed, k), at(before, k), length[k]);
-        let (centre, radius) = row.sphere(k, p);
-        let slid = slide(p, at(was, k), centre, depth, friction, at(&row.velocity, k), rules.h);
-        let out = push_out(from, slid, l, centre, radius + allowed[k]);
+        // The sphere that stands for the surface.
+        let centre = p - at(&row.normal, k) * (row.distance[k] + FLAT);
+        let velocity = row.velocity(k, p, field.substep);
+        let slid = slide(p, at(was, k), centre, depth, friction, velocity, rules.h);
+        let out = push_out(from, slid, l, centre, FLAT + allowed[k]);
         let touching = depth > 0.0;
-        touched[k] = touching;
         let pick = |a: f32, b: f32| if touching { a } else { b };
         put(placed, k, Vec3::new(pick(out.x, p.x), pick(out.y, p.y), pick(out.z, p.z)));
     }
@@ -351,16 +350,23 @@ pub(crate) const FIELD: u32 = u32::MAX;
 
 /// How deep the lanes of point `i` are inside what they may touch.
 #[inline(always)]
-pub(crate) fn penetration(point: usize, placed: &Lane3, near: &Near, rules: &ContactRules) -> Depths {
+pub(crate) fn penetration(
+    point: usize,
+    placed: &Lane3,
+    near: &Near,
+    rules: &ContactRules,
+    planes: &mut PlaneRow,
+) -> Depths {
     let mut worst = Depths { depth: ZERO, collider: [FIELD; LANES] };
     // What counts is the surface, or the distance at rest where that is less.
     let bare = rules.bare();
     if let Some(field) = &near.field
-        && let Some(row) = field.row(placed, rules.reach(), &[true; LANES])
+        && let Some(row) = field.row(placed, rules.reach(), planes)
     {
         let allowed = near.allowed_by_field(field, &row, point, &bare);
         for k in 0..LANES {
-            worst.depth[k] = greater(0.0, allowed[k] - row.distance[k]);
+            // The depth in what is a guess is one too, and tells nothing.
+            worst.depth[k] = greater(0.0, allowed[k] - row.distance[k]) * (1.0 - row.guess[k]);
         }
     }
     let (min, max) = bounds(placed);

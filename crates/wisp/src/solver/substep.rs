@@ -214,7 +214,11 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize, lay: Lay) {
     let field = plan.field.map(|moving| {
         let (substep, passed) = (&plan.substeps[s], (s + 1) as f32 / plan.substeps.len() as f32);
         let (rest_distance, root) = (&block.field_distance[..], &block.next[carried]);
-        let buried = buried_in_field(root, moving, substep, passed, &rest_distance[carried]);
+        let plane = &mut block.planes[carried];
+        if s == 0 {
+            plane.forget();
+        }
+        let buried = buried_in_field(root, moving, substep, passed, &rest_distance[carried], plane);
         NearField { moving, substep, passed, rest_distance, buried }
     });
     let near = Near {
@@ -255,9 +259,13 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize, lay: Lay) {
             for k in 0..LANES {
                 put(&mut fallback, k, (at(&was, k) - at(&was_before, k)) * inv[k]);
             }
-            placed = lay_point(i, &before, &placed, &was, &fallback, &length, &near, &plan.rules);
+            if s == 0 {
+                block.planes[i].forget();
+            }
+            let planes = &mut block.planes[i];
+            placed = lay_point(i, &before, &placed, &was, &fallback, &length, &near, &plan.rules, planes);
             if last && (near.field.is_some() || !near.active.is_empty()) {
-                let found = penetration(i, &placed, &near, &plan.rules);
+                let found = penetration(i, &placed, &near, &plan.rules, planes);
                 for k in 0..LANES {
                     if found.depth[k] > deepest[k].metres {
                         deepest[k] =

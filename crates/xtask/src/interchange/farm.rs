@@ -51,12 +51,13 @@ pub(super) fn check(python: &Path, folder: &Path, program: &Path) -> anyhow::Res
     // folder: its manifest names the take by what the file holds.
     let take = folder.join("single.take");
     let mut record = lovelock(program, "record");
-    run_json(record.arg(&project).arg("-o").arg(&take).args(["--frames", "0..9", "--fps", "24"]))?;
+    run_json(record.arg(&project).arg("-o").arg(&take).args(["--frames", FRAMES, "--fps", "24"]))?;
     let draw = |take: &Path, out: &str| {
         let out = folder.join(out);
         let mut record = lovelock(program, "record");
         record.arg(take).arg("-o").arg(&out);
-        run_json(record.args(["--frames", FRAMES, "--fps", "24", "--size", SIZE, "--backend", "cpu"]))?;
+        let wanted = ["--frames", FRAMES, "--dance-time", "--fps", "24", "--size", SIZE, "--backend", "cpu"];
+        run_json(record.args(wanted))?;
         files(&out)
     };
     let (own, ours) = (draw(&take, "single")?, draw(&moved.join("dance.take"), "same take")?);

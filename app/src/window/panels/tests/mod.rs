@@ -1,5 +1,6 @@
 mod every_control;
 mod one_by_one;
+mod recording;
 mod undo;
 mod untouched;
 
@@ -90,7 +91,7 @@ pub(super) const PANELS: [(&str, Show); 11] = [
         super::colliders::ui(ui, &mut b.project.body.colliders, &names, &mut b.colliders);
     }),
     ("Ties and scissors", |ui, b| {
-        super::ties::ui(ui, &mut b.project.hair.ties, &mut b.selected_tie, None);
+        super::ties::ui(ui, &mut b.project.hair, &mut b.selected_tie, None);
         super::ties::scissors(ui, &mut b.project.hair.cut, &mut b.scissors);
     }),
     ("Shadow", |ui, b| super::shadow::ui(ui, &mut b.project.shadow, 1 << 21)),

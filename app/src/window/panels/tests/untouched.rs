@@ -67,8 +67,9 @@ fn random_project(base: &Project, random: &mut Random) -> Project {
 fn showing_a_panel_changes_nothing() {
     let mut random = Random(7);
     let mut shown = projects();
+    let plain = shown.len();
     for i in 0..48 {
-        let base = shown[i % 4].1.clone();
+        let base = shown[i % plain].1.clone();
         shown.push(("random", random_project(&base, &mut random)));
     }
     let all = |ui: &mut egui::Ui, bench: &mut Bench| {

@@ -75,20 +75,7 @@ pub(super) fn read_crate_file(name: &str, file: File) -> Result<RawHair, HairFil
 }
 
 fn read(layer: &mut impl Layer) -> Result<RawHair, HairFileError> {
-    let mut raw = RawHair {
-        format: HairFormat::Usd,
-        point_counts: Vec::new(),
-        points: Vec::new(),
-        thickness: None,
-        transparency: None,
-        colours: None,
-        default_thickness: None,
-        default_transparency: None,
-        default_colour: None,
-        both_ends_pinned: false,
-        trailing_bytes: 0,
-        notes: Vec::new(),
-    };
+    let mut raw = RawHair::new(HairFormat::Usd, Vec::new(), Vec::new());
     let metres_from_stage = stage_transform(layer, &mut raw.notes)?;
     let prims = layer.curves()?;
     if prims.is_empty() {

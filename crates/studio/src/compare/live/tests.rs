@@ -244,17 +244,19 @@ fn a_probe_follows_a_hair_and_reads_what_each_pane_says_there() {
     let shown = LiveRequest { width: 160, height: 120, ..rig.request(&[0, 1, 2]) };
     rig.draw(shown.clone());
     assert!(rig.live.probe().latest().is_none());
-    let mut found = None;
+    // The busiest ray of many, and slices that are centimetres long: a method that is not exact shows it over much of the ray.
+    rig.project.compare.panes[2].shadow.opacity_maps.slices = 16;
+    let shown = LiveRequest { project: Arc::new(rig.project.clone()), ..shown };
+    let mut found: Option<(u64, (f32, f32), ProbedHair)> = None;
     for number in 1..200_u64 {
         let (x, y) = ((number * 37 % 160) as f32 / 160.0, (number * 61 % 120) as f32 / 120.0);
         rig.draw(LiveRequest { probe: Some(ProbePlace { number, x, y }), ..shown.clone() });
         let probe = rig.live.probe().latest().expect("an answer");
         assert_eq!(probe.number, number);
         if let Some(hair) = &probe.hair
-            && hair.steps.len() > 3
+            && hair.steps.len() > found.as_ref().map_or(3, |(.., busiest)| busiest.steps.len())
         {
             found = Some((number, (x, y), hair.clone()));
-            break;
         }
     }
     let (number, (x, y), hair) = found.expect("hair with hair before or behind it");
@@ -270,7 +272,8 @@ fn a_probe_follows_a_hair_and_reads_what_each_pane_says_there() {
     // At an edge of a texel the ray leaves the column of the point by rounding.
     assert!(wrong < curve(1).curve.len() / 10, "{wrong} of {}", curve(1).curve.len());
     let opacity = curve(2).curve.iter().filter(|point| (point.1 - step(point.0)).abs() > 1e-3).count();
-    assert!(opacity > 2 * wrong && opacity > 5, "another method is not: {opacity} beside {wrong}");
+    assert!(opacity > curve(2).curve.len() / 10, "another method is not: {opacity}");
+    println!("{} steps, {wrong} and {opacity} of {}", hair.steps.len(), curve(2).curve.len());
 
     // The same asking on a later instant means the same hair.
     rig.snapshot = {

@@ -2,11 +2,11 @@ use std::path::Path;
 use std::sync::Arc;
 
 use glam::Vec3;
-use lovelock_groom::{Blade, HairTie, Haircut, TieKind};
+use lovelock_groom::{Blade, HairTie, Haircut, Strands, TieKind};
 
 use crate::project::{project_of_text, text_of_project};
 use crate::session::tests::small_project;
-use crate::{Access, Engine, Place, ProblemKind, Project, Scene, SceneLoader};
+use crate::{Access, Engine, FrameSnapshot, Place, ProblemKind, Project, Scene, SceneLoader};
 
 fn load(loader: &mut SceneLoader, project: &Project) -> Arc<Scene> {
     let (scene, problems) = loader.load_now(project, &Access::new()).expect("a scene");
@@ -116,4 +116,43 @@ fn light_and_shadow_do_not_change_the_motion() {
         moved(&|project| project.simulation.repulsion.strength = 1.0),
         "the hash sees the motion"
     );
+}
+
+/// Where all strands are, and how far the furthest point is from where it was.
+fn furthest_of(a: &FrameSnapshot, b: &FrameSnapshot) -> f32 {
+    let of = |frame: &FrameSnapshot| {
+        let mut strands = Strands::default();
+        frame.interpolate(&mut strands);
+        strands
+    };
+    let (a, b) = (of(a), of(b));
+    (0..a.x.len()).map(|i| a.point(i).distance(b.point(i))).fold(0.0, f32::max)
+}
+
+#[test]
+fn strands_that_are_tied_in_motion_do_not_jump() {
+    let mut loader = SceneLoader::new();
+    let mut project = small_project();
+    project.hair.groom.length = 0.5;
+    let loose = load(&mut loader, &project);
+    project.hair.ties = vec![HairTie::default()];
+    let tied = load(&mut loader, &project);
+    for [from, to] in [[&loose, &tied], [&tied, &loose]] {
+        let mut engine = Engine::new(Arc::clone(from), project.simulation);
+        engine.advance_to_step(40);
+        let before = engine.snapshot();
+        assert!(!engine.set_scene(Arc::clone(to)), "it lives on");
+        let after = engine.snapshot();
+        let jump = furthest_of(&before, &after);
+        // Guides laid anew in f32, and the frames along them.
+        assert!(jump < 5e-4, "{jump} m at once");
+        // The control: strands that are combed at once.
+        let mut combed = FrameSnapshot::clone(&after);
+        combed.scene = Arc::clone(to);
+        assert!(furthest_of(&before, &combed) > 3e-3, "{}", furthest_of(&before, &combed));
+        engine.advance_to_step(40 + 60);
+        let there = engine.snapshot();
+        assert!(Arc::ptr_eq(&there.scene, to), "a second later it is the style itself");
+        assert!(engine.totals().max_stretch < 1e-5);
+    }
 }

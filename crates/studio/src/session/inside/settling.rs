@@ -1,13 +1,25 @@
 //! Hair that settles aside on the simulation thread, a slice at a time, while time waits for it.
 
 use std::sync::PoisonError;
+use std::time::Duration;
 
 use super::super::{Preroll, PrerollProgress};
 use super::Inside;
-use crate::Stopwatch;
+use crate::{Animation, Project, Stopwatch};
 
 /// How long the life before an instant goes on before wishes are looked at again, milliseconds.
 const SLICE_MS: f64 = 8.0;
+
+/// How long settings are to be left alone before hair that stands still settles by them, seconds: a slider that is dragged
+/// changes them at every frame.
+const CALM_SECS: f64 = 0.15;
+
+/// Whether hair has another life by the settings of `b` than by those of `a`.
+pub(super) fn lives_otherwise(a: &Project, b: &Project) -> bool {
+    a.simulation != b.simulation
+        || a.timeline.preroll_secs.to_bits() != b.timeline.preroll_secs.to_bits()
+        || Animation::of(a) != Animation::of(b)
+}
 
 /// A life on its way.
 pub(super) struct Aside {
@@ -61,6 +73,23 @@ impl Inside {
             self.arrive();
             self.show();
         }
+    }
+
+    /// Hair that stands still settles by other settings once they are left alone; hair that moves lives on by them.
+    pub(super) fn settle_when_calm(&mut self) {
+        if self.playback.is_playing() || self.take.is_some() || self.preroll.is_some() {
+            self.unsettled = None;
+        } else if self.unsettled.as_ref().is_some_and(|since| since.secs() >= CALM_SECS) {
+            self.unsettled = None;
+            self.begin_preroll();
+        }
+    }
+
+    /// `timeout`, or how long it is until then, where that is less.
+    pub(super) fn until_calm(&self, timeout: Option<Duration>) -> Option<Duration> {
+        let Some(since) = &self.unsettled else { return timeout };
+        let left = Duration::from_secs_f64((CALM_SECS - since.secs()).max(0.0));
+        Some(timeout.map_or(left, |timeout| timeout.min(left)))
     }
 
     /// The same anew, where one is under way: it is a life of the settings as they are now.

@@ -45,8 +45,14 @@ fn lay(shape: ColliderShape, from: Vec3, wanted: Vec3, length: f32) -> Vec3 {
         &[length; LANES],
         &near,
         &RULES,
+        &mut nowhere(),
     );
     at(&placed, 7)
+}
+
+/// Without a field there is nothing to learn of it.
+fn nowhere() -> PlaneRow {
+    PlaneRow::UNKNOWN
 }
 
 /// Points next to the surface of a shape of about 0.1 m, with links that would enter it.
@@ -132,10 +138,10 @@ fn a_point_that_rests_inside_is_left_there() {
     };
     let rules = ContactRules { margin: 0.003, ..RULES };
     let (from, wanted) = (splat(Vec3::new(0.0, 0.07, 0.0)), splat(Vec3::new(0.0, 0.08, 0.0)));
-    let placed = lay_point(0, &from, &wanted, &wanted, &from, &[0.01; LANES], &near, &rules);
+    let placed = lay_point(0, &from, &wanted, &wanted, &from, &[0.01; LANES], &near, &rules, &mut nowhere());
     assert!((at(&placed, 0) - Vec3::new(0.0, 0.08, 0.0)).length() < 1e-7);
     let deeper = splat(Vec3::new(0.0, 0.0, 0.0));
-    let placed = lay_point(0, &from, &deeper, &deeper, &from, &[0.01; LANES], &near, &rules);
+    let placed = lay_point(0, &from, &deeper, &deeper, &from, &[0.01; LANES], &near, &rules, &mut nowhere());
     assert!(at(&placed, 0).length() > 0.0799, "it may not go deeper than it rests: {}", at(&placed, 0));
 }
 
@@ -175,7 +181,7 @@ fn hair_whose_root_is_buried_comes_out_along_a_slope() {
     for i in 1..12 {
         // It wants to run on inside.
         let wanted = splat(at(&before, 0) + Vec3::new(0.01, -0.002, 0.0));
-        let placed = lay_point(i, &before, &wanted, &wanted, &root, &length, &near, &RULES);
+        let placed = lay_point(i, &before, &wanted, &wanted, &root, &length, &near, &RULES, &mut nowhere());
         let least = (0.1 - 0.02 + 0.005 * i as f32).min(0.1);
         assert!(
             at(&placed, 0).length() > least - 2e-4,

@@ -6,6 +6,8 @@
 use glam::{Affine3A, IVec3, UVec3, Vec3};
 use lovelock_motion::BodyField;
 
+use crate::lanes::greater;
+
 /// A cell in spacings of the field's nodes.
 const CELL: f32 = 2.5;
 /// How far beyond the resting field the grid goes on, as a part of the field's longest side.
@@ -18,18 +20,32 @@ const UNSPARING: i32 = 3;
 const NONE: u16 = u16::MAX;
 
 /// What may be near a point.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Candidates {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Near {
     /// Skin that only the head moves.
     pub(super) head: bool,
     /// The weighting of the nearest other skin.
     pub(super) slot: Option<usize>,
+    /// Whether there is nothing, and the point is to be measured all the same.
+    pub(super) besides: bool,
+    /// How far the next cell is at least, metres.
+    pub(super) to_next: f32,
 }
 
 /// A place that is deposited: where it is at rest, and its weighting.
 #[derive(Clone, Copy, Debug)]
 struct Probe {
     rest: Vec3,
+    slot: u16,
+}
+
+/// An eighth of a cell with probes in it: the one nearest to its middle.
+#[derive(Clone, Copy, Debug)]
+struct Occupied {
+    index: u32,
+    at: IVec3,
+    place: Vec3,
+    squared: f32,
     slot: u16,
 }
 
@@ -50,6 +66,9 @@ pub(super) struct Occupancy {
     slot: Vec<u16>,
     nearest: Vec<f32>,
     touched: Vec<u32>,
+    /// For the start and the end of the step: the eighths of cells with probes, and for each its place among them.
+    occupied: [Vec<Occupied>; 2],
+    own: [Vec<u32>; 2],
     /// How far a point may be from the nearest probe and still be at the skin, metres.
     cover: f32,
 }
@@ -90,6 +109,8 @@ impl Occupancy {
             slot: vec![NONE; count],
             nearest: vec![f32::INFINITY; count],
             touched: Vec::new(),
+            occupied: [Vec::new(), Vec::new()],
+            own: [vec![u32::MAX; 8 * count], vec![u32::MAX; 8 * count]],
             cover: nodes.spacing,
         };
         occupancy.place_head(occupancy.width(reach));
@@ -120,54 +141,96 @@ impl Occupancy {
             (self.slot[i as usize], self.nearest[i as usize]) = (NONE, f32::INFINITY);
         }
         self.touched.clear();
-        let [start, end] = ends;
-        let mut moved = 0.0_f32;
-        for probe in &self.probes {
-            let slot = usize::from(probe.slot);
-            let (a, b) = (start[slot].transform_point3(probe.rest), end[slot].transform_point3(probe.rest));
-            moved = moved.max((b - a).length_squared());
-        }
-        let moved = moved.sqrt();
+        self.extra.clear();
+        self.place_head(self.width(reach));
+        let moved = self.collect(ends);
         // What is on its way is nearest to one end, by half the way at most. A little more width spares one end.
         let one = self.width(reach + moved);
-        let both = self.width(reach + 0.5 * moved);
-        let (width, ends) = if one <= self.width(reach) { (one, &ends[1..]) } else { (both, &ends[..]) };
-        let widths: &[i32] = if spare { &[0] } else { &[0, UNSPARING] };
-        self.place_head(self.width(reach));
-        self.extra.clear();
-        for &more in widths {
+        let (width, skip) =
+            if one <= self.width(reach) { (one, 1) } else { (self.width(reach + 0.5 * moved), 0) };
+        self.spread(width, skip, &[]);
+        if !spare {
             // The second round only fills what the first has left, and so changes nothing there.
-            let known: Vec<bool> = if more > 0 {
-                self.slot.iter().zip(&self.head).map(|(&slot, &head)| head || slot != NONE).collect()
-            } else {
-                Vec::new()
-            };
-            if more > 0 {
-                self.extra.resize(self.head.len(), false);
-                for i in 0..self.head_probes.len() {
-                    let middle = self.cell_of(self.head_probes[i]);
-                    self.each_cell(middle, self.head_width + more, |this, index, _| {
-                        this.extra[index] |= !known[index];
-                    });
-                }
+            let known: Vec<bool> =
+                self.slot.iter().zip(&self.head).map(|(&slot, &head)| head || slot != NONE).collect();
+            self.extra.resize(self.head.len(), false);
+            for i in 0..self.head_probes.len() {
+                let middle = self.cell_of(self.head_probes[i]);
+                self.each_cell(middle, self.head_width + UNSPARING, |this, index, _| {
+                    this.extra[index] |= !known[index];
+                });
             }
-            for maps in ends {
-                for i in 0..self.probes.len() {
-                    let Probe { rest, slot } = self.probes[i];
-                    let p = maps[usize::from(slot)].transform_point3(rest);
-                    let middle = self.cell_of(p);
-                    self.each_cell(middle, width + more, |this, index, centre| {
-                        let squared = (centre - p).length_squared();
-                        if squared < this.nearest[index] && !known.get(index).copied().unwrap_or(false) {
-                            if this.slot[index] == NONE {
-                                this.touched.push(index as u32);
-                            }
-                            (this.nearest[index], this.slot[index]) = (squared, slot);
-                        }
-                    });
+            self.spread(width + UNSPARING, skip, &known);
+        }
+    }
+
+    /// Finds the probe nearest to the middle of each eighth of a cell that has any, at both ends; the furthest way of a
+    /// probe.
+    fn collect(&mut self, ends: [&[Affine3A]; 2]) -> f32 {
+        let mut furthest = 0.0_f32;
+        for (own, cells) in self.own.iter_mut().zip(&mut self.occupied) {
+            for cell in cells.drain(..) {
+                own[cell.index as usize] = u32::MAX;
+            }
+        }
+        for n in 0..self.probes.len() {
+            let Probe { rest, slot } = self.probes[n];
+            let places = ends.map(|maps| maps[usize::from(slot)].transform_point3(rest));
+            furthest = furthest.max((places[1] - places[0]).length_squared());
+            for (end, place) in places.into_iter().enumerate() {
+                let at = self.cell_of(place);
+                let Some(index) = self.index_of(at) else { continue };
+                let (centre, eighth) = self.eighth(at, place);
+                let squared = (centre - place).length_squared();
+                let index = 8 * index + eighth;
+                let (own, cells) = (&mut self.own[end][index], &mut self.occupied[end]);
+                let found = Occupied { index: index as u32, at, place, squared, slot };
+                match cells.get_mut(*own as usize) {
+                    Some(known) if squared < known.squared => *known = found,
+                    Some(_) => {}
+                    None => {
+                        *own = cells.len() as u32;
+                        cells.push(found);
+                    }
                 }
             }
         }
+        furthest.sqrt()
+    }
+
+    /// Tells the cells around the occupied ones of the nearest of these, and none that are `known`; `skip` leaves out
+    /// the start of the step.
+    fn spread(&mut self, width: i32, skip: usize, known: &[bool]) {
+        let occupied = std::mem::take(&mut self.occupied);
+        for cell in occupied[skip..].iter().flatten() {
+            self.each_cell(cell.at, width, |this, index, centre| {
+                let squared = (centre - cell.place).length_squared();
+                if squared < this.nearest[index] && !known.get(index).copied().unwrap_or(false) {
+                    if this.slot[index] == NONE {
+                        this.touched.push(index as u32);
+                    }
+                    (this.nearest[index], this.slot[index]) = (squared, cell.slot);
+                }
+            });
+        }
+        self.occupied = occupied;
+    }
+
+    fn index_of(&self, cell: IVec3) -> Option<usize> {
+        let inside = cell.cmpge(IVec3::ZERO).all() && cell.cmplt(self.size.as_ivec3()).all();
+        inside.then(|| ((cell.z as u32 * self.size.y + cell.y as u32) * self.size.x + cell.x as u32) as usize)
+    }
+
+    /// The eighth of a cell that a place is in: its middle and its number.
+    fn eighth(&self, cell: IVec3, place: Vec3) -> (Vec3, usize) {
+        let centre = self.centre(cell);
+        let upper = place.cmpgt(centre);
+        let middle = centre + Vec3::select(upper, Vec3::ONE, Vec3::NEG_ONE) * (0.25 * self.cell);
+        (middle, upper.bitmask() as usize)
+    }
+
+    fn centre(&self, cell: IVec3) -> Vec3 {
+        self.low + (cell.as_vec3() + 0.5) * self.cell
     }
 
     fn cell_of(&self, p: Vec3) -> IVec3 {
@@ -185,30 +248,39 @@ impl Occupancy {
             for y in from.y..=to.y {
                 let row = ((z * self.size.y as i32 + y) * self.size.x as i32) as usize;
                 for x in from.x..=to.x {
-                    let centre = self.low + (Vec3::new(x as f32, y as f32, z as f32) + 0.5) * self.cell;
+                    let centre = self.centre(IVec3::new(x, y, z));
                     visit(self, row + x as usize, centre);
                 }
             }
         }
     }
 
-    /// What may be near a point of head space; `None` where nothing is.
+    /// What may be near a point of head space.
     #[inline(always)]
-    pub(super) fn at(&self, p: Vec3) -> Option<Candidates> {
+    pub(super) fn at(&self, p: Vec3) -> Near {
         let q = (p - self.low) * self.inv_cell;
-        let inside = q.x >= 0.0
-            && q.y >= 0.0
-            && q.z >= 0.0
-            && q.x < self.size.x as f32
-            && q.y < self.size.y as f32
-            && q.z < self.size.z as f32;
+        let size = self.size.as_vec3();
+        let inside = q.x >= 0.0 && q.y >= 0.0 && q.z >= 0.0 && q.x < size.x && q.y < size.y && q.z < size.z;
         if !inside {
-            return None;
+            let beyond = (-q).max(q - size).max_element();
+            return Near {
+                head: false,
+                slot: None,
+                besides: false,
+                to_next: greater(0.0, beyond) * self.cell,
+            };
         }
-        let index = ((q.z as u32 * self.size.y + q.y as u32) * self.size.x + q.x as u32) as usize;
-        let head = self.head[index] || (!self.extra.is_empty() && self.extra[index]);
+        let (x, y, z) = (q.x as u32, q.y as u32, q.z as u32);
+        let index = ((z * self.size.y + y) * self.size.x + x) as usize;
+        let f = q - Vec3::new(x as f32, y as f32, z as f32);
+        let to_next = f.min(Vec3::ONE - f).min_element() * self.cell;
+        let besides = !self.extra.is_empty() && self.extra[index];
         let slot = self.slot[index];
-        let slot = (slot != NONE).then_some(usize::from(slot));
-        (head || slot.is_some()).then_some(Candidates { head, slot })
+        Near {
+            head: self.head[index] || besides,
+            slot: (slot != NONE).then_some(usize::from(slot)),
+            besides,
+            to_next,
+        }
     }
 }

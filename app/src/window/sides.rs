@@ -1,0 +1,102 @@
+//! The panels at the left and at the right of the picture.
+
+use egui::{Panel, ScrollArea, Ui};
+use lovelock_studio::{Place, Project};
+
+use super::control::section;
+use super::path_dialog::Purpose;
+use super::{Window, camera_control, panels};
+
+impl Window {
+    pub(super) fn left_panel(&mut self, ui: &mut Ui, project: &mut Project) {
+        let mut asked = None;
+        Panel::left("left").default_size(312.0).size_range(260.0..=460.0).show(ui, |ui| {
+            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                if project.take.file.is_some() {
+                    self.problems(ui, &[Place::Take]);
+                    super::control::note(
+                        ui,
+                        "A take plays: body and hair are as they were recorded. Leave it (Shift+R) to change them.",
+                    );
+                    ui.disable();
+                }
+                section(ui, "Hairstyle", true, |ui| {
+                    self.problems(ui, &[Place::Hair]);
+                    let ask = panels::hair::ui(ui, project, &self.session.hair);
+                    asked = asked.or(ask.map(|_| Purpose::Open));
+                });
+                let unfolded = section(ui, "Ties and scissors", false, |ui| {
+                    let scalp = self.session.scene.as_ref().map(|scene| &scene.style.scalp);
+                    panels::ties::ui(ui, &mut project.hair, &mut self.selected_tie, scalp);
+                    panels::ties::scissors(ui, &mut project.hair.cut, &mut self.scissors.held);
+                });
+                self.ties_shown = unfolded.is_some();
+                section(ui, "Simulation", true, |ui| {
+                    let axes = camera_control::axes(&project.camera);
+                    let Project { simulation, timeline, .. } = project;
+                    panels::simulation::ui(ui, simulation, &mut timeline.preroll_secs, axes);
+                });
+                section(ui, "Colliders", false, |ui| {
+                    let scene = self.session.scene.as_ref();
+                    let names: Vec<&str> = scene.map_or_else(Vec::new, |scene| {
+                        scene.fitted.iter().map(|collider| collider.name.as_str()).collect()
+                    });
+                    panels::colliders::ui(ui, &mut project.body.colliders, &names, &mut self.colliders);
+                });
+                section(ui, "Body and motion", false, |ui| {
+                    self.problems(ui, &[Place::Body, Place::Motion]);
+                    let ask = panels::body::ui(ui, project, &self.session.body);
+                    asked = asked.or(ask.map(|_| Purpose::Open));
+                });
+            });
+        });
+        if let Some(purpose) = asked {
+            self.ask(purpose);
+        }
+    }
+
+    pub(super) fn right_panel(&mut self, ui: &mut Ui, project: &mut Project, ctx: &egui::Context) {
+        let mut recording = None;
+        let axes = camera_control::axes(&project.camera);
+        Panel::right("right").default_size(312.0).size_range(260.0..=460.0).show(ui, |ui| {
+            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                section(ui, "Shadow", true, |ui| {
+                    let bytes = self.session.painted.as_ref().map_or(0, |painted| painted.stats.shadow_bytes);
+                    panels::shadow::ui(ui, &mut project.shadow, bytes);
+                });
+                section(ui, "Light", true, |ui| {
+                    panels::light::ui(ui, &mut project.lights, &mut self.selected_light, axes);
+                });
+                section(ui, "Look", false, |ui| {
+                    let default = project.hair.groom.look;
+                    panels::look::hair(ui, &mut project.look, &default);
+                });
+                section(ui, "Picture", false, |ui| panels::look::picture(ui, &mut project.picture));
+                section(ui, "Recording", false, |ui| {
+                    let frames = self.session.frames(project.recording.fps);
+                    recording =
+                        panels::recording::ui(ui, &mut project.recording, self.recorder.state(), frames);
+                });
+                section(ui, "Health", true, |ui| self.health_panel(ui, project));
+                // Panes have their own: nobody draws the one picture beside them.
+                let compares = self.layout.compare.shown;
+                section(ui, "Statistics", true, |ui| {
+                    if compares {
+                        super::control::note(ui, "Of the one picture, before the comparison was opened.");
+                    }
+                    let session = &self.session;
+                    panels::statistics::ui(ui, &session.stages, &session.passes, &self.facts());
+                });
+            });
+        });
+        match recording {
+            Some(panels::recording::Ask::Film) => self.ask(Purpose::Film),
+            Some(panels::recording::Ask::Sequence) => self.ask(Purpose::Sequence),
+            Some(panels::recording::Ask::Preview) => self.ask(Purpose::Preview),
+            Some(panels::recording::Ask::Resume) => self.ask(Purpose::Resume),
+            Some(panels::recording::Ask::Curves) => self.ask(Purpose::Curves),
+            Some(panels::recording::Ask::Cancel) => self.run(lovelock_studio::Command::Record, ctx),
+            None => {}
+        }
+    }
+}

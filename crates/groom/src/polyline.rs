@@ -1,0 +1,54 @@
+//! Links of a chain laid along a polyline.
+
+use glam::Vec3;
+
+/// How far, in segments of the polyline, the next point is looked for past its end, and how far at a time.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reach {
+    pub(crate) beyond: f32,
+    pub(crate) step: f32,
+}
+
+/// The first place on the polyline beyond `at`, in segments, that is `link` away from `from`; past its end, along its last
+/// segment.
+pub(crate) fn next_at(target: &[Vec3], at: f32, from: Vec3, link: f32, reach: Reach) -> f32 {
+    let last = (target.len() - 1) as f32 + reach.beyond;
+    let mut low = at;
+    let mut high = at;
+    while high < last && sample(target, high).distance(from) < link {
+        low = high;
+        high += reach.step;
+    }
+    for _ in 0..16 {
+        let middle = 0.5 * (low + high);
+        if sample(target, middle).distance(from) < link {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    high
+}
+
+/// A point of the polyline, of two points at least, at `at` segments, extended straight past its end.
+pub(crate) fn sample(target: &[Vec3], at: f32) -> Vec3 {
+    let i = (at as usize).min(target.len() - 2);
+    target[i] + (target[i + 1] - target[i]) * (at - i as f32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_link_ends_on_the_polyline_and_past_its_end() {
+        let way = [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0)];
+        let reach = Reach { beyond: 8.0, step: 0.25 };
+        for (link, wanted) in [(0.5, 0.5), (2.0_f32.sqrt(), 2.0), (5.0_f32.sqrt(), 3.0)] {
+            let at = next_at(&way, 0.0, Vec3::ZERO, link, reach);
+            // A quarter of a segment halved sixteen times, and rounding.
+            assert!((at - wanted).abs() < 2e-5, "{link}: {at}");
+        }
+        assert_eq!(sample(&way, 3.0), Vec3::new(1.0, 2.0, 0.0));
+    }
+}
