@@ -81,7 +81,7 @@ impl Block {
             used,
             rest: RestShape::new(guides, &lanes, first_free),
             rest_distance: Vec::new(),
-            held: vec![[-1.0; LANES]; points],
+            held: vec![Lane::splat(-1.0); points],
             field_distance: Vec::new(),
             planes: vec![PlaneRow::UNKNOWN; points],
             position: vec![ZERO3; points],

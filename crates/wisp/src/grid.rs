@@ -15,7 +15,7 @@ use pieces::{CHUNK, Piece, Pieces};
 use rayon::prelude::*;
 
 use crate::block::Block;
-use crate::lanes::{LANES, Lane3, ZERO3, at, put};
+use crate::lanes::{LANES, Lane, Lane3, ZERO3, at, put};
 use crate::settings::{Repulsion, RepulsionMode};
 use crate::solver::Plan;
 use crate::trilinear::{gradient, weights};
@@ -309,7 +309,7 @@ impl DensityGrid {
     /// Adds the grid's part to the forces of a block, whose positions are still those of the last step.
     pub(crate) fn act(&self, block: &mut Block, plan: &Plan, cohesion: f32) {
         for keep in &mut block.keep {
-            *keep = [1.0; LANES];
+            *keep = Lane::splat(1.0);
         }
         if !self.acts() {
             return;

@@ -3,22 +3,101 @@
 //! The hot loops are written for one guide, over `0..LANES`, on rows copied into locals: the compiler turns
 //! each such loop into vector instructions, whatever their width, and no lane ever looks at another.
 
+use std::ops::{Deref, DerefMut};
+
 use glam::{Mat3, Quat, Vec3};
 
 /// How many guides a block holds side by side.
 pub(crate) const LANES: usize = 16;
 
-/// One number of each guide of a block.
-pub(crate) type Lane = [f32; LANES];
+/// One number of each guide of a block, where one load of the widest registers finds it.
+#[repr(align(64))]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Lane(pub(crate) [f32; LANES]);
+
+impl Lane {
+    /// The same number in every lane.
+    pub(crate) const fn splat(value: f32) -> Self {
+        Self([value; LANES])
+    }
+
+    /// `self - a b`, lane by lane.
+    #[inline(always)]
+    pub(crate) fn less_product(self, a: Self, b: Self) -> Self {
+        let mut out = self;
+        for k in 0..LANES {
+            out.0[k] -= a.0[k] * b.0[k];
+        }
+        out
+    }
+
+    /// `self + a`, lane by lane.
+    #[inline(always)]
+    pub(crate) fn plus(self, a: Self) -> Self {
+        let mut out = self;
+        for k in 0..LANES {
+            out.0[k] += a.0[k];
+        }
+        out
+    }
+
+    /// `self - a`, lane by lane.
+    #[inline(always)]
+    pub(crate) fn less(self, a: Self) -> Self {
+        let mut out = self;
+        for k in 0..LANES {
+            out.0[k] -= a.0[k];
+        }
+        out
+    }
+
+    /// `self a`, lane by lane.
+    #[inline(always)]
+    pub(crate) fn times(self, a: Self) -> Self {
+        let mut out = self;
+        for k in 0..LANES {
+            out.0[k] *= a.0[k];
+        }
+        out
+    }
+}
+
+impl Deref for Lane {
+    type Target = [f32; LANES];
+
+    #[inline(always)]
+    fn deref(&self) -> &[f32; LANES] {
+        &self.0
+    }
+}
+
+impl DerefMut for Lane {
+    #[inline(always)]
+    fn deref_mut(&mut self) -> &mut [f32; LANES] {
+        &mut self.0
+    }
+}
 
 /// One vector of each guide of a block, component by component.
 pub(crate) type Lane3 = [Lane; 3];
 
 /// Zero in every lane.
-pub(crate) const ZERO: Lane = [0.0; LANES];
+pub(crate) const ZERO: Lane = Lane::splat(0.0);
 
 /// The zero vector in every lane.
 pub(crate) const ZERO3: Lane3 = [ZERO; 3];
+
+/// Ends the turn of a loop over rows whose turns do not depend on each other. Without it the compiler may take rows side by
+/// side, lane after lane, which needs a gather for every load.
+#[inline(always)]
+pub(crate) fn row_done() {
+    std::hint::black_box(());
+}
+
+/// The same vector in every lane.
+pub(crate) const fn splat3(v: Vec3) -> Lane3 {
+    [Lane::splat(v.x), Lane::splat(v.y), Lane::splat(v.z)]
+}
 
 /// The vector of lane `k`.
 #[inline(always)]
@@ -97,7 +176,7 @@ pub(crate) struct Turns {
 
 impl Turns {
     pub(crate) fn splat(turn: Turn) -> Self {
-        Self { v: [[turn.v.x; LANES], [turn.v.y; LANES], [turn.v.z; LANES]], w: [turn.w; LANES] }
+        Self { v: splat3(turn.v), w: Lane::splat(turn.w) }
     }
 
     #[inline(always)]

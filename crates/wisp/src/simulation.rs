@@ -15,7 +15,7 @@ use crate::colliders::{MovingShape, RestColliders, place};
 use crate::dispatch::step_block;
 use crate::grid::DensityGrid;
 use crate::hash::Hasher;
-use crate::lanes::{LANES, Map, ZERO, at};
+use crate::lanes::{Lane, Map, ZERO, at};
 use crate::motion::{HeadPose, rigid_between, substep};
 use crate::rest::blocks_of;
 use crate::solver::{BendingKey, Plan, Substep};
@@ -326,7 +326,7 @@ impl Simulation {
                 for i in 0..points {
                     let row = block.rest.position[i];
                     let distance = shape.as_ref().map(|s| s.nearest(&row, &crate::lanes::ZERO3).distance);
-                    block.rest_distance[c * points + i] = distance.unwrap_or([f32::MAX; LANES]);
+                    block.rest_distance[c * points + i] = distance.unwrap_or(Lane::splat(f32::MAX));
                 }
             }
             block.active.reserve(shapes.len());

@@ -16,7 +16,7 @@ pub(crate) fn rows(style: &Hairstyle, lanes: &[u32; LANES]) -> Vec<Lane> {
         // What is not a number holds nothing.
         if held >= 0.0 { held.min(STRONGEST) } else { -1.0 }
     };
-    (0..points).map(|i| std::array::from_fn(|k| of(lanes[k], i))).collect()
+    (0..points).map(|i| Lane(std::array::from_fn(|k| of(lanes[k], i)))).collect()
 }
 
 /// A hold of 1e4 1/s moves 3 micrometres at 300 m/s^2: more is nothing but rounding.

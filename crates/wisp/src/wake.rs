@@ -60,7 +60,7 @@ impl Wakes {
     /// The share of the wind that reaches each lane of a row of points.
     #[inline(always)]
     pub(crate) fn exposure(&self, points: &Lane3) -> Lane {
-        let mut open = [1.0; LANES];
+        let mut open = Lane::splat(1.0);
         if self.solids.is_empty() {
             return open;
         }
@@ -81,7 +81,7 @@ impl Wakes {
                 open[k] *= 1.0 - within * behind * fades;
             }
         }
-        for share in &mut open {
+        for share in open.iter_mut() {
             *share = 1.0 - self.strength * (1.0 - *share);
         }
         open
@@ -143,7 +143,7 @@ mod tests {
     }
 
     fn open(wakes: &Wakes, p: Vec3) -> f32 {
-        wakes.exposure(&[[p.x; LANES], [p.y; LANES], [p.z; LANES]])[0]
+        wakes.exposure(&crate::lanes::splat3(p))[0]
     }
 
     #[test]

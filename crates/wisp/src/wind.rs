@@ -130,7 +130,7 @@ mod tests {
     use super::*;
 
     fn row(p: Vec3) -> Lane3 {
-        [[p.x; LANES], [p.y; LANES], [p.z; LANES]]
+        crate::lanes::splat3(p)
     }
 
     #[test]

@@ -185,7 +185,7 @@ impl Shape {
     #[cfg(test)]
     /// Signed distance of one point.
     pub(crate) fn distance(&self, p: Vec3) -> f32 {
-        let row = [[p.x; LANES], [p.y; LANES], [p.z; LANES]];
+        let row = crate::lanes::splat3(p);
         self.nearest(&row, &ZERO3).distance[0]
     }
 }
@@ -266,7 +266,7 @@ mod tests {
             let (u, v) = (i as f32 * 0.37, i as f32 * 0.73);
             let out = Vec3::new(u.sin() * v.cos(), u.sin() * v.sin(), u.cos());
             let p = Vec3::new(0.0, 0.1, 0.02) + out * (0.07 + 0.00003 * i as f32);
-            let row = [[p.x; LANES], [p.y; LANES], [p.z; LANES]];
+            let row = crate::lanes::splat3(p);
             if e.surely_beyond(&row, reach) {
                 sure += 1;
                 assert!(e.distance(p) > reach);

@@ -11,7 +11,7 @@ use super::{Simulation, first_free};
 use crate::block::Block;
 use crate::colliders::field::MovingField;
 use crate::hash::Hasher;
-use crate::lanes::{LANES, Lane3};
+use crate::lanes::{LANES, Lane, Lane3};
 use crate::motion::HeadPose;
 use crate::rest::RestShape;
 
@@ -91,7 +91,7 @@ impl Simulation {
         }
         for rows in self.blocks.iter().flat_map(rows_of) {
             for axis in rows.iter().flatten() {
-                out.floats(axis);
+                out.floats(&axis[..]);
             }
         }
         out.u64(sum(&out.0));
@@ -161,7 +161,7 @@ impl Simulation {
             }
             for rows in rows_of_mut(block) {
                 for axis in rows.iter_mut().flatten() {
-                    *axis = input.floats()?;
+                    *axis = Lane(input.floats()?);
                 }
             }
         }

@@ -176,9 +176,9 @@ impl Bending {
         for from in (first..count).step_by(3) {
             rows.fill(ZERO3);
             for (axis, link) in (from..count.min(from + 3)).enumerate() {
-                rows[link][axis] = [1.0; LANES];
+                rows[link][axis] = Lane::splat(1.0);
                 if link > first_free {
-                    rows[link - 1][axis] = [-1.0; LANES];
+                    rows[link - 1][axis] = Lane::splat(-1.0);
                 }
             }
             self.solve(first_free, &mut rows);
@@ -334,10 +334,10 @@ mod tests {
             let mut b = Bending::new(9);
             b.prepare(
                 key(first_free),
-                &[0.01; LANES],
-                &[[100.0; LANES]; 9],
+                &Lane::splat(0.01),
+                &[Lane::splat(100.0); 9],
                 &[ZERO3; 9],
-                &[[-1.0; LANES]; 9],
+                &[Lane::splat(-1.0); 9],
             );
             let mut x: Vec<Vec3> =
                 (0..9).map(|i| Vec3::new((i as f32).sin(), (i as f32 * 2.0).cos(), 0.1 * i as f32)).collect();
@@ -360,8 +360,8 @@ mod tests {
     #[test]
     fn what_hangs_from_a_moved_point_follows_without_force() {
         let mut b = Bending::new(12);
-        b.prepare(key(2), &[0.01; LANES], &[[100.0; LANES]; 12], &[ZERO3; 12], &[[-1.0; LANES]; 12]);
-        let splat = |v: Vec3| [[v.x; LANES], [v.y; LANES], [v.z; LANES]];
+        b.prepare(key(2), &Lane::splat(0.01), &[Lane::splat(100.0); 12], &[ZERO3; 12], &[Lane::splat(-1.0); 12]);
+        let splat = |v: Vec3| crate::lanes::splat3(v);
         let mut rows = vec![ZERO3; 12];
         rows[4] = splat(Vec3::new(0.2, -0.1, 0.05));
         rows[5] = splat(Vec3::new(0.5, 0.3, -0.2));
@@ -381,16 +381,16 @@ mod tests {
     fn without_stiffness_it_is_the_identity() {
         let mut b = Bending::new(5);
         let soft = BendingKey { stiffness_root: 0.0, stiffness_tip: 0.0, hold: 0.0, ..key(1) };
-        b.prepare(soft, &[0.01; LANES], &[[100.0; LANES]; 5], &[ZERO3; 5], &[[-1.0; LANES]; 5]);
-        let mut rows = vec![[[0.25; LANES]; 3]; 5];
+        b.prepare(soft, &Lane::splat(0.01), &[Lane::splat(100.0); 5], &[ZERO3; 5], &[Lane::splat(-1.0); 5]);
+        let mut rows = vec![[Lane::splat(0.25); 3]; 5];
         b.solve(1, &mut rows);
-        assert!(rows[1..].iter().all(|r| *r == [[0.25; LANES]; 3]));
+        assert!(rows[1..].iter().all(|r| *r == [Lane::splat(0.25); 3]));
     }
 
     #[test]
     fn links_of_no_length_give_finite_factors() {
         let mut b = Bending::new(5);
-        b.prepare(key(1), &ZERO, &[[100.0; LANES]; 5], &[ZERO3; 5], &[[-1.0; LANES]; 5]);
-        assert!(b.inv_pivot[1..].iter().flatten().all(|v| v.is_finite()));
+        b.prepare(key(1), &ZERO, &[Lane::splat(100.0); 5], &[ZERO3; 5], &[Lane::splat(-1.0); 5]);
+        assert!(b.inv_pivot[1..].iter().flat_map(|row| row.iter()).all(|v| v.is_finite()));
     }
 }

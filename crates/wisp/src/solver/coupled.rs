@@ -14,7 +14,7 @@
 
 use super::bending::Bending;
 use super::lengths::LengthScratch;
-use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, greater, put};
+use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, greater, row_done};
 
 /// A pivot below this part of its diagonal is rounding.
 const LEAST_PIVOT: f32 = 1e-4;
@@ -24,10 +24,21 @@ const LEAST_PIVOT: f32 = 1e-4;
 pub(crate) struct Coupled {
     /// `H`, the lower triangle row by row.
     response: Vec<Lane>,
-    /// Cholesky's factor of `S`, as `H`.
+    /// Cholesky's factor of `S` in panels of [`ROWS`] rows, each column by column: what is summed up is summed up for
+    /// all rows of a panel at once. Entries on and above the diagonal, and of rows that are not there, are 0.
     factor: Vec<Lane>,
-    /// One over the factor's diagonal.
+    /// One over the factor's diagonal; 0 for rows that are not there.
     inv_diagonal: Vec<Lane>,
+    links: usize,
+}
+
+/// Rows of a panel of the factor.
+const ROWS: usize = 4;
+
+/// Where panel `p` of the factor begins.
+#[inline(always)]
+fn panel(p: usize) -> usize {
+    ROWS * ROWS * p * (p + 1) / 2
 }
 
 /// Where row `r` of a packed lower triangle begins.
@@ -43,8 +54,9 @@ impl Coupled {
         let first = first_free.max(1);
         let links = points.saturating_sub(first);
         self.response.resize(row(links), ZERO);
-        self.factor.resize(row(links), ZERO);
-        self.inv_diagonal.resize(links, ZERO);
+        self.factor.resize(panel(links.div_ceil(ROWS)), ZERO);
+        self.inv_diagonal.resize(ROWS * links.div_ceil(ROWS), ZERO);
+        self.links = links;
         bending.response(first_free, &mut self.response);
     }
 
@@ -68,40 +80,33 @@ impl Coupled {
             self.factorise(first, scratch);
         }
         self.solve(first, scratch);
-        for i in first_free..count {
-            let mut out = ZERO3;
-            if i >= first {
-                let (n, l) = scratch.link(i);
-                for k in 0..LANES {
-                    put(&mut out, k, at(n, k) * l[k]);
+        // What the links pull a point with: its own the one way, the next the other.
+        let mut own = ZERO3;
+        for i in first..count {
+            let (n, l) = (scratch.direction[i], scratch.multiplier[i]);
+            let pull = [n[0].times(l), n[1].times(l), n[2].times(l)];
+            if i > first_free {
+                for axis in 0..3 {
+                    force[i - 1][axis] = own[axis].less(pull[axis]);
                 }
             }
-            if i + 1 < count {
-                let (n, l) = scratch.link(i + 1);
-                for k in 0..LANES {
-                    let f = at(&out, k) - at(n, k) * l[k];
-                    put(&mut out, k, f);
-                }
-            }
-            force[i] = out;
+            own = pull;
         }
+        force[count - 1] = own;
         bending.solve(first_free, force);
-        for i in first_free..count {
-            let (d, mut p) = (force[i], position[i]);
-            for k in 0..LANES {
-                let moved = at(&p, k) + at(&d, k);
-                put(&mut p, k, moved);
-            }
-            position[i] = p;
+        for (d, p) in force[first_free..count].iter().zip(&mut position[first_free..]) {
+            *p = [p[0].plus(d[0]), p[1].plus(d[1]), p[2].plus(d[2])];
+            row_done();
         }
     }
 
     /// Cholesky's factor of `S` for the directions in `scratch`.
     #[inline(always)]
     fn factorise(&mut self, first: usize, scratch: &LengthScratch) {
-        let links = self.inv_diagonal.len();
+        let links = self.links;
         for r in 0..links {
             let n = scratch.direction[first + r];
+            let (above, own) = self.factor.split_at_mut(panel(r / ROWS));
             for c in 0..=r {
                 let m = scratch.direction[first + c];
                 let mut s = self.response[row(r) + c];
@@ -109,18 +114,15 @@ impl Coupled {
                     s[k] *= at(&n, k).dot(at(&m, k));
                 }
                 let whole = s;
-                let (left, above) = (&self.factor[row(r)..][..c], &self.factor[row(c)..][..c]);
-                for (a, b) in left.iter().zip(above) {
-                    for k in 0..LANES {
-                        s[k] -= a[k] * b[k];
-                    }
+                let other = if c / ROWS < r / ROWS { &above[panel(c / ROWS)..][..ROWS * c] } else { &own[..ROWS * c] };
+                for (a, b) in own.as_chunks::<ROWS>().0.iter().zip(other.as_chunks::<ROWS>().0) {
+                    let (a, b) = (&a[r % ROWS], &b[c % ROWS]);
+                    s = s.less_product(*a, *b);
                 }
                 if c < r {
                     let inv = self.inv_diagonal[c];
-                    for k in 0..LANES {
-                        s[k] *= inv[k];
-                    }
-                    self.factor[row(r) + c] = s;
+                    s = s.times(inv);
+                    own[ROWS * c + r % ROWS] = s;
                 } else {
                     let mut inv = ZERO;
                     for k in 0..LANES {
@@ -135,30 +137,55 @@ impl Coupled {
     /// Solves for the multipliers with the factors that are there, in place of the right side.
     #[inline(always)]
     fn solve(&self, first: usize, scratch: &mut LengthScratch) {
-        let links = self.inv_diagonal.len();
-        for r in 0..links {
-            let (mut y, inv) = (scratch.multiplier[first + r], self.inv_diagonal[r]);
-            for (l, before) in self.factor[row(r)..][..r].iter().zip(&scratch.multiplier[first..]) {
-                for k in 0..LANES {
-                    y[k] -= l[k] * before[k];
+        let links = self.links;
+        let x = &mut scratch.multiplier[first..][..links];
+        for p in 0..links.div_ceil(ROWS) {
+            let (start, factor) = (ROWS * p, &self.factor[panel(p)..]);
+            let rows = ROWS.min(links - start);
+            let (before, own) = x.split_at_mut(start);
+            let mut y: [Lane; ROWS] = std::array::from_fn(|r| if r < rows { own[r] } else { ZERO });
+            for (l, x) in factor.as_chunks::<ROWS>().0.iter().zip(&*before) {
+                for (y, l) in y.iter_mut().zip(l) {
+                    *y = y.less_product(*l, *x);
                 }
             }
-            for k in 0..LANES {
-                y[k] *= inv[k];
+            let corner = &factor[ROWS * start..];
+            for r in 0..ROWS {
+                let inv = self.inv_diagonal[start + r];
+                let known = y[r].times(inv);
+                y[r] = known;
+                row_done();
+                for below in r + 1..ROWS {
+                    let l = corner[ROWS * r + below];
+                    y[below] = y[below].less_product(l, known);
+                }
             }
-            scratch.multiplier[first + r] = y;
+            own[..rows].copy_from_slice(&y[..rows]);
         }
-        for r in (0..links).rev() {
-            let (mut y, inv) = (scratch.multiplier[first + r], self.inv_diagonal[r]);
-            for k in 0..LANES {
-                y[k] *= inv[k];
-            }
-            scratch.multiplier[first + r] = y;
-            for (l, above) in self.factor[row(r)..][..r].iter().zip(&mut scratch.multiplier[first..]) {
-                for k in 0..LANES {
-                    above[k] -= l[k] * y[k];
+        for p in (0..links.div_ceil(ROWS)).rev() {
+            let (start, factor) = (ROWS * p, &self.factor[panel(p)..]);
+            let rows = ROWS.min(links - start);
+            let (before, own) = x.split_at_mut(start);
+            let mut y: [Lane; ROWS] = std::array::from_fn(|r| if r < rows { own[r] } else { ZERO });
+            let corner = &factor[ROWS * start..];
+            for r in (0..ROWS).rev() {
+                let inv = self.inv_diagonal[start + r];
+                let known = y[r].times(inv);
+                y[r] = known;
+                for above in 0..r {
+                    let l = corner[ROWS * above + r];
+                    y[above] = y[above].less_product(l, known);
                 }
             }
+            for (l, x) in factor.as_chunks::<ROWS>().0.iter().zip(before) {
+                let mut sum = *x;
+                for (y, l) in y.iter().zip(l).rev() {
+                    sum = sum.less_product(*l, *y);
+                }
+                *x = sum;
+                row_done();
+            }
+            own[..rows].copy_from_slice(&y[..rows]);
         }
     }
 }
@@ -170,6 +197,7 @@ mod tests {
     use super::super::bending::BendingKey;
     use super::super::lengths::project_position;
     use super::*;
+    use crate::lanes::put;
 
     const POINTS: usize = 31;
     const LINK: f32 = 0.01;
@@ -187,10 +215,10 @@ mod tests {
         };
         b.prepare(
             key,
-            &[LINK; LANES],
-            &[[1.0 / LINK; LANES]; POINTS],
+            &Lane::splat(LINK),
+            &[Lane::splat(1.0 / LINK); POINTS],
             &[ZERO3; POINTS],
-            &[[-1.0; LANES]; POINTS],
+            &[Lane::splat(-1.0); POINTS],
         );
         b
     }
@@ -240,7 +268,7 @@ mod tests {
             let mut c = coupled(&b, first_free);
             c.project(
                 first_free,
-                &[[LINK; LANES]; POINTS],
+                &[Lane::splat(LINK); POINTS],
                 &mut x,
                 &b,
                 &mut LengthScratch::new(POINTS),
@@ -295,7 +323,7 @@ mod tests {
 
     #[test]
     fn a_folded_lock_unfolds_at_the_rate_of_its_damping() {
-        let length = [[LINK; LANES]; POINTS];
+        let length = [Lane::splat(LINK); POINTS];
         let together = left_of_fold(8, |b, x, scratch, force| {
             coupled(b, 2).project(2, &length, x, b, scratch, force, true);
         });

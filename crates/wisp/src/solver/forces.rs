@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::Plan;
 use crate::block::Block;
-use crate::lanes::{LANES, ZERO3, at, greater, lesser, put};
+use crate::lanes::{LANES, Lane, ZERO3, at, greater, lesser, put};
 
 /// Moves the block into this step's working space and gathers what acts on each point.
 ///
@@ -44,14 +44,14 @@ pub(crate) fn prepare(block: &mut Block, plan: &Plan) {
         let mut position = block.position[i];
         for row in [&mut position, &mut block.good[i]] {
             for (axis, shift) in row.iter_mut().zip(plan.rebase.to_array()) {
-                for v in axis {
+                for v in axis.iter_mut() {
                     *v += shift;
                 }
             }
         }
         block.position[i] = position;
         let (mut push, mut keep) = (block.push[i], block.keep[i]);
-        let (mut air, mut open) = (ZERO3, [1.0; LANES]);
+        let (mut air, mut open) = (ZERO3, Lane::splat(1.0));
         if windy {
             (air, open) = (plan.wind.velocity(&position), plan.wakes.exposure(&position));
         }

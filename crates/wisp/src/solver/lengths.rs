@@ -49,12 +49,6 @@ impl LengthScratch {
             self.multiplier[i] = rhs;
         }
     }
-
-    /// Direction and multiplier of link `i`.
-    #[inline(always)]
-    pub(crate) fn link(&self, i: usize) -> (&Lane3, &Lane) {
-        (&self.direction[i], &self.multiplier[i])
-    }
 }
 
 /// Takes from `velocity` what would change the length of a link, keeping the momentum of the free points.
@@ -138,7 +132,7 @@ fn apply(first_free: usize, rows: &mut [Lane3], scratch: &LengthScratch) {
         if i > 0 {
             let (n, mut l) = (scratch.direction[i], scratch.multiplier[i]);
             if i + 1 == count {
-                l = l.map(|l| l * scratch.tip_weight);
+                l = Lane(l.map(|l| l * scratch.tip_weight));
             }
             for k in 0..LANES {
                 let moved = at(&row, k) + at(&n, k) * l[k];

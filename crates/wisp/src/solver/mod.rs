@@ -19,7 +19,7 @@ pub(crate) use lengths::LengthScratch;
 pub(crate) use plan::{Plan, Substep};
 
 use crate::block::{Block, Outcome};
-use crate::lanes::{LANES, at, greater, put};
+use crate::lanes::{LANES, ZERO, at, greater, put};
 
 /// Takes `block` through the step of `plan`.
 #[inline(always)]
@@ -36,7 +36,7 @@ pub(crate) fn advance(block: &mut Block, plan: &Plan) {
 #[inline(always)]
 fn measure(block: &mut Block, plan: &Plan) {
     let count = block.points();
-    let mut size = [0.0_f32; LANES];
+    let mut size = ZERO;
     for i in 0..count {
         let (p, v) = (block.position[i], block.velocity[i]);
         for k in 0..LANES {
@@ -53,7 +53,7 @@ fn measure(block: &mut Block, plan: &Plan) {
             }
         }
     }
-    let (mut stretch, mut energy, mut fastest) = ([0.0_f32; LANES], [0.0_f32; LANES], [0.0_f32; LANES]);
+    let (mut stretch, mut energy, mut fastest) = (ZERO, ZERO, ZERO);
     for i in plan.first_free.max(1)..count {
         let (a, b, v, inv) =
             (block.position[i - 1], block.position[i], block.velocity[i], block.rest.inv_length[i]);

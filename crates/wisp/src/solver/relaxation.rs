@@ -64,7 +64,7 @@ mod tests {
                 put(row, k, Vec3::new(0.01 * i as f32 + far, 0.001 * (i % 2) as f32, 0.0));
             }
         }
-        let mut length = vec![[0.01; LANES]; 12];
+        let mut length = vec![Lane::splat(0.01); 12];
         length[0] = ZERO;
         (length, rows)
     }

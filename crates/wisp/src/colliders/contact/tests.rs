@@ -18,7 +18,7 @@ fn still(shape: ColliderShape) -> MovingShape {
 }
 
 fn splat(p: Vec3) -> Lane3 {
-    [[p.x; LANES], [p.y; LANES], [p.z; LANES]]
+    crate::lanes::splat3(p)
 }
 
 const RULES: ContactRules = ContactRules { margin: 0.0, layering: 0.0, friction: 0.0, h: 1.0 / 240.0 };
@@ -29,7 +29,7 @@ fn lay(shape: ColliderShape, from: Vec3, wanted: Vec3, length: f32) -> Vec3 {
     let near = Near {
         shapes: &shapes,
         active: &[0],
-        rest_distance: &[[1.0; LANES]],
+        rest_distance: &[Lane::splat(1.0)],
         points: 1,
         carried: 0,
         buried: &[ZERO],
@@ -42,7 +42,7 @@ fn lay(shape: ColliderShape, from: Vec3, wanted: Vec3, length: f32) -> Vec3 {
         &splat(wanted),
         &splat(wanted),
         &splat(Vec3::Y),
-        &[length; LANES],
+        &Lane::splat(length),
         &near,
         &RULES,
         &mut nowhere(),
@@ -129,7 +129,7 @@ fn a_point_that_rests_inside_is_left_there() {
     let near = Near {
         shapes: &shapes,
         active: &[0],
-        rest_distance: &[[-0.02; LANES]],
+        rest_distance: &[Lane::splat(-0.02)],
         points: 1,
         carried: 0,
         buried: &[ZERO],
@@ -138,10 +138,10 @@ fn a_point_that_rests_inside_is_left_there() {
     };
     let rules = ContactRules { margin: 0.003, ..RULES };
     let (from, wanted) = (splat(Vec3::new(0.0, 0.07, 0.0)), splat(Vec3::new(0.0, 0.08, 0.0)));
-    let placed = lay_point(0, &from, &wanted, &wanted, &from, &[0.01; LANES], &near, &rules, &mut nowhere());
+    let placed = lay_point(0, &from, &wanted, &wanted, &from, &Lane::splat(0.01), &near, &rules, &mut nowhere());
     assert!((at(&placed, 0) - Vec3::new(0.0, 0.08, 0.0)).length() < 1e-7);
     let deeper = splat(Vec3::new(0.0, 0.0, 0.0));
-    let placed = lay_point(0, &from, &deeper, &deeper, &from, &[0.01; LANES], &near, &rules, &mut nowhere());
+    let placed = lay_point(0, &from, &deeper, &deeper, &from, &Lane::splat(0.01), &near, &rules, &mut nowhere());
     assert!(at(&placed, 0).length() > 0.0799, "it may not go deeper than it rests: {}", at(&placed, 0));
 }
 
@@ -161,8 +161,8 @@ fn friction_takes_no_more_than_the_coefficient_allows() {
 fn hair_whose_root_is_buried_comes_out_along_a_slope() {
     let c = Vec3::ZERO;
     let shapes = [still(ColliderShape::Capsule { a: c, b: c, radius_a: 0.1, radius_b: 0.1 })];
-    let length = [0.01; LANES];
-    let rest = [[0.001; LANES]; 12];
+    let length = Lane::splat(0.01);
+    let rest = [Lane::splat(0.001); 12];
     // The surface has closed 2 cm over a root that lay 1 mm above it.
     let root = splat(Vec3::new(0.0, 0.08, 0.0));
     let deep = [buried(&root, &shapes[0], &rest[0])];

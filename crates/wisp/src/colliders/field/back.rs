@@ -2,12 +2,10 @@
 
 use glam::{Affine3A, Mat3A, Vec3};
 
-use crate::lanes::Lane;
-
 /// A matrix by columns, a shift, and the head's share of the weights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(64))]
-pub(super) struct Back(Lane);
+pub(super) struct Back([f32; 16]);
 
 impl Back {
     pub(super) const IDENTITY: Self =

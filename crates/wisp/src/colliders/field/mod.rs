@@ -86,11 +86,11 @@ impl MovingField {
     /// Distance at rest of every lane of a row in head space; [`f32::MAX`] where the field ends.
     pub(crate) fn rest_distance(&self, row: &Lane3) -> Lane {
         // As `try_from` measures it: else hair would be pushed where it lies at rest.
-        std::array::from_fn(|k| {
+        Lane(std::array::from_fn(|k| {
             self.field
                 .sample(at(row, k))
                 .map_or(f32::MAX, |(d, slope)| d / slope.length().clamp(0.5, 2.0) - self.lift)
-        })
+        }))
     }
 
     /// Goes on from where the last step ended to `pose`.

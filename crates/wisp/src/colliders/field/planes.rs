@@ -44,11 +44,11 @@ pub(crate) struct PlaneRow {
 impl PlaneRow {
     pub(crate) const UNKNOWN: Self = Self {
         place: ZERO3,
-        serves: [-1.0; LANES],
+        serves: Lane::splat(-1.0),
         passed: ZERO,
-        head_distance: [NONE; LANES],
+        head_distance: Lane::splat(NONE),
         head_normal: ZERO3,
-        skin_distance: [NONE; LANES],
+        skin_distance: Lane::splat(NONE),
         skin_normal: ZERO3,
         share: ZERO,
         drift: ZERO3,
@@ -58,7 +58,7 @@ impl PlaneRow {
 
     /// Forgets what was measured.
     pub(crate) fn forget(&mut self) {
-        self.serves = [-1.0; LANES];
+        self.serves = Lane::splat(-1.0);
     }
 }
 

@@ -1,7 +1,6 @@
 use lovelock_motion::{Body, Clip, Pose, RestDistance, Skin, load_character, pose_at, skin};
 
 use super::*;
-use crate::lanes::LANES;
 use crate::motion::substep;
 
 fn dancer() -> (Arc<Body>, Arc<Clip>, Arc<BodyField>) {
@@ -51,7 +50,7 @@ fn distances(spare: bool, moved: bool, out: f32) -> Vec<f32> {
             let skin = field.sample(q).is_some_and(|(d, _)| d.abs() < 2e-4);
             if inner && skin {
                 let p = surface.positions[v] + surface.normals[v] * out - origin;
-                let row = [[p.x; LANES], [p.y; LANES], [p.z; LANES]];
+                let row = crate::lanes::splat3(p);
                 let mut planes = PlaneRow::UNKNOWN;
                 let distance =
                     moving.row(&row, &step, 1.0, 0.012, &mut planes).map_or(f32::MAX, |r| r.distance[3]);

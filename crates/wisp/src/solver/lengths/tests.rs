@@ -36,7 +36,7 @@ fn projected_velocities_stretch_no_link() {
         for carried in &mut v[..first_free] {
             *carried = ZERO3;
         }
-        project_velocity(first_free, &x, &[[100.0; LANES]; 12], &mut v, &mut LengthScratch::new(12));
+        project_velocity(first_free, &x, &[Lane::splat(100.0); 12], &mut v, &mut LengthScratch::new(12));
         for i in first_free.max(1)..12 {
             for k in 0..LANES {
                 let n = (at(&x[i], k) - at(&x[i - 1], k)) * 100.0;
@@ -53,17 +53,17 @@ fn a_chain_cut_loose_keeps_its_momentum() {
     let (x, mut v) = (zigzag(12), velocities(12));
     let sum = |v: &[Lane3]| v.iter().fold(Vec3::ZERO, |s, row| s + at(row, 3));
     let before = sum(&v);
-    project_velocity(0, &x, &[[100.0; LANES]; 12], &mut v, &mut LengthScratch::new(12));
+    project_velocity(0, &x, &[Lane::splat(100.0); 12], &mut v, &mut LengthScratch::new(12));
     assert!((sum(&v) - before).length() < 1e-6 * 12.0, "{before} became {}", sum(&v));
     let mut held = velocities(12);
-    project_velocity(1, &x, &[[100.0; LANES]; 12], &mut held, &mut LengthScratch::new(12));
+    project_velocity(1, &x, &[Lane::splat(100.0); 12], &mut held, &mut LengthScratch::new(12));
     assert!((sum(&held) - before).length() > 0.01, "a chain that is held must not keep it");
 }
 
 #[test]
 fn a_newton_step_squares_the_error_of_lengths() {
     let mut x = zigzag(12);
-    let length = [[0.01; LANES]; 12];
+    let length = [Lane::splat(0.01); 12];
     let worst = |x: &[Lane3]| {
         (1..12).map(|i| ((at(&x[i], 0) - at(&x[i - 1], 0)).length() / 0.01 - 1.0).abs()).fold(0.0, f32::max)
     };
@@ -96,27 +96,27 @@ fn hung_at_both_ends(links: usize, gravity: Vec3) -> Vec<Vec3> {
             } else {
                 low.lerp(end, (i - left) as f32 / (links - left) as f32)
             };
-            [[p.x; LANES], [p.y; LANES], [p.z; LANES]]
+            crate::lanes::splat3(p)
         })
         .collect();
     let mut velocity = vec![ZERO3; links + 1];
-    let lengths = vec![[length; LANES]; links + 1];
-    let inv = vec![[1.0 / length; LANES]; links + 1];
+    let lengths = vec![Lane::splat(length); links + 1];
+    let inv = vec![Lane::splat(1.0 / length); links + 1];
     for _ in 0..6000 {
         for v in &mut velocity[1..links] {
             let now = (at(v, 0) + gravity * h) * 0.99;
-            *v = [[now.x; LANES], [now.y; LANES], [now.z; LANES]];
+            *v = crate::lanes::splat3(now);
         }
         project_velocity(1, &position, &inv, &mut velocity, &mut scratch);
         let before = position.clone();
         for (p, v) in position.iter_mut().zip(&velocity) {
             let next = at(p, 0) + at(v, 0) * h;
-            *p = [[next.x; LANES], [next.y; LANES], [next.z; LANES]];
+            *p = crate::lanes::splat3(next);
         }
         project_position(1, &lengths, &mut position, &mut scratch);
         for ((v, p), was) in velocity.iter_mut().zip(&position).zip(&before) {
             let now = (at(p, 0) - at(was, 0)) / h;
-            *v = [[now.x; LANES], [now.y; LANES], [now.z; LANES]];
+            *v = crate::lanes::splat3(now);
         }
     }
     position.iter().map(|p| at(p, 0)).collect()
