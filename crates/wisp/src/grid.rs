@@ -10,8 +10,9 @@ mod volume;
 
 use glam::{IVec3, Mat3, Vec3};
 
-use direction::{Tensor, crossing, drawn_to, push_across};
-use pieces::{CHUNK, Piece, Pieces};
+use direction::{crossing, drawn_to, push_across};
+use lovelock_groom::simd::Width;
+use pieces::{CHUNK, Cell, Piece, Pieces, add_all};
 use rayon::prelude::*;
 
 use crate::block::Block;
@@ -58,10 +59,8 @@ pub(crate) struct DensityGrid {
     stride: usize,
     /// Fixed-point units of one metre of a guide.
     units: f32,
-    /// Mass, and momentum along each axis.
-    cells: Vec<[i32; 4]>,
-    /// The directions of the hair in each cell; all 0 where nothing heeds them.
-    directions: Vec<Tensor<i32>>,
+    /// What lies in each cell; no directions where nothing heeds them.
+    cells: Vec<Cell>,
     /// Working memory of the deposit, one of each block.
     pieces: Vec<Pieces>,
     /// One over the density at rest, where there is some, and over a typical one elsewhere.
@@ -103,8 +102,7 @@ impl DensityGrid {
             cell,
             stride: ((1.4 * cell / link) as usize).clamp(1, 8),
             units: FULL / total.max(1e-3),
-            cells: vec![[0; 4]; size],
-            directions: vec![[0; 6]; size],
+            cells: vec![Cell::EMPTY; size],
             pieces: Vec::new(),
             inv_rest: vec![0.0; size],
             rest_volume: 0.0,
@@ -124,13 +122,14 @@ impl DensityGrid {
         // The density that a piece of hair typically finds around itself stands in where none is at rest.
         let (mut sum, mut squares) = (0.0_f64, 0.0_f64);
         for c in &self.cells {
-            sum += f64::from(c[0]);
-            squares += f64::from(c[0]) * f64::from(c[0]);
+            let mass = f64::from(c.mass());
+            sum += mass;
+            squares += mass * mass;
         }
         let typical = if sum > 0.0 { (squares / sum) as f32 } else { FULL };
         self.full = typical;
         for (inv, c) in self.inv_rest.iter_mut().zip(&self.cells) {
-            *inv = 1.0 / (c[0] as f32).max(typical);
+            *inv = 1.0 / (c.mass() as f32).max(typical);
         }
     }
 
@@ -155,7 +154,7 @@ impl DensityGrid {
     /// The volume that the hair in the grid fills, cubic metres; see [`volume::volume`].
     pub(crate) fn volume(&self) -> f32 {
         volume::volume(
-            self.held_rows().flat_map(|row| &self.cells[row]).map(|cell| cell[0]),
+            self.held_rows().flat_map(|row| &self.cells[row]).map(Cell::mass),
             self.full,
             self.cell,
         )
@@ -184,15 +183,14 @@ impl DensityGrid {
 
     fn clear(&mut self) {
         for row in self.held_rows() {
-            self.cells[row.clone()].fill([0; 4]);
-            self.directions[row].fill([0; 6]);
+            self.cells[row].fill(Cell::EMPTY);
         }
         (self.low, self.high) = (IVec3::MAX, IVec3::MIN);
     }
 
     fn over_dense(&self) -> u32 {
         let inv_threshold = 1.0 / self.repulsion.threshold;
-        let over = |i: &usize| self.cells[*i][0] as f32 * self.inv_rest[*i] * inv_threshold > 1.0;
+        let over = |i: &usize| self.cells[*i].mass() as f32 * self.inv_rest[*i] * inv_threshold > 1.0;
         self.held_rows().flatten().filter(over).count() as u32
     }
 
@@ -218,12 +216,11 @@ impl DensityGrid {
             self.low = self.low.min(block.low);
             self.high = self.high.max(block.high);
         }
-        let layers = self.cells.par_chunks_mut(CHUNK).zip(self.directions.par_chunks_mut(CHUNK));
-        layers.enumerate().for_each(|(chunk, (cells, directions))| {
-            for block in &pieces {
-                block.add_to(chunk, cells, directions);
-            }
-        });
+        let width = Width::widest();
+        self.cells
+            .par_chunks_mut(CHUNK)
+            .enumerate()
+            .for_each(|(chunk, cells)| add_all(width, &pieces, chunk, cells));
         self.pieces = pieces;
     }
 
@@ -246,11 +243,7 @@ impl DensityGrid {
         let Some((corner, fraction)) = self.around(p) else { return };
         let velocity = v.clamp(Vec3::splat(-FASTEST), Vec3::splat(FASTEST)) * MOMENTUM;
         if velocity.is_finite() && t.is_finite() {
-            let (base, layer) = (index(corner) as u32, corner.z as u32);
-            out.push(
-                corner,
-                Piece { base, layer, fraction, mass: length * self.units, velocity, tangent: t },
-            );
+            out.push(corner, Piece::new(corner, fraction, length * self.units, velocity, t));
         }
     }
 
@@ -266,10 +259,10 @@ impl DensityGrid {
         let mut crowded = false;
         for (n, (offset, weight)) in OFFSETS.iter().zip(weights(f)).enumerate() {
             let cell = &self.cells[base + offset];
-            for (sum, value) in sums.iter_mut().zip(cell) {
-                *sum += weight * *value as f32;
+            for (sum, value) in sums.iter_mut().zip(cell.motion()) {
+                *sum += weight * value as f32;
             }
-            let over = cell[0] as f32 * self.inv_rest[base + offset] * inv_threshold - 1.0;
+            let over = cell.mass() as f32 * self.inv_rest[base + offset] * inv_threshold - 1.0;
             excess[n] = over.max(0.0);
             crowded |= over > 0.0;
         }
@@ -281,8 +274,8 @@ impl DensityGrid {
         if crowded && self.repulsion.anisotropy > 0.0 {
             let mut directions = [0.0_f32; 6];
             for (offset, weight) in OFFSETS.iter().zip(weights(f)) {
-                for (sum, value) in directions.iter_mut().zip(&self.directions[base + offset]) {
-                    *sum += weight * *value as f32;
+                for (sum, value) in directions.iter_mut().zip(self.cells[base + offset].directions()) {
+                    *sum += weight * value as f32;
                 }
             }
             across = crossing(&directions, sums[0], t);
@@ -300,7 +293,7 @@ impl DensityGrid {
     fn away_from_centre(&self, p: Vec3) -> Vec3 {
         let cell = ((p - self.min) / self.cell).as_ivec3().clamp(IVec3::ZERO, IVec3::splat(SIDE - 1));
         let i = index(cell);
-        let excess = self.cells[i][0] as f32 * self.inv_rest[i] / self.repulsion.threshold - 1.0;
+        let excess = self.cells[i].mass() as f32 * self.inv_rest[i] / self.repulsion.threshold - 1.0;
         let out = p - (self.min + (cell.as_vec3() + 0.5) * self.cell);
         let fade = (1.0 - 2.0 * out.abs().max_element() / self.cell).max(0.0);
         out * (excess.max(0.0) * fade / (out.length().max(0.1 * self.cell) * self.cell))

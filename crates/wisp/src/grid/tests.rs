@@ -24,7 +24,7 @@ fn lattice(side: usize, gap: f32) -> Vec<Block> {
 fn all_the_hair_is_in_the_grid() {
     let blocks = lattice(5, 0.02);
     let grid = DensityGrid::new(&blocks);
-    let mass: f64 = grid.cells.iter().map(|c| f64::from(c[0])).sum();
+    let mass: f64 = grid.cells.iter().map(|c| f64::from(c.mass())).sum();
     // 25 guides of 20 cm; each of the eight shares of a point loses at most one unit in rounding.
     let want = 25.0 * 0.2 * f64::from(grid.units);
     assert!((mass / want - 1.0).abs() < 0.06, "{mass} against {want}");
@@ -91,7 +91,7 @@ fn hair_outside_the_grid_and_nonsense_are_left_out() {
     assert_eq!(grid.update(&blocks, &away, Repulsion::default()), 0);
     let nonsense = Map { turn: Mat3::IDENTITY, shift: Vec3::splat(f32::NAN) };
     assert_eq!(grid.update(&blocks, &nonsense, Repulsion::default()), 0);
-    assert!(grid.cells.iter().all(|c| c[0] == 0));
+    assert!(grid.cells.iter().all(|c| c.mass() == 0));
 }
 
 #[test]
