@@ -3,6 +3,7 @@
 use glam::Vec3;
 use lovelock_groom::Guides;
 
+use crate::colliders::boxes::Boxes;
 use crate::colliders::field::PlaneRow;
 use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, put};
 use crate::rest::RestShape;
@@ -45,6 +46,7 @@ pub(crate) struct Block {
     pub(crate) coupled: Coupled,
     /// The colliders near the block, and how deep they have closed over the roots.
     pub(crate) active: Vec<u32>,
+    pub(crate) boxes: Boxes,
     pub(crate) buried: Vec<Lane>,
     pub(crate) outcome: Outcome,
 }
@@ -97,6 +99,7 @@ impl Block {
             bending: Bending::new(points),
             coupled: Coupled::default(),
             active: Vec::new(),
+            boxes: Boxes::default(),
             buried: Vec::new(),
             outcome: Outcome::default(),
         }

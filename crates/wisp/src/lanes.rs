@@ -99,6 +99,19 @@ pub(crate) const fn splat3(v: Vec3) -> Lane3 {
     [Lane::splat(v.x), Lane::splat(v.y), Lane::splat(v.z)]
 }
 
+/// One number of a whole row: its halves by `of`, and what that leaves by `of` again.
+#[inline(always)]
+pub(crate) fn fold(row: Lane, of: impl Fn(f32, f32) -> f32) -> f32 {
+    let (mut row, mut half) = (row, LANES / 2);
+    while half > 0 {
+        for k in 0..half {
+            row[k] = of(row[k], row[k + half]);
+        }
+        half /= 2;
+    }
+    row[0]
+}
+
 /// The vector of lane `k`.
 #[inline(always)]
 pub(crate) fn at(row: &Lane3, k: usize) -> Vec3 {

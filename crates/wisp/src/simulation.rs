@@ -330,6 +330,7 @@ impl Simulation {
                 }
             }
             block.active.reserve(shapes.len());
+            block.boxes.reserve(shapes.len());
             block.buried.reserve(shapes.len());
         });
     }

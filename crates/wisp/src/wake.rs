@@ -11,7 +11,7 @@ use glam::{Affine3A, Vec3};
 use lovelock_groom::Scalp;
 use lovelock_motion::ColliderShape;
 
-use crate::colliders::contact::bounds;
+use crate::colliders::boxes::bounds;
 use crate::colliders::shape::Shape;
 use crate::lanes::{LANES, Lane, Lane3, at, greater, lesser};
 
@@ -105,7 +105,7 @@ impl Solid {
                 let radius = radius_a + t * radius_change;
                 ((r + u * s - axis * t).length_squared().sqrt() / (radius + 1e-6), s, radius + 1e-6)
             }
-            Shape::Ellipsoid { centre, axes: [ax, ay, az], radii } => {
+            Shape::Ellipsoid { centre, axes: [ax, ay, az], radii, .. } => {
                 let (r, inv) = (p - centre, 1.0 / radii);
                 let q = Vec3::new(r.dot(ax), r.dot(ay), r.dot(az)) * inv;
                 let v = Vec3::new(u.dot(ax), u.dot(ay), u.dot(az)) * inv;

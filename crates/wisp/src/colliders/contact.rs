@@ -4,9 +4,10 @@
 use glam::Vec3;
 
 use super::MovingShape;
+use super::boxes::{Boxes, bounds};
 use super::field::{FieldRow, MovingField, PlaneRow};
 use crate::SimulationSettings;
-use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, direction_or, greater, lesser, put};
+use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, direction_or, fold, greater, lesser, put};
 use crate::solver::Substep;
 
 /// How contacts behave in one step.
@@ -78,6 +79,8 @@ pub(crate) struct Near<'a> {
     pub(crate) shapes: &'a [MovingShape],
     /// Which of them, in order.
     pub(crate) active: &'a [u32],
+    /// The boxes around these.
+    pub(crate) boxes: &'a Boxes,
     /// Signed distance at rest of point `i` to collider `c` at `c * points + i`.
     pub(crate) rest_distance: &'a [Lane],
     pub(crate) points: usize,
@@ -221,12 +224,9 @@ pub(crate) fn lay_point(
         let mut pushed =
             push_out_of_field(point, before, was, length, near, &rules, round, planes, &mut placed);
         let (min, max) = bounds(&placed);
-        for (n, &c) in near.active.iter().enumerate() {
-            let mover = &near.shapes[c as usize];
-            let reach = rules.reach();
-            if apart(min, max, mover, reach) {
-                continue;
-            }
+        let reach = rules.reach();
+        for n in near.boxes.near(min, max, reach) {
+            let mover = &near.shapes[near.active[n] as usize];
             let Some(shape) = mover.shape else { continue };
             if shape.surely_beyond(&placed, reach) {
                 continue;
@@ -237,11 +237,7 @@ pub(crate) fn lay_point(
             }
             let nearest = shape.nearest(&placed, &along);
             let allowed = near.allowed(n, point, &rules);
-            let mut deepest = 0.0;
-            for k in 0..LANES {
-                deepest = greater(deepest, allowed[k] - nearest.distance[k]);
-            }
-            if deepest <= enough {
+            if deepest(&allowed, &nearest.distance) <= enough {
                 continue;
             }
             pushed = true;
@@ -280,11 +276,8 @@ fn push_out_of_field(
     let Some(field) = &near.field else { return false };
     let Some(row) = field.row(placed, rules.reach(), planes) else { return false };
     let allowed = near.allowed_by_field(field, &row, point, rules);
-    let (mut deepest, enough) = (0.0, if round == 0 { 0.0 } else { CLOSE_ENOUGH });
-    for k in 0..LANES {
-        deepest = greater(deepest, allowed[k] - row.distance[k]);
-    }
-    if deepest <= enough {
+    let enough = if round == 0 { 0.0 } else { CLOSE_ENOUGH };
+    if deepest(&allowed, &row.distance) <= enough {
         return false;
     }
     let friction = if round == 0 { rules.friction } else { 0.0 };
@@ -301,6 +294,16 @@ fn push_out_of_field(
         put(placed, k, Vec3::new(pick(out.x, p.x), pick(out.y, p.y), pick(out.z, p.z)));
     }
     true
+}
+
+/// How much nearer than allowed the nearest lane is, 0 where none is, metres.
+#[inline(always)]
+fn deepest(allowed: &Lane, distance: &Lane) -> f32 {
+    let mut depth = ZERO;
+    for k in 0..LANES {
+        depth[k] = greater(0.0, allowed[k] - distance[k]);
+    }
+    fold(depth, greater)
 }
 
 /// Coulomb friction: the velocity along the surface, relative to it, loses `friction` times the velocity that
@@ -370,11 +373,9 @@ pub(crate) fn penetration(
         }
     }
     let (min, max) = bounds(placed);
-    for (n, &c) in near.active.iter().enumerate() {
+    for n in near.boxes.near(min, max, rules.reach()) {
+        let c = near.active[n];
         let mover = &near.shapes[c as usize];
-        if apart(min, max, mover, rules.reach()) {
-            continue;
-        }
         let Some(shape) = mover.shape else { continue };
         if shape.surely_beyond(placed, rules.reach()) {
             continue;
@@ -389,30 +390,6 @@ pub(crate) fn penetration(
         }
     }
     worst
-}
-
-/// The box around a row of points.
-#[inline(always)]
-pub(crate) fn bounds(row: &Lane3) -> (Vec3, Vec3) {
-    let (mut min, mut max) = (at(row, 0), at(row, 0));
-    for k in 1..LANES {
-        let p = at(row, k);
-        min = Vec3::new(lesser(min.x, p.x), lesser(min.y, p.y), lesser(min.z, p.z));
-        max = Vec3::new(greater(max.x, p.x), greater(max.y, p.y), greater(max.z, p.z));
-    }
-    (min, max)
-}
-
-/// Whether a box is further than `reach` from a collider's box.
-#[inline(always)]
-pub(crate) fn apart(min: Vec3, max: Vec3, mover: &MovingShape, reach: f32) -> bool {
-    let (a, b) = (mover.min, mover.max);
-    min.x > b.x + reach
-        || min.y > b.y + reach
-        || min.z > b.z + reach
-        || max.x < a.x - reach
-        || max.y < a.y - reach
-        || max.z < a.z - reach
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! Colliders over one step: how they lie at rest, and where they are at each substep.
 
+pub(crate) mod boxes;
 pub(crate) mod contact;
 pub(crate) mod field;
 pub(crate) mod shape;

@@ -5,7 +5,7 @@
 use glam::Vec3;
 use lovelock_motion::ColliderShape;
 
-use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, greater, lesser, put};
+use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, fold, greater, lesser, put};
 
 /// A collider prepared for queries.
 #[derive(Clone, Copy, Debug)]
@@ -21,7 +21,14 @@ pub(crate) enum Shape {
         radius_change: f32,
     },
     /// An ellipsoid with its unit axes and radii.
-    Ellipsoid { centre: Vec3, axes: [Vec3; 3], radii: Vec3 },
+    Ellipsoid {
+        centre: Vec3,
+        axes: [Vec3; 3],
+        radii: Vec3,
+        /// The axes over their radii: what takes it to the unit sphere.
+        to_unit: [Vec3; 3],
+        inv_least_radius: f32,
+    },
 }
 
 /// What a row of points learns from a collider.
@@ -81,7 +88,10 @@ impl Shape {
                     return None;
                 }
                 let axes = [columns[0] / radii.x, columns[1] / radii.y, columns[2] / radii.z];
-                Some(Self::Ellipsoid { centre: from_unit.translation.into(), axes, radii })
+                let to_unit = [axes[0] / radii.x, axes[1] / radii.y, axes[2] / radii.z];
+                let inv_least_radius = 1.0 / radii.min_element();
+                let centre = from_unit.translation.into();
+                Some(Self::Ellipsoid { centre, axes, radii, to_unit, inv_least_radius })
             }
         }
     }
@@ -94,7 +104,7 @@ impl Shape {
                 let (ra, rb) = (Vec3::splat(radius_a), Vec3::splat(radius_b));
                 ((a - ra).min(b - rb), (a + ra).max(b + rb))
             }
-            Self::Ellipsoid { centre, axes, radii } => {
+            Self::Ellipsoid { centre, axes, radii, .. } => {
                 let [x, y, z] = axes;
                 let (x, y, z) = (x * radii.x, y * radii.y, z * radii.z);
                 let half = (x * x + y * y + z * z).map(f32::sqrt);
@@ -107,18 +117,19 @@ impl Shape {
     /// capsule, where that is as cheap, the answer is no.
     #[inline(always)]
     pub(crate) fn surely_beyond(&self, points: &Lane3, reach: f32) -> bool {
-        let Self::Ellipsoid { centre, axes: [ax, ay, az], radii } = *self else { return false };
+        let Self::Ellipsoid { centre, to_unit: [ax, ay, az], inv_least_radius, .. } = *self else {
+            return false;
+        };
         // Seen from outside, the ellipsoid grown by a factor of 1 + reach / (smallest radius) holds all within reach.
-        let inv = 1.0 / radii;
-        let (ax, ay, az) = (ax * inv.x, ay * inv.y, az * inv.z);
-        let mut nearest = f32::MAX;
+        let mut squared = ZERO;
         for k in 0..LANES {
             let q = at(points, k) - centre;
             let q = Vec3::new(q.dot(ax), q.dot(ay), q.dot(az));
-            nearest = lesser(nearest, q.length_squared());
+            // What is not a number is far.
+            squared[k] = lesser(f32::MAX, q.length_squared());
         }
-        let factor = 1.0 + reach / lesser(radii.x, lesser(radii.y, radii.z));
-        nearest > factor * factor
+        let factor = 1.0 + reach * inv_least_radius;
+        fold(squared, lesser) > factor * factor
     }
 
     /// The nearest point for every lane of `points`. `along` is the direction in which a push-out may move
@@ -140,7 +151,7 @@ impl Shape {
                     put(&mut out.centre, k, centre + a);
                 }
             }
-            Self::Ellipsoid { centre, axes: [ax, ay, az], radii } => {
+            Self::Ellipsoid { centre, axes: [ax, ay, az], radii, .. } => {
                 let squared = radii * radii;
                 let inv_squared = 1.0 / squared;
                 let least = -0.98 * lesser(squared.x, lesser(squared.y, squared.z));

@@ -6,9 +6,8 @@ use super::lengths::{project_position, project_velocity};
 use super::relaxation::relax;
 use crate::Integrator;
 use crate::block::{Block, Depth};
-use crate::colliders::contact::{
-    Near, NearField, apart, bounds, buried, buried_in_field, lay_point, penetration,
-};
+use crate::colliders::boxes::{apart, bounds};
+use crate::colliders::contact::{Near, NearField, buried, buried_in_field, lay_point, penetration};
 use crate::lanes::{LANES, Turns, ZERO3, at, direction_or, greater, lesser, put};
 
 /// Takes the block through substep `s`.
@@ -176,6 +175,7 @@ fn shape_memory(block: &mut Block, plan: &Plan, s: usize) {
 #[inline(always)]
 fn find_near(block: &mut Block, plan: &Plan, s: usize) {
     block.active.clear();
+    block.boxes.clear();
     block.buried.clear();
     let shapes = &plan.shapes[s * plan.shapes_per_substep..][..plan.shapes_per_substep];
     if shapes.is_empty() {
@@ -197,6 +197,7 @@ fn find_near(block: &mut Block, plan: &Plan, s: usize) {
     for (c, mover) in shapes.iter().enumerate() {
         if mover.shape.is_some() && !apart(min, max, mover, reach) {
             block.active.push(c as u32);
+            block.boxes.push(mover);
             block.buried.push(buried(
                 &block.next[carried],
                 mover,
@@ -224,6 +225,7 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize, lay: Lay) {
     let near = Near {
         shapes: &plan.shapes[s * plan.shapes_per_substep..][..plan.shapes_per_substep],
         active: &block.active,
+        boxes: &block.boxes,
         rest_distance: &block.rest_distance,
         points: count,
         carried,

@@ -29,6 +29,7 @@ fn lay(shape: ColliderShape, from: Vec3, wanted: Vec3, length: f32) -> Vec3 {
     let near = Near {
         shapes: &shapes,
         active: &[0],
+        boxes: &Boxes::of(&shapes),
         rest_distance: &[Lane::splat(1.0)],
         points: 1,
         carried: 0,
@@ -129,6 +130,7 @@ fn a_point_that_rests_inside_is_left_there() {
     let near = Near {
         shapes: &shapes,
         active: &[0],
+        boxes: &Boxes::of(&shapes),
         rest_distance: &[Lane::splat(-0.02)],
         points: 1,
         carried: 0,
@@ -170,6 +172,7 @@ fn hair_whose_root_is_buried_comes_out_along_a_slope() {
     let near = Near {
         shapes: &shapes,
         active: &[0],
+        boxes: &Boxes::of(&shapes),
         rest_distance: &rest,
         points: 12,
         carried: 0,
