@@ -54,6 +54,12 @@ impl ContactRules {
         self.margin + self.layering * LAYER_HEIGHT
     }
 
+    /// The same for a collider: only on the head do layers keep their order.
+    #[inline(always)]
+    fn reach_of(&self, mover: &MovingShape) -> f32 {
+        if mover.on_head { self.reach() } else { self.margin }
+    }
+
     /// The same without what is for comfort: the margin and the layers.
     #[inline(always)]
     fn bare(&self) -> Self {
@@ -224,11 +230,10 @@ pub(crate) fn lay_point(
         let mut pushed =
             push_out_of_field(point, before, was, length, near, &rules, round, planes, &mut placed);
         let (min, max) = bounds(&placed);
-        let reach = rules.reach();
-        for n in near.boxes.near(min, max, reach) {
+        for n in near.boxes.near(min, max, rules.reach()) {
             let mover = &near.shapes[near.active[n] as usize];
             let Some(shape) = mover.shape else { continue };
-            if shape.surely_beyond(&placed, reach) {
+            if shape.surely_beyond(&placed, rules.reach_of(mover)) {
                 continue;
             }
             let mut along = ZERO3;
@@ -377,7 +382,7 @@ pub(crate) fn penetration(
         let c = near.active[n];
         let mover = &near.shapes[c as usize];
         let Some(shape) = mover.shape else { continue };
-        if shape.surely_beyond(placed, rules.reach()) {
+        if shape.surely_beyond(placed, bare.reach_of(mover)) {
             continue;
         }
         let nearest = shape.nearest(placed, &ZERO3);
