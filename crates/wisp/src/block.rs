@@ -140,10 +140,12 @@ impl Block {
         }
         self.velocity.fill(ZERO3);
         self.good.copy_from_slice(&self.position);
+        self.planes.fill(PlaneRow::UNKNOWN);
     }
 
     /// Moves everything rigidly, velocities included.
     pub(crate) fn carry(&mut self, by: &Map) {
+        self.planes.fill(PlaneRow::UNKNOWN);
         for i in 0..self.points() {
             for k in 0..LANES {
                 for row in [&mut self.position[i], &mut self.good[i]] {

@@ -164,29 +164,24 @@ impl Simulation {
             return report;
         }
         let dt_secs = dt_secs.min(0.1);
-        let rules = ContactRules::of(&settings);
-        if let (Some(field), Some(placed)) = (&mut self.field, input.field) {
-            if met {
-                // It begins where it is.
-                field.reset(&head, placed.pose);
-            }
-            field.advance(&head, placed.pose, rules.reach(), dt_secs, self.spare);
-        }
         self.take_hold(dt_secs);
-        let report = self.simulate(&head, input.colliders, &settings, dt_secs);
+        let report = self.simulate(&head, input, &settings, dt_secs, met);
         self.head = head;
         self.colliders.copy_from_slice(input.colliders);
         self.elapsed_secs += f64::from(dt_secs);
         report
     }
 
+    /// The step to `head` and `input`; `met` says whether the field has only just been taken up.
     fn simulate(
         &mut self,
         head: &HeadPose,
-        colliders: &[PlacedCollider],
+        input: &StepInput,
         settings: &SimulationSettings,
         dt_secs: f32,
+        met: bool,
     ) -> StepReport {
+        let colliders = input.colliders;
         let origin = head.place;
         let rebase = self.head.place - origin;
         let count = self.substeps_for(head, settings.substeps);
@@ -211,7 +206,19 @@ impl Simulation {
             before = now;
         }
         let head_from_last = head_from(&self.head, self.head.place);
-        let over_dense_cells = self.grid.update(&self.blocks, &head_from_last, settings.repulsion);
+        let (grid, blocks, spare) = (&mut self.grid, &self.blocks, self.spare);
+        let (field, placed) = (self.field.as_mut(), input.field);
+        let (over_dense_cells, ()) = rayon::join(
+            || grid.update(blocks, &head_from_last, settings.repulsion),
+            || {
+                let (Some(field), Some(placed)) = (field, placed) else { return };
+                if met {
+                    // It begins where it is.
+                    field.reset(head, placed.pose);
+                }
+                field.advance(head, placed.pose, ContactRules::of(settings).reach(), dt_secs, spare);
+            },
+        );
         let wind = WindField::new(&settings.wind, self.elapsed_secs, origin);
         let shelter = if wind.blows() { settings.wind.sheltering } else { 0.0 };
         let along = Vec3::from_array(settings.wind.direction);

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::Simulation;
 use crate::colliders::contact::{FIELD, LAYER_HEIGHT};
-use crate::colliders::field::MovingField;
+use crate::colliders::field::{MovingField, PlaneRow};
 use crate::lanes::LANES;
 use crate::{BodyPart, InsidePoint, SimulationSettings, StepInput};
 
@@ -24,6 +24,7 @@ impl Simulation {
                 if !known {
                     let reach = SimulationSettings::default().skin_margin + LAYER_HEIGHT;
                     self.field = Some(MovingField::new(placed.field, placed.pose.lift, reach));
+                    self.blocks.iter_mut().for_each(|block| block.planes.fill(PlaneRow::UNKNOWN));
                     self.learn_field_distances();
                 }
                 !known

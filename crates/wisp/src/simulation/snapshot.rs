@@ -9,7 +9,7 @@ use lovelock_motion::{ColliderShape, PlacedCollider};
 
 use super::{Simulation, first_free};
 use crate::block::Block;
-use crate::colliders::field::MovingField;
+use crate::colliders::field::{MovingField, PlaneRow};
 use crate::hash::Hasher;
 use crate::lanes::{LANES, Lane, Lane3};
 use crate::motion::HeadPose;
@@ -18,7 +18,7 @@ use crate::rest::RestShape;
 const MAGIC: [u8; 4] = *b"LLWS";
 
 /// Raised whenever the bytes change their meaning.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// The most colliders that a state may speak of: beyond it the bytes are no state.
 const MOST_COLLIDERS: u32 = 4096;
@@ -94,6 +94,11 @@ impl Simulation {
                 out.floats(&axis[..]);
             }
         }
+        if !places.is_empty() {
+            for axis in self.blocks.iter().flat_map(|block| &block.planes).flat_map(|row| &row.rest) {
+                out.floats(&axis[..]);
+            }
+        }
         out.u64(sum(&out.0));
         out.0
     }
@@ -161,6 +166,14 @@ impl Simulation {
             }
             for rows in rows_of_mut(block) {
                 for axis in rows.iter_mut().flatten() {
+                    *axis = Lane(input.floats()?);
+                }
+            }
+        }
+        for row in next.blocks.iter_mut().flat_map(|block| &mut block.planes) {
+            *row = PlaneRow::UNKNOWN;
+            if !places.is_empty() {
+                for axis in &mut row.rest {
                     *axis = Lane(input.floats()?);
                 }
             }

@@ -9,8 +9,8 @@
 use glam::Vec3;
 
 use super::MovingField;
-use super::query::{Found, Touch};
-use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, greater, lesser, put};
+use super::query::{Found, Start, Touch};
+use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, greater, lesser, put, splat3};
 use crate::solver::Substep;
 
 /// So far from where it was measured a plane near contact serves, metres.
@@ -39,7 +39,14 @@ pub(crate) struct PlaneRow {
     guess: Lane,
     /// Whether any lane has skin near by.
     any: bool,
+    /// Where the points were at rest when skin that other joints move too was last found near them; [`NOWHERE`] where it
+    /// was not. Unlike the rest this is kept from step to step: where skin is folded there are several ways back, and
+    /// what is near one side of the fold stays there.
+    pub(crate) rest: Lane3,
 }
+
+/// No place at rest.
+const NOWHERE: Vec3 = Vec3::splat(f32::MAX);
 
 impl PlaneRow {
     pub(crate) const UNKNOWN: Self = Self {
@@ -54,9 +61,10 @@ impl PlaneRow {
         drift: ZERO3,
         guess: ZERO,
         any: false,
+        rest: splat3(NOWHERE),
     };
 
-    /// Forgets what was measured.
+    /// Forgets what was measured in the last step.
     pub(crate) fn forget(&mut self) {
         self.serves = Lane::splat(-1.0);
     }
@@ -155,11 +163,20 @@ impl MovingField {
             if heads {
                 (head, nearest) = found(self.head_skin(p, reach));
             }
-            // Where skin is folded there are two ways back: from where the head has the point, and from where the
+            let was = at(&planes.rest, k);
+            if cell.slot.is_some()
+                && was.x < NOWHERE.x
+                && let Found::Skin(touch) = self.skin(p, Start::Place(was), passed, reach)
+                && touch.sure
+            {
+                (skin, nearest) = (Some(touch), lesser(nearest, touch.distance));
+            }
+            let tracked = skin.is_some();
+            // Else, where skin is folded there are two ways back: from where the head has the point, and from where the
             // nearest other joints have it.
             let starts = [cell.slot, (cell.head && !heads).then_some(0)];
-            for slot in starts.into_iter().flatten() {
-                let (touch, distance) = found(self.skin(p, slot, passed, reach));
+            for slot in starts.into_iter().flatten().filter(|_| !tracked) {
+                let (touch, distance) = found(self.skin(p, Start::Slot(slot), passed, reach));
                 nearest = lesser(nearest, distance);
                 skin = match (skin, touch) {
                     (Some(a), Some(b)) => Some(if b.distance < a.distance { b } else { a }),
@@ -186,7 +203,7 @@ impl MovingField {
             planes.serves[k] = if p.is_finite() { serves * serves } else { -1.0 };
             put(&mut planes.place, k, p);
             planes.passed[k] = passed;
-            let none = Touch { distance: NONE, normal: Vec3::ZERO, head: 0.0, drift: Vec3::ZERO, sure: true };
+            let none = Touch { distance: NONE, normal: Vec3::ZERO, head: 0.0, drift: Vec3::ZERO, sure: true, rest: None };
             let (head, skin) = (head.unwrap_or(none), skin.unwrap_or(none));
             planes.head_distance[k] = head.distance;
             put(&mut planes.head_normal, k, head.normal);
@@ -195,6 +212,7 @@ impl MovingField {
             planes.share[k] = skin.head;
             planes.guess[k] = f32::from(u8::from(!skin.sure));
             put(&mut planes.drift, k, skin.drift);
+            put(&mut planes.rest, k, skin.rest.unwrap_or(NOWHERE));
         }
         planes.any = false;
         for k in 0..LANES {

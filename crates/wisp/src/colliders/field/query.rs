@@ -18,6 +18,17 @@ pub(super) struct Touch {
     pub(super) drift: Vec3,
     /// Whether this is measured, and not a guess that may push a little.
     pub(super) sure: bool,
+    /// Where the point is at rest, to go on from in the next measurement; `None` where the head alone moves it.
+    pub(super) rest: Option<Vec3>,
+}
+
+/// Where the way of a point back to rest begins.
+#[derive(Clone, Copy)]
+pub(super) enum Start {
+    /// What a weighting makes of the point.
+    Slot(usize),
+    /// Where the point was found before.
+    Place(Vec3),
 }
 
 /// What a point finds: the skin, or how far it is from any at least.
@@ -50,7 +61,7 @@ impl MovingField {
         let steepness = slope.length_squared().sqrt();
         let distance = value / steepness.clamp(0.5, 2.0) - self.lift;
         let normal = if steepness > 1e-6 { slope * (1.0 / steepness) } else { Vec3::Y };
-        Found::Skin(Touch { distance, normal, head: 1.0, drift: Vec3::ZERO, sure: true })
+        Found::Skin(Touch { distance, normal, head: 1.0, drift: Vec3::ZERO, sure: true, rest: None })
     }
 
     /// Whether the head alone moves the skin at `p`, if it is where it is at rest.
@@ -60,13 +71,15 @@ impl MovingField {
             .is_some_and(|(corners, _)| self.head_alone[corners[0]])
     }
 
-    /// Against the skin that other joints move too, at the fraction `t` of the step; the way back begins at what the
-    /// weighting `slot` makes of `p`.
+    /// Against the skin that other joints move too, at the fraction `t` of the step.
     #[inline(always)]
-    pub(super) fn skin(&self, p: Vec3, slot: usize, t: f32, reach: f32) -> Found {
-        let guess = self.before[slot].toward(&self.now[slot], t).apply(p);
+    pub(super) fn skin(&self, p: Vec3, start: Start, t: f32, reach: f32) -> Found {
+        let (guess, slot) = match start {
+            Start::Slot(slot) => (self.before[slot].toward(&self.now[slot], t).apply(p), slot),
+            Start::Place(place) => (place, 0),
+        };
         let Some(rest) = self.way_back(p, guess, slot, t) else { return Found::Nothing };
-        // Of the head's own weighting there is no guess: it says that the point has not moved.
+        // Of the head's own weighting there is no guess: it says that the point has not moved. Nor is where it was.
         if slot == 0 && !rest.sure {
             return Found::Nothing;
         }
@@ -84,6 +97,7 @@ impl MovingField {
         // hair has never been so deep in.
         let sound = rest.sure && (0.5..2.0).contains(&steepness) && distance > -DEEP;
         let distance = if sound { distance } else { distance.max(-UNSURE) };
+        let going_on = rest.slots.filter(|_| sound).map(|_| rest.place);
         let drift = match &rest.slots {
             None => Vec3::ZERO,
             Some(slots) => {
@@ -95,7 +109,7 @@ impl MovingField {
                 rest.back.turn_forth(moved) * (1.0 / self.dt_secs)
             }
         };
-        Found::Skin(Touch { distance, normal, head: rest.back.head(), drift, sure: sound })
+        Found::Skin(Touch { distance, normal, head: rest.back.head(), drift, sure: sound, rest: going_on })
     }
 
     /// Takes `p` back to rest from a first guess of where that is.
