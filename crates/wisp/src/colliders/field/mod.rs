@@ -31,6 +31,9 @@ const ROUNDS: usize = 6;
 /// A way back that ends further from the first guess than this leads to another part of the skin, spacings of nodes.
 const STRAYED: f32 = 3.0;
 
+/// A way back that begins closer than this to a place that another has found leads there too, spacings of nodes.
+const CLOSE: f32 = 1.0;
+
 /// Nothing is deeper than this in skin of which only a guess is known, metres.
 const UNSURE: f32 = 0.002;
 

@@ -171,11 +171,14 @@ impl MovingField {
             {
                 (skin, nearest) = (Some(touch), lesser(nearest, touch.distance));
             }
-            let tracked = skin.is_some();
-            // Else, where skin is folded there are two ways back: from where the head has the point, and from where the
-            // nearest other joints have it.
+            // Where skin is folded there are several ways back: from where the head has the point, and from where the
+            // nearest other joints have it. From close to a place that is known they would lead there.
+            let known = skin.and_then(|touch| touch.rest);
             let starts = [cell.slot, (cell.head && !heads).then_some(0)];
-            for slot in starts.into_iter().flatten().filter(|_| !tracked) {
+            for slot in starts.into_iter().flatten() {
+                if known.is_some_and(|rest| self.starts_near(p, slot, passed, rest)) {
+                    continue;
+                }
                 let (touch, distance) = found(self.skin(p, Start::Slot(slot), passed, reach));
                 nearest = lesser(nearest, distance);
                 skin = match (skin, touch) {

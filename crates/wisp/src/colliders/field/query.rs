@@ -4,7 +4,7 @@ use glam::{Mat3A, UVec3, Vec3};
 use lovelock_motion::FieldLattice;
 
 use super::back::{Around, Back};
-use super::{DEEP, MovingField, ROUNDS, SETTLED, STRAYED, UNFOLDED, UNSURE};
+use super::{CLOSE, DEEP, MovingField, ROUNDS, SETTLED, STRAYED, UNFOLDED, UNSURE};
 use crate::trilinear::{gradient, weights};
 
 /// What one point learns of a skin, in head space.
@@ -110,6 +110,13 @@ impl MovingField {
             }
         };
         Found::Skin(Touch { distance, normal, head: rest.back.head(), drift, sure: sound, rest: going_on })
+    }
+
+    /// Whether what the weighting `slot` makes of `p` is close to a place at rest.
+    #[inline(always)]
+    pub(super) fn starts_near(&self, p: Vec3, slot: usize, t: f32, rest: Vec3) -> bool {
+        let guess = self.before[slot].toward(&self.now[slot], t).apply(p);
+        (guess - rest).length_squared() < (CLOSE * self.field.node_lattice().spacing).powi(2)
     }
 
     /// Takes `p` back to rest from a first guess of where that is.
