@@ -360,7 +360,13 @@ mod tests {
     #[test]
     fn what_hangs_from_a_moved_point_follows_without_force() {
         let mut b = Bending::new(12);
-        b.prepare(key(2), &Lane::splat(0.01), &[Lane::splat(100.0); 12], &[ZERO3; 12], &[Lane::splat(-1.0); 12]);
+        b.prepare(
+            key(2),
+            &Lane::splat(0.01),
+            &[Lane::splat(100.0); 12],
+            &[ZERO3; 12],
+            &[Lane::splat(-1.0); 12],
+        );
         let splat = |v: Vec3| crate::lanes::splat3(v);
         let mut rows = vec![ZERO3; 12];
         rows[4] = splat(Vec3::new(0.2, -0.1, 0.05));

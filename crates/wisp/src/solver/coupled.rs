@@ -114,7 +114,11 @@ impl Coupled {
                     s[k] *= at(&n, k).dot(at(&m, k));
                 }
                 let whole = s;
-                let other = if c / ROWS < r / ROWS { &above[panel(c / ROWS)..][..ROWS * c] } else { &own[..ROWS * c] };
+                let other = if c / ROWS < r / ROWS {
+                    &above[panel(c / ROWS)..][..ROWS * c]
+                } else {
+                    &own[..ROWS * c]
+                };
                 for (a, b) in own.as_chunks::<ROWS>().0.iter().zip(other.as_chunks::<ROWS>().0) {
                     let (a, b) = (&a[r % ROWS], &b[c % ROWS]);
                     s = s.less_product(*a, *b);

@@ -8,7 +8,7 @@ use crate::Integrator;
 use crate::block::{Block, Depth};
 use crate::colliders::boxes::{apart, bounds};
 use crate::colliders::contact::{Near, NearField, buried, buried_in_field, lay_point, penetration};
-use crate::lanes::{LANES, Turns, ZERO3, at, direction_or, greater, lesser, put};
+use crate::lanes::{LANES, Lane, Turns, ZERO, ZERO3, at, direction_or, greater, lesser, put};
 
 /// Takes the block through substep `s`.
 #[inline(always)]
@@ -287,10 +287,51 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize, lay: Lay) {
         block.velocity[i] = velocity;
         (before, was_before) = (placed, was);
     }
+    let touches = near.field.is_some() || !near.active.is_empty();
+    if touches && lay == Lay::AtLength {
+        keep_energy(block, plan, s);
+    }
     std::mem::swap(&mut block.bend, &mut block.next_bend);
     for (depth, &guide) in deepest.iter().zip(&block.guides).take(block.used) {
         if depth.metres > block.outcome.deepest.metres {
             (block.outcome.deepest, block.outcome.deepest_guide) = (*depth, guide);
         }
+    }
+}
+
+/// Takes from the velocities of a lock what the pass from root to tip has given it.
+///
+/// Contacts and lengths do no work in the head's frame, yet a push-out drags what hangs from its point along at no cost:
+/// a lock that is held between neck and shoulder would be whipped about for ever. Its velocities against the head's own
+/// motion are scaled so that it has no more energy than before the pass. Where the pass has taken energy, nothing is done.
+#[inline(always)]
+fn keep_energy(block: &mut Block, plan: &Plan, s: usize) {
+    let (substep, inv_h) = (&plan.substeps[s], 1.0 / plan.h);
+    let (mut before, mut after) = (ZERO, ZERO);
+    for i in plan.first_free.max(1)..block.points() {
+        let (x, wanted, v) = (block.position[i], block.next[i], block.velocity[i]);
+        for k in 0..LANES {
+            let p = at(&x, k);
+            let own = at(&v, k) - substep.rigid_velocity(p);
+            let free = own + (at(&wanted, k) - p) * inv_h;
+            before[k] += free.length_squared();
+            after[k] += own.length_squared();
+        }
+    }
+    let mut keep = Lane::splat(1.0);
+    for k in 0..LANES {
+        // What is not a number is left to the end of the step, which puts such guides back.
+        if after[k] > before[k] {
+            keep[k] = (before[k] / after[k]).sqrt();
+        }
+    }
+    for i in plan.first_free.max(1)..block.points() {
+        let (x, mut v) = (block.position[i], block.velocity[i]);
+        for k in 0..LANES {
+            let head = substep.rigid_velocity(at(&x, k));
+            let kept = head + (at(&v, k) - head) * keep[k];
+            put(&mut v, k, kept);
+        }
+        block.velocity[i] = v;
     }
 }

@@ -206,7 +206,14 @@ impl MovingField {
             planes.serves[k] = if p.is_finite() { serves * serves } else { -1.0 };
             put(&mut planes.place, k, p);
             planes.passed[k] = passed;
-            let none = Touch { distance: NONE, normal: Vec3::ZERO, head: 0.0, drift: Vec3::ZERO, sure: true, rest: None };
+            let none = Touch {
+                distance: NONE,
+                normal: Vec3::ZERO,
+                head: 0.0,
+                drift: Vec3::ZERO,
+                sure: true,
+                rest: None,
+            };
             let (head, skin) = (head.unwrap_or(none), skin.unwrap_or(none));
             planes.head_distance[k] = head.distance;
             put(&mut planes.head_normal, k, head.normal);
