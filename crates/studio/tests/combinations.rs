@@ -11,8 +11,9 @@ use lovelock_testkit::flip;
 
 const SIZE: (u32, u32) = (96, 72);
 
-/// Where tied hair is seen from: behind, to the left.
+/// Where tied hair is seen from: behind, to the left, and near by, for there is less of it.
 const BEHIND: f32 = 2.6;
+const NEAR_BY: f32 = 0.5;
 
 /// The project half a second into the dance.
 fn instant(name: &str, project: &Project) -> Arc<FrameSnapshot> {
@@ -52,6 +53,10 @@ fn draw_all(name: &str, mut project: Project) {
     // Sparse hair is wide hair: the same mass in less time.
     project.hair.groom.strands_per_wisp = 10;
     project.camera.distance = 0.7;
+    if !project.hair.ties.is_empty() {
+        // What is tied up is behind the head.
+        (project.camera.azimuth, project.camera.distance) = (BEHIND, NEAR_BY);
+    }
     let snapshot = instant(name, &project);
     let mut renderer = Renderer::open(Backend::Cpu).expect("the processor");
     let mut draw = |method, transparency| draw(&mut renderer, &snapshot, &mut project, method, transparency);
@@ -81,10 +86,6 @@ fn grown_hairstyles() {
     for preset in Preset::ALL {
         let mut project = Project::default();
         project.set_preset(preset);
-        if !project.hair.ties.is_empty() {
-            // What is tied up is behind the head.
-            project.camera.azimuth = BEHIND;
-        }
         draw_all(preset.id(), project);
     }
 }
