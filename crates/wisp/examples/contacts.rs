@@ -50,7 +50,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 let from = process_time();
                 let report =
                     pool.install(|| simulation.step(&input, &SimulationSettings::default(), STEP_SECS));
-                spent += process_time() - from;
+                spent += process_time().saturating_sub(from);
                 substeps += report.substeps;
             }
             (best, hash) = (best.min(spent), simulation.state_hash());

@@ -255,7 +255,7 @@ mod tests {
     #[test]
     fn an_ellipsoid_is_met_along_its_normal() {
         // Points at a known distance: from the surface along its normal.
-        let Shape::Ellipsoid { centre, axes, radii } = ellipsoid() else { unreachable!() };
+        let Shape::Ellipsoid { centre, axes, radii, .. } = ellipsoid() else { unreachable!() };
         for i in 0..200 {
             let (u, v) = (i as f32 * 0.37, i as f32 * 0.73);
             let unit = Vec3::new(u.sin() * v.cos(), u.sin() * v.sin(), u.cos());
