@@ -17,7 +17,9 @@ impl Boxes {
     #[cfg(test)]
     pub(crate) fn of(movers: &[MovingShape]) -> Self {
         let mut boxes = Self::default();
-        movers.iter().for_each(|mover| boxes.push(mover));
+        for mover in movers {
+            boxes.push(mover);
+        }
         boxes
     }
 
