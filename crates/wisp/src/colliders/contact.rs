@@ -214,15 +214,16 @@ pub(crate) fn lay_point(
     near: &Near,
     rules: &ContactRules,
     planes: &mut PlaneRow,
-) -> Lane3 {
+) -> Laid {
     let mut placed = ZERO3;
     for k in 0..LANES {
         let from = at(before, k);
         let (d, _) = direction_or(at(wanted, k) - from, at(fallback, k));
         put(&mut placed, k, from + d * length[k]);
     }
+    let free = placed;
     if near.active.is_empty() && near.field.is_none() {
-        return placed;
+        return Laid { placed, free };
     }
     for round in 0..ROUNDS {
         let rules = if round < TIGHT { *rules } else { rules.bare() };
@@ -262,7 +263,15 @@ pub(crate) fn lay_point(
             break;
         }
     }
-    placed
+    Laid { placed, free }
+}
+
+/// What [`lay_point`] has made of a row of points.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Laid {
+    pub(crate) placed: Lane3,
+    /// Where it would have laid them if nothing were in the way.
+    pub(crate) free: Lane3,
 }
 
 /// Pushes the lanes of a point out of the field; whether there was anything to push.

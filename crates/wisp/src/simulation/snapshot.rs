@@ -189,12 +189,12 @@ impl Simulation {
 }
 
 /// What of a block is state and not working memory.
-fn rows_of(block: &Block) -> [&[Lane3]; 4] {
-    [&block.position, &block.velocity, &block.bend, &block.good]
+fn rows_of(block: &Block) -> [&[Lane3]; 5] {
+    [&block.position, &block.velocity, &block.bend, &block.leans, &block.good]
 }
 
-fn rows_of_mut(block: &mut Block) -> [&mut [Lane3]; 4] {
-    [&mut block.position, &mut block.velocity, &mut block.bend, &mut block.good]
+fn rows_of_mut(block: &mut Block) -> [&mut [Lane3]; 5] {
+    [&mut block.position, &mut block.velocity, &mut block.bend, &mut block.leans, &mut block.good]
 }
 
 fn fingerprint(guides: &Guides) -> u64 {

@@ -81,6 +81,7 @@ fn restore(block: &mut Block, plan: &Plan, k: usize) {
     for i in 0..block.points() {
         let p = plan.carry_all.apply(at(&block.good[i], k));
         put(&mut block.position[i], k, p);
+        put(&mut block.leans[i], k, glam::Vec3::ZERO);
         let v = last.map_or(glam::Vec3::ZERO, |s| s.rigid_velocity(p));
         put(&mut block.velocity[i], k, v);
         let bend = last.map_or(at(&block.rest.bend[i], k), |s| s.head.rotate(at(&block.rest.bend[i], k)));

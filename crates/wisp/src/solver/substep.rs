@@ -9,6 +9,7 @@ use crate::block::{Block, Depth};
 use crate::colliders::boxes::{apart, bounds};
 use crate::colliders::contact::{Near, NearField, buried, buried_in_field, lay_point, penetration};
 use crate::lanes::{LANES, Lane, Turns, ZERO, ZERO3, at, direction_or, greater, lesser, put};
+use glam::Vec3;
 
 /// Takes the block through substep `s`.
 #[inline(always)]
@@ -25,6 +26,9 @@ pub(crate) fn run(block: &mut Block, plan: &Plan, s: usize) {
     }
     step_positions(block, plan.h);
     shape_memory(block, plan, s);
+    if plan.settings.integrator == Integrator::Direct {
+        lean(block, plan);
+    }
     // One pass for all: it is compiled once for each width of the processor's instructions.
     let lay = match plan.settings.integrator {
         Integrator::Direct => {
@@ -171,6 +175,33 @@ fn shape_memory(block: &mut Block, plan: &Plan, s: usize) {
     }
 }
 
+/// Of what contacts have moved a point by in the last substep this is left to do in the next.
+const LEANS: f32 = 0.9;
+
+/// Moves points beforehand by most of what contacts did in the last substep, and what hangs from them along.
+///
+/// Hair that leans on skin pulls into it with its stiffness and is put out again. Were that begun anew in every substep,
+/// a stiff lock would be turned to and fro by degrees, and what is lost and won by that would drive it.
+#[inline(always)]
+fn lean(block: &mut Block, plan: &Plan) {
+    let (mut moved, mut moved_before) = (ZERO3, ZERO3);
+    for i in plan.first_free.max(1)..block.points() {
+        let shift = block.bending.follow(i - 1, &moved_before, &moved);
+        let (pull, mut push, mut next) = (block.residual[i], block.leans[i], block.next[i]);
+        moved_before = moved;
+        for k in 0..LANES {
+            let (out, size) = direction_or(at(&push, k), Vec3::ZERO);
+            // No more than the stiffness pulls in.
+            let against = greater(0.0, lesser(size, -at(&pull, k).dot(out)));
+            put(&mut push, k, out * (LEANS * against));
+            put(&mut moved, k, at(&shift, k) + at(&push, k));
+            let p = at(&next, k) + at(&moved, k);
+            put(&mut next, k, p);
+        }
+        (block.leans[i], block.next[i]) = (push, next);
+    }
+}
+
 /// Lists the colliders whose boxes the block may reach.
 #[inline(always)]
 fn find_near(block: &mut Block, plan: &Plan, s: usize) {
@@ -265,7 +296,17 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize, lay: Lay) {
                 block.planes[i].forget();
             }
             let planes = &mut block.planes[i];
-            placed = lay_point(i, &before, &placed, &was, &fallback, &length, &near, &plan.rules, planes);
+            let laid = lay_point(i, &before, &placed, &was, &fallback, &length, &near, &plan.rules, planes);
+            placed = laid.placed;
+            let mut leans = block.leans[i];
+            for k in 0..LANES {
+                let push = at(&placed, k) - at(&laid.free, k);
+                let sum = at(&leans, k) + push;
+                let touches = push.length_squared() > 0.0;
+                let pick = |a: f32| if touches { a } else { 0.0 };
+                put(&mut leans, k, Vec3::new(pick(sum.x), pick(sum.y), pick(sum.z)));
+            }
+            block.leans[i] = leans;
             if last && (near.field.is_some() || !near.active.is_empty()) {
                 let found = penetration(i, &placed, &near, &plan.rules, planes);
                 for k in 0..LANES {

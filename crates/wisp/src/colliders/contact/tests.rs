@@ -47,7 +47,8 @@ fn lay(shape: ColliderShape, from: Vec3, wanted: Vec3, length: f32) -> Vec3 {
         &near,
         &RULES,
         &mut nowhere(),
-    );
+    )
+    .placed;
     at(&placed, 7)
 }
 
@@ -141,11 +142,11 @@ fn a_point_that_rests_inside_is_left_there() {
     let rules = ContactRules { margin: 0.003, ..RULES };
     let (from, wanted) = (splat(Vec3::new(0.0, 0.07, 0.0)), splat(Vec3::new(0.0, 0.08, 0.0)));
     let placed =
-        lay_point(0, &from, &wanted, &wanted, &from, &Lane::splat(0.01), &near, &rules, &mut nowhere());
+        lay_point(0, &from, &wanted, &wanted, &from, &Lane::splat(0.01), &near, &rules, &mut nowhere()).placed;
     assert!((at(&placed, 0) - Vec3::new(0.0, 0.08, 0.0)).length() < 1e-7);
     let deeper = splat(Vec3::new(0.0, 0.0, 0.0));
     let placed =
-        lay_point(0, &from, &deeper, &deeper, &from, &Lane::splat(0.01), &near, &rules, &mut nowhere());
+        lay_point(0, &from, &deeper, &deeper, &from, &Lane::splat(0.01), &near, &rules, &mut nowhere()).placed;
     assert!(at(&placed, 0).length() > 0.0799, "it may not go deeper than it rests: {}", at(&placed, 0));
 }
 
