@@ -142,11 +142,13 @@ fn a_point_that_rests_inside_is_left_there() {
     let rules = ContactRules { margin: 0.003, ..RULES };
     let (from, wanted) = (splat(Vec3::new(0.0, 0.07, 0.0)), splat(Vec3::new(0.0, 0.08, 0.0)));
     let placed =
-        lay_point(0, &from, &wanted, &wanted, &from, &Lane::splat(0.01), &near, &rules, &mut nowhere()).placed;
+        lay_point(0, &from, &wanted, &wanted, &from, &Lane::splat(0.01), &near, &rules, &mut nowhere())
+            .placed;
     assert!((at(&placed, 0) - Vec3::new(0.0, 0.08, 0.0)).length() < 1e-7);
     let deeper = splat(Vec3::new(0.0, 0.0, 0.0));
     let placed =
-        lay_point(0, &from, &deeper, &deeper, &from, &Lane::splat(0.01), &near, &rules, &mut nowhere()).placed;
+        lay_point(0, &from, &deeper, &deeper, &from, &Lane::splat(0.01), &near, &rules, &mut nowhere())
+            .placed;
     assert!(at(&placed, 0).length() > 0.0799, "it may not go deeper than it rests: {}", at(&placed, 0));
 }
 
@@ -187,7 +189,8 @@ fn hair_whose_root_is_buried_comes_out_along_a_slope() {
     for i in 1..12 {
         // It wants to run on inside.
         let wanted = splat(at(&before, 0) + Vec3::new(0.01, -0.002, 0.0));
-        let placed = lay_point(i, &before, &wanted, &wanted, &root, &length, &near, &RULES, &mut nowhere());
+        let placed =
+            lay_point(i, &before, &wanted, &wanted, &root, &length, &near, &RULES, &mut nowhere()).placed;
         let least = (0.1 - 0.02 + 0.005 * i as f32).min(0.1);
         assert!(
             at(&placed, 0).length() > least - 2e-4,

@@ -174,12 +174,16 @@ impl MovingField {
             // Where skin is folded there are several ways back: from where the head has the point, and from where the
             // nearest other joints have it. From close to a place that is known they would lead there.
             let known = skin.and_then(|touch| touch.rest);
-            let starts = [cell.slot, (cell.head && !heads).then_some(0)];
-            for slot in starts.into_iter().flatten() {
-                if known.is_some_and(|rest| self.starts_near(p, slot, passed, rest)) {
+            let of_slot = cell.slot.map(|slot| (Start::Slot(slot), self.guess(p, slot, passed)));
+            let of_head = (cell.head && !heads).then_some((Start::Slot(0), p));
+            let between = of_slot.map(|(_, guess)| (Start::Place(0.5 * (guess + p)), 0.5 * (guess + p)));
+            let mut tried = known;
+            for (start, guess) in [of_slot, of_head, between].into_iter().flatten() {
+                if tried.is_some_and(|rest| self.is_close(guess, rest)) {
                     continue;
                 }
-                let (touch, distance) = found(self.skin(p, Start::Slot(slot), passed, reach));
+                tried = tried.or(Some(guess));
+                let (touch, distance) = found(self.skin(p, start, passed, reach));
                 nearest = lesser(nearest, distance);
                 skin = match (skin, touch) {
                     (Some(a), Some(b)) => Some(if b.distance < a.distance { b } else { a }),

@@ -112,10 +112,15 @@ impl MovingField {
         Found::Skin(Touch { distance, normal, head: rest.back.head(), drift, sure: sound, rest: going_on })
     }
 
-    /// Whether what the weighting `slot` makes of `p` is close to a place at rest.
+    /// What the weighting `slot` makes of `p`.
     #[inline(always)]
-    pub(super) fn starts_near(&self, p: Vec3, slot: usize, t: f32, rest: Vec3) -> bool {
-        let guess = self.before[slot].toward(&self.now[slot], t).apply(p);
+    pub(super) fn guess(&self, p: Vec3, slot: usize, t: f32) -> Vec3 {
+        self.before[slot].toward(&self.now[slot], t).apply(p)
+    }
+
+    /// Whether a way back that begins at `guess` leads to the place `rest` that is known.
+    #[inline(always)]
+    pub(super) fn is_close(&self, guess: Vec3, rest: Vec3) -> bool {
         (guess - rest).length_squared() < (CLOSE * self.field.node_lattice().spacing).powi(2)
     }
 
