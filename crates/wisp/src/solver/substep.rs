@@ -178,6 +178,10 @@ fn shape_memory(block: &mut Block, plan: &Plan, s: usize) {
 /// Of what contacts have moved a point by in the last substep this is left to do in the next.
 const LEANS: f32 = 0.9;
 
+/// Points lean that are held to the style by more than this part of what holds the first. Further out, where a lock may lie
+/// between a shoulder and an arm, what is moved beforehand from the one would be moved into the other.
+const NEAR_ROOT: f32 = 0.25;
+
 /// Moves points beforehand by most of what contacts did in the last substep, and what hangs from them along.
 ///
 /// Hair that leans on skin pulls into it with its stiffness and is put out again. Were that begun anew in every substep,
@@ -185,14 +189,18 @@ const LEANS: f32 = 0.9;
 #[inline(always)]
 fn lean(block: &mut Block, plan: &Plan) {
     let (mut moved, mut moved_before) = (ZERO3, ZERO3);
+    let root = *block.bending.hold(plan.first_free.clamp(1, block.points() - 1));
     for i in plan.first_free.max(1)..block.points() {
         let shift = block.bending.follow(i - 1, &moved_before, &moved);
-        let (pull, mut push, mut next) = (block.residual[i], block.leans[i], block.next[i]);
+        let (pull, hold) = (block.residual[i], *block.bending.hold(i));
+        let (mut push, mut next) = (block.leans[i], block.next[i]);
         moved_before = moved;
         for k in 0..LANES {
             let (out, size) = direction_or(at(&push, k), Vec3::ZERO);
             // No more than the stiffness pulls in.
             let against = greater(0.0, lesser(size, -at(&pull, k).dot(out)));
+            let near_root = hold[k] > NEAR_ROOT * root[k];
+            let against = if near_root { against } else { 0.0 };
             put(&mut push, k, out * (LEANS * against));
             put(&mut moved, k, at(&shift, k) + at(&push, k));
             let p = at(&next, k) + at(&moved, k);
