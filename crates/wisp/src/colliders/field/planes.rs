@@ -8,8 +8,8 @@
 
 use glam::Vec3;
 
-use super::MovingField;
 use super::query::{Found, Start, Touch};
+use super::{DEEP, MovingField, UNSURE};
 use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, greater, lesser, put, splat3};
 use crate::solver::Substep;
 
@@ -131,11 +131,14 @@ impl MovingField {
             let (n, m) = (at(&planes.head_normal, k), at(&planes.skin_normal, k));
             let head = planes.head_distance[k] + n.dot(moved);
             let skin = planes.skin_distance[k] + m.dot(against);
+            // Skin that comes on too quickly to be measured on its way is a guess.
+            let lost = skin < -DEEP;
+            let (skin, guess) = if lost { (-UNSURE, 1.0) } else { (skin, planes.guess[k]) };
             let nearer = skin < head;
             let pick = |a: f32, b: f32| if nearer { a } else { b };
             out.distance[k] = pick(skin, head);
             out.head[k] = pick(planes.share[k], 1.0);
-            out.guess[k] = pick(planes.guess[k], 0.0);
+            out.guess[k] = pick(guess, 0.0);
             let normal = Vec3::new(pick(m.x, n.x), pick(m.y, n.y), pick(m.z, n.z));
             put(&mut out.normal, k, substep.head.rotate(normal));
             let drift = Vec3::new(pick(drift.x, 0.0), pick(drift.y, 0.0), pick(drift.z, 0.0));
