@@ -7,7 +7,7 @@ use crate::colliders::boxes::Boxes;
 use crate::colliders::field::PlaneRow;
 use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, put};
 use crate::rest::RestShape;
-use crate::solver::{Bending, Coupled, LengthScratch};
+use crate::solver::{Bending, Coupled, Factor, LengthScratch};
 
 /// `LANES` guides. Rows are points, root first. Positions are in working space: the axes of the world, the
 /// origin where the head was at the end of the last step, so that single precision is spent on hair and not
@@ -34,9 +34,19 @@ pub(crate) struct Block {
     pub(crate) bend: Vec<Lane3>,
     /// What contacts have moved each point by in the last substep, where they still do, metres.
     pub(crate) leans: Vec<Lane3>,
-    /// The pose after the last step in which all was finite.
-    pub(crate) good: Vec<Lane3>,
+    pub(crate) bending: Bending,
+    pub(crate) coupled: Coupled,
+    /// Lent for the time of a step; empty between steps.
+    pub(crate) work: Work,
+    pub(crate) outcome: Outcome,
+}
 
+/// Working memory of a step: nothing in it outlives the step. Each thread has one and lends it to the blocks that it
+/// takes through a step, so that it stays in the cache however many blocks there are.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Work {
+    /// The pose at the beginning of the step, to which what has been lost is put back.
+    pub(crate) good: Vec<Lane3>,
     /// What forces add to velocities in a substep, and what they leave of them.
     pub(crate) push: Vec<Lane3>,
     pub(crate) keep: Vec<Lane>,
@@ -44,13 +54,22 @@ pub(crate) struct Block {
     pub(crate) next_bend: Vec<Lane3>,
     pub(crate) residual: Vec<Lane3>,
     pub(crate) lengths: LengthScratch,
-    pub(crate) bending: Bending,
-    pub(crate) coupled: Coupled,
+    pub(crate) factor: Factor,
     /// The colliders near the block, and how deep they have closed over the roots.
     pub(crate) active: Vec<u32>,
     pub(crate) boxes: Boxes,
     pub(crate) buried: Vec<Lane>,
-    pub(crate) outcome: Outcome,
+}
+
+impl Work {
+    /// Makes room for guides of `points` points. What is in the rows is of some other step.
+    pub(crate) fn fit(&mut self, points: usize) {
+        for rows in [&mut self.good, &mut self.push, &mut self.next, &mut self.next_bend, &mut self.residual] {
+            rows.resize(points, ZERO3);
+        }
+        self.keep.resize(points, ZERO);
+        self.lengths.fit(points);
+    }
 }
 
 /// What a block has to report of a step.
@@ -92,18 +111,9 @@ impl Block {
             velocity: vec![ZERO3; points],
             bend: vec![ZERO3; points],
             leans: vec![ZERO3; points],
-            good: vec![ZERO3; points],
-            push: vec![ZERO3; points],
-            keep: vec![ZERO; points],
-            next: vec![ZERO3; points],
-            next_bend: vec![ZERO3; points],
-            residual: vec![ZERO3; points],
-            lengths: LengthScratch::new(points),
             bending: Bending::new(points),
             coupled: Coupled::default(),
-            active: Vec::new(),
-            boxes: Boxes::default(),
-            buried: Vec::new(),
+            work: Work::default(),
             outcome: Outcome::default(),
         }
     }
@@ -143,7 +153,6 @@ impl Block {
         }
         self.velocity.fill(ZERO3);
         self.leans.fill(ZERO3);
-        self.good.copy_from_slice(&self.position);
         self.planes.fill(PlaneRow::UNKNOWN);
     }
 
@@ -153,10 +162,8 @@ impl Block {
         self.leans.fill(ZERO3);
         for i in 0..self.points() {
             for k in 0..LANES {
-                for row in [&mut self.position[i], &mut self.good[i]] {
-                    let p = by.apply(at(row, k));
-                    put(row, k, p);
-                }
+                let p = by.apply(at(&self.position[i], k));
+                put(&mut self.position[i], k, p);
                 for row in [&mut self.velocity[i], &mut self.bend[i]] {
                     let v = by.rotate(at(row, k));
                     put(row, k, v);
@@ -187,6 +194,5 @@ impl Block {
             }
         }
         self.velocity.copy_from_slice(&old.velocity);
-        self.good.copy_from_slice(&self.position);
     }
 }

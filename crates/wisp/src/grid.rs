@@ -4,22 +4,21 @@
 //! its own and turns with the head, so that no light changes the motion, and so that hair at rest lies still
 //! in its cells. Sums are in integers: the order of the guides does not matter.
 
+mod cell;
 mod direction;
 mod pieces;
-mod volume;
+mod sample;
 
-use glam::{IVec3, Mat3, Vec3};
+use glam::{IVec3, Vec3};
 
-use direction::{crossing, drawn_to, push_across};
+use cell::{CHUNK, Cell, Chunk, LAYERS, MASKS, Tally};
 use lovelock_groom::simd::Width;
-use pieces::{CHUNK, Cell, Piece, Pieces, add_all};
+use pieces::{Pieces, Source, add_all, place_all};
 use rayon::prelude::*;
 
 use crate::block::Block;
-use crate::lanes::{LANES, Lane, Lane3, ZERO3, at, put};
-use crate::settings::{Repulsion, RepulsionMode};
-use crate::solver::Plan;
-use crate::trilinear::{gradient, weights};
+use crate::lanes::{Map, at};
+use crate::settings::Repulsion;
 
 /// Cells along each axis.
 const SIDE: i32 = 48;
@@ -39,17 +38,6 @@ const FASTEST: f32 = 20.0;
 /// A push may not carry hair further than this part of a cell in one substep.
 const MOST_OF_A_CELL: f32 = 0.25;
 
-/// What one point learns from the grid, in head space.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Sample {
-    /// Away from over-dense places, 1/m: to be multiplied by the strength.
-    pub(crate) push: Vec3,
-    /// Mean velocity of the hair around, metres per second, in the axes that were deposited.
-    pub(crate) mean_velocity: Vec3,
-    /// How much of the hair around crosses the direction that was asked for; 0 where that is heeded by nothing.
-    pub(crate) crossing: f32,
-}
-
 /// Hair density and momentum on a lattice in head space.
 #[derive(Clone, Debug)]
 pub(crate) struct DensityGrid {
@@ -61,16 +49,15 @@ pub(crate) struct DensityGrid {
     units: f32,
     /// What lies in each cell; no directions where nothing heeds them.
     cells: Vec<Cell>,
+    /// Which cells of each row along x may hold hair, a bit each.
+    masks: Vec<u64>,
     /// Working memory of the deposit, one of each block.
     pieces: Vec<Pieces>,
-    /// One over the density at rest, where there is some, and over a typical one elsewhere.
-    inv_rest: Vec<f32>,
     rest_volume: f32,
     /// Mass of a cell as dense as hair at rest typically finds the hair around itself.
     full: f32,
-    /// The box of cells that hold hair, inclusive; empty where `low > high`.
-    low: IVec3,
-    high: IVec3,
+    /// What was counted after the last deposit.
+    tally: Tally,
     repulsion: Repulsion,
 }
 
@@ -103,16 +90,17 @@ impl DensityGrid {
             stride: ((1.4 * cell / link) as usize).clamp(1, 8),
             units: FULL / total.max(1e-3),
             cells: vec![Cell::EMPTY; size],
+            masks: vec![0; (SIDE * SIDE) as usize],
             pieces: Vec::new(),
-            inv_rest: vec![0.0; size],
             rest_volume: 0.0,
             full: FULL,
-            low: IVec3::MAX,
-            high: IVec3::MIN,
+            tally: Tally::default(),
             repulsion: Repulsion::default(),
         };
-        grid.fill(blocks, |block, i, k| (at(&block.rest.position[i], k), Vec3::ZERO, Vec3::ZERO));
+        grid.fill(blocks, &Source::Rest);
         grid.learn_rest();
+        // Counted anew, now that it is known what a full cell is.
+        grid.fill(blocks, &Source::Rest);
         grid.rest_volume = grid.volume();
         grid
     }
@@ -128,8 +116,8 @@ impl DensityGrid {
         }
         let typical = if sum > 0.0 { (squares / sum) as f32 } else { FULL };
         self.full = typical;
-        for (inv, c) in self.inv_rest.iter_mut().zip(&self.cells) {
-            *inv = 1.0 / (c.mass() as f32).max(typical);
+        for c in &mut self.cells {
+            c.set_inv_rest(1.0 / (c.mass() as f32).max(typical));
         }
     }
 
@@ -138,26 +126,23 @@ impl DensityGrid {
     pub(crate) fn update(
         &mut self,
         blocks: &[Block],
-        head_from_last: &crate::lanes::Map,
+        head_from_last: &Map,
         repulsion: Repulsion,
     ) -> u32 {
         self.repulsion = repulsion;
-        let directed = repulsion.anisotropy > 0.0;
-        self.fill(blocks, |block, i, k| {
-            let (p, t) =
-                (at(&block.position[i], k), if directed { tangent(block, i, k) } else { Vec3::ZERO });
-            (head_from_last.apply(p), at(&block.velocity[i], k), head_from_last.rotate(t))
-        });
-        self.over_dense()
+        self.fill(blocks, &Source::Now { head_from_last, directed: repulsion.anisotropy > 0.0 });
+        self.tally.over_dense
     }
 
-    /// The volume that the hair in the grid fills, cubic metres; see [`volume::volume`].
+    /// The volume that the hair in the grid fills, cubic metres:
+    /// `V = sum(min(m / m_full, 1))` cells.
+    ///
+    /// `m_full = sum m^2 / sum m` at rest is the mass of a cell that is as dense as hair at rest, on the average over the
+    /// hair, finds the hair around itself. A cell that is fuller counts once, one that is emptier by its fullness. So
+    /// hair that is pressed together loses volume, and hair that flies apart gains none beyond what it would have if it
+    /// were nowhere denser than that. The sum is of integers: the order does not matter.
     pub(crate) fn volume(&self) -> f32 {
-        volume::volume(
-            self.held_rows().flat_map(|row| &self.cells[row]).map(Cell::mass),
-            self.full,
-            self.cell,
-        )
+        (self.tally.fullness as f64 / f64::from(self.most()) * f64::from(self.cell).powi(3)) as f32
     }
 
     /// The volume that the hair fills at rest, cubic metres.
@@ -165,206 +150,37 @@ impl DensityGrid {
         self.rest_volume
     }
 
+    /// The mass at which a cell is full.
+    fn most(&self) -> i32 {
+        self.full.clamp(1.0, 2e9) as i32
+    }
+
     /// Whether hair learns anything from the grid.
     fn acts(&self) -> bool {
-        (self.repulsion.strength > 0.0 || self.repulsion.cohesion > 0.0) && self.low.cmple(self.high).all()
+        (self.repulsion.strength > 0.0 || self.repulsion.cohesion > 0.0) && self.tally.held > 0
     }
 
-    /// The runs of cells that may hold hair.
-    fn held_rows(&self) -> impl Iterator<Item = std::ops::RangeInclusive<usize>> + use<> {
-        let (low, high) = (self.low, self.high);
-        (low.z..=high.z).flat_map(move |z| {
-            (low.y..=high.y).map(move |y| {
-                let row = index(IVec3::new(low.x, y, z));
-                row..=row + (high.x - low.x) as usize
-            })
-        })
-    }
-
-    fn clear(&mut self) {
-        for row in self.held_rows() {
-            self.cells[row].fill(Cell::EMPTY);
-        }
-        (self.low, self.high) = (IVec3::MAX, IVec3::MIN);
-    }
-
-    fn over_dense(&self) -> u32 {
-        let inv_threshold = 1.0 / self.repulsion.threshold;
-        let over = |i: &usize| self.cells[*i].mass() as f32 * self.inv_rest[*i] * inv_threshold > 1.0;
-        self.held_rows().flatten().filter(over).count() as u32
-    }
-
-    fn fill(&mut self, blocks: &[Block], state: impl Fn(&Block, usize, usize) -> (Vec3, Vec3, Vec3) + Sync) {
-        self.clear();
+    /// Empties the grid, puts all hair into it, and counts.
+    fn fill(&mut self, blocks: &[Block], source: &Source) {
         let mut pieces = std::mem::take(&mut self.pieces);
         pieces.resize_with(blocks.len(), Pieces::default);
-        let grid = &*self;
+        let (grid, width) = (&*self, Width::widest());
         pieces.par_iter_mut().zip(blocks).for_each(|(pieces, block)| {
             pieces.clear();
-            // The middle of each run of points, so that the whole chain is covered evenly.
-            for i in (1 + (grid.stride - 1) / 2..block.points()).step_by(grid.stride) {
-                for k in 0..block.used {
-                    // Beyond the end of a guide that was cut there is no hair.
-                    if block.rest.inv_length[i][k] > 0.0 {
-                        let (p, v, t) = state(block, i, k);
-                        grid.place(p, v, t, block.rest.mean_link[k] * grid.stride as f32, pieces);
-                    }
-                }
-            }
+            place_all(width, grid, source, block, pieces);
         });
-        for block in &pieces {
-            self.low = self.low.min(block.low);
-            self.high = self.high.max(block.high);
-        }
-        let width = Width::widest();
-        self.cells
-            .par_chunks_mut(CHUNK)
-            .enumerate()
-            .for_each(|(chunk, cells)| add_all(width, &pieces, chunk, cells));
+        let (most, inv_threshold) = (self.most(), 1.0 / self.repulsion.threshold);
+        let chunks = self.cells.par_chunks_mut(CHUNK).zip(self.masks.par_chunks_mut(MASKS)).enumerate();
+        self.tally = chunks
+            .map(|(n, (cells, masks))| {
+                let mut chunk = Chunk { first: n * LAYERS, cells, masks };
+                chunk.clear();
+                add_all(width, &pieces, &mut chunk);
+                chunk.tally(most, inv_threshold)
+            })
+            .reduce(Tally::default, Tally::plus);
         self.pieces = pieces;
     }
-
-    /// The corner of the eight cells around `p`, and the fractions in between; `None` outside the grid.
-    #[inline]
-    fn around(&self, p: Vec3) -> Option<(IVec3, Vec3)> {
-        let q = (p - self.min) / self.cell - 0.5;
-        // Written so that what is not a number is outside.
-        let inside = q.min_element() >= 0.0 && q.max_element() < (SIDE - 1) as f32 && q.is_finite();
-        if !inside {
-            return None;
-        }
-        let corner = q.as_ivec3();
-        Some((corner, q - corner.as_vec3()))
-    }
-
-    /// Puts a piece of hair at `p` on its way into the grid.
-    #[inline]
-    fn place(&self, p: Vec3, v: Vec3, t: Vec3, length: f32, out: &mut Pieces) {
-        let Some((corner, fraction)) = self.around(p) else { return };
-        let velocity = v.clamp(Vec3::splat(-FASTEST), Vec3::splat(FASTEST)) * MOMENTUM;
-        if velocity.is_finite() && t.is_finite() {
-            out.push(corner, Piece::new(corner, fraction, length * self.units, velocity, t));
-        }
-    }
-
-    /// What hair at `p` that runs along `t`, both in head space, learns from the grid; `None` where there is none
-    /// around.
-    #[inline]
-    pub(crate) fn sample(&self, p: Vec3, t: Vec3) -> Option<Sample> {
-        let (corner, f) = self.around(p)?;
-        let base = index(corner);
-        let inv_threshold = 1.0 / self.repulsion.threshold;
-        let mut sums = [0.0_f32; 4];
-        let mut excess = [0.0_f32; 8];
-        let mut crowded = false;
-        for (n, (offset, weight)) in OFFSETS.iter().zip(weights(f)).enumerate() {
-            let cell = &self.cells[base + offset];
-            for (sum, value) in sums.iter_mut().zip(cell.motion()) {
-                *sum += weight * value as f32;
-            }
-            let over = cell.mass() as f32 * self.inv_rest[base + offset] * inv_threshold - 1.0;
-            excess[n] = over.max(0.0);
-            crowded |= over > 0.0;
-        }
-        if sums[0] < 1.0 {
-            return None;
-        }
-        let mean_velocity = Vec3::new(sums[1], sums[2], sums[3]) / (sums[0] * MOMENTUM);
-        let mut across = 0.0;
-        if crowded && self.repulsion.anisotropy > 0.0 {
-            let mut directions = [0.0_f32; 6];
-            for (offset, weight) in OFFSETS.iter().zip(weights(f)) {
-                for (sum, value) in directions.iter_mut().zip(self.cells[base + offset].directions()) {
-                    *sum += weight * value as f32;
-                }
-            }
-            across = crossing(&directions, sums[0], t);
-        }
-        let push = match self.repulsion.mode {
-            _ if !crowded => Vec3::ZERO,
-            RepulsionMode::Pressure => -gradient(&excess, f) / self.cell,
-            RepulsionMode::Centre => self.away_from_centre(p),
-        };
-        Some(Sample { push, mean_velocity, crossing: across })
-    }
-
-    /// The published force: away from the centre of the cell that `p` is in, where that cell is over-dense;
-    /// faded at the centre, where it would be singular, and at the faces, where it would jump.
-    fn away_from_centre(&self, p: Vec3) -> Vec3 {
-        let cell = ((p - self.min) / self.cell).as_ivec3().clamp(IVec3::ZERO, IVec3::splat(SIDE - 1));
-        let i = index(cell);
-        let excess = self.cells[i].mass() as f32 * self.inv_rest[i] / self.repulsion.threshold - 1.0;
-        let out = p - (self.min + (cell.as_vec3() + 0.5) * self.cell);
-        let fade = (1.0 - 2.0 * out.abs().max_element() / self.cell).max(0.0);
-        out * (excess.max(0.0) * fade / (out.length().max(0.1 * self.cell) * self.cell))
-    }
-
-    /// Adds the grid's part to the forces of a block, whose positions are still those of the last step.
-    pub(crate) fn act(&self, block: &mut Block, plan: &Plan, cohesion: f32) {
-        for keep in &mut block.keep {
-            *keep = Lane::splat(1.0);
-        }
-        if !self.acts() {
-            return;
-        }
-        let count = block.points();
-        let mut from = 0;
-        let mut row = self.sample_row(block, plan, 0);
-        while from + 1 < count {
-            let to = (from + self.stride).min(count - 1);
-            let next = self.sample_row(block, plan, to);
-            for i in from..if to + 1 == count { count } else { to } {
-                let t = (i - from) as f32 / (to - from) as f32;
-                let (mut push, mut keep) = (block.push[i], block.keep[i]);
-                for k in 0..LANES {
-                    let dv = at(&row.dv, k).lerp(at(&next.dv, k), t);
-                    let mean = at(&row.mean, k).lerp(at(&next.mean, k), t);
-                    let relaxed = (at(&push, k) + dv) * (1.0 - cohesion) + mean * cohesion;
-                    put(&mut push, k, relaxed);
-                    keep[k] = 1.0 - cohesion;
-                }
-                block.push[i] = push;
-                block.keep[i] = keep;
-            }
-            (row, from) = (next, to);
-        }
-    }
-
-    fn sample_row(&self, block: &Block, plan: &Plan, i: usize) -> SampleRow {
-        let mut out = SampleRow { dv: ZERO3, mean: block.velocity[i] };
-        let most = MOST_OF_A_CELL * self.cell / plan.h;
-        let turn: Mat3 = plan.last_head.turn;
-        // The published force knows no directions.
-        let anisotropy = match self.repulsion.mode {
-            RepulsionMode::Pressure => self.repulsion.anisotropy,
-            RepulsionMode::Centre => 0.0,
-        };
-        for k in 0..LANES {
-            let t = tangent(block, i, k);
-            let p = plan.head_from_last.apply(at(&block.position[i], k));
-            if let Some(sample) = self.sample(p, plan.head_from_last.rotate(t)) {
-                let push = push_across(turn * sample.push, t, sample.crossing, anisotropy);
-                let dv = push * (self.repulsion.strength * plan.h);
-                put(&mut out.dv, k, dv.clamp_length_max(most));
-                let mean = drawn_to(sample.mean_velocity, at(&block.velocity[i], k), t, anisotropy);
-                put(&mut out.mean, k, mean);
-            }
-        }
-        out
-    }
-}
-
-/// What a row of points learns from the grid: the change of velocity a substep, and the neighbours' mean.
-struct SampleRow {
-    dv: Lane3,
-    mean: Lane3,
-}
-
-/// Unit direction of the hair at a point; 0 where it has none.
-#[inline]
-fn tangent(block: &Block, i: usize, k: usize) -> Vec3 {
-    let (a, b) = (i.saturating_sub(1), (i + 1).min(block.points() - 1));
-    (at(&block.position[b], k) - at(&block.position[a], k)).normalize_or_zero()
 }
 
 /// Where the eight cells of a corner are from the first, x fastest.

@@ -336,9 +336,6 @@ impl Simulation {
                     block.rest_distance[c * points + i] = distance.unwrap_or(Lane::splat(f32::MAX));
                 }
             }
-            block.active.reserve(shapes.len());
-            block.boxes.reserve(shapes.len());
-            block.buried.reserve(shapes.len());
         });
     }
 

@@ -23,10 +23,6 @@ impl Boxes {
         boxes
     }
 
-    pub(crate) fn reserve(&mut self, more: usize) {
-        self.groups.reserve(more.div_ceil(LANES));
-    }
-
     pub(crate) fn clear(&mut self) {
         self.count = 0;
         self.groups.clear();

@@ -18,7 +18,7 @@ use crate::rest::RestShape;
 const MAGIC: [u8; 4] = *b"LLWS";
 
 /// Raised whenever the bytes change their meaning.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 
 /// The most colliders that a state may speak of: beyond it the bytes are no state.
 const MOST_COLLIDERS: u32 = 4096;
@@ -189,12 +189,12 @@ impl Simulation {
 }
 
 /// What of a block is state and not working memory.
-fn rows_of(block: &Block) -> [&[Lane3]; 5] {
-    [&block.position, &block.velocity, &block.bend, &block.leans, &block.good]
+fn rows_of(block: &Block) -> [&[Lane3]; 4] {
+    [&block.position, &block.velocity, &block.bend, &block.leans]
 }
 
-fn rows_of_mut(block: &mut Block) -> [&mut [Lane3]; 5] {
-    [&mut block.position, &mut block.velocity, &mut block.bend, &mut block.leans, &mut block.good]
+fn rows_of_mut(block: &mut Block) -> [&mut [Lane3]; 4] {
+    [&mut block.position, &mut block.velocity, &mut block.bend, &mut block.leans]
 }
 
 fn fingerprint(guides: &Guides) -> u64 {

@@ -19,14 +19,20 @@ use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, greater, row_done};
 /// A pivot below this part of its diagonal is rounding.
 const LEAST_PIVOT: f32 = 1e-4;
 
-/// The metric of one block, and the working memory of its elimination. Rows and columns are links.
+/// The metric of one block. Rows and columns are links.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Coupled {
     /// `H`, the lower triangle row by row.
     response: Vec<Lane>,
-    /// Cholesky's factor of `S` in panels of [`ROWS`] rows, each column by column: what is summed up is summed up for
-    /// all rows of a panel at once. Entries on and above the diagonal, and of rows that are not there, are 0.
-    factor: Vec<Lane>,
+    links: usize,
+}
+
+/// Cholesky's factor of `S`: working memory of a step.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Factor {
+    /// In panels of [`ROWS`] rows, each column by column: what is summed up is summed up for all rows of a panel at once.
+    /// Entries on and above the diagonal, and of rows that are not there, are 0.
+    panels: Vec<Lane>,
     /// One over the factor's diagonal; 0 for rows that are not there.
     inv_diagonal: Vec<Lane>,
     links: usize,
@@ -34,6 +40,38 @@ pub(crate) struct Coupled {
 
 /// Rows of a panel of the factor.
 const ROWS: usize = 4;
+
+/// Rows and columns of the factor that are worked out together: as many as registers of any width hold.
+const TILE: usize = 2;
+
+/// `s - a b^T` over all columns of two panels that are there, from row `i` of the one and `j` of the other on.
+#[inline(always)]
+fn less_products(s: Tile, a: &[Lane], i: usize, b: &[Lane], j: usize) -> Tile {
+    // Through memory, where the lanes lie side by side: otherwise the compiler may keep lanes apart that were worked out
+    // apart, and take the whole loop in pieces of a register.
+    let mut s = std::hint::black_box(s);
+    for (a, b) in a.as_chunks::<ROWS>().0.iter().zip(b.as_chunks::<ROWS>().0) {
+        for (sums, a) in s.iter_mut().zip(&a[i..i + TILE]) {
+            for (sum, b) in sums.iter_mut().zip(&b[j..j + TILE]) {
+                *sum = sum.less_product(*a, *b);
+            }
+        }
+    }
+    std::hint::black_box(s)
+}
+
+/// Rows, and the columns of each.
+type Tile = [[Lane; TILE]; TILE];
+
+/// One over the root of a pivot, of whose diagonal `whole` was there before elimination.
+#[inline(always)]
+fn inv_root(pivot: Lane, whole: Lane) -> Lane {
+    let mut inv = ZERO;
+    for k in 0..LANES {
+        inv[k] = 1.0 / greater(pivot[k], greater(LEAST_PIVOT * whole[k], 1e-9)).sqrt();
+    }
+    inv
+}
 
 /// Where panel `p` of the factor begins.
 #[inline(always)]
@@ -54,8 +92,6 @@ impl Coupled {
         let first = first_free.max(1);
         let links = points.saturating_sub(first);
         self.response.resize(row(links), ZERO);
-        self.factor.resize(panel(links.div_ceil(ROWS)), ZERO);
-        self.inv_diagonal.resize(ROWS * links.div_ceil(ROWS), ZERO);
         self.links = links;
         bending.response(first_free, &mut self.response);
     }
@@ -64,12 +100,13 @@ impl Coupled {
     /// whether to factorise `S` anew for the directions as they are, and not to take the factors of the last call.
     #[inline(always)]
     pub(crate) fn project(
-        &mut self,
+        &self,
         first_free: usize,
         length: &[Lane],
         position: &mut [Lane3],
         bending: &Bending,
         scratch: &mut LengthScratch,
+        factor: &mut Factor,
         force: &mut [Lane3],
         fresh: bool,
     ) {
@@ -77,9 +114,9 @@ impl Coupled {
         let first = first_free.max(1);
         scratch.errors(first, length, position);
         if fresh {
-            self.factorise(first, scratch);
+            factor.factorise(self, first, scratch);
         }
-        self.solve(first, scratch);
+        factor.solve(first, scratch);
         // What the links pull a point with: its own the one way, the next the other.
         let mut own = ZERO3;
         for i in first..count {
@@ -100,39 +137,57 @@ impl Coupled {
         }
     }
 
-    /// Cholesky's factor of `S` for the directions in `scratch`.
+}
+
+impl Factor {
+    /// Factorises `S` for the directions in `scratch`.
     #[inline(always)]
-    fn factorise(&mut self, first: usize, scratch: &LengthScratch) {
-        let links = self.links;
-        for r in 0..links {
-            let n = scratch.direction[first + r];
-            let (above, own) = self.factor.split_at_mut(panel(r / ROWS));
-            for c in 0..=r {
-                let m = scratch.direction[first + c];
-                let mut s = self.response[row(r) + c];
-                for k in 0..LANES {
-                    s[k] *= at(&n, k).dot(at(&m, k));
-                }
-                let whole = s;
-                let other = if c / ROWS < r / ROWS {
-                    &above[panel(c / ROWS)..][..ROWS * c]
-                } else {
-                    &own[..ROWS * c]
-                };
-                for (a, b) in own.as_chunks::<ROWS>().0.iter().zip(other.as_chunks::<ROWS>().0) {
-                    let (a, b) = (&a[r % ROWS], &b[c % ROWS]);
-                    s = s.less_product(*a, *b);
-                }
-                if c < r {
-                    let inv = self.inv_diagonal[c];
-                    s = s.times(inv);
-                    own[ROWS * c + r % ROWS] = s;
-                } else {
-                    let mut inv = ZERO;
-                    for k in 0..LANES {
-                        inv[k] = 1.0 / greater(s[k], greater(LEAST_PIVOT * whole[k], 1e-9)).sqrt();
+    fn factorise(&mut self, coupled: &Coupled, first: usize, scratch: &LengthScratch) {
+        let links = coupled.links;
+        if self.links != links {
+            self.links = links;
+            self.panels.clear();
+            self.panels.resize(panel(links.div_ceil(ROWS)), ZERO);
+            self.inv_diagonal.clear();
+            self.inv_diagonal.resize(ROWS * links.div_ceil(ROWS), ZERO);
+        }
+        // Two rows by two columns at a time: what is loaded is used twice, and no sum waits for another.
+        for r in (0..links).step_by(TILE) {
+            let rows = TILE.min(links - r);
+            let (above, own) = self.panels.split_at_mut(panel(r / ROWS));
+            for c in (0..=r).step_by(TILE) {
+                let mut s = [[ZERO; TILE]; TILE];
+                for (i, sums) in s.iter_mut().enumerate().take(rows) {
+                    for (j, sum) in sums.iter_mut().enumerate().take(r + i + 1 - c) {
+                        let (n, m) = (scratch.direction[first + r + i], scratch.direction[first + c + j]);
+                        let mut product = coupled.response[row(r + i) + c + j];
+                        for k in 0..LANES {
+                            product[k] *= at(&n, k).dot(at(&m, k));
+                        }
+                        *sum = product;
+                        row_done();
                     }
-                    self.inv_diagonal[r] = inv;
+                }
+                let whole = [s[0][0], s[1][1]];
+                let other = if c / ROWS < r / ROWS { &above[panel(c / ROWS)..] } else { &*own };
+                s = less_products(s, &own[..ROWS * c], r % ROWS, &other[..ROWS * c], c % ROWS);
+                let corner = other[ROWS * c + c % ROWS + 1];
+                for i in 0..rows {
+                    let mut before = corner;
+                    for j in 0..TILE {
+                        let (r, c) = (r + i, c + j);
+                        if j > 0 {
+                            s[i][j] = s[i][j].less_product(s[i][0], before);
+                        }
+                        if c < r {
+                            s[i][j] = s[i][j].times(self.inv_diagonal[c]);
+                            own[ROWS * c + r % ROWS] = s[i][j];
+                            before = if c + 1 == r { s[i][j] } else { before };
+                        } else if c == r {
+                            self.inv_diagonal[r] = inv_root(s[i][j], whole[i]);
+                        }
+                        row_done();
+                    }
                 }
             }
         }
@@ -144,7 +199,7 @@ impl Coupled {
         let links = self.links;
         let x = &mut scratch.multiplier[first..][..links];
         for p in 0..links.div_ceil(ROWS) {
-            let (start, factor) = (ROWS * p, &self.factor[panel(p)..]);
+            let (start, factor) = (ROWS * p, &self.panels[panel(p)..]);
             let rows = ROWS.min(links - start);
             let (before, own) = x.split_at_mut(start);
             let mut y: [Lane; ROWS] = std::array::from_fn(|r| if r < rows { own[r] } else { ZERO });
@@ -167,7 +222,7 @@ impl Coupled {
             own[..rows].copy_from_slice(&y[..rows]);
         }
         for p in (0..links.div_ceil(ROWS)).rev() {
-            let (start, factor) = (ROWS * p, &self.factor[panel(p)..]);
+            let (start, factor) = (ROWS * p, &self.panels[panel(p)..]);
             let rows = ROWS.min(links - start);
             let (before, own) = x.split_at_mut(start);
             let mut y: [Lane; ROWS] = std::array::from_fn(|r| if r < rows { own[r] } else { ZERO });
@@ -269,13 +324,14 @@ mod tests {
             }
             let (was, before) = (x.clone(), lengths_after(&x));
             let mut force = vec![ZERO3; POINTS];
-            let mut c = coupled(&b, first_free);
+            let c = coupled(&b, first_free);
             c.project(
                 first_free,
                 &[Lane::splat(LINK); POINTS],
                 &mut x,
                 &b,
                 &mut LengthScratch::new(POINTS),
+                &mut Factor::default(),
                 &mut force,
                 true,
             );
@@ -329,7 +385,7 @@ mod tests {
     fn a_folded_lock_unfolds_at_the_rate_of_its_damping() {
         let length = [Lane::splat(LINK); POINTS];
         let together = left_of_fold(8, |b, x, scratch, force| {
-            coupled(b, 2).project(2, &length, x, b, scratch, force, true);
+            coupled(b, 2).project(2, &length, x, b, scratch, &mut Factor::default(), force, true);
         });
         // Without inertia a stiff bend dies by 1 - 1 / (1 + gamma) a substep: 0.37 after eight, gamma 7.2.
         assert!((0.3..0.45).contains(&together), "{together} of the fold is left");

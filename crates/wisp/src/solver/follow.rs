@@ -15,7 +15,7 @@ use crate::lanes::{LANES, at, direction_or, put};
 pub(crate) fn correct_velocities(block: &mut Block, plan: &Plan) {
     let scale = plan.settings.follow_damping / plan.h;
     for i in plan.first_free..block.points().saturating_sub(1) {
-        let (leader, wanted, length) = (block.position[i], block.next[i + 1], block.rest.length[i + 1]);
+        let (leader, wanted, length) = (block.position[i], block.work.next[i + 1], block.rest.length[i + 1]);
         let mut velocity = block.velocity[i];
         for k in 0..LANES {
             let link = at(&wanted, k) - at(&leader, k);

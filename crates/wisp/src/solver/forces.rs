@@ -37,20 +37,18 @@ pub(crate) fn prepare(block: &mut Block, plan: &Plan) {
             put(&mut push, k, a * plan.h);
         }
         before = here;
-        block.push[i] = push;
+        block.work.push[i] = push;
     }
     plan.grid.act(block, plan, cohesion);
     for i in 0..block.points() {
         let mut position = block.position[i];
-        for row in [&mut position, &mut block.good[i]] {
-            for (axis, shift) in row.iter_mut().zip(plan.rebase.to_array()) {
-                for v in axis.iter_mut() {
-                    *v += shift;
-                }
+        for (axis, shift) in position.iter_mut().zip(plan.rebase.to_array()) {
+            for v in axis.iter_mut() {
+                *v += shift;
             }
         }
-        block.position[i] = position;
-        let (mut push, mut keep) = (block.push[i], block.keep[i]);
+        (block.position[i], block.work.good[i]) = (position, position);
+        let (mut push, mut keep) = (block.work.push[i], block.work.keep[i]);
         let (mut air, mut open) = (ZERO3, Lane::splat(1.0));
         if windy {
             (air, open) = (plan.wind.velocity(&position), plan.wakes.exposure(&position));
@@ -60,7 +58,7 @@ pub(crate) fn prepare(block: &mut Block, plan: &Plan) {
             put(&mut push, k, pushed);
             keep[k] *= 1.0 - drag;
         }
-        block.push[i] = push;
-        block.keep[i] = keep;
+        block.work.push[i] = push;
+        block.work.keep[i] = keep;
     }
 }

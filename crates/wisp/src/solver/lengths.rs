@@ -16,18 +16,23 @@ pub(crate) struct LengthScratch {
     upper: Vec<Lane>,
     /// Unit directions of the links; link `i` ends at point `i`.
     pub(super) direction: Vec<Lane3>,
-    /// `w` of the last point: 1, or 0 where it is held too.
-    tip_weight: f32,
+    /// What the last point's `w` lacks of 1: nothing, or all of it where it is held too.
+    tip_held: f32,
 }
 
 impl LengthScratch {
+    #[cfg(test)]
     pub(crate) fn new(points: usize) -> Self {
-        Self {
-            multiplier: vec![ZERO; points],
-            upper: vec![ZERO; points],
-            direction: vec![ZERO3; points],
-            tip_weight: 1.0,
-        }
+        let mut scratch = Self::default();
+        scratch.fit(points);
+        scratch
+    }
+
+    /// Makes room for guides of `points` points.
+    pub(crate) fn fit(&mut self, points: usize) {
+        self.multiplier.resize(points, ZERO);
+        self.upper.resize(points, ZERO);
+        self.direction.resize(points, ZERO3);
     }
 
     /// Directions of the links from `first` on, and by how much each is too short.
@@ -98,7 +103,7 @@ fn solve(first_free: usize, scratch: &mut LengthScratch) {
     for i in first..count {
         // The carried end of the first link has no weight.
         let last = i + 1 == count;
-        let diagonal = if i == first_free { 0.0 } else { 1.0 } + if last { scratch.tip_weight } else { 1.0 };
+        let diagonal = if i == first_free { 0.0 } else { 1.0 } + if last { 1.0 - scratch.tip_held } else { 1.0 };
         let n = scratch.direction[i];
         let n_next = scratch.direction[if last { i } else { i + 1 }];
         let mut r = scratch.multiplier[i];
@@ -132,7 +137,7 @@ fn apply(first_free: usize, rows: &mut [Lane3], scratch: &LengthScratch) {
         if i > 0 {
             let (n, mut l) = (scratch.direction[i], scratch.multiplier[i]);
             if i + 1 == count {
-                l = Lane(l.map(|l| l * scratch.tip_weight));
+                l = Lane(l.map(|l| l * (1.0 - scratch.tip_held)));
             }
             for k in 0..LANES {
                 let moved = at(&row, k) + at(&n, k) * l[k];

@@ -14,7 +14,7 @@ mod relaxation;
 mod substep;
 
 pub(crate) use bending::{Bending, BendingKey};
-pub(crate) use coupled::Coupled;
+pub(crate) use coupled::{Coupled, Factor};
 pub(crate) use lengths::LengthScratch;
 pub(crate) use plan::{Plan, Substep};
 
@@ -25,6 +25,7 @@ use crate::lanes::{LANES, ZERO, at, greater, put};
 #[inline(always)]
 pub(crate) fn advance(block: &mut Block, plan: &Plan) {
     block.outcome = Outcome::default();
+    block.work.fit(block.position.len());
     forces::prepare(block, plan);
     for i in 0..plan.substeps.len() {
         substep::run(block, plan, i);
@@ -71,7 +72,6 @@ fn measure(block: &mut Block, plan: &Plan) {
         out.max_speed_squared = greater(out.max_speed_squared, fastest[k]);
         out.energy += f64::from(energy[k]);
     }
-    block.good.copy_from_slice(&block.position);
 }
 
 /// Puts lane `k` back to its last good pose, carried with the head and moving with it.
@@ -79,7 +79,7 @@ fn measure(block: &mut Block, plan: &Plan) {
 fn restore(block: &mut Block, plan: &Plan, k: usize) {
     let last = plan.substeps.last();
     for i in 0..block.points() {
-        let p = plan.carry_all.apply(at(&block.good[i], k));
+        let p = plan.carry_all.apply(at(&block.work.good[i], k));
         put(&mut block.position[i], k, p);
         put(&mut block.leans[i], k, glam::Vec3::ZERO);
         let v = last.map_or(glam::Vec3::ZERO, |s| s.rigid_velocity(p));

@@ -21,7 +21,7 @@ pub(crate) fn run(block: &mut Block, plan: &Plan, s: usize) {
             &block.position,
             &block.rest.inv_length,
             &mut block.velocity,
-            &mut block.lengths,
+            &mut block.work.lengths,
         );
     }
     step_positions(block, plan.h);
@@ -36,7 +36,7 @@ pub(crate) fn run(block: &mut Block, plan: &Plan, s: usize) {
             Lay::AtLength
         }
         Integrator::Relaxation => {
-            relax(plan, &block.rest.length, &mut block.next);
+            relax(plan, &block.rest.length, &mut block.work.next);
             Lay::AsIs
         }
         Integrator::FollowTheLeader => Lay::Behind,
@@ -66,15 +66,16 @@ const SAME_FACTORS: usize = 4;
 #[inline(always)]
 fn lengths(block: &mut Block, plan: &Plan, s: usize) {
     if block.bending.is_chain() {
-        project_position(plan.first_free, &block.rest.length, &mut block.next, &mut block.lengths);
+        project_position(plan.first_free, &block.rest.length, &mut block.work.next, &mut block.work.lengths);
     } else {
         block.coupled.project(
             plan.first_free,
             &block.rest.length,
-            &mut block.next,
+            &mut block.work.next,
             &block.bending,
-            &mut block.lengths,
-            &mut block.residual,
+            &mut block.work.lengths,
+            &mut block.work.factor,
+            &mut block.work.residual,
             s.is_multiple_of(SAME_FACTORS),
         );
     }
@@ -94,7 +95,7 @@ fn forces(block: &mut Block, plan: &Plan, s: usize) {
         block.velocity[i] = v;
     }
     for i in plan.first_free..block.points() {
-        let (x, push, keep) = (block.position[i], block.push[i], block.keep[i]);
+        let (x, push, keep) = (block.position[i], block.work.push[i], block.work.keep[i]);
         let mut v = block.velocity[i];
         for k in 0..LANES {
             let was = at(&v, k);
@@ -114,7 +115,7 @@ fn step_positions(block: &mut Block, h: f32) {
         for k in 0..LANES {
             put(&mut next, k, at(&x, k) + at(&v, k) * h);
         }
-        block.next[i] = next;
+        block.work.next[i] = next;
     }
 }
 
@@ -125,7 +126,7 @@ fn shape_memory(block: &mut Block, plan: &Plan, s: usize) {
     let mut frames = Turns::splat(substep.head_turn);
     // c [(1 + gamma) (D p - b*) - gamma (D x - b*_old)] at every inner point.
     for i in 1..count.saturating_sub(1) {
-        let (p0, p1, p2) = (block.next[i - 1], block.next[i], block.next[i + 1]);
+        let (p0, p1, p2) = (block.work.next[i - 1], block.work.next[i], block.work.next[i + 1]);
         let (x0, x1, x2) = (block.position[i - 1], block.position[i], block.position[i + 1]);
         let (rest_direction, rest_bend) = (block.rest.direction[i], block.rest.bend[i]);
         let (old, c, fixed) = (block.bend[i], *block.bending.stiffness(i), *block.bending.fixed(i));
@@ -144,17 +145,17 @@ fn shape_memory(block: &mut Block, plan: &Plan, s: usize) {
             put(&mut bend, k, wanted);
             put(&mut residual, k, r * c[k]);
         }
-        block.next_bend[i] = bend;
-        block.residual[i] = residual;
+        block.work.next_bend[i] = bend;
+        block.work.residual[i] = residual;
     }
-    block.residual[0] = ZERO3;
-    block.residual[count - 1] = ZERO3;
+    block.work.residual[0] = ZERO3;
+    block.work.residual[count - 1] = ZERO3;
     // -D^T r, and the pull toward the style, in place.
-    let mut left = if plan.first_free > 0 { block.residual[plan.first_free - 1] } else { ZERO3 };
+    let mut left = if plan.first_free > 0 { block.work.residual[plan.first_free - 1] } else { ZERO3 };
     for i in plan.first_free..count {
-        let middle = block.residual[i];
-        let right = if i + 1 < count { block.residual[i + 1] } else { ZERO3 };
-        let (rest, p, hold) = (block.rest.position[i], block.next[i], *block.bending.hold(i));
+        let middle = block.work.residual[i];
+        let right = if i + 1 < count { block.work.residual[i + 1] } else { ZERO3 };
+        let (rest, p, hold) = (block.rest.position[i], block.work.next[i], *block.bending.hold(i));
         let mut force = ZERO3;
         for k in 0..LANES {
             let styled = substep.head.apply(at(&rest, k)) - at(&p, k);
@@ -162,16 +163,16 @@ fn shape_memory(block: &mut Block, plan: &Plan, s: usize) {
             put(&mut force, k, f);
         }
         left = middle;
-        block.residual[i] = force;
+        block.work.residual[i] = force;
     }
-    block.bending.solve(plan.first_free, &mut block.residual);
+    block.bending.solve(plan.first_free, &mut block.work.residual);
     for i in plan.first_free..count {
-        let (d, mut p) = (block.residual[i], block.next[i]);
+        let (d, mut p) = (block.work.residual[i], block.work.next[i]);
         for k in 0..LANES {
             let moved = at(&p, k) + at(&d, k);
             put(&mut p, k, moved);
         }
-        block.next[i] = p;
+        block.work.next[i] = p;
     }
 }
 
@@ -192,8 +193,8 @@ fn lean(block: &mut Block, plan: &Plan) {
     let root = *block.bending.hold(plan.first_free.clamp(1, block.points() - 1));
     for i in plan.first_free.max(1)..block.points() {
         let shift = block.bending.follow(i - 1, &moved_before, &moved);
-        let (pull, hold) = (block.residual[i], *block.bending.hold(i));
-        let (mut push, mut next) = (block.leans[i], block.next[i]);
+        let (pull, hold) = (block.work.residual[i], *block.bending.hold(i));
+        let (mut push, mut next) = (block.leans[i], block.work.next[i]);
         moved_before = moved;
         for k in 0..LANES {
             let (out, size) = direction_or(at(&push, k), Vec3::ZERO);
@@ -206,22 +207,22 @@ fn lean(block: &mut Block, plan: &Plan) {
             let p = at(&next, k) + at(&moved, k);
             put(&mut next, k, p);
         }
-        (block.leans[i], block.next[i]) = (push, next);
+        (block.leans[i], block.work.next[i]) = (push, next);
     }
 }
 
 /// Lists the colliders whose boxes the block may reach.
 #[inline(always)]
 fn find_near(block: &mut Block, plan: &Plan, s: usize) {
-    block.active.clear();
-    block.boxes.clear();
-    block.buried.clear();
+    block.work.active.clear();
+    block.work.boxes.clear();
+    block.work.buried.clear();
     let shapes = &plan.shapes[s * plan.shapes_per_substep..][..plan.shapes_per_substep];
     if shapes.is_empty() {
         return;
     }
-    let (mut low, mut high) = (block.next[0], block.next[0]);
-    for row in &block.next[1..] {
+    let (mut low, mut high) = (block.work.next[0], block.work.next[0]);
+    for row in &block.work.next[1..] {
         for axis in 0..3 {
             for k in 0..LANES {
                 low[axis][k] = lesser(low[axis][k], row[axis][k]);
@@ -235,10 +236,10 @@ fn find_near(block: &mut Block, plan: &Plan, s: usize) {
     let carried = plan.first_free.saturating_sub(1);
     for (c, mover) in shapes.iter().enumerate() {
         if mover.shape.is_some() && !apart(min, max, mover, reach) {
-            block.active.push(c as u32);
-            block.boxes.push(mover);
-            block.buried.push(buried(
-                &block.next[carried],
+            block.work.active.push(c as u32);
+            block.work.boxes.push(mover);
+            block.work.buried.push(buried(
+                &block.work.next[carried],
                 mover,
                 &block.rest_distance[c * block.points() + carried],
             ));
@@ -253,7 +254,7 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize, lay: Lay) {
     let carried = plan.first_free.saturating_sub(1);
     let field = plan.field.map(|moving| {
         let (substep, passed) = (&plan.substeps[s], (s + 1) as f32 / plan.substeps.len() as f32);
-        let (rest_distance, root) = (&block.field_distance[..], &block.next[carried]);
+        let (rest_distance, root) = (&block.field_distance[..], &block.work.next[carried]);
         let plane = &mut block.planes[carried];
         if s == 0 {
             plane.forget();
@@ -263,12 +264,12 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize, lay: Lay) {
     });
     let near = Near {
         shapes: &plan.shapes[s * plan.shapes_per_substep..][..plan.shapes_per_substep],
-        active: &block.active,
-        boxes: &block.boxes,
+        active: &block.work.active,
+        boxes: &block.work.boxes,
         rest_distance: &block.rest_distance,
         points: count,
         carried,
-        buried: &block.buried,
+        buried: &block.work.buried,
         link: &block.rest.mean_link,
         field,
     };
@@ -281,7 +282,7 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize, lay: Lay) {
     let (mut moved, mut moved_before) = (ZERO3, ZERO3);
     for i in 0..count {
         let was = block.position[i];
-        let mut placed = block.next[i];
+        let mut placed = block.work.next[i];
         if i >= plan.first_free.max(1) && lay != Lay::Behind {
             let shift = block.bending.follow(i - 1, &moved_before, &moved);
             for k in 0..LANES {
@@ -326,7 +327,7 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize, lay: Lay) {
             }
         }
         moved_before = moved;
-        let wanted = block.next[i];
+        let wanted = block.work.next[i];
         let mut velocity = ZERO3;
         for k in 0..LANES {
             put(&mut moved, k, at(&placed, k) - at(&wanted, k));
@@ -340,7 +341,7 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize, lay: Lay) {
     if touches && lay == Lay::AtLength {
         keep_energy(block, plan, s);
     }
-    std::mem::swap(&mut block.bend, &mut block.next_bend);
+    std::mem::swap(&mut block.bend, &mut block.work.next_bend);
     for (depth, &guide) in deepest.iter().zip(&block.guides).take(block.used) {
         if depth.metres > block.outcome.deepest.metres {
             (block.outcome.deepest, block.outcome.deepest_guide) = (*depth, guide);
@@ -358,7 +359,7 @@ fn keep_energy(block: &mut Block, plan: &Plan, s: usize) {
     let (substep, inv_h) = (&plan.substeps[s], 1.0 / plan.h);
     let (mut before, mut after) = (ZERO, ZERO);
     for i in plan.first_free.max(1)..block.points() {
-        let (x, wanted, v) = (block.position[i], block.next[i], block.velocity[i]);
+        let (x, wanted, v) = (block.position[i], block.work.next[i], block.velocity[i]);
         for k in 0..LANES {
             let p = at(&x, k);
             let own = at(&v, k) - substep.rigid_velocity(p);

@@ -83,7 +83,7 @@ fn a_newton_step_squares_the_error_of_lengths() {
 /// under gravity; by the projections alone, as a substep uses them.
 fn hung_at_both_ends(links: usize, gravity: Vec3) -> Vec<Vec3> {
     let (length, h) = (0.5 / links as f32, 1.0 / 240.0);
-    let mut scratch = LengthScratch { tip_weight: 0.0, ..LengthScratch::new(links + 1) };
+    let mut scratch = LengthScratch { tip_held: 1.0, ..LengthScratch::new(links + 1) };
     // Two straight halves that meet below, off the middle, so that the chain has to find its shape.
     let (end, left) = (Vec3::X * 0.3, links / 2 - 2);
     let (a, b) = (length * left as f32, length * (links - left) as f32);

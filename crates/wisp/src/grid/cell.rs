@@ -1,0 +1,147 @@
+//! What lies in a cell of the density grid, and layers of cells that one task fills.
+
+use super::SIDE;
+
+/// Numbers of a cell: mass, momentum along each axis, sums of directions, and what fills a line of the cache.
+pub(super) const NUMBERS: usize = 16;
+
+/// Those of them that hair adds to.
+pub(super) const PARTS: usize = 10;
+
+/// Where a cell keeps the bits of one over its density at rest.
+const INV_REST: usize = NUMBERS - 1;
+
+/// What lies in a cell, in fixed point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(align(64))]
+pub(super) struct Cell(pub(super) [i32; NUMBERS]);
+
+impl Cell {
+    pub(super) const EMPTY: Self = Self([0; NUMBERS]);
+
+    #[inline(always)]
+    pub(super) fn mass(&self) -> i32 {
+        self.0[0]
+    }
+
+    /// One over the density at rest, where there is some, and over a typical one elsewhere.
+    #[inline(always)]
+    pub(super) fn inv_rest(&self) -> f32 {
+        f32::from_bits(self.0[INV_REST] as u32)
+    }
+
+    pub(super) fn set_inv_rest(&mut self, inv: f32) {
+        self.0[INV_REST] = inv.to_bits() as i32;
+    }
+
+    /// [`excess_of`] this cell.
+    #[inline(always)]
+    fn excess(&self, inv_threshold: f32) -> f32 {
+        excess_of(self.mass(), self.inv_rest(), inv_threshold)
+    }
+
+    fn clear(&mut self) {
+        self.0[..INV_REST].fill(0);
+    }
+}
+
+/// By how much a cell is denser than `1 / inv_threshold` times what it was at rest, as a part of that; negative where it is
+/// not.
+#[inline(always)]
+pub(super) fn excess_of(mass: i32, inv_rest: f32, inv_threshold: f32) -> f32 {
+    mass as f32 * inv_rest * inv_threshold - 1.0
+}
+
+/// Layers of cells that one task fills.
+pub(super) const LAYERS: usize = 8;
+
+/// The cells of as many layers.
+pub(super) const CHUNK: usize = LAYERS * (SIDE * SIDE) as usize;
+
+/// The rows along x of as many layers.
+pub(super) const MASKS: usize = LAYERS * SIDE as usize;
+
+const _: () = assert!(SIDE <= 64, "a row has a bit for each of its cells");
+
+/// Some layers of the grid.
+pub(super) struct Chunk<'a> {
+    /// The first layer.
+    pub(super) first: usize,
+    pub(super) cells: &'a mut [Cell],
+    pub(super) masks: &'a mut [u64],
+}
+
+/// What is counted of cells.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Tally {
+    /// Cells that may hold hair.
+    pub(super) held: u32,
+    pub(super) over_dense: u32,
+    /// Masses, none counted for more than that of a full cell.
+    pub(super) fullness: i64,
+}
+
+impl Tally {
+    pub(super) fn plus(self, other: Self) -> Self {
+        Self {
+            held: self.held + other.held,
+            over_dense: self.over_dense + other.over_dense,
+            fullness: self.fullness + other.fullness,
+        }
+    }
+}
+
+impl Chunk<'_> {
+    /// Empties the cells that may hold hair.
+    pub(super) fn clear(&mut self) {
+        for (mask, cells) in self.masks.iter_mut().zip(self.cells.as_chunks_mut::<{ SIDE as usize }>().0) {
+            for x in bits(std::mem::take(mask)) {
+                cells[x].clear();
+            }
+        }
+    }
+
+    /// Counts; `most` is the mass of a full cell, and what is over-dense has more than `1 / inv_threshold` of its density
+    /// at rest.
+    pub(super) fn tally(&self, most: i32, inv_threshold: f32) -> Tally {
+        let mut out = Tally::default();
+        for (&mask, cells) in self.masks.iter().zip(self.cells.as_chunks::<{ SIDE as usize }>().0) {
+            out.held += mask.count_ones();
+            for cell in bits(mask).map(|x| &cells[x]) {
+                out.over_dense += u32::from(cell.excess(inv_threshold) > 0.0);
+                out.fullness += i64::from(cell.mass().min(most));
+            }
+        }
+        out
+    }
+}
+
+/// The places of the bits that are set, lowest first.
+fn bits(mut mask: u64) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let place = mask.trailing_zeros();
+        mask &= mask.wrapping_sub(1);
+        (place < u64::BITS).then_some(place as usize)
+    })
+}
+
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bits_are_found_from_the_lowest_on() {
+        assert_eq!(bits(0).count(), 0);
+        assert_eq!(bits(1 | 1 << 5 | 1 << 63).collect::<Vec<_>>(), [0, 5, 63]);
+    }
+
+    #[test]
+    fn a_cell_that_is_cleared_still_knows_its_density_at_rest() {
+        let mut cell = Cell([7; NUMBERS]);
+        cell.set_inv_rest(0.25);
+        assert_eq!(cell.excess(1.0), 0.75);
+        cell.clear();
+        assert_eq!((cell.mass(), cell.inv_rest()), (0, 0.25));
+    }
+}

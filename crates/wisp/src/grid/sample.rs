@@ -1,0 +1,198 @@
+//! What hair learns from the density grid.
+
+use std::ops::Range;
+
+use glam::{IVec3, Mat3, Vec3};
+
+use super::cell::{NUMBERS, PARTS, excess_of};
+use super::direction::{crossing, drawn_to, push_across};
+use super::pieces::tangents;
+use super::{DensityGrid, MOMENTUM, MOST_OF_A_CELL, OFFSETS, SIDE, index};
+use crate::block::Block;
+#[cfg(test)]
+use crate::lanes::splat3;
+use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, greater, put, row_done};
+use crate::settings::RepulsionMode;
+use crate::solver::Plan;
+use crate::trilinear::{gradient, weights as weights_at};
+
+/// What a row of points learns from the grid, in head space; only lanes that are `found` have hair around.
+struct Learnt {
+    found: [bool; LANES],
+    /// Away from over-dense places, 1/m: to be multiplied by the strength.
+    push: Lane3,
+    /// Mean velocity of the hair around, metres per second, in the axes that were deposited.
+    mean_velocity: Lane3,
+    /// How much of the hair around crosses the direction that was asked for; 0 where that is heeded by nothing.
+    crossing: Lane,
+}
+
+impl DensityGrid {
+    /// What hair at the points `p` that runs along `t`, both in head space, learns from the grid.
+    #[inline(always)]
+    fn learn(&self, p: &Lane3, t: &Lane3) -> Learnt {
+        let corners = self.corners(p);
+        let mut weights = [ZERO; 8];
+        for k in 0..LANES {
+            for (row, w) in weights.iter_mut().zip(weights_at(at(&corners.fraction, k))) {
+                row[k] = w;
+            }
+        }
+        // What lies around each point, lane by lane; what is worked out from it, all lanes at once.
+        let (mut sums, mut mass, mut inv_rest) = ([ZERO; PARTS], [[0_i32; LANES]; 8], [ZERO; 8]);
+        for k in 0..LANES {
+            if !corners.inside[k] {
+                continue;
+            }
+            let mut all = [0.0_f32; NUMBERS];
+            for n in 0..8 {
+                let (cell, weight) = (&self.cells[corners.base[k] as usize + OFFSETS[n]], weights[n][k]);
+                for (sum, value) in all.iter_mut().zip(cell.0) {
+                    *sum += weight * value as f32;
+                }
+                (mass[n][k], inv_rest[n][k]) = (cell.mass(), cell.inv_rest());
+                row_done();
+            }
+            // Through memory, so that a cell's numbers are taken side by side, whichever of them is wanted.
+            let all = std::hint::black_box(all);
+            for (row, sum) in sums.iter_mut().zip(all) {
+                row[k] = sum;
+            }
+        }
+        let mut out = Learnt { found: [false; LANES], push: ZERO3, mean_velocity: ZERO3, crossing: ZERO };
+        let inv_threshold = 1.0 / self.repulsion.threshold;
+        let mut crowded = [false; LANES];
+        for k in 0..LANES {
+            let mut excess = [0.0_f32; 8];
+            for n in 0..8 {
+                excess[n] = greater(0.0, excess_of(mass[n][k], inv_rest[n][k], inv_threshold));
+                crowded[k] |= excess[n] > 0.0;
+            }
+            let mass = sums[0][k];
+            out.found[k] = mass >= 1.0;
+            let mean = Vec3::new(sums[1][k], sums[2][k], sums[3][k]) / (mass * MOMENTUM);
+            put(&mut out.mean_velocity, k, mean);
+            let directions = [sums[4][k], sums[5][k], sums[6][k], sums[7][k], sums[8][k], sums[9][k]];
+            let across = crossing(&directions, mass, at(t, k));
+            out.crossing[k] = if crowded[k] & (self.repulsion.anisotropy > 0.0) { across } else { 0.0 };
+            put(&mut out.push, k, -gradient(&excess, at(&corners.fraction, k)) / self.cell);
+        }
+        if self.repulsion.mode == RepulsionMode::Centre {
+            for k in (0..LANES).filter(|&k| crowded[k]) {
+                put(&mut out.push, k, self.away_from_centre(at(p, k)));
+            }
+        }
+        out
+    }
+
+    /// The published force: away from the centre of the cell that `p` is in, where that cell is over-dense;
+    /// faded at the centre, where it would be singular, and at the faces, where it would jump.
+    #[cold]
+    fn away_from_centre(&self, p: Vec3) -> Vec3 {
+        let cell = ((p - self.min) / self.cell).as_ivec3().clamp(IVec3::ZERO, IVec3::splat(SIDE - 1));
+        let i = index(cell);
+        let excess = self.cells[i].mass() as f32 * self.cells[i].inv_rest() / self.repulsion.threshold - 1.0;
+        let out = p - (self.min + (cell.as_vec3() + 0.5) * self.cell);
+        let fade = (1.0 - 2.0 * out.abs().max_element() / self.cell).max(0.0);
+        out * (excess.max(0.0) * fade / (out.length().max(0.1 * self.cell) * self.cell))
+    }
+
+    /// Adds the grid's part to the forces of a block, whose positions are still those of the last step.
+    #[inline(always)]
+    pub(crate) fn act(&self, block: &mut Block, plan: &Plan, cohesion: f32) {
+        for keep in &mut block.work.keep {
+            *keep = Lane::splat(1.0);
+        }
+        if !self.acts() {
+            return;
+        }
+        let count = block.points();
+        let (mut from, mut to) = (0, 0);
+        let mut row = SampleRow { dv: ZERO3, mean: ZERO3 };
+        loop {
+            let next = self.sample_row(block, plan, to);
+            if to > 0 {
+                between(block, from..if to + 1 == count { count } else { to }, to - from, &row, &next, cohesion);
+            }
+            if to + 1 >= count {
+                break;
+            }
+            (row, from, to) = (next, to, (to + self.stride).min(count - 1));
+        }
+    }
+
+    #[inline(always)]
+    fn sample_row(&self, block: &Block, plan: &Plan, i: usize) -> SampleRow {
+        let most = MOST_OF_A_CELL * self.cell / plan.h;
+        let turn: Mat3 = plan.last_head.turn;
+        // The published force knows no directions.
+        let anisotropy = match self.repulsion.mode {
+            RepulsionMode::Pressure => self.repulsion.anisotropy,
+            RepulsionMode::Centre => 0.0,
+        };
+        let (tangent, here, velocity) = (tangents(block, i), block.position[i], block.velocity[i]);
+        let (mut p, mut along) = (ZERO3, ZERO3);
+        for k in 0..LANES {
+            put(&mut p, k, plan.head_from_last.apply(at(&here, k)));
+            put(&mut along, k, plan.head_from_last.rotate(at(&tangent, k)));
+        }
+        let learnt = self.learn(&p, &along);
+        let mut out = SampleRow { dv: ZERO3, mean: ZERO3 };
+        for k in 0..LANES {
+            let (t, v) = (at(&tangent, k), at(&velocity, k));
+            let push = push_across(turn * at(&learnt.push, k), t, learnt.crossing[k], anisotropy);
+            let dv = push * (self.repulsion.strength * plan.h);
+            let size = dv.length_squared();
+            let shorter = (dv / size.sqrt()) * most;
+            let mean = drawn_to(at(&learnt.mean_velocity, k), v, t, anisotropy);
+            let (long, found) = (size > most * most, learnt.found[k]);
+            let pick = |long: bool, a: f32, b: f32| if long { a } else { b };
+            for axis in 0..3 {
+                let dv = pick(long, shorter[axis], dv[axis]);
+                out.dv[axis][k] = pick(found, dv, 0.0);
+                out.mean[axis][k] = pick(found, mean[axis], v[axis]);
+            }
+        }
+        out
+    }
+
+    /// What [`DensityGrid::learn`] finds at one point: push, mean velocity and crossing.
+    #[cfg(test)]
+    pub(super) fn sample(&self, p: Vec3, t: Vec3) -> Option<(Vec3, Vec3, f32)> {
+        let learnt = self.learn(&splat3(p), &splat3(t));
+        let lane = LANES / 3;
+        let found = learnt.found[lane];
+        found.then(|| (at(&learnt.push, lane), at(&learnt.mean_velocity, lane), learnt.crossing[lane]))
+    }
+}
+
+/// What a row of points learns from the grid: the change of velocity a substep, and the neighbours' mean.
+struct SampleRow {
+    dv: Lane3,
+    mean: Lane3,
+}
+
+/// Gives `points` what lies between `row`, at the first of them, and `next`, `run` points on.
+#[inline(always)]
+fn between(
+    block: &mut Block,
+    points: Range<usize>,
+    run: usize,
+    row: &SampleRow,
+    next: &SampleRow,
+    cohesion: f32,
+) {
+    for i in points.clone() {
+        let t = (i - points.start) as f32 / run as f32;
+        let (mut push, mut keep) = (block.work.push[i], block.work.keep[i]);
+        for k in 0..LANES {
+            let dv = at(&row.dv, k).lerp(at(&next.dv, k), t);
+            let mean = at(&row.mean, k).lerp(at(&next.mean, k), t);
+            let relaxed = (at(&push, k) + dv) * (1.0 - cohesion) + mean * cohesion;
+            put(&mut push, k, relaxed);
+            keep[k] = 1.0 - cohesion;
+        }
+        block.work.push[i] = push;
+        block.work.keep[i] = keep;
+    }
+}
