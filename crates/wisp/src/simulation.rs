@@ -116,8 +116,8 @@ impl Simulation {
         self.take_hold(f32::INFINITY);
         self.colliders.clear();
         self.colliders.extend_from_slice(input.colliders);
-        self.learn_colliders();
         self.meet_field(input);
+        self.learn_colliders();
         self.reset_field(input);
         let from_head = self.head.map_from_head(self.head.place);
         self.blocks.par_iter_mut().for_each(|block| block.place_at_rest(&from_head));
@@ -147,6 +147,7 @@ impl Simulation {
         let head = HeadPose::new(&input.world_from_head).unwrap_or(self.head);
         let jumped = self.head.jumps_to(&head, self.time_secs, input.time_secs, dt_secs);
         self.time_secs = input.time_secs;
+        let met = self.meet_field(input);
         if self.colliders.len() != input.colliders.len() {
             self.colliders.clear();
             self.colliders.extend_from_slice(input.colliders);
@@ -157,7 +158,6 @@ impl Simulation {
         if self.clamped_links != settings.clamped_links {
             self.clamp_links(settings.clamped_links);
         }
-        let met = self.meet_field(input);
         if jumped || !(dt_secs >= SHORTEST_SECS && dt_secs.is_finite()) {
             let report = self.carry_to(head, input.colliders, jumped);
             self.reset_field(input);
@@ -318,7 +318,8 @@ impl Simulation {
 
     /// Finds how the colliders lie around the hair at rest.
     fn learn_colliders(&mut self) {
-        self.rest_colliders.find(self.head.affine(), &self.colliders);
+        let head_at_rest = self.field.as_ref().map(MovingField::head_at_rest);
+        self.rest_colliders.find(self.head.affine(), &self.colliders, head_at_rest);
         self.learn_rest_distances();
     }
 

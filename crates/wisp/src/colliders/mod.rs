@@ -35,16 +35,25 @@ pub(crate) struct RestColliders {
 impl RestColliders {
     /// Finds the arrangement at rest from the arrangement now.
     ///
-    /// A collider of the head turns with it, so the rest pose's head is at `world_from_rest^-1 *
-    /// world_from_head` of that collider, a pure translation; from there all others are placed. Where no
-    /// collider turns with the head, the arrangement now is taken for the one at rest.
-    pub(crate) fn find(&mut self, world_from_head: Affine3A, colliders: &[PlacedCollider]) {
+    /// At rest the head is `head_at_rest` from the world's origin, unturned, where that is known: a field of the body
+    /// knows it. Else a collider of the head turns with it, so that the rest pose's head is at `world_from_rest^-1 *
+    /// world_from_head` of that collider, a pure translation. From there all others are placed. Where nothing says where
+    /// the head was, the arrangement now is taken for the one at rest.
+    pub(crate) fn find(
+        &mut self,
+        world_from_head: Affine3A,
+        colliders: &[PlacedCollider],
+        head_at_rest: Option<Vec3>,
+    ) {
         self.shapes.clear();
         self.on_head.clear();
-        let rest_from_head = colliders
-            .iter()
-            .map(|c| c.world_from_rest.inverse() * world_from_head)
-            .find(|m| m.is_finite() && is_translation(m));
+        let on_head = || {
+            colliders
+                .iter()
+                .map(|c| c.world_from_rest.inverse() * world_from_head)
+                .find(|m| m.is_finite() && is_translation(m))
+        };
+        let rest_from_head = head_at_rest.map(Affine3A::from_translation).or_else(on_head);
         for c in colliders {
             let head_from_world = world_from_head.inverse();
             let (head_from_now, on_head) = match rest_from_head {
@@ -168,7 +177,7 @@ mod tests {
         let placed = [(shoulder, world_from_rest_arm), (skull, world_from_rest_head)]
             .map(|(s, m)| PlacedCollider { shape: transformed(&s, &m), world_from_rest: m });
         let mut rest = RestColliders::default();
-        rest.find(head_now, &placed);
+        rest.find(head_now, &placed, None);
         assert_eq!(rest.on_head, [false, true]);
         let centre = |s: &ColliderShape| match *s {
             ColliderShape::Capsule { a, .. } => a,
@@ -177,6 +186,13 @@ mod tests {
         // Two rotations and their inverses in f32 over a metre.
         assert!((centre(&rest.shapes[0]) - (Vec3::new(0.18, 1.35, 0.0) - head_at_rest)).length() < 1e-5);
         assert!((centre(&rest.shapes[1]) - Vec3::new(0.0, 0.08, 0.0)).length() < 1e-5);
+        // Where a field stands for the skull, it says where the head was.
+        let mut arm_alone = RestColliders::default();
+        arm_alone.find(head_now, &placed[..1], Some(head_at_rest));
+        assert!((centre(&arm_alone.shapes[0]) - centre(&rest.shapes[0])).length() < 1e-5);
+        // The control: an arm alone does not know.
+        arm_alone.find(head_now, &placed[..1], None);
+        assert!((centre(&arm_alone.shapes[0]) - centre(&rest.shapes[0])).length() > 0.1);
     }
 
     #[test]

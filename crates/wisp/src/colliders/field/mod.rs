@@ -13,7 +13,7 @@ mod tests;
 
 use std::sync::Arc;
 
-use glam::{Affine3A, Mat3A};
+use glam::{Affine3A, Mat3A, Vec3};
 use lovelock_motion::{BodyField, FieldPose};
 
 use crate::lanes::{Lane, Lane3, at};
@@ -84,6 +84,11 @@ impl MovingField {
     /// Whether this is the field that is wanted.
     pub(crate) fn is(&self, field: &Arc<BodyField>, lift: f32) -> bool {
         Arc::ptr_eq(&self.field, field) && self.lift == lift
+    }
+
+    /// Where the head is at rest, in the world of the rest pose.
+    pub(crate) fn head_at_rest(&self) -> Vec3 {
+        self.field.rest_from_head()
     }
 
     /// Distance at rest of every lane of a row in head space; [`f32::MAX`] where the field ends.
