@@ -23,8 +23,11 @@ use crate::settings::Repulsion;
 /// Cells along each axis.
 const SIDE: i32 = 48;
 
-/// Smallest and largest cell, metres.
+/// Smallest cell, metres, and the largest for hair to swing in, as long as hair at rest is inside.
 const CELL: (f32, f32) = (0.012, 0.02);
+
+/// So much further than hair at rest reaches from its middle the grid goes at least.
+const ROOM: f32 = 1.1;
 
 /// Fixed point: the whole hairstyle in one cell stays below this.
 const FULL: f32 = (1 << 29) as f32;
@@ -81,7 +84,13 @@ impl DensityGrid {
         }
         centre /= count.max(1.0);
         let radius = lanes().map(|(b, k)| (at(&b.rest.position[0], k) - centre).length()).fold(0.0, f32::max);
-        let cell = (2.0 * (radius + longest) / SIDE as f32).clamp(CELL.0, CELL.1);
+        let reach = lanes()
+            .flat_map(|(b, k)| b.rest.position.iter().map(move |row| (at(row, k) - centre).abs().max_element()))
+            .filter(|reach| reach.is_finite())
+            .fold(0.0, f32::max);
+        let swing = (2.0 * (radius + longest) / SIDE as f32).clamp(CELL.0, CELL.1);
+        // Two cells at the rim have no neighbours to be between.
+        let cell = swing.max(2.0 * ROOM * reach / (SIDE - 2) as f32);
         let link = (links / count.max(1.0)).max(1e-4);
         let size = (SIDE * SIDE * SIDE) as usize;
         let mut grid = Self {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::{Affine3A, Vec3};
+use glam::{Affine3A, DVec3, Vec3};
 use lovelock_groom::{GuideFrame, Hairstyle};
 use lovelock_motion::PlacedCollider;
 use rayon::prelude::*;
@@ -20,7 +20,7 @@ use crate::motion::{HeadPose, rigid_between, substep};
 use crate::rest::blocks_of;
 use crate::solver::{BendingKey, Plan, Substep};
 use crate::wake::{Wakes, head_of};
-use crate::wind::WindField;
+use crate::wind::{WindField, mean_of};
 use crate::{BodyPart, InsidePoint, MAX_SUBSTEPS, SimulationSettings, StepInput, StepReport};
 
 /// In less than this no time passes: velocities are differences over a step, and rounding would be all of them.
@@ -47,6 +47,8 @@ pub struct Simulation {
     taking_hold: Option<TakingHold>,
     /// Simulated since the last reset, for the wind.
     elapsed_secs: f64,
+    /// How far the mean wind has carried the air in that time, metres; `None` for as far as the present one would have.
+    air_way: Option<DVec3>,
     /// The links at the root that the blocks are prepared for.
     clamped_links: u32,
     mean_link: f32,
@@ -94,6 +96,7 @@ impl Simulation {
             field: None,
             taking_hold: None,
             elapsed_secs: 0.0,
+            air_way: None,
             clamped_links,
             mean_link,
             wide: true,
@@ -112,7 +115,7 @@ impl Simulation {
     pub fn reset(&mut self, input: &StepInput) {
         self.head = HeadPose::new(&input.world_from_head).unwrap_or(self.head);
         self.time_secs = input.time_secs;
-        self.elapsed_secs = 0.0;
+        (self.elapsed_secs, self.air_way) = (0.0, None);
         self.take_hold(f32::INFINITY);
         self.colliders.clear();
         self.colliders.extend_from_slice(input.colliders);
@@ -133,7 +136,7 @@ impl Simulation {
     /// reset.
     pub fn set_wind_secs(&mut self, secs: f64) {
         if secs.is_finite() {
-            self.elapsed_secs = secs;
+            (self.elapsed_secs, self.air_way) = (secs, None);
         }
     }
 
@@ -219,7 +222,10 @@ impl Simulation {
                 field.advance(head, placed.pose, ContactRules::of(settings).reach(), dt_secs, spare);
             },
         );
-        let wind = WindField::new(&settings.wind, self.elapsed_secs, origin);
+        let mean_wind = mean_of(&settings.wind).as_dvec3();
+        let way = self.air_way.unwrap_or(mean_wind * self.elapsed_secs);
+        self.air_way = Some(way + mean_wind * f64::from(dt_secs));
+        let wind = WindField::new(&settings.wind, self.elapsed_secs, way, origin);
         let shelter = if wind.blows() { settings.wind.sheltering } else { 0.0 };
         let along = Vec3::from_array(settings.wind.direction);
         let here = Affine3A::from_rotation_translation(self.head.turn, self.head.place - origin);

@@ -3,7 +3,7 @@
 //! A sum of waves is smooth in time and space, costs a few multiplications, and is the same on every run.
 //! Eddies move air across their waves' direction, so that they have no sources (solenoidal).
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 use crate::lanes::{LANES, Lane3, ZERO3, at, put};
 use crate::settings::Wind;
@@ -30,35 +30,38 @@ struct Wave {
 }
 
 impl WindField {
-    /// The wind at `elapsed_secs`, for points relative to `origin` in world space.
-    pub(crate) fn new(wind: &Wind, elapsed_secs: f64, origin: Vec3) -> Self {
-        let Some(along) = Vec3::from_array(wind.direction).try_normalize() else { return Self::default() };
-        if wind.speed <= 0.0 {
-            return Self::default();
-        }
-        let mean = along * wind.speed;
+    /// The wind at `elapsed_secs`, in which the mean wind has carried the air by `way`, metres; for points relative to
+    /// `origin` in world space.
+    ///
+    /// Eddies have gone as far as the air has, and not as far as its present speed would have carried it in all that time:
+    /// so a wind that freshens does not shuffle them.
+    pub(crate) fn new(wind: &Wind, elapsed_secs: f64, way: DVec3, origin: Vec3) -> Self {
+        let mean = mean_of(wind);
+        let Some(along) = mean.try_normalize() else { return Self::default() };
         let mut random = Random(u64::from(wind.seed));
         let mut field = Self { mean, waves: [Wave::default(); GUSTS + EDDIES], blows: true };
         for (n, out) in field.waves.iter_mut().enumerate() {
             let start = random.unit();
             // Turns a second seen at one place, and the direction and length of the wave.
-            let (amplitude, wave, hertz);
+            let (amplitude, wave, hertz, carried);
             if n < GUSTS {
                 hertz = [0.19, 0.53, 1.27][n] * (0.8 + 0.4 * random.unit());
                 wave = along * (hertz / wind.speed.max(0.5));
                 amplitude = mean * (wind.gusts * [0.5, 0.3, 0.2][n]);
+                carried = 0.0;
             } else {
                 let direction = random.direction();
                 let length = 0.15 * 1.5_f32.powi((n - GUSTS) as i32);
                 wave = direction / length;
                 // Carried by the wind, and turning over slowly by themselves.
-                hertz = wave.dot(mean) + 0.3 * (random.unit() - 0.5);
+                hertz = 0.3 * (random.unit() - 0.5);
+                carried = wave.as_dvec3().dot(way);
                 let across =
                     direction.cross(random.direction()).normalize_or(direction.any_orthonormal_vector());
                 amplitude = across * (wind.speed * wind.turbulence * (2.0 / EDDIES as f32).sqrt());
             }
             let world = origin.as_dvec3().dot(wave.as_dvec3());
-            let shift = f64::from(start) + world - elapsed_secs * f64::from(hertz);
+            let shift = f64::from(start) + world - carried - elapsed_secs * f64::from(hertz);
             *out = Wave { amplitude, turns: wave, phase: (shift - shift.floor()) as f32 };
         }
         field
@@ -85,6 +88,11 @@ impl WindField {
         }
         out
     }
+}
+
+/// The mean wind, metres per second; 0 where it has no direction.
+pub(crate) fn mean_of(wind: &Wind) -> Vec3 {
+    Vec3::from_array(wind.direction).normalize_or_zero() * wind.speed.max(0.0)
 }
 
 /// `sin(2 pi t)` by a polynomial: exact to 2e-4, and the same on every machine.
@@ -133,6 +141,11 @@ mod tests {
         crate::lanes::splat3(p)
     }
 
+    /// A wind that has blown like this all the time.
+    fn steady(wind: &Wind, secs: f64, origin: Vec3) -> WindField {
+        WindField::new(wind, secs, mean_of(wind).as_dvec3() * secs, origin)
+    }
+
     #[test]
     fn the_sine_is_a_sine() {
         for i in -4000..4000 {
@@ -149,7 +162,7 @@ mod tests {
         let mut sum = Vec3::ZERO;
         let mut last: Option<Vec3> = None;
         for i in 0..6000 {
-            let field = WindField::new(&wind, f64::from(i) / 60.0, Vec3::ZERO);
+            let field = steady(&wind, f64::from(i) / 60.0, Vec3::ZERO);
             let v = at(&field.velocity(&row(Vec3::new(0.1, 0.2, 0.0))), 0);
             if let Some(last) = last {
                 // The finest eddies pass at 4 m/s / 0.15 m, with 0.7 m/s each: 2 pi 27 * 0.7 / 60 = 2 m/s.
@@ -159,9 +172,9 @@ mod tests {
             sum += v / 6000.0;
         }
         assert!((sum - Vec3::new(4.0, 0.0, 0.0)).length() < 0.2, "{sum}");
-        let (a, b) = (WindField::new(&wind, 7.5, Vec3::ONE), WindField::new(&wind, 7.5, Vec3::ONE));
+        let (a, b) = (steady(&wind, 7.5, Vec3::ONE), steady(&wind, 7.5, Vec3::ONE));
         assert_eq!(a.velocity(&row(Vec3::X)), b.velocity(&row(Vec3::X)));
-        let other = WindField::new(&Wind { seed: 2, ..wind }, 7.5, Vec3::ONE);
+        let other = steady(&Wind { seed: 2, ..wind }, 7.5, Vec3::ONE);
         assert_ne!(a.velocity(&row(Vec3::X)), other.velocity(&row(Vec3::X)));
     }
 
@@ -169,15 +182,30 @@ mod tests {
     fn the_wind_stays_where_it_is_in_the_world_when_the_origin_moves() {
         let wind = Wind { speed: 3.0, turbulence: 1.0, ..Wind::default() };
         let p = Vec3::new(0.3, 1.5, -0.2);
-        let a = WindField::new(&wind, 3.0, Vec3::ZERO).velocity(&row(p));
-        let b = WindField::new(&wind, 3.0, p).velocity(&row(Vec3::ZERO));
+        let a = steady(&wind, 3.0, Vec3::ZERO).velocity(&row(p));
+        let b = steady(&wind, 3.0, p).velocity(&row(Vec3::ZERO));
         assert!((at(&a, 0) - at(&b, 0)).length() < 1e-3);
     }
 
     #[test]
+    fn a_wind_that_freshens_does_not_shuffle_its_eddies() {
+        let (calm, fresh) = (Wind { speed: 4.0, ..Wind::default() }, Wind { speed: 4.02, ..Wind::default() });
+        let secs = 600.0;
+        let way = mean_of(&calm).as_dvec3() * secs;
+        let p = row(Vec3::new(0.1, 0.2, 0.0));
+        let before = at(&WindField::new(&calm, secs, way, Vec3::ZERO).velocity(&p), 0);
+        let after = at(&WindField::new(&fresh, secs, way, Vec3::ZERO).velocity(&p), 0);
+        // Everything grows by half a percent of some metres a second; gusts move by theirs over half a metre.
+        assert!((after - before).length() < 0.1, "{before} became {after}");
+        // The control: as if it had blown like that all the time.
+        let always = at(&steady(&fresh, secs, Vec3::ZERO).velocity(&p), 0);
+        assert!((always - before).length() > 0.3, "{before} and {always}");
+    }
+
+    #[test]
     fn still_air_does_not_blow() {
-        assert!(!WindField::new(&Wind::default(), 1.0, Vec3::ZERO).blows());
+        assert!(!steady(&Wind::default(), 1.0, Vec3::ZERO).blows());
         let nowhere = Wind { speed: 5.0, direction: [0.0; 3], ..Wind::default() };
-        assert!(!WindField::new(&nowhere, 1.0, Vec3::ZERO).blows());
+        assert!(!steady(&nowhere, 1.0, Vec3::ZERO).blows());
     }
 }

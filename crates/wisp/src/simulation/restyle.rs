@@ -27,8 +27,10 @@ const NEARBY: f32 = 0.03;
 pub(super) struct TakingHold {
     /// How firmly each point was held at the start, 1/s.
     held: Vec<f32>,
-    /// For each block the directions of its links at the start, head space, and its shape at rest.
-    shapes: Vec<(Vec<Lane3>, RestShape)>,
+    /// For each block the directions of its links at the start, head space.
+    from: Vec<Vec<Lane3>>,
+    /// For each block the shape at rest that the ties give it.
+    to: Vec<RestShape>,
     since_secs: f32,
 }
 
@@ -46,7 +48,7 @@ impl Simulation {
         }
         next.head = self.head;
         next.time_secs = self.time_secs;
-        next.elapsed_secs = self.elapsed_secs;
+        (next.elapsed_secs, next.air_way) = (self.elapsed_secs, self.air_way);
         next.colliders = std::mem::take(&mut self.colliders);
         next.rest_colliders = std::mem::take(&mut self.rest_colliders);
         let from_head = next.head.map_from_head(next.head.place);
@@ -65,9 +67,9 @@ impl Simulation {
             }
         }
         if retied {
-            let shapes = next.blocks.iter().map(|block| (directions(block, &from_head), block.rest.clone()));
-            let shapes = shapes.collect();
-            next.taking_hold = Some(TakingHold { held: self.holds_before(&next), shapes, since_secs: 0.0 });
+            let from = next.blocks.iter().map(|block| directions(block, &from_head)).collect();
+            let to = next.blocks.iter().map(|block| block.rest.clone()).collect();
+            next.taking_hold = Some(TakingHold { held: self.holds_before(&next), from, to, since_secs: 0.0 });
         }
         next.field = self.field.take();
         next.learn_rest_distances();
@@ -77,6 +79,7 @@ impl Simulation {
 
     /// Prepares the blocks for another number of carried links.
     pub(super) fn clamp_links(&mut self, clamped_links: u32) {
+        let taking = self.taking_hold.clone();
         self.take_hold(f32::INFINITY);
         self.clamped_links = clamped_links;
         let guides = &self.style.guides;
@@ -84,6 +87,23 @@ impl Simulation {
         for block in &mut self.blocks {
             block.rest = RestShape::new(guides, &block.guides, first_free);
         }
+        if let Some(taking) = taking {
+            self.go_on_taking_hold(taking.since_secs, taking.held, taking.from);
+        }
+    }
+
+    /// What is known of ties on their way to their strength: since when, how firmly each point of each guide was held at the
+    /// start, and for each block the directions of its links then.
+    pub(super) fn taking_hold(&self) -> Option<(f32, &[f32], &[Vec<Lane3>])> {
+        let taking = self.taking_hold.as_ref()?;
+        Some((taking.since_secs, &taking.held, &taking.from))
+    }
+
+    /// Goes on from what [`Simulation::taking_hold`] knew, where all ties hold in full.
+    pub(super) fn go_on_taking_hold(&mut self, since_secs: f32, held: Vec<f32>, from: Vec<Vec<Lane3>>) {
+        let to = self.blocks.iter().map(|block| block.rest.clone()).collect();
+        self.taking_hold = Some(TakingHold { held, from, to, since_secs });
+        self.take_hold(0.0);
     }
 
     /// Fills `block` with the rest shape and the motion of its guides, wherever they are here. Where it `stays`, it keeps its
@@ -128,7 +148,7 @@ impl Simulation {
         taking.since_secs += dt_secs;
         let t = (taking.since_secs / HOLD_SECS).min(1.0);
         let points = self.style.guides.points_per_guide;
-        for (block, (from, to)) in self.blocks.iter_mut().zip(&taking.shapes) {
+        for ((block, from), to) in self.blocks.iter_mut().zip(&taking.from).zip(&taking.to) {
             block.held = crate::ties::rows(&self.style, &block.guides);
             for (i, row) in block.held.iter_mut().enumerate() {
                 for (hold, guide) in row.iter_mut().zip(block.guides) {
@@ -298,6 +318,36 @@ mod tests {
         // Measured: 22 mm, of locks that are wound otherwise, and 208 mm.
         println!("{dragged} m dragged, {new} m tied anew");
         assert!(dragged < 0.2 * new, "{dragged} m on average, and the control {new} m");
+    }
+
+    #[test]
+    fn a_state_saved_while_a_tie_takes_hold_goes_on_with_the_same_bits() {
+        let [loose, tied] = loose_and(TieKind::Ponytail);
+        let mut simulation = Simulation::new(loose);
+        simulation.reset(&input(0));
+        simulation.set_style(Arc::clone(&tied));
+        let settings = SimulationSettings::default();
+        let go_on = |simulation: &mut Simulation, steps: std::ops::Range<i32>| {
+            for step in steps {
+                // The roots are carried one link further on the way.
+                let settings = SimulationSettings { clamped_links: 1 + u32::from(step > 15), ..settings };
+                simulation.step(&input(step), &settings, DT);
+            }
+        };
+        go_on(&mut simulation, 1..12);
+        let saved = simulation.save();
+        let mut other = Simulation::new(tied);
+        other.reset(&input(0));
+        assert!(other.taking_hold().is_none());
+        other.restore(&saved).expect("a state of the same hair");
+        let mut held = other.clone();
+        go_on(&mut simulation, 12..40);
+        go_on(&mut other, 12..40);
+        assert_eq!(simulation.state_hash(), other.state_hash());
+        // The control: a tie that holds at once.
+        held.take_hold(f32::INFINITY);
+        go_on(&mut held, 12..40);
+        assert_ne!(held.state_hash(), other.state_hash());
     }
 
     #[test]

@@ -3,7 +3,7 @@
 //! Little-endian: the four bytes `LLWS`, the version (u32), a fingerprint of the guides at rest (u64), the state,
 //! and a fingerprint of all before it (u64). What follows from style and state is worked out again.
 
-use glam::{Affine3A, Mat3A, Quat, Vec3, Vec3A};
+use glam::{Affine3A, DVec3, Mat3A, Quat, Vec3, Vec3A};
 use lovelock_groom::Guides;
 use lovelock_motion::{ColliderShape, PlacedCollider};
 
@@ -11,7 +11,7 @@ use super::{Simulation, first_free};
 use crate::block::Block;
 use crate::colliders::field::{MovingField, PlaneRow};
 use crate::hash::Hasher;
-use crate::lanes::{LANES, Lane, Lane3};
+use crate::lanes::{LANES, Lane, Lane3, ZERO3};
 use crate::motion::HeadPose;
 use crate::rest::RestShape;
 
@@ -73,6 +73,10 @@ impl Simulation {
         out.floats(&self.head.place.to_array());
         out.u64(self.time_secs.to_bits());
         out.u64(self.elapsed_secs.to_bits());
+        out.u32(u32::from(self.air_way.is_some()));
+        for way in self.air_way.unwrap_or_default().to_array() {
+            out.u64(way.to_bits());
+        }
         out.u32(self.clamped_links);
         out.u32(self.colliders.len() as u32);
         for collider in &self.colliders {
@@ -96,6 +100,14 @@ impl Simulation {
         }
         if !places.is_empty() {
             for axis in self.blocks.iter().flat_map(|block| &block.planes).flat_map(|row| &row.rest) {
+                out.floats(&axis[..]);
+            }
+        }
+        out.u32(u32::from(self.taking_hold().is_some()));
+        if let Some((since_secs, held, from)) = self.taking_hold() {
+            out.floats(&[since_secs]);
+            out.floats(held);
+            for axis in from.iter().flatten().flatten() {
                 out.floats(&axis[..]);
             }
         }
@@ -125,6 +137,7 @@ impl Simulation {
             return Err(damaged("its bytes do not give the fingerprint at its end"));
         }
         let mut next = self.clone();
+        next.take_hold(f32::INFINITY);
         let turn = Quat::from_array(input.floats()?);
         let place = Vec3::from_array(input.floats()?);
         if !(turn.is_finite() && place.is_finite() && (turn.length_squared() - 1.0).abs() < 1e-3) {
@@ -133,6 +146,12 @@ impl Simulation {
         next.head = HeadPose { turn, place };
         next.time_secs = f64::from_bits(input.u64()?);
         next.elapsed_secs = f64::from_bits(input.u64()?);
+        let blown = input.u32()? != 0;
+        let way = [input.u64()?, input.u64()?, input.u64()?].map(f64::from_bits);
+        next.air_way = blown.then_some(DVec3::from_array(way));
+        if !way.iter().all(|way| way.is_finite()) {
+            return Err(damaged("the wind has come from nowhere"));
+        }
         next.clamped_links = input.u32()?;
         if next.clamped_links > 2 {
             return Err(damaged("it clamps more than two links"));
@@ -177,6 +196,18 @@ impl Simulation {
                     *axis = Lane(input.floats()?);
                 }
             }
+        }
+        if input.u32()? != 0 {
+            let [since_secs] = input.floats()?;
+            let mut held = vec![0.0; guides.x.len()];
+            for hold in &mut held {
+                [*hold] = input.floats()?;
+            }
+            let mut from = vec![vec![ZERO3; guides.points_per_guide]; next.blocks.len()];
+            for axis in from.iter_mut().flatten().flatten() {
+                *axis = Lane(input.floats()?);
+            }
+            next.go_on_taking_hold(since_secs, held, from);
         }
         if input.0.len() != 8 {
             return Err(damaged("it goes on after its end"));

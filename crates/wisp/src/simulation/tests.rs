@@ -53,10 +53,11 @@ fn a_guide_gone_non_finite_is_put_back_counted_and_moves_on() {
     }
     let mut sound = hurt.clone();
     let (block, lane) = hurt.slots[17];
-    for axis in &mut hurt.blocks[block as usize].position[7] {
-        axis[lane as usize] = f32::NAN;
-    }
+    let (mut lost, block, lane) = (hurt.clone(), block as usize, lane as usize);
+    lost.blocks[block].position[7][1][lane] = f32::INFINITY;
+    let length = std::mem::replace(&mut hurt.blocks[block].rest.length[7][lane], f32::NAN);
     let report = hurt.step(&input(20, &[skull]), &settings(), 1.0 / 60.0);
+    hurt.blocks[block].rest.length[7][lane] = length;
     sound.step(&input(20, &[skull]), &settings(), 1.0 / 60.0);
     assert_eq!((report.recovered_guides, report.recovered_at), (1, Some(17)));
     let tip = |s: &Simulation, guide: usize| {
@@ -70,6 +71,12 @@ fn a_guide_gone_non_finite_is_put_back_counted_and_moves_on() {
         tip(&hurt, 17),
         tip(&sound, 17)
     );
+    // One whose place is lost too is put back to its place at rest.
+    let report = lost.step(&input(20, &[skull]), &settings(), 1.0 / 60.0);
+    assert_eq!((report.recovered_guides, report.recovered_at), (1, Some(17)));
+    let styled = at(&lost.blocks[block].rest.position[15], lane);
+    let styled = lost.head.map_from_head(lost.head.place).apply(styled);
+    assert!((tip(&lost, 17) - styled).length() < 1e-5, "{} against {styled}", tip(&lost, 17));
     let before = tip(&hurt, 17);
     for step in 21..60 {
         let report = hurt.step(&input(step, &[skull]), &settings(), 1.0 / 60.0);

@@ -74,12 +74,16 @@ fn measure(block: &mut Block, plan: &Plan) {
     }
 }
 
-/// Puts lane `k` back to its last good pose, carried with the head and moving with it.
+/// Puts lane `k` back to its pose at the beginning of the step, carried with the head and moving with it; to its pose at
+/// rest where that was lost already.
 #[cold]
 fn restore(block: &mut Block, plan: &Plan, k: usize) {
     let last = plan.substeps.last();
+    let known = block.work.good.iter().all(|row| at(row, k).is_finite());
     for i in 0..block.points() {
-        let p = plan.carry_all.apply(at(&block.work.good[i], k));
+        let was = plan.carry_all.apply(at(&block.work.good[i], k));
+        let rest = at(&block.rest.position[i], k);
+        let p = if known { was } else { last.map_or(rest, |s| s.head.apply(rest)) };
         put(&mut block.position[i], k, p);
         put(&mut block.leans[i], k, glam::Vec3::ZERO);
         let v = last.map_or(glam::Vec3::ZERO, |s| s.rigid_velocity(p));

@@ -4,7 +4,7 @@
 //! A step asks for the skin in every substep and in every round of a push-out. The way back to rest is measured where
 //! a point is for the first time in a step and anew wherever it has left the place by [`NEAR`], or by half its distance
 //! from contact; in between the skin is its tangent plane, which moves with the drift. A plane is off by
-//! `NEAR^2 / 2 R` at most over a surface of radius `R`: 0.05 mm over the skull, 0.5 mm at the rim of an ear.
+//! `NEAR^2 / 2 R` at most over a surface of radius `R`: 0.01 mm over the skull, 0.1 mm at the rim of an ear.
 
 use glam::Vec3;
 
