@@ -64,7 +64,8 @@ pub(crate) struct Work {
 impl Work {
     /// Makes room for guides of `points` points. What is in the rows is of some other step.
     pub(crate) fn fit(&mut self, points: usize) {
-        for rows in [&mut self.good, &mut self.push, &mut self.next, &mut self.next_bend, &mut self.residual] {
+        for rows in [&mut self.good, &mut self.push, &mut self.next, &mut self.next_bend, &mut self.residual]
+        {
             rows.resize(points, ZERO3);
         }
         self.keep.resize(points, ZERO);
@@ -78,6 +79,9 @@ pub(crate) struct Outcome {
     pub(crate) max_stretch: f32,
     pub(crate) deepest: Depth,
     pub(crate) deepest_guide: u32,
+    /// Points in skin of which only a guess is known, and the first of them: its guide and its number.
+    pub(crate) unsure: u32,
+    pub(crate) first_unsure: Option<(u32, u32)>,
     pub(crate) recovered: u32,
     /// The first lane that was put back.
     pub(crate) first_recovered: Option<usize>,

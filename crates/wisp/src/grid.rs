@@ -85,7 +85,9 @@ impl DensityGrid {
         centre /= count.max(1.0);
         let radius = lanes().map(|(b, k)| (at(&b.rest.position[0], k) - centre).length()).fold(0.0, f32::max);
         let reach = lanes()
-            .flat_map(|(b, k)| b.rest.position.iter().map(move |row| (at(row, k) - centre).abs().max_element()))
+            .flat_map(|(b, k)| {
+                b.rest.position.iter().map(move |row| (at(row, k) - centre).abs().max_element())
+            })
             .filter(|reach| reach.is_finite())
             .fold(0.0, f32::max);
         let swing = (2.0 * (radius + longest) / SIDE as f32).clamp(CELL.0, CELL.1);
@@ -132,12 +134,7 @@ impl DensityGrid {
 
     /// Deposits all blocks anew, with positions in head space by `head_from_last` and velocities as they are.
     /// Gives the number of over-dense cells.
-    pub(crate) fn update(
-        &mut self,
-        blocks: &[Block],
-        head_from_last: &Map,
-        repulsion: Repulsion,
-    ) -> u32 {
+    pub(crate) fn update(&mut self, blocks: &[Block], head_from_last: &Map, repulsion: Repulsion) -> u32 {
         self.repulsion = repulsion;
         self.fill(blocks, &Source::Now { head_from_last, directed: repulsion.anisotropy > 0.0 });
         self.tally.over_dense

@@ -14,6 +14,9 @@ pub struct StepInput<'a> {
     pub world_from_head: Affine3A,
     /// What hair collides with, in world space: the same list in the same order from step to step.
     pub colliders: &'a [PlacedCollider],
+    /// What keeps the wind off besides, in world space: the shapes that the field stands for. Where there is a field and
+    /// none of these, the head does.
+    pub sheltering: &'a [PlacedCollider],
     /// The field of head and shoulders, for what the colliders leave out.
     pub field: Option<PlacedField<'a>>,
 }
@@ -30,6 +33,6 @@ pub struct PlacedField<'a> {
 impl<'a> StepInput<'a> {
     /// A head and what hair collides with, without a field.
     pub fn new(time_secs: f64, world_from_head: Affine3A, colliders: &'a [PlacedCollider]) -> Self {
-        Self { time_secs, world_from_head, colliders, field: None }
+        Self { time_secs, world_from_head, colliders, sheltering: &[], field: None }
     }
 }

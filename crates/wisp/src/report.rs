@@ -13,7 +13,14 @@ pub struct StepReport {
     pub max_penetration_m: f32,
     /// Where that point is; `None` where no point is inside.
     pub deepest: Option<InsidePoint>,
-    /// Guides that were not finite and were put back to their last good pose.
+    /// Points in folded skin, of which only a guess is known: they are pushed out a little, and nobody knows how deep they
+    /// are. They do not count in `max_penetration_m`.
+    #[serde(default)]
+    pub unsure_points: u32,
+    /// The first of those, its guide and its number.
+    #[serde(default)]
+    pub unsure_at: Option<(u32, u32)>,
+    /// Guides that were not finite and were put back to where they began the step.
     pub recovered_guides: u32,
     /// Cells of the density grid above their threshold at the start of the step.
     pub over_dense_cells: u32,

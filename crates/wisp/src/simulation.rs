@@ -11,7 +11,7 @@ use crate::block::Block;
 use crate::colliders::contact::ContactRules;
 use crate::colliders::field::MovingField;
 use crate::colliders::shape::Shape;
-use crate::colliders::{MovingShape, RestColliders, place};
+use crate::colliders::{MovingShape, RestColliders, place, transformed};
 use crate::dispatch::step_block;
 use crate::grid::DensityGrid;
 use crate::hash::Hasher;
@@ -25,6 +25,9 @@ use crate::{BodyPart, InsidePoint, MAX_SUBSTEPS, SimulationSettings, StepInput, 
 
 /// In less than this no time passes: velocities are differences over a step, and rounding would be all of them.
 const SHORTEST_SECS: f32 = 1e-6;
+
+/// Times of the wind that are nearer to each other than this are the same.
+const SAME_SECS: f64 = 1e-3;
 
 /// Hair in motion: the guides of one hairstyle as chains of rigid links.
 ///
@@ -132,11 +135,12 @@ impl Simulation {
         self.colliders.clear();
     }
 
-    /// Tells the wind what time it is, seconds: the same wind blows at the same time. Without it, time counts from the last
-    /// reset.
+    /// Tells the wind what time it is, seconds: the same wind blows at the same time, as if it had blown like this until
+    /// then, unless time only goes on. Without it, time counts from the last reset.
     pub fn set_wind_secs(&mut self, secs: f64) {
         if secs.is_finite() {
-            (self.elapsed_secs, self.air_way) = (secs, None);
+            self.air_way = self.air_way.filter(|_| (secs - self.elapsed_secs).abs() < SAME_SECS);
+            self.elapsed_secs = secs;
         }
     }
 
@@ -229,10 +233,13 @@ impl Simulation {
         let shelter = if wind.blows() { settings.wind.sheltering } else { 0.0 };
         let along = Vec3::from_array(settings.wind.direction);
         let here = Affine3A::from_rotation_translation(self.head.turn, self.head.place - origin);
-        let head_in_field = self.field.as_ref().filter(|_| shelter > 0.0);
+        let alone = shelter > 0.0 && input.sheltering.is_empty();
+        let head_in_field = self.field.as_ref().filter(|_| alone);
         let head_in_field = head_in_field.and_then(|_| head_of(&self.style.scalp, &here));
         let solids = self.shapes[..colliders.len()].iter().filter_map(|mover| mover.shape);
-        let wakes = Wakes::new(solids.chain(head_in_field), along, shelter);
+        let here = Affine3A::from_translation(-origin);
+        let others = input.sheltering.iter().filter_map(|c| Shape::new(&transformed(&c.shape, &here)));
+        let wakes = Wakes::new(solids.chain(head_in_field).chain(others), along, shelter);
         let first_free = first_free(self.clamped_links, self.style.guides.points_per_guide);
         let plan = Plan {
             wide: self.wide,
@@ -278,6 +285,8 @@ impl Simulation {
                     within: BodyPart::of(out.deepest.collider),
                 });
             }
+            report.unsure_points += out.unsure;
+            report.unsure_at = report.unsure_at.or(out.first_unsure);
             report.recovered_guides += out.recovered;
             report.recovered_at = report.recovered_at.or(out.first_recovered.map(|lane| block.guides[lane]));
             energy += out.energy;

@@ -103,6 +103,14 @@ impl ColliderEdits {
         });
         used.collect()
     }
+
+    /// The shapes that the field stands for: no hair meets them, but they keep the wind off.
+    pub fn stood_for(&self, fitted: &[Collider], field: Option<&BodyField>) -> Vec<Collider> {
+        let Some(field) = field.filter(|_| self.field.enabled) else { return Vec::new() };
+        let met = self.apply(fitted, Some(field));
+        let others = fitted.iter().filter(|collider| met.iter().all(|met| met.name != collider.name));
+        others.filter(|collider| field.covers(&collider.shape_at_rest)).cloned().collect()
+    }
 }
 
 fn within(value: f32, min: f32, max: f32, default: f32) -> f32 {

@@ -46,6 +46,7 @@ pub struct Engine {
     simulated_secs: f64,
     pose: Pose,
     colliders: Vec<PlacedCollider>,
+    sheltering: Vec<PlacedCollider>,
     field: FieldPose,
     /// Where the style at rest lies inside the body.
     rest_inside: Option<InsidePoint>,
@@ -90,6 +91,7 @@ impl Engine {
             simulated_secs: 0.0,
             pose: Pose::default(),
             colliders: Vec::new(),
+            sheltering: Vec::new(),
             field: FieldPose::default(),
             rest_inside: None,
             rest_is_new: false,
@@ -336,6 +338,7 @@ impl Engine {
         let clip_secs = self.scene.clip_secs(self.time_secs().max(lead_in_secs));
         pose_at(&self.scene.body, self.scene.clip.as_deref(), clip_secs, &mut self.pose);
         place_colliders(&self.scene.colliders, &self.scene.body, &self.pose, &mut self.colliders);
+        place_colliders(&self.scene.sheltering, &self.scene.body, &self.pose, &mut self.sheltering);
         if let Some(field) = &self.scene.field {
             field.place(&self.scene.body, &self.pose, self.scene.field_lift_m, &mut self.field);
         }
@@ -346,7 +349,8 @@ impl Engine {
         // The same wind blows at the same time, however the hair came there.
         self.simulation.set_wind_secs(self.time_secs() - self.step_secs);
         self.simulated_secs += self.step_secs;
-        let input = body_at(self.simulated_secs, &self.scene, &self.pose, &self.colliders, &self.field);
+        let placed = [&self.colliders[..], &self.sheltering];
+        let input = body_at(self.simulated_secs, &self.scene, &self.pose, placed, &self.field);
         self.report = self.simulation.step(&input, &self.settings, self.step_secs as f32);
         if std::mem::take(&mut self.rest_is_new) {
             self.rest_inside = self.simulation.rest_inside();
@@ -363,14 +367,14 @@ impl Engine {
     }
 }
 
-/// The body at a time of the simulator's clock.
+/// The body at a time of the simulator's clock: the shapes that hair meets, and those that only the wind does.
 fn body_at<'a>(
     time_secs: f64,
     scene: &'a Scene,
     pose: &Pose,
-    colliders: &'a [PlacedCollider],
+    [colliders, sheltering]: [&'a [PlacedCollider]; 2],
     field: &'a FieldPose,
 ) -> StepInput<'a> {
-    let placed = scene.field.as_ref().map(|of| PlacedField { field: of, pose: field });
-    StepInput { field: placed, ..StepInput::new(time_secs, pose.world_from_head, colliders) }
+    let field = scene.field.as_ref().map(|of| PlacedField { field: of, pose: field });
+    StepInput { field, sheltering, ..StepInput::new(time_secs, pose.world_from_head, colliders) }
 }

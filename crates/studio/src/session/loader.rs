@@ -46,7 +46,7 @@ pub struct SceneLoader {
     hair_file: HairFileCache,
     dressed: Option<Dressed>,
     head_path: Option<(Arc<MotionPart>, bool, Arc<HeadPath>)>,
-    colliders: Option<(Arc<BodyPart>, ColliderEdits, Arc<[Collider]>)>,
+    colliders: Option<(Arc<BodyPart>, ColliderEdits, [Arc<[Collider]>; 2])>,
 }
 
 impl SceneLoader {
@@ -96,13 +96,15 @@ impl SceneLoader {
 
         let notes: Vec<Problem> =
             [&body.notes, &motion.notes, &hair.notes].into_iter().flatten().cloned().collect();
+        let [colliders, sheltering] = self.colliders(&body, &project.body.colliders);
         let scene = Scene {
             body: Arc::clone(&body.body),
             clips: Arc::clone(&body.clips),
             clip: motion.clip.clone(),
             speed: f64::from(project.motion.speed),
             looping,
-            colliders: self.colliders(&body, &project.body.colliders),
+            colliders,
+            sheltering,
             fitted: Arc::clone(&body.colliders),
             field: body.field.clone().filter(|_| project.body.colliders.field.enabled),
             field_lift_m: project.body.colliders.field.lift_m(),
@@ -217,16 +219,18 @@ impl SceneLoader {
         part
     }
 
-    /// The shapes that hair meets, as the project changes them.
-    fn colliders(&mut self, body: &Arc<BodyPart>, edits: &ColliderEdits) -> Arc<[Collider]> {
+    /// The shapes that hair meets, as the project changes them, and those that only the wind does.
+    fn colliders(&mut self, body: &Arc<BodyPart>, edits: &ColliderEdits) -> [Arc<[Collider]>; 2] {
         if let Some((of, kept, met)) = &self.colliders
             && Arc::ptr_eq(of, body)
             && kept == edits
         {
-            return Arc::clone(met);
+            return met.clone();
         }
-        let met: Arc<[Collider]> = edits.apply(&body.colliders, body.field.as_deref()).into();
-        self.colliders = Some((Arc::clone(body), edits.clone(), Arc::clone(&met)));
+        let field = body.field.as_deref();
+        let met =
+            [edits.apply(&body.colliders, field).into(), edits.stood_for(&body.colliders, field).into()];
+        self.colliders = Some((Arc::clone(body), edits.clone(), met.clone()));
         met
     }
 

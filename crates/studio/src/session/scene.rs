@@ -35,6 +35,8 @@ pub struct Scene {
     pub looping: bool,
     /// What hair collides with, beside the field.
     pub colliders: Arc<[Collider]>,
+    /// The shapes that the field stands for, which keep the wind off.
+    pub sheltering: Arc<[Collider]>,
     /// All shapes that were fitted to the body, as they were.
     pub fitted: Arc<[Collider]>,
     /// The skin of head and shoulders, where hair meets it.

@@ -360,10 +360,15 @@ pub(crate) struct Depths {
     pub(crate) depth: Lane,
     /// The collider of that depth; [`FIELD`] for the field.
     pub(crate) collider: [u32; LANES],
+    /// Whether it is inside the field, and nobody knows how deep.
+    pub(crate) unsure: [bool; LANES],
 }
 
 /// Stands for the field among colliders.
 pub(crate) const FIELD: u32 = u32::MAX;
+
+/// What is less deep in a guess than this is taken for outside, metres.
+const UNSURE_FROM: f32 = 1e-3;
 
 /// How deep the lanes of point `i` are inside what they may touch.
 #[inline(always)]
@@ -374,7 +379,7 @@ pub(crate) fn penetration(
     rules: &ContactRules,
     planes: &mut PlaneRow,
 ) -> Depths {
-    let mut worst = Depths { depth: ZERO, collider: [FIELD; LANES] };
+    let mut worst = Depths { depth: ZERO, collider: [FIELD; LANES], unsure: [false; LANES] };
     // What counts is the surface, or the distance at rest where that is less.
     let bare = rules.bare();
     if let Some(field) = &near.field
@@ -383,7 +388,9 @@ pub(crate) fn penetration(
         let allowed = near.allowed_by_field(field, &row, point, &bare);
         for k in 0..LANES {
             // The depth in what is a guess is one too, and tells nothing.
-            worst.depth[k] = greater(0.0, allowed[k] - row.distance[k]) * (1.0 - row.guess[k]);
+            let depth = greater(0.0, allowed[k] - row.distance[k]);
+            worst.depth[k] = depth * (1.0 - row.guess[k]);
+            worst.unsure[k] = (row.guess[k] > 0.0) & (depth > UNSURE_FROM);
         }
     }
     let (min, max) = bounds(placed);

@@ -117,7 +117,7 @@ fn surface_velocity(was: &PlacedCollider, now: &PlacedCollider, dt_secs: f32, or
 }
 
 /// A shape seen in another space; `m` is rigid.
-fn transformed(shape: &ColliderShape, m: &Affine3A) -> ColliderShape {
+pub(crate) fn transformed(shape: &ColliderShape, m: &Affine3A) -> ColliderShape {
     match *shape {
         ColliderShape::Capsule { a, b, radius_a, radius_b } => {
             ColliderShape::Capsule { a: m.transform_point3(a), b: m.transform_point3(b), radius_a, radius_b }

@@ -125,7 +125,6 @@ fn bits(mut mask: u64) -> impl Iterator<Item = usize> {
     })
 }
 
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -112,7 +112,14 @@ impl DensityGrid {
         loop {
             let next = self.sample_row(block, plan, to);
             if to > 0 {
-                between(block, from..if to + 1 == count { count } else { to }, to - from, &row, &next, cohesion);
+                between(
+                    block,
+                    from..if to + 1 == count { count } else { to },
+                    to - from,
+                    &row,
+                    &next,
+                    cohesion,
+                );
             }
             if to + 1 >= count {
                 break;

@@ -5,8 +5,8 @@ use glam::Mat3;
 use super::direction::{drawn_to, push_across};
 use super::*;
 use crate::lanes::{LANES, put};
-use crate::settings::RepulsionMode;
 use crate::rest::blocks_of;
+use crate::settings::RepulsionMode;
 
 /// Straight guides of 20 cm on a square lattice of `side` by `side`, `gap` metres apart.
 fn lattice(side: usize, gap: f32) -> Vec<Block> {

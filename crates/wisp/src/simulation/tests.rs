@@ -3,7 +3,7 @@ use lovelock_groom::Guides;
 use lovelock_motion::ColliderShape;
 
 use super::*;
-use crate::Integrator;
+use crate::{Integrator, Wind};
 
 /// Thirty locks around a head of 8 cm, and what they collide with.
 fn head_of_hair() -> (Simulation, PlacedCollider) {
@@ -162,4 +162,31 @@ fn what_is_spared_could_not_have_touched() {
     let spared = run(true, true);
     assert_eq!(spared, run(false, true), "sparing tests changes the motion");
     assert_ne!(spared, run(true, false), "no hair touches the field: the test shows nothing");
+}
+
+#[test]
+fn what_only_shelters_keeps_the_wind_off_and_hair_goes_through_it() {
+    let mut guides = Guides { points_per_guide: 11, ..Guides::default() };
+    guides.push(&std::array::from_fn::<Vec3, 11, _>(|i| Vec3::NEG_Y * (0.02 * i as f32)));
+    let style = Arc::new(Hairstyle { guides, ..Hairstyle::default() });
+    let wind = Wind { speed: 3.0, gusts: 0.0, turbulence: 0.0, ..Wind::default() };
+    let windy = SimulationSettings { wind, ..settings() };
+    let ball = |x: f32| {
+        let at = Vec3::new(x, -0.1, 0.0);
+        let shape = ColliderShape::Capsule { a: at, b: at, radius_a: 0.15, radius_b: 0.15 };
+        PlacedCollider { shape, world_from_rest: Affine3A::IDENTITY }
+    };
+    let blown = |sheltering: &[PlacedCollider]| {
+        let mut simulation = Simulation::new(Arc::clone(&style));
+        simulation.reset(&StepInput { sheltering, ..StepInput::new(0.0, Affine3A::IDENTITY, &[]) });
+        for step in 1..120 {
+            let still = StepInput::new(f64::from(step) / 60.0, Affine3A::IDENTITY, &[]);
+            simulation.step(&StepInput { sheltering, ..still }, &windy, 1.0 / 60.0);
+        }
+        at(&simulation.blocks[0].position[10], 0).x
+    };
+    let (open, lee, beside) = (blown(&[]), blown(&[ball(-0.3)]), blown(&[ball(0.4)]));
+    assert!(open > 0.01 && lee < 0.5 * open, "{open} m in the open, {lee} m in the lee");
+    // The control: what stands downwind shelters nothing.
+    assert!((beside - open).abs() < 0.05 * open, "{beside} m before it, {open} m in the open");
 }

@@ -136,7 +136,6 @@ impl Coupled {
             row_done();
         }
     }
-
 }
 
 impl Factor {

@@ -103,7 +103,8 @@ fn solve(first_free: usize, scratch: &mut LengthScratch) {
     for i in first..count {
         // The carried end of the first link has no weight.
         let last = i + 1 == count;
-        let diagonal = if i == first_free { 0.0 } else { 1.0 } + if last { 1.0 - scratch.tip_held } else { 1.0 };
+        let diagonal =
+            if i == first_free { 0.0 } else { 1.0 } + if last { 1.0 - scratch.tip_held } else { 1.0 };
         let n = scratch.direction[i];
         let n_next = scratch.direction[if last { i } else { i + 1 }];
         let mut r = scratch.multiplier[i];

@@ -319,6 +319,10 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize, lay: Lay) {
             if last && (near.field.is_some() || !near.active.is_empty()) {
                 let found = penetration(i, &placed, &near, &plan.rules, planes);
                 for k in 0..LANES {
+                    if found.unsure[k] && k < block.used {
+                        block.outcome.unsure += 1;
+                        block.outcome.first_unsure.get_or_insert((block.guides[k], i as u32));
+                    }
                     if found.depth[k] > deepest[k].metres {
                         deepest[k] =
                             Depth { metres: found.depth[k], point: i as u32, collider: found.collider[k] };

@@ -40,6 +40,7 @@ impl Engine {
             combing: None,
             pose: Pose::default(),
             colliders: Vec::new(),
+            sheltering: Vec::new(),
             field: FieldPose::default(),
             pool: SnapshotPool::default(),
             ..*self
@@ -57,6 +58,7 @@ impl Engine {
         self.combing = None;
         (self.simulation, self.simulated_secs) = (aside.simulation, aside.simulated_secs);
         (self.pose, self.colliders, self.field) = (aside.pose, aside.colliders, aside.field);
+        self.sheltering = aside.sheltering;
         self.report = aside.report;
         (self.rest_inside, self.rest_is_new) = (aside.rest_inside, aside.rest_is_new);
         self.totals = Totals::default();
@@ -76,7 +78,8 @@ impl Engine {
         self.at_step = step;
         self.simulated_secs += JUMP_SECS;
         self.place_body(lead_in_secs);
-        let input = body_at(self.simulated_secs, &self.scene, &self.pose, &self.colliders, &self.field);
+        let placed = [&self.colliders[..], &self.sheltering];
+        let input = body_at(self.simulated_secs, &self.scene, &self.pose, placed, &self.field);
         self.simulation.reset(&input);
         self.report = StepReport::default();
     }
