@@ -1,48 +1,59 @@
 //! The way back to rest of a weighting of joints, and of all the weightings around a place.
 
-use glam::{Affine3A, Mat3A, Vec3};
+use glam::{Affine3A, Mat3A, Vec3, Vec3A};
 
-/// A matrix by columns, a shift, and the head's share of the weights.
+/// A matrix by columns and a shift, four numbers each; the last of the shift is the head's share of the weights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(64))]
 pub(super) struct Back([f32; 16]);
 
 impl Back {
     pub(super) const IDENTITY: Self =
-        Self([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]);
+        Self([1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
+
+    /// What is added up to others.
+    pub(super) const NOTHING: Self = Self([0.0; 16]);
 
     pub(super) fn new(m: &Affine3A, head: f32) -> Self {
         let mut out = [0.0; 16];
-        out[..12].copy_from_slice(&m.to_cols_array());
-        out[12] = head;
+        for (column, from) in out.as_chunks_mut::<4>().0.iter_mut().zip(m.to_cols_array_2d()) {
+            column[..3].copy_from_slice(&from);
+        }
+        out[15] = head;
         Self(out)
     }
 
     #[inline(always)]
-    pub(super) fn apply(&self, p: Vec3) -> Vec3 {
-        let m = &self.0;
-        Vec3::new(
-            m[0] * p.x + m[3] * p.y + m[6] * p.z + m[9],
-            m[1] * p.x + m[4] * p.y + m[7] * p.z + m[10],
-            m[2] * p.x + m[5] * p.y + m[8] * p.z + m[11],
-        )
+    fn column(&self, i: usize) -> Vec3A {
+        Vec3A::from_slice(&self.0[4 * i..4 * i + 3])
+    }
+
+    /// The map of a point.
+    #[inline(always)]
+    pub(super) fn apply(&self, p: Vec3) -> Vec3A {
+        self.column(0) * p.x + self.column(1) * p.y + self.column(2) * p.z + self.column(3)
     }
 
     /// The transpose of the matrix times a vector: gradients at rest become gradients now.
     #[inline(always)]
-    pub(super) fn turn_forth(&self, v: Vec3) -> Vec3 {
-        let m = &self.0;
-        Vec3::new(
-            m[0] * v.x + m[1] * v.y + m[2] * v.z,
-            m[3] * v.x + m[4] * v.y + m[5] * v.z,
-            m[6] * v.x + m[7] * v.y + m[8] * v.z,
-        )
+    pub(super) fn turn_forth(&self, v: Vec3A) -> Vec3 {
+        Vec3::new(self.column(0).dot(v), self.column(1).dot(v), self.column(2).dot(v))
     }
 
     /// The head's share of the weights.
     #[inline(always)]
     pub(super) fn head(&self) -> f32 {
-        self.0[12]
+        self.0[15]
+    }
+
+    /// Adds `weight` times `other`.
+    #[inline(always)]
+    pub(super) fn plus(&self, other: &Self, weight: f32) -> Self {
+        let mut out = [0.0; 16];
+        for i in 0..16 {
+            out[i] = self.0[i] + other.0[i] * weight;
+        }
+        Self(out)
     }
 
     #[inline(always)]
@@ -88,6 +99,6 @@ impl Around {
     #[inline(always)]
     pub(super) fn slope(&self, p: Vec3) -> Mat3A {
         let [x, y, z] = &self.along;
-        Mat3A::from_cols(x.apply(p).into(), y.apply(p).into(), z.apply(p).into())
+        Mat3A::from_cols(x.apply(p), y.apply(p), z.apply(p))
     }
 }

@@ -1,6 +1,6 @@
 //! One point against the field: taken back to rest and measured there.
 
-use glam::{Mat3A, UVec3, Vec3};
+use glam::{Mat3A, UVec3, Vec3, Vec3A};
 use lovelock_motion::FieldLattice;
 
 use super::back::{Around, Back};
@@ -75,7 +75,7 @@ impl MovingField {
     #[inline(always)]
     pub(super) fn skin(&self, p: Vec3, start: Start, t: f32, reach: f32) -> Found {
         let (guess, slot) = match start {
-            Start::Slot(slot) => (self.before[slot].toward(&self.now[slot], t).apply(p), slot),
+            Start::Slot(slot) => (self.guess(p, slot, t), slot),
             Start::Place(place) => (place, 0),
         };
         let Some(rest) = self.way_back(p, guess, slot, t) else { return Found::Nothing };
@@ -89,7 +89,7 @@ impl MovingField {
             return Found::Beyond(0.5 * value - self.lift);
         }
         // The chain rule: dX = (1 - V')^-1 B dx.
-        let slope = rest.back.turn_forth(Vec3::from(rest.stretch.transpose() * glam::Vec3A::from(at_rest)));
+        let slope = rest.back.turn_forth(rest.stretch.transpose() * Vec3A::from(at_rest));
         let steepness = slope.length_squared().sqrt();
         let normal = if steepness > 1e-6 { slope * (1.0 / steepness) } else { Vec3::Y };
         let distance = value / steepness.clamp(0.5, 2.0) - self.lift;
@@ -101,11 +101,12 @@ impl MovingField {
         let drift = match &rest.slots {
             None => Vec3::ZERO,
             Some(slots) => {
-                let mut moved = Vec3::ZERO;
+                let mut way = Back::NOTHING;
                 for (&slot, weight) in slots.iter().zip(weights(rest.fraction)) {
                     let slot = usize::from(slot);
-                    moved += self.before[slot].less(&self.now[slot]).apply(p) * weight;
+                    way = way.plus(&self.before[slot].less(&self.now[slot]), weight);
                 }
+                let moved = way.apply(p);
                 rest.back.turn_forth(moved) * (1.0 / self.dt_secs)
             }
         };
@@ -115,7 +116,7 @@ impl MovingField {
     /// What the weighting `slot` makes of `p`.
     #[inline(always)]
     pub(super) fn guess(&self, p: Vec3, slot: usize, t: f32) -> Vec3 {
-        self.before[slot].toward(&self.now[slot], t).apply(p)
+        self.before[slot].toward(&self.now[slot], t).apply(p).into()
     }
 
     /// Whether a way back that begins at `guess` leads to the place `rest` that is known.
@@ -163,7 +164,7 @@ impl MovingField {
             (rest.slots, rest.fraction) = (Some(slots), fraction);
             let next = if slots == [slots[0]; 8] {
                 (rest.back, rest.stretch) = (of_slot(slots[0]), Mat3A::IDENTITY);
-                rest.back.apply(p)
+                rest.back.apply(p).into()
             } else {
                 let mut backs = [Back::IDENTITY; 8];
                 for (back, &slot) in backs.iter_mut().zip(&slots) {
@@ -171,7 +172,7 @@ impl MovingField {
                 }
                 let here = Around::new(&backs, fraction);
                 rest.back = here.back;
-                let value = rest.back.apply(p);
+                let value = Vec3::from(rest.back.apply(p));
                 let left = Mat3A::IDENTITY - here.slope(p) * self.inv_node;
                 // Where the skin is folded over itself there is no way back that keeps its sides apart.
                 if left.determinant() < UNFOLDED {
@@ -179,7 +180,7 @@ impl MovingField {
                     value
                 } else {
                     rest.stretch = left.inverse();
-                    let step = Vec3::from(rest.stretch * glam::Vec3A::from(value - rest.place));
+                    let step = Vec3::from(rest.stretch * Vec3A::from(value - rest.place));
                     rest.place + step.clamp_length_max(nodes.spacing)
                 }
             };
