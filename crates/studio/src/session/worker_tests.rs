@@ -190,3 +190,30 @@ fn settling_can_be_given_up_and_time_goes_on() {
     wait("time to pass", || worker.frame().filter(|frame| frame.step > 2));
     assert_eq!(worker.settling(), None);
 }
+
+#[test]
+fn who_looks_back_sees_settled_hair_there_and_keeps_what_was_measured() {
+    let (worker, _) = start(small_project());
+    let measured = |secs: f64| {
+        wait("a worst stretch", || {
+            worker
+                .frame()
+                .filter(|frame| frame.time_secs > secs && frame.totals.worst_stretch_found.is_some())
+        })
+    };
+    measured(0.3);
+    worker.set_playing(false);
+    worker.step(1);
+    std::thread::sleep(Duration::from_millis(60));
+    let frame = worker.frame().expect("a frame");
+    let found = frame.totals.worst_stretch_found.expect("found");
+    let secs = found.at_secs.expect("the dance has a timeline");
+    assert!(secs <= frame.position_secs && found.place.is_finite(), "{found:?}");
+    worker.look_back(secs);
+    let back = settled_at(&worker, secs);
+    assert_eq!(back.totals.worst_stretch_found, Some(found));
+    assert_eq!(back.totals.max_stretch, frame.totals.max_stretch);
+    // Whoever only goes there begins to count anew.
+    worker.seek(secs);
+    wait("counting anew", || worker.frame().filter(|frame| frame.totals.steps == 0));
+}
