@@ -11,7 +11,8 @@ const STEEP: f32 = 0.3;
 /// A direction in head space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Aim {
-    /// About the vertical, radians: 0 toward the front, a quarter turn toward the dancer's left, half a turn toward the back.
+    /// About the vertical, radians: 0 toward the back, where most ties are, a quarter turn toward the dancer's left, half a turn
+    /// toward the front.
     pub(crate) heading: f32,
     /// Above the horizon, radians: a quarter turn is straight up.
     pub(crate) rise: f32,
@@ -21,7 +22,7 @@ impl Aim {
     /// Of a direction of any length; straight up and down head toward the back.
     pub(crate) fn of(axis: Vec3) -> Self {
         let axis = axis.normalize_or(Vec3::NEG_Z);
-        let heading = if level(axis) < 1e-6 { PI } else { axis.x.atan2(axis.z) };
+        let heading = if level(axis) < 1e-6 { 0.0 } else { axis.x.atan2(-axis.z) };
         // The same direction is not to be at both ends of the slider.
         let heading = if heading < 1e-6 - PI { PI } else { heading };
         Self { heading, rise: axis.y.clamp(-1.0, 1.0).asin() }
@@ -30,7 +31,7 @@ impl Aim {
     /// The unit vector. A little of its heading stays where it is straight up.
     pub(crate) fn axis(self) -> Vec3 {
         let (x, z) = self.heading.sin_cos();
-        Vec3::new(x, 0.0, z) * self.rise.cos().max(1e-4) + Vec3::Y * self.rise.sin()
+        Vec3::new(x, 0.0, -z) * self.rise.cos().max(1e-4) + Vec3::Y * self.rise.sin()
     }
 }
 
@@ -65,8 +66,11 @@ mod tests {
         }
         let left = Aim { heading: FRAC_PI_2, rise: 0.0 }.axis();
         assert!(left.distance(Vec3::X) < 1e-6, "the dancer's left is +X: {left}");
-        for up in [Vec3::Y, Vec3::NEG_Y, Vec3::new(-0.0, 0.3, -1.0)] {
-            assert_eq!(Aim::of(up).heading, PI, "{up}");
+        for back in [Vec3::Y, Vec3::NEG_Y, Vec3::new(-0.0, 0.3, -1.0)] {
+            assert_eq!(Aim::of(back).heading, 0.0, "{back}");
+        }
+        for front in [Vec3::Z, Vec3::new(-0.0, 0.3, 1.0), Vec3::new(-1e-9, 0.0, 1.0)] {
+            assert_eq!(Aim::of(front).heading, PI, "{front}");
         }
     }
 
@@ -83,9 +87,9 @@ mod tests {
         let at_left = moved(down, Vec3::NEG_Z, Vec3::X);
         assert!((Aim::of(at_left).rise - Aim::of(down).rise).abs() < 1e-4 && at_left.x > 0.8, "{at_left}");
         // What aims aside of the normal aims as far aside.
-        let aside = Aim { heading: PI - 0.5, rise: 0.2 }.axis();
+        let aside = Aim { heading: 0.5, rise: 0.2 }.axis();
         let at_left = Aim::of(moved(aside, Vec3::NEG_Z, Vec3::X));
-        assert!((at_left.heading - (FRAC_PI_2 - 0.5)).abs() < 1e-3, "{at_left:?}");
+        assert!((at_left.heading - (FRAC_PI_2 + 0.5)).abs() < 1e-3, "{at_left:?}");
         // From the crown, where there is no side, it takes that of the place that it comes to.
         let from_crown = moved(Vec3::Y, Vec3::Y, Vec3::NEG_X);
         assert!(from_crown.x < -0.8 && from_crown.z.abs() < 1e-3, "{from_crown}");

@@ -149,7 +149,7 @@ fn aim(ui: &mut Ui, tie: &mut HairTie, d: &HairTie) {
     Number::new(
         "Heading",
         -PI..=PI,
-        "To which side hair leaves the tie: 0 is to the front, 90 to the dancer's left, 180 to the back. The arrow in the picture can \
+        "To which side hair leaves the tie: 0 is to the back, 90 to the dancer's left, 180 to the front. The arrow in the picture can \
          be dragged too.",
     )
     .degrees()

@@ -173,7 +173,7 @@ fn a_tie_that_is_dragged_over_the_head_turns_with_it_and_its_arrow_aims_it() {
     drag_over(&mut harness, from, to);
     let side = project(&harness).hair.ties[0];
     assert!(side.at.x > 0.05, "it lies on the head and not in it: {}", side.at);
-    assert!(side.axis.x > 0.8, "it aims to the side: {}", side.axis);
+    assert!(side.axis.x > 0.6 && side.axis.z.abs() < 0.4, "it aims to the side: {}", side.axis);
     assert_eq!(of(&harness).history.undo_len(), steps + 1, "one drag is one step");
     // Its arrow comes toward the camera; its end is drawn upward.
     let aim = "Aim of tie 1 in the picture";
