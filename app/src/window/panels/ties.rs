@@ -210,8 +210,8 @@ fn gathers(ui: &mut Ui, tie: &mut HairTie, d: &HairTie) {
         (Gathers::All, "All that is long enough"),
         (Gathers::BehindEars, "What grows behind the ears"),
         (Gathers::Above, "What grows above a height"),
-        (Gathers::Left, "What grows left of a parting"),
-        (Gathers::Right, "What grows right of a parting"),
+        (Gathers::Left, "What grows on the left"),
+        (Gathers::Right, "What grows on the right"),
         (Gathers::Patch, "What grows in a patch"),
     ];
     if before == Gathers::Beyond {

@@ -121,7 +121,7 @@ impl HairTie {
     pub fn mirrored(&self) -> Self {
         let [at, axis, plane_point, plane_normal, sphere_centre] =
             [self.at, self.axis, self.plane_point, self.plane_normal, self.sphere_centre]
-                .map(|v| Vec3::new(-v.x, v.y, v.z));
+                .map(|v| Vec3::new(0.0 - v.x, v.y, v.z));
         Self { at, axis, plane_point, plane_normal, sphere_centre, ..*self }
     }
 

@@ -217,3 +217,22 @@ fn who_looks_back_sees_settled_hair_there_and_keeps_what_was_measured() {
     worker.seek(secs);
     wait("counting anew", || worker.frame().filter(|frame| frame.totals.steps == 0));
 }
+
+#[test]
+fn a_load_that_another_one_replaces_is_not_told_as_cancelled() {
+    let mut project = small_project();
+    let (worker, _) = start(project.clone());
+    wait("the first scene", || worker.poll_event());
+    for wisps in 20..60 {
+        project.hair.groom.wisps = wisps;
+        worker.set_project(Arc::new(project.clone()), Access::new());
+        std::thread::sleep(Duration::from_millis(3));
+    }
+    let mut told = Vec::new();
+    wait("the last hair", || {
+        told.extend(worker.poll_event());
+        worker.frame().filter(|frame| frame.scene.style.wisps.len() == 59)
+    });
+    told.extend(std::iter::from_fn(|| worker.poll_event()));
+    assert!(told.iter().all(|event| matches!(event, Event::Loaded { .. })), "{told:?}");
+}

@@ -55,7 +55,7 @@ fn a_tie_is_aimed_by_heading_and_rise() {
 fn a_parting_divides_the_hair() {
     let mut harness = with_ties(&[HairTie::default()]);
     for (entry, normal) in
-        [("What grows left of a parting", Vec3::X), ("What grows right of a parting", Vec3::NEG_X)]
+        [("What grows on the left", Vec3::X), ("What grows on the right", Vec3::NEG_X)]
     {
         choose(&mut harness, "Gathers", entry);
         assert_eq!((tie(&harness, 0).reach, tie(&harness, 0).plane_normal), (TieReach::AbovePlane, normal));
