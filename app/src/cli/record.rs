@@ -88,9 +88,7 @@ fn summary(report: &RecordReport) -> String {
 /// What to change, a line for each gauge that is over its limits.
 fn advice(health: &[Gauge]) -> String {
     let over = health.iter().filter(|gauge| gauge.level != HealthLevel::Good);
-    let line = |Gauge { kind, value, advice, .. }: &Gauge| {
-        format!("\n{}, {}: {advice}", kind.label(), kind.in_words(*value))
-    };
+    let line = |gauge: &Gauge| format!("\n{}, {}: {}", gauge.kind.label(), gauge.in_words(), gauge.advice);
     over.map(line).collect::<Vec<_>>().concat()
 }
 

@@ -179,6 +179,17 @@ pub(crate) fn toggle(
     row(ui, label, tip, *value != default, value, default, |ui, value| ui.checkbox(value, ""))
 }
 
+/// Controls that do nothing where there is a reason `why_not`: they cannot be used then, and their tooltips say why.
+pub(crate) fn unless<R>(ui: &mut Ui, why_not: Option<&str>, add: impl FnOnce(&mut Ui) -> R) -> R {
+    let id = Id::unique("why not");
+    if let Some(why_not) = why_not {
+        ui.data_mut(|data| data.insert_temp(id, why_not.to_owned()));
+    }
+    let shown = ui.add_enabled_ui(why_not.is_none(), add).inner;
+    ui.data_mut(|data| data.remove::<String>(id));
+    shown
+}
+
 /// A colour, linear sRGB.
 pub(crate) fn color(
     ui: &mut Ui,
@@ -223,16 +234,18 @@ pub(crate) fn row<T>(
         } else {
             tip.to_owned()
         };
+        let why_not: Option<String> = ui.data(|data| data.get_temp(Id::unique("why not")));
+        let tip = why_not.map_or(tip.clone(), |why_not| format!("{tip}\n\n{why_not}"));
         let mut response = add(ui, value).labelled_by(name.id);
         let mut name = name;
         // A tooltip that is open stays while the pointer rests: a dialog that comes over it must end it.
         if ui.memory(|memory| memory.is_above_modal_layer(ui.layer_id())) {
-            response = response.on_hover_text(&tip);
-            name = name.on_hover_text(&tip);
+            response = response.on_hover_text(&tip).on_disabled_hover_text(&tip);
+            name = name.on_hover_text(&tip).on_disabled_hover_text(&tip);
         }
         // A slider's rail takes drags and no clicks, so what it says of a double-click is not enough.
         let twice = ui.input(|input| input.pointer.button_double_clicked(PointerButton::Primary));
-        if differs && twice && (name.contains_pointer() || response.contains_pointer()) {
+        if differs && twice && ui.is_enabled() && (name.contains_pointer() || response.contains_pointer()) {
             *value = default;
             response.mark_changed();
         }

@@ -1,6 +1,7 @@
 //! The window.
 
 mod actions;
+mod aim;
 mod camera_control;
 mod compare;
 mod control;
@@ -30,7 +31,7 @@ mod viewport;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use lovelock_studio::{Access, Command, GaugeKind, History, Moment, Overdub, Project, StudioError};
+use lovelock_studio::{Access, Command, Gauge, History, Moment, Overdub, Project, StudioError};
 use serde::{Deserialize, Serialize};
 
 use compare::{Compare, CompareLayout};
@@ -92,8 +93,8 @@ pub(crate) struct Window {
     notices: Notices,
     keys_shown: bool,
     selected_light: usize,
-    /// The gauge whose place is ringed in the picture.
-    pointed: Option<GaugeKind>,
+    /// The gauge whose place is ringed in the picture, as it was when that was asked for.
+    pointed: Option<Gauge>,
     colliders: panels::colliders::Shown,
     selected_tie: usize,
     /// Whether the panel of ties is unfolded: their handles are seen then.

@@ -38,10 +38,15 @@ impl Window {
                 });
                 section(ui, "Colliders", false, |ui| {
                     let scene = self.session.scene.as_ref();
-                    let names: Vec<&str> = scene.map_or_else(Vec::new, |scene| {
-                        scene.fitted.iter().map(|collider| collider.name.as_str()).collect()
+                    let edits = &mut project.body.colliders;
+                    let fitted = scene.iter().flat_map(|scene| {
+                        scene.fitted.iter().map(|of| panels::colliders::Fitted {
+                            name: of.name.as_str(),
+                            spared: edits.is_spared(of, scene.field.as_deref()),
+                        })
                     });
-                    panels::colliders::ui(ui, &mut project.body.colliders, &names, &mut self.colliders);
+                    let fitted: Vec<_> = fitted.collect();
+                    panels::colliders::ui(ui, edits, &fitted, &mut self.colliders);
                 });
                 section(ui, "Body and motion", false, |ui| {
                     self.problems(ui, &[Place::Body, Place::Motion]);

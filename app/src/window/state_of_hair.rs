@@ -1,7 +1,7 @@
 //! How the hair is, beside the picture and over it.
 
 use egui::Ui;
-use lovelock_studio::{Gauge, GaugeKind, Painted, Project, frame_points};
+use lovelock_studio::{Gauge, Painted, Project, STEP_SECS, frame_points};
 
 use super::overlay::{self, View};
 use super::{Window, panels};
@@ -21,38 +21,51 @@ impl Window {
     /// The gauges, and the way to their places.
     pub(super) fn health_panel(&mut self, ui: &mut Ui, project: &mut Project) {
         let gauges = self.gauges(project);
-        let Some(asked) = panels::health::ui(ui, &gauges, self.pointed) else { return };
-        if self.pointed == Some(asked) {
+        let shown = self.pointed.as_ref().map(|gauge| gauge.kind);
+        let Some(asked) = panels::health::ui(ui, &gauges, shown) else { return };
+        if shown == Some(asked) {
             self.pointed = None;
             return;
         }
-        self.pointed = Some(asked);
         // What dances on would leave the picture.
         self.session.set_playing(false);
-        self.go_to(&gauges, asked, project);
+        self.pointed = gauges.into_iter().find(|gauge| gauge.kind == asked);
+        if let Some(gauge) = &self.pointed {
+            self.go_to(gauge, project);
+        }
     }
 
-    /// Moves the camera to the place of a gauge.
-    fn go_to(&self, gauges: &[Gauge], kind: GaugeKind, project: &mut Project) {
+    /// Goes to when a gauge's value was found, and moves the camera to its place.
+    fn go_to(&self, gauge: &Gauge, project: &mut Project) {
         let Some(frame) = &self.session.frame else { return };
-        let place =
-            gauges.iter().find(|gauge| gauge.kind == kind).and_then(|gauge| frame.guide_point(gauge.at?));
-        let Some(place) = place else { return };
+        let secs = gauge.found_secs();
+        if let Some(secs) = secs {
+            // The hair settles there anew, and is nearly as it was; the ring is where the point was found.
+            self.session.worker().look_back(secs);
+        }
+        let Some(place) = frame.place_of(gauge) else { return };
         let around = [glam::Vec3::splat(-AROUND_M), glam::Vec3::splat(AROUND_M)].map(|d| place + d);
         let [width, height] = self.viewport.wanted;
         let aspect = width as f32 / height.max(1) as f32;
-        project.camera =
-            frame_points(&project.camera, &frame.scene, frame.time_secs, around.into_iter(), aspect);
+        let secs = secs.unwrap_or(frame.time_secs);
+        project.camera = frame_points(&project.camera, &frame.scene, secs, around.into_iter(), aspect);
     }
 
     /// The ring around the place of the gauge that is pointed at.
     pub(super) fn paint_pointed(&self, ui: &Ui, view: View, painted: &Painted) {
-        let Some(kind) = self.pointed else { return };
+        let Some(asked) = &self.pointed else { return };
         let gauges = self.gauges(self.history.project());
-        let Some(gauge) = gauges.iter().find(|gauge| gauge.kind == kind) else { return };
-        let Some(at) = gauge.at.and_then(|at| painted.snapshot.guide_point(at)) else { return };
-        let text = format!("{}: {}", kind.label(), gauge.in_words());
-        overlay::mark::paint(ui, view, at, &text, panels::health::color(gauge.level));
+        let Some(now) = gauges.iter().find(|gauge| gauge.kind == asked.kind) else { return };
+        // What was gone to stays, though worse may come.
+        let gauge = if asked.found.is_some() { asked } else { now };
+        let Some(at) = painted.snapshot.place_of(gauge) else { return };
+        let text = format!("{}: {}", gauge.kind.label(), gauge.in_words());
+        let color = panels::health::color(gauge.level);
+        // At another time the body is elsewhere: the ring is where it was, and pales.
+        let elsewhere = gauge
+            .found_secs()
+            .is_some_and(|secs| (painted.snapshot.position_secs - secs).abs() > 1.5 * STEP_SECS);
+        overlay::mark::paint(ui, view, at, &text, if elsewhere { color.gamma_multiply(0.45) } else { color });
     }
 
     /// What the statistics say.

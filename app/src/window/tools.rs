@@ -1,8 +1,8 @@
-//! What the pointer does in the picture beside moving the camera: it moves ties, cuts hair, and chooses colliders.
+//! What the pointer does in the picture beside moving the camera: it moves ties, cuts hair, and chooses and changes colliders.
 
 use egui::{PointerButton, Response, Ui};
 use lovelock_studio::motion::{
-    Collider, ColliderShape, FieldPose, PlacedCollider, collider_lines, place_colliders,
+    Collider, ColliderEdits, FieldPose, PlacedCollider, collider_lines, place_colliders,
 };
 use lovelock_studio::{FrameSnapshot, Painted, Project};
 
@@ -21,7 +21,7 @@ impl Window {
         else {
             return true;
         };
-        self.colliders_over(ui, response, view, &painted.snapshot);
+        self.colliders_over(ui, response, view, &painted.snapshot, project);
         self.paint_pointed(ui, view, painted);
         if project.take.file.is_some() {
             return true;
@@ -32,8 +32,9 @@ impl Window {
         }
         let ties = &mut project.hair.ties;
         if self.ties_shown && !held {
-            let world_from_head = painted.snapshot.guides.world_from_head;
-            overlay::ties::edit(ui, view, &world_from_head, ties, &mut self.selected_tie);
+            let snapshot = &painted.snapshot;
+            let head = (&snapshot.guides.world_from_head, &snapshot.scene.style.scalp);
+            overlay::ties::edit(ui, view, head, ties, &mut self.selected_tie);
         }
         !(held && response.dragged_by(PointerButton::Primary))
     }
@@ -46,12 +47,20 @@ impl Window {
         }
     }
 
-    /// What hair collides with, as wires; a click chooses the shape that is edited.
-    fn colliders_over(&mut self, ui: &Ui, response: &Response, view: View, snapshot: &FrameSnapshot) {
+    /// What hair collides with, as wires; a click chooses the shape that is edited, and its handles change it.
+    fn colliders_over(
+        &mut self,
+        ui: &Ui,
+        response: &Response,
+        view: View,
+        snapshot: &FrameSnapshot,
+        project: &mut Project,
+    ) {
         if !self.colliders.on {
             return;
         }
-        let shapes = wires(snapshot);
+        let edits = &mut project.body.colliders;
+        let shapes = wires(snapshot, edits);
         if response.clicked()
             && let Some(at) = response.interact_pointer_pos()
             && let Some(chosen) = overlay::colliders::at(view, &shapes, at)
@@ -59,23 +68,36 @@ impl Window {
             self.colliders.selected = chosen;
         }
         overlay::colliders::paint(ui, view, &shapes, Some(self.colliders.selected));
+        let Some(fitted) = snapshot.scene.fitted.get(self.colliders.selected) else { return };
+        if project.take.file.is_some() || self.scissors.held {
+            return;
+        }
+        let edit = edits.of(&fitted.name);
+        let changed = Collider { shape_at_rest: edit.apply(&fitted.shape_at_rest), ..fitted.clone() };
+        if let [placed] = placed(snapshot, &[changed])[..] {
+            let mut chosen = overlay::colliders::Chosen { placed, edit };
+            overlay::colliders::edit(ui, view, &mut chosen);
+            if chosen.edit != edit {
+                edits.set(&fitted.name, chosen.edit);
+            }
+        }
     }
 }
 
-/// The wires of all that was fitted to the body, as it stands: what hair meets as it was changed, the rest as it was fitted.
-fn wires(snapshot: &FrameSnapshot) -> Vec<Wires> {
+fn placed(snapshot: &FrameSnapshot, colliders: &[Collider]) -> Vec<PlacedCollider> {
+    let mut placed = Vec::new();
+    place_colliders(colliders, &snapshot.scene.body, &snapshot.pose, &mut placed);
+    placed
+}
+
+/// The wires of all that was fitted to the body, as it stands and with its changes.
+fn wires(snapshot: &FrameSnapshot, edits: &ColliderEdits) -> Vec<Wires> {
     let (scene, pose) = (&snapshot.scene, &snapshot.pose);
-    let placed = |colliders: &[Collider]| {
-        let mut placed: Vec<PlacedCollider> = Vec::new();
-        place_colliders(colliders, &scene.body, pose, &mut placed);
-        placed
-    };
-    let (fitted, met) = (placed(&scene.fitted), placed(&scene.colliders));
-    let lines_of = |shape: &ColliderShape| {
-        let mut lines = Vec::new();
-        collider_lines(shape, &mut lines);
-        lines
-    };
+    let changed: Vec<Collider> = scene
+        .fitted
+        .iter()
+        .map(|of| Collider { shape_at_rest: edits.of(&of.name).apply(&of.shape_at_rest), ..of.clone() })
+        .collect();
     let mut shapes: Vec<Wires> = Vec::new();
     if let Some(field) = &scene.field {
         let (mut pose_of_field, mut lines) = (FieldPose::default(), Vec::new());
@@ -83,11 +105,13 @@ fn wires(snapshot: &FrameSnapshot) -> Vec<Wires> {
         field.lines(&pose_of_field, &mut lines);
         shapes.push(Wires { index: None, name: "head and shoulders".to_owned(), lines, met: true });
     }
-    shapes.extend(scene.fitted.iter().zip(&fitted).enumerate().map(|(i, (collider, as_fitted))| {
-        let used = scene.colliders.iter().position(|other| other.name == collider.name);
-        let shape = used.and_then(|n| met.get(n)).unwrap_or(as_fitted);
-        let (name, lines) = (collider.name.clone(), lines_of(&shape.shape));
-        Wires { index: Some(i), name, lines, met: used.is_some() }
-    }));
+    shapes.extend(scene.fitted.iter().zip(placed(snapshot, &changed)).enumerate().map(
+        |(i, (fitted, at))| {
+            let mut lines = Vec::new();
+            collider_lines(&at.shape, &mut lines);
+            let met = edits.of(&fitted.name).enabled && !edits.is_spared(fitted, scene.field.as_deref());
+            Wires { index: Some(i), name: fitted.name.clone(), lines, met }
+        },
+    ));
     shapes
 }

@@ -56,7 +56,7 @@ pub use project::{
     save_project, write_whole,
 };
 pub use session::{
-    BodyObstacle, Engine, Event, FrameSnapshot, HeadPath, LoadControl, LoadProgress, Preroll,
+    BodyObstacle, Engine, Event, Found, FrameSnapshot, HeadPath, LoadControl, LoadProgress, Preroll,
     PrerollProgress, Scene, SceneLoader, Totals, Wake, Worker, camera_at, dancer, frame_points,
 };
 pub use slot::Slot;

@@ -1,7 +1,8 @@
 //! What hair collides with, as wires over the picture.
 
-use egui::{Align2, Color32, FontId, Pos2, Shape, Stroke, Ui};
+use egui::{Align2, Color32, CursorIcon, FontId, Pos2, Rect, Response, Sense, Shape, Stroke, Ui};
 use glam::Vec3;
+use lovelock_studio::motion::{ColliderEdit, ColliderShape, PlacedCollider};
 
 use super::View;
 use crate::window::theme;
@@ -45,7 +46,9 @@ pub(crate) fn paint(ui: &Ui, view: View, shapes: &[Wires], chosen: Option<usize>
     }
     let middle = ends.iter().fold(egui::Vec2::ZERO, |sum, end| sum + end.to_vec2()) / ends.len() as f32;
     let galley = painter.layout_no_wrap(shape.name.clone(), FontId::proportional(12.0), theme::ACCENT);
-    let rect = Align2::CENTER_CENTER.anchor_size(middle.to_pos2(), galley.size());
+    // Under the handle of the middle.
+    let under = middle.to_pos2() + egui::vec2(0.0, 18.0);
+    let rect = Align2::CENTER_CENTER.anchor_size(under, galley.size());
     painter.rect_filled(rect.expand(3.0), 3.0, theme::PAGE.gamma_multiply(0.7));
     painter.galley(rect.min, galley, theme::ACCENT);
 }
@@ -93,6 +96,98 @@ pub(crate) fn at(view: View, shapes: &[Wires], pointer: Pos2) -> Option<usize> {
         }
     }
     nearest.1
+}
+
+/// The chosen shape, as it is changed, and its handles.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Chosen {
+    /// Where it is, world space.
+    pub(crate) placed: PlacedCollider,
+    pub(crate) edit: ColliderEdit,
+}
+
+impl Chosen {
+    /// Its middle, world space, metres.
+    fn middle(&self) -> Vec3 {
+        match self.placed.shape {
+            ColliderShape::Capsule { a, b, .. } => a.midpoint(b),
+            ColliderShape::Ellipsoid { from_unit } => from_unit.translation.into(),
+        }
+    }
+
+    /// A direction across the view, and how far its surface is from its middle that way, metres.
+    fn rim(&self, view: View) -> Option<(Vec3, f32)> {
+        let middle = self.middle();
+        let at = view.to_screen(middle)?;
+        let right = view.at_depth_of(at + egui::vec2(10.0, 0.0), middle) - middle;
+        let (along, radius): (Vec3, f32) = match self.placed.shape {
+            ColliderShape::Capsule { a, b, radius_a, radius_b } => {
+                // Beside the capsule, and not at its end.
+                let aside = (b - a).cross(middle - view.eye);
+                let aside = if aside.dot(right) < 0.0 { -aside } else { aside };
+                let aside = aside.try_normalize().or_else(|| right.try_normalize())?;
+                (aside, 0.5 * (radius_a + radius_b))
+            }
+            ColliderShape::Ellipsoid { from_unit } => {
+                let right = right.try_normalize()?;
+                (right, 1.0 / from_unit.matrix3.inverse().mul_vec3(right).length())
+            }
+        };
+        (along.is_finite() && radius.is_finite() && radius > 0.0).then_some((along, radius))
+    }
+}
+
+/// Paints the handles of the chosen shape and lets them be dragged: its middle in the plane that faces the camera, its rim to and
+/// from the middle.
+pub(crate) fn edit(ui: &Ui, view: View, chosen: &mut Chosen) {
+    let middle = chosen.middle();
+    let (Some(at), Some((along, radius))) = (view.to_screen(middle), chosen.rim(view)) else { return };
+    let Some(rim) = view.to_screen(middle + along * radius) else { return };
+    let painter = ui.painter_at(view.place);
+    let before = chosen.edit;
+    // The middle after the rim: it has what lies on both.
+    let size = handle(ui, rim, "Radius of the collider in the picture");
+    if let Some(pointer) = dragged_to(ui, &size, rim) {
+        let out = (view.at_depth_of(pointer, middle + along * radius) - middle).dot(along);
+        chosen.edit.scale *= (out / radius).max(1e-3);
+    }
+    let place = handle(ui, at, "Collider in the picture");
+    if let Some(pointer) = dragged_to(ui, &place, at) {
+        let moved = view.at_depth_of(pointer, middle) - middle;
+        let at_rest = chosen.placed.world_from_rest.matrix3.inverse().mul_vec3(moved);
+        if at_rest.is_finite() {
+            chosen.edit.offset = (Vec3::from(before.offset) + at_rest).to_array();
+        }
+    }
+    if chosen.edit != before {
+        chosen.edit = chosen.edit.clamped();
+    }
+    painter.line_segment([at, rim], Stroke::new(1.0, theme::ACCENT.gamma_multiply(0.6)));
+    for (handle, at, words) in
+        [(size, rim, "Drag to make the shape larger or smaller."), (place, at, "Drag to move the shape.")]
+    {
+        let over = handle.hovered() || handle.dragged();
+        painter.circle_filled(at, if over { 8.0 } else { 6.5 }, theme::PAGE.gamma_multiply(0.7));
+        painter.circle_filled(at, if over { 6.0 } else { 4.5 }, theme::ACCENT);
+        handle.on_hover_cursor(CursorIcon::Grab).on_hover_text(words);
+    }
+}
+
+fn handle(ui: &Ui, at: Pos2, name: &str) -> Response {
+    let rect = Rect::from_center_size(at, egui::Vec2::splat(20.0));
+    let handle = ui.interact(rect, ui.scope_id().with(name), Sense::click_and_drag());
+    handle.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name));
+    handle
+}
+
+/// Where a handle that is at `at` is dragged to: it keeps to the place of it that was taken hold of.
+fn dragged_to(ui: &Ui, handle: &Response, at: Pos2) -> Option<Pos2> {
+    if handle.drag_started() {
+        let pressed = ui.input(|input| input.pointer.press_origin())?;
+        ui.data_mut(|data| data.insert_temp(handle.id, pressed - at));
+    }
+    let hold: egui::Vec2 = ui.data(|data| data.get_temp(handle.id)).unwrap_or_default();
+    handle.interact_pointer_pos().filter(|_| handle.dragged()).map(|pointer| pointer - hold)
 }
 
 pub(crate) fn distance_to_segment(p: Pos2, a: Pos2, b: Pos2) -> f32 {

@@ -1,6 +1,7 @@
 //! What is painted over the picture, where the picture shows it: the same instant and the same camera.
 
 pub(crate) mod colliders;
+mod head;
 pub(crate) mod mark;
 pub(crate) mod scissors;
 pub(crate) mod ties;

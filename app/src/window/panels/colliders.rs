@@ -3,7 +3,16 @@
 use egui::Ui;
 use lovelock_studio::motion::{ColliderEdit, ColliderEdits, FieldEdit};
 
-use crate::window::control::{Number, choice, note, row, section, toggle};
+use crate::window::control::{Number, choice, note, row, section, toggle, unless};
+
+/// A collider that was fitted to the body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Fitted<'a> {
+    /// Named after its joint.
+    pub(crate) name: &'a str,
+    /// Whether the skin of head and shoulders stands for it.
+    pub(crate) spared: bool,
+}
 
 /// What is shown of the colliders over the picture.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -14,21 +23,22 @@ pub(crate) struct Shown {
     pub(crate) selected: usize,
 }
 
-/// The controls of `edits`. `names` are the colliders that were fitted to the body.
-pub(crate) fn ui(ui: &mut Ui, edits: &mut ColliderEdits, names: &[&str], shown: &mut Shown) {
+/// The controls of `edits`, of the colliders that were `fitted` to the body.
+pub(crate) fn ui(ui: &mut Ui, edits: &mut ColliderEdits, fitted: &[Fitted<'_>], shown: &mut Shown) {
     toggle(
         ui,
         "Show",
-        "Draws what hair collides with over the picture. Click a shape there to choose it.",
+        "Draws what hair collides with over the picture. Click a shape there to choose it; drag its middle to move it, and its rim to \
+         make it larger or smaller.",
         &mut shown.on,
         false,
     );
-    if names.is_empty() {
+    if fitted.is_empty() {
         note(ui, "Nothing was fitted to this body.");
         return;
     }
-    shown.selected = shown.selected.min(names.len() - 1);
-    let options: Vec<(usize, &str)> = names.iter().copied().enumerate().collect();
+    shown.selected = shown.selected.min(fitted.len() - 1);
+    let options: Vec<(usize, &str)> = fitted.iter().map(|of| of.name).enumerate().collect();
     let before = shown.selected;
     choice(
         ui,
@@ -38,10 +48,17 @@ pub(crate) fn ui(ui: &mut Ui, edits: &mut ColliderEdits, names: &[&str], shown: 
         before,
         &options,
     );
-    let name = names[shown.selected];
+    let Fitted { name, spared } = fitted[shown.selected];
     let default = ColliderEdit::default();
-    let mut edit = edits.shapes.get(name).copied().unwrap_or_default();
-    toggle(ui, "On", "Whether hair meets this shape at all.", &mut edit.enabled, default.enabled);
+    let mut edit = edits.of(name);
+    let tip = "Whether hair meets this shape at all.";
+    if spared {
+        let why_not = "Hair meets the skin here, and not this shape. Change its size or its place, or switch off Skin below, and hair \
+                       meets it.";
+        unless(ui, Some(why_not), |ui| toggle(ui, "On", tip, &mut false, false));
+    } else {
+        toggle(ui, "On", tip, &mut edit.enabled, default.enabled);
+    }
     Number::new("Size", 0.2..=3.0, "How large its radii are, of those that were fitted.").percent().show(
         ui,
         &mut edit.scale,
@@ -55,11 +72,7 @@ pub(crate) fn ui(ui: &mut Ui, edits: &mut ColliderEdits, names: &[&str], shown: 
     for ((label, tip), offset) in ways.into_iter().zip(&mut edit.offset) {
         Number::new(label, -0.5..=0.5, tip).centimetres().show(ui, offset, 0.0);
     }
-    if edit == default {
-        edits.shapes.remove(name);
-    } else {
-        edits.shapes.insert(name.to_owned(), edit);
-    }
+    edits.set(name, edit);
     section(ui, "Head and shoulders", true, |ui| {
         let default = FieldEdit::default();
         toggle(

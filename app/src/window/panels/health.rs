@@ -54,13 +54,19 @@ fn row(ui: &mut Ui, gauge: &Gauge, shown: bool) -> bool {
             button.widget_info(|| {
                 WidgetInfo::selected(egui::Role::Button, gauge.at.is_some(), shown, name.as_str())
             });
-            let tip = if shown {
-                "Takes the ring away."
-            } else {
-                "Pauses, rings the place in the picture, and goes there."
+            let tip = match (shown, gauge.found_secs()) {
+                (true, _) => "Takes the ring away.",
+                (false, Some(_)) => {
+                    "Goes to when that was, pauses, and rings the place in the picture. What was measured stays."
+                }
+                (false, None) => "Pauses, rings the place in the picture, and goes there.",
             };
             asked = button.on_hover_text(tip).on_disabled_hover_text("There is no such place.").clicked();
             ui.label(RichText::new(kind.in_words(gauge.value)).small().color(color));
+            if let Some(when) = gauge.when_in_words() {
+                ui.label(RichText::new(when.trim_start()).small().weak())
+                    .on_hover_text("Where the timeline stood then.");
+            }
         });
     });
     let (bar, _) = ui.allocate_exact_size(Vec2::new(ui.available_width(), 3.0), Sense::hover());

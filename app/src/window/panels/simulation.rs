@@ -5,7 +5,7 @@ use glam::Vec3;
 use lovelock_studio::TimelineSection;
 use lovelock_studio::wisp::{Integrator, MAX_SWEEPS, RepulsionMode, SimulationSettings, Wind};
 
-use crate::window::control::{Number, choice, count, row, section};
+use crate::window::control::{Number, choice, count, row, section, unless};
 use crate::window::light_sphere::{Sphere, sphere};
 use crate::window::ramp::{Ramp, RampValue};
 
@@ -34,7 +34,7 @@ fn shape(ui: &mut Ui, s: &mut SimulationSettings, d: &SimulationSettings) {
     Number::new(
         "Stiffness, roots",
         0.0..=60.0,
-        "How stiff locks are near the scalp: high values keep the shape of the style, low ones let it swing.",
+        "How stiff locks are near the scalp: high values keep the shape of the style, low ones let it swing. Symbol: √B, of a beam.",
     )
     .unit(" /s", 1.0)
     .decimals(1)
@@ -42,7 +42,7 @@ fn shape(ui: &mut Ui, s: &mut SimulationSettings, d: &SimulationSettings) {
     Number::new(
         "Stiffness, tips",
         0.0..=60.0,
-        "How stiff locks are at their ends: low values make tips lag and flick.",
+        "How stiff locks are at their ends: low values make tips lag and flick. Symbol: √B, of a beam.",
     )
     .unit(" /s", 1.0)
     .decimals(1)
@@ -54,7 +54,7 @@ fn shape(ui: &mut Ui, s: &mut SimulationSettings, d: &SimulationSettings) {
     )
     .percent()
     .show(ui, &mut s.stiffness_bias, d.stiffness_bias);
-    Number::new("Bend damping", 0.0..=0.2, "How soon a bent lock stops swaying.")
+    Number::new("Bend damping", 0.0..=0.2, "How soon a bent lock stops swaying. Symbol: γ h.")
         .unit(" ms", 1e3)
         .decimals(0)
         .show(ui, &mut s.bend_damping, d.bend_damping);
@@ -114,7 +114,7 @@ fn stiffness_ramp(ui: &mut Ui, s: &mut SimulationSettings, d: &SimulationSetting
 }
 
 fn weight_and_air(ui: &mut Ui, s: &mut SimulationSettings, d: &SimulationSettings) {
-    Number::new("Gravity", 0.0..=30.0, "Weight of the hair.").unit(" m/s²", 1.0).show(
+    Number::new("Gravity", 0.0..=30.0, "Weight of the hair. Symbol: g.").unit(" m/s²", 1.0).show(
         ui,
         &mut s.gravity,
         d.gravity,
@@ -133,7 +133,7 @@ fn weight_and_air(ui: &mut Ui, s: &mut SimulationSettings, d: &SimulationSetting
 }
 
 fn wind(ui: &mut Ui, wind: &mut Wind, d: &Wind, axes: [Vec3; 3]) {
-    Number::new("Wind", 0.0..=30.0, "Mean speed of the wind.").unit(" m/s", 1.0).decimals(1).show(
+    Number::new("Wind", 0.0..=30.0, "Mean speed of the wind. Symbol: w.").unit(" m/s", 1.0).decimals(1).show(
         ui,
         &mut wind.speed,
         d.speed,
@@ -184,7 +184,7 @@ fn wind(ui: &mut Ui, wind: &mut Wind, d: &Wind, axes: [Vec3; 3]) {
 }
 
 fn on_the_body(ui: &mut Ui, s: &mut SimulationSettings, d: &SimulationSettings) {
-    Number::new("Friction", 0.0..=2.0, "How much hair sticks to skin and cloth.").show(
+    Number::new("Friction", 0.0..=2.0, "How much hair sticks to skin and cloth. Symbol: μ, Coulomb's.").show(
         ui,
         &mut s.friction,
         d.friction,
@@ -212,21 +212,33 @@ fn hair_against_hair(ui: &mut Ui, s: &mut SimulationSettings, d: &SimulationSett
         d.repulsion.mode,
         &[(RepulsionMode::Pressure, "Pressure"), (RepulsionMode::Centre, "Cell centre")],
     );
-    Number::new("Strength", 0.0..=1.0, "How hard crowded hair pushes apart: more keeps more volume.")
-        .unit(" m²/s²", 1.0)
-        .show(ui, &mut s.repulsion.strength, d.repulsion.strength);
-    Number::new("Threshold", 1.0..=10.0, "How many times denser than at rest hair may be before it pushes.")
-        .unit(" ×", 1.0)
-        .decimals(1)
-        .show(ui, &mut s.repulsion.threshold, d.repulsion.threshold);
     Number::new(
-        "Across",
+        "Strength",
         0.0..=1.0,
-        "How much hair heeds the direction of the hair around it: at 100 % it pushes across strands alone, crossing wisps more \
-         than parallel ones, and lets them slide along each other.",
+        "How hard crowded hair pushes apart: more keeps more volume. Symbol: k.",
     )
-    .percent()
-    .show(ui, &mut s.repulsion.anisotropy, d.repulsion.anisotropy);
+    .unit(" m²/s²", 1.0)
+    .show(ui, &mut s.repulsion.strength, d.repulsion.strength);
+    Number::new(
+        "Threshold",
+        1.0..=10.0,
+        "How many times denser than at rest hair may be before it pushes. Symbol: τ.",
+    )
+    .unit(" ×", 1.0)
+    .decimals(1)
+    .show(ui, &mut s.repulsion.threshold, d.repulsion.threshold);
+    let why_not = (s.repulsion.mode == RepulsionMode::Centre)
+        .then_some("Only Pressure knows directions: away from the middle of a cell there are none.");
+    unless(ui, why_not, |ui| {
+        Number::new(
+            "Across",
+            0.0..=1.0,
+            "How much hair heeds the direction of the hair around it: at 100 % it pushes across strands alone, crossing wisps more \
+             than parallel ones, and lets them slide along each other. Symbol: a.",
+        )
+        .percent()
+        .show(ui, &mut s.repulsion.anisotropy, d.repulsion.anisotropy)
+    });
     Number::new("Cohesion", 0.0..=20.0, "How much locks take on the movement of their neighbours.")
         .unit(" /s", 1.0)
         .decimals(1)
@@ -237,8 +249,9 @@ fn accuracy(ui: &mut Ui, s: &mut SimulationSettings, d: &SimulationSettings, pre
     choice(
         ui,
         "Method",
-        "What keeps locks at their length: all links at once, which is exact; one after the other as first published, where hair \
-         stretches; or each behind the one before, which is quick and moves otherwise with other substeps.",
+        "What keeps locks at their length. Direct: all links at once; locks do not stretch, and more substeps swing more truly. \
+         Relaxation, as first published: one link after the other; locks stretch. Follow the leader: each point is laid behind the \
+         one before; the quickest, but hair swings differently with every number of substeps, so set that first.",
         &mut s.integrator,
         d.integrator,
         &[
@@ -263,7 +276,8 @@ fn accuracy(ui: &mut Ui, s: &mut SimulationSettings, d: &SimulationSettings, pre
             Number::new(
                 "Damping",
                 0.0..=1.0,
-                "How much of what a point is pulled by its follower its speed takes on: with little, locks gain energy.",
+                "How much of what a point is pulled by its follower its speed takes on: with little, locks gain energy. Symbol: s, s_damping in \
+                 Müller, Kim and Chentanez 2012.",
             )
             .percent()
             .show(ui, &mut s.follow_damping, d.follow_damping);
@@ -273,7 +287,7 @@ fn accuracy(ui: &mut Ui, s: &mut SimulationSettings, d: &SimulationSettings, pre
         ui,
         "Substeps",
         1..=16,
-        "Steps of the solver in a sixtieth of a second; fast heads raise it by themselves.",
+        "Steps of the solver in a sixtieth of a second; fast heads raise it by themselves. Each lasts h.",
         &mut s.substeps,
         d.substeps,
     );

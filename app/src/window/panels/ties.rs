@@ -5,7 +5,10 @@ use glam::Vec3;
 use lovelock_studio::HairSection;
 use lovelock_studio::groom::{HairTie, Haircut, Scalp, TieKind, TieReach};
 
-use crate::window::control::{Number, choice, note};
+use crate::window::aim::Aim;
+use crate::window::control::{Number, choice, note, toggle};
+
+const FULL: &str = "There are as many ties as can be.";
 
 /// The controls of the ties of `hair`. `selected` is the one that is edited, and has its handle in the picture; a new one is
 /// placed on `scalp`.
@@ -26,19 +29,23 @@ pub(crate) fn ui(ui: &mut Ui, hair: &mut HairSection, selected: &mut usize, scal
             (TieKind::Bun, "Gathers the hair on top of the head and winds it up."),
         ] {
             let button = ui.add_enabled(!full, egui::Button::new(format!("+ {}", label(kind))));
-            if button
-                .on_hover_text(words)
-                .on_disabled_hover_text("There are as many ties as can be.")
-                .clicked()
-            {
+            if button.on_hover_text(words).on_disabled_hover_text(FULL).clicked() {
                 *selected = ties.len();
                 ties.push(new_tie(kind, scalp));
             }
         }
-        if !ties.is_empty() && ui.button("Remove").on_hover_text("Lets the hair of this tie fall.").clicked()
-        {
-            ties.remove(*selected);
-            *selected = selected.saturating_sub(1);
+        if let Some(tie) = ties.get(*selected) {
+            let is_aside = tie.at.x.abs() > ASIDE;
+            let why_not = if full { FULL } else { "Move the tie to one side of the head first." };
+            let button = ui.add_enabled(!full && is_aside, egui::Button::new("Mirror"));
+            let words = "Ties the hair of the other side in the same way: two of them are pigtails.";
+            if button.on_hover_text(words).on_disabled_hover_text(why_not).clicked() {
+                mirror(ties, selected);
+            }
+            if ui.button("Remove").on_hover_text("Lets the hair of this tie fall.").clicked() {
+                ties.remove(*selected);
+                *selected = selected.saturating_sub(1);
+            }
         }
     });
     let Some(tie) = ties.get_mut(*selected) else {
@@ -106,21 +113,7 @@ fn controls(ui: &mut Ui, tie: &mut HairTie, d: &HairTie) {
     if at != before {
         tie.at = Vec3::from_array(at);
     }
-    let mut rise = rise(tie.axis);
-    let before = rise;
-    Number::new(
-        "Rise",
-        -std::f32::consts::FRAC_PI_2..=std::f32::consts::FRAC_PI_2,
-        "How steeply hair leaves the tie: 90 is straight up.",
-    )
-    .degrees()
-    .show(ui, &mut rise, self::rise(d.axis));
-    if rise != before {
-        let turned = with_rise(tie.axis, rise);
-        // Restored, it is the very direction that it was.
-        let restored = turned.angle_between(d.axis) < 1e-3;
-        tie.axis = if restored { d.axis } else { turned };
-    }
+    aim(ui, tie, d);
     Number::new("Ring", 0.004..=0.05, "Radius of the tie's opening.").millimetres().show(
         ui,
         &mut tie.radius,
@@ -145,56 +138,166 @@ fn controls(ui: &mut Ui, tie: &mut HairTie, d: &HairTie) {
             d.bun_coils,
         );
     }
+    gathers(ui, tie, d);
+}
+
+/// Which way hair leaves the tie.
+fn aim(ui: &mut Ui, tie: &mut HairTie, d: &HairTie) {
+    use std::f32::consts::{FRAC_PI_2, PI};
+    let (before, default) = (Aim::of(tie.axis), Aim::of(d.axis));
+    let mut aim = before;
+    Number::new(
+        "Heading",
+        -PI..=PI,
+        "To which side hair leaves the tie: 0 is to the back, 90 to the dancer's left, 180 to the front. The arrow in the picture can \
+         be dragged too.",
+    )
+    .degrees()
+    .show(ui, &mut aim.heading, default.heading);
+    Number::new("Rise", -FRAC_PI_2..=FRAC_PI_2, "How steeply hair leaves the tie: 90 is straight up.")
+        .degrees()
+        .show(ui, &mut aim.rise, default.rise);
+    if aim != before {
+        let turned = aim.axis();
+        // Restored, it is the very direction that it was.
+        tie.axis = if turned.angle_between(d.axis) < 1e-3 { d.axis } else { turned };
+    }
+}
+
+/// Which hair a tie gathers, as it is chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Gathers {
+    All,
+    BehindEars,
+    Above,
+    Left,
+    Right,
+    /// On one side of another plane.
+    Beyond,
+    Patch,
+}
+
+impl Gathers {
+    fn of(tie: &HairTie) -> Self {
+        match tie.reach {
+            TieReach::All => Self::All,
+            TieReach::BehindEars => Self::BehindEars,
+            TieReach::AbovePlane if tie.plane_normal == Vec3::Y => Self::Above,
+            TieReach::AbovePlane if tie.plane_normal == Vec3::X => Self::Left,
+            TieReach::AbovePlane if tie.plane_normal == Vec3::NEG_X => Self::Right,
+            TieReach::AbovePlane => Self::Beyond,
+            TieReach::InSphere => Self::Patch,
+        }
+    }
+
+    fn apply(self, tie: &mut HairTie, d: &HairTie) {
+        let plane = |normal| (TieReach::AbovePlane, normal);
+        (tie.reach, tie.plane_normal) = match self {
+            Self::All => (TieReach::All, d.plane_normal),
+            Self::BehindEars => (TieReach::BehindEars, d.plane_normal),
+            Self::Above => plane(Vec3::Y),
+            Self::Left => plane(Vec3::X),
+            Self::Right => plane(Vec3::NEG_X),
+            Self::Beyond => plane(tie.plane_normal),
+            Self::Patch => (TieReach::InSphere, d.plane_normal),
+        };
+    }
+}
+
+fn gathers(ui: &mut Ui, tie: &mut HairTie, d: &HairTie) {
+    let before = Gathers::of(tie);
+    let mut options = vec![
+        (Gathers::All, "All that is long enough"),
+        (Gathers::BehindEars, "What grows behind the ears"),
+        (Gathers::Above, "What grows above a height"),
+        (Gathers::Left, "What grows on the left"),
+        (Gathers::Right, "What grows on the right"),
+        (Gathers::Patch, "What grows in a patch"),
+    ];
+    if before == Gathers::Beyond {
+        options.push((Gathers::Beyond, "What grows beyond a plane"));
+    }
+    let mut chosen = before;
     choice(
         ui,
         "Gathers",
-        "Which hair it takes, by where it grows.",
-        &mut tie.reach,
-        d.reach,
-        &[
-            (TieReach::All, "All that is long enough"),
-            (TieReach::BehindEars, "What grows behind the ears"),
-            (TieReach::AbovePlane, "What grows above a height"),
-            (TieReach::InSphere, "What grows in a patch"),
-        ],
+        "Which hair it takes, by where it grows; left and right are the dancer's. Where ties want the same hair, the first has it.",
+        &mut chosen,
+        Gathers::of(d),
+        &options,
     );
-    match tie.reach {
-        TieReach::All | TieReach::BehindEars => {}
-        TieReach::AbovePlane => {
+    if chosen != before {
+        chosen.apply(tie, d);
+    }
+    match chosen {
+        Gathers::All | Gathers::BehindEars | Gathers::Beyond => {}
+        Gathers::Above => {
             Number::new("Height", -0.6..=0.6, "Above this height over the head's joint hair is gathered.")
                 .centimetres()
                 .show(ui, &mut tie.plane_point.y, d.plane_point.y);
         }
-        TieReach::InSphere => {
-            Number::new("Patch", 0.005..=0.6, "Radius of the patch whose hair is gathered.")
-                .centimetres()
-                .show(ui, &mut tie.sphere_radius, d.sphere_radius);
+        Gathers::Left | Gathers::Right => {
+            Number::new(
+                "Parting",
+                -0.6..=0.6,
+                "Where the parting is: 0 is the middle, more is to the dancer's left.",
+            )
+            .centimetres()
+            .show(ui, &mut tie.plane_point.x, d.plane_point.x);
         }
+        Gathers::Patch => patch(ui, tie, d),
     }
 }
 
-/// Angle of a direction above the horizon, radians.
-fn rise(axis: Vec3) -> f32 {
-    axis.normalize_or(Vec3::NEG_Z).y.clamp(-1.0, 1.0).asin()
-}
-
-/// The direction toward the same side that rises by that angle.
-fn with_rise(axis: Vec3, rise: f32) -> Vec3 {
-    let level = Vec3::new(axis.x, 0.0, axis.z).normalize_or(Vec3::NEG_Z);
-    level * rise.cos().max(1e-4) + Vec3::Y * rise.sin()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_rise_keeps_its_side_and_comes_back() {
-        let axis = Vec3::new(0.4, 0.3, -1.0);
-        for angle in [-1.2, 0.0, 0.7, 1.5] {
-            let turned = with_rise(axis, angle);
-            assert!((rise(turned) - angle).abs() < 1e-3);
-            assert!((turned.x / turned.z - axis.x / axis.z).abs() < 1e-3);
-        }
+/// The patch whose hair is gathered.
+fn patch(ui: &mut Ui, tie: &mut HairTie, d: &HairTie) {
+    Number::new("Patch", 0.005..=0.6, "Radius of the patch whose hair is gathered.").centimetres().show(
+        ui,
+        &mut tie.sphere_radius,
+        d.sphere_radius,
+    );
+    let followed = tie.sphere_at_ring;
+    toggle(
+        ui,
+        "Around the ring",
+        "Whether the patch goes where the tie is moved. Off, it stays, and has a place of its own.",
+        &mut tie.sphere_at_ring,
+        d.sphere_at_ring,
+    );
+    if tie.sphere_at_ring {
+        return;
     }
+    if followed {
+        // It begins where it was.
+        tie.sphere_centre = tie.at;
+    }
+    let ways = [
+        ("Patch sideways", "Moves the patch toward the dancer's left."),
+        ("Patch upward", "Moves the patch up."),
+        ("Patch forward", "Moves the patch to the front."),
+    ];
+    let mut centre = tie.sphere_centre.to_array();
+    for (((label, tip), value), default) in ways.into_iter().zip(&mut centre).zip(d.sphere_centre.to_array())
+    {
+        Number::new(label, -0.6..=0.6, tip).centimetres().show(ui, value, default);
+    }
+    tie.sphere_centre = Vec3::from_array(centre);
+}
+
+/// How far from the middle a tie is to be for another one on the other side, metres.
+const ASIDE: f32 = 0.01;
+
+/// The same tie on the other side of the head, and the hair parted between the two.
+fn mirror(ties: &mut Vec<HairTie>, selected: &mut usize) {
+    let Some(tie) = ties.get_mut(*selected) else { return };
+    // What both want the first would have.
+    let parted = tie.reach == TieReach::AbovePlane && tie.plane_normal.x != 0.0;
+    if !parted && tie.reach != TieReach::InSphere {
+        let side = if tie.at.x > 0.0 { Gathers::Left } else { Gathers::Right };
+        side.apply(tie, &HairTie::default());
+        tie.plane_point.x = 0.0;
+    }
+    let other = tie.mirrored();
+    *selected = ties.len();
+    ties.push(other);
 }

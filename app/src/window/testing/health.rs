@@ -7,7 +7,7 @@ use lovelock_studio::{Access, Gauge, GaugeKind, HealthLevel, Project, SceneLoade
 
 use super::whole::{go, of, press_button, project, wait, window};
 use super::{control, screen, texts, tooltip_at};
-use crate::window::panels;
+use crate::window::{Window, panels};
 
 /// Gauges of hair that goes 3 mm into the body and begins deep in the neck.
 fn ill() -> Vec<Gauge> {
@@ -72,11 +72,25 @@ fn the_way_to_a_place_rings_it_and_can_be_undone() {
     });
     let before = project(&harness);
     press_button(&mut harness, "Show: Largest stretch");
-    assert_eq!(of(&harness).pointed, Some(GaugeKind::Stretch));
+    let pointed = |window: &Window| window.pointed.as_ref().map(|gauge| gauge.kind);
+    assert_eq!(pointed(of(&harness)), Some(GaugeKind::Stretch));
+    // It is when it was found, and what was measured is not forgotten there.
+    let asked = of(&harness).pointed.clone().expect("a gauge");
+    let found = asked.found.expect("found");
+    let secs = asked.found_secs().expect("a time");
+    wait(&mut harness, "hair settled where it was found", |window| {
+        let there = window.session.frame.as_ref().map(|frame| (frame.position_secs - secs).abs());
+        window.session.worker().settling().is_none() && there.is_some_and(|off| off < 1e-6)
+    });
+    assert!(!of(&harness).session.playing);
+    let frame = of(&harness).session.frame.clone().expect("a frame");
+    assert_eq!(frame.place_of(&asked), Some(found.place));
+    let kept = frame.health(&before.simulation).into_iter().find(|gauge| gauge.kind == asked.kind);
+    assert!(kept.expect("a gauge").value >= asked.value && asked.value > 0.0);
     assert_ne!(project(&harness).camera, before.camera);
     assert!(project(&harness).camera.distance < before.camera.distance, "it goes nearer");
     assert_eq!(of(&harness).history.undo_label(), Some("camera"));
     press_button(&mut harness, "Show: Largest stretch");
-    assert_eq!((of(&harness).pointed, of(&harness).history.undo_len()), (None, 1));
+    assert_eq!((pointed(of(&harness)), of(&harness).history.undo_len()), (None, 1));
     go(&mut harness);
 }

@@ -138,3 +138,95 @@ fn colliders_are_seen_and_changed() {
     key(&mut harness, CTRL, Key::Z);
     assert_eq!(project(&harness), before);
 }
+
+/// The window with the camera at the dancer's left, so that the left side of the head is before it.
+fn seen_from_the_left() -> Option<Harness<'static, Shown<Option<Window>>>> {
+    let mut harness = with_picture()?;
+    let mut to_side = (*project(&harness)).clone();
+    (to_side.camera.azimuth, to_side.camera.elevation) = (std::f32::consts::FRAC_PI_2, 0.1);
+    let window = harness.state_mut().state.as_mut().expect("a window");
+    window.history.edit("camera", None, to_side);
+    go(&mut harness);
+    wait(&mut harness, "the picture from the side", |window| {
+        let now = window.session.painted.as_ref();
+        now.is_some_and(|painted| (painted.camera.eye - painted.camera.target).x > 0.5)
+    });
+    Some(harness)
+}
+
+#[test]
+fn a_tie_that_is_dragged_over_the_head_turns_with_it_and_its_arrow_aims_it() {
+    let Some(mut harness) = seen_from_the_left() else { return };
+    unfold(&mut harness, "Ties and scissors");
+    into_view(&mut harness, Role::Button, "+ Ponytail");
+    press_button(&mut harness, "+ Ponytail");
+    let back = project(&harness).hair.ties[0];
+    assert!(back.axis.z < -0.8 && back.axis.x.abs() < 0.2, "it aims back: {}", back.axis);
+    let steps = of(&harness).history.undo_len();
+    // To the middle of the side of the head, which is before the camera.
+    let from = control(&harness, Role::Button, "Tie 1 in the picture").rect().center();
+    let world_from_head = |harness: &Harness<'_, _>| {
+        of(harness).session.painted.as_ref().expect("a picture").snapshot.guides.world_from_head
+    };
+    let middle = world_from_head(&harness).transform_point3(glam::Vec3::new(0.0, 0.12, 0.0));
+    let to = view(&harness).to_screen(middle).expect("in the picture");
+    drag_over(&mut harness, from, to);
+    let side = project(&harness).hair.ties[0];
+    assert!(side.at.x > 0.05, "it lies on the head and not in it: {}", side.at);
+    assert!(side.axis.x > 0.6 && side.axis.z.abs() < 0.4, "it aims to the side: {}", side.axis);
+    assert_eq!(of(&harness).history.undo_len(), steps + 1, "one drag is one step");
+    // Its arrow comes toward the camera; its end is drawn upward.
+    let aim = "Aim of tie 1 in the picture";
+    let from = control(&harness, Role::Button, "Tie 1 in the picture").rect().center();
+    let end = control(&harness, Role::Button, aim).rect().center();
+    let clear = if end.distance(from) > 14.0 { end } else { end - egui::vec2(0.0, 10.5) };
+    drag_over(&mut harness, clear, from - egui::vec2(0.0, 90.0));
+    let aimed = project(&harness).hair.ties[0];
+    if clear == end {
+        assert!(aimed.axis.y > side.axis.y + 0.3 && aimed.at == side.at, "{} from {}", aimed.axis, side.axis);
+        assert_eq!(of(&harness).history.undo_len(), steps + 2);
+    }
+    key(&mut harness, CTRL, Key::Z);
+    key(&mut harness, CTRL, Key::Z);
+    assert_eq!(project(&harness).hair.ties[0], back);
+}
+
+#[test]
+fn a_collider_is_moved_and_sized_in_the_picture() {
+    let Some(mut harness) = with_picture() else { return };
+    key(&mut harness, Modifiers::NONE, Key::B);
+    let scene = of(&harness).session.scene.clone().expect("a scene");
+    let name = scene.fitted[0].name.clone();
+    let before = project(&harness);
+    let edit = |harness: &Harness<'_, Shown<Option<Window>>>| project(harness).body.colliders.of(&name);
+    let place = |harness: &Harness<'_, Shown<Option<Window>>>, name: &str| {
+        control(harness, Role::Button, name).rect().center()
+    };
+    let (middle, rim) = ("Collider in the picture", "Radius of the collider in the picture");
+    let [first, out] = [place(&harness, middle), place(&harness, rim)];
+    let at = first;
+    // Taken hold of beside its middle, it keeps to the pointer.
+    let hold = egui::vec2(3.0, 2.0);
+    drag_over(&mut harness, at + hold, at + hold + egui::vec2(0.0, -30.0));
+    let moved = edit(&harness);
+    assert!(moved.offset[1] > 0.01 && moved.scale == 1.0 && moved.enabled, "{moved:?}");
+    let shift = place(&harness, middle) - at;
+    assert!((shift - egui::vec2(0.0, -30.0)).length() < 2.0, "the shape goes with the pointer: {shift:?}");
+    assert_eq!(of(&harness).history.undo_len(), 1, "one drag is one step");
+    // Its rim at one and a half times the distance is as much more of a radius.
+    let [at, rim_at] = [place(&harness, middle), place(&harness, rim)];
+    assert!(((rim_at - at) - (out - first)).length() < 2.0, "as large as before");
+    drag_over(&mut harness, rim_at, at + 1.5 * (rim_at - at));
+    let sized = edit(&harness);
+    assert!((sized.scale - 1.5).abs() < 0.1 && sized.offset == moved.offset, "{sized:?}");
+    assert_eq!(of(&harness).history.undo_len(), 2);
+    wait(&mut harness, "the changed shape", |window| {
+        let now = window.session.scene.as_ref();
+        now.is_some_and(|now| now.colliders.iter().any(|collider| collider.name == name))
+    });
+    key(&mut harness, CTRL, Key::Z);
+    key(&mut harness, CTRL, Key::Z);
+    assert_eq!(project(&harness), before);
+    // The camera stood all the while.
+    assert_eq!(project(&harness).camera, before.camera);
+}

@@ -54,7 +54,11 @@ pub struct HairTie {
     pub plane_point: Vec3,
     /// The side of that plane on which hair is gathered: any vector but zero.
     pub plane_normal: Vec3,
-    /// Centre of the sphere of [`TieReach::InSphere`], metres, each coordinate -0.6 to 0.6.
+    /// Whether the sphere of [`TieReach::InSphere`] is around the ring, wherever that is; `sphere_centre` says nothing then. Off in
+    /// files that do not tell.
+    #[serde(default)]
+    pub sphere_at_ring: bool,
+    /// Centre of that sphere, metres, each coordinate -0.6 to 0.6.
     pub sphere_centre: Vec3,
     /// Its radius, metres, 0.005 to 0.6.
     pub sphere_radius: f32,
@@ -82,6 +86,7 @@ impl HairTie {
         reach: TieReach::All,
         plane_point: Vec3::new(0.0, 0.12, 0.0),
         plane_normal: Vec3::Y,
+        sphere_at_ring: true,
         sphere_centre: Vec3::new(0.0, 0.18, -0.06),
         sphere_radius: 0.08,
     };
@@ -97,8 +102,27 @@ impl HairTie {
         let Some(hit) = ScalpIndex::new(scalp).closest(centre + out * (2.0 * half.max_element())) else {
             return tie;
         };
-        let axis = (hit.normal + Vec3::Y * 0.25).normalize_or(hit.normal);
-        Self { at: hit.position + hit.normal * 0.012, axis, ..tie }
+        Self { at: hit.position + hit.normal * 0.012, axis: Self::axis_over(hit.normal), ..tie }
+    }
+
+    /// Where a tie aims that is new on a head whose outward normal there is `normal`, a unit vector: off the head, and a little up.
+    #[must_use]
+    pub fn axis_over(normal: Vec3) -> Vec3 {
+        (normal + Vec3::Y * 0.25).normalize_or(normal)
+    }
+
+    /// Where the middle of the sphere of [`TieReach::InSphere`] is, head space, metres.
+    pub fn sphere_middle(&self) -> Vec3 {
+        if self.sphere_at_ring { self.at } else { self.sphere_centre }
+    }
+
+    /// The same tie on the other side of the head.
+    #[must_use]
+    pub fn mirrored(&self) -> Self {
+        let [at, axis, plane_point, plane_normal, sphere_centre] =
+            [self.at, self.axis, self.plane_point, self.plane_normal, self.sphere_centre]
+                .map(|v| Vec3::new(0.0 - v.x, v.y, v.z));
+        Self { at, axis, plane_point, plane_normal, sphere_centre, ..*self }
     }
 
     /// The tie with every value inside its range; what is not a number becomes the default.
@@ -116,6 +140,7 @@ impl HairTie {
             reach: self.reach,
             plane_point: place(self.plane_point, d.plane_point),
             plane_normal: direction(self.plane_normal, d.plane_normal),
+            sphere_at_ring: self.sphere_at_ring,
             sphere_centre: place(self.sphere_centre, d.sphere_centre),
             sphere_radius: within(self.sphere_radius, 0.005, 0.6, d.sphere_radius),
         }
@@ -127,7 +152,7 @@ impl HairTie {
             TieReach::All => true,
             TieReach::BehindEars => root.z < ears,
             TieReach::AbovePlane => (root - self.plane_point).dot(self.plane_normal) > 0.0,
-            TieReach::InSphere => root.distance(self.sphere_centre) < self.sphere_radius,
+            TieReach::InSphere => root.distance(self.sphere_middle()) < self.sphere_radius,
         }
     }
 }

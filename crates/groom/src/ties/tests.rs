@@ -102,8 +102,22 @@ fn reach_says_what_is_gathered_and_the_rest_stays() {
     for g in (0..style.guides.count()).filter(|g| half.held[g * n + 1] < 0.0) {
         assert_eq!(style.guides.point(g, n - 1), half.guides.point(g, n - 1));
     }
-    let none = HairTie { reach: TieReach::InSphere, sphere_centre: Vec3::ONE * 0.5, ..HairTie::default() };
+    let none = HairTie {
+        reach: TieReach::InSphere,
+        sphere_at_ring: false,
+        sphere_centre: Vec3::ONE * 0.5,
+        ..HairTie::default()
+    };
     assert_eq!(tied(&style, &[none], &PlainHead).guides, style.guides);
+    // Around the ring there is hair, wherever the centre lies that is not asked for.
+    let near = HairTie { sphere_at_ring: true, sphere_radius: 0.07, ..none };
+    let near = tied(&style, &[near], &PlainHead);
+    assert!(count(&near) > 10 && count(&near) < count(&all) - 30, "{} of {}", count(&near), count(&all));
+    for g in (0..style.guides.count()).filter(|g| near.held[g * n + 1] >= 0.0) {
+        let root = style.guides.point(g, 0);
+        // Wisps are gathered by the middle of their three roots.
+        assert!(root.distance(HairTie::default().at) < 0.07 + 0.03, "{root}");
+    }
 }
 
 #[test]
@@ -113,6 +127,7 @@ fn two_ties_share_the_hair_and_short_hair_is_left_out() {
         at: Vec3::new(0.07 * side, 0.06, -0.07),
         axis: Vec3::new(side, -0.3, -0.5),
         reach: TieReach::InSphere,
+        sphere_at_ring: false,
         sphere_centre: Vec3::new(0.1 * side, 0.1, 0.0),
         sphere_radius: 0.13,
         ..HairTie::default()
@@ -133,6 +148,42 @@ fn two_ties_share_the_hair_and_short_hair_is_left_out() {
     .expect("it grows");
     let tied = tied(&short, &[HairTie::default()], &PlainHead);
     assert!(tied.held.iter().filter(|h| **h >= 0.0).count() < tied.held.len() / 10);
+}
+
+#[test]
+fn a_tie_and_its_mirror_image_part_the_hair_at_the_plane() {
+    let style = long();
+    let left = HairTie {
+        at: Vec3::new(0.08, 0.1, -0.03),
+        axis: Vec3::new(1.0, 0.2, -0.3),
+        reach: TieReach::AbovePlane,
+        plane_point: Vec3::ZERO,
+        plane_normal: Vec3::X,
+        ..HairTie::default()
+    };
+    let right = left.mirrored();
+    assert_eq!((right.at.x, right.axis.x, right.plane_normal), (-0.08, -1.0, Vec3::NEG_X));
+    assert_eq!(right.mirrored(), left);
+    let two = tied(&style, &[left, right], &PlainHead);
+    let n = style.guides.points_per_guide;
+    let (mut sides, mut crossed) = ([0_usize; 2], 0);
+    for wisp in &style.wisps {
+        let root = wisp.guides.iter().map(|&g| style.guides.point(g as usize, 0)).sum::<Vec3>() / 3.0;
+        for &g in wisp.guides.iter().filter(|&&g| two.held[g as usize * n + 1] >= 0.0) {
+            let ring = (1..n).find(|&i| two.held[g as usize * n + i] >= RING_HOLD).expect("a ring");
+            sides[usize::from(root.x < 0.0)] += 1;
+            crossed += usize::from(two.guides.point(g as usize, ring).x * root.x < 0.0);
+        }
+    }
+    assert!(sides.iter().all(|&side| side > 50) && crossed == 0, "{sides:?}, {crossed} on the wrong side");
+}
+
+#[test]
+fn what_a_file_does_not_tell_of_a_patch_is_as_it_was_written() {
+    let old: HairTie =
+        serde_json::from_str(r#"{"reach":"InSphere","sphere_centre":[0.1,0.2,0.0]}"#).expect("a tie");
+    assert_eq!(old.sphere_middle(), Vec3::new(0.1, 0.2, 0.0));
+    assert_eq!(HairTie::default().sphere_middle(), HairTie::default().at);
 }
 
 #[test]

@@ -62,7 +62,8 @@ impl ColliderEdit {
         }
     }
 
-    fn apply(&self, shape: &ColliderShape) -> ColliderShape {
+    /// The shape at rest with its change, whether or not hair meets it.
+    pub fn apply(&self, shape: &ColliderShape) -> ColliderShape {
         let Self { scale, offset, .. } = self.clamped();
         let offset = Vec3::from(offset);
         match *shape {
@@ -93,12 +94,9 @@ impl ColliderEdits {
     /// The colliders that hair meets: without those that are switched off, and without those that the field, where
     /// there is one and it is on, stands for. A changed collider acts in any case.
     pub fn apply(&self, fitted: &[Collider], field: Option<&BodyField>) -> Vec<Collider> {
-        let field = field.filter(|_| self.field.enabled);
-        let unchanged = ColliderEdit::default();
         let used = fitted.iter().filter_map(|collider| {
-            let edit = self.shapes.get(&collider.name).unwrap_or(&unchanged);
-            let spared = *edit == unchanged && field.is_some_and(|f| f.covers(&collider.shape_at_rest));
-            (edit.enabled && !spared)
+            let edit = self.of(&collider.name);
+            (edit.enabled && !self.is_spared(collider, field))
                 .then(|| Collider { shape_at_rest: edit.apply(&collider.shape_at_rest), ..collider.clone() })
         });
         used.collect()
@@ -106,10 +104,28 @@ impl ColliderEdits {
 
     /// The shapes that the field stands for: no hair meets them, but they keep the wind off.
     pub fn stood_for(&self, fitted: &[Collider], field: Option<&BodyField>) -> Vec<Collider> {
-        let Some(field) = field.filter(|_| self.field.enabled) else { return Vec::new() };
-        let met = self.apply(fitted, Some(field));
-        let others = fitted.iter().filter(|collider| met.iter().all(|met| met.name != collider.name));
-        others.filter(|collider| field.covers(&collider.shape_at_rest)).cloned().collect()
+        fitted.iter().filter(|collider| self.is_spared(collider, field)).cloned().collect()
+    }
+
+    /// The change of the collider of that name.
+    pub fn of(&self, name: &str) -> ColliderEdit {
+        self.shapes.get(name).copied().unwrap_or_default()
+    }
+
+    /// Changes the collider of that name; an edit that changes nothing is not kept.
+    pub fn set(&mut self, name: &str, edit: ColliderEdit) {
+        if edit == ColliderEdit::default() {
+            self.shapes.remove(name);
+        } else {
+            self.shapes.insert(name.to_owned(), edit);
+        }
+    }
+
+    /// Whether the field, where there is one and it is on, stands for a collider whose size and place are as they were fitted: hair
+    /// does not meet it then, be it enabled or not.
+    pub fn is_spared(&self, collider: &Collider, field: Option<&BodyField>) -> bool {
+        let as_fitted = ColliderEdit { enabled: true, ..self.of(&collider.name) } == ColliderEdit::default();
+        as_fitted && self.field.enabled && field.is_some_and(|field| field.covers(&collider.shape_at_rest))
     }
 }
 

@@ -326,6 +326,7 @@ mod tests {
                 value: 2e-3,
                 level: crate::HealthLevel::Watch,
                 at: Some((1, 2)),
+                found: None,
                 within: Some("head and shoulders".to_owned()),
                 advice: "Hair goes into the body.".to_owned(),
             }],

@@ -1,9 +1,11 @@
 //! How well the hair is simulated, in plain words: gauges with limits, and what to change where one is over them.
 
-use lovelock_wisp::{InsidePoint, Integrator, SimulationSettings};
+use glam::Vec3;
+use lovelock_groom::Guides;
+use lovelock_wisp::{BodyPart, InsidePoint, Integrator, SimulationSettings};
 use serde::Serialize;
 
-use crate::{FrameSnapshot, Scene, Totals};
+use crate::{Found, FrameSnapshot, Scene, Totals};
 
 /// What is watched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
@@ -105,6 +107,8 @@ pub struct Gauge {
     pub level: HealthLevel,
     /// The guide that it is about, and its point; none where it is about none.
     pub at: Option<(u32, u32)>,
+    /// When and where that point was as the value was found; none where it is of this instant, or of the style at rest.
+    pub found: Option<Found>,
     /// What of the body it is in: `head and shoulders`, or the name of a joint; none where it is in nothing.
     pub within: Option<String>,
     /// What it means and what to change, in sentences; empty where all is well.
@@ -118,10 +122,23 @@ impl Gauge {
         if wrong > 0.0 { (self.value / wrong).clamp(0.0, 1.0) as f32 } else { f32::from(self.value > 0.0) }
     }
 
-    /// The value with its unit, and what of the body it is in.
+    /// The value with its unit, what of the body it is in, and when that was.
     pub fn in_words(&self) -> String {
-        let value = self.kind.in_words(self.value);
-        self.within.as_ref().map_or_else(|| value.clone(), |within| format!("{value} in {within}"))
+        let mut words = self.kind.in_words(self.value);
+        for more in self.within.iter().map(|within| format!(" in {within}")).chain(self.when_in_words()) {
+            words.push_str(&more);
+        }
+        words
+    }
+
+    /// When it was found, seconds on the timeline; none where it was not found at one instant of a timeline.
+    pub fn found_secs(&self) -> Option<f64> {
+        self.found?.at_secs
+    }
+
+    /// The same in words, which follow on others: ` at 3.8 s`.
+    pub fn when_in_words(&self) -> Option<String> {
+        self.found_secs().map(|secs| format!(" at {secs:.1} s"))
     }
 
     fn new(kind: GaugeKind, value: f64, at: Option<(u32, u32)>, advice: impl FnOnce() -> String) -> Self {
@@ -134,18 +151,22 @@ impl Gauge {
             HealthLevel::Wrong
         };
         let advice = if level == HealthLevel::Good { String::new() } else { advice() };
-        Self { kind, value, level, at, within: None, advice }
+        Self { kind, value, level, at, found: None, within: None, advice }
     }
 }
 
-/// The gauges of all steps of a recording: energy is the most there was.
+/// The gauges of all steps of a recording: energy is the most there was, and has its time.
 pub fn health(
     totals: &Totals,
     rest: Option<InsidePoint>,
     scene: &Scene,
     settings: &SimulationSettings,
 ) -> Vec<Gauge> {
-    gauges((totals.max_kinetic_energy, totals.fastest_at), totals, rest, scene, settings)
+    let mut gauges = gauges((totals.max_kinetic_energy, totals.fastest_at), totals, rest, scene, settings);
+    for gauge in gauges.iter_mut().filter(|gauge| gauge.kind == GaugeKind::Energy) {
+        gauge.found = totals.fastest_found;
+    }
+    gauges
 }
 
 fn gauges(
@@ -156,7 +177,6 @@ fn gauges(
     settings: &SimulationSettings,
 ) -> Vec<Gauge> {
     let place = |inside: Option<InsidePoint>| inside.map(|inside| (inside.guide, inside.point));
-    let part = |inside: Option<InsidePoint>| inside.map_or("the body", |inside| scene.name_of(inside.within));
     let within = |inside: Option<InsidePoint>| inside.map(|inside| scene.name_of(inside.within).to_owned());
     let mut gauges = vec![
         Gauge::new(GaugeKind::Stretch, f64::from(totals.max_stretch), totals.worst_stretch_at, || {
@@ -174,9 +194,9 @@ fn gauges(
             f64::from(totals.max_penetration_m),
             place(totals.deepest),
             || {
-                let part = part(totals.deepest);
+                let (part, fit) = fitting(totals.deepest, scene, "raise");
                 format!(
-                    "Hair goes into the body: {part}. Raise the skin margin or the substeps, or fit that collider better."
+                    "Hair goes into the body: {part}. Raise the skin margin or the substeps; to hide what is left, {fit}."
                 )
             },
         ),
@@ -203,10 +223,10 @@ fn gauges(
             rest.map_or(0.0, |rest| f64::from(rest.depth_m)),
             place(rest),
             || {
-                let part = part(rest);
+                let (part, fit) = fitting(rest, scene, "lower");
                 format!(
-                    "The style begins inside the body: {part}. It stays as near as it was drawn; lift it off the body, or make \
-                     that collider smaller."
+                    "The style begins inside the body: {part}. It stays as near as it was drawn; draw it further off the body, \
+                     or {fit}."
                 )
             },
         ),
@@ -217,8 +237,25 @@ fn gauges(
             GaugeKind::RestInside => within(rest),
             GaugeKind::Stretch | GaugeKind::Energy | GaugeKind::PutBack => None,
         };
+        gauge.found = match gauge.kind {
+            GaugeKind::Stretch => totals.worst_stretch_found,
+            GaugeKind::Penetration => totals.deepest_found,
+            GaugeKind::PutBack => totals.recovered_found,
+            GaugeKind::Energy | GaugeKind::RestInside => None,
+        };
     }
     gauges
+}
+
+/// What of the body a point is in, and which of its controls to change.
+fn fitting(inside: Option<InsidePoint>, scene: &Scene, change: &str) -> (String, String) {
+    let part = inside.map_or("the body", |inside| scene.name_of(inside.within)).to_owned();
+    let fit = match inside.map(|inside| inside.within) {
+        Some(BodyPart::Field) => format!("{change} Lift (Colliders, Head and shoulders)"),
+        Some(BodyPart::Collider(_)) => format!("{change} Size of {part} (Colliders)"),
+        None => "fit it better (Colliders)".to_owned(),
+    };
+    (part, fit)
 }
 
 impl FrameSnapshot {
@@ -228,12 +265,29 @@ impl FrameSnapshot {
         gauges(now, &self.totals, self.rest_inside, &self.scene, settings)
     }
 
-    /// Where a point of a guide is now, world space; its tip where it has fewer points. None where there is no such guide.
-    pub fn guide_point(&self, (guide, point): (u32, u32)) -> Option<glam::Vec3> {
-        let guides = &self.guides.guides;
-        let last = guides.points_per_guide.checked_sub(1)?;
-        ((guide as usize) < guides.count()).then(|| guides.point(guide as usize, (point as usize).min(last)))
+    /// The place that a gauge is about, world space, metres: where its point was as the value was found; of the style at rest,
+    /// where the head carries it now; of what is measured now, where the point is. None where it is about no place.
+    pub fn place_of(&self, gauge: &Gauge) -> Option<Vec3> {
+        if let Some(found) = gauge.found {
+            return Some(found.place);
+        }
+        let at = gauge.at?;
+        if gauge.kind == GaugeKind::RestInside {
+            let in_head = point_of(&self.scene.style.guides, at)?;
+            return Some(self.guides.world_from_head.transform_point3(in_head));
+        }
+        self.guide_point(at)
     }
+
+    /// Where a point of a guide is now, world space; its tip where it has fewer points. None where there is no such guide.
+    pub fn guide_point(&self, at: (u32, u32)) -> Option<Vec3> {
+        point_of(&self.guides.guides, at)
+    }
+}
+
+fn point_of(guides: &Guides, (guide, point): (u32, u32)) -> Option<Vec3> {
+    let last = guides.points_per_guide.checked_sub(1)?;
+    ((guide as usize) < guides.count()).then(|| guides.point(guide as usize, (point as usize).min(last)))
 }
 
 #[cfg(test)]

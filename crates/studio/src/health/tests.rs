@@ -33,11 +33,108 @@ fn good_hair_gets_no_advice_and_every_limit_has_a_sentence() {
         assert!(!gauge.kind.in_words(gauge.value).is_empty());
     }
     let inside = InsidePoint { depth_m: 2e-3, guide: 0, point: 9, within: BodyPart::Field };
+    let found = Some(Found { at_secs: Some(3.84), place: Vec3::new(0.1, 1.5, 0.2) });
     let some = Totals { max_penetration_m: 2e-3, deepest: Some(inside), ..Totals::default() };
     let watched = health(&some, None, &scene, &settings);
     assert_eq!(watched[1].level, HealthLevel::Watch);
     assert_eq!(watched[1].in_words(), "2.0 mm in head and shoulders");
     assert!((watched[1].fill() - 0.4).abs() < 1e-6);
+    let dated = Totals { deepest_found: found, ..some };
+    assert_eq!(
+        health(&dated, None, &scene, &settings)[1].in_words(),
+        "2.0 mm in head and shoulders at 3.8 s"
+    );
+}
+
+#[test]
+fn a_body_that_rests_has_no_time_to_go_to() {
+    let still = Scene { clip: None, ..Scene::clone(&scene()) };
+    let settings = SimulationSettings::default();
+    let mut engine = Engine::new(std::sync::Arc::new(still), settings);
+    engine.advance_to_step(20);
+    let frame = engine.snapshot();
+    let stretch = &frame.health(&settings)[0];
+    assert!(stretch.at.is_some() && frame.place_of(stretch).is_some(), "{stretch:?}");
+    assert_eq!((stretch.found_secs(), stretch.when_in_words()), (None, None));
+}
+
+#[test]
+fn advice_names_controls_that_there_are() {
+    let (scene, settings) = (scene(), SimulationSettings::default());
+    let advice = |within| {
+        let inside = Some(InsidePoint { depth_m: 0.05, guide: 0, point: 9, within });
+        let totals = Totals { max_penetration_m: 0.05, deepest: inside, ..Totals::default() };
+        let told = health(&totals, inside, &scene, &settings);
+        [told[1].advice.clone(), told[4].advice.clone()]
+    };
+    let [hair, style] = advice(BodyPart::Field);
+    assert!(hair.contains("raise Lift (Colliders, Head and shoulders)"), "{hair}");
+    assert!(style.contains("lower Lift (Colliders, Head and shoulders)"), "{style}");
+    let [hair, style] = advice(BodyPart::Collider(0));
+    let name = &scene.colliders[0].name;
+    assert!(hair.contains(&format!("raise Size of {name} (Colliders)")), "{hair}");
+    assert!(style.contains(&format!("lower Size of {name} (Colliders)")), "{style}");
+    for said in [hair, style] {
+        assert!(!said.contains("Lift"), "the skin's control does nothing to a shape: {said}");
+    }
+}
+
+#[test]
+fn the_worst_is_kept_with_its_time_and_its_place() {
+    let project = small_project();
+    let mut engine = Engine::new(load(&project).0, project.simulation);
+    let duration = engine.scene().duration_secs();
+    // Beyond its end the timeline begins again.
+    engine.seek(duration - 0.5);
+    engine.settle();
+    let (mut stretch, mut energy) = ((0.0, None), (0.0, None));
+    for _ in 0..60 {
+        engine.step();
+        let frame = engine.snapshot();
+        let here = |at| {
+            let place = frame.guide_point(at).expect("a point");
+            Found { at_secs: Some(frame.position_secs), place }
+        };
+        if frame.report.max_stretch > stretch.0 {
+            stretch = (frame.report.max_stretch, frame.report.worst_stretch_at.map(here));
+        }
+        if frame.report.kinetic_energy > energy.0 {
+            energy = (frame.report.kinetic_energy, frame.report.fastest_at.map(here));
+        }
+    }
+    let totals = engine.totals();
+    assert_eq!((totals.max_stretch, totals.worst_stretch_found), stretch);
+    assert_eq!((totals.max_kinetic_energy, totals.fastest_found), energy);
+    let found = energy.1.expect("hair moves");
+    assert!(found.at_secs.is_some_and(|secs| (0.0..duration).contains(&secs)), "{found:?} of {duration} s");
+    // The same point is elsewhere by now, and the gauge says where it was.
+    let frame = engine.snapshot();
+    let gauges = health(&totals, None, &frame.scene, &project.simulation);
+    let now = frame.guide_point(totals.fastest_at.expect("a point")).expect("a point");
+    assert_eq!(frame.place_of(&gauges[2]), Some(found.place));
+    assert!(now.distance(found.place) > 1e-3, "{now} is still at {}", found.place);
+    // As it is measured now, it is where the point is.
+    let gauges = frame.health(&project.simulation);
+    let at = frame.report.fastest_at.expect("a point");
+    assert_eq!(frame.place_of(&gauges[2]), frame.guide_point(at));
+}
+
+#[test]
+fn a_style_in_the_body_is_shown_where_the_style_is() {
+    let project = small_project();
+    let mut engine = Engine::new(load(&project).0, project.simulation);
+    engine.advance_to_step(90);
+    let frame = engine.snapshot();
+    let tip = frame.scene.style.guides.points_per_guide as u32 - 1;
+    let rest = InsidePoint { depth_m: 0.05, guide: 3, point: tip, within: BodyPart::Field };
+    let gauge = &health(&Totals::default(), Some(rest), &frame.scene, &project.simulation)[4];
+    let place = frame.place_of(gauge).expect("a place");
+    // What the head carries stays where it is against the head.
+    let in_head = frame.guides.world_from_head.inverse().transform_point3(place);
+    let drawn = frame.scene.style.guides.point(3, tip as usize);
+    assert!(in_head.distance(drawn) < 1e-5, "{in_head} was drawn at {drawn}");
+    let swung = frame.guide_point((3, tip)).expect("a point");
+    assert!(swung.distance(place) > 5e-3, "the guide has not moved: {swung}, {place}");
 }
 
 #[test]

@@ -154,6 +154,11 @@ impl Engine {
         self.totals = Totals::default();
     }
 
+    /// Goes on counting from totals of before.
+    pub(super) fn set_totals(&mut self, totals: Totals) {
+        self.totals = totals;
+    }
+
     /// Where the style at rest lies deepest inside the body; none where it does not.
     pub fn rest_inside(&self) -> Option<InsidePoint> {
         self.rest_inside
@@ -247,7 +252,7 @@ impl Engine {
         self.simulate();
         self.times.simulate += watch.ms();
         self.taken += 1;
-        self.totals.add(&self.report);
+        self.count();
         let step_secs = self.step_secs;
         self.combing.take_if(|combing| !combing.advance(step_secs));
     }
@@ -363,7 +368,14 @@ impl Engine {
         self.simulated_secs += JUMP_SECS;
         self.place_body(f64::NEG_INFINITY);
         self.simulate();
-        self.totals.add(&self.report);
+        self.count();
+    }
+
+    /// Adds the last step to the totals.
+    fn count(&mut self) {
+        let has_timeline = self.scene.duration_secs() > 0.0;
+        let (secs, simulation) = (has_timeline.then(|| self.position_secs()), &self.simulation);
+        self.totals.add(&self.report, secs, |guide, point| simulation.guide_point(guide, point));
     }
 }
 

@@ -199,6 +199,7 @@ impl Inside {
             rate,
             backwards,
             seek_secs,
+            look_back,
             steps,
             restart,
             settle,
@@ -236,6 +237,7 @@ impl Inside {
                 restart || seek_secs.is_some() || steps != 0
             }
             (None, Some(engine)) => {
+                let measured = (look_back && seek_secs.is_some()).then(|| engine.totals());
                 if restart {
                     engine.seek(0.0);
                 }
@@ -248,6 +250,9 @@ impl Inside {
                 let gone_to = restart || seek_secs.is_some() || steps < 0;
                 if gone_to || settle == Some(true) {
                     self.begin_preroll();
+                    if let Some(aside) = &mut self.preroll {
+                        aside.measured = measured;
+                    }
                 } else if settle == Some(false) && self.preroll.take().is_some() {
                     self.playback.set_playing(self.playback.is_playing());
                 }

@@ -128,7 +128,14 @@ impl Inside {
                     deliver(loaded);
                     self.outbox.send(Event::Loaded { scene, problems });
                 }
-                Ok(Err(StudioError::Cancelled)) => self.outbox.send(Event::LoadCancelled),
+                Ok(Err(StudioError::Cancelled)) => {
+                    // Given up for a later one: a slider that is dragged asks at every frame.
+                    let replaced =
+                        self.desk.0.lock().unwrap_or_else(PoisonError::into_inner).request.is_some();
+                    if !replaced {
+                        self.outbox.send(Event::LoadCancelled);
+                    }
+                }
                 Ok(Err(error)) => self.outbox.send(Event::LoadFailed { message: error.to_string() }),
                 Err(panic) => {
                     // What it was in the middle of may be half made.

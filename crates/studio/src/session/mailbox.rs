@@ -34,6 +34,8 @@ pub(super) struct Wishes {
     pub(super) backwards: Option<bool>,
     /// A time to go to.
     pub(super) seek_secs: Option<f64>,
+    /// Whether what was measured before is kept there.
+    pub(super) look_back: bool,
     /// Steps to go on (positive) or back, after `seek_secs`.
     pub(super) steps: i64,
     /// Back to the first frame, the hair settled.
@@ -48,8 +50,21 @@ pub(super) struct Wishes {
 
 impl Wishes {
     fn is_empty(&self) -> bool {
-        let Self { project, loaded, playing, rate, backwards, seek_secs, steps, restart, settle, take, stop } =
-            self;
+        let Self {
+            project,
+            loaded,
+            playing,
+            rate,
+            backwards,
+            seek_secs,
+            // It says how to go there.
+            look_back: _,
+            steps,
+            restart,
+            settle,
+            take,
+            stop,
+        } = self;
         project.is_none()
             && loaded.is_none()
             && playing.is_none()

@@ -27,7 +27,7 @@ pub use preroll::{Preroll, PrerollProgress};
 pub use scene::{BodyObstacle, Scene};
 pub use snapshot::FrameSnapshot;
 pub(crate) use snapshot::SnapshotPool;
-pub use totals::Totals;
+pub use totals::{Found, Totals};
 pub use worker::{Event, Wake, Worker};
 
 #[cfg(test)]

@@ -197,7 +197,15 @@ impl Worker {
     /// Goes to a time, seconds; the hair moves along at once, and settles there aside. Time waits for it.
     pub fn seek(&self, time_secs: f64) {
         self.mailbox.ask(|wishes| {
-            wishes.seek_secs = Some(time_secs);
+            (wishes.seek_secs, wishes.look_back) = (Some(time_secs), false);
+            (wishes.steps, wishes.restart) = (0, false);
+        });
+    }
+
+    /// As [`Worker::seek`], to look at what was measured there: the totals go on from those of before.
+    pub fn look_back(&self, time_secs: f64) {
+        self.mailbox.ask(|wishes| {
+            (wishes.seek_secs, wishes.look_back) = (Some(time_secs), true);
             (wishes.steps, wishes.restart) = (0, false);
         });
     }

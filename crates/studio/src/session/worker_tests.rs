@@ -190,3 +190,49 @@ fn settling_can_be_given_up_and_time_goes_on() {
     wait("time to pass", || worker.frame().filter(|frame| frame.step > 2));
     assert_eq!(worker.settling(), None);
 }
+
+#[test]
+fn who_looks_back_sees_settled_hair_there_and_keeps_what_was_measured() {
+    let (worker, _) = start(small_project());
+    let measured = |secs: f64| {
+        wait("a worst stretch", || {
+            worker
+                .frame()
+                .filter(|frame| frame.time_secs > secs && frame.totals.worst_stretch_found.is_some())
+        })
+    };
+    measured(0.3);
+    worker.set_playing(false);
+    worker.step(1);
+    std::thread::sleep(Duration::from_millis(60));
+    let frame = worker.frame().expect("a frame");
+    let found = frame.totals.worst_stretch_found.expect("found");
+    let secs = found.at_secs.expect("the dance has a timeline");
+    assert!(secs <= frame.position_secs && found.place.is_finite(), "{found:?}");
+    worker.look_back(secs);
+    let back = settled_at(&worker, secs);
+    assert_eq!(back.totals.worst_stretch_found, Some(found));
+    assert_eq!(back.totals.max_stretch, frame.totals.max_stretch);
+    // Whoever only goes there begins to count anew.
+    worker.seek(secs);
+    wait("counting anew", || worker.frame().filter(|frame| frame.totals.steps == 0));
+}
+
+#[test]
+fn a_load_that_another_one_replaces_is_not_told_as_cancelled() {
+    let mut project = small_project();
+    let (worker, _) = start(project.clone());
+    wait("the first scene", || worker.poll_event());
+    for wisps in 20..60 {
+        project.hair.groom.wisps = wisps;
+        worker.set_project(Arc::new(project.clone()), Access::new());
+        std::thread::sleep(Duration::from_millis(3));
+    }
+    let mut told = Vec::new();
+    wait("the last hair", || {
+        told.extend(worker.poll_event());
+        worker.frame().filter(|frame| frame.scene.style.wisps.len() == 59)
+    });
+    told.extend(std::iter::from_fn(|| worker.poll_event()));
+    assert!(told.iter().all(|event| matches!(event, Event::Loaded { .. })), "{told:?}");
+}

@@ -1,11 +1,12 @@
 //! The simulator and the body: the field of head and shoulders, and what of the hair at rest is inside.
 
+use glam::Vec3;
 use rayon::prelude::*;
 
 use super::Simulation;
 use crate::colliders::contact::{FIELD, LAYER_HEIGHT};
 use crate::colliders::field::{MovingField, PlaneRow};
-use crate::lanes::LANES;
+use crate::lanes::{LANES, at};
 use crate::{BodyPart, InsidePoint, SimulationSettings, StepInput};
 
 impl Simulation {
@@ -54,6 +55,15 @@ impl Simulation {
     /// the same, bit for bit; this is to measure what is gained.
     pub fn spare_contacts(&mut self, spare: bool) {
         self.spare = spare;
+    }
+
+    /// Where a point of a guide is now, world space, metres; the guide's tip where it has fewer points. `None` where there is no
+    /// such guide.
+    pub fn guide_point(&self, guide: u32, point: u32) -> Option<Vec3> {
+        let &(block, lane) = self.slots.get(guide as usize)?;
+        let rows = &self.blocks.get(block as usize)?.position;
+        let row = rows.get((point as usize).min(rows.len().checked_sub(1)?))?;
+        Some(at(row, lane as usize) + self.head.place)
     }
 
     /// The point of the hairstyle at rest that is deepest inside the body, among those that the scalp does not carry;

@@ -1,6 +1,8 @@
 mod every_control;
 mod one_by_one;
+mod reasons;
 mod recording;
+mod ties;
 mod undo;
 mod untouched;
 
@@ -87,8 +89,12 @@ pub(super) const PANELS: [(&str, Show); 11] = [
         super::body::ui(ui, &mut b.project, &b.body);
     }),
     ("Colliders", |ui, b| {
-        let names = ["neck", "upper arm left of a rather long name"];
-        super::colliders::ui(ui, &mut b.project.body.colliders, &names, &mut b.colliders);
+        let edits = &mut b.project.body.colliders;
+        // The skin stands for the skull as long as it is as it was fitted.
+        let skull = edits.of("skull").scale == 1.0 && edits.field.enabled;
+        let shapes = [("neck", false), ("upper arm left of a rather long name", false), ("skull", skull)];
+        let fitted = shapes.map(|(name, spared)| super::colliders::Fitted { name, spared });
+        super::colliders::ui(ui, edits, &fitted, &mut b.colliders);
     }),
     ("Ties and scissors", |ui, b| {
         super::ties::ui(ui, &mut b.project.hair, &mut b.selected_tie, None);
@@ -137,7 +143,8 @@ pub(super) fn projects() -> Vec<(&'static str, Project)> {
     files.set_body_file("/a/b c/a character of a rather long name that says much.glb");
     files.set_motion_file("/a/b c/ü.bvh");
     files.shadow.voxel_map.deposit = VoxelDeposit::PointCount;
-    files.hair.ties.push(HairTie { kind: TieKind::Bun, reach: TieReach::InSphere, ..HairTie::default() });
+    let patch = HairTie { reach: TieReach::InSphere, sphere_at_ring: false, ..HairTie::default() };
+    files.hair.ties.push(HairTie { kind: TieKind::Bun, ..patch });
     files
         .body
         .colliders

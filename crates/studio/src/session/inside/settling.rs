@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use super::super::{Preroll, PrerollProgress};
 use super::Inside;
-use crate::{Animation, Project, Stopwatch};
+use crate::{Animation, Project, Stopwatch, Totals};
 
 /// How long the life before an instant goes on before wishes are looked at again, milliseconds.
 const SLICE_MS: f64 = 8.0;
@@ -27,6 +27,8 @@ pub(super) struct Aside {
     since: Stopwatch,
     /// Steps to go on once it has arrived.
     pub(super) steps: u32,
+    /// What was measured before, where it is kept.
+    pub(super) measured: Option<Totals>,
 }
 
 impl Inside {
@@ -36,6 +38,7 @@ impl Inside {
             preroll: Box::new(engine.preroll()),
             since: Stopwatch::start(),
             steps: 0,
+            measured: None,
         });
     }
 
@@ -59,6 +62,9 @@ impl Inside {
     pub(super) fn arrive(&mut self) {
         let (Some(aside), Some(engine)) = (self.preroll.take(), &mut self.engine) else { return };
         engine.take_settled(*aside.preroll);
+        if let Some(measured) = aside.measured {
+            engine.set_totals(measured);
+        }
         // The time that it took is not to be caught up with.
         self.playback.set_playing(self.playback.is_playing());
         for _ in 0..aside.steps {

@@ -1,0 +1,81 @@
+//! Controls that do nothing say so, and those that a paper has a symbol for name it.
+
+use egui::accesskit::Role;
+use egui_kittest::Harness;
+use egui_kittest::kittest::NodeT;
+use lovelock_studio::Project;
+use lovelock_studio::wisp::{Integrator, RepulsionMode};
+
+use super::one_by_one::choose;
+use super::{Bench, panel};
+use crate::window::testing::{Shown, click, control, is_on, tooltip_at, type_at};
+
+/// Whether a control takes input, and what its tooltip says.
+fn state(harness: &mut Harness<'_, Shown<Bench>>, role: Role, name: &str) -> (bool, String) {
+    let node = control(harness, role, name);
+    let (off, at) = (node.accesskit_node().is_disabled(), node.rect().center());
+    (!off, tooltip_at(harness, at).unwrap_or_default())
+}
+
+#[test]
+fn across_is_for_pressure_alone() {
+    let mut harness = panel("Simulation", Project::default());
+    let (live, said) = state(&mut harness, Role::SpinButton, "Across");
+    assert!(live && !said.contains("Only Pressure"), "{said}");
+    choose(&mut harness, "Repulsion", "Cell centre");
+    assert_eq!(harness.state().state.project.simulation.repulsion.mode, RepulsionMode::Centre);
+    let (live, said) = state(&mut harness, Role::SpinButton, "Across");
+    assert!(!live && said.contains("across strands") && said.contains("Only Pressure"), "{said}");
+    let before = harness.state().state.project.clone();
+    let at = control(&harness, Role::SpinButton, "Across").rect().center();
+    type_at(&mut harness, at, "10");
+    assert!(harness.state().state.project == before, "it takes no number");
+    let (live, said) = state(&mut harness, Role::SpinButton, "Cohesion");
+    assert!(live && !said.contains("Only Pressure"), "the reason is for one control: {said}");
+}
+
+#[test]
+fn a_shape_that_the_skin_stands_for_is_off_with_the_reason_until_it_is_changed() {
+    let mut harness = panel("Colliders", Project::default());
+    assert!(state(&mut harness, Role::CheckBox, "On").0);
+    choose(&mut harness, "Collider", "skull");
+    let (live, said) = state(&mut harness, Role::CheckBox, "On");
+    assert!(!live && said.contains("meets the skin"), "{said}");
+    assert!(!is_on(&control(&harness, Role::CheckBox, "On")), "hair does not meet it");
+    let at = control(&harness, Role::CheckBox, "On").rect().center();
+    click(&mut harness, at);
+    assert!(harness.state().state.project == Project::default());
+    let size = control(&harness, Role::SpinButton, "Size").rect().center();
+    type_at(&mut harness, size, "120");
+    assert!(state(&mut harness, Role::CheckBox, "On").0 && is_on(&control(&harness, Role::CheckBox, "On")));
+}
+
+#[test]
+fn advice_of_the_gauges_names_what_is_there() {
+    let harness = panel("Colliders", Project::default());
+    for name in ["Lift", "Size"] {
+        control(&harness, Role::SpinButton, name);
+    }
+}
+
+#[test]
+fn controls_name_their_symbols() {
+    let mut project = Project::default();
+    project.simulation.integrator = Integrator::FollowTheLeader;
+    let mut harness = panel("Simulation", project);
+    for (name, symbol) in [
+        ("Gravity", "g"),
+        ("Stiffness, roots", "√B"),
+        ("Stiffness, tips", "√B"),
+        ("Bend damping", "γ h"),
+        ("Wind", "w"),
+        ("Friction", "μ"),
+        ("Strength", "k"),
+        ("Threshold", "τ"),
+        ("Across", "a"),
+        ("Damping", "s"),
+    ] {
+        let (_, said) = state(&mut harness, Role::SpinButton, name);
+        assert!(said.contains(&format!("Symbol: {symbol}")), "{name}: {said}");
+    }
+}

@@ -1,0 +1,120 @@
+//! Ties are aimed, parted and mirrored.
+
+use egui::accesskit::Role;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use glam::Vec3;
+use lovelock_studio::Project;
+use lovelock_studio::groom::{HairTie, TieReach};
+
+use super::one_by_one::choose;
+use super::{Bench, panel};
+use crate::window::testing::{Shown, control, double_click, is_marked, tooltip_at, type_at};
+
+fn with_ties(ties: &[HairTie]) -> Harness<'static, Shown<Bench>> {
+    let mut project = Project::default();
+    project.hair.ties = ties.to_vec();
+    panel("Ties and scissors", project)
+}
+
+fn tie(harness: &Harness<'_, Shown<Bench>>, i: usize) -> HairTie {
+    harness.state().state.project.hair.ties[i]
+}
+
+fn set(harness: &mut Harness<'_, Shown<Bench>>, name: &str, text: &str) {
+    let at = control(harness, Role::SpinButton, name).rect().center();
+    type_at(harness, at, text);
+}
+
+#[test]
+fn a_tie_is_aimed_by_heading_and_rise() {
+    let shipped = HairTie::default();
+    let mut harness = with_ties(&[shipped]);
+    assert_eq!(control(&harness, Role::SpinButton, "Heading").value().as_deref(), Some("0°"));
+    set(&mut harness, "Heading", "90");
+    let axis = tie(&harness, 0).axis.normalize_or(Vec3::ZERO);
+    let rise = shipped.axis.normalize_or(Vec3::ZERO).y;
+    assert!(axis.x > 0.9 && axis.z.abs() < 1e-3, "to the dancer's left: {axis}");
+    assert!((axis.y - rise).abs() < 1e-3, "as steep as before: {axis}");
+    set(&mut harness, "Rise", "90");
+    assert!(tie(&harness, 0).axis.y > 0.999);
+    set(&mut harness, "Rise", "-30");
+    let axis = tie(&harness, 0).axis;
+    assert!((axis.x - 0.866).abs() < 1e-2 && (axis.y + 0.5).abs() < 1e-2, "it keeps its side: {axis}");
+    for name in ["Heading", "Rise"] {
+        assert!(is_marked(&harness, name), "{name}");
+        let at = control(&harness, Role::SpinButton, name).rect().center();
+        double_click(&mut harness, at);
+        harness.key_press(egui::Key::Escape);
+        harness.run();
+    }
+    assert_eq!(tie(&harness, 0), shipped, "restored, it is the very same");
+}
+
+#[test]
+fn a_parting_divides_the_hair() {
+    let mut harness = with_ties(&[HairTie::default()]);
+    for (entry, normal) in
+        [("What grows on the left", Vec3::X), ("What grows on the right", Vec3::NEG_X)]
+    {
+        choose(&mut harness, "Gathers", entry);
+        assert_eq!((tie(&harness, 0).reach, tie(&harness, 0).plane_normal), (TieReach::AbovePlane, normal));
+        assert_eq!(tie(&harness, 0).plane_point.x, 0.0, "in the middle");
+    }
+    set(&mut harness, "Parting", "3.5");
+    assert!((tie(&harness, 0).plane_point.x - 0.035).abs() < 1e-6);
+    choose(&mut harness, "Gathers", "What grows above a height");
+    assert_eq!(tie(&harness, 0).plane_normal, Vec3::Y);
+    assert!(harness.query_by_role_and_label(Role::SpinButton, "Height").is_some());
+    // A plane that a file has may be any: it is named and kept.
+    harness.state_mut().state.project.hair.ties[0].plane_normal = Vec3::new(1.0, 1.0, 0.0);
+    harness.run();
+    let said = control(&harness, Role::ComboBox, "Gathers").value();
+    assert_eq!(said.as_deref(), Some("What grows beyond a plane"));
+}
+
+#[test]
+fn a_patch_goes_with_its_ring_until_it_has_a_place_of_its_own() {
+    let mut harness = with_ties(&[HairTie::default()]);
+    choose(&mut harness, "Gathers", "What grows in a patch");
+    assert!(harness.query_by_role_and_label(Role::SpinButton, "Patch upward").is_none());
+    set(&mut harness, "Upward", "10");
+    let moved = tie(&harness, 0);
+    assert_eq!(moved.sphere_middle(), moved.at, "it goes with the ring");
+    control(&harness, Role::CheckBox, "Around the ring").click();
+    harness.run();
+    assert_eq!(tie(&harness, 0).sphere_middle(), moved.at, "nothing jumps");
+    set(&mut harness, "Patch upward", "18");
+    set(&mut harness, "Patch sideways", "-4");
+    set(&mut harness, "Upward", "14");
+    let parted = tie(&harness, 0);
+    let middle = parted.sphere_middle();
+    assert!((middle - Vec3::new(-0.04, 0.18, moved.at.z)).length() < 1e-6, "{middle}");
+}
+
+#[test]
+fn a_tie_at_one_side_has_a_mirror_image_and_both_share_the_hair() {
+    let mut harness = with_ties(&[HairTie::default()]);
+    let at = control(&harness, Role::Button, "Mirror").rect().center();
+    let said = tooltip_at(&mut harness, at).expect("a reason");
+    assert!(said.contains("one side"), "{said}");
+    control(&harness, Role::Button, "Mirror").click();
+    harness.run();
+    assert_eq!(harness.state().state.project.hair.ties.len(), 1, "it is in the middle");
+    set(&mut harness, "Sideways", "8");
+    set(&mut harness, "Heading", "80");
+    control(&harness, Role::Button, "Mirror").click();
+    harness.run();
+    let (left, right) = (tie(&harness, 0), tie(&harness, 1));
+    assert_eq!(right, left.mirrored());
+    assert_eq!((left.plane_normal, right.plane_normal), (Vec3::X, Vec3::NEG_X));
+    assert!([left, right].iter().all(|tie| tie.reach == TieReach::AbovePlane && tie.plane_point.x == 0.0));
+    assert_eq!(harness.state().state.selected_tie, 1, "the new one is chosen");
+    let (sanitised, problems) = harness.state().state.project.sanitised();
+    assert!(problems.is_empty() && sanitised == harness.state().state.project, "{problems:?}");
+    // From the other side it is the other way round.
+    let mut harness = with_ties(&[HairTie { at: Vec3::new(-0.08, 0.1, 0.0), ..HairTie::default() }]);
+    control(&harness, Role::Button, "Mirror").click();
+    harness.run();
+    assert_eq!((tie(&harness, 0).plane_normal, tie(&harness, 1).plane_normal), (Vec3::NEG_X, Vec3::X));
+}
