@@ -160,6 +160,11 @@ impl Engine {
         self.rest_inside
     }
 
+    /// What the simulator took for the steps since they were last taken, milliseconds, with the substeps of the last one. Counts anew.
+    pub(crate) fn take_simulate_ms(&mut self) -> (f64, u32) {
+        (std::mem::take(&mut self.times).simulate, self.report.substeps)
+    }
+
     /// A fingerprint of the simulated state.
     pub fn state_hash(&self) -> u64 {
         self.simulation.state_hash()
