@@ -203,12 +203,13 @@ pub(crate) struct Backends(pub(crate) Vec<Backend>);
 
 #[derive(Debug, Args)]
 pub(crate) struct Bench {
-    /// The scenes: smooth, curly, smooth-500k, smooth-1m, smooth-2m, woman-300k, dog-2m; all of them where none is named.
+    /// The scenes: smooth, curly, smooth-500k, smooth-1m, smooth-2m, woman-300k, dog-2m, and, simulated by each integrator and not
+    /// drawn, simulate-402 and simulate-20k; all of them where none is named.
     pub(crate) scenes: Vec<lovelock_studio::BenchScene>,
     /// A file for the numbers, comma-separated.
     #[arg(short, long, value_name = "FILE.csv")]
     pub(crate) out: Option<PathBuf>,
-    /// Frames to measure, 1 to 1000.
+    /// Frames to measure, 1 to 1000; steps of 1/60 s where nothing is drawn.
     #[arg(long, default_value_t = 15, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) frames: u32,
     /// Size in pixels; the scene's own where none is given: 1280x720, and 800x600 for woman-300k and dog-2m.

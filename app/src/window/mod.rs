@@ -284,7 +284,14 @@ impl Window {
 }
 
 impl eframe::App for Window {
-    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+    fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
+        // Now and then: the window may be moved to another display, and some systems take long to answer.
+        if ui.ctx().cumulative_frame_nr() % 128 == 1 {
+            let display = frame.winit_window().and_then(|window| window.current_monitor());
+            if let Some(millihertz) = display.and_then(|display| display.refresh_rate_millihertz()) {
+                self.session.set_display_hz(f64::from(millihertz) * 1e-3);
+            }
+        }
         self.pass(ui);
     }
 

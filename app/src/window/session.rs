@@ -36,6 +36,8 @@ pub(crate) struct Session {
     pub(crate) playing: bool,
     /// Seconds of the dance a second.
     pub(crate) rate: f64,
+    /// Pictures a second that the display shows, as was last told.
+    display_hz: f64,
     /// Whether a take plays from its end to its start.
     pub(crate) backwards: bool,
     pub(crate) draw_error: Option<String>,
@@ -86,6 +88,7 @@ impl Session {
             passes: PassHistory::new(PLOTTED_FRAMES),
             playing: true,
             rate: 1.0,
+            display_hz: 0.0,
             backwards: false,
             draw_error: None,
             done: Vec::new(),
@@ -133,6 +136,14 @@ impl Session {
     pub(crate) fn set_rate(&mut self, rate: f64) {
         self.rate = rate;
         self.worker.set_rate(rate);
+    }
+
+    /// How many pictures the display shows in a second.
+    pub(crate) fn set_display_hz(&mut self, hz: f64) {
+        if hz.to_bits() != self.display_hz.to_bits() {
+            self.display_hz = hz;
+            self.worker.set_display_hz(hz);
+        }
     }
 
     /// Whether a take plays from its end to its start.

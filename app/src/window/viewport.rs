@@ -22,7 +22,7 @@ pub(crate) fn most_pixels(adapter: Option<&Adapter>) -> f32 {
 #[derive(Default)]
 pub(crate) struct Viewport {
     texture: Option<TextureHandle>,
-    shown_step: Option<(u64, usize)>,
+    shown: Option<(u64, usize)>,
     /// Size that pictures should have, pixels.
     pub(crate) wanted: [u32; 2],
 }
@@ -41,8 +41,9 @@ impl Viewport {
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Viewport"));
         self.wanted = size_for(rect.size(), ui.ctx().pixels_per_point(), most_pixels, scale);
         if let Some(painted) = painted {
-            let key = (painted.step, std::sync::Arc::as_ptr(painted) as usize);
-            if self.shown_step != Some(key) && !painted.picture.rgba.is_empty() {
+            // Several pictures may be of one step: in slow motion they lie before it.
+            let key = (painted.snapshot.time_secs.to_bits(), std::sync::Arc::as_ptr(painted) as usize);
+            if self.shown != Some(key) && !painted.picture.rgba.is_empty() {
                 let size = [painted.picture.width as usize, painted.picture.height as usize];
                 let image = ColorImage::from_rgba_unmultiplied(size, &painted.picture.rgba);
                 match &mut self.texture {
@@ -51,7 +52,7 @@ impl Viewport {
                         self.texture = Some(ui.ctx().load_texture("picture", image, TextureOptions::LINEAR));
                     }
                 }
-                self.shown_step = Some(key);
+                self.shown = Some(key);
             }
         }
         let painter = ui.painter_at(rect);

@@ -72,20 +72,49 @@ impl Pace {
     }
 }
 
-/// How the window plays: turns time that passes into whole steps of the simulation.
+/// Rate of a display that has not told its own, pictures a second; a slower one is served as this one.
+const USUAL_HZ: f64 = 1.0 / STEP_SECS;
+
+/// The most pictures a second that a display is given.
+const MOST_HZ: f64 = 240.0;
+
+/// How the window plays: turns time that passes into whole steps of the simulation, and into pictures that may lie between them.
+///
+/// Where a picture of the display takes a whole number of steps, as 1/60 s takes one, each picture is a step. In slow motion, and on
+/// a display that is quicker, pictures are an even part of a step apart, and lie between the last step and the one before it.
 ///
 /// It holds no clock itself: [`Playback::advance`] is told how much time has passed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Playback {
     playing: bool,
     rate: f64,
-    /// Time that has passed and is not yet a whole step, seconds, below one step.
+    /// Length of a picture of the display, seconds.
+    picture_secs: f64,
+    /// Time of the scene that has passed and is not yet a whole step, seconds, below one step.
     rest_secs: f64,
+    /// Where pictures lie between steps: time that has passed and is not yet a whole picture, seconds.
+    picture_rest_secs: f64,
+}
+
+/// What is due.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Due {
+    /// Steps to be taken.
+    pub steps: u32,
+    /// Then a picture, so far on the way from the step before the last one (0) to the last one (1). None where pictures are
+    /// steps, or where none is due.
+    pub between: Option<f64>,
 }
 
 impl Default for Playback {
     fn default() -> Self {
-        Self { playing: true, rate: 1.0, rest_secs: 0.0 }
+        Self {
+            playing: true,
+            rate: 1.0,
+            picture_secs: 1.0 / USUAL_HZ,
+            rest_secs: 0.0,
+            picture_rest_secs: 0.0,
+        }
     }
 }
 
@@ -98,7 +127,8 @@ impl Playback {
     /// Plays or pauses.
     pub fn set_playing(&mut self, playing: bool) {
         self.playing = playing;
-        self.rest_secs = 0.0;
+        (self.rest_secs, self.picture_rest_secs) = (0.0, 0.0);
+        self.begin();
     }
 
     /// How many seconds of the scene pass in a second: below 1 is slow motion, of the hair too.
@@ -108,29 +138,79 @@ impl Playback {
 
     /// Sets the rate, 0.05 to 2.
     pub fn set_rate(&mut self, rate: f64) {
-        self.rate = if rate.is_finite() { rate.clamp(0.05, 2.0) } else { 1.0 };
+        let rate = if rate.is_finite() { rate.clamp(0.05, 2.0) } else { 1.0 };
+        if rate.to_bits() != self.rate.to_bits() {
+            self.rate = rate;
+            self.begin();
+        }
     }
 
-    /// `elapsed_secs` have passed: how many steps are due.
-    pub fn advance(&mut self, elapsed_secs: f64) -> u32 {
-        if !self.playing || !elapsed_secs.is_finite() {
-            return 0;
+    /// How many pictures the display shows in a second, 60 to 240; nonsense is 60.
+    pub fn set_display_hz(&mut self, hz: f64) {
+        // Displays of 59.94 and of 60.02 pictures a second count as those of 60.
+        let quicker = hz.is_finite() && hz > 1.02 * USUAL_HZ;
+        let picture_secs = 1.0 / if quicker { hz.min(MOST_HZ) } else { USUAL_HZ };
+        if picture_secs.to_bits() != self.picture_secs.to_bits() {
+            self.picture_secs = picture_secs;
+            self.begin();
         }
-        self.rest_secs += elapsed_secs.max(0.0) * self.rate;
+    }
+
+    /// How long a picture of the display is, seconds.
+    pub fn picture_secs(&self) -> f64 {
+        self.picture_secs
+    }
+
+    /// Whether pictures lie between steps.
+    pub fn shows_between(&self) -> bool {
+        let steps = self.rate * self.picture_secs / STEP_SECS;
+        (steps - steps.round()).abs() > 1e-6
+    }
+
+    /// The last step is what is seen: the next picture goes on from there.
+    pub fn begin(&mut self) {
+        // Pictures between steps follow one step behind: the next step is due at once.
+        if self.shows_between() {
+            self.rest_secs = STEP_SECS;
+        }
+    }
+
+    /// `elapsed_secs` have passed: what is due.
+    pub fn advance(&mut self, elapsed_secs: f64) -> Due {
+        if !self.playing || !elapsed_secs.is_finite() {
+            return Due::default();
+        }
+        let between = self.shows_between();
+        if between {
+            // Whole pictures alone: where they lie does not depend on when the thread woke up.
+            self.picture_rest_secs += elapsed_secs.max(0.0);
+            let pictures = (self.picture_rest_secs / self.picture_secs + 1e-6).floor();
+            if pictures < 1.0 {
+                return Due::default();
+            }
+            self.picture_rest_secs = (self.picture_rest_secs - pictures * self.picture_secs).max(0.0);
+            self.rest_secs += pictures * self.picture_secs * self.rate;
+        } else {
+            self.rest_secs += elapsed_secs.max(0.0) * self.rate;
+        }
         // A hair's breadth before a whole step counts: sixty frames of 1/60 s are sixty steps.
         let due = (self.rest_secs / STEP_SECS + 1e-6).floor();
         if due > f64::from(MAX_STEPS_PER_TICK) {
             self.rest_secs = 0.0;
-            return MAX_STEPS_PER_TICK;
+            return Due { steps: MAX_STEPS_PER_TICK, between: between.then_some(0.0) };
         }
         self.rest_secs = (self.rest_secs - due * STEP_SECS).max(0.0);
-        due as u32
+        Due { steps: due as u32, between: between.then_some((self.rest_secs / STEP_SECS).min(1.0)) }
     }
 
-    /// How long to sleep until the next step is due; none while paused.
-    pub fn until_next_step(&self) -> Option<Duration> {
-        self.playing
-            .then(|| Duration::from_secs_f64(((STEP_SECS - self.rest_secs) / self.rate).clamp(0.0, 0.5)))
+    /// How long to sleep until the next step or picture is due; none while paused.
+    pub fn until_next(&self) -> Option<Duration> {
+        let secs = if self.shows_between() {
+            self.picture_secs - self.picture_rest_secs
+        } else {
+            (STEP_SECS - self.rest_secs) / self.rate
+        };
+        self.playing.then(|| Duration::from_secs_f64(secs.clamp(0.0, 0.5)))
     }
 }
 
@@ -185,40 +265,108 @@ mod tests {
         assert_eq!(Pace::in_words(f64::INFINITY), "277777 h 46 min");
     }
 
+    /// Steps that are taken in pictures of a sixtieth.
+    fn steps(playback: &mut Playback, pictures: usize) -> u32 {
+        (0..pictures).map(|_| playback.advance(1.0 / 60.0).steps).sum()
+    }
+
     #[test]
     fn sixty_frames_of_a_sixtieth_are_sixty_steps() {
         let mut playback = Playback::default();
-        assert_eq!((0..60).map(|_| playback.advance(1.0 / 60.0)).sum::<u32>(), 60);
+        assert!(!playback.shows_between());
+        assert_eq!(playback.advance(STEP_SECS), Due { steps: 1, between: None });
+        assert_eq!(steps(&mut playback, 60), 60);
+        playback.set_rate(2.0);
+        assert!(!playback.shows_between(), "each picture is the second step");
+        assert_eq!(steps(&mut playback, 60), 120);
     }
 
     #[test]
     fn uneven_frames_add_up() {
-        let mut playback = Playback::default();
-        let frames = [0.003, 0.011, 0.02, 0.007, 0.016, 0.0001, 0.0429].iter().cycle().take(700);
-        let steps: u32 = frames.clone().map(|&secs| playback.advance(secs)).sum();
-        let total: f64 = frames.sum();
-        assert!((f64::from(steps) - total / STEP_SECS).abs() <= 1.0, "{steps} steps in {total} s");
+        for rate in [1.0, 0.3] {
+            let mut playback = Playback::default();
+            playback.set_rate(rate);
+            let frames = [0.003, 0.011, 0.02, 0.007, 0.016, 0.0001, 0.0429].iter().cycle().take(700);
+            let steps: u32 = frames.clone().map(|&secs| playback.advance(secs).steps).sum();
+            let total: f64 = rate * frames.sum::<f64>();
+            // Pictures between steps are one step behind.
+            assert!((f64::from(steps) - total / STEP_SECS).abs() <= 1.01, "{steps} steps in {total} s");
+        }
+    }
+
+    #[test]
+    fn pictures_of_slow_motion_are_evenly_apart_whenever_the_thread_wakes() {
+        for (rate, hz) in [(0.1, 60.0), (0.25, 60.0), (0.5, 75.0), (1.0, 144.0), (1.5, 60.0)] {
+            let mut playback = Playback::default();
+            playback.set_rate(rate);
+            playback.set_display_hz(hz);
+            assert!(playback.shows_between(), "{rate} at {hz}");
+            let (mut taken, mut seen) = (0, Vec::new());
+            // Half a picture early or late, in turn.
+            for wake in 0..400 {
+                let early = if wake % 2 == 0 { 0.5 } else { 1.5 };
+                let due = playback.advance(early / hz);
+                taken += due.steps;
+                if let Some(t) = due.between {
+                    assert!((0.0..1.0).contains(&t) && taken > 0, "{t} after {taken} steps");
+                    seen.push(f64::from(taken) - 1.0 + t);
+                }
+            }
+            let apart = rate / hz / STEP_SECS;
+            assert!(seen.len() >= 200, "{} pictures", seen.len());
+            for pair in seen.windows(2) {
+                let pictures = (pair[1] - pair[0]) / apart;
+                assert!(
+                    (pictures - pictures.round()).abs() < 1e-4 && (0.9..2.1).contains(&pictures),
+                    "{pictures}"
+                );
+            }
+        }
     }
 
     #[test]
     fn slow_motion_takes_fewer_steps_and_a_pause_none() {
         let mut playback = Playback::default();
         playback.set_rate(0.25);
-        assert_eq!((0..80).map(|_| playback.advance(1.0 / 60.0)).sum::<u32>(), 20);
+        // And one ahead, that the first pictures lead to.
+        assert_eq!(steps(&mut playback, 80), 21);
         playback.set_playing(false);
-        assert_eq!(playback.advance(1.0), 0);
-        assert_eq!(playback.until_next_step(), None);
+        assert_eq!(playback.advance(1.0), Due::default());
+        assert_eq!(playback.until_next(), None);
         playback.set_playing(true);
-        assert_eq!(playback.advance(0.001), 0, "the pause does not count");
+        assert_eq!(playback.advance(0.001), Due::default(), "the pause does not count");
+        let due = playback.advance(0.016);
+        assert!(due.steps == 1 && due.between.is_some_and(|t| (t - 0.25).abs() < 1e-9), "{due:?}");
     }
 
     #[test]
     fn a_hang_is_not_caught_up() {
+        for rate in [1.0, 0.9] {
+            let mut playback = Playback::default();
+            playback.set_rate(rate);
+            assert_eq!(playback.advance(10.0).steps, MAX_STEPS_PER_TICK);
+            assert_eq!(playback.advance(0.001).steps, 0);
+            assert_eq!(playback.advance(f64::NAN), Due::default());
+            assert_eq!(playback.advance(-1.0), Due::default());
+        }
+    }
+
+    #[test]
+    fn displays_are_served_at_their_own_rate_within_reason() {
         let mut playback = Playback::default();
-        assert_eq!(playback.advance(10.0), MAX_STEPS_PER_TICK);
-        assert_eq!(playback.advance(0.001), 0);
-        assert_eq!(playback.advance(f64::NAN), 0);
-        assert_eq!(playback.advance(-1.0), 0);
+        for (hz, secs) in [
+            (144.0, 1.0 / 144.0),
+            (59.94, STEP_SECS),
+            (60.5, STEP_SECS),
+            (30.0, STEP_SECS),
+            (f64::NAN, STEP_SECS),
+            (1e9, 1.0 / 240.0),
+        ] {
+            playback.set_display_hz(hz);
+            assert!((playback.picture_secs() - secs).abs() < 1e-12, "{hz}");
+        }
+        let until = playback.until_next().expect("it plays").as_secs_f64();
+        assert!((until - 1.0 / 240.0).abs() < 1e-6, "{until}");
     }
 
     #[test]

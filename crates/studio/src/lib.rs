@@ -27,7 +27,7 @@ mod take;
 mod tracks;
 
 pub use bench::{BenchReport, BenchRequest, BenchScene, SceneReport, StageReport, bench};
-pub use clock::{FrameClock, MAX_STEPS_PER_TICK, Pace, Playback, STEP_SECS, Stopwatch};
+pub use clock::{Due, FrameClock, MAX_STEPS_PER_TICK, Pace, Playback, STEP_SECS, Stopwatch};
 pub use command::{COMMANDS, Command, CommandGroup, CommandInfo, Shortcut};
 pub use compare::{
     BandingReport, ChangeReport, CompareReport, CompareRequest, Contender, FlipError, FootprintTruth, Legend,

@@ -3,6 +3,7 @@
 mod machine;
 mod report;
 mod scenes;
+mod simulation;
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -18,7 +19,7 @@ use crate::{
     Access, Engine, FrameClock, LoadControl, Project, Scene, SceneLoader, Stopwatch, StudioError, health,
 };
 
-/// What to measure.
+/// What to measure. What is simulated alone ([`BenchScene::is_simulated_alone`]) heeds the frames alone.
 #[derive(Clone, Debug)]
 pub struct BenchRequest {
     /// The scenes, in order.
@@ -64,7 +65,8 @@ pub fn bench(
     }
     let mut notes = Vec::new();
     let mut renderers = Vec::new();
-    for &backend in &request.backends {
+    let drawn = request.scenes.iter().any(|scene| !scene.is_simulated_alone());
+    for &backend in request.backends.iter().filter(|_| drawn) {
         match Renderer::open(backend) {
             Ok(renderer) => renderers.push(renderer),
             // What this machine has not costs its own numbers alone.
@@ -80,6 +82,15 @@ pub fn bench(
         project.shadow.method = request.shadow.unwrap_or(project.shadow.method);
         project.picture.transparency = request.transparency.unwrap_or(project.picture.transparency);
         let loaded = load(&project)?;
+        if scene.is_simulated_alone() {
+            if progress(scene.id()).is_break() {
+                return Err(StudioError::Cancelled);
+            }
+            let (report, note) = simulation::measure(scene, &project, &loaded, request);
+            scenes.push(report);
+            notes.push(note);
+            continue;
+        }
         for renderer in &mut renderers {
             let what = format!("{} on {}", scene.id(), renderer.adapter());
             if progress(&what).is_break() {

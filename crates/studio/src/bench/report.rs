@@ -30,29 +30,29 @@ pub struct SceneReport {
     pub backend: String,
     /// Name of what drew.
     pub adapter: String,
-    /// Id of the shadow method.
+    /// Id of the shadow method; empty where nothing is drawn.
     pub shadow: String,
-    /// Id of the transparency mode.
+    /// Id of the transparency mode; empty where nothing is drawn.
     pub transparency: String,
-    /// Width, pixels.
+    /// Width, pixels; 0 where nothing is drawn.
     pub width: u32,
     /// Height, pixels.
     pub height: u32,
-    /// Strands drawn.
+    /// Strands drawn; of a scene that is simulated alone, its guides.
     pub strands: u64,
     /// Their points.
     pub points: u64,
-    /// Their segments.
+    /// Their segments, or the guides' links.
     pub segments: u64,
-    /// Frames measured.
+    /// Frames measured; steps of 1/60 s of a scene that is simulated alone.
     pub frames: u64,
     /// The stages, the passes of shadow and drawing where the backend measures them (`shadow/…`, `draw/…`), all passes of a
     /// graphics device together (`passes`), interpolation, shadow and drawing (`picture`), and the whole frame with its
-    /// simulation (`frame`).
+    /// simulation (`frame`). Of a scene that is simulated alone, a step by each method (`simulate/…`).
     pub stages: Vec<StageReport>,
-    /// Pictures a second: one over the median of `picture`.
+    /// Pictures a second: one over the median of `picture`; 0 where nothing is drawn.
     pub pictures_per_second: f64,
-    /// Frames a second: one over the median of `frame`.
+    /// Frames a second: one over the median of `frame`; 0 where nothing is drawn.
     pub frames_per_second: f64,
     /// What to know of the published figures.
     pub published_note: Option<&'static str>,
@@ -83,7 +83,7 @@ pub struct StageReport {
 }
 
 impl StageReport {
-    fn new(name: &str, published_ms: Option<f64>, times: &[f64]) -> Self {
+    pub(super) fn new(name: &str, published_ms: Option<f64>, times: &[f64]) -> Self {
         let times = times.iter().copied();
         Self {
             name: name.to_owned(),
@@ -226,18 +226,7 @@ impl fmt::Display for BenchReport {
         writeln!(f, "{}", self.machine)?;
         for same in self.scenes.chunk_by(|a, b| a.scene == b.scene) {
             let Some(first) = same.first() else { continue };
-            writeln!(
-                f,
-                "\n{}: {} strands, {} segments, {}x{}, {}, {}; medians of {} frames, milliseconds",
-                first.scene,
-                first.strands,
-                first.segments,
-                first.width,
-                first.height,
-                first.shadow,
-                first.transparency,
-                first.frames
-            )?;
+            writeln!(f, "\n{}", first.heading())?;
             // Those of all, in the order of the one that has most.
             let mut by_size: Vec<_> = same.iter().collect();
             by_size.sort_by_key(|scene| std::cmp::Reverse(scene.stages.len()));
@@ -268,7 +257,7 @@ impl fmt::Display for BenchReport {
                 }
                 writeln!(f, "{:>12}", stage.published_ms.map_or_else(String::new, short))?;
             }
-            for (name, of, unit) in NUMBERS {
+            for (name, of, unit) in NUMBERS.into_iter().filter(|_| !first.is_simulated_alone()) {
                 write!(f, "  {name:<width$}")?;
                 for scene in same {
                     let number = format!("{:.1}{unit}", of(scene));

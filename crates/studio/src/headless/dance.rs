@@ -3,12 +3,12 @@
 use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
 
-use lovelock_motion::{pose_at, skin};
-use lovelock_record::{TakeAsset, TakeFrame};
+use lovelock_record::TakeAsset;
 
 use super::Progress;
 use super::prepare::{load, settled_at, simulate_to, tell};
 use super::seam::{Seam, SeamOfTake};
+use crate::session::LastSteps;
 use crate::{
     Access, Engine, FrameClock, FrameSnapshot, Gauge, Place, Problem, ProblemKind, Project, Scene,
     StudioError, TakePlayer, Totals, health,
@@ -24,8 +24,8 @@ pub(crate) enum Dance {
         engine: Option<Box<Engine>>,
         /// Where the film goes round, and the hair with it.
         seam: Option<Seam>,
-        /// Where instants between two steps are asked for: the last steps.
-        steps: Option<Box<Steps>>,
+        /// Where instants between two steps are asked for.
+        steps: Box<LastSteps>,
     },
     /// A take: nothing is simulated.
     Taken { player: Box<TakePlayer>, fps: f64, seam: Option<SeamOfTake> },
@@ -50,7 +50,7 @@ impl Dance {
                 clock: FrameClock::new(fps),
                 engine: None,
                 seam: None,
-                steps: None,
+                steps: Box::default(),
             };
             return Ok((dance, problems));
         };
@@ -170,7 +170,8 @@ impl Dance {
                 None => simulate_to(&mut made, first, progress)?,
             }
             made.clear_totals();
-            (*engine, *steps) = (Some(made), None);
+            steps.forget();
+            *engine = Some(made);
         }
         Ok(())
     }
@@ -212,9 +213,17 @@ impl Dance {
                 let engine = engine.get_or_insert_with(first);
                 let round = seam.as_ref().map_or(0.0, Seam::round_secs);
                 let (step, t) = step_before(secs + round, clock);
-                let steps = steps.get_or_insert_default();
-                steps.bring(engine, step + u64::from(t > 0.0));
-                let snapshot = steps.between(engine, scene, step, t);
+                // One by one at the end, so that the step before the last one is known.
+                let to = step + u64::from(t > 0.0);
+                engine.advance_to_step(to.saturating_sub(1));
+                if engine.at_step() < to as i64 {
+                    steps.step(engine);
+                }
+                let snapshot = if engine.at_step() == step as i64 {
+                    engine.snapshot()
+                } else {
+                    engine.snapshot_between(steps, t)
+                };
                 Ok(match seam {
                     Some(seam) => seam.faded(secs, &snapshot),
                     None => snapshot,
@@ -292,50 +301,4 @@ pub(super) fn step_before(secs: f64, clock: &FrameClock) -> (u64, f64) {
     // A hair's breadth beside a step is the step.
     let (step, t) = ((steps + 1e-6).floor(), steps - (steps + 1e-6).floor());
     (step as u64, if t < 1e-6 { 0.0 } else { t })
-}
-
-/// The last two steps of a simulation.
-#[derive(Default)]
-pub(crate) struct Steps {
-    before: TakeFrame,
-    /// The engine's present step.
-    now: TakeFrame,
-    /// Which one that is.
-    at: Option<u64>,
-    mixed: TakeFrame,
-}
-
-impl Steps {
-    /// Goes on to a step, one by one, so that the one before it is known.
-    fn bring(&mut self, engine: &mut Engine, step: u64) {
-        let mut at = self.at.unwrap_or_else(|| {
-            engine.advance_to_step(step.saturating_sub(1));
-            engine.take_frame(&mut self.now);
-            (engine.time_secs() / engine.step_secs()).round() as u64
-        });
-        while at < step {
-            at += 1;
-            engine.advance_to_step(at);
-            std::mem::swap(&mut self.before, &mut self.now);
-            engine.take_frame(&mut self.now);
-        }
-        self.at = Some(at);
-    }
-
-    /// The instant `t` after `step`, which is the last one or the one before it.
-    fn between(&mut self, engine: &mut Engine, scene: &Arc<Scene>, step: u64, t: f64) -> Arc<FrameSnapshot> {
-        let drawn = engine.snapshot();
-        if t == 0.0 && self.at == Some(step) {
-            return drawn;
-        }
-        let clip_secs = scene.clip.as_ref().map_or(0.0, |clip| clip.duration_secs);
-        self.mixed.set_between(&self.before, &self.now, t, clip_secs);
-        let mut snapshot = FrameSnapshot::clone(&drawn);
-        pose_at(&scene.body, scene.clip.as_deref(), self.mixed.clip_secs, &mut snapshot.pose);
-        skin(&scene.body, &snapshot.pose, &mut snapshot.skin);
-        snapshot.time_secs = self.mixed.guides.time_secs;
-        snapshot.position_secs = scene.position_secs(snapshot.time_secs);
-        snapshot.guides.clone_from(&self.mixed.guides);
-        Arc::new(snapshot)
-    }
 }

@@ -62,7 +62,12 @@ impl Combing {
 
     /// The style as its strands are now, on their way to `to`.
     pub(super) fn style(&self, to: &Hairstyle) -> Arc<Hairstyle> {
-        let t = (self.secs / COMB_SECS).clamp(0.0, 1.0) as f32;
+        self.style_at(self.secs, to)
+    }
+
+    /// The style as its strands are `secs` after they set out.
+    fn style_at(&self, secs: f64, to: &Hairstyle) -> Arc<Hairstyle> {
+        let t = (secs / COMB_SECS).clamp(0.0, 1.0) as f32;
         let t = t * t * (3.0 - 2.0 * t);
         let mut style = to.clone();
         let set = &mut style.strands;
@@ -74,8 +79,8 @@ impl Combing {
         Arc::new(style)
     }
 
-    /// `scene` with its strands as they are now.
-    pub(super) fn scene(&self, scene: &Scene) -> Arc<Scene> {
-        Arc::new(Scene { style: self.style(&scene.style), ..scene.clone() })
+    /// `scene` with its strands as they were `ago_secs` before now.
+    pub(super) fn scene(&self, scene: &Scene, ago_secs: f64) -> Arc<Scene> {
+        Arc::new(Scene { style: self.style_at(self.secs - ago_secs, &scene.style), ..scene.clone() })
     }
 }

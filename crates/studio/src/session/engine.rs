@@ -1,18 +1,21 @@
 //! The simulation and the state of a frame: synchronous, and without a clock.
 
 mod settle;
+mod shown;
+
+pub(crate) use shown::LastSteps;
 
 use std::sync::Arc;
 
 use glam::Affine3A;
 use lovelock_groom::{GuideFrame, Guides};
-use lovelock_motion::{FieldPose, PlacedCollider, Pose, Skin, place_colliders, pose_at, skin};
+use lovelock_motion::{FieldPose, PlacedCollider, Pose, place_colliders, pose_at};
 use lovelock_record::TakeFrame;
 use lovelock_wisp::{InsidePoint, PlacedField, Simulation, SimulationSettings, StepInput, StepReport};
 
 use super::combing::Combing;
 use super::snapshot::SnapshotPool;
-use super::{FrameSnapshot, Scene, Totals};
+use super::{Scene, Totals};
 use crate::{Animation, Project, STEP_SECS, StageTimes, Stopwatch, TimelineSection};
 
 /// What the simulator is told that has passed where the motion jumps, seconds: it then moves hair along with the
@@ -164,6 +167,11 @@ impl Engine {
         self.rest_inside
     }
 
+    /// What the simulator took for the steps since they were last taken, milliseconds, with the substeps of the last one. Counts anew.
+    pub(crate) fn take_simulate_ms(&mut self) -> (f64, u32) {
+        (std::mem::take(&mut self.times).simulate, self.report.substeps)
+    }
+
     /// A fingerprint of the simulated state.
     pub fn state_hash(&self) -> u64 {
         self.simulation.state_hash()
@@ -285,50 +293,6 @@ impl Engine {
         out.clip_secs = self.scene.clip_secs(self.time_secs());
         (out.wall_frame, out.substeps) = (self.taken, self.report.substeps);
         out.jumped = self.report.jumped || self.cut;
-    }
-
-    /// The instant as it is, for drawing. Resets the times that it carries.
-    pub fn snapshot(&mut self) -> Arc<FrameSnapshot> {
-        let watch = Stopwatch::start();
-        let combed = self.combing.as_ref().map(|combing| combing.scene(&self.scene));
-        let (scene, pose, times) = (combed.as_ref().unwrap_or(&self.scene), &self.pose, &mut self.times);
-        let (simulation, report, totals) = (&self.simulation, self.report, self.totals);
-        let rest_inside = self.rest_inside;
-        let (step, time_secs) = (self.taken, self.at_step as f64 * self.step_secs);
-        let new = || FrameSnapshot {
-            scene: Arc::clone(scene),
-            step,
-            time_secs,
-            position_secs: 0.0,
-            duration_secs: 0.0,
-            pose: Pose::default(),
-            skin: Skin::default(),
-            guides: GuideFrame {
-                time_secs,
-                world_from_head: Affine3A::IDENTITY,
-                guides: scene.style.guides.clone(),
-            },
-            report,
-            rest_inside,
-            totals,
-            times: StageTimes::default(),
-        };
-        self.pool.make(new, |frame| {
-            if !Arc::ptr_eq(&frame.scene, scene) {
-                frame.scene = Arc::clone(scene);
-            }
-            (frame.step, frame.time_secs, frame.position_secs) =
-                (step, time_secs, scene.position_secs(time_secs));
-            frame.duration_secs = scene.duration_secs();
-            frame.pose.clone_from(pose);
-            skin(&scene.body, pose, &mut frame.skin);
-            simulation.frame(&mut frame.guides);
-            // The simulator's clock has jumps in it; the frame's is the scene's.
-            frame.guides.time_secs = time_secs;
-            (frame.report, frame.totals, frame.rest_inside) = (report, totals, rest_inside);
-            times.motion += watch.ms();
-            frame.times = std::mem::take(times);
-        })
     }
 
     /// The settings of the present step.

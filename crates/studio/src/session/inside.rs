@@ -1,8 +1,11 @@
 //! The simulation thread's own state: an engine or a take, and what is asked of it.
 
 mod inputs;
+mod playing;
 mod recording;
 mod settling;
+#[cfg(test)]
+mod tests;
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -16,8 +19,8 @@ use settling::{Aside, lives_otherwise};
 
 use super::load_thread::{LoadThread, Loaded};
 use super::mailbox::{Mailbox, TakeWish, Wishes};
-use super::worker::{Event, Outbox};
-use super::{Engine, FrameSnapshot, PrerollProgress, Scene};
+use super::worker::Outbox;
+use super::{Engine, FrameSnapshot, LastSteps, PrerollProgress, Scene};
 use crate::take::TakeTransport;
 use crate::{Access, Playback, Project, STEP_SECS, Slot, Stopwatch, TakeProgress, TakeRecording};
 
@@ -46,6 +49,8 @@ pub(super) struct Inside {
     settings: SimulationSettings,
     inputs: Option<SceneInputs>,
     playback: Playback,
+    /// Where pictures lie between steps.
+    last_steps: LastSteps,
     backwards: bool,
     panics: u32,
 }
@@ -76,6 +81,7 @@ impl Inside {
             settings: SimulationSettings::default(),
             inputs: None,
             playback: Playback::default(),
+            last_steps: LastSteps::default(),
             backwards: false,
             panics: 0,
         }
@@ -88,9 +94,11 @@ impl Inside {
         loop {
             let timeout = match (&self.take, &self.engine) {
                 _ if self.preroll.is_some() => Some(Duration::ZERO),
-                // A take is smooth at any rate: sixty instants a second, whatever lies between two recorded ones.
-                (Some(_), _) => self.playback.is_playing().then(|| Duration::from_secs_f64(STEP_SECS)),
-                (None, Some(_)) => self.playback.until_next_step(),
+                // A take is smooth at any rate: an instant for each picture, whatever lies between two recorded ones.
+                (Some(_), _) => {
+                    self.playback.is_playing().then(|| Duration::from_secs_f64(self.playback.picture_secs()))
+                }
+                (None, Some(_)) => self.playback.until_next(),
                 (None, None) => None,
             };
             let wishes = self.mailbox.take(self.until_calm(timeout));
@@ -129,67 +137,6 @@ impl Inside {
         self.tell_settling();
     }
 
-    fn step(&mut self) {
-        if let Some(engine) = &mut self.engine {
-            engine.step();
-            self.record_step();
-        }
-    }
-
-    fn show(&mut self) {
-        if let Some(engine) = &mut self.engine {
-            self.frames.put(engine.snapshot());
-            self.outbox.wake();
-        }
-    }
-
-    fn simulate(&mut self, mut changed: bool, elapsed_secs: f64) {
-        let due = self.playback.advance(elapsed_secs);
-        for _ in 0..due {
-            let Some(engine) = &self.engine else { return };
-            if engine.is_at_end() {
-                self.playback.set_playing(false);
-                self.outbox.send(Event::EndReached);
-                break;
-            }
-            self.step();
-            changed = true;
-        }
-        if changed {
-            self.show();
-        }
-    }
-
-    /// A take goes on by the time that has passed, not by whole frames: it is smooth at any rate.
-    fn play(&mut self, mut changed: bool, elapsed_secs: f64) {
-        let Some(take) = &mut self.take else { return };
-        if self.playback.is_playing() && elapsed_secs.is_finite() {
-            let direction = if self.backwards { -1.0 } else { 1.0 };
-            let ended = take.advance(elapsed_secs.clamp(0.0, 0.25) * self.playback.rate() * direction);
-            changed = true;
-            if ended {
-                self.playback.set_playing(false);
-                self.outbox.send(Event::EndReached);
-            }
-        }
-        if changed {
-            match take.snapshot() {
-                Ok(snapshot) => {
-                    self.frames.put(snapshot);
-                    self.outbox.wake();
-                    for message in take.notices() {
-                        self.outbox.send(Event::TakeUnreadable { message });
-                    }
-                }
-                Err(error) => {
-                    // Once, and not for every frame of a damaged second.
-                    self.playback.set_playing(false);
-                    self.outbox.send(Event::TakeUnreadable { message: error.to_string() });
-                }
-            }
-        }
-    }
-
     /// Does what is asked for; returns whether the frame may have changed.
     fn obey(&mut self, wishes: Wishes) -> bool {
         let Wishes {
@@ -197,6 +144,7 @@ impl Inside {
             loaded,
             playing,
             rate,
+            display_hz,
             backwards,
             seek_secs,
             look_back,
@@ -216,6 +164,9 @@ impl Inside {
         if let Some(rate) = rate {
             self.playback.set_rate(rate);
         }
+        if let Some(hz) = display_hz {
+            self.playback.set_display_hz(hz);
+        }
         if let Some(backwards) = backwards {
             self.backwards = backwards;
         }
@@ -224,6 +175,8 @@ impl Inside {
                 self.leave_the_end();
             }
             self.playback.set_playing(playing);
+            // A pause shows a whole step.
+            changed |= !playing && self.take.is_none() && self.last_steps.are_known();
         }
         changed |= match (&mut self.take, &mut self.engine) {
             (Some(take), _) => {
@@ -365,6 +318,7 @@ impl Inside {
         self.panics += 1;
         let played = self.take.take().is_some();
         self.preroll = None;
+        self.last_steps.forget();
         let scene = self.engine.take().map(|engine| Arc::clone(engine.scene()));
         if let (Some(scene), true) = (scene, self.panics < MOST_PANICS) {
             self.engine = catch_unwind(AssertUnwindSafe(|| Engine::new(scene, self.settings))).ok();

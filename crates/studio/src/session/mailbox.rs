@@ -30,6 +30,8 @@ pub(super) struct Wishes {
     pub(super) playing: Option<bool>,
     /// Seconds of the scene a second.
     pub(super) rate: Option<f64>,
+    /// Pictures a second that the display shows.
+    pub(super) display_hz: Option<f64>,
     /// Whether a take plays from its end to its start.
     pub(super) backwards: Option<bool>,
     /// A time to go to.
@@ -55,6 +57,7 @@ impl Wishes {
             loaded,
             playing,
             rate,
+display_hz,
             backwards,
             seek_secs,
             // It says how to go there.
@@ -69,6 +72,7 @@ impl Wishes {
             && loaded.is_none()
             && playing.is_none()
             && rate.is_none()
+            && display_hz.is_none()
             && backwards.is_none()
             && seek_secs.is_none()
             && *steps == 0

@@ -20,6 +20,7 @@ mod worker;
 pub use camera::{camera_at, frame_points};
 pub use dancer::dancer;
 pub use engine::Engine;
+pub(crate) use engine::LastSteps;
 pub use head_path::HeadPath;
 pub use load_thread::LoadProgress;
 pub use loader::{LoadControl, SceneLoader};

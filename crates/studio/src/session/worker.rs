@@ -73,6 +73,12 @@ pub(super) struct Outbox {
 }
 
 impl Outbox {
+    /// With where its events come out.
+    pub(super) fn new(wake: Wake) -> (Self, Receiver<Event>) {
+        let (events, received) = sync_channel(MOST_EVENTS);
+        (Self { events, wake }, received)
+    }
+
     pub(super) fn send(&self, event: Event) {
         if let Err(TrySendError::Full(event)) = self.events.try_send(event) {
             tracing::warn!(?event, "the interface does not read its events: one is dropped");
@@ -115,8 +121,7 @@ impl Worker {
     /// # Errors
     /// Where the system gives no threads.
     pub fn start(project: Arc<Project>, access: Access, wake: Wake) -> Result<Self, StudioError> {
-        let (sender, events) = sync_channel(MOST_EVENTS);
-        let outbox = Outbox { events: sender, wake };
+        let (outbox, events) = Outbox::new(wake);
         let mailbox = Mailbox::default();
         let frames = Slot::default();
         let to_simulation = mailbox.clone();
@@ -161,6 +166,12 @@ impl Worker {
     /// Seconds of the scene a second, 0.05 to 2: slow motion.
     pub fn set_rate(&self, rate: f64) {
         self.mailbox.ask(|wishes| wishes.rate = Some(rate));
+    }
+
+    /// How many pictures the display shows in a second: on one of more than 60, and in slow motion, what is seen lies between two
+    /// steps, so that it moves evenly.
+    pub fn set_display_hz(&self, hz: f64) {
+        self.mailbox.ask(|wishes| wishes.display_hz = Some(hz));
     }
 
     /// Whether a take plays from its end to its start; a simulation only goes on.

@@ -33,7 +33,12 @@ impl Engine {
 
     /// The life of the hair of a later step, as far as this instant.
     pub(crate) fn preroll_of(&self, step: i64) -> Preroll {
-        let aside = Self {
+        Preroll::new(self.beside(), step, self.preroll_secs)
+    }
+
+    /// A copy that lives on by itself.
+    pub(crate) fn beside(&self) -> Self {
+        Self {
             scene: Arc::clone(&self.scene),
             animation: self.animation.clone(),
             simulation: self.simulation.clone(),
@@ -44,8 +49,7 @@ impl Engine {
             field: FieldPose::default(),
             pool: SnapshotPool::default(),
             ..*self
-        };
-        Preroll::new(aside, step, self.preroll_secs)
+        }
     }
 
     /// Takes the hair of a copy that has arrived where this engine still is; returns whether it was taken.
