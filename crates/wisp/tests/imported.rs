@@ -34,8 +34,8 @@ fn dance(file: &str, wisps: u32, body: bool) -> Option<(f32, f32)> {
 
 #[test]
 fn hair_of_files_keeps_its_lengths_its_volume_and_out_of_the_skin() {
-    // Measured: 0.8, 2.0 and 0 mm; with as many wisps as the files have 1.3, 2.0 and 0. The second lies close about an ear, whose
-    // rim is thinner than the field is fine.
+    // Measured: 0.8, 2.0 and 0 mm; with as many wisps as the files have 1.3, 2.0 and 0. The second passes the lobe of an ear, thinner
+    // than the field is fine, and lies as deep in it at rest.
     for (file, wisps, most) in [
         ("yuksel/straight.hair", 24, 2e-3),
         ("tressfx/sintel_vk.tfx", 40, 3e-3),

@@ -19,7 +19,7 @@ use lovelock_wisp::{BodyPart, PlacedField, Simulation, SimulationSettings, StepI
 
 use any::{Bytes, any_collider, any_colliders, any_head, any_settings, one_setting, style};
 use dress::Dress;
-use figure::{Bends, FIGURE};
+use figure::{Bends, FIGURE, Figure};
 
 /// What a drive has met, so that a test can tell that drives meet everything.
 #[derive(Clone, Copy, Debug, Default)]
@@ -137,7 +137,7 @@ impl Wearer {
         if !self.figure {
             return StepInput::new(time_secs, head, &self.loose);
         }
-        FIGURE.pose(head, &self.bends, &mut self.pose);
+        Figure::pose(head, &self.bends, &mut self.pose);
         if let Some((joint, place)) = self.astray {
             self.pose.world_from_joint[joint] = place;
         }
@@ -238,12 +238,8 @@ pub fn drive(bytes: &[u8]) -> Met {
             9 => time_secs = f64::from(input.number()),
             10 => head = any_head(&mut input),
             11 | 12 => {
-                met.bent += u32::from(
-                    wearer.figure && {
-                        wearer.bend(&mut input);
-                        true
-                    },
-                )
+                wearer.bend(&mut input);
+                met.bent += u32::from(wearer.figure);
             }
             13 => {
                 let joint = input.byte() as usize % 4;

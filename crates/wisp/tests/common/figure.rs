@@ -91,7 +91,7 @@ impl Figure {
     }
 
     /// The figure with its head where it is said to be, bent as it is.
-    pub fn pose(&self, world_from_head: Affine3A, bends: &Bends, pose: &mut Pose) {
+    pub fn pose(world_from_head: Affine3A, bends: &Bends, pose: &mut Pose) {
         let local = |joint: usize, turn: Quat| Affine3A::from_rotation_translation(turn, PLACES[joint].1);
         let neck = world_from_head * local(HEAD, bends.nod).inverse();
         let chest = neck * local(1, bends.neck).inverse();
