@@ -31,7 +31,10 @@ fn no_order_of_settings_motions_and_edits_breaks_the_hair() {
     // The drives meet everything they are there for.
     assert!(all.steps > 4000 && all.jumps > 100 && all.styles > 100 && all.resets > 100, "{all:?}");
     assert!(all.restored > 15 && all.refused > 25 && all.fastest > 1.0, "{all:?}");
-    assert!(all.fielded > 1000 && all.in_skin > 100 && all.lifted > 50 && all.edited > 30, "{all:?}");
+    assert!(
+        all.fielded > 1000 && all.in_skin > 100 && all.folded > 20 && all.lifted > 50 && all.edited > 30,
+        "{all:?}"
+    );
     assert!(all.bent > 100 && all.tied > 10 && all.cut > 30 && all.regrown > 30, "{all:?}");
 }
 

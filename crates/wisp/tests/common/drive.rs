@@ -35,6 +35,8 @@ pub struct Met {
     /// Steps with the field of a figure, and those in which it found hair in its skin.
     pub fielded: u32,
     pub in_skin: u32,
+    /// Steps with points in skin that is folded over itself.
+    pub folded: u32,
     /// Ties that gather hair, cuts that meet some, and the same hair grown in another length, all in the midst of motion.
     pub tied: u32,
     pub cut: u32,
@@ -58,6 +60,7 @@ impl Met {
             (&mut self.refused, other.refused),
             (&mut self.fielded, other.fielded),
             (&mut self.in_skin, other.in_skin),
+            (&mut self.folded, other.folded),
             (&mut self.tied, other.tied),
             (&mut self.cut, other.cut),
             (&mut self.regrown, other.regrown),
@@ -147,7 +150,8 @@ impl Wearer {
             FIGURE.field.place(&FIGURE.body, &self.pose, self.edits.field.lift_m(), &mut self.field);
             PlacedField { field: &FIGURE.field, pose: &self.field }
         });
-        StepInput { field, ..StepInput::new(time_secs, head, &self.placed) }
+        // Any shapes keep the wind off.
+        StepInput { field, sheltering: &self.loose, ..StepInput::new(time_secs, head, &self.placed) }
     }
 }
 
@@ -293,6 +297,7 @@ pub fn drive(bytes: &[u8]) -> Met {
         met.jumps += u32::from(report.jumped);
         met.recovered += report.recovered_guides;
         met.fastest = met.fastest.max(report.max_speed);
+        met.folded += u32::from(report.unsure_points > 0);
         met.in_skin += u32::from(report.deepest.is_some_and(|d| d.within == BodyPart::Field));
         assert!(report.substeps <= lovelock_wisp::MAX_SUBSTEPS);
         // Stretch and speed may be large where a setting asks for it, but they are numbers.
