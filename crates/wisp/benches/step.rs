@@ -11,14 +11,41 @@ use criterion::measurement::{Measurement, ValueFormatter, WallTime};
 use criterion::{BenchmarkGroup, Criterion, Throughput};
 use glam::{Affine3A, Quat, Vec3};
 use lovelock_groom::Preset;
-use lovelock_motion::PlacedCollider;
-use lovelock_wisp::{Integrator, Simulation, SimulationSettings, StepInput, Wind};
+use lovelock_motion::{BodyField, FieldPose, PlacedCollider};
+use lovelock_wisp::{Integrator, PlacedField, Simulation, SimulationSettings, StepInput, Wind};
 
 #[path = "../tests/common/mod.rs"]
 mod common;
 use common::{STEP_SECS, Stage, clock::process_time, straight, style};
 
-type Poses = Vec<(f64, Affine3A, Vec<PlacedCollider>)>;
+/// A moment of a body.
+struct Moment {
+    world_from_head: Affine3A,
+    colliders: Vec<PlacedCollider>,
+    field: FieldPose,
+}
+
+/// The moments of a motion, 1/60 s apart, and the field that is placed in them.
+struct Poses {
+    moments: Vec<Moment>,
+    field: Option<Arc<BodyField>>,
+}
+
+impl Poses {
+    /// Two seconds of the dance at a part of its speed, worked out before, so that only the hair is measured. At a
+    /// quarter of its speed four substeps are enough nearly always; at full speed quick turns take up to sixteen.
+    fn of(stage: &mut Stage, speed: f64) -> Self {
+        let moment = |i: u32| {
+            let input = stage.at(Some(f64::from(i) / 60.0 * speed));
+            Moment {
+                world_from_head: input.world_from_head,
+                colliders: input.colliders.to_vec(),
+                field: input.field.map_or_else(FieldPose::default, |field| field.pose.clone()),
+            }
+        };
+        Self { moments: (0..120).map(moment).collect(), field: stage.field.clone() }
+    }
+}
 
 /// Steps through `poses` again and again, back and forth, so that the clock never jumps far.
 fn bench_steps<M: Measurement>(
@@ -28,43 +55,41 @@ fn bench_steps<M: Measurement>(
     settings: &SimulationSettings,
     poses: &Poses,
 ) {
-    let (mut next, mut clock) = (0, 0.0);
+    let (mut next, mut clock, count) = (0, 0.0, poses.moments.len());
     group.bench_function(name, |b| {
         b.iter(|| {
-            next = (next + 1) % (2 * poses.len());
+            next = (next + 1) % (2 * count);
             clock += f64::from(STEP_SECS);
-            let (_, world_from_head, colliders) = &poses[next.min(2 * poses.len() - 1 - next)];
-            let input = StepInput::new(clock, *world_from_head, colliders);
+            let moment = &poses.moments[next.min(2 * count - 1 - next)];
+            let field = poses.field.as_ref().map(|field| PlacedField { field, pose: &moment.field });
+            let input =
+                StepInput { field, ..StepInput::new(clock, moment.world_from_head, &moment.colliders) };
             black_box(simulation.step(&input, settings, STEP_SECS))
         });
     });
 }
 
-/// The published hairstyle on the dancer, by every method.
+/// The published hairstyle on the dancer, by every method: on all the colliders that are fitted to her, as the paper's
+/// spheres stood for the whole body, and on the body that the program takes, whose field stands for head and shoulders.
 fn published<M: Measurement>(c: &mut Criterion<M>) {
-    for preset in [Preset::Smooth, Preset::Long] {
+    let calm = SimulationSettings::default();
+    let windy = SimulationSettings { wind: Wind { speed: 4.0, ..Wind::default() }, ..calm };
+    let relaxed = SimulationSettings { integrator: Integrator::Relaxation, ..calm };
+    let follows = SimulationSettings { integrator: Integrator::FollowTheLeader, ..calm };
+    for (preset, field) in [(Preset::Smooth, false), (Preset::Smooth, true), (Preset::Long, false)] {
         let mut stage = Stage::new(preset);
-        // Two seconds of the dance, worked out before, so that only the hair is measured. At a quarter of its
-        // speed four substeps are enough nearly always; at full speed quick turns take up to sixteen.
-        let mut poses = |speed: f64| -> Poses {
-            let mut pose = |i: u32| {
-                let input = stage.at(Some(f64::from(i) / 60.0 * speed));
-                (f64::from(i) / 60.0, input.world_from_head, input.colliders.to_vec())
-            };
-            (0..120).map(&mut pose).collect()
-        };
-        let (slow, quick) = (poses(0.25), poses(1.0));
+        if !field {
+            stage = stage.without_field();
+        }
+        let (slow, quick) = (Poses::of(&mut stage, 0.25), Poses::of(&mut stage, 1.0));
         let guides = &stage.style.guides;
         let mut group = c.benchmark_group(format!(
-            "step of {} guides x {} links, {} colliders",
+            "step of {} guides x {} links, {} colliders{}",
             guides.count(),
             guides.points_per_guide - 1,
-            stage.colliders.len()
+            stage.colliders.len(),
+            if field { " and the field" } else { "" }
         ));
-        let calm = SimulationSettings::default();
-        let windy = SimulationSettings { wind: Wind { speed: 4.0, ..Wind::default() }, ..calm };
-        let relaxed = SimulationSettings { integrator: Integrator::Relaxation, ..calm };
-        let follows = SimulationSettings { integrator: Integrator::FollowTheLeader, ..calm };
         for (what, settings, poses) in [
             ("slow", calm, &slow),
             ("slow, relaxation of 20 sweeps", relaxed, &slow),
@@ -82,12 +107,12 @@ fn published<M: Measurement>(c: &mut Criterion<M>) {
 fn strands<M: Measurement>(c: &mut Criterion<M>) {
     let mut group = c.benchmark_group("strands of 30 links, no body");
     group.sample_size(10).measurement_time(Duration::from_secs(2));
-    let poses: Poses = (0..60)
-        .map(|i| {
-            let time = f64::from(i) / 60.0;
-            (time, Affine3A::from_quat(Quat::from_rotation_y(0.3 * (3.0 * time).sin() as f32)), Vec::new())
-        })
-        .collect();
+    let moment = |i: u32| {
+        let time = f64::from(i) / 60.0;
+        let world_from_head = Affine3A::from_quat(Quat::from_rotation_y(0.3 * (3.0 * time).sin() as f32));
+        Moment { world_from_head, colliders: Vec::new(), field: FieldPose::default() }
+    };
+    let poses = Poses { moments: (0..60).map(moment).collect(), field: None };
     for count in [402, 1_000, 3_350, 10_000, 20_000, 50_000, 100_000] {
         let guides: Vec<_> = (0..count)
             .map(|g| {

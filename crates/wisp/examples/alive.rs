@@ -3,10 +3,8 @@
 //!
 //! `alive STYLE [--motion FILE] [--stop SECS] [--ties JSON] [--set JSON]`: STYLE is a preset or a hair file.
 
-use std::path::Path;
-
 use glam::{Affine3A, Quat, Vec3};
-use lovelock_groom::{GuideFrame, Guides, HairTie, Preset};
+use lovelock_groom::{GuideFrame, Guides, HairTie};
 use lovelock_wisp::SimulationSettings;
 
 #[path = "../tests/common/mod.rs"]
@@ -24,16 +22,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut args = std::env::args().skip(1);
     let usage = "alive STYLE [--motion FILE] [--stop SECS] [--ties JSON] [--set JSON]";
     let style = args.next().ok_or(usage)?;
-    let mut stage = match Preset::from_id(&style) {
-        Some(preset) => {
-            let mut stage = Stage::new(preset);
-            if !preset.ties().is_empty() {
-                stage.tie(preset.ties());
-            }
-            stage
-        }
-        None => Stage::with_file(Path::new(&style)),
-    };
+    let mut stage = Stage::called(&style, None);
     let mut settings = SimulationSettings::default();
     let mut stop = f64::INFINITY;
     while let Some(arg) = args.next() {

@@ -1,11 +1,12 @@
 //! How deep hair gets into the body over a whole motion, measured against the skinned surface itself.
 //!
-//! `penetration [--preset ID] [--motion dance|FILE.bvh|backflip] [--wisps N] [--every STEPS] [--field off]
+//! `penetration [--hair PRESET|FILE] [--motion dance|FILE.bvh|backflip] [--wisps N] [--every STEPS] [--field off]
 //! [--colliders off] [--verbose on] [--set JSON]`
 //!
-//! Without a preset all of them, without a motion all three of dance, the file and the backflip.
+//! Without hair all presets, each gathered by its ties; without a motion dance and backflip. Names of hair and motions may be lists
+//! parted by commas. The mean volume is that over the motion, of that at rest.
 
-use lovelock_groom::{GroomSettings, Preset};
+use lovelock_groom::Preset;
 use lovelock_motion::{Skin, skin};
 use lovelock_wisp::{SimulationSettings, StepReport};
 
@@ -16,14 +17,16 @@ use common::{Depths, STEP_SECS, Stage, frame, worse};
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut args = std::env::args().skip(1);
     let usage = "see the head of penetration.rs";
-    let (mut presets, mut motions) = (Preset::ALL.to_vec(), vec!["dance".to_owned(), "backflip".to_owned()]);
+    let list = |names: &str| names.split(',').map(str::to_owned).collect::<Vec<_>>();
+    let mut styles: Vec<String> = Preset::ALL.iter().map(|preset| preset.id().to_owned()).collect();
+    let mut motions = list("dance,backflip");
     let (mut wisps, mut every, mut field, mut colliders, mut verbose) = (None, 2, true, true, false);
     let mut settings = SimulationSettings::default();
     while let Some(arg) = args.next() {
         let value = args.next().ok_or(usage)?;
         match arg.as_str() {
-            "--preset" => presets = vec![Preset::from_id(&value).ok_or(usage)?],
-            "--motion" => motions = value.split(',').map(str::to_owned).collect(),
+            "--hair" => styles = list(&value),
+            "--motion" => motions = list(&value),
             "--wisps" => wisps = Some(value.parse()?),
             "--every" => every = value.parse::<u32>()?.max(1),
             "--field" => field = value != "off",
@@ -34,20 +37,18 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
     }
     println!(
-        "preset    motion        guides  steps  stretch   reported   deepest in the skin (beyond rest and roots)"
+        "hair      motion        guides  steps  volume  stretch   reported   deepest in the skin (beyond rest and roots)"
     );
-    for preset in presets {
-        let mut groom = GroomSettings::preset(preset);
-        groom.wisps = wisps.unwrap_or(groom.wisps);
+    for style in &styles {
         for motion in &motions {
-            let mut stage = Stage::grown(&groom);
+            let mut stage = Stage::called(style, wisps);
             if !field {
                 stage = stage.without_field();
             }
             stage.play(motion)?;
             let mut simulation = stage.simulation(Some(0.0));
             let (mut all, mut surface) = (StepReport::default(), Skin::default());
-            let mut depths = Depths::new(&stage);
+            let (mut depths, mut volume) = (Depths::new(&stage), 0.0);
             let steps = (stage.dance.duration_secs * 60.0) as u32;
             for step in 1..=steps {
                 let mut input = stage.at(Some(f64::from(step) * f64::from(STEP_SECS)));
@@ -64,19 +65,19 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                     println!("  step {step}: {d:?} at {at} of the head, {} substeps", report.substeps);
                 }
                 all = worse(all, report);
+                volume += report.hair_volume / report.hair_volume_at_rest / steps as f32;
                 if step % every == 0 || step == steps {
                     skin(&stage.body, &stage.pose, &mut surface);
                     depths.measure(&stage, &simulation, &surface, step);
                 }
             }
-            let name = std::path::Path::new(motion)
-                .file_stem()
-                .map_or(motion.as_str(), |s| s.to_str().unwrap_or(motion));
             let worst = depths.worst;
             println!(
-                "{:<9} {name:<13} {:>6} {steps:>6}  {:.1e} {:>7.2} mm {:>7.2} mm: guide {} point {} at {:.2} s, {:.0} mm from the head joint, {}",
-                preset.id(),
+                "{:<9} {:<13} {:>6} {steps:>6}  {:>4.0} %  {:.1e} {:>7.2} mm {:>7.2} mm: guide {} point {} at {:.2} s, {:.0} mm from the head joint, {}",
+                name(style),
+                name(motion),
                 stage.style.guides.count(),
+                100.0 * volume,
                 all.max_stretch,
                 1e3 * all.max_penetration_m,
                 1e3 * worst.depth,
@@ -95,4 +96,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
     }
     Ok(())
+}
+
+/// A preset or motion as it is called, a file without its folder and ending.
+fn name(of: &str) -> &str {
+    std::path::Path::new(of).file_stem().and_then(|stem| stem.to_str()).unwrap_or(of)
 }

@@ -1,11 +1,11 @@
-//! Simulates a preset on the dancer and draws its guides as a strip of frames, from the front, the side and behind.
+//! Simulates a preset, or the hair of a file, on the dancer and draws its guides as a strip of frames, from the front, the side and behind.
 //!
-//! `swing PRESET OUT.png [--still] [--from SECS] [--frames N] [--every SECS] [--set '{"settings": "as JSON"}']
+//! `swing STYLE OUT.png [--wisps N] [--still] [--from SECS] [--frames N] [--every SECS] [--set '{"settings": "as JSON"}']
 //! [--ties '[{"kind": "Bun"}]']`
 
 use glam::Vec3;
 use image::{Rgb, RgbImage};
-use lovelock_groom::{HairTie, Preset};
+use lovelock_groom::HairTie;
 use lovelock_motion::{Skin, skin};
 use lovelock_wisp::{Simulation, SimulationSettings, StepReport};
 
@@ -19,13 +19,12 @@ const VIEW_HEIGHT: f32 = 1.0;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut args = std::env::args().skip(1);
-    let usage =
-        "swing PRESET OUT.png [--still] [--from SECS] [--frames N] [--every SECS] [--set JSON] [--ties JSON]";
-    let preset = args.next().and_then(|p| Preset::from_id(&p)).ok_or(usage)?;
+    let usage = "swing STYLE OUT.png [--wisps N] [--still] [--from SECS] [--frames N] [--every SECS] [--set JSON] [--ties JSON]";
+    let style = args.next().ok_or(usage)?;
     let out = args.next().ok_or(usage)?;
     let (mut still, mut from, mut frames, mut every) = (false, 0.0, 10_u32, 0.2_f64);
     let mut settings = SimulationSettings::default();
-    let mut ties: Vec<HairTie> = Vec::new();
+    let (mut ties, mut wisps): (Option<Vec<HairTie>>, _) = (None, None);
     while let Some(arg) = args.next() {
         let mut value = || args.next().ok_or(usage);
         match arg.as_str() {
@@ -33,13 +32,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             "--from" => from = value()?.parse()?,
             "--frames" => frames = value()?.parse()?,
             "--every" => every = value()?.parse()?,
-            "--ties" => ties = serde_json::from_str(&value()?)?,
+            "--wisps" => wisps = Some(value()?.parse()?),
+            "--ties" => ties = Some(serde_json::from_str(&value()?)?),
             "--set" => settings = serde_json::from_str(&value()?)?,
             _ => return Err(usage.into()),
         }
     }
-    let mut stage = Stage::new(preset);
-    stage.tie(&ties);
+    let mut stage = Stage::called(&style, wisps);
+    if let Some(ties) = ties {
+        stage.tie(&ties);
+    }
     println!(
         "{} guides of {} points, {} colliders, dance of {:.2} s",
         stage.style.guides.count(),

@@ -1,6 +1,6 @@
 //! Hair against the skinned surface itself, not against what stands for it.
 
-use lovelock_groom::{GroomSettings, Preset};
+use lovelock_groom::Preset;
 use lovelock_motion::{Skin, skin};
 use lovelock_wisp::SimulationSettings;
 
@@ -9,8 +9,7 @@ use common::{Depths, STEP_SECS, Stage};
 
 /// The deepest of a preset's hair in the skin of head, neck, shoulders and upper back over a motion, metres.
 fn deepest(preset: Preset, motion: &str, colliders: bool) -> f32 {
-    let groom = GroomSettings { wisps: 12, ..GroomSettings::preset(preset) };
-    let mut stage = Stage::grown(&groom);
+    let mut stage = Stage::of_wisps(preset, 12);
     stage.play(motion).expect("the motion");
     let mut simulation = stage.simulation(Some(0.0));
     let (mut depths, mut surface) = (Depths::new(&stage), Skin::default());

@@ -29,7 +29,7 @@ fn over_the_whole_dance_lengths_hold_and_nothing_enters_the_body() {
             volume += report.hair_volume / report.hair_volume_at_rest / steps as f32;
         }
         println!("{preset:?}: {volume} of its volume at rest, {all:?}");
-        // Measured: 1.14, 1.12 and 1.11.
+        // Measured: 1.14, 1.12, 1.11, 1.09 and 1.00.
         assert!((volume - 1.0).abs() < 0.15, "{preset:?}: {volume} of its volume at rest");
         assert_eq!(all.recovered_guides, 0);
         assert!(all.max_speed > 2.0 && all.max_speed < 20.0, "{preset:?}: {} m/s", all.max_speed);
@@ -54,28 +54,6 @@ fn without_colliders_the_same_dance_does_enter_the_body() {
         }
     }
     assert!(deepest > 0.01, "only {deepest} m: the test above shows nothing");
-}
-
-#[test]
-fn standing_still_hair_stays_as_it_was_drawn() {
-    for preset in Preset::ALL {
-        let mut stage = Stage::new(preset);
-        let mut simulation = stage.simulation(None);
-        let settings = SimulationSettings::default();
-        let mut report = StepReport::default();
-        for _ in 0..300 {
-            report = simulation.step(&stage.at(None), &settings, STEP_SECS);
-        }
-        let most = away_from_style(&simulation).into_iter().fold(0.0, f32::max);
-        assert!(most < 0.02, "{preset:?}: moved by {most} of its length");
-        assert!(report.max_speed < 1e-3, "{preset:?}: jitters at {} m/s", report.max_speed);
-        // The style is held by what it carries of its weight: without it, it sags.
-        let limp = SimulationSettings { style_support: 0.0, ..settings };
-        for _ in 0..120 {
-            simulation.step(&stage.at(None), &limp, STEP_SECS);
-        }
-        assert!(away_from_style(&simulation).into_iter().fold(0.0, f32::max) > 0.03);
-    }
 }
 
 #[test]

@@ -64,7 +64,7 @@ fn shipped(step: fn(u32) -> f32) {
     check(&mut stage(), "the shipped dance", step);
 }
 
-/// `skin`: with the field of head and shoulders, which makes a step dear; else with the colliders alone.
+/// `skin`: with the field of head and shoulders, which makes a step dear; else with all the colliders alone.
 fn captured(skin: bool, step: fn(u32) -> f32) {
     let Some(data) = data_dir() else { return };
     let file = data.join("motion/jesse_dance.bvh");
@@ -72,7 +72,9 @@ fn captured(skin: bool, step: fn(u32) -> f32) {
     let motion = load_motion(&file).expect("the captured dance loads");
     let clip: Clip = retarget(&motion, &stage.body).expect("the captured dance fits the dancer");
     stage.dance = Arc::new(clip);
-    stage.field = stage.field.filter(|_| skin);
+    if !skin {
+        stage = stage.without_field();
+    }
     check(&mut stage, "the captured dance", step);
 }
 

@@ -45,12 +45,7 @@ pub fn fall(settings: &SimulationSettings, steps: u32) -> (Guides, f32) {
     }
     let strands = StrandSet { first_point: vec![0], ..StrandSet::default() };
     let mut simulation = Simulation::new(Arc::new(Hairstyle { guides, strands, ..Hairstyle::default() }));
-    let input = |step: u32| StepInput {
-        time_secs: f64::from(step) / 60.0,
-        world_from_head: Affine3A::IDENTITY,
-        colliders: &[],
-        field: None,
-    };
+    let input = |step: u32| StepInput::new(f64::from(step) / 60.0, Affine3A::IDENTITY, &[]);
     simulation.reset(&input(0));
     let mut kept = 1.0;
     for step in 1..=steps {

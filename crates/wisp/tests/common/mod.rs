@@ -30,6 +30,8 @@ pub struct Stage {
     pub colliders: Vec<Collider>,
     pub field: Option<Arc<BodyField>>,
     pub style: Arc<Hairstyle>,
+    /// The same before any tie gathered it.
+    pub loose: Arc<Hairstyle>,
     pub pose: Pose,
     pub placed: Vec<PlacedCollider>,
     pub field_pose: FieldPose,
@@ -44,15 +46,35 @@ impl Obstacle for RestBody {
 }
 
 impl Stage {
+    /// The dancer with a preset as the program shows it: gathered by its ties, where it has any.
     pub fn new(preset: Preset) -> Self {
-        Self::grown(&GroomSettings::preset(preset))
+        Self::of_wisps(preset, GroomSettings::preset(preset).wisps)
     }
 
-    /// The dancer with the hair of a file.
-    pub fn with_file(hair: &Path) -> Self {
+    /// The same with another number of wisps.
+    pub fn of_wisps(preset: Preset, wisps: u32) -> Self {
+        let mut stage = Self::grown(&GroomSettings { wisps, ..GroomSettings::preset(preset) });
+        if !preset.ties().is_empty() {
+            stage.tie(preset.ties());
+        }
+        stage
+    }
+
+    /// The dancer with a preset's hair, by its name, or with that of a file.
+    pub fn called(style: &str, wisps: Option<u32>) -> Self {
+        match (Preset::from_id(style), wisps) {
+            (Some(preset), None) => Self::new(preset),
+            (Some(preset), Some(wisps)) => Self::of_wisps(preset, wisps),
+            (None, wisps) => Self::with_file(Path::new(style), wisps.unwrap_or_default()),
+        }
+    }
+
+    /// The dancer with the hair of a file, in so many wisps; 0 leaves that to the file.
+    pub fn with_file(hair: &Path, wisps: u32) -> Self {
         let file = load_hair(hair).expect("the hair loads");
+        let settings = ImportSettings { wisps, ..ImportSettings::default() };
         Self::dressed(|scalp, body| {
-            import_around(&file, &ImportSettings::default(), scalp, Some(body)).expect("the hair fits")
+            import_around(&file, &settings, scalp, Some(body)).expect("the hair fits")
         })
     }
 
@@ -74,12 +96,13 @@ impl Stage {
         let obstacle = RestBody(RestDistance::new(&character.body));
         let field = BodyField::new(&character.body, &obstacle.0).map(Arc::new);
         let colliders = ColliderEdits::default().apply(&fit_colliders(&character.body), field.as_deref());
-        let style = hair(&scalp, &obstacle);
+        let style = Arc::new(hair(&scalp, &obstacle));
         Self {
             dance: Arc::clone(dance),
             colliders,
             field,
-            style: Arc::new(style),
+            loose: Arc::clone(&style),
+            style,
             body: character.body,
             pose: Pose::default(),
             placed: Vec::new(),
@@ -87,9 +110,9 @@ impl Stage {
         }
     }
 
-    /// Gathers the hair by ties.
+    /// Gathers the hair by these ties and no others.
     pub fn tie(&mut self, ties: &[HairTie]) {
-        self.style = Arc::new(tied(&self.style, ties, &RestBody(RestDistance::new(&self.body))));
+        self.style = Arc::new(tied(&self.loose, ties, &RestBody(RestDistance::new(&self.body))));
         self.style.check().expect("a tied style is sound");
     }
 
