@@ -15,6 +15,8 @@ pub enum GaugeKind {
     Stretch,
     /// The deepest point inside the body.
     Penetration,
+    /// Points in folded skin, of which nobody knows how deep they are.
+    Folded,
     /// Mean kinetic energy.
     Energy,
     /// Guides that were not finite and were put back.
@@ -25,14 +27,15 @@ pub enum GaugeKind {
 
 impl GaugeKind {
     /// All, in the order in which they are shown.
-    pub const ALL: [Self; 5] =
-        [Self::Stretch, Self::Penetration, Self::Energy, Self::PutBack, Self::RestInside];
+    pub const ALL: [Self; 6] =
+        [Self::Stretch, Self::Penetration, Self::Folded, Self::Energy, Self::PutBack, Self::RestInside];
 
     /// The name in the interface.
     pub fn label(self) -> &'static str {
         match self {
             Self::Stretch => "Largest stretch",
             Self::Penetration => "Deepest in the body",
+            Self::Folded => "In folded skin",
             Self::Energy => "Energy",
             Self::PutBack => "Guides put back",
             Self::RestInside => "Style in the body",
@@ -48,6 +51,10 @@ impl GaugeKind {
             Self::Penetration => {
                 "How far hair has been inside the body at most, since the hair was last settled."
             }
+            Self::Folded => {
+                "Points of guides in skin that is folded over itself, at most at once, since the hair was last settled. How deep \
+                 they are cannot be told; they are not in Deepest in the body."
+            }
             Self::Energy => {
                 "Mean energy of the movement of the hair now, for a kilogram of it: 5 J/kg is a brisk turn of the head."
             }
@@ -61,12 +68,14 @@ impl GaugeKind {
     /// Up to the first number all is well; over the second one something is wrong.
     ///
     /// Stretch: the solver leaves 3e-6, and a thousandth of a lock is a pixel of a large picture. Penetration: a millimetre is
-    /// what skin hides. Energy: 30 J/kg are 8 m/s on average, faster than any head turns. The style at rest: it stays as near
+    /// what skin hides. Folded skin: some points in an armpit nobody
+    /// sees, a hundred are three locks. Energy: 30 J/kg are 8 m/s on average, faster than any head turns. The style at rest: it stays as near
     /// as it was drawn, and round shapes stand for the neck to about a centimetre.
     fn limits(self) -> [f64; 2] {
         match self {
             Self::Stretch => [1e-4, 1e-3],
             Self::Penetration => [1e-3, 5e-3],
+            Self::Folded => [0.0, 100.0],
             Self::Energy => [30.0, 100.0],
             Self::PutBack => [0.0, 0.0],
             Self::RestInside => [10e-3, 25e-3],
@@ -79,6 +88,7 @@ impl GaugeKind {
             Self::Stretch => format!("{:.4} %", 1e2 * value),
             Self::Penetration | Self::RestInside => format!("{:.1} mm", 1e3 * value),
             Self::Energy => format!("{value:.1} J/kg"),
+            Self::Folded => format!("{value:.0} {}", if value == 1.0 { "point" } else { "points" }),
             Self::PutBack => format!("{value:.0}"),
         }
     }
@@ -101,7 +111,7 @@ pub enum HealthLevel {
 pub struct Gauge {
     /// What is watched.
     pub kind: GaugeKind,
-    /// Its value: a fraction, metres, joules per kilogram, or a number of guides.
+    /// Its value: a fraction, metres, joules per kilogram, or a number of points or guides.
     pub value: f64,
     /// How it stands.
     pub level: HealthLevel,
@@ -200,6 +210,11 @@ fn gauges(
                 )
             },
         ),
+        Gauge::new(GaugeKind::Folded, f64::from(totals.unsure_points), totals.unsure_at, || {
+            "Hair is caught where skin is folded over itself: under a chin, or between a raised shoulder and the neck. Tie it up \
+             or cut it shorter, or soften the pose there; to keep hair further out, raise Lift (Colliders, Head and shoulders)."
+                .to_owned()
+        }),
         Gauge::new(GaugeKind::Energy, f64::from(energy), fastest_at, || {
             if settings.wind.speed > 15.0 {
                 "The hair is torn about. Calm the wind, or lower the air drag that it takes hold of."
@@ -235,11 +250,12 @@ fn gauges(
         gauge.within = match gauge.kind {
             GaugeKind::Penetration => within(totals.deepest),
             GaugeKind::RestInside => within(rest),
-            GaugeKind::Stretch | GaugeKind::Energy | GaugeKind::PutBack => None,
+            GaugeKind::Stretch | GaugeKind::Folded | GaugeKind::Energy | GaugeKind::PutBack => None,
         };
         gauge.found = match gauge.kind {
             GaugeKind::Stretch => totals.worst_stretch_found,
             GaugeKind::Penetration => totals.deepest_found,
+            GaugeKind::Folded => totals.unsure_found,
             GaugeKind::PutBack => totals.recovered_found,
             GaugeKind::Energy | GaugeKind::RestInside => None,
         };

@@ -16,6 +16,8 @@ fn good_hair_gets_no_advice_and_every_limit_has_a_sentence() {
     let ill = Totals {
         max_stretch: 0.5,
         max_penetration_m: 0.1,
+        unsure_points: 500,
+        unsure_at: Some((3, 8)),
         max_kinetic_energy: 1e4,
         recovered_guides: 3,
         recovered_at: Some(4),
@@ -23,10 +25,10 @@ fn good_hair_gets_no_advice_and_every_limit_has_a_sentence() {
     };
     let rest = InsidePoint { depth_m: 0.05, guide: 1, point: 2, within: BodyPart::Collider(0) };
     let told = health(&ill, Some(rest), &scene, &settings);
-    assert!(told[4].advice.contains(&scene.colliders[0].name), "{told:?}");
-    assert_eq!(told[4].within.as_ref(), Some(&scene.colliders[0].name));
-    assert_eq!(told[4].in_words(), format!("50.0 mm in {}", scene.colliders[0].name));
-    assert!(well.iter().chain(&told[..4]).all(|gauge| gauge.within.is_none()), "{told:?}");
+    assert!(told[5].advice.contains(&scene.colliders[0].name), "{told:?}");
+    assert_eq!(told[5].within.as_ref(), Some(&scene.colliders[0].name));
+    assert_eq!(told[5].in_words(), format!("50.0 mm in {}", scene.colliders[0].name));
+    assert!(well.iter().chain(&told[..5]).all(|gauge| gauge.within.is_none()), "{told:?}");
     for gauge in told {
         assert_eq!(gauge.level, HealthLevel::Wrong, "{gauge:?}");
         assert!(gauge.advice.ends_with('.') && gauge.fill() == 1.0, "{gauge:?}");
@@ -65,7 +67,7 @@ fn advice_names_controls_that_there_are() {
         let inside = Some(InsidePoint { depth_m: 0.05, guide: 0, point: 9, within });
         let totals = Totals { max_penetration_m: 0.05, deepest: inside, ..Totals::default() };
         let told = health(&totals, inside, &scene, &settings);
-        [told[1].advice.clone(), told[4].advice.clone()]
+        [told[1].advice.clone(), told[5].advice.clone()]
     };
     let [hair, style] = advice(BodyPart::Field);
     assert!(hair.contains("raise Lift (Colliders, Head and shoulders)"), "{hair}");

@@ -57,7 +57,7 @@ impl Wishes {
             loaded,
             playing,
             rate,
-display_hz,
+            display_hz,
             backwards,
             seek_secs,
             // It says how to go there.

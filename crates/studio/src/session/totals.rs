@@ -30,13 +30,19 @@ pub struct Totals {
     pub deepest: Option<InsidePoint>,
     /// When and where it was.
     pub deepest_found: Option<Found>,
+    /// The most points in one step that were in folded skin, of which nobody knows how deep they are.
+    pub unsure_points: u32,
+    /// The first of them, its guide and its number.
+    pub unsure_at: Option<(u32, u32)>,
+    /// When and where that point was.
+    pub unsure_found: Option<Found>,
     /// Largest mean kinetic energy, joules per kilogram.
     pub max_kinetic_energy: f32,
     /// The fastest guide and its point in that step.
     pub fastest_at: Option<(u32, u32)>,
     /// When and where that point was.
     pub fastest_found: Option<Found>,
-    /// Guides put back to their last good pose, counted at each step.
+    /// Guides put back to where they began a step, counted at each step.
     pub recovered_guides: u64,
     /// The guide that was put back last.
     pub recovered_at: Option<u32>,
@@ -63,6 +69,10 @@ impl Totals {
         if report.max_penetration_m > self.max_penetration_m {
             (self.max_penetration_m, self.deepest) = (report.max_penetration_m, report.deepest);
             self.deepest_found = report.deepest.and_then(|inside| found((inside.guide, inside.point)));
+        }
+        if report.unsure_points > self.unsure_points {
+            (self.unsure_points, self.unsure_at) = (report.unsure_points, report.unsure_at);
+            self.unsure_found = report.unsure_at.and_then(found);
         }
         if report.kinetic_energy > self.max_kinetic_energy {
             (self.max_kinetic_energy, self.fastest_at) = (report.kinetic_energy, report.fastest_at);
