@@ -33,8 +33,8 @@ impl Window {
                 self.ties_shown = unfolded.is_some();
                 section(ui, "Simulation", true, |ui| {
                     let axes = camera_control::axes(&project.camera);
-                    let Project { simulation, timeline, .. } = project;
-                    panels::simulation::ui(ui, simulation, &mut timeline.preroll_secs, axes);
+                    let Project { simulation, timeline, hair, .. } = project;
+                    panels::simulation::ui(ui, simulation, hair.simulation(), &mut timeline.preroll_secs, axes);
                 });
                 section(ui, "Colliders", false, |ui| {
                     let scene = self.session.scene.as_ref();

@@ -1,5 +1,6 @@
 //! What the artist can change about how hair moves.
 
+use lovelock_groom::Preset;
 use serde::{Deserialize, Serialize};
 
 use crate::integrator::{Integrator, MAX_SWEEPS};
@@ -113,6 +114,41 @@ impl SimulationSettings {
 }
 
 impl SimulationSettings {
+    /// How a shipped hairstyle moves: the usual settings with the stiffness, the damping and the hold of that style.
+    #[must_use]
+    pub fn preset(preset: Preset) -> Self {
+        let usual = Self::default();
+        match preset {
+            Preset::Smooth | Preset::Ponytail | Preset::Bun => usual,
+            // Curls are springs: nearly as stiff at their tips, and sway on for longer.
+            Preset::Curly => Self { stiffness_root: 16.0, stiffness_tip: 10.0, bend_damping: 0.02, ..usual },
+            // Long hair hangs by its weight.
+            Preset::Long => Self { stiffness_root: 10.0, stiffness_tip: 3.0, hold: 4.0, ..usual },
+        }
+    }
+
+    /// The same settings with the stiffness, the damping and the hold of `to` in place of those of `from`; where they are neither
+    /// those nor the usual ones somebody has chosen them, and they stay.
+    #[must_use]
+    pub fn restyled(&self, from: &Self, to: &Self) -> Self {
+        if ![*from, Self::default()].iter().any(|style| self.of_style(style) == *self) {
+            return *self;
+        }
+        self.of_style(to)
+    }
+
+    /// The same settings with what is a style's own of `style`.
+    fn of_style(&self, style: &Self) -> Self {
+        Self {
+            stiffness_root: style.stiffness_root,
+            stiffness_tip: style.stiffness_tip,
+            stiffness_bias: style.stiffness_bias,
+            bend_damping: style.bend_damping,
+            hold: style.hold,
+            ..*self
+        }
+    }
+
     /// Bending stiffness at a fraction `along` of a lock, 0 at the root and 1 at the tip, 1/s: the ramp from root
     /// to tip, bent by the bias (Schlick 1994, *Fast alternatives to Perlin's bias and gain functions*).
     #[must_use]
@@ -235,6 +271,23 @@ mod tests {
             assert!((s.stiffness_at(0.5) - (20.0 - 16.0 * bias)).abs() < 1e-4, "{}", s.stiffness_at(0.5));
         }
         assert!((ramp.stiffness_at(0.25) - 16.0).abs() < 1e-5, "a bias of a half is a straight line");
+    }
+
+    #[test]
+    fn another_style_brings_its_stiffness_unless_somebody_chose_one() {
+        let of = SimulationSettings::preset;
+        for preset in Preset::ALL {
+            assert_eq!(of(preset), of(preset).clamped(), "{preset:?}");
+        }
+        assert_eq!(of(Preset::Smooth), SimulationSettings::default());
+        let windy = SimulationSettings { gravity: 5.0, ..of(Preset::Curly) };
+        let long = windy.restyled(&of(Preset::Curly), &of(Preset::Long));
+        assert_eq!(long, SimulationSettings { gravity: 5.0, ..of(Preset::Long) }, "the rest stays");
+        assert_eq!(long.restyled(&of(Preset::Long), &of(Preset::Curly)), windy, "and back");
+        let usual = SimulationSettings::default();
+        assert_eq!(usual.restyled(&of(Preset::Curly), &of(Preset::Long)), of(Preset::Long));
+        let chosen = SimulationSettings { hold: 9.0, ..of(Preset::Curly) };
+        assert_eq!(chosen.restyled(&of(Preset::Curly), &of(Preset::Long)), chosen);
     }
 
     #[test]

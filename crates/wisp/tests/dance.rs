@@ -13,7 +13,7 @@ fn over_the_whole_dance_lengths_hold_and_nothing_enters_the_body() {
     for preset in Preset::ALL {
         let mut stage = Stage::new(preset);
         let mut simulation = stage.simulation(Some(0.0));
-        let settings = SimulationSettings::default();
+        let settings = SimulationSettings::preset(preset);
         let (mut all, mut volume) = (StepReport::default(), 0.0);
         let steps = (stage.dance.duration_secs * 60.0) as u32;
         for step in 1..=steps {

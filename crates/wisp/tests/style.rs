@@ -12,14 +12,17 @@ use common::{STEP_SECS, Stage, away_from_style, bare, frame, head, straight, sty
 
 #[test]
 fn after_five_seconds_of_standing_still_no_point_has_moved_by_a_hundredth() {
-    let mut stages: Vec<(String, Stage)> =
-        Preset::ALL.into_iter().map(|p| (format!("{p:?}"), Stage::new(p))).collect();
+    let mut stages: Vec<(String, Stage, SimulationSettings)> = Preset::ALL
+        .into_iter()
+        .map(|p| (format!("{p:?}"), Stage::new(p), SimulationSettings::preset(p)))
+        .collect();
     if let Some(data) = data_dir() {
         for file in ["yuksel/straight.hair", "tressfx/sintel_vk.tfx", "tressfx/TestHair1.tfx"] {
-            stages.push((file.to_owned(), Stage::with_file(&data.join("hair").join(file), 0)));
+            let stage = Stage::with_file(&data.join("hair").join(file), 0);
+            stages.push((file.to_owned(), stage, SimulationSettings::default()));
         }
     }
-    for (name, mut stage) in stages {
+    for (name, mut stage, settings) in stages {
         let still = |stage: &mut Stage, settings: &SimulationSettings| {
             let mut simulation = stage.simulation(None);
             let mut speed = 0.0;
@@ -28,12 +31,12 @@ fn after_five_seconds_of_standing_still_no_point_has_moved_by_a_hundredth() {
             }
             (away_from_style(&simulation).into_iter().fold(0.0, f32::max), speed)
         };
-        let (most, speed) = still(&mut stage, &SimulationSettings::default());
+        let (most, speed) = still(&mut stage, &settings);
         println!("{name}: {most:.6} of its length, {speed:.6} m/s");
         assert!(most < 0.01, "{name}: moved by {most} of its length");
         assert!(speed < 1e-3, "{name}: {speed} m/s when it should be at rest");
         // The control: hair that does not carry its weight, and that no tie pins, sags.
-        let limp = SimulationSettings { style_support: 0.0, ..SimulationSettings::default() };
+        let limp = SimulationSettings { style_support: 0.0, ..settings };
         Arc::make_mut(&mut stage.style).held.clear();
         let (most, _) = still(&mut stage, &limp);
         assert!(most > 0.002, "{name}: without support it moved by {most} alone");

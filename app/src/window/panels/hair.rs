@@ -39,7 +39,7 @@ pub(crate) fn ui(ui: &mut Ui, project: &mut Project, loaded: &Loaded) -> Option<
         let response = ui.selectable_label(on, "From file…");
         if response.on_hover_text("Takes a hair file: Yuksel .hair or TressFX .tfx.").clicked() {
             if project.hair.file.is_some() && !on {
-                project.hair.source = HairSource::File;
+                project.set_hair_source(HairSource::File);
             } else {
                 ask = Some(Ask::PickFile);
             }

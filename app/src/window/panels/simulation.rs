@@ -9,10 +9,15 @@ use crate::window::control::{Number, choice, count, row, section, unless};
 use crate::window::light_sphere::{Sphere, sphere};
 use crate::window::ramp::{Ramp, RampValue};
 
-/// The controls of `settings`, and of how long hair lives before an instant that one goes to. `axes` are the camera's right, up
-/// and back.
-pub(crate) fn ui(ui: &mut Ui, settings: &mut SimulationSettings, preroll_secs: &mut f32, axes: [Vec3; 3]) {
-    let d = SimulationSettings::default();
+/// The controls of `settings`, which return to `d`, and of how long hair lives before an instant that one goes to. `axes` are the
+/// camera's right, up and back.
+pub(crate) fn ui(
+    ui: &mut Ui,
+    settings: &mut SimulationSettings,
+    d: SimulationSettings,
+    preroll_secs: &mut f32,
+    axes: [Vec3; 3],
+) {
     shape(ui, settings, &d);
     section(ui, "Weight and air", false, |ui| weight_and_air(ui, settings, &d));
     section(ui, "Wind", false, |ui| wind(ui, &mut settings.wind, &d.wind, axes));

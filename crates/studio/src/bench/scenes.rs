@@ -119,6 +119,8 @@ impl BenchScene {
         }
         if self.is_simulated_alone() {
             project.motion.speed = 0.25;
+            // Long enough to swing; 20,100 strands take their time.
+            project.timeline.preroll_secs = 0.5;
         }
         if self.is_of_occupancy_maps() {
             project.shadow.method = ShadowMethod::OccupancyMaps;

@@ -52,6 +52,7 @@ pub(super) fn measure(
         Arc::clone(loaded)
     };
     let mut start = Engine::at_rest(Arc::clone(&loaded), project.simulation, STEP_SECS);
+    start.follow(project);
     start.seek(FIRST_STEP as f64 * STEP_SECS);
     start.settle();
     let mut gauges = Vec::new();

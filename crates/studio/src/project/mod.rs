@@ -86,10 +86,9 @@ impl Default for Project {
 }
 
 impl Project {
-    /// Takes a shipped hairstyle with its colours and its ties.
+    /// Takes a shipped hairstyle with its colours, its ties and, where nobody has chosen others, its stiffness.
     pub fn set_preset(&mut self, preset: Preset) {
-        self.hair.source = HairSource::Grown;
-        self.hair.preset = preset;
+        self.change_hair(HairSource::Grown, preset);
         self.hair.groom = GroomSettings::preset(preset);
         self.look = self.hair.groom.look;
         self.hair.ties = preset.ties().to_vec();
@@ -97,9 +96,21 @@ impl Project {
         self.hair.cut = Haircut::default();
     }
 
+    /// Takes the hair file again that was picked before, or the style that is grown.
+    pub fn set_hair_source(&mut self, source: HairSource) {
+        self.change_hair(source, self.hair.preset);
+    }
+
+    /// Other hair, and how it moves where it moved as that before.
+    fn change_hair(&mut self, source: HairSource, preset: Preset) {
+        let before = self.hair.simulation();
+        (self.hair.source, self.hair.preset) = (source, preset);
+        self.simulation = self.simulation.restyled(&before, &self.hair.simulation());
+    }
+
     /// Takes a hair file, which the user picked.
     pub fn set_hair_file(&mut self, path: impl Into<std::path::PathBuf>) {
-        self.hair.source = HairSource::File;
+        self.set_hair_source(HairSource::File);
         self.hair.file = Some(FileRef::new(path));
     }
 

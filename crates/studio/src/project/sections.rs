@@ -5,6 +5,7 @@ use lovelock_groom::{GroomSettings, HairTie, Haircut, ImportSettings, Preset};
 use lovelock_motion::{BodySettings, ColliderEdits, MotionSettings};
 use lovelock_record::{FilmQuality, SequenceFormat};
 use lovelock_render::{Backend, ShadowMethod, ShadowSettings, Transparency};
+use lovelock_wisp::SimulationSettings;
 use serde::{Deserialize, Serialize};
 
 use super::FileRef;
@@ -128,6 +129,16 @@ impl Default for HairSection {
             import: ImportSettings::default(),
             ties: Vec::new(),
             cut: Haircut::default(),
+        }
+    }
+}
+
+impl HairSection {
+    /// How this hair moves unless it is changed: where the controls of the simulation return to.
+    pub fn simulation(&self) -> SimulationSettings {
+        match self.source {
+            HairSource::Grown => SimulationSettings::preset(self.preset),
+            HairSource::File => SimulationSettings::default(),
         }
     }
 }

@@ -23,6 +23,24 @@ fn the_default_project_comes_back_without_a_word() {
 }
 
 #[test]
+fn hair_moves_as_its_style_does_unless_somebody_chose_otherwise() {
+    let mut project = Project::default();
+    assert_eq!(project.simulation, project.hair.simulation());
+    project.simulation.gravity = 3.0;
+    project.set_preset(Preset::Curly);
+    let curls = SimulationSettings { gravity: 3.0, ..SimulationSettings::preset(Preset::Curly) };
+    assert_eq!(project.simulation, curls, "what is no style's own stays");
+    project.set_hair_file("/x.hair");
+    assert_eq!(project.simulation.stiffness_tip, SimulationSettings::default().stiffness_tip);
+    project.set_hair_source(HairSource::Grown);
+    assert_eq!(project.simulation, curls, "it is that hair again");
+    project.simulation.stiffness_root = 40.0;
+    project.set_preset(Preset::Long);
+    assert_eq!(project.simulation, SimulationSettings { stiffness_root: 40.0, ..curls });
+    assert_eq!(round_trip(&project).0.simulation, project.simulation);
+}
+
+#[test]
 fn a_sparse_project_takes_the_rest_from_the_defaults() {
     let (project, problems) =
         parse_project(Path::new("p"), "(version: 1, hair: (preset: curly), motion: (speed: 0.5))")

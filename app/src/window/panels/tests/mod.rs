@@ -81,6 +81,7 @@ pub(super) const PANELS: [(&str, Show); 11] = [
         super::simulation::ui(
             ui,
             &mut b.project.simulation,
+            b.project.hair.simulation(),
             &mut b.project.timeline.preroll_secs,
             [Vec3::X, Vec3::Y, Vec3::Z],
         );

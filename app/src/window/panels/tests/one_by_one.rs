@@ -29,6 +29,8 @@ fn hair_takes_presets_with_their_colours() {
     assert_eq!(project.hair.preset, Preset::Curly);
     assert_eq!(project.hair.groom, GroomSettings::preset(Preset::Curly));
     assert_eq!(project.look, GroomSettings::preset(Preset::Curly).look);
+    assert_eq!(project.simulation, project.hair.simulation());
+    assert_ne!(project.simulation, Project::default().simulation, "curls are springs");
     let length = control(&harness, Role::SpinButton, "Length").rect().center();
     type_at(&mut harness, length, "12.5");
     assert_eq!(

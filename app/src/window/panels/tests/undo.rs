@@ -26,6 +26,7 @@ fn editor() -> Harness<'static, Shown<Edited>> {
         simulation::ui(
             ui,
             &mut project.simulation,
+            project.hair.simulation(),
             &mut project.timeline.preroll_secs,
             [Vec3::X, Vec3::Y, Vec3::Z],
         );
