@@ -54,9 +54,7 @@ fn a_tie_is_aimed_by_heading_and_rise() {
 #[test]
 fn a_parting_divides_the_hair() {
     let mut harness = with_ties(&[HairTie::default()]);
-    for (entry, normal) in
-        [("What grows on the left", Vec3::X), ("What grows on the right", Vec3::NEG_X)]
-    {
+    for (entry, normal) in [("What grows on the left", Vec3::X), ("What grows on the right", Vec3::NEG_X)] {
         choose(&mut harness, "Gathers", entry);
         assert_eq!((tie(&harness, 0).reach, tie(&harness, 0).plane_normal), (TieReach::AbovePlane, normal));
         assert_eq!(tie(&harness, 0).plane_point.x, 0.0, "in the middle");
