@@ -5,11 +5,10 @@
 
 use glam::{Affine3A, Quat, Vec3};
 use lovelock_groom::{GuideFrame, Guides, HairTie};
-use lovelock_wisp::SimulationSettings;
 
 #[path = "../tests/common/mod.rs"]
 mod common;
-use common::{STEP_SECS, Stage, frame};
+use common::{STEP_SECS, Stage, frame, settings_of};
 
 /// Places along a guide that are watched, fractions of its points.
 const PLACES: [f32; 5] = [0.1, 0.25, 0.5, 0.75, 1.0];
@@ -23,7 +22,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let usage = "alive STYLE [--motion FILE] [--stop SECS] [--ties JSON] [--set JSON]";
     let style = args.next().ok_or(usage)?;
     let mut stage = Stage::called(&style, None);
-    let mut settings = SimulationSettings::default();
+    let mut settings = settings_of(&style);
     let mut stop = f64::INFINITY;
     while let Some(arg) = args.next() {
         let value = args.next().ok_or(usage)?;

@@ -8,11 +8,11 @@
 
 use lovelock_groom::Preset;
 use lovelock_motion::{Skin, skin};
-use lovelock_wisp::{SimulationSettings, StepReport};
+use lovelock_wisp::StepReport;
 
 #[path = "../tests/common/mod.rs"]
 mod common;
-use common::{Depths, STEP_SECS, Stage, frame, worse};
+use common::{Depths, STEP_SECS, Stage, frame, settings_of, worse};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut args = std::env::args().skip(1);
@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut styles: Vec<String> = Preset::ALL.iter().map(|preset| preset.id().to_owned()).collect();
     let mut motions = list("dance,backflip");
     let (mut wisps, mut every, mut field, mut colliders, mut verbose) = (None, 2, true, true, false);
-    let mut settings = SimulationSettings::default();
+    let mut chosen = None;
     while let Some(arg) = args.next() {
         let value = args.next().ok_or(usage)?;
         match arg.as_str() {
@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             "--field" => field = value != "off",
             "--colliders" => colliders = value != "off",
             "--verbose" => verbose = value == "on",
-            "--set" => settings = serde_json::from_str(&value)?,
+            "--set" => chosen = Some(serde_json::from_str(&value)?),
             _ => return Err(usage.into()),
         }
     }
@@ -46,6 +46,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 stage = stage.without_field();
             }
             stage.play(motion)?;
+            let settings = chosen.unwrap_or_else(|| settings_of(style));
             let mut simulation = stage.simulation(Some(0.0));
             let (mut all, mut surface) = (StepReport::default(), Skin::default());
             let (mut depths, mut volume) = (Depths::new(&stage), 0.0);

@@ -7,11 +7,11 @@ use glam::Vec3;
 use image::{Rgb, RgbImage};
 use lovelock_groom::HairTie;
 use lovelock_motion::{Skin, skin};
-use lovelock_wisp::{Simulation, SimulationSettings, StepReport};
+use lovelock_wisp::{Simulation, StepReport};
 
 #[path = "../tests/common/mod.rs"]
 mod common;
-use common::{STEP_SECS, Stage, away_from_style, frame, stretch, worse};
+use common::{STEP_SECS, Stage, away_from_style, frame, settings_of, stretch, worse};
 
 /// Size of one picture, pixels, and of what it shows, metres.
 const CELL: (u32, u32) = (300, 400);
@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let style = args.next().ok_or(usage)?;
     let out = args.next().ok_or(usage)?;
     let (mut still, mut from, mut frames, mut every) = (false, 0.0, 10_u32, 0.2_f64);
-    let mut settings = SimulationSettings::default();
+    let mut settings = settings_of(&style);
     let (mut ties, mut wisps): (Option<Vec<HairTie>>, _) = (None, None);
     while let Some(arg) = args.next() {
         let mut value = || args.next().ok_or(usage);

@@ -363,3 +363,8 @@ impl Depths {
         }
     }
 }
+
+/// How a hairstyle of that name moves in the program: a preset by its own settings, hair of a file by the usual ones.
+pub fn settings_of(style: &str) -> SimulationSettings {
+    Preset::from_id(style).map_or_else(SimulationSettings::default, SimulationSettings::preset)
+}
