@@ -4,7 +4,12 @@ use glam::Vec3;
 
 use super::Plan;
 use crate::block::Block;
-use crate::lanes::{LANES, Lane, ZERO3, at, greater, lesser, put};
+use crate::lanes::{LANES, Lane, ZERO3, at, direction_or, greater, lesser, put};
+
+/// A point that has gone no further along its support than this part of the lock up to it is carried in full, and one that
+/// has gone further than the second not at all: a lock that stood out level, 24 and 64 degrees down.
+const CARRIED: f32 = 0.4;
+const LOST: f32 = 0.9;
 
 /// Moves the block into this step's working space and gathers what acts on each point.
 ///
@@ -22,21 +27,21 @@ pub(crate) fn prepare(block: &mut Block, plan: &Plan) {
     let gravity = Vec3::new(0.0, -settings.gravity, 0.0);
     let carried = settings.style_support * settings.gravity;
     let windy = plan.wind.blows();
-    let mut before = block.position[0];
     for i in 0..block.points() {
-        let (support, direction, here) = (block.rest.support[i], block.rest.direction[i], block.position[i]);
-        let inv = block.rest.inv_length[i];
+        let (support, rest, here) = (block.rest.support[i], block.rest.position[i], block.position[i]);
         let mut push = ZERO3;
         for k in 0..LANES {
             // The bends that carry a lock at rest carry it no more once it has left its shape: flung hair falls
-            // with its whole weight. Support fades from 37 to 66 degrees off the direction of rest.
-            let link = (at(&here, k) - at(&before, k)) * inv[k];
-            let along = link.dot(plan.last_head.rotate(at(&direction, k)));
-            let share = if i == 0 { 1.0 } else { lesser(greater((along - 0.4) * 2.5, 0.0), 1.0) };
-            let a = gravity + plan.last_head.rotate(at(&support, k)) * (carried * share);
+            // with its whole weight. How much is left depends on how far the point has gone along its support alone, so
+            // that the force has a potential: one that heeds the lock's direction drives locks around for ever.
+            let support = plan.last_head.rotate(at(&support, k));
+            let (along, _) = direction_or(support, Vec3::ZERO);
+            let gone = (at(&here, k) - plan.last_head.apply(at(&rest, k))).dot(along);
+            let lock = block.rest.mean_link[k] * i as f32 + 1e-6;
+            let share = (LOST - greater(gone, -gone) / lock) * (1.0 / (LOST - CARRIED));
+            let a = gravity + support * (carried * lesser(greater(share, 0.0), 1.0));
             put(&mut push, k, a * plan.h);
         }
-        before = here;
         block.work.push[i] = push;
     }
     plan.grid.act(block, plan, cohesion);
