@@ -113,12 +113,12 @@ fn the_worst_is_kept_with_its_time_and_its_place() {
     let frame = engine.snapshot();
     let gauges = health(&totals, None, &frame.scene, &project.simulation);
     let now = frame.guide_point(totals.fastest_at.expect("a point")).expect("a point");
-    assert_eq!(frame.place_of(&gauges[2]), Some(found.place));
+    assert_eq!(frame.place_of(&gauges[3]), Some(found.place));
     assert!(now.distance(found.place) > 1e-3, "{now} is still at {}", found.place);
     // As it is measured now, it is where the point is.
     let gauges = frame.health(&project.simulation);
     let at = frame.report.fastest_at.expect("a point");
-    assert_eq!(frame.place_of(&gauges[2]), frame.guide_point(at));
+    assert_eq!(frame.place_of(&gauges[3]), frame.guide_point(at));
 }
 
 #[test]
@@ -129,7 +129,7 @@ fn a_style_in_the_body_is_shown_where_the_style_is() {
     let frame = engine.snapshot();
     let tip = frame.scene.style.guides.points_per_guide as u32 - 1;
     let rest = InsidePoint { depth_m: 0.05, guide: 3, point: tip, within: BodyPart::Field };
-    let gauge = &health(&Totals::default(), Some(rest), &frame.scene, &project.simulation)[4];
+    let gauge = &health(&Totals::default(), Some(rest), &frame.scene, &project.simulation)[5];
     let place = frame.place_of(gauge).expect("a place");
     // What the head carries stays where it is against the head.
     let in_head = frame.guides.world_from_head.inverse().transform_point3(place);
@@ -170,7 +170,7 @@ fn shipped_styles_are_well_over_the_dance_and_hair_in_a_storm_of_one_substep_is_
     let energy = StepReport { kinetic_energy: 500.0, ..frame.report };
     let mut torn = FrameSnapshot::clone(&frame);
     torn.report = energy;
-    let gauge = &torn.health(&storm.simulation)[2];
+    let gauge = &torn.health(&storm.simulation)[3];
     assert_eq!(gauge.level, HealthLevel::Wrong);
     assert!(gauge.advice.contains("wind"), "{gauge:?}");
 }
