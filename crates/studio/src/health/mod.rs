@@ -68,14 +68,14 @@ impl GaugeKind {
     /// Up to the first number all is well; over the second one something is wrong.
     ///
     /// Stretch: the solver leaves 3e-6, and a thousandth of a lock is a pixel of a large picture. Penetration: a millimetre is
-    /// what skin hides. Folded skin: some points in an armpit nobody
-    /// sees, a hundred are three locks. Energy: 30 J/kg are 8 m/s on average, faster than any head turns. The style at rest: it stays as near
+    /// what skin hides. Folded skin: ten points are a part of one
+    /// lock, a hundred are three. Energy: 30 J/kg are 8 m/s on average, faster than any head turns. The style at rest: it stays as near
     /// as it was drawn, and round shapes stand for the neck to about a centimetre.
     fn limits(self) -> [f64; 2] {
         match self {
             Self::Stretch => [1e-4, 1e-3],
             Self::Penetration => [1e-3, 5e-3],
-            Self::Folded => [0.0, 100.0],
+            Self::Folded => [10.0, 100.0],
             Self::Energy => [30.0, 100.0],
             Self::PutBack => [0.0, 0.0],
             Self::RestInside => [10e-3, 25e-3],
