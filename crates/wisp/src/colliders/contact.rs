@@ -390,7 +390,7 @@ pub(crate) fn penetration(
             // The depth in what is a guess is one too, and tells nothing.
             let depth = greater(0.0, allowed[k] - row.distance[k]);
             worst.depth[k] = depth * (1.0 - row.guess[k]);
-            worst.unsure[k] = (row.guess[k] > 0.0) & (depth > UNSURE_FROM);
+            worst.unsure[k] = row.guess[k] > 0.0 && depth > UNSURE_FROM;
         }
     }
     let (min, max) = bounds(placed);

@@ -137,7 +137,7 @@ impl DensityGrid {
         for k in 0..LANES {
             let q = (at(p, k) - self.min) / self.cell - 0.5;
             // Written so that what is not a number is outside.
-            let within = |q: f32| (q >= 0.0) & (q < (SIDE - 1) as f32);
+            let within = |q: f32| q >= 0.0 && q < (SIDE - 1) as f32;
             let inside = within(q.x) & within(q.y) & within(q.z);
             let mut base = 0;
             for (axis, q) in q.to_array().into_iter().enumerate() {
@@ -175,7 +175,7 @@ fn place(grid: &DensityGrid, source: &Source, block: &Block, out: &mut Pieces) {
             let (t, u) = (at(&t, k), at(&v, k));
             let finite = |v: Vec3| (v.x.abs() + v.y.abs() + v.z.abs()) <= f32::MAX;
             // Beyond the end of a guide that was cut there is no hair.
-            let there = corners.inside[k] & (block.rest.inv_length[i][k] > 0.0);
+            let there = corners.inside[k] && block.rest.inv_length[i][k] > 0.0;
             sound[k] = there & finite(t) & !(u.x + u.y + u.z).is_nan();
             let u = u.to_array().map(|u| lesser(greater(u, -FASTEST), FASTEST) * MOMENTUM);
             let parts = outer(t);

@@ -74,7 +74,7 @@ impl DensityGrid {
             put(&mut out.mean_velocity, k, mean);
             let directions = [sums[4][k], sums[5][k], sums[6][k], sums[7][k], sums[8][k], sums[9][k]];
             let across = crossing(&directions, mass, at(t, k));
-            out.crossing[k] = if crowded[k] & (self.repulsion.anisotropy > 0.0) { across } else { 0.0 };
+            out.crossing[k] = if crowded[k] && self.repulsion.anisotropy > 0.0 { across } else { 0.0 };
             put(&mut out.push, k, -gradient(&excess, at(&corners.fraction, k)) / self.cell);
         }
         if self.repulsion.mode == RepulsionMode::Centre {

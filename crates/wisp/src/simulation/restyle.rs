@@ -34,6 +34,9 @@ pub(super) struct TakingHold {
     since_secs: f32,
 }
 
+/// What [`Simulation::taking_hold`] knows.
+type Held<'a> = (f32, &'a [f32], &'a [Vec<Lane3>]);
+
 impl Simulation {
     /// Changes the hairstyle. Where the guides are as many and as finely cut as before, the motion is carried
     /// over: every lock keeps its turns and velocities, or, where ties gather it in another way, its place. Otherwise the
@@ -94,7 +97,7 @@ impl Simulation {
 
     /// What is known of ties on their way to their strength: since when, how firmly each point of each guide was held at the
     /// start, and for each block the directions of its links then.
-    pub(super) fn taking_hold(&self) -> Option<(f32, &[f32], &[Vec<Lane3>])> {
+    pub(super) fn taking_hold(&self) -> Option<Held<'_>> {
         let taking = self.taking_hold.as_ref()?;
         Some((taking.since_secs, &taking.held, &taking.from))
     }
