@@ -158,8 +158,8 @@ impl Engine {
     }
 
     /// Goes on counting from totals of before.
-    pub(super) fn set_totals(&mut self, totals: Totals) {
-        self.totals = totals;
+    pub(super) fn set_totals(&mut self, totals: &Totals) {
+        self.totals = *totals;
     }
 
     /// Where the style at rest lies deepest inside the body; none where it does not.

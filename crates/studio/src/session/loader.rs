@@ -37,6 +37,9 @@ struct Kept<K, T> {
     part: Arc<T>,
 }
 
+/// The shapes that hair meets, and those that only the wind does.
+type Met = [Arc<[Collider]>; 2];
+
 /// Makes scenes of projects. Parts whose sources have not changed are shared with the scene before.
 #[derive(Debug, Default)]
 pub struct SceneLoader {
@@ -46,7 +49,7 @@ pub struct SceneLoader {
     hair_file: HairFileCache,
     dressed: Option<Dressed>,
     head_path: Option<(Arc<MotionPart>, bool, Arc<HeadPath>)>,
-    colliders: Option<(Arc<BodyPart>, ColliderEdits, [Arc<[Collider]>; 2])>,
+    colliders: Option<(Arc<BodyPart>, ColliderEdits, Met)>,
 }
 
 impl SceneLoader {
@@ -220,7 +223,7 @@ impl SceneLoader {
     }
 
     /// The shapes that hair meets, as the project changes them, and those that only the wind does.
-    fn colliders(&mut self, body: &Arc<BodyPart>, edits: &ColliderEdits) -> [Arc<[Collider]>; 2] {
+    fn colliders(&mut self, body: &Arc<BodyPart>, edits: &ColliderEdits) -> Met {
         if let Some((of, kept, met)) = &self.colliders
             && Arc::ptr_eq(of, body)
             && kept == edits

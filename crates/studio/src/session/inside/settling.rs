@@ -63,7 +63,7 @@ impl Inside {
         let (Some(aside), Some(engine)) = (self.preroll.take(), &mut self.engine) else { return };
         engine.take_settled(*aside.preroll);
         if let Some(measured) = aside.measured {
-            engine.set_totals(measured);
+            engine.set_totals(&measured);
         }
         // The time that it took is not to be caught up with.
         self.playback.set_playing(self.playback.is_playing());
