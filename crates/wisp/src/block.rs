@@ -5,7 +5,7 @@ use lovelock_groom::Guides;
 
 use crate::colliders::boxes::Boxes;
 use crate::colliders::field::PlaneRow;
-use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, put};
+use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, lesser, put};
 use crate::rest::RestShape;
 use crate::solver::{Bending, Coupled, Factor, LengthScratch};
 
@@ -71,6 +71,18 @@ impl Work {
         self.keep.resize(points, ZERO);
         self.lengths.fit(points);
     }
+}
+
+/// Shorter links are measured by this length, metres: single precision rounds the ends of a link of a micrometre by percents of it,
+/// and nobody sees that.
+const FINE: f32 = 1e-3;
+
+/// Relative change of the length of a link, now `link`, whose length at rest is one over `inv`; 0 where that is 0, beyond the end
+/// of a guide that was cut.
+#[inline(always)]
+pub(crate) fn stretch_of(link: Vec3, inv: f32) -> f32 {
+    let change = (link.length_squared().sqrt() * inv - 1.0).abs();
+    if inv > 0.0 { change * lesser(1.0, 1.0 / (FINE * inv)) } else { 0.0 }
 }
 
 /// What a block has to report of a step.
@@ -140,11 +152,11 @@ impl Block {
         found
     }
 
-    /// Relative change of the length of the link that ends at point `i` of lane `k`.
+    /// [`stretch_of`] the link that ends at point `i` of lane `k`.
     pub(crate) fn stretch(&self, k: usize, i: usize) -> f32 {
         let (a, b, inv) =
             (at(&self.position[i - 1], k), at(&self.position[i], k), self.rest.inv_length[i][k]);
-        if inv > 0.0 { ((b - a).length_squared().sqrt() * inv - 1.0).abs() } else { 0.0 }
+        stretch_of(b - a, inv)
     }
 
     /// Puts the rest shape, without motion, where `from_head` carries it.

@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 pub struct StepReport {
     /// Substeps taken.
     pub substeps: u32,
-    /// Largest relative change of a link's length at the end of the step: 0.001 is 0.1 %.
+    /// Largest relative change of a link's length at the end of the step: 0.001 is 0.1 %. Of links shorter than a millimetre the
+    /// change as a part of that.
     pub max_stretch: f32,
     /// Deepest point inside a collider, beyond what its place at rest allows, metres.
     pub max_penetration_m: f32,

@@ -1,10 +1,10 @@
 //! What hair collides with, as wires over the picture.
 
-use egui::{Align2, Color32, CursorIcon, FontId, Pos2, Rect, Response, Sense, Shape, Stroke, Ui};
+use egui::{Align2, Color32, CursorIcon, FontId, Pos2, Response, Shape, Stroke, Ui};
 use glam::Vec3;
 use lovelock_studio::motion::{ColliderEdit, ColliderShape, PlacedCollider};
 
-use super::View;
+use super::{View, handle};
 use crate::window::theme;
 
 /// How near to a wire a click chooses its shape, points.
@@ -146,12 +146,12 @@ pub(crate) fn edit(ui: &Ui, view: View, chosen: &mut Chosen) {
     let painter = ui.painter_at(view.place);
     let before = chosen.edit;
     // The middle after the rim: it has what lies on both.
-    let size = handle(ui, rim, "Radius of the collider in the picture");
+    let size = handle(ui, rim, ui.scope_id().with("radius"), "Radius of the collider in the picture");
     if let Some(pointer) = dragged_to(ui, &size, rim) {
         let out = (view.at_depth_of(pointer, middle + along * radius) - middle).dot(along);
         chosen.edit.scale *= (out / radius).max(1e-3);
     }
-    let place = handle(ui, at, "Collider in the picture");
+    let place = handle(ui, at, ui.scope_id().with("collider"), "Collider in the picture");
     if let Some(pointer) = dragged_to(ui, &place, at) {
         let moved = view.at_depth_of(pointer, middle) - middle;
         let at_rest = chosen.placed.world_from_rest.matrix3.inverse().mul_vec3(moved);
@@ -171,13 +171,6 @@ pub(crate) fn edit(ui: &Ui, view: View, chosen: &mut Chosen) {
         painter.circle_filled(at, if over { 6.0 } else { 4.5 }, theme::ACCENT);
         handle.on_hover_cursor(CursorIcon::Grab).on_hover_text(words);
     }
-}
-
-fn handle(ui: &Ui, at: Pos2, name: &str) -> Response {
-    let rect = Rect::from_center_size(at, egui::Vec2::splat(20.0));
-    let handle = ui.interact(rect, ui.scope_id().with(name), Sense::click_and_drag());
-    handle.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name));
-    handle
 }
 
 /// Where a handle that is at `at` is dragged to: it keeps to the place of it that was taken hold of.

@@ -6,7 +6,7 @@ pub(crate) mod mark;
 pub(crate) mod scissors;
 pub(crate) mod ties;
 
-use egui::{Pos2, Rect, pos2};
+use egui::{Id, Pos2, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo, pos2};
 use glam::{Mat4, Vec3};
 use lovelock_studio::Painted;
 
@@ -19,6 +19,13 @@ pub(crate) struct View {
     world_from_clip: Mat4,
     /// Where the camera is, world space.
     pub(crate) eye: Vec3,
+}
+
+/// A place of the picture that can be clicked and dragged, called `name` for those who cannot see it.
+fn handle(ui: &Ui, at: Pos2, id: Id, name: &str) -> Response {
+    let handle = ui.interact(Rect::from_center_size(at, Vec2::splat(22.0)), id, Sense::click_and_drag());
+    handle.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
+    handle
 }
 
 impl View {

@@ -1,10 +1,10 @@
 //! Hair ties in the picture: rings with a handle that is dragged over the head, and arrows that are turned.
 
-use egui::{CursorIcon, Id, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2};
+use egui::{CursorIcon, Id, Pos2, Shape, Stroke, Ui};
 use glam::{Affine3A, Vec3};
 use lovelock_studio::groom::{HairTie, Scalp, TieReach};
 
-use super::{View, head};
+use super::{View, handle, head};
 use crate::window::{aim, theme};
 
 /// Length of the arrow that shows where hair leaves a tie, metres.
@@ -84,12 +84,6 @@ pub(crate) fn edit(
         ring_handle.on_hover_cursor(CursorIcon::Grab).on_hover_text("Drag to move the tie over the head.");
     }
     held
-}
-
-fn handle(ui: &Ui, at: Pos2, id: Id, name: &str) -> egui::Response {
-    let handle = ui.interact(Rect::from_center_size(at, Vec2::splat(22.0)), id, Sense::click_and_drag());
-    handle.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name));
-    handle
 }
 
 /// Moves a tie to where the pointer is.

@@ -11,7 +11,7 @@ use super::cell::{Chunk, LAYERS, NUMBERS, PARTS};
 use super::direction::outer;
 use super::{DensityGrid, FASTEST, FULL, MOMENTUM, OFFSETS, SIDE};
 use crate::block::Block;
-use crate::lanes::{LANES, Lane3, Map, ZERO, ZERO3, at, greater, lesser, put, row_done};
+use crate::lanes::{LANES, Lane3, Map, ZERO, ZERO3, at, direction_or, greater, lesser, put, row_done};
 use crate::trilinear::weights;
 
 /// Which hair is put into the grid.
@@ -107,13 +107,7 @@ pub(super) fn tangents(block: &Block, i: usize) -> Lane3 {
     let (a, b) = (block.position[i.saturating_sub(1)], block.position[(i + 1).min(block.points() - 1)]);
     let mut out = ZERO3;
     for k in 0..LANES {
-        let along = at(&b, k) - at(&a, k);
-        let inv = 1.0 / along.length_squared().sqrt();
-        // Neither too short to have a direction nor so long that it is none.
-        let scale = if inv > 0.0 && inv <= f32::MAX { inv } else { 0.0 };
-        let t = along * scale;
-        let pick = |v: f32| if scale > 0.0 { v } else { 0.0 };
-        put(&mut out, k, Vec3::new(pick(t.x), pick(t.y), pick(t.z)));
+        put(&mut out, k, direction_or(at(&b, k) - at(&a, k), Vec3::ZERO).0);
     }
     out
 }

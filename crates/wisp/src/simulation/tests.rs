@@ -190,3 +190,24 @@ fn what_only_shelters_keeps_the_wind_off_and_hair_goes_through_it() {
     // The control: what stands downwind shelters nothing.
     assert!((beside - open).abs() < 0.05 * open, "{beside} m before it, {open} m in the open");
 }
+
+#[test]
+fn links_too_short_to_see_are_no_stretch() {
+    // As some strands of files are: a link of 0.1 micrometres, a tenth of a metre from the head's joint.
+    let mut guides = Guides { points_per_guide: 11, ..Guides::default() };
+    guides.push(&std::array::from_fn::<Vec3, 11, _>(|i| Vec3::new(0.0, 0.1, 1e-7 * i as f32)));
+    let mut simulation = Simulation::new(Arc::new(Hairstyle { guides, ..Hairstyle::default() }));
+    simulation.reset(&input(0, &[]));
+    let (mut seen, mut of_itself) = (0.0_f32, 0.0_f32);
+    for step in 1..60 {
+        seen = seen.max(simulation.step(&input(step, &[]), &settings(), 1.0 / 60.0).max_stretch);
+        let block = &simulation.blocks[0];
+        let length = |i: usize| (at(&block.position[i], 0) - at(&block.position[i - 1], 0)).length();
+        of_itself =
+            (2..11).map(|i| (length(i) * block.rest.inv_length[i][0] - 1.0).abs()).fold(of_itself, f32::max);
+    }
+    // Half a unit in the last place at 0.1 m is 3.7 nanometres for each coordinate of either end.
+    println!("{seen} as it is reported, {of_itself} of its own length");
+    assert!(seen < 2e-5, "{seen}");
+    assert!(of_itself > 1e-3, "the control, measured 0.5 %: {of_itself} of its own length");
+}

@@ -18,7 +18,7 @@ pub(crate) use coupled::{Coupled, Factor};
 pub(crate) use lengths::LengthScratch;
 pub(crate) use plan::{Plan, Substep};
 
-use crate::block::{Block, Outcome};
+use crate::block::{Block, Outcome, stretch_of};
 use crate::lanes::{LANES, ZERO, at, greater, put};
 
 /// Takes `block` through the step of `plan`.
@@ -59,8 +59,7 @@ fn measure(block: &mut Block, plan: &Plan) {
         let (a, b, v, inv) =
             (block.position[i - 1], block.position[i], block.velocity[i], block.rest.inv_length[i]);
         for k in 0..LANES {
-            let ratio = (at(&b, k) - at(&a, k)).length_squared().sqrt() * inv[k];
-            stretch[k] = greater(stretch[k], if inv[k] > 0.0 { (ratio - 1.0).abs() } else { 0.0 });
+            stretch[k] = greater(stretch[k], stretch_of(at(&b, k) - at(&a, k), inv[k]));
             let speed = at(&v, k).length_squared();
             energy[k] += 0.5 * speed;
             fastest[k] = greater(fastest[k], speed);
