@@ -1,5 +1,7 @@
 //! Ties, scissors and colliders in the picture of the whole window.
 
+use std::cell::Cell;
+
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, Pos2};
 use egui_kittest::Harness;
@@ -18,8 +20,20 @@ fn with_picture() -> Option<Harness<'static, Shown<Option<Window>>>> {
     });
     of(&harness).session.painted.as_ref()?;
     key(&mut harness, Modifiers::NONE, Key::Space);
+    // What was under way as it was paused still comes: the body stands once the newest frame is painted and stays the newest.
+    let (last, calm) = (Cell::new(f64::NAN), Cell::new(0));
+    wait(&mut harness, "a body that stands", |window| {
+        let painted = window.session.painted.as_ref().map_or(f64::NAN, |painted| painted.snapshot.time_secs);
+        let newest = window.session.frame.as_ref().map(|frame| frame.time_secs);
+        let same = newest == Some(painted) && last.replace(painted) == painted;
+        calm.set(if same { calm.get() + 1 } else { 0 });
+        calm.get() > CALM_PASSES
+    });
     Some(harness)
 }
+
+/// So many passes of some milliseconds without another frame the body stands, be the machine busy with other things.
+const CALM_PASSES: u32 = 60;
 
 /// Unfolds a section of a panel.
 fn unfold(harness: &mut Harness<'_, Shown<Option<Window>>>, title: &str) {
