@@ -138,14 +138,28 @@ pub(crate) fn greater(a: f32, b: f32) -> f32 {
     if b > a { b } else { a }
 }
 
+/// One over the root of a number that is not negative, to two units in the last place; finite for 0.
+///
+/// A guess from the exponent, a step of Newton's with constants that suit it, and one of third order. Processors work
+/// out roots and quotients one after the other, and sums and products side by side: this is several times quicker, and
+/// unlike their own estimates it has the same bits everywhere.
+#[inline(always)]
+pub(crate) fn inv_sqrt(x: f32) -> f32 {
+    // What is not a number may have a sign.
+    let guess = f32::from_bits(0x5f1f_fff9_u32.wrapping_sub(x.to_bits() >> 1));
+    let near = guess * (1.681_914_1 - 0.703_952_25 * x * guess * guess);
+    let off = 1.0 - x * near * near;
+    near + near * off * (0.5 + 0.375 * off)
+}
+
 /// `v` with length 1, and its length; a vector too short to have a direction gives `fallback`.
 #[inline(always)]
 pub(crate) fn direction_or(v: Vec3, fallback: Vec3) -> (Vec3, f32) {
-    let length = v.length_squared().sqrt();
-    let ok = length > 1e-12;
-    let scale = 1.0 / if ok { length } else { 1.0 };
+    let squared = v.length_squared();
+    let scale = inv_sqrt(squared);
+    let ok = squared > 1e-24;
     let pick = |a: f32, b: f32| if ok { a * scale } else { b };
-    (Vec3::new(pick(v.x, fallback.x), pick(v.y, fallback.y), pick(v.z, fallback.z)), length)
+    (Vec3::new(pick(v.x, fallback.x), pick(v.y, fallback.y), pick(v.z, fallback.z)), squared * scale)
 }
 
 /// A rotation as a unit quaternion of plain numbers, since `glam::Quat` is itself a vector register and would
@@ -175,7 +189,7 @@ impl Turn {
         let (v, w) = (from.cross(to), greater(1.0 + from.dot(to), 1e-4));
         let turned_w = w * self.w - v.dot(self.v);
         let turned_v = w * self.v + self.w * v + v.cross(self.v);
-        let scale = 1.0 / (turned_w * turned_w + turned_v.length_squared()).sqrt();
+        let scale = inv_sqrt(turned_w * turned_w + turned_v.length_squared());
         Self { v: turned_v * scale, w: turned_w * scale }
     }
 }
@@ -238,6 +252,20 @@ mod tests {
         let axis = from.cross(to);
         assert!((turn.apply(axis) - axis).length() < 1e-6);
         assert!((turn.apply(to) - to).length() > 0.1, "a turn that does nothing would pass the lines above");
+    }
+
+    #[test]
+    fn one_over_a_root_is_right_to_two_units_in_the_last_place() {
+        let mut worst = 0.0_f64;
+        for i in 0..200_000 {
+            // All exponents from 1e-24 to 1e24, and what lies between.
+            let x = 10.0_f32.powf(-24.0 + 48.0 * i as f32 / 200_000.0);
+            worst = worst.max((f64::from(inv_sqrt(x)) * f64::from(x).sqrt() - 1.0).abs());
+        }
+        assert!(worst < 2.0 * f64::from(f32::EPSILON), "{worst:e}");
+        assert!(worst > 0.25 * f64::from(f32::EPSILON), "nothing is that exact");
+        assert!(inv_sqrt(0.0).is_finite());
+        assert!(inv_sqrt(-f32::NAN).is_nan(), "and does not panic");
     }
 
     #[test]

@@ -172,7 +172,8 @@ impl Simulation {
         }
         let dt_secs = dt_secs.min(0.1);
         self.take_hold(dt_secs);
-        let report = self.simulate(&head, input, &settings, dt_secs, met);
+        // All of it by the threads that share the work: they are woken once.
+        let report = rayon::scope(|_| self.simulate(&head, input, &settings, dt_secs, met));
         self.head = head;
         self.colliders.copy_from_slice(input.colliders);
         self.elapsed_secs += f64::from(dt_secs);
@@ -215,8 +216,8 @@ impl Simulation {
         let head_from_last = head_from(&self.head, self.head.place);
         let (grid, blocks, spare) = (&mut self.grid, &self.blocks, self.spare);
         let (field, placed) = (self.field.as_mut(), input.field);
-        let (over_dense_cells, ()) = rayon::join(
-            || grid.update(blocks, &head_from_last, settings.repulsion),
+        // What takes longer first: the other thread may have to be woken.
+        let ((), over_dense_cells) = rayon::join(
             || {
                 let (Some(field), Some(placed)) = (field, placed) else { return };
                 if met {
@@ -225,6 +226,7 @@ impl Simulation {
                 }
                 field.advance(head, placed.pose, ContactRules::of(settings).reach(), dt_secs, spare);
             },
+            || grid.update(blocks, &head_from_last, settings.repulsion),
         );
         let mean_wind = mean_of(&settings.wind).as_dvec3();
         let way = self.air_way.unwrap_or(mean_wind * self.elapsed_secs);

@@ -1,8 +1,10 @@
 //! What lies in a cell of the density grid, and layers of cells that one task fills.
 
 use super::SIDE;
+use crate::lanes::greater;
 
-/// Numbers of a cell: mass, momentum along each axis, sums of directions, and what fills a line of the cache.
+/// Numbers of a cell: mass, momentum along each axis, sums of directions, what fills a line of the cache, and two that hair
+/// adds nothing to.
 pub(super) const NUMBERS: usize = 16;
 
 /// Those of them that hair adds to.
@@ -10,6 +12,9 @@ pub(super) const PARTS: usize = 10;
 
 /// Where a cell keeps the bits of one over its density at rest.
 const INV_REST: usize = NUMBERS - 1;
+
+/// Where a cell keeps the bits of its excess, once it has been counted.
+const EXCESS: usize = NUMBERS - 2;
 
 /// What lies in a cell, in fixed point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,22 +39,23 @@ impl Cell {
         self.0[INV_REST] = inv.to_bits() as i32;
     }
 
-    /// [`excess_of`] this cell.
+    /// By how much the cell is denser than `1 / inv_threshold` times what it is at rest, as a part of that; 0 where it is not.
     #[inline(always)]
-    fn excess(&self, inv_threshold: f32) -> f32 {
-        excess_of(self.mass(), self.inv_rest(), inv_threshold)
+    fn learn_excess(&mut self, inv_threshold: f32) -> f32 {
+        let excess = greater(0.0, self.mass() as f32 * self.inv_rest() * inv_threshold - 1.0);
+        self.0[EXCESS] = excess.to_bits() as i32;
+        excess
+    }
+
+    /// What [`Chunk::tally`] has found; 0 where nothing has been counted since the cell was emptied.
+    #[inline(always)]
+    pub(super) fn excess(&self) -> f32 {
+        f32::from_bits(self.0[EXCESS] as u32)
     }
 
     fn clear(&mut self) {
         self.0[..INV_REST].fill(0);
     }
-}
-
-/// By how much a cell is denser than `1 / inv_threshold` times what it was at rest, as a part of that; negative where it is
-/// not.
-#[inline(always)]
-pub(super) fn excess_of(mass: i32, inv_rest: f32, inv_threshold: f32) -> f32 {
-    mass as f32 * inv_rest * inv_threshold - 1.0
 }
 
 /// Layers of cells that one task fills.
@@ -101,14 +107,15 @@ impl Chunk<'_> {
         }
     }
 
-    /// Counts; `most` is the mass of a full cell, and what is over-dense has more than `1 / inv_threshold` of its density
+    /// Counts, and leaves their excess in the cells; `most` is the mass of a full cell, and what is over-dense has more than `1 / inv_threshold` of its density
     /// at rest.
-    pub(super) fn tally(&self, most: i32, inv_threshold: f32) -> Tally {
+    pub(super) fn tally(&mut self, most: i32, inv_threshold: f32) -> Tally {
         let mut out = Tally::default();
-        for (&mask, cells) in self.masks.iter().zip(self.cells.as_chunks::<{ SIDE as usize }>().0) {
+        for (&mask, cells) in self.masks.iter().zip(self.cells.as_chunks_mut::<{ SIDE as usize }>().0) {
             out.held += mask.count_ones();
-            for cell in bits(mask).map(|x| &cells[x]) {
-                out.over_dense += u32::from(cell.excess(inv_threshold) > 0.0);
+            for x in bits(mask) {
+                let cell = &mut cells[x];
+                out.over_dense += u32::from(cell.learn_excess(inv_threshold) > 0.0);
                 out.fullness += i64::from(cell.mass().min(most));
             }
         }
@@ -139,8 +146,8 @@ mod tests {
     fn a_cell_that_is_cleared_still_knows_its_density_at_rest() {
         let mut cell = Cell([7; NUMBERS]);
         cell.set_inv_rest(0.25);
-        assert_eq!(cell.excess(1.0), 0.75);
+        assert_eq!((cell.learn_excess(1.0), cell.excess()), (0.75, 0.75));
         cell.clear();
-        assert_eq!((cell.mass(), cell.inv_rest()), (0, 0.25));
+        assert_eq!((cell.mass(), cell.inv_rest(), cell.excess()), (0, 0.25, 0.0));
     }
 }

@@ -4,14 +4,14 @@ use std::ops::Range;
 
 use glam::{IVec3, Mat3, Vec3};
 
-use super::cell::{NUMBERS, PARTS, excess_of};
+use super::cell::{NUMBERS, PARTS};
 use super::direction::{crossing, drawn_to, push_across};
 use super::pieces::tangents;
 use super::{DensityGrid, MOMENTUM, MOST_OF_A_CELL, OFFSETS, SIDE, index};
 use crate::block::Block;
 #[cfg(test)]
 use crate::lanes::splat3;
-use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, greater, put, row_done};
+use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, put, row_done};
 use crate::settings::RepulsionMode;
 use crate::solver::Plan;
 use crate::trilinear::{gradient, weights as weights_at};
@@ -39,7 +39,7 @@ impl DensityGrid {
             }
         }
         // What lies around each point, lane by lane; what is worked out from it, all lanes at once.
-        let (mut sums, mut mass, mut inv_rest) = ([ZERO; PARTS], [[0_i32; LANES]; 8], [ZERO; 8]);
+        let (mut sums, mut excesses) = ([ZERO; PARTS], [ZERO; 8]);
         for k in 0..LANES {
             if !corners.inside[k] {
                 continue;
@@ -50,7 +50,7 @@ impl DensityGrid {
                 for (sum, value) in all.iter_mut().zip(cell.0) {
                     *sum += weight * value as f32;
                 }
-                (mass[n][k], inv_rest[n][k]) = (cell.mass(), cell.inv_rest());
+                excesses[n][k] = cell.excess();
                 row_done();
             }
             // Through memory, so that a cell's numbers are taken side by side, whichever of them is wanted.
@@ -60,14 +60,10 @@ impl DensityGrid {
             }
         }
         let mut out = Learnt { found: [false; LANES], push: ZERO3, mean_velocity: ZERO3, crossing: ZERO };
-        let inv_threshold = 1.0 / self.repulsion.threshold;
         let mut crowded = [false; LANES];
         for k in 0..LANES {
-            let mut excess = [0.0_f32; 8];
-            for n in 0..8 {
-                excess[n] = greater(0.0, excess_of(mass[n][k], inv_rest[n][k], inv_threshold));
-                crowded[k] |= excess[n] > 0.0;
-            }
+            let excess: [f32; 8] = std::array::from_fn(|n| excesses[n][k]);
+            crowded[k] = excess.iter().any(|&e| e > 0.0);
             let mass = sums[0][k];
             out.found[k] = mass >= 1.0;
             let mean = Vec3::new(sums[1][k], sums[2][k], sums[3][k]) / (mass * MOMENTUM);

@@ -276,7 +276,7 @@ impl Bending {
         for i in first_free..count {
             let (mut y, l1, l2) = (rhs[i], self.below[i], self.below2[i]);
             for k in 0..LANES {
-                let v = at(&y, k) - at(&one, k) * l1[k] - at(&two, k) * l2[k];
+                let v = at(&y, k) - at(&two, k) * l2[k] - at(&one, k) * l1[k];
                 put(&mut y, k, v);
             }
             rhs[i] = y;
@@ -288,7 +288,7 @@ impl Bending {
             let l1 = if i + 1 < count { self.below[i + 1] } else { ZERO };
             let l2 = if i + 2 < count { self.below2[i + 2] } else { ZERO };
             for k in 0..LANES {
-                let v = at(&y, k) * inv[k] - at(&one, k) * l1[k] - at(&two, k) * l2[k];
+                let v = at(&y, k) * inv[k] - at(&two, k) * l2[k] - at(&one, k) * l1[k];
                 put(&mut y, k, v);
             }
             rhs[i] = y;

@@ -14,7 +14,7 @@
 
 use super::bending::Bending;
 use super::lengths::LengthScratch;
-use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, greater, row_done};
+use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, greater, inv_sqrt, row_done};
 
 /// A pivot below this part of its diagonal is rounding.
 const LEAST_PIVOT: f32 = 1e-4;
@@ -22,8 +22,9 @@ const LEAST_PIVOT: f32 = 1e-4;
 /// The metric of one block. Rows and columns are links.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Coupled {
-    /// `H`, the lower triangle row by row.
-    response: Vec<Lane>,
+    /// `H` in tiles, as they are asked for: those of two columns from the diagonal down, and then the next two columns'. Above
+    /// the diagonal and beyond the last link, entries repeat others.
+    response: Vec<Tile>,
     links: usize,
 }
 
@@ -68,7 +69,7 @@ type Tile = [[Lane; TILE]; TILE];
 fn inv_root(pivot: Lane, whole: Lane) -> Lane {
     let mut inv = ZERO;
     for k in 0..LANES {
-        inv[k] = 1.0 / greater(pivot[k], greater(LEAST_PIVOT * whole[k], 1e-9)).sqrt();
+        inv[k] = inv_sqrt(greater(pivot[k], greater(LEAST_PIVOT * whole[k], 1e-9)));
     }
     inv
 }
@@ -91,9 +92,35 @@ impl Coupled {
     pub(crate) fn prepare(&mut self, bending: &Bending, first_free: usize, points: usize) {
         let first = first_free.max(1);
         let links = points.saturating_sub(first);
-        self.response.resize(row(links), ZERO);
         self.links = links;
-        bending.response(first_free, &mut self.response);
+        let mut triangle = vec![ZERO; row(links)];
+        bending.response(first_free, &mut triangle);
+        self.response.clear();
+        for c in (0..links).step_by(TILE) {
+            for r in (c..links).step_by(TILE) {
+                self.response.push(std::array::from_fn(|i| {
+                    let r = (r + i).min(links - 1);
+                    std::array::from_fn(|j| triangle[row(r) + (c + j).min(r)])
+                }));
+            }
+        }
+    }
+
+    /// The tile of `S` at row `r` and column `c`, of which `answer` is in `H`.
+    #[inline(always)]
+    fn products(&self, answer: &Tile, r: usize, c: usize, first: usize, scratch: &LengthScratch) -> Tile {
+        let mut s = *answer;
+        for (i, products) in s.iter_mut().enumerate() {
+            let r = (r + i).min(self.links - 1);
+            for (j, product) in products.iter_mut().enumerate() {
+                let (n, m) = (scratch.direction[first + r], scratch.direction[first + (c + j).min(r)]);
+                for k in 0..LANES {
+                    product[k] *= at(&n, k).dot(at(&m, k));
+                }
+                row_done();
+            }
+        }
+        s
     }
 
     /// One Newton step that brings the links of `position` to their lengths. `force` is working memory; `fresh` says
@@ -150,45 +177,42 @@ impl Factor {
             self.inv_diagonal.clear();
             self.inv_diagonal.resize(ROWS * links.div_ceil(ROWS), ZERO);
         }
-        // Two rows by two columns at a time: what is loaded is used twice, and no sum waits for another.
-        for r in (0..links).step_by(TILE) {
-            let rows = TILE.min(links - r);
-            let (above, own) = self.panels.split_at_mut(panel(r / ROWS));
-            for c in (0..=r).step_by(TILE) {
-                let mut s = [[ZERO; TILE]; TILE];
-                for (i, sums) in s.iter_mut().enumerate().take(rows) {
-                    for (j, sum) in sums.iter_mut().enumerate().take(r + i + 1 - c) {
-                        let (n, m) = (scratch.direction[first + r + i], scratch.direction[first + c + j]);
-                        let mut product = coupled.response[row(r + i) + c + j];
-                        for k in 0..LANES {
-                            product[k] *= at(&n, k).dot(at(&m, k));
-                        }
-                        *sum = product;
-                        row_done();
-                    }
-                }
-                let whole = [s[0][0], s[1][1]];
+        // Two columns by two rows at a time: what is loaded is used twice, and no sum waits for another. From the top down,
+        // where no tile waits for the one before.
+        let mut answers = coupled.response.iter();
+        for c in (0..links).step_by(TILE) {
+            let Some(answer) = answers.next() else { return };
+            self.pivots(answer, c, coupled, first, scratch);
+            let corner = self.panels[panel(c / ROWS) + ROWS * c + c % ROWS + 1];
+            let inv: [Lane; TILE] = [self.inv_diagonal[c], self.inv_diagonal[c + 1]];
+            for (r, answer) in (c + TILE..links).step_by(TILE).zip(&mut answers) {
+                let (above, own) = self.panels.split_at_mut(panel(r / ROWS));
                 let other = if c / ROWS < r / ROWS { &above[panel(c / ROWS)..] } else { &*own };
-                s = less_products(s, &own[..ROWS * c], r % ROWS, &other[..ROWS * c], c % ROWS);
-                let corner = other[ROWS * c + c % ROWS + 1];
-                for i in 0..rows {
-                    let mut before = corner;
-                    for j in 0..TILE {
-                        let (r, c) = (r + i, c + j);
-                        if j > 0 {
-                            s[i][j] = s[i][j].less_product(s[i][0], before);
-                        }
-                        if c < r {
-                            s[i][j] = s[i][j].times(self.inv_diagonal[c]);
-                            own[ROWS * c + r % ROWS] = s[i][j];
-                            before = if c + 1 == r { s[i][j] } else { before };
-                        } else if c == r {
-                            self.inv_diagonal[r] = inv_root(s[i][j], whole[i]);
-                        }
-                        row_done();
-                    }
+                let s = coupled.products(answer, r, c, first, scratch);
+                let s = less_products(s, &own[..ROWS * c], r % ROWS, &other[..ROWS * c], c % ROWS);
+                for (i, row) in s.iter().enumerate().take(links - r) {
+                    let one = row[0].times(inv[0]);
+                    let two = row[1].less_product(one, corner).times(inv[1]);
+                    own[ROWS * c + r % ROWS + i] = one;
+                    own[ROWS * (c + 1) + r % ROWS + i] = two;
+                    row_done();
                 }
             }
+        }
+    }
+
+    /// The tile on the diagonal at row and column `c`.
+    #[inline(always)]
+    fn pivots(&mut self, answer: &Tile, c: usize, coupled: &Coupled, first: usize, scratch: &LengthScratch) {
+        let own = &mut self.panels[panel(c / ROWS)..];
+        let whole = coupled.products(answer, c, c, first, scratch);
+        let s = less_products(whole, &own[..ROWS * c], c % ROWS, &own[..ROWS * c], c % ROWS);
+        let inv = inv_root(s[0][0], whole[0][0]);
+        self.inv_diagonal[c] = inv;
+        if c + 1 < self.links {
+            let below = s[1][0].times(inv);
+            own[ROWS * c + c % ROWS + 1] = below;
+            self.inv_diagonal[c + 1] = inv_root(s[1][1].less_product(below, below), whole[1][1]);
         }
     }
 

@@ -5,7 +5,7 @@
 //! what sweeps along the chain need tens of rounds for (fast projection, Goldenthal et al. 2007; tridiagonal
 //! hair, Han and Harada 2013). `w` is 1 for a free point and 0 for one that the scalp carries.
 
-use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, put};
+use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, inv_sqrt, put};
 
 /// Working memory of the elimination: one row a point.
 #[derive(Clone, Debug, Default)]
@@ -43,11 +43,13 @@ impl LengthScratch {
             let (mut direction, mut rhs) = (ZERO3, ZERO);
             for k in 0..LANES {
                 let link = at(&b, k) - at(&a, k);
-                let now = link.length_squared().sqrt();
+                let squared = link.length_squared();
+                let inv = inv_sqrt(squared);
+                let now = squared * inv;
                 // A link of no length has no direction; it gets one from the clean-up pass. One that shall have none lies
                 // beyond the end of a guide that was cut, and pulls nothing.
                 let there = wanted[k] > 0.0;
-                put(&mut direction, k, link * if there { 1.0 / (now + 1e-20) } else { 0.0 });
+                put(&mut direction, k, link * if there { inv } else { 0.0 });
                 rhs[k] = if there { wanted[k] - now } else { 0.0 };
             }
             self.direction[i] = direction;

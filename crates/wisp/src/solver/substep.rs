@@ -124,20 +124,32 @@ fn step_positions(block: &mut Block, h: f32) {
 fn shape_memory(block: &mut Block, plan: &Plan, s: usize) {
     let (substep, gamma, count) = (&plan.substeps[s], plan.bending.gamma(), block.points());
     let mut frames = Turns::splat(substep.head_turn);
+    // The next link as it would go on at rest from what is there of the lock. A bend at rest is the difference of two links,
+    // and the frame carries the one where it is now.
+    let mut expected = ZERO3;
+    if count > 1 {
+        let first = block.rest.direction[1];
+        for k in 0..LANES {
+            put(&mut expected, k, substep.head.rotate(at(&first, k)));
+        }
+    }
     // c [(1 + gamma) (D p - b*) - gamma (D x - b*_old)] at every inner point.
     for i in 1..count.saturating_sub(1) {
         let (p0, p1, p2) = (block.work.next[i - 1], block.work.next[i], block.work.next[i + 1]);
         let (x0, x1, x2) = (block.position[i - 1], block.position[i], block.position[i + 1]);
-        let (rest_direction, rest_bend) = (block.rest.direction[i], block.rest.bend[i]);
+        let (next_direction, rest_bend) = (block.rest.direction[i + 1], block.rest.bend[i]);
+        let (length, next_length) = (block.rest.length[i], block.rest.length[i + 1]);
         let (old, c, fixed) = (block.bend[i], *block.bending.stiffness(i), *block.bending.fixed(i));
         let (mut bend, mut residual) = (ZERO3, ZERO3);
         for k in 0..LANES {
-            let link = at(&p1, k) - at(&p0, k);
-            let expected = frames.at(k).apply(at(&rest_direction, k));
-            let frame = frames.at(k).then_least(expected, direction_or(link, expected).0);
+            let was_expected = at(&expected, k);
+            let (link, _) = direction_or(at(&p1, k) - at(&p0, k), was_expected);
+            let frame = frames.at(k).then_least(was_expected, link);
             frames.put(k, frame);
-            let (with_lock, with_head) =
-                (frame.apply(at(&rest_bend, k)), substep.head.rotate(at(&rest_bend, k)));
+            let goes_on = frame.apply(at(&next_direction, k));
+            put(&mut expected, k, goes_on);
+            let with_lock = goes_on * next_length[k] - link * length[k];
+            let with_head = substep.head.rotate(at(&rest_bend, k));
             let wanted = with_lock + (with_head - with_lock) * fixed[k];
             let now = at(&p0, k) - 2.0 * at(&p1, k) + at(&p2, k);
             let before = at(&x0, k) - 2.0 * at(&x1, k) + at(&x2, k);

@@ -5,6 +5,7 @@
 //! the end of the step; in between, maps are mixed, and the head itself turns exactly.
 
 mod back;
+mod heads;
 mod occupancy;
 mod planes;
 mod query;
@@ -15,6 +16,7 @@ use std::sync::Arc;
 
 use glam::{Affine3A, Mat3A, Vec3};
 use lovelock_motion::{BodyField, FieldPose};
+use rayon::prelude::*;
 
 use crate::lanes::{Lane, Lane3, at};
 use crate::motion::HeadPose;
@@ -23,7 +25,7 @@ use occupancy::Occupancy;
 pub(crate) use planes::{FieldRow, PlaneRow};
 
 /// A point taken back to rest is near enough when it moves less than this in a round, metres.
-const SETTLED: f32 = 3e-4;
+const SETTLED: f32 = 1e-3;
 
 /// Most rounds of taking a point back.
 const ROUNDS: usize = 6;
@@ -42,6 +44,9 @@ const DEEP: f32 = 0.02;
 
 /// Where the skin is folded more than this it has no way back: the least determinant of how it unfolds.
 const UNFOLDED: f32 = 0.05;
+
+/// Weightings that a task works out at least.
+const SLOTS_A_TASK: usize = 512;
 
 /// A field with its motion in the present step.
 #[derive(Clone, Debug)]
@@ -126,6 +131,7 @@ impl MovingField {
         self.learn(head, pose);
         self.before.copy_from_slice(&self.now);
         self.forth_before.copy_from_slice(&self.forth);
+        self.occupancy.forget();
     }
 
     /// Where the parts of the skin are against the head: all of the motion that the next step begins with.
@@ -140,6 +146,7 @@ impl MovingField {
             return false;
         }
         self.forth.copy_from_slice(places);
+        self.occupancy.forget();
         let slots = self.field.slots().iter().zip(backs()).zip(&mut self.now);
         for ((weights, back), now) in slots.skip(1) {
             *now = Back::new(&back, weights[0]);
@@ -155,7 +162,8 @@ impl MovingField {
         for (joint, world_from_rest) in joints.iter_mut().zip(&pose.world_from_rest).skip(1) {
             *joint = head_from_world * *world_from_rest * rest_from_head;
         }
-        for (slot, weights) in self.field.slots().iter().enumerate().skip(1) {
+        let slots = self.field.slots().par_iter().zip(&mut self.forth).zip(&mut self.now);
+        slots.skip(1).with_min_len(SLOTS_A_TASK).for_each(|((weights, forth), now)| {
             let mut map = Affine3A { matrix3: Mat3A::ZERO, translation: glam::Vec3A::ZERO };
             for (&weight, joint) in weights.iter().zip(&joints) {
                 if weight > 0.0 {
@@ -167,9 +175,9 @@ impl MovingField {
             // A skin folded flat has no way back; it is left at rest.
             let sound = map.is_finite() && back.is_finite() && back.matrix3.determinant().abs() < 1e3;
             let (map, back) = if sound { (map, back) } else { (Affine3A::IDENTITY, Affine3A::IDENTITY) };
-            self.forth[slot] = map;
-            self.now[slot] = Back::new(&back, weights[0]);
-        }
+            *forth = map;
+            *now = Back::new(&back, weights[0]);
+        });
     }
 }
 

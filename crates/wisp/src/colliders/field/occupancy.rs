@@ -6,7 +6,7 @@
 use glam::{Affine3A, IVec3, UVec3, Vec3};
 use lovelock_motion::BodyField;
 
-use crate::lanes::greater;
+use crate::lanes::{LANES, Lane, Lane3, ZERO, at, greater, lesser};
 
 /// A cell in spacings of the field's nodes.
 const CELL: f32 = 2.5;
@@ -28,9 +28,22 @@ pub(super) struct Near {
     pub(super) slot: Option<usize>,
     /// Whether there is nothing, and the point is to be measured all the same.
     pub(super) besides: bool,
-    /// How far the next cell is at least, metres.
-    pub(super) to_next: f32,
 }
+
+impl Near {
+    pub(super) const NOTHING: Self = Self { head: false, slot: None, besides: false };
+}
+
+/// The cells of a row of points.
+pub(super) struct Cells {
+    /// Their places; [`OUTSIDE`] where the grid ends.
+    pub(super) index: [u32; LANES],
+    /// How far the next cell is at least, metres.
+    pub(super) to_next: Lane,
+}
+
+/// Stands for a cell that is not there.
+const OUTSIDE: u32 = u32::MAX;
 
 /// A place that is deposited: where it is at rest, and its weighting.
 #[derive(Clone, Copy, Debug)]
@@ -39,7 +52,7 @@ struct Probe {
     slot: u16,
 }
 
-/// An eighth of a cell with probes in it: the one nearest to its middle.
+/// A cell with probes in it: the one nearest to its middle.
 #[derive(Clone, Copy, Debug)]
 struct Occupied {
     index: u32,
@@ -47,6 +60,22 @@ struct Occupied {
     place: Vec3,
     squared: f32,
     slot: u16,
+}
+
+/// The cells with probes at one end of a step.
+#[derive(Clone, Debug)]
+struct End {
+    occupied: Vec<Occupied>,
+    /// For each cell its place among them.
+    own: Vec<u32>,
+    /// Where each probe is; empty where nothing is known of this end.
+    places: Vec<Vec3>,
+}
+
+impl End {
+    fn new(cells: usize) -> Self {
+        Self { occupied: Vec::new(), own: vec![u32::MAX; cells], places: Vec::new() }
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -66,9 +95,8 @@ pub(super) struct Occupancy {
     slot: Vec<u16>,
     nearest: Vec<f32>,
     touched: Vec<u32>,
-    /// For the start and the end of the step: the eighths of cells with probes, and for each its place among them.
-    occupied: [Vec<Occupied>; 2],
-    own: [Vec<u32>; 2],
+    /// The start and the end of the step.
+    ends: [End; 2],
     /// How far a point may be from the nearest probe and still be at the skin, metres.
     cover: f32,
 }
@@ -109,8 +137,7 @@ impl Occupancy {
             slot: vec![NONE; count],
             nearest: vec![f32::INFINITY; count],
             touched: Vec::new(),
-            occupied: [Vec::new(), Vec::new()],
-            own: [vec![u32::MAX; 8 * count], vec![u32::MAX; 8 * count]],
+            ends: [End::new(count), End::new(count)],
             cover: nodes.spacing,
         };
         occupancy.place_head(occupancy.width(reach));
@@ -164,69 +191,75 @@ impl Occupancy {
         }
     }
 
-    /// Finds the probe nearest to the middle of each eighth of a cell that has any, at both ends; the furthest way of a
-    /// probe.
-    fn collect(&mut self, ends: [&[Affine3A]; 2]) -> f32 {
-        let mut furthest = 0.0_f32;
-        for (own, cells) in self.own.iter_mut().zip(&mut self.occupied) {
-            for cell in cells.drain(..) {
-                own[cell.index as usize] = u32::MAX;
+    /// Forgets where the last step ended: the next one begins elsewhere.
+    pub(super) fn forget(&mut self) {
+        self.ends[1].places.clear();
+    }
+
+    /// Finds the probe nearest to the middle of each cell that has any, at both ends; the furthest way of a probe. A step
+    /// begins where the last one has ended.
+    fn collect(&mut self, maps: [&[Affine3A]; 2]) -> f32 {
+        self.ends.swap(0, 1);
+        for (n, maps) in maps.into_iter().enumerate() {
+            if n == 1 || self.ends[0].places.len() != self.probes.len() {
+                let mut end = std::mem::replace(&mut self.ends[n], End::new(0));
+                self.place_probes(maps, &mut end);
+                self.ends[n] = end;
             }
         }
-        for n in 0..self.probes.len() {
-            let Probe { rest, slot } = self.probes[n];
-            let places = ends.map(|maps| maps[usize::from(slot)].transform_point3(rest));
-            furthest = furthest.max((places[1] - places[0]).length_squared());
-            for (end, place) in places.into_iter().enumerate() {
-                let at = self.cell_of(place);
-                let Some(index) = self.index_of(at) else { continue };
-                let (centre, eighth) = self.eighth(at, place);
-                let squared = (centre - place).length_squared();
-                let index = 8 * index + eighth;
-                let (own, cells) = (&mut self.own[end][index], &mut self.occupied[end]);
-                let found = Occupied { index: index as u32, at, place, squared, slot };
-                match cells.get_mut(*own as usize) {
-                    Some(known) if squared < known.squared => *known = found,
-                    Some(_) => {}
-                    None => {
-                        *own = cells.len() as u32;
-                        cells.push(found);
-                    }
+        let [before, now] = &self.ends;
+        let ways = before.places.iter().zip(&now.places).map(|(a, b)| (*b - *a).length_squared());
+        ways.fold(0.0, greater).sqrt()
+    }
+
+    /// Puts the probes where `maps` have them.
+    fn place_probes(&self, maps: &[Affine3A], end: &mut End) {
+        for cell in end.occupied.drain(..) {
+            end.own[cell.index as usize] = u32::MAX;
+        }
+        end.places.clear();
+        for &Probe { rest, slot } in &self.probes {
+            let place = maps[usize::from(slot)].transform_point3(rest);
+            end.places.push(place);
+            let at = self.cell_of(place);
+            let Some(index) = self.index_of(at) else { continue };
+            let squared = (self.centre(at) - place).length_squared();
+            let own = &mut end.own[index];
+            let found = Occupied { index: index as u32, at, place, squared, slot };
+            match end.occupied.get_mut(*own as usize) {
+                Some(known) if squared < known.squared => *known = found,
+                Some(_) => {}
+                None => {
+                    *own = end.occupied.len() as u32;
+                    end.occupied.push(found);
                 }
             }
         }
-        furthest.sqrt()
     }
 
     /// Tells the cells around the occupied ones of the nearest of these, and none that are `known`; `skip` leaves out
     /// the start of the step.
     fn spread(&mut self, width: i32, skip: usize, known: &[bool]) {
-        let occupied = std::mem::take(&mut self.occupied);
-        for cell in occupied[skip..].iter().flatten() {
-            self.each_cell(cell.at, width, |this, index, centre| {
-                let squared = (centre - cell.place).length_squared();
-                if squared < this.nearest[index] && !known.get(index).copied().unwrap_or(false) {
-                    if this.slot[index] == NONE {
-                        this.touched.push(index as u32);
+        for end in skip..2 {
+            let occupied = std::mem::take(&mut self.ends[end].occupied);
+            for cell in &occupied {
+                self.each_cell(cell.at, width, |this, index, centre| {
+                    let squared = (centre - cell.place).length_squared();
+                    if squared < this.nearest[index] && !known.get(index).copied().unwrap_or(false) {
+                        if this.slot[index] == NONE {
+                            this.touched.push(index as u32);
+                        }
+                        (this.nearest[index], this.slot[index]) = (squared, cell.slot);
                     }
-                    (this.nearest[index], this.slot[index]) = (squared, cell.slot);
-                }
-            });
+                });
+            }
+            self.ends[end].occupied = occupied;
         }
-        self.occupied = occupied;
     }
 
     fn index_of(&self, cell: IVec3) -> Option<usize> {
         let inside = cell.cmpge(IVec3::ZERO).all() && cell.cmplt(self.size.as_ivec3()).all();
         inside.then(|| ((cell.z as u32 * self.size.y + cell.y as u32) * self.size.x + cell.x as u32) as usize)
-    }
-
-    /// The eighth of a cell that a place is in: its middle and its number.
-    fn eighth(&self, cell: IVec3, place: Vec3) -> (Vec3, usize) {
-        let centre = self.centre(cell);
-        let upper = place.cmpgt(centre);
-        let middle = centre + Vec3::select(upper, Vec3::ONE, Vec3::NEG_ONE) * (0.25 * self.cell);
-        (middle, upper.bitmask() as usize)
     }
 
     fn centre(&self, cell: IVec3) -> Vec3 {
@@ -255,32 +288,39 @@ impl Occupancy {
         }
     }
 
-    /// What may be near a point of head space.
+    /// The cells that a row of points of head space is in.
     #[inline(always)]
-    pub(super) fn at(&self, p: Vec3) -> Near {
-        let q = (p - self.low) * self.inv_cell;
-        let size = self.size.as_vec3();
-        let inside = q.x >= 0.0 && q.y >= 0.0 && q.z >= 0.0 && q.x < size.x && q.y < size.y && q.z < size.z;
-        if !inside {
-            let beyond = (-q).max(q - size).max_element();
-            return Near {
-                head: false,
-                slot: None,
-                besides: false,
-                to_next: greater(0.0, beyond) * self.cell,
+    pub(super) fn cells(&self, row: &Lane3) -> Cells {
+        let mut out = Cells { index: [OUTSIDE; LANES], to_next: ZERO };
+        let (size, last) = (self.size.as_vec3(), (self.size - 1).as_vec3());
+        for k in 0..LANES {
+            let q = (at(row, k) - self.low) * self.inv_cell;
+            // Written so that what is not a number is outside.
+            let within = |q: f32, size: f32| (q >= 0.0) & (q < size);
+            let inside = within(q.x, size.x) & within(q.y, size.y) & within(q.z, size.z);
+            let clamped = |q: f32, last: f32| lesser(greater(0.0, q), last);
+            let (x, y, z) =
+                (clamped(q.x, last.x) as u32, clamped(q.y, last.y) as u32, clamped(q.z, last.z) as u32);
+            let cell = (z * self.size.y + y) * self.size.x + x;
+            out.index[k] = if inside { cell } else { OUTSIDE };
+            let side = |q: f32, whole: u32| {
+                let f = q - whole as f32;
+                lesser(f, 1.0 - f)
             };
+            let in_cell = lesser(lesser(side(q.x, x), side(q.y, y)), side(q.z, z));
+            let beyond = |q: f32, size: f32| greater(-q, q - size);
+            let off = greater(greater(beyond(q.x, size.x), beyond(q.y, size.y)), beyond(q.z, size.z));
+            out.to_next[k] = if inside { in_cell } else { greater(0.0, off) } * self.cell;
         }
-        let (x, y, z) = (q.x as u32, q.y as u32, q.z as u32);
-        let index = ((z * self.size.y + y) * self.size.x + x) as usize;
-        let f = q - Vec3::new(x as f32, y as f32, z as f32);
-        let to_next = f.min(Vec3::ONE - f).min_element() * self.cell;
-        let besides = !self.extra.is_empty() && self.extra[index];
-        let slot = self.slot[index];
-        Near {
-            head: self.head[index] || besides,
-            slot: (slot != NONE).then_some(usize::from(slot)),
-            besides,
-            to_next,
-        }
+        out
+    }
+
+    /// What may be near a point in the cell `index` of [`Occupancy::cells`].
+    #[inline(always)]
+    pub(super) fn near(&self, index: u32) -> Near {
+        let index = index as usize;
+        let besides = self.extra.get(index).is_some_and(|&extra| extra);
+        let slot = self.slot.get(index).copied().filter(|&slot| slot != NONE).map(usize::from);
+        Near { head: self.head.get(index).is_some_and(|&head| head) || besides, slot, besides }
     }
 }

@@ -9,7 +9,7 @@
 use glam::Vec3;
 
 use super::query::{Found, Start, Touch};
-use super::{DEEP, MovingField, UNSURE};
+use super::{DEEP, MovingField, UNSURE, occupancy};
 use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, greater, lesser, put, splat3};
 use crate::solver::Substep;
 
@@ -17,7 +17,7 @@ use crate::solver::Substep;
 pub(crate) const NEAR: f32 = 0.0015;
 
 /// The distance of a skin that is not there.
-const NONE: f32 = 1e9;
+pub(super) const NONE: f32 = 1e9;
 
 /// The planes of one row of points, in head space.
 #[derive(Clone, Debug)]
@@ -150,59 +150,39 @@ impl MovingField {
     /// Measures the lanes that have gone too far from where they were measured.
     #[inline(always)]
     fn measure(&self, local: &Lane3, gone: &Lane, passed: f32, reach: f32, planes: &mut PlaneRow) {
+        let cells = self.occupancy.cells(local);
+        let (mut near, mut asked) = ([occupancy::Near::NOTHING; LANES], [false; LANES]);
+        for k in 0..LANES {
+            // Written so that what is not a number is measured.
+            if !(gone[k] <= 0.0) {
+                near[k] = self.occupancy.near(cells.index[k]);
+                asked[k] = near[k].head;
+            }
+        }
+        let heads = self.heads(local, &asked, reach);
         for k in 0..LANES {
             if gone[k] <= 0.0 {
                 continue;
             }
-            let p = at(local, k);
-            let cell = self.occupancy.at(p);
-            let found = |touch: Found| match touch {
-                Found::Skin(touch) => (Some(touch), touch.distance),
-                Found::Beyond(distance) => (None, distance),
-                Found::Nothing => (None, NONE),
-            };
-            let (mut head, mut skin, mut nearest) = (None, None::<Touch>, NONE);
-            let heads = cell.head && self.is_heads(p);
-            if heads {
-                (head, nearest) = found(self.head_skin(p, reach));
-            }
-            let was = at(&planes.rest, k);
-            if cell.slot.is_some()
-                && was.x < NOWHERE.x
-                && let Found::Skin(touch) = self.skin(p, Start::Place(was), passed, reach)
-                && touch.sure
-            {
-                (skin, nearest) = (Some(touch), lesser(nearest, touch.distance));
-            }
-            // Where skin is folded there are several ways back: from where the head has the point, and from where the
-            // nearest other joints have it. From close to a place that is known they would lead there.
-            let known = skin.and_then(|touch| touch.rest);
-            let of_slot = cell.slot.map(|slot| (Start::Slot(slot), self.guess(p, slot, passed)));
-            let of_head = (cell.head && !heads).then_some((Start::Slot(0), p));
-            let between = of_slot.map(|(_, guess)| (Start::Place(0.5 * (guess + p)), 0.5 * (guess + p)));
-            let mut tried = known;
-            for (start, guess) in [of_slot, of_head, between].into_iter().flatten() {
-                if tried.is_some_and(|rest| self.is_close(guess, rest)) {
-                    continue;
-                }
-                tried = tried.or(Some(guess));
-                let (touch, distance) = found(self.skin(p, start, passed, reach));
-                nearest = lesser(nearest, distance);
-                skin = match (skin, touch) {
-                    (Some(a), Some(b)) => Some(if b.distance < a.distance { b } else { a }),
-                    (a, b) => a.or(b),
-                };
+            let (p, cell, alone) = (at(local, k), near[k], heads.alone[k]);
+            let (mut head, mut nearest) =
+                if alone { (heads.distance[k], heads.nearest[k]) } else { (NONE, NONE) };
+            let mut skin = None;
+            if cell.slot.is_some() || (cell.head && !alone) {
+                let least;
+                (skin, least) = self.ways_back(p, cell, alone, k, passed, reach, planes);
+                nearest = lesser(nearest, least);
             }
             // What is measured besides, to show that it need not be, leaves no trace unless there is something.
             if cell.besides && nearest > reach {
-                (head, skin, nearest) = (None, None, NONE);
+                (head, skin, nearest) = (NONE, None, NONE);
             }
             // In another cell there may be other skin; within a few millimetres this cell knows of it.
-            let to_next = cell.to_next + NEAR;
+            let to_next = cells.to_next[k] + NEAR;
             let free = lesser(0.5 * (nearest - reach), to_next);
             // Where there is no way back from here, or to skin that is far, there may be another from near by.
             let lost = (cell.head || cell.slot.is_some()) && !cell.besides;
-            let only_head = heads && cell.slot.is_none();
+            let only_head = alone && cell.slot.is_none();
             let serves = if nearest < NONE && only_head {
                 greater(free, NEAR)
             } else if nearest < NONE || lost {
@@ -213,27 +193,74 @@ impl MovingField {
             planes.serves[k] = if p.is_finite() { serves * serves } else { -1.0 };
             put(&mut planes.place, k, p);
             planes.passed[k] = passed;
-            let none = Touch {
-                distance: NONE,
-                normal: Vec3::ZERO,
-                head: 0.0,
-                drift: Vec3::ZERO,
-                sure: true,
-                rest: None,
-            };
-            let (head, skin) = (head.unwrap_or(none), skin.unwrap_or(none));
-            planes.head_distance[k] = head.distance;
-            put(&mut planes.head_normal, k, head.normal);
-            planes.skin_distance[k] = skin.distance;
-            put(&mut planes.skin_normal, k, skin.normal);
-            planes.share[k] = skin.head;
-            planes.guess[k] = f32::from(u8::from(!skin.sure));
-            put(&mut planes.drift, k, skin.drift);
-            put(&mut planes.rest, k, skin.rest.unwrap_or(NOWHERE));
+            planes.head_distance[k] = head;
+            put(&mut planes.head_normal, k, at(&heads.normal, k));
+            // Of skin that is not there the rest says nothing.
+            planes.skin_distance[k] = skin.map_or(NONE, |touch: Touch| touch.distance);
+            put(&mut planes.rest, k, skin.and_then(|touch| touch.rest).unwrap_or(NOWHERE));
+            if let Some(skin) = skin {
+                put(&mut planes.skin_normal, k, skin.normal);
+                planes.share[k] = skin.head;
+                planes.guess[k] = f32::from(u8::from(!skin.sure));
+                put(&mut planes.drift, k, skin.drift);
+            }
         }
         planes.any = false;
         for k in 0..LANES {
             planes.any |= lesser(planes.head_distance[k], planes.skin_distance[k]) < NONE;
         }
+    }
+
+    /// What lane `k`, at `p`, finds of skin that other joints than the head move, and how far that is at least; `alone` says
+    /// whether the head alone moves what is at `p`.
+    #[inline(always)]
+    fn ways_back(
+        &self,
+        p: Vec3,
+        cell: occupancy::Near,
+        alone: bool,
+        k: usize,
+        passed: f32,
+        reach: f32,
+        planes: &PlaneRow,
+    ) -> (Option<Touch>, f32) {
+        let found = |touch: Found| match touch {
+            Found::Skin(touch) => (Some(touch), touch.distance),
+            Found::Beyond(distance) => (None, distance),
+            Found::Nothing => (None, NONE),
+        };
+        let (mut skin, mut nearest) = (None::<Touch>, NONE);
+        let was = at(&planes.rest, k);
+        if cell.slot.is_some()
+            && was.x < NOWHERE.x
+            && let Found::Skin(touch) = self.skin(p, Start::Place(was), alone, passed, reach)
+            && touch.sure
+        {
+            (skin, nearest) = (Some(touch), touch.distance);
+        }
+        // Where skin is folded there are several ways back: from where the head has the point, and from where the
+        // nearest other joints have it. From close to a place that is known they would lead there.
+        let known = skin.and_then(|touch| touch.rest);
+        // Within a step it stays on the side of a fold that it was found on.
+        if known.is_some() && planes.serves[k] >= 0.0 {
+            return (skin, nearest);
+        }
+        let of_slot = cell.slot.map(|slot| (Start::Slot(slot), self.guess(p, slot, passed)));
+        let of_head = (cell.head && !alone).then_some((Start::Slot(0), p));
+        let between = of_slot.map(|(_, guess)| (Start::Place(0.5 * (guess + p)), 0.5 * (guess + p)));
+        let mut tried = known;
+        for (start, guess) in [of_slot, of_head, between].into_iter().flatten() {
+            if tried.is_some_and(|rest| self.is_close(guess, rest)) {
+                continue;
+            }
+            tried = tried.or(Some(guess));
+            let (touch, distance) = found(self.skin(p, start, alone, passed, reach));
+            nearest = lesser(nearest, distance);
+            skin = match (skin, touch) {
+                (Some(a), Some(b)) => Some(if b.distance < a.distance { b } else { a }),
+                (a, b) => a.or(b),
+            };
+        }
+        (skin, nearest)
     }
 }

@@ -51,36 +51,17 @@ struct Rest {
 }
 
 impl MovingField {
-    /// Against the skin that goes with the head, where `p` is where it is at rest.
+    /// Against the skin that other joints move too, at the fraction `t` of the step; `alone` says that the head alone moves
+    /// what is at `p`, and that this is known already.
     #[inline(always)]
-    pub(super) fn head_skin(&self, p: Vec3, reach: f32) -> Found {
-        let Some((value, slope)) = self.at_rest(p) else { return Found::Nothing };
-        if value - self.lift > 2.0 * reach {
-            return Found::Beyond(0.5 * value - self.lift);
-        }
-        let steepness = slope.length_squared().sqrt();
-        let distance = value / steepness.clamp(0.5, 2.0) - self.lift;
-        let normal = if steepness > 1e-6 { slope * (1.0 / steepness) } else { Vec3::Y };
-        Found::Skin(Touch { distance, normal, head: 1.0, drift: Vec3::ZERO, sure: true, rest: None })
-    }
-
-    /// Whether the head alone moves the skin at `p`, if it is where it is at rest.
-    #[inline(always)]
-    pub(super) fn is_heads(&self, p: Vec3) -> bool {
-        around(self.field.node_lattice(), self.inv_node, p)
-            .is_some_and(|(corners, _)| self.head_alone[corners[0]])
-    }
-
-    /// Against the skin that other joints move too, at the fraction `t` of the step.
-    #[inline(always)]
-    pub(super) fn skin(&self, p: Vec3, start: Start, t: f32, reach: f32) -> Found {
+    pub(super) fn skin(&self, p: Vec3, start: Start, alone: bool, t: f32, reach: f32) -> Found {
         let (guess, slot) = match start {
             Start::Slot(slot) => (self.guess(p, slot, t), slot),
             Start::Place(place) => (place, 0),
         };
         let Some(rest) = self.way_back(p, guess, slot, t) else { return Found::Nothing };
         // Of the head's own weighting there is no guess: it says that the point has not moved. Nor is where it was.
-        if slot == 0 && !rest.sure {
+        if (slot == 0 && !rest.sure) || (alone && rest.slots.is_none()) {
             return Found::Nothing;
         }
         let Some((value, at_rest)) = self.at_rest(rest.place) else { return Found::Nothing };
