@@ -1,6 +1,6 @@
-//! The way back to rest of a weighting of joints, and of all the weightings around a place.
+//! The way back to rest of a weighting of joints, and what lies between those of the nodes around a place.
 
-use glam::{Affine3A, Mat3A, Vec3, Vec3A};
+use glam::{Affine3A, Vec3, Vec4};
 
 /// A matrix by columns and a shift, four numbers each; the last of the shift is the head's share of the weights.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,27 +23,18 @@ impl Back {
         Self(out)
     }
 
+    /// The map of a point; the last number says nothing.
     #[inline(always)]
-    fn column(&self, i: usize) -> Vec3A {
-        Vec3A::from_slice(&self.0[4 * i..4 * i + 3])
+    pub(super) fn apply(&self, p: Vec3) -> Vec4 {
+        let column = |i: usize| Vec4::from_slice(&self.0[4 * i..4 * i + 4]);
+        column(0) * p.x + column(1) * p.y + (column(2) * p.z + column(3))
     }
 
-    /// The map of a point.
+    /// All of it, one number after the other; the last is the head's share of the weights.
     #[inline(always)]
-    pub(super) fn apply(&self, p: Vec3) -> Vec3A {
-        self.column(0) * p.x + self.column(1) * p.y + self.column(2) * p.z + self.column(3)
-    }
-
-    /// The transpose of the matrix times a vector: gradients at rest become gradients now.
-    #[inline(always)]
-    pub(super) fn turn_forth(&self, v: Vec3A) -> Vec3 {
-        Vec3::new(self.column(0).dot(v), self.column(1).dot(v), self.column(2).dot(v))
-    }
-
-    /// The head's share of the weights.
-    #[inline(always)]
-    pub(super) fn head(&self) -> f32 {
-        self.0[15]
+    pub(super) fn numbers(&self) -> [f32; 16] {
+        // Through memory: they are wanted one by one.
+        std::hint::black_box(self.0)
     }
 
     /// Adds `weight` times `other`.
@@ -52,15 +43,6 @@ impl Back {
         let mut out = [0.0; 16];
         for i in 0..16 {
             out[i] = self.0[i] + other.0[i] * weight;
-        }
-        Self(out)
-    }
-
-    #[inline(always)]
-    pub(super) fn less(&self, other: &Self) -> Self {
-        let mut out = [0.0; 16];
-        for i in 0..16 {
-            out[i] = self.0[i] - other.0[i];
         }
         Self(out)
     }
@@ -76,29 +58,14 @@ impl Back {
     }
 }
 
-/// The map between the eight nodes around a place, and how it changes along the axes, per cell.
-pub(super) struct Around {
-    pub(super) back: Back,
-    along: [Back; 3],
-}
-
-impl Around {
-    /// Between the maps of the nodes, x fastest, at the fractions `f`.
-    #[inline(always)]
-    pub(super) fn new(corners: &[Back; 8], f: Vec3) -> Self {
-        let edge = |i: usize| corners[2 * i].toward(&corners[2 * i + 1], f.x);
-        let (a, b, c, d) = (edge(0), edge(1), edge(2), edge(3));
-        let (low, high) = (a.toward(&b, f.y), c.toward(&d, f.y));
-        let step = |i: usize| corners[2 * i + 1].less(&corners[2 * i]);
-        let x = step(0).toward(&step(1), f.y).toward(&step(2).toward(&step(3), f.y), f.z);
-        let y = b.less(&a).toward(&d.less(&c), f.z);
-        Self { back: low.toward(&high, f.z), along: [x, y, high.less(&low)] }
-    }
-
-    /// Columns: how what the maps make of `p` changes along the axes, per cell.
-    #[inline(always)]
-    pub(super) fn slope(&self, p: Vec3) -> Mat3A {
-        let [x, y, z] = &self.along;
-        Mat3A::from_cols(x.apply(p), y.apply(p), z.apply(p))
-    }
+/// What lies between eight places, x fastest, at the fractions `f`, and how it changes along the axes.
+#[inline(always)]
+pub(super) fn between(q: &[Vec4; 8], f: Vec3) -> (Vec4, [Vec4; 3]) {
+    let mix = |a: Vec4, b: Vec4, t: f32| a + (b - a) * t;
+    let edge: [Vec4; 4] = std::array::from_fn(|i| mix(q[2 * i], q[2 * i + 1], f.x));
+    let step: [Vec4; 4] = std::array::from_fn(|i| q[2 * i + 1] - q[2 * i]);
+    let (low, high) = (mix(edge[0], edge[1], f.y), mix(edge[2], edge[3], f.y));
+    let x = mix(mix(step[0], step[1], f.y), mix(step[2], step[3], f.y), f.z);
+    let y = mix(edge[1] - edge[0], edge[3] - edge[2], f.z);
+    (mix(low, high, f.z), [x, y, high - low])
 }

@@ -5,10 +5,10 @@
 //! the end of the step; in between, maps are mixed, and the head itself turns exactly.
 
 mod back;
-mod heads;
 mod occupancy;
 mod planes;
-mod query;
+mod rows;
+mod skins;
 #[cfg(test)]
 mod tests;
 

@@ -6,7 +6,7 @@
 use glam::{Affine3A, IVec3, UVec3, Vec3};
 use lovelock_motion::BodyField;
 
-use crate::lanes::{LANES, Lane, Lane3, ZERO, at, greater, lesser};
+use crate::lanes::{LANES, Lane, Lane3, ZERO, at, greater, lesser, whole};
 
 /// A cell in spacings of the field's nodes.
 const CELL: f32 = 2.5;
@@ -19,19 +19,14 @@ const UNSPARING: i32 = 3;
 /// No skin but the head's.
 const NONE: u16 = u16::MAX;
 
-/// What may be near a point.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// What may be near the points of a row.
 pub(super) struct Near {
     /// Skin that only the head moves.
-    pub(super) head: bool,
-    /// The weighting of the nearest other skin.
-    pub(super) slot: Option<usize>,
+    pub(super) head: [bool; LANES],
+    /// The weighting of the nearest other skin; 0 where there is none.
+    pub(super) slot: [u16; LANES],
     /// Whether there is nothing, and the point is to be measured all the same.
-    pub(super) besides: bool,
-}
-
-impl Near {
-    pub(super) const NOTHING: Self = Self { head: false, slot: None, besides: false };
+    pub(super) besides: [bool; LANES],
 }
 
 /// The cells of a row of points.
@@ -298,9 +293,8 @@ impl Occupancy {
             // Written so that what is not a number is outside.
             let within = |q: f32, size: f32| (q >= 0.0) & (q < size);
             let inside = within(q.x, size.x) & within(q.y, size.y) & within(q.z, size.z);
-            let clamped = |q: f32, last: f32| lesser(greater(0.0, q), last);
             let (x, y, z) =
-                (clamped(q.x, last.x) as u32, clamped(q.y, last.y) as u32, clamped(q.z, last.z) as u32);
+                (whole(lesser(q.x, last.x)), whole(lesser(q.y, last.y)), whole(lesser(q.z, last.z)));
             let cell = (z * self.size.y + y) * self.size.x + x;
             out.index[k] = if inside { cell } else { OUTSIDE };
             let side = |q: f32, whole: u32| {
@@ -315,12 +309,19 @@ impl Occupancy {
         out
     }
 
-    /// What may be near a point in the cell `index` of [`Occupancy::cells`].
+    /// What may be near the points of a row in these `cells`; nothing where it is not `asked` for.
     #[inline(always)]
-    pub(super) fn near(&self, index: u32) -> Near {
-        let index = index as usize;
-        let besides = self.extra.get(index).is_some_and(|&extra| extra);
-        let slot = self.slot.get(index).copied().filter(|&slot| slot != NONE).map(usize::from);
-        Near { head: self.head.get(index).is_some_and(|&head| head) || besides, slot, besides }
+    pub(super) fn near(&self, cells: &Cells, asked: &[bool; LANES]) -> Near {
+        let mut out = Near { head: [false; LANES], slot: [0; LANES], besides: [false; LANES] };
+        for k in 0..LANES {
+            let index = cells.index[k] as usize;
+            if asked[k] && index < self.slot.len() {
+                let slot = self.slot[index];
+                out.besides[k] = !self.extra.is_empty() && self.extra[index];
+                out.head[k] = self.head[index] || out.besides[k];
+                out.slot[k] = if slot == NONE { 0 } else { slot };
+            }
+        }
+        out
     }
 }

@@ -8,8 +8,9 @@
 
 use glam::Vec3;
 
-use super::query::{Found, Start, Touch};
-use super::{DEEP, MovingField, UNSURE, occupancy};
+use super::occupancy::Near;
+use super::skins::{Skins, Starts};
+use super::{CLOSE, DEEP, MovingField, UNSURE};
 use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, greater, lesser, put, splat3};
 use crate::solver::Substep;
 
@@ -46,7 +47,7 @@ pub(crate) struct PlaneRow {
 }
 
 /// No place at rest.
-const NOWHERE: Vec3 = Vec3::splat(f32::MAX);
+pub(super) const NOWHERE: Vec3 = Vec3::splat(f32::MAX);
 
 impl PlaneRow {
     pub(crate) const UNKNOWN: Self = Self {
@@ -151,59 +152,57 @@ impl MovingField {
     #[inline(always)]
     fn measure(&self, local: &Lane3, gone: &Lane, passed: f32, reach: f32, planes: &mut PlaneRow) {
         let cells = self.occupancy.cells(local);
-        let (mut near, mut asked) = ([occupancy::Near::NOTHING; LANES], [false; LANES]);
+        let mut asked = [false; LANES];
         for k in 0..LANES {
             // Written so that what is not a number is measured.
-            if !(gone[k] <= 0.0) {
-                near[k] = self.occupancy.near(cells.index[k]);
-                asked[k] = near[k].head;
-            }
+            asked[k] = !(gone[k] <= 0.0);
         }
-        let heads = self.heads(local, &asked, reach);
+        let near = self.occupancy.near(&cells, &asked);
+        let heads = self.heads(local, &near.head, reach);
+        let skins = self.find_skins(local, &near, &heads.alone, passed, reach, planes);
         for k in 0..LANES {
-            if gone[k] <= 0.0 {
-                continue;
-            }
-            let (p, cell, alone) = (at(local, k), near[k], heads.alone[k]);
-            let (mut head, mut nearest) =
-                if alone { (heads.distance[k], heads.nearest[k]) } else { (NONE, NONE) };
-            let mut skin = None;
-            if cell.slot.is_some() || (cell.head && !alone) {
-                let least;
-                (skin, least) = self.ways_back(p, cell, alone, k, passed, reach, planes);
-                nearest = lesser(nearest, least);
-            }
+            let (p, alone, slot, besides) =
+                (at(local, k), heads.alone[k], near.slot[k] != 0, near.besides[k]);
+            let of_head = lesser(heads.nearest[k], skins.nearest[k]);
+            let nearest = if alone { of_head } else { skins.nearest[k] };
             // What is measured besides, to show that it need not be, leaves no trace unless there is something.
-            if cell.besides && nearest > reach {
-                (head, skin, nearest) = (NONE, None, NONE);
-            }
+            let nothing = besides & (nearest > reach);
+            let nearest = if nothing { NONE } else { nearest };
+            let found = skins.found[k] & !nothing;
             // In another cell there may be other skin; within a few millimetres this cell knows of it.
             let to_next = cells.to_next[k] + NEAR;
-            let free = lesser(0.5 * (nearest - reach), to_next);
+            let free = greater(lesser(0.5 * (nearest - reach), to_next), NEAR);
             // Where there is no way back from here, or to skin that is far, there may be another from near by.
-            let lost = (cell.head || cell.slot.is_some()) && !cell.besides;
-            let only_head = alone && cell.slot.is_none();
-            let serves = if nearest < NONE && only_head {
-                greater(free, NEAR)
-            } else if nearest < NONE || lost {
-                NEAR
-            } else {
-                to_next
+            let lost = (near.head[k] | slot) & !besides;
+            let (known, only_head) = (nearest < NONE, alone & !slot);
+            let serves = if known & only_head { free } else { to_next };
+            let serves = if (known & !only_head) | (!known & lost) { NEAR } else { serves };
+            let finite = p.length_squared() < f32::MAX;
+            let serves = if finite { serves * serves } else { -1.0 };
+            let anew = asked[k];
+            let set = |own: &mut f32, new: f32| *own = if anew { new } else { *own };
+            let set3 = |own: &mut Lane3, new: Vec3| {
+                set(&mut own[0][k], new.x);
+                set(&mut own[1][k], new.y);
+                set(&mut own[2][k], new.z);
             };
-            planes.serves[k] = if p.is_finite() { serves * serves } else { -1.0 };
-            put(&mut planes.place, k, p);
-            planes.passed[k] = passed;
-            planes.head_distance[k] = head;
-            put(&mut planes.head_normal, k, at(&heads.normal, k));
+            set(&mut planes.serves[k], serves);
+            set3(&mut planes.place, p);
+            set(&mut planes.passed[k], passed);
+            set(&mut planes.head_distance[k], if alone & !nothing { heads.distance[k] } else { NONE });
+            set3(&mut planes.head_normal, at(&heads.normal, k));
+            set(&mut planes.skin_distance[k], if found { skins.distance[k] } else { NONE });
+            let pick = |a: f32, b: f32| if found { a } else { b };
+            let rest = at(&skins.rest, k);
+            set3(
+                &mut planes.rest,
+                Vec3::new(pick(rest.x, NOWHERE.x), pick(rest.y, NOWHERE.y), pick(rest.z, NOWHERE.z)),
+            );
             // Of skin that is not there the rest says nothing.
-            planes.skin_distance[k] = skin.map_or(NONE, |touch: Touch| touch.distance);
-            put(&mut planes.rest, k, skin.and_then(|touch| touch.rest).unwrap_or(NOWHERE));
-            if let Some(skin) = skin {
-                put(&mut planes.skin_normal, k, skin.normal);
-                planes.share[k] = skin.head;
-                planes.guess[k] = f32::from(u8::from(!skin.sure));
-                put(&mut planes.drift, k, skin.drift);
-            }
+            set3(&mut planes.skin_normal, at(&skins.normal, k));
+            set(&mut planes.share[k], skins.share[k]);
+            set(&mut planes.guess[k], if skins.sure[k] { 0.0 } else { 1.0 });
+            set3(&mut planes.drift, at(&skins.drift, k));
         }
         planes.any = false;
         for k in 0..LANES {
@@ -211,56 +210,101 @@ impl MovingField {
         }
     }
 
-    /// What lane `k`, at `p`, finds of skin that other joints than the head move, and how far that is at least; `alone` says
-    /// whether the head alone moves what is at `p`.
+    /// What the lanes of a row find of skin that other joints than the head move, and how far that is at least; `alone` says
+    /// where the head alone moves what is at a point.
     #[inline(always)]
-    fn ways_back(
+    fn find_skins(
         &self,
-        p: Vec3,
-        cell: occupancy::Near,
-        alone: bool,
-        k: usize,
+        local: &Lane3,
+        near: &Near,
+        alone: &[bool; LANES],
         passed: f32,
         reach: f32,
         planes: &PlaneRow,
-    ) -> (Option<Touch>, f32) {
-        let found = |touch: Found| match touch {
-            Found::Skin(touch) => (Some(touch), touch.distance),
-            Found::Beyond(distance) => (None, distance),
-            Found::Nothing => (None, NONE),
-        };
-        let (mut skin, mut nearest) = (None::<Touch>, NONE);
-        let was = at(&planes.rest, k);
-        if cell.slot.is_some()
-            && was.x < NOWHERE.x
-            && let Found::Skin(touch) = self.skin(p, Start::Place(was), alone, passed, reach)
-            && touch.sure
-        {
-            (skin, nearest) = (Some(touch), touch.distance);
+    ) -> Skins {
+        let (mut skins, mut tried, mut stays) = (Skins::NONE, splat3(NOWHERE), [false; LANES]);
+        let (slot, mut guess) = (near.slot, ZERO3);
+        let (mut any, mut others) = (false, [false; LANES]);
+        for k in 0..LANES {
+            others[k] = near.head[k] & !alone[k];
+            any |= others[k] | (slot[k] != 0);
         }
-        // Where skin is folded there are several ways back: from where the head has the point, and from where the
-        // nearest other joints have it. From close to a place that is known they would lead there.
-        let known = skin.and_then(|touch| touch.rest);
-        // Within a step it stays on the side of a fold that it was found on.
-        if known.is_some() && planes.serves[k] >= 0.0 {
-            return (skin, nearest);
+        if !any {
+            return skins;
         }
-        let of_slot = cell.slot.map(|slot| (Start::Slot(slot), self.guess(p, slot, passed)));
-        let of_head = (cell.head && !alone).then_some((Start::Slot(0), p));
-        let between = of_slot.map(|(_, guess)| (Start::Place(0.5 * (guess + p)), 0.5 * (guess + p)));
-        let mut tried = known;
-        for (start, guess) in [of_slot, of_head, between].into_iter().flatten() {
-            if tried.is_some_and(|rest| self.is_close(guess, rest)) {
-                continue;
+        for way in Way::ALL {
+            let mut starts = Starts { asked: [false; LANES], guess, slot };
+            let mut any = false;
+            for k in 0..LANES {
+                let (p, was, of_slot) = (at(local, k), at(&planes.rest, k), at(&guess, k));
+                let (asked, from) = match way {
+                    Way::Again => ((slot[k] != 0) & (was.x < NOWHERE.x), was),
+                    Way::OfSlot => ((slot[k] != 0) & !stays[k], of_slot),
+                    Way::OfHead => (others[k] & !stays[k], p),
+                    Way::Between => ((slot[k] != 0) & !stays[k], 0.5 * (of_slot + p)),
+                };
+                // From close to a place that is known it would lead there.
+                let known = at(&tried, k);
+                let asked = asked & !((known.x < NOWHERE.x) & self.is_close(from, known));
+                starts.asked[k] = asked;
+                any |= asked;
+                put(&mut starts.guess, k, from);
+                starts.slot[k] = if way == Way::OfSlot { slot[k] } else { 0 };
+                let first = asked & (way != Way::Again) & !(known.x < NOWHERE.x);
+                let pick = |a: f32, b: f32| if first { a } else { b };
+                put(
+                    &mut tried,
+                    k,
+                    Vec3::new(pick(from.x, known.x), pick(from.y, known.y), pick(from.z, known.z)),
+                );
             }
-            tried = tried.or(Some(guess));
-            let (touch, distance) = found(self.skin(p, start, alone, passed, reach));
-            nearest = lesser(nearest, distance);
-            skin = match (skin, touch) {
-                (Some(a), Some(b)) => Some(if b.distance < a.distance { b } else { a }),
-                (a, b) => a.or(b),
-            };
+            if any {
+                let found = self.skins(local, &starts, alone, passed, reach);
+                let mut taken = [false; LANES];
+                for k in 0..LANES {
+                    let nearer = !skins.found[k] | (found.distance[k] < skins.distance[k]);
+                    let good = if way == Way::Again { found.sure[k] } else { nearer };
+                    taken[k] = found.found[k] & good;
+                    let counts = starts.asked[k] & (way != Way::Again || taken[k]);
+                    let nearer = lesser(skins.nearest[k], found.nearest[k]);
+                    skins.nearest[k] = if counts { nearer } else { skins.nearest[k] };
+                }
+                skins.take(&found, &taken);
+            }
+            if way == Way::Again {
+                for k in 0..LANES {
+                    // Within a step it stays on the side of a fold that it was found on.
+                    stays[k] = (skins.rest[0][k] < NOWHERE.x) & (planes.serves[k] >= 0.0);
+                    if slot[k] != 0 && !stays[k] {
+                        put(&mut guess, k, self.mapped(at(local, k), slot[k], passed).truncate());
+                    }
+                }
+                tried = skins.rest;
+            }
         }
-        (skin, nearest)
+        skins
     }
+
+    /// Whether a way back that begins at `guess` leads to the place `rest` that is known.
+    #[inline(always)]
+    fn is_close(&self, guess: Vec3, rest: Vec3) -> bool {
+        (guess - rest).length_squared() < (CLOSE * self.field.node_lattice().spacing).powi(2)
+    }
+}
+
+/// From where a point is taken back to rest. Where skin is folded there are several ways back.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Way {
+    /// From where it was found in the last step.
+    Again,
+    /// From where the nearest other joints have it.
+    OfSlot,
+    /// From where the head has it.
+    OfHead,
+    /// From midway between these.
+    Between,
+}
+
+impl Way {
+    const ALL: [Self; 4] = [Self::Again, Self::OfSlot, Self::OfHead, Self::Between];
 }

@@ -1,12 +1,12 @@
-//! Rows of points against the skin that goes with the head, where a point is at rest wherever it is now: most of the points
-//! of a hairstyle that touch anything touch this, so that they are measured side by side.
+//! Rows of points in the field at rest: which nodes are around, and how far the skin is. Over the skin that goes with the
+//! head a point is at rest wherever it is now.
 
 use glam::Vec3;
 use lovelock_motion::FieldLattice;
 
 use super::MovingField;
 use super::planes::NONE;
-use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, greater, inv_sqrt, lesser, put};
+use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, greater, inv_sqrt, lesser, put, whole};
 use crate::trilinear::{gradient, weights};
 
 /// What a row of points learns of the skin that goes with the head.
@@ -20,8 +20,17 @@ pub(super) struct Heads {
     pub(super) nearest: Lane,
 }
 
+/// Distances at rest of a row, and their gradients.
+pub(super) struct AtRest {
+    /// Whether it was asked for, and is in the field; elsewhere the rest says nothing.
+    pub(super) there: [bool; LANES],
+    pub(super) value: Lane,
+    pub(super) slope: Lane3,
+}
+
 impl MovingField {
-    /// Measures the lanes of a row in head space that `asked` names; nothing further than `reach` is of interest.
+    /// Measures the lanes of a row in head space that `asked` names against the skin that goes with the head; nothing
+    /// further than `reach` is of interest.
     #[inline(always)]
     pub(super) fn heads(&self, row: &Lane3, asked: &[bool; LANES], reach: f32) -> Heads {
         let mut out =
@@ -31,17 +40,48 @@ impl MovingField {
             // A place that is not inside has no node.
             out.alone[k] = asked[k] && self.head_alone.get(nodes.first[k] as usize).is_some_and(|&own| own);
         }
+        let at_rest = self.at_rest(row, &out.alone);
+        for k in 0..LANES {
+            let (value, slope, there) = (at_rest.value[k], at(&at_rest.slope, k), at_rest.there[k]);
+            let squared = slope.length_squared();
+            let inv = inv_sqrt(squared);
+            let steepness = squared * inv;
+            let distance = value / lesser(greater(steepness, 0.5), 2.0) - self.lift;
+            let flat = steepness <= 1e-6;
+            let pick = |a: f32, b: f32| if flat { a } else { b * inv };
+            put(&mut out.normal, k, Vec3::new(pick(0.0, slope.x), pick(1.0, slope.y), pick(0.0, slope.z)));
+            let far = value - self.lift > 2.0 * reach;
+            let at_least = if far { 0.5 * value - self.lift } else { distance };
+            out.distance[k] = if far | !there { NONE } else { distance };
+            out.nearest[k] = if there { at_least } else { NONE };
+        }
+        out
+    }
+
+    /// Whether the head alone moves the skin at `p`, if it is where it is at rest; and whether that is in the field.
+    #[inline(always)]
+    pub(super) fn is_heads(&self, p: Vec3) -> (bool, bool) {
+        let lattice = self.field.node_lattice();
+        let (q, last) = ((p - lattice.low) * self.inv_node, (lattice.size - 1).as_vec3());
+        // What is not a number is outside.
+        let inside = q.cmpge(Vec3::ZERO).all() && q.cmplt(last).all();
+        (inside && self.head_alone[lattice.index(q.as_uvec3())], inside)
+    }
+
+    /// Measures the lanes of a row of places at rest that `asked` names.
+    #[inline(always)]
+    pub(super) fn at_rest(&self, row: &Lane3, asked: &[bool; LANES]) -> AtRest {
         let lattice = self.field.distance_lattice();
         let places = Places::new(lattice, self.inv_spacing, row);
         let (all, mut corners) = (self.field.distances(), [ZERO; 8]);
         let (up, behind) = (lattice.size.x as usize, (lattice.size.x * lattice.size.y) as usize);
-        let mut there = [false; LANES];
+        let mut out = AtRest { there: [false; LANES], value: ZERO, slope: ZERO3 };
         for k in 0..LANES {
             let first = places.first[k] as usize;
-            if !out.alone[k] || first >= all.len() {
+            if !asked[k] || first >= all.len() {
                 continue;
             }
-            there[k] = true;
+            out.there[k] = true;
             for (n, offset) in [0, up, behind, behind + up].into_iter().enumerate() {
                 let pair = &all[first + offset..first + offset + 2];
                 (corners[2 * n][k], corners[2 * n + 1][k]) = (pair[0], pair[1]);
@@ -53,33 +93,23 @@ impl MovingField {
             for (d, weight) in d.iter().zip(weights(f)) {
                 value += d * weight;
             }
-            let slope = gradient(&d, f) * self.inv_spacing;
-            let squared = slope.length_squared();
-            let inv = inv_sqrt(squared);
-            let steepness = squared * inv;
-            let distance = value / lesser(greater(steepness, 0.5), 2.0) - self.lift;
-            let flat = steepness <= 1e-6;
-            let pick = |a: f32, b: f32| if flat { a } else { b * inv };
-            put(&mut out.normal, k, Vec3::new(pick(0.0, slope.x), pick(1.0, slope.y), pick(0.0, slope.z)));
-            let far = value - self.lift > 2.0 * reach;
-            let at_least = if far { 0.5 * value - self.lift } else { distance };
-            out.distance[k] = if far | !there[k] { NONE } else { distance };
-            out.nearest[k] = if there[k] { at_least } else { NONE };
+            out.value[k] = value;
+            put(&mut out.slope, k, gradient(&d, f) * self.inv_spacing);
         }
         out
     }
 }
 
 /// Where the points of a row are between the points of a lattice.
-struct Places {
+pub(super) struct Places {
     /// The first of the eight around each; [`u32::MAX`] where the lattice ends.
-    first: [u32; LANES],
-    fraction: Lane3,
+    pub(super) first: [u32; LANES],
+    pub(super) fraction: Lane3,
 }
 
 impl Places {
     #[inline(always)]
-    fn new(lattice: &FieldLattice, inv_spacing: f32, row: &Lane3) -> Self {
+    pub(super) fn new(lattice: &FieldLattice, inv_spacing: f32, row: &Lane3) -> Self {
         let mut out = Self { first: [u32::MAX; LANES], fraction: ZERO3 };
         let (size, last) = (lattice.size, (lattice.size - 1).as_vec3());
         for k in 0..LANES {
@@ -87,9 +117,8 @@ impl Places {
             // Written so that what is not a number is outside.
             let within = |q: f32, last: f32| (q >= 0.0) & (q < last);
             let inside = within(q.x, last.x) & within(q.y, last.y) & within(q.z, last.z);
-            let whole = |q: f32| if inside { q } else { 0.0 } as u32;
             let (x, y, z) = (whole(q.x), whole(q.y), whole(q.z));
-            let first = (z * size.y + y) * size.x + x;
+            let first = (z.wrapping_mul(size.y).wrapping_add(y)).wrapping_mul(size.x).wrapping_add(x);
             out.first[k] = if inside { first } else { u32::MAX };
             put(&mut out.fraction, k, q - Vec3::new(x as f32, y as f32, z as f32));
         }

@@ -1,0 +1,299 @@
+//! Rows of points against skin that other joints than the head move: taken back to rest and measured there.
+
+use glam::{Mat3, Vec3, Vec4};
+
+use super::back::{Back, between};
+use super::planes::{NONE, NOWHERE};
+use super::rows::Places;
+use super::{DEEP, MovingField, ROUNDS, SETTLED, STRAYED, UNFOLDED, UNSURE};
+use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, greater, lesser, put, splat3};
+use crate::trilinear::weights;
+
+/// What a row of points learns of a skin, in head space. Of what is not found the rest says nothing.
+#[derive(Clone, Copy)]
+pub(super) struct Skins {
+    pub(super) found: [bool; LANES],
+    /// How far it is at least, metres; [`NONE`] where nothing is known.
+    pub(super) nearest: Lane,
+    pub(super) distance: Lane,
+    pub(super) normal: Lane3,
+    /// The head's share of the skin there.
+    pub(super) share: Lane,
+    /// Velocity of the skin against the head, metres per second.
+    pub(super) drift: Lane3,
+    /// Whether this is measured, and not a guess that may push a little.
+    pub(super) sure: [bool; LANES],
+    /// Where the point is at rest, to go on from in the next measurement; [`NOWHERE`] where the head alone moves it.
+    pub(super) rest: Lane3,
+}
+
+impl Skins {
+    pub(super) const NONE: Self = Self {
+        found: [false; LANES],
+        nearest: Lane::splat(NONE),
+        distance: Lane::splat(NONE),
+        normal: ZERO3,
+        share: ZERO,
+        drift: ZERO3,
+        sure: [true; LANES],
+        rest: splat3(NOWHERE),
+    };
+
+    /// Takes the lanes `which` of `other`.
+    #[inline(always)]
+    pub(super) fn take(&mut self, other: &Self, which: &[bool; LANES]) {
+        let pick = |own: &mut Lane, other: &Lane| {
+            for k in 0..LANES {
+                own[k] = if which[k] { other[k] } else { own[k] };
+            }
+        };
+        for k in 0..LANES {
+            self.found[k] |= which[k] & other.found[k];
+            self.sure[k] = if which[k] { other.sure[k] } else { self.sure[k] };
+        }
+        pick(&mut self.distance, &other.distance);
+        pick(&mut self.share, &other.share);
+        for axis in 0..3 {
+            pick(&mut self.normal[axis], &other.normal[axis]);
+            pick(&mut self.drift[axis], &other.drift[axis]);
+            pick(&mut self.rest[axis], &other.rest[axis]);
+        }
+    }
+}
+
+/// Where the ways of a row back to rest begin.
+pub(super) struct Starts {
+    /// The lanes that are asked for.
+    pub(super) asked: [bool; LANES],
+    /// First guesses of where the points are at rest.
+    pub(super) guess: Lane3,
+    /// The weightings that they come from; 0 for the head's, and for places where points were found before.
+    pub(super) slot: [u16; LANES],
+}
+
+/// Where a row is at rest, and how well that is known.
+struct Rest {
+    /// Whether there is a way back at all.
+    there: [bool; LANES],
+    place: Lane3,
+    sure: [bool; LANES],
+    /// The weightings of the nodes around, and where between them it is.
+    slots: [[u16; 8]; LANES],
+    fraction: Lane3,
+    /// Whether the head alone moves it, so that it is where it was.
+    heads: [bool; LANES],
+    /// Rows of what a small step now makes of the place at rest, beside `back`.
+    stretch: [Lane3; 3],
+}
+
+impl MovingField {
+    /// Measures a row `p` at the fraction `t` of the step; nothing further than `reach` is of interest. `alone` says that
+    /// the head alone moves what is at a point, and that this is known already; `on_head` that it does so where the point is
+    /// now.
+    #[inline(always)]
+    pub(super) fn skins(
+        &self,
+        p: &Lane3,
+        starts: &Starts,
+        alone: &[bool; LANES],
+        t: f32,
+        reach: f32,
+    ) -> Skins {
+        let rest = self.ways_back(p, starts, t);
+        let mut wanted = rest.there;
+        for k in 0..LANES {
+            // Of the head's own weighting there is no guess: it says that the point has not moved. Nor is where it was.
+            wanted[k] &= rest.sure[k] | (starts.slot[k] != 0);
+            wanted[k] &= !(alone[k] & rest.heads[k]);
+        }
+        let at_rest = self.at_rest(&rest.place, &wanted);
+        let (mut back, mut moved) = ([ZERO; 16], ZERO3);
+        for k in 0..LANES {
+            if !at_rest.there[k] || at_rest.value[k] - self.lift > 2.0 * reach {
+                continue;
+            }
+            let (mut before, mut now) = (Back::NOTHING, Back::NOTHING);
+            if rest.heads[k] {
+                (before, now) = (Back::IDENTITY, Back::IDENTITY);
+            } else {
+                for (&slot, weight) in rest.slots[k].iter().zip(weights(at(&rest.fraction, k))) {
+                    before = before.plus(&self.before[usize::from(slot)], weight);
+                    now = now.plus(&self.now[usize::from(slot)], weight);
+                }
+            }
+            for (row, value) in back.iter_mut().zip(before.toward(&now, t).numbers()) {
+                row[k] = value;
+            }
+            put(&mut moved, k, (before.apply(at(p, k)) - now.apply(at(p, k))).truncate());
+        }
+        let mut out = Skins::NONE;
+        let inv_dt = 1.0 / self.dt_secs;
+        for k in 0..LANES {
+            let (value, gradient) = (at_rest.value[k], at(&at_rest.slope, k));
+            // The chain rule: dX = (1 - V')^-1 B dx.
+            let bent = at(&rest.stretch[0], k) * gradient.x
+                + at(&rest.stretch[1], k) * gradient.y
+                + at(&rest.stretch[2], k) * gradient.z;
+            let forth = |v: Vec3| {
+                let column = |i: usize| Vec3::new(back[4 * i][k], back[4 * i + 1][k], back[4 * i + 2][k]);
+                Vec3::new(column(0).dot(v), column(1).dot(v), column(2).dot(v))
+            };
+            let slope = forth(bent);
+            let steepness = slope.length_squared().sqrt();
+            let (flat, inv) = (steepness <= 1e-6, 1.0 / steepness);
+            let pick = |a: f32, b: f32| if flat { a } else { b * inv };
+            put(&mut out.normal, k, Vec3::new(pick(0.0, slope.x), pick(1.0, slope.y), pick(0.0, slope.z)));
+            let distance = value / lesser(greater(steepness, 0.5), 2.0) - self.lift;
+            // A guess may push, but not far; nor may skin that is stretched or pressed beyond what skin can be, or that
+            // hair has never been so deep in.
+            let sound = rest.sure[k] & (steepness >= 0.5) & (steepness < 2.0) & (distance > -DEEP);
+            let distance = if sound { distance } else { greater(distance, -UNSURE) };
+            // A stretched skin is further away than it was at rest, by half at most.
+            let far = value - self.lift > 2.0 * reach;
+            let there = at_rest.there[k];
+            out.found[k] = there & !far;
+            out.distance[k] = distance;
+            let least = if far { 0.5 * value - self.lift } else { distance };
+            out.nearest[k] = if there { least } else { NONE };
+            out.sure[k] = sound;
+            out.share[k] = back[15][k];
+            put(&mut out.drift, k, forth(at(&moved, k)) * inv_dt);
+            let (goes_on, place) = (sound & !rest.heads[k], at(&rest.place, k));
+            let pick = |a: f32, b: f32| if goes_on { a } else { b };
+            let place =
+                Vec3::new(pick(place.x, NOWHERE.x), pick(place.y, NOWHERE.y), pick(place.z, NOWHERE.z));
+            put(&mut out.rest, k, place);
+        }
+        out
+    }
+
+    /// What the weighting `slot` makes of `p` at the fraction `t` of the step.
+    #[inline(always)]
+    pub(super) fn mapped(&self, p: Vec3, slot: u16, t: f32) -> Vec4 {
+        let (a, b) = (self.before[usize::from(slot)].apply(p), self.now[usize::from(slot)].apply(p));
+        a + (b - a) * t
+    }
+
+    /// Takes a row back to rest from first guesses of where that is.
+    ///
+    /// Wanted is `X = V(X)`, where `V` mixes what the weightings of the eight nodes around `X` make of `p`. Newton's
+    /// iteration, `(1 - V') dX = V - X`, goes where a plain one would swing to and fro: around a raised arm. Where the
+    /// skin is so folded that it finds nothing near by, the weighting of the guess alone says where the point is.
+    #[inline(always)]
+    fn ways_back(&self, p: &Lane3, starts: &Starts, t: f32) -> Rest {
+        let (nodes, all) = (self.field.node_lattice(), self.field.slot_of_node());
+        let (up, behind) = (nodes.size.x as usize, (nodes.size.x * nodes.size.y) as usize);
+        let mut rest = Rest {
+            there: starts.asked,
+            place: starts.guess,
+            sure: [false; LANES],
+            slots: [[0; 8]; LANES],
+            fraction: ZERO3,
+            heads: [false; LANES],
+            stretch: [splat3(Vec3::X), splat3(Vec3::Y), splat3(Vec3::Z)],
+        };
+        let mut going = starts.asked;
+        for _ in 0..ROUNDS {
+            let places = Places::new(nodes, self.inv_node, &rest.place);
+            let (mut value, mut slope, mut mixed) = (ZERO3, [ZERO3; 3], [false; LANES]);
+            for k in 0..LANES {
+                if !going[k] {
+                    continue;
+                }
+                let first = places.first[k] as usize;
+                let Some(&head_alone) = self.head_alone.get(first) else {
+                    (going[k], rest.there[k]) = (false, false);
+                    continue;
+                };
+                let here = at(p, k);
+                if head_alone {
+                    // Only if that is where it is.
+                    (going[k], rest.heads[k]) = (false, true);
+                    (rest.sure[k], rest.there[k]) = self.is_heads(here);
+                    put(&mut rest.place, k, here);
+                    continue;
+                }
+                let mut slots = [0; 8];
+                for (pair, offset) in
+                    slots.as_chunks_mut::<2>().0.iter_mut().zip([0, up, behind, behind + up])
+                {
+                    pair.copy_from_slice(&all[first + offset..first + offset + 2]);
+                }
+                rest.slots[k] = slots;
+                put(&mut rest.fraction, k, at(&places.fraction, k));
+                let mapped = |slot: u16| self.mapped(here, slot, t);
+                mixed[k] = slots != [slots[0]; 8];
+                if mixed[k] {
+                    let (mean, along) = between(&slots.map(mapped), at(&places.fraction, k));
+                    put(&mut value, k, mean.truncate());
+                    for (row, column) in slope.iter_mut().zip(along) {
+                        put(row, k, column.truncate());
+                    }
+                } else {
+                    put(&mut value, k, mapped(slots[0]).truncate());
+                }
+            }
+            let mut any = false;
+            for k in 0..LANES {
+                let (value, place) = (at(&value, k), at(&rest.place, k));
+                let left = |i: usize, unit: Vec3| unit - at(&slope[i], k) * self.inv_node;
+                let left = Mat3::from_cols(left(0, Vec3::X), left(1, Vec3::Y), left(2, Vec3::Z));
+                let cross = [
+                    left.y_axis.cross(left.z_axis),
+                    left.z_axis.cross(left.x_axis),
+                    left.x_axis.cross(left.y_axis),
+                ];
+                let determinant = left.z_axis.dot(cross[2]);
+                // Where the skin is folded over itself there is no way back that keeps its sides apart.
+                let newton = mixed[k] & (determinant >= UNFOLDED);
+                let inv = 1.0 / determinant;
+                let pick = |a: f32, b: f32| if newton { a * inv } else { b };
+                let row =
+                    |c: Vec3, unit: Vec3| Vec3::new(pick(c.x, unit.x), pick(c.y, unit.y), pick(c.z, unit.z));
+                let stretch = [row(cross[0], Vec3::X), row(cross[1], Vec3::Y), row(cross[2], Vec3::Z)];
+                let off = value - place;
+                let step = Vec3::new(stretch[0].dot(off), stretch[1].dot(off), stretch[2].dot(off));
+                let (squared, most) = (step.length_squared(), nodes.spacing);
+                let shorter = if newton & (squared > most * most) { most / squared.sqrt() } else { 1.0 };
+                let step = step * shorter;
+                let pick = |a: f32, b: f32| if going[k] { a } else { b };
+                let next = place + step;
+                put(
+                    &mut rest.place,
+                    k,
+                    Vec3::new(pick(next.x, place.x), pick(next.y, place.y), pick(next.z, place.z)),
+                );
+                for (rows, row) in rest.stretch.iter_mut().zip(stretch) {
+                    let was = at(rows, k);
+                    put(rows, k, Vec3::new(pick(row.x, was.x), pick(row.y, was.y), pick(row.z, was.z)));
+                }
+                let settled = going[k] & (step.length_squared() < SETTLED * SETTLED);
+                rest.sure[k] |= settled;
+                going[k] &= !settled;
+                any |= going[k];
+            }
+            if !any {
+                break;
+            }
+        }
+        let furthest = (STRAYED * nodes.spacing).powi(2);
+        for k in 0..LANES {
+            let guess = at(&starts.guess, k);
+            rest.sure[k] &= (at(&rest.place, k) - guess).length_squared() <= furthest;
+        }
+        for k in (0..LANES).filter(|&k| rest.there[k] && !rest.sure[k]) {
+            put(&mut rest.place, k, at(&starts.guess, k));
+            (rest.slots[k], rest.heads[k]) = ([starts.slot[k]; 8], false);
+            put(&mut rest.fraction, k, Vec3::ZERO);
+        }
+        for k in 0..LANES {
+            let plain = rest.heads[k] | !rest.sure[k];
+            let pick = |a: f32, b: f32| if plain { a } else { b };
+            for (row, unit) in rest.stretch.iter_mut().zip([Vec3::X, Vec3::Y, Vec3::Z]) {
+                let own = at(row, k);
+                put(row, k, Vec3::new(pick(unit.x, own.x), pick(unit.y, own.y), pick(unit.z, own.z)));
+            }
+        }
+        rest
+    }
+}
