@@ -140,7 +140,7 @@ pub(crate) fn greater(a: f32, b: f32) -> f32 {
 
 /// The whole part of a number from 0 to a thousand million; what is not one of these counts as the nearest, or 0.
 ///
-/// A plain cast looks after all numbers, lane by lane.
+/// `as u32` is right for all numbers, and is not compiled into vector instructions.
 #[inline(always)]
 #[allow(unsafe_code)]
 pub(crate) fn whole(q: f32) -> u32 {
@@ -149,18 +149,26 @@ pub(crate) fn whole(q: f32) -> u32 {
     unsafe { q.to_int_unchecked::<i32>() as u32 }
 }
 
-/// One over the root of a number that is not negative, to two units in the last place; finite for 0.
+/// One over the root of a number from 0 to the greatest, to two units in the last place; finite for 0.
 ///
 /// A guess from the exponent, a step of Newton's with constants that suit it, and one of third order. Processors work
 /// out roots and quotients one after the other, and sums and products side by side: this is several times quicker, and
 /// unlike their own estimates it has the same bits everywhere.
 #[inline(always)]
 pub(crate) fn inv_sqrt(x: f32) -> f32 {
+    let x = lesser(x, f32::MAX);
     // What is not a number may have a sign.
     let guess = f32::from_bits(0x5f1f_fff9_u32.wrapping_sub(x.to_bits() >> 1));
     let near = guess * (1.681_914_1 - 0.703_952_25 * x * guess * guess);
     let off = 1.0 - x * near * near;
     near + near * off * (0.5 + 0.375 * off)
+}
+
+/// The first vector where `first`, else the second, without a branch.
+#[inline(always)]
+pub(crate) fn choose(first: bool, a: Vec3, b: Vec3) -> Vec3 {
+    let pick = |a: f32, b: f32| if first { a } else { b };
+    Vec3::new(pick(a.x, b.x), pick(a.y, b.y), pick(a.z, b.z))
 }
 
 /// `v` with length 1, and its length; a vector too short to have a direction gives `fallback`.
@@ -169,8 +177,7 @@ pub(crate) fn direction_or(v: Vec3, fallback: Vec3) -> (Vec3, f32) {
     let squared = v.length_squared();
     let scale = inv_sqrt(squared);
     let ok = squared > 1e-24;
-    let pick = |a: f32, b: f32| if ok { a * scale } else { b };
-    (Vec3::new(pick(v.x, fallback.x), pick(v.y, fallback.y), pick(v.z, fallback.z)), squared * scale)
+    (choose(ok, v * scale, fallback), squared * scale)
 }
 
 /// A rotation as a unit quaternion of plain numbers, since `glam::Quat` is itself a vector register and would
@@ -282,6 +289,7 @@ mod tests {
         assert!(worst < 2.0 * f64::from(f32::EPSILON), "{worst:e}");
         assert!(worst > 0.25 * f64::from(f32::EPSILON), "nothing is that exact");
         assert!(inv_sqrt(0.0).is_finite());
+        assert!((0.0..1e-18).contains(&inv_sqrt(f32::INFINITY)), "it counts as the greatest number");
         assert!(inv_sqrt(-f32::NAN).is_nan(), "and does not panic");
     }
 

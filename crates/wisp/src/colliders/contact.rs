@@ -7,7 +7,7 @@ use super::MovingShape;
 use super::boxes::{Boxes, bounds};
 use super::field::{FieldRow, MovingField, PlaneRow};
 use crate::SimulationSettings;
-use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, direction_or, fold, greater, lesser, put};
+use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, choose, direction_or, greater, lesser, put};
 use crate::solver::Substep;
 
 /// How contacts behave in one step.
@@ -243,7 +243,7 @@ pub(crate) fn lay_point(
             }
             let nearest = shape.nearest(&placed, &along);
             let allowed = near.allowed(n, point, &rules);
-            if deepest(&allowed, &nearest.distance) <= enough {
+            if !any_deeper(&allowed, &nearest.distance, enough) {
                 continue;
             }
             pushed = true;
@@ -255,8 +255,7 @@ pub(crate) fn lay_point(
                 let slid = slide(p, at(was, k), centre, depth, friction, mover.velocity_at.apply(p), rules.h);
                 let out = push_out(from, slid, l, centre, nearest.radius[k] + allowed[k]);
                 let touching = depth > 0.0;
-                let pick = |a: f32, b: f32| if touching { a } else { b };
-                put(&mut placed, k, Vec3::new(pick(out.x, p.x), pick(out.y, p.y), pick(out.z, p.z)));
+                put(&mut placed, k, choose(touching, out, p));
             }
         }
         if !pushed {
@@ -291,7 +290,7 @@ fn push_out_of_field(
     let Some(row) = field.row(placed, rules.reach(), planes) else { return false };
     let allowed = near.allowed_by_field(field, &row, point, rules);
     let enough = if round == 0 { 0.0 } else { CLOSE_ENOUGH };
-    if deepest(&allowed, &row.distance) <= enough {
+    if !any_deeper(&allowed, &row.distance, enough) {
         return false;
     }
     let friction = if round == 0 { rules.friction } else { 0.0 };
@@ -304,20 +303,19 @@ fn push_out_of_field(
         let slid = slide(p, at(was, k), centre, depth, friction, velocity, rules.h);
         let out = push_out(from, slid, l, centre, FLAT + allowed[k]);
         let touching = depth > 0.0;
-        let pick = |a: f32, b: f32| if touching { a } else { b };
-        put(placed, k, Vec3::new(pick(out.x, p.x), pick(out.y, p.y), pick(out.z, p.z)));
+        put(placed, k, choose(touching, out, p));
     }
     true
 }
 
-/// How much nearer than allowed the nearest lane is, 0 where none is, metres.
+/// Whether any lane is nearer than allowed by more than `enough`, metres.
 #[inline(always)]
-fn deepest(allowed: &Lane, distance: &Lane) -> f32 {
-    let mut depth = ZERO;
+fn any_deeper(allowed: &Lane, distance: &Lane, enough: f32) -> bool {
+    let mut any = false;
     for k in 0..LANES {
-        depth[k] = greater(0.0, allowed[k] - distance[k]);
+        any |= allowed[k] - distance[k] > enough;
     }
-    fold(depth, greater)
+    any
 }
 
 /// Coulomb friction: the velocity along the surface, relative to it, loses `friction` times the velocity that

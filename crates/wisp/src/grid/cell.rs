@@ -107,8 +107,8 @@ impl Chunk<'_> {
         }
     }
 
-    /// Counts, and leaves their excess in the cells; `most` is the mass of a full cell, and what is over-dense has more than `1 / inv_threshold` of its density
-    /// at rest.
+    /// Counts the cells, and leaves in each its excess; `most` is the mass of a full cell, and what is over-dense has more
+    /// than `1 / inv_threshold` of its density at rest.
     pub(super) fn tally(&mut self, most: i32, inv_threshold: f32) -> Tally {
         let mut out = Tally::default();
         for (&mask, cells) in self.masks.iter().zip(self.cells.as_chunks_mut::<{ SIDE as usize }>().0) {

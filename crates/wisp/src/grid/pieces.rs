@@ -11,7 +11,7 @@ use super::cell::{Chunk, LAYERS, NUMBERS, PARTS};
 use super::direction::outer;
 use super::{DensityGrid, FASTEST, FULL, MOMENTUM, OFFSETS, SIDE};
 use crate::block::Block;
-use crate::lanes::{LANES, Lane3, Map, ZERO, ZERO3, at, direction_or, greater, lesser, put, row_done};
+use crate::lanes::{LANES, Lane3, Map, ZERO, ZERO3, at, direction_or, greater, lesser, put, row_done, whole};
 use crate::trilinear::weights;
 
 /// Which hair is put into the grid.
@@ -136,10 +136,9 @@ impl DensityGrid {
             let mut base = 0;
             for (axis, q) in q.to_array().into_iter().enumerate() {
                 let q = if inside { q } else { 0.0 };
-                // SAFETY: from 0 to the number of cells.
-                let whole = unsafe { q.to_int_unchecked::<i32>() };
-                base += whole * strides[axis];
-                out.fraction[axis][k] = q - whole as f32;
+                let first = whole(q) as i32;
+                base += first * strides[axis];
+                out.fraction[axis][k] = q - first as f32;
             }
             (out.base[k], out.inside[k]) = (base as u32, inside);
         }

@@ -87,10 +87,9 @@ impl DensityGrid {
     fn away_from_centre(&self, p: Vec3) -> Vec3 {
         let cell = ((p - self.min) / self.cell).as_ivec3().clamp(IVec3::ZERO, IVec3::splat(SIDE - 1));
         let i = index(cell);
-        let excess = self.cells[i].mass() as f32 * self.cells[i].inv_rest() / self.repulsion.threshold - 1.0;
         let out = p - (self.min + (cell.as_vec3() + 0.5) * self.cell);
         let fade = (1.0 - 2.0 * out.abs().max_element() / self.cell).max(0.0);
-        out * (excess.max(0.0) * fade / (out.length().max(0.1 * self.cell) * self.cell))
+        out * (self.cells[i].excess() * fade / (out.length().max(0.1 * self.cell) * self.cell))
     }
 
     /// Adds the grid's part to the forces of a block, whose positions are still those of the last step.

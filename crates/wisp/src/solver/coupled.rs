@@ -106,13 +106,13 @@ impl Coupled {
         }
     }
 
-    /// The tile of `S` at row `r` and column `c`, of which `answer` is in `H`.
+    /// The tile of `S` at row `r` and column `c`; `response` is that of `H`.
     #[inline(always)]
-    fn products(&self, answer: &Tile, r: usize, c: usize, first: usize, scratch: &LengthScratch) -> Tile {
-        let mut s = *answer;
-        for (i, products) in s.iter_mut().enumerate() {
+    fn products(&self, response: &Tile, r: usize, c: usize, first: usize, scratch: &LengthScratch) -> Tile {
+        let mut s = *response;
+        for (i, tile_row) in s.iter_mut().enumerate() {
             let r = (r + i).min(self.links - 1);
-            for (j, product) in products.iter_mut().enumerate() {
+            for (j, product) in tile_row.iter_mut().enumerate() {
                 let (n, m) = (scratch.direction[first + r], scratch.direction[first + (c + j).min(r)]);
                 for k in 0..LANES {
                     product[k] *= at(&n, k).dot(at(&m, k));
@@ -177,18 +177,18 @@ impl Factor {
             self.inv_diagonal.clear();
             self.inv_diagonal.resize(ROWS * links.div_ceil(ROWS), ZERO);
         }
-        // Two columns by two rows at a time: what is loaded is used twice, and no sum waits for another. From the top down,
-        // where no tile waits for the one before.
-        let mut answers = coupled.response.iter();
+        // Two columns by two rows at a time: what is loaded is used twice, and no sum waits for another. Each two columns from
+        // their diagonal down: below it no tile waits for the one before.
+        let mut responses = coupled.response.iter();
         for c in (0..links).step_by(TILE) {
-            let Some(answer) = answers.next() else { return };
-            self.pivots(answer, c, coupled, first, scratch);
+            let Some(response) = responses.next() else { return };
+            self.pivots(response, c, coupled, first, scratch);
             let corner = self.panels[panel(c / ROWS) + ROWS * c + c % ROWS + 1];
             let inv: [Lane; TILE] = [self.inv_diagonal[c], self.inv_diagonal[c + 1]];
-            for (r, answer) in (c + TILE..links).step_by(TILE).zip(&mut answers) {
+            for (r, response) in (c + TILE..links).step_by(TILE).zip(&mut responses) {
                 let (above, own) = self.panels.split_at_mut(panel(r / ROWS));
                 let other = if c / ROWS < r / ROWS { &above[panel(c / ROWS)..] } else { &*own };
-                let s = coupled.products(answer, r, c, first, scratch);
+                let s = coupled.products(response, r, c, first, scratch);
                 let s = less_products(s, &own[..ROWS * c], r % ROWS, &other[..ROWS * c], c % ROWS);
                 for (i, row) in s.iter().enumerate().take(links - r) {
                     let one = row[0].times(inv[0]);
@@ -203,9 +203,16 @@ impl Factor {
 
     /// The tile on the diagonal at row and column `c`.
     #[inline(always)]
-    fn pivots(&mut self, answer: &Tile, c: usize, coupled: &Coupled, first: usize, scratch: &LengthScratch) {
+    fn pivots(
+        &mut self,
+        response: &Tile,
+        c: usize,
+        coupled: &Coupled,
+        first: usize,
+        scratch: &LengthScratch,
+    ) {
         let own = &mut self.panels[panel(c / ROWS)..];
-        let whole = coupled.products(answer, c, c, first, scratch);
+        let whole = coupled.products(response, c, c, first, scratch);
         let s = less_products(whole, &own[..ROWS * c], c % ROWS, &own[..ROWS * c], c % ROWS);
         let inv = inv_root(s[0][0], whole[0][0]);
         self.inv_diagonal[c] = inv;

@@ -124,8 +124,8 @@ fn step_positions(block: &mut Block, h: f32) {
 fn shape_memory(block: &mut Block, plan: &Plan, s: usize) {
     let (substep, gamma, count) = (&plan.substeps[s], plan.bending.gamma(), block.points());
     let mut frames = Turns::splat(substep.head_turn);
-    // The next link as it would go on at rest from what is there of the lock. A bend at rest is the difference of two links,
-    // and the frame carries the one where it is now.
+    // The direction that the next link would have if the lock went on from here as at rest. The bend at rest is that link
+    // less this one, both as long as at rest: there is no second turn to work out.
     let mut expected = ZERO3;
     if count > 1 {
         let first = block.rest.direction[1];

@@ -24,7 +24,8 @@ use back::Back;
 use occupancy::Occupancy;
 pub(crate) use planes::{FieldRow, PlaneRow};
 
-/// A point taken back to rest is near enough when it moves less than this in a round, metres.
+/// A point taken back to rest is near enough when it moves less than this in a round, metres: after a step of Newton's what is
+/// left is of second order.
 const SETTLED: f32 = 1e-3;
 
 /// Most rounds of taking a point back.
@@ -98,7 +99,7 @@ impl MovingField {
 
     /// Distance at rest of every lane of a row in head space; [`f32::MAX`] where the field ends.
     pub(crate) fn rest_distance(&self, row: &Lane3) -> Lane {
-        // As `try_from` measures it: else hair would be pushed where it lies at rest.
+        // As [`MovingField::heads`] measures it: else hair would be pushed where it lies at rest.
         Lane(std::array::from_fn(|k| {
             self.field
                 .sample(at(row, k))

@@ -3,7 +3,8 @@
 //!
 //! A step asks for the skin in every substep and in every round of a push-out. The way back to rest is measured where
 //! a point is for the first time in a step and anew wherever it has left the place by [`NEAR`], or by half its distance
-//! from contact; in between the skin is its tangent plane, which moves with the drift. A plane is off by
+//! from contact; in between the skin is its tangent plane, which moves with the drift. On which side of a fold of the skin a
+//! point is, is asked once a step. A plane is off by
 //! `NEAR^2 / 2 R` at most over a surface of radius `R`: 0.01 mm over the skull, 0.1 mm at the rim of an ear.
 
 use glam::Vec3;
@@ -11,7 +12,7 @@ use glam::Vec3;
 use super::occupancy::Near;
 use super::skins::{Skins, Starts};
 use super::{CLOSE, DEEP, MovingField, UNSURE};
-use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, greater, lesser, put, splat3};
+use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, choose, greater, lesser, put, splat3};
 use crate::solver::Substep;
 
 /// So far from where it was measured a plane near contact serves, metres.
@@ -140,9 +141,9 @@ impl MovingField {
             out.distance[k] = pick(skin, head);
             out.head[k] = pick(planes.share[k], 1.0);
             out.guess[k] = pick(guess, 0.0);
-            let normal = Vec3::new(pick(m.x, n.x), pick(m.y, n.y), pick(m.z, n.z));
+            let normal = choose(nearer, m, n);
             put(&mut out.normal, k, substep.head.rotate(normal));
-            let drift = Vec3::new(pick(drift.x, 0.0), pick(drift.y, 0.0), pick(drift.z, 0.0));
+            let drift = choose(nearer, drift, Vec3::ZERO);
             put(&mut out.drift, k, substep.head.rotate(drift));
         }
         Some(out)
@@ -161,8 +162,8 @@ impl MovingField {
         let heads = self.heads(local, &near.head, reach);
         let skins = self.find_skins(local, &near, &heads.alone, passed, reach, planes);
         for k in 0..LANES {
-            let (p, alone, slot, besides) =
-                (at(local, k), heads.alone[k], near.slot[k] != 0, near.besides[k]);
+            let (p, alone, besides) = (at(local, k), heads.alone[k], near.besides[k]);
+            let other_skin = near.slot[k] != 0;
             let of_head = lesser(heads.nearest[k], skins.nearest[k]);
             let nearest = if alone { of_head } else { skins.nearest[k] };
             // What is measured besides, to show that it need not be, leaves no trace unless there is something.
@@ -173,8 +174,8 @@ impl MovingField {
             let to_next = cells.to_next[k] + NEAR;
             let free = greater(lesser(0.5 * (nearest - reach), to_next), NEAR);
             // Where there is no way back from here, or to skin that is far, there may be another from near by.
-            let lost = (near.head[k] | slot) & !besides;
-            let (known, only_head) = (nearest < NONE, alone & !slot);
+            let lost = (near.head[k] | other_skin) & !besides;
+            let (known, only_head) = (nearest < NONE, alone & !other_skin);
             let serves = if known & only_head { free } else { to_next };
             let serves = if (known & !only_head) | (!known & lost) { NEAR } else { serves };
             let finite = p.length_squared() < f32::MAX;
@@ -192,12 +193,7 @@ impl MovingField {
             set(&mut planes.head_distance[k], if alone & !nothing { heads.distance[k] } else { NONE });
             set3(&mut planes.head_normal, at(&heads.normal, k));
             set(&mut planes.skin_distance[k], if found { skins.distance[k] } else { NONE });
-            let pick = |a: f32, b: f32| if found { a } else { b };
-            let rest = at(&skins.rest, k);
-            set3(
-                &mut planes.rest,
-                Vec3::new(pick(rest.x, NOWHERE.x), pick(rest.y, NOWHERE.y), pick(rest.z, NOWHERE.z)),
-            );
+            set3(&mut planes.rest, choose(found, at(&skins.rest, k), NOWHERE));
             // Of skin that is not there the rest says nothing.
             set3(&mut planes.skin_normal, at(&skins.normal, k));
             set(&mut planes.share[k], skins.share[k]);
@@ -251,15 +247,10 @@ impl MovingField {
                 put(&mut starts.guess, k, from);
                 starts.slot[k] = if way == Way::OfSlot { slot[k] } else { 0 };
                 let first = asked & (way != Way::Again) & !(known.x < NOWHERE.x);
-                let pick = |a: f32, b: f32| if first { a } else { b };
-                put(
-                    &mut tried,
-                    k,
-                    Vec3::new(pick(from.x, known.x), pick(from.y, known.y), pick(from.z, known.z)),
-                );
+                put(&mut tried, k, choose(first, from, known));
             }
             if any {
-                let found = self.skins(local, &starts, alone, passed, reach);
+                let found = self.measure_skins(local, &starts, alone, passed, reach);
                 let mut taken = [false; LANES];
                 for k in 0..LANES {
                     let nearer = !skins.found[k] | (found.distance[k] < skins.distance[k]);
@@ -295,7 +286,7 @@ impl MovingField {
 /// From where a point is taken back to rest. Where skin is folded there are several ways back.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Way {
-    /// From where it was found in the last step.
+    /// From where it was found last, in this step or the one before.
     Again,
     /// From where the nearest other joints have it.
     OfSlot,

@@ -6,7 +6,7 @@ use lovelock_motion::FieldLattice;
 
 use super::MovingField;
 use super::planes::NONE;
-use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, greater, inv_sqrt, lesser, put, whole};
+use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, choose, greater, inv_sqrt, lesser, put, whole};
 use crate::trilinear::{gradient, weights};
 
 /// What a row of points learns of the skin that goes with the head.
@@ -48,8 +48,7 @@ impl MovingField {
             let steepness = squared * inv;
             let distance = value / lesser(greater(steepness, 0.5), 2.0) - self.lift;
             let flat = steepness <= 1e-6;
-            let pick = |a: f32, b: f32| if flat { a } else { b * inv };
-            put(&mut out.normal, k, Vec3::new(pick(0.0, slope.x), pick(1.0, slope.y), pick(0.0, slope.z)));
+            put(&mut out.normal, k, choose(flat, Vec3::Y, slope * inv));
             let far = value - self.lift > 2.0 * reach;
             let at_least = if far { 0.5 * value - self.lift } else { distance };
             out.distance[k] = if far | !there { NONE } else { distance };

@@ -6,7 +6,7 @@ use super::back::{Back, between};
 use super::planes::{NONE, NOWHERE};
 use super::rows::Places;
 use super::{DEEP, MovingField, ROUNDS, SETTLED, STRAYED, UNFOLDED, UNSURE};
-use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, greater, lesser, put, splat3};
+use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, choose, greater, lesser, put, splat3};
 use crate::trilinear::weights;
 
 /// What a row of points learns of a skin, in head space. Of what is not found the rest says nothing.
@@ -23,7 +23,7 @@ pub(super) struct Skins {
     pub(super) drift: Lane3,
     /// Whether this is measured, and not a guess that may push a little.
     pub(super) sure: [bool; LANES],
-    /// Where the point is at rest, to go on from in the next measurement; [`NOWHERE`] where the head alone moves it.
+    /// Where the point is at rest, to go on from in the next measurement; [`NOWHERE`] where the head alone moves it or it is a guess.
     pub(super) rest: Lane3,
 }
 
@@ -67,7 +67,7 @@ pub(super) struct Starts {
     pub(super) asked: [bool; LANES],
     /// First guesses of where the points are at rest.
     pub(super) guess: Lane3,
-    /// The weightings that they come from; 0 for the head's, and for places where points were found before.
+    /// The weightings that they come from; 0 where no guess may stand in for what is not found.
     pub(super) slot: [u16; LANES],
 }
 
@@ -82,16 +82,15 @@ struct Rest {
     fraction: Lane3,
     /// Whether the head alone moves it, so that it is where it was.
     heads: [bool; LANES],
-    /// Rows of what a small step now makes of the place at rest, beside `back`.
+    /// Rows of what a small step now makes of the place at rest, besides what the weightings do.
     stretch: [Lane3; 3],
 }
 
 impl MovingField {
-    /// Measures a row `p` at the fraction `t` of the step; nothing further than `reach` is of interest. `alone` says that
-    /// the head alone moves what is at a point, and that this is known already; `on_head` that it does so where the point is
-    /// now.
+    /// Measures a row `p` at the fraction `t` of the step; nothing further than `reach` is of interest. `alone` says where the
+    /// head alone moves what is at a point: a way back that leads there finds what is known already.
     #[inline(always)]
-    pub(super) fn skins(
+    pub(super) fn measure_skins(
         &self,
         p: &Lane3,
         starts: &Starts,
@@ -141,8 +140,7 @@ impl MovingField {
             let slope = forth(bent);
             let steepness = slope.length_squared().sqrt();
             let (flat, inv) = (steepness <= 1e-6, 1.0 / steepness);
-            let pick = |a: f32, b: f32| if flat { a } else { b * inv };
-            put(&mut out.normal, k, Vec3::new(pick(0.0, slope.x), pick(1.0, slope.y), pick(0.0, slope.z)));
+            put(&mut out.normal, k, choose(flat, Vec3::Y, slope * inv));
             let distance = value / lesser(greater(steepness, 0.5), 2.0) - self.lift;
             // A guess may push, but not far; nor may skin that is stretched or pressed beyond what skin can be, or that
             // hair has never been so deep in.
@@ -159,9 +157,7 @@ impl MovingField {
             out.share[k] = back[15][k];
             put(&mut out.drift, k, forth(at(&moved, k)) * inv_dt);
             let (goes_on, place) = (sound & !rest.heads[k], at(&rest.place, k));
-            let pick = |a: f32, b: f32| if goes_on { a } else { b };
-            let place =
-                Vec3::new(pick(place.x, NOWHERE.x), pick(place.y, NOWHERE.y), pick(place.z, NOWHERE.z));
+            let place = choose(goes_on, place, NOWHERE);
             put(&mut out.rest, k, place);
         }
         out
@@ -247,25 +243,18 @@ impl MovingField {
                 // Where the skin is folded over itself there is no way back that keeps its sides apart.
                 let newton = mixed[k] & (determinant >= UNFOLDED);
                 let inv = 1.0 / determinant;
-                let pick = |a: f32, b: f32| if newton { a * inv } else { b };
-                let row =
-                    |c: Vec3, unit: Vec3| Vec3::new(pick(c.x, unit.x), pick(c.y, unit.y), pick(c.z, unit.z));
+                let row = |c: Vec3, unit: Vec3| choose(newton, c * inv, unit);
                 let stretch = [row(cross[0], Vec3::X), row(cross[1], Vec3::Y), row(cross[2], Vec3::Z)];
                 let off = value - place;
                 let step = Vec3::new(stretch[0].dot(off), stretch[1].dot(off), stretch[2].dot(off));
                 let (squared, most) = (step.length_squared(), nodes.spacing);
                 let shorter = if newton & (squared > most * most) { most / squared.sqrt() } else { 1.0 };
                 let step = step * shorter;
-                let pick = |a: f32, b: f32| if going[k] { a } else { b };
                 let next = place + step;
-                put(
-                    &mut rest.place,
-                    k,
-                    Vec3::new(pick(next.x, place.x), pick(next.y, place.y), pick(next.z, place.z)),
-                );
+                put(&mut rest.place, k, choose(going[k], next, place));
                 for (rows, row) in rest.stretch.iter_mut().zip(stretch) {
                     let was = at(rows, k);
-                    put(rows, k, Vec3::new(pick(row.x, was.x), pick(row.y, was.y), pick(row.z, was.z)));
+                    put(rows, k, choose(going[k], row, was));
                 }
                 let settled = going[k] & (step.length_squared() < SETTLED * SETTLED);
                 rest.sure[k] |= settled;
@@ -288,10 +277,9 @@ impl MovingField {
         }
         for k in 0..LANES {
             let plain = rest.heads[k] | !rest.sure[k];
-            let pick = |a: f32, b: f32| if plain { a } else { b };
             for (row, unit) in rest.stretch.iter_mut().zip([Vec3::X, Vec3::Y, Vec3::Z]) {
                 let own = at(row, k);
-                put(row, k, Vec3::new(pick(unit.x, own.x), pick(unit.y, own.y), pick(unit.z, own.z)));
+                put(row, k, choose(plain, unit, own));
             }
         }
         rest
