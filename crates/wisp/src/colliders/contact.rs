@@ -223,8 +223,9 @@ pub(crate) fn lay_point(
     }
     let free = placed;
     if near.active.is_empty() && near.field.is_none() {
-        return Laid { placed, free };
+        return Laid { placed, free, touched: false };
     }
+    let mut touched = false;
     for round in 0..ROUNDS {
         let rules = if round < TIGHT { *rules } else { rules.bare() };
         let enough = if round == 0 { 0.0 } else { CLOSE_ENOUGH };
@@ -261,8 +262,9 @@ pub(crate) fn lay_point(
         if !pushed {
             break;
         }
+        touched = true;
     }
-    Laid { placed, free }
+    Laid { placed, free, touched }
 }
 
 /// What [`lay_point`] has made of a row of points.
@@ -271,6 +273,8 @@ pub(crate) struct Laid {
     pub(crate) placed: Lane3,
     /// Where it would have laid them if nothing were in the way.
     pub(crate) free: Lane3,
+    /// Whether anything was; otherwise all of them are outside.
+    pub(crate) touched: bool,
 }
 
 /// Pushes the lanes of a point out of the field; whether there was anything to push.

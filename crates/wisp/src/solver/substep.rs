@@ -328,7 +328,7 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize, lay: Lay) {
                 put(&mut leans, k, Vec3::new(pick(sum.x), pick(sum.y), pick(sum.z)));
             }
             block.leans[i] = leans;
-            if last && (near.field.is_some() || !near.active.is_empty()) {
+            if last && laid.touched {
                 let found = penetration(i, &placed, &near, &plan.rules, planes);
                 for k in 0..LANES {
                     if found.unsure[k] && k < block.used {
