@@ -1,8 +1,9 @@
 //! How deep hair gets into the body over a whole motion, measured against the skinned surface itself.
 //!
-//! `penetration [--hair PRESET|FILE] [--motion dance|FILE.bvh|backflip] [--wisps N] [--every STEPS] [--field off]
-//! [--colliders off] [--verbose on] [--set JSON]`
+//! `penetration [--hair PRESET|FILE] [--motion dance|FILE.bvh|backflip] [--wisps N] [--every STEPS] [--settle SECS]
+//! [--field off] [--colliders off] [--verbose on] [--set JSON]`
 //!
+//! Hair settles on the body as it stands at the motion's beginning first, for two seconds as in the program.
 //! Without hair all presets, each gathered by its ties; without a motion dance and backflip. Names of hair and motions may be lists
 //! parted by commas. The mean volume is that over the motion, of that at rest.
 
@@ -21,7 +22,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut styles: Vec<String> = Preset::ALL.iter().map(|preset| preset.id().to_owned()).collect();
     let mut motions = list("dance,backflip");
     let (mut wisps, mut every, mut field, mut colliders, mut verbose) = (None, 2, true, true, false);
-    let mut chosen = None;
+    let (mut chosen, mut settle_secs) = (None, 2.0_f32);
     while let Some(arg) = args.next() {
         let value = args.next().ok_or(usage)?;
         match arg.as_str() {
@@ -29,6 +30,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             "--motion" => motions = list(&value),
             "--wisps" => wisps = Some(value.parse()?),
             "--every" => every = value.parse::<u32>()?.max(1),
+            "--settle" => settle_secs = value.parse::<f32>()?.clamp(0.0, 60.0),
             "--field" => field = value != "off",
             "--colliders" => colliders = value != "off",
             "--verbose" => verbose = value == "on",
@@ -48,6 +50,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             stage.play(motion)?;
             let settings = chosen.unwrap_or_else(|| settings_of(style));
             let mut simulation = stage.simulation(Some(0.0));
+            for step in (0..(settle_secs / STEP_SECS) as u32).rev() {
+                let mut input = stage.at(Some(0.0));
+                input.time_secs = -f64::from(step) * f64::from(STEP_SECS);
+                if !colliders {
+                    (input.colliders, input.field) = (&[], None);
+                }
+                simulation.step(&input, &settings, STEP_SECS);
+            }
             let (mut all, mut surface) = (StepReport::default(), Skin::default());
             let (mut depths, mut volume) = (Depths::new(&stage), 0.0);
             let steps = (stage.dance.duration_secs * 60.0) as u32;
