@@ -3,6 +3,8 @@
 //! All of it happens in head space, where the skull never moves: a point over it is at rest where it is now. What
 //! the other joints move has a map from head space now to rest for each weighting that occurs, at the start and at
 //! the end of the step; in between, maps are mixed, and the head itself turns exactly.
+// Loops over lanes hold no branches: a lazy operator is one, and made the field 7 % slower.
+#![allow(clippy::needless_bitwise_bool)]
 
 mod back;
 mod occupancy;

@@ -155,8 +155,8 @@ impl MovingField {
         let cells = self.occupancy.cells(local);
         let mut asked = [false; LANES];
         for k in 0..LANES {
-            // Written so that what is not a number is measured.
-            asked[k] = !(gone[k] <= 0.0);
+            // What is not a number is measured too, and found nowhere.
+            asked[k] = (gone[k] > 0.0) | gone[k].is_nan();
         }
         let near = self.occupancy.near(&cells, &asked);
         let heads = self.heads(local, &near.head, reach);
@@ -246,7 +246,7 @@ impl MovingField {
                 any |= asked;
                 put(&mut starts.guess, k, from);
                 starts.slot[k] = if way == Way::OfSlot { slot[k] } else { 0 };
-                let first = asked & (way != Way::Again) & !(known.x < NOWHERE.x);
+                let first = asked & (way != Way::Again) & (known.x >= NOWHERE.x);
                 put(&mut tried, k, choose(first, from, known));
             }
             if any {

@@ -144,7 +144,7 @@ impl MovingField {
             let distance = value / lesser(greater(steepness, 0.5), 2.0) - self.lift;
             // A guess may push, but not far; nor may skin that is stretched or pressed beyond what skin can be, or that
             // hair has never been so deep in.
-            let sound = rest.sure[k] & (steepness >= 0.5) & (steepness < 2.0) & (distance > -DEEP);
+            let sound = rest.sure[k] & (0.5..2.0).contains(&steepness) & (distance > -DEEP);
             let distance = if sound { distance } else { greater(distance, -UNSURE) };
             // A stretched skin is further away than it was at rest, by half at most.
             let far = value - self.lift > 2.0 * reach;
