@@ -25,6 +25,7 @@ mod settings;
 mod strand_bounds;
 mod strands;
 mod ties;
+mod whole_part;
 
 pub mod simd;
 

@@ -3,6 +3,8 @@
 //! Inner loops are plain safe code on fixed-size arrays, which the compiler turns into vector instructions.
 //! Nothing in it is reordered or fused, so that all versions give the same bits.
 
+pub use crate::whole_part::whole_part;
+
 /// Which version of a function runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Width {

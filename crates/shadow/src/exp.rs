@@ -2,7 +2,7 @@
 // Compiled within the versions of the voxel map's `simd`.
 #![allow(clippy::inline_always)]
 
-use crate::whole_part::whole_part;
+use lovelock_groom::simd::whole_part;
 
 /// One optical depth in the 16-bit steps of a cell.
 pub(crate) const DEPTH_STEPS: f32 = 4096.0;

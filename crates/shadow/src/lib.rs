@@ -18,7 +18,6 @@ mod method;
 mod ray;
 mod setting_info;
 mod settings;
-mod whole_part;
 
 pub mod methods;
 

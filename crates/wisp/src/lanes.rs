@@ -138,17 +138,6 @@ pub(crate) fn greater(a: f32, b: f32) -> f32 {
     if b > a { b } else { a }
 }
 
-/// The whole part of a number from 0 to a thousand million; what is not one of these counts as the nearest, or 0.
-///
-/// `as u32` is right for all numbers, and is not compiled into vector instructions.
-#[inline(always)]
-#[allow(unsafe_code)]
-pub(crate) fn whole(q: f32) -> u32 {
-    let q = lesser(greater(0.0, q), 1e9);
-    // SAFETY: within the range of the integers, and a number.
-    unsafe { q.to_int_unchecked::<i32>() as u32 }
-}
-
 /// One over the root of a number from 0 to the greatest, to two units in the last place; finite for 0.
 ///
 /// A guess from the exponent, a step of Newton's with constants that suit it, and one of third order. Processors work
@@ -270,12 +259,6 @@ mod tests {
         let axis = from.cross(to);
         assert!((turn.apply(axis) - axis).length() < 1e-6);
         assert!((turn.apply(to) - to).length() > 0.1, "a turn that does nothing would pass the lines above");
-    }
-
-    #[test]
-    fn the_whole_part_of_what_has_none_is_the_nearest_there_is() {
-        assert_eq!([whole(0.0), whole(7.99), whole(1234.0)], [0, 7, 1234]);
-        assert_eq!([whole(-3.0), whole(f32::NAN), whole(f32::INFINITY)], [0, 0, 1_000_000_000]);
     }
 
     #[test]

@@ -5,13 +5,14 @@
 #![allow(unsafe_code)]
 
 use glam::Vec3;
+use lovelock_groom::simd::whole_part;
 use lovelock_groom::simd_versions;
 
 use super::cell::{Chunk, LAYERS, NUMBERS, PARTS};
 use super::direction::outer;
 use super::{DensityGrid, FASTEST, FULL, MOMENTUM, OFFSETS, SIDE};
 use crate::block::Block;
-use crate::lanes::{LANES, Lane3, Map, ZERO, ZERO3, at, direction_or, greater, lesser, put, row_done, whole};
+use crate::lanes::{LANES, Lane3, Map, ZERO, ZERO3, at, direction_or, greater, lesser, put, row_done};
 use crate::trilinear::weights;
 
 /// Which hair is put into the grid.
@@ -136,7 +137,7 @@ impl DensityGrid {
             let mut base = 0;
             for (axis, q) in q.to_array().into_iter().enumerate() {
                 let q = if inside { q } else { 0.0 };
-                let first = whole(q) as i32;
+                let first = whole_part(q);
                 base += first * strides[axis];
                 out.fraction[axis][k] = q - first as f32;
             }

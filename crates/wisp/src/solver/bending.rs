@@ -164,13 +164,12 @@ impl Bending {
         self.stiffness.iter().chain(&self.hold).all(|row| *row == ZERO)
     }
 
-    /// Fills the lower triangle of `H = D A^-1 D^T`: rows and columns are the links from the first with a free
-    /// end on, `D` takes the difference of a link's ends.
+    /// Gives the lower triangle of `H = D A^-1 D^T` to `fill`, by row and column: they are the links from the first with
+    /// a free end on, `D` takes the difference of a link's ends.
     #[inline(always)]
-    pub(crate) fn response(&self, first_free: usize, out: &mut [Lane]) {
+    pub(crate) fn response(&self, first_free: usize, mut fill: impl FnMut(usize, usize, Lane)) {
         let count = self.stiffness.len();
         let first = first_free.max(1);
-        let packed = |r: usize| r * (r + 1) / 2;
         // Three columns of A^-1 D^T at a time.
         let mut rows = vec![ZERO3; count];
         for from in (first..count).step_by(3) {
@@ -185,10 +184,8 @@ impl Bending {
             for (axis, link) in (from..count.min(from + 3)).enumerate() {
                 for r in link..count {
                     let (low, high) = (rows[r - 1][axis], rows[r][axis]);
-                    let to = &mut out[packed(r - first) + link - first];
-                    for k in 0..LANES {
-                        to[k] = high[k] - if r > first_free { low[k] } else { 0.0 };
-                    }
+                    let difference = if r > first_free { high.less(low) } else { high };
+                    fill(r - first, link - first, difference);
                 }
             }
         }

@@ -23,7 +23,7 @@ const LEAST_PIVOT: f32 = 1e-4;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Coupled {
     /// `H` in tiles, as they are asked for: those of two columns from the diagonal down, and then the next two columns'. Above
-    /// the diagonal and beyond the last link, entries repeat others.
+    /// the diagonal and beyond the last link there is nothing.
     response: Vec<Tile>,
     links: usize,
 }
@@ -64,6 +64,8 @@ fn less_products(s: Tile, a: &[Lane], i: usize, b: &[Lane], j: usize) -> Tile {
 /// Rows, and the columns of each.
 type Tile = [[Lane; TILE]; TILE];
 
+const NO_TILE: Tile = [[ZERO; TILE]; TILE];
+
 /// One over the root of a pivot, of whose diagonal `whole` was there before elimination.
 #[inline(always)]
 fn inv_root(pivot: Lane, whole: Lane) -> Lane {
@@ -80,12 +82,6 @@ fn panel(p: usize) -> usize {
     ROWS * ROWS * p * (p + 1) / 2
 }
 
-/// Where row `r` of a packed lower triangle begins.
-#[inline(always)]
-fn row(r: usize) -> usize {
-    r * (r + 1) / 2
-}
-
 impl Coupled {
     /// Works out `H` for factors that have just been made; `first_free` is the first point that is not carried.
     #[inline(always)]
@@ -93,17 +89,15 @@ impl Coupled {
         let first = first_free.max(1);
         let links = points.saturating_sub(first);
         self.links = links;
-        let mut triangle = vec![ZERO; row(links)];
-        bending.response(first_free, &mut triangle);
+        // So many tiles each two columns have.
+        let most = links.div_ceil(TILE);
         self.response.clear();
-        for c in (0..links).step_by(TILE) {
-            for r in (c..links).step_by(TILE) {
-                self.response.push(std::array::from_fn(|i| {
-                    let r = (r + i).min(links - 1);
-                    std::array::from_fn(|j| triangle[row(r) + (c + j).min(r)])
-                }));
-            }
-        }
+        self.response.resize(most * (most + 1) / 2, NO_TILE);
+        bending.response(first_free, |r, c, value| {
+            let (row, column) = (r / TILE, c / TILE);
+            let before = column * (2 * most + 1 - column) / 2;
+            self.response[before + row - column][r % TILE][c % TILE] = value;
+        });
     }
 
     /// The tile of `S` at row `r` and column `c`; `response` is that of `H`.

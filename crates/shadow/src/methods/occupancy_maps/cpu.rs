@@ -4,8 +4,8 @@
 
 use super::super::texels::{Fragment, TexelFilter, TexelMap, TexelMethod};
 use super::OccupancyMapsSettings;
-use crate::whole_part::whole_part;
 use crate::{RayMarkKind, ShadowMethod, ShadowSettings};
+use lovelock_groom::simd::whole_part;
 
 /// The map of [`ShadowMethod::OccupancyMaps`].
 pub type OccupancyMaps = TexelMap<Occupancy>;

@@ -7,13 +7,13 @@
 #![allow(unsafe_code, clippy::inline_always, clippy::needless_range_loop, clippy::needless_bitwise_bool)]
 
 use glam::Vec3;
+use lovelock_groom::simd::whole_part;
 use lovelock_groom::simd_versions;
 
 use super::fragments::Fragments;
 use super::frame::TexelFrame;
 use super::map::TexelMethod;
 use crate::exp::exp_of_minus;
-use crate::whole_part::whole_part;
 
 /// Points that are looked up together.
 const BLOCK: usize = 64;

@@ -11,7 +11,7 @@ use super::grid::{DEPTH_ONE, Grid};
 use super::lattice::Lattice;
 use super::layout::Layout;
 use super::samples::{sample_at, sample_count};
-use crate::whole_part::whole_part;
+use lovelock_groom::simd::whole_part;
 
 /// Points that are transformed together; all but the last begin a segment.
 const BLOCK: usize = 64;

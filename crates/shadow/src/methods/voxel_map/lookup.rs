@@ -3,11 +3,11 @@
 #![allow(clippy::inline_always, clippy::needless_range_loop)]
 
 use glam::Vec3;
+use lovelock_groom::simd::whole_part;
 
 use super::lattice::Lattice;
 use super::layout::{Layout, TILE_CELLS};
 use crate::exp::exp_of_minus_steps;
-use crate::whole_part::whole_part;
 
 /// Points that are looked up together.
 pub(super) const BLOCK: usize = 64;

@@ -5,7 +5,7 @@
 // Compiled within the versions of `simd`.
 #![allow(clippy::inline_always)]
 
-use crate::whole_part::whole_part;
+use lovelock_groom::simd::whole_part;
 
 /// Number of samples of a segment of `length` cells: no two of them more than half a cell apart.
 #[inline(always)]

@@ -4,9 +4,10 @@
 //! and at its end; a point in a cell without any is further from the skin than hair can touch, all step long.
 
 use glam::{Affine3A, IVec3, UVec3, Vec3};
+use lovelock_groom::simd::whole_part;
 use lovelock_motion::BodyField;
 
-use crate::lanes::{LANES, Lane, Lane3, ZERO, at, greater, lesser, whole};
+use crate::lanes::{LANES, Lane, Lane3, ZERO, at, greater, lesser};
 
 /// A cell in spacings of the field's nodes.
 const CELL: f32 = 2.5;
@@ -293,8 +294,8 @@ impl Occupancy {
             // Written so that what is not a number is outside.
             let within = |q: f32, size: f32| (q >= 0.0) & (q < size);
             let inside = within(q.x, size.x) & within(q.y, size.y) & within(q.z, size.z);
-            let (x, y, z) =
-                (whole(lesser(q.x, last.x)), whole(lesser(q.y, last.y)), whole(lesser(q.z, last.z)));
+            let whole = |q: f32, last: f32| whole_part(lesser(q, last)) as u32;
+            let (x, y, z) = (whole(q.x, last.x), whole(q.y, last.y), whole(q.z, last.z));
             let cell = (z * self.size.y + y) * self.size.x + x;
             out.index[k] = if inside { cell } else { OUTSIDE };
             let side = |q: f32, whole: u32| {

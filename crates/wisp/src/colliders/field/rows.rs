@@ -2,11 +2,12 @@
 //! head a point is at rest wherever it is now.
 
 use glam::Vec3;
+use lovelock_groom::simd::whole_part;
 use lovelock_motion::FieldLattice;
 
 use super::MovingField;
 use super::planes::NONE;
-use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, choose, greater, inv_sqrt, lesser, put, whole};
+use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, choose, greater, inv_sqrt, lesser, put};
 use crate::trilinear::{gradient, weights};
 
 /// What a row of points learns of the skin that goes with the head.
@@ -116,7 +117,7 @@ impl Places {
             // Written so that what is not a number is outside.
             let within = |q: f32, last: f32| (q >= 0.0) & (q < last);
             let inside = within(q.x, last.x) & within(q.y, last.y) & within(q.z, last.z);
-            let (x, y, z) = (whole(q.x), whole(q.y), whole(q.z));
+            let (x, y, z) = (whole_part(q.x) as u32, whole_part(q.y) as u32, whole_part(q.z) as u32);
             let first = (z.wrapping_mul(size.y).wrapping_add(y)).wrapping_mul(size.x).wrapping_add(x);
             out.first[k] = if inside { first } else { u32::MAX };
             put(&mut out.fraction, k, q - Vec3::new(x as f32, y as f32, z as f32));

@@ -1,14 +1,14 @@
 //! The whole part of a float in a form that vectorises.
 //!
 //! Unsafe since the conversion of a float to an integer that vectorises is undefined out of range.
-// Compiled within the versions of the voxel map's `simd`.
+// Compiled within the versions of `simd`.
 #![allow(unsafe_code, clippy::inline_always)]
 
 /// The whole part of `c`, held within 0 and 2^26; 0 for what is no number.
 ///
 /// `as` would be compiled to a branch or two for each number, since it must saturate at the integers' ends.
 #[inline(always)]
-pub(crate) fn whole_part(c: f32) -> i32 {
+pub fn whole_part(c: f32) -> i32 {
     const MOST: f32 = (1 << 26) as f32;
     let c = if c > 0.0 { c } else { 0.0 };
     let c = if c < MOST { c } else { MOST };
