@@ -1,6 +1,7 @@
 use lovelock_motion::{Body, Clip, Pose, RestDistance, Skin, load_character, pose_at, skin};
 
 use super::*;
+use crate::lanes::{LANES, ZERO3, put, splat3};
 use crate::motion::substep;
 
 fn dancer() -> (Arc<Body>, Arc<Clip>, Arc<BodyField>) {
@@ -50,7 +51,7 @@ fn distances(spare: bool, moved: bool, out: f32) -> Vec<f32> {
             let skin = field.sample(q).is_some_and(|(d, _)| d.abs() < 2e-4);
             if inner && skin {
                 let p = surface.positions[v] + surface.normals[v] * out - origin;
-                let row = crate::lanes::splat3(p);
+                let row = splat3(p);
                 let mut planes = PlaneRow::UNKNOWN;
                 let distance =
                     moving.row(&row, &step, 1.0, 0.012, &mut planes).map_or(f32::MAX, |r| r.distance[3]);
@@ -80,4 +81,58 @@ fn distances_grow_above_the_skin() {
     let d = distances(true, true, 0.006);
     let middle = d[d.len() / 2];
     assert!((middle - 0.006).abs() < 3e-4, "{middle} at 6 mm");
+}
+
+#[test]
+fn what_a_point_learns_does_not_depend_on_the_others_of_its_row() {
+    let (body, dance, field) = dancer();
+    let time = 3.9;
+    let (was, now) = (moment(&body, &dance, &field, time - 1.0 / 60.0), moment(&body, &dance, &field, time));
+    let mut moving = MovingField::new(&field, 0.0, 0.012);
+    moving.reset(&was.head, &was.placed);
+    moving.advance(&now.head, &now.placed, 0.012, 1.0 / 60.0, true);
+    let origin = now.head.place;
+    let step = substep(&was.head, &now.head, origin, 1.0 / 60.0);
+    let mut surface = Skin::default();
+    skin(&body, &now.pose, &mut surface);
+    // Every second point far off, so that there is always one that is not measured beside one that is.
+    let near = (0..body.mesh.positions.len()).filter(|&v| {
+        let q = body.mesh.positions[v] - field.rest_from_head();
+        q.y > -0.3 && q.x.abs() < 0.2
+    });
+    let places: Vec<Vec3> = near
+        .step_by(37)
+        .flat_map(|v| [surface.positions[v] - origin, surface.positions[v] + Vec3::Z - origin])
+        .collect();
+    let learn = |row: &Lane3| {
+        let mut planes = PlaneRow::UNKNOWN;
+        // Twice, so that the second begins where the first has been found.
+        let _ = moving.row(row, &step, 0.5, 0.012, &mut planes);
+        planes.forget();
+        let found = moving.row(row, &step, 1.0, 0.012, &mut planes);
+        (found.map(|r| (r.distance, r.normal, r.head, r.guess)), planes.rest)
+    };
+    let (mut touched, mut taken_back) = (0, 0);
+    for group in places.as_chunks::<LANES>().0 {
+        let mut row = ZERO3;
+        for (k, &p) in group.iter().enumerate() {
+            put(&mut row, k, p);
+        }
+        let (together, rest) = learn(&row);
+        for (k, &p) in group.iter().enumerate() {
+            let (alone, rest_alone) = learn(&splat3(p));
+            let of =
+                |found: &(Lane, Lane3, Lane, Lane)| (found.0[k], at(&found.1, k), found.2[k], found.3[k]);
+            let near = |found: &Option<_>| found.as_ref().map(of).filter(|found| found.0 < 1.0);
+            assert_eq!(near(&together), near(&alone), "{p}");
+            assert_eq!(at(&rest, k), at(&rest_alone, k), "{p}");
+            touched += usize::from(near(&alone).is_some());
+            taken_back += usize::from(rest[0][k] < f32::MAX);
+        }
+    }
+    println!("{touched} of {} points at skin, {taken_back} taken back to rest", places.len());
+    assert!(
+        touched > places.len() / 4 && taken_back > places.len() / 20,
+        "the control: there is something to learn"
+    );
 }
