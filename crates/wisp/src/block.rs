@@ -5,7 +5,7 @@ use lovelock_groom::Guides;
 
 use crate::colliders::boxes::Boxes;
 use crate::colliders::field::PlaneRow;
-use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, lesser, put};
+use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, greater, lesser, put};
 use crate::rest::RestShape;
 use crate::solver::{Bending, Coupled, Factor, LengthScratch};
 
@@ -55,6 +55,8 @@ pub(crate) struct Work {
     pub(crate) residual: Vec<Lane3>,
     pub(crate) lengths: LengthScratch,
     pub(crate) factor: Factor,
+    /// Whether contacts have moved any point in the last substep.
+    pub(crate) leaning: bool,
     /// The colliders near the block, and how deep they have closed over the roots.
     pub(crate) active: Vec<u32>,
     pub(crate) boxes: Boxes,
@@ -150,6 +152,18 @@ impl Block {
             }
         }
         found
+    }
+
+    /// Whether contacts still move any point.
+    #[inline(always)]
+    pub(crate) fn leans(&self) -> bool {
+        let mut most = ZERO;
+        for row in &self.leans {
+            for k in 0..LANES {
+                most[k] = greater(most[k], at(row, k).length_squared());
+            }
+        }
+        most.iter().any(|&squared| squared > 0.0)
     }
 
     /// [`stretch_of`] the link that ends at point `i` of lane `k`.

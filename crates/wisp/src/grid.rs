@@ -9,11 +9,13 @@ mod direction;
 mod pieces;
 mod sample;
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use glam::{IVec3, Vec3};
 
-use cell::{CHUNK, Cell, Chunk, LAYERS, MASKS, Tally};
+use cell::{Cell, Cells, Tally};
 use lovelock_groom::simd::Width;
-use pieces::{Pieces, Source, add_all, place_all};
+use pieces::{Source, add_block};
 use rayon::prelude::*;
 
 use crate::block::Block;
@@ -41,21 +43,27 @@ const FASTEST: f32 = 20.0;
 /// A push may not carry hair further than this part of a cell in one substep.
 const MOST_OF_A_CELL: f32 = 0.25;
 
-/// Hair density and momentum on a lattice in head space.
-#[derive(Clone, Debug)]
-pub(crate) struct DensityGrid {
+/// Tasks that put hair into the grid side by side, at most: each has cells of its own.
+const TASKS: usize = 8;
+
+/// Where the cells are, and what of a guide they get.
+#[derive(Clone, Copy, Debug)]
+struct Lattice {
     min: Vec3,
     cell: f32,
     /// Every `stride`-th point of a guide stands for its neighbours.
     stride: usize,
     /// Fixed-point units of one metre of a guide.
     units: f32,
-    /// What lies in each cell; no directions where nothing heeds them.
-    cells: Vec<Cell>,
-    /// Which cells of each row along x may hold hair, a bit each.
-    masks: Vec<u64>,
-    /// Working memory of the deposit, one of each block.
-    pieces: Vec<Pieces>,
+}
+
+/// Hair density and momentum on a lattice in head space.
+#[derive(Clone, Debug)]
+pub(crate) struct DensityGrid {
+    lattice: Lattice,
+    /// What lies in each cell; no directions where nothing heeds them. The first has it all, the others what the other
+    /// tasks have put in.
+    parts: Vec<Cells>,
     rest_volume: f32,
     /// Mass of a cell as dense as hair at rest typically finds the hair around itself.
     full: f32,
@@ -94,15 +102,15 @@ impl DensityGrid {
         // Two cells at the rim have no neighbours to be between.
         let cell = swing.max(2.0 * ROOM * reach / (SIDE - 2) as f32);
         let link = (links / count.max(1.0)).max(1e-4);
-        let size = (SIDE * SIDE * SIDE) as usize;
-        let mut grid = Self {
+        let lattice = Lattice {
             min: centre - Vec3::splat(0.5 * cell * SIDE as f32),
             cell,
             stride: ((1.4 * cell / link) as usize).clamp(1, 8),
             units: FULL / total.max(1e-3),
-            cells: vec![Cell::EMPTY; size],
-            masks: vec![0; (SIDE * SIDE) as usize],
-            pieces: Vec::new(),
+        };
+        let mut grid = Self {
+            lattice,
+            parts: vec![Cells::new()],
             rest_volume: 0.0,
             full: FULL,
             tally: Tally::default(),
@@ -120,14 +128,14 @@ impl DensityGrid {
     fn learn_rest(&mut self) {
         // The density that a piece of hair typically finds around itself stands in where none is at rest.
         let (mut sum, mut squares) = (0.0_f64, 0.0_f64);
-        for c in &self.cells {
+        for c in self.cells() {
             let mass = f64::from(c.mass());
             sum += mass;
             squares += mass * mass;
         }
         let typical = if sum > 0.0 { (squares / sum) as f32 } else { FULL };
         self.full = typical;
-        for c in &mut self.cells {
+        for c in &mut self.parts[0].cells {
             c.set_inv_rest(1.0 / (c.mass() as f32).max(typical));
         }
     }
@@ -148,7 +156,7 @@ impl DensityGrid {
     /// hair that is pressed together loses volume, and hair that flies apart gains none beyond what it would have if it
     /// were nowhere denser than that. The sum is of integers: the order does not matter.
     pub(crate) fn volume(&self) -> f32 {
-        (self.tally.fullness as f64 / f64::from(self.most()) * f64::from(self.cell).powi(3)) as f32
+        (self.tally.fullness as f64 / f64::from(self.most()) * f64::from(self.lattice.cell).powi(3)) as f32
     }
 
     /// The volume that the hair fills at rest, cubic metres.
@@ -166,26 +174,26 @@ impl DensityGrid {
         (self.repulsion.strength > 0.0 || self.repulsion.cohesion > 0.0) && self.tally.held > 0
     }
 
+    /// What lies in each cell.
+    fn cells(&self) -> &[Cell] {
+        &self.parts[0].cells
+    }
+
     /// Empties the grid, puts all hair into it, and counts.
     fn fill(&mut self, blocks: &[Block], source: &Source) {
-        let mut pieces = std::mem::take(&mut self.pieces);
-        pieces.resize_with(blocks.len(), Pieces::default);
-        let (grid, width) = (&*self, Width::widest());
-        pieces.par_iter_mut().zip(blocks).for_each(|(pieces, block)| {
-            pieces.clear();
-            place_all(width, grid, source, block, pieces);
+        let tasks = rayon::current_num_threads().min(TASKS).min(blocks.len()).max(1);
+        self.parts.resize_with(tasks, Cells::new);
+        let (lattice, width, next) = (self.lattice, Width::widest(), AtomicUsize::new(0));
+        self.parts.par_iter_mut().for_each(|cells| {
+            cells.clear();
+            // Who adds a block does not matter.
+            while let Some(block) = blocks.get(next.fetch_add(1, Ordering::Relaxed)) {
+                add_block(width, &lattice, source, block, cells);
+            }
         });
         let (most, inv_threshold) = (self.most(), 1.0 / self.repulsion.threshold);
-        let chunks = self.cells.par_chunks_mut(CHUNK).zip(self.masks.par_chunks_mut(MASKS)).enumerate();
-        self.tally = chunks
-            .map(|(n, (cells, masks))| {
-                let mut chunk = Chunk { first: n * LAYERS, cells, masks };
-                chunk.clear();
-                add_all(width, &pieces, &mut chunk);
-                chunk.tally(most, inv_threshold)
-            })
-            .reduce(Tally::default, Tally::plus);
-        self.pieces = pieces;
+        let Some((all, others)) = self.parts.split_first_mut() else { return };
+        self.tally = all.gather(others, most, inv_threshold);
     }
 }
 

@@ -5,7 +5,7 @@
 
 use std::ops::{Deref, DerefMut};
 
-use glam::{Mat3, Quat, Vec3};
+use glam::{Mat3, Mat4, Quat, Vec3, Vec4};
 
 /// How many guides a block holds side by side.
 pub(crate) const LANES: usize = 16;
@@ -97,6 +97,22 @@ pub(crate) fn row_done() {
 /// The same vector in every lane.
 pub(crate) const fn splat3(v: Vec3) -> Lane3 {
     [Lane::splat(v.x), Lane::splat(v.y), Lane::splat(v.z)]
+}
+
+/// Lane by lane what lies row by row.
+#[inline(always)]
+pub(crate) fn transposed(rows: &[Lane; LANES]) -> [Lane; LANES] {
+    let mut out = [ZERO; LANES];
+    for r in (0..LANES).step_by(4) {
+        for k in (0..LANES).step_by(4) {
+            let part = |n: usize| Vec4::from_slice(&rows[r + n][k..]);
+            let square = Mat4::from_cols(part(0), part(1), part(2), part(3)).transpose();
+            for n in 0..4 {
+                square.col(n).write_to_slice(&mut out[k + n][r..]);
+            }
+        }
+    }
+    out
 }
 
 /// One number of a whole row: its halves by `of`, and what that leaves by `of` again.

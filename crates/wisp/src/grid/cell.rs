@@ -1,4 +1,9 @@
-//! What lies in a cell of the density grid, and layers of cells that one task fills.
+//! What lies in a cell of the density grid, and the cells that one task fills.
+
+// Integers of numbers that are known to fit.
+#![allow(unsafe_code)]
+
+use rayon::prelude::*;
 
 use super::SIDE;
 use crate::lanes::greater;
@@ -47,10 +52,32 @@ impl Cell {
         excess
     }
 
-    /// What [`Chunk::tally`] has found; 0 where nothing has been counted since the cell was emptied.
+    /// What [`Cells::gather`] has found; 0 where nothing has been counted since the cell was emptied.
     #[inline(always)]
     pub(super) fn excess(&self) -> f32 {
         f32::from_bits(self.0[EXCESS] as u32)
+    }
+
+    /// Adds `weight` times `parts`.
+    ///
+    /// # Safety
+    ///
+    /// The products are numbers that an `i32` holds.
+    #[inline(always)]
+    pub(super) unsafe fn add(&mut self, weight: f32, parts: &[f32; NUMBERS]) {
+        let mut sum = *self;
+        for (sum, part) in sum.0.iter_mut().zip(parts).take(PARTS) {
+            // SAFETY: as asked for.
+            *sum = sum.wrapping_add(unsafe { (weight * part).to_int_unchecked() });
+        }
+        *self = sum;
+    }
+
+    /// Adds what another grid has of the same cell.
+    fn plus(&mut self, other: &Self) {
+        for (sum, part) in self.0.iter_mut().zip(&other.0).take(PARTS) {
+            *sum = sum.wrapping_add(*part);
+        }
     }
 
     fn clear(&mut self) {
@@ -58,23 +85,20 @@ impl Cell {
     }
 }
 
-/// Layers of cells that one task fills.
-pub(super) const LAYERS: usize = 8;
+/// Cells of as many layers as one task counts.
+const CHUNK: usize = 8 * (SIDE * SIDE) as usize;
 
-/// The cells of as many layers.
-pub(super) const CHUNK: usize = LAYERS * (SIDE * SIDE) as usize;
+/// Cells of a row along x.
+const ROW: usize = SIDE as usize;
 
-/// The rows along x of as many layers.
-pub(super) const MASKS: usize = LAYERS * SIDE as usize;
+const _: () = assert!(ROW <= 64, "a row has a bit for each of its cells");
 
-const _: () = assert!(SIDE <= 64, "a row has a bit for each of its cells");
-
-/// Some layers of the grid.
-pub(super) struct Chunk<'a> {
-    /// The first layer.
-    pub(super) first: usize,
-    pub(super) cells: &'a mut [Cell],
-    pub(super) masks: &'a mut [u64],
+/// A whole grid of cells: x fastest, then y.
+#[derive(Clone, Debug)]
+pub(super) struct Cells {
+    pub(super) cells: Vec<Cell>,
+    /// Which cells of each row along x may hold hair, a bit each.
+    masks: Vec<u64>,
 }
 
 /// What is counted of cells.
@@ -97,29 +121,53 @@ impl Tally {
     }
 }
 
-impl Chunk<'_> {
+impl Cells {
+    pub(super) fn new() -> Self {
+        Self { cells: vec![Cell::EMPTY; ROW * ROW * ROW], masks: vec![0; ROW * ROW] }
+    }
+
     /// Empties the cells that may hold hair.
     pub(super) fn clear(&mut self) {
-        for (mask, cells) in self.masks.iter_mut().zip(self.cells.as_chunks_mut::<{ SIDE as usize }>().0) {
+        for (mask, cells) in self.masks.iter_mut().zip(self.cells.as_chunks_mut::<ROW>().0) {
             for x in bits(std::mem::take(mask)) {
                 cells[x].clear();
             }
         }
     }
 
-    /// Counts the cells, and leaves in each its excess; `most` is the mass of a full cell, and what is over-dense has more
-    /// than `1 / inv_threshold` of its density at rest.
-    pub(super) fn tally(&mut self, most: i32, inv_threshold: f32) -> Tally {
-        let mut out = Tally::default();
-        for (&mask, cells) in self.masks.iter().zip(self.cells.as_chunks_mut::<{ SIDE as usize }>().0) {
-            out.held += mask.count_ones();
-            for x in bits(mask) {
-                let cell = &mut cells[x];
-                out.over_dense += u32::from(cell.learn_excess(inv_threshold) > 0.0);
-                out.fullness += i64::from(cell.mass().min(most));
-            }
+    /// Says that the eight cells whose first is at `base` may hold hair.
+    #[inline(always)]
+    pub(super) fn mark(&mut self, base: usize) {
+        let (row, x) = (base / ROW, base % ROW);
+        for row in [row, row + 1, row + ROW, row + ROW + 1] {
+            self.masks[row] |= 0b11 << x;
         }
-        out
+    }
+
+    /// Adds what `others` hold, counts, and leaves in each cell its excess; `most` is the mass of a full cell, and what is
+    /// over-dense has more than `1 / inv_threshold` of its density at rest.
+    pub(super) fn gather(&mut self, others: &[Self], most: i32, inv_threshold: f32) -> Tally {
+        let chunks = self.cells.par_chunks_mut(CHUNK).zip(self.masks.par_chunks_mut(CHUNK / ROW)).enumerate();
+        let tally = |(n, (cells, masks)): (usize, (&mut [Cell], &mut [u64]))| {
+            let mut out = Tally::default();
+            let rows = masks.iter_mut().zip(cells.as_chunks_mut::<ROW>().0);
+            for (row, (mask, cells)) in (n * CHUNK / ROW..).zip(rows) {
+                for other in others {
+                    *mask |= other.masks[row];
+                    for x in bits(other.masks[row]) {
+                        cells[x].plus(&other.cells[row * ROW + x]);
+                    }
+                }
+                out.held += mask.count_ones();
+                for x in bits(*mask) {
+                    let cell = &mut cells[x];
+                    out.over_dense += u32::from(cell.learn_excess(inv_threshold) > 0.0);
+                    out.fullness += i64::from(cell.mass().min(most));
+                }
+            }
+            out
+        };
+        chunks.map(tally).reduce(Tally::default, Tally::plus)
     }
 }
 

@@ -1,18 +1,20 @@
-//! Pieces of hair on their way into the grid: placed in parallel by block, added in parallel by layers of cells.
-//!
-//! Sums of integers come out the same in any order, so that threads change nothing.
+//! How hair is put into the grid: a row of points is placed side by side, and added piece by piece.
 // Calls of functions that ask for features of the processor, made by the macro after it has asked for them.
 #![allow(unsafe_code)]
+// Lazy operators are branches, and loops over lanes with branches stay loops.
+#![allow(clippy::needless_bitwise_bool)]
 
 use glam::Vec3;
 use lovelock_groom::simd::whole_part;
 use lovelock_groom::simd_versions;
 
-use super::cell::{Chunk, LAYERS, NUMBERS, PARTS};
+use super::cell::{Cells, NUMBERS};
 use super::direction::outer;
-use super::{DensityGrid, FASTEST, FULL, MOMENTUM, OFFSETS, SIDE};
+use super::{FASTEST, FULL, Lattice, MOMENTUM, OFFSETS, SIDE};
 use crate::block::Block;
-use crate::lanes::{LANES, Lane3, Map, ZERO, ZERO3, at, direction_or, greater, lesser, put, row_done};
+use crate::lanes::{
+    LANES, Lane, Lane3, Map, ZERO, ZERO3, at, direction_or, greater, lesser, put, row_done, transposed,
+};
 use crate::trilinear::weights;
 
 /// Which hair is put into the grid.
@@ -26,80 +28,6 @@ pub(super) enum Source<'a> {
         /// Whether anything heeds directions.
         directed: bool,
     },
-}
-
-/// A piece of hair and where it lies, a line of the cache:
-///
-/// * what a cell gets of it for each unit of mass: 1, the velocity in units of the grid and below 1, and `t t^T`;
-/// * where it is between the eight cells around it, from 0 to 1 along each axis;
-/// * its mass, and the bits of the place of the first of those cells.
-#[derive(Clone, Copy, Debug)]
-#[repr(align(64))]
-struct Piece([f32; NUMBERS]);
-
-/// Where the last numbers of a piece stand.
-const FRACTION: usize = PARTS;
-const MASS: usize = PARTS + 3;
-const BASE: usize = PARTS + 4;
-
-/// The pieces of one block.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Pieces {
-    list: Vec<Piece>,
-    /// The lowest and the highest layer that they touch.
-    low: u32,
-    high: u32,
-}
-
-impl Pieces {
-    pub(super) fn clear(&mut self) {
-        self.list.clear();
-        (self.low, self.high) = (u32::MAX, 0);
-    }
-
-    /// Adds to the cells of `chunk` what lies there.
-    #[inline(always)]
-    fn add_to(&self, chunk: &mut Chunk) {
-        let first = chunk.first;
-        if (self.high as usize) < first || self.low as usize >= first + LAYERS {
-            return;
-        }
-        let side = SIDE as usize;
-        let start = first * side * side;
-        for piece in &self.list {
-            let base = piece.0[BASE].to_bits() as usize;
-            let layer = base / (side * side);
-            let below = layer.wrapping_sub(first) < LAYERS;
-            let above = (layer + 1).wrapping_sub(first) < LAYERS;
-            // The cells of the piece's own layer come first, then those of the next.
-            let (from, to) = (if below { 0 } else { 4 }, if above { 8 } else { 4 });
-            if from >= to {
-                continue;
-            }
-            let (row, x) = (base / side, base % side);
-            for layer in from / 4..to / 4 {
-                let row = row + layer * side - first * side;
-                for mask in &mut chunk.masks[row..row + 2] {
-                    *mask |= 0b11 << x;
-                }
-            }
-            let share = weights(Vec3::from_slice(&piece.0[FRACTION..]));
-            let mass = piece.0[MASS];
-            for n in from..to {
-                let m = mass * share[n];
-                let cell = &mut chunk.cells[base + OFFSETS[n] - start];
-                let mut sum = *cell;
-                for i in 0..NUMBERS {
-                    let part = if i < PARTS { m * piece.0[i] } else { 0.0 };
-                    // SAFETY: a number, and no larger than the mass but for rounding: below 2^30.
-                    let part = unsafe { part.to_int_unchecked::<i32>() };
-                    sum.0[i] = sum.0[i].wrapping_add(part);
-                }
-                *cell = sum;
-                row_done();
-            }
-        }
-    }
 }
 
 /// Unit directions of the hair at a row of points; 0 where it has none.
@@ -123,7 +51,21 @@ pub(super) struct Corners {
     pub(super) inside: [bool; LANES],
 }
 
-impl DensityGrid {
+impl Corners {
+    /// What each of the eight cells has of each point.
+    #[inline(always)]
+    pub(super) fn weights(&self) -> [Lane; 8] {
+        let mut out = [ZERO; 8];
+        for k in 0..LANES {
+            for (row, weight) in out.iter_mut().zip(weights(at(&self.fraction, k))) {
+                row[k] = weight;
+            }
+        }
+        out
+    }
+}
+
+impl Lattice {
     /// Finds the points `p`, in head space.
     #[inline(always)]
     pub(super) fn corners(&self, p: &Lane3) -> Corners {
@@ -147,11 +89,12 @@ impl DensityGrid {
     }
 }
 
-/// Puts every `stride`-th row of points of `block` on its way into `grid`: the middle of each run, so that the whole chain
-/// is covered evenly.
+/// Adds every `stride`-th row of points of `block` to `cells`: the middle of each run, so that the whole chain is covered
+/// evenly. A cell gets of a unit of mass 1, the velocity in units of the grid, and `t t^T`.
 #[inline(always)]
-fn place(grid: &DensityGrid, source: &Source, block: &Block, out: &mut Pieces) {
-    for i in (1 + (grid.stride - 1) / 2..block.points()).step_by(grid.stride) {
+fn add(lattice: &Lattice, source: &Source, block: &Block, cells: &mut Cells) {
+    let Lattice { stride, units, .. } = *lattice;
+    for i in (1 + (stride - 1) / 2..block.points()).step_by(stride) {
         let (mut p, mut v, mut t) = (block.rest.position[i], ZERO3, ZERO3);
         if let Source::Now { head_from_last, directed } = source {
             let (here, tangent) = (block.position[i], if *directed { tangents(block, i) } else { ZERO3 });
@@ -161,58 +104,45 @@ fn place(grid: &DensityGrid, source: &Source, block: &Block, out: &mut Pieces) {
                 put(&mut t, k, head_from_last.rotate(at(&tangent, k)));
             }
         }
-        let corners = grid.corners(&p);
-        let mut rows = [ZERO; MASS + 1];
-        rows[FRACTION..MASS].copy_from_slice(&corners.fraction);
-        let mut sound = [false; LANES];
+        let corners = lattice.corners(&p);
+        let (mut parts, mut masses) = ([ZERO; NUMBERS], ZERO);
         for k in 0..LANES {
             let (t, u) = (at(&t, k), at(&v, k));
             let finite = |v: Vec3| (v.x.abs() + v.y.abs() + v.z.abs()) <= f32::MAX;
             // Beyond the end of a guide that was cut there is no hair.
-            let there = corners.inside[k] && block.rest.inv_length[i][k] > 0.0;
-            sound[k] = there & finite(t) & !(u.x + u.y + u.z).is_nan();
+            let there = corners.inside[k] & (block.rest.inv_length[i][k] > 0.0);
+            let sound = there & finite(t) & !(u.x + u.y + u.z).is_nan() & (k < block.used);
             let u = u.to_array().map(|u| lesser(greater(u, -FASTEST), FASTEST) * MOMENTUM);
-            let parts = outer(t);
-            rows[0][k] = 1.0;
+            let directions = outer(t);
+            parts[0][k] = 1.0;
             for axis in 0..3 {
-                rows[1 + axis][k] = u[axis];
+                parts[1 + axis][k] = u[axis];
             }
             for n in 0..6 {
-                rows[4 + n][k] = parts[n];
+                parts[4 + n][k] = directions[n];
             }
-            let mass = block.rest.mean_link[k] * grid.stride as f32 * grid.units;
+            let mass = block.rest.mean_link[k] * stride as f32 * units;
             // What is not a number, or more than all hair, has no mass.
-            rows[MASS][k] = if (0.0..=FULL).contains(&mass) { mass } else { 0.0 };
+            masses[k] = if sound & (0.0..=FULL).contains(&mass) { mass } else { 0.0 };
         }
-        for k in 0..block.used {
-            if !sound[k] {
-                continue;
+        let (weights, parts) = (corners.weights().map(|weight| masses.times(weight)), transposed(&parts));
+        for k in 0..LANES {
+            if masses[k] > 0.0 {
+                let base = corners.base[k] as usize;
+                cells.mark(base);
+                for (offset, weight) in OFFSETS.into_iter().zip(&weights) {
+                    // SAFETY: numbers, and none larger than the mass but for rounding: below 2^30.
+                    unsafe { cells.cells[base + offset].add(weight[k], &parts[k]) };
+                    row_done();
+                }
             }
-            let mut piece = Piece([0.0; NUMBERS]);
-            for (to, from) in piece.0.iter_mut().zip(&rows) {
-                *to = from[k];
-            }
-            let layer = corners.base[k] / (SIDE * SIDE) as u32;
-            piece.0[BASE] = f32::from_bits(corners.base[k]);
-            out.low = out.low.min(layer);
-            out.high = out.high.max(layer + 1);
-            out.list.push(piece);
         }
     }
 }
 
 simd_versions! {
-    /// [`place`].
-    pub(super) fn place_all(grid: &DensityGrid, source: &Source, block: &Block, out: &mut Pieces) -> () {
-        place(grid, source, block, out)
-    }
-}
-
-simd_versions! {
-    /// [`Pieces::add_to`] of every block.
-    pub(super) fn add_all(pieces: &[Pieces], chunk: &mut Chunk) -> () {
-        for block in pieces {
-            block.add_to(chunk);
-        }
+    /// [`add`].
+    pub(super) fn add_block(lattice: &Lattice, source: &Source, block: &Block, cells: &mut Cells) -> () {
+        add(lattice, source, block, cells)
     }
 }

@@ -11,10 +11,10 @@ use super::{DensityGrid, MOMENTUM, MOST_OF_A_CELL, OFFSETS, SIDE, index};
 use crate::block::Block;
 #[cfg(test)]
 use crate::lanes::splat3;
-use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, put, row_done};
+use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, put, row_done, transposed};
 use crate::settings::RepulsionMode;
 use crate::solver::Plan;
-use crate::trilinear::{gradient, weights as weights_at};
+use crate::trilinear::gradient;
 
 /// What a row of points learns from the grid, in head space; only lanes that are `found` have hair around.
 struct Learnt {
@@ -31,34 +31,26 @@ impl DensityGrid {
     /// What hair at the points `p` that runs along `t`, both in head space, learns from the grid.
     #[inline(always)]
     fn learn(&self, p: &Lane3, t: &Lane3) -> Learnt {
-        let corners = self.corners(p);
-        let mut weights = [ZERO; 8];
-        for k in 0..LANES {
-            for (row, w) in weights.iter_mut().zip(weights_at(at(&corners.fraction, k))) {
-                row[k] = w;
-            }
-        }
+        let corners = self.lattice.corners(p);
+        let (weights, cells) = (corners.weights(), self.cells());
         // What lies around each point, lane by lane; what is worked out from it, all lanes at once.
-        let (mut sums, mut excesses) = ([ZERO; PARTS], [ZERO; 8]);
+        let (mut around, mut excesses) = ([ZERO; LANES], [ZERO; 8]);
         for k in 0..LANES {
             if !corners.inside[k] {
                 continue;
             }
             let mut all = [0.0_f32; NUMBERS];
             for n in 0..8 {
-                let (cell, weight) = (&self.cells[corners.base[k] as usize + OFFSETS[n]], weights[n][k]);
-                for (sum, value) in all.iter_mut().zip(cell.0) {
+                let (cell, weight) = (&cells[corners.base[k] as usize + OFFSETS[n]], weights[n][k]);
+                for (sum, value) in all.iter_mut().zip(cell.0).take(PARTS) {
                     *sum += weight * value as f32;
                 }
                 excesses[n][k] = cell.excess();
                 row_done();
             }
-            // Through memory, so that a cell's numbers are taken side by side, whichever of them is wanted.
-            let all = std::hint::black_box(all);
-            for (row, sum) in sums.iter_mut().zip(all) {
-                row[k] = sum;
-            }
+            around[k] = Lane(all);
         }
+        let sums = transposed(&around);
         let mut out = Learnt { found: [false; LANES], push: ZERO3, mean_velocity: ZERO3, crossing: ZERO };
         let mut crowded = [false; LANES];
         for k in 0..LANES {
@@ -71,7 +63,7 @@ impl DensityGrid {
             let directions = [sums[4][k], sums[5][k], sums[6][k], sums[7][k], sums[8][k], sums[9][k]];
             let across = crossing(&directions, mass, at(t, k));
             out.crossing[k] = if crowded[k] && self.repulsion.anisotropy > 0.0 { across } else { 0.0 };
-            put(&mut out.push, k, -gradient(&excess, at(&corners.fraction, k)) / self.cell);
+            put(&mut out.push, k, -gradient(&excess, at(&corners.fraction, k)) / self.lattice.cell);
         }
         if self.repulsion.mode == RepulsionMode::Centre {
             for k in (0..LANES).filter(|&k| crowded[k]) {
@@ -85,11 +77,14 @@ impl DensityGrid {
     /// faded at the centre, where it would be singular, and at the faces, where it would jump.
     #[cold]
     fn away_from_centre(&self, p: Vec3) -> Vec3 {
-        let cell = ((p - self.min) / self.cell).as_ivec3().clamp(IVec3::ZERO, IVec3::splat(SIDE - 1));
+        let cell = ((p - self.lattice.min) / self.lattice.cell)
+            .as_ivec3()
+            .clamp(IVec3::ZERO, IVec3::splat(SIDE - 1));
         let i = index(cell);
-        let out = p - (self.min + (cell.as_vec3() + 0.5) * self.cell);
-        let fade = (1.0 - 2.0 * out.abs().max_element() / self.cell).max(0.0);
-        out * (self.cells[i].excess() * fade / (out.length().max(0.1 * self.cell) * self.cell))
+        let out = p - (self.lattice.min + (cell.as_vec3() + 0.5) * self.lattice.cell);
+        let fade = (1.0 - 2.0 * out.abs().max_element() / self.lattice.cell).max(0.0);
+        out * (self.cells()[i].excess() * fade
+            / (out.length().max(0.1 * self.lattice.cell) * self.lattice.cell))
     }
 
     /// Adds the grid's part to the forces of a block, whose positions are still those of the last step.
@@ -119,13 +114,13 @@ impl DensityGrid {
             if to + 1 >= count {
                 break;
             }
-            (row, from, to) = (next, to, (to + self.stride).min(count - 1));
+            (row, from, to) = (next, to, (to + self.lattice.stride).min(count - 1));
         }
     }
 
     #[inline(always)]
     fn sample_row(&self, block: &Block, plan: &Plan, i: usize) -> SampleRow {
-        let most = MOST_OF_A_CELL * self.cell / plan.h;
+        let most = MOST_OF_A_CELL * self.lattice.cell / plan.h;
         let turn: Mat3 = plan.last_head.turn;
         // The published force knows no directions.
         let anisotropy = match self.repulsion.mode {

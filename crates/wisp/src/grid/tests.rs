@@ -28,9 +28,9 @@ fn lattice(side: usize, gap: f32) -> Vec<Block> {
 fn all_the_hair_is_in_the_grid() {
     let blocks = lattice(5, 0.02);
     let grid = DensityGrid::new(&blocks);
-    let mass: f64 = grid.cells.iter().map(|c| f64::from(c.mass())).sum();
+    let mass: f64 = grid.cells().iter().map(|c| f64::from(c.mass())).sum();
     // 25 guides of 20 cm; each of the eight shares of a point loses at most one unit in rounding.
-    let want = 25.0 * 0.2 * f64::from(grid.units);
+    let want = 25.0 * 0.2 * f64::from(grid.lattice.units);
     assert!((mass / want - 1.0).abs() < 0.06, "{mass} against {want}");
 }
 
@@ -42,10 +42,10 @@ fn at_rest_nothing_is_over_dense_and_squeezed_it_is() {
     let squeeze = Map { turn: Mat3::from_diagonal(Vec3::new(0.3, 1.0, 0.3)), shift: Vec3::ZERO };
     assert!(grid.update(&blocks, &squeeze, Repulsion::default()) > 0);
     // Order does not matter.
-    let forward = grid.cells.clone();
+    let forward = grid.cells().to_vec();
     blocks.reverse();
     grid.update(&blocks, &squeeze, Repulsion::default());
-    assert!(forward == grid.cells);
+    assert!(forward == grid.cells());
 }
 
 #[test]
@@ -95,7 +95,7 @@ fn hair_outside_the_grid_and_nonsense_are_left_out() {
     assert_eq!(grid.update(&blocks, &away, Repulsion::default()), 0);
     let nonsense = Map { turn: Mat3::IDENTITY, shift: Vec3::splat(f32::NAN) };
     assert_eq!(grid.update(&blocks, &nonsense, Repulsion::default()), 0);
-    assert!(grid.cells.iter().all(|c| c.mass() == 0));
+    assert!(grid.cells().iter().all(|c| c.mass() == 0));
 }
 
 #[test]
@@ -134,8 +134,8 @@ fn hair_of_any_length_is_in_the_grid() {
         let blocks: Vec<Block> =
             blocks_of(&guides).into_iter().map(|(l, u)| Block::new(&guides, l, u, 1)).collect();
         let grid = DensityGrid::new(&blocks);
-        let mass: f64 = grid.cells.iter().map(|c| f64::from(c.mass())).sum();
-        let want = 20.0 * f64::from(length) * f64::from(grid.units);
+        let mass: f64 = grid.cells().iter().map(|c| f64::from(c.mass())).sum();
+        let want = 20.0 * f64::from(length) * f64::from(grid.lattice.units);
         // Pieces stand for whole strides of links: up to one of them is missing or too much at the tip.
         assert!((mass / want - 1.0).abs() < 0.1, "{length} m: {mass} against {want}");
     }

@@ -201,6 +201,9 @@ const NEAR_ROOT: f32 = 0.25;
 /// a stiff lock would be turned to and fro by degrees, and what is lost and won by that would drive it.
 #[inline(always)]
 fn lean(block: &mut Block, plan: &Plan) {
+    if !block.work.leaning {
+        return;
+    }
     let (mut moved, mut moved_before) = (ZERO3, ZERO3);
     let root = *block.bending.hold(plan.first_free.clamp(1, block.points() - 1));
     for i in plan.first_free.max(1)..block.points() {
@@ -354,6 +357,7 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize, lay: Lay) {
         (before, was_before) = (placed, was);
     }
     let touches = near.field.is_some() || !near.active.is_empty();
+    block.work.leaning = touches && block.leans();
     if touches && lay == Lay::AtLength {
         keep_energy(block, plan, s);
     }
