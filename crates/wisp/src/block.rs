@@ -7,7 +7,7 @@ use crate::colliders::boxes::Boxes;
 use crate::colliders::field::PlaneRow;
 use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, greater, lesser, put};
 use crate::rest::RestShape;
-use crate::solver::{Bending, Coupled, Factor, LengthScratch};
+use crate::solver::{Bending, Coupled, LengthScratch};
 
 /// `LANES` guides. Rows are points, root first. Positions are in working space: the axes of the world, the
 /// origin where the head was at the end of the last step, so that single precision is spent on hair and not
@@ -54,7 +54,6 @@ pub(crate) struct Work {
     pub(crate) next_bend: Vec<Lane3>,
     pub(crate) residual: Vec<Lane3>,
     pub(crate) lengths: LengthScratch,
-    pub(crate) factor: Factor,
     /// Whether contacts have moved any point in the last substep.
     pub(crate) leaning: bool,
     /// The colliders near the block, and how deep they have closed over the roots.
@@ -130,7 +129,7 @@ impl Block {
             bend: vec![ZERO3; points],
             leans: vec![ZERO3; points],
             bending: Bending::new(points),
-            coupled: Coupled::default(),
+            coupled: Coupled::new(points),
             work: Work::default(),
             outcome: Outcome::default(),
         }
@@ -184,6 +183,7 @@ impl Block {
         self.velocity.fill(ZERO3);
         self.leans.fill(ZERO3);
         self.planes.fill(PlaneRow::UNKNOWN);
+        self.coupled.directions.fill(ZERO3);
     }
 
     /// Moves everything rigidly, velocities included.

@@ -79,6 +79,31 @@ fn a_restored_state_goes_on_with_the_same_bits() {
 }
 
 #[test]
+fn a_state_saved_in_slow_motion_goes_on_with_the_same_bits() {
+    // Here lengths are factorised for the shape of some step before, which is state too.
+    let settings = SimulationSettings::default();
+    let slowly = |simulation: &mut Simulation, n: u32| {
+        let time_secs = f64::from(n) / 60.0;
+        let colliders = body(0.03 * time_secs);
+        let input = StepInput::new(time_secs, violent(0.03 * time_secs), &colliders);
+        simulation.step(&input, &settings, STEP_SECS);
+    };
+    for saved_at in [20, 33, 47] {
+        let mut whole = started(21, 0.2);
+        (1..saved_at).for_each(|n| slowly(&mut whole, n));
+        let mut other = Simulation::new(style(&locks(21, 0.2)));
+        other.restore(&whole.save()).expect("its own bytes");
+        let at = whole.state_hash();
+        for n in saved_at..saved_at + 20 {
+            slowly(&mut whole, n);
+            slowly(&mut other, n);
+            assert_eq!(whole.state_hash(), other.state_hash(), "at step {n}");
+        }
+        assert_ne!(whole.state_hash(), at, "a state that stands still shows nothing");
+    }
+}
+
+#[test]
 fn states_of_other_things_are_refused_and_change_nothing() {
     let mut simulation = started(21, 0.2);
     (1..20).for_each(|n| step(&mut simulation, n, &SimulationSettings::default()));

@@ -18,7 +18,7 @@ use crate::rest::RestShape;
 const MAGIC: [u8; 4] = *b"LLWS";
 
 /// Raised whenever the bytes change their meaning.
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 
 /// The most colliders that a state may speak of: beyond it the bytes are no state.
 const MOST_COLLIDERS: u32 = 4096;
@@ -65,7 +65,7 @@ impl Simulation {
     /// Settings, style and the body's field are not in it: restore it where the same style is, and after a
     /// [`Simulation::reset`] on the same body.
     pub fn save(&self) -> Vec<u8> {
-        let mut out = Writer(Vec::with_capacity(self.blocks.len() * 4 * LANES * 3 * 4 * 32));
+        let mut out = Writer(Vec::with_capacity(self.blocks.len() * 5 * LANES * 3 * 4 * 32));
         out.0.extend_from_slice(&MAGIC);
         out.u32(VERSION);
         out.u64(fingerprint(&self.style.guides));
@@ -183,6 +183,7 @@ impl Simulation {
             if clamped_links != self.clamped_links {
                 block.rest = RestShape::new(guides, &block.guides, first_free);
             }
+            block.coupled.forget_factor();
             for rows in rows_of_mut(block) {
                 for axis in rows.iter_mut().flatten() {
                     *axis = Lane(input.floats()?);
@@ -220,12 +221,13 @@ impl Simulation {
 }
 
 /// What of a block is state and not working memory.
-fn rows_of(block: &Block) -> [&[Lane3]; 4] {
-    [&block.position, &block.velocity, &block.bend, &block.leans]
+fn rows_of(block: &Block) -> [&[Lane3]; 5] {
+    [&block.position, &block.velocity, &block.bend, &block.leans, &block.coupled.directions]
 }
 
-fn rows_of_mut(block: &mut Block) -> [&mut [Lane3]; 4] {
-    [&mut block.position, &mut block.velocity, &mut block.bend, &mut block.leans]
+fn rows_of_mut(block: &mut Block) -> [&mut [Lane3]; 5] {
+    let directions = &mut block.coupled.directions;
+    [&mut block.position, &mut block.velocity, &mut block.bend, &mut block.leans, directions]
 }
 
 fn fingerprint(guides: &Guides) -> u64 {

@@ -14,7 +14,10 @@
 
 use super::bending::Bending;
 use super::lengths::LengthScratch;
-use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, greater, inv_sqrt, row_done};
+use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, greater, inv_sqrt, put, row_done};
+
+/// Factors serve as long as no link has turned further than this against the head since they were made: its radians, squared.
+const ALIKE: f32 = 0.1 * 0.1;
 
 /// A pivot below this part of its diagonal is rounding.
 const LEAST_PIVOT: f32 = 1e-4;
@@ -26,9 +29,12 @@ pub(crate) struct Coupled {
     /// the diagonal and beyond the last link there is nothing.
     response: Vec<Tile>,
     links: usize,
+    /// The directions of the links, in head space, that the factor is of or will be: the only state that there is here.
+    pub(crate) directions: Vec<Lane3>,
+    factor: Factor,
 }
 
-/// Cholesky's factor of `S`: working memory of a step.
+/// Cholesky's factor of `S`.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Factor {
     /// In panels of [`ROWS`] rows, each column by column: what is summed up is summed up for all rows of a panel at once.
@@ -37,6 +43,8 @@ pub(crate) struct Factor {
     /// One over the factor's diagonal; 0 for rows that are not there.
     inv_diagonal: Vec<Lane>,
     links: usize,
+    /// Whether it has been worked out.
+    made: bool,
 }
 
 /// Rows of a panel of the factor.
@@ -66,6 +74,23 @@ type Tile = [[Lane; TILE]; TILE];
 
 const NO_TILE: Tile = [[ZERO; TILE]; TILE];
 
+/// The tile of `S` at row `r` and column `c` for links along `directions`; `response` is that of `H`.
+#[inline(always)]
+fn products(response: &Tile, r: usize, c: usize, directions: &[Lane3]) -> Tile {
+    let mut s = *response;
+    for (i, tile_row) in s.iter_mut().enumerate() {
+        let r = (r + i).min(directions.len() - 1);
+        for (j, product) in tile_row.iter_mut().enumerate() {
+            let (n, m) = (directions[r], directions[(c + j).min(r)]);
+            for k in 0..LANES {
+                product[k] *= at(&n, k).dot(at(&m, k));
+            }
+            row_done();
+        }
+    }
+    s
+}
+
 /// One over the root of a pivot, of whose diagonal `whole` was there before elimination.
 #[inline(always)]
 fn inv_root(pivot: Lane, whole: Lane) -> Lane {
@@ -83,12 +108,22 @@ fn panel(p: usize) -> usize {
 }
 
 impl Coupled {
+    pub(crate) fn new(points: usize) -> Self {
+        Self { directions: vec![ZERO3; points], ..Self::default() }
+    }
+
+    /// Forgets the factor: it is made anew, of the directions that are known.
+    pub(crate) fn forget_factor(&mut self) {
+        self.factor.made = false;
+    }
+
     /// Works out `H` for factors that have just been made; `first_free` is the first point that is not carried.
     #[inline(always)]
     pub(crate) fn prepare(&mut self, bending: &Bending, first_free: usize, points: usize) {
         let first = first_free.max(1);
         let links = points.saturating_sub(first);
         self.links = links;
+        self.forget_factor();
         // So many tiles each two columns have.
         let most = links.div_ceil(TILE);
         self.response.clear();
@@ -100,44 +135,54 @@ impl Coupled {
         });
     }
 
-    /// The tile of `S` at row `r` and column `c`; `response` is that of `H`.
+    /// Sees to it that the factor is of directions like those in `scratch`; `to_head` turns them into head space.
     #[inline(always)]
-    fn products(&self, response: &Tile, r: usize, c: usize, first: usize, scratch: &LengthScratch) -> Tile {
-        let mut s = *response;
-        for (i, tile_row) in s.iter_mut().enumerate() {
-            let r = (r + i).min(self.links - 1);
-            for (j, product) in tile_row.iter_mut().enumerate() {
-                let (n, m) = (scratch.direction[first + r], scratch.direction[first + (c + j).min(r)]);
-                for k in 0..LANES {
-                    product[k] *= at(&n, k).dot(at(&m, k));
-                }
-                row_done();
+    fn renew(&mut self, first: usize, scratch: &LengthScratch, to_head: &Map) {
+        let mut furthest = ZERO;
+        for (n, was) in scratch.direction[first..].iter().zip(&self.directions[first..]) {
+            for k in 0..LANES {
+                let turned = (to_head.rotate(at(n, k)) - at(was, k)).length_squared();
+                // What is not a number stays.
+                furthest[k] = if turned > furthest[k] || turned.is_nan() { turned } else { furthest[k] };
             }
         }
-        s
+        let alike = furthest.iter().all(|&turned| turned <= ALIKE);
+        if alike && self.factor.made {
+            return;
+        }
+        if !alike {
+            for (n, to) in scratch.direction[first..].iter().zip(&mut self.directions[first..]) {
+                let mut turned = ZERO3;
+                for k in 0..LANES {
+                    put(&mut turned, k, to_head.rotate(at(n, k)));
+                }
+                *to = turned;
+            }
+        }
+        self.factor.factorise(&self.response, self.links, &self.directions[first..]);
     }
 
-    /// One Newton step that brings the links of `position` to their lengths. `force` is working memory; `fresh` says
-    /// whether to factorise `S` anew for the directions as they are, and not to take the factors of the last call.
+    /// One Newton step that brings the links of `position` to their lengths. `force` is working memory. With `to_head`,
+    /// the turn into head space, `S` is factorised anew where directions have changed; without it, the factors are those of
+    /// the last call.
     #[inline(always)]
     pub(crate) fn project(
-        &self,
+        &mut self,
         first_free: usize,
         length: &[Lane],
         position: &mut [Lane3],
         bending: &Bending,
         scratch: &mut LengthScratch,
-        factor: &mut Factor,
         force: &mut [Lane3],
-        fresh: bool,
+        to_head: Option<&Map>,
     ) {
         let count = position.len();
         let first = first_free.max(1);
         scratch.errors(first, length, position);
-        if fresh {
-            factor.factorise(self, first, scratch);
+        if let Some(to_head) = to_head {
+            self.renew(first, scratch, to_head);
         }
-        factor.solve(first, scratch);
+        self.factor.solve(first, scratch);
         // What the links pull a point with: its own the one way, the next the other.
         let mut own = ZERO3;
         for i in first..count {
@@ -160,10 +205,9 @@ impl Coupled {
 }
 
 impl Factor {
-    /// Factorises `S` for the directions in `scratch`.
+    /// Factorises `S` for `links` links along `directions`, of whose metric `response` is the `H`.
     #[inline(always)]
-    fn factorise(&mut self, coupled: &Coupled, first: usize, scratch: &LengthScratch) {
-        let links = coupled.links;
+    fn factorise(&mut self, response: &[Tile], links: usize, directions: &[Lane3]) {
         if self.links != links {
             self.links = links;
             self.panels.clear();
@@ -171,18 +215,19 @@ impl Factor {
             self.inv_diagonal.clear();
             self.inv_diagonal.resize(ROWS * links.div_ceil(ROWS), ZERO);
         }
+        self.made = true;
         // Two columns by two rows at a time: what is loaded is used twice, and no sum waits for another. Each two columns from
         // their diagonal down: below it no tile waits for the one before.
-        let mut responses = coupled.response.iter();
+        let mut responses = response.iter();
         for c in (0..links).step_by(TILE) {
             let Some(response) = responses.next() else { return };
-            self.pivots(response, c, coupled, first, scratch);
+            self.pivots(response, c, directions);
             let corner = self.panels[panel(c / ROWS) + ROWS * c + c % ROWS + 1];
             let inv: [Lane; TILE] = [self.inv_diagonal[c], self.inv_diagonal[c + 1]];
             for (r, response) in (c + TILE..links).step_by(TILE).zip(&mut responses) {
                 let (above, own) = self.panels.split_at_mut(panel(r / ROWS));
                 let other = if c / ROWS < r / ROWS { &above[panel(c / ROWS)..] } else { &*own };
-                let s = coupled.products(response, r, c, first, scratch);
+                let s = products(response, r, c, &directions[..links]);
                 let s = less_products(s, &own[..ROWS * c], r % ROWS, &other[..ROWS * c], c % ROWS);
                 for (i, row) in s.iter().enumerate().take(links - r) {
                     let one = row[0].times(inv[0]);
@@ -197,16 +242,9 @@ impl Factor {
 
     /// The tile on the diagonal at row and column `c`.
     #[inline(always)]
-    fn pivots(
-        &mut self,
-        response: &Tile,
-        c: usize,
-        coupled: &Coupled,
-        first: usize,
-        scratch: &LengthScratch,
-    ) {
+    fn pivots(&mut self, response: &Tile, c: usize, directions: &[Lane3]) {
         let own = &mut self.panels[panel(c / ROWS)..];
-        let whole = coupled.products(response, c, c, first, scratch);
+        let whole = products(response, c, c, &directions[..self.links]);
         let s = less_products(whole, &own[..ROWS * c], c % ROWS, &own[..ROWS * c], c % ROWS);
         let inv = inv_root(s[0][0], whole[0][0]);
         self.inv_diagonal[c] = inv;
@@ -307,7 +345,7 @@ mod tests {
     }
 
     fn coupled(b: &Bending, first_free: usize) -> Coupled {
-        let mut c = Coupled::default();
+        let mut c = Coupled::new(POINTS);
         c.prepare(b, first_free, POINTS);
         c
     }
@@ -348,16 +386,15 @@ mod tests {
             }
             let (was, before) = (x.clone(), lengths_after(&x));
             let mut force = vec![ZERO3; POINTS];
-            let c = coupled(&b, first_free);
+            let mut c = coupled(&b, first_free);
             c.project(
                 first_free,
                 &[Lane::splat(LINK); POINTS],
                 &mut x,
                 &b,
                 &mut LengthScratch::new(POINTS),
-                &mut Factor::default(),
                 &mut force,
-                true,
+                Some(&Map::IDENTITY),
             );
             let after = lengths_after(&x);
             // A step moves folded links by about their errors' size sideways: measured 3.6 times the square.
@@ -409,7 +446,7 @@ mod tests {
     fn a_folded_lock_unfolds_at_the_rate_of_its_damping() {
         let length = [Lane::splat(LINK); POINTS];
         let together = left_of_fold(8, |b, x, scratch, force| {
-            coupled(b, 2).project(2, &length, x, b, scratch, &mut Factor::default(), force, true);
+            coupled(b, 2).project(2, &length, x, b, scratch, force, Some(&Map::IDENTITY));
         });
         // Without inertia a stiff bend dies by 1 - 1 / (1 + gamma) a substep: 0.37 after eight, gamma 7.2.
         assert!((0.3..0.45).contains(&together), "{together} of the fold is left");

@@ -14,7 +14,7 @@ mod relaxation;
 mod substep;
 
 pub(crate) use bending::{Bending, BendingKey};
-pub(crate) use coupled::{Coupled, Factor};
+pub(crate) use coupled::Coupled;
 pub(crate) use lengths::LengthScratch;
 pub(crate) use plan::{Plan, Substep};
 

@@ -8,7 +8,7 @@ use crate::Integrator;
 use crate::block::{Block, Depth};
 use crate::colliders::boxes::{apart, bounds};
 use crate::colliders::contact::{Near, NearField, buried, buried_in_field, lay_point, penetration};
-use crate::lanes::{LANES, Lane, Turns, ZERO, ZERO3, at, direction_or, greater, lesser, put};
+use crate::lanes::{LANES, Lane, Map, Turns, ZERO, ZERO3, at, direction_or, greater, lesser, put};
 use glam::Vec3;
 
 /// Takes the block through substep `s`.
@@ -59,7 +59,7 @@ enum Lay {
     AsIs,
 }
 
-/// Substeps that share the factors of the coupled lengths.
+/// So many substeps take the factors of the coupled lengths as they are, before it is asked whether they still serve.
 const SAME_FACTORS: usize = 4;
 
 /// One Newton step of the lengths, in the metric of the bends.
@@ -68,15 +68,15 @@ fn lengths(block: &mut Block, plan: &Plan, s: usize) {
     if block.bending.is_chain() {
         project_position(plan.first_free, &block.rest.length, &mut block.work.next, &mut block.work.lengths);
     } else {
+        let to_head = Map { turn: plan.substeps[s].head.turn.transpose(), shift: Vec3::ZERO };
         block.coupled.project(
             plan.first_free,
             &block.rest.length,
             &mut block.work.next,
             &block.bending,
             &mut block.work.lengths,
-            &mut block.work.factor,
             &mut block.work.residual,
-            s.is_multiple_of(SAME_FACTORS),
+            s.is_multiple_of(SAME_FACTORS).then_some(&to_head),
         );
     }
 }
