@@ -22,8 +22,8 @@ pub(crate) struct Block {
     pub(crate) rest_distance: Vec<Lane>,
     /// Signed distance at rest of each point to the field of head and shoulders, metres; empty without one.
     pub(crate) field_distance: Vec<Lane>,
-    /// What the points have learnt of the field in the present step.
-    pub(crate) planes: Vec<PlaneRow>,
+    /// Where at rest the skin is that was last found near each point; see [`PlaneRow::rest`].
+    pub(crate) skin: Vec<Lane3>,
 
     /// How firmly ties hold each point; negative where none does.
     pub(crate) held: Vec<Lane>,
@@ -54,6 +54,8 @@ pub(crate) struct Work {
     pub(crate) next_bend: Vec<Lane3>,
     pub(crate) residual: Vec<Lane3>,
     pub(crate) lengths: LengthScratch,
+    /// What the points have learnt of the field.
+    pub(crate) planes: Vec<PlaneRow>,
     /// Whether contacts have moved any point in the last substep.
     pub(crate) leaning: bool,
     /// The colliders near the block, and how deep they have closed over the roots.
@@ -70,6 +72,7 @@ impl Work {
             rows.resize(points, ZERO3);
         }
         self.keep.resize(points, ZERO);
+        self.planes.resize(points, PlaneRow::unknown(PlaneRow::NO_SKIN));
         self.lengths.fit(points);
     }
 }
@@ -123,7 +126,7 @@ impl Block {
             rest_distance: Vec::new(),
             held: vec![Lane::splat(-1.0); points],
             field_distance: Vec::new(),
-            planes: vec![PlaneRow::UNKNOWN; points],
+            skin: vec![PlaneRow::NO_SKIN; points],
             position: vec![ZERO3; points],
             velocity: vec![ZERO3; points],
             bend: vec![ZERO3; points],
@@ -182,13 +185,13 @@ impl Block {
         }
         self.velocity.fill(ZERO3);
         self.leans.fill(ZERO3);
-        self.planes.fill(PlaneRow::UNKNOWN);
+        self.skin.fill(PlaneRow::NO_SKIN);
         self.coupled.directions.fill(ZERO3);
     }
 
     /// Moves everything rigidly, velocities included.
     pub(crate) fn carry(&mut self, by: &Map) {
-        self.planes.fill(PlaneRow::UNKNOWN);
+        self.skin.fill(PlaneRow::NO_SKIN);
         self.leans.fill(ZERO3);
         for i in 0..self.points() {
             for k in 0..LANES {

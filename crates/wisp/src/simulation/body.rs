@@ -25,7 +25,7 @@ impl Simulation {
                 if !known {
                     let reach = SimulationSettings::default().skin_margin + LAYER_HEIGHT;
                     self.field = Some(MovingField::new(placed.field, placed.pose.lift, reach));
-                    self.blocks.iter_mut().for_each(|block| block.planes.fill(PlaneRow::UNKNOWN));
+                    self.blocks.iter_mut().for_each(|block| block.skin.fill(PlaneRow::NO_SKIN));
                     self.learn_field_distances();
                 }
                 !known

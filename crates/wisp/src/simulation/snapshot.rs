@@ -99,7 +99,7 @@ impl Simulation {
             }
         }
         if !places.is_empty() {
-            for axis in self.blocks.iter().flat_map(|block| &block.planes).flat_map(|row| &row.rest) {
+            for axis in self.blocks.iter().flat_map(|block| &block.skin).flatten() {
                 out.floats(&axis[..]);
             }
         }
@@ -190,10 +190,10 @@ impl Simulation {
                 }
             }
         }
-        for row in next.blocks.iter_mut().flat_map(|block| &mut block.planes) {
-            *row = PlaneRow::UNKNOWN;
+        for row in next.blocks.iter_mut().flat_map(|block| &mut block.skin) {
+            *row = PlaneRow::NO_SKIN;
             if !places.is_empty() {
-                for axis in &mut row.rest {
+                for axis in row {
                     *axis = Lane(input.floats()?);
                 }
             }

@@ -19,6 +19,7 @@ pub(crate) use lengths::LengthScratch;
 pub(crate) use plan::{Plan, Substep};
 
 use crate::block::{Block, Outcome, stretch_of};
+use crate::colliders::field::PlaneRow;
 use crate::lanes::{LANES, ZERO, at, greater, put};
 
 /// Takes `block` through the step of `plan`.
@@ -27,8 +28,18 @@ pub(crate) fn advance(block: &mut Block, plan: &Plan) {
     block.outcome = Outcome::default();
     block.work.fit(block.position.len());
     forces::prepare(block, plan);
+    if plan.field.is_some() {
+        for (planes, skin) in block.work.planes.iter_mut().zip(&block.skin) {
+            *planes = PlaneRow::unknown(*skin);
+        }
+    }
     for i in 0..plan.substeps.len() {
         substep::run(block, plan, i);
+    }
+    if plan.field.is_some() {
+        for (planes, skin) in block.work.planes.iter().zip(&mut block.skin) {
+            *skin = planes.rest;
+        }
     }
     measure(block, plan);
 }

@@ -270,10 +270,7 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize, lay: Lay) {
     let field = plan.field.map(|moving| {
         let (substep, passed) = (&plan.substeps[s], (s + 1) as f32 / plan.substeps.len() as f32);
         let (rest_distance, root) = (&block.field_distance[..], &block.work.next[carried]);
-        let plane = &mut block.planes[carried];
-        if s == 0 {
-            plane.forget();
-        }
+        let plane = &mut block.work.planes[carried];
         let buried = buried_in_field(root, moving, substep, passed, &rest_distance[carried], plane);
         NearField { moving, substep, passed, rest_distance, buried }
     });
@@ -316,10 +313,7 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize, lay: Lay) {
             for k in 0..LANES {
                 put(&mut fallback, k, (at(&was, k) - at(&was_before, k)) * inv[k]);
             }
-            if s == 0 {
-                block.planes[i].forget();
-            }
-            let planes = &mut block.planes[i];
+            let planes = &mut block.work.planes[i];
             let laid = lay_point(i, &before, &placed, &was, &fallback, &length, &near, &plan.rules, planes);
             placed = laid.placed;
             let mut leans = block.leans[i];

@@ -54,7 +54,7 @@ fn lay(shape: ColliderShape, from: Vec3, wanted: Vec3, length: f32) -> Vec3 {
 
 /// Without a field there is nothing to learn of it.
 fn nowhere() -> PlaneRow {
-    PlaneRow::UNKNOWN
+    PlaneRow::unknown(PlaneRow::NO_SKIN)
 }
 
 /// Points next to the surface of a shape of about 0.1 m, with links that would enter it.

@@ -51,24 +51,25 @@ pub(crate) struct PlaneRow {
 pub(super) const NOWHERE: Vec3 = Vec3::splat(f32::MAX);
 
 impl PlaneRow {
-    pub(crate) const UNKNOWN: Self = Self {
-        place: ZERO3,
-        serves: Lane::splat(-1.0),
-        passed: ZERO,
-        head_distance: Lane::splat(NONE),
-        head_normal: ZERO3,
-        skin_distance: Lane::splat(NONE),
-        skin_normal: ZERO3,
-        share: ZERO,
-        drift: ZERO3,
-        guess: ZERO,
-        any: false,
-        rest: splat3(NOWHERE),
-    };
+    /// A row near which no skin has been found.
+    pub(crate) const NO_SKIN: Lane3 = splat3(NOWHERE);
 
-    /// Forgets what was measured in the last step.
-    pub(crate) fn forget(&mut self) {
-        self.serves = Lane::splat(-1.0);
+    /// Nothing has been measured yet; `rest` is what is known from the last step.
+    pub(crate) const fn unknown(rest: Lane3) -> Self {
+        Self {
+            place: ZERO3,
+            serves: Lane::splat(-1.0),
+            passed: ZERO,
+            head_distance: Lane::splat(NONE),
+            head_normal: ZERO3,
+            skin_distance: Lane::splat(NONE),
+            skin_normal: ZERO3,
+            share: ZERO,
+            drift: ZERO3,
+            guess: ZERO,
+            any: false,
+            rest,
+        }
     }
 }
 

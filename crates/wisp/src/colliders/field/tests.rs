@@ -52,7 +52,7 @@ fn distances(spare: bool, moved: bool, out: f32) -> Vec<f32> {
             if inner && skin {
                 let p = surface.positions[v] + surface.normals[v] * out - origin;
                 let row = splat3(p);
-                let mut planes = PlaneRow::UNKNOWN;
+                let mut planes = PlaneRow::unknown(PlaneRow::NO_SKIN);
                 let distance =
                     moving.row(&row, &step, 1.0, 0.012, &mut planes).map_or(f32::MAX, |r| r.distance[3]);
                 all.push(distance);
@@ -105,10 +105,10 @@ fn what_a_point_learns_does_not_depend_on_the_others_of_its_row() {
         .flat_map(|v| [surface.positions[v] - origin, surface.positions[v] + Vec3::Z - origin])
         .collect();
     let learn = |row: &Lane3| {
-        let mut planes = PlaneRow::UNKNOWN;
+        let mut planes = PlaneRow::unknown(PlaneRow::NO_SKIN);
         // Twice, so that the second begins where the first has been found.
         let _ = moving.row(row, &step, 0.5, 0.012, &mut planes);
-        planes.forget();
+        let mut planes = PlaneRow::unknown(planes.rest);
         let found = moving.row(row, &step, 1.0, 0.012, &mut planes);
         (found.map(|r| (r.distance, r.normal, r.head, r.guess)), planes.rest)
     };
