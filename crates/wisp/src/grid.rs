@@ -28,6 +28,10 @@ const SIDE: i32 = 48;
 /// Smallest cell, metres, and the largest for hair to swing in, as long as hair at rest is inside.
 const CELL: (f32, f32) = (0.012, 0.02);
 
+/// A point stands for its neighbours along so many cells at most, and so many links.
+const RUN: f32 = 2.1;
+const MOST_LINKS: usize = 8;
+
 /// So much further than hair at rest reaches from its middle the grid goes at least.
 const ROOM: f32 = 1.1;
 
@@ -102,10 +106,11 @@ impl DensityGrid {
         // Two cells at the rim have no neighbours to be between.
         let cell = swing.max(2.0 * ROOM * reach / (SIDE - 2) as f32);
         let link = (links / count.max(1.0)).max(1e-4);
+        let points = blocks.first().map_or(0, Block::points);
         let lattice = Lattice {
             min: centre - Vec3::splat(0.5 * cell * SIDE as f32),
             cell,
-            stride: ((1.4 * cell / link) as usize).clamp(1, 8),
+            stride: ((RUN * cell / link) as usize).min(MOST_LINKS).clamp(1, (points / 2).max(1)),
             units: FULL / total.max(1e-3),
         };
         let mut grid = Self {
@@ -187,8 +192,10 @@ impl DensityGrid {
         self.parts.par_iter_mut().for_each(|cells| {
             cells.clear();
             // Who adds a block does not matter.
-            while let Some(block) = blocks.get(next.fetch_add(1, Ordering::Relaxed)) {
-                add_block(width, &lattice, source, block, cells);
+            loop {
+                let n = next.fetch_add(1, Ordering::Relaxed);
+                let Some(block) = blocks.get(n) else { break };
+                add_block(width, &lattice, source, block, n % 2 == 1, cells);
             }
         });
         let (most, inv_threshold) = (self.most(), 1.0 / self.repulsion.threshold);

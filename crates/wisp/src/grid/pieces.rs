@@ -89,12 +89,13 @@ impl Lattice {
     }
 }
 
-/// Adds every `stride`-th row of points of `block` to `cells`: the middle of each run, so that the whole chain is covered
-/// evenly. A cell gets of a unit of mass 1, the velocity in units of the grid, and `t t^T`.
+/// Adds every `stride`-th row of points of `block` to `cells`: the middle of each run, and of an `odd` block its end. So the
+/// whole chain is covered evenly, and where pieces lie side by side there are no gaps from block to block. A cell gets of a unit of mass 1, the velocity in units of the grid, and `t t^T`.
 #[inline(always)]
-fn add(lattice: &Lattice, source: &Source, block: &Block, cells: &mut Cells) {
+fn add(lattice: &Lattice, source: &Source, block: &Block, odd: bool, cells: &mut Cells) {
     let Lattice { stride, units, .. } = *lattice;
-    for i in (1 + (stride - 1) / 2..block.points()).step_by(stride) {
+    let first = 1 + (stride - 1) / 2 + if odd { stride / 2 } else { 0 };
+    for i in (first..block.points()).step_by(stride) {
         let (mut p, mut v, mut t) = (block.rest.position[i], ZERO3, ZERO3);
         if let Source::Now { head_from_last, directed } = source {
             let (here, tangent) = (block.position[i], if *directed { tangents(block, i) } else { ZERO3 });
@@ -142,7 +143,7 @@ fn add(lattice: &Lattice, source: &Source, block: &Block, cells: &mut Cells) {
 
 simd_versions! {
     /// [`add`].
-    pub(super) fn add_block(lattice: &Lattice, source: &Source, block: &Block, cells: &mut Cells) -> () {
-        add(lattice, source, block, cells)
+    pub(super) fn add_block(lattice: &Lattice, source: &Source, block: &Block, odd: bool, cells: &mut Cells) -> () {
+        add(lattice, source, block, odd, cells)
     }
 }
