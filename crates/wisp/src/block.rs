@@ -34,6 +34,8 @@ pub(crate) struct Block {
     pub(crate) bend: Vec<Lane3>,
     /// What contacts have moved each point by in the last substep, where they still do, metres.
     pub(crate) leans: Vec<Lane3>,
+    /// Whether there is any of that; see [`Block::leans`].
+    pub(crate) leaning: bool,
     pub(crate) bending: Bending,
     pub(crate) coupled: Coupled,
     /// Lent for the time of a step; empty between steps.
@@ -56,8 +58,6 @@ pub(crate) struct Work {
     pub(crate) lengths: LengthScratch,
     /// What the points have learnt of the field.
     pub(crate) planes: Vec<PlaneRow>,
-    /// Whether contacts have moved any point in the last substep.
-    pub(crate) leaning: bool,
     /// The colliders near the block, and how deep they have closed over the roots.
     pub(crate) active: Vec<u32>,
     pub(crate) boxes: Boxes,
@@ -131,6 +131,7 @@ impl Block {
             velocity: vec![ZERO3; points],
             bend: vec![ZERO3; points],
             leans: vec![ZERO3; points],
+            leaning: false,
             bending: Bending::new(points),
             coupled: Coupled::new(points),
             work: Work::default(),
@@ -185,6 +186,7 @@ impl Block {
         }
         self.velocity.fill(ZERO3);
         self.leans.fill(ZERO3);
+        self.leaning = false;
         self.skin.fill(PlaneRow::NO_SKIN);
         self.coupled.directions.fill(ZERO3);
     }
@@ -193,6 +195,7 @@ impl Block {
     pub(crate) fn carry(&mut self, by: &Map) {
         self.skin.fill(PlaneRow::NO_SKIN);
         self.leans.fill(ZERO3);
+        self.leaning = false;
         for i in 0..self.points() {
             for k in 0..LANES {
                 let p = by.apply(at(&self.position[i], k));

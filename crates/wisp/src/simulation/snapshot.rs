@@ -189,6 +189,7 @@ impl Simulation {
                     *axis = Lane(input.floats()?);
                 }
             }
+            block.leaning = block.leans();
         }
         for row in next.blocks.iter_mut().flat_map(|block| &mut block.skin) {
             *row = PlaneRow::NO_SKIN;

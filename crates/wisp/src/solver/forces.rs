@@ -24,7 +24,6 @@ pub(crate) fn prepare(block: &mut Block, plan: &Plan) {
     if block.bending.prepare(plan.bending, &rest.mean_link, &rest.inv_length, &rest.bend, &block.held) {
         block.coupled.prepare(&block.bending, plan.first_free, block.position.len());
     }
-    block.work.leaning = block.leans();
     let gravity = Vec3::new(0.0, -settings.gravity, 0.0);
     let carried = settings.style_support * settings.gravity;
     let windy = plan.wind.blows();

@@ -59,6 +59,7 @@ fn measure(block: &mut Block, plan: &Plan) {
         // Hair further than 300 m from its head has been lost as surely as one at infinity.
         if size[k].is_nan() || size[k] > 1e5 * count as f32 {
             restore(block, plan, k);
+            block.leaning = block.leans();
             if k < block.used {
                 block.outcome.recovered += 1;
                 block.outcome.first_recovered.get_or_insert(k);

@@ -8,7 +8,7 @@ use crate::Integrator;
 use crate::block::{Block, Depth};
 use crate::colliders::boxes::{apart, bounds};
 use crate::colliders::contact::{Near, NearField, buried, buried_in_field, lay_point, penetration};
-use crate::lanes::{LANES, Lane, Map, Turns, ZERO, ZERO3, at, direction_or, greater, lesser, put};
+use crate::lanes::{LANES, Lane, Map, Turns, ZERO, ZERO3, at, choose, direction_or, greater, lesser, put};
 use glam::Vec3;
 
 /// Takes the block through substep `s`.
@@ -201,7 +201,7 @@ const NEAR_ROOT: f32 = 0.25;
 /// a stiff lock would be turned to and fro by degrees, and what is lost and won by that would drive it.
 #[inline(always)]
 fn lean(block: &mut Block, plan: &Plan) {
-    if !block.work.leaning {
+    if !block.leaning {
         return;
     }
     let (mut moved, mut moved_before) = (ZERO3, ZERO3);
@@ -316,15 +316,17 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize, lay: Lay) {
             let planes = &mut block.work.planes[i];
             let laid = lay_point(i, &before, &placed, &was, &fallback, &length, &near, &plan.rules, planes);
             placed = laid.placed;
-            let mut leans = block.leans[i];
-            for k in 0..LANES {
-                let push = at(&placed, k) - at(&laid.free, k);
-                let sum = at(&leans, k) + push;
-                let touches = push.length_squared() > 0.0;
-                let pick = |a: f32| if touches { a } else { 0.0 };
-                put(&mut leans, k, Vec3::new(pick(sum.x), pick(sum.y), pick(sum.z)));
+            if laid.touched {
+                let mut leans = block.leans[i];
+                for k in 0..LANES {
+                    let push = at(&placed, k) - at(&laid.free, k);
+                    let sum = at(&leans, k) + push;
+                    put(&mut leans, k, choose(push.length_squared() > 0.0, sum, Vec3::ZERO));
+                }
+                block.leans[i] = leans;
+            } else if block.leaning {
+                block.leans[i] = ZERO3;
             }
-            block.leans[i] = leans;
             if last && laid.touched {
                 let found = penetration(i, &placed, &near, &plan.rules, planes);
                 for k in 0..LANES {
@@ -351,7 +353,7 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize, lay: Lay) {
         (before, was_before) = (placed, was);
     }
     let touches = near.field.is_some() || !near.active.is_empty();
-    block.work.leaning = touches && block.leans();
+    block.leaning = touches && block.leans();
     if touches && lay == Lay::AtLength {
         keep_energy(block, plan, s);
     }
