@@ -84,7 +84,7 @@ fn worst(moves: &[Moves]) -> (f32, f32) {
 
 #[test]
 fn seconds_after_any_stop_nothing_jitters() {
-    // Measured: at most 0.59 mm a frame and 0.60 mm (curly hair at 5.75 s), and for long hair 0.08 and 1.2 mm. Single long locks
+    // Measured: at most 0.59 mm a frame and 0.60 mm (curly hair at 5.75 s), and for long hair 0.05 and 1.2 mm. Single long locks
     // still slide off a shoulder 5 s after a stop, which is no jitter.
     for (preset, wisps, stops, after, way, extent) in [
         (Preset::Smooth, 40, &[1.0, 3.8, 5.75, 8.2][..], 4.0, 1e-3, 2e-3),
