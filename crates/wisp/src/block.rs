@@ -188,7 +188,7 @@ impl Block {
         self.leans.fill(ZERO3);
         self.leaning = false;
         self.skin.fill(PlaneRow::NO_SKIN);
-        self.coupled.directions.fill(ZERO3);
+        self.coupled.forget();
     }
 
     /// Moves everything rigidly, velocities included.

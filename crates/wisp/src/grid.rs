@@ -28,7 +28,8 @@ const SIDE: i32 = 48;
 /// Smallest cell, metres, and the largest for hair to swing in, as long as hair at rest is inside.
 const CELL: (f32, f32) = (0.012, 0.02);
 
-/// A point stands for its neighbours along so many cells at most, and so many links.
+/// A point stands for its neighbours along so many cells at most, a little more than two so that these are not rounded
+/// down, and so many links.
 const RUN: f32 = 2.1;
 const MOST_LINKS: usize = 8;
 
@@ -47,8 +48,8 @@ const FASTEST: f32 = 20.0;
 /// A push may not carry hair further than this part of a cell in one substep.
 const MOST_OF_A_CELL: f32 = 0.25;
 
-/// Tasks that put hair into the grid side by side, at most: each has cells of its own.
-const TASKS: usize = 8;
+/// Tasks that put hair into the grid side by side, at most: each has cells of its own, 7 MB of them.
+const TASKS: usize = 4;
 
 /// Where the cells are, and what of a guide they get.
 #[derive(Clone, Copy, Debug)]
@@ -192,10 +193,8 @@ impl DensityGrid {
         self.parts.par_iter_mut().for_each(|cells| {
             cells.clear();
             // Who adds a block does not matter.
-            loop {
-                let n = next.fetch_add(1, Ordering::Relaxed);
-                let Some(block) = blocks.get(n) else { break };
-                add_block(width, &lattice, source, block, n % 2 == 1, cells);
+            while let Some(block) = blocks.get(next.fetch_add(1, Ordering::Relaxed)) {
+                add_block(width, &lattice, source, block, cells);
             }
         });
         let (most, inv_threshold) = (self.most(), 1.0 / self.repulsion.threshold);

@@ -278,6 +278,16 @@ mod tests {
     }
 
     #[test]
+    fn rows_and_lanes_change_places() {
+        let rows: [Lane; LANES] =
+            std::array::from_fn(|r| Lane(std::array::from_fn(|k| (LANES * r + k) as f32)));
+        let lanes = transposed(&rows);
+        for (k, lane) in lanes.iter().enumerate() {
+            assert_eq!(lane.0, std::array::from_fn(|r| (LANES * r + k) as f32), "lane {k}");
+        }
+    }
+
+    #[test]
     fn one_over_a_root_is_right_to_two_units_in_the_last_place() {
         let mut worst = 0.0_f64;
         for i in 0..200_000 {

@@ -11,7 +11,7 @@ use lovelock_groom::Hairstyle;
 
 use super::{Simulation, first_free};
 use crate::block::Block;
-use crate::lanes::{LANES, Lane3, Map, at, direction_or, put};
+use crate::lanes::{LANES, Lane3, Map, ZERO3, at, direction_or, put};
 use crate::rest::RestShape;
 use crate::solver::Bending;
 
@@ -89,6 +89,9 @@ impl Simulation {
         let first_free = first_free(clamped_links, guides.points_per_guide);
         for block in &mut self.blocks {
             block.rest = RestShape::new(guides, &block.guides, first_free);
+            // Of points that are carried now nobody keeps account.
+            block.leans.fill(ZERO3);
+            block.leaning = false;
         }
         if let Some(taking) = taking {
             self.go_on_taking_hold(taking.since_secs, taking.held, taking.from);

@@ -211,3 +211,42 @@ fn links_too_short_to_see_are_no_stretch() {
     assert!(seen < 2e-5, "{seen}");
     assert!(of_itself > 1e-3, "the control, measured 0.5 %: {of_itself} of its own length");
 }
+
+#[test]
+fn of_what_lengths_were_factorised_is_state() {
+    let (mut whole, skull) = head_of_hair();
+    let slowly = |simulation: &mut Simulation, step: i32| {
+        let turn = Quat::from_rotation_y(0.04 * (0.4 * step as f32).sin());
+        let colliders = [skull];
+        let at = StepInput::new(f64::from(step) / 60.0, Affine3A::from_quat(turn), &colliders);
+        simulation.step(&at, &SimulationSettings::default(), 1.0 / 60.0);
+        simulation.state_hash()
+    };
+    for step in 1..30 {
+        slowly(&mut whole, step);
+    }
+    let (mut again, mut anew) = (whole.clone(), whole.clone());
+    again.blocks.iter_mut().for_each(|block| block.coupled.forget_factor());
+    anew.blocks.iter_mut().for_each(|block| block.coupled.forget());
+    let same = slowly(&mut whole, 30);
+    assert_eq!(slowly(&mut again, 30), same, "a factor follows from its directions");
+    assert_ne!(slowly(&mut anew, 30), same, "the control: of other directions it is another");
+}
+
+#[test]
+fn links_that_are_clamped_and_let_go_leave_nothing_that_is_not_saved() {
+    let (mut whole, skull) = head_of_hair();
+    let stepped = |simulation: &mut Simulation, step: i32, clamped_links: u32| {
+        let settings = SimulationSettings { clamped_links, ..settings() };
+        simulation.step(&input(step, &[skull]), &settings, 1.0 / 60.0);
+        simulation.state_hash()
+    };
+    for step in 1..40 {
+        stepped(&mut whole, step, if step < 20 { 1 } else { 2 });
+    }
+    let mut other = whole.clone();
+    other.restore(&whole.save()).expect("its own bytes");
+    for step in 40..60 {
+        assert_eq!(stepped(&mut whole, step, 1), stepped(&mut other, step, 1), "step {step}");
+    }
+}

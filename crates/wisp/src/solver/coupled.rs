@@ -14,7 +14,7 @@
 
 use super::bending::Bending;
 use super::lengths::LengthScratch;
-use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, greater, inv_sqrt, put, row_done};
+use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, choose, greater, inv_sqrt, put, row_done};
 
 /// Factors serve as long as no link has turned further than this against the head since they were made: its radians, squared.
 const ALIKE: f32 = 0.1 * 0.1;
@@ -112,12 +112,18 @@ impl Coupled {
         Self { directions: vec![ZERO3; points], ..Self::default() }
     }
 
+    /// Forgets the factor and what it is of.
+    pub(crate) fn forget(&mut self) {
+        self.directions.fill(ZERO3);
+        self.forget_factor();
+    }
+
     /// Forgets the factor: it is made anew, of the directions that are known.
     pub(crate) fn forget_factor(&mut self) {
         self.factor.made = false;
     }
 
-    /// Works out `H` for factors that have just been made; `first_free` is the first point that is not carried.
+    /// Works out `H` for factors of `bending` that have just been made; `first_free` is the first point that is not carried.
     #[inline(always)]
     pub(crate) fn prepare(&mut self, bending: &Bending, first_free: usize, points: usize) {
         let first = first_free.max(1);
@@ -135,7 +141,8 @@ impl Coupled {
         });
     }
 
-    /// Sees to it that the factor is of directions like those in `scratch`; `to_head` turns them into head space.
+    /// Sees to it that the factor is of directions like those in `scratch`; `to_head` turns them into head space. A lane that has
+    /// turned takes its new directions, and the others keep theirs: of these they get the same factor again.
     #[inline(always)]
     fn renew(&mut self, first: usize, scratch: &LengthScratch, to_head: &Map) {
         let mut furthest = ZERO;
@@ -146,18 +153,17 @@ impl Coupled {
                 furthest[k] = if turned > furthest[k] || turned.is_nan() { turned } else { furthest[k] };
             }
         }
-        let alike = furthest.iter().all(|&turned| turned <= ALIKE);
-        if alike && self.factor.made {
+        let alike = furthest.map(|turned| turned <= ALIKE);
+        if alike == [true; LANES] && self.factor.made {
             return;
         }
-        if !alike {
-            for (n, to) in scratch.direction[first..].iter().zip(&mut self.directions[first..]) {
-                let mut turned = ZERO3;
-                for k in 0..LANES {
-                    put(&mut turned, k, to_head.rotate(at(n, k)));
-                }
-                *to = turned;
+        for (n, to) in scratch.direction[first..].iter().zip(&mut self.directions[first..]) {
+            let mut next = *to;
+            for k in 0..LANES {
+                let turned = choose(alike[k], at(to, k), to_head.rotate(at(n, k)));
+                put(&mut next, k, turned);
             }
+            *to = next;
         }
         self.factor.factorise(&self.response, self.links, &self.directions[first..]);
     }

@@ -59,7 +59,7 @@ enum Lay {
     AsIs,
 }
 
-/// So many substeps take the factors of the coupled lengths as they are, before it is asked whether they still serve.
+/// Once in so many substeps it is asked whether the factors of the coupled lengths still serve.
 const SAME_FACTORS: usize = 4;
 
 /// One Newton step of the lengths, in the metric of the bends.

@@ -43,13 +43,10 @@ impl MovingField {
         }
         let at_rest = self.at_rest(row, &out.alone);
         for k in 0..LANES {
-            let (value, slope, there) = (at_rest.value[k], at(&at_rest.slope, k), at_rest.there[k]);
-            let squared = slope.length_squared();
-            let inv = inv_sqrt(squared);
-            let steepness = squared * inv;
+            let (value, there) = (at_rest.value[k], at_rest.there[k]);
+            let (normal, steepness) = normal_of(at(&at_rest.slope, k));
             let distance = value / lesser(greater(steepness, 0.5), 2.0) - self.lift;
-            let flat = steepness <= 1e-6;
-            put(&mut out.normal, k, choose(flat, Vec3::Y, slope * inv));
+            put(&mut out.normal, k, normal);
             let far = value - self.lift > 2.0 * reach;
             let at_least = if far { 0.5 * value - self.lift } else { distance };
             out.distance[k] = if far | !there { NONE } else { distance };
@@ -98,6 +95,15 @@ impl MovingField {
         }
         out
     }
+}
+
+/// The direction of a gradient, and how steep it is.
+#[inline(always)]
+pub(super) fn normal_of(slope: Vec3) -> (Vec3, f32) {
+    let squared = slope.length_squared();
+    let inv = inv_sqrt(squared);
+    let steepness = squared * inv;
+    (choose(steepness <= 1e-6, Vec3::Y, slope * inv), steepness)
 }
 
 /// Where the points of a row are between the points of a lattice.

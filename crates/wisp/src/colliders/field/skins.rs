@@ -1,12 +1,12 @@
 //! Rows of points against skin that other joints than the head move: taken back to rest and measured there.
 
-use glam::{Mat3, Vec3, Vec4};
+use glam::{Mat3, Mat4, Vec3, Vec4};
 
 use super::back::{Back, between};
 use super::planes::{NONE, NOWHERE};
-use super::rows::Places;
+use super::rows::{Places, normal_of};
 use super::{DEEP, MovingField, ROUNDS, SETTLED, STRAYED, UNFOLDED, UNSURE};
-use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, choose, greater, lesser, put, splat3};
+use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, choose, greater, lesser, put, splat3, transposed};
 use crate::trilinear::weights;
 
 /// What a row of points learns of a skin, in head space. Of what is not found the rest says nothing.
@@ -106,7 +106,7 @@ impl MovingField {
             wanted[k] &= !(alone[k] & rest.heads[k]);
         }
         let at_rest = self.at_rest(&rest.place, &wanted);
-        let (mut back, mut moved) = ([ZERO; 16], ZERO3);
+        let (mut back, mut moved) = ([ZERO; LANES], ZERO3);
         for k in 0..LANES {
             if !at_rest.there[k] || at_rest.value[k] - self.lift > 2.0 * reach {
                 continue;
@@ -120,11 +120,10 @@ impl MovingField {
                     now = now.plus(&self.now[usize::from(slot)], weight);
                 }
             }
-            for (row, value) in back.iter_mut().zip(before.toward(&now, t).numbers()) {
-                row[k] = value;
-            }
+            back[k] = Lane(before.toward(&now, t).numbers());
             put(&mut moved, k, (before.apply(at(p, k)) - now.apply(at(p, k))).truncate());
         }
+        let back = transposed(&back);
         let mut out = Skins::NONE;
         let inv_dt = 1.0 / self.dt_secs;
         for k in 0..LANES {
@@ -137,10 +136,8 @@ impl MovingField {
                 let column = |i: usize| Vec3::new(back[4 * i][k], back[4 * i + 1][k], back[4 * i + 2][k]);
                 Vec3::new(column(0).dot(v), column(1).dot(v), column(2).dot(v))
             };
-            let slope = forth(bent);
-            let steepness = slope.length_squared().sqrt();
-            let (flat, inv) = (steepness <= 1e-6, 1.0 / steepness);
-            put(&mut out.normal, k, choose(flat, Vec3::Y, slope * inv));
+            let (normal, steepness) = normal_of(forth(bent));
+            put(&mut out.normal, k, normal);
             let distance = value / lesser(greater(steepness, 0.5), 2.0) - self.lift;
             // A guess may push, but not far; nor may skin that is stretched or pressed beyond what skin can be, or that
             // hair has never been so deep in.
@@ -191,7 +188,8 @@ impl MovingField {
         let mut going = starts.asked;
         for _ in 0..ROUNDS {
             let places = Places::new(nodes, self.inv_node, &rest.place);
-            let (mut value, mut slope, mut mixed) = (ZERO3, [ZERO3; 3], [false; LANES]);
+            // What a lane is mapped to, and how that changes along each axis.
+            let (mut mapped_to, mut mixed) = ([ZERO; LANES], [false; LANES]);
             for k in 0..LANES {
                 if !going[k] {
                     continue;
@@ -219,20 +217,21 @@ impl MovingField {
                 put(&mut rest.fraction, k, at(&places.fraction, k));
                 let mapped = |slot: u16| self.mapped(here, slot, t);
                 mixed[k] = slots != [slots[0]; 8];
-                if mixed[k] {
-                    let (mean, along) = between(&slots.map(mapped), at(&places.fraction, k));
-                    put(&mut value, k, mean.truncate());
-                    for (row, column) in slope.iter_mut().zip(along) {
-                        put(row, k, column.truncate());
-                    }
+                let (mean, along) = if mixed[k] {
+                    between(&slots.map(mapped), at(&places.fraction, k))
                 } else {
-                    put(&mut value, k, mapped(slots[0]).truncate());
-                }
+                    (mapped(slots[0]), [Vec4::ZERO; 3])
+                };
+                mapped_to[k] = Lane(Mat4::from_cols(mean, along[0], along[1], along[2]).to_cols_array());
             }
+            let mapped_to = transposed(&mapped_to);
+            let column = |i: usize, k: usize| {
+                Vec3::new(mapped_to[4 * i][k], mapped_to[4 * i + 1][k], mapped_to[4 * i + 2][k])
+            };
             let mut any = false;
             for k in 0..LANES {
-                let (value, place) = (at(&value, k), at(&rest.place, k));
-                let left = |i: usize, unit: Vec3| unit - at(&slope[i], k) * self.inv_node;
+                let (value, place) = (column(0, k), at(&rest.place, k));
+                let left = |i: usize, unit: Vec3| unit - column(1 + i, k) * self.inv_node;
                 let left = Mat3::from_cols(left(0, Vec3::X), left(1, Vec3::Y), left(2, Vec3::Z));
                 let cross = [
                     left.y_axis.cross(left.z_axis),
