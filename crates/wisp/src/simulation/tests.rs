@@ -3,6 +3,7 @@ use lovelock_groom::Guides;
 use lovelock_motion::ColliderShape;
 
 use super::*;
+use crate::lanes::splat3;
 use crate::{Integrator, Wind};
 
 /// Thirty locks around a head of 8 cm, and what they collide with.
@@ -235,18 +236,24 @@ fn of_what_lengths_were_factorised_is_state() {
 
 #[test]
 fn links_that_are_clamped_and_let_go_leave_nothing_that_is_not_saved() {
-    let (mut whole, skull) = head_of_hair();
+    let (mut whole, _) = head_of_hair();
     let stepped = |simulation: &mut Simulation, step: i32, clamped_links: u32| {
         let settings = SimulationSettings { clamped_links, ..settings() };
-        simulation.step(&input(step, &[skull]), &settings, 1.0 / 60.0);
+        simulation.step(&input(step, &[]), &settings, 1.0 / 60.0);
         simulation.state_hash()
     };
-    for step in 1..40 {
-        stepped(&mut whole, step, if step < 20 { 1 } else { 2 });
+    stepped(&mut whole, 1, 1);
+    // Something has pushed the points that are carried next.
+    for block in &mut whole.blocks {
+        block.leans[2] = splat3(Vec3::splat(1e-3));
+        block.leaning = true;
+    }
+    for step in 2..6 {
+        stepped(&mut whole, step, 2);
     }
     let mut other = whole.clone();
     other.restore(&whole.save()).expect("its own bytes");
-    for step in 40..60 {
+    for step in 6..20 {
         assert_eq!(stepped(&mut whole, step, 1), stepped(&mut other, step, 1), "step {step}");
     }
 }
