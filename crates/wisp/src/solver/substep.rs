@@ -285,7 +285,9 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize, lay: Lay) {
         link: &block.rest.mean_link,
         field,
     };
-    let last = s + 1 == plan.substeps.len();
+    let (substep, last) = (&plan.substeps[s], s + 1 == plan.substeps.len());
+    let touches = near.field.is_some() || !near.active.is_empty();
+    let inelastic = if touches && lay == Lay::AtLength { 1.0 } else { 0.0 };
     let mut deepest = [Depth::default(); LANES];
     let mut before = ZERO3;
     let mut was_before = ZERO3;
@@ -345,14 +347,16 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize, lay: Lay) {
         let wanted = block.work.next[i];
         let mut velocity = ZERO3;
         for k in 0..LANES {
-            put(&mut moved, k, at(&placed, k) - at(&wanted, k));
-            put(&mut velocity, k, (at(&placed, k) - at(&was, k)) * inv_h);
+            let (p, x) = (at(&placed, k), at(&was, k));
+            let (push, v) = (p - at(&wanted, k), (p - x) * inv_h);
+            let off = bounce(v - substep.rigid_velocity(x), push * inv_h) * inelastic;
+            put(&mut moved, k, push);
+            put(&mut velocity, k, v - off);
         }
         block.position[i] = placed;
         block.velocity[i] = velocity;
         (before, was_before) = (placed, was);
     }
-    let touches = near.field.is_some() || !near.active.is_empty();
     block.leaning = touches && block.leans();
     if touches && lay == Lay::AtLength {
         keep_energy(block, plan, s);
@@ -363,6 +367,14 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize, lay: Lay) {
             (block.outcome.deepest, block.outcome.deepest_guide) = (*depth, guide);
         }
     }
+}
+
+/// What of the velocity `v` against the head is there only because bodies have moved a point by `push`, a velocity too: hair
+/// that lies on a body does not bounce off it. What moves outward of itself goes on.
+#[inline(always)]
+fn bounce(v: Vec3, push: Vec3) -> Vec3 {
+    let (out, size) = direction_or(push, Vec3::ZERO);
+    out * greater(0.0, lesser(v.dot(out), size))
 }
 
 /// Takes from the velocities of a lock what the pass from root to tip has given it.
@@ -399,5 +411,21 @@ fn keep_energy(block: &mut Block, plan: &Plan, s: usize) {
             put(&mut v, k, kept);
         }
         block.velocity[i] = v;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_body_puts_out_does_not_bounce() {
+        let push = Vec3::new(0.0, 2.0, 0.0);
+        // It came in slower than it was pushed, as fast, faster than one push stops, and was on its way out.
+        for (came, left) in [(-1.0, 0.0), (-2.0, 0.0), (-3.0, -1.0), (0.5, 0.5)] {
+            let v = Vec3::new(0.7, came, 0.0) + push;
+            assert_eq!(v - bounce(v, push), Vec3::new(0.7, left, 0.0), "{came}");
+        }
+        assert_eq!(bounce(Vec3::ONE, Vec3::ZERO), Vec3::ZERO, "where nothing pushes, nothing is lost");
     }
 }
