@@ -64,7 +64,7 @@ impl Default for SimulationSettings {
             gravity: 9.81,
             style_support: 1.0,
             substeps: 4,
-            stiffness_root: 14.0,
+            stiffness_root: 18.0,
             stiffness_tip: 5.0,
             stiffness_bias: 0.5,
             bend_damping: 0.03,
@@ -119,9 +119,9 @@ impl SimulationSettings {
     pub fn preset(preset: Preset) -> Self {
         let usual = Self::default();
         match preset {
-            Preset::Ponytail | Preset::Bun => usual,
             // Locks that lie close carry each other: a bob swings as one and opens little.
-            Preset::Smooth => Self { stiffness_root: 18.0, ..usual },
+            Preset::Smooth => usual,
+            Preset::Ponytail | Preset::Bun => Self { stiffness_root: 14.0, ..usual },
             // Curls are springs: nearly as stiff at their tips, and sway on for longer.
             Preset::Curly => Self { stiffness_root: 16.0, stiffness_tip: 10.0, bend_damping: 0.02, ..usual },
             // Long hair hangs by its weight.
@@ -281,7 +281,7 @@ mod tests {
         for preset in Preset::ALL {
             assert_eq!(of(preset), of(preset).clamped(), "{preset:?}");
         }
-        assert_eq!(of(Preset::Bun), SimulationSettings::default());
+        assert_eq!(of(Preset::Smooth), SimulationSettings::default());
         let windy = SimulationSettings { gravity: 5.0, ..of(Preset::Curly) };
         let long = windy.restyled(&of(Preset::Curly), &of(Preset::Long));
         assert_eq!(long, SimulationSettings { gravity: 5.0, ..of(Preset::Long) }, "the rest stays");

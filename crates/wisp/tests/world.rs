@@ -138,7 +138,12 @@ fn behind_the_head_hair_feels_less_wind_and_before_it_the_same() {
     let shape = ColliderShape::Capsule { a: Vec3::ZERO, b: Vec3::ZERO, radius_a: 0.09, radius_b: 0.09 };
     let skull = [PlacedCollider { shape, world_from_rest: Affine3A::IDENTITY }];
     let blown = |sheltering: f32| {
-        let mut settings = SimulationSettings { drag: 4.0, hold: 0.0, ..SimulationSettings::default() };
+        let mut settings = SimulationSettings {
+            stiffness_root: 14.0,
+            drag: 4.0,
+            hold: 0.0,
+            ..SimulationSettings::default()
+        };
         settings.wind.speed = 4.0;
         (settings.wind.gusts, settings.wind.turbulence, settings.wind.sheltering) = (0.0, 0.0, sheltering);
         let mut simulation = Simulation::new(Arc::clone(&guides));

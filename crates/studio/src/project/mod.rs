@@ -72,7 +72,7 @@ impl Default for Project {
             motion: MotionSection::default(),
             hair: HairSection::default(),
             look: GroomSettings::preset(Preset::Smooth).look,
-            simulation: SimulationSettings::preset(Preset::Smooth),
+            simulation: SimulationSettings::default(),
             shadow: ShadowSettings::default(),
             lights: Light::default_rig(),
             camera: CameraSection::default(),

@@ -248,7 +248,7 @@ fn a_probe_follows_a_hair_and_reads_what_each_pane_says_there() {
     rig.project.compare.panes[2].shadow.opacity_maps.slices = 16;
     let shown = LiveRequest { project: Arc::new(rig.project.clone()), ..shown };
     let mut found: Option<(u64, (f32, f32), ProbedHair)> = None;
-    for number in 1..200_u64 {
+    for number in 1..480_u64 {
         let (x, y) = ((number * 37 % 160) as f32 / 160.0, (number * 61 % 120) as f32 / 120.0);
         rig.draw(LiveRequest { probe: Some(ProbePlace { number, x, y }), ..shown.clone() });
         let probe = rig.live.probe().latest().expect("an answer");
