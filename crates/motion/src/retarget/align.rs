@@ -3,11 +3,16 @@
 //! Where that pose is one of standing, the trunk differs only in the way that it faces, and only limbs are aligned
 //! bone by bone (T-pose against A-pose). Where it is no pose at all (exporters that lay every bone along +X), every
 //! bone is aligned, from the hips outward: each by the smallest turn left after its parent's, which is the turn that
-//! such an exporter's first frame takes back.
+//! such an exporter's first frame takes back, but for rolls about the bone: some rigs roll the bones of one side by
+//! half a turn. That the motion tells, in which no joint is wrung.
+
+use std::f32::consts::PI;
 
 use glam::{Mat3, Quat, Vec3};
 
+use super::moments;
 use super::roles::{Humanoid, Role, Side};
+use super::twist::angle_about;
 use crate::{MotionFile, Skeleton};
 
 /// By source joint, the rotation from the target's rest pose to the source's zero pose, in the world.
@@ -33,6 +38,7 @@ impl Alignment {
             source_rest: motion.rest(),
             target_rest: (0..skeleton.joints.len()).map(|j| skeleton.rest_position(j)).collect(),
             turns: vec![Quat::IDENTITY; motion.joints.len()],
+            moments: moments(motion),
         };
         let stands = builder.stands();
         builder.trunk(stands);
@@ -55,7 +61,13 @@ struct Builder<'a> {
     source_rest: Vec<Vec3>,
     target_rest: Vec<Vec3>,
     turns: Vec<Quat>,
+    /// The rotations of all joints, in the world, in some frames.
+    moments: Vec<Vec<Quat>>,
 }
+
+/// Arms and legs roll by less than half of half a turn on the average, collar bones and feet by less than half of a quarter.
+const HALF: f32 = PI;
+const QUARTER: f32 = PI / 2.0;
 
 impl Builder<'_> {
     fn source_at(&self, role: Role) -> Option<Vec3> {
@@ -130,19 +142,40 @@ impl Builder<'_> {
         chest.map_or(Quat::IDENTITY, |j| self.turns[j])
     }
 
+    /// `turn`, the alignment of a role whose bone points along `axis` at rest, but for so many of the turns `part` about the
+    /// bone as the joint is wrung by on the average, against what carries it.
+    fn unwrung(&self, role: Role, carrier: Option<usize>, axis: Vec3, turn: Quat, part: f32) -> Quat {
+        let (Some(joint), Some(carrier)) = (self.source.get(role), carrier) else { return turn };
+        let (mut sin, mut cos) = (0.0, 0.0);
+        for world in &self.moments {
+            let held = world[carrier] * self.turns[carrier];
+            let roll = angle_about(held.conjugate() * (world[joint] * turn), axis);
+            (sin, cos) = (sin + roll.sin(), cos + roll.cos());
+        }
+        let parts = (sin.atan2(cos) / part).round();
+        (turn * Quat::from_axis_angle(axis, -parts * part)).normalize()
+    }
+
     fn arm(&mut self, side: Side, stands: bool) {
         let mut turn = self.chest();
+        let mut carrier = self.source.spine.last().copied().or(self.source.get(Role::Hips));
         if let Some(bone) = self.source_bone(Role::Clavicle(side), Role::UpperArm(side)).filter(|_| !stands) {
-            turn = swing(turn, Vec3::X * side.sign(), bone);
+            let aside = Vec3::X * side.sign();
+            turn = self.unwrung(Role::Clavicle(side), carrier, aside, swing(turn, aside, bone), QUARTER);
         }
         self.set(Role::Clavicle(side), turn);
+        carrier = self.source.get(Role::Clavicle(side)).or(carrier);
         for (from, to) in
             [(Role::UpperArm(side), Role::Forearm(side)), (Role::Forearm(side), Role::Hand(side))]
         {
             if let (Some(target), Some(source)) = (self.target_bone(from, to), self.source_bone(from, to)) {
                 turn = swing(turn, target, source);
+                if !stands {
+                    turn = self.unwrung(from, carrier, target, turn, HALF);
+                }
             }
             self.set(from, turn);
+            carrier = self.source.get(from).or(carrier);
         }
         self.set(Role::Hand(side), turn);
     }
@@ -150,12 +183,16 @@ impl Builder<'_> {
     fn leg(&mut self, side: Side, stands: bool) {
         let pelvis = self.source.get(Role::Pelvis).or(self.source.get(Role::Hips));
         let trunk = pelvis.map_or(Quat::IDENTITY, |j| self.turns[j]);
-        let mut turn = trunk;
+        let (mut turn, mut carrier) = (trunk, pelvis);
         for (from, to) in [(Role::Thigh(side), Role::Shin(side)), (Role::Shin(side), Role::Foot(side))] {
             if let (Some(target), Some(source)) = (self.target_bone(from, to), self.source_bone(from, to)) {
                 turn = swing(turn, target, source);
+                if !stands {
+                    turn = self.unwrung(from, carrier, target, turn, HALF);
+                }
             }
             self.set(from, turn);
+            carrier = self.source.get(from).or(carrier);
         }
         let bones = (
             self.target_bone(Role::Foot(side), Role::Toe(side)),
@@ -168,7 +205,9 @@ impl Builder<'_> {
                 Quat::from_rotation_y(b.x.atan2(b.z) - a.x.atan2(a.z)) * trunk
             }
             _ if stands => trunk,
-            (Some(target), Some(source)) => swing(turn, target, source),
+            (Some(target), Some(source)) => {
+                self.unwrung(Role::Foot(side), carrier, target, swing(turn, target, source), QUARTER)
+            }
             _ => turn,
         };
         self.set(Role::Foot(side), foot);
