@@ -169,7 +169,7 @@ fn roll(body: &Body, clip: &Clip, joint: usize) -> f32 {
     let bones = bones.map(|j| skeleton.rest_position(j) - skeleton.rest_position(joint));
     // Joints that share its roll may be at the same place.
     let bone = bones.max_by(|a, b| a.length().total_cmp(&b.length()));
-    let axis = bone.expect("a bone").normalize();
+    let axis = bone.expect("a bone").normalize_or(Vec3::Y);
     let (mut pose, mut sum) = (Pose::default(), Vec2::ZERO);
     for frame in 0..100 {
         pose_at(body, Some(clip), f64::from(frame) / 100.0 * clip.duration_secs, &mut pose);
@@ -208,7 +208,7 @@ fn no_shoulder_or_foot_is_wrung() {
                 .transform_vector3(
                     body.skeleton.rest_position(named("upper_arm_r")) - body.skeleton.rest_position(shoulder),
                 )
-                .normalize();
+                .normalize_or(Vec3::Y);
             for turn in &mut track.rotation.as_mut().expect("it turns").values {
                 *turn *= Quat::from_axis_angle(axis, 3.0);
             }
