@@ -39,3 +39,16 @@ fn no_preset_enters_the_skin_by_a_millimetre_in_dance_and_backflip() {
     let control = deepest(Preset::Long, "backflip", false);
     assert!(control > 0.02, "without a body hair is no deeper than {control} m: the test shows nothing");
 }
+
+#[test]
+fn nor_in_a_captured_dance() {
+    let Some(data) = lovelock_testkit::data_dir() else { return };
+    let file = data.join("motion/jesse_dance.bvh");
+    let motion = file.to_str().expect("a name in UTF-8");
+    for preset in Preset::ALL {
+        let depth = deepest(preset, motion, true);
+        assert!(depth < 1e-3, "{preset:?}: {depth} m");
+    }
+    let control = deepest(Preset::Long, motion, false);
+    assert!(control > 0.02, "without a body hair is no deeper than {control} m: the test shows nothing");
+}

@@ -64,17 +64,13 @@ fn shipped(step: fn(u32) -> f32) {
     check(&mut stage(), "the shipped dance", step);
 }
 
-/// `skin`: with the field of head and shoulders, which makes a step dear; else with all the colliders alone.
-fn captured(skin: bool, step: fn(u32) -> f32) {
+fn captured(step: fn(u32) -> f32) {
     let Some(data) = data_dir() else { return };
     let file = data.join("motion/jesse_dance.bvh");
     let mut stage = stage();
     let motion = load_motion(&file).expect("the captured dance loads");
     let clip: Clip = retarget(&motion, &stage.body).expect("the captured dance fits the dancer");
     stage.dance = Arc::new(clip);
-    if !skin {
-        stage = stage.without_field();
-    }
     check(&mut stage, "the captured dance", step);
 }
 
@@ -101,22 +97,22 @@ fn ten_minutes_of_the_shipped_dance_in_uneven_steps() {
 
 #[test]
 fn ten_minutes_of_a_captured_dance_at_30_hertz() {
-    captured(true, |_| 1.0 / 30.0);
+    captured(|_| 1.0 / 30.0);
 }
 
 #[test]
 fn ten_minutes_of_a_captured_dance_at_60_hertz() {
-    captured(true, |_| 1.0 / 60.0);
+    captured(|_| 1.0 / 60.0);
 }
 
 #[test]
 fn ten_minutes_of_a_captured_dance_at_144_hertz() {
-    captured(false, |_| 1.0 / 144.0);
+    captured(|_| 1.0 / 144.0);
 }
 
 #[test]
 fn ten_minutes_of_a_captured_dance_in_uneven_steps() {
-    captured(false, uneven);
+    captured(uneven);
 }
 
 #[test]
