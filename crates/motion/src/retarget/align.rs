@@ -3,16 +3,14 @@
 //! Where that pose is one of standing, the trunk differs only in the way that it faces, and only limbs are aligned
 //! bone by bone (T-pose against A-pose). Where it is no pose at all (exporters that lay every bone along +X), every
 //! bone is aligned, from the hips outward: each by the smallest turn left after its parent's, which is the turn that
-//! such an exporter's first frame takes back, but for rolls about the bone: some rigs roll the bones of one side by
-//! half a turn. That the motion tells, in which no joint is wrung.
+//! such an exporter's first frame takes back. Some rigs roll bones about themselves as well, by half or a quarter of a
+//! turn; of that the motion tells, in which no joint is wrung.
 
 use std::f32::consts::PI;
 
 use glam::{Mat3, Quat, Vec3};
 
-use super::moments;
 use super::roles::{Humanoid, Role, Side};
-use super::twist::angle_about;
 use crate::{MotionFile, Skeleton};
 
 /// By source joint, the rotation from the target's rest pose to the source's zero pose, in the world.
@@ -30,6 +28,7 @@ impl Alignment {
         source: &Humanoid,
         skeleton: &Skeleton,
         target: &Humanoid,
+        turned: &[Vec<Quat>],
     ) -> Self {
         let mut builder = Builder {
             motion,
@@ -38,7 +37,7 @@ impl Alignment {
             source_rest: motion.rest(),
             target_rest: (0..skeleton.joints.len()).map(|j| skeleton.rest_position(j)).collect(),
             turns: vec![Quat::IDENTITY; motion.joints.len()],
-            moments: moments(motion),
+            turned,
         };
         let stands = builder.stands();
         builder.trunk(stands);
@@ -62,12 +61,17 @@ struct Builder<'a> {
     target_rest: Vec<Vec3>,
     turns: Vec<Quat>,
     /// The rotations of all joints, in the world, in some frames.
-    moments: Vec<Vec<Quat>>,
+    turned: &'a [Vec<Quat>],
 }
 
-/// Arms and legs roll by less than half of half a turn on the average, collar bones and feet by less than half of a quarter.
+/// By multiples of this a rig rolls arms and legs, which roll so far themselves that less could not be told, radians.
 const HALF: f32 = PI;
+
+/// By multiples of this it rolls collar bones and feet, radians.
 const QUARTER: f32 = PI / 2.0;
+
+/// A roll is taken for the rig's from this part of a multiple on: people hold their hands up for a while, too.
+const PLAIN: f32 = 0.75;
 
 impl Builder<'_> {
     fn source_at(&self, role: Role) -> Option<Vec3> {
@@ -142,18 +146,23 @@ impl Builder<'_> {
         chest.map_or(Quat::IDENTITY, |j| self.turns[j])
     }
 
-    /// `turn`, the alignment of a role whose bone points along `axis` at rest, but for so many of the turns `part` about the
-    /// bone as the joint is wrung by on the average, against what carries it.
+    /// The alignment `turn` of a role, whose bone points along `axis` at rest, without the multiple of `part` by which the
+    /// joint is rolled on the average against its carrier.
     fn unwrung(&self, role: Role, carrier: Option<usize>, axis: Vec3, turn: Quat, part: f32) -> Quat {
         let (Some(joint), Some(carrier)) = (self.source.get(role), carrier) else { return turn };
-        let (mut sin, mut cos) = (0.0, 0.0);
-        for world in &self.moments {
+        let (mut sin, mut cos, mut all) = (0.0, 0.0, 0.0);
+        for world in self.turned {
             let held = world[carrier] * self.turns[carrier];
-            let roll = angle_about(held.conjugate() * (world[joint] * turn), axis);
-            (sin, cos) = (sin + roll.sin(), cos + roll.cos());
+            let against = held.conjugate() * (world[joint] * turn);
+            // Sine and cosine of twice the half angle, by how well it is told: not at all where the bone points back.
+            let (along, w) = (against.xyz().dot(axis), against.w);
+            (sin, cos, all) =
+                (sin + 2.0 * along * w, cos + w * w - along * along, all + w * w + along * along);
         }
-        let parts = (sin.atan2(cos) / part).round();
-        (turn * Quat::from_axis_angle(axis, -parts * part)).normalize()
+        let roll = sin.atan2(cos);
+        let multiples =
+            if sin.hypot(cos) > 0.5 * all { (roll.abs() / part + 1.0 - PLAIN).floor() } else { 0.0 };
+        (turn * Quat::from_axis_angle(axis, -roll.signum() * multiples * part)).normalize()
     }
 
     fn arm(&mut self, side: Side, stands: bool) {
@@ -176,6 +185,9 @@ impl Builder<'_> {
             }
             self.set(from, turn);
             carrier = self.source.get(from).or(carrier);
+        }
+        if let Some(bone) = self.target_bone(Role::Forearm(side), Role::Hand(side)).filter(|_| !stands) {
+            turn = self.unwrung(Role::Hand(side), carrier, bone, turn, HALF);
         }
         self.set(Role::Hand(side), turn);
     }
@@ -258,15 +270,12 @@ impl Builder<'_> {
         };
         let chest = self.source.spine.last().copied().unwrap_or(hips);
         let neck = self.source.neck.last().copied().unwrap_or(chest);
-        let mut world = Vec::new();
         let candidates = [self.turns[head], self.turns[neck], self.turns[hips]];
         let mut scores = [0.0; 3];
-        for frame in (0..self.motion.frames).step_by((self.motion.frames / 100).max(1)) {
-            self.motion.world(frame, &mut world);
-            let of = |j: usize, turn: Quat| Quat::from_mat3a(&world[j].matrix3) * turn;
-            let held = of(chest, self.turns[chest]);
+        for world in self.turned {
+            let held = world[chest] * self.turns[chest];
             for (score, candidate) in scores.iter_mut().zip(candidates) {
-                *score += of(head, candidate).dot(held).abs();
+                *score += (world[head] * candidate).dot(held).abs();
             }
         }
         let best = (0..3).fold(0, |best, k| if scores[k] > scores[best] + 1e-3 { k } else { best });

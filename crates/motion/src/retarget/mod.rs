@@ -91,7 +91,8 @@ impl<'a> Plan<'a> {
                 problem,
             });
         }
-        let alignment = Alignment::new(motion, &source, skeleton, &target);
+        let turned = sampled_turns(motion);
+        let alignment = Alignment::new(motion, &source, skeleton, &target, &turned);
         let mut rest_rotations: Vec<Quat> = Vec::with_capacity(skeleton.joints.len());
         for joint in &skeleton.joints {
             let parent = joint.parent.map_or(Quat::IDENTITY, |p| rest_rotations[p]);
@@ -103,7 +104,7 @@ impl<'a> Plan<'a> {
                 move |j| rest[j]
             });
         let scale = if scale.is_finite() && scale > 0.0 { scale } else { 1.0 };
-        let stiff = has_stiff_neck(motion, &source);
+        let stiff = has_stiff_neck(&source, &turned);
         let sources = sources(&source, &target, skeleton.joints.len(), stiff);
         Ok(Self { motion, skeleton, source, target, sources, alignment, rest_rotations, scale })
     }
@@ -207,38 +208,37 @@ impl<'a> Plan<'a> {
     }
 }
 
-/// About so many frames tell how joints are held.
-const MOMENTS: usize = 100;
+/// So many frames tell how joints are held.
+const SAMPLES: usize = 100;
 
-/// The rotations of all joints of a motion, in the world, in some frames.
-fn moments(motion: &MotionFile) -> Vec<Vec<Quat>> {
+/// The rotations of all joints of a motion, in the world, in about [`SAMPLES`] frames.
+fn sampled_turns(motion: &MotionFile) -> Vec<Vec<Quat>> {
     let mut world = Vec::new();
-    let frames = (0..motion.frames).step_by((motion.frames / MOMENTS).max(1));
-    let rotations = frames.map(|frame| {
+    let frames = (0..motion.frames).step_by((motion.frames / SAMPLES).max(1));
+    let turns = frames.map(|frame| {
         motion.world(frame, &mut world);
         world.iter().map(|m| Quat::from_mat3a(&m.matrix3)).collect()
     });
-    rotations.collect()
+    turns.collect()
 }
 
 /// A neck that turns by no more than this against the chest has not been captured, radians.
 const STIFF: f32 = 0.01;
 
-/// Whether the neck of a motion goes with the chest all the time, and the head alone bends.
-fn has_stiff_neck(motion: &MotionFile, source: &Humanoid) -> bool {
+/// Whether the neck of a motion goes with the chest all the time, or there is none, and the head alone bends.
+fn has_stiff_neck(source: &Humanoid, turned: &[Vec<Quat>]) -> bool {
     let chest = source.spine.last().copied().or(source.get(Role::Hips));
     let (Some(chest), Some(head)) = (chest, source.get(Role::Head)) else { return false };
-    let moments = moments(motion);
-    let turns = |joint: usize| {
+    let bends = |joint: usize| {
         let against = |world: &Vec<Quat>| world[chest].conjugate() * world[joint];
-        let first = moments.first().map_or(Quat::IDENTITY, against);
-        moments.iter().map(|world| first.angle_between(against(world))).fold(0.0, f32::max)
+        let first = turned.first().map_or(Quat::IDENTITY, against);
+        turned.iter().map(|world| first.angle_between(against(world))).fold(0.0, f32::max)
     };
-    turns(head) > STIFF && source.neck.iter().all(|&joint| turns(joint) <= STIFF)
+    bends(head) > STIFF && source.neck.iter().all(|&joint| bends(joint) <= STIFF)
 }
 
 /// Pairs target joints with source joints by role; the joints of spine and neck by their place in the chain. A neck that is
-/// stiff in the motion shares the bend of the head: where all of it were at the skull, the nape would fold.
+/// stiff in the motion shares the bend of the head beyond its own: were all of it at the skull, the nape would fold.
 fn sources(source: &Humanoid, target: &Humanoid, joints: usize, stiff_neck: bool) -> Vec<Option<Source>> {
     let mut sources = vec![None; joints];
     let whole = |j: usize| Source { a: j, b: j, fraction: 0.0 };
@@ -277,7 +277,8 @@ fn sources(source: &Humanoid, target: &Humanoid, joints: usize, stiff_neck: bool
     if let (true, Some(chest), Some(head)) = (stiff_neck, chest, source.get(Role::Head)) {
         for (i, &joint) in target.neck.iter().enumerate() {
             let fraction = (i + 1) as f32 / (target.neck.len() + 1) as f32;
-            sources[joint] = Some(Source { a: chest, b: head, fraction });
+            let a = source.neck.last().copied().unwrap_or(chest);
+            sources[joint] = Some(Source { a, b: head, fraction });
         }
     }
     sources

@@ -94,7 +94,7 @@ pub(super) fn drive(
 }
 
 /// The part of a rotation that turns about a unit vector, radians (swing times twist).
-pub(super) fn angle_about(rotation: Quat, axis: Vec3) -> f32 {
+fn angle_about(rotation: Quat, axis: Vec3) -> f32 {
     let along = rotation.xyz().dot(axis);
     // A half turn about another axis has no twist that could be told.
     if along.hypot(rotation.w) < 1e-6 { 0.0 } else { 2.0 * along.atan2(rotation.w) }
