@@ -159,9 +159,12 @@ impl Builder<'_> {
             (sin, cos, all) =
                 (sin + 2.0 * along * w, cos + w * w - along * along, all + w * w + along * along);
         }
+        let told = sin.hypot(cos) > 0.5 * all;
         let roll = sin.atan2(cos);
-        let multiples =
-            if sin.hypot(cos) > 0.5 * all { (roll.abs() / part + 1.0 - PLAIN).floor() } else { 0.0 };
+        let multiples = (roll.abs() / part + 1.0 - PLAIN).floor();
+        if !told || multiples < 1.0 {
+            return turn;
+        }
         (turn * Quat::from_axis_angle(axis, -roll.signum() * multiples * part)).normalize()
     }
 
