@@ -55,8 +55,7 @@ fn check(stage: &mut Stage, name: &str, step: fn(u32) -> f32) {
     println!("{name}: {all:?}");
     assert_eq!(all.recovered_guides, 0, "{name}");
     assert!(all.max_stretch < 1e-5, "{name}: stretch {}", all.max_stretch);
-    // How fast is no question here: where a clip is cut, hair that the new pose's body lies in is put out of it in one
-    // step, up to 0.5 m.
+    // How fast is no question here: where a clip is cut, hair that the new pose's body lies in is put out of it in one step.
     assert!(all.max_speed > 1.0, "{name}: {} m/s", all.max_speed);
 }
 
