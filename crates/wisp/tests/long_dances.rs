@@ -1,9 +1,6 @@
 //! Ten minutes of each dance, at several rates and at an uneven one: lengths hold and nothing is lost.
 
-use std::sync::Arc;
-
 use lovelock_groom::{GroomSettings, Preset};
-use lovelock_motion::{Clip, load_motion, retarget};
 use lovelock_testkit::data_dir;
 use lovelock_wisp::{Integrator, SimulationSettings, StepReport};
 
@@ -67,9 +64,7 @@ fn captured(step: fn(u32) -> f32) {
     let Some(data) = data_dir() else { return };
     let file = data.join("motion/jesse_dance.bvh");
     let mut stage = stage();
-    let motion = load_motion(&file).expect("the captured dance loads");
-    let clip: Clip = retarget(&motion, &stage.body).expect("the captured dance fits the dancer");
-    stage.dance = Arc::new(clip);
+    stage.play(file.to_str().expect("a name in UTF-8")).expect("the captured dance fits the dancer");
     check(&mut stage, "the captured dance", step);
 }
 

@@ -274,10 +274,11 @@ fn sources(source: &Humanoid, target: &Humanoid, joints: usize, stiff_neck: bool
             });
         }
     }
-    if let (true, Some(chest), Some(head)) = (stiff_neck, chest, source.get(Role::Head)) {
+    if let (true, Some(a), Some(head)) =
+        (stiff_neck, source.neck.last().copied().or(chest), source.get(Role::Head))
+    {
         for (i, &joint) in target.neck.iter().enumerate() {
             let fraction = (i + 1) as f32 / (target.neck.len() + 1) as f32;
-            let a = source.neck.last().copied().unwrap_or(chest);
             sources[joint] = Some(Source { a, b: head, fraction });
         }
     }

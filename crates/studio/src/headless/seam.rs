@@ -243,6 +243,8 @@ mod tests {
         (project.motion.start_secs, project.motion.end_secs) = (1.0, Some(2.5));
         (project.simulation.wind.speed, project.simulation.wind.gusts) = (6.0, 1.0);
         project.simulation.wind.turbulence = 1.0;
+        // That of what was measured below.
+        project.simulation.stiffness_root = 14.0;
         project
     }
 
@@ -283,7 +285,7 @@ mod tests {
         // From its last frame to its first it goes as far as it went there one round before: measured 1.7 % more, and 1.0 %
         // of a take, as the last frame is a frame short of the end of the fade.
         let (seam, natural) = (off(&film[n - 1], &film[0]), off(&free[n - 1], &free[n]));
-        assert!((seam - natural).abs() < 0.05 * natural, "{seam} at the seam, {natural} one round before");
+        assert!((seam - natural).abs() < 0.025 * natural, "{seam} at the seam, {natural} one round before");
         // The control: without it hair jumps, measured 2.4 times as far.
         let jump = off(&free[2 * n - 1], &free[n]);
         assert!(jump > 1.5 * natural, "{jump} without, {natural} one round before");
@@ -320,7 +322,7 @@ mod tests {
         let film = hair(&mut closed, frames);
         assert!(film[0] == free[first] && film[n / 2] == free[first + n / 2]);
         let (seam, natural) = (off(&film[n - 1], &film[0]), off(&free[first - 1], &free[first]));
-        assert!((seam - natural).abs() < 0.05 * natural, "{seam} at the seam, {natural} one round before");
+        assert!((seam - natural).abs() < 0.025 * natural, "{seam} at the seam, {natural} one round before");
         // Measured 1.7 times.
         let jump = off(&free[first + n - 1], &free[first]);
         assert!(jump > 1.5 * natural, "{jump} without, {natural} one round before");

@@ -157,12 +157,14 @@ fn sweeps_run_a_method_over_its_settings() {
     let sweeps = vec!["slices=8,128".parse().expect("a sweep")];
     let wanted =
         CompareRequest { sweeps, ..request(dir.path(), &[ShadowMethod::OpacityMaps, ShadowMethod::None]) };
-    let report = run(&little_hair(), &wanted).expect("a report");
+    // Hair that opens: of hair that lies close, and is this sparse, more slices say no more.
+    let mut project = little_hair();
+    project.simulation.stiffness_root = 14.0;
+    let report = run(&project, &wanted).expect("a report");
     let names: Vec<_> = report.methods.iter().map(|method| method.name.as_str()).collect();
     assert_eq!(names, ["opacity-maps slices=8", "opacity-maps slices=128", "none"]);
     let [few, many] = [&report.methods[0], &report.methods[1]];
-    // Each has its own slices; of hair this sparse neither is the better. Measured 2e-4 apart.
-    assert!((rmse(few) - rmse(many)).abs() > 1e-5, "{} and {}", rmse(few), rmse(many));
+    assert!(rmse(few) > rmse(many), "{} and {}", rmse(few), rmse(many));
     assert!(few.memory_bytes < many.memory_bytes, "{:?} and {:?}", few.memory_bytes, many.memory_bytes);
     // Both have the same texels, and so the same truth.
     assert_eq!(report.reference.footprints[0].methods.len(), 3);
