@@ -4,7 +4,7 @@ use glam::Vec3;
 use lovelock_groom::Guides;
 
 use crate::colliders::boxes::Boxes;
-use crate::colliders::field::PlaneRow;
+use crate::colliders::field::{PlaneRow, Search};
 use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, greater, lesser, put};
 use crate::rest::RestShape;
 use crate::solver::{Bending, Coupled, LengthScratch};
@@ -58,6 +58,8 @@ pub(crate) struct Work {
     pub(crate) lengths: LengthScratch,
     /// What the points have learnt of the field.
     pub(crate) planes: Vec<PlaneRow>,
+    /// The rows that look for skin.
+    pub(crate) searches: Vec<Search>,
     /// The colliders near the block, and how deep they have closed over the roots.
     pub(crate) active: Vec<u32>,
     pub(crate) boxes: Boxes,

@@ -5,11 +5,11 @@
 
 use glam::{Affine3A, DVec3, Mat3A, Quat, Vec3, Vec3A};
 use lovelock_groom::Guides;
-use lovelock_motion::{ColliderShape, PlacedCollider};
+use lovelock_motion::{ColliderShape, FIELD_JOINTS, PlacedCollider};
 
 use super::{Simulation, first_free};
 use crate::block::Block;
-use crate::colliders::field::{MovingField, PlaneRow};
+use crate::colliders::field::{Joints, MovingField, PlaneRow};
 use crate::hash::Hasher;
 use crate::lanes::{LANES, Lane, Lane3, ZERO3};
 use crate::motion::HeadPose;
@@ -18,7 +18,7 @@ use crate::rest::RestShape;
 const MAGIC: [u8; 4] = *b"LLWS";
 
 /// Raised whenever the bytes change their meaning.
-const VERSION: u32 = 4;
+const VERSION: u32 = 5;
 
 /// The most colliders that a state may speak of: beyond it the bytes are no state.
 const MOST_COLLIDERS: u32 = 4096;
@@ -88,17 +88,16 @@ impl Simulation {
             out.shape(shape);
             out.u32(u32::from(*on_head));
         }
-        let places = self.field.as_ref().map_or(&[][..], MovingField::places);
-        out.u32(places.len() as u32);
-        for place in places {
-            out.affine(place);
+        out.u32(self.field.as_ref().map_or(0, MovingField::parts));
+        for joint in self.field.iter().flat_map(|field| field.joints().all()) {
+            out.affine(joint);
         }
         for rows in self.blocks.iter().flat_map(rows_of) {
             for axis in rows.iter().flatten() {
                 out.floats(&axis[..]);
             }
         }
-        if !places.is_empty() {
+        if self.field.is_some() {
             for axis in self.blocks.iter().flat_map(|block| &block.skin).flatten() {
                 out.floats(&axis[..]);
             }
@@ -171,11 +170,16 @@ impl Simulation {
         if rest.shapes.len() != next.colliders.len() {
             return Err(damaged("it knows other colliders at rest than in motion"));
         }
-        let places = (0..input.count(MOST_PARTS)?).map(|_| input.affine()).collect::<Result<Vec<_>, _>>()?;
-        if places.is_empty() {
+        let parts = input.count(MOST_PARTS)?;
+        if parts == 0 {
             next.field = None;
-        } else if !next.field.as_mut().is_some_and(|field| field.set_places(&places)) {
-            return Err(RestoreError::Body);
+        } else {
+            let mut joints = [Affine3A::IDENTITY; FIELD_JOINTS];
+            for joint in &mut joints {
+                *joint = input.affine()?;
+            }
+            let field = next.field.as_mut().filter(|field| field.parts() == parts);
+            field.ok_or(RestoreError::Body)?.set_joints(Joints::new(joints));
         }
         let (guides, clamped_links) = (&self.style.guides, next.clamped_links);
         let first_free = first_free(clamped_links, guides.points_per_guide);
@@ -193,7 +197,7 @@ impl Simulation {
         }
         for row in next.blocks.iter_mut().flat_map(|block| &mut block.skin) {
             *row = PlaneRow::NO_SKIN;
-            if !places.is_empty() {
+            if parts > 0 {
                 for axis in row {
                     *axis = Lane(input.floats()?);
                 }

@@ -5,7 +5,7 @@ use super::follow::correct_velocities;
 use super::lengths::{project_position, project_velocity};
 use super::relaxation::relax;
 use crate::Integrator;
-use crate::block::{Block, Depth};
+use crate::block::{Block, Depth, Work};
 use crate::colliders::boxes::{apart, bounds};
 use crate::colliders::contact::{Near, NearField, buried, buried_in_field, lay_point, penetration};
 use crate::lanes::{LANES, Lane, Map, Turns, ZERO, ZERO3, at, choose, direction_or, greater, lesser, put};
@@ -267,13 +267,18 @@ fn find_near(block: &mut Block, plan: &Plan, s: usize) {
 fn lay_out(block: &mut Block, plan: &Plan, s: usize, lay: Lay) {
     let (count, inv_h) = (block.points(), 1.0 / plan.h);
     let carried = plan.first_free.saturating_sub(1);
-    let field = plan.field.map(|moving| {
+    // Not by a closure: that would keep the baseline's instructions.
+    let mut field = None;
+    if let Some(moving) = plan.field {
         let (substep, passed) = (&plan.substeps[s], (s + 1) as f32 / plan.substeps.len() as f32);
         let (rest_distance, root) = (&block.field_distance[..], &block.work.next[carried]);
         let plane = &mut block.work.planes[carried];
         let buried = buried_in_field(root, moving, substep, passed, &rest_distance[carried], plane);
-        NearField { moving, substep, passed, rest_distance, buried }
-    });
+        let (first, reach) = (plan.first_free.clamp(1, count), plan.rules.reach());
+        let Work { next, planes, searches, .. } = &mut block.work;
+        moving.foresee(&next[first..], substep, passed, reach, &mut planes[first..], searches);
+        field = Some(NearField { moving, substep, passed, rest_distance, buried });
+    }
     let near = Near {
         shapes: &plan.shapes[s * plan.shapes_per_substep..][..plan.shapes_per_substep],
         active: &block.work.active,

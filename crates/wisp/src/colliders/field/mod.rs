@@ -6,25 +6,30 @@
 // Loops over lanes hold no branches: a lazy operator is one, and made the field 7 % slower.
 #![allow(clippy::needless_bitwise_bool)]
 
-mod back;
+mod affine;
+mod deposit;
 mod occupancy;
 mod planes;
 mod rows;
+mod search;
 mod skins;
 #[cfg(test)]
 mod tests;
+mod weightings;
 
 use std::sync::Arc;
 
-use glam::{Affine3A, Mat3A, Vec3};
-use lovelock_motion::{BodyField, FieldPose};
-use rayon::prelude::*;
+use glam::{Affine3A, Vec3};
+use lovelock_motion::{BodyField, FIELD_JOINTS, FieldPose};
 
 use crate::lanes::{Lane, Lane3, at};
 use crate::motion::HeadPose;
-use back::Back;
+use affine::Affine;
 use occupancy::Occupancy;
 pub(crate) use planes::{FieldRow, PlaneRow};
+pub(crate) use search::Search;
+pub(crate) use weightings::Joints;
+use weightings::Weightings;
 
 /// A point taken back to rest is near enough when it moves less than this in a round, metres: after a step of Newton's what is
 /// left is of second order.
@@ -48,20 +53,17 @@ const DEEP: f32 = 0.02;
 /// Where the skin is folded more than this it has no way back: the least determinant of how it unfolds.
 const UNFOLDED: f32 = 0.05;
 
-/// Weightings that a task works out at least.
-const SLOTS_A_TASK: usize = 512;
-
 /// A field with its motion in the present step.
 #[derive(Clone, Debug)]
 pub(crate) struct MovingField {
     field: Arc<BodyField>,
     lift: f32,
-    /// For each slot, at the start and at the end of the step; the first is the head's and never changes.
-    before: Vec<Back>,
-    now: Vec<Back>,
-    /// The other way, from rest to head space.
-    forth_before: Vec<Affine3A>,
-    forth: Vec<Affine3A>,
+    weightings: Weightings,
+    /// Where the joints are at the start and at the end of the step, and from there the ways of all weightings back to rest.
+    joints_before: Joints,
+    joints: Joints,
+    before: Vec<Affine>,
+    now: Vec<Affine>,
     occupancy: Occupancy,
     /// For each cell of nodes, by its first: whether all eight are the head's.
     head_alone: Vec<bool>,
@@ -73,13 +75,16 @@ pub(crate) struct MovingField {
 impl MovingField {
     /// A field at rest around the head. `reach` is the distance within which hair may touch it, metres.
     pub(crate) fn new(field: &Arc<BodyField>, lift: f32, reach: f32) -> Self {
-        let slots = field.slots().len();
+        let weightings = Weightings::new(field.slots());
+        let (joints, mut now) = (Joints::default(), Vec::new());
+        weightings.ways_back(&joints, &mut now);
         Self {
             lift,
-            before: vec![Back::IDENTITY; slots],
-            now: vec![Back::IDENTITY; slots],
-            forth_before: vec![Affine3A::IDENTITY; slots],
-            forth: vec![Affine3A::IDENTITY; slots],
+            weightings,
+            joints_before: joints.clone(),
+            joints,
+            before: now.clone(),
+            now,
             occupancy: Occupancy::new(field, lift.max(0.0) + reach + planes::NEAR),
             head_alone: head_alone(field),
             inv_spacing: 1.0 / field.distance_lattice().spacing,
@@ -119,68 +124,49 @@ impl MovingField {
         spare: bool,
     ) {
         std::mem::swap(&mut self.before, &mut self.now);
-        std::mem::swap(&mut self.forth_before, &mut self.forth);
+        std::mem::swap(&mut self.joints_before, &mut self.joints);
         self.dt_secs = dt_secs;
-        self.learn(head, pose);
-        self.occupancy.update(
-            self.lift.max(0.0) + reach + planes::NEAR,
-            [&self.forth_before, &self.forth],
-            spare,
-        );
+        self.joints = self.joints_at(head, pose);
+        self.weightings.ways_back(&self.joints, &mut self.now);
+        let ends = [&self.joints_before, &self.joints];
+        self.occupancy.update(self.lift.max(0.0) + reach + planes::NEAR, ends, spare);
     }
 
     /// Starts anew at `pose`.
     pub(crate) fn reset(&mut self, head: &HeadPose, pose: &FieldPose) {
-        self.learn(head, pose);
-        self.before.copy_from_slice(&self.now);
-        self.forth_before.copy_from_slice(&self.forth);
+        self.joints = self.joints_at(head, pose);
+        self.weightings.ways_back(&self.joints, &mut self.now);
+        self.before.clone_from(&self.now);
+        self.joints_before.clone_from(&self.joints);
         self.occupancy.forget();
     }
 
-    /// Where the parts of the skin are against the head: all of the motion that the next step begins with.
-    pub(crate) fn places(&self) -> &[Affine3A] {
-        &self.forth
+    /// How many weightings it has; at least the head's.
+    pub(crate) fn parts(&self) -> u32 {
+        self.field.slots().len().max(1) as u32
     }
 
-    /// Puts the parts where [`MovingField::places`] had them; whether they are as many and can be there.
-    pub(crate) fn set_places(&mut self, places: &[Affine3A]) -> bool {
-        let backs = || places.iter().map(Affine3A::inverse);
-        if places.len() != self.forth.len() || !backs().all(|back| back.is_finite()) {
-            return false;
-        }
-        self.forth.copy_from_slice(places);
+    /// Where the joints are against the head: all of the motion that the next step begins with.
+    pub(crate) const fn joints(&self) -> &Joints {
+        &self.joints
+    }
+
+    /// Puts the joints where [`MovingField::joints`] had them.
+    pub(crate) fn set_joints(&mut self, joints: Joints) {
         self.occupancy.forget();
-        let slots = self.field.slots().iter().zip(backs()).zip(&mut self.now);
-        for ((weights, back), now) in slots.skip(1) {
-            *now = Back::new(&back, weights[0]);
-        }
-        true
+        self.joints = joints;
+        self.weightings.ways_back(&self.joints, &mut self.now);
     }
 
-    /// Works out `now` and `forth`.
-    fn learn(&mut self, head: &HeadPose, pose: &FieldPose) {
+    /// Where `pose` has the joints against the head.
+    fn joints_at(&self, head: &HeadPose, pose: &FieldPose) -> Joints {
         let head_from_world = head.affine().inverse();
         let rest_from_head = Affine3A::from_translation(self.field.rest_from_head());
-        let mut joints = [Affine3A::IDENTITY; lovelock_motion::FIELD_JOINTS];
+        let mut joints = [Affine3A::IDENTITY; FIELD_JOINTS];
         for (joint, world_from_rest) in joints.iter_mut().zip(&pose.world_from_rest).skip(1) {
             *joint = head_from_world * *world_from_rest * rest_from_head;
         }
-        let slots = self.field.slots().par_iter().zip(&mut self.forth).zip(&mut self.now);
-        slots.skip(1).with_min_len(SLOTS_A_TASK).for_each(|((weights, forth), now)| {
-            let mut map = Affine3A { matrix3: Mat3A::ZERO, translation: glam::Vec3A::ZERO };
-            for (&weight, joint) in weights.iter().zip(&joints) {
-                if weight > 0.0 {
-                    map.matrix3 += joint.matrix3 * weight;
-                    map.translation += joint.translation * weight;
-                }
-            }
-            let back = map.inverse();
-            // A skin folded flat has no way back; it is left at rest.
-            let sound = map.is_finite() && back.is_finite() && back.matrix3.determinant().abs() < 1e3;
-            let (map, back) = if sound { (map, back) } else { (Affine3A::IDENTITY, Affine3A::IDENTITY) };
-            *forth = map;
-            *now = Back::new(&back, weights[0]);
-        });
+        Joints::new(joints)
     }
 }
 

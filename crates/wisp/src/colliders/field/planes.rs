@@ -9,9 +9,8 @@
 
 use glam::Vec3;
 
-use super::occupancy::Near;
-use super::skins::{Skins, Starts};
-use super::{CLOSE, DEEP, MovingField, UNSURE};
+use super::search::Search;
+use super::{DEEP, MovingField, UNSURE};
 use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, choose, greater, lesser, put, splat3};
 use crate::solver::Substep;
 
@@ -26,7 +25,7 @@ pub(super) const NONE: f32 = 1e9;
 pub(crate) struct PlaneRow {
     /// Where the points were measured, and the square of how far from there that serves; negative where none was.
     place: Lane3,
-    serves: Lane,
+    pub(super) serves: Lane,
     /// How much of the step had passed.
     passed: Lane,
     /// Skin that goes with the head: distance at `place`, and normal.
@@ -106,21 +105,11 @@ impl MovingField {
         reach: f32,
         planes: &mut PlaneRow,
     ) -> Option<FieldRow> {
-        let Map { turn, shift } = substep.head;
-        let (mut local, mut gone) = (ZERO3, ZERO);
-        for k in 0..LANES {
-            let p = at(row, k) - shift;
-            let p = Vec3::new(turn.x_axis.dot(p), turn.y_axis.dot(p), turn.z_axis.dot(p));
-            put(&mut local, k, p);
-            gone[k] = (p - at(&planes.place, k)).length_squared() - planes.serves[k];
-        }
-        let mut stays = true;
-        for k in 0..LANES {
-            stays &= gone[k] <= 0.0;
-        }
-        // What is not a number is measured too, and found nowhere.
+        let (local, asked, stays) = gone(row, substep, planes);
         if !stays {
-            self.measure(&local, &gone, passed, reach, planes);
+            let mut search = [self.search(0, &local, asked, reach, planes)];
+            self.find_skins(&mut search, passed, reach);
+            self.settle(&search[0], passed, reach, planes);
         }
         if !planes.any {
             return None;
@@ -150,18 +139,41 @@ impl MovingField {
         Some(out)
     }
 
-    /// Measures the lanes that have gone too far from where they were measured.
+    /// Measures beforehand, all together, what [`MovingField::row`] will be asked for if points come to be where `rows` have
+    /// them. `planes` are those of these rows, `searches` is working memory.
     #[inline(always)]
-    fn measure(&self, local: &Lane3, gone: &Lane, passed: f32, reach: f32, planes: &mut PlaneRow) {
-        let cells = self.occupancy.cells(local);
-        let mut asked = [false; LANES];
-        for k in 0..LANES {
-            // What is not a number is measured too, and found nowhere.
-            asked[k] = (gone[k] > 0.0) | gone[k].is_nan();
+    pub(crate) fn foresee(
+        &self,
+        rows: &[Lane3],
+        substep: &Substep,
+        passed: f32,
+        reach: f32,
+        planes: &mut [PlaneRow],
+        searches: &mut Vec<Search>,
+    ) {
+        searches.clear();
+        for (n, (row, planes)) in rows.iter().zip(planes.iter_mut()).enumerate() {
+            let (local, asked, stays) = gone(row, substep, planes);
+            if stays {
+                continue;
+            }
+            let search = self.search(n, &local, asked, reach, planes);
+            if search.any {
+                searches.push(search);
+            } else {
+                self.settle(&search, passed, reach, planes);
+            }
         }
-        let near = self.occupancy.near(&cells, &asked);
-        let heads = self.heads(local, &near.head, reach);
-        let skins = self.find_skins(local, &near, &heads.alone, passed, reach, planes);
+        self.find_skins(searches, passed, reach);
+        for search in &*searches {
+            self.settle(search, passed, reach, &mut planes[search.row]);
+        }
+    }
+
+    /// Writes down what a search has found of the lanes that it was asked for.
+    #[inline(always)]
+    fn settle(&self, search: &Search, passed: f32, reach: f32, planes: &mut PlaneRow) {
+        let Search { p: local, asked, near, to_next, heads, skins, .. } = search;
         for k in 0..LANES {
             let (p, alone, besides) = (at(local, k), heads.alone[k], near.besides[k]);
             let other_skin = near.slot[k] != 0;
@@ -172,7 +184,7 @@ impl MovingField {
             let nearest = if nothing { NONE } else { nearest };
             let found = skins.found[k] & !nothing;
             // In another cell there may be other skin; within a few millimetres this cell knows of it.
-            let to_next = cells.to_next[k] + NEAR;
+            let to_next = to_next[k] + NEAR;
             let free = greater(lesser(0.5 * (nearest - reach), to_next), NEAR);
             // Where there is no way back from here, or to skin that is far, there may be another from near by.
             let lost = (near.head[k] | other_skin) & !besides;
@@ -182,121 +194,56 @@ impl MovingField {
             let finite = p.length_squared() < f32::MAX;
             let serves = if finite { serves * serves } else { -1.0 };
             let anew = asked[k];
-            let set = |own: &mut f32, new: f32| *own = if anew { new } else { *own };
-            let set3 = |own: &mut Lane3, new: Vec3| {
-                set(&mut own[0][k], new.x);
-                set(&mut own[1][k], new.y);
-                set(&mut own[2][k], new.z);
-            };
-            set(&mut planes.serves[k], serves);
-            set3(&mut planes.place, p);
-            set(&mut planes.passed[k], passed);
-            set(&mut planes.head_distance[k], if alone & !nothing { heads.distance[k] } else { NONE });
-            set3(&mut planes.head_normal, at(&heads.normal, k));
-            set(&mut planes.skin_distance[k], if found { skins.distance[k] } else { NONE });
-            set3(&mut planes.rest, choose(found, at(&skins.rest, k), NOWHERE));
+            renew(&mut planes.serves, k, anew, serves);
+            renew3(&mut planes.place, k, anew, p);
+            renew(&mut planes.passed, k, anew, passed);
+            let head_distance = if alone & !nothing { heads.distance[k] } else { NONE };
+            renew(&mut planes.head_distance, k, anew, head_distance);
+            renew3(&mut planes.head_normal, k, anew, at(&heads.normal, k));
+            let skin_distance = if found { skins.distance[k] } else { NONE };
+            renew(&mut planes.skin_distance, k, anew, skin_distance);
+            renew3(&mut planes.rest, k, anew, choose(found, at(&skins.rest, k), NOWHERE));
             // Of skin that is not there the rest says nothing.
-            set3(&mut planes.skin_normal, at(&skins.normal, k));
-            set(&mut planes.share[k], skins.share[k]);
-            set(&mut planes.guess[k], if skins.sure[k] { 0.0 } else { 1.0 });
-            set3(&mut planes.drift, at(&skins.drift, k));
+            renew3(&mut planes.skin_normal, k, anew, at(&skins.normal, k));
+            renew(&mut planes.share, k, anew, skins.share[k]);
+            let guess = if skins.sure[k] { 0.0 } else { 1.0 };
+            renew(&mut planes.guess, k, anew, guess);
+            renew3(&mut planes.drift, k, anew, at(&skins.drift, k));
         }
         planes.any = false;
         for k in 0..LANES {
             planes.any |= lesser(planes.head_distance[k], planes.skin_distance[k]) < NONE;
         }
     }
-
-    /// What the lanes of a row find of skin that other joints than the head move, and how far that is at least; `alone` says
-    /// where the head alone moves what is at a point.
-    #[inline(always)]
-    fn find_skins(
-        &self,
-        local: &Lane3,
-        near: &Near,
-        alone: &[bool; LANES],
-        passed: f32,
-        reach: f32,
-        planes: &PlaneRow,
-    ) -> Skins {
-        let (mut skins, mut tried, mut stays) = (Skins::NONE, splat3(NOWHERE), [false; LANES]);
-        let (slot, mut guess) = (near.slot, ZERO3);
-        let (mut any, mut others) = (false, [false; LANES]);
-        for k in 0..LANES {
-            others[k] = near.head[k] & !alone[k];
-            any |= others[k] | (slot[k] != 0);
-        }
-        if !any {
-            return skins;
-        }
-        for way in Way::ALL {
-            let mut starts = Starts { asked: [false; LANES], guess, slot };
-            let mut any = false;
-            for k in 0..LANES {
-                let (p, was, of_slot) = (at(local, k), at(&planes.rest, k), at(&guess, k));
-                let (asked, from) = match way {
-                    Way::Again => ((slot[k] != 0) & (was.x < NOWHERE.x), was),
-                    Way::OfSlot => ((slot[k] != 0) & !stays[k], of_slot),
-                    Way::OfHead => (others[k] & !stays[k], p),
-                    Way::Between => ((slot[k] != 0) & !stays[k], 0.5 * (of_slot + p)),
-                };
-                // From close to a place that is known it would lead there.
-                let known = at(&tried, k);
-                let asked = asked & !((known.x < NOWHERE.x) & self.is_close(from, known));
-                starts.asked[k] = asked;
-                any |= asked;
-                put(&mut starts.guess, k, from);
-                starts.slot[k] = if way == Way::OfSlot { slot[k] } else { 0 };
-                let first = asked & (way != Way::Again) & (known.x >= NOWHERE.x);
-                put(&mut tried, k, choose(first, from, known));
-            }
-            if any {
-                let found = self.measure_skins(local, &starts, alone, passed, reach);
-                let mut taken = [false; LANES];
-                for k in 0..LANES {
-                    let nearer = !skins.found[k] | (found.distance[k] < skins.distance[k]);
-                    let good = if way == Way::Again { found.sure[k] } else { nearer };
-                    taken[k] = found.found[k] & good;
-                    let counts = starts.asked[k] & (way != Way::Again || taken[k]);
-                    let nearer = lesser(skins.nearest[k], found.nearest[k]);
-                    skins.nearest[k] = if counts { nearer } else { skins.nearest[k] };
-                }
-                skins.take(&found, &taken);
-            }
-            if way == Way::Again {
-                for k in 0..LANES {
-                    // Within a step it stays on the side of a fold that it was found on.
-                    stays[k] = (skins.rest[0][k] < NOWHERE.x) & (planes.serves[k] >= 0.0);
-                    if slot[k] != 0 && !stays[k] {
-                        put(&mut guess, k, self.mapped(at(local, k), slot[k], passed).truncate());
-                    }
-                }
-                tried = skins.rest;
-            }
-        }
-        skins
-    }
-
-    /// Whether a way back that begins at `guess` leads to the place `rest` that is known.
-    #[inline(always)]
-    fn is_close(&self, guess: Vec3, rest: Vec3) -> bool {
-        (guess - rest).length_squared() < (CLOSE * self.field.node_lattice().spacing).powi(2)
-    }
 }
 
-/// From where a point is taken back to rest. Where skin is folded there are several ways back.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Way {
-    /// From where it was found last, in this step or the one before.
-    Again,
-    /// From where the nearest other joints have it.
-    OfSlot,
-    /// From where the head has it.
-    OfHead,
-    /// From midway between these.
-    Between,
+/// A row of points in working space taken to head space; the lanes that have gone too far from where they were measured; and
+/// whether none has.
+#[inline(always)]
+fn gone(row: &Lane3, substep: &Substep, planes: &PlaneRow) -> (Lane3, [bool; LANES], bool) {
+    let Map { turn, shift } = substep.head;
+    let (mut local, mut gone, mut stays) = (ZERO3, [false; LANES], true);
+    for k in 0..LANES {
+        let p = at(row, k) - shift;
+        let p = Vec3::new(turn.x_axis.dot(p), turn.y_axis.dot(p), turn.z_axis.dot(p));
+        put(&mut local, k, p);
+        let off = (p - at(&planes.place, k)).length_squared() - planes.serves[k];
+        // What is not a number is measured too, and found nowhere.
+        gone[k] = (off > 0.0) | off.is_nan();
+        stays &= !gone[k];
+    }
+    (local, gone, stays)
 }
 
-impl Way {
-    const ALL: [Self; 4] = [Self::Again, Self::OfSlot, Self::OfHead, Self::Between];
+/// Writes lane `k` where it is `anew`.
+#[inline(always)]
+fn renew(row: &mut Lane, k: usize, anew: bool, new: f32) {
+    row[k] = if anew { new } else { row[k] };
+}
+
+/// The same for a vector.
+#[inline(always)]
+fn renew3(row: &mut Lane3, k: usize, anew: bool, new: Vec3) {
+    let was = at(row, k);
+    put(row, k, choose(anew, new, was));
 }

@@ -11,6 +11,7 @@ use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, choose, greater, inv_sqr
 use crate::trilinear::{gradient, weights};
 
 /// What a row of points learns of the skin that goes with the head.
+#[derive(Clone, Debug)]
 pub(super) struct Heads {
     /// Whether the head alone moves the skin there; where it does not, the rest says nothing.
     pub(super) alone: [bool; LANES],

@@ -2,7 +2,7 @@
 
 use glam::{Mat3, Mat4, Vec3, Vec4};
 
-use super::back::{Back, between};
+use super::affine::{Affine, between};
 use super::planes::{NONE, NOWHERE};
 use super::rows::{Places, normal_of};
 use super::{DEEP, MovingField, ROUNDS, SETTLED, STRAYED, UNFOLDED, UNSURE};
@@ -10,7 +10,7 @@ use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, choose, greater, lesser,
 use crate::trilinear::weights;
 
 /// What a row of points learns of a skin, in head space. Of what is not found the rest says nothing.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Skins {
     pub(super) found: [bool; LANES],
     /// How far it is at least, metres; [`NONE`] where nothing is known.
@@ -38,27 +38,6 @@ impl Skins {
         sure: [true; LANES],
         rest: splat3(NOWHERE),
     };
-
-    /// Takes the lanes `which` of `other`.
-    #[inline(always)]
-    pub(super) fn take(&mut self, other: &Self, which: &[bool; LANES]) {
-        let pick = |own: &mut Lane, other: &Lane| {
-            for k in 0..LANES {
-                own[k] = if which[k] { other[k] } else { own[k] };
-            }
-        };
-        for k in 0..LANES {
-            self.found[k] |= which[k] & other.found[k];
-            self.sure[k] = if which[k] { other.sure[k] } else { self.sure[k] };
-        }
-        pick(&mut self.distance, &other.distance);
-        pick(&mut self.share, &other.share);
-        for axis in 0..3 {
-            pick(&mut self.normal[axis], &other.normal[axis]);
-            pick(&mut self.drift[axis], &other.drift[axis]);
-            pick(&mut self.rest[axis], &other.rest[axis]);
-        }
-    }
 }
 
 /// Where the ways of a row back to rest begin.
@@ -111,9 +90,9 @@ impl MovingField {
             if !at_rest.there[k] || at_rest.value[k] - self.lift > 2.0 * reach {
                 continue;
             }
-            let (mut before, mut now) = (Back::NOTHING, Back::NOTHING);
+            let (mut before, mut now) = (Affine::NOTHING, Affine::NOTHING);
             if rest.heads[k] {
-                (before, now) = (Back::IDENTITY, Back::IDENTITY);
+                (before, now) = (Affine::IDENTITY, Affine::IDENTITY);
             } else {
                 for (&slot, weight) in rest.slots[k].iter().zip(weights(at(&rest.fraction, k))) {
                     before = before.plus(&self.before[usize::from(slot)], weight);
@@ -132,11 +111,7 @@ impl MovingField {
             let bent = at(&rest.stretch[0], k) * gradient.x
                 + at(&rest.stretch[1], k) * gradient.y
                 + at(&rest.stretch[2], k) * gradient.z;
-            let forth = |v: Vec3| {
-                let column = |i: usize| Vec3::new(back[4 * i][k], back[4 * i + 1][k], back[4 * i + 2][k]);
-                Vec3::new(column(0).dot(v), column(1).dot(v), column(2).dot(v))
-            };
-            let (normal, steepness) = normal_of(forth(bent));
+            let (normal, steepness) = normal_of(times_transposed(&back, k, bent));
             put(&mut out.normal, k, normal);
             let distance = value / lesser(greater(steepness, 0.5), 2.0) - self.lift;
             // A guess may push, but not far; nor may skin that is stretched or pressed beyond what skin can be, or that
@@ -152,7 +127,7 @@ impl MovingField {
             out.nearest[k] = if there { least } else { NONE };
             out.sure[k] = sound;
             out.share[k] = back[15][k];
-            put(&mut out.drift, k, forth(at(&moved, k)) * inv_dt);
+            put(&mut out.drift, k, times_transposed(&back, k, at(&moved, k)) * inv_dt);
             let (goes_on, place) = (sound & !rest.heads[k], at(&rest.place, k));
             let place = choose(goes_on, place, NOWHERE);
             put(&mut out.rest, k, place);
@@ -283,4 +258,11 @@ impl MovingField {
         }
         rest
     }
+}
+
+/// The transpose of the matrix in lane `k`, whose columns are four numbers each, times `v`.
+#[inline(always)]
+fn times_transposed(matrix: &[Lane; LANES], k: usize, v: Vec3) -> Vec3 {
+    let column = |i: usize| Vec3::new(matrix[4 * i][k], matrix[4 * i + 1][k], matrix[4 * i + 2][k]);
+    Vec3::new(column(0).dot(v), column(1).dot(v), column(2).dot(v))
 }

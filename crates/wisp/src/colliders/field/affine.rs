@@ -1,27 +1,20 @@
-//! The way back to rest of a weighting of joints, and what lies between those of the nodes around a place.
+//! An affine map of a weighting of joints, and what lies between those of the nodes around a place.
 
-use glam::{Affine3A, Vec3, Vec4};
+use glam::{Vec3, Vec4};
+
+use crate::lanes::Lane;
 
 /// A matrix by columns and a shift, four numbers each; the last of the shift is the head's share of the weights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(64))]
-pub(super) struct Back([f32; 16]);
+pub(super) struct Affine([f32; 16]);
 
-impl Back {
+impl Affine {
     pub(super) const IDENTITY: Self =
         Self([1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
 
     /// What is added up to others.
     pub(super) const NOTHING: Self = Self([0.0; 16]);
-
-    pub(super) fn new(m: &Affine3A, head: f32) -> Self {
-        let mut out = [0.0; 16];
-        for (column, from) in out.as_chunks_mut::<4>().0.iter_mut().zip(m.to_cols_array_2d()) {
-            column[..3].copy_from_slice(&from);
-        }
-        out[15] = head;
-        Self(out)
-    }
 
     /// The map of a point; the last number says nothing.
     #[inline(always)]
@@ -54,6 +47,13 @@ impl Back {
             out[i] = self.0[i] + (other.0[i] - self.0[i]) * t;
         }
         Self(out)
+    }
+}
+
+impl From<Lane> for Affine {
+    #[inline(always)]
+    fn from(numbers: Lane) -> Self {
+        Self(numbers.0)
     }
 }
 

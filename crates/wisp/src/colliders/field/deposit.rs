@@ -1,0 +1,257 @@
+//! How the body gets into the cells of its [`Occupancy`]: places near the skin or inside are carried along, sixteen side by
+//! side, and tell the cells around of themselves.
+// Calls of functions that ask for features of the processor, made by the macro after it has asked for them.
+#![allow(unsafe_code)]
+// Lazy operators are branches, and loops over lanes with branches stay loops.
+#![allow(clippy::needless_bitwise_bool)]
+
+use glam::{IVec3, Vec3};
+use lovelock_groom::simd::{Width, whole_part};
+use lovelock_groom::simd_versions;
+use lovelock_motion::FieldWeights;
+
+use super::occupancy::{Grid, NONE, Occupancy, UNSPARING};
+use super::weightings::{Joints, Weightings};
+use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, fold, greater, put, row_done};
+
+/// Places that are deposited, a row at a time: where they are at rest, and their slots and weightings. What fills up the last
+/// row has slot 0, which is the head's.
+#[derive(Clone, Debug)]
+pub(super) struct Probes {
+    rest: Vec<Lane3>,
+    slots: Vec<[u16; LANES]>,
+    weightings: Weightings,
+}
+
+impl Probes {
+    pub(super) fn new(probes: &[(Vec3, u16, FieldWeights)]) -> Self {
+        let (mut all_rest, mut all_slots) = (Vec::new(), Vec::new());
+        for row in probes.chunks(LANES) {
+            let (mut rest, mut slots) = (ZERO3, [0; LANES]);
+            for (k, &(place, slot, _)) in row.iter().enumerate() {
+                put(&mut rest, k, place);
+                slots[k] = slot;
+            }
+            all_rest.push(rest);
+            all_slots.push(slots);
+        }
+        let weights: Vec<_> = probes.iter().map(|&(.., weights)| weights).collect();
+        Self { rest: all_rest, slots: all_slots, weightings: Weightings::new(&weights) }
+    }
+}
+
+/// A cell with probes in it: the one nearest to its middle.
+#[derive(Clone, Copy, Debug)]
+struct Occupied {
+    index: u32,
+    at: IVec3,
+    place: Vec3,
+    squared: f32,
+    slot: u16,
+}
+
+/// The cells with probes at one end of a step.
+#[derive(Clone, Debug)]
+pub(super) struct End {
+    occupied: Vec<Occupied>,
+    /// For each cell its place among them.
+    own: Vec<u32>,
+    /// Where each probe is; empty where nothing is known of this end.
+    places: Vec<Lane3>,
+}
+
+impl End {
+    pub(super) fn new(cells: usize) -> Self {
+        Self { occupied: Vec::new(), own: vec![NONE; cells], places: Vec::new() }
+    }
+
+    pub(super) fn forget(&mut self) {
+        self.places.clear();
+    }
+}
+
+/// The number of each lane.
+const FROM_0: Lane = {
+    let mut lane = ZERO;
+    let mut k = 0;
+    while k < LANES {
+        lane.0[k] = k as f32;
+        k += 1;
+    }
+    lane
+};
+
+impl Occupancy {
+    /// Deposits the body at both `ends` of the step. Where `spare` is false the cells around are to be tested too.
+    pub(super) fn update(&mut self, reach: f32, ends: [&Joints; 2], spare: bool) {
+        let wide = Width::widest();
+        self.clear();
+        self.place_head(self.width(reach));
+        let moved = self.collect(wide, ends);
+        // What is on its way is nearest to one end, by half the way at most. A little more width spares one end.
+        let one = self.width(reach + moved);
+        let (width, skip) =
+            if one <= self.width(reach) { (one, 1) } else { (self.width(reach + 0.5 * moved), 0) };
+        spread_all(wide, self, width, skip);
+        let mut known = Vec::new();
+        if !spare {
+            known
+                .extend(self.head.iter().zip(&self.nearest).map(|(&head, &nearest)| head || nearest != NONE));
+            // The second round only fills what the first has left, and so changes nothing there.
+            let first = self.nearest.clone();
+            spread_all(wide, self, width + UNSPARING, skip);
+            for ((own, &first), _) in
+                self.nearest.iter_mut().zip(&first).zip(&known).filter(|(_, known)| **known)
+            {
+                *own = first;
+            }
+        }
+        self.place_extra(spare, &known);
+    }
+
+    /// Empties the cells that may have any probe near them.
+    fn clear(&mut self) {
+        let (from, to) = std::mem::replace(&mut self.touched, (self.grid.size.as_ivec3(), IVec3::NEG_ONE));
+        for z in from.z..=to.z {
+            for y in from.y..=to.y {
+                let row = self.grid.row(y, z);
+                self.nearest[row + from.x as usize..=row + to.x as usize].fill(NONE);
+            }
+        }
+    }
+
+    /// Finds the probe nearest to the middle of each cell that has any, at both ends; the furthest way of a probe. A step
+    /// begins where the last one has ended.
+    fn collect(&mut self, wide: Width, joints: [&Joints; 2]) -> f32 {
+        self.ends.swap(0, 1);
+        for (n, joints) in joints.into_iter().enumerate() {
+            if n == 1 || self.ends[0].places.len() != self.probes.rest.len() {
+                place_probes(wide, &self.probes, &self.grid, joints, &mut self.ends[n]);
+            }
+        }
+        furthest(wide, &self.ends).sqrt()
+    }
+}
+
+simd_versions! {
+    /// Puts the probes where `joints` have them.
+    fn place_probes(probes: &Probes, grid: &Grid, joints: &Joints, end: &mut End) -> () {
+        place_all(probes, grid, joints, end)
+    }
+}
+
+simd_versions! {
+    /// The square of the longest way of a probe from one end to the other.
+    fn furthest(ends: &[End; 2]) -> f32 {
+        longest_way(ends)
+    }
+}
+
+simd_versions! {
+    /// Tells the cells around the occupied ones of the nearest of these; `skip` leaves out the start of the step.
+    fn spread_all(occupancy: &mut Occupancy, width: i32, skip: usize) -> () {
+        spread(occupancy, width, skip)
+    }
+}
+
+#[inline(always)]
+fn place_all(probes: &Probes, grid: &Grid, joints: &Joints, end: &mut End) {
+    for cell in end.occupied.drain(..) {
+        end.own[cell.index as usize] = NONE;
+    }
+    end.places.clear();
+    let size = grid.size.as_vec3();
+    for ((rest, slots), row) in probes.rest.iter().zip(&probes.slots).zip(probes.weightings.rows()) {
+        let (map, sound) = probes.weightings.mixed(row, joints);
+        let [xx, xy, xz, yx, yy, yz, zx, zy, zz, shift @ ..] = map;
+        let to = |n: usize, x: Lane, y: Lane, z: Lane| {
+            rest[0].times(x).plus(rest[1].times(y)).plus(rest[2].times(z)).plus(shift[n])
+        };
+        let place = [to(0, xx, yx, zx), to(1, xy, yy, zy), to(2, xz, yz, zz)];
+        end.places.push(place);
+        let (mut cells, mut squared, mut inside) = ([[0; LANES]; 3], ZERO, [false; LANES]);
+        for k in 0..LANES {
+            let q = (at(&place, k) - grid.low) * grid.inv_cell;
+            // Written so that what is not a number is outside.
+            inside[k] = (q.x >= 0.0)
+                & (q.y >= 0.0)
+                & (q.z >= 0.0)
+                & (q.x < size.x)
+                & (q.y < size.y)
+                & (q.z < size.z)
+                & (slots[k] != 0)
+                & sound[k];
+            let (x, y, z) = (whole_part(q.x), whole_part(q.y), whole_part(q.z));
+            (cells[0][k], cells[1][k], cells[2][k]) = (x, y, z);
+            let off = (Vec3::new(x as f32, y as f32, z as f32) + 0.5 - q) * grid.cell;
+            squared[k] = off.length_squared();
+        }
+        for k in 0..LANES {
+            if !inside[k] {
+                continue;
+            }
+            let cell = IVec3::new(cells[0][k], cells[1][k], cells[2][k]);
+            let index = grid.row(cell.y, cell.z) + cell.x as usize;
+            let own = &mut end.own[index];
+            let (squared, slot) = (squared[k], slots[k]);
+            let found = Occupied { index: index as u32, at: cell, place: at(&place, k), squared, slot };
+            match end.occupied.get_mut(*own as usize) {
+                Some(known) if squared < known.squared => *known = found,
+                Some(_) => {}
+                None => {
+                    *own = end.occupied.len() as u32;
+                    end.occupied.push(found);
+                }
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn longest_way(ends: &[End; 2]) -> f32 {
+    let mut most = ZERO;
+    for (a, b) in ends[0].places.iter().zip(&ends[1].places) {
+        for k in 0..LANES {
+            most[k] = greater(most[k], (at(b, k) - at(a, k)).length_squared());
+        }
+    }
+    fold(most, greater)
+}
+
+#[inline(always)]
+fn spread(occupancy: &mut Occupancy, width: i32, skip: usize) {
+    let Occupancy { grid, nearest, touched, ends, .. } = occupancy;
+    for end in &ends[skip..] {
+        for cell in &end.occupied {
+            let (from, to) = grid.around(cell.at, width);
+            *touched = (touched.0.min(from), touched.1.max(to));
+            let first = grid.low + (from.as_vec3() + 0.5) * grid.cell - cell.place;
+            let wide = (to.x - from.x + 1) as usize;
+            for begin in (0..wide).step_by(LANES) {
+                // Squares along x, which all rows have; what is beyond the last cell is not written.
+                let (mut along, mut slot) = (ZERO, [NONE; LANES]);
+                for k in 0..LANES {
+                    let x = first.x + (begin as f32 + FROM_0[k]) * grid.cell;
+                    along[k] = x * x;
+                    slot[k] = if FROM_0[k] < (wide - begin) as f32 { u32::from(cell.slot) } else { NONE };
+                }
+                for z in from.z..=to.z {
+                    for y in from.y..=to.y {
+                        let off_y = first.y + (y - from.y) as f32 * grid.cell;
+                        let off_z = first.z + (z - from.z) as f32 * grid.cell;
+                        let across = off_y * off_y + off_z * off_z;
+                        let row = grid.row(y, z) + from.x as usize + begin;
+                        let Some(cells) = nearest[row..].first_chunk_mut::<LANES>() else { continue };
+                        let mut own = *cells;
+                        for k in 0..LANES {
+                            let near = (across + along[k]).to_bits() & !0xffff | slot[k];
+                            own[k] = if near < own[k] { near } else { own[k] };
+                        }
+                        *cells = own;
+                        row_done();
+                    }
+                }
+            }
+        }
+    }
+}

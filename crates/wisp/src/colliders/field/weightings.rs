@@ -1,0 +1,191 @@
+//! Where weightings of a field's joints are, sixteen side by side: from rest to head space, and back.
+// Calls of functions that ask for features of the processor, made by the macro after it has asked for them.
+#![allow(unsafe_code)]
+
+use glam::Affine3A;
+use lovelock_groom::simd::Width;
+use lovelock_groom::simd_versions;
+use lovelock_motion::{FIELD_JOINTS, FieldWeights};
+
+use super::affine::Affine;
+use crate::lanes::{LANES, Lane, Lane3, ZERO, row_done, transposed};
+
+/// A skin pressed flatter than this has no way back; it is left at rest. The most that a way back may swell.
+const MOST_SWELLING: f32 = 1e3;
+
+/// Weightings of a field's joints, [`LANES`] in a row.
+#[derive(Clone, Debug)]
+pub(super) struct Weightings {
+    rows: Vec<Row>,
+    /// For each row the weights of its joints, one after the other.
+    weights: Vec<Lane>,
+}
+
+/// A row of weightings.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Row {
+    /// Its weights among all.
+    first: usize,
+    /// A bit for each joint that any of them has.
+    joints: u32,
+    /// The weights of the first joint, the head.
+    head: Lane,
+}
+
+/// The joints of a field, each from rest to head space.
+#[derive(Clone, Debug)]
+pub(crate) struct Joints {
+    all: [Affine3A; FIELD_JOINTS],
+    /// The same as plain numbers, zero where there are none, and a bit for each of these.
+    numbers: [[f32; 12]; FIELD_JOINTS],
+    lost: u32,
+}
+
+impl Joints {
+    /// The first is the head, which is where it is at rest.
+    pub(crate) fn new(all: [Affine3A; FIELD_JOINTS]) -> Self {
+        let (mut numbers, mut lost) = ([[0.0; 12]; FIELD_JOINTS], 0);
+        for (j, joint) in all.iter().enumerate() {
+            // Zero times what is not a number is none either.
+            if joint.is_finite() {
+                numbers[j] = joint.to_cols_array();
+            } else {
+                lost |= 1 << j;
+            }
+        }
+        Self { all, numbers, lost }
+    }
+
+    pub(crate) const fn all(&self) -> &[Affine3A; FIELD_JOINTS] {
+        &self.all
+    }
+}
+
+impl Default for Joints {
+    fn default() -> Self {
+        Self::new([Affine3A::IDENTITY; FIELD_JOINTS])
+    }
+}
+
+impl Weightings {
+    pub(super) fn new(all: &[FieldWeights]) -> Self {
+        let (mut rows, mut weights) = (Vec::new(), Vec::new());
+        for all in all.chunks(LANES) {
+            let of = |j: usize| {
+                let mut lane = ZERO;
+                for (own, weights) in lane.0.iter_mut().zip(all) {
+                    // What is no weight counts as none.
+                    *own = if weights[j] > 0.0 { weights[j] } else { 0.0 };
+                }
+                lane
+            };
+            let mut row = Row { first: weights.len(), joints: 0, head: of(0) };
+            for j in 0..FIELD_JOINTS {
+                let lane = of(j);
+                if lane.iter().any(|&weight| weight > 0.0) {
+                    row.joints |= 1 << j;
+                    weights.push(lane);
+                }
+            }
+            rows.push(row);
+        }
+        Self { rows, weights }
+    }
+
+    pub(super) fn rows(&self) -> &[Row] {
+        &self.rows
+    }
+
+    /// What takes head space back to rest, for each weighting; rows are full. The first is the head's own and never moves.
+    pub(super) fn ways_back(&self, joints: &Joints, out: &mut Vec<Affine>) {
+        out.resize(self.rows.len() * LANES, Affine::IDENTITY);
+        undo_all(Width::widest(), self, joints, out);
+        // To the last bit.
+        out.first_mut().into_iter().for_each(|head| *head = Affine::IDENTITY);
+    }
+
+    /// The maps of a row from rest to head space, three numbers a column, and where these are numbers.
+    #[inline(always)]
+    pub(super) fn mixed(&self, row: &Row, joints: &Joints) -> ([Lane; 12], [bool; LANES]) {
+        let (mut map, mut sound) = ([ZERO; 12], [true; LANES]);
+        let (mut left, mut next) = (row.joints, row.first);
+        while left != 0 {
+            let j = left.trailing_zeros() as usize % FIELD_JOINTS;
+            left &= left - 1;
+            let weight = self.weights[next];
+            next += 1;
+            for (lane, number) in map.iter_mut().zip(&joints.numbers[j]) {
+                *lane = lane.plus(weight.times(Lane::splat(*number)));
+                row_done();
+            }
+            let lost = joints.lost >> j & 1 != 0;
+            for k in 0..LANES {
+                sound[k] &= !(lost & (weight[k] > 0.0));
+            }
+        }
+        (map, sound)
+    }
+}
+
+simd_versions! {
+    /// [`Weightings::ways_back`].
+    fn undo_all(weightings: &Weightings, joints: &Joints, out: &mut [Affine]) -> () {
+        for (row, out) in weightings.rows.iter().zip(out.as_chunks_mut().0) {
+            let (map, sound) = weightings.mixed(row, joints);
+            undo(&map, sound, &row.head, out);
+        }
+    }
+}
+
+/// Writes what undoes the maps of a row; nothing does where they are not `sound` or too flat.
+#[inline(always)]
+fn undo(map: &[Lane; 12], mut sound: [bool; LANES], head: &Lane, out: &mut [Affine; LANES]) {
+    let [xx, xy, xz, yx, yy, yz, zx, zy, zz, shift @ ..] = map;
+    let (x, y, z) = ([*xx, *xy, *xz], [*yx, *yy, *yz], [*zx, *zy, *zz]);
+    let rows = [cross(&y, &z), cross(&z, &x), cross(&x, &y)];
+    let mut inv = dot(&z, &rows[2]);
+    for k in 0..LANES {
+        inv[k] = 1.0 / inv[k];
+    }
+    let rows = rows.map(|row| row.map(|number| number.times(inv)));
+    let away = rows.map(|row| ZERO.less(dot(&row, shift)));
+    let mut size = ZERO;
+    for number in rows.iter().flatten().chain(&away) {
+        for k in 0..LANES {
+            size[k] += number[k].abs();
+        }
+        row_done();
+    }
+    for k in 0..LANES {
+        sound[k] &= (inv[k].abs() < MOST_SWELLING) & (size[k] < f32::MAX);
+    }
+    let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = rows;
+    let columns = [xx, yx, zx, xy, yy, zy, xz, yz, zz, away[0], away[1], away[2]];
+    let mut numbers = [ZERO; LANES];
+    for (n, column) in columns.iter().enumerate() {
+        let (to, unit) = (n / 3 * 4 + n % 3, if n < 9 && n % 4 == 0 { 1.0 } else { 0.0 });
+        for k in 0..LANES {
+            numbers[to][k] = if sound[k] { column[k] } else { unit };
+        }
+        row_done();
+    }
+    numbers[LANES - 1] = *head;
+    let numbers = transposed(&numbers);
+    for k in 0..LANES {
+        out[k] = Affine::from(numbers[k]);
+    }
+}
+
+#[inline(always)]
+fn cross(a: &Lane3, b: &Lane3) -> Lane3 {
+    [
+        a[1].times(b[2]).less_product(b[1], a[2]),
+        a[2].times(b[0]).less_product(b[2], a[0]),
+        a[0].times(b[1]).less_product(b[0], a[1]),
+    ]
+}
+
+#[inline(always)]
+fn dot(a: &Lane3, b: &Lane3) -> Lane {
+    a[0].times(b[0]).plus(a[1].times(b[1])).plus(a[2].times(b[2]))
+}
