@@ -23,9 +23,6 @@ const VERSION: u32 = 5;
 /// The most colliders that a state may speak of: beyond it the bytes are no state.
 const MOST_COLLIDERS: u32 = 4096;
 
-/// The same of the parts of a field of the body.
-const MOST_PARTS: u32 = 1 << 20;
-
 /// Why bytes are not a state of this simulation.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RestoreError {
@@ -88,7 +85,7 @@ impl Simulation {
             out.shape(shape);
             out.u32(u32::from(*on_head));
         }
-        out.u32(self.field.as_ref().map_or(0, MovingField::parts));
+        out.u32(self.field.as_ref().map_or(0, MovingField::weightings));
         for joint in self.field.iter().flat_map(|field| field.joints().all()) {
             out.affine(joint);
         }
@@ -170,15 +167,15 @@ impl Simulation {
         if rest.shapes.len() != next.colliders.len() {
             return Err(damaged("it knows other colliders at rest than in motion"));
         }
-        let parts = input.count(MOST_PARTS)?;
-        if parts == 0 {
+        let weightings = input.u32()?;
+        if weightings == 0 {
             next.field = None;
         } else {
             let mut joints = [Affine3A::IDENTITY; FIELD_JOINTS];
             for joint in &mut joints {
                 *joint = input.affine()?;
             }
-            let field = next.field.as_mut().filter(|field| field.parts() == parts);
+            let field = next.field.as_mut().filter(|field| field.weightings() == weightings);
             field.ok_or(RestoreError::Body)?.set_joints(Joints::new(joints));
         }
         let (guides, clamped_links) = (&self.style.guides, next.clamped_links);
@@ -197,7 +194,7 @@ impl Simulation {
         }
         for row in next.blocks.iter_mut().flat_map(|block| &mut block.skin) {
             *row = PlaneRow::NO_SKIN;
-            if parts > 0 {
+            if weightings > 0 {
                 for axis in row {
                     *axis = Lane(input.floats()?);
                 }

@@ -276,7 +276,10 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize, lay: Lay) {
         let buried = buried_in_field(root, moving, substep, passed, &rest_distance[carried], plane);
         let (first, reach) = (plan.first_free.clamp(1, count), plan.rules.reach());
         let Work { next, planes, searches, .. } = &mut block.work;
-        moving.foresee(&next[first..], substep, passed, reach, &mut planes[first..], searches);
+        // What follows the leader is not yet where it will be.
+        if lay != Lay::Behind {
+            moving.foresee(&next[first..], substep, passed, reach, &mut planes[first..], searches);
+        }
         field = Some(NearField { moving, substep, passed, rest_distance, buried });
     }
     let near = Near {

@@ -1,21 +1,19 @@
-//! How the body gets into the cells of its [`Occupancy`]: places near the skin or inside are carried along, sixteen side by
-//! side, and tell the cells around of themselves.
+//! How the body gets into the cells of its [`Occupancy`]: places near the skin or inside are carried along,
+//! sixteen side by side, and tell the cells around of themselves.
 // Calls of functions that ask for features of the processor, made by the macro after it has asked for them.
 #![allow(unsafe_code)]
-// Lazy operators are branches, and loops over lanes with branches stay loops.
-#![allow(clippy::needless_bitwise_bool)]
 
 use glam::{IVec3, Vec3};
 use lovelock_groom::simd::{Width, whole_part};
 use lovelock_groom::simd_versions;
 use lovelock_motion::FieldWeights;
 
-use super::occupancy::{Grid, NONE, Occupancy, UNSPARING};
+use super::occupancy::{Grid, NONE, Occupancy, UNSPARING, WIDEST};
 use super::weightings::{Joints, Weightings};
 use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, fold, greater, put, row_done};
 
-/// Places that are deposited, a row at a time: where they are at rest, and their slots and weightings. What fills up the last
-/// row has slot 0, which is the head's.
+/// Places that are deposited, a row at a time: where they are at rest, and their slots and weightings. What
+/// fills up the last row has slot 0, which is the head's.
 #[derive(Clone, Debug)]
 pub(super) struct Probes {
     rest: Vec<Lane3>,
@@ -50,6 +48,9 @@ struct Occupied {
     slot: u16,
 }
 
+/// The place among the occupied cells of one that is none of them.
+const FREE: u32 = u32::MAX;
+
 /// The cells with probes at one end of a step.
 #[derive(Clone, Debug)]
 pub(super) struct End {
@@ -62,13 +63,16 @@ pub(super) struct End {
 
 impl End {
     pub(super) fn new(cells: usize) -> Self {
-        Self { occupied: Vec::new(), own: vec![NONE; cells], places: Vec::new() }
+        Self { occupied: Vec::new(), own: vec![FREE; cells], places: Vec::new() }
     }
 
     pub(super) fn forget(&mut self) {
         self.places.clear();
     }
 }
+
+const _: () =
+    assert!(2 * (WIDEST + UNSPARING) < LANES as i32, "the cells around one along x fit in a row of lanes");
 
 /// The number of each lane.
 const FROM_0: Lane = {
@@ -82,13 +86,14 @@ const FROM_0: Lane = {
 };
 
 impl Occupancy {
-    /// Deposits the body at both `ends` of the step. Where `spare` is false the cells around are to be tested too.
-    pub(super) fn update(&mut self, reach: f32, ends: [&Joints; 2], spare: bool) {
-        let wide = Width::widest();
+    /// Deposits the body at both `ends` of the step. Where `spare` is false the cells around are to be tested
+    /// too.
+    pub(super) fn update(&mut self, wide: Width, reach: f32, ends: [&Joints; 2], spare: bool) {
         self.clear();
         self.place_head(self.width(reach));
         let moved = self.collect(wide, ends);
-        // What is on its way is nearest to one end, by half the way at most. A little more width spares one end.
+        // What is on its way is nearest to one end, by half the way at most. A little more width spares one
+        // end.
         let one = self.width(reach + moved);
         let (width, skip) =
             if one <= self.width(reach) { (one, 1) } else { (self.width(reach + 0.5 * moved), 0) };
@@ -120,8 +125,8 @@ impl Occupancy {
         }
     }
 
-    /// Finds the probe nearest to the middle of each cell that has any, at both ends; the furthest way of a probe. A step
-    /// begins where the last one has ended.
+    /// Finds the probe nearest to the middle of each cell that has any, at both ends; the furthest way of a
+    /// probe. A step begins where the last one has ended.
     fn collect(&mut self, wide: Width, joints: [&Joints; 2]) -> f32 {
         self.ends.swap(0, 1);
         for (n, joints) in joints.into_iter().enumerate() {
@@ -148,7 +153,8 @@ simd_versions! {
 }
 
 simd_versions! {
-    /// Tells the cells around the occupied ones of the nearest of these; `skip` leaves out the start of the step.
+    /// Tells the cells around the occupied ones of the nearest of these; `skip` leaves out the start of the
+    /// step.
     fn spread_all(occupancy: &mut Occupancy, width: i32, skip: usize) -> () {
         spread(occupancy, width, skip)
     }
@@ -157,12 +163,12 @@ simd_versions! {
 #[inline(always)]
 fn place_all(probes: &Probes, grid: &Grid, joints: &Joints, end: &mut End) {
     for cell in end.occupied.drain(..) {
-        end.own[cell.index as usize] = NONE;
+        end.own[cell.index as usize] = FREE;
     }
     end.places.clear();
     let size = grid.size.as_vec3();
     for ((rest, slots), row) in probes.rest.iter().zip(&probes.slots).zip(probes.weightings.rows()) {
-        let (map, sound) = probes.weightings.mixed(row, joints);
+        let map = probes.weightings.mixed(row, joints);
         let [xx, xy, xz, yx, yy, yz, zx, zy, zz, shift @ ..] = map;
         let to = |n: usize, x: Lane, y: Lane, z: Lane| {
             rest[0].times(x).plus(rest[1].times(y)).plus(rest[2].times(z)).plus(shift[n])
@@ -179,8 +185,7 @@ fn place_all(probes: &Probes, grid: &Grid, joints: &Joints, end: &mut End) {
                 & (q.x < size.x)
                 & (q.y < size.y)
                 & (q.z < size.z)
-                & (slots[k] != 0)
-                & sound[k];
+                & (slots[k] != 0);
             let (x, y, z) = (whole_part(q.x), whole_part(q.y), whole_part(q.z));
             (cells[0][k], cells[1][k], cells[2][k]) = (x, y, z);
             let off = (Vec3::new(x as f32, y as f32, z as f32) + 0.5 - q) * grid.cell;
@@ -226,30 +231,28 @@ fn spread(occupancy: &mut Occupancy, width: i32, skip: usize) {
             let (from, to) = grid.around(cell.at, width);
             *touched = (touched.0.min(from), touched.1.max(to));
             let first = grid.low + (from.as_vec3() + 0.5) * grid.cell - cell.place;
-            let wide = (to.x - from.x + 1) as usize;
-            for begin in (0..wide).step_by(LANES) {
-                // Squares along x, which all rows have; what is beyond the last cell is not written.
-                let (mut along, mut slot) = (ZERO, [NONE; LANES]);
-                for k in 0..LANES {
-                    let x = first.x + (begin as f32 + FROM_0[k]) * grid.cell;
-                    along[k] = x * x;
-                    slot[k] = if FROM_0[k] < (wide - begin) as f32 { u32::from(cell.slot) } else { NONE };
-                }
-                for z in from.z..=to.z {
-                    for y in from.y..=to.y {
-                        let off_y = first.y + (y - from.y) as f32 * grid.cell;
-                        let off_z = first.z + (z - from.z) as f32 * grid.cell;
-                        let across = off_y * off_y + off_z * off_z;
-                        let row = grid.row(y, z) + from.x as usize + begin;
-                        let Some(cells) = nearest[row..].first_chunk_mut::<LANES>() else { continue };
-                        let mut own = *cells;
-                        for k in 0..LANES {
-                            let near = (across + along[k]).to_bits() & !0xffff | slot[k];
-                            own[k] = if near < own[k] { near } else { own[k] };
-                        }
-                        *cells = own;
-                        row_done();
+            let wide = (to.x - from.x + 1) as f32;
+            // Squares along x, which all rows have; what is beyond the last cell is not written.
+            let (mut along, mut slot) = (ZERO, [NONE; LANES]);
+            for k in 0..LANES {
+                let x = first.x + FROM_0[k] * grid.cell;
+                along[k] = x * x;
+                slot[k] = if FROM_0[k] < wide { u32::from(cell.slot) } else { NONE };
+            }
+            for z in from.z..=to.z {
+                for y in from.y..=to.y {
+                    let off_y = first.y + (y - from.y) as f32 * grid.cell;
+                    let off_z = first.z + (z - from.z) as f32 * grid.cell;
+                    let across = off_y * off_y + off_z * off_z;
+                    let row = grid.row(y, z) + from.x as usize;
+                    let Some(cells) = nearest[row..].first_chunk_mut::<LANES>() else { continue };
+                    let mut own = *cells;
+                    for k in 0..LANES {
+                        let near = (across + along[k]).to_bits() & !0xffff | slot[k];
+                        own[k] = if near < own[k] { near } else { own[k] };
                     }
+                    *cells = own;
+                    row_done();
                 }
             }
         }

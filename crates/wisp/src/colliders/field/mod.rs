@@ -1,8 +1,8 @@
 //! The field of head and shoulders in one step: points near it are taken back to rest and measured there.
 //!
-//! All of it happens in head space, where the skull never moves: a point over it is at rest where it is now. What
-//! the other joints move has a map from head space now to rest for each weighting that occurs, at the start and at
-//! the end of the step; in between, maps are mixed, and the head itself turns exactly.
+//! All of it happens in head space, where the skull never moves: a point over it is at rest where it is now.
+//! What the other joints move has a map from head space now to rest for each weighting that occurs, at the
+//! start and at the end of the step; in between, maps are mixed, and the head itself turns exactly.
 // Loops over lanes hold no branches: a lazy operator is one, and made the field 7 % slower.
 #![allow(clippy::needless_bitwise_bool)]
 
@@ -20,6 +20,7 @@ mod weightings;
 use std::sync::Arc;
 
 use glam::{Affine3A, Vec3};
+use lovelock_groom::simd::Width;
 use lovelock_motion::{BodyField, FIELD_JOINTS, FieldPose};
 
 use crate::lanes::{Lane, Lane3, at};
@@ -31,17 +32,19 @@ pub(crate) use search::Search;
 pub(crate) use weightings::Joints;
 use weightings::Weightings;
 
-/// A point taken back to rest is near enough when it moves less than this in a round, metres: after a step of Newton's what is
-/// left is of second order.
+/// A point taken back to rest is near enough when it moves less than this in a round, metres: after a step of
+/// Newton's what is left is of second order.
 const SETTLED: f32 = 1e-3;
 
 /// Most rounds of taking a point back.
 const ROUNDS: usize = 6;
 
-/// A way back that ends further from the first guess than this leads to another part of the skin, spacings of nodes.
+/// A way back that ends further from the first guess than this leads to another part of the skin, spacings of
+/// nodes.
 const STRAYED: f32 = 3.0;
 
-/// A way back that begins closer than this to a place that another has found leads there too, spacings of nodes.
+/// A way back that begins closer than this to a place that another has found leads there too, spacings of
+/// nodes.
 const CLOSE: f32 = 1.0;
 
 /// Nothing is deeper than this in skin of which only a guess is known, metres.
@@ -59,7 +62,8 @@ pub(crate) struct MovingField {
     field: Arc<BodyField>,
     lift: f32,
     weightings: Weightings,
-    /// Where the joints are at the start and at the end of the step, and from there the ways of all weightings back to rest.
+    /// Where the joints are at the start and at the end of the step, and from there the ways of all
+    /// weightings back to rest.
     joints_before: Joints,
     joints: Joints,
     before: Vec<Affine>,
@@ -77,7 +81,7 @@ impl MovingField {
     pub(crate) fn new(field: &Arc<BodyField>, lift: f32, reach: f32) -> Self {
         let weightings = Weightings::new(field.slots());
         let (joints, mut now) = (Joints::default(), Vec::new());
-        weightings.ways_back(&joints, &mut now);
+        weightings.ways_back(Width::widest(), &joints, &mut now);
         Self {
             lift,
             weightings,
@@ -127,22 +131,22 @@ impl MovingField {
         std::mem::swap(&mut self.joints_before, &mut self.joints);
         self.dt_secs = dt_secs;
         self.joints = self.joints_at(head, pose);
-        self.weightings.ways_back(&self.joints, &mut self.now);
+        self.weightings.ways_back(Width::widest(), &self.joints, &mut self.now);
         let ends = [&self.joints_before, &self.joints];
-        self.occupancy.update(self.lift.max(0.0) + reach + planes::NEAR, ends, spare);
+        self.occupancy.update(Width::widest(), self.lift.max(0.0) + reach + planes::NEAR, ends, spare);
     }
 
     /// Starts anew at `pose`.
     pub(crate) fn reset(&mut self, head: &HeadPose, pose: &FieldPose) {
         self.joints = self.joints_at(head, pose);
-        self.weightings.ways_back(&self.joints, &mut self.now);
+        self.weightings.ways_back(Width::widest(), &self.joints, &mut self.now);
         self.before.clone_from(&self.now);
         self.joints_before.clone_from(&self.joints);
         self.occupancy.forget();
     }
 
-    /// How many weightings it has; at least the head's.
-    pub(crate) fn parts(&self) -> u32 {
+    /// How many weightings it has, at least the head's: other fields have others.
+    pub(crate) fn weightings(&self) -> u32 {
         self.field.slots().len().max(1) as u32
     }
 
@@ -155,7 +159,7 @@ impl MovingField {
     pub(crate) fn set_joints(&mut self, joints: Joints) {
         self.occupancy.forget();
         self.joints = joints;
-        self.weightings.ways_back(&self.joints, &mut self.now);
+        self.weightings.ways_back(Width::widest(), &self.joints, &mut self.now);
     }
 
     /// Where `pose` has the joints against the head.

@@ -1,14 +1,15 @@
-//! Where the body is, once a step: cells of a grid that turns with the head say which points need to be measured.
+//! Where the body is, once a step: cells of a grid that turns with the head say which points need to be
+//! measured.
 //!
-//! Every place near the skin or inside is deposited into the cells around it, where it is at the start of the step
-//! and at its end; a point in a cell without any is further from the skin than hair can touch, all step long.
+//! Every place near the skin or inside is deposited into the cells around it, where it is at the start of the
+//! step and at its end; a point in a cell without any is further from the skin than hair can touch, all step
+//! long.
 
 use glam::{IVec3, UVec3, Vec3};
 use lovelock_groom::simd::whole_part;
 use lovelock_motion::BodyField;
 
 use super::deposit::{End, Probes};
-
 use crate::lanes::{LANES, Lane, Lane3, ZERO, at, greater, lesser};
 
 /// A cell in spacings of the field's nodes.
@@ -16,7 +17,7 @@ const CELL: f32 = 2.5;
 /// How far beyond the resting field the grid goes on, as a part of the field's longest side.
 const BEYOND: f32 = 0.35;
 /// Most cells to each side that a place is deposited into.
-const WIDEST: i32 = 4;
+pub(super) const WIDEST: i32 = 4;
 /// Where nothing is tested for sparing's sake, so many cells more to each side are tested.
 pub(super) const UNSPARING: i32 = 3;
 /// No skin but the head's.
@@ -79,8 +80,9 @@ pub(super) struct Occupancy {
     pub(super) head: Vec<bool>,
     /// Cells in which the head is tried for nothing, where nothing is spared; otherwise empty.
     extra: Vec<bool>,
-    /// For each cell the probe that is nearest to its middle: the upper half of the square of its distance, square metres, and
-    /// its slot. Of two numbers the lesser is the nearer. [`NONE`] where there is none.
+    /// For each cell the probe that is nearest to its middle, to within 1 % of the square of the distance:
+    /// the upper half of the square of its distance, square metres, and its slot. Of two numbers the lesser
+    /// is the nearer. [`NONE`] where there is none.
     pub(super) nearest: Vec<u32>,
     /// The cells that may have any: the first and the last.
     pub(super) touched: (IVec3, IVec3),

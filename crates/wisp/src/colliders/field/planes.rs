@@ -1,11 +1,12 @@
-//! What the points of a block have learnt of the field: each a plane near by, taken for the skin until the point has
-//! moved too far from where it was measured.
+//! What the points of a block have learnt of the field: each a plane near by, taken for the skin until the
+//! point has moved too far from where it was measured.
 //!
-//! A step asks for the skin in every substep and in every round of a push-out. The way back to rest is measured where
-//! a point is for the first time in a step and anew wherever it has left the place by [`NEAR`], or by half its distance
-//! from contact; in between the skin is its tangent plane, which moves with the drift. On which side of a fold of the skin a
-//! point is, is asked once a step. A plane is off by
-//! `NEAR^2 / 2 R` at most over a surface of radius `R`: 0.01 mm over the skull, 0.1 mm at the rim of an ear.
+//! A step asks for the skin in every substep and in every round of a push-out. The way back to rest is
+//! measured where a point wants to be in the first substep, for all points of a block together
+//! ([`MovingField::foresee`]), and anew wherever it has left the place by [`NEAR`], or by half its distance
+//! from contact; in between the skin is its tangent plane, which moves with the drift. On which side of a
+//! fold of the skin a point is, is asked once a step. A plane is off by `NEAR^2 / 2 R` at most over a surface
+//! of radius `R`: 0.01 mm over the skull, 0.1 mm at the rim of an ear.
 
 use glam::Vec3;
 
@@ -23,7 +24,8 @@ pub(super) const NONE: f32 = 1e9;
 /// The planes of one row of points, in head space.
 #[derive(Clone, Debug)]
 pub(crate) struct PlaneRow {
-    /// Where the points were measured, and the square of how far from there that serves; negative where none was.
+    /// Where the points were measured, and the square of how far from there that serves; negative where none
+    /// was.
     place: Lane3,
     pub(super) serves: Lane,
     /// How much of the step had passed.
@@ -40,9 +42,9 @@ pub(crate) struct PlaneRow {
     guess: Lane,
     /// Whether any lane has skin near by.
     any: bool,
-    /// Where the points were at rest when skin that other joints move too was last found near them; [`NOWHERE`] where it
-    /// was not. Unlike the rest this is kept from step to step: where skin is folded there are several ways back, and
-    /// what is near one side of the fold stays there.
+    /// Where the points were at rest when skin that other joints move too was last found near them;
+    /// [`NOWHERE`] where it was not. Unlike the rest this is kept from step to step: where skin is folded
+    /// there are several ways back, and what is near one side of the fold stays there.
     pub(crate) rest: Lane3,
 }
 
@@ -94,8 +96,8 @@ impl FieldRow {
 }
 
 impl MovingField {
-    /// What a row of points in working space learns at the end of a substep, when `passed` of the step has passed;
-    /// nothing further away than `reach` is of interest. `None` where all lanes are far.
+    /// What a row of points in working space learns at the end of a substep, when `passed` of the step has
+    /// passed; nothing further away than `reach` is of interest. `None` where all lanes are far.
     #[inline(always)]
     pub(crate) fn row(
         &self,
@@ -108,7 +110,9 @@ impl MovingField {
         let (local, asked, stays) = gone(row, substep, planes);
         if !stays {
             let mut search = [self.search(0, &local, asked, reach, planes)];
-            self.find_skins(&mut search, passed, reach);
+            if search[0].any {
+                self.find_skins(&mut search, passed, reach);
+            }
             self.settle(&search[0], passed, reach, planes);
         }
         if !planes.any {
@@ -139,8 +143,8 @@ impl MovingField {
         Some(out)
     }
 
-    /// Measures beforehand, all together, what [`MovingField::row`] will be asked for if points come to be where `rows` have
-    /// them. `planes` are those of these rows, `searches` is working memory.
+    /// Measures beforehand, all together, what [`MovingField::row`] will be asked for if points come to be
+    /// where `rows` have them. `planes` are those of these rows, `searches` is working memory.
     #[inline(always)]
     pub(crate) fn foresee(
         &self,
@@ -217,8 +221,8 @@ impl MovingField {
     }
 }
 
-/// A row of points in working space taken to head space; the lanes that have gone too far from where they were measured; and
-/// whether none has.
+/// A row of points in working space taken to head space; the lanes that have gone too far from where they
+/// were measured; and whether none has.
 #[inline(always)]
 fn gone(row: &Lane3, substep: &Substep, planes: &PlaneRow) -> (Lane3, [bool; LANES], bool) {
     let Map { turn, shift } = substep.head;

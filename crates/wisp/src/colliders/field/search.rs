@@ -1,5 +1,5 @@
-//! Rows of points that look for the skin that other joints than the head move. Only some lanes of a row are near any: those of
-//! all rows of a block are measured together, sixteen at a time.
+//! Rows of points that look for the skin that other joints than the head move. Only some lanes of a row are
+//! near any: those of all rows of a block are measured together, sixteen at a time.
 
 use glam::Vec3;
 
@@ -13,7 +13,7 @@ use crate::lanes::{LANES, Lane, Lane3, ZERO3, at, choose, lesser, put, splat3};
 /// A row of points that looks for skin, in head space.
 #[derive(Clone, Debug)]
 pub(crate) struct Search {
-    /// Which row of the block it is.
+    /// Which of the rows that were given it is.
     pub(super) row: usize,
     pub(super) p: Lane3,
     /// The lanes that it is about.
@@ -74,8 +74,8 @@ struct Waiting {
 }
 
 impl MovingField {
-    /// Begins the search of the lanes `asked` of the row `p`, the `row`-th of its block: what the cells know, and the skin that
-    /// goes with the head.
+    /// Begins the search of the lanes `asked` of the row `p`, the `row`-th of those that were given: what the
+    /// cells know, and the skin that goes with the head.
     #[inline(always)]
     pub(super) fn search(
         &self,
@@ -112,8 +112,8 @@ impl MovingField {
         }
     }
 
-    /// Looks for skin that other joints than the head move, at the fraction `t` of the step; nothing further than `reach` is of
-    /// interest.
+    /// Looks for skin that other joints than the head move, at the fraction `t` of the step; nothing further
+    /// than `reach` is of interest.
     #[inline(always)]
     pub(super) fn find_skins(&self, searches: &mut [Search], t: f32, reach: f32) {
         let none = Trial { search: 0, lane: 0, p: Vec3::ZERO, from: Vec3::ZERO, slot: 0, alone: false };
@@ -240,8 +240,8 @@ impl MovingField {
 }
 
 impl Skins {
-    /// Takes what a trial has found, lane `of` of `found`, into `lane`: if it is nearer than what is known; where it only went on
-    /// from the last place, if it is sure.
+    /// Takes what a trial has found, lane `of` of `found`, into `lane`: if it is nearer than what is known;
+    /// where it only went on from the last place, if it is sure.
     #[inline(always)]
     fn learn(&mut self, lane: usize, found: &Self, of: usize, again: bool) {
         let nearer = !self.found[lane] | (found.distance[of] < self.distance[lane]);

@@ -23,7 +23,8 @@ pub(super) struct Skins {
     pub(super) drift: Lane3,
     /// Whether this is measured, and not a guess that may push a little.
     pub(super) sure: [bool; LANES],
-    /// Where the point is at rest, to go on from in the next measurement; [`NOWHERE`] where the head alone moves it or it is a guess.
+    /// Where the point is at rest, to go on from in the next measurement; [`NOWHERE`] where the head alone
+    /// moves it or it is a guess.
     pub(super) rest: Lane3,
 }
 
@@ -66,8 +67,9 @@ struct Rest {
 }
 
 impl MovingField {
-    /// Measures a row `p` at the fraction `t` of the step; nothing further than `reach` is of interest. `alone` says where the
-    /// head alone moves what is at a point: a way back that leads there finds what is known already.
+    /// Measures a row `p` at the fraction `t` of the step; nothing further than `reach` is of interest.
+    /// `alone` says where the head alone moves what is at a point: a way back that leads there finds what is
+    /// known already.
     #[inline(always)]
     pub(super) fn measure_skins(
         &self,
@@ -80,7 +82,8 @@ impl MovingField {
         let rest = self.ways_back(p, starts, t);
         let mut wanted = rest.there;
         for k in 0..LANES {
-            // Of the head's own weighting there is no guess: it says that the point has not moved. Nor is where it was.
+            // Of the head's own weighting there is no guess: it says that the point has not moved. Nor is
+            // where it was.
             wanted[k] &= rest.sure[k] | (starts.slot[k] != 0);
             wanted[k] &= !(alone[k] & rest.heads[k]);
         }
@@ -114,8 +117,8 @@ impl MovingField {
             let (normal, steepness) = normal_of(times_transposed(&back, k, bent));
             put(&mut out.normal, k, normal);
             let distance = value / lesser(greater(steepness, 0.5), 2.0) - self.lift;
-            // A guess may push, but not far; nor may skin that is stretched or pressed beyond what skin can be, or that
-            // hair has never been so deep in.
+            // A guess may push, but not far; nor may skin that is stretched or pressed beyond what skin can
+            // be, or that hair has never been so deep in.
             let sound = rest.sure[k] & (0.5..2.0).contains(&steepness) & (distance > -DEEP);
             let distance = if sound { distance } else { greater(distance, -UNSURE) };
             // A stretched skin is further away than it was at rest, by half at most.
@@ -144,9 +147,10 @@ impl MovingField {
 
     /// Takes a row back to rest from first guesses of where that is.
     ///
-    /// Wanted is `X = V(X)`, where `V` mixes what the weightings of the eight nodes around `X` make of `p`. Newton's
-    /// iteration, `(1 - V') dX = V - X`, goes where a plain one would swing to and fro: around a raised arm. Where the
-    /// skin is so folded that it finds nothing near by, the weighting of the guess alone says where the point is.
+    /// Wanted is `X = V(X)`, where `V` mixes what the weightings of the eight nodes around `X` make of `p`.
+    /// Newton's iteration, `(1 - V') dX = V - X`, goes where a plain one would swing to and fro: around a
+    /// raised arm. Where the skin is so folded that it finds nothing near by, the weighting of the guess
+    /// alone says where the point is.
     #[inline(always)]
     fn ways_back(&self, p: &Lane3, starts: &Starts, t: f32) -> Rest {
         let (nodes, all) = (self.field.node_lattice(), self.field.slot_of_node());

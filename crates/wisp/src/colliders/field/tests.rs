@@ -26,6 +26,24 @@ fn moment(body: &Body, dance: &Clip, field: &BodyField, time_secs: f64) -> Momen
     Moment { head: HeadPose::new(&pose.world_from_head).expect("a head"), pose, placed }
 }
 
+/// The dancer's field in a step of the dance, and places about her skin in the space of the step.
+fn in_the_dance(time: f64, every: usize) -> (MovingField, crate::solver::Substep, Vec<Vec3>) {
+    let (body, dance, field) = dancer();
+    let (was, now) = (moment(&body, &dance, &field, time - 1.0 / 60.0), moment(&body, &dance, &field, time));
+    let mut moving = MovingField::new(&field, 0.0, 0.012);
+    moving.reset(&was.head, &was.placed);
+    moving.advance(&now.head, &now.placed, 0.012, 1.0 / 60.0, true);
+    let origin = now.head.place;
+    let mut surface = Skin::default();
+    skin(&body, &now.pose, &mut surface);
+    let near = (0..body.mesh.positions.len()).filter(|&v| {
+        let q = body.mesh.positions[v] - field.rest_from_head();
+        q.y > -0.3 && q.x.abs() < 0.2
+    });
+    let places = near.step_by(every).map(|v| surface.positions[v] - origin).collect();
+    (moving, substep(&was.head, &now.head, origin, 1.0 / 60.0), places)
+}
+
 /// Distances of the places `out` above the vertices of head, neck and shoulders at the end of a step of the dance.
 fn distances(spare: bool, moved: bool, out: f32) -> Vec<f32> {
     let (body, dance, field) = dancer();
@@ -85,25 +103,9 @@ fn distances_grow_above_the_skin() {
 
 #[test]
 fn what_a_point_learns_does_not_depend_on_the_others_of_its_row() {
-    let (body, dance, field) = dancer();
-    let time = 3.9;
-    let (was, now) = (moment(&body, &dance, &field, time - 1.0 / 60.0), moment(&body, &dance, &field, time));
-    let mut moving = MovingField::new(&field, 0.0, 0.012);
-    moving.reset(&was.head, &was.placed);
-    moving.advance(&now.head, &now.placed, 0.012, 1.0 / 60.0, true);
-    let origin = now.head.place;
-    let step = substep(&was.head, &now.head, origin, 1.0 / 60.0);
-    let mut surface = Skin::default();
-    skin(&body, &now.pose, &mut surface);
+    let (moving, step, near) = in_the_dance(3.9, 37);
     // Every second point far off, so that there is always one that is not measured beside one that is.
-    let near = (0..body.mesh.positions.len()).filter(|&v| {
-        let q = body.mesh.positions[v] - field.rest_from_head();
-        q.y > -0.3 && q.x.abs() < 0.2
-    });
-    let places: Vec<Vec3> = near
-        .step_by(37)
-        .flat_map(|v| [surface.positions[v] - origin, surface.positions[v] + Vec3::Z - origin])
-        .collect();
+    let places: Vec<Vec3> = near.into_iter().flat_map(|p| [p, p + Vec3::Z]).collect();
     let learn = |row: &Lane3| {
         let mut planes = PlaneRow::unknown(PlaneRow::NO_SKIN);
         // Twice, so that the second begins where the first has been found.
@@ -135,4 +137,75 @@ fn what_a_point_learns_does_not_depend_on_the_others_of_its_row() {
         touched > places.len() / 4 && taken_back > places.len() / 20,
         "the control: there is something to learn"
     );
+}
+
+#[test]
+fn what_is_foreseen_for_all_rows_is_what_each_row_finds() {
+    let (moving, step, places) = in_the_dance(3.9, 5);
+    let rows: Vec<Lane3> = places
+        .as_chunks::<LANES>()
+        .0
+        .iter()
+        .map(|row| std::array::from_fn(|a| Lane(row.map(|p| p[a]))))
+        .collect();
+    let mut foreseen = vec![PlaneRow::unknown(PlaneRow::NO_SKIN); rows.len()];
+    let (mut found, mut searches) = (0, Vec::new());
+    // The second time they go on from where they were found.
+    for t in [0.5, 1.0] {
+        for planes in &mut foreseen {
+            *planes = PlaneRow::unknown(planes.rest);
+        }
+        let known: Vec<Lane3> = foreseen.iter().map(|planes| planes.rest).collect();
+        moving.foresee(&rows, &step, t, 0.012, &mut foreseen, &mut searches);
+        for ((row, planes), rest) in rows.iter().zip(&mut foreseen).zip(known) {
+            let mut by_itself = PlaneRow::unknown(rest);
+            let alone = moving.row(row, &step, t, 0.012, &mut by_itself);
+            let together = moving.row(row, &step, t, 0.012, planes);
+            let of = |r: &FieldRow| (r.distance, r.normal, r.head, r.guess);
+            assert_eq!(together.as_ref().map(of), alone.as_ref().map(of));
+            assert_eq!(planes.rest, by_itself.rest);
+            found += usize::from(by_itself.rest[0].iter().any(|&x| x < f32::MAX));
+        }
+    }
+    assert!(found > 20 && searches.len() > 20, "the control: {found} rows have skin to find");
+}
+
+#[test]
+fn the_body_is_in_the_same_cells_with_any_instructions() {
+    let (moving, ..) = in_the_dance(3.9, 1000);
+    let at_rest = Joints::default();
+    let of = |width: Width| {
+        let mut cells = moving.occupancy.clone();
+        cells.update(width, 0.013, [&at_rest, &moving.joints], true);
+        let mut back = Vec::new();
+        moving.weightings.ways_back(width, &moving.joints, &mut back);
+        (cells.nearest.clone(), back)
+    };
+    let everyone = of(Width::Baseline);
+    for &width in Width::ALL.iter().filter(|width| width.is_available()) {
+        let own = of(width);
+        assert!(own.0 == everyone.0, "{width:?}: other cells");
+        assert!(own.1 == everyone.1, "{width:?}: other ways back");
+    }
+    let known = everyone.0.iter().filter(|&&nearest| nearest != u32::MAX).count();
+    assert!(known > 500, "the control: {known} cells know of skin");
+    assert_ne!(everyone.1, moving.before, "the control: the joints have moved");
+}
+
+#[test]
+fn skin_that_has_no_place_or_no_way_back_stays_at_rest() {
+    let (moving, ..) = in_the_dance(3.9, 1000);
+    let mut joints = *moving.joints.all();
+    let rest = |joints: &Joints| {
+        let mut back = Vec::new();
+        moving.weightings.ways_back(Width::widest(), joints, &mut back);
+        back.iter().filter(|back| back.apply(Vec3::ONE).truncate() == Vec3::ONE).count()
+    };
+    let usually = rest(&moving.joints);
+    joints[1].translation.x = f32::NAN;
+    let lost = rest(&Joints::new(joints));
+    joints[1] = Affine3A::from_scale(Vec3::new(1.0, 1e-6, 1.0));
+    // In a mixture there may be something left of it.
+    let flat = rest(&Joints::new(joints));
+    assert!(usually < lost && usually < flat, "{usually} at rest, {lost} where one is lost, {flat} flat");
 }

@@ -10,8 +10,12 @@ use lovelock_motion::{FIELD_JOINTS, FieldWeights};
 use super::affine::Affine;
 use crate::lanes::{LANES, Lane, Lane3, ZERO, row_done, transposed};
 
-/// A skin pressed flatter than this has no way back; it is left at rest. The most that a way back may swell.
-const MOST_SWELLING: f32 = 1e3;
+/// The least volume of a skin, as a part of that at rest: one pressed flatter has no way back and is left at
+/// rest.
+const FLATTEST: f32 = 1e-3;
+
+/// The sum of the numbers of a map that still is one, metres.
+const FURTHEST: f32 = 1e6;
 
 /// Weightings of a field's joints, [`LANES`] in a row.
 #[derive(Clone, Debug)]
@@ -42,8 +46,9 @@ pub(crate) struct Joints {
 }
 
 impl Joints {
-    /// The first is the head, which is where it is at rest.
-    pub(crate) fn new(all: [Affine3A; FIELD_JOINTS]) -> Self {
+    /// The first is the head, which stays where it is at rest.
+    pub(crate) fn new(mut all: [Affine3A; FIELD_JOINTS]) -> Self {
+        all[0] = Affine3A::IDENTITY;
         let (mut numbers, mut lost) = ([[0.0; 12]; FIELD_JOINTS], 0);
         for (j, joint) in all.iter().enumerate() {
             // Zero times what is not a number is none either.
@@ -96,17 +101,19 @@ impl Weightings {
         &self.rows
     }
 
-    /// What takes head space back to rest, for each weighting; rows are full. The first is the head's own and never moves.
-    pub(super) fn ways_back(&self, joints: &Joints, out: &mut Vec<Affine>) {
+    /// What takes head space back to rest, for each weighting; rows are full. The first is the head's own and
+    /// never moves.
+    pub(super) fn ways_back(&self, width: Width, joints: &Joints, out: &mut Vec<Affine>) {
         out.resize(self.rows.len() * LANES, Affine::IDENTITY);
-        undo_all(Width::widest(), self, joints, out);
+        undo_all(width, self, joints, out);
         // To the last bit.
         out.first_mut().into_iter().for_each(|head| *head = Affine::IDENTITY);
     }
 
-    /// The maps of a row from rest to head space, three numbers a column, and where these are numbers.
+    /// The maps of a row from rest to head space, three numbers a column; the identity where there is none,
+    /// or none back.
     #[inline(always)]
-    pub(super) fn mixed(&self, row: &Row, joints: &Joints) -> ([Lane; 12], [bool; LANES]) {
+    pub(super) fn mixed(&self, row: &Row, joints: &Joints) -> [Lane; 12] {
         let (mut map, mut sound) = ([ZERO; 12], [true; LANES]);
         let (mut left, mut next) = (row.joints, row.first);
         while left != 0 {
@@ -123,7 +130,28 @@ impl Weightings {
                 sound[k] &= !(lost & (weight[k] > 0.0));
             }
         }
-        (map, sound)
+        let [xx, xy, xz, yx, yy, yz, zx, zy, zz, ..] = map;
+        let (volume, mut size) = (dot(&[zx, zy, zz], &cross(&[xx, xy, xz], &[yx, yy, yz])), ZERO);
+        for number in &map {
+            for k in 0..LANES {
+                size[k] += number[k].abs();
+            }
+            row_done();
+        }
+        let mut all = true;
+        for k in 0..LANES {
+            sound[k] &= (volume[k].abs() > FLATTEST) & (size[k] < FURTHEST);
+            all &= sound[k];
+        }
+        if !all {
+            for (n, number) in map.iter_mut().enumerate() {
+                let rest = if n % 4 == 0 && n < 9 { 1.0 } else { 0.0 };
+                for k in 0..LANES {
+                    number[k] = if sound[k] { number[k] } else { rest };
+                }
+            }
+        }
+        map
     }
 }
 
@@ -131,15 +159,14 @@ simd_versions! {
     /// [`Weightings::ways_back`].
     fn undo_all(weightings: &Weightings, joints: &Joints, out: &mut [Affine]) -> () {
         for (row, out) in weightings.rows.iter().zip(out.as_chunks_mut().0) {
-            let (map, sound) = weightings.mixed(row, joints);
-            undo(&map, sound, &row.head, out);
+            undo(&weightings.mixed(row, joints), &row.head, out);
         }
     }
 }
 
-/// Writes what undoes the maps of a row; nothing does where they are not `sound` or too flat.
+/// Writes what undoes the maps of a row, with the head's share of their weights.
 #[inline(always)]
-fn undo(map: &[Lane; 12], mut sound: [bool; LANES], head: &Lane, out: &mut [Affine; LANES]) {
+fn undo(map: &[Lane; 12], head: &Lane, out: &mut [Affine; LANES]) {
     let [xx, xy, xz, yx, yy, yz, zx, zy, zz, shift @ ..] = map;
     let (x, y, z) = ([*xx, *xy, *xz], [*yx, *yy, *yz], [*zx, *zy, *zz]);
     let rows = [cross(&y, &z), cross(&z, &x), cross(&x, &y)];
@@ -149,25 +176,11 @@ fn undo(map: &[Lane; 12], mut sound: [bool; LANES], head: &Lane, out: &mut [Affi
     }
     let rows = rows.map(|row| row.map(|number| number.times(inv)));
     let away = rows.map(|row| ZERO.less(dot(&row, shift)));
-    let mut size = ZERO;
-    for number in rows.iter().flatten().chain(&away) {
-        for k in 0..LANES {
-            size[k] += number[k].abs();
-        }
-        row_done();
-    }
-    for k in 0..LANES {
-        sound[k] &= (inv[k].abs() < MOST_SWELLING) & (size[k] < f32::MAX);
-    }
     let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = rows;
     let columns = [xx, yx, zx, xy, yy, zy, xz, yz, zz, away[0], away[1], away[2]];
     let mut numbers = [ZERO; LANES];
-    for (n, column) in columns.iter().enumerate() {
-        let (to, unit) = (n / 3 * 4 + n % 3, if n < 9 && n % 4 == 0 { 1.0 } else { 0.0 });
-        for k in 0..LANES {
-            numbers[to][k] = if sound[k] { column[k] } else { unit };
-        }
-        row_done();
+    for (n, column) in columns.into_iter().enumerate() {
+        numbers[n / 3 * 4 + n % 3] = column;
     }
     numbers[LANES - 1] = *head;
     let numbers = transposed(&numbers);
