@@ -113,7 +113,7 @@ impl MovingField {
             if search[0].any {
                 self.find_skins(&mut search, passed, reach);
             }
-            self.settle(&search[0], passed, reach, planes);
+            settle(&search[0], passed, reach, planes);
         }
         if !planes.any {
             return None;
@@ -165,59 +165,59 @@ impl MovingField {
             if search.any {
                 searches.push(search);
             } else {
-                self.settle(&search, passed, reach, planes);
+                settle(&search, passed, reach, planes);
             }
         }
         self.find_skins(searches, passed, reach);
         for search in &*searches {
-            self.settle(search, passed, reach, &mut planes[search.row]);
+            settle(search, passed, reach, &mut planes[search.row]);
         }
     }
+}
 
-    /// Writes down what a search has found of the lanes that it was asked for.
-    #[inline(always)]
-    fn settle(&self, search: &Search, passed: f32, reach: f32, planes: &mut PlaneRow) {
-        let Search { p: local, asked, near, to_next, heads, skins, .. } = search;
-        for k in 0..LANES {
-            let (p, alone, besides) = (at(local, k), heads.alone[k], near.besides[k]);
-            let other_skin = near.slot[k] != 0;
-            let of_head = lesser(heads.nearest[k], skins.nearest[k]);
-            let nearest = if alone { of_head } else { skins.nearest[k] };
-            // What is measured besides, to show that it need not be, leaves no trace unless there is something.
-            let nothing = besides & (nearest > reach);
-            let nearest = if nothing { NONE } else { nearest };
-            let found = skins.found[k] & !nothing;
-            // In another cell there may be other skin; within a few millimetres this cell knows of it.
-            let to_next = to_next[k] + NEAR;
-            let free = greater(lesser(0.5 * (nearest - reach), to_next), NEAR);
-            // Where there is no way back from here, or to skin that is far, there may be another from near by.
-            let lost = (near.head[k] | other_skin) & !besides;
-            let (known, only_head) = (nearest < NONE, alone & !other_skin);
-            let serves = if known & only_head { free } else { to_next };
-            let serves = if (known & !only_head) | (!known & lost) { NEAR } else { serves };
-            let finite = p.length_squared() < f32::MAX;
-            let serves = if finite { serves * serves } else { -1.0 };
-            let anew = asked[k];
-            renew(&mut planes.serves, k, anew, serves);
-            renew3(&mut planes.place, k, anew, p);
-            renew(&mut planes.passed, k, anew, passed);
-            let head_distance = if alone & !nothing { heads.distance[k] } else { NONE };
-            renew(&mut planes.head_distance, k, anew, head_distance);
-            renew3(&mut planes.head_normal, k, anew, at(&heads.normal, k));
-            let skin_distance = if found { skins.distance[k] } else { NONE };
-            renew(&mut planes.skin_distance, k, anew, skin_distance);
-            renew3(&mut planes.rest, k, anew, choose(found, at(&skins.rest, k), NOWHERE));
-            // Of skin that is not there the rest says nothing.
-            renew3(&mut planes.skin_normal, k, anew, at(&skins.normal, k));
-            renew(&mut planes.share, k, anew, skins.share[k]);
-            let guess = if skins.sure[k] { 0.0 } else { 1.0 };
-            renew(&mut planes.guess, k, anew, guess);
-            renew3(&mut planes.drift, k, anew, at(&skins.drift, k));
-        }
-        planes.any = false;
-        for k in 0..LANES {
-            planes.any |= lesser(planes.head_distance[k], planes.skin_distance[k]) < NONE;
-        }
+/// Writes down what a search has found of the lanes that it was asked for.
+#[inline(always)]
+fn settle(search: &Search, passed: f32, reach: f32, planes: &mut PlaneRow) {
+    let Search { p: local, asked, near, to_next, heads, skins, .. } = search;
+    for k in 0..LANES {
+        let (p, alone, besides) = (at(local, k), heads.alone[k], near.besides[k]);
+        let other_skin = near.slot[k] != 0;
+        let of_head = lesser(heads.nearest[k], skins.nearest[k]);
+        let nearest = if alone { of_head } else { skins.nearest[k] };
+        // What is measured besides, to show that it need not be, leaves no trace unless there is something.
+        let nothing = besides & (nearest > reach);
+        let nearest = if nothing { NONE } else { nearest };
+        let found = skins.found[k] & !nothing;
+        // In another cell there may be other skin; within a few millimetres this cell knows of it.
+        let to_next = to_next[k] + NEAR;
+        let free = greater(lesser(0.5 * (nearest - reach), to_next), NEAR);
+        // Where there is no way back from here, or to skin that is far, there may be another from near by.
+        let lost = (near.head[k] | other_skin) & !besides;
+        let (known, only_head) = (nearest < NONE, alone & !other_skin);
+        let serves = if known & only_head { free } else { to_next };
+        let serves = if (known & !only_head) | (!known & lost) { NEAR } else { serves };
+        let finite = p.length_squared() < f32::MAX;
+        let serves = if finite { serves * serves } else { -1.0 };
+        let anew = asked[k];
+        renew(&mut planes.serves, k, anew, serves);
+        renew3(&mut planes.place, k, anew, p);
+        renew(&mut planes.passed, k, anew, passed);
+        let head_distance = if alone & !nothing { heads.distance[k] } else { NONE };
+        renew(&mut planes.head_distance, k, anew, head_distance);
+        renew3(&mut planes.head_normal, k, anew, at(&heads.normal, k));
+        let skin_distance = if found { skins.distance[k] } else { NONE };
+        renew(&mut planes.skin_distance, k, anew, skin_distance);
+        renew3(&mut planes.rest, k, anew, choose(found, at(&skins.rest, k), NOWHERE));
+        // Of skin that is not there the rest says nothing.
+        renew3(&mut planes.skin_normal, k, anew, at(&skins.normal, k));
+        renew(&mut planes.share, k, anew, skins.share[k]);
+        let guess = if skins.sure[k] { 0.0 } else { 1.0 };
+        renew(&mut planes.guess, k, anew, guess);
+        renew3(&mut planes.drift, k, anew, at(&skins.drift, k));
+    }
+    planes.any = false;
+    for k in 0..LANES {
+        planes.any |= lesser(planes.head_distance[k], planes.skin_distance[k]) < NONE;
     }
 }
 
