@@ -49,10 +49,14 @@ pub(crate) struct Block {
 pub(crate) struct Work {
     /// The pose at the beginning of the step, to which what has been lost is put back.
     pub(crate) good: Vec<Lane3>,
+    /// Where points were at the beginning of the substep, once they have been laid.
+    pub(crate) was: Vec<Lane3>,
     /// What forces add to velocities in a substep, and what they leave of them.
     pub(crate) push: Vec<Lane3>,
     pub(crate) keep: Vec<Lane>,
     pub(crate) next: Vec<Lane3>,
+    /// The directions of the links of `next`.
+    pub(crate) links: Vec<Lane3>,
     pub(crate) next_bend: Vec<Lane3>,
     pub(crate) residual: Vec<Lane3>,
     pub(crate) lengths: LengthScratch,
@@ -69,8 +73,15 @@ pub(crate) struct Work {
 impl Work {
     /// Makes room for guides of `points` points. What is in the rows is of some other step.
     pub(crate) fn fit(&mut self, points: usize) {
-        for rows in [&mut self.good, &mut self.push, &mut self.next, &mut self.next_bend, &mut self.residual]
-        {
+        for rows in [
+            &mut self.good,
+            &mut self.was,
+            &mut self.push,
+            &mut self.next,
+            &mut self.links,
+            &mut self.next_bend,
+            &mut self.residual,
+        ] {
             rows.resize(points, ZERO3);
         }
         self.keep.resize(points, ZERO);

@@ -271,7 +271,7 @@ impl Bending {
         let count = rhs.len();
         let (mut one, mut two) = (ZERO3, ZERO3);
         for i in first_free..count {
-            let (mut y, l1, l2) = (rhs[i], self.below[i], self.below2[i]);
+            let (mut y, l1, l2) = (rhs[i], &self.below[i], &self.below2[i]);
             for k in 0..LANES {
                 let v = at(&y, k) - at(&two, k) * l2[k] - at(&one, k) * l1[k];
                 put(&mut y, k, v);
@@ -281,9 +281,9 @@ impl Bending {
         }
         (one, two) = (ZERO3, ZERO3);
         for i in (first_free..count).rev() {
-            let (mut y, inv) = (rhs[i], self.inv_pivot[i]);
-            let l1 = if i + 1 < count { self.below[i + 1] } else { ZERO };
-            let l2 = if i + 2 < count { self.below2[i + 2] } else { ZERO };
+            let (mut y, inv) = (rhs[i], &self.inv_pivot[i]);
+            let l1 = self.below.get(i + 1).unwrap_or(&ZERO);
+            let l2 = self.below2.get(i + 2).unwrap_or(&ZERO);
             for k in 0..LANES {
                 let v = at(&y, k) * inv[k] - at(&two, k) * l2[k] - at(&one, k) * l1[k];
                 put(&mut y, k, v);

@@ -81,9 +81,9 @@ fn products(response: &Tile, r: usize, c: usize, directions: &[Lane3]) -> Tile {
     for (i, tile_row) in s.iter_mut().enumerate() {
         let r = (r + i).min(directions.len() - 1);
         for (j, product) in tile_row.iter_mut().enumerate() {
-            let (n, m) = (directions[r], directions[(c + j).min(r)]);
+            let (n, m) = (&directions[r], &directions[(c + j).min(r)]);
             for k in 0..LANES {
-                product[k] *= at(&n, k).dot(at(&m, k));
+                product[k] *= at(n, k).dot(at(m, k));
             }
             row_done();
         }

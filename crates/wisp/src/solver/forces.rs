@@ -28,15 +28,15 @@ pub(crate) fn prepare(block: &mut Block, plan: &Plan) {
     let carried = settings.style_support * settings.gravity;
     let windy = plan.wind.blows();
     for i in 0..block.points() {
-        let (support, rest, here) = (block.rest.support[i], block.rest.position[i], block.position[i]);
+        let (support, rest, here) = (&block.rest.support[i], &block.rest.position[i], &block.position[i]);
         let mut push = ZERO3;
         for k in 0..LANES {
             // The bends that carry a lock at rest carry it no more once it has left its shape: flung hair falls
             // with its whole weight. How much is left depends on how far the point has gone along its support alone, so
             // that the force has a potential: one that heeds the lock's direction drives locks around for ever.
-            let support = plan.last_head.rotate(at(&support, k));
+            let support = plan.last_head.rotate(at(support, k));
             let (along, _) = direction_or(support, Vec3::ZERO);
-            let gone = (at(&here, k) - plan.last_head.apply(at(&rest, k))).dot(along);
+            let gone = (at(here, k) - plan.last_head.apply(at(rest, k))).dot(along);
             let lock = block.rest.mean_link[k] * i as f32 + 1e-6;
             let share = (LOST - greater(gone, -gone) / lock) * (1.0 / (LOST - CARRIED));
             let a = gravity + support * (carried * lesser(greater(share, 0.0), 1.0));

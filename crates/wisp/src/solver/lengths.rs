@@ -39,10 +39,10 @@ impl LengthScratch {
     #[inline(always)]
     pub(crate) fn errors(&mut self, first: usize, length: &[Lane], position: &[Lane3]) {
         for i in first..position.len() {
-            let (a, b, wanted) = (position[i - 1], position[i], length[i]);
+            let (a, b, wanted) = (&position[i - 1], &position[i], &length[i]);
             let (mut direction, mut rhs) = (ZERO3, ZERO);
             for k in 0..LANES {
-                let link = at(&b, k) - at(&a, k);
+                let link = at(b, k) - at(a, k);
                 let squared = link.length_squared();
                 let inv = inv_sqrt(squared);
                 let now = squared * inv;
@@ -70,12 +70,13 @@ pub(crate) fn project_velocity(
     scratch: &mut LengthScratch,
 ) {
     for i in first_free.max(1)..position.len() {
-        let (a, b, va, vb, inv) = (position[i - 1], position[i], velocity[i - 1], velocity[i], inv_length[i]);
+        let (a, b, inv) = (&position[i - 1], &position[i], &inv_length[i]);
+        let (va, vb) = (&velocity[i - 1], &velocity[i]);
         let (mut direction, mut rhs) = (ZERO3, ZERO);
         for k in 0..LANES {
-            let n = (at(&b, k) - at(&a, k)) * inv[k];
+            let n = (at(b, k) - at(a, k)) * inv[k];
             put(&mut direction, k, n);
-            rhs[k] = -n.dot(at(&vb, k) - at(&va, k));
+            rhs[k] = -n.dot(at(vb, k) - at(va, k));
         }
         scratch.direction[i] = direction;
         scratch.multiplier[i] = rhs;
@@ -107,13 +108,13 @@ fn solve(first_free: usize, scratch: &mut LengthScratch) {
         let last = i + 1 == count;
         let diagonal =
             if i == first_free { 0.0 } else { 1.0 } + if last { 1.0 - scratch.tip_held } else { 1.0 };
-        let n = scratch.direction[i];
-        let n_next = scratch.direction[if last { i } else { i + 1 }];
+        let n = &scratch.direction[i];
+        let n_next = &scratch.direction[if last { i } else { i + 1 }];
         let mut r = scratch.multiplier[i];
         for k in 0..LANES {
             let pivot = 1.0 / (diagonal - off[k] * upper[k]);
             r[k] = (r[k] - off[k] * rhs[k]) * pivot;
-            off[k] = if last { 0.0 } else { -at(&n, k).dot(at(&n_next, k)) };
+            off[k] = if last { 0.0 } else { -at(n, k).dot(at(n_next, k)) };
             upper[k] = off[k] * pivot;
         }
         rhs = r;
@@ -122,7 +123,7 @@ fn solve(first_free: usize, scratch: &mut LengthScratch) {
     }
     let mut after = ZERO;
     for i in (first..count).rev() {
-        let (mut r, upper) = (scratch.multiplier[i], scratch.upper[i]);
+        let (mut r, upper) = (scratch.multiplier[i], &scratch.upper[i]);
         for k in 0..LANES {
             r[k] -= upper[k] * after[k];
         }
@@ -138,19 +139,19 @@ fn apply(first_free: usize, rows: &mut [Lane3], scratch: &LengthScratch) {
     for i in first_free..count {
         let mut row = rows[i];
         if i > 0 {
-            let (n, mut l) = (scratch.direction[i], scratch.multiplier[i]);
+            let (n, mut l) = (&scratch.direction[i], scratch.multiplier[i]);
             if i + 1 == count {
                 l = Lane(l.map(|l| l * (1.0 - scratch.tip_held)));
             }
             for k in 0..LANES {
-                let moved = at(&row, k) + at(&n, k) * l[k];
+                let moved = at(&row, k) + at(n, k) * l[k];
                 put(&mut row, k, moved);
             }
         }
         if i + 1 < count {
-            let (n, l) = (scratch.direction[i + 1], scratch.multiplier[i + 1]);
+            let (n, l) = (&scratch.direction[i + 1], &scratch.multiplier[i + 1]);
             for k in 0..LANES {
-                let moved = at(&row, k) - at(&n, k) * l[k];
+                let moved = at(&row, k) - at(n, k) * l[k];
                 put(&mut row, k, moved);
             }
         }

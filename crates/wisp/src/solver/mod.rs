@@ -50,9 +50,9 @@ fn measure(block: &mut Block, plan: &Plan) {
     let count = block.points();
     let mut size = ZERO;
     for i in 0..count {
-        let (p, v) = (block.position[i], block.velocity[i]);
+        let (p, v) = (&block.position[i], &block.velocity[i]);
         for k in 0..LANES {
-            size[k] += at(&p, k).length_squared() + at(&v, k).length_squared();
+            size[k] += at(p, k).length_squared() + at(v, k).length_squared();
         }
     }
     for k in 0..LANES {
@@ -68,11 +68,11 @@ fn measure(block: &mut Block, plan: &Plan) {
     }
     let (mut stretch, mut energy, mut fastest) = (ZERO, ZERO, ZERO);
     for i in plan.first_free.max(1)..count {
-        let (a, b, v, inv) =
-            (block.position[i - 1], block.position[i], block.velocity[i], block.rest.inv_length[i]);
+        let (a, b) = (&block.position[i - 1], &block.position[i]);
+        let (v, inv) = (&block.velocity[i], &block.rest.inv_length[i]);
         for k in 0..LANES {
-            stretch[k] = greater(stretch[k], stretch_of(at(&b, k) - at(&a, k), inv[k]));
-            let speed = at(&v, k).length_squared();
+            stretch[k] = greater(stretch[k], stretch_of(at(b, k) - at(a, k), inv[k]));
+            let speed = at(v, k).length_squared();
             energy[k] += 0.5 * speed;
             fastest[k] = greater(fastest[k], speed);
         }

@@ -1,9 +1,9 @@
 //! One substep of one block.
 
-use super::Plan;
 use super::follow::correct_velocities;
 use super::lengths::{project_position, project_velocity};
 use super::relaxation::relax;
+use super::{Plan, Substep};
 use crate::Integrator;
 use crate::block::{Block, Depth, Work};
 use crate::colliders::boxes::{apart, bounds};
@@ -87,20 +87,20 @@ fn forces(block: &mut Block, plan: &Plan, s: usize) {
     let (substep, h, inv_h) = (&plan.substeps[s], plan.h, 1.0 / plan.h);
     let settle = 1.0 - (-plan.settings.settle * h).exp();
     for i in 0..plan.first_free {
-        let (rest, x) = (block.rest.position[i], block.position[i]);
+        let (rest, x) = (&block.rest.position[i], &block.position[i]);
         let mut v = ZERO3;
         for k in 0..LANES {
-            put(&mut v, k, (substep.head.apply(at(&rest, k)) - at(&x, k)) * inv_h);
+            put(&mut v, k, (substep.head.apply(at(rest, k)) - at(x, k)) * inv_h);
         }
         block.velocity[i] = v;
     }
     for i in plan.first_free..block.points() {
-        let (x, push, keep) = (block.position[i], block.work.push[i], block.work.keep[i]);
+        let (x, push, keep) = (&block.position[i], &block.work.push[i], &block.work.keep[i]);
         let mut v = block.velocity[i];
         for k in 0..LANES {
             let was = at(&v, k);
-            let settled = was + (substep.rigid_velocity(at(&x, k)) - was) * settle;
-            put(&mut v, k, settled * keep[k] + at(&push, k));
+            let settled = was + (substep.rigid_velocity(at(x, k)) - was) * settle;
+            put(&mut v, k, settled * keep[k] + at(push, k));
         }
         block.velocity[i] = v;
     }
@@ -110,12 +110,55 @@ fn forces(block: &mut Block, plan: &Plan, s: usize) {
 #[inline(always)]
 fn step_positions(block: &mut Block, h: f32) {
     for i in 0..block.points() {
-        let (x, v) = (block.position[i], block.velocity[i]);
+        let (x, v) = (&block.position[i], &block.velocity[i]);
         let mut next = ZERO3;
         for k in 0..LANES {
-            put(&mut next, k, at(&x, k) + at(&v, k) * h);
+            put(&mut next, k, at(x, k) + at(v, k) * h);
         }
         block.work.next[i] = next;
+    }
+}
+
+/// A direction's first component where there is none.
+const NOWHERE: f32 = 2.0;
+
+/// Carries the head's frame along `next` by least turns: leaves in `links` the direction of each link, and in `next_bend` the
+/// direction that the link after it would have if the lock went on from there as at rest.
+///
+/// What a row takes from the one before is a chain of dependent numbers, and as short as it can be here: all else is worked out
+/// for every row by itself, before and after.
+#[inline(always)]
+fn carry_frames(block: &mut Block, substep: &Substep) {
+    let count = block.points();
+    if count < 2 {
+        return;
+    }
+    for i in 1..count - 1 {
+        let (a, b) = (&block.work.next[i - 1], &block.work.next[i]);
+        let mut link = ZERO3;
+        for k in 0..LANES {
+            let (direction, _) = direction_or(at(b, k) - at(a, k), Vec3::splat(NOWHERE));
+            put(&mut link, k, direction);
+        }
+        block.work.links[i] = link;
+    }
+    let mut frames = Turns::splat(substep.head_turn);
+    let (mut expected, first) = (ZERO3, block.rest.direction[1]);
+    for k in 0..LANES {
+        put(&mut expected, k, substep.head.rotate(at(&first, k)));
+    }
+    for i in 1..count - 1 {
+        let (mut link, next_direction) = (block.work.links[i], &block.rest.direction[i + 1]);
+        for k in 0..LANES {
+            let was_expected = at(&expected, k);
+            let now = choose(link[0][k] < NOWHERE, at(&link, k), was_expected);
+            let frame = frames.at(k).then_least(was_expected, now);
+            frames.put(k, frame);
+            put(&mut expected, k, frame.apply(at(next_direction, k)));
+            put(&mut link, k, now);
+        }
+        block.work.links[i] = link;
+        block.work.next_bend[i] = expected;
     }
 }
 
@@ -123,37 +166,24 @@ fn step_positions(block: &mut Block, h: f32) {
 #[inline(always)]
 fn shape_memory(block: &mut Block, plan: &Plan, s: usize) {
     let (substep, gamma, count) = (&plan.substeps[s], plan.bending.gamma(), block.points());
-    let mut frames = Turns::splat(substep.head_turn);
-    // The direction that the next link would have if the lock went on from here as at rest. The bend at rest is that link
-    // less this one, both as long as at rest: there is no second turn to work out.
-    let mut expected = ZERO3;
-    if count > 1 {
-        let first = block.rest.direction[1];
-        for k in 0..LANES {
-            put(&mut expected, k, substep.head.rotate(at(&first, k)));
-        }
-    }
+    carry_frames(block, substep);
     // c [(1 + gamma) (D p - b*) - gamma (D x - b*_old)] at every inner point.
     for i in 1..count.saturating_sub(1) {
-        let (p0, p1, p2) = (block.work.next[i - 1], block.work.next[i], block.work.next[i + 1]);
-        let (x0, x1, x2) = (block.position[i - 1], block.position[i], block.position[i + 1]);
-        let (next_direction, rest_bend) = (block.rest.direction[i + 1], block.rest.bend[i]);
-        let (length, next_length) = (block.rest.length[i], block.rest.length[i + 1]);
-        let (old, c, fixed) = (block.bend[i], *block.bending.stiffness(i), *block.bending.fixed(i));
+        let (p0, p1, p2) = (&block.work.next[i - 1], &block.work.next[i], &block.work.next[i + 1]);
+        let (x0, x1, x2) = (&block.position[i - 1], &block.position[i], &block.position[i + 1]);
+        let (link, goes_on, rest_bend) =
+            (&block.work.links[i], &block.work.next_bend[i], &block.rest.bend[i]);
+        let (length, next_length) = (&block.rest.length[i], &block.rest.length[i + 1]);
+        let (old, c, fixed) = (&block.bend[i], block.bending.stiffness(i), block.bending.fixed(i));
         let (mut bend, mut residual) = (ZERO3, ZERO3);
         for k in 0..LANES {
-            let was_expected = at(&expected, k);
-            let (link, _) = direction_or(at(&p1, k) - at(&p0, k), was_expected);
-            let frame = frames.at(k).then_least(was_expected, link);
-            frames.put(k, frame);
-            let goes_on = frame.apply(at(&next_direction, k));
-            put(&mut expected, k, goes_on);
-            let with_lock = goes_on * next_length[k] - link * length[k];
-            let with_head = substep.head.rotate(at(&rest_bend, k));
+            // The bend at rest is the next link less this one, both as long as at rest.
+            let with_lock = at(goes_on, k) * next_length[k] - at(link, k) * length[k];
+            let with_head = substep.head.rotate(at(rest_bend, k));
             let wanted = with_lock + (with_head - with_lock) * fixed[k];
-            let now = at(&p0, k) - 2.0 * at(&p1, k) + at(&p2, k);
-            let before = at(&x0, k) - 2.0 * at(&x1, k) + at(&x2, k);
-            let r = (now - wanted) * (1.0 + gamma) - (before - at(&old, k)) * gamma;
+            let now = at(p0, k) - 2.0 * at(p1, k) + at(p2, k);
+            let before = at(x0, k) - 2.0 * at(x1, k) + at(x2, k);
+            let r = (now - wanted) * (1.0 + gamma) - (before - at(old, k)) * gamma;
             put(&mut bend, k, wanted);
             put(&mut residual, k, r * c[k]);
         }
@@ -166,12 +196,12 @@ fn shape_memory(block: &mut Block, plan: &Plan, s: usize) {
     let mut left = if plan.first_free > 0 { block.work.residual[plan.first_free - 1] } else { ZERO3 };
     for i in plan.first_free..count {
         let middle = block.work.residual[i];
-        let right = if i + 1 < count { block.work.residual[i + 1] } else { ZERO3 };
-        let (rest, p, hold) = (block.rest.position[i], block.work.next[i], *block.bending.hold(i));
+        let right = block.work.residual.get(i + 1).unwrap_or(&ZERO3);
+        let (rest, p, hold) = (&block.rest.position[i], &block.work.next[i], block.bending.hold(i));
         let mut force = ZERO3;
         for k in 0..LANES {
-            let styled = substep.head.apply(at(&rest, k)) - at(&p, k);
-            let f = 2.0 * at(&middle, k) - at(&left, k) - at(&right, k) + styled * hold[k];
+            let styled = substep.head.apply(at(rest, k)) - at(p, k);
+            let f = 2.0 * at(&middle, k) - at(&left, k) - at(right, k) + styled * hold[k];
             put(&mut force, k, f);
         }
         left = middle;
@@ -179,9 +209,9 @@ fn shape_memory(block: &mut Block, plan: &Plan, s: usize) {
     }
     block.bending.solve(plan.first_free, &mut block.work.residual);
     for i in plan.first_free..count {
-        let (d, mut p) = (block.work.residual[i], block.work.next[i]);
+        let (d, mut p) = (&block.work.residual[i], block.work.next[i]);
         for k in 0..LANES {
-            let moved = at(&p, k) + at(&d, k);
+            let moved = at(&p, k) + at(d, k);
             put(&mut p, k, moved);
         }
         block.work.next[i] = p;
@@ -293,18 +323,18 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize, lay: Lay) {
         link: &block.rest.mean_link,
         field,
     };
-    let (substep, last) = (&plan.substeps[s], s + 1 == plan.substeps.len());
+    let last = s + 1 == plan.substeps.len();
     let touches = near.field.is_some() || !near.active.is_empty();
-    let inelastic = if touches && lay == Lay::AtLength { 1.0 } else { 0.0 };
     let mut deepest = [Depth::default(); LANES];
+    std::mem::swap(&mut block.position, &mut block.work.was);
     let mut before = ZERO3;
-    let mut was_before = ZERO3;
+    let mut was_before = &ZERO3;
     // What bodies and lengths have moved a point by, what hangs from it follows as its stiffness has it. Otherwise a
     // stiff lock that leans on a shoulder would be bent there anew in every substep, and the shoulder do work on it.
     let (mut moved, mut moved_before) = (ZERO3, ZERO3);
     for i in 0..count {
-        let was = block.position[i];
-        let mut placed = block.work.next[i];
+        let (was, wanted) = (&block.work.was[i], &block.work.next[i]);
+        let mut placed = *wanted;
         if i >= plan.first_free.max(1) && lay != Lay::Behind {
             let shift = block.bending.follow(i - 1, &moved_before, &moved);
             for k in 0..LANES {
@@ -313,7 +343,7 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize, lay: Lay) {
             }
         }
         if i >= plan.first_free.max(1) {
-            let (inv, mut length) = (block.rest.inv_length[i], block.rest.length[i]);
+            let (inv, mut length) = (&block.rest.inv_length[i], block.rest.length[i]);
             if lay == Lay::AsIs {
                 for k in 0..LANES {
                     length[k] = (at(&placed, k) - at(&before, k)).length_squared().sqrt();
@@ -321,10 +351,10 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize, lay: Lay) {
             }
             let mut fallback = ZERO3;
             for k in 0..LANES {
-                put(&mut fallback, k, (at(&was, k) - at(&was_before, k)) * inv[k]);
+                put(&mut fallback, k, (at(was, k) - at(was_before, k)) * inv[k]);
             }
             let planes = &mut block.work.planes[i];
-            let laid = lay_point(i, &before, &placed, &was, &fallback, &length, &near, &plan.rules, planes);
+            let laid = lay_point(i, &before, &placed, was, &fallback, &length, &near, &plan.rules, planes);
             placed = laid.placed;
             if laid.touched {
                 let mut leans = block.leans[i];
@@ -352,14 +382,11 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize, lay: Lay) {
             }
         }
         moved_before = moved;
-        let wanted = block.work.next[i];
         let mut velocity = ZERO3;
         for k in 0..LANES {
-            let (p, x) = (at(&placed, k), at(&was, k));
-            let (push, v) = (p - at(&wanted, k), (p - x) * inv_h);
-            let off = bounce(v - substep.rigid_velocity(x), push * inv_h) * inelastic;
-            put(&mut moved, k, push);
-            put(&mut velocity, k, v - off);
+            let p = at(&placed, k);
+            put(&mut moved, k, p - at(wanted, k));
+            put(&mut velocity, k, (p - at(was, k)) * inv_h);
         }
         block.position[i] = placed;
         block.velocity[i] = velocity;
@@ -367,6 +394,7 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize, lay: Lay) {
     }
     block.leaning = touches && block.leans();
     if touches && lay == Lay::AtLength {
+        take_bounces(block, plan, s);
         keep_energy(block, plan, s);
     }
     std::mem::swap(&mut block.bend, &mut block.work.next_bend);
@@ -385,6 +413,22 @@ fn bounce(v: Vec3, push: Vec3) -> Vec3 {
     out * greater(0.0, lesser(v.dot(out), size))
 }
 
+/// Takes from velocities what is a [`bounce`].
+#[inline(always)]
+fn take_bounces(block: &mut Block, plan: &Plan, s: usize) {
+    let (substep, inv_h) = (&plan.substeps[s], 1.0 / plan.h);
+    for i in 0..block.points() {
+        let (p, was, wanted) = (&block.position[i], &block.work.was[i], &block.work.next[i]);
+        let mut velocity = block.velocity[i];
+        for k in 0..LANES {
+            let (push, v) = (at(p, k) - at(wanted, k), at(&velocity, k));
+            let off = bounce(v - substep.rigid_velocity(at(was, k)), push * inv_h);
+            put(&mut velocity, k, v - off);
+        }
+        block.velocity[i] = velocity;
+    }
+}
+
 /// Takes from the velocities of a lock what the pass from root to tip has given it.
 ///
 /// Contacts and lengths do no work in the head's frame, yet a push-out drags what hangs from its point along at no cost:
@@ -395,11 +439,11 @@ fn keep_energy(block: &mut Block, plan: &Plan, s: usize) {
     let (substep, inv_h) = (&plan.substeps[s], 1.0 / plan.h);
     let (mut before, mut after) = (ZERO, ZERO);
     for i in plan.first_free.max(1)..block.points() {
-        let (x, wanted, v) = (block.position[i], block.work.next[i], block.velocity[i]);
+        let (x, wanted, v) = (&block.position[i], &block.work.next[i], &block.velocity[i]);
         for k in 0..LANES {
-            let p = at(&x, k);
-            let own = at(&v, k) - substep.rigid_velocity(p);
-            let free = own + (at(&wanted, k) - p) * inv_h;
+            let p = at(x, k);
+            let own = at(v, k) - substep.rigid_velocity(p);
+            let free = own + (at(wanted, k) - p) * inv_h;
             before[k] += free.length_squared();
             after[k] += own.length_squared();
         }
@@ -412,9 +456,10 @@ fn keep_energy(block: &mut Block, plan: &Plan, s: usize) {
         }
     }
     for i in plan.first_free.max(1)..block.points() {
-        let (x, mut v) = (block.position[i], block.velocity[i]);
+        let x = &block.position[i];
+        let mut v = block.velocity[i];
         for k in 0..LANES {
-            let head = substep.rigid_velocity(at(&x, k));
+            let head = substep.rigid_velocity(at(x, k));
             let kept = head + (at(&v, k) - head) * keep[k];
             put(&mut v, k, kept);
         }
