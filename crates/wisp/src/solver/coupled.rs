@@ -261,6 +261,37 @@ impl Factor {
         }
     }
 
+    /// Solves for the rows of panel `p` alone, from the first on. Row by row, that they stay in registers.
+    #[inline(always)]
+    fn down_corner(&self, p: usize, [a, b, c, d]: [Lane; ROWS]) -> [Lane; ROWS] {
+        let (l, inv) = self.corner(p);
+        let a = a.times(inv[0]);
+        let b = b.less_product(l[0][1], a).times(inv[1]);
+        let c = c.less_product(l[0][2], a).less_product(l[1][2], b).times(inv[2]);
+        let d = d.less_product(l[0][3], a).less_product(l[1][3], b).less_product(l[2][3], c).times(inv[3]);
+        [a, b, c, d]
+    }
+
+    /// The same with the transpose, from the last on.
+    #[inline(always)]
+    fn up_corner(&self, p: usize, [a, b, c, d]: [Lane; ROWS]) -> [Lane; ROWS] {
+        let (l, inv) = self.corner(p);
+        let d = d.times(inv[3]);
+        let c = c.less_product(l[2][3], d).times(inv[2]);
+        let b = b.less_product(l[1][3], d).less_product(l[1][2], c).times(inv[1]);
+        let a = a.less_product(l[0][3], d).less_product(l[0][2], c).less_product(l[0][1], b).times(inv[0]);
+        [a, b, c, d]
+    }
+
+    /// The columns of panel `p` that have a row of it on the diagonal, and one over what is there.
+    #[inline(always)]
+    fn corner(&self, p: usize) -> (&[[Lane; ROWS]], &[Lane]) {
+        (
+            &self.panels[panel(p) + ROWS * ROWS * p..].as_chunks().0[..ROWS],
+            &self.inv_diagonal[ROWS * p..][..ROWS],
+        )
+    }
+
     /// Solves for the multipliers with the factors that are there, in place of the right side.
     #[inline(always)]
     fn solve(&self, first: usize, scratch: &mut LengthScratch) {
@@ -276,34 +307,15 @@ impl Factor {
                     *y = y.less_product(*l, *x);
                 }
             }
-            let corner = &factor[ROWS * start..];
-            for r in 0..ROWS {
-                let inv = self.inv_diagonal[start + r];
-                let known = y[r].times(inv);
-                y[r] = known;
-                row_done();
-                for below in r + 1..ROWS {
-                    let l = corner[ROWS * r + below];
-                    y[below] = y[below].less_product(l, known);
-                }
-            }
+            let y = self.down_corner(p, y);
             own[..rows].copy_from_slice(&y[..rows]);
         }
         for p in (0..links.div_ceil(ROWS)).rev() {
             let (start, factor) = (ROWS * p, &self.panels[panel(p)..]);
             let rows = ROWS.min(links - start);
             let (before, own) = x.split_at_mut(start);
-            let mut y: [Lane; ROWS] = std::array::from_fn(|r| if r < rows { own[r] } else { ZERO });
-            let corner = &factor[ROWS * start..];
-            for r in (0..ROWS).rev() {
-                let inv = self.inv_diagonal[start + r];
-                let known = y[r].times(inv);
-                y[r] = known;
-                for above in 0..r {
-                    let l = corner[ROWS * above + r];
-                    y[above] = y[above].less_product(l, known);
-                }
-            }
+            let y = std::array::from_fn(|r| if r < rows { own[r] } else { ZERO });
+            let y = self.up_corner(p, y);
             for (l, x) in factor.as_chunks::<ROWS>().0.iter().zip(before) {
                 let mut sum = *x;
                 for (y, l) in y.iter().zip(l).rev() {
