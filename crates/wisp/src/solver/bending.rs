@@ -268,29 +268,54 @@ impl Bending {
     /// Solves for the displacement that the force `rhs` gives, in place.
     #[inline(always)]
     pub(crate) fn solve(&self, first_free: usize, rhs: &mut [Lane3]) {
-        let count = rhs.len();
         let (mut one, mut two) = (ZERO3, ZERO3);
-        for i in first_free..count {
-            let (mut y, l1, l2) = (rhs[i], &self.below[i], &self.below2[i]);
-            for k in 0..LANES {
-                let v = at(&y, k) - at(&two, k) * l2[k] - at(&one, k) * l1[k];
-                put(&mut y, k, v);
-            }
+        for i in first_free..rhs.len() {
+            let y = self.down(i, &rhs[i], &one, &two);
             rhs[i] = y;
             (two, one) = (one, y);
         }
         (one, two) = (ZERO3, ZERO3);
-        for i in (first_free..count).rev() {
-            let (mut y, inv) = (rhs[i], &self.inv_pivot[i]);
-            let l1 = self.below.get(i + 1).unwrap_or(&ZERO);
-            let l2 = self.below2.get(i + 2).unwrap_or(&ZERO);
-            for k in 0..LANES {
-                let v = at(&y, k) * inv[k] - at(&two, k) * l2[k] - at(&one, k) * l1[k];
-                put(&mut y, k, v);
-            }
+        for i in (first_free..rhs.len()).rev() {
+            let y = self.up(i, &rhs[i], &one, &two);
             rhs[i] = y;
             (two, one) = (one, y);
         }
+    }
+
+    /// The second half of [`Bending::solve`], of rows that have been [`Bending::down`]; moves `points` by what it finds.
+    #[inline(always)]
+    pub(crate) fn finish(&self, first_free: usize, rhs: &mut [Lane3], points: &mut [Lane3]) {
+        let (mut one, mut two) = (ZERO3, ZERO3);
+        for (i, (row, point)) in rhs.iter_mut().zip(points).enumerate().skip(first_free).rev() {
+            let y = self.up(i, row, &one, &two);
+            *row = y;
+            *point = [point[0].plus(y[0]), point[1].plus(y[1]), point[2].plus(y[2])];
+            (two, one) = (one, y);
+        }
+    }
+
+    /// What the elimination leaves of the force at point `i`, when it has left `one` and `two` of those of the two before.
+    #[inline(always)]
+    pub(crate) fn down(&self, i: usize, force: &Lane3, one: &Lane3, two: &Lane3) -> Lane3 {
+        let (mut y, l1, l2) = (ZERO3, &self.below[i], &self.below2[i]);
+        for k in 0..LANES {
+            let v = at(force, k) - at(two, k) * l2[k] - at(one, k) * l1[k];
+            put(&mut y, k, v);
+        }
+        y
+    }
+
+    /// The displacement of point `i`, of whose force `left` is left, when the two beyond go by `one` and `two`.
+    #[inline(always)]
+    fn up(&self, i: usize, left: &Lane3, one: &Lane3, two: &Lane3) -> Lane3 {
+        let (mut y, inv) = (ZERO3, &self.inv_pivot[i]);
+        let l1 = self.below.get(i + 1).unwrap_or(&ZERO);
+        let l2 = self.below2.get(i + 2).unwrap_or(&ZERO);
+        for k in 0..LANES {
+            let v = at(left, k) * inv[k] - at(two, k) * l2[k] - at(one, k) * l1[k];
+            put(&mut y, k, v);
+        }
+        y
     }
 }
 

@@ -190,23 +190,20 @@ impl Coupled {
         }
         self.factor.solve(first, scratch);
         // What the links pull a point with: its own the one way, the next the other.
-        let mut own = ZERO3;
+        let (mut own, mut one, mut two) = (ZERO3, ZERO3, ZERO3);
         for i in first..count {
-            let (n, l) = (scratch.direction[i], scratch.multiplier[i]);
+            let (n, l) = (&scratch.direction[i], scratch.multiplier[i]);
             let pull = [n[0].times(l), n[1].times(l), n[2].times(l)];
             if i > first_free {
-                for axis in 0..3 {
-                    force[i - 1][axis] = own[axis].less(pull[axis]);
-                }
+                let both = [own[0].less(pull[0]), own[1].less(pull[1]), own[2].less(pull[2])];
+                let left = bending.down(i - 1, &both, &one, &two);
+                force[i - 1] = left;
+                (two, one) = (one, left);
             }
             own = pull;
         }
-        force[count - 1] = own;
-        bending.solve(first_free, force);
-        for (d, p) in force[first_free..count].iter().zip(&mut position[first_free..]) {
-            *p = [p[0].plus(d[0]), p[1].plus(d[1]), p[2].plus(d[2])];
-            row_done();
-        }
+        force[count - 1] = bending.down(count - 1, &own, &one, &two);
+        bending.finish(first_free, force, position);
     }
 }
 

@@ -58,7 +58,8 @@ impl LengthScratch {
     }
 }
 
-/// Takes from `velocity` what would change the length of a link, keeping the momentum of the free points.
+/// Takes from `velocity` what would change the length of a link, keeping the momentum of the free points, and leaves in `next`
+/// where what is left takes `position` in `h`.
 ///
 /// `inv_length` is one over each link's length in `position`; points before `first_free` are carried.
 #[inline(always)]
@@ -67,6 +68,8 @@ pub(crate) fn project_velocity(
     position: &[Lane3],
     inv_length: &[Lane],
     velocity: &mut [Lane3],
+    h: f32,
+    next: &mut [Lane3],
     scratch: &mut LengthScratch,
 ) {
     for i in first_free.max(1)..position.len() {
@@ -82,7 +85,16 @@ pub(crate) fn project_velocity(
         scratch.multiplier[i] = rhs;
     }
     solve(first_free, scratch);
-    apply(first_free, velocity, scratch);
+    for (i, ((x, v), next)) in position.iter().zip(velocity).zip(next).enumerate() {
+        if i >= first_free {
+            pull(i, v, scratch);
+        }
+        let (mut there, left) = (ZERO3, *v);
+        for k in 0..LANES {
+            put(&mut there, k, at(x, k) + at(&left, k) * h);
+        }
+        *next = there;
+    }
 }
 
 /// One Newton step that brings the links of `position` to their lengths.
@@ -135,28 +147,33 @@ fn solve(first_free: usize, scratch: &mut LengthScratch) {
 /// Moves every free point by the multipliers of its two links.
 #[inline(always)]
 fn apply(first_free: usize, rows: &mut [Lane3], scratch: &LengthScratch) {
-    let count = rows.len();
-    for i in first_free..count {
-        let mut row = rows[i];
-        if i > 0 {
-            let (n, mut l) = (&scratch.direction[i], scratch.multiplier[i]);
-            if i + 1 == count {
-                l = Lane(l.map(|l| l * (1.0 - scratch.tip_held)));
-            }
-            for k in 0..LANES {
-                let moved = at(&row, k) + at(n, k) * l[k];
-                put(&mut row, k, moved);
-            }
-        }
-        if i + 1 < count {
-            let (n, l) = (&scratch.direction[i + 1], &scratch.multiplier[i + 1]);
-            for k in 0..LANES {
-                let moved = at(&row, k) - at(n, k) * l[k];
-                put(&mut row, k, moved);
-            }
-        }
-        rows[i] = row;
+    for (i, row) in rows.iter_mut().enumerate().skip(first_free) {
+        pull(i, row, scratch);
     }
+}
+
+/// Moves the free point `i` by the multipliers of its two links.
+#[inline(always)]
+fn pull(i: usize, point: &mut Lane3, scratch: &LengthScratch) {
+    let (mut row, count) = (*point, scratch.direction.len());
+    if i > 0 {
+        let (n, mut l) = (&scratch.direction[i], scratch.multiplier[i]);
+        if i + 1 == count {
+            l = Lane(l.map(|l| l * (1.0 - scratch.tip_held)));
+        }
+        for k in 0..LANES {
+            let moved = at(&row, k) + at(n, k) * l[k];
+            put(&mut row, k, moved);
+        }
+    }
+    if i + 1 < count {
+        let (n, l) = (&scratch.direction[i + 1], &scratch.multiplier[i + 1]);
+        for k in 0..LANES {
+            let moved = at(&row, k) - at(n, k) * l[k];
+            put(&mut row, k, moved);
+        }
+    }
+    *point = row;
 }
 
 #[cfg(test)]

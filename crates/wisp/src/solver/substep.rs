@@ -21,10 +21,13 @@ pub(crate) fn run(block: &mut Block, plan: &Plan, s: usize) {
             &block.position,
             &block.rest.inv_length,
             &mut block.velocity,
+            plan.h,
+            &mut block.work.next,
             &mut block.work.lengths,
         );
+    } else {
+        step_positions(block, plan.h);
     }
-    step_positions(block, plan.h);
     shape_memory(block, plan, s);
     if plan.settings.integrator == Integrator::Direct {
         lean(block, plan);
@@ -192,7 +195,8 @@ fn shape_memory(block: &mut Block, plan: &Plan, s: usize) {
     }
     block.work.residual[0] = ZERO3;
     block.work.residual[count - 1] = ZERO3;
-    // -D^T r, and the pull toward the style, in place.
+    // -D^T r, and the pull toward the style, in place; and at once what the elimination leaves of it.
+    let (mut one, mut two) = (ZERO3, ZERO3);
     let mut left = if plan.first_free > 0 { block.work.residual[plan.first_free - 1] } else { ZERO3 };
     for i in plan.first_free..count {
         let middle = block.work.residual[i];
@@ -205,17 +209,12 @@ fn shape_memory(block: &mut Block, plan: &Plan, s: usize) {
             put(&mut force, k, f);
         }
         left = middle;
+        force = block.bending.down(i, &force, &one, &two);
         block.work.residual[i] = force;
+        (two, one) = (one, force);
     }
-    block.bending.solve(plan.first_free, &mut block.work.residual);
-    for i in plan.first_free..count {
-        let (d, mut p) = (&block.work.residual[i], block.work.next[i]);
-        for k in 0..LANES {
-            let moved = at(&p, k) + at(d, k);
-            put(&mut p, k, moved);
-        }
-        block.work.next[i] = p;
-    }
+    let Work { residual, next, .. } = &mut block.work;
+    block.bending.finish(plan.first_free, residual, next);
 }
 
 /// Of what contacts have moved a point by in the last substep this is left to do in the next.

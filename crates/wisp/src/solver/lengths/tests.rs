@@ -36,7 +36,15 @@ fn projected_velocities_stretch_no_link() {
         for carried in &mut v[..first_free] {
             *carried = ZERO3;
         }
-        project_velocity(first_free, &x, &[Lane::splat(100.0); 12], &mut v, &mut LengthScratch::new(12));
+        project_velocity(
+            first_free,
+            &x,
+            &[Lane::splat(100.0); 12],
+            &mut v,
+            0.0,
+            &mut zigzag(12),
+            &mut LengthScratch::new(12),
+        );
         for i in first_free.max(1)..12 {
             for k in 0..LANES {
                 let n = (at(&x[i], k) - at(&x[i - 1], k)) * 100.0;
@@ -53,10 +61,26 @@ fn a_chain_cut_loose_keeps_its_momentum() {
     let (x, mut v) = (zigzag(12), velocities(12));
     let sum = |v: &[Lane3]| v.iter().fold(Vec3::ZERO, |s, row| s + at(row, 3));
     let before = sum(&v);
-    project_velocity(0, &x, &[Lane::splat(100.0); 12], &mut v, &mut LengthScratch::new(12));
+    project_velocity(
+        0,
+        &x,
+        &[Lane::splat(100.0); 12],
+        &mut v,
+        0.0,
+        &mut zigzag(12),
+        &mut LengthScratch::new(12),
+    );
     assert!((sum(&v) - before).length() < 1e-6 * 12.0, "{before} became {}", sum(&v));
     let mut held = velocities(12);
-    project_velocity(1, &x, &[Lane::splat(100.0); 12], &mut held, &mut LengthScratch::new(12));
+    project_velocity(
+        1,
+        &x,
+        &[Lane::splat(100.0); 12],
+        &mut held,
+        0.0,
+        &mut zigzag(12),
+        &mut LengthScratch::new(12),
+    );
     assert!((sum(&held) - before).length() > 0.01, "a chain that is held must not keep it");
 }
 
@@ -107,12 +131,8 @@ fn hung_at_both_ends(links: usize, gravity: Vec3) -> Vec<Vec3> {
             let now = (at(v, 0) + gravity * h) * 0.99;
             *v = crate::lanes::splat3(now);
         }
-        project_velocity(1, &position, &inv, &mut velocity, &mut scratch);
         let before = position.clone();
-        for (p, v) in position.iter_mut().zip(&velocity) {
-            let next = at(p, 0) + at(v, 0) * h;
-            *p = crate::lanes::splat3(next);
-        }
+        project_velocity(1, &before, &inv, &mut velocity, h, &mut position, &mut scratch);
         project_position(1, &lengths, &mut position, &mut scratch);
         for ((v, p), was) in velocity.iter_mut().zip(&position).zip(&before) {
             let now = (at(p, 0) - at(was, 0)) / h;
