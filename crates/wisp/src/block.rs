@@ -235,7 +235,7 @@ impl Block {
                 } else {
                     let was = turn.apply(at(&old.rest.direction[i], k));
                     let link = at(&old.position[i], k) - at(&old.position[i - 1], k);
-                    turn = turn.then_least(was, direction_or(link, was).0).evened();
+                    turn = turn.then_least(was, direction_or(link, was).0);
                     end += turn.apply(at(&self.rest.direction[i], k)) * self.rest.length[i][k];
                 }
                 put(&mut self.position[i], k, end);

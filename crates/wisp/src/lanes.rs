@@ -162,17 +162,11 @@ pub(crate) fn greater(a: f32, b: f32) -> f32 {
 #[inline(always)]
 pub(crate) fn inv_sqrt(x: f32) -> f32 {
     let x = lesser(x, f32::MAX);
-    let near = near_inv_sqrt(x);
-    let off = 1.0 - x * near * near;
-    near + near * off * (0.5 + 0.375 * off)
-}
-
-/// One over the root of a number from 0 to the greatest, to a thousandth.
-#[inline(always)]
-fn near_inv_sqrt(x: f32) -> f32 {
     // What is not a number may have a sign.
     let guess = f32::from_bits(0x5f1f_fff9_u32.wrapping_sub(x.to_bits() >> 1));
-    guess * (1.681_914_1 - 0.703_952_25 * x * guess * guess)
+    let near = guess * (1.681_914_1 - 0.703_952_25 * x * guess * guess);
+    let off = 1.0 - x * near * near;
+    near + near * off * (0.5 + 0.375 * off)
 }
 
 /// The first vector where `first`, else the second, without a branch.
@@ -191,8 +185,8 @@ pub(crate) fn direction_or(v: Vec3, fallback: Vec3) -> (Vec3, f32) {
     (choose(ok, v * scale, fallback), squared * scale)
 }
 
-/// A rotation as a quaternion of plain numbers, since `glam::Quat` is itself a vector register and would
-/// keep the loops over lanes from becoming one. Its length says nothing.
+/// A rotation as a unit quaternion of plain numbers, since `glam::Quat` is itself a vector register and would
+/// keep the loops over lanes from becoming one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Turn {
     v: Vec3,
@@ -204,34 +198,22 @@ impl Turn {
         Self { v: Vec3::new(q.x, q.y, q.z), w: q.w }
     }
 
-    /// The square of its length.
-    #[inline(always)]
-    fn squared(self) -> f32 {
-        self.w * self.w + self.v.length_squared()
-    }
-
-    /// Turns `a` (by q a q* / |q|^2: whoever waits for it need not wait for a root).
+    /// Turns `a` (by q a q*).
     #[inline(always)]
     pub(crate) fn apply(self, a: Vec3) -> Vec3 {
-        let t = self.v.cross(a);
-        a + (self.w * t + self.v.cross(t)) * (2.0 / self.squared())
+        let t = 2.0 * self.v.cross(a);
+        a + self.w * t + self.v.cross(t)
     }
 
     /// This turn followed by the smallest turn that carries the unit vector `from` to the unit vector `to`.
-    ///
-    /// It is up to twice as long, or shorter by any factor down to a hundredth of a percent: see [`Turn::evened`].
     #[inline(always)]
     pub(crate) fn then_least(self, from: Vec3, to: Vec3) -> Self {
         // The half-vector form; opposite vectors have no smallest turn and get one close to half a turn.
         let (v, w) = (from.cross(to), greater(1.0 + from.dot(to), 1e-4));
-        Self { v: w * self.v + self.w * v + v.cross(self.v), w: w * self.w - v.dot(self.v) }
-    }
-
-    /// The same turn with a length of about 1, so that it can go on without end.
-    #[inline(always)]
-    pub(crate) fn evened(self) -> Self {
-        let scale = near_inv_sqrt(self.squared());
-        Self { v: self.v * scale, w: self.w * scale }
+        let turned_w = w * self.w - v.dot(self.v);
+        let turned_v = w * self.v + self.w * v + v.cross(self.v);
+        let scale = inv_sqrt(turned_w * turned_w + turned_v.length_squared());
+        Self { v: turned_v * scale, w: turned_w * scale }
     }
 }
 

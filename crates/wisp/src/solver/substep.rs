@@ -156,8 +156,8 @@ fn carry_frames(block: &mut Block, substep: &Substep) {
             let was_expected = at(&expected, k);
             let now = choose(link[0][k] < NOWHERE, at(&link, k), was_expected);
             let frame = frames.at(k).then_least(was_expected, now);
+            frames.put(k, frame);
             put(&mut expected, k, frame.apply(at(next_direction, k)));
-            frames.put(k, frame.evened());
             put(&mut link, k, now);
         }
         block.work.links[i] = link;
