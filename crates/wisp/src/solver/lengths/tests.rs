@@ -29,6 +29,12 @@ fn velocities(points: usize) -> Vec<Lane3> {
     rows
 }
 
+/// Projects the velocities of a zigzag of twelve points onto rigid links of 1 cm, without a step in time.
+fn project_zigzag(first_free: usize, x: &[Lane3], v: &mut [Lane3]) {
+    let over_length = [Lane::splat(100.0); 12];
+    project_velocity(first_free, x, &over_length, v, 0.0, &mut zigzag(12), &mut LengthScratch::new(12));
+}
+
 #[test]
 fn projected_velocities_stretch_no_link() {
     for first_free in 0..3 {
@@ -36,15 +42,7 @@ fn projected_velocities_stretch_no_link() {
         for carried in &mut v[..first_free] {
             *carried = ZERO3;
         }
-        project_velocity(
-            first_free,
-            &x,
-            &[Lane::splat(100.0); 12],
-            &mut v,
-            0.0,
-            &mut zigzag(12),
-            &mut LengthScratch::new(12),
-        );
+        project_zigzag(first_free, &x, &mut v);
         for i in first_free.max(1)..12 {
             for k in 0..LANES {
                 let n = (at(&x[i], k) - at(&x[i - 1], k)) * 100.0;
@@ -61,26 +59,10 @@ fn a_chain_cut_loose_keeps_its_momentum() {
     let (x, mut v) = (zigzag(12), velocities(12));
     let sum = |v: &[Lane3]| v.iter().fold(Vec3::ZERO, |s, row| s + at(row, 3));
     let before = sum(&v);
-    project_velocity(
-        0,
-        &x,
-        &[Lane::splat(100.0); 12],
-        &mut v,
-        0.0,
-        &mut zigzag(12),
-        &mut LengthScratch::new(12),
-    );
+    project_zigzag(0, &x, &mut v);
     assert!((sum(&v) - before).length() < 1e-6 * 12.0, "{before} became {}", sum(&v));
     let mut held = velocities(12);
-    project_velocity(
-        1,
-        &x,
-        &[Lane::splat(100.0); 12],
-        &mut held,
-        0.0,
-        &mut zigzag(12),
-        &mut LengthScratch::new(12),
-    );
+    project_zigzag(1, &x, &mut held);
     assert!((sum(&held) - before).length() > 0.01, "a chain that is held must not keep it");
 }
 
