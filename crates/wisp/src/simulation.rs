@@ -262,7 +262,7 @@ impl Simulation {
             wind: &wind,
             wakes: &wakes,
         };
-        self.blocks.par_iter_mut().for_each(|block| step_block(block, &plan));
+        self.blocks.par_iter_mut().with_max_len(1).for_each(|block| step_block(block, &plan));
         let (hair_volume, hair_volume_at_rest) = (self.grid.volume(), self.grid.volume_at_rest());
         let all = self.outcome(first_free);
         StepReport { substeps: count, over_dense_cells, hair_volume, hair_volume_at_rest, ..all }
