@@ -191,7 +191,7 @@ impl DensityGrid {
         self.parts.resize_with(tasks, Cells::new);
         let (lattice, width, next) = (self.lattice, Width::widest(), AtomicUsize::new(0));
         self.parts.par_iter_mut().for_each(|cells| {
-            cells.clear();
+            cells.begin();
             // Who adds a block does not matter.
             while let Some(block) = blocks.get(next.fetch_add(1, Ordering::Relaxed)) {
                 add_block(width, &lattice, source, block, cells);

@@ -28,7 +28,7 @@ impl Boxes {
         self.groups.clear();
     }
 
-    /// Adds the box of `mover`, if it is smaller than anything.
+    /// Adds the box of `mover`.
     #[inline(always)]
     pub(crate) fn push(&mut self, mover: &MovingShape) {
         let k = self.count % LANES;

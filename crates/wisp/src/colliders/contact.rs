@@ -238,12 +238,15 @@ pub(crate) fn lay_point(
             if shape.surely_beyond(&placed, rules.reach_of(mover)) {
                 continue;
             }
+            let allowed = near.allowed(n, point, &rules);
+            if shape.each_surely_beyond(&placed, &allowed) {
+                continue;
+            }
             let mut along = ZERO3;
             for k in 0..LANES {
                 put(&mut along, k, at(&placed, k) - at(before, k));
             }
             let nearest = shape.nearest(&placed, &along);
-            let allowed = near.allowed(n, point, &rules);
             if !any_deeper(&allowed, &nearest.distance, enough) {
                 continue;
             }

@@ -46,6 +46,9 @@ pub(crate) struct Nearest {
 /// surface, where hair is; far away only the sign matters.
 const ELLIPSOID_ROUNDS: usize = 4;
 
+/// By so much what is within reach may seem to be further away, metres: what lies on a surface must not be taken for far.
+const ROUNDING: f32 = 1e-5;
+
 impl Shape {
     /// Prepares `shape`; one that is not finite or has no size gives `None`, and then nothing touches it.
     pub(crate) fn new(shape: &ColliderShape) -> Option<Self> {
@@ -113,23 +116,44 @@ impl Shape {
         }
     }
 
-    /// Whether every lane of `points` is surely further away than `reach`: cheaper than to ask how far. Next to a
-    /// capsule, where that is as cheap, the answer is no.
+    /// Whether every lane of `points` is surely further away than `reach`: cheaper than to ask how far.
     #[inline(always)]
     pub(crate) fn surely_beyond(&self, points: &Lane3, reach: f32) -> bool {
-        let Self::Ellipsoid { centre, to_unit: [ax, ay, az], inv_least_radius, .. } = *self else {
-            return false;
-        };
-        // Seen from outside, the ellipsoid grown by a factor of 1 + reach / (smallest radius) holds all within reach.
+        // What is not a number is far.
         let mut squared = ZERO;
+        let within = match *self {
+            // As if it were as wide all along as at its wider end.
+            Self::Capsule { a, axis, inv_axis_squared, radius_a, radius_change, .. } => {
+                for k in 0..LANES {
+                    let q = at(points, k) - a;
+                    let t = lesser(greater(q.dot(axis) * inv_axis_squared, 0.0), 1.0);
+                    squared[k] = lesser(f32::MAX, (q - t * axis).length_squared());
+                }
+                radius_a + greater(radius_change, 0.0) + reach + ROUNDING
+            }
+            // Seen from outside, the ellipsoid grown by a factor of 1 + reach / (smallest radius) holds all within reach.
+            Self::Ellipsoid { centre, to_unit, inv_least_radius, .. } => {
+                for k in 0..LANES {
+                    let q = in_units(at(points, k) - centre, &to_unit);
+                    squared[k] = lesser(f32::MAX, q.length_squared());
+                }
+                1.0 + reach * inv_least_radius
+            }
+        };
+        fold(squared, lesser) > within * within
+    }
+
+    /// The same for a reach of each lane's own, where that is cheaper than to ask how far: next to a capsule the answer is no.
+    #[inline(always)]
+    pub(crate) fn each_surely_beyond(&self, points: &Lane3, reach: &Lane) -> bool {
+        let Self::Ellipsoid { centre, to_unit, inv_least_radius, .. } = *self else { return false };
+        let mut beyond = true;
         for k in 0..LANES {
-            let q = at(points, k) - centre;
-            let q = Vec3::new(q.dot(ax), q.dot(ay), q.dot(az));
+            let within = 1.0 + (greater(reach[k], 0.0) + ROUNDING) * inv_least_radius;
             // What is not a number is far.
-            squared[k] = lesser(f32::MAX, q.length_squared());
+            beyond &= !(in_units(at(points, k) - centre, &to_unit).length_squared() <= within * within);
         }
-        let factor = 1.0 + reach * inv_least_radius;
-        fold(squared, lesser) > factor * factor
+        beyond
     }
 
     /// The nearest point for every lane of `points`. `along` is the direction in which a push-out may move
@@ -199,6 +223,12 @@ impl Shape {
         let row = crate::lanes::splat3(p);
         self.nearest(&row, &ZERO3).distance[0]
     }
+}
+
+/// `q` in the units of an ellipsoid's axes.
+#[inline(always)]
+fn in_units(q: Vec3, [x, y, z]: &[Vec3; 3]) -> Vec3 {
+    Vec3::new(q.dot(*x), q.dot(*y), q.dot(*z))
 }
 
 #[cfg(test)]
@@ -286,6 +316,48 @@ mod tests {
             }
         }
         assert!(sure > 500 && near > 500, "{sure} beyond, {near} within: too few to show anything");
+    }
+
+    #[test]
+    fn what_is_surely_beyond_a_capsule_is_so() {
+        let (c, reach) = (capsule(0.1, 0.07), 0.003);
+        let (mut sure, mut near, mut wasted) = (0, 0, 0);
+        for i in 0..3000 {
+            let (u, v) = (i as f32 * 0.37, i as f32 * 0.73);
+            let out = Vec3::new(u.sin() * v.cos(), u.sin() * v.sin(), u.cos());
+            let p = Vec3::new(0.1, 0.25, 0.0) + out * (0.05 + 0.0001 * i as f32);
+            let (beyond, within) = (c.surely_beyond(&crate::lanes::splat3(p), reach), c.distance(p) < reach);
+            assert!(!(beyond && within), "{p}");
+            (sure, near) = (sure + usize::from(beyond), near + usize::from(within));
+            wasted += usize::from(!beyond && !within);
+        }
+        assert!(sure > 500 && near > 500, "{sure} beyond, {near} within: too few to show anything");
+        assert!(wasted < 600, "{wasted} of 3000 are asked in vain");
+        // What lies on the surface, as contacts leave it, is not beyond it.
+        let on = Vec3::new(0.1 + 0.1 + reach, 0.0, 0.0);
+        assert!(!c.surely_beyond(&crate::lanes::splat3(on + Vec3::X * 1e-6), reach));
+    }
+
+    #[test]
+    fn every_lane_has_a_reach_of_its_own() {
+        let e = ellipsoid();
+        let (mut sure, mut near) = (0, 0);
+        for i in 0..3000 {
+            let (u, v) = (i as f32 * 0.37, i as f32 * 0.73);
+            let out = Vec3::new(u.sin() * v.cos(), u.sin() * v.sin(), u.cos());
+            let p = Vec3::new(0.0, 0.1, 0.02) + out * (0.07 + 0.00003 * i as f32);
+            // All lanes but one are content with next to nothing.
+            let (odd, reach) = (i % LANES, 0.000_01 * (i % 2000) as f32 - 0.002);
+            let mut reaches = Lane::splat(-1.0);
+            reaches[odd] = reach;
+            let (beyond, distance) =
+                (e.each_surely_beyond(&crate::lanes::splat3(p), &reaches), e.distance(p));
+            assert!(!(beyond && distance < reach), "{p} is {distance} off, not {reach}");
+            (sure, near) = (sure + usize::from(beyond), near + usize::from(distance < reach));
+        }
+        assert!(sure > 500 && near > 500, "{sure} beyond, {near} within: too few to show anything");
+        assert!(!capsule(0.1, 0.1).each_surely_beyond(&crate::lanes::splat3(Vec3::ONE), &Lane::splat(0.0)));
+        assert!(e.each_surely_beyond(&crate::lanes::splat3(Vec3::NAN), &Lane::splat(0.0)), "it is nowhere");
     }
 
     #[test]

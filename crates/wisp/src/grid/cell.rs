@@ -58,30 +58,43 @@ impl Cell {
         f32::from_bits(self.0[EXCESS] as u32)
     }
 
-    /// Adds `weight` times `parts`.
+    /// Adds `weight` times `parts` to what [`Held`] keeps of the cell.
     ///
     /// # Safety
     ///
     /// The products are numbers that an `i32` holds.
     #[inline(always)]
-    pub(super) unsafe fn add(&mut self, weight: f32, parts: &[f32; NUMBERS]) {
+    pub(super) unsafe fn add(&mut self, held: Held, weight: f32, parts: &[f32; NUMBERS]) {
         let mut sum = *self;
         for (sum, part) in sum.0.iter_mut().zip(parts).take(PARTS) {
             // SAFETY: as asked for.
-            *sum = sum.wrapping_add(unsafe { (weight * part).to_int_unchecked() });
+            *sum = (*sum & held.0).wrapping_add(unsafe { (weight * part).to_int_unchecked() });
         }
         *self = sum;
     }
 
-    /// Adds what another grid has of the same cell.
-    fn plus(&mut self, other: &Self) {
+    /// Adds what another grid has of the same cell to what [`Held`] keeps of this one.
+    fn plus(&mut self, held: Held, other: &Self) {
         for (sum, part) in self.0.iter_mut().zip(&other.0).take(PARTS) {
-            *sum = sum.wrapping_add(*part);
+            *sum = (*sum & held.0).wrapping_add(*part);
         }
     }
 
     fn clear(&mut self) {
         self.0[..INV_REST].fill(0);
+    }
+}
+
+/// Whether a cell holds hair of this time already: all bits are set where it does, and none where what is in it was left
+/// there the last time.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Held(i32);
+
+impl Held {
+    /// By the bit `x` of the row of the cell.
+    #[inline(always)]
+    fn of(mask: u64, x: usize) -> Self {
+        Self(-((mask >> x & 1) as i32))
     }
 }
 
@@ -97,8 +110,11 @@ const _: () = assert!(ROW <= 64, "a row has a bit for each of its cells");
 #[derive(Clone, Debug)]
 pub(super) struct Cells {
     pub(super) cells: Vec<Cell>,
-    /// Which cells of each row along x may hold hair, a bit each.
+    /// Which cells of each row along x may hold hair, a bit each. What is in the others does not count until
+    /// [`Cells::gather`] has emptied them.
     masks: Vec<u64>,
+    /// Which did the last time.
+    before: Vec<u64>,
 }
 
 /// What is counted of cells.
@@ -123,40 +139,51 @@ impl Tally {
 
 impl Cells {
     pub(super) fn new() -> Self {
-        Self { cells: vec![Cell::EMPTY; ROW * ROW * ROW], masks: vec![0; ROW * ROW] }
-    }
-
-    /// Empties the cells that may hold hair.
-    pub(super) fn clear(&mut self) {
-        for (mask, cells) in self.masks.iter_mut().zip(self.cells.as_chunks_mut::<ROW>().0) {
-            for x in bits(std::mem::take(mask)) {
-                cells[x].clear();
-            }
+        Self {
+            cells: vec![Cell::EMPTY; ROW * ROW * ROW],
+            masks: vec![0; ROW * ROW],
+            before: vec![0; ROW * ROW],
         }
     }
 
-    /// Says that the eight cells whose first is at `base` may hold hair.
+    /// No cell holds hair any more. What was in them stays until hair is put there again or all is gathered.
+    pub(super) fn begin(&mut self) {
+        std::mem::swap(&mut self.masks, &mut self.before);
+        self.masks.fill(0);
+    }
+
+    /// Says that the eight cells whose first is at `base` may hold hair; and which of them did, in the order of
+    /// [`super::OFFSETS`].
     #[inline(always)]
-    pub(super) fn mark(&mut self, base: usize) {
+    pub(super) fn mark(&mut self, base: usize) -> [Held; 8] {
         let (row, x) = (base / ROW, base % ROW);
-        for row in [row, row + 1, row + ROW, row + ROW + 1] {
+        let mut held = [Held(0); 8];
+        for (pair, row) in
+            held.as_chunks_mut::<2>().0.iter_mut().zip([row, row + 1, row + ROW, row + ROW + 1])
+        {
+            *pair = [Held::of(self.masks[row], x), Held::of(self.masks[row], x + 1)];
             self.masks[row] |= 0b11 << x;
         }
+        held
     }
 
-    /// Adds what `others` hold, counts, and leaves in each cell its excess; `most` is the mass of a full cell, and what is
-    /// over-dense has more than `1 / inv_threshold` of its density at rest.
+    /// Adds what `others` hold, empties what holds nothing any more, counts, and leaves in each cell its excess; `most` is the
+    /// mass of a full cell, and what is over-dense has more than `1 / inv_threshold` of its density at rest.
     pub(super) fn gather(&mut self, others: &[Self], most: i32, inv_threshold: f32) -> Tally {
+        let before = &self.before;
         let chunks = self.cells.par_chunks_mut(CHUNK).zip(self.masks.par_chunks_mut(CHUNK / ROW)).enumerate();
         let tally = |(n, (cells, masks)): (usize, (&mut [Cell], &mut [u64]))| {
             let mut out = Tally::default();
             let rows = masks.iter_mut().zip(cells.as_chunks_mut::<ROW>().0);
             for (row, (mask, cells)) in (n * CHUNK / ROW..).zip(rows) {
                 for other in others {
-                    *mask |= other.masks[row];
                     for x in bits(other.masks[row]) {
-                        cells[x].plus(&other.cells[row * ROW + x]);
+                        cells[x].plus(Held::of(*mask, x), &other.cells[row * ROW + x]);
                     }
+                    *mask |= other.masks[row];
+                }
+                for x in bits(before[row] & !*mask) {
+                    cells[x].clear();
                 }
                 out.held += mask.count_ones();
                 for x in bits(*mask) {

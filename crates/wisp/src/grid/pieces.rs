@@ -166,10 +166,10 @@ fn add(lattice: &Lattice, source: &Source, block: &Block, cells: &mut Cells) {
         for k in 0..LANES {
             if masses[k] > 0.0 {
                 let base = corners.base[k] as usize;
-                cells.mark(base);
-                for (offset, weight) in OFFSETS.into_iter().zip(&weights) {
+                let held = cells.mark(base);
+                for ((offset, weight), held) in OFFSETS.into_iter().zip(&weights).zip(held) {
                     // SAFETY: numbers, and none larger than the mass but for rounding, the mass of all hair being 2^29.
-                    unsafe { cells.cells[base + offset].add(weight[k], &parts[k]) };
+                    unsafe { cells.cells[base + offset].add(held, weight[k], &parts[k]) };
                     row_done();
                 }
             }

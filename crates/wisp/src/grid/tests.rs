@@ -49,6 +49,23 @@ fn at_rest_nothing_is_over_dense_and_squeezed_it_is() {
 }
 
 #[test]
+fn hair_leaves_nothing_behind_where_it_was() {
+    let blocks = lattice(5, 0.02);
+    let away = Map { turn: Mat3::IDENTITY, shift: Vec3::new(0.05, 0.03, -0.04) };
+    let (mut fresh, mut used) = (DensityGrid::new(&blocks), DensityGrid::new(&blocks));
+    fresh.update(&blocks, &away, Repulsion::default());
+    let squeeze = Map { turn: Mat3::from_diagonal(Vec3::new(0.3, 1.0, 0.3)), shift: Vec3::ZERO };
+    assert!(used.update(&blocks, &squeeze, Repulsion::default()) > 0);
+    assert!(fresh.cells() != used.cells(), "hair that is elsewhere must not look the same");
+    used.update(&blocks, &away, Repulsion::default());
+    assert!(fresh.cells() == used.cells());
+    let mass: f64 = used.cells().iter().map(|c| f64::from(c.mass())).sum();
+    // As in the test above; what hair at rest has left would be as much again.
+    let want = 25.0 * 0.2 * f64::from(used.lattice.units);
+    assert!((mass / want - 1.0).abs() < 0.06, "{mass} against {want}");
+}
+
+#[test]
 fn crowded_hair_is_pushed_apart() {
     for mode in [RepulsionMode::Pressure, RepulsionMode::Centre] {
         let blocks = lattice(5, 0.02);
