@@ -8,7 +8,8 @@ use lovelock_motion::{BodyField, FieldPose, PlacedCollider};
 /// The body at the end of a step. The simulator keeps the one before and moves between them in substeps.
 #[derive(Clone, Copy, Debug)]
 pub struct StepInput<'a> {
-    /// When, on the clip's clock, seconds. Going back, or further on than half a second, is a jump.
+    /// When, on the clip's clock, seconds. Going back, or further on than half a second, is a jump where the head is
+    /// elsewhere then.
     pub time_secs: f64,
     /// Carries head space to world space: rigid, no scale.
     pub world_from_head: Affine3A,

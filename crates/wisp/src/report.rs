@@ -10,7 +10,7 @@ pub struct StepReport {
     /// Largest relative change of a link's length at the end of the step: 0.001 is 0.1 %. Of links shorter than a millimetre the
     /// change as a part of that.
     pub max_stretch: f32,
-    /// Deepest point inside a collider, beyond what its place at rest allows, metres.
+    /// Deepest point inside a collider or the field, beyond what its place at rest allows, metres.
     pub max_penetration_m: f32,
     /// Where that point is; `None` where no point is inside.
     pub deepest: Option<InsidePoint>,

@@ -30,8 +30,8 @@ pub struct SimulationSettings {
     /// Pull of the roots' half toward the style as it was drawn, as an angular frequency, 1/s; it falls to
     /// zero at the tips: 0 to 60.
     pub hold: f32,
-    /// Friction against the hair around, as the rate (1/s) at which motion relative to the head dies away:
-    /// 0 to 20.
+    /// The rate (1/s) at which motion relative to the head dies away, a stand-in for friction against the hair
+    /// around: 0 to 20.
     pub settle: f32,
     /// Drag of the air, as the rate (1/s) at which hair takes on the speed of the wind: 0 to 20.
     pub drag: f32,

@@ -318,7 +318,7 @@ impl Simulation {
         StepReport { jumped, ..StepReport::default() }
     }
 
-    /// No root may move further in a substep than half a link.
+    /// No root may move further in a substep than half a link, as far as the most substeps allow.
     fn substeps_for(&self, head: &HeadPose, asked: u32) -> u32 {
         let (turn, there) = (self.head.affine(), head.affine());
         let mut furthest = 0.0_f32;

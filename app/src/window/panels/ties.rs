@@ -132,11 +132,8 @@ fn controls(ui: &mut Ui, tie: &mut HairTie, d: &HairTie) {
             &mut tie.bun_radius,
             d.bun_radius,
         );
-        Number::new("Coils", 0.5..=8.0, "How often hair goes around the bun.").decimals(1).show(
-            ui,
-            &mut tie.bun_coils,
-            d.bun_coils,
-        );
+        let tip = "In how many rounds of the bun its lock turns once about itself: fewer twist it more.";
+        Number::new("Coils", 0.5..=8.0, tip).decimals(1).show(ui, &mut tie.bun_coils, d.bun_coils);
     }
     gathers(ui, tie, d);
 }

@@ -54,7 +54,7 @@ impl FieldLattice {
     }
 }
 
-/// A weighting of the field's joints, and how often it is met.
+/// A weighting of the field's joints.
 pub type FieldWeights = [f32; FIELD_JOINTS];
 
 /// Signed distances around head and shoulders at rest; see the head of this module. Immutable, shared by `Arc`.

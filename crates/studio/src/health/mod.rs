@@ -59,7 +59,7 @@ impl GaugeKind {
                 "Mean energy of the movement of the hair now, for a kilogram of it: 5 J/kg is a brisk turn of the head."
             }
             Self::PutBack => {
-                "Guides that the simulation lost and set on their style again, since the hair was last settled."
+                "Guides that the simulation lost and put back to where they were a step before, since the hair was last settled."
             }
             Self::RestInside => "How deep the style as it was drawn lies inside what it collides with.",
         }
@@ -228,7 +228,7 @@ fn gauges(
             totals.recovered_guides as f64,
             totals.recovered_at.map(|guide| (guide, u32::MAX)),
             || {
-                "The simulation lost guides and set them on their style again. Raise the substeps, or lower stiffness, wind and \
+                "The simulation lost guides and put them back to where they were a step before. Raise the substeps, or lower stiffness, wind and \
                  repulsion; a guide that is lost again and again has points that lie on each other."
                     .to_owned()
             },
