@@ -141,7 +141,7 @@ impl DensityGrid {
         }
         let typical = if sum > 0.0 { (squares / sum) as f32 } else { FULL };
         self.full = typical;
-        for c in &mut self.parts[0].cells {
+        for c in &mut self.parts[0].each {
             c.set_inv_rest(1.0 / (c.mass() as f32).max(typical));
         }
     }
@@ -182,7 +182,7 @@ impl DensityGrid {
 
     /// What lies in each cell.
     fn cells(&self) -> &[Cell] {
-        &self.parts[0].cells
+        &self.parts[0].each
     }
 
     /// Empties the grid, puts all hair into it, and counts.

@@ -11,7 +11,7 @@ pub struct StepInput<'a> {
     /// When, on the clip's clock, seconds. Going back, or further on than half a second, is a jump where the head is
     /// elsewhere then.
     pub time_secs: f64,
-    /// Carries head space to world space: rigid, no scale.
+    /// Carries head space to world space: rigid, no scale. Further than 0.5 m or a radian in one step is a jump at any time.
     pub world_from_head: Affine3A,
     /// What hair collides with, in world space: the same list in the same order from step to step.
     pub colliders: &'a [PlacedCollider],

@@ -131,7 +131,8 @@ impl Shape {
                 }
                 radius_a + greater(radius_change, 0.0) + reach + ROUNDING
             }
-            // Seen from outside, the ellipsoid grown by a factor of 1 + reach / (smallest radius) holds all within reach.
+            // Seen from outside, the ellipsoid grown by a factor of 1 + reach / (smallest radius) holds all within reach, but
+            // for some 2e-8 m of rounding.
             Self::Ellipsoid { centre, to_unit, inv_least_radius, .. } => {
                 for k in 0..LANES {
                     let q = in_units(at(points, k) - centre, &to_unit);
@@ -150,8 +151,9 @@ impl Shape {
         let mut beyond = true;
         for k in 0..LANES {
             let within = 1.0 + (greater(reach[k], 0.0) + ROUNDING) * inv_least_radius;
+            let squared = in_units(at(points, k) - centre, &to_unit).length_squared();
             // What is not a number is far.
-            beyond &= !(in_units(at(points, k) - centre, &to_unit).length_squared() <= within * within);
+            beyond &= (squared > within * within) | squared.is_nan();
         }
         beyond
     }
@@ -299,43 +301,39 @@ mod tests {
         }
     }
 
-    #[test]
-    fn what_is_surely_beyond_reach_is_so() {
-        let (e, reach) = (ellipsoid(), 0.012);
-        let (mut sure, mut near) = (0, 0);
-        for i in 0..3000 {
-            let (u, v) = (i as f32 * 0.37, i as f32 * 0.73);
-            let out = Vec3::new(u.sin() * v.cos(), u.sin() * v.sin(), u.cos());
-            let p = Vec3::new(0.0, 0.1, 0.02) + out * (0.07 + 0.00003 * i as f32);
-            let row = crate::lanes::splat3(p);
-            if e.surely_beyond(&row, reach) {
-                sure += 1;
-                assert!(e.distance(p) > reach);
-            } else if e.distance(p) < reach {
-                near += 1;
-            }
-        }
-        assert!(sure > 500 && near > 500, "{sure} beyond, {near} within: too few to show anything");
+    /// The `i`-th of many directions.
+    fn direction(i: usize) -> Vec3 {
+        let (u, v) = (i as f32 * 0.37, i as f32 * 0.73);
+        Vec3::new(u.sin() * v.cos(), u.sin() * v.sin(), u.cos())
+    }
+
+    /// A row of which lane `i`, counted round, is at `p`; the others are far away, or nowhere.
+    fn alone(p: Vec3, i: usize) -> Lane3 {
+        let mut row = crate::lanes::splat3(if i.is_multiple_of(2) { Vec3::splat(9.0) } else { Vec3::NAN });
+        put(&mut row, i % LANES, p);
+        row
     }
 
     #[test]
-    fn what_is_surely_beyond_a_capsule_is_so() {
-        let (c, reach) = (capsule(0.1, 0.07), 0.003);
-        let (mut sure, mut near, mut wasted) = (0, 0, 0);
-        for i in 0..3000 {
-            let (u, v) = (i as f32 * 0.37, i as f32 * 0.73);
-            let out = Vec3::new(u.sin() * v.cos(), u.sin() * v.sin(), u.cos());
-            let p = Vec3::new(0.1, 0.25, 0.0) + out * (0.05 + 0.0001 * i as f32);
-            let (beyond, within) = (c.surely_beyond(&crate::lanes::splat3(p), reach), c.distance(p) < reach);
-            assert!(!(beyond && within), "{p}");
-            (sure, near) = (sure + usize::from(beyond), near + usize::from(within));
-            wasted += usize::from(!beyond && !within);
+    fn what_is_surely_beyond_reach_is_so() {
+        let middle = [Vec3::new(0.0, 0.1, 0.02), Vec3::new(0.1, 0.25, 0.0), Vec3::new(0.1, 0.25, 0.0)];
+        let shapes = [(ellipsoid(), 0.012), (capsule(0.1, 0.07), 0.003), (capsule(0.07, 0.1), 0.003)];
+        for ((shape, reach), middle) in shapes.into_iter().zip(middle) {
+            let (mut sure, mut near, mut in_vain) = (0, 0, 0);
+            for i in 0..3000 {
+                let p = middle + direction(i) * (0.07 + 0.000_06 * i as f32);
+                let (beyond, within) = (shape.surely_beyond(&alone(p, i), reach), shape.distance(p) < reach);
+                assert!(!(beyond && within), "{p} is beyond {shape:?}");
+                (sure, near) = (sure + usize::from(beyond), near + usize::from(within));
+                in_vain += usize::from(!beyond && !within);
+            }
+            assert!(sure > 500 && near > 500, "{sure} beyond, {near} within: too few to show anything");
+            // Measured: 31, and 291 and 276 by the taper of the capsules.
+            assert!(in_vain < 320, "{in_vain} of 3000 are asked in vain");
         }
-        assert!(sure > 500 && near > 500, "{sure} beyond, {near} within: too few to show anything");
-        assert!(wasted < 600, "{wasted} of 3000 are asked in vain");
         // What lies on the surface, as contacts leave it, is not beyond it.
-        let on = Vec3::new(0.1 + 0.1 + reach, 0.0, 0.0);
-        assert!(!c.surely_beyond(&crate::lanes::splat3(on + Vec3::X * 1e-6), reach));
+        let on = Vec3::new(0.1 + 0.1 + 0.003 + 1e-6, 0.0, 0.0);
+        assert!(!capsule(0.1, 0.07).surely_beyond(&alone(on, 3), 0.003));
     }
 
     #[test]
@@ -343,10 +341,8 @@ mod tests {
         let e = ellipsoid();
         let (mut sure, mut near) = (0, 0);
         for i in 0..3000 {
-            let (u, v) = (i as f32 * 0.37, i as f32 * 0.73);
-            let out = Vec3::new(u.sin() * v.cos(), u.sin() * v.sin(), u.cos());
-            let p = Vec3::new(0.0, 0.1, 0.02) + out * (0.07 + 0.00003 * i as f32);
-            // All lanes but one are content with next to nothing.
+            let p = Vec3::new(0.0, 0.1, 0.02) + direction(i) * (0.07 + 0.000_03 * i as f32);
+            // All lanes are there, and all but one are content with next to nothing.
             let (odd, reach) = (i % LANES, 0.000_01 * (i % 2000) as f32 - 0.002);
             let mut reaches = Lane::splat(-1.0);
             reaches[odd] = reach;
@@ -356,8 +352,13 @@ mod tests {
             (sure, near) = (sure + usize::from(beyond), near + usize::from(distance < reach));
         }
         assert!(sure > 500 && near > 500, "{sure} beyond, {near} within: too few to show anything");
-        assert!(!capsule(0.1, 0.1).each_surely_beyond(&crate::lanes::splat3(Vec3::ONE), &Lane::splat(0.0)));
-        assert!(e.each_surely_beyond(&crate::lanes::splat3(Vec3::NAN), &Lane::splat(0.0)), "it is nowhere");
+        // What lies within reach but for rounding, at the end of the shortest axis, where nothing is to spare.
+        let Shape::Ellipsoid { centre, axes, radii, .. } = e else { unreachable!() };
+        let at_end = |further: f32| centre + axes[0] * (radii.x + 0.004 + further);
+        assert!(!e.each_surely_beyond(&alone(at_end(1e-6), 5), &Lane::splat(0.004)));
+        assert!(e.each_surely_beyond(&alone(at_end(1e-4), 5), &Lane::splat(0.004)));
+        assert!(!capsule(0.1, 0.1).each_surely_beyond(&crate::lanes::splat3(Vec3::ONE), &ZERO));
+        assert!(e.each_surely_beyond(&crate::lanes::splat3(Vec3::NAN), &ZERO), "it is nowhere");
     }
 
     #[test]

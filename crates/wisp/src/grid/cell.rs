@@ -86,7 +86,7 @@ impl Cell {
 }
 
 /// Whether a cell holds hair of this time already: all bits are set where it does, and none where what is in it was left
-/// there the last time.
+/// there some earlier time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Held(i32);
 
@@ -109,9 +109,9 @@ const _: () = assert!(ROW <= 64, "a row has a bit for each of its cells");
 /// A whole grid of cells: x fastest, then y.
 #[derive(Clone, Debug)]
 pub(super) struct Cells {
-    pub(super) cells: Vec<Cell>,
-    /// Which cells of each row along x may hold hair, a bit each. What is in the others does not count until
-    /// [`Cells::gather`] has emptied them.
+    pub(super) each: Vec<Cell>,
+    /// Which cells of each row along x may hold hair, a bit each. What is in the others is old and does not count;
+    /// [`Cells::gather`] empties it in the grid that it adds to.
     masks: Vec<u64>,
     /// Which did the last time.
     before: Vec<u64>,
@@ -140,7 +140,7 @@ impl Tally {
 impl Cells {
     pub(super) fn new() -> Self {
         Self {
-            cells: vec![Cell::EMPTY; ROW * ROW * ROW],
+            each: vec![Cell::EMPTY; ROW * ROW * ROW],
             masks: vec![0; ROW * ROW],
             before: vec![0; ROW * ROW],
         }
@@ -171,14 +171,14 @@ impl Cells {
     /// mass of a full cell, and what is over-dense has more than `1 / inv_threshold` of its density at rest.
     pub(super) fn gather(&mut self, others: &[Self], most: i32, inv_threshold: f32) -> Tally {
         let before = &self.before;
-        let chunks = self.cells.par_chunks_mut(CHUNK).zip(self.masks.par_chunks_mut(CHUNK / ROW)).enumerate();
+        let chunks = self.each.par_chunks_mut(CHUNK).zip(self.masks.par_chunks_mut(CHUNK / ROW)).enumerate();
         let tally = |(n, (cells, masks)): (usize, (&mut [Cell], &mut [u64]))| {
             let mut out = Tally::default();
             let rows = masks.iter_mut().zip(cells.as_chunks_mut::<ROW>().0);
             for (row, (mask, cells)) in (n * CHUNK / ROW..).zip(rows) {
                 for other in others {
                     for x in bits(other.masks[row]) {
-                        cells[x].plus(Held::of(*mask, x), &other.cells[row * ROW + x]);
+                        cells[x].plus(Held::of(*mask, x), &other.each[row * ROW + x]);
                     }
                     *mask |= other.masks[row];
                 }
@@ -215,6 +215,38 @@ mod tests {
     fn bits_are_found_from_the_lowest_on() {
         assert_eq!(bits(0).count(), 0);
         assert_eq!(bits(1 | 1 << 5 | 1 << 63).collect::<Vec<_>>(), [0, 5, 63]);
+    }
+
+    #[test]
+    fn parts_of_a_grid_add_up_and_forget_what_they_held() {
+        let at = |n: usize| (3 * n * ROW + 5) * ROW + 7;
+        let mut parts = [Cells::new(), Cells::new(), Cells::new()];
+        // Which part puts how much into which cell, time after time: cells that go from part to part, that parts share, that
+        // stay, and that nothing is put into any more.
+        let times: [&[(usize, usize, f32)]; 3] = [
+            &[(0, 1, 3.0), (1, 2, 5.0), (2, 2, 7.0), (0, 3, 11.0), (1, 4, 13.0)],
+            &[(2, 1, 17.0), (0, 2, 19.0), (0, 3, 23.0), (0, 3, 29.0)],
+            &[(1, 1, 31.0), (2, 4, 37.0), (0, 4, 41.0)],
+        ];
+        for puts in times {
+            parts.iter_mut().for_each(Cells::begin);
+            for &(part, cell, mass) in puts {
+                let held = parts[part].mark(at(cell));
+                let numbers: [f32; NUMBERS] = std::array::from_fn(|n| if n == 0 { 1.0 } else { n as f32 });
+                // SAFETY: small numbers.
+                unsafe { parts[part].each[at(cell)].add(held[0], mass, &numbers) };
+            }
+            let (all, others) = parts.split_first_mut().expect("three");
+            all.each.iter_mut().for_each(|cell| cell.set_inv_rest(0.1));
+            let tally = all.gather(others, i32::MAX, 1.0);
+            let sum = |cell: usize| puts.iter().filter(|put| put.1 == cell).map(|put| put.2).sum::<f32>();
+            for cell in 0..6 {
+                let (found, mass) = (&all.each[at(cell)], sum(cell));
+                assert_eq!((found.mass(), found.0[9]), (mass as i32, 9 * mass as i32), "cell {cell}");
+                assert_eq!(found.excess(), greater(0.0, mass * 0.1 - 1.0), "cell {cell}");
+            }
+            assert_eq!(tally.fullness, puts.iter().map(|put| put.2 as i64).sum::<i64>());
+        }
     }
 
     #[test]

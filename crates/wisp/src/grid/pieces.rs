@@ -169,7 +169,7 @@ fn add(lattice: &Lattice, source: &Source, block: &Block, cells: &mut Cells) {
                 let held = cells.mark(base);
                 for ((offset, weight), held) in OFFSETS.into_iter().zip(&weights).zip(held) {
                     // SAFETY: numbers, and none larger than the mass but for rounding, the mass of all hair being 2^29.
-                    unsafe { cells.cells[base + offset].add(held, weight[k], &parts[k]) };
+                    unsafe { cells.each[base + offset].add(held, weight[k], &parts[k]) };
                     row_done();
                 }
             }
