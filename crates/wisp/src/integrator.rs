@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 /// How the length of links is kept. Everything else of a substep (forces, shape memory, collisions, friction,
-/// grid, wind) is the same, so that what differs between two runs is the method; what keeps contacts calm in the clean-up pass belongs
-/// to [`Integrator::Direct`].
+/// grid, wind) is the same, so that what differs between two runs is the method; what keeps contacts calm in the
+/// clean-up pass belongs to [`Integrator::Direct`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Integrator {

@@ -228,8 +228,8 @@ fn gauges(
             totals.recovered_guides as f64,
             totals.recovered_at.map(|guide| (guide, u32::MAX)),
             || {
-                "The simulation lost guides and put them back to where they were a step before. Raise the substeps, or lower stiffness, wind and \
-                 repulsion; a guide that is lost again and again has points that lie on each other."
+                "The simulation lost guides and put them back to where they were a step before. Raise the substeps, or lower \
+                 stiffness, wind and repulsion; a guide that is lost again and again has points that lie on each other."
                     .to_owned()
             },
         ),

@@ -232,7 +232,7 @@ mod tests {
             parts.iter_mut().for_each(Cells::begin);
             for &(part, cell, mass) in puts {
                 let held = parts[part].mark(at(cell));
-                let numbers: [f32; NUMBERS] = std::array::from_fn(|n| if n == 0 { 1.0 } else { n as f32 });
+                let numbers: [f32; NUMBERS] = std::array::from_fn(|n| n.max(1) as f32);
                 // SAFETY: small numbers.
                 unsafe { parts[part].each[at(cell)].add(held[0], mass, &numbers) };
             }

@@ -4,8 +4,8 @@
 //! the frame carried along the chain by least rotations, it is `b*_i`. Energy `1/2 c |b - b*|^2` and damping
 //! of its change are taken implicitly (backward Euler), which is stable for any stiffness. The matrix is
 //! pentadiagonal and depends on stiffness, hold, link length and time step alone, so it is factorised when one
-//! of these changes and a substep only substitutes: a whole chain responds at once, where local corrections from link to link would
-//! need many rounds and would change their stiffness with the number of substeps.
+//! of these changes and a substep only substitutes: a whole chain responds at once, where local corrections from
+//! link to link would need many rounds and would change their stiffness with the number of substeps.
 //!
 //! The coefficient is `c = h^2 B / l^4` with `B = EI / (rho A)`, the bending stiffness per mass of a fibre
 //! (Euler and Bernoulli's beam).

@@ -2,8 +2,8 @@
 //! measured.
 //!
 //! Every place near the skin or inside is deposited into the cells around it, where it is at the start of the
-//! step and at its end, or at its end alone where that covers the way; a point in a cell without any is further from the skin than hair can touch, all step
-//! long.
+//! step and at its end, or at its end alone where that covers the way; a point in a cell without any is further
+//! from the skin than hair can touch, all step long.
 
 use glam::{IVec3, UVec3, Vec3};
 use lovelock_groom::simd::whole_part;

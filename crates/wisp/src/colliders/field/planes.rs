@@ -4,9 +4,9 @@
 //! A step asks for the skin in every substep and in every round of a push-out. The way back to rest is
 //! measured where a point wants to be in the first substep, for all points of a block together
 //! ([`MovingField::foresee`]), and anew wherever it has left the place by [`NEAR`], or by half its distance
-//! from contact where that is more and the skin is the head's alone; in between the skin is its tangent plane, which moves with the drift. On which side of a
-//! fold of the skin a point is, is asked once a step. A plane is off by `NEAR^2 / 2 R` at most over a surface
-//! of radius `R`: 0.01 mm over the skull, 0.1 mm at the rim of an ear.
+//! from contact where that is more and the skin is the head's alone; in between the skin is its tangent plane,
+//! which moves with the drift. On which side of a fold of the skin a point is, is asked once a step. A plane is off
+//! by `NEAR^2 / 2 R` at most over a surface of radius `R`: 0.01 mm over the skull, 0.1 mm at the rim of an ear.
 
 use glam::Vec3;
 
