@@ -3,8 +3,8 @@
 use glam::Vec3;
 use lovelock_studio::groom::Scalp;
 
-/// By how much nearer the side of the head that is seen counts than the far one, metres.
-const SEEN: f32 = 0.02;
+/// What faces the camera, or away from it by no more than this sine, is on the side that is seen.
+const OUTLINE: f32 = 0.35;
 
 /// A place of the head's surface, or over it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,10 +15,33 @@ pub(super) struct OnHead {
     pub(super) normal: Vec3,
 }
 
-/// Where a ray meets the surface that lies `height` metres over the head, nearest to `near`; none where it passes by. All in head
-/// space, `along` a unit vector.
-pub(super) fn under(scalp: &Scalp, height: f32, eye: Vec3, along: Vec3, near: Vec3) -> Option<OnHead> {
-    let mut best: Option<(f32, OnHead)> = None;
+/// Which side of the head, as the camera sees it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Side {
+    /// Before the camera.
+    Seen,
+    /// Behind the head.
+    Far,
+}
+
+impl Side {
+    /// Of a place with that outward normal, which is looked at along `along`; both unit vectors of one space. On the outline of the
+    /// head it is the side that is seen.
+    pub(super) fn of(normal: Vec3, along: Vec3) -> Self {
+        if normal.dot(along) > OUTLINE { Self::Far } else { Self::Seen }
+    }
+}
+
+/// Where a ray from `eye` along the unit vector `along` meets the surface that lies `height` metres over the head; none where it
+/// passes by. Of the places on that side of the head it is the one nearest to `near`, and of all where that side has none. All in
+/// head space, metres.
+pub(super) fn under(
+    scalp: &Scalp,
+    height: f32,
+    (eye, along): (Vec3, Vec3),
+    (near, side): (Vec3, Side),
+) -> Option<OnHead> {
+    let mut best: Option<((bool, f32), OnHead)> = None;
     for &triangle in &scalp.triangles {
         let corner = |i: usize| {
             let v = triangle[i] as usize;
@@ -28,9 +51,9 @@ pub(super) fn under(scalp: &Scalp, height: f32, eye: Vec3, along: Vec3, near: Ve
         let Some([u, v, t]) = meets([a.0, b.0, c.0], eye, along) else { continue };
         let place = eye + along * t;
         let normal = (a.1 * (1.0 - u - v) + b.1 * u + c.1 * v).normalize_or(Vec3::Y);
-        let far_side = if normal.dot(along) > 0.0 { SEEN } else { 0.0 };
-        let cost = place.distance(near) + far_side;
-        if cost.is_finite() && best.is_none_or(|(least, _)| cost < least) {
+        let faces = if normal.dot(along) > 0.0 { Side::Far } else { Side::Seen };
+        let cost = (faces != side, place.distance(near));
+        if cost.1.is_finite() && best.is_none_or(|(least, _)| cost < least) {
             best = Some((cost, OnHead { place, normal }));
         }
     }
@@ -67,28 +90,54 @@ mod tests {
     use super::*;
     use lovelock_studio::groom::PlainHead;
 
+    fn middle_of(scalp: &Scalp) -> Vec3 {
+        let low = scalp.positions.iter().copied().reduce(Vec3::min).expect("a head");
+        low.midpoint(scalp.positions.iter().copied().reduce(Vec3::max).expect("a head"))
+    }
+
     #[test]
-    fn a_ray_meets_the_head_where_the_tie_is_and_not_behind_it() {
+    fn a_ray_meets_the_head_on_the_side_that_is_asked_for() {
         let scalp = PlainHead.scalp(32);
-        let middle = 0.5
-            * scalp
-                .positions
-                .iter()
-                .fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |[low, high], p| [low.min(*p), high.max(*p)])
-                .into_iter()
-                .sum::<Vec3>();
+        let middle = middle_of(&scalp);
         let eye = middle - Vec3::Z * 2.0;
-        for (near, back) in [(middle - Vec3::Z * 0.1, true), (middle + Vec3::Z * 0.1, false)] {
-            for height in [0.0, 0.012] {
-                let at = under(&scalp, height, eye, Vec3::Z, near).expect("it meets the head");
-                assert_eq!(at.place.z < middle.z, back, "{at:?}");
-                assert!(at.normal.z.abs() > 0.9 && (at.normal.z < 0.0) == back, "{at:?}");
-                assert!((at.place - middle).truncate().length() < 1e-4, "{at:?} is on the ray");
-                let (_, over) = nearest(&scalp, at.place).expect("a head");
-                assert!((over - height).abs() < 2e-3, "{over} over the head, not {height}");
+        // Whichever side is nearer: beside the outline it is often the other one.
+        for near in [middle - Vec3::Z * 0.1, middle, middle + Vec3::Z * 0.1] {
+            for (side, back) in [(Side::Seen, true), (Side::Far, false)] {
+                for height in [0.0, 0.012] {
+                    let at = under(&scalp, height, (eye, Vec3::Z), (near, side)).expect("it meets the head");
+                    assert_eq!(at.place.z < middle.z, back, "{at:?}");
+                    assert!(at.normal.z.abs() > 0.9 && (at.normal.z < 0.0) == back, "{at:?}");
+                    assert!((at.place - middle).truncate().length() < 1e-4, "{at:?} is on the ray");
+                    let (_, over) = nearest(&scalp, at.place).expect("a head");
+                    assert!((over - height).abs() < 2e-3, "{over} over the head, not {height}");
+                }
             }
         }
-        assert_eq!(under(&scalp, 0.0, eye, Vec3::Y, middle), None, "it passes by");
+        let by = under(&scalp, 0.0, (eye, Vec3::Y), (middle, Side::Seen));
+        assert_eq!(by, None, "it passes by");
         assert_eq!(nearest(&Scalp::default(), middle), None);
+    }
+
+    #[test]
+    fn a_side_that_is_not_there_is_the_other_one() {
+        let mut scalp = PlainHead.scalp(32);
+        let middle = middle_of(&scalp);
+        let Scalp { positions, triangles, .. } = &mut scalp;
+        triangles.retain(|t| t.iter().all(|v| positions[*v as usize].z > middle.z));
+        let at = under(&scalp, 0.0, (middle - Vec3::Z * 2.0, Vec3::Z), (middle, Side::Seen));
+        assert!(at.is_some_and(|at| at.place.z > middle.z), "{at:?}");
+    }
+
+    #[test]
+    fn the_outline_belongs_to_the_side_that_is_seen() {
+        for (normal, side) in [
+            (Vec3::NEG_Z, Side::Seen),
+            (Vec3::X, Side::Seen),
+            (Vec3::new(0.9, 0.0, 0.3), Side::Seen),
+            (Vec3::new(0.3, 0.0, 0.9), Side::Far),
+            (Vec3::Z, Side::Far),
+        ] {
+            assert_eq!(Side::of(normal.normalize_or_zero(), Vec3::Z), side, "{normal}");
+        }
     }
 }

@@ -4,7 +4,8 @@ use egui::{CursorIcon, Id, Pos2, Shape, Stroke, Ui};
 use glam::{Affine3A, Vec3};
 use lovelock_studio::groom::{HairTie, Scalp, TieReach};
 
-use super::{View, handle, head};
+use super::head::{self, OnHead, Side};
+use super::{View, handle};
 use crate::window::{aim, theme};
 
 /// Length of the arrow that shows where hair leaves a tie, metres.
@@ -16,13 +17,13 @@ const OFF_THE_HEAD: f32 = 0.05;
 #[derive(Clone, Copy)]
 struct Grabbed {
     axis: Vec3,
-    /// The head's normal at the tie, and how far over the head the tie is; none where it is in the air.
-    over_head: Option<(Vec3, f32)>,
+    /// The head's normal at the tie, how far over the head the tie is, and on which side; none where it is in the air.
+    over_head: Option<(Vec3, f32, Side)>,
 }
 
-/// Paints the ties and lets the chosen one be dragged, and others be chosen. A tie on the head goes over it, as `scalp` is, and
-/// turns as it goes; another one moves in the plane that faces the camera. Returns whether the pointer is at a handle, and not at
-/// the picture.
+/// Paints the ties and lets the chosen one be dragged, and others be chosen. A tie on the head goes over it, as `scalp` is, on the
+/// side where it was taken hold of, and turns as it goes; another one moves in the plane that faces the camera. Returns whether the
+/// pointer is at a handle, and not at the picture.
 pub(crate) fn edit(
     ui: &Ui,
     view: View,
@@ -58,8 +59,11 @@ pub(crate) fn edit(
             *selected = i;
         }
         if ring_handle.drag_started() {
+            let along = (centre - view.eye).normalize_or(Vec3::NEG_Z);
+            let along = world_from_head.inverse().transform_vector3(along);
             let over_head = head::nearest(scalp, tie.at).filter(|(_, height)| *height < OFF_THE_HEAD);
-            let over_head = over_head.map(|(on_head, height)| (on_head.normal, height.max(0.0)));
+            let over_head = over_head
+                .map(|(OnHead { normal, .. }, height)| (normal, height.max(0.0), Side::of(normal, along)));
             ui.data_mut(|data| data.insert_temp(id, Grabbed { axis: tie.axis, over_head }));
         }
         if let Some(pointer) = ring_handle.interact_pointer_pos().filter(|_| ring_handle.dragged()) {
@@ -99,13 +103,12 @@ fn drag(
         head_from_world.transform_point3(view.at_depth_of(pointer, world_from_head.transform_point3(tie.at)));
     let (mut to, mut axis) = (in_air, None);
     let grabbed: Option<Grabbed> = ui.data(|data| data.get_temp(id));
-    if let Some(Grabbed { axis: before, over_head: Some((from, height)) }) = grabbed {
+    if let Some(Grabbed { axis: before, over_head: Some((from, height, side)) }) = grabbed {
         let eye = head_from_world.transform_point3(view.eye);
         let along = head_from_world.transform_vector3(view.ray(pointer)).normalize_or(Vec3::NEG_Z);
         // Beside the head it goes on in the plane that faces the camera.
-        let beside =
-            || head::nearest(scalp, in_air).map(|(on_head, _)| head::OnHead { place: in_air, ..on_head });
-        if let Some(on_head) = head::under(scalp, height, eye, along, tie.at).or_else(beside) {
+        let beside = || head::nearest(scalp, in_air).map(|(on_head, _)| OnHead { place: in_air, ..on_head });
+        if let Some(on_head) = head::under(scalp, height, (eye, along), (tie.at, side)).or_else(beside) {
             (to, axis) = (on_head.place, Some(aim::moved(before, from, on_head.normal)));
         }
     }
