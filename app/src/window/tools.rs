@@ -33,7 +33,10 @@ impl Window {
         let ties = &mut project.hair.ties;
         if self.ties_shown && !held {
             let snapshot = &painted.snapshot;
-            let head = (&snapshot.guides.world_from_head, &snapshot.scene.style.scalp);
+            let head = overlay::head::Head {
+                world_from_head: &snapshot.guides.world_from_head,
+                scalp: &snapshot.scene.style.scalp,
+            };
             overlay::ties::edit(ui, view, head, ties, &mut self.selected_tie);
         }
         !(held && response.dragged_by(PointerButton::Primary))

@@ -1,10 +1,10 @@
 //! What hair collides with, as wires over the picture.
 
-use egui::{Align2, Color32, CursorIcon, FontId, Pos2, Response, Shape, Stroke, Ui};
+use egui::{Align2, Color32, FontId, Pos2, Shape, Stroke, Ui};
 use glam::Vec3;
 use lovelock_studio::motion::{ColliderEdit, ColliderShape, PlacedCollider};
 
-use super::{View, handle};
+use super::{View, dot, dragged_to, handle};
 use crate::window::theme;
 
 /// How near to a wire a click chooses its shape, points.
@@ -119,17 +119,16 @@ impl Chosen {
     fn rim(&self, view: View) -> Option<(Vec3, f32)> {
         let middle = self.middle();
         let at = view.to_screen(middle)?;
-        let right = view.at_depth_of(at + egui::vec2(10.0, 0.0), middle) - middle;
+        let right = view.right_of(at, middle)?;
         let (along, radius): (Vec3, f32) = match self.placed.shape {
             ColliderShape::Capsule { a, b, radius_a, radius_b } => {
                 // Beside the capsule, and not at its end.
                 let aside = (b - a).cross(middle - view.eye);
                 let aside = if aside.dot(right) < 0.0 { -aside } else { aside };
-                let aside = aside.try_normalize().or_else(|| right.try_normalize())?;
+                let aside = aside.normalize_or(right);
                 (aside, 0.5 * (radius_a + radius_b))
             }
             ColliderShape::Ellipsoid { from_unit } => {
-                let right = right.try_normalize()?;
                 (right, 1.0 / from_unit.matrix3.inverse().mul_vec3(right).length())
             }
         };
@@ -163,24 +162,8 @@ pub(crate) fn edit(ui: &Ui, view: View, chosen: &mut Chosen) {
         chosen.edit = chosen.edit.clamped();
     }
     painter.line_segment([at, rim], Stroke::new(1.0, theme::ACCENT.gamma_multiply(0.6)));
-    for (handle, at, words) in
-        [(size, rim, "Drag to make the shape larger or smaller."), (place, at, "Drag to move the shape.")]
-    {
-        let over = handle.hovered() || handle.dragged();
-        painter.circle_filled(at, if over { 8.0 } else { 6.5 }, theme::PAGE.gamma_multiply(0.7));
-        painter.circle_filled(at, if over { 6.0 } else { 4.5 }, theme::ACCENT);
-        handle.on_hover_cursor(CursorIcon::Grab).on_hover_text(words);
-    }
-}
-
-/// Where a handle that is at `at` is dragged to: it keeps to the place of it that was taken hold of.
-fn dragged_to(ui: &Ui, handle: &Response, at: Pos2) -> Option<Pos2> {
-    if handle.drag_started() {
-        let pressed = ui.input(|input| input.pointer.press_origin())?;
-        ui.data_mut(|data| data.insert_temp(handle.id, pressed - at));
-    }
-    let hold: egui::Vec2 = ui.data(|data| data.get_temp(handle.id)).unwrap_or_default();
-    handle.interact_pointer_pos().filter(|_| handle.dragged()).map(|pointer| pointer - hold)
+    dot(&painter, size, rim, "Drag to make the shape larger or smaller.");
+    dot(&painter, place, at, "Drag to move the shape.");
 }
 
 pub(crate) fn distance_to_segment(p: Pos2, a: Pos2, b: Pos2) -> f32 {

@@ -1,23 +1,91 @@
-//! The head under the pointer: where a tie is dragged along.
+//! The head under the pointer: what is dragged over it.
 
-use glam::Vec3;
+use egui::Pos2;
+use glam::{Affine3A, Vec3};
 use lovelock_studio::groom::Scalp;
+
+use super::View;
+
+/// What is farther from the head than this is dragged through the air, metres.
+const OFF_THE_HEAD: f32 = 0.05;
 
 /// What faces the camera, or away from it by no more than this sine, is on the side that is seen.
 const OUTLINE: f32 = 0.35;
 
+/// The head of a picture.
+#[derive(Clone, Copy)]
+pub(crate) struct Head<'a> {
+    pub(crate) world_from_head: &'a Affine3A,
+    pub(crate) scalp: &'a Scalp,
+}
+
+impl Head<'_> {
+    /// Where a place of head space is in the world.
+    pub(super) fn world(self, place: Vec3) -> Vec3 {
+        self.world_from_head.transform_point3(place)
+    }
+
+    /// Where the camera is and the unit vector along which it sees a place of the screen, head space.
+    fn ray(self, view: View, at: Pos2) -> (Vec3, Vec3) {
+        let head_from_world = self.world_from_head.inverse();
+        let along = head_from_world.transform_vector3(view.ray(at)).normalize_or(Vec3::NEG_Z);
+        (head_from_world.transform_point3(view.eye), along)
+    }
+}
+
+/// How a place was taken hold of.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Hold {
+    /// The head's normal there, how far over the head the place was, and on which side; none where it was in the air.
+    over_head: Option<(Vec3, f32, Side)>,
+}
+
+impl Hold {
+    /// Of a place of head space.
+    pub(super) fn new(view: View, head: Head<'_>, place: Vec3) -> Self {
+        let head_from_world = head.world_from_head.inverse();
+        let along =
+            head_from_world.transform_vector3((head.world(place) - view.eye).normalize_or(Vec3::NEG_Z));
+        let over_head = nearest(head.scalp, place).filter(|(_, height)| *height < OFF_THE_HEAD);
+        Self {
+            over_head: over_head
+                .map(|(OnHead { normal, .. }, height)| (normal, height.max(0.0), Side::of(normal, along))),
+        }
+    }
+
+    /// Where what is at `place` goes as the pointer drags it: over the head, as far over it and on the side where it was taken hold
+    /// of; beside the head and in the air in the plane that faces the camera. With it the head's normals where it was taken hold of
+    /// and where it goes. All in head space.
+    pub(super) fn drag(
+        self,
+        view: View,
+        head: Head<'_>,
+        (place, pointer): (Vec3, Pos2),
+    ) -> Option<(Vec3, Option<[Vec3; 2]>)> {
+        let in_air = view.at_depth_of(pointer, head.world(place));
+        let in_air = head.world_from_head.inverse().transform_point3(in_air);
+        let on_head = self.over_head.and_then(|(from, height, side)| {
+            let beside = || nearest(head.scalp, in_air).map(|(at, _)| OnHead { place: in_air, ..at });
+            let to = under(head.scalp, height, head.ray(view, pointer), (place, side)).or_else(beside)?;
+            Some((to.place, Some([from, to.normal])))
+        });
+        let (to, normals) = on_head.unwrap_or((in_air, None));
+        to.is_finite().then(|| (to.clamp(Vec3::splat(-0.6), Vec3::splat(0.6)), normals))
+    }
+}
+
 /// A place of the head's surface, or over it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct OnHead {
+struct OnHead {
     /// Where it is, head space, metres.
-    pub(super) place: Vec3,
+    place: Vec3,
     /// The outward unit normal there.
-    pub(super) normal: Vec3,
+    normal: Vec3,
 }
 
 /// Which side of the head, as the camera sees it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Side {
+enum Side {
     /// Before the camera.
     Seen,
     /// Behind the head.
@@ -27,7 +95,7 @@ pub(super) enum Side {
 impl Side {
     /// Of a place with that outward normal, which is looked at along `along`; both unit vectors of one space. On the outline of the
     /// head it is the side that is seen.
-    pub(super) fn of(normal: Vec3, along: Vec3) -> Self {
+    fn of(normal: Vec3, along: Vec3) -> Self {
         if normal.dot(along) > OUTLINE { Self::Far } else { Self::Seen }
     }
 }
@@ -35,7 +103,7 @@ impl Side {
 /// Where a ray from `eye` along the unit vector `along` meets the surface that lies `height` metres over the head; none where it
 /// passes by. Of the places on that side of the head it is the one nearest to `near`, and of all where that side has none. All in
 /// head space, metres.
-pub(super) fn under(
+fn under(
     scalp: &Scalp,
     height: f32,
     (eye, along): (Vec3, Vec3),
@@ -61,7 +129,7 @@ pub(super) fn under(
 }
 
 /// The vertex nearest to a place, and how far over the head the place is there, metres; none where there is no head.
-pub(super) fn nearest(scalp: &Scalp, place: Vec3) -> Option<(OnHead, f32)> {
+fn nearest(scalp: &Scalp, place: Vec3) -> Option<(OnHead, f32)> {
     let vertices = scalp.positions.iter().zip(&scalp.normals);
     let (p, n) = vertices
         .filter(|(p, n)| p.is_finite() && n.is_finite())

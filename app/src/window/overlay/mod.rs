@@ -1,14 +1,16 @@
 //! What is painted over the picture, where the picture shows it: the same instant and the same camera.
 
 pub(crate) mod colliders;
-mod head;
+pub(crate) mod head;
 pub(crate) mod mark;
 pub(crate) mod scissors;
 pub(crate) mod ties;
 
-use egui::{Id, Pos2, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo, pos2};
+use egui::{CursorIcon, Id, Painter, Pos2, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo, pos2};
 use glam::{Mat4, Vec3};
 use lovelock_studio::Painted;
+
+use super::theme;
 
 /// The picture on the screen and the camera that it was taken with.
 #[derive(Clone, Copy, Debug)]
@@ -26,6 +28,24 @@ fn handle(ui: &Ui, at: Pos2, id: Id, name: &str) -> Response {
     let handle = ui.interact(Rect::from_center_size(at, Vec2::splat(22.0)), id, Sense::click_and_drag());
     handle.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
     handle
+}
+
+/// Where a handle that is at `at` is dragged to: it keeps to the place of it that was taken hold of.
+fn dragged_to(ui: &Ui, handle: &Response, at: Pos2) -> Option<Pos2> {
+    if handle.drag_started() {
+        let pressed = ui.input(|input| input.pointer.press_origin())?;
+        ui.data_mut(|data| data.insert_temp(handle.id, pressed - at));
+    }
+    let hold: egui::Vec2 = ui.data(|data| data.get_temp(handle.id)).unwrap_or_default();
+    handle.interact_pointer_pos().filter(|_| handle.dragged()).map(|pointer| pointer - hold)
+}
+
+/// Paints a handle as a dot that swells under the pointer, and says what dragging it does.
+fn dot(painter: &Painter, handle: Response, at: Pos2, words: &str) {
+    let over = handle.hovered() || handle.dragged();
+    painter.circle_filled(at, if over { 8.0 } else { 6.5 }, theme::PAGE.gamma_multiply(0.7));
+    painter.circle_filled(at, if over { 6.0 } else { 4.5 }, theme::ACCENT);
+    handle.on_hover_cursor(CursorIcon::Grab).on_hover_text(words);
 }
 
 impl View {
@@ -62,6 +82,12 @@ impl View {
         let clip = glam::Vec4::new(2.0 * share.x - 1.0, 1.0 - 2.0 * share.y, 0.5, 1.0);
         let world = self.world_from_clip * clip;
         (world.truncate() / world.w - self.eye).normalize_or(Vec3::NEG_Z)
+    }
+
+    /// The unit vector that points to the right on the screen at a place of the world that is seen `at` there; none where that can not
+    /// be told.
+    fn right_of(self, at: Pos2, place: Vec3) -> Option<Vec3> {
+        (self.at_depth_of(at + Vec2::new(10.0, 0.0), place) - place).try_normalize()
     }
 
     /// The place under a point of the screen that is as far from the camera as `depth_of`.

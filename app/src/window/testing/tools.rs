@@ -5,7 +5,8 @@ use std::cell::Cell;
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, Pos2};
 use egui_kittest::Harness;
-use lovelock_studio::groom::{HairTie, TieKind};
+use egui_kittest::kittest::Queryable;
+use lovelock_studio::groom::{HairTie, TieKind, TieReach};
 
 use super::whole::{CTRL, go, key, of, press_button, project, wait, window};
 use super::{Shown, click_at, control, press};
@@ -206,6 +207,45 @@ fn a_tie_that_is_dragged_over_the_head_turns_with_it_and_its_arrow_aims_it() {
     key(&mut harness, CTRL, Key::Z);
     key(&mut harness, CTRL, Key::Z);
     assert_eq!(project(&harness).hair.ties[0], back);
+}
+
+#[test]
+fn a_patch_is_sized_and_moved_over_the_head_in_the_picture() {
+    let Some(mut harness) = seen_from_the_left() else { return };
+    unfold(&mut harness, "Ties and scissors");
+    into_view(&mut harness, Role::Button, "+ Ponytail");
+    press_button(&mut harness, "+ Ponytail");
+    let mut parted = (*project(&harness)).clone();
+    let tie = &mut parted.hair.ties[0];
+    (tie.reach, tie.sphere_radius) = (TieReach::InSphere, 0.06);
+    let ring = tie.at;
+    let edit = |harness: &mut Harness<'_, Shown<Option<Window>>>, to| {
+        harness.state_mut().state.as_mut().expect("a window").history.edit("tie", None, to);
+        go(harness);
+    };
+    edit(&mut harness, parted.clone());
+    let place = |harness: &Harness<'_, Shown<Option<Window>>>, name: &str| {
+        control(harness, Role::Button, name).rect().center()
+    };
+    let (middle, rim) = ("Patch in the picture", "Radius of the patch in the picture");
+    assert!(harness.query_by_role_and_label(Role::Button, middle).is_none(), "it goes with its ring");
+    let (at, rim_at) = (place(&harness, "Tie 1 in the picture"), place(&harness, rim));
+    drag_over(&mut harness, rim_at, at + 1.5 * (rim_at - at));
+    let sized = project(&harness).hair.ties[0];
+    assert!((sized.sphere_radius - 0.09).abs() < 0.006 && sized.at == ring, "{sized:?}");
+    // With a place of its own it goes over the side of the head that is seen, and the ring stays.
+    parted.hair.ties[0].sphere_at_ring = false;
+    parted.hair.ties[0].sphere_centre = glam::Vec3::new(0.0, 0.2, 0.0);
+    edit(&mut harness, parted);
+    let painted = of(&harness).session.painted.clone().expect("a picture");
+    let side = painted.snapshot.guides.world_from_head.transform_point3(glam::Vec3::new(0.0, 0.12, 0.0));
+    let to = view(&harness).to_screen(side).expect("in the picture");
+    let (from, steps) = (place(&harness, middle), of(&harness).history.undo_len());
+    drag_over(&mut harness, from, to);
+    let moved = project(&harness).hair.ties[0];
+    assert!(moved.sphere_centre.x > 0.05 && moved.sphere_centre.y < 0.16, "{}", moved.sphere_centre);
+    assert!(moved.at == ring && moved.sphere_radius == 0.06, "{moved:?}");
+    assert_eq!(of(&harness).history.undo_len(), steps + 1, "one drag is one step");
 }
 
 #[test]
