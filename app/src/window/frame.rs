@@ -9,6 +9,8 @@ use super::{Window, camera_control, copy, keys, notices, panels, theme, timeline
 
 /// Hair that settles sooner is not worth a word.
 const SHOW_SETTLING_SECS: f64 = 0.15;
+/// Nor is a load that is done sooner: hair that grows as a slider is dragged.
+const SHOW_LOADING_SECS: f64 = 0.3;
 
 impl Window {
     /// One pass.
@@ -218,7 +220,12 @@ impl Window {
                 }
                 row += 1;
             }
-            if let Some(progress) = self.session.worker().load_progress() {
+            let loading = self.session.worker().load_progress();
+            if let Some(left) = loading.as_ref().map(|loading| SHOW_LOADING_SECS - loading.taken_secs)
+                && left > 0.0
+            {
+                ui.request_repaint_after(std::time::Duration::from_secs_f64(left));
+            } else if let Some(progress) = loading {
                 let tip = "Stops loading; the scene stays as it was.";
                 if over_picture(ui, rect, row, progress.fraction, &progress.what, tip) {
                     self.session.worker().cancel_load();

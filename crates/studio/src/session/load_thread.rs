@@ -7,7 +7,7 @@ use std::thread::JoinHandle;
 
 use super::worker::Outbox;
 use super::{Event, LoadControl, Scene, SceneLoader};
-use crate::{Access, Place, Problem, Project, StudioError, TakePlayer};
+use crate::{Access, Place, Problem, Project, Stopwatch, StudioError, TakePlayer};
 
 /// What a load has made.
 pub(super) enum Loaded {
@@ -33,12 +33,18 @@ pub struct LoadProgress {
     pub what: String,
     /// The fraction that is done, 0 to 1.
     pub fraction: f32,
+    /// Since when it has been loading, seconds.
+    pub taken_secs: f64,
 }
 
-/// What the thread is to do next: the latest request wins.
+/// What is being done, the fraction that is done, and since when.
+type Progress = Mutex<Option<(String, f32, Stopwatch)>>;
+
+/// What the thread does, and what it is to do next: the latest request wins.
 #[derive(Debug, Default)]
 struct Desk {
     request: Option<(Arc<Project>, Access)>,
+    begun: Option<Arc<Project>>,
     stop: bool,
 }
 
@@ -47,7 +53,7 @@ struct Desk {
 pub(super) struct LoadThread {
     desk: Arc<(Mutex<Desk>, Condvar)>,
     cancelled: Arc<AtomicBool>,
-    progress: Arc<Mutex<Option<LoadProgress>>>,
+    progress: Arc<Progress>,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -55,7 +61,7 @@ pub(super) struct LoadThread {
 struct Inside {
     desk: Arc<(Mutex<Desk>, Condvar)>,
     cancelled: Arc<AtomicBool>,
-    progress: Arc<Mutex<Option<LoadProgress>>>,
+    progress: Arc<Progress>,
     outbox: Outbox,
 }
 
@@ -81,12 +87,15 @@ impl LoadThread {
         Ok(Self { desk, cancelled, progress, thread: Some(thread) })
     }
 
-    /// Asks for the scene of a project. A request that has not begun is replaced, one that has is given up.
+    /// Asks for the scene of a project. A request that has not begun is replaced. One that has is given up where it reads other
+    /// files; otherwise it is seen on the way to this one, since a slider that is dragged asks at every frame.
     pub(super) fn request(&self, project: Arc<Project>, access: Access) {
         let (desk, changed) = &*self.desk;
         let mut desk = desk.lock().unwrap_or_else(PoisonError::into_inner);
+        if desk.begun.as_ref().is_some_and(|begun| !same_files(begun, &project)) {
+            self.cancelled.store(true, Ordering::Relaxed);
+        }
         desk.request = Some((project, access));
-        self.cancelled.store(true, Ordering::Relaxed);
         changed.notify_one();
     }
 
@@ -100,8 +109,18 @@ impl LoadThread {
 
     /// How far the load is; none where nothing is loaded.
     pub(super) fn progress(&self) -> Option<LoadProgress> {
-        self.progress.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        let progress = self.progress.lock().unwrap_or_else(PoisonError::into_inner);
+        let (what, fraction, since) = progress.as_ref()?;
+        Some(LoadProgress { what: what.clone(), fraction: *fraction, taken_secs: since.secs() })
     }
+}
+
+/// Whether both projects show what the same files hold.
+fn same_files(a: &Project, b: &Project) -> bool {
+    let hair = |p: &Project| (p.hair.source, p.hair.file.clone());
+    let body = |p: &Project| (p.body.source, p.body.file.clone());
+    let motion = |p: &Project| (p.motion.source, p.motion.file.clone());
+    a.take.file == b.take.file && hair(a) == hair(b) && body(a) == body(b) && motion(a) == motion(b)
 }
 
 impl Drop for LoadThread {
@@ -121,6 +140,7 @@ impl Inside {
         let mut loader = SceneLoader::new();
         while let Some((project, access)) = self.next() {
             let loaded = catch_unwind(AssertUnwindSafe(|| self.load(&mut loader, &project, &access)));
+            self.desk.0.lock().unwrap_or_else(PoisonError::into_inner).begun = None;
             self.show(None);
             match loaded {
                 Ok(Ok((loaded, problems))) => {
@@ -129,7 +149,7 @@ impl Inside {
                     self.outbox.send(Event::Loaded { scene, problems });
                 }
                 Ok(Err(StudioError::Cancelled)) => {
-                    // Given up for a later one: a slider that is dragged asks at every frame.
+                    // Given up for a later one.
                     let replaced =
                         self.desk.0.lock().unwrap_or_else(PoisonError::into_inner).request.is_some();
                     if !replaced {
@@ -157,6 +177,7 @@ impl Inside {
             if let Some(request) = desk.request.take() {
                 // Under the lock: a cancel after this is meant for this request.
                 self.cancelled.store(false, Ordering::Relaxed);
+                desk.begun = Some(Arc::clone(&request.0));
                 return Some(request);
             }
             desk = changed.wait(desk).unwrap_or_else(PoisonError::into_inner);
@@ -169,8 +190,8 @@ impl Inside {
         project: &Arc<Project>,
         access: &Access,
     ) -> Result<(Loaded, Vec<Problem>), StudioError> {
-        let mut progress =
-            |what: &str, fraction: f32| self.show(Some(LoadProgress { what: what.to_owned(), fraction }));
+        let since = Stopwatch::start();
+        let mut progress = |what: &str, fraction: f32| self.show(Some((what.to_owned(), fraction, since)));
         let mut untaken = None;
         if let Some(file) = &project.take.file {
             progress("opening the take", 0.0);
@@ -193,8 +214,37 @@ impl Inside {
         Ok((Loaded::Scene(scene, Arc::clone(project)), problems))
     }
 
-    fn show(&self, progress: Option<LoadProgress>) {
+    fn show(&self, progress: Option<(String, f32, Stopwatch)>) {
         *self.progress.lock().unwrap_or_else(PoisonError::into_inner) = progress;
         self.outbox.wake();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{FileRef, HairSource};
+
+    #[test]
+    fn what_reads_other_files_is_given_up_and_what_only_changes_is_not() {
+        let project = Project::default();
+        let mut changed = project.clone();
+        changed.hair.groom.length *= 0.5;
+        changed.body.colliders.field.enabled = false;
+        changed.motion.speed = 0.5;
+        assert!(same_files(&project, &changed));
+        let file = Some(FileRef::new("other"));
+        let others: [fn(&mut Project, Option<FileRef>); 5] = [
+            |p, file| p.hair.file = file,
+            |p, file| p.body.file = file,
+            |p, file| p.motion.file = file,
+            |p, file| p.take.file = file,
+            |p, _| p.hair.source = HairSource::File,
+        ];
+        for change in others {
+            let mut other = project.clone();
+            change(&mut other, file.clone());
+            assert!(!same_files(&project, &other));
+        }
     }
 }

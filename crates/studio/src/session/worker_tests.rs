@@ -236,3 +236,21 @@ fn a_load_that_another_one_replaces_is_not_told_as_cancelled() {
     told.extend(std::iter::from_fn(|| worker.poll_event()));
     assert!(told.iter().all(|event| matches!(event, Event::Loaded { .. })), "{told:?}");
 }
+
+#[test]
+fn a_slider_that_is_dragged_shows_hair_on_the_way() {
+    // Much dearer to grow than the time between two requests.
+    let mut project = crate::Project::default();
+    let (worker, _) = start(project.clone());
+    wait("the first scene", || worker.poll_event());
+    let mut lengths = Vec::new();
+    wait("hair while it is dragged", || {
+        project.hair.groom.length += 1e-5;
+        worker.set_project(Arc::new(project.clone()), Access::new());
+        if let Some(Event::Loaded { scene, .. }) = worker.poll_event() {
+            lengths.push(scene.style.guides.point(0, 1).distance(scene.style.guides.point(0, 0)));
+        }
+        (lengths.len() == 3).then_some(())
+    });
+    assert!(lengths.is_sorted() && lengths[0] < lengths[2], "each is newer than the one before: {lengths:?}");
+}
