@@ -10,7 +10,7 @@ use super::{Window, camera_control, copy, keys, notices, panels, theme, timeline
 /// Hair that settles sooner is not worth a word.
 const SHOW_SETTLING_SECS: f64 = 0.15;
 /// Nor is a load that is done sooner: hair that grows as a slider is dragged.
-const SHOW_LOADING_SECS: f64 = 0.3;
+const SHOW_LOADING_SECS: f64 = 0.5;
 
 impl Window {
     /// One pass.
