@@ -221,11 +221,13 @@ impl Window {
                 row += 1;
             }
             let loading = self.session.worker().load_progress();
-            if let Some(left) = loading.as_ref().map(|loading| SHOW_LOADING_SECS - loading.taken_secs)
-                && left > 0.0
-            {
+            let left = loading.as_ref().map_or(0.0, |loading| SHOW_LOADING_SECS - loading.taken_secs);
+            // Once it is seen it stays, through the loads that follow.
+            self.session.load_is_seen = loading.is_some() && (self.session.load_is_seen || left <= 0.0);
+            if !self.session.load_is_seen && left > 0.0 {
                 ui.request_repaint_after(std::time::Duration::from_secs_f64(left));
-            } else if let Some(progress) = loading {
+            }
+            if let Some(progress) = loading.filter(|_| self.session.load_is_seen) {
                 let tip = "Stops loading; the scene stays as it was.";
                 if over_picture(ui, rect, row, progress.fraction, &progress.what, tip) {
                     self.session.worker().cancel_load();

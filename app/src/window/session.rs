@@ -40,6 +40,8 @@ pub(crate) struct Session {
     display_hz: f64,
     /// Whether a take plays from its end to its start.
     pub(crate) backwards: bool,
+    /// Whether the progress of a load is on the screen.
+    pub(crate) load_is_seen: bool,
     pub(crate) draw_error: Option<String>,
     /// Sentences about what is done, not told yet.
     pub(crate) done: Vec<String>,
@@ -90,6 +92,7 @@ impl Session {
             rate: 1.0,
             display_hz: 0.0,
             backwards: false,
+            load_is_seen: false,
             draw_error: None,
             done: Vec::new(),
             saved_take: None,

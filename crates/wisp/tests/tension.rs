@@ -15,7 +15,8 @@ const G: f32 = 9.81;
 const LENGTH: f32 = 0.5;
 const APART: f32 = 0.3;
 
-/// A chain of `links` links whose tip a tie holds beside its root, in two straight halves that meet below, off the middle.
+/// A chain of `links` links whose tip a tie holds beside its root, in two straight parts that meet below, off the
+/// middle.
 fn hung(links: usize) -> Arc<Hairstyle> {
     let left = links / 2 - 2;
     let a = LENGTH * left as f32 / links as f32;
@@ -71,8 +72,8 @@ fn a_lock_whose_tip_a_tie_holds_hangs_as_a_catenary() {
     for links in [10, 40] {
         let off = off_the_catenary(&at_rest(links, 0.0));
         println!("{off} m off the catenary with {links} links");
-        // 1.3 and 1.6 mm measured. Factors of lengths serve until a link has turned by a tenth of a radian, which lets a lock lie still
-        // a little beside its curve: made anew in every substep they leave 1.4 and 0.17 mm.
+        // 1.3 and 1.6 mm measured. Factors of lengths serve until a link has turned by a tenth of a radian, which lets a lock lie
+        // still a little beside its curve: made anew in every substep they leave 1.4 and 0.17 mm.
         assert!(off < 2e-3, "{off} m with {links} links");
     }
     // The control: in a head that leans it is another curve.
@@ -81,8 +82,8 @@ fn a_lock_whose_tip_a_tie_holds_hangs_as_a_catenary() {
     assert!(leant > 0.01, "{leant} m");
 }
 
-/// By how much the momentum of a falling chain changes in a substep otherwise than by gravity and along its first link, as a part of
-/// what gravity gives; root of the mean square over a second.
+/// By how much the momentum of a falling chain changes in a substep otherwise than by gravity and along its first link, as a
+/// part of what gravity gives; root of the mean square over a second.
 fn strange_momentum(integrator: Integrator, substeps_per_sec: u32) -> f64 {
     let links = 30;
     let mut simulation = Simulation::new(style(&[straight(Vec3::ZERO, Vec3::X, links, 0.3)]));
@@ -114,7 +115,7 @@ fn the_momentum_of_a_chain_changes_by_gravity_and_the_pull_of_its_first_link_alo
             // Measured: 0.9 and 0.28 %, 2.7 and 0.81 %; a first order would be a quarter.
             Integrator::Direct => assert!(coarse < 0.012 && fine < 0.4 * coarse, "{coarse} {fine}"),
             Integrator::Relaxation => assert!(coarse < 0.035 && fine < 0.4 * coarse, "{coarse} {fine}"),
-            // The control: who follows a leader pulls it back by nothing. 43 and 57 %.
+            // The control: who follows a leader gives it back a part of what moved him, and in velocities alone. 43 and 57 %.
             Integrator::FollowTheLeader => assert!(coarse > 0.3 && fine > 0.3, "{coarse} {fine}"),
         }
     }

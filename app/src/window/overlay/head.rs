@@ -41,21 +41,21 @@ pub(super) struct Hold {
 }
 
 impl Hold {
-    /// Of a place of head space.
-    pub(super) fn new(view: View, head: Head<'_>, place: Vec3) -> Self {
+    /// Of a place of head space. One that is lower than `lowest` over the head comes up to that, metres.
+    pub(super) fn new(view: View, head: Head<'_>, place: Vec3, lowest: f32) -> Self {
         let head_from_world = head.world_from_head.inverse();
         let along =
             head_from_world.transform_vector3((head.world(place) - view.eye).normalize_or(Vec3::NEG_Z));
         let over_head = nearest(head.scalp, place).filter(|(_, height)| *height < OFF_THE_HEAD);
         Self {
             over_head: over_head
-                .map(|(OnHead { normal, .. }, height)| (normal, height.max(0.0), Side::of(normal, along))),
+                .map(|(OnHead { normal, .. }, height)| (normal, height.max(lowest), Side::of(normal, along))),
         }
     }
 
-    /// Where what is at `place` goes as the pointer drags it: over the head, as far over it and on the side where it was taken hold
-    /// of; beside the head and in the air in the plane that faces the camera. With it the head's normals where it was taken hold of
-    /// and where it goes. All in head space.
+    /// Where what is at `place` goes as the pointer drags it: over the head, as far over it as it was and on the side where it was
+    /// taken hold of; beside the head and in the air in the plane that faces the camera. With it the head's normals where it was
+    /// taken hold of and where it goes. All in head space.
     pub(super) fn drag(
         self,
         view: View,
@@ -93,8 +93,8 @@ enum Side {
 }
 
 impl Side {
-    /// Of a place with that outward normal, which is looked at along `along`; both unit vectors of one space. On the outline of the
-    /// head it is the side that is seen.
+    /// Of a place with that outward normal, which is looked at along `along`; both unit vectors of one space. On the outline of
+    /// the head it is the side that is seen.
     fn of(normal: Vec3, along: Vec3) -> Self {
         if normal.dot(along) > OUTLINE { Self::Far } else { Self::Seen }
     }

@@ -23,9 +23,12 @@ pub(crate) struct View {
     pub(crate) eye: Vec3,
 }
 
+/// How wide and high what is taken hold of is, points.
+const HANDLE: f32 = 22.0;
+
 /// A place of the picture that can be clicked and dragged, called `name` for those who cannot see it.
 fn handle(ui: &Ui, at: Pos2, id: Id, name: &str) -> Response {
-    let handle = ui.interact(Rect::from_center_size(at, Vec2::splat(22.0)), id, Sense::click_and_drag());
+    let handle = ui.interact(Rect::from_center_size(at, Vec2::splat(HANDLE)), id, Sense::click_and_drag());
     handle.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
     handle
 }
@@ -84,8 +87,8 @@ impl View {
         (world.truncate() / world.w - self.eye).normalize_or(Vec3::NEG_Z)
     }
 
-    /// The unit vector that points to the right on the screen at a place of the world that is seen `at` there; none where that can not
-    /// be told.
+    /// The unit vector that points to the right on the screen at a place of the world that is seen `at` there; none where that
+    /// cannot be told.
     fn right_of(self, at: Pos2, place: Vec3) -> Option<Vec3> {
         (self.at_depth_of(at + Vec2::new(10.0, 0.0), place) - place).try_normalize()
     }

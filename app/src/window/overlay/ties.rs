@@ -1,12 +1,12 @@
-//! Hair ties in the picture: rings with a handle that is dragged over the head, arrows that are turned, and the patches whose hair
-//! they gather.
+//! Hair ties in the picture: rings with a handle that is dragged over the head, arrows that are turned, and the patches whose
+//! hair they gather.
 
 use egui::{CursorIcon, Id, Painter, Pos2, Shape, Stroke, Ui};
 use glam::Vec3;
 use lovelock_studio::groom::{HairTie, TieReach};
 
 use super::head::{Head, Hold};
-use super::{View, dot, dragged_to, handle};
+use super::{HANDLE, View, dot, dragged_to, handle};
 use crate::window::{aim, theme};
 
 /// Length of the arrow that shows where hair leaves a tie, metres.
@@ -23,10 +23,11 @@ struct Grabbed {
 /// side where it was taken hold of, and turns as it goes; another one moves in the plane that faces the camera.
 pub(crate) fn edit(ui: &Ui, view: View, head: Head<'_>, ties: &mut [HairTie], selected: &mut usize) {
     let painter = ui.painter_at(view.place);
+    // Before the rings, which have what lies on both.
+    if let Some(tie) = ties.get_mut(*selected).filter(|tie| tie.reach == TieReach::InSphere) {
+        patch(ui, &painter, view, head, tie);
+    }
     for (i, tie) in ties.iter_mut().enumerate() {
-        if *selected == i && tie.reach == TieReach::InSphere {
-            patch(ui, &painter, view, head, tie);
-        }
         let centre = head.world(tie.at);
         let Some(at) = view.to_screen(centre) else { continue };
         let axis = head.world_from_head.transform_vector3(tie.axis.normalize_or(Vec3::NEG_Z));
@@ -49,7 +50,7 @@ pub(crate) fn edit(ui: &Ui, view: View, head: Head<'_>, ties: &mut [HairTie], se
             *selected = i;
         }
         if ring_handle.drag_started() {
-            let grabbed = Grabbed { axis: tie.axis, hold: Hold::new(view, head, tie.at) };
+            let grabbed = Grabbed { axis: tie.axis, hold: Hold::new(view, head, tie.at, 0.0) };
             ui.data_mut(|data| data.insert_temp(id, grabbed));
         }
         if let Some(pointer) = dragged_to(ui, &ring_handle, at) {
@@ -79,8 +80,11 @@ fn drag(ui: &Ui, view: View, head: Head<'_>, tie: &mut HairTie, (id, pointer): (
     }
 }
 
-/// Paints the patch whose hair the chosen tie gathers and lets it be changed: its rim is dragged to and from its middle, and where it
-/// is not around the ring its middle goes over the head as a ring does.
+/// How far inside the head the middle of a patch stays as it is dragged over it, metres: it gathers roots on both sides.
+const INSIDE: f32 = 0.03;
+
+/// Paints the patch whose hair a tie gathers and lets it be changed: its rim is dragged to and from its middle, and where it is not
+/// around the ring its middle goes over the head as a ring does.
 fn patch(ui: &Ui, painter: &Painter, view: View, head: Head<'_>, tie: &mut HairTie) {
     let middle = head.world(tie.sphere_middle());
     let Some(at) = view.to_screen(middle) else { return };
@@ -98,9 +102,10 @@ fn patch(ui: &Ui, painter: &Painter, view: View, head: Head<'_>, tie: &mut HairT
     dot(painter, rim, rim_at, "Drag to gather more or less hair.");
     if !tie.sphere_at_ring {
         let id = ui.scope_id().with("patch");
-        let place = handle(ui, at, id, "Patch in the picture");
+        let handle_at = beside_ring(at, view.to_screen(head.world(tie.at)));
+        let place = handle(ui, handle_at, id, "Patch in the picture");
         if place.drag_started() {
-            ui.data_mut(|data| data.insert_temp(id, Hold::new(view, head, tie.sphere_centre)));
+            ui.data_mut(|data| data.insert_temp(id, Hold::new(view, head, tie.sphere_centre, -INSIDE)));
         }
         let hold: Option<Hold> = ui.data(|data| data.get_temp(id));
         if let Some((pointer, hold)) = dragged_to(ui, &place, at).zip(hold)
@@ -108,8 +113,15 @@ fn patch(ui: &Ui, painter: &Painter, view: View, head: Head<'_>, tie: &mut HairT
         {
             tie.sphere_centre = to;
         }
-        dot(painter, place, at, "Drag to move the patch over the head.");
+        painter.line_segment([at, handle_at], Stroke::new(1.0, theme::ACCENT.gamma_multiply(0.6)));
+        dot(painter, place, handle_at, "Drag to move the patch over the head.");
     }
+}
+
+/// Where the handle of a patch is whose middle is at `at`: below it where it would lie under that of the ring.
+fn beside_ring(at: Pos2, ring: Option<Pos2>) -> Pos2 {
+    let Some(ring) = ring.filter(|ring| (at - *ring).abs().max_elem() < HANDLE) else { return at };
+    Pos2::new(at.x, ring.y + 1.25 * HANDLE)
 }
 
 /// A circle around an axis, on the screen.

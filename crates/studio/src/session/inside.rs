@@ -38,6 +38,8 @@ pub(super) struct Inside {
     engine: Option<Engine>,
     /// The life of the hair before the instant where the engine stands; time waits for it.
     preroll: Option<Aside>,
+    /// Whether hair that was loaded has still to settle, and waits for a newer one that is on its way.
+    owes_settling: bool,
     /// Since hair that stands still was last given other settings: it settles anew once they are left alone.
     unsettled: Option<Stopwatch>,
     /// The take that plays in place of the engine.
@@ -73,6 +75,7 @@ impl Inside {
             settling,
             engine: None,
             preroll: None,
+            owes_settling: false,
             unsettled: None,
             take: None,
             recording: None,
@@ -127,7 +130,7 @@ impl Inside {
         // Before its frame is: whoever sees hair that was carried knows that it is not settled.
         self.tell_settling();
         if self.take.is_some() {
-            self.preroll = None;
+            (self.preroll, self.owes_settling) = (None, false);
             self.play(changed, elapsed_secs);
         } else if self.preroll.is_some() {
             self.live_aside(changed);
@@ -206,8 +209,11 @@ impl Inside {
                     if let Some(aside) = &mut self.preroll {
                         aside.measured = measured;
                     }
-                } else if settle == Some(false) && self.preroll.take().is_some() {
-                    self.playback.set_playing(self.playback.is_playing());
+                } else if settle == Some(false) {
+                    let owed = std::mem::take(&mut self.owes_settling);
+                    if self.preroll.take().is_some() || owed {
+                        self.playback.set_playing(self.playback.is_playing());
+                    }
                 }
                 gone_to || steps != 0
             }
@@ -285,8 +291,9 @@ impl Inside {
             let laid = engine.set_scene(scene);
             // Locks that are only changed, or meet another body, go on moving while time passes. Where it stands, they are
             // seen as they settle.
-            if laid || self.preroll.is_some() || (other_hair && !self.playback.is_playing()) {
-                self.begin_preroll();
+            let waits = self.preroll.is_some() || self.owes_settling;
+            if laid || waits || (other_hair && !self.playback.is_playing()) {
+                self.settle_loaded();
             }
             return;
         }
@@ -317,7 +324,7 @@ impl Inside {
         self.outbox.panicked("simulation", panic);
         self.panics += 1;
         let played = self.take.take().is_some();
-        self.preroll = None;
+        (self.preroll, self.owes_settling) = (None, false);
         self.last_steps.forget();
         let scene = self.engine.take().map(|engine| Arc::clone(engine.scene()));
         if let (Some(scene), true) = (scene, self.panics < MOST_PANICS) {

@@ -33,7 +33,7 @@ pub struct LoadProgress {
     pub what: String,
     /// The fraction that is done, 0 to 1.
     pub fraction: f32,
-    /// Since when it has been loading, seconds.
+    /// How long it has taken until now, seconds.
     pub taken_secs: f64,
 }
 
@@ -44,7 +44,7 @@ type Progress = Mutex<Option<(String, f32, Stopwatch)>>;
 #[derive(Debug, Default)]
 struct Desk {
     request: Option<(Arc<Project>, Access)>,
-    begun: Option<Arc<Project>>,
+    begun: Option<(Arc<Project>, Access)>,
     stop: bool,
 }
 
@@ -92,7 +92,7 @@ impl LoadThread {
     pub(super) fn request(&self, project: Arc<Project>, access: Access) {
         let (desk, changed) = &*self.desk;
         let mut desk = desk.lock().unwrap_or_else(PoisonError::into_inner);
-        if desk.begun.as_ref().is_some_and(|begun| !same_files(begun, &project)) {
+        if desk.begun.as_ref().is_some_and(|(begun, by)| *by != access || !same_files(begun, &project)) {
             self.cancelled.store(true, Ordering::Relaxed);
         }
         desk.request = Some((project, access));
@@ -101,10 +101,19 @@ impl LoadThread {
 
     /// Gives up what is being loaded; the scene stays as it is.
     pub(super) fn cancel(&self) {
-        self.desk.0.lock().unwrap_or_else(PoisonError::into_inner).request = None;
-        self.cancelled.store(true, Ordering::Relaxed);
+        {
+            let mut desk = self.desk.0.lock().unwrap_or_else(PoisonError::into_inner);
+            desk.request = None;
+            self.cancelled.store(true, Ordering::Relaxed);
+        }
         // At once for the user's eyes, though the thread may need a moment to notice.
         *self.progress.lock().unwrap_or_else(PoisonError::into_inner) = None;
+    }
+
+    /// Whether something is being loaded, or is to be.
+    pub(super) fn is_busy(&self) -> bool {
+        let desk = self.desk.0.lock().unwrap_or_else(PoisonError::into_inner);
+        desk.request.is_some() || desk.begun.is_some()
     }
 
     /// How far the load is; none where nothing is loaded.
@@ -140,8 +149,15 @@ impl Inside {
         let mut loader = SceneLoader::new();
         while let Some((project, access)) = self.next() {
             let loaded = catch_unwind(AssertUnwindSafe(|| self.load(&mut loader, &project, &access)));
-            self.desk.0.lock().unwrap_or_else(PoisonError::into_inner).begun = None;
-            self.show(None);
+            let replaced = {
+                let mut desk = self.desk.0.lock().unwrap_or_else(PoisonError::into_inner);
+                desk.begun = None;
+                desk.request.is_some()
+            };
+            // One load after the other is seen as one.
+            if !replaced {
+                self.show(None);
+            }
             match loaded {
                 Ok(Ok((loaded, problems))) => {
                     let scene = Arc::clone(loaded.scene());
@@ -149,9 +165,7 @@ impl Inside {
                     self.outbox.send(Event::Loaded { scene, problems });
                 }
                 Ok(Err(StudioError::Cancelled)) => {
-                    // Given up for a later one.
-                    let replaced =
-                        self.desk.0.lock().unwrap_or_else(PoisonError::into_inner).request.is_some();
+                    // Otherwise it was given up for a later one.
                     if !replaced {
                         self.outbox.send(Event::LoadCancelled);
                     }
@@ -177,7 +191,7 @@ impl Inside {
             if let Some(request) = desk.request.take() {
                 // Under the lock: a cancel after this is meant for this request.
                 self.cancelled.store(false, Ordering::Relaxed);
-                desk.begun = Some(Arc::clone(&request.0));
+                desk.begun = Some(request.clone());
                 return Some(request);
             }
             desk = changed.wait(desk).unwrap_or_else(PoisonError::into_inner);
@@ -223,7 +237,7 @@ impl Inside {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{FileRef, HairSource};
+    use crate::{BodySource, FileRef, HairSource, MotionSource};
 
     #[test]
     fn what_reads_other_files_is_given_up_and_what_only_changes_is_not() {
@@ -234,12 +248,14 @@ mod tests {
         changed.motion.speed = 0.5;
         assert!(same_files(&project, &changed));
         let file = Some(FileRef::new("other"));
-        let others: [fn(&mut Project, Option<FileRef>); 5] = [
+        let others: [fn(&mut Project, Option<FileRef>); 7] = [
             |p, file| p.hair.file = file,
             |p, file| p.body.file = file,
             |p, file| p.motion.file = file,
             |p, file| p.take.file = file,
             |p, _| p.hair.source = HairSource::File,
+            |p, _| p.body.source = BodySource::File,
+            |p, _| p.motion.source = MotionSource::File,
         ];
         for change in others {
             let mut other = project.clone();

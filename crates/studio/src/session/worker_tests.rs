@@ -225,6 +225,8 @@ fn a_load_that_another_one_replaces_is_not_told_as_cancelled() {
     wait("the first scene", || worker.poll_event());
     for wisps in 20..60 {
         project.hair.groom.wisps = wisps;
+        // Hair that is grown reads no file; yet each is another project's, and the load before is given up.
+        project.hair.file = Some(crate::FileRef::new(format!("/{wisps}.hair")));
         worker.set_project(Arc::new(project.clone()), Access::new());
         std::thread::sleep(Duration::from_millis(3));
     }
@@ -235,6 +237,56 @@ fn a_load_that_another_one_replaces_is_not_told_as_cancelled() {
     });
     told.extend(std::iter::from_fn(|| worker.poll_event()));
     assert!(told.iter().all(|event| matches!(event, Event::Loaded { .. })), "{told:?}");
+}
+
+#[test]
+fn a_load_that_is_given_up_leaves_the_scene_and_the_next_one_comes() {
+    let mut project = small_project();
+    let (worker, _) = start(project.clone());
+    let before = wait("a frame", || worker.frame());
+    wait("the first scene", || worker.poll_event());
+    project.hair.groom.strands_per_wisp = 200;
+    // A machine that is busy may be done with it first: then another one is given up.
+    wait("a load that was given up", || {
+        project.hair.groom.wisps = if project.hair.groom.wisps == 400 { 300 } else { 400 };
+        worker.set_project(Arc::new(project.clone()), Access::new());
+        wait("a load", || worker.load_progress().map(drop).or_else(|| worker.poll_event().map(drop)));
+        worker.cancel_load();
+        assert_eq!(worker.load_progress(), None, "at once for the user's eyes");
+        let event = wait("what became of it", || worker.poll_event());
+        matches!(event, Event::LoadCancelled).then_some(())
+    });
+    assert!(worker.frame().is_some_and(|frame| frame.step >= before.step), "the scene plays on");
+    project.hair.groom.wisps = 20;
+    worker.set_project(Arc::new(project), Access::new());
+    wait("the next hair", || worker.frame().filter(|frame| frame.scene.style.wisps.len() == 20));
+}
+
+#[test]
+fn hair_that_is_dragged_while_time_stands_settles_once_it_is_let_go() {
+    let mut project = crate::Project::default();
+    let (worker, _) = start(project.clone());
+    wait("a frame", || worker.frame());
+    worker.set_playing(false);
+    let secs = 100.0 * crate::STEP_SECS;
+    worker.seek(secs);
+    settled_at(&worker, secs);
+    while worker.poll_event().is_some() {}
+    let mut loads = 0;
+    wait("hair while it is dragged", || {
+        project.hair.groom.length += 1e-5;
+        worker.set_project(Arc::new(project.clone()), Access::new());
+        loads += u32::from(worker.poll_event().is_some_and(|event| matches!(event, Event::Loaded { .. })));
+        (loads == 5).then_some(())
+    });
+    let (last, _) = SceneLoader::new().load_now(&project, &Access::new()).expect("a scene");
+    let is_last = |frame: &FrameSnapshot| frame.scene.style.guides == last.style.guides;
+    wait("the last hair", || worker.frame().filter(|frame| is_last(frame)));
+    let shown = settled_at(&worker, secs);
+    let mut engine = Engine::new(Arc::clone(&shown.scene), project.simulation);
+    engine.seek(secs);
+    engine.settle();
+    assert_eq!(engine.snapshot().guides, shown.guides);
 }
 
 #[test]

@@ -34,6 +34,7 @@ pub(super) struct Aside {
 impl Inside {
     /// Begins the life before the instant where the engine stands, in place of another that is under way.
     pub(super) fn begin_preroll(&mut self) {
+        self.owes_settling = false;
         self.preroll = self.engine.as_ref().map(|engine| Aside {
             preroll: Box::new(engine.preroll()),
             since: Stopwatch::start(),
@@ -74,6 +75,9 @@ impl Inside {
 
     /// Lives through what is left of it at once: where hair is about to be written down.
     pub(super) fn finish_preroll(&mut self) {
+        if self.owes_settling {
+            self.begin_preroll();
+        }
         while self.preroll.as_mut().is_some_and(|aside| !aside.preroll.advance()) {}
         if self.preroll.is_some() {
             self.arrive();
@@ -81,8 +85,17 @@ impl Inside {
         }
     }
 
+    /// Hair that has been loaded settles once no newer one is on its way: what is dragged asks for another one at every frame.
+    pub(super) fn settle_loaded(&mut self) {
+        self.preroll = None;
+        self.owes_settling = true;
+    }
+
     /// Hair that stands still settles by other settings once they are left alone; hair that moves lives on by them.
     pub(super) fn settle_when_calm(&mut self) {
+        if self.owes_settling && !self.loader.is_busy() {
+            self.begin_preroll();
+        }
         if self.playback.is_playing() || self.take.is_some() || self.preroll.is_some() {
             self.unsettled = None;
         } else if self.unsettled.as_ref().is_some_and(|since| since.secs() >= CALM_SECS) {
@@ -93,8 +106,12 @@ impl Inside {
 
     /// `timeout`, or how long it is until then, where that is less.
     pub(super) fn until_calm(&self, timeout: Option<Duration>) -> Option<Duration> {
-        let Some(since) = &self.unsettled else { return timeout };
-        let left = Duration::from_secs_f64((CALM_SECS - since.secs()).max(0.0));
+        let left = match &self.unsettled {
+            Some(since) => Duration::from_secs_f64((CALM_SECS - since.secs()).max(0.0)),
+            // A load that fails or is given up sends nothing.
+            None if self.owes_settling => Duration::from_secs_f64(CALM_SECS),
+            None => return timeout,
+        };
         Some(timeout.map_or(left, |timeout| timeout.min(left)))
     }
 
@@ -114,6 +131,11 @@ impl Inside {
             let (to_secs, taken_secs) = (aside.preroll.to_secs(), aside.since.secs());
             PrerollProgress { done, total, to_secs, taken_secs }
         });
+        let to_come = self.engine.as_ref().filter(|_| self.owes_settling).map(|engine| {
+            let to_secs = engine.position_secs();
+            PrerollProgress { done: 0, total: 1, to_secs, taken_secs: 0.0 }
+        });
+        let progress = progress.or(to_come);
         let mut told = self.settling.lock().unwrap_or_else(PoisonError::into_inner);
         if progress.is_some() || told.is_some() {
             *told = progress;

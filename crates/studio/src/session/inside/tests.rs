@@ -66,6 +66,46 @@ impl Driven {
     }
 }
 
+#[test]
+fn hair_that_a_newer_one_follows_does_not_settle_before_it() {
+    let mut project = small_project();
+    let mut driven = Driven::new(&project, &load(&project).0);
+    driven.turn(Wishes { playing: Some(false), ..Wishes::default() }, 0.0);
+    // A loader that stands still as it hands over what it has made.
+    let (outbox, _) = Outbox::new(Arc::new(|| ()));
+    let (go_on, gate) = std::sync::mpsc::sync_channel(2);
+    let loader =
+        Arc::new(LoadThread::start(outbox, move |_| gate.recv().unwrap_or_default()).expect("a thread"));
+    driven.inside.loader = Arc::clone(&loader);
+    let wanted = Arc::new(project.clone());
+    let request = || loader.request(Arc::clone(&wanted), Access::new());
+    let rest = || {
+        while loader.is_busy() {
+            std::thread::yield_now();
+        }
+    };
+    request();
+    rest();
+    request();
+    assert!(loader.is_busy());
+    project.hair.groom.length *= 0.9;
+    let other = Loaded::Scene(load(&project).0, Arc::new(project.clone()));
+    driven.turn(Wishes { loaded: Some(other), ..Wishes::default() }, 0.0);
+    let told = |driven: &Driven| driven.inside.settling.lock().expect("no panic").map(|told| told.done);
+    for _ in 0..5 {
+        assert!(driven.inside.preroll.is_none() && told(&driven) == Some(0), "it waits, and that is told");
+        driven.turn(Wishes::default(), 0.1);
+    }
+    for _ in 0..2 {
+        go_on.send(()).expect("a thread");
+    }
+    rest();
+    driven.turn(Wishes::default(), 0.0);
+    assert!(driven.inside.preroll.is_some(), "it settles");
+    driven.arrive();
+    assert_eq!(told(&driven), None);
+}
+
 fn slow(rate: f64) -> Wishes {
     Wishes { rate: Some(rate), ..Wishes::default() }
 }
