@@ -112,9 +112,7 @@ fn scissors_cut_what_is_beyond_a_line_and_undo_grows_it_back() {
 #[test]
 fn a_tie_is_added_and_dragged_in_the_picture() {
     let Some(mut harness) = with_picture() else { return };
-    unfold(&mut harness, "Ties and scissors");
-    into_view(&mut harness, Role::Button, "+ Ponytail");
-    press_button(&mut harness, "+ Ponytail");
+    add_ponytail(&mut harness);
     let tie = project(&harness).hair.ties[0];
     assert_eq!(tie.kind, TieKind::Ponytail);
     assert_ne!(tie.at, HairTie::default().at, "it is placed on this head");
@@ -172,12 +170,22 @@ fn seen_from_the_left() -> Option<Harness<'static, Shown<Option<Window>>>> {
     Some(harness)
 }
 
+/// The same with a ponytail, which is tied at the back, and its section unfolded.
+fn ponytail_seen_from_the_left() -> Option<Harness<'static, Shown<Option<Window>>>> {
+    let mut harness = seen_from_the_left()?;
+    add_ponytail(&mut harness);
+    Some(harness)
+}
+
+fn add_ponytail(harness: &mut Harness<'_, Shown<Option<Window>>>) {
+    unfold(harness, "Ties and scissors");
+    into_view(harness, Role::Button, "+ Ponytail");
+    press_button(harness, "+ Ponytail");
+}
+
 #[test]
 fn a_tie_that_is_dragged_over_the_head_turns_with_it_and_its_arrow_aims_it() {
-    let Some(mut harness) = seen_from_the_left() else { return };
-    unfold(&mut harness, "Ties and scissors");
-    into_view(&mut harness, Role::Button, "+ Ponytail");
-    press_button(&mut harness, "+ Ponytail");
+    let Some(mut harness) = ponytail_seen_from_the_left() else { return };
     let back = project(&harness).hair.ties[0];
     assert!(back.axis.z < -0.8 && back.axis.x.abs() < 0.2, "it aims back: {}", back.axis);
     let steps = of(&harness).history.undo_len();
@@ -211,10 +219,7 @@ fn a_tie_that_is_dragged_over_the_head_turns_with_it_and_its_arrow_aims_it() {
 
 #[test]
 fn a_tie_behind_the_head_stays_behind_it() {
-    let Some(mut harness) = seen_from_the_left() else { return };
-    unfold(&mut harness, "Ties and scissors");
-    into_view(&mut harness, Role::Button, "+ Ponytail");
-    press_button(&mut harness, "+ Ponytail");
+    let Some(mut harness) = ponytail_seen_from_the_left() else { return };
     let mut other = (*project(&harness)).clone();
     other.hair.ties[0].at = glam::Vec3::new(-0.09, 0.12, 0.0);
     harness.state_mut().state.as_mut().expect("a window").history.edit("tie", None, other);
@@ -227,10 +232,7 @@ fn a_tie_behind_the_head_stays_behind_it() {
 
 #[test]
 fn a_patch_is_sized_and_moved_over_the_head_in_the_picture() {
-    let Some(mut harness) = seen_from_the_left() else { return };
-    unfold(&mut harness, "Ties and scissors");
-    into_view(&mut harness, Role::Button, "+ Ponytail");
-    press_button(&mut harness, "+ Ponytail");
+    let Some(mut harness) = ponytail_seen_from_the_left() else { return };
     let mut parted = (*project(&harness)).clone();
     let tie = &mut parted.hair.ties[0];
     (tie.reach, tie.sphere_radius) = (TieReach::InSphere, 0.06);

@@ -109,6 +109,15 @@ fn settled_at(worker: &Worker, secs: f64) -> Arc<FrameSnapshot> {
     })
 }
 
+/// Waits until the hair is settled at a time, and holds it against that of an engine that settles there.
+fn sees_settled_hair(worker: &Worker, project: &crate::Project, secs: f64) {
+    let shown = settled_at(worker, secs);
+    let mut engine = Engine::new(Arc::clone(&shown.scene), project.simulation);
+    engine.seek(secs);
+    engine.settle();
+    assert_eq!(engine.snapshot().guides, shown.guides);
+}
+
 #[test]
 fn whoever_scrubs_sees_settled_hair_where_he_ends() {
     let (worker, _) = start(small_project());
@@ -144,11 +153,7 @@ fn hair_that_comes_while_time_stands_is_settled() {
     project.hair.groom.wisps = 20;
     worker.set_project(Arc::new(project.clone()), Access::new());
     wait("the other hair", || worker.frame().filter(|frame| !Arc::ptr_eq(&frame.scene, &before.scene)));
-    let shown = settled_at(&worker, secs);
-    let mut engine = Engine::new(Arc::clone(&shown.scene), project.simulation);
-    engine.seek(secs);
-    engine.settle();
-    assert_eq!(engine.snapshot().guides, shown.guides);
+    sees_settled_hair(&worker, &project, secs);
 }
 
 #[test]
@@ -282,11 +287,7 @@ fn hair_that_is_dragged_while_time_stands_settles_once_it_is_let_go() {
     let (last, _) = SceneLoader::new().load_now(&project, &Access::new()).expect("a scene");
     let is_last = |frame: &FrameSnapshot| frame.scene.style.guides == last.style.guides;
     wait("the last hair", || worker.frame().filter(|frame| is_last(frame)));
-    let shown = settled_at(&worker, secs);
-    let mut engine = Engine::new(Arc::clone(&shown.scene), project.simulation);
-    engine.seek(secs);
-    engine.settle();
-    assert_eq!(engine.snapshot().guides, shown.guides);
+    sees_settled_hair(&worker, &project, secs);
 }
 
 #[test]
