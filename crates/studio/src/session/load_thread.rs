@@ -126,10 +126,14 @@ impl LoadThread {
 
 /// Whether both projects show what the same files hold.
 fn same_files(a: &Project, b: &Project) -> bool {
-    let hair = |p: &Project| (p.hair.source, p.hair.file.clone());
-    let body = |p: &Project| (p.body.source, p.body.file.clone());
-    let motion = |p: &Project| (p.motion.source, p.motion.file.clone());
-    a.take.file == b.take.file && hair(a) == hair(b) && body(a) == body(b) && motion(a) == motion(b)
+    let sources = |p: &Project| (p.hair.source, p.body.source, p.motion.source);
+    let files = [
+        (&a.take.file, &b.take.file),
+        (&a.hair.file, &b.hair.file),
+        (&a.body.file, &b.body.file),
+        (&a.motion.file, &b.motion.file),
+    ];
+    sources(a) == sources(b) && files.iter().all(|(a, b)| a == b)
 }
 
 impl Drop for LoadThread {

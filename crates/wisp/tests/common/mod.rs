@@ -1,6 +1,7 @@
 //! What tests, the benchmark and the example share: the dancer with hair on, and hairstyles of plain chains.
 #![allow(dead_code, missing_docs, reason = "every user takes its part")]
 
+pub mod catenary;
 pub mod clock;
 pub mod reference;
 

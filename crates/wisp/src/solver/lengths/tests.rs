@@ -1,3 +1,6 @@
+#[path = "../../../tests/common/catenary.rs"]
+mod catenary;
+
 use glam::Vec3;
 
 use super::*;
@@ -124,21 +127,10 @@ fn hung_at_both_ends(links: usize, gravity: Vec3) -> Vec<Vec3> {
     position.iter().map(|p| at(p, 0)).collect()
 }
 
-/// Parameter of the catenary of length 0.5 m between ends 0.3 m apart and level: `2 a sinh(0.15 / a) = 0.5`.
-fn catenary() -> f64 {
-    let (mut low, mut high) = (0.01_f64, 1.0_f64);
-    for _ in 0..100 {
-        let a = 0.5 * (low + high);
-        if 2.0 * a * (0.15 / a).sinh() > 0.5 { low = a } else { high = a }
-    }
-    0.5 * (low + high)
-}
-
 /// The furthest that any point is from the curve, along Y.
 fn off_the_catenary(points: &[Vec3]) -> f64 {
-    let a = catenary();
-    let y = |x: f64| a * (((x - 0.15) / a).cosh() - (0.15 / a).cosh());
-    points.iter().map(|p| (f64::from(p.y) - y(f64::from(p.x))).abs()).fold(0.0, f64::max)
+    let points: Vec<_> = points.iter().map(|p| p.as_dvec3()).collect();
+    catenary::off_the_catenary(&points, 0.5, 0.3)
 }
 
 #[test]
