@@ -78,4 +78,4 @@ pub use lovelock_metrics as metrics;
 pub use lovelock_motion as motion;
 pub use lovelock_record as recording;
 pub use lovelock_render as render;
-pub use lovelock_wisp as wisp;
+pub use lovelock_simulation as simulation;

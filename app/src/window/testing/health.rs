@@ -2,7 +2,7 @@
 
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable;
-use lovelock_studio::wisp::{BodyPart, InsidePoint, SimulationSettings};
+use lovelock_studio::simulation::{BodyPart, InsidePoint, SimulationSettings};
 use lovelock_studio::{Access, Gauge, GaugeKind, HealthLevel, Project, SceneLoader, Totals, health};
 
 use super::whole::{go, of, press_button, project, wait, window};

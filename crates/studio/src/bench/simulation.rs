@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::Affine3A;
 use lovelock_groom::{GuideFrame, Guides, Hairstyle, StrandSet, Strands, Wisp, interpolate};
 use lovelock_render::Backend;
-use lovelock_wisp::{Integrator, SimulationSettings};
+use lovelock_simulation::{Integrator, SimulationSettings};
 
 use super::{BenchRequest, BenchScene, SceneReport, StageReport};
 use crate::{Engine, Gauge, Project, STEP_SECS, Scene, health};

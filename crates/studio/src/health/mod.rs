@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use lovelock_groom::Guides;
-use lovelock_wisp::{BodyPart, InsidePoint, Integrator, SimulationSettings};
+use lovelock_simulation::{BodyPart, InsidePoint, Integrator, SimulationSettings};
 use serde::Serialize;
 
 use crate::{Found, FrameSnapshot, Scene, Totals};
@@ -192,7 +192,7 @@ fn gauges(
         Gauge::new(GaugeKind::Stretch, f64::from(totals.max_stretch), totals.worst_stretch_at, || {
             let more = if settings.integrator == Integrator::Relaxation {
                 "Choose the direct method, or raise the sweeps"
-            } else if settings.substeps < lovelock_wisp::MAX_SUBSTEPS {
+            } else if settings.substeps < lovelock_simulation::MAX_SUBSTEPS {
                 "Raise the substeps"
             } else {
                 "Slow the motion down"

@@ -1,8 +1,8 @@
-use lovelock_wisp::BodyPart;
+use lovelock_simulation::BodyPart;
 
 use super::*;
 use crate::session::tests::{load, scene, small_project};
-use lovelock_wisp::StepReport;
+use lovelock_simulation::StepReport;
 
 use crate::Engine;
 

@@ -12,7 +12,7 @@ mod sections;
 mod trim;
 
 use lovelock_render::{Light, PictureSettings, ShadowSettings};
-use lovelock_wisp::SimulationSettings;
+use lovelock_simulation::SimulationSettings;
 use serde::{Deserialize, Serialize};
 
 pub use file::{

@@ -5,7 +5,7 @@ use lovelock_groom::{GroomSettings, HairTie, Haircut, ImportSettings, Preset};
 use lovelock_motion::{BodySettings, ColliderEdits, MotionSettings};
 use lovelock_record::{FilmQuality, SequenceFormat};
 use lovelock_render::{Backend, ShadowMethod, ShadowSettings, Transparency};
-use lovelock_wisp::SimulationSettings;
+use lovelock_simulation::SimulationSettings;
 use serde::{Deserialize, Serialize};
 
 use super::FileRef;

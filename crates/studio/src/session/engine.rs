@@ -11,7 +11,7 @@ use glam::Affine3A;
 use lovelock_groom::{GuideFrame, Guides};
 use lovelock_motion::{FieldPose, PlacedCollider, Pose, place_colliders, pose_at};
 use lovelock_record::TakeFrame;
-use lovelock_wisp::{InsidePoint, PlacedField, Simulation, SimulationSettings, StepInput, StepReport};
+use lovelock_simulation::{InsidePoint, PlacedField, Simulation, SimulationSettings, StepInput, StepReport};
 
 use super::combing::Combing;
 use super::snapshot::SnapshotPool;

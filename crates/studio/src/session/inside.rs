@@ -12,7 +12,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use lovelock_wisp::SimulationSettings;
+use lovelock_simulation::SimulationSettings;
 
 use inputs::SceneInputs;
 use settling::{Aside, lives_otherwise};

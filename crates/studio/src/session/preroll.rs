@@ -67,7 +67,7 @@ impl Preroll {
 
     /// What the last step had to say.
     #[cfg(test)]
-    pub(super) fn report(&self) -> lovelock_wisp::StepReport {
+    pub(super) fn report(&self) -> lovelock_simulation::StepReport {
         self.aside.report()
     }
 

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use lovelock_motion::Clip;
-use lovelock_wisp::SimulationSettings;
+use lovelock_simulation::SimulationSettings;
 
 use super::tests::{farthest, in_head_space, scene, small_project};
 use super::*;

@@ -6,7 +6,7 @@ use glam::Vec3;
 use lovelock_groom::{Hairstyle, Obstacle};
 use lovelock_motion::{Body, BodyField, Clip, Collider, RestDistance};
 
-use lovelock_wisp::BodyPart;
+use lovelock_simulation::BodyPart;
 
 use super::HeadPath;
 

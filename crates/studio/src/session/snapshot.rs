@@ -5,7 +5,7 @@ use std::sync::Arc;
 use lovelock_groom::{GuideFrame, Strands, interpolate};
 use lovelock_motion::{Pose, Skin};
 use lovelock_render::{Camera, FrameInput, HairPose};
-use lovelock_wisp::{InsidePoint, StepReport};
+use lovelock_simulation::{InsidePoint, StepReport};
 
 use super::{Scene, Totals, camera_at};
 use crate::{CameraSection, Project, StageTimes};

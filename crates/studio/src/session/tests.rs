@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use glam::Vec3;
 use lovelock_motion::Clip;
-use lovelock_wisp::SimulationSettings;
+use lovelock_simulation::SimulationSettings;
 
 use super::*;
 use crate::{Access, Place, Problem, Project, StudioError};
@@ -178,9 +178,9 @@ fn a_clip_that_does_not_loop_carries_the_hair_over_its_seam() {
 fn a_head_that_is_torn_away_would_whip_the_hair() {
     // The negative control of the tests above: below the distance of a jump, the same bound is broken.
     let scene = scene();
-    let mut simulation = lovelock_wisp::Simulation::new(Arc::clone(&scene.style));
+    let mut simulation = lovelock_simulation::Simulation::new(Arc::clone(&scene.style));
     let at = |x: f32| glam::Affine3A::from_translation(Vec3::new(x, 1.5, 0.0));
-    let input = |time_secs, x| lovelock_wisp::StepInput::new(time_secs, at(x), &[]);
+    let input = |time_secs, x| lovelock_simulation::StepInput::new(time_secs, at(x), &[]);
     simulation.reset(&input(0.0, 0.0));
     let report = simulation.step(&input(1.0 / 60.0, 0.45), &SimulationSettings::default(), 1.0 / 60.0);
     assert!(!report.jumped && report.max_speed > WHIP_METRES_PER_SEC, "{report:?}");

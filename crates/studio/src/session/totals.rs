@@ -1,7 +1,7 @@
 //! The worst of many steps.
 
 use glam::Vec3;
-use lovelock_wisp::{InsidePoint, StepReport};
+use lovelock_simulation::{InsidePoint, StepReport};
 use serde::Serialize;
 
 /// When and where a point of the hair was as it was found.

@@ -130,7 +130,8 @@ fn whoever_scrubs_sees_settled_hair_where_he_ends() {
     }
     worker.seek(end);
     let shown = settled_at(&worker, end);
-    let mut engine = Engine::new(Arc::clone(&first.scene), lovelock_wisp::SimulationSettings::default());
+    let mut engine =
+        Engine::new(Arc::clone(&first.scene), lovelock_simulation::SimulationSettings::default());
     engine.seek(end);
     assert_ne!(engine.snapshot().guides, shown.guides, "the control: hair that is only carried");
     engine.settle();

@@ -8,7 +8,7 @@ use lovelock_motion::{Pose, Skin, pose_at, skin};
 use lovelock_record::{
     AssetState, TakeCondition, TakeError, TakeFrame, TakeHeader, TakeReader, hairstyle_fingerprint,
 };
-use lovelock_wisp::StepReport;
+use lovelock_simulation::StepReport;
 
 use crate::project::project_of_text;
 use crate::session::SnapshotPool;

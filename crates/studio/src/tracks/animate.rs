@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use lovelock_wisp::SimulationSettings;
+use lovelock_simulation::SimulationSettings;
 
 use super::leaf::set_all;
 use crate::{FrameSnapshot, Project};

@@ -5,10 +5,10 @@ use super::graph::Graph;
 /// Who may use whom, each crate by its name without `lovelock-`.
 const ARROWS: [(&str, &[&str]); 12] = [
     ("app", &["studio"]),
-    ("studio", &["render", "shadow", "wisp", "motion", "groom", "record", "metrics"]),
+    ("studio", &["render", "shadow", "simulation", "motion", "groom", "record", "metrics"]),
     ("render", &["shadow", "gpu", "groom", "motion"]),
     ("shadow", &["gpu", "groom"]),
-    ("wisp", &["groom", "motion"]),
+    ("simulation", &["groom", "motion"]),
     ("record", &["groom"]),
     ("motion", &[]),
     ("groom", &[]),
@@ -22,7 +22,7 @@ const ARROWS: [(&str, &[&str]); 12] = [
 const FOR_TESTS: &str = "testkit";
 
 /// Crates that build and test without a graphics library, so that their tests stay quick on a small machine.
-const WITHOUT_WGPU: [&str; 7] = ["groom", "motion", "wisp", "record", "metrics", "testkit", "xtask"];
+const WITHOUT_WGPU: [&str; 7] = ["groom", "motion", "simulation", "record", "metrics", "testkit", "xtask"];
 
 /// Libraries that only some crates may name: how their packages' names start, and who may.
 const LIBRARIES: [(&[&str], &[&str]); 3] = [
@@ -102,10 +102,10 @@ mod tests {
         "lovelock → clap",
         "lovelock-xtask → clap",
         "lovelock-studio → lovelock-render",
-        "lovelock-studio → lovelock-wisp",
+        "lovelock-studio → lovelock-simulation",
         "lovelock-render → lovelock-gpu",
         "lovelock-shadow → lovelock-groom",
-        "lovelock-wisp → lovelock-motion",
+        "lovelock-simulation → lovelock-motion",
         "lovelock-record → lovelock-groom",
         "lovelock-gpu → wgpu",
         "lovelock-groom → glam",
@@ -133,11 +133,11 @@ mod tests {
             ("lovelock-groom → lovelock-testkit", "groom may use"),
             ("lovelock-render ⇢ lovelock-metrics", "render may use"),
             ("lovelock-metrics → lovelock-groom", "none of the others"),
-            ("lovelock-groom ⇢ lovelock-wisp", "groom may use"),
+            ("lovelock-groom ⇢ lovelock-simulation", "groom may use"),
             ("lovelock-studio → egui_plot", "only app"),
             ("lovelock-render ⇢ eframe", "only app"),
             ("lovelock-studio → clap_builder", "only app, xtask"),
-            ("lovelock-wisp → wgpu-types", "only gpu"),
+            ("lovelock-simulation → wgpu-types", "only gpu"),
             ("lovelock-new → glam", "no row"),
         ] {
             let found = faults(&graph(&[&GOOD[..], &[wrong]].concat()));
@@ -154,7 +154,7 @@ mod tests {
         let hidden =
             ["lovelock-groom → some-viewer", "some-viewer → deeper", "deeper → some-viewer", "deeper → wgpu"];
         let found = faults(&graph(&[&GOOD[..], &hidden].concat()));
-        // groom itself, and everyone above it who promises the same: wisp does not use it here, record does.
+        // groom itself, and everyone above it who promises the same: simulation does not use it here, record does.
         assert_eq!(found.len(), 2, "{found:?}");
         assert!(found[0].starts_with("lovelock-groom → some-viewer → deeper → wgpu"), "{found:?}");
         assert!(found[1].starts_with("lovelock-record → lovelock-groom → "), "{found:?}");

@@ -5,7 +5,7 @@ use egui_kittest::kittest::Queryable;
 use glam::Vec3;
 use lovelock_studio::groom::{GroomSettings, HairTie, Preset, TieKind, Unit};
 use lovelock_studio::render::{MAX_LIGHTS, ShadowMethod, VoxelDeposit};
-use lovelock_studio::wisp::SimulationSettings;
+use lovelock_studio::simulation::SimulationSettings;
 use lovelock_studio::{BodySource, HairSource, MotionSource, Project, Stage};
 
 use super::{Bench, panel};

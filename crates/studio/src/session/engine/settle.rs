@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use lovelock_motion::{FieldPose, Pose};
-use lovelock_wisp::StepReport;
+use lovelock_simulation::StepReport;
 
 use super::super::preroll::Preroll;
 use super::super::snapshot::SnapshotPool;

@@ -1,0 +1,66 @@
+//! What contacts cost: a preset on the dance with the field and without, with tests spared and not, and with no body.
+//!
+//! `contacts [PRESET] [SECS] [CASE]`: the processor's time on one thread, which other work on the machine does not add to;
+//! the least of five rounds counts. With a case, of which the beginning is enough, only that is run.
+
+use std::time::Duration;
+
+use lovelock_groom::Preset;
+use lovelock_simulation::SimulationSettings;
+
+#[path = "../tests/common/mod.rs"]
+mod common;
+use common::{STEP_SECS, Stage, clock::process_time};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let mut args = std::env::args().skip(1);
+    let preset = args
+        .next()
+        .map_or(Some(Preset::Smooth), |p| Preset::from_id(&p))
+        .ok_or("contacts [PRESET] [SECS] [CASE]")?;
+    let secs: f64 = args.next().map_or(Ok(2.0), |s| s.parse())?;
+    let only = args.next().unwrap_or_default();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    for (what, field, spare, body) in [
+        ("no body", true, true, false),
+        ("colliders alone", false, true, true),
+        ("field, everything tested", true, false, true),
+        ("field, tests spared", true, true, true),
+    ] {
+        if !what.starts_with(&only) {
+            continue;
+        }
+        let mut stage = Stage::new(preset);
+        if !field {
+            stage = stage.without_field();
+        }
+        let steps = (secs / f64::from(STEP_SECS)) as u32;
+        let (mut best, mut hash, mut substeps) = (Duration::MAX, 0, 0);
+        for _ in 0..5 {
+            let mut simulation = stage.simulation(Some(0.0));
+            simulation.spare_contacts(spare);
+            let mut spent = Duration::ZERO;
+            substeps = 0;
+            for step in 1..=steps {
+                // A quarter of the tempo, so that steps have four substeps.
+                let mut input = stage.at(Some(0.25 * f64::from(step) * f64::from(STEP_SECS)));
+                if !body {
+                    (input.colliders, input.field) = (&[], None);
+                }
+                let from = process_time();
+                let report =
+                    pool.install(|| simulation.step(&input, &SimulationSettings::default(), STEP_SECS));
+                spent += process_time().saturating_sub(from);
+                substeps += report.substeps;
+            }
+            (best, hash) = (best.min(spent), simulation.state_hash());
+        }
+        println!(
+            "{what:<25} {:.3} ms a step of {:.1} substeps, {} colliders, state {hash:016x}",
+            1e3 * best.as_secs_f64() / f64::from(steps),
+            f64::from(substeps) / f64::from(steps),
+            if body { stage.colliders.len() } else { 0 },
+        );
+    }
+    Ok(())
+}
