@@ -3,26 +3,28 @@
 use super::graph::Graph;
 
 /// Who may use whom, each crate by its name without `lovelock-`.
-const ARROWS: [(&str, &[&str]); 12] = [
-    ("app", &["studio"]),
-    ("studio", &["render", "shadow", "simulation", "motion", "groom", "record", "metrics"]),
-    ("render", &["shadow", "gpu", "groom", "motion"]),
-    ("shadow", &["gpu", "groom"]),
-    ("simulation", &["groom", "motion"]),
-    ("record", &["groom"]),
-    ("motion", &[]),
-    ("groom", &[]),
-    ("gpu", &[]),
-    ("metrics", &[]),
-    ("testkit", &["metrics"]),
-    ("xtask", &["metrics"]),
+const ARROWS: [(&str, &[&str]); 13] = [
+    ("app", &["studio", "base"]),
+    ("studio", &["render", "shadow", "simulation", "motion", "groom", "record", "metrics", "base"]),
+    ("render", &["shadow", "gpu", "groom", "motion", "base"]),
+    ("shadow", &["gpu", "groom", "base"]),
+    ("simulation", &["groom", "motion", "base"]),
+    ("record", &["groom", "base"]),
+    ("motion", &["base"]),
+    ("groom", &["base"]),
+    ("gpu", &["base"]),
+    ("metrics", &["base"]),
+    ("base", &[]),
+    ("testkit", &["metrics", "base"]),
+    ("xtask", &["metrics", "base"]),
 ];
 
 /// Crates that any other may use for its tests.
 const FOR_TESTS: &str = "testkit";
 
 /// Crates that build and test without a graphics library, so that their tests stay quick on a small machine.
-const WITHOUT_WGPU: [&str; 7] = ["groom", "motion", "simulation", "record", "metrics", "testkit", "xtask"];
+const WITHOUT_WGPU: [&str; 8] =
+    ["base", "groom", "motion", "simulation", "record", "metrics", "testkit", "xtask"];
 
 /// Libraries that only some crates may name: how their packages' names start, and who may.
 const LIBRARIES: [(&[&str], &[&str]); 3] = [
@@ -126,13 +128,13 @@ mod tests {
     #[test]
     fn every_wrong_arrow_is_named() {
         for (wrong, word) in [
-            ("lovelock → lovelock-render", "app may use studio"),
-            ("lovelock-groom → lovelock-motion", "none of the others"),
-            ("lovelock-record → lovelock-studio", "record may use groom"),
-            ("lovelock-shadow → lovelock-motion", "shadow may use gpu, groom"),
+            ("lovelock → lovelock-render", "app may use studio, base"),
+            ("lovelock-groom → lovelock-motion", "groom may use base"),
+            ("lovelock-record → lovelock-studio", "record may use groom, base"),
+            ("lovelock-shadow → lovelock-motion", "shadow may use gpu, groom, base"),
             ("lovelock-groom → lovelock-testkit", "groom may use"),
             ("lovelock-render ⇢ lovelock-metrics", "render may use"),
-            ("lovelock-metrics → lovelock-groom", "none of the others"),
+            ("lovelock-base → lovelock-groom", "none of the others"),
             ("lovelock-groom ⇢ lovelock-simulation", "groom may use"),
             ("lovelock-studio → egui_plot", "only app"),
             ("lovelock-render ⇢ eframe", "only app"),
