@@ -3,7 +3,7 @@
 use crate::tool::run;
 
 #[test]
-fn a_scene_is_measured_stage_by_stage() {
+fn every_stage_of_a_scene_is_measured() {
     let dir = tempfile::tempdir().expect("a folder");
     let args = [
         "bench",
@@ -48,7 +48,7 @@ fn a_scene_is_measured_stage_by_stage() {
     assert!(of("frame")["median_ms"].as_f64() >= of("draw")["median_ms"].as_f64());
     let picture = of("picture")["median_ms"].as_f64().expect("a number");
     let rate = scene["pictures_per_second"].as_f64().expect("a number");
-    // Text keeps the last digit or loses it.
+    // Conversion to text may change the last digit.
     assert!((rate * picture / 1e3 - 1.0).abs() < 1e-12, "{rate} {picture}");
     assert!(scene["published_note"].is_null());
     let csv = std::fs::read_to_string(dir.path().join("a b.csv")).expect("the file");
@@ -56,7 +56,7 @@ fn a_scene_is_measured_stage_by_stage() {
 }
 
 #[test]
-fn a_published_scene_has_its_own_size_and_method_beside_the_papers_table() {
+fn a_published_scene_uses_its_own_settings_and_has_published_figures() {
     let dir = tempfile::tempdir().expect("a folder");
     let measure = |more: &[&str]| {
         let args = ["bench", "woman-300k", "--frames", "1", "--backend", "cpu", "--json"];
@@ -74,7 +74,7 @@ fn a_published_scene_has_its_own_size_and_method_beside_the_papers_table() {
     assert_eq!(published(&own, "interpolate"), Some(2.9));
     assert_eq!(published(&own, "picture").map(|ms| (1e4 / ms).round()), Some(373.0));
     assert!(own["published_note"].as_str().is_some_and(|note| note.contains("Sintorn")), "{own}");
-    // Another method in another size is beside no figure of theirs.
+    // Published figures do not apply to another method or size.
     let other = measure(&["--size", "96x64", "--shadow", "voxel-map", "--transparency", "sorted"]);
     assert_eq!((&other["width"], &other["shadow"]), (&96.into(), &"voxel-map".into()));
     assert_eq!(other["transparency"], "sorted");
@@ -83,7 +83,7 @@ fn a_published_scene_has_its_own_size_and_method_beside_the_papers_table() {
 }
 
 #[test]
-fn wrong_requests_are_refused_before_any_work() {
+fn wrong_requests_are_rejected_before_any_work() {
     let dir = tempfile::tempdir().expect("a folder");
     let wrong: [(&[&str], &str); 7] = [
         (&["bench", "wig"], "smooth-2m"),

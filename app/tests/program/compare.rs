@@ -8,10 +8,10 @@ use serde_json::Value;
 use crate::tool::{names, run, saved, small_project};
 
 #[test]
-fn a_report_has_the_keys_that_are_promised_and_its_files() {
+fn a_report_has_the_documented_keys_and_files() {
     let dir = tempfile::tempdir().expect("a folder");
     let mut project = small_project();
-    // Strands a few millimetres wide to the light, as of much hair: the truth of wider ones is slow to find.
+    // Makes strands narrower to the light: the reference takes long to converge with wide ones.
     project.look.real_hairs *= 0.05;
     saved(dir.path(), "ein Projekt ü.lovelock", &project);
     let ran = run(
@@ -52,7 +52,7 @@ fn a_report_has_the_keys_that_are_promised_and_its_files() {
         for key in ["build", "query", "draw"] {
             assert!(method["ms"][key].is_number(), "no `{key}` in {method}");
         }
-        // Thirty draws at the least.
+        // The default number of draws.
         assert_eq!(method["times"][0]["count"], Value::from(30));
     }
     let out = dir.path().join("reports/größe & ü");
@@ -69,7 +69,7 @@ fn a_report_has_the_keys_that_are_promised_and_its_files() {
 }
 
 #[test]
-fn wrong_requests_are_refused_in_one_line_and_leave_nothing() {
+fn wrong_requests_are_rejected_in_one_line_without_output() {
     let dir = tempfile::tempdir().expect("a folder");
     saved(dir.path(), "p.lovelock", &small_project());
     std::fs::write(dir.path().join("file"), b"x").expect("a file");
@@ -98,7 +98,7 @@ fn wrong_requests_are_refused_in_one_line_and_leave_nothing() {
     ];
     for (more, named, code) in wrong {
         let mut args = vec!["compare", "p.lovelock", "--size", "96x64", "--backend", "cpu"];
-        // What is said twice is refused for that.
+        // An option given twice would be rejected for that reason instead.
         if more[0] == "--size" {
             args.drain(2..4);
         }
@@ -114,7 +114,7 @@ fn wrong_requests_are_refused_in_one_line_and_leave_nothing() {
         args.extend(more);
         let ran = run(dir.path(), &args);
         let line = ran.refused(code);
-        assert!(line.contains(named), "{args:?}: `{named}` is not named: {line}");
+        assert!(line.contains(named), "{args:?}: `{named}` is missing: {line}");
         assert_eq!(names(dir.path()), before, "{args:?}");
     }
     let ran = run(dir.path(), ["compare", "p.lovelock", "-o", "report", "--methods", "fog"]);

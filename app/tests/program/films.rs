@@ -1,4 +1,4 @@
-//! `lovelock record`: pictures for a compositor, blurred ones, and recordings that something ended.
+//! `lovelock record`: EXR files, motion blur, and recordings that were interrupted.
 
 use std::path::Path;
 use std::process::Stdio;
@@ -12,7 +12,7 @@ fn folder() -> tempfile::TempDir {
     dir
 }
 
-/// What every recording here begins with.
+/// The start of every command line in these tests.
 const RECORD: [&str; 6] = ["record", "p.lovelock", "--backend", "cpu", "--json", "-o"];
 
 fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
@@ -23,7 +23,7 @@ fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
 }
 
 #[test]
-fn exr_files_blur_and_clear_backgrounds_are_told_in_the_report() {
+fn format_blur_and_transparency_are_in_the_json() {
     let dir = folder();
     let more = [
         "x",
@@ -58,7 +58,7 @@ fn exr_files_blur_and_clear_backgrounds_are_told_in_the_report() {
 }
 
 #[test]
-fn a_recording_that_was_killed_goes_on_to_the_same_bytes() {
+fn a_killed_recording_resumes_to_the_same_bytes() {
     let dir = folder();
     let more =
         |out: &'static str| [out, "--frames", "0..40", "--size", "200x150", "--motion-blur", "2", "--resume"];
@@ -76,18 +76,18 @@ fn a_recording_that_was_killed_goes_on_to_the_same_bytes() {
         all.filter(|entry| entry.path().extension().is_some_and(|ending| ending == "png")).count()
     };
     while pictures(&parts) < 5 {
-        assert!(child.try_wait().expect("its state").is_none(), "it ended by itself");
+        assert!(child.try_wait().expect("its state").is_none(), "it ended before it was killed");
         std::thread::sleep(std::time::Duration::from_millis(2));
     }
     child.kill().expect("killed");
     child.wait().expect("gone");
-    assert!(!parts.join("manifest.json").exists(), "nothing says that it is whole");
+    assert!(!parts.join("manifest.json").exists(), "the manifest of an unfinished sequence exists");
     let there = pictures(&parts);
     let json = run(dir.path(), RECORD.iter().chain(&more("parts"))).done().json();
     let kept = json["frames_kept"].as_u64().expect("a number");
-    println!("{there} pictures were there, {kept} were kept");
+    println!("{there} images existed, {kept} were kept");
     assert!(kept >= 1 && kept as usize <= there, "{kept} of {there}");
-    assert!(contents(&parts) == contents(&dir.path().join("whole")), "byte for byte");
+    assert!(contents(&parts) == contents(&dir.path().join("whole")), "the bytes differ");
     let mut other = small_project();
     other.look.roughness += 0.1;
     saved(dir.path(), "p.lovelock", &other);
@@ -96,7 +96,7 @@ fn a_recording_that_was_killed_goes_on_to_the_same_bytes() {
 }
 
 #[test]
-fn a_second_recording_to_one_place_is_refused_and_the_first_is_whole() {
+fn a_second_recording_to_the_same_output_is_rejected() {
     let dir = folder();
     for (out, finished) in [("one", "one/manifest.json"), ("one.mp4", "one.mp4")] {
         let more = [out, "--frames", "0..60", "--size", "200x150"];
@@ -119,10 +119,10 @@ fn a_second_recording_to_one_place_is_refused_and_the_first_is_whole() {
     assert_eq!(names(&dir.path().join("one")).len(), 61);
 }
 
-/// A disk on which no file gets longer than 4 kB. A shell's limit stands for it: the system then refuses a write as a full disk does.
+/// A shell's limit on file sizes stands for a full disk: the system rejects a write in the same way.
 #[cfg(target_os = "linux")]
 #[test]
-fn a_disk_that_fills_ends_a_recording_with_a_line_and_nothing_under_its_name() {
+fn a_full_disk_ends_a_recording_with_an_error_and_leaves_no_output() {
     let dir = folder();
     for (out, more) in [("a.mp4", ""), ("a.apng", ""), ("a", ""), ("e", "--format exr")] {
         let program = env!("CARGO_BIN_EXE_lovelock");
@@ -137,11 +137,11 @@ fn a_disk_that_fills_ends_a_recording_with_a_line_and_nothing_under_its_name() {
         assert!(!ran.stderr.contains("panicked"), "{ran:?}");
     }
     let left = names(dir.path());
-    assert_eq!(left, ["p.lovelock"], "nothing unfinished stays");
+    assert_eq!(left, ["p.lovelock"], "unfinished files are left");
 }
 
 #[test]
-fn ranges_beyond_a_take_are_refused_with_what_it_holds() {
+fn frames_outside_a_take_are_rejected_with_its_range() {
     let dir = folder();
     run(dir.path(), ["record", "p.lovelock", "-o", "d.take", "--frames", "0..12", "--json"]).done();
     for wrong in ["0..99", "90..95"] {
@@ -150,7 +150,7 @@ fn ranges_beyond_a_take_are_refused_with_what_it_holds() {
         assert!(said.contains(wrong) && said.contains("d.take") && said.contains("frames 0.."), "{said}");
     }
     assert!(!dir.path().join("x").exists());
-    // Sub-frames past the last one show the last one.
+    // Samples after the last frame show the last frame.
     let more =
         ["record", "d.take", "-o", "x", "--frames", "11..12", "--motion-blur", "4", "--shutter", "360"];
     run(dir.path(), more.iter().chain(&["--backend", "cpu", "--json"])).done();

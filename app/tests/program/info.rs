@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use crate::tool::run;
 
-/// A file of the folder with real files, and what must be said of it.
+/// A file in the folder of real files, and the values that must be reported for it.
 type Fact = (&'static str, Value);
 
 #[track_caller]
@@ -15,13 +15,12 @@ fn said(data: &Path, file: &str) -> Value {
     let json = ran.done().json();
     assert_eq!(json["file"], file);
     assert!(json["format"].is_string() && json["notes"].is_array() && json["dropped"].is_object(), "{json}");
-    // What people read has the same numbers.
     json
 }
 
-/// Every field of `facts` must be in `said`; lengths and times within a thousandth.
+/// Checks that `said` has every field of `facts`, with numbers equal to within a thousandth.
 #[track_caller]
-fn holds(file: &str, said: &Value, facts: &Value) {
+fn assert_facts(file: &str, said: &Value, facts: &Value) {
     for (key, wanted) in facts.as_object().expect("facts") {
         let found = &said[key];
         let same = match (found.as_f64(), wanted.as_f64()) {
@@ -33,7 +32,7 @@ fn holds(file: &str, said: &Value, facts: &Value) {
 }
 
 #[test]
-fn hair_files() {
+fn hair_files_are_described() {
     let Some(data) = lovelock_testkit::data_dir() else { return };
     let hair = |strands: u64, points: u64| json!({"kind": "hair", "strands": strands, "points": points, "segments": points - strands});
     let files: [Fact; 9] = [
@@ -49,17 +48,17 @@ fn hair_files() {
     ];
     for (file, facts) in files {
         let said = said(&data, file);
-        holds(file, &said, &facts);
+        assert_facts(file, &said, &facts);
         assert_eq!(said["dropped"], json!({}), "{file}");
         let size = |axis: usize| {
             said["bounds_m"]["max"][axis].as_f64().expect("metres")
                 - said["bounds_m"]["min"][axis].as_f64().expect("metres")
         };
-        // Hair of a head, whatever its unit was: from a hand's breadth to a long mane.
+        // The size of hair on a head in metres, whatever the unit of the file.
         assert!((0..3).all(|axis| (0.05..1.5).contains(&size(axis))), "{file}: {}", said["bounds_m"]);
     }
     let straight = said(&data, "hair/yuksel/straight.hair");
-    holds("straight.hair", &straight, &json!({"up": "z", "facing": "+y", "unit_guessed": true}));
+    assert_facts("straight.hair", &straight, &json!({"up": "z", "facing": "+y", "unit_guessed": true}));
     assert_eq!(said(&data, "hair/tressfx/Ratboy_mohawk.tfx")["unit"], "m");
     assert_eq!(
         said(&data, "hair/tressfx/Ratboy_mohawk_v40.tfx")["unit"],
@@ -69,7 +68,7 @@ fn hair_files() {
 }
 
 #[test]
-fn characters() {
+fn characters_are_described() {
     let Some(data) = lovelock_testkit::data_dir() else { return };
     let files: [Fact; 9] = [
         ("characters/CesiumMan.glb", json!({"joints": 19, "skins": 1, "vertices": 3273, "triangles": 4672})),
@@ -85,7 +84,7 @@ fn characters() {
     for (file, facts) in files {
         let said = said(&data, file);
         assert_eq!(said["kind"], "character", "{file}");
-        holds(file, &said, &facts);
+        assert_facts(file, &said, &facts);
         assert_eq!(said["dropped"], json!({}), "{file}");
     }
     let clips = |file| {
@@ -103,7 +102,7 @@ fn characters() {
     };
     let robot = clips("characters/robot.glb");
     assert_eq!(robot.len(), 14);
-    // 3.33 s, as its makers say.
+    // The duration that the makers of the file state.
     assert!(
         robot.iter().any(|(name, secs)| name == "Robot_Dance" && (secs - 3.333).abs() < 1e-3),
         "{robot:?}"
@@ -115,7 +114,7 @@ fn characters() {
 }
 
 #[test]
-fn motions() {
+fn motions_are_described() {
     let Some(data) = lovelock_testkit::data_dir() else { return };
     let files: [Fact; 6] = [
         ("motion/jesse_dance.bvh", json!({"joints": 60, "frames": 1007, "frame_secs": 0.01})),
@@ -123,22 +122,22 @@ fn motions() {
         ("motion/fair1_dab.bvh", json!({"joints": 27, "frames": 339})),
         ("motion/mh_tpose.bvh", json!({"joints": 173, "frames": 1})),
         ("motion/mh_walk1.bvh", json!({"joints": 75, "frames": 14})),
-        // Its header says one fewer than it has rows.
+        // Its header states one frame less than the file has.
         ("motion/assimp_Boxing_Toes.bvh", json!({"joints": 21, "frames": 3070})),
     ];
     for (file, facts) in files {
         let said = said(&data, file);
         assert_eq!(said["kind"], "motion", "{file}");
-        holds(file, &said, &facts);
+        assert_facts(file, &said, &facts);
     }
     let boxing = said(&data, "motion/assimp_Boxing_Toes.bvh");
-    assert!(boxing["notes"].to_string().contains("3069"), "the wrong header is told: {boxing}");
+    assert!(boxing["notes"].to_string().contains("3069"), "the wrong header is not reported: {boxing}");
 }
 
 #[test]
-fn broken_files_are_counted_or_refused() {
+fn broken_files_are_repaired_or_rejected() {
     let Some(data) = lovelock_testkit::data_dir() else { return };
-    // What is left out and how often, or a word of the one line that refuses.
+    // The counts of what is dropped, or a word of the error.
     let files: [(&str, Result<Value, &str>); 25] = [
         ("hair/broken/allflags.hair", Ok(json!({}))),
         ("hair/broken/nosegs.hair", Ok(json!({}))),
@@ -174,7 +173,7 @@ fn broken_files_are_counted_or_refused() {
     }
     for (file, wanted) in files {
         let ran = run(&data, ["info", "--json", file]);
-        // A guard against a hang, far above the second that is wanted: this machine may be busy.
+        // Detects a hang. A run takes about a second, and much longer on a busy machine.
         assert!(ran.took_secs < 20.0, "{file} took {} s", ran.took_secs);
         match wanted {
             Ok(dropped) => assert_eq!(ran.done().json()["dropped"], dropped, "{file}"),
@@ -188,7 +187,7 @@ fn broken_files_are_counted_or_refused() {
 }
 
 #[test]
-fn the_dancer_and_names_that_are_not_ascii() {
+fn info_accepts_names_that_are_not_ascii() {
     let dancer = Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets/dancer.glb");
     let dir = tempfile::tempdir().expect("a folder");
     let name = "eine Tänzerin – 舞.glb";
@@ -202,7 +201,7 @@ fn the_dancer_and_names_that_are_not_ascii() {
     let dance = &json["clips"][0];
     assert_eq!(dance["name"], "dance");
     assert!(dance["duration_secs"].as_f64().is_some_and(|secs| secs >= 8.0), "{dance}");
-    // For people: the same file, in lines.
+    // Without --json the same facts are printed as text.
     let ran = run(dir.path(), ["info", name]);
     assert!(ran.done().stdout.starts_with(name) && ran.stdout.contains("character"), "{ran:?}");
 }

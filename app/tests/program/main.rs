@@ -1,4 +1,4 @@
-//! The whole program, run as a user runs it.
+//! Tests of the whole program, run from the command line as a user runs it.
 
 mod bench;
 mod compare;

@@ -10,7 +10,7 @@ use tempfile::TempDir;
 
 use crate::tool::{Ran, lovelock, names, run, run_command, saved, small_project};
 
-/// The keys that scripts may rely on.
+/// The keys of the JSON output that scripts may rely on.
 const KEYS: [&str; 17] = [
     "out",
     "frames",
@@ -31,18 +31,19 @@ const KEYS: [&str; 17] = [
     "state_hash",
 ];
 
-/// The same four frames as a film and as pictures, with other numbers of threads: recorded once, looked at by many.
-struct Takes {
+/// The same four frames as a film and as image sequences, recorded once with different numbers of threads and shared by
+/// several tests.
+struct Recordings {
     dir: TempDir,
     film: Ran,
-    /// By 1, 2 and 8 threads.
+    /// Recorded with 1, 2 and 8 threads.
     pictures: Vec<Ran>,
 }
 
 const FILM: &str = "films of mine/größe & ü.mp4";
 
-fn takes() -> Option<&'static Takes> {
-    static TAKES: OnceLock<Option<Takes>> = OnceLock::new();
+fn recordings() -> Option<&'static Recordings> {
+    static RECORDINGS: OnceLock<Option<Recordings>> = OnceLock::new();
     let make = || {
         let dir = tempfile::tempdir().expect("a folder");
         saved(dir.path(), "ein Projekt ü.lovelock", &small_project());
@@ -52,27 +53,31 @@ fn takes() -> Option<&'static Takes> {
         };
         let film = record("2", FILM);
         let pictures = ["1", "2", "8"].map(|threads| record(threads, &format!("frames {threads}"))).into();
-        Some(Takes { dir, film, pictures })
+        Some(Recordings { dir, film, pictures })
     };
-    TAKES.get_or_init(make).as_ref()
+    RECORDINGS.get_or_init(make).as_ref()
 }
 
 #[test]
-fn a_film_is_whole_and_can_be_read() {
-    let Some(takes) = takes() else { return };
-    takes.film.done();
-    let film = read_film(&takes.dir.path().join(FILM)).expect("a film");
+fn a_recorded_film_can_be_read_back() {
+    let Some(recordings) = recordings() else { return };
+    recordings.film.done();
+    let film = read_film(&recordings.dir.path().join(FILM)).expect("a film");
     assert_eq!((film.width, film.height, film.frames), (96, 64, 4));
     assert_eq!(film.codec, "avc1");
-    // Four frames at 30 a second; ticks of the file may round it by less than a thousandth.
+    // Four frames at 30 per second; the time base of the file may round the duration by less than a thousandth.
     assert!((film.duration_secs - 4.0 / 30.0).abs() < 1e-3, "{}", film.duration_secs);
-    assert_eq!(names(&takes.dir.path().join("films of mine")), ["größe & ü.mp4"], "nothing beside it");
+    assert_eq!(
+        names(&recordings.dir.path().join("films of mine")),
+        ["größe & ü.mp4"],
+        "other files are left beside it"
+    );
 }
 
 #[test]
-fn the_json_has_the_keys_that_are_promised() {
-    let Some(takes) = takes() else { return };
-    for ran in takes.pictures.iter().chain([&takes.film]) {
+fn the_json_has_the_documented_keys() {
+    let Some(recordings) = recordings() else { return };
+    for ran in recordings.pictures.iter().chain([&recordings.film]) {
         let json = ran.done().json();
         for key in KEYS {
             assert!(!json[key].is_null(), "no `{key}` in {json}");
@@ -85,7 +90,7 @@ fn the_json_has_the_keys_that_are_promised() {
         assert_eq!(
             (&json["strands"], &json["segments"]),
             (&128.into(), &1280.into()),
-            "16 wisps of 8, each of 10"
+            "not 16 wisps of 8 strands of 10 segments"
         );
         assert_eq!(json["recovered_guides"], 0);
         assert!(json["max_stretch"].as_f64().is_some_and(|v| v < 1e-3), "{json}");
@@ -93,36 +98,36 @@ fn the_json_has_the_keys_that_are_promised() {
         let hash = json["state_hash"].as_str().expect("text");
         assert!(hash.len() == 16 && hash.bytes().all(|b| b.is_ascii_hexdigit()), "{hash}");
         for line in ran.stderr.lines() {
-            assert!(!line.starts_with('{') && !line.contains('\r'), "plain lines of progress: {line:?}");
+            assert!(!line.starts_with('{') && !line.contains('\r'), "progress is not plain lines: {line:?}");
         }
     }
-    assert_eq!(takes.film.json()["out"], FILM);
+    assert_eq!(recordings.film.json()["out"], FILM);
 }
 
 #[test]
-fn the_number_of_threads_changes_no_byte() {
-    let Some(takes) = takes() else { return };
-    let hash = takes.film.done().json()["state_hash"].clone();
+fn the_number_of_threads_does_not_change_a_byte() {
+    let Some(recordings) = recordings() else { return };
+    let hash = recordings.film.done().json()["state_hash"].clone();
     let pictures = |threads: &str| -> Vec<(String, Vec<u8>)> {
-        let folder = takes.dir.path().join(format!("frames {threads}"));
+        let folder = recordings.dir.path().join(format!("frames {threads}"));
         let pngs =
             names(&folder).into_iter().filter(|name| Path::new(name).extension().is_some_and(|e| e == "png"));
         pngs.map(|name| (name.clone(), std::fs::read(folder.join(name)).expect("a picture"))).collect()
     };
-    for ran in &takes.pictures {
+    for ran in &recordings.pictures {
         assert_eq!(ran.done().json()["state_hash"], hash);
     }
     let one = pictures("1");
     let found: Vec<&str> = one.iter().map(|(name, _)| name.as_str()).collect();
     assert_eq!(found, ["frame_000003.png", "frame_000004.png", "frame_000005.png", "frame_000006.png"]);
     assert!(one == pictures("2") && one == pictures("8"));
-    assert_ne!(one[0].1, one[3].1, "it dances: the test would see frames that never change");
+    assert_ne!(one[0].1, one[3].1, "the first and the last frame are the same, so the test compares nothing");
 }
 
 #[test]
-fn a_folder_of_pictures_has_a_manifest_and_nothing_unfinished() {
-    let Some(takes) = takes() else { return };
-    let folder = takes.dir.path().join("frames 1");
+fn an_image_sequence_has_a_manifest_and_no_temporary_files() {
+    let Some(recordings) = recordings() else { return };
+    let folder = recordings.dir.path().join("frames 1");
     let found = names(&folder);
     assert_eq!(found.len(), 5, "{found:?}");
     let manifest = found
@@ -136,7 +141,7 @@ fn a_folder_of_pictures_has_a_manifest_and_nothing_unfinished() {
 }
 
 #[test]
-fn options_go_before_the_project() {
+fn options_override_the_project() {
     let dir = tempfile::tempdir().expect("a folder");
     saved(dir.path(), "p.lovelock", &small_project());
     let args = [
@@ -162,18 +167,18 @@ fn options_go_before_the_project() {
     assert_eq!((&json["shadow"], &json["backend"]), (&"none".into(), &"cpu".into()));
     let film = read_film(&dir.path().join("a.mp4")).expect("a film");
     assert_eq!((film.width, film.height, film.frames), (64, 48, 2));
-    // Without --json: sentences for people, the same facts.
+    // Without --json the same facts are printed as text.
     let ran = run(dir.path(), ["record", "p.lovelock", "-o", "a.mp4", "--frames", "0..1"]);
     assert!(ran.done().stdout.contains("a.mp4: 1 frames of 96x64"), "{ran:?}");
     assert_eq!(
         read_film(&dir.path().join("a.mp4")).expect("the new film").frames,
         1,
-        "it replaced the old one"
+        "the old film was not replaced"
     );
 }
 
 #[test]
-fn a_project_with_missing_files_records_and_says_what_is_missing() {
+fn a_project_with_missing_files_records_and_reports_them() {
     let dir = tempfile::tempdir().expect("a folder");
     let mut project = small_project();
     project.set_hair_file(dir.path().join("no such hair.hair"));
@@ -185,7 +190,7 @@ fn a_project_with_missing_files_records_and_says_what_is_missing() {
     let json = ran.done().json();
     let notes = json["notes"].to_string();
     for file in ["no such hair.hair", "no such dance.bvh", "no such body.glb"] {
-        assert!(ran.stderr.contains(file), "{file} is not told: {}", ran.stderr);
+        assert!(ran.stderr.contains(file), "{file} is not reported: {}", ran.stderr);
         assert!(notes.contains(file), "{file} is not in {notes}");
     }
     assert_eq!(read_film(&dir.path().join("a.mp4")).expect("a film").frames, 2);
@@ -193,22 +198,25 @@ fn a_project_with_missing_files_records_and_says_what_is_missing() {
 
 #[cfg(unix)]
 #[test]
-fn a_full_disk_stops_the_recording_and_leaves_nothing() {
+fn a_full_disk_stops_the_recording_without_partial_files() {
     let dir = tempfile::tempdir().expect("a folder");
     saved(dir.path(), "p.lovelock", &small_project());
     for (out, limit) in [("a.mp4", 4), ("frames", 2)] {
-        // No file may grow past some kilobytes: writing fails as on a full disk, without a signal.
+        // The limit on file sizes makes writing fail as on a full disk; ignoring XFSZ avoids the signal.
         let script = format!(
             "trap '' XFSZ; ulimit -f {limit}; exec \"$0\" record p.lovelock -o {out} --frames 0..12 --size 256x192 --json"
         );
         let mut shell = std::process::Command::new("sh");
         shell.current_dir(dir.path()).arg("-c").arg(script).arg(env!("CARGO_BIN_EXE_lovelock"));
-        // Drivers keep compiled shaders in files, which are not what is tested here.
+        // Keeps drivers from writing their caches of compiled shaders, which the limit would affect too.
         shell.env("MESA_SHADER_CACHE_DISABLE", "true");
         let ran = run_command(&mut shell);
         assert_eq!(ran.code, Some(1), "{ran:?}");
         let told: Vec<&str> = ran.stderr.lines().filter(|line| line.starts_with("lovelock:")).collect();
-        assert!(matches!(told[..], [line] if line.contains(out)), "one line that names the file: {ran:?}");
+        assert!(
+            matches!(told[..], [line] if line.contains(out)),
+            "not one line that names the file: {ran:?}"
+        );
         let error = &ran.json()["error"];
         assert!(error["file"].as_str().is_some_and(|file| file.contains(out)), "{error}");
         let left = names(dir.path());
@@ -220,14 +228,14 @@ fn a_full_disk_stops_the_recording_and_leaves_nothing() {
             assert!(!name.contains("partial"), "{name}");
             if Path::new(&name).extension().is_some_and(|ending| ending == "png") {
                 let bytes = std::fs::read(frames.join(&name)).expect("a picture");
-                assert!(bytes.ends_with(b"IEND\xae\x42\x60\x82"), "{name} is cut");
+                assert!(bytes.ends_with(b"IEND\xae\x42\x60\x82"), "{name} is truncated");
             }
         }
     }
 }
 
 #[test]
-fn a_place_that_cannot_be_written_is_named() {
+fn an_output_that_cannot_be_written_is_named() {
     let dir = tempfile::tempdir().expect("a folder");
     saved(dir.path(), "p.lovelock", &small_project());
     std::fs::write(dir.path().join("a file"), b"x").expect("a file");
@@ -242,7 +250,7 @@ fn a_place_that_cannot_be_written_is_named() {
 }
 
 #[test]
-fn only_the_files_of_the_command_line_must_be_there() {
+fn only_files_named_on_the_command_line_must_exist() {
     let Some(data) = lovelock_testkit::data_dir() else { return };
     let dir = tempfile::tempdir().expect("a folder");
     let mut project = small_project();
@@ -253,11 +261,11 @@ fn only_the_files_of_the_command_line_must_be_there() {
         let args = ["record", "p.lovelock", "-o", "a.mp4", "--frames", "0..1", option];
         run(dir.path(), args.iter().map(std::ffi::OsStr::new).chain([file.as_os_str()]))
     };
-    // What the project lacks is replaced, whatever else is named here.
+    // Missing files of the project are replaced by defaults.
     let ran = record("--motion", "motion/cmu1_jumping_jacks.bvh");
     assert!(ran.done().stderr.contains("no such hair.hair"), "{}", ran.stderr);
     std::fs::remove_file(dir.path().join("a.mp4")).expect("the film");
-    // What is named here is not.
+    // Broken files on the command line are errors.
     for (option, file) in
         [("--hair", "hair/broken/truncated.hair"), ("--body", "characters/broken/badArray.gltf")]
     {
@@ -269,7 +277,7 @@ fn only_the_files_of_the_command_line_must_be_there() {
 }
 
 #[test]
-fn files_are_taken_instead_of_the_projects() {
+fn files_on_the_command_line_replace_those_of_the_project() {
     let Some(data) = lovelock_testkit::data_dir() else { return };
     let dir = tempfile::tempdir().expect("a folder");
     let hair = data.join("hair/tressfx/sintel_vk.tfx");
@@ -289,12 +297,12 @@ fn files_are_taken_instead_of_the_projects() {
         motion.as_os_str(),
     ]));
     let json = ran.done().json();
-    assert_eq!(json["strands"], 228, "every strand of the file is drawn");
+    assert_eq!(json["strands"], 228, "strands of the file are missing");
     assert_eq!(read_film(&dir.path().join("a.mp4")).expect("a film").frames, 2);
 }
 
 #[test]
-fn the_card_records_any_combination_and_tells_its_passes() {
+fn the_gpu_records_other_methods_and_reports_its_passes() {
     let dir = tempfile::tempdir().expect("a folder");
     saved(dir.path(), "p.lovelock", &small_project());
     let record = |backend: &str, shadow: &str, transparency: &str| {
@@ -315,19 +323,19 @@ fn the_card_records_any_combination_and_tells_its_passes() {
         assert_eq!(json["frames"], 2);
         assert!(json["shadow_bytes"].as_u64() > Some(0) && json["draw_bytes"].as_u64() > Some(0), "{json}");
         for pass in passes {
-            // A card without timers measures none.
+            // A GPU without timers reports no passes.
             let told = json["passes_ms"].as_object().expect("passes");
             assert!(told.is_empty() || told[pass].as_f64() > Some(0.0), "{pass}: {json}");
         }
     }
-    // The control: the processor has no such passes.
+    // Control: the CPU backend has other passes.
     let json = record("cpu", "occupancy-maps", "occupancy-order").done().json();
     assert_eq!(json["backend"], "cpu");
     assert!(json["passes_ms"]["draw/tiles"].as_f64() > Some(0.0), "{json}");
     assert!(json["passes_ms"]["shadow/range"].is_null());
 }
 
-/// A tuft of 40 strands of three points in Yuksel's layout: a header of 128 bytes, then points.
+/// A Yuksel `.hair` file of 40 strands with three points each: a header of 128 bytes, then the points.
 fn tuft() -> Vec<u8> {
     let mut bytes = b"HAIR".to_vec();
     for number in [40_u32, 120, 2, 2] {
@@ -343,7 +351,7 @@ fn tuft() -> Vec<u8> {
 }
 
 #[test]
-fn a_take_reads_the_files_elsewhere_that_are_named_beside_it_and_no_others() {
+fn a_take_reads_files_outside_its_folder_only_if_they_are_named() {
     let (hair, takes) = (tempfile::tempdir().expect("a folder"), tempfile::tempdir().expect("a folder"));
     let (file, other) = (hair.path().join("tuft.hair"), hair.path().join("other.hair"));
     std::fs::write(&file, tuft()).expect("a file");
@@ -365,7 +373,7 @@ fn a_take_reads_the_files_elsewhere_that_are_named_beside_it_and_no_others() {
 }
 
 #[test]
-fn takes_are_drawn_beside_each_other_the_same_each_time() {
+fn takes_beside_each_other_give_the_same_image_each_time() {
     let dir = tempfile::tempdir().expect("a folder");
     let run = |args: &[&str]| run(dir.path(), args);
     let mut project = small_project();
@@ -387,13 +395,16 @@ fn takes_are_drawn_beside_each_other_the_same_each_time() {
         let half = |from: usize| -> Vec<u8> {
             decoded.chunks_exact(4 * 320).flat_map(|row| row[4 * from..4 * (from + 150)].to_vec()).collect()
         };
-        // The last columns of each pane of 158, with a gap of 4 between them.
+        // The last 150 columns of each pane; a pane is 158 wide, with a gap of 4 between the two.
         [half(8), half(170)]
     };
     let [calm, windy] = draw("windy.take", "a");
-    assert!(draw("windy.take", "b") == [calm.clone(), windy.clone()], "no time of drawing is in it");
+    assert!(
+        draw("windy.take", "b") == [calm.clone(), windy.clone()],
+        "the image depends on the run, for instance on a measured time"
+    );
     assert!(calm != windy);
-    // The control: beside itself the takes differ in their labels alone, which stand in the uppermost rows.
+    // Control: a take beside itself differs only in the labels, which are in the top rows.
     let [same, itself] = draw("calm.take", "c");
     assert!(same == calm);
     let below = |half: &[u8]| half[4 * 150 * 40..].to_vec();
@@ -402,7 +413,7 @@ fn takes_are_drawn_beside_each_other_the_same_each_time() {
     assert!(refused.refused(2).contains("a take was wanted"), "{refused:?}");
 }
 
-/// The pixels of a PNG file, four bytes each.
+/// The pixels of a PNG file, four bytes per pixel.
 fn image_of(path: &std::path::Path) -> Vec<u8> {
     let file = std::io::BufReader::new(std::fs::File::open(path).expect("a file"));
     let mut reader = png::Decoder::new(file).read_info().expect("a PNG file");

@@ -1,9 +1,9 @@
-//! Wrong requests: exit status 2, one line that names what is wrong, and nothing written.
+//! Wrong requests end with exit status 2 and one line that names what is wrong, and write nothing.
 
 use crate::tool::{names, run, saved, small_project};
 
 #[test]
-fn wrong_options_are_refused_in_one_line() {
+fn wrong_options_are_rejected_in_one_line() {
     let dir = tempfile::tempdir().expect("a folder");
     saved(dir.path(), "p.lovelock", &small_project());
     std::fs::create_dir(dir.path().join("folder")).expect("a folder");
@@ -55,7 +55,7 @@ fn wrong_options_are_refused_in_one_line() {
             }
             let ran = run(dir.path(), &args);
             let line = ran.refused(2);
-            assert!(line.contains(named), "{args:?}: `{named}` is not named: {line}");
+            assert!(line.contains(named), "{args:?}: `{named}` is missing: {line}");
             if json {
                 let error = &ran.json()["error"];
                 assert!(error["message"].as_str().is_some_and(|m| line.contains(m)), "{args:?}: {error}");
@@ -65,7 +65,7 @@ fn wrong_options_are_refused_in_one_line() {
             }
         }
     }
-    assert_eq!(names(dir.path()), before, "nothing was written");
+    assert_eq!(names(dir.path()), before, "something was written");
 }
 
 #[test]
@@ -80,7 +80,7 @@ fn an_error_in_json_names_its_file() {
 }
 
 #[test]
-fn help_and_version_are_no_errors() {
+fn help_and_version_succeed() {
     let dir = tempfile::tempdir().expect("a folder");
     for args in [&["--help"][..], &["--version"], &["record", "--help"], &["help", "info"]] {
         let ran = run(dir.path(), args);
@@ -89,12 +89,15 @@ fn help_and_version_are_no_errors() {
 }
 
 #[test]
-fn a_window_without_a_display_is_an_error_and_no_crash() {
+fn a_window_without_a_display_is_an_error() {
     let dir = tempfile::tempdir().expect("a folder");
-    // What macOS and Windows open needs no variable, so the program would stay open there.
+    // macOS and Windows need no environment variable to open a window, so the program would not exit there.
     if cfg!(all(unix, not(target_os = "macos"))) {
         let ran = run(dir.path(), Vec::<&str>::new());
         let line = ran.refused(1);
-        assert!(line.contains("lovelock record"), "what works without a display: {line}");
+        assert!(
+            line.contains("lovelock record"),
+            "the command that works without a display is missing: {line}"
+        );
     }
 }

@@ -1,4 +1,4 @@
-//! Runs the program and looks at what it left.
+//! Runs the program and reads its output and files.
 
 use std::ffi::OsStr;
 use std::fs::File;
@@ -10,10 +10,10 @@ use lovelock_studio::groom::Preset;
 use lovelock_studio::{Project, Stopwatch, save_project};
 use serde_json::Value;
 
-/// No run of these tests takes a tenth of it; what takes longer hangs.
-const HANGS_SECS: f64 = 120.0;
+/// Time after which a run counts as hanging; every run of these tests takes less than a tenth of it.
+const TIMEOUT_SECS: f64 = 120.0;
 
-/// How a run of the program ended.
+/// The result of one run of the program.
 #[derive(Debug)]
 pub struct Ran {
     pub code: Option<i32>,
@@ -23,7 +23,7 @@ pub struct Ran {
 }
 
 impl Ran {
-    /// The one JSON object on standard output.
+    /// The JSON object on standard output; fails if there is anything else.
     #[track_caller]
     pub fn json(&self) -> Value {
         let value: Value = serde_json::from_str(&self.stdout)
@@ -32,18 +32,18 @@ impl Ran {
         value
     }
 
-    /// The one line on standard error of a run that must end with `code`.
+    /// The only line on standard error of a run that must end with `code`.
     #[track_caller]
     pub fn refused(&self, code: i32) -> &str {
         assert_eq!(self.code, Some(code), "{self:?}");
         let line = self.stderr.trim_end_matches('\n');
-        assert!(!line.is_empty() && line.lines().count() == 1, "one line: {self:?}");
-        assert!(line.len() < 700, "a sentence: {self:?}");
+        assert!(!line.is_empty() && line.lines().count() == 1, "not one line: {self:?}");
+        assert!(line.len() < 700, "longer than a sentence: {self:?}");
         assert!(!line.contains("panicked"), "{self:?}");
         line
     }
 
-    /// Whether it ended well.
+    /// Fails unless the run succeeded.
     #[track_caller]
     pub fn done(&self) -> &Self {
         assert_eq!(self.code, Some(0), "{self:?}");
@@ -51,23 +51,23 @@ impl Ran {
     }
 }
 
-/// The program, with nothing of a display.
+/// The program, without a display.
 pub fn lovelock() -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lovelock"));
     command.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").env_remove("LOVELOCK_LOG");
     command
 }
 
-/// Runs it to its end.
+/// Runs the program until it exits.
 #[track_caller]
 pub fn run<A: AsRef<OsStr>>(folder: &Path, args: impl IntoIterator<Item = A>) -> Ran {
     run_command(lovelock().current_dir(folder).args(args))
 }
 
-/// Runs a command to its end, and kills it where it hangs.
+/// Runs a command until it exits; kills it and fails if it hangs.
 #[track_caller]
 pub fn run_command(command: &mut Command) -> Ran {
-    // Files rather than pipes: nothing waits for a reader.
+    // Files instead of pipes, so that the program never blocks on a full pipe.
     let dir = tempfile::tempdir().expect("a folder");
     let (out, err) = (dir.path().join("out"), dir.path().join("err"));
     let watch = Stopwatch::start();
@@ -78,10 +78,10 @@ pub fn run_command(command: &mut Command) -> Ran {
         .spawn()
         .expect("the program starts");
     let status = loop {
-        if let Some(status) = child.try_wait().expect("its state") {
+        if let Some(status) = child.try_wait().expect("the state of the process") {
             break status;
         }
-        if watch.secs() > HANGS_SECS {
+        if watch.secs() > TIMEOUT_SECS {
             let _ = child.kill();
             let _ = child.wait();
             panic!("hangs: {command:?}");
@@ -92,7 +92,7 @@ pub fn run_command(command: &mut Command) -> Ran {
     Ran { code: status.code(), stdout: read(out), stderr: read(err), took_secs: watch.secs() }
 }
 
-/// A project with few strands and small maps, so that a frame of it is soon drawn.
+/// A project with few strands and small maps, of which a frame is drawn quickly.
 pub fn small_project() -> Project {
     let mut project = Project::default();
     project.set_preset(Preset::Smooth);
@@ -104,14 +104,14 @@ pub fn small_project() -> Project {
     project
 }
 
-/// Saves a project and names it.
+/// Saves a project and returns its path.
 pub fn saved(folder: &Path, name: &str, project: &Project) -> std::path::PathBuf {
     let path = folder.join(name);
     save_project(&path, project).expect("the project is saved");
     path
 }
 
-/// Names of everything in a folder, sorted.
+/// The names of all entries of a folder, sorted.
 pub fn names(folder: &Path) -> Vec<String> {
     let mut names: Vec<String> = std::fs::read_dir(folder)
         .expect("a folder")

@@ -1,4 +1,4 @@
-//! The comparison in the whole window: panes come, are changed, swapped, used and removed, by one step of undo each.
+//! The comparison in the whole window: adding, changing, swapping, using and removing panes, each as one undo step.
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
@@ -13,7 +13,7 @@ use crate::window::Window;
 
 type Whole = Harness<'static, Shown<Option<Window>>>;
 
-/// The window with its panes on the screen, drawn.
+/// The window with all its panes drawn.
 fn comparing() -> Whole {
     let mut harness = window();
     key(&mut harness, Modifiers::NONE, Key::Space);
@@ -22,7 +22,7 @@ fn comparing() -> Whole {
     harness
 }
 
-/// Whether that many panes are there as the project has them.
+/// Whether that many panes are drawn with the project's current settings.
 fn drawn(window: &Window, panes: usize) -> bool {
     let wanted = &window.history.project().compare.panes;
     wanted.len() == panes
@@ -44,7 +44,7 @@ fn panes_are_drawn_with_their_cost_and_error() {
         let pane = of(&harness).compare.pane(index).expect("a pane");
         assert_eq!(pane.contender.shadow.method, *method);
         assert!(pane.times.whole > 0.0 && !pane.picture.rgba.is_empty());
-        // On a graphics card the exact method is measured as the others are.
+        // On the GPU the exact method has an error too.
         let by_processor = pane.adapter.backend == lovelock_studio::render::Backend::Cpu;
         match &pane.error {
             LiveError::Reference => assert!(*method == ShadowMethod::Exact && by_processor),
@@ -57,14 +57,14 @@ fn panes_are_drawn_with_their_cost_and_error() {
             other => panic!("{method}: {other:?}"),
         }
     }
-    // Out of sight they are not drawn.
+    // Hidden panes are not drawn.
     key(&mut harness, Modifiers::NONE, Key::C);
     assert!(harness.query_by_role_and_label(Role::Image, "Pane 1").is_none());
     assert!(harness.query_by_role_and_label(Role::Image, "Viewport").is_some());
 }
 
 #[test]
-fn panes_are_added_swapped_used_and_removed_by_one_click_and_one_step() {
+fn adding_swapping_using_and_removing_a_pane_are_one_undo_step_each() {
     let mut harness = comparing();
     let before = methods(&harness);
     assert_eq!(before.len(), 4);
@@ -101,7 +101,7 @@ fn panes_are_added_swapped_used_and_removed_by_one_click_and_one_step() {
 }
 
 #[test]
-fn a_wipe_shows_two_panes_and_its_line_is_dragged() {
+fn a_wipe_shows_two_panes_and_its_line_can_be_dragged() {
     let mut harness = comparing();
     press_button(&mut harness, "Wipe");
     let page = control(&harness, Role::Image, "Wipe").rect();
@@ -114,7 +114,7 @@ fn a_wipe_shows_two_panes_and_its_line_is_dragged() {
     assert!((split - 0.25).abs() < 0.02, "{split}");
     assert_eq!(project(&harness).camera, camera, "the line was dragged and not the camera");
     assert_eq!(of(&harness).history.undo_len(), 0, "a line is no part of the project");
-    // Beside the line the camera turns, and both follow.
+    // A drag beside the line turns the camera of both panes.
     drag(&mut harness, page.lerp_inside(egui::vec2(0.7, 0.5)), page.lerp_inside(egui::vec2(0.8, 0.5)));
     go(&mut harness);
     assert_ne!(project(&harness).camera, camera);
@@ -122,7 +122,7 @@ fn a_wipe_shows_two_panes_and_its_line_is_dragged() {
 }
 
 #[test]
-fn errors_are_shown_in_colour_and_hair_is_probed() {
+fn errors_are_shown_in_colour_and_a_click_probes_hair() {
     let mut harness = comparing();
     of_mut(&mut harness).layout.compare.shows = LiveShows::TransmittanceBias;
     go(&mut harness);
@@ -130,7 +130,7 @@ fn errors_are_shown_in_colour_and_hair_is_probed() {
         window.compare.pane(0).is_some_and(|pane| pane.shows == LiveShows::TransmittanceBias)
     });
     assert!(harness.query_by_role_and_label(Role::Image, "Scale of transmittance - exact").is_some());
-    // Where guides are there is hair, some of it hidden by the head.
+    // There is hair at the guides, although the head hides some of it.
     for point in (0..400).step_by(23) {
         let pane = control(&harness, Role::Image, "Pane 1").rect();
         let window = of(&harness);
@@ -169,7 +169,7 @@ fn of_mut(harness: &mut Whole) -> &mut Window {
 }
 
 #[test]
-fn a_held_key_shows_the_other_pane_in_place() {
+fn holding_v_shows_the_other_pane() {
     let mut harness = comparing();
     let name =
         |harness: &Whole, text: &str| super::texts(harness).iter().any(|(said, ..)| said.starts_with(text));
@@ -189,7 +189,7 @@ fn a_held_key_shows_the_other_pane_in_place() {
 }
 
 #[test]
-fn panes_are_magnified_together_and_the_camera_stays() {
+fn all_panes_are_magnified_without_moving_the_camera() {
     let mut harness = comparing();
     let camera = project(&harness).camera;
     let pane = control(&harness, Role::Image, "Pane 2").rect();
@@ -203,7 +203,7 @@ fn panes_are_magnified_together_and_the_camera_stays() {
 }
 
 #[test]
-fn panes_are_saved_with_their_labels_and_recorded_as_a_film() {
+fn panes_are_saved_as_an_image_and_recorded_as_a_film() {
     let mut harness = comparing();
     let dir = tempfile::tempdir().expect("a folder");
     let path = dir.path().join("a comparison.png");
@@ -229,7 +229,7 @@ fn panes_are_saved_with_their_labels_and_recorded_as_a_film() {
 }
 
 #[test]
-fn a_click_that_closes_a_menu_asks_for_no_hair() {
+fn a_click_that_closes_a_menu_does_not_probe() {
     let mut harness = comparing();
     press_button(&mut harness, "Settings of pane 1");
     assert!(harness.query_by_label("Transparency").is_some());
@@ -238,7 +238,7 @@ fn a_click_that_closes_a_menu_asks_for_no_hair() {
     go(&mut harness);
     assert!(harness.query_by_label("Transparency").is_none(), "the menu is closed");
     assert_eq!(of(&harness).compare.probed_and_asked()[1], 0);
-    // The next click is one.
+    // The next click probes.
     super::click_at(&mut harness, pane.center());
     go(&mut harness);
     assert_eq!(of(&harness).compare.probed_and_asked()[1], 1);

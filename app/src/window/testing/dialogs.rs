@@ -1,4 +1,4 @@
-//! The palette and the question for a path.
+//! The command palette and the path dialog.
 
 use std::path::{Path, PathBuf};
 
@@ -34,7 +34,7 @@ fn the_palette_finds_a_command_by_its_words() {
 }
 
 #[test]
-fn the_palette_is_moved_through_by_keys_and_clicks() {
+fn keys_and_clicks_choose_in_the_palette() {
     let listed: Vec<_> =
         COMMANDS.iter().filter(|info| info.in_palette && info.command != Command::Undo).collect();
     let mut harness = palette();
@@ -77,7 +77,7 @@ fn dialog(purpose: Purpose, suggestion: &Path) -> Harness<'static, Shown<(PathDi
     })
 }
 
-/// Replaces what the field holds.
+/// Replaces the text of the field.
 fn retype<S>(harness: &mut Harness<'_, S>, text: &str) {
     harness.get_by_label("Path").click();
     harness.run();
@@ -90,7 +90,7 @@ fn retype<S>(harness: &mut Harness<'_, S>, text: &str) {
 }
 
 #[test]
-fn a_path_is_typed_and_entered() {
+fn a_typed_path_is_confirmed_by_enter() {
     let mut harness = dialog(Purpose::Film, Path::new("out/dance.mp4"));
     harness.run();
     retype(&mut harness, "a b/ü");
@@ -101,7 +101,7 @@ fn a_path_is_typed_and_entered() {
 }
 
 #[test]
-fn a_suggestion_is_taken_by_the_button() {
+fn the_button_confirms_the_suggested_path() {
     let mut harness = dialog(Purpose::SaveProject, Path::new("/somewhere/my hair"));
     harness.run();
     harness.get_by_label("Save file").click();
@@ -112,13 +112,13 @@ fn a_suggestion_is_taken_by_the_button() {
 
 #[test]
 fn a_saved_project_can_be_opened_again() {
-    // What the dialog adds to a name is what the program knows as a project.
+    // The extension that the dialog adds is the one that marks a project.
     let path = Path::new("x").with_extension(lovelock_studio::PROJECT_EXTENSION);
     assert_eq!(lovelock_studio::FileKind::by_extension(&path), Some(lovelock_studio::FileKind::Project));
 }
 
 #[test]
-fn a_question_can_be_left() {
+fn a_path_dialog_can_be_cancelled() {
     for escape in [true, false] {
         let mut harness = dialog(Purpose::Open, Path::new("/"));
         harness.run();
@@ -133,7 +133,7 @@ fn a_question_can_be_left() {
 }
 
 #[test]
-fn no_path_is_no_answer_and_a_film_that_exists_is_told() {
+fn an_empty_path_is_not_confirmed_and_an_existing_film_is_mentioned() {
     let dir = tempfile::tempdir().expect("a folder");
     let film = dir.path().join("here.mp4");
     std::fs::write(&film, b"x").expect("a file");

@@ -1,4 +1,4 @@
-//! The gauges of the simulation, and the way to their places.
+//! The gauges of the simulation, and the buttons that go to their places.
 
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable;
@@ -9,8 +9,8 @@ use super::whole::{go, of, press_button, project, wait, window};
 use super::{control, screen, texts, tooltip_at};
 use crate::window::{Window, panels};
 
-/// Gauges of hair that goes 3 mm into the body and begins deep in the neck.
-fn ill() -> Vec<Gauge> {
+/// Gauges of hair that penetrates the body by 3 mm and starts deep inside the neck.
+fn bad_gauges() -> Vec<Gauge> {
     let (scene, _) = SceneLoader::new().load_now(&small(), &Access::new()).expect("a scene");
     let inside = |depth_m, guide| InsidePoint { depth_m, guide, point: 5, within: BodyPart::Field };
     let deepest = Some(inside(3e-3, 4));
@@ -26,8 +26,8 @@ fn small() -> Project {
 }
 
 #[test]
-fn gauges_say_what_to_change_and_where() {
-    let state = (ill(), None, Vec::new());
+fn gauges_show_advice_and_places() {
+    let state = (bad_gauges(), None, Vec::new());
     let mut harness = screen(state, |ui, (gauges, shown, asked): &mut (Vec<Gauge>, _, Vec<_>)| {
         asked.extend(panels::health::ui(ui, gauges, *shown));
     });
@@ -54,7 +54,7 @@ fn gauges_say_what_to_change_and_where() {
     assert_eq!(
         harness.state().state.2,
         [GaugeKind::Penetration, GaugeKind::RestInside],
-        "the others have no place"
+        "a gauge without a place was chosen"
     );
     harness.state_mut().state.0.retain(|gauge| gauge.level == HealthLevel::Good);
     harness.run();
@@ -65,7 +65,7 @@ fn gauges_say_what_to_change_and_where() {
 }
 
 #[test]
-fn the_way_to_a_place_rings_it_and_can_be_undone() {
+fn the_button_of_a_gauge_marks_its_place_and_can_be_undone() {
     let mut harness = window();
     wait(&mut harness, "hair that has moved", |window| {
         window.session.frame.as_ref().is_some_and(|frame| frame.totals.worst_stretch_at.is_some())
@@ -74,7 +74,7 @@ fn the_way_to_a_place_rings_it_and_can_be_undone() {
     press_button(&mut harness, "Show: Largest stretch");
     let pointed = |window: &Window| window.pointed.as_ref().map(|gauge| gauge.kind);
     assert_eq!(pointed(of(&harness)), Some(GaugeKind::Stretch));
-    // It is when it was found, and what was measured is not forgotten there.
+    // The button goes to the time at which the value was found, and the measured value is kept.
     let asked = of(&harness).pointed.clone().expect("a gauge");
     let found = asked.found.expect("found");
     let secs = asked.found_secs().expect("a time");

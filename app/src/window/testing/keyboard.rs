@@ -1,4 +1,4 @@
-//! Keys, menus and the list of keys.
+//! Keyboard shortcuts, menus and the list of keys.
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, vec2};
@@ -9,7 +9,7 @@ use lovelock_studio::{COMMANDS, Command, CommandGroup, CommandInfo};
 use super::{Shown, screen_of};
 use crate::window::keys;
 
-/// A field to type in and a button, and the commands that keys asked for.
+/// A text field and a button, and the commands that keys requested.
 fn screen() -> Harness<'static, Shown<(String, Vec<Command>)>> {
     screen_of(
         vec2(400.0, 300.0),
@@ -35,7 +35,7 @@ fn key(text: &str) -> (Modifiers, Key) {
             other => panic!("no modifier is called {other}"),
         }
     }
-    // A question mark is typed with Shift on most keyboards.
+    // A question mark needs Shift on most keyboards.
     if name == "?" {
         return (modifiers | Modifiers::SHIFT, Key::Questionmark);
     }
@@ -43,7 +43,7 @@ fn key(text: &str) -> (Modifiers, Key) {
 }
 
 #[test]
-fn every_key_runs_its_command_and_no_other() {
+fn every_shortcut_runs_only_its_command() {
     let mut harness = screen();
     for info in COMMANDS {
         for text in info.shortcuts {
@@ -57,7 +57,7 @@ fn every_key_runs_its_command_and_no_other() {
 }
 
 #[test]
-fn a_text_field_keeps_the_letters() {
+fn letters_typed_in_a_text_field_are_not_shortcuts() {
     let mut harness = screen();
     harness.get_by_label("Name").click();
     harness.run();
@@ -71,7 +71,7 @@ fn a_text_field_keeps_the_letters() {
 }
 
 #[test]
-fn a_text_takes_back_its_own_typing() {
+fn undo_in_a_text_field_undoes_typing() {
     let mut harness = screen();
     harness.get_by_label("Name").click();
     harness.run();
@@ -83,7 +83,7 @@ fn a_text_takes_back_its_own_typing() {
         harness.run();
         assert!(harness.state().state.1.is_empty(), "{key:?} is the text's: {:?}", harness.state().state.1);
     }
-    // Elsewhere the same keys are the project's.
+    // Outside text fields the same keys undo edits of the project.
     harness.get_by_label("A button").click();
     harness.run();
     harness.key_press_modifiers(ctrl, Key::Z);
@@ -92,7 +92,7 @@ fn a_text_takes_back_its_own_typing() {
 }
 
 #[test]
-fn tab_hides_the_panels_and_leaves_the_other_keys_alone() {
+fn tab_hides_the_panels_and_other_keys_still_work() {
     let mut harness = screen();
     for _ in 0..3 {
         harness.state_mut().state.1.clear();
@@ -105,7 +105,7 @@ fn tab_hides_the_panels_and_leaves_the_other_keys_alone() {
 }
 
 #[test]
-fn the_list_names_every_key() {
+fn the_list_contains_every_key() {
     let harness = screen_of(vec2(700.0, 900.0), (), |ui, ()| keys::list(ui));
     for info in COMMANDS.iter().filter(|info| !info.shortcuts.is_empty()) {
         assert!(harness.query_by_label(&info.shortcuts.join("  ")).is_some(), "{}", info.id);
@@ -115,7 +115,7 @@ fn the_list_names_every_key() {
     assert!(harness.state().taken.right() <= 700.0);
 }
 
-/// The entry of an open menu: its label, and its key where it has one.
+/// The entry of an open menu: its label and its key, if any.
 pub(super) fn entry<'t, S>(harness: &'t Harness<'_, S>, info: &CommandInfo) -> Node<'t> {
     let label = info.label;
     let with_key = info.shortcuts.first().map(|key| format!("{label} {key}"));
@@ -129,7 +129,7 @@ pub(super) fn entry<'t, S>(harness: &'t Harness<'_, S>, info: &CommandInfo) -> N
 }
 
 #[test]
-fn menus_hold_every_command_once_and_grey_out_what_cannot_be_done() {
+fn menus_contain_every_command_once_and_disable_unavailable_ones() {
     let mut harness = screen_of(vec2(900.0, 700.0), None, |ui, chosen: &mut Option<Command>| {
         let enabled = |command| command != Command::Undo;
         let asked = egui::MenuBar::new().ui(ui, |ui| keys::menus(ui, enabled)).inner;

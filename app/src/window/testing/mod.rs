@@ -1,4 +1,4 @@
-//! Parts of the window on a screen that is not there, for tests.
+//! Shows parts of the window on an off-screen display, for tests.
 
 mod compare;
 mod dialogs;
@@ -20,21 +20,21 @@ use egui_kittest::{Harness, Node};
 
 use super::theme;
 
-/// Width in points that every panel must do with.
+/// Width in points into which every panel must fit.
 pub(crate) const WIDTH: f32 = 300.0;
 
-/// Something shown, with the room that it took.
+/// The state that is shown, and the area that it occupies.
 pub(crate) struct Shown<S> {
     pub(crate) state: S,
     pub(crate) taken: Rect,
 }
 
-/// A screen of [`WIDTH`] and of any height, dressed as the window is; tooltips come at once.
+/// A screen of [`WIDTH`] with the style of the window; tooltips appear without delay.
 pub(crate) fn screen<'a, S: 'a>(state: S, show: impl FnMut(&mut Ui, &mut S) + 'a) -> Harness<'a, Shown<S>> {
     screen_of(Vec2::new(WIDTH, 2400.0), state, show)
 }
 
-/// As [`screen`], of another size.
+/// [`screen`] with another size.
 pub(crate) fn screen_of<'a, S: 'a>(
     size: Vec2,
     state: S,
@@ -44,7 +44,7 @@ pub(crate) fn screen_of<'a, S: 'a>(
     Harness::builder()
         .with_size(size)
         .with_max_steps(64)
-        // Short enough that four events in a row are a double-click.
+        // Short enough that four consecutive events are a double-click.
         .with_step_dt(1.0 / 30.0)
         .with_context_setup(dress)
         .build_ui_state(
@@ -56,7 +56,7 @@ pub(crate) fn screen_of<'a, S: 'a>(
         )
 }
 
-/// Fonts, colours and spacing of the window, and tooltips without delay.
+/// Applies the fonts, colours and spacing of the window, and shows tooltips without delay.
 pub(crate) fn dress(ctx: &egui::Context) {
     egui_material_icons::initialize(ctx);
     theme::apply(ctx);
@@ -66,7 +66,7 @@ pub(crate) fn dress(ctx: &egui::Context) {
     });
 }
 
-/// Unfolds every section, and those inside them.
+/// Opens every section, including nested ones.
 pub(crate) fn unfold<S>(harness: &mut Harness<'_, S>) {
     let folded = |node: &AccessKitNode<'_>| {
         node.role() == Role::DisclosureTriangle && node.data().is_expanded() == Some(false)
@@ -81,12 +81,12 @@ pub(crate) fn unfold<S>(harness: &mut Harness<'_, S>) {
     harness.run();
 }
 
-/// The one control of that role and name.
+/// The only control with that role and name.
 pub(crate) fn control<'t, S>(harness: &'t Harness<'_, S>, role: Role, name: &'t str) -> Node<'t> {
     harness.get_by_role_and_label(role, name)
 }
 
-/// Middles of all controls of a role, top to bottom, with their names.
+/// Centres of all controls of a role, from top to bottom, with their names.
 pub(crate) fn controls<S>(harness: &Harness<'_, S>, role: Role) -> Vec<(String, Rect)> {
     harness
         .query_all_by_role(role)
@@ -94,12 +94,12 @@ pub(crate) fn controls<S>(harness: &Harness<'_, S>, role: Role) -> Vec<(String, 
         .collect()
 }
 
-/// Whether a check box is on.
+/// Whether a check box is checked.
 pub(crate) fn is_on(node: &Node<'_>) -> bool {
     node.accesskit_node().toggled() == Some(Toggled::True)
 }
 
-/// The pointer's main button goes down or up.
+/// Presses or releases the primary button.
 pub(crate) fn press<S>(harness: &Harness<'_, S>, pos: Pos2, pressed: bool) {
     let modifiers = Modifiers::NONE;
     harness.event(Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers });
@@ -113,7 +113,7 @@ pub(crate) fn click<S>(harness: &mut Harness<'_, S>, at: Pos2) {
     harness.run_ok();
 }
 
-/// One click in a window that never rests.
+/// One click in a window that repaints continuously.
 pub(crate) fn click_at<S>(harness: &mut Harness<'_, S>, at: Pos2) {
     harness.hover_at(at);
     press(harness, at, true);
@@ -121,7 +121,7 @@ pub(crate) fn click_at<S>(harness: &mut Harness<'_, S>, at: Pos2) {
     harness.run_steps(6);
 }
 
-/// Two clicks, quick enough.
+/// A double-click.
 pub(crate) fn double_click<S>(harness: &mut Harness<'_, S>, at: Pos2) {
     harness.hover_at(at);
     for _ in 0..2 {
@@ -131,7 +131,7 @@ pub(crate) fn double_click<S>(harness: &mut Harness<'_, S>, at: Pos2) {
     harness.run_ok();
 }
 
-/// A drag in a few moves, over many passes.
+/// A drag in several moves, over many passes.
 pub(crate) fn drag<S>(harness: &mut Harness<'_, S>, from: Pos2, to: Pos2) {
     harness.hover_at(from);
     press(harness, from, true);
@@ -151,7 +151,7 @@ pub(crate) fn type_at<S>(harness: &mut Harness<'_, S>, at: Pos2, text: &str) {
     harness.run_ok();
 }
 
-/// What the tooltip says that is on the screen.
+/// The text of the tooltip on the screen.
 pub(crate) fn tooltip<S>(harness: &Harness<'_, S>) -> Option<String> {
     let layers: Vec<_> = harness.ctx.memory(|memory| {
         memory.areas().visible_layer_ids().into_iter().filter(|layer| layer.order == Order::Tooltip).collect()
@@ -167,7 +167,7 @@ pub(crate) fn tooltip<S>(harness: &Harness<'_, S>) -> Option<String> {
     (!rects.is_empty()).then(|| said.join("\n"))
 }
 
-/// The tooltip of what lies at a place.
+/// The tooltip at a position.
 pub(crate) fn tooltip_at<S>(harness: &mut Harness<'_, S>, at: Pos2) -> Option<String> {
     harness.remove_cursor();
     harness.run();
@@ -180,7 +180,7 @@ pub(crate) fn tooltip_at<S>(harness: &mut Harness<'_, S>, at: Pos2) -> Option<St
     said
 }
 
-/// Every text on the screen, where it is, and the colour of its first letter.
+/// Every text on the screen, its area, and the colour of its first letter.
 pub(crate) fn texts<S>(harness: &Harness<'_, S>) -> Vec<(String, Rect, Color32)> {
     let mut found = Vec::new();
     for clipped in &harness.output().shapes {
@@ -201,7 +201,7 @@ fn collect(shape: &Shape, found: &mut Vec<(String, Rect, Color32)>) {
     }
 }
 
-/// Whether a text on the screen has the colour of what differs from its default.
+/// Whether a text on the screen has the colour that marks a changed value.
 pub(crate) fn is_marked<S>(harness: &Harness<'_, S>, name: &str) -> bool {
     texts(harness).iter().any(|(text, _, color)| text == name && *color == theme::ACCENT)
 }

@@ -1,4 +1,4 @@
-//! Sentences that come and go.
+//! Messages in the corner of the window.
 
 use egui::accesskit::Role;
 use egui::vec2;
@@ -19,7 +19,7 @@ fn corner(sentences: &[&str]) -> Harness<'static, Shown<Notices>> {
 }
 
 #[test]
-fn a_long_sentence_stays_in_the_window() {
+fn a_long_message_fits_into_the_window() {
     let path = "/a/folder/of/a/long/name".repeat(12);
     let harness = corner(&[&format!("{path}: there is no such file; pick another one")]);
     let told =
@@ -29,19 +29,19 @@ fn a_long_sentence_stays_in_the_window() {
 }
 
 #[test]
-fn a_sentence_goes_by_itself_or_is_closed() {
+fn a_message_disappears_or_is_closed() {
     let mut harness = corner(&["one", "two", "one"]);
     assert_eq!(harness.query_all_by_label("one").count(), 1, "said twice, shown once");
     harness.query_all_by_role(Role::Button).next().expect("a button").click();
     harness.run_steps(6);
     assert!(harness.query_by_label("two").is_none() && harness.query_by_label("one").is_some());
-    // Passes of a thirtieth of a second, far beyond the time that three letters stay.
+    // Twenty seconds in passes of a thirtieth of a second, far longer than a short message is shown.
     harness.run_steps(30 * 20);
     assert!(harness.query_by_label("one").is_none());
 }
 
 #[test]
-fn the_corner_does_not_fill_the_window() {
+fn messages_do_not_fill_the_window() {
     let sentences: Vec<String> = (0..20).map(|i| format!("sentence {i}")).collect();
     let sentences: Vec<&str> = sentences.iter().map(String::as_str).collect();
     let harness = corner(&sentences);

@@ -1,4 +1,4 @@
-//! The timeline.
+//! Tests of the timeline.
 
 use egui::accesskit::Role;
 use egui::{Event, Modifiers, MouseWheelUnit, PointerButton, Rect, TouchPhase, pos2, vec2};
@@ -64,7 +64,7 @@ fn take() -> View {
 }
 
 #[test]
-fn every_button_asks_for_its_command() {
+fn every_button_requests_its_command() {
     for (view, commands) in [
         (
             view(),
@@ -100,17 +100,17 @@ fn every_button_asks_for_its_command() {
 }
 
 #[test]
-fn a_click_goes_to_its_time_and_a_drag_stays_inside() {
+fn a_click_seeks_and_a_drag_stays_in_range() {
     let mut harness = bar(view());
     let rect: Rect = control(&harness, Role::Slider, "Time").rect();
-    // The names of the lanes stand left of the ruler.
+    // The names of the lanes are left of the ruler.
     let (left, right) = (rect.left() + 44.0, rect.right());
     let at = pos2(0.5 * (left + right), rect.bottom() - 4.0);
     click(&mut harness, at);
     let Some(Ask::Seek(secs)) = harness.state().state.asked.last().copied() else {
         panic!("no time was asked for")
     };
-    // A point of the bar is a hundredth of a second here.
+    // One point on the ruler is a hundredth of a second here.
     assert!((secs - 4.0).abs() < 0.02, "{secs}");
     drag(&mut harness, at, pos2(1e6, at.y));
     assert_eq!(harness.state().state.asked.last(), Some(&Ask::Seek(8.0)));
@@ -121,7 +121,7 @@ fn a_click_goes_to_its_time_and_a_drag_stays_inside() {
 }
 
 #[test]
-fn the_wheel_magnifies_and_a_click_then_goes_to_what_is_shown() {
+fn the_wheel_magnifies_and_a_click_seeks_in_the_shown_range() {
     let mut harness = bar(view());
     let rect: Rect = control(&harness, Role::Slider, "Time").rect();
     let right = pos2(rect.right() - 1.0, rect.bottom() - 4.0);
@@ -146,7 +146,7 @@ fn the_wheel_magnifies_and_a_click_then_goes_to_what_is_shown() {
 }
 
 #[test]
-fn in_and_out_points_are_dragged_and_never_cross() {
+fn dragged_in_and_out_points_never_cross() {
     let mut harness = bar(view());
     let out = control(&harness, Role::Slider, "Out point").rect().center();
     let middle = pos2(out.x - 400.0, out.y);
@@ -160,7 +160,7 @@ fn in_and_out_points_are_dragged_and_never_cross() {
 }
 
 #[test]
-fn markers_are_gone_to_and_removed() {
+fn markers_seek_and_can_be_removed() {
     let mut harness = bar(view());
     let flag = control(&harness, Role::Button, "Marker turn").rect().center();
     click(&mut harness, flag);
@@ -174,7 +174,7 @@ fn markers_are_gone_to_and_removed() {
 }
 
 #[test]
-fn a_dance_of_no_length_and_one_of_days_are_shown() {
+fn clips_of_zero_length_and_of_days_are_shown() {
     for (time_secs, duration_secs) in
         [(0.0, 0.0), (5.0, 0.0), (1e6, 3e5), (f64::NAN, f64::NAN), (0.5, 1.0 / 60.0), (0.0, f64::INFINITY)]
     {
@@ -207,7 +207,7 @@ fn tracked() -> Harness<'static, Shown<State>> {
     with_tracks(state)
 }
 
-/// Where the key at a time of the camera's track is on the screen.
+/// Screen position of the key at a time on the camera's track.
 fn key_at(harness: &Harness<'_, Shown<State>>, secs: f32, height: f32) -> egui::Pos2 {
     let lane = control(harness, Role::Slider, "Track Camera distance").rect();
     pos2(lane.left() + lane.width() * secs / 8.0, lane.bottom() - 4.0 - (lane.height() - 8.0) * height)
@@ -241,21 +241,21 @@ fn tracks_are_muted_smoothed_and_deleted() {
 }
 
 #[test]
-fn keys_are_dragged_set_and_removed() {
+fn keys_are_moved_added_and_removed() {
     let mut harness = tracked();
     let key = |harness: &Harness<'_, Shown<State>>, i: usize| harness.state().state.tracks[0].keys[i].clone();
-    // From the top of its lane to the middle, a second later.
+    // Drags the key from the top of its lane to the middle, one second later.
     let (from, to) = (key_at(&harness, 4.0, 1.0), key_at(&harness, 5.0, 0.5));
     drag(&mut harness, from, to);
     let moved = key(&harness, 1);
-    // A point of the lane is a hundredth of a second, and a tenth of the value.
+    // One point is a hundredth of a second horizontally and a tenth of the value vertically.
     assert!((moved.secs - 5.0).abs() < 0.02 && (moved.value[0] - 2.0).abs() < 0.1, "{moved:?}");
-    // It never passes the next one.
+    // A key cannot pass the next one.
     let from = key_at(&harness, moved.secs as f32, 1.0);
     drag(&mut harness, from, pos2(1e6, from.y));
     let moved = key(&harness, 1);
     assert!(moved.secs < key(&harness, 2).secs && moved.secs > 7.9, "{moved:?}");
-    // A click beside the keys goes there, a double-click sets one where the curve is.
+    // A click beside the keys seeks, and a double-click adds a key on the curve.
     let beside = key_at(&harness, 3.0, 0.1);
     click(&mut harness, beside);
     assert!(matches!(harness.state().state.asked.last(), Some(Ask::Seek(secs)) if (secs - 3.0).abs() < 0.02));
@@ -274,7 +274,7 @@ fn keys_are_dragged_set_and_removed() {
 }
 
 #[test]
-fn the_clip_is_swapped_slowed_and_trimmed_from_its_lane() {
+fn the_clip_menu_changes_clip_tempo_and_trim() {
     let mut harness = bar(view());
     let open = |harness: &mut Harness<'_, Shown<State>>| {
         let at = control(harness, Role::Button, "Clip").rect().center();
@@ -298,7 +298,7 @@ fn the_clip_is_swapped_slowed_and_trimmed_from_its_lane() {
         press(&mut fresh, Role::Button, name);
         assert_eq!(fresh.state().state.asked.last(), Some(&ask), "{name}");
     }
-    // Without points there is nothing to trim, and without a trim nothing to take back.
+    // Trimming needs in or out points, and *Whole clip* needs a trim.
     let mut fresh = bar(view());
     open(&mut fresh);
     for name in ["Trim to in and out points", "Whole clip"] {

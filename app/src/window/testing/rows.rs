@@ -1,4 +1,4 @@
-//! The rows of panels.
+//! Rows of panels.
 
 use egui::accesskit::Role;
 use egui::{Event, Key, vec2};
@@ -7,7 +7,7 @@ use egui_kittest::Harness;
 use super::{Shown, click, controls, screen, tooltip_at, type_at};
 use crate::window::control::Number;
 
-/// A row, and whether a dialog is over it.
+/// A row, and whether a dialog covers it.
 fn row() -> Harness<'static, Shown<(f32, bool)>> {
     screen((0.27, false), |ui, (value, dialog): &mut (f32, bool)| {
         let number = Number::new("Length", 0.02..=0.7, "Length of the longest hair.");
@@ -22,7 +22,7 @@ fn row() -> Harness<'static, Shown<(f32, bool)>> {
 }
 
 #[test]
-fn a_number_counts_when_it_is_entered() {
+fn a_typed_number_applies_on_enter() {
     let mut harness = row();
     let field = controls(&harness, Role::SpinButton)[0].1.center();
     click(&mut harness, field);
@@ -37,10 +37,10 @@ fn a_number_counts_when_it_is_entered() {
 }
 
 #[test]
-fn a_dialog_ends_the_tooltip_under_it() {
+fn a_dialog_hides_the_tooltip_under_it() {
     let mut harness = row();
     let rail = controls(&harness, Role::Slider)[0].1;
-    // Away from the middle of the screen, where the dialog is.
+    // Away from the centre of the screen, where the dialog is.
     let at = rail.left_center() + vec2(4.0, 0.0);
     assert!(tooltip_at(&mut harness, at).is_some());
     harness.hover_at(at);

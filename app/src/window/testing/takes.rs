@@ -1,4 +1,4 @@
-//! Takes in the whole window: recorded, played and left by keys.
+//! Takes in the whole window: recording, playing and leaving them by keys.
 
 use egui::{Key, Modifiers};
 

@@ -1,4 +1,4 @@
-//! Ties, scissors and colliders in the picture of the whole window.
+//! Ties, scissors and colliders in the viewport of the whole window.
 
 use std::cell::Cell;
 
@@ -13,17 +13,18 @@ use super::{Shown, click_at, control, press};
 use crate::window::Window;
 use crate::window::overlay::View;
 
-/// The window with a picture, paused at the start; none where nothing can draw.
+/// The window with an image, paused at the start; `None` if nothing can draw.
 fn with_picture() -> Option<Harness<'static, Shown<Option<Window>>>> {
     let mut harness = window();
-    wait(&mut harness, "a picture or why there is none", |window| {
+    wait(&mut harness, "an image or the reason that there is none", |window| {
         window.session.painted.is_some() || window.session.draw_error.is_some()
     });
     of(&harness).session.painted.as_ref()?;
     key(&mut harness, Modifiers::NONE, Key::Space);
-    // However far a slow machine came before the pause, the head is held as it is at the start.
+    // Goes to the start, so that the head has the same pose on fast and slow machines.
     key(&mut harness, Modifiers::NONE, Key::Home);
-    // What was under way as it was paused still comes: the body stands once the newest frame is painted and stays the newest.
+    // Frames in progress when playback is paused still arrive: the body stands still once the newest frame is drawn and no newer
+    // one follows.
     let (last, calm) = (Cell::new(f64::NAN), Cell::new(0));
     wait(&mut harness, "a body that stands", |window| {
         let painted = window.session.painted.as_ref().map_or(f64::NAN, |painted| painted.snapshot.time_secs);
@@ -35,10 +36,11 @@ fn with_picture() -> Option<Harness<'static, Shown<Option<Window>>>> {
     Some(harness)
 }
 
-/// So many passes of some milliseconds without another frame the body stands, be the machine busy with other things.
+/// Number of passes of a few milliseconds without a new frame after which the body counts as standing still, even on a busy
+/// machine.
 const CALM_PASSES: u32 = 60;
 
-/// Unfolds a section of a panel.
+/// Opens a section of a panel.
 fn unfold(harness: &mut Harness<'_, Shown<Option<Window>>>, title: &str) {
     into_view(harness, Role::DisclosureTriangle, title);
     control(harness, Role::DisclosureTriangle, title).click();
@@ -51,7 +53,7 @@ fn into_view(harness: &mut Harness<'_, Shown<Option<Window>>>, role: Role, name:
     harness.run_steps(30);
 }
 
-/// The picture as it is seen.
+/// The projection of the current image.
 fn view(harness: &Harness<'_, Shown<Option<Window>>>) -> View {
     let window = of(harness);
     let rect = control(harness, Role::Image, "Viewport").rect();
@@ -73,15 +75,15 @@ fn drag_over(harness: &mut Harness<'_, Shown<Option<Window>>>, from: Pos2, to: P
 }
 
 #[test]
-fn scissors_cut_what_is_beyond_a_line_and_undo_grows_it_back() {
+fn scissors_cut_hair_beyond_a_line_and_undo_restores_it() {
     let Some(mut harness) = with_picture() else { return };
     let before = project(&harness);
     let painted = of(&harness).session.painted.clone().expect("a picture");
     let head = glam::Vec3::from(painted.snapshot.guides.world_from_head.translation);
-    // Below the chin, across the whole hair.
+    // A line below the chin, across all hair.
     let middle = view(&harness).to_screen(head - glam::Vec3::Y * 0.04).expect("in the picture");
     let ends = [middle - egui::vec2(220.0, 0.0), middle + egui::vec2(220.0, 0.0)];
-    // Without the scissors it is the camera that moves.
+    // Without the scissors a drag moves the camera.
     drag_over(&mut harness, ends[0], ends[1]);
     assert!(project(&harness).hair == before.hair && project(&harness).camera != before.camera);
     key(&mut harness, CTRL, Key::Z);
@@ -100,7 +102,7 @@ fn scissors_cut_what_is_beyond_a_line_and_undo_grows_it_back() {
     assert!(cut.hair.cut.kept.iter().any(|kept| (0.05..0.98).contains(kept)), "{:?}", cut.hair.cut);
     assert_eq!(of(&harness).history.undo_len(), 1);
     wait(&mut harness, "shorter hair", |window| points(window) < whole);
-    // A line beside the hair cuts none.
+    // A line beside the hair cuts nothing.
     let corner = control(&harness, Role::Image, "Viewport").rect().left_bottom() + egui::vec2(30.0, -40.0);
     drag_over(&mut harness, corner, corner + egui::vec2(25.0, 0.0));
     assert_eq!(project(&harness), cut);
@@ -110,12 +112,12 @@ fn scissors_cut_what_is_beyond_a_line_and_undo_grows_it_back() {
 }
 
 #[test]
-fn a_tie_is_added_and_dragged_in_the_picture() {
+fn a_tie_can_be_dragged_in_the_viewport() {
     let Some(mut harness) = with_picture() else { return };
     add_ponytail(&mut harness);
     let tie = project(&harness).hair.ties[0];
     assert_eq!(tie.kind, TieKind::Ponytail);
-    assert_ne!(tie.at, HairTie::default().at, "it is placed on this head");
+    assert_ne!(tie.at, HairTie::default().at, "not placed on this head");
     wait(&mut harness, "tied hair", |window| {
         window.session.frame.as_ref().is_some_and(|frame| !frame.scene.style.held.is_empty())
     });
@@ -127,16 +129,16 @@ fn a_tie_is_added_and_dragged_in_the_picture() {
 }
 
 #[test]
-fn colliders_are_seen_and_changed() {
+fn colliders_are_shown_and_edited() {
     let mut harness = window();
     key(&mut harness, Modifiers::NONE, Key::B);
     assert!(of(&harness).colliders.on);
     let scene = of(&harness).session.scene.clone().expect("a scene");
     assert!(scene.field.is_some() && !scene.fitted.is_empty());
-    assert!(scene.colliders.len() < scene.fitted.len(), "the skin stands for some");
+    assert!(scene.colliders.len() < scene.fitted.len(), "the skin replaces no shape");
     unfold(&mut harness, "Colliders");
     let before = project(&harness);
-    // A shape that is changed is met, whatever stands for it.
+    // An edited shape is used for collision, even if the skin replaced it before.
     into_view(&mut harness, Role::SpinButton, "Size");
     let size = control(&harness, Role::SpinButton, "Size").rect().center();
     click_at(&mut harness, size);
@@ -154,7 +156,7 @@ fn colliders_are_seen_and_changed() {
     assert_eq!(project(&harness), before);
 }
 
-/// The window with the camera at the dancer's left, so that the left side of the head is before it.
+/// The window with the camera at the dancer's left, facing the left side of the head.
 fn seen_from_the_left() -> Option<Harness<'static, Shown<Option<Window>>>> {
     let mut harness = with_picture()?;
     let mut to_side = (*project(&harness)).clone();
@@ -164,13 +166,13 @@ fn seen_from_the_left() -> Option<Harness<'static, Shown<Option<Window>>>> {
     go(&mut harness);
     wait(&mut harness, "the picture from the side", |window| {
         let now = window.session.painted.as_ref();
-        // Not on the way there: what lies under a pointer may then be the other side of the head.
+        // Waits until the camera has arrived: before that, the pointer may be over the other side of the head.
         now.is_some_and(|painted| (painted.camera.eye - painted.camera.target).normalize_or_zero().x > 0.99)
     });
     Some(harness)
 }
 
-/// The same with a ponytail, which is tied at the back, and its section unfolded.
+/// The same with a ponytail tied at the back, and its section open.
 fn ponytail_seen_from_the_left() -> Option<Harness<'static, Shown<Option<Window>>>> {
     let mut harness = seen_from_the_left()?;
     add_ponytail(&mut harness);
@@ -184,12 +186,12 @@ fn add_ponytail(harness: &mut Harness<'_, Shown<Option<Window>>>) {
 }
 
 #[test]
-fn a_tie_that_is_dragged_over_the_head_turns_with_it_and_its_arrow_aims_it() {
+fn a_tie_dragged_over_the_head_turns_and_its_arrow_sets_its_direction() {
     let Some(mut harness) = ponytail_seen_from_the_left() else { return };
     let back = project(&harness).hair.ties[0];
     assert!(back.axis.z < -0.8 && back.axis.x.abs() < 0.2, "it aims back: {}", back.axis);
     let steps = of(&harness).history.undo_len();
-    // To the middle of the side of the head, which is before the camera.
+    // Drags the ring to the middle of the side of the head that faces the camera.
     let from = control(&harness, Role::Button, "Tie 1 in the picture").rect().center();
     let world_from_head = |harness: &Harness<'_, _>| {
         of(harness).session.painted.as_ref().expect("a picture").snapshot.guides.world_from_head
@@ -198,10 +200,10 @@ fn a_tie_that_is_dragged_over_the_head_turns_with_it_and_its_arrow_aims_it() {
     let to = view(&harness).to_screen(middle).expect("in the picture");
     drag_over(&mut harness, from, to);
     let side = project(&harness).hair.ties[0];
-    assert!(side.at.x > 0.05, "it lies on the head and not in it: {}", side.at);
+    assert!(side.at.x > 0.05, "not on the surface of the head: {}", side.at);
     assert!(side.axis.x > 0.6 && side.axis.z.abs() < 0.4, "it aims to the side: {}", side.axis);
     assert_eq!(of(&harness).history.undo_len(), steps + 1, "one drag is one step");
-    // Its arrow comes toward the camera; its end is drawn upward.
+    // The arrow points toward the camera; its end is dragged upward.
     let aim = "Aim of tie 1 in the picture";
     let from = control(&harness, Role::Button, "Tie 1 in the picture").rect().center();
     let end = control(&harness, Role::Button, aim).rect().center();
@@ -231,7 +233,7 @@ fn a_tie_behind_the_head_stays_behind_it() {
 }
 
 #[test]
-fn a_patch_is_sized_and_moved_over_the_head_in_the_picture() {
+fn a_patch_is_resized_and_moved_in_the_viewport() {
     let Some(mut harness) = ponytail_seen_from_the_left() else { return };
     let mut parted = (*project(&harness)).clone();
     let tie = &mut parted.hair.ties[0];
@@ -246,14 +248,17 @@ fn a_patch_is_sized_and_moved_over_the_head_in_the_picture() {
         control(harness, Role::Button, name).rect().center()
     };
     let (middle, rim) = ("Patch in the picture", "Radius of the patch in the picture");
-    assert!(harness.query_by_role_and_label(Role::Button, middle).is_none(), "it goes with its ring");
+    assert!(
+        harness.query_by_role_and_label(Role::Button, middle).is_none(),
+        "a patch that follows its ring has a handle"
+    );
     let (at, rim_at) = (place(&harness, "Tie 1 in the picture"), place(&harness, rim));
     let steps = of(&harness).history.undo_len();
     drag_over(&mut harness, rim_at, at + 1.5 * (rim_at - at));
     let sized = project(&harness).hair.ties[0];
     assert!((sized.sphere_radius - 0.09).abs() < 0.006 && sized.at == ring, "{sized:?}");
     assert_eq!(of(&harness).history.undo_len(), steps + 1, "one drag is one step");
-    // With a place of its own, which is that of the ring at first, it goes over the side of the head that is seen.
+    // With its own centre, at first that of the ring, the patch is dragged over the visible side of the head.
     parted.hair.ties[0].sphere_at_ring = false;
     parted.hair.ties[0].sphere_centre = ring;
     edit(&mut harness, parted);
@@ -269,7 +274,7 @@ fn a_patch_is_sized_and_moved_over_the_head_in_the_picture() {
 }
 
 #[test]
-fn a_collider_is_moved_and_sized_in_the_picture() {
+fn a_collider_is_moved_and_resized_in_the_viewport() {
     let Some(mut harness) = with_picture() else { return };
     key(&mut harness, Modifiers::NONE, Key::B);
     let scene = of(&harness).session.scene.clone().expect("a scene");
@@ -282,7 +287,7 @@ fn a_collider_is_moved_and_sized_in_the_picture() {
     let (middle, rim) = ("Collider in the picture", "Radius of the collider in the picture");
     let [first, out] = [place(&harness, middle), place(&harness, rim)];
     let at = first;
-    // Taken hold of beside its middle, it keeps to the pointer.
+    // A shape grabbed beside its centre keeps its distance from the pointer.
     let hold = egui::vec2(3.0, 2.0);
     drag_over(&mut harness, at + hold, at + hold + egui::vec2(0.0, -30.0));
     let moved = edit(&harness);
@@ -290,7 +295,7 @@ fn a_collider_is_moved_and_sized_in_the_picture() {
     let shift = place(&harness, middle) - at;
     assert!((shift - egui::vec2(0.0, -30.0)).length() < 2.0, "the shape goes with the pointer: {shift:?}");
     assert_eq!(of(&harness).history.undo_len(), 1, "one drag is one step");
-    // Its rim at one and a half times the distance is as much more of a radius.
+    // Dragging the rim to 1.5 times its distance scales the radius by 1.5.
     let [at, rim_at] = [place(&harness, middle), place(&harness, rim)];
     assert!(((rim_at - at) - (out - first)).length() < 2.0, "as large as before");
     drag_over(&mut harness, rim_at, at + 1.5 * (rim_at - at));
@@ -304,6 +309,6 @@ fn a_collider_is_moved_and_sized_in_the_picture() {
     key(&mut harness, CTRL, Key::Z);
     key(&mut harness, CTRL, Key::Z);
     assert_eq!(project(&harness), before);
-    // The camera stood all the while.
+    // The camera has not moved.
     assert_eq!(project(&harness).camera, before.camera);
 }

@@ -1,4 +1,4 @@
-//! Controls that are moved while the dance plays, in the whole window.
+//! Writing tracks by moving controls during playback, in the whole window.
 
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, TouchPhase, vec2};
@@ -13,7 +13,7 @@ fn position(window: &Window) -> f64 {
     window.session.frame.as_ref().map_or(0.0, |frame| frame.position_secs)
 }
 
-/// Holds the slider of the extinction scale and moves it to the right while time passes.
+/// Holds the extinction slider and moves it to the right during playback.
 fn ride(harness: &mut Harness<'_, Shown<Option<Window>>>) {
     let rail = control(harness, Role::Slider, "Extinction").rect();
     harness.hover_at(rail.center());
@@ -31,7 +31,7 @@ fn ride(harness: &mut Harness<'_, Shown<Option<Window>>>) {
 }
 
 #[test]
-fn a_slider_that_is_moved_while_the_dance_plays_becomes_a_track() {
+fn a_slider_moved_during_playback_becomes_a_track() {
     let mut harness = window();
     wait(&mut harness, "a frame", |window| window.session.frame.is_some());
     let before = project(&harness);
@@ -44,9 +44,9 @@ fn a_slider_that_is_moved_while_the_dance_plays_becomes_a_track() {
     let [low, high] = track.range()[0];
     assert!(high > low && track.keys.len() >= 3, "{track:?}");
     assert_eq!(written.shadow, before.shadow, "the project's own value stays");
-    assert_eq!(of(&harness).history.undo_len(), 1, "one ride is one step");
+    assert_eq!(of(&harness).history.undo_len(), 1, "not one undo step");
 
-    // What is drawn follows it, and so does the panel.
+    // The image and the panel follow the track.
     key(&mut harness, Modifiers::NONE, Key::W);
     wait(&mut harness, "a picture at another value", |window| {
         window.session.drawn.as_ref().is_some_and(|(drawn, frame, _)| {
@@ -58,7 +58,7 @@ fn a_slider_that_is_moved_while_the_dance_plays_becomes_a_track() {
     let shown = of(&harness).seen.as_ref().map(|seen| seen.project.shadow.extinction_scale);
     assert!(shown.is_some_and(|shown| shown != before.shadow.extinction_scale));
 
-    // A track that plays is not moved by hand, and the window says so.
+    // A control whose track plays cannot be moved, and the window says so.
     ride(&mut harness);
     assert_eq!(project(&harness).timeline, written.timeline);
     assert!(harness.query_by_label_contains("follows its track").is_some());
@@ -66,7 +66,7 @@ fn a_slider_that_is_moved_while_the_dance_plays_becomes_a_track() {
     assert_eq!(project(&harness), before);
 }
 
-/// The wheel turns over the picture by so many points.
+/// Turns the wheel over the viewport by this many points.
 fn turn_wheel(harness: &mut Harness<'_, Shown<Option<Window>>>, points: f32) {
     let at = control(harness, Role::Image, "Viewport").rect().center();
     harness.hover_at(at);
@@ -81,7 +81,7 @@ fn turn_wheel(harness: &mut Harness<'_, Shown<Option<Window>>>, points: f32) {
 }
 
 #[test]
-fn a_wheel_that_is_turned_while_the_dance_plays_is_one_ride() {
+fn turning_the_wheel_during_playback_is_one_recording_pass() {
     let mut harness = window();
     wait(&mut harness, "a frame", |window| window.session.frame.is_some());
     let before = project(&harness);
@@ -89,27 +89,26 @@ fn a_wheel_that_is_turned_while_the_dance_plays_is_one_ride() {
     for _ in 0..3 {
         let now = position(of(&harness));
         let watch = lovelock_studio::Stopwatch::start();
-        // Passes count for the clock of the wheel, and the dance goes by real time: it turns until some has passed.
+        // The end of the gesture is timed in passes and playback in real time, so the wheel turns until playback has advanced.
         while (position(of(&harness)) - now).abs() < 0.04 {
             for points in [40.0, -40.0] {
                 turn_wheel(&mut harness, points);
                 assert_eq!(of(&harness).overdub.writes().collect::<Vec<_>>(), ["camera/distance"]);
                 std::thread::sleep(std::time::Duration::from_millis(5));
             }
-            // A guard against waiting for ever.
-            assert!(watch.secs() < 60.0, "the dance stands still");
+            assert!(watch.secs() < 60.0, "playback does not advance");
         }
     }
-    wait(&mut harness, "the ride to end", |window| window.overdub.writes().next().is_none());
+    wait(&mut harness, "the recording pass to end", |window| window.overdub.writes().next().is_none());
     let written = project(&harness);
     let [track] = written.timeline.tracks.as_slice() else { panic!("{:?}", written.timeline.tracks) };
     let [low, high] = track.range()[0];
     assert!(high > 1.01 * low && track.keys.len() >= 3, "{track:?}");
     assert_eq!(written.camera, before.camera, "the project's own value stays");
-    assert_eq!(of(&harness).history.undo_len(), 1, "one ride is one step");
-    // What is taken back while it is written stays so.
+    assert_eq!(of(&harness).history.undo_len(), 1, "not one undo step");
+    // Undo during a recording pass discards it.
     turn_wheel(&mut harness, 60.0);
-    // A notch is spread over some passes, and the ride lasts for twelve after them.
+    // egui spreads a wheel notch over several passes, and the recording pass ends twelve passes after them.
     harness.run_steps(8);
     assert!(of(&harness).overdub.writes().next().is_some());
     key(&mut harness, CTRL, Key::Z);
@@ -118,7 +117,7 @@ fn a_wheel_that_is_turned_while_the_dance_plays_is_one_ride() {
 }
 
 #[test]
-fn a_command_that_moves_the_camera_is_an_edit_like_those_by_hand() {
+fn commands_that_move_the_camera_are_edits_like_any_other() {
     let mut harness = window();
     wait(&mut harness, "a frame", |window| window.session.frame.is_some());
     let mut tracked = (*project(&harness)).clone();
@@ -132,7 +131,7 @@ fn a_command_that_moves_the_camera_is_an_edit_like_those_by_hand() {
     window.edit("camera", tracked.clone());
     window.gestures.next();
 
-    // The dance plays: its distance follows the track, and the window says so; what has no track is moved.
+    // During playback the distance follows its track, and the window says so; values without a track change.
     key(&mut harness, Modifiers::NONE, Key::F);
     let framed = project(&harness);
     assert!(harness.query_by_label_contains("Camera distance follows its track").is_some());
@@ -142,7 +141,7 @@ fn a_command_that_moves_the_camera_is_an_edit_like_those_by_hand() {
     key(&mut harness, CTRL, Key::Z);
     assert_eq!(*project(&harness), tracked);
 
-    // It stands still: a key is set where it stands.
+    // While paused, the command sets a key at the current time.
     key(&mut harness, Modifiers::NONE, Key::Space);
     wait(&mut harness, "the pause", |window| !window.session.playing);
     let at = position(of(&harness));
@@ -157,11 +156,11 @@ fn a_command_that_moves_the_camera_is_an_edit_like_those_by_hand() {
     key(&mut harness, CTRL, Key::Z);
     assert_eq!(*project(&harness), tracked);
 
-    // It plays, and is written.
+    // During playback with writing on, the command writes the track.
     key(&mut harness, Modifiers::NONE, Key::Space);
     key(&mut harness, Modifiers::NONE, Key::W);
     key(&mut harness, Modifiers::NONE, Key::F);
-    wait(&mut harness, "the ride to end", |window| window.overdub.writes().next().is_none());
+    wait(&mut harness, "the recording pass to end", |window| window.overdub.writes().next().is_none());
     let written = project(&harness);
     let track = written.timeline.tracks.iter().find(|track| track.target == "camera/distance");
     assert!(track.is_some_and(|track| track.keys.len() > 2 && track.range()[0][0] < 7.0), "{track:?}");

@@ -1,5 +1,5 @@
-//! The whole window, with the simulation and the drawing behind it. It needs no display and no graphics card:
-//! without one it shows why there is no picture.
+//! The whole window, with simulation and rendering. It needs neither a display nor a graphics card; without an adapter it
+//! shows the reason that there is no image.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -19,7 +19,7 @@ use crate::window::{Layout, Window};
 
 pub(super) const CTRL: Modifiers = Modifiers { ctrl: true, command: true, ..Modifiers::NONE };
 
-/// The window on a project of few strands, once its scene is loaded.
+/// The window with a project of few strands, after its scene is loaded.
 pub(super) fn window() -> Harness<'static, Shown<Option<Window>>> {
     let mut project = Project::default();
     project.hair.groom.wisps = 16;
@@ -44,7 +44,7 @@ pub(super) fn project(harness: &Harness<'_, Shown<Option<Window>>>) -> Arc<Proje
     Arc::clone(of(harness).history.project())
 }
 
-/// Passes until something is so.
+/// Runs passes until a condition holds.
 pub(super) fn wait(
     harness: &mut Harness<'_, Shown<Option<Window>>>,
     what: &str,
@@ -52,7 +52,7 @@ pub(super) fn wait(
 ) {
     let watch = Stopwatch::start();
     while !is_so(of(harness)) {
-        // A guard against waiting for ever; loading takes a second or so.
+        // Loading takes about a second.
         assert!(watch.secs() < 60.0, "waited too long for {what}");
         harness.step();
         std::thread::sleep(Duration::from_millis(5));
@@ -60,7 +60,7 @@ pub(super) fn wait(
     harness.run_steps(2);
 }
 
-/// Some passes: this window never rests while it plays.
+/// Runs a few passes, because the window never comes to rest during playback.
 pub(super) fn go(harness: &mut Harness<'_, Shown<Option<Window>>>) {
     harness.run_steps(6);
 }
@@ -83,7 +83,7 @@ fn menu(harness: &mut Harness<'_, Shown<Option<Window>>>, command: Command) {
     go(harness);
 }
 
-/// Answers the question for a path.
+/// Fills in the path dialog and confirms it.
 pub(super) fn answer(harness: &mut Harness<'_, Shown<Option<Window>>>, path: &Path) {
     harness.get_by_label("Path").click();
     go(harness);
@@ -93,7 +93,7 @@ pub(super) fn answer(harness: &mut Harness<'_, Shown<Option<Window>>>, path: &Pa
     go(harness);
 }
 
-/// A file that is dropped on the window.
+/// Drops a file on the window.
 #[derive(Debug)]
 struct Dropped(PathBuf);
 
@@ -108,7 +108,7 @@ impl egui::DroppedFile for Dropped {
 }
 
 #[test]
-fn menus_and_keys_change_the_project_and_undo_takes_it_back() {
+fn changes_by_menu_and_key_can_be_undone() {
     let mut harness = window();
     harness.check_accessibility();
     let before = project(&harness);
@@ -123,7 +123,7 @@ fn menus_and_keys_change_the_project_and_undo_takes_it_back() {
     key(&mut harness, CTRL, Key::Z);
     assert_eq!(project(&harness), before);
 
-    // A drag on a slider of a panel, in the window with everything around it.
+    // A drag on a slider of a panel in the whole window.
     let rail = control(&harness, Role::Slider, "Length").rect();
     drag(&mut harness, rail.left_center(), rail.right_center());
     go(&mut harness);
@@ -133,7 +133,7 @@ fn menus_and_keys_change_the_project_and_undo_takes_it_back() {
     key(&mut harness, CTRL, Key::Z);
     assert_eq!(project(&harness), before);
 
-    // The palette does what the menu does.
+    // The palette runs the same command as the menu.
     key(&mut harness, CTRL, Key::K);
     harness.event(Event::Text("long waves".to_owned()));
     harness.key_press(Key::Enter);
@@ -144,7 +144,7 @@ fn menus_and_keys_change_the_project_and_undo_takes_it_back() {
 }
 
 #[test]
-fn keys_play_and_hide_the_panels() {
+fn keys_pause_playback_and_hide_the_panels() {
     let mut harness = window();
     let names = |harness: &Harness<'_, _>| controls(harness, Role::Slider).len();
     assert!(of(&harness).session.playing && names(&harness) > 10);
@@ -172,10 +172,10 @@ fn keys_play_and_hide_the_panels() {
 }
 
 #[test]
-fn a_paused_picture_follows_the_timeline_and_the_hair() {
+fn the_image_follows_the_timeline_and_the_hair_while_paused() {
     let mut harness = window();
     key(&mut harness, Modifiers::NONE, Key::Space);
-    // Time has stopped when two frames in a row are the same.
+    // Playback has stopped when two consecutive frames are the same.
     let position = |window: &Window| window.session.frame.as_ref().map_or(-1.0, |frame| frame.position_secs);
     let drawn = |window: &Window| match (&window.session.drawn, &window.session.frame) {
         (Some((_, drawn, _)), Some(frame)) => Arc::ptr_eq(drawn, frame),
@@ -204,7 +204,7 @@ fn a_paused_picture_follows_the_timeline_and_the_hair() {
 }
 
 #[test]
-fn projects_are_saved_opened_and_not_lost() {
+fn projects_are_saved_and_opened_and_unsaved_changes_are_kept() {
     let mut harness = window();
     let dir = tempfile::tempdir().expect("a folder");
     let path = dir.path().join("mein Projekt ü").with_extension(PROJECT_EXTENSION);
@@ -223,7 +223,7 @@ fn projects_are_saved_opened_and_not_lost() {
     key(&mut harness, CTRL, Key::N);
     press_button(&mut harness, "Stay");
     assert_eq!(project(&harness), changed);
-    // Closing asks too.
+    // Closing the window asks as well.
     let viewport = harness.input_mut().viewports.entry(ViewportId::ROOT).or_default();
     viewport.events.push(ViewportEvent::Close);
     harness.step();
@@ -244,7 +244,7 @@ fn projects_are_saved_opened_and_not_lost() {
 }
 
 #[test]
-fn a_broken_file_is_told_where_hair_is_edited_and_the_scene_stays() {
+fn a_broken_hair_file_is_reported_and_the_scene_stays() {
     let mut harness = window();
     let dir = tempfile::tempdir().expect("a folder");
     let path = dir.path().join("cut.hair");
@@ -263,7 +263,7 @@ fn a_broken_file_is_told_where_hair_is_edited_and_the_scene_stays() {
     assert_eq!(project(&harness), before);
     wait(&mut harness, "the end of the error", |window| window.session.problems.is_empty());
 
-    // What is no file of any kind changes nothing.
+    // An unknown file changes nothing.
     let note = dir.path().join("notes.txt");
     std::fs::write(&note, b"words").expect("a file");
     for path in [note, dir.path().join("no such.hair"), dir.path().to_owned()] {

@@ -1,4 +1,4 @@
-//! What holds for every control of every panel.
+//! Properties of every control of every panel.
 
 use egui::accesskit::Role;
 use egui::pos2;
@@ -8,7 +8,7 @@ use crate::window::testing::{
     WIDTH, control, controls, double_click, drag, is_marked, texts, tooltip_at, type_at,
 };
 
-/// What a user can change a value with.
+/// The roles of controls that change a value.
 const ROLES: [Role; 7] = [
     Role::Slider,
     Role::SpinButton,
@@ -21,7 +21,7 @@ const ROLES: [Role; 7] = [
 
 #[test]
 fn every_control_has_a_name_and_a_tooltip() {
-    // Statistics have nothing to control.
+    // Statistics has no controls.
     for (title, _) in PANELS.into_iter().filter(|(title, _)| *title != "Statistics") {
         for (name, project) in [&projects()[0], &projects()[3]] {
             let mut harness = panel(title, project.clone());
@@ -61,7 +61,7 @@ fn panels_fit_the_width() {
 }
 
 #[test]
-fn no_number_that_is_typed_leaves_its_range() {
+fn typed_numbers_stay_in_range() {
     for (title, _) in PANELS {
         for (name, project) in [&projects()[0], &projects()[3]] {
             let mut harness = panel(title, project.clone());
@@ -86,7 +86,7 @@ fn no_number_that_is_typed_leaves_its_range() {
 }
 
 #[test]
-fn no_slider_that_is_dragged_leaves_its_range() {
+fn dragged_sliders_stay_in_range() {
     for (title, _) in PANELS {
         for (name, project) in [&projects()[0], &projects()[3]] {
             let mut harness = panel(title, project.clone());
@@ -113,13 +113,13 @@ fn no_slider_that_is_dragged_leaves_its_range() {
 }
 
 #[test]
-fn what_differs_is_marked_and_a_double_click_restores_it() {
+fn changed_values_are_marked_and_a_double_click_restores_them() {
     for (title, _) in PANELS {
         for (name, project) in [&projects()[0], &projects()[1], &projects()[3]] {
             let mut harness = panel(title, project.clone());
             let sliders = controls(&harness, Role::Slider);
             for i in 0..sliders.len() {
-                // Three places to double-click: the rail, the number, the name.
+                // There are three places to double-click: the rail, the number and the name.
                 for place in 0..3 {
                     harness.state_mut().state.project = project.clone();
                     harness.run();
@@ -127,10 +127,10 @@ fn what_differs_is_marked_and_a_double_click_restores_it() {
                     let number = controls(&harness, Role::SpinButton).into_iter().find(|(_, number)| {
                         number.intersects(rail.translate(egui::vec2(rail.width() + 10.0, 0.0)))
                     });
-                    // The sphere of lights has no number.
+                    // The sphere of a light has no number.
                     let Some((_, number)) = number else { continue };
                     let marked_before = is_marked(&harness, &label);
-                    // Where the value lies at one end already, the other end differs.
+                    // If the value is at one end of its range already, the other end differs.
                     for end in [rail.right_center(), rail.left_center()] {
                         if harness.state().state.project == *project {
                             drag(&mut harness, rail.center(), end);
@@ -161,7 +161,7 @@ fn what_differs_is_marked_and_a_double_click_restores_it() {
                     if !marked_before {
                         assert!(after == project, "{title}, {name}: {label} is not restored, place {place}");
                     }
-                    // The number may have kept the keyboard.
+                    // The number field may still have the keyboard focus.
                     harness.key_press(egui::Key::Escape);
                     harness.run();
                 }
@@ -171,7 +171,7 @@ fn what_differs_is_marked_and_a_double_click_restores_it() {
 }
 
 #[test]
-fn nothing_of_the_default_project_is_marked() {
+fn the_default_project_has_no_marked_controls() {
     let project = projects()[0].1.clone();
     assert!(project == lovelock_studio::Project::default());
     for (title, _) in PANELS {
@@ -186,7 +186,7 @@ fn nothing_of_the_default_project_is_marked() {
 }
 
 #[test]
-fn a_control_says_its_unit() {
+fn controls_show_their_units() {
     let harness = panel("Hairstyle", projects()[0].1.clone());
     let length = control(&harness, Role::SpinButton, "Length").value().expect("a number");
     assert!(length.ends_with(" cm"), "{length}");

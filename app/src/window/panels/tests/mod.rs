@@ -18,7 +18,7 @@ use super::recording::State;
 use crate::window::control::section;
 use crate::window::testing::{Shown, screen, unfold};
 
-/// A project with what the panels show beside it.
+/// A project and the other data that the panels show.
 #[derive(Clone)]
 pub(super) struct Bench {
     pub(super) project: Project,
@@ -72,7 +72,7 @@ impl Bench {
 
 pub(super) type Show = fn(&mut Ui, &mut Bench);
 
-/// Every panel, inside its section as the window has it.
+/// Every panel, inside a section as in the window.
 pub(super) const PANELS: [(&str, Show); 11] = [
     ("Hairstyle", |ui, b| {
         super::hair::ui(ui, &mut b.project, &b.hair);
@@ -91,7 +91,7 @@ pub(super) const PANELS: [(&str, Show); 11] = [
     }),
     ("Colliders", |ui, b| {
         let edits = &mut b.project.body.colliders;
-        // The skin stands for the skull as long as it is as it was fitted.
+        // The skin replaces the skull's shape until that shape is edited.
         let skull = edits.of("skull").scale == 1.0 && edits.field.enabled;
         let shapes = [("neck", false), ("upper arm left of a rather long name", false), ("skull", skull)];
         let fitted = shapes.map(|(name, spared)| super::colliders::Fitted { name, spared });
@@ -119,7 +119,7 @@ pub(super) const PANELS: [(&str, Show); 11] = [
     }),
 ];
 
-/// A panel with all its sections unfolded.
+/// A panel with all its sections open.
 pub(super) fn panel(title: &'static str, project: Project) -> Harness<'static, Shown<Bench>> {
     let show = PANELS.iter().find(|(name, _)| *name == title).expect("a panel of that title").1;
     let mut harness = screen(Bench::new(project), move |ui, bench: &mut Bench| {
@@ -129,7 +129,7 @@ pub(super) fn panel(title: &'static str, project: Project) -> Harness<'static, S
     harness
 }
 
-/// Projects that between them show every control.
+/// Projects that together show every control.
 pub(super) fn projects() -> Vec<(&'static str, Project)> {
     let mut projects: Vec<_> = Preset::ALL
         .into_iter()

@@ -1,4 +1,4 @@
-//! What single panels do.
+//! The panels one by one.
 
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable;
@@ -12,7 +12,7 @@ use super::{Bench, panel};
 use crate::window::panels::{body, hair};
 use crate::window::testing::{Shown, control, drag, is_on, screen, texts, tooltip_at, type_at};
 
-/// Chooses an entry of a box that opens.
+/// Chooses an entry of a combo box.
 pub(super) fn choose<S>(harness: &mut egui_kittest::Harness<'_, S>, name: &str, entry: &str) {
     control(harness, Role::ComboBox, name).click();
     harness.run();
@@ -21,7 +21,7 @@ pub(super) fn choose<S>(harness: &mut egui_kittest::Harness<'_, S>, name: &str, 
 }
 
 #[test]
-fn hair_takes_presets_with_their_colours() {
+fn presets_are_applied_with_their_colours() {
     let mut harness = panel("Hairstyle", Project::default());
     harness.get_by_label(Preset::Curly.label()).click();
     harness.run();
@@ -44,7 +44,7 @@ fn hair_takes_presets_with_their_colours() {
 }
 
 #[test]
-fn hair_asks_for_a_file_only_where_it_has_none() {
+fn a_hair_file_is_requested_only_if_there_is_none() {
     let state = (Project::default(), None);
     let mut harness = screen(state, |ui, (project, asked)| {
         *asked = hair::ui(ui, project, &hair::Loaded::default()).or(*asked);
@@ -69,7 +69,7 @@ fn hair_asks_for_a_file_only_where_it_has_none() {
 }
 
 #[test]
-fn body_takes_clips_files_and_joints() {
+fn body_clip_file_and_head_joint_are_chosen() {
     let state = (Project::default(), None);
     let loaded = body::Loaded {
         clips: vec!["dance".to_owned(), "walk".to_owned()],
@@ -105,7 +105,7 @@ fn body_takes_clips_files_and_joints() {
 }
 
 #[test]
-fn simulation_sets_numbers_and_restores_them() {
+fn simulation_numbers_are_set_and_restored() {
     let mut harness = panel("Simulation", Project::default());
     let at = control(&harness, Role::SpinButton, "Bend damping").rect().center();
     type_at(&mut harness, at, "150");
@@ -123,7 +123,7 @@ fn simulation_sets_numbers_and_restores_them() {
 }
 
 #[test]
-fn the_ramp_of_stiffness_is_dragged_bent_and_moved_by_keys() {
+fn the_stiffness_curve_is_edited_by_pointer_and_keys() {
     let mut harness = panel("Simulation", Project::default());
     let settings =
         |harness: &egui_kittest::Harness<'_, Shown<Bench>>| harness.state().state.project.simulation;
@@ -142,14 +142,14 @@ fn the_ramp_of_stiffness_is_dragged_bent_and_moved_by_keys() {
     let lifted = settings(&harness);
     assert!(lifted.stiffness_root > before.stiffness_root + 10.0, "{lifted:?}");
     assert_eq!((lifted.stiffness_tip, lifted.stiffness_bias), (before.stiffness_tip, before.stiffness_bias));
-    // The middle goes to where it is dragged, and the curve with it.
+    // The curve passes through the point to which its middle is dragged.
     let from = handle(&harness, middle);
     let to = from + egui::vec2(0.0, 8.0);
     drag(&mut harness, from, to);
     let bent = settings(&harness);
     assert!(bent.stiffness_bias > 0.55, "{bent:?}");
     assert!((handle(&harness, middle) - to).length() < 1.5);
-    // A click takes the focus, and keys move what has it.
+    // A click gives a handle the focus, and keys move the focused handle.
     let from = handle(&harness, tips);
     crate::window::testing::click(&mut harness, from);
     harness.key_press(egui::Key::ArrowUp);
@@ -164,7 +164,7 @@ fn the_ramp_of_stiffness_is_dragged_bent_and_moved_by_keys() {
 }
 
 #[test]
-fn the_wind_is_turned_on_its_sphere() {
+fn the_sphere_sets_the_wind_direction() {
     let mut harness = panel("Simulation", Project::default());
     let sphere = control(&harness, Role::Slider, "Wind direction").rect();
     drag(&mut harness, sphere.center(), sphere.center() + egui::vec2(0.0, -30.0));
@@ -177,7 +177,7 @@ fn the_wind_is_turned_on_its_sphere() {
 }
 
 #[test]
-fn colliders_are_changed_by_name_and_restored() {
+fn colliders_are_edited_by_name_and_restored() {
     let mut harness = panel("Colliders", Project::default());
     choose(&mut harness, "Collider", "upper arm left of a rather long name");
     let size = control(&harness, Role::SpinButton, "Size").rect().center();
@@ -234,7 +234,7 @@ fn ties_are_added_chosen_and_removed() {
 }
 
 #[test]
-fn shadow_shows_what_its_method_has() {
+fn shadow_shows_the_settings_of_its_method() {
     let mut harness = panel("Shadow", Project::default());
     choose(&mut harness, "Map resolution", "64³");
     assert_eq!(harness.state().state.project.shadow.voxel_map.resolution, 64);
@@ -249,7 +249,7 @@ fn shadow_shows_what_its_method_has() {
 }
 
 #[test]
-fn lights_come_and_go() {
+fn lights_are_added_and_removed() {
     let mut harness = panel("Light", Project::default());
     let few = harness.state().state.project.lights.len();
     while let Some(add) = harness.query_by_label("+") {
@@ -271,7 +271,7 @@ fn lights_come_and_go() {
 }
 
 #[test]
-fn removing_a_light_removes_that_one() {
+fn the_selected_light_is_the_one_removed() {
     let mut harness = panel("Light", Project::default());
     let names: Vec<String> =
         harness.state().state.project.lights.iter().map(|light| light.name.clone()).collect();
@@ -287,10 +287,10 @@ fn removing_a_light_removes_that_one() {
 }
 
 #[test]
-fn the_sphere_turns_the_light() {
+fn the_sphere_sets_the_light_direction() {
     let mut harness = panel("Light", Project::default());
     let rect = control(&harness, Role::Slider, "Light direction").rect();
-    // The camera looks along -Z here: the middle is a light from the front, the right rim one from +X.
+    // The camera looks along -Z: the middle of the sphere is a light from the front, the right rim a light from +X.
     drag(&mut harness, rect.center() + egui::vec2(3.0, 0.0), rect.center());
     let light = harness.state().state.project.lights[0].direction;
     assert!((light - Vec3::NEG_Z).length() < 0.05, "{light}");
@@ -305,7 +305,7 @@ fn the_sphere_turns_the_light() {
 }
 
 #[test]
-fn look_takes_natural_colours() {
+fn natural_colours_set_the_pigments() {
     let mut harness = panel("Look", Project::default());
     let at = control(&harness, Role::Button, "Black").rect().center();
     assert!(tooltip_at(&mut harness, at).is_some_and(|said| said.contains("Black")));
@@ -320,7 +320,7 @@ fn look_takes_natural_colours() {
 }
 
 #[test]
-fn picture_switches() {
+fn picture_settings_are_changed() {
     let mut harness = panel("Picture", Project::default());
     let ground = harness.state().state.project.picture.ground;
     control(&harness, Role::CheckBox, "Ground").click();
@@ -332,7 +332,7 @@ fn picture_switches() {
 }
 
 #[test]
-fn statistics_name_every_stage_and_fact() {
+fn statistics_show_every_stage_and_fact() {
     let harness = panel("Statistics", Project::default());
     for stage in Stage::ALL.into_iter().filter(|stage| *stage != Stage::Encode) {
         assert!(harness.query_all_by_label(stage.label()).count() > 0, "{stage:?}");
@@ -342,9 +342,9 @@ fn statistics_name_every_stage_and_fact() {
 }
 
 #[test]
-fn statistics_group_the_passes_with_their_sums() {
+fn statistics_group_passes_and_show_their_sums() {
     let mut harness = panel("Statistics", Project::default());
-    // What stands beside a name, on its line.
+    // The value on the same line as a name.
     let value = |harness: &egui_kittest::Harness<'_, Shown<Bench>>, name: &str| {
         let y = harness.get_by_label(name).rect().center().y;
         let values: Vec<_> = texts(harness)

@@ -1,4 +1,4 @@
-//! Controls that do nothing say so, and those that a paper has a symbol for name it.
+//! Tooltips: why a control is disabled, and the symbol of a paper where there is one.
 
 use egui::accesskit::Role;
 use egui_kittest::Harness;
@@ -10,7 +10,7 @@ use super::one_by_one::choose;
 use super::{Bench, panel};
 use crate::window::testing::{Shown, click, control, is_on, tooltip_at, type_at};
 
-/// Whether a control takes input, and what its tooltip says.
+/// Whether a control is enabled, and its tooltip.
 fn state(harness: &mut Harness<'_, Shown<Bench>>, role: Role, name: &str) -> (bool, String) {
     let node = control(harness, role, name);
     let (off, at) = (node.accesskit_node().is_disabled(), node.rect().center());
@@ -18,7 +18,7 @@ fn state(harness: &mut Harness<'_, Shown<Bench>>, role: Role, name: &str) -> (bo
 }
 
 #[test]
-fn across_is_for_pressure_alone() {
+fn across_is_enabled_only_for_pressure() {
     let mut harness = panel("Simulation", Project::default());
     let (live, said) = state(&mut harness, Role::SpinButton, "Across");
     assert!(live && !said.contains("Only Pressure"), "{said}");
@@ -35,7 +35,7 @@ fn across_is_for_pressure_alone() {
 }
 
 #[test]
-fn a_shape_that_the_skin_stands_for_is_off_with_the_reason_until_it_is_changed() {
+fn a_shape_replaced_by_the_skin_is_disabled_until_it_is_edited() {
     let mut harness = panel("Colliders", Project::default());
     assert!(state(&mut harness, Role::CheckBox, "On").0);
     choose(&mut harness, "Collider", "skull");
@@ -51,7 +51,7 @@ fn a_shape_that_the_skin_stands_for_is_off_with_the_reason_until_it_is_changed()
 }
 
 #[test]
-fn advice_of_the_gauges_names_what_is_there() {
+fn controls_named_by_the_gauges_exist() {
     let harness = panel("Colliders", Project::default());
     for name in ["Lift", "Size"] {
         control(&harness, Role::SpinButton, name);

@@ -1,4 +1,4 @@
-//! What the panel of recordings does.
+//! The recording panel.
 
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable;
@@ -12,7 +12,7 @@ use crate::window::panels::recording::{Ask, State};
 use crate::window::testing::{control, screen, type_at};
 
 #[test]
-fn recording_keeps_a_range_that_is_not_empty() {
+fn the_frame_range_is_never_empty() {
     let mut harness = panel("Recording", Project::default());
     let (first, end) = ("From frame", "To frame");
     let place = |harness: &egui_kittest::Harness<'_, _>, name| {
@@ -36,7 +36,7 @@ fn recording_keeps_a_range_that_is_not_empty() {
 }
 
 #[test]
-fn recording_offers_what_the_command_line_does() {
+fn the_panel_offers_the_options_of_the_command_line() {
     let mut harness = panel("Recording", Project::default());
     choose(&mut harness, "Pictures as", "EXR, linear");
     for name in ["Clear behind", "Label"] {
@@ -54,7 +54,7 @@ fn recording_offers_what_the_command_line_does() {
 }
 
 #[test]
-fn recording_names_a_size_that_is_in_no_list() {
+fn a_size_outside_the_list_is_shown() {
     let mut project = Project::default();
     (project.recording.width, project.recording.height, project.recording.fps) = (96, 64, 29.97);
     let harness = panel("Recording", project);
@@ -63,7 +63,7 @@ fn recording_names_a_size_that_is_in_no_list() {
 }
 
 #[test]
-fn recording_starts_shows_progress_and_stops() {
+fn the_buttons_start_and_cancel_and_the_bar_shows_progress() {
     let state = (State::Idle, None);
     let mut harness = screen(state, |ui, (state, asked)| {
         let mut section = RecordingSection::default();
@@ -81,7 +81,7 @@ fn recording_starts_shows_progress_and_stops() {
     }
     let running = State::Running { what: "Frame".to_owned(), done: 12, total: 48, left_secs: Some(30.0) };
     harness.state_mut().state = (running, None);
-    // The bar of progress never rests.
+    // The progress bar animates, so the harness never comes to rest.
     harness.run_steps(3);
     assert!(harness.query_by_label("Record film…").is_none(), "one at a time");
     let bar = harness.get_by_role(Role::ProgressIndicator);
@@ -101,7 +101,7 @@ fn recording_starts_shows_progress_and_stops() {
 }
 
 #[test]
-fn progress_is_said_in_words_that_fit() {
+fn progress_is_described_in_words() {
     let said = |what: &str, done, total, left_secs| {
         let state = State::Running { what: what.to_owned(), done, total, left_secs };
         state.progress().expect("it runs").1

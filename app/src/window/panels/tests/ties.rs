@@ -1,4 +1,4 @@
-//! Ties are aimed, parted and mirrored.
+//! The panel of ties: direction, parting, patch and mirror.
 
 use egui::accesskit::Role;
 use egui_kittest::Harness;
@@ -27,7 +27,7 @@ fn set(harness: &mut Harness<'_, Shown<Bench>>, name: &str, text: &str) {
 }
 
 #[test]
-fn a_tie_is_aimed_by_heading_and_rise() {
+fn heading_and_rise_set_the_direction_of_a_tie() {
     let shipped = HairTie::default();
     let mut harness = with_ties(&[shipped]);
     assert_eq!(control(&harness, Role::SpinButton, "Heading").value().as_deref(), Some("0°"));
@@ -52,7 +52,7 @@ fn a_tie_is_aimed_by_heading_and_rise() {
 }
 
 #[test]
-fn a_parting_divides_the_hair() {
+fn a_parting_selects_one_side() {
     let mut harness = with_ties(&[HairTie::default()]);
     for (entry, normal) in [("What grows on the left", Vec3::X), ("What grows on the right", Vec3::NEG_X)] {
         choose(&mut harness, "Gathers", entry);
@@ -64,7 +64,7 @@ fn a_parting_divides_the_hair() {
     choose(&mut harness, "Gathers", "What grows above a height");
     assert_eq!(tie(&harness, 0).plane_normal, Vec3::Y);
     assert!(harness.query_by_role_and_label(Role::SpinButton, "Height").is_some());
-    // A plane that a file has may be any: it is named and kept.
+    // A project file may contain any plane: the panel names it and keeps it.
     harness.state_mut().state.project.hair.ties[0].plane_normal = Vec3::new(1.0, 1.0, 0.0);
     harness.run();
     let said = control(&harness, Role::ComboBox, "Gathers").value();
@@ -72,7 +72,7 @@ fn a_parting_divides_the_hair() {
 }
 
 #[test]
-fn a_patch_goes_with_its_ring_until_it_has_a_place_of_its_own() {
+fn a_patch_follows_its_ring_until_it_has_its_own_centre() {
     let mut harness = with_ties(&[HairTie::default()]);
     choose(&mut harness, "Gathers", "What grows in a patch");
     assert!(harness.query_by_role_and_label(Role::SpinButton, "Patch upward").is_none());
@@ -91,7 +91,7 @@ fn a_patch_goes_with_its_ring_until_it_has_a_place_of_its_own() {
 }
 
 #[test]
-fn a_tie_at_one_side_has_a_mirror_image_and_both_share_the_hair() {
+fn mirroring_a_tie_divides_the_hair_between_both() {
     let mut harness = with_ties(&[HairTie::default()]);
     let at = control(&harness, Role::Button, "Mirror").rect().center();
     let said = tooltip_at(&mut harness, at).expect("a reason");
@@ -110,7 +110,7 @@ fn a_tie_at_one_side_has_a_mirror_image_and_both_share_the_hair() {
     assert_eq!(harness.state().state.selected_tie, 1, "the new one is chosen");
     let (sanitised, problems) = harness.state().state.project.sanitised();
     assert!(problems.is_empty() && sanitised == harness.state().state.project, "{problems:?}");
-    // From the other side it is the other way round.
+    // Mirroring the tie of the other side gives the opposite order.
     let mut harness = with_ties(&[HairTie { at: Vec3::new(-0.08, 0.1, 0.0), ..HairTie::default() }]);
     control(&harness, Role::Button, "Mirror").click();
     harness.run();

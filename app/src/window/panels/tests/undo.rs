@@ -1,4 +1,4 @@
-//! One drag is one step of undo.
+//! One gesture is one undo step.
 
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, MouseWheelUnit, TouchPhase, vec2};
@@ -11,13 +11,13 @@ use crate::window::gesture::Gestures;
 use crate::window::panels::simulation;
 use crate::window::testing::{Shown, control, double_click, drag, press, screen};
 
-/// What the window keeps of a project.
+/// A project with its history, as the window holds it.
 struct Edited {
     history: History,
     gestures: Gestures,
 }
 
-/// The simulation's panel above a viewport, edited in passes as the window's.
+/// The simulation panel above a viewport, with the window's handling of edits.
 fn editor() -> Harness<'static, Shown<Edited>> {
     let state = Edited { history: History::new(Project::default()), gestures: Gestures::default() };
     screen(state, |ui, edited: &mut Edited| {
@@ -42,7 +42,7 @@ fn steps(harness: &Harness<'_, Shown<Edited>>) -> usize {
 }
 
 #[test]
-fn one_drag_is_one_step() {
+fn one_drag_is_one_undo_step() {
     let mut harness = editor();
     let before = harness.state().state.history.project().clone();
     let rail = control(&harness, Role::Slider, "Stiffness, roots").rect();
@@ -58,7 +58,7 @@ fn one_drag_is_one_step() {
 }
 
 #[test]
-fn a_rest_in_a_drag_does_not_end_it() {
+fn a_pause_during_a_drag_does_not_end_it() {
     let mut harness = editor();
     let rail = control(&harness, Role::Slider, "Stiffness, roots").rect();
     harness.hover_at(rail.left_center());
@@ -73,7 +73,7 @@ fn a_rest_in_a_drag_does_not_end_it() {
 }
 
 #[test]
-fn a_number_that_is_typed_is_one_step() {
+fn a_typed_number_is_one_undo_step() {
     let mut harness = editor();
     control(&harness, Role::SpinButton, "Settle").click();
     harness.run();
@@ -94,7 +94,7 @@ fn a_number_that_is_typed_is_one_step() {
 }
 
 #[test]
-fn a_turn_of_the_wheel_is_one_step() {
+fn one_turn_of_the_wheel_is_one_undo_step() {
     let mut harness = editor();
     let before = harness.state().state.history.project().camera.distance;
     let at = control(&harness, Role::Image, "Viewport").rect().center();
@@ -118,7 +118,7 @@ fn a_turn_of_the_wheel_is_one_step() {
 }
 
 #[test]
-fn an_orbit_is_one_step_and_turns_the_camera() {
+fn an_orbit_of_the_camera_is_one_undo_step() {
     let mut harness = editor();
     let before = harness.state().state.history.project().camera.azimuth;
     let rect = control(&harness, Role::Image, "Viewport").rect();
@@ -128,7 +128,7 @@ fn an_orbit_is_one_step_and_turns_the_camera() {
 }
 
 #[test]
-fn a_double_click_takes_back_its_own_first_click() {
+fn a_double_click_undoes_its_first_click() {
     let mut harness = editor();
     let rail = control(&harness, Role::Slider, "Settle").rect();
     double_click(&mut harness, rail.right_center() - vec2(4.0, 0.0));

@@ -1,4 +1,4 @@
-//! Showing a panel is no change of the project.
+//! Showing a panel does not change the project.
 
 use serde_json::Value;
 
@@ -7,7 +7,7 @@ use crate::window::control::section;
 use crate::window::testing::{screen, unfold};
 use lovelock_studio::{BodySource, HairSource, MotionSource, Project};
 
-/// A small generator of numbers (Steele, Lea, Flood 2014, "splitmix64").
+/// A small random number generator (Steele, Lea, Flood 2014, "splitmix64").
 struct Random(u64);
 
 impl Random {
@@ -23,7 +23,7 @@ impl Random {
         (self.next() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Anything: near the value, far from it, tiny, huge, of either sign.
+    /// Any number: near the value, far from it, tiny or huge, of either sign.
     fn number(&mut self, near: f64) -> f64 {
         match self.next() % 6 {
             0 => near,
@@ -36,7 +36,7 @@ impl Random {
     }
 }
 
-/// Other numbers and switches everywhere in a tree; names, choices and files stay.
+/// Replaces all numbers and switches in a tree; names, choices and files stay.
 fn shake(value: &mut Value, random: &mut Random) {
     match value {
         Value::Bool(on) => *on = random.next().is_multiple_of(2),
@@ -50,7 +50,7 @@ fn shake(value: &mut Value, random: &mut Random) {
     }
 }
 
-/// A project that a file may hold: any numbers, brought into their ranges as loading does.
+/// A project that a file may contain: any numbers, clamped to their ranges as loading does.
 fn random_project(base: &Project, random: &mut Random) -> Project {
     let mut tree = serde_json::to_value(base).expect("a project is plain data");
     shake(&mut tree, random);
@@ -88,7 +88,7 @@ fn showing_a_panel_changes_nothing() {
             harness.state_mut().state.selected_light = light;
             harness.run();
         }
-        // The clip may be as long as the recording is.
+        // The clip is as long as the recording.
         harness.state_mut().state.clip_frames = project.recording.end_frame.unwrap_or(1);
         harness.run();
         let (before, after) = (describe(project), describe(&harness.state().state.project));
@@ -97,14 +97,14 @@ fn showing_a_panel_changes_nothing() {
     }
 }
 
-/// Line by line, so that a failure names the field.
+/// The project as lines of text, so that a failure names the field.
 fn describe(project: &Project) -> String {
     serde_json::to_string_pretty(project).expect("a project is plain data")
 }
 
 #[test]
-fn the_test_would_see_a_control_that_rounds() {
-    // What a plain slider does: it keeps no more digits than it shows.
+fn a_control_that_rounds_is_detected() {
+    // A plain slider rounds its value to the digits that it shows.
     let mut harness = screen(0.123_456_f64, |ui, value| {
         let response = ui.add(egui::Slider::new(value, 0.0..=0.1).fixed_decimals(2));
         response.on_hover_text("plain");
