@@ -2,6 +2,7 @@
 
 use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
 
 /// The packages of a build and the arrows between them. Packages are known by their name.
 #[derive(Debug, Default)]
@@ -12,6 +13,8 @@ pub(crate) struct Graph {
     pub(crate) uses: BTreeMap<String, BTreeSet<String>>,
     /// What its tests, benchmarks and examples need beyond that.
     pub(crate) tests_use: BTreeMap<String, BTreeSet<String>>,
+    /// The `src` folder of each of the workspace's own packages.
+    pub(crate) sources: BTreeMap<String, PathBuf>,
 }
 
 #[derive(Deserialize)]
@@ -25,6 +28,7 @@ struct Metadata {
 struct Package {
     id: String,
     name: String,
+    manifest_path: PathBuf,
 }
 
 #[derive(Deserialize)]
@@ -58,6 +62,10 @@ impl Graph {
         let name = |id: &String| names.get(id).map_or_else(|| id.clone(), |name| (*name).clone());
         let mut graph =
             Self { members: metadata.workspace_members.iter().map(name).collect(), ..Self::default() };
+        for package in metadata.packages.iter().filter(|package| graph.members.contains(&package.name)) {
+            let folder = package.manifest_path.parent().unwrap_or(Path::new(""));
+            graph.sources.insert(package.name.clone(), folder.join("src"));
+        }
         for node in &metadata.resolve.nodes {
             for dependency in &node.deps {
                 for kind in &dependency.dep_kinds {
@@ -101,11 +109,16 @@ impl Graph {
 #[cfg(test)]
 mod tests {
     use super::Graph;
+    use std::path::PathBuf;
 
     #[test]
     fn metadata_becomes_names_and_arrows() {
         let json = br#"{
-            "packages": [{"id": "a 1", "name": "a"}, {"id": "b 1", "name": "b"}, {"id": "c 1", "name": "c"}],
+            "packages": [
+                {"id": "a 1", "name": "a", "manifest_path": "crates/a/Cargo.toml"},
+                {"id": "b 1", "name": "b", "manifest_path": "elsewhere/b/Cargo.toml"},
+                {"id": "c 1", "name": "c", "manifest_path": "elsewhere/c/Cargo.toml"}
+            ],
             "workspace_members": ["a 1"],
             "resolve": {"nodes": [
                 {"id": "a 1", "deps": [
@@ -117,6 +130,7 @@ mod tests {
         }"#;
         let graph = Graph::parse(json).unwrap();
         assert!(graph.members.iter().eq(["a"]));
+        assert!(graph.sources.iter().eq([(&"a".to_owned(), &PathBuf::from("crates/a/src"))]));
         assert!(graph.used_by("a").eq(["b", "c"]));
         assert!(graph.used_by_tests_of("a").eq(["c"]));
         assert_eq!(graph.used_by("b").count(), 0);

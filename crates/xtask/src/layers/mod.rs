@@ -1,11 +1,15 @@
-//! `cargo xtask layers`: which crate may use which, held against what cargo says.
+//! `cargo xtask layers`: prints which crate uses which, and fails on arrows that the architecture lacks and on circles
+//! among modules.
 
 mod graph;
+mod house;
+mod modules;
 mod rules;
 
 use crate::tool;
 use anyhow::{Context as _, ensure};
 use graph::Graph;
+use modules::Modules;
 
 /// Reads the workspace's dependencies and fails on every arrow that the architecture does not have.
 pub(crate) fn run() -> anyhow::Result<()> {
@@ -19,11 +23,21 @@ pub(crate) fn run() -> anyhow::Result<()> {
         String::from_utf8_lossy(&output.stderr).trim()
     );
     let graph = Graph::parse(&output.stdout).context("could not read what `cargo metadata` printed")?;
-    let faults = rules::faults(&graph);
+    let mut faults = rules::faults(&graph);
+    print!("{}", house::drawing(&graph));
+    let mut modules = 0;
+    for (name, src) in &graph.sources {
+        let found = Modules::read(src).with_context(|| format!("could not read the modules of {name}"))?;
+        modules += found.len();
+        faults.extend(rules::circles(name, &found.circles()));
+    }
     for fault in &faults {
         println!("{fault}");
     }
-    ensure!(faults.is_empty(), "{} arrows that docs/architecture.md does not have", faults.len());
-    println!("layers: {} crates, every arrow as docs/architecture.md has it", graph.members.len());
+    ensure!(faults.is_empty(), "{} faults of structure; docs/architecture.md has the rules", faults.len());
+    println!(
+        "layers: {} crates, every arrow as docs/architecture.md has it; {modules} modules, no circle",
+        graph.members.len()
+    );
     Ok(())
 }

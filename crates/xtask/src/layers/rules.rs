@@ -1,6 +1,7 @@
 //! The arrows of docs/architecture.md, and what breaks them.
 
 use super::graph::Graph;
+use super::modules::Circle;
 
 /// Who may use whom, each crate by its name without `lovelock-`.
 const ARROWS: [(&str, &[&str]); 13] = [
@@ -69,8 +70,25 @@ pub(crate) fn faults(graph: &Graph) -> Vec<String> {
     faults
 }
 
+/// Circles that stand, each with its crate, its modules and the reason.
+const CIRCLES: [(&str, &[&str], &str); 0] = [];
+
+/// One sentence for every circle among the modules of a package that is not one of [`CIRCLES`].
+pub(crate) fn circles(package: &str, circles: &[Circle]) -> Vec<String> {
+    let crate_name = short(package);
+    let stands = |circle: &Circle| {
+        CIRCLES.iter().any(|(of, modules, _)| *of == crate_name && circle.modules.iter().eq(modules.iter()))
+    };
+    let circles = circles.iter().filter(|circle| !stands(circle));
+    circles
+        .map(|Circle { modules, arrows }| {
+            format!("{package}: {} use each other: {}", modules.join(", "), arrows.join("; "))
+        })
+        .collect()
+}
+
 /// The crate's name in the architecture.
-fn short(package: &str) -> &str {
+pub(super) fn short(package: &str) -> &str {
     match package {
         "lovelock" => "app",
         _ => package.strip_prefix("lovelock-").unwrap_or(package),
