@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{Mat3A, Quat, Vec3};
 
-use crate::retarget::roles::{Humanoid, Role, Side};
+use crate::humanoid::{Humanoid, Role, Side};
 use crate::{Body, Clip, Interpolation, JointTracks, Track, pose::rotation_of};
 
 /// One key pose. Angles in degrees, from standing with the arms down.

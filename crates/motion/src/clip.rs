@@ -4,8 +4,6 @@ use std::sync::Arc;
 
 use glam::{Quat, Vec3};
 
-use crate::{Body, Pose, pose_at};
-
 /// How values between keys are found (glTF 2.0, section 3.11 and appendix C).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Interpolation {
@@ -53,15 +51,6 @@ pub struct MorphTrack {
     pub track: Track<f32>,
 }
 
-/// How far a clip's last pose is from its first.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Seam {
-    /// Largest distance that a joint jumps, metres.
-    pub distance: f32,
-    /// Largest angle that a joint turns, radians.
-    pub angle: f32,
-}
-
 /// A motion of one body, immutable once made.
 #[derive(Clone, Debug, Default)]
 pub struct Clip {
@@ -82,10 +71,6 @@ pub struct Clip {
 }
 
 impl Clip {
-    /// Largest jump of a joint, as a fraction of the body's height, with which a clip still counts as looping:
-    /// 2 cm on a person, about what a limb travels between two frames of a dance.
-    const LOOP_DISTANCE: f32 = 0.012;
-
     /// Time of the last key, seconds.
     pub fn keys_end_secs(&self) -> f64 {
         let joints = self.joints.iter().flat_map(|j| {
@@ -120,32 +105,6 @@ impl Clip {
         self.part_secs = Some([start, end]);
         (self.duration_secs, self.loop_blend_secs, self.loops) = (end - start, 0.0, false);
         self
-    }
-
-    /// Measures the jump from the last pose to the first.
-    pub fn seam(&self, body: &Body) -> Seam {
-        let [start, end] = self.part();
-        let unfaded = Self { duration_secs: end - start, loop_blend_secs: 0.0, ..self.clone() };
-        let (mut first, mut last) = (Pose::default(), Pose::default());
-        pose_at(body, Some(&unfaded), 0.0, &mut first);
-        // Wrapping would bring the end itself back to the start.
-        pose_at(body, Some(&unfaded), unfaded.duration_secs.next_down(), &mut last);
-        let mut seam = Seam::default();
-        for (a, b) in first.world_from_joint.iter().zip(&last.world_from_joint) {
-            seam.distance = seam.distance.max(Vec3::from(a.translation - b.translation).length());
-            let turn =
-                crate::pose::rotation_of(&b.matrix3) * crate::pose::rotation_of(&a.matrix3).conjugate();
-            seam.angle = seam.angle.max(2.0 * turn.w.abs().min(1.0).acos());
-        }
-        seam
-    }
-
-    /// Finds out whether the clip starts again without a jump and sets `loops`.
-    pub fn detect_loop(&mut self, body: &Body) {
-        let seam = self.seam(body);
-        let reach = body.height().max(0.1) * Self::LOOP_DISTANCE;
-        // An ankle turned by 10 degrees about its own axis moves no joint, and is seen.
-        self.loops = self.duration_secs > 0.0 && seam.distance <= reach && seam.angle <= 10_f32.to_radians();
     }
 
     /// The same clip with its last `blend_secs` faded into its first, so that it starts again without a jump. It

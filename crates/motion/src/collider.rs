@@ -23,6 +23,23 @@ pub enum ColliderShape {
     },
 }
 
+impl ColliderShape {
+    /// Its bounding box: the lowest and the highest corner.
+    pub(crate) fn bounds(&self) -> (Vec3, Vec3) {
+        match *self {
+            Self::Capsule { a, b, radius_a, radius_b } => {
+                let (ra, rb) = (Vec3::splat(radius_a), Vec3::splat(radius_b));
+                ((a - ra).min(b - rb), (a + ra).max(b + rb))
+            }
+            Self::Ellipsoid { from_unit: Affine3A { matrix3: m, translation } } => {
+                let (x, y, z) = (m.x_axis, m.y_axis, m.z_axis);
+                let half = Vec3::from(x * x + y * y + z * z).map(f32::sqrt);
+                (Vec3::from(translation) - half, Vec3::from(translation) + half)
+            }
+        }
+    }
+}
+
 /// A shape that follows one joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Collider {

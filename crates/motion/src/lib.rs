@@ -14,17 +14,19 @@ mod error;
 mod field;
 mod gltf;
 mod head;
+mod humanoid;
 mod info;
 mod pose;
 mod retarget;
 mod sample;
+mod seam;
 mod settings;
 mod skinning;
 
 pub use backflip::backflip;
 pub use body::{Bind, Body, Joint, Mesh, MorphTarget, Skeleton, SkinData};
 pub use bvh::{MotionFile, MotionJoint, load_motion, load_motion_bytes, load_motion_with};
-pub use clip::{Clip, Interpolation, JointTracks, MorphTrack, Seam, Track};
+pub use clip::{Clip, Interpolation, JointTracks, MorphTrack, Track};
 pub use collide::{
     ColliderEdit, ColliderEdits, FieldEdit, collider_lines, fit_colliders, place_colliders, signed_distance,
 };
@@ -41,5 +43,6 @@ pub use info::{CharacterInfo, ClipInfo, MotionInfo};
 pub use pose::Pose;
 pub use retarget::retarget;
 pub use sample::pose_at;
+pub use seam::Seam;
 pub use settings::{BodySettings, Facing, LengthUnit, MotionSettings, RootPosition, UpAxis};
 pub use skinning::{Skin, skin};

@@ -3,7 +3,7 @@
 use glam::{Affine3A, Mat3A, Vec3, Vec3A};
 use rayon::prelude::*;
 
-use crate::{Body, Pose};
+use crate::{Body, Pose, pose_at};
 
 /// The surface of a body at one instant, in world space; triangles and colours are the mesh's. Reused from frame
 /// to frame without allocation.
@@ -58,6 +58,15 @@ pub fn skin(body: &Body, pose: &Pose, out: &mut Skin) {
             }
         },
     );
+}
+
+/// Skins the surface in the rest pose and writes the result to the mesh.
+pub(crate) fn update_rest_surface(body: &mut Body) {
+    let (mut pose, mut rest) = (Pose::default(), Skin::default());
+    pose_at(body, None, 0.0, &mut pose);
+    skin(body, &pose, &mut rest);
+    body.mesh.positions = rest.positions;
+    body.mesh.normals = rest.normals;
 }
 
 fn skin_vertex(

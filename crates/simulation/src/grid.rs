@@ -17,6 +17,7 @@ use cell::{Cell, Cells, Tally};
 use lovelock_groom::simd::Width;
 use pieces::{Source, add_block};
 use rayon::prelude::*;
+pub(crate) use sample::GridStep;
 
 use crate::block::Block;
 use crate::lanes::{Map, at};

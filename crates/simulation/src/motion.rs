@@ -3,7 +3,6 @@
 use glam::{Affine3A, Mat3, Mat3A, Quat, Vec3};
 
 use crate::lanes::{Map, Turn};
-use crate::solver::Substep;
 
 /// Further than this in one step is a jump, metres and radians.
 const JUMP: (f32, f32) = (0.5, 1.0);
@@ -58,6 +57,23 @@ impl HeadPose {
         let passed = time_now - time_before;
         let cut = !(0.0..=PAUSE_SECS.max(4.0 * f64::from(dt_secs))).contains(&passed);
         moved > JUMP.0 || turned > JUMP.1 || (cut && (moved > CUT.0 || turned > CUT.1))
+    }
+}
+
+/// The head at one substep, in working space.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Substep {
+    /// Carries head space to working space.
+    pub(crate) head: Map,
+    pub(crate) head_turn: Turn,
+    /// Velocity of a point that moves rigidly with the head.
+    pub(crate) rigid: Map,
+}
+
+impl Substep {
+    #[inline(always)]
+    pub(crate) fn rigid_velocity(&self, p: Vec3) -> Vec3 {
+        self.rigid.apply(p)
     }
 }
 

@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     LengthUnit, MotionSettings, RootPosition, UpAxis,
-    retarget::roles::{Humanoid, Role, Side},
+    humanoid::{Role, Side},
 };
 
 /// How a joint's position channels combine with its OFFSET.
@@ -150,7 +150,7 @@ impl Probe {
     const FRAMES: usize = 48;
 
     fn new(motion: &MotionFile) -> Self {
-        let figure = Humanoid::of_motion(motion);
+        let figure = motion.humanoid();
         let head = figure.get(Role::Head).or(figure.get(Role::Neck));
         let feet: Vec<usize> = Side::BOTH
             .iter()

@@ -10,7 +10,7 @@ use std::{collections::BTreeMap, path::Path};
 
 use glam::{Affine3A, Quat, Vec3};
 
-use crate::{MotionError, MotionSettings, UpAxis, error::read_file};
+use crate::{MotionError, MotionSettings, UpAxis, error::read_file, humanoid::Humanoid};
 
 /// Largest file that is read.
 const FILE_LIMIT: u64 = 1 << 30;
@@ -64,6 +64,14 @@ impl MotionFile {
             let parent = joint.parent.map(|p| world[p]);
             world.push(parent.map_or(local, |p| p * local));
         }
+    }
+
+    /// The roles of the joints.
+    pub(crate) fn humanoid(&self) -> Humanoid {
+        Humanoid::new(
+            &self.joints.iter().map(|j| j.name.as_str()).collect::<Vec<_>>(),
+            &self.joints.iter().map(|j| j.parent).collect::<Vec<_>>(),
+        )
     }
 
     /// Places of all joints with every rotation at zero, metres.

@@ -133,21 +133,6 @@ fn within(value: f32, min: f32, max: f32, default: f32) -> f32 {
     if value.is_nan() { default } else { value.clamp(min, max) }
 }
 
-/// The box around a shape.
-pub(crate) fn shape_bounds(shape: &ColliderShape) -> (Vec3, Vec3) {
-    match *shape {
-        ColliderShape::Capsule { a, b, radius_a, radius_b } => {
-            let (ra, rb) = (Vec3::splat(radius_a), Vec3::splat(radius_b));
-            ((a - ra).min(b - rb), (a + ra).max(b + rb))
-        }
-        ColliderShape::Ellipsoid { from_unit: Affine3A { matrix3: m, translation } } => {
-            let (x, y, z) = (m.x_axis, m.y_axis, m.z_axis);
-            let half = Vec3::from(x * x + y * y + z * z).map(f32::sqrt);
-            (Vec3::from(translation) - half, Vec3::from(translation) + half)
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

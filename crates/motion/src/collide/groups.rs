@@ -5,7 +5,7 @@ use glam::Vec3;
 use crate::{
     Body,
     head::{head_mesh, neck_joints},
-    retarget::roles::{Humanoid, Role, Side},
+    humanoid::{Humanoid, Role, Side},
 };
 
 /// What a part is, which decides the shapes that fit it.

@@ -11,7 +11,6 @@ use glam::{Affine3A, Vec3};
 
 use crate::{Body, Collider, ColliderShape, PlacedCollider, Pose};
 
-pub(crate) use edits::shape_bounds;
 pub use edits::{ColliderEdit, ColliderEdits, FieldEdit};
 pub use fit::fit_colliders;
 pub use lines::collider_lines;

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::{
     Exact,
-    grid::{Lattice, WHOLE, interpolate},
+    lattice::{Lattice, WHOLE, interpolate},
     signs::{Known, sign_points},
 };
 

@@ -3,6 +3,7 @@
 mod bricks;
 mod closest;
 mod grid;
+mod lattice;
 mod signs;
 mod surface;
 #[cfg(test)]
@@ -14,7 +15,7 @@ use glam::Vec3;
 
 use crate::{Body, head_mesh};
 use grid::Grid;
-pub(crate) use grid::interpolate;
+pub(crate) use lattice::interpolate;
 use tree::Tree;
 use winding::Winding;
 

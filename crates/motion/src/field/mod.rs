@@ -145,7 +145,7 @@ impl BodyField {
 
     /// Whether all of a shape at rest lies where the field tells more than the shape does.
     pub fn covers(&self, shape_at_rest: &ColliderShape) -> bool {
-        let (low, high) = crate::collide::shape_bounds(shape_at_rest);
+        let (low, high) = shape_at_rest.bounds();
         let inner = Vec3::splat(self.distances.spacing);
         let (low, high) = (low - self.rest_from_head, high - self.rest_from_head);
         low.cmpge(self.distances.low + inner).all() && high.cmple(self.distances.high() - inner).all()

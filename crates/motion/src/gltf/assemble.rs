@@ -18,7 +18,7 @@ use super::{
     nodes::Tree,
     skin::{Palette, read_skin},
 };
-use crate::{Body, BodySettings, Clip, LengthUnit, MotionError, Pose, Skin, guess_head, pose_at, skin};
+use crate::{Body, BodySettings, Clip, LengthUnit, MotionError, guess_head, skinning::update_rest_surface};
 
 /// A file whose largest extent passes this many units is not in metres.
 const GIANT: f32 = 10.0;
@@ -102,7 +102,7 @@ pub(super) fn assemble(accessors: &Accessors, settings: BodySettings) -> Result<
     let stem =
         Path::new(file).file_stem().map_or_else(|| file.to_owned(), |s| s.to_string_lossy().into_owned());
     let mut body = Body { name: stem, skeleton, mesh, skin: skin_data, head_joint: 0 };
-    rest_surface(&mut body);
+    update_rest_surface(&mut body);
     if !body.mesh.positions.iter().all(|p| p.is_finite() && p.max_element() < 1e12) {
         return Err(MotionError::malformed(file, "the scene", "its transforms carry vertices to infinity"));
     }
@@ -171,15 +171,6 @@ fn note_pictures(document: &Document, notes: &mut Vec<String>) {
     }
 }
 
-/// Skins the surface in the rest pose, which is what the mesh holds.
-pub(super) fn rest_surface(body: &mut Body) {
-    let (mut pose, mut rest) = (Pose::default(), Skin::default());
-    pose_at(body, None, 0.0, &mut pose);
-    skin(body, &pose, &mut rest);
-    body.mesh.positions = rest.positions;
-    body.mesh.normals = rest.normals;
-}
-
 /// Turns round the triangles that the rest pose mirrors, so that all are counter-clockwise from outside.
 fn mend_winding(body: &mut Body) {
     let mirrors: Vec<bool> = body
@@ -240,7 +231,7 @@ fn rescale(body: &mut Body, clips: &mut [Clip], scale: f32) {
     }
     let morphs = body.skin.morphs.iter_mut().flat_map(|m| &mut m.positions);
     body.skin.positions.iter_mut().chain(morphs).for_each(|p| *p *= scale);
-    rest_surface(body);
+    update_rest_surface(body);
     for track in clips.iter_mut().flat_map(|c| &mut c.joints).filter_map(|j| j.translation.as_mut()) {
         track.values.iter_mut().for_each(|v| *v *= scale);
     }

@@ -4,10 +4,10 @@ use std::f32::consts::{FRAC_PI_2, PI};
 
 use glam::{Quat, Vec3};
 
-use super::assemble::rest_surface;
 use crate::{
     Body, BodySettings, Clip, Facing, Joint, UpAxis,
-    retarget::roles::{Humanoid, Role, Side},
+    humanoid::{Humanoid, Role, Side},
+    skinning::update_rest_surface,
 };
 
 /// Turns the body as the settings say, else as the figure shows: glTF has Y up and the face toward +Z, and files
@@ -81,5 +81,5 @@ fn insert_root(body: &mut Body, clips: &mut [Clip], name: &str, rotation: Quat) 
     body.skin.palette.iter_mut().for_each(|bind| bind.joint += 1);
     body.mesh.joints.iter_mut().flatten().for_each(|joint| *joint += 1);
     clips.iter_mut().flat_map(|c| &mut c.joints).for_each(|tracks| tracks.joint += 1);
-    rest_surface(body);
+    update_rest_surface(body);
 }

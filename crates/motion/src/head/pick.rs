@@ -2,7 +2,7 @@
 
 use crate::{
     Mesh, Skeleton,
-    retarget::roles::{Role, role_of},
+    humanoid::{Role, role_of},
 };
 
 /// Guesses the joint that carries the head.

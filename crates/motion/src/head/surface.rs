@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::scalp::guess_scalp;
-use crate::{Body, retarget::roles::Humanoid};
+use crate::{Body, humanoid::Humanoid};
 
 /// Head and neck at rest in head space (see [`crate::Pose::world_from_head`]), for hair to grow on.
 #[derive(Clone, Debug, Default, PartialEq)]

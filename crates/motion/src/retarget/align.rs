@@ -10,7 +10,7 @@ use std::f32::consts::PI;
 
 use glam::{Mat3, Quat, Vec3};
 
-use super::roles::{Humanoid, Role, Side};
+use crate::humanoid::{Humanoid, Role, Side};
 use crate::{MotionFile, Skeleton};
 
 /// By source joint, the rotation from the target's rest pose to the source's zero pose, in the world.

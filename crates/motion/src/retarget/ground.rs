@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use glam::{Affine3A, Vec3};
 
-use super::roles::{Humanoid, Role, Side};
+use crate::humanoid::{Humanoid, Role, Side};
 use crate::{Body, Clip, Pose, pose_at};
 
 /// Longest time from ground to ground, seconds: a jump of 0.4 m, higher than dancers leap and shorter than the

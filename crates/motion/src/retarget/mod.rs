@@ -7,19 +7,17 @@
 
 mod align;
 mod ground;
-mod names;
-pub(crate) mod roles;
 mod twist;
 
 use std::sync::Arc;
 
 use glam::{Affine3A, Quat, Vec3};
 
+use crate::humanoid::{Humanoid, Role, Side};
 use crate::{
     Body, Clip, Interpolation, JointTracks, MotionError, MotionFile, Pose, Skeleton, Track, pose_at,
 };
 use align::Alignment;
-use roles::{Humanoid, Role, Side};
 
 /// Where a target joint's turn comes from: a source joint, or a place between two.
 #[derive(Clone, Copy, Debug)]
@@ -70,7 +68,7 @@ pub fn retarget(motion: &MotionFile, body: &Body) -> Result<Clip, MotionError> {
 impl<'a> Plan<'a> {
     fn new(motion: &'a MotionFile, body: &'a Body) -> Result<Self, MotionError> {
         let skeleton = &body.skeleton;
-        let (source, target) = (Humanoid::of_motion(motion), Humanoid::of_skeleton(skeleton));
+        let (source, target) = (motion.humanoid(), Humanoid::of_skeleton(skeleton));
         let needed = Side::BOTH
             .iter()
             .flat_map(|&s| [Role::Thigh(s), Role::Shin(s), Role::UpperArm(s), Role::Forearm(s)]);

@@ -4,11 +4,8 @@ use std::f32::consts::{PI, TAU};
 
 use glam::{Quat, Vec3};
 
-use super::{
-    names::is_twist,
-    roles::{Humanoid, Role, Side},
-};
 use crate::Skeleton;
+use crate::humanoid::{Humanoid, Role, Side, is_twist};
 
 /// One twist joint and what it follows.
 struct Twist {

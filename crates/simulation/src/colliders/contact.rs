@@ -8,7 +8,7 @@ use super::boxes::{Boxes, bounds};
 use super::field::{FieldRow, MovingField, PlaneRow};
 use crate::SimulationSettings;
 use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, choose, direction_or, greater, lesser, put};
-use crate::solver::Substep;
+use crate::motion::Substep;
 
 /// How contacts behave in one step.
 #[derive(Clone, Copy, Debug)]

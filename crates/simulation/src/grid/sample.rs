@@ -11,10 +11,19 @@ use super::{DensityGrid, MOMENTUM, MOST_OF_A_CELL, OFFSETS, SIDE, index};
 use crate::block::Block;
 #[cfg(test)]
 use crate::lanes::splat3;
-use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, put, row_done, transposed};
+use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, put, row_done, transposed};
 use crate::settings::RepulsionMode;
-use crate::solver::Plan;
 use crate::trilinear::gradient;
+
+/// The head and the time step for which [`DensityGrid::act`] computes forces.
+pub(crate) struct GridStep<'a> {
+    /// Substep length, seconds.
+    pub(crate) h: f32,
+    /// Carries head space to the space of the block's positions.
+    pub(crate) last_head: &'a Map,
+    /// The inverse of `last_head`.
+    pub(crate) head_from_last: &'a Map,
+}
 
 /// What a row of points learns from the grid, in head space; only lanes that are `found` have hair around.
 struct Learnt {
@@ -89,7 +98,7 @@ impl DensityGrid {
 
     /// Adds the grid's part to the forces of a block, whose positions are still those of the last step.
     #[inline(always)]
-    pub(crate) fn act(&self, block: &mut Block, plan: &Plan, cohesion: f32) {
+    pub(crate) fn act(&self, block: &mut Block, step: &GridStep, cohesion: f32) {
         for keep in &mut block.work.keep {
             *keep = Lane::splat(1.0);
         }
@@ -100,7 +109,7 @@ impl DensityGrid {
         let (mut from, mut to) = (0, 0);
         let mut row = SampleRow { dv: ZERO3, mean: ZERO3 };
         loop {
-            let next = self.sample_row(block, plan, to);
+            let next = self.sample_row(block, step, to);
             if to > 0 {
                 between(
                     block,
@@ -119,9 +128,9 @@ impl DensityGrid {
     }
 
     #[inline(always)]
-    fn sample_row(&self, block: &Block, plan: &Plan, i: usize) -> SampleRow {
-        let most = MOST_OF_A_CELL * self.lattice.cell / plan.h;
-        let turn: Mat3 = plan.last_head.turn;
+    fn sample_row(&self, block: &Block, step: &GridStep, i: usize) -> SampleRow {
+        let most = MOST_OF_A_CELL * self.lattice.cell / step.h;
+        let turn: Mat3 = step.last_head.turn;
         // The published force knows no directions.
         let anisotropy = match self.repulsion.mode {
             RepulsionMode::Pressure => self.repulsion.anisotropy,
@@ -130,15 +139,15 @@ impl DensityGrid {
         let (tangent, here, velocity) = (tangents(block, i), block.position[i], block.velocity[i]);
         let (mut p, mut along) = (ZERO3, ZERO3);
         for k in 0..LANES {
-            put(&mut p, k, plan.head_from_last.apply(at(&here, k)));
-            put(&mut along, k, plan.head_from_last.rotate(at(&tangent, k)));
+            put(&mut p, k, step.head_from_last.apply(at(&here, k)));
+            put(&mut along, k, step.head_from_last.rotate(at(&tangent, k)));
         }
         let learnt = self.learn(&p, &along);
         let mut out = SampleRow { dv: ZERO3, mean: ZERO3 };
         for k in 0..LANES {
             let (t, v) = (at(&tangent, k), at(&velocity, k));
             let push = push_across(turn * at(&learnt.push, k), t, learnt.crossing[k], anisotropy);
-            let dv = push * (self.repulsion.strength * plan.h);
+            let dv = push * (self.repulsion.strength * step.h);
             let size = dv.length_squared();
             let shorter = (dv / size.sqrt()) * most;
             let mean = drawn_to(at(&learnt.mean_velocity, k), v, t, anisotropy);

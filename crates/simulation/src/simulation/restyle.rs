@@ -10,10 +10,9 @@ use std::sync::Arc;
 use lovelock_groom::Hairstyle;
 
 use super::{Simulation, first_free};
-use crate::block::Block;
+use crate::block::{Bending, Block};
 use crate::lanes::{LANES, Lane3, Map, ZERO3, at, direction_or, put};
 use crate::rest::RestShape;
-use crate::solver::Bending;
 
 /// How long ties take to hold what is new to them, seconds.
 const HOLD_SECS: f32 = 0.7;

@@ -4,6 +4,7 @@ use glam::Vec3;
 
 use super::Plan;
 use crate::block::Block;
+use crate::grid::GridStep;
 use crate::lanes::{LANES, Lane, ZERO3, at, direction_or, greater, lesser, put};
 
 /// A point that has gone no further along its support than this part of the lock up to it is carried in full, and one that
@@ -44,7 +45,8 @@ pub(crate) fn prepare(block: &mut Block, plan: &Plan) {
         }
         block.work.push[i] = push;
     }
-    plan.grid.act(block, plan, cohesion);
+    let grid_step = GridStep { h: plan.h, last_head: &plan.last_head, head_from_last: &plan.head_from_last };
+    plan.grid.act(block, &grid_step, cohesion);
     for i in 0..block.points() {
         let mut position = block.position[i];
         for (axis, shift) in position.iter_mut().zip(plan.rebase.to_array()) {

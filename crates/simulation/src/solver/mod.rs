@@ -4,19 +4,13 @@
 //! shape memory, implicit; one Newton step of the lengths; and the clean-up pass from root to tip that makes
 //! lengths exact and keeps points out of the body. Velocities then are what positions did.
 
-mod bending;
-mod coupled;
 mod follow;
 mod forces;
-mod lengths;
 mod plan;
 mod relaxation;
 mod substep;
 
-pub(crate) use bending::{Bending, BendingKey};
-pub(crate) use coupled::Coupled;
-pub(crate) use lengths::LengthScratch;
-pub(crate) use plan::{Plan, Substep};
+pub(crate) use plan::Plan;
 
 use crate::block::{Block, Outcome, stretch_of};
 use crate::colliders::field::PlaneRow;

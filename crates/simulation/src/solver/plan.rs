@@ -2,32 +2,16 @@
 
 use glam::Vec3;
 
-use super::BendingKey;
 use crate::SimulationSettings;
+use crate::block::BendingKey;
 use crate::colliders::MovingShape;
 use crate::colliders::contact::ContactRules;
 use crate::colliders::field::MovingField;
 use crate::grid::DensityGrid;
-use crate::lanes::{Map, Turn};
+use crate::lanes::Map;
+use crate::motion::Substep;
 use crate::wake::Wakes;
 use crate::wind::WindField;
-
-/// The head at one substep, in working space.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Substep {
-    /// Carries head space to working space.
-    pub(crate) head: Map,
-    pub(crate) head_turn: Turn,
-    /// Velocity of a point that moves rigidly with the head.
-    pub(crate) rigid: Map,
-}
-
-impl Substep {
-    #[inline(always)]
-    pub(crate) fn rigid_velocity(&self, p: Vec3) -> Vec3 {
-        self.rigid.apply(p)
-    }
-}
 
 /// One step, worked out once and read by every block.
 pub(crate) struct Plan<'a> {

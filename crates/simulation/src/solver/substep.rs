@@ -1,14 +1,14 @@
 //! One substep of one block.
 
+use super::Plan;
 use super::follow::correct_velocities;
-use super::lengths::{project_position, project_velocity};
 use super::relaxation::relax;
-use super::{Plan, Substep};
 use crate::Integrator;
-use crate::block::{Block, Depth, Work};
+use crate::block::{Block, Depth, Work, project_position, project_velocity};
 use crate::colliders::boxes::{apart, bounds};
 use crate::colliders::contact::{Near, NearField, buried, buried_in_field, lay_point, penetration};
 use crate::lanes::{LANES, Lane, Map, Turns, ZERO, ZERO3, at, choose, direction_or, greater, lesser, put};
+use crate::motion::Substep;
 use glam::Vec3;
 
 /// Takes the block through substep `s`.

@@ -8,7 +8,7 @@ use lovelock_groom::simd::{Width, whole_part};
 use lovelock_groom::simd_versions;
 use lovelock_motion::FieldWeights;
 
-use super::occupancy::{Grid, NONE, Occupancy, UNSPARING, WIDEST};
+use super::cells::{Grid, NONE, UNSPARING, WIDEST};
 use super::weightings::{Joints, Weightings};
 use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, fold, greater, put, row_done};
 
@@ -36,6 +36,10 @@ impl Probes {
         let weights: Vec<_> = probes.iter().map(|&(.., weights)| weights).collect();
         Self { rest: all_rest, slots: all_slots, weightings: Weightings::new(&weights) }
     }
+
+    pub(super) fn rows(&self) -> usize {
+        self.rest.len()
+    }
 }
 
 /// A cell with probes in it: the one nearest to its middle.
@@ -58,7 +62,7 @@ pub(super) struct End {
     /// For each cell its place among them.
     own: Vec<u32>,
     /// Where each probe is; empty where nothing is known of this end.
-    places: Vec<Lane3>,
+    pub(super) places: Vec<Lane3>,
 }
 
 impl End {
@@ -85,69 +89,16 @@ const FROM_0: Lane = {
     lane
 };
 
-impl Occupancy {
-    /// Deposits the body at both `ends` of the step. Where `spare` is false the cells around are to be tested
-    /// too.
-    pub(super) fn update(&mut self, wide: Width, reach: f32, ends: [&Joints; 2], spare: bool) {
-        self.clear();
-        self.place_head(self.width(reach));
-        let moved = self.collect(wide, ends);
-        // What is on its way is nearest to one end, by half the way at most. A little more width spares one
-        // end.
-        let one = self.width(reach + moved);
-        let (width, skip) =
-            if one <= self.width(reach) { (one, 1) } else { (self.width(reach + 0.5 * moved), 0) };
-        spread_all(wide, self, width, skip);
-        let mut known = Vec::new();
-        if !spare {
-            known
-                .extend(self.head.iter().zip(&self.nearest).map(|(&head, &nearest)| head || nearest != NONE));
-            // The second round only fills what the first has left, and so changes nothing there.
-            let first = self.nearest.clone();
-            spread_all(wide, self, width + UNSPARING, skip);
-            for ((own, &first), _) in
-                self.nearest.iter_mut().zip(&first).zip(&known).filter(|(_, known)| **known)
-            {
-                *own = first;
-            }
-        }
-        self.place_extra(spare, &known);
-    }
-
-    /// Empties the cells that may have any probe near them.
-    fn clear(&mut self) {
-        let (from, to) = std::mem::replace(&mut self.touched, (self.grid.size.as_ivec3(), IVec3::NEG_ONE));
-        for z in from.z..=to.z {
-            for y in from.y..=to.y {
-                let row = self.grid.row(y, z);
-                self.nearest[row + from.x as usize..=row + to.x as usize].fill(NONE);
-            }
-        }
-    }
-
-    /// Finds the probe nearest to the middle of each cell that has any, at both ends; the furthest way of a
-    /// probe. A step begins where the last one has ended.
-    fn collect(&mut self, wide: Width, joints: [&Joints; 2]) -> f32 {
-        self.ends.swap(0, 1);
-        for (n, joints) in joints.into_iter().enumerate() {
-            if n == 1 || self.ends[0].places.len() != self.probes.rest.len() {
-                place_probes(wide, &self.probes, &self.grid, joints, &mut self.ends[n]);
-            }
-        }
-        furthest(wide, &self.ends).sqrt()
-    }
-}
-
 simd_versions! {
     /// Puts the probes where `joints` have them.
-    fn place_probes(probes: &Probes, grid: &Grid, joints: &Joints, end: &mut End) -> () {
+    pub(super) fn place_probes(probes: &Probes, grid: &Grid, joints: &Joints, end: &mut End) -> () {
         place_all(probes, grid, joints, end)
     }
 }
 
 simd_versions! {
     /// The square of the longest way of a probe from one end to the other.
-    fn furthest(ends: &[End; 2]) -> f32 {
+    pub(super) fn furthest(ends: &[End; 2]) -> f32 {
         longest_way(ends)
     }
 }
@@ -155,8 +106,14 @@ simd_versions! {
 simd_versions! {
     /// Tells the cells around the occupied ones of the nearest of these; `skip` leaves out the start of the
     /// step.
-    fn spread_all(occupancy: &mut Occupancy, width: i32, skip: usize) -> () {
-        spread(occupancy, width, skip)
+    pub(super) fn spread_all(
+        grid: &Grid,
+        ends: &[End],
+        nearest: &mut [u32],
+        touched: &mut (IVec3, IVec3),
+        width: i32,
+    ) -> () {
+        spread(grid, ends, nearest, touched, width)
     }
 }
 
@@ -224,9 +181,8 @@ fn longest_way(ends: &[End; 2]) -> f32 {
 }
 
 #[inline(always)]
-fn spread(occupancy: &mut Occupancy, width: i32, skip: usize) {
-    let Occupancy { grid, nearest, touched, ends, .. } = occupancy;
-    for end in &ends[skip..] {
+fn spread(grid: &Grid, ends: &[End], nearest: &mut [u32], touched: &mut (IVec3, IVec3), width: i32) {
+    for end in ends {
         for cell in &end.occupied {
             let (from, to) = grid.around(cell.at, width);
             *touched = (touched.0.min(from), touched.1.max(to));

@@ -7,7 +7,9 @@
 #![allow(clippy::needless_bitwise_bool)]
 
 mod affine;
+mod cells;
 mod deposit;
+mod measure;
 mod occupancy;
 mod planes;
 mod rows;

@@ -6,22 +6,18 @@
 //! from the skin than hair can touch, all step long.
 
 use glam::{IVec3, UVec3, Vec3};
-use lovelock_groom::simd::whole_part;
+use lovelock_groom::simd::{Width, whole_part};
 use lovelock_motion::BodyField;
 
-use super::deposit::{End, Probes};
+use super::cells::{Grid, NONE, UNSPARING, WIDEST, mark};
+use super::deposit::{End, Probes, furthest, place_probes, spread_all};
+use super::weightings::Joints;
 use crate::lanes::{LANES, Lane, Lane3, ZERO, at, greater, lesser};
 
 /// A cell in spacings of the field's nodes.
 const CELL: f32 = 2.5;
 /// How far beyond the resting field the grid goes on, as a part of the field's longest side.
 const BEYOND: f32 = 0.35;
-/// Most cells to each side that a place is deposited into.
-pub(super) const WIDEST: i32 = 4;
-/// Where nothing is tested for sparing's sake, so many cells more to each side are tested.
-pub(super) const UNSPARING: i32 = 3;
-/// No skin but the head's.
-pub(super) const NONE: u32 = u32::MAX;
 
 /// What may be near the points of a row.
 #[derive(Clone, Debug)]
@@ -44,31 +40,6 @@ pub(super) struct Cells {
 
 /// Stands for a cell that is not there.
 const OUTSIDE: u32 = u32::MAX;
-
-/// A grid of cells in head space.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Grid {
-    pub(super) low: Vec3,
-    pub(super) cell: f32,
-    pub(super) inv_cell: f32,
-    pub(super) size: UVec3,
-}
-
-impl Grid {
-    pub(super) fn count(&self) -> usize {
-        self.size.as_usizevec3().element_product()
-    }
-
-    /// The cells within `width` of one, as far as there are any: the first and the last.
-    pub(super) fn around(&self, middle: IVec3, width: i32) -> (IVec3, IVec3) {
-        ((middle - width).max(IVec3::ZERO), (middle + width).min(self.size.as_ivec3() - 1))
-    }
-
-    /// Index of the first cell of a row along x.
-    pub(super) fn row(&self, y: i32, z: i32) -> usize {
-        ((z * self.size.y as i32 + y) * self.size.x as i32) as usize
-    }
-}
 
 #[derive(Clone, Debug)]
 pub(super) struct Occupancy {
@@ -155,6 +126,62 @@ impl Occupancy {
         }
     }
 
+    /// Deposits the body at both `ends` of the step. Where `spare` is false the cells around are to be tested
+    /// too.
+    pub(super) fn update(&mut self, wide: Width, reach: f32, ends: [&Joints; 2], spare: bool) {
+        self.clear();
+        self.place_head(self.width(reach));
+        let moved = self.collect(wide, ends);
+        // What is on its way is nearest to one end, by half the way at most. A little more width spares one
+        // end.
+        let one = self.width(reach + moved);
+        let (width, skip) =
+            if one <= self.width(reach) { (one, 1) } else { (self.width(reach + 0.5 * moved), 0) };
+        self.spread(wide, width, skip);
+        let mut known = Vec::new();
+        if !spare {
+            known
+                .extend(self.head.iter().zip(&self.nearest).map(|(&head, &nearest)| head || nearest != NONE));
+            // The second round only fills what the first has left, and so changes nothing there.
+            let first = self.nearest.clone();
+            self.spread(wide, width + UNSPARING, skip);
+            for ((own, &first), _) in
+                self.nearest.iter_mut().zip(&first).zip(&known).filter(|(_, known)| **known)
+            {
+                *own = first;
+            }
+        }
+        self.place_extra(spare, &known);
+    }
+
+    /// Tells the cells around the occupied ones of the nearest of these; `skip` leaves out the start of the step.
+    fn spread(&mut self, wide: Width, width: i32, skip: usize) {
+        spread_all(wide, &self.grid, &self.ends[skip..], &mut self.nearest, &mut self.touched, width);
+    }
+
+    /// Empties the cells that may have any probe near them.
+    fn clear(&mut self) {
+        let (from, to) = std::mem::replace(&mut self.touched, (self.grid.size.as_ivec3(), IVec3::NEG_ONE));
+        for z in from.z..=to.z {
+            for y in from.y..=to.y {
+                let row = self.grid.row(y, z);
+                self.nearest[row + from.x as usize..=row + to.x as usize].fill(NONE);
+            }
+        }
+    }
+
+    /// Finds the probe nearest to the middle of each cell that has any, at both ends; the furthest way of a
+    /// probe. A step begins where the last one has ended.
+    fn collect(&mut self, wide: Width, joints: [&Joints; 2]) -> f32 {
+        self.ends.swap(0, 1);
+        for (n, joints) in joints.into_iter().enumerate() {
+            if n == 1 || self.ends[0].places.len() != self.probes.rows() {
+                place_probes(wide, &self.probes, &self.grid, joints, &mut self.ends[n]);
+            }
+        }
+        furthest(wide, &self.ends).sqrt()
+    }
+
     /// Forgets where the last step ended: the next one begins elsewhere.
     pub(super) fn forget(&mut self) {
         self.ends[1].forget();
@@ -201,22 +228,5 @@ impl Occupancy {
             }
         }
         out
-    }
-}
-
-/// Marks the cells within `width` of those that the places are in.
-fn mark(cells: &mut [bool], grid: &Grid, places: &[Vec3], width: i32) {
-    for place in places {
-        let middle = ((*place - grid.low) * grid.inv_cell).floor().as_ivec3();
-        let (from, to) = grid.around(middle, width);
-        if from.cmpgt(to).any() {
-            continue;
-        }
-        for z in from.z..=to.z {
-            for y in from.y..=to.y {
-                let row = grid.row(y, z);
-                cells[row + from.x as usize..=row + to.x as usize].fill(true);
-            }
-        }
     }
 }

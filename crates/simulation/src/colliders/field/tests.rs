@@ -27,7 +27,7 @@ fn moment(body: &Body, dance: &Clip, field: &BodyField, time_secs: f64) -> Momen
 }
 
 /// The dancer's field in a step of the dance, and places about her skin in the space of the step.
-fn in_the_dance(time: f64, every: usize) -> (MovingField, crate::solver::Substep, Vec<Vec3>) {
+fn in_the_dance(time: f64, every: usize) -> (MovingField, crate::motion::Substep, Vec<Vec3>) {
     let (body, dance, field) = dancer();
     let (was, now) = (moment(&body, &dance, &field, time - 1.0 / 60.0), moment(&body, &dance, &field, time));
     let mut moving = MovingField::new(&field, 0.0, 0.012);

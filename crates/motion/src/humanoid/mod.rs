@@ -1,10 +1,12 @@
 //! What the joints of a figure are for, from their names and their tree.
 
+mod names;
+
 use std::collections::BTreeMap;
 
-pub(crate) use super::names::Side;
-use super::names::{Label, Part, label};
-use crate::{MotionFile, Skeleton};
+use crate::Skeleton;
+use names::{Label, Part, label};
+pub(crate) use names::{Side, is_twist};
 
 /// What a joint is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -65,13 +67,6 @@ pub(crate) struct Humanoid {
 }
 
 impl Humanoid {
-    pub(crate) fn of_motion(motion: &MotionFile) -> Self {
-        Self::new(
-            &motion.joints.iter().map(|j| j.name.as_str()).collect::<Vec<_>>(),
-            &motion.joints.iter().map(|j| j.parent).collect::<Vec<_>>(),
-        )
-    }
-
     pub(crate) fn of_skeleton(skeleton: &Skeleton) -> Self {
         Self::new(
             &skeleton.joints.iter().map(|j| j.name.as_str()).collect::<Vec<_>>(),
@@ -89,7 +84,8 @@ impl Humanoid {
         self.joints.iter().map(|(&role, &joint)| (role, joint))
     }
 
-    fn new(names: &[&str], parents: &[Option<usize>]) -> Self {
+    /// Finds the roles of joints by their names and parents.
+    pub(crate) fn new(names: &[&str], parents: &[Option<usize>]) -> Self {
         let labels: Vec<Option<Label>> = names.iter().map(|n| label(n)).collect();
         let depth = depths(parents);
         // The best joint of a part: no helper, the lowest number, then the deepest (`LHipJoint` above `LeftHip`).

@@ -1,5 +1,9 @@
 //! Guides side by side: their state and the working memory of a step.
 
+mod bending;
+mod coupled;
+mod lengths;
+
 use glam::Vec3;
 use lovelock_groom::Guides;
 
@@ -7,7 +11,9 @@ use crate::colliders::boxes::Boxes;
 use crate::colliders::field::{PlaneRow, Search};
 use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, greater, lesser, put};
 use crate::rest::RestShape;
-use crate::solver::{Bending, Coupled, LengthScratch};
+pub(crate) use bending::{Bending, BendingKey};
+pub(crate) use coupled::Coupled;
+pub(crate) use lengths::{LengthScratch, project_position, project_velocity};
 
 /// `LANES` guides. Rows are points, root first. Positions are in working space: the axes of the world, the
 /// origin where the head was at the end of the last step, so that single precision is spent on hair and not

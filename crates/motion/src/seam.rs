@@ -1,0 +1,45 @@
+//! Whether a clip that repeats does so without a jump.
+
+use glam::Vec3;
+
+use crate::{Body, Clip, Pose, pose::rotation_of, pose_at};
+
+/// How far a clip's last pose is from its first.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Seam {
+    /// Largest distance that a joint jumps, metres.
+    pub distance: f32,
+    /// Largest angle that a joint turns, radians.
+    pub angle: f32,
+}
+
+impl Clip {
+    /// Largest jump of a joint, as a fraction of the body's height, with which a clip still counts as looping:
+    /// 2 cm on a person, about what a limb travels between two frames of a dance.
+    const LOOP_DISTANCE: f32 = 0.012;
+
+    /// Measures the jump from the last pose to the first.
+    pub fn seam(&self, body: &Body) -> Seam {
+        let [start, end] = self.part();
+        let unfaded = Self { duration_secs: end - start, loop_blend_secs: 0.0, ..self.clone() };
+        let (mut first, mut last) = (Pose::default(), Pose::default());
+        pose_at(body, Some(&unfaded), 0.0, &mut first);
+        // Wrapping would bring the end itself back to the start.
+        pose_at(body, Some(&unfaded), unfaded.duration_secs.next_down(), &mut last);
+        let mut seam = Seam::default();
+        for (a, b) in first.world_from_joint.iter().zip(&last.world_from_joint) {
+            seam.distance = seam.distance.max(Vec3::from(a.translation - b.translation).length());
+            let turn = rotation_of(&b.matrix3) * rotation_of(&a.matrix3).conjugate();
+            seam.angle = seam.angle.max(2.0 * turn.w.abs().min(1.0).acos());
+        }
+        seam
+    }
+
+    /// Finds out whether the clip starts again without a jump and sets `loops`.
+    pub fn detect_loop(&mut self, body: &Body) {
+        let seam = self.seam(body);
+        let reach = body.height().max(0.1) * Self::LOOP_DISTANCE;
+        // An ankle turned by 10 degrees about its own axis moves no joint, and is seen.
+        self.loops = self.duration_secs > 0.0 && seam.distance <= reach && seam.angle <= 10_f32.to_radians();
+    }
+}
