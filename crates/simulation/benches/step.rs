@@ -1,7 +1,8 @@
-//! The cost of a step: the published hairstyle on the dancer, every strand by itself, and how cost grows.
+//! The cost of a step: the published hairstyle on the dancer, every strand simulated by itself, and scaling.
 //!
-//! Wall time as criterion has it; with `LOVELOCK_BENCH_CLOCK=process` the time of all processors together, which other
-//! work on the machine does not add to: on two cores that share the work evenly, half of it is the wall time.
+//! Wall time as criterion measures it. With `LOVELOCK_BENCH_CLOCK=process` it is the CPU time of all threads,
+//! which does not include other work on the machine: on two cores that share the work evenly, half of it is
+//! the wall time.
 
 use std::hint::black_box;
 use std::sync::Arc;
@@ -18,22 +19,23 @@ use lovelock_simulation::{Integrator, PlacedField, Simulation, SimulationSetting
 mod common;
 use common::{STEP_SECS, Stage, clock::process_time, straight, style};
 
-/// A moment of a body.
+/// A body at one instant.
 struct Moment {
     world_from_head: Affine3A,
     colliders: Vec<PlacedCollider>,
     field: FieldPose,
 }
 
-/// The moments of a motion, 1/60 s apart, and the field that is placed in them.
+/// Instants of a motion, 1/60 s apart, and the field that is placed in them.
 struct Poses {
     moments: Vec<Moment>,
     field: Option<Arc<BodyField>>,
 }
 
 impl Poses {
-    /// Two seconds of the dance at a part of its speed, worked out before, so that only the hair is measured. At a
-    /// quarter of its speed four substeps are enough nearly always; at full speed quick turns take up to sixteen.
+    /// Two seconds of the dance at a fraction of its speed, computed in advance, so that only the hair is
+    /// measured. At a quarter of the speed four substeps are nearly always enough; at full speed quick turns
+    /// need up to sixteen.
     fn of(stage: &mut Stage, speed: f64) -> Self {
         let moment = |i: u32| {
             let input = stage.at(Some(f64::from(i) / 60.0 * speed));
@@ -47,7 +49,7 @@ impl Poses {
     }
 }
 
-/// Steps through `poses` again and again, back and forth, so that the clock never jumps far.
+/// Steps through `poses` repeatedly, back and forth, so that the clock never jumps far.
 fn bench_steps<M: Measurement>(
     group: &mut BenchmarkGroup<M>,
     name: &str,
@@ -69,8 +71,8 @@ fn bench_steps<M: Measurement>(
     });
 }
 
-/// The published hairstyle on the dancer, by every method: on all the colliders that are fitted to her, as the paper's
-/// spheres stood for the whole body, and on the body that the program takes, whose field stands for head and shoulders.
+/// The published hairstyle on the dancer, with every integrator: on all her fitted colliders, like the
+/// paper's spheres for the whole body, and on the program's body, whose field replaces head and shoulders.
 fn published<M: Measurement>(c: &mut Criterion<M>) {
     let calm = SimulationSettings::default();
     let windy = SimulationSettings { wind: Wind { speed: 4.0, ..Wind::default() }, ..calm };
@@ -92,7 +94,7 @@ fn published<M: Measurement>(c: &mut Criterion<M>) {
         ));
         for (what, settings, poses) in [
             ("slow", calm, &slow),
-            ("slow, relaxation of 20 sweeps", relaxed, &slow),
+            ("slow, relaxation with 20 sweeps", relaxed, &slow),
             ("slow, follow the leader", follows, &slow),
             ("quick", calm, &quick),
             ("quick, wind", windy, &quick),
@@ -103,7 +105,7 @@ fn published<M: Measurement>(c: &mut Criterion<M>) {
     }
 }
 
-/// Locks of 30 links on a sphere of 9 cm that turns, four substeps, without a body.
+/// Guides of 30 links on a rotating sphere of 9 cm, four substeps, without a body.
 fn strands<M: Measurement>(c: &mut Criterion<M>) {
     let mut group = c.benchmark_group("strands of 30 links, no body");
     group.sample_size(10).measurement_time(Duration::from_secs(2));
@@ -116,7 +118,7 @@ fn strands<M: Measurement>(c: &mut Criterion<M>) {
     for count in [402, 1_000, 3_350, 10_000, 20_000, 50_000, 100_000] {
         let guides: Vec<_> = (0..count)
             .map(|g| {
-                // A spiral over the sphere (Fibonacci's lattice).
+                // A spiral over the sphere (Fibonacci lattice).
                 let y = 1.0 - 1.6 * g as f32 / count as f32;
                 let (r, turn) = ((1.0 - y * y).sqrt(), 2.399_963_2 * g as f32);
                 let out = Vec3::new(r * turn.cos(), y, r * turn.sin());
@@ -139,7 +141,7 @@ fn strands<M: Measurement>(c: &mut Criterion<M>) {
     group.finish();
 }
 
-/// Time of all processors that this process has used.
+/// CPU time of all threads of this process.
 struct ProcessTime;
 
 impl Measurement for ProcessTime {

@@ -1,5 +1,5 @@
-//! Says in numbers what films show: where the head turns fastest, whether roots follow at once and tips lag, whether hair
-//! snaps or folds, how soon it settles once the body stands still, and what moves then.
+//! Measures the liveliness of a motion: where the head turns fastest, whether roots follow at once and tips
+//! lag, whether hair snaps or folds, how soon it settles once the body stands still, and what moves then.
 //!
 //! `alive STYLE [--motion FILE] [--stop SECS] [--ties JSON] [--set JSON]`: STYLE is a preset or a hair file.
 
@@ -10,9 +10,9 @@ use lovelock_groom::{GuideFrame, Guides, HairTie};
 mod common;
 use common::{STEP_SECS, Stage, frame, settings_of};
 
-/// Places along a guide that are watched, fractions of its points.
+/// Observed places along a guide, as fractions of its points.
 const PLACES: [f32; 5] = [0.1, 0.25, 0.5, 0.75, 1.0];
-/// The longest lag that is looked for, steps.
+/// The longest lag that is tested, steps.
 const LONGEST_LAG: usize = 45;
 /// How long the body stands still at the end, seconds.
 const STILL_SECS: f64 = 8.0;
@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut args = std::env::args().skip(1);
     let usage = "alive STYLE [--motion FILE] [--stop SECS] [--ties JSON] [--set JSON]";
     let style = args.next().ok_or(usage)?;
-    let mut stage = Stage::called(&style, None);
+    let mut stage = Stage::named(&style, None);
     let mut settings = settings_of(&style);
     let mut stop = f64::INFINITY;
     while let Some(arg) = args.next() {
@@ -41,7 +41,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let rest = stage.style.guides.clone();
     let mut film = vec![frame(&simulation)];
     for step in 1..=steps + still {
-        // The clock goes on; the body stays where it is.
+        // Time continues; the body stays where it is.
         let time = step as f64 * f64::from(STEP_SECS);
         let mut input = stage.at(Some(time.min(end)));
         input.time_secs = time;
@@ -56,7 +56,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// The five fastest turns of the head.
+/// The five fastest rotations of the head.
 fn turns(film: &[GuideFrame]) {
     let turn = |a: &Affine3A, b: &Affine3A| {
         let (a, b) = (Quat::from_mat3a(&a.matrix3), Quat::from_mat3a(&b.matrix3));
@@ -89,7 +89,7 @@ fn lags(film: &[GuideFrame], rest: &Guides) {
     let n = rest.points_per_guide;
     for fraction in PLACES {
         let k = place(fraction, n);
-        // Velocities as they are, and as they would be were the hair a helmet.
+        // Actual velocities, and velocities as if the hair were a rigid helmet.
         let (mut own, mut rigid, mut away, mut most) = (Vec::new(), Vec::new(), 0.0_f64, 0.0_f32);
         for pair in film.windows(2) {
             let (mut v, mut w) = (Vec::new(), Vec::new());
@@ -118,7 +118,7 @@ fn lags(film: &[GuideFrame], rest: &Guides) {
         };
         let best = (0..LONGEST_LAG).max_by(|a, b| likeness(*a).total_cmp(&likeness(*b))).unwrap_or(0);
         println!(
-            "place {fraction:.2}: lag {:3.0} ms (likeness {:.2}, {:.2} without), off the style {:.1} cm rms, {:.1} most",
+            "place {fraction:.2}: lag {:3.0} ms (correlation {:.2}, {:.2} without), distance from the style {:.1} cm rms, {:.1} max",
             1e3 * best as f32 * STEP_SECS,
             likeness(best),
             likeness(0),
@@ -128,10 +128,10 @@ fn lags(film: &[GuideFrame], rest: &Guides) {
     }
 }
 
-/// The greatest changes of velocity from frame to frame, beyond the head's own.
+/// The largest changes of velocity from frame to frame, beyond those of the head.
 fn snaps(film: &[GuideFrame], rest: &Guides) {
     let mut all = Vec::new();
-    // The worst of each guide in each frame, and where it is.
+    // The largest change of each guide in each frame, and its place.
     let mut worst = Vec::new();
     for t in 1..film.len().saturating_sub(1) {
         let three = &film[t - 1..=t + 1];
@@ -158,7 +158,7 @@ fn snaps(film: &[GuideFrame], rest: &Guides) {
     worst.sort_by(|a, b| b.0.total_cmp(&a.0));
     let share = |share: f64| all[(share * (all.len() - 1) as f64) as usize];
     println!(
-        "change of velocity in a frame: {:.3} m/s median, {:.2} one in a thousand, {:.2} one in 100,000",
+        "change of velocity per frame: median {:.3} m/s, 1 in 1,000 {:.2}, 1 in 100,000 {:.2}",
         share(0.5),
         share(1e-3),
         share(1e-5)
@@ -177,7 +177,7 @@ fn snaps(film: &[GuideFrame], rest: &Guides) {
     }
 }
 
-/// Joints that are bent further than 60 degrees beyond their bend at rest.
+/// Points bent by more than 60 degrees beyond their rest bend.
 fn folds(film: &[GuideFrame], rest: &Guides) {
     let n = rest.points_per_guide;
     let bend = |guides: &Guides, g: usize, k: usize| {
@@ -204,7 +204,7 @@ fn folds(film: &[GuideFrame], rest: &Guides) {
     let all = (film.len() * rest.count() * (n - 2)) as f32;
     let share = count.map(|c| 100.0 * c as f32 / all);
     println!(
-        "bent more than at rest by 30, 60, 90 degrees: {:.3} %, {:.4} %, {:.4} %; most {:.0} at {:.2} s, guide {} point {}",
+        "bent by 30, 60, 90 degrees more than at rest: {:.3} %, {:.4} %, {:.4} %; max {:.0} at {:.2} s, guide {} point {}",
         share[0],
         share[1],
         share[2],
@@ -218,7 +218,7 @@ fn folds(film: &[GuideFrame], rest: &Guides) {
     }
 }
 
-/// The largest movement of a point a frame, each half second after the body stands still.
+/// The largest movement of a point per frame, for each half second after the body stands still.
 fn stillness(film: &[GuideFrame]) {
     let points = film[0].guides.x.len();
     for (i, half) in film.windows(2).collect::<Vec<_>>().chunks(30).enumerate() {
@@ -239,7 +239,7 @@ fn stillness(film: &[GuideFrame]) {
         }
         let n = film[0].guides.points_per_guide;
         println!(
-            "still for {:.1} s: {:.4} mm a frame at most (guide {} point {}), {:.5} on the mean",
+            "still for {:.1} s: max {:.4} mm per frame (guide {} point {}), mean {:.5}",
             0.5 * (i + 1) as f64,
             1e3 * worst.0,
             worst.1 / n,

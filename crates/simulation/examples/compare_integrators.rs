@@ -1,11 +1,12 @@
-//! The three ways to keep links at their length, side by side: `compare_integrators [--quick]` prints a table.
+//! The three integrators compared: `compare_integrators [--quick]` prints a table.
 //!
-//! - *pendulum*: a chain of 30 links of 1 cm let go level. Tip error: root mean square over 0.4 s against the
-//!   equations of motion in double precision (Runge-Kutta, 12 kHz). Energy: the most that the chain ever has more
-//!   than at the start, over 10 s, and what it has left of its start at the end.
+//! - *pendulum*: a chain of 30 links of 1 cm released from a horizontal position. Tip error: RMS over 0.4 s
+//!   against the equations of motion in double precision (Runge-Kutta, 12 kHz). Energy: the largest gain over
+//!   10 s, and what remains at the end.
 //! - *dance*: the same chain on a sway of 25 cm at 2.2 Hz with a bob and a spin, its root at up to 3.5 m/s. A
-//!   fast head raises the number of substeps; the table says to what, on the mean.
-//! - *cost*: processor time of one thread for 402 such chains, without colliders, wind and grid, a point and substep.
+//!   fast head raises the number of substeps; the table gives their mean.
+//! - *cost*: CPU time of one thread for 402 such chains, without colliders, wind and grid, per point and
+//!   substep.
 
 use std::sync::Arc;
 
@@ -81,12 +82,12 @@ impl Stretch {
     }
 }
 
-/// In per cent where it is more than the rounding of positions.
+/// In per cent if it exceeds the rounding of positions.
 fn percent(v: f64) -> String {
     if v > 1e-4 { format!("{:.3} %", 100.0 * v) } else { format!("{v:.0e}") }
 }
 
-/// Tip error in metres, stretch, energy gained and energy left of the pendulum.
+/// Tip error in metres, stretch, energy gained and energy remaining of the pendulum.
 fn pendulum(settings: &SimulationSettings, truth: &[glam::DVec3], secs: u32) -> (f64, Stretch, f64, f64) {
     let mut simulation = chain();
     let (mut squares, mut stretch) = (0.0, Stretch::default());
@@ -111,7 +112,7 @@ fn pendulum(settings: &SimulationSettings, truth: &[glam::DVec3], secs: u32) -> 
     ((squares / truth.len() as f64).sqrt(), stretch, most - start, last - start)
 }
 
-/// Stretch over 10 s of the dance, and the substeps taken on the mean.
+/// Stretch over 10 s of the dance, and the mean number of substeps.
 fn dance(settings: &SimulationSettings) -> (Stretch, f64) {
     let mut simulation = chain();
     let (mut stretch, mut substeps) = (Stretch::default(), 0.0);
@@ -124,7 +125,7 @@ fn dance(settings: &SimulationSettings) -> (Stretch, f64) {
     (stretch, substeps)
 }
 
-/// Nanoseconds of one thread a point and substep.
+/// Nanoseconds of one thread per point and substep.
 fn cost(settings: &SimulationSettings, rounds: u32) -> f64 {
     let guides: Vec<_> = (0..402)
         .map(|g| {
@@ -163,7 +164,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
          dance stretch rms / max (substeps) | ns |"
     );
     println!("|---|---|---|---|---|---|---|");
-    // One thread, so that its time is all there is.
+    // One thread, so that its time is the total.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     pool.install(|| {
         for method in methods() {

@@ -1,7 +1,8 @@
-//! What contacts cost: a preset on the dance with the field and without, with tests spared and not, and with no body.
+//! The cost of contacts: a preset on the dance with and without the field, with and without culling, and
+//! without a body.
 //!
-//! `contacts [PRESET] [SECS] [CASE]`: the processor's time on one thread, which other work on the machine does not add to;
-//! the least of five rounds counts. With a case, of which the beginning is enough, only that is run.
+//! `contacts [PRESET] [SECS] [CASE]`: CPU time on one thread, which does not include other work on the
+//! machine; the minimum of five rounds. With a case, of which the beginning suffices, only that one runs.
 
 use std::time::Duration;
 
@@ -21,11 +22,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let secs: f64 = args.next().map_or(Ok(2.0), |s| s.parse())?;
     let only = args.next().unwrap_or_default();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    for (what, field, spare, body) in [
+    for (what, field, culling, body) in [
         ("no body", true, true, false),
-        ("colliders alone", false, true, true),
-        ("field, everything tested", true, false, true),
-        ("field, tests spared", true, true, true),
+        ("colliders only", false, true, true),
+        ("field, no culling", true, false, true),
+        ("field, culling", true, true, true),
     ] {
         if !what.starts_with(&only) {
             continue;
@@ -38,7 +39,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let (mut best, mut hash, mut substeps) = (Duration::MAX, 0, 0);
         for _ in 0..5 {
             let mut simulation = stage.simulation(Some(0.0));
-            simulation.spare_contacts(spare);
+            simulation.set_contact_culling(culling);
             let mut spent = Duration::ZERO;
             substeps = 0;
             for step in 1..=steps {
@@ -56,7 +57,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             (best, hash) = (best.min(spent), simulation.state_hash());
         }
         println!(
-            "{what:<25} {:.3} ms a step of {:.1} substeps, {} colliders, state {hash:016x}",
+            "{what:<25} {:.3} ms per step of {:.1} substeps, {} colliders, state {hash:016x}",
             1e3 * best.as_secs_f64() / f64::from(steps),
             f64::from(substeps) / f64::from(steps),
             if body { stage.colliders.len() } else { 0 },

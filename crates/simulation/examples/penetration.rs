@@ -1,11 +1,11 @@
-//! How deep hair gets into the body over a whole motion, measured against the skinned surface itself.
+//! Penetration depth of hair in the body over a whole motion, measured against the skinned surface itself.
 //!
-//! `penetration [--hair PRESET|FILE] [--motion dance|FILE.bvh|backflip] [--wisps N] [--every STEPS] [--settle SECS]
-//! [--field off] [--colliders off] [--verbose on] [--set JSON]`
+//! `penetration [--hair PRESET|FILE] [--motion dance|FILE.bvh|backflip] [--wisps N] [--every STEPS]
+//! [--settle SECS] [--field off] [--colliders off] [--verbose on] [--set JSON]`
 //!
-//! Hair settles on the body as it stands at the motion's beginning first, for two seconds as in the program.
-//! Without hair all presets, each gathered by its ties; without a motion dance and backflip. Names of hair and motions may be lists
-//! parted by commas. The mean volume is that over the motion, of that at rest.
+//! Hair first settles for two seconds on the body in the first pose of the motion, as in the program. The
+//! defaults are all presets, each with its ties, and dance and backflip. Names of hair and motions may be
+//! comma-separated lists. The mean volume is that over the motion, relative to the rest volume.
 
 use lovelock_groom::Preset;
 use lovelock_motion::{Skin, skin};
@@ -17,7 +17,7 @@ use common::{Depths, STEP_SECS, Stage, frame, settings_of, worse};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut args = std::env::args().skip(1);
-    let usage = "see the head of penetration.rs";
+    let usage = "see the comment at the top of penetration.rs";
     let list = |names: &str| names.split(',').map(str::to_owned).collect::<Vec<_>>();
     let mut styles: Vec<String> = Preset::ALL.iter().map(|preset| preset.id().to_owned()).collect();
     let mut motions = list("dance,backflip");
@@ -43,7 +43,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     );
     for style in &styles {
         for motion in &motions {
-            let mut stage = Stage::called(style, wisps);
+            let mut stage = Stage::named(style, wisps);
             if !field {
                 stage = stage.without_field();
             }
@@ -109,7 +109,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// A preset or motion as it is called, a file without its folder and ending.
+/// The name of a preset or motion; for a file its name without folder and extension.
 fn name(of: &str) -> &str {
     std::path::Path::new(of).file_stem().and_then(|stem| stem.to_str()).unwrap_or(of)
 }

@@ -1,7 +1,8 @@
-//! Simulates a preset, or the hair of a file, on the dancer and draws its guides as a strip of frames, from the front, the side and behind.
+//! Simulates a preset, or the hair of a file, on the dancer and draws its guides as a strip of frames, from
+//! the front, the side and behind.
 //!
-//! `swing STYLE OUT.png [--wisps N] [--still] [--from SECS] [--frames N] [--every SECS] [--set '{"settings": "as JSON"}']
-//! [--ties '[{"kind": "Bun"}]']`
+//! `swing STYLE OUT.png [--wisps N] [--still] [--from SECS] [--frames N] [--every SECS]
+//! [--set '{"settings": "as JSON"}'] [--ties '[{"kind": "Bun"}]']`
 
 use glam::Vec3;
 use image::{Rgb, RgbImage};
@@ -11,9 +12,9 @@ use lovelock_simulation::{Simulation, StepReport};
 
 #[path = "../tests/common/mod.rs"]
 mod common;
-use common::{STEP_SECS, Stage, away_from_style, frame, settings_of, stretch, worse};
+use common::{STEP_SECS, Stage, distance_from_style, frame, settings_of, stretch, worse};
 
-/// Size of one picture, pixels, and of what it shows, metres.
+/// Size of one image in pixels, and the extent that it shows in metres.
 const CELL: (u32, u32) = (300, 400);
 const VIEW_HEIGHT: f32 = 1.0;
 
@@ -38,7 +39,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             _ => return Err(usage.into()),
         }
     }
-    let mut stage = Stage::called(&style, wisps);
+    let mut stage = Stage::named(&style, wisps);
     if let Some(ties) = ties {
         stage.tie(&ties);
     }
@@ -73,25 +74,25 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             drawn += 1;
         }
         if still && step % 60 == 0 {
-            let away = away_from_style(&simulation);
+            let away = distance_from_style(&simulation);
             let mean = away.iter().sum::<f32>() / away.len() as f32;
             let most = away.iter().copied().fold(0.0, f32::max);
             println!(
-                "{time:4.1} s still: mean {:.3} %, most {:.2} % of a length from the style",
+                "{time:4.1} s still: distance from the style as a share of the length: mean {:.3} %, max {:.2} %",
                 100.0 * mean,
                 100.0 * most
             );
         }
     }
     println!("{all:#?}");
-    println!("volume of the hair at last: {:.1} % of that at rest", 100.0 * last.0 / last.1);
-    println!("mean volume of the hair: {:.1} % of that at rest", 100.0 * volume);
+    println!("final hair volume: {:.1} % of the rest volume", 100.0 * last.0 / last.1);
+    println!("mean hair volume: {:.1} % of the rest volume", 100.0 * volume);
     println!("stretch from the frames {real_stretch:.2e}");
     picture.save(out)?;
     Ok(())
 }
 
-/// Draws one moment as a column of three views that follow the head.
+/// Draws one instant as a column of three views that follow the head.
 fn draw(picture: &mut RgbImage, column: u32, stage: &Stage, surface: &Skin, simulation: &Simulation) {
     let guides = frame(simulation).guides;
     let centre = Vec3::from(stage.pose.world_from_head.translation) - Vec3::Y * 0.22;
@@ -139,7 +140,7 @@ fn draw(picture: &mut RgbImage, column: u32, stage: &Stage, surface: &Skin, simu
     }
 }
 
-/// One picture with its depths: orthographic, from `toward`.
+/// One image with its depth buffer: orthographic, seen from `toward`.
 struct Canvas<'a> {
     picture: &'a mut RgbImage,
     corner: (u32, u32),

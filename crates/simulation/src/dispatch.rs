@@ -1,7 +1,7 @@
-//! The step of a block, compiled for the processor that runs it.
+//! Steps a block with code compiled for the vector width of the CPU.
 //!
-//! The loops over lanes become wider instructions where the processor has them, and all versions give the same bits.
-// Calls of functions that ask for features of the processor, made by the macro after it has asked for them.
+//! The loops over lanes use wider instructions where the CPU has them. All versions give the same bits.
+// `unsafe` is used by the macro, which calls functions that require CPU features after checking for them.
 #![allow(unsafe_code)]
 
 use std::cell::RefCell;
@@ -13,11 +13,11 @@ use crate::block::{Block, Work};
 use crate::solver::{Plan, advance};
 
 thread_local! {
-    /// What this thread lends to the block that it works on.
+    /// Working memory that this thread lends to the block it is stepping.
     static WORK: RefCell<Work> = RefCell::default();
 }
 
-/// Takes `block` through the step of `plan`.
+/// Advances `block` by the step of `plan`.
 pub(crate) fn step_block(block: &mut Block, plan: &Plan) {
     WORK.with_borrow_mut(|work| {
         std::mem::swap(work, &mut block.work);

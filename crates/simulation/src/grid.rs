@@ -1,8 +1,8 @@
-//! The density grid: how much hair is where, so that hair keeps hair away and moves with it.
+//! The density grid: how much hair is where. It lets hair repel hair and move along with it.
 //!
-//! Bertails, Ménier and Cani (2005, section 4.1) read over-dense cells from the shadow map. This grid is of
-//! its own and turns with the head, so that no light changes the motion, and so that hair at rest lies still
-//! in its cells. Sums are in integers: the order of the guides does not matter.
+//! Bertails, Ménier and Cani (2005, section 4.1) read over-dense cells from the shadow map. This grid is
+//! separate and turns with the head, so that lights do not change the motion and hair at rest does not move
+//! through its cells. Sums are integers, so the order of the guides does not matter.
 
 mod cell;
 mod direction;
@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::{IVec3, Vec3};
 
-use cell::{Cell, Cells, Tally};
+use cell::{Cell, Cells, Counts};
 use lovelock_groom::simd::Width;
 use pieces::{Source, add_block};
 use rayon::prelude::*;
@@ -26,16 +26,17 @@ use crate::settings::Repulsion;
 /// Cells along each axis.
 const SIDE: i32 = 48;
 
-/// Smallest cell, metres, and the largest for hair to swing in, as long as hair at rest is inside.
+/// Smallest cell size, and the largest that is chosen for the swing of the hair as long as the hair at rest
+/// fits, metres.
 const CELL: (f32, f32) = (0.012, 0.02);
 
-/// A point stands for its neighbours along so many cells at most, a little more than two so that these are not rounded
-/// down, and so many links.
-const RUN: f32 = 2.1;
+/// A deposited point represents at most this many cells along its guide (slightly more than two, so that two
+/// are not rounded down) and at most this many links.
+const MOST_CELLS: f32 = 2.1;
 const MOST_LINKS: usize = 8;
 
-/// So much further than hair at rest reaches from its middle the grid goes at least.
-const ROOM: f32 = 1.1;
+/// Smallest size of the grid relative to the extent of the hair at rest.
+const EXTENT: f32 = 1.1;
 
 /// Fixed point: the whole hairstyle in one cell stays below this.
 const FULL: f32 = (1 << 29) as f32;
@@ -43,23 +44,23 @@ const FULL: f32 = (1 << 29) as f32;
 /// Momentum is stored in units coarser than mass by this factor, so that 20 m/s still fits.
 const MOMENTUM: f32 = 1.0 / 32.0;
 
-/// Speeds above this count as this, metres per second.
+/// Speeds are clamped to this, metres per second.
 const FASTEST: f32 = 20.0;
 
-/// A push may not carry hair further than this part of a cell in one substep.
+/// Largest displacement by repulsion per substep, as a fraction of a cell.
 const MOST_OF_A_CELL: f32 = 0.25;
 
-/// Tasks that put hair into the grid side by side, at most: each has cells of its own, 7 MB of them.
+/// Largest number of tasks that deposit hair in parallel; each has its own cells, 7 MB.
 const TASKS: usize = 4;
 
-/// Where the cells are, and what of a guide they get.
+/// Placement of the cells, and how guides are deposited.
 #[derive(Clone, Copy, Debug)]
 struct Lattice {
     min: Vec3,
     cell: f32,
-    /// Every `stride`-th point of a guide stands for its neighbours.
+    /// Every `stride`-th point of a guide represents its neighbours.
     stride: usize,
-    /// Fixed-point units of one metre of a guide.
+    /// Fixed-point units per metre of a guide.
     units: f32,
 }
 
@@ -67,14 +68,14 @@ struct Lattice {
 #[derive(Clone, Debug)]
 pub(crate) struct DensityGrid {
     lattice: Lattice,
-    /// What lies in each cell; no directions where nothing heeds them. The first has it all, the others what the other
-    /// tasks have put in.
+    /// The contents of the cells, one set per task; the first set receives the sum. Directions are left out
+    /// if nothing uses them.
     parts: Vec<Cells>,
     rest_volume: f32,
-    /// Mass of a cell as dense as hair at rest typically finds the hair around itself.
+    /// Mass of a cell as dense as a piece of hair at rest typically finds its surroundings.
     full: f32,
-    /// What was counted after the last deposit.
-    tally: Tally,
+    /// Counts after the last deposit.
+    counts: Counts,
     repulsion: Repulsion,
 }
 
@@ -83,7 +84,7 @@ impl DensityGrid {
     pub(crate) fn new(blocks: &[Block]) -> Self {
         let (mut centre, mut count, mut total, mut links) = (Vec3::ZERO, 0.0_f32, 0.0_f32, 0.0_f32);
         let mut longest = 0.0_f32;
-        // A guide that is not a number says nothing about the others.
+        // Non-finite guides do not affect the others.
         let sound =
             |b: &Block, k: usize| b.rest.mean_link[k].is_finite() && at(&b.rest.position[0], k).is_finite();
         let lanes =
@@ -105,14 +106,14 @@ impl DensityGrid {
             .filter(|reach| reach.is_finite())
             .fold(0.0, f32::max);
         let swing = (2.0 * (radius + longest) / SIDE as f32).clamp(CELL.0, CELL.1);
-        // Two cells at the rim have no neighbours to be between.
-        let cell = swing.max(2.0 * ROOM * reach / (SIDE - 2) as f32);
+        // The outermost cells have no neighbours to interpolate with.
+        let cell = swing.max(2.0 * EXTENT * reach / (SIDE - 2) as f32);
         let link = (links / count.max(1.0)).max(1e-4);
         let points = blocks.first().map_or(0, Block::points);
         let lattice = Lattice {
             min: centre - Vec3::splat(0.5 * cell * SIDE as f32),
             cell,
-            stride: ((RUN * cell / link) as usize).min(MOST_LINKS).clamp(1, (points / 2).max(1)),
+            stride: ((MOST_CELLS * cell / link) as usize).min(MOST_LINKS).clamp(1, (points / 2).max(1)),
             units: FULL / total.max(1e-3),
         };
         let mut grid = Self {
@@ -120,20 +121,20 @@ impl DensityGrid {
             parts: vec![Cells::new()],
             rest_volume: 0.0,
             full: FULL,
-            tally: Tally::default(),
+            counts: Counts::default(),
             repulsion: Repulsion::default(),
         };
         grid.fill(blocks, &Source::Rest);
-        grid.learn_rest();
-        // Counted anew, now that it is known what a full cell is.
+        grid.set_rest_density();
+        // Counted again, because `full` is known now.
         grid.fill(blocks, &Source::Rest);
         grid.rest_volume = grid.volume();
         grid
     }
 
-    /// Takes the density that is in the grid for the one at rest.
-    fn learn_rest(&mut self) {
-        // The density that a piece of hair typically finds around itself stands in where none is at rest.
+    /// Takes the current density as the rest density.
+    fn set_rest_density(&mut self) {
+        // Cells that are empty at rest use the density that a piece of hair typically finds around itself.
         let (mut sum, mut squares) = (0.0_f64, 0.0_f64);
         for c in self.cells() {
             let mass = f64::from(c.mass());
@@ -147,23 +148,22 @@ impl DensityGrid {
         }
     }
 
-    /// Deposits all blocks anew, with positions in head space by `head_from_last` and velocities as they are.
-    /// Gives the number of over-dense cells.
+    /// Deposits all blocks, with positions mapped to head space by `head_from_last` and velocities unchanged.
+    /// Returns the number of over-dense cells.
     pub(crate) fn update(&mut self, blocks: &[Block], head_from_last: &Map, repulsion: Repulsion) -> u32 {
         self.repulsion = repulsion;
         self.fill(blocks, &Source::Now { head_from_last, directed: repulsion.anisotropy > 0.0 });
-        self.tally.over_dense
+        self.counts.over_dense
     }
 
-    /// The volume that the hair in the grid fills, cubic metres:
-    /// `V = sum(min(m / m_full, 1))` cells.
+    /// The volume that the hair in the grid fills, cubic metres: `V = sum(min(m / m_full, 1))` cells.
     ///
-    /// `m_full = sum m^2 / sum m` at rest is the mass of a cell that is as dense as hair at rest, on the average over the
-    /// hair, finds the hair around itself. A cell that is fuller counts once, one that is emptier by its fullness. So
-    /// hair that is pressed together loses volume, and hair that flies apart gains none beyond what it would have if it
-    /// were nowhere denser than that. The sum is of integers: the order does not matter.
+    /// `m_full = sum m^2 / sum m` at rest is the density that a piece of hair finds around itself on average.
+    /// A denser cell counts once, a sparser one by its relative density. Compressed hair thus loses volume,
+    /// and hair that flies apart gains no more than it would have if it were nowhere denser than that. The
+    /// sum is of integers, so the order does not matter.
     pub(crate) fn volume(&self) -> f32 {
-        (self.tally.fullness as f64 / f64::from(self.most()) * f64::from(self.lattice.cell).powi(3)) as f32
+        (self.counts.fullness as f64 / f64::from(self.most()) * f64::from(self.lattice.cell).powi(3)) as f32
     }
 
     /// The volume that the hair fills at rest, cubic metres.
@@ -176,35 +176,35 @@ impl DensityGrid {
         self.full.clamp(1.0, 2e9) as i32
     }
 
-    /// Whether hair learns anything from the grid.
+    /// Whether the grid affects the hair.
     fn acts(&self) -> bool {
-        (self.repulsion.strength > 0.0 || self.repulsion.cohesion > 0.0) && self.tally.held > 0
+        (self.repulsion.strength > 0.0 || self.repulsion.cohesion > 0.0) && self.counts.held > 0
     }
 
-    /// What lies in each cell.
+    /// The contents of the cells.
     fn cells(&self) -> &[Cell] {
         &self.parts[0].each
     }
 
-    /// Empties the grid, puts all hair into it, and counts.
+    /// Clears the grid, deposits all hair and counts.
     fn fill(&mut self, blocks: &[Block], source: &Source) {
         let tasks = rayon::current_num_threads().min(TASKS).min(blocks.len()).max(1);
         self.parts.resize_with(tasks, Cells::new);
         let (lattice, width, next) = (self.lattice, Width::widest(), AtomicUsize::new(0));
         self.parts.par_iter_mut().for_each(|cells| {
             cells.begin();
-            // Who adds a block does not matter.
+            // It does not matter which task adds a block.
             while let Some(block) = blocks.get(next.fetch_add(1, Ordering::Relaxed)) {
                 add_block(width, &lattice, source, block, cells);
             }
         });
         let (most, inv_threshold) = (self.most(), 1.0 / self.repulsion.threshold);
         let Some((all, others)) = self.parts.split_first_mut() else { return };
-        self.tally = all.gather(others, most, inv_threshold);
+        self.counts = all.gather(others, most, inv_threshold);
     }
 }
 
-/// Where the eight cells of a corner are from the first, x fastest.
+/// Offsets of the eight cells around a point from the first, x fastest.
 const OFFSETS: [usize; 8] = {
     let (y, z) = (SIDE as usize, (SIDE * SIDE) as usize);
     [0, 1, y, y + 1, z, z + 1, z + y, z + y + 1]

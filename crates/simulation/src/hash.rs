@@ -1,6 +1,6 @@
-//! A fingerprint of a state.
+//! Fingerprints of states.
 
-/// Mixes words one after the other (FNV's recurrence over words, with a final avalanche).
+/// Hashes a sequence of words (FNV's recurrence over words, with a final avalanche).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hasher(u64);
 

@@ -1,28 +1,30 @@
-//! Which method keeps the links at their length.
+//! The choice of integrator, the method that preserves link lengths.
 
 use serde::{Deserialize, Serialize};
 
-/// How the length of links is kept. Everything else of a substep (forces, shape memory, collisions, friction,
-/// grid, wind) is the same, so that what differs between two runs is the method; what keeps contacts calm in the
-/// clean-up pass belongs to [`Integrator::Direct`].
+/// How the length of links is preserved. Everything else in a substep (forces, shape memory, collisions,
+/// friction, grid, wind) is the same, so that two runs differ only by the method. Only [`Integrator::Direct`]
+/// has the measures that keep contacts calm in the placement pass.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Integrator {
-    /// The direct solution of a whole chain, on velocities and then on positions, and one exact pass.
+    /// Solves a whole chain directly, first for velocities and then for positions, followed by one exact
+    /// pass.
     #[default]
     Direct,
-    /// Points move freely and sweeps along the chain restore one link after the other (van Overveld 1991, as
-    /// Bertails, Ménier and Cani 2005 used it). Hair stretches.
+    /// Points move freely, and sweeps along the chain restore one link after the other (van Overveld 1991, as
+    /// used by Bertails, Ménier and Cani 2005). Hair stretches.
     Relaxation,
-    /// Every point is pulled behind the one before, and velocities are corrected for it (dynamic
-    /// follow-the-leader; Müller, Kim, Chentanez 2012). Quick; its motion depends on the number of substeps.
+    /// Every point is pulled behind its predecessor, and velocities are corrected for it (dynamic
+    /// follow-the-leader; Müller, Kim, Chentanez 2012). Fast, but the motion depends on the number of
+    /// substeps.
     FollowTheLeader,
 }
 
 impl Integrator {
-    /// Every method, the usual one first.
+    /// Every method, the default first.
     pub const ALL: [Self; 3] = [Self::Direct, Self::Relaxation, Self::FollowTheLeader];
 }
 
-/// The most sweeps that one substep of [`Integrator::Relaxation`] may take.
+/// Upper limit of sweeps per substep of [`Integrator::Relaxation`].
 pub const MAX_SWEEPS: u32 = 200;

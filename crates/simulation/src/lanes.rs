@@ -1,16 +1,16 @@
-//! Rows of guides side by side.
+//! Rows of numbers, one per guide of a block.
 //!
-//! The hot loops are written for one guide, over `0..LANES`, on rows copied into locals: the compiler turns
-//! each such loop into vector instructions, whatever their width, and no lane ever looks at another.
+//! The hot loops are written for one guide, over `0..LANES`, on rows copied into locals. The compiler turns
+//! each such loop into vector instructions of any width, and no lane depends on another.
 
 use std::ops::{Deref, DerefMut};
 
 use glam::{Mat3, Mat4, Quat, Vec3, Vec4};
 
-/// How many guides a block holds side by side.
+/// Number of guides in a block.
 pub(crate) const LANES: usize = 16;
 
-/// One number of each guide of a block, where one load of the widest registers finds it.
+/// One number per guide of a block, aligned for a single load by the widest registers.
 #[repr(align(64))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Lane(pub(crate) [f32; LANES]);
@@ -23,7 +23,7 @@ impl Lane {
 
     /// `self - a b`, lane by lane.
     #[inline(always)]
-    pub(crate) fn less_product(self, a: Self, b: Self) -> Self {
+    pub(crate) fn minus_product(self, a: Self, b: Self) -> Self {
         let mut out = self;
         for k in 0..LANES {
             out.0[k] -= a.0[k] * b.0[k];
@@ -43,7 +43,7 @@ impl Lane {
 
     /// `self - a`, lane by lane.
     #[inline(always)]
-    pub(crate) fn less(self, a: Self) -> Self {
+    pub(crate) fn minus(self, a: Self) -> Self {
         let mut out = self;
         for k in 0..LANES {
             out.0[k] -= a.0[k];
@@ -78,7 +78,7 @@ impl DerefMut for Lane {
     }
 }
 
-/// One vector of each guide of a block, component by component.
+/// One vector per guide of a block, component by component.
 pub(crate) type Lane3 = [Lane; 3];
 
 /// Zero in every lane.
@@ -87,10 +87,10 @@ pub(crate) const ZERO: Lane = Lane::splat(0.0);
 /// The zero vector in every lane.
 pub(crate) const ZERO3: Lane3 = [ZERO; 3];
 
-/// Ends the turn of a loop over rows whose turns do not depend on each other. Without it the compiler may take rows side by
-/// side, lane after lane, which needs a gather for every load.
+/// Ends an iteration of a loop over independent rows. Without it the compiler may process several rows at
+/// once, lane by lane, which needs a gather for every load.
 #[inline(always)]
-pub(crate) fn row_done() {
+pub(crate) fn row_barrier() {
     std::hint::black_box(());
 }
 
@@ -99,7 +99,7 @@ pub(crate) const fn splat3(v: Vec3) -> Lane3 {
     [Lane::splat(v.x), Lane::splat(v.y), Lane::splat(v.z)]
 }
 
-/// Lane by lane what lies row by row.
+/// Transposes a square of rows and lanes.
 #[inline(always)]
 pub(crate) fn transposed(rows: &[Lane; LANES]) -> [Lane; LANES] {
     let mut out = [ZERO; LANES];
@@ -115,7 +115,7 @@ pub(crate) fn transposed(rows: &[Lane; LANES]) -> [Lane; LANES] {
     out
 }
 
-/// One number of a whole row: its halves by `of`, and what that leaves by `of` again.
+/// Reduces a row to one number: combines its halves by `of`, then the halves of the result, and so on.
 #[inline(always)]
 pub(crate) fn fold(row: Lane, of: impl Fn(f32, f32) -> f32) -> f32 {
     let (mut row, mut half) = (row, LANES / 2);
@@ -142,41 +142,41 @@ pub(crate) fn put(row: &mut Lane3, k: usize, v: Vec3) {
     row[2][k] = v.z;
 }
 
-/// The smaller number; the first where one is not a number. Unlike `f32::min` it is one instruction.
+/// The smaller number; the first if one is NaN. Compiles to one instruction, unlike `f32::min`.
 #[inline(always)]
 pub(crate) fn lesser(a: f32, b: f32) -> f32 {
     if b < a { b } else { a }
 }
 
-/// The greater number; the first where one is not a number.
+/// The greater number; the first if one is NaN.
 #[inline(always)]
 pub(crate) fn greater(a: f32, b: f32) -> f32 {
     if b > a { b } else { a }
 }
 
-/// One over the root of a number from 0 to the greatest, to two units in the last place; finite for 0.
+/// Inverse square root of a number from 0 to the largest, to two units in the last place; finite for 0.
 ///
-/// A guess from the exponent, a step of Newton's with constants that suit it, and one of third order. Processors work
-/// out roots and quotients one after the other, and sums and products side by side: this is several times quicker, and
-/// unlike their own estimates it has the same bits everywhere.
+/// An estimate from the exponent, a Newton step with adjusted constants, and a step of third order. CPUs
+/// pipeline sums and products but not roots and quotients, so this is several times faster, and unlike their
+/// own estimates it gives the same bits everywhere.
 #[inline(always)]
 pub(crate) fn inv_sqrt(x: f32) -> f32 {
     let x = lesser(x, f32::MAX);
-    // What is not a number may have a sign.
+    // NaN may have a sign.
     let guess = f32::from_bits(0x5f1f_fff9_u32.wrapping_sub(x.to_bits() >> 1));
     let near = guess * (1.681_914_1 - 0.703_952_25 * x * guess * guess);
     let off = 1.0 - x * near * near;
     near + near * off * (0.5 + 0.375 * off)
 }
 
-/// The first vector where `first`, else the second, without a branch.
+/// The first vector if `first` is true, otherwise the second, without a branch.
 #[inline(always)]
 pub(crate) fn choose(first: bool, a: Vec3, b: Vec3) -> Vec3 {
     let pick = |a: f32, b: f32| if first { a } else { b };
     Vec3::new(pick(a.x, b.x), pick(a.y, b.y), pick(a.z, b.z))
 }
 
-/// `v` with length 1, and its length; a vector too short to have a direction gives `fallback`.
+/// The unit vector along `v`, and the length of `v`; a vector too short to have a direction gives `fallback`.
 #[inline(always)]
 pub(crate) fn direction_or(v: Vec3, fallback: Vec3) -> (Vec3, f32) {
     let squared = v.length_squared();
@@ -185,8 +185,8 @@ pub(crate) fn direction_or(v: Vec3, fallback: Vec3) -> (Vec3, f32) {
     (choose(ok, v * scale, fallback), squared * scale)
 }
 
-/// A rotation as a unit quaternion of plain numbers, since `glam::Quat` is itself a vector register and would
-/// keep the loops over lanes from becoming one.
+/// A rotation as a unit quaternion of plain numbers. `glam::Quat` is itself a vector register and would
+/// prevent the compiler from vectorising over lanes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Turn {
     v: Vec3,
@@ -198,17 +198,18 @@ impl Turn {
         Self { v: Vec3::new(q.x, q.y, q.z), w: q.w }
     }
 
-    /// Turns `a` (by q a q*).
+    /// Rotates `a` (by q a q*).
     #[inline(always)]
     pub(crate) fn apply(self, a: Vec3) -> Vec3 {
         let t = 2.0 * self.v.cross(a);
         a + self.w * t + self.v.cross(t)
     }
 
-    /// This turn followed by the smallest turn that carries the unit vector `from` to the unit vector `to`.
+    /// This rotation followed by the smallest rotation that carries the unit vector `from` to the unit vector
+    /// `to`.
     #[inline(always)]
-    pub(crate) fn then_least(self, from: Vec3, to: Vec3) -> Self {
-        // The half-vector form; opposite vectors have no smallest turn and get one close to half a turn.
+    pub(crate) fn then_smallest(self, from: Vec3, to: Vec3) -> Self {
+        // The half-vector form. Opposite vectors have no smallest rotation and get one close to half a turn.
         let (v, w) = (from.cross(to), greater(1.0 + from.dot(to), 1e-4));
         let turned_w = w * self.w - v.dot(self.v);
         let turned_v = w * self.v + self.w * v + v.cross(self.v);
@@ -217,7 +218,7 @@ impl Turn {
     }
 }
 
-/// A row of turns.
+/// A row of rotations.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Turns {
     v: Lane3,
@@ -241,7 +242,7 @@ impl Turns {
     }
 }
 
-/// A rigid or affine map in plain numbers, for loops over lanes.
+/// A rigid or affine map of plain numbers, for loops over lanes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Map {
     pub(crate) turn: Mat3,
@@ -267,18 +268,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_least_turn_carries_one_direction_to_the_other_and_leaves_their_axis() {
+    fn the_smallest_rotation_carries_one_direction_to_the_other_and_keeps_their_axis() {
         let (from, to) = (Vec3::new(0.6, 0.0, 0.8), Vec3::new(0.0, 1.0, 0.0));
-        let turn = Turn::new(Quat::IDENTITY).then_least(from, to);
+        let turn = Turn::new(Quat::IDENTITY).then_smallest(from, to);
         // Unit vectors in f32: a few roundings of 6e-8.
         assert!((turn.apply(from) - to).length() < 1e-6);
         let axis = from.cross(to);
         assert!((turn.apply(axis) - axis).length() < 1e-6);
-        assert!((turn.apply(to) - to).length() > 0.1, "a turn that does nothing would pass the lines above");
+        assert!((turn.apply(to) - to).length() > 0.1, "the identity would pass the assertions above");
     }
 
     #[test]
-    fn rows_and_lanes_change_places() {
+    fn transposing_swaps_rows_and_lanes() {
         let rows: [Lane; LANES] =
             std::array::from_fn(|r| Lane(std::array::from_fn(|k| (LANES * r + k) as f32)));
         let lanes = transposed(&rows);
@@ -288,31 +289,31 @@ mod tests {
     }
 
     #[test]
-    fn one_over_a_root_is_right_to_two_units_in_the_last_place() {
+    fn inv_sqrt_is_right_to_two_units_in_the_last_place() {
         let mut worst = 0.0_f64;
         for i in 0..200_000 {
-            // All exponents from 1e-24 to 1e24, and what lies between.
+            // All exponents from 1e-24 to 1e24, and values in between.
             let x = 10.0_f32.powf(-24.0 + 48.0 * i as f32 / 200_000.0);
             worst = worst.max((f64::from(inv_sqrt(x)) * f64::from(x).sqrt() - 1.0).abs());
         }
         assert!(worst < 2.0 * f64::from(f32::EPSILON), "{worst:e}");
         assert!(worst > 0.25 * f64::from(f32::EPSILON), "nothing is that exact");
         assert!(inv_sqrt(0.0).is_finite());
-        assert!((0.0..1e-18).contains(&inv_sqrt(f32::INFINITY)), "it counts as the greatest number");
-        assert!(inv_sqrt(-f32::NAN).is_nan(), "and does not panic");
+        assert!((0.0..1e-18).contains(&inv_sqrt(f32::INFINITY)), "infinity counts as the largest number");
+        assert!(inv_sqrt(-f32::NAN).is_nan(), "NaN does not panic");
     }
 
     #[test]
-    fn turns_compose_in_the_order_of_their_names() {
+    fn rotations_compose_in_order() {
         let q = Quat::from_euler(glam::EulerRot::XYZ, 0.3, -0.8, 1.1);
         let (a, to) = (Vec3::new(0.0, 0.6, -0.8), Vec3::new(1.0, 0.0, 0.0));
-        let both = Turn::new(q).then_least(q * a, to);
+        let both = Turn::new(q).then_smallest(q * a, to);
         assert!((both.apply(a) - to).length() < 1e-6);
     }
 
     #[test]
-    fn opposite_directions_give_a_finite_turn() {
-        let turn = Turn::new(Quat::IDENTITY).then_least(Vec3::X, Vec3::NEG_X);
+    fn opposite_directions_give_a_finite_rotation() {
+        let turn = Turn::new(Quat::IDENTITY).then_smallest(Vec3::X, Vec3::NEG_X);
         assert!(turn.apply(Vec3::new(1.0, 2.0, 3.0)).is_finite());
     }
 

@@ -1,15 +1,15 @@
 //! The wisp simulator: rigid links, shape memory, collisions, density-grid repulsion and wind.
 //!
 //! Each guide strand is a chain of rigid links rooted in the moving scalp (Bertails, Ménier, Cani 2005). A
-//! [`Simulation`] holds the guides of one hairstyle; [`Simulation::step`] moves them on while the body moves
-//! from its last place to a new one, and [`Simulation::frame`] hands out what interpolation reads.
+//! [`Simulation`] holds the guides of one hairstyle. [`Simulation::step`] advances them while the body moves
+//! from its last pose to a new one, and [`Simulation::frame`] writes the guides for interpolation.
 
 #![allow(
     clippy::inline_always,
     clippy::needless_range_loop,
     clippy::too_many_arguments,
     reason = "hot loops over lanes index several rows at once and must be inlined into the functions that are \
-              compiled for wider instructions; what they share goes by argument, not through memory"
+              compiled for wider instructions; shared values are passed as arguments to stay in registers"
 )]
 
 mod block;

@@ -1,19 +1,20 @@
-//! The head between two inputs, and whether it moved or jumped.
+//! Interpolation of the head between two inputs, and detection of jumps.
 
 use glam::{Affine3A, Mat3, Mat3A, Quat, Vec3};
 
 use crate::lanes::{Map, Turn};
 
-/// Further than this in one step is a jump, metres and radians.
+/// A larger movement in one step is a jump: metres and radians.
 const JUMP: (f32, f32) = (0.5, 1.0);
 
-/// Where the clock jumps, as at the end of a loop, a change of the head beyond this is a jump too.
+/// When the clock jumps, as at the end of a loop, a larger movement than this counts as a jump too: metres
+/// and radians.
 const CUT: (f32, f32) = (0.05, 0.15);
 
-/// Longer than this between two inputs is a jump of the clock, seconds.
+/// A longer time between two inputs is a jump of the clock, seconds.
 const PAUSE_SECS: f64 = 0.5;
 
-/// A rigid transform of the head as translation and rotation, cleaned of scale.
+/// A rigid transform of the head: translation and rotation, without scale.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct HeadPose {
     pub(crate) turn: Quat,
@@ -23,7 +24,7 @@ pub(crate) struct HeadPose {
 impl HeadPose {
     pub(crate) const IDENTITY: Self = Self { turn: Quat::IDENTITY, place: Vec3::ZERO };
 
-    /// `None` where the transform is not finite or has no rotation.
+    /// `None` if the transform is not finite or has no rotation.
     pub(crate) fn new(world_from_head: &Affine3A) -> Option<Self> {
         let m = world_from_head.matrix3;
         let unit = |v: glam::Vec3A| v.try_normalize();
@@ -38,20 +39,20 @@ impl HeadPose {
         Affine3A::from_rotation_translation(self.turn, self.place)
     }
 
-    /// From head space to the space whose origin is at `origin`.
+    /// Maps head space to the space whose origin is at `origin`.
     pub(crate) fn map_from_head(&self, origin: Vec3) -> Map {
         Map { turn: Mat3::from_quat(self.turn), shift: self.place - origin }
     }
 
-    /// A fraction `t` of the way to `to`, along the shorter arc.
-    pub(crate) fn toward(&self, to: &Self, t: f32) -> Self {
+    /// Interpolates by the fraction `t` toward `to`, along the shorter arc.
+    pub(crate) fn interpolate(&self, to: &Self, t: f32) -> Self {
         if t >= 1.0 {
             return *to;
         }
         Self { turn: self.turn.slerp(to.turn, t).normalize(), place: self.place.lerp(to.place, t) }
     }
 
-    /// Whether the head went from `self` to `to` without passing between.
+    /// Whether the head went from `self` to `to` by a jump.
     pub(crate) fn jumps_to(&self, to: &Self, time_before: f64, time_now: f64, dt_secs: f32) -> bool {
         let (moved, turned) = ((to.place - self.place).length(), self.turn.angle_between(to.turn));
         let passed = time_now - time_before;
@@ -66,7 +67,7 @@ pub(crate) struct Substep {
     /// Carries head space to working space.
     pub(crate) head: Map,
     pub(crate) head_turn: Turn,
-    /// Velocity of a point that moves rigidly with the head.
+    /// Maps the position of a point that moves rigidly with the head to its velocity.
     pub(crate) rigid: Map,
 }
 
@@ -77,7 +78,7 @@ impl Substep {
     }
 }
 
-/// The rigid map that takes the head from `a` to `b`, both seen from `origin`.
+/// The rigid map that takes the head from `a` to `b`, relative to `origin`.
 pub(crate) fn rigid_between(a: &HeadPose, b: &HeadPose, origin: Vec3) -> Map {
     let turn = Mat3::from_quat((b.turn * a.turn.inverse()).normalize());
     Map { turn, shift: (b.place - origin) - turn * (a.place - origin) }
@@ -108,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn a_dance_is_no_jump_and_a_seek_is() {
+    fn a_seek_is_a_jump_and_a_dance_is_not() {
         let a = HeadPose::IDENTITY;
         let near = HeadPose { turn: Quat::from_rotation_y(0.2), place: Vec3::new(0.06, 0.0, 0.0) };
         assert!(!a.jumps_to(&near, 1.0, 1.0 + 1.0 / 60.0, 1.0 / 60.0));
@@ -121,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn nonsense_is_no_pose() {
+    fn invalid_transforms_give_no_pose() {
         assert!(HeadPose::new(&Affine3A::NAN).is_none());
         assert!(HeadPose::new(&Affine3A::ZERO).is_none());
         let scaled = Affine3A::from_scale(Vec3::splat(2.0));

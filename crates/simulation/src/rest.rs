@@ -1,4 +1,4 @@
-//! What never changes about the guides of one hairstyle: lengths, directions, bends, and how each lock
+//! The constant properties of the guides of a hairstyle: lengths, directions, bends, and how each guide
 //! carries its own weight at rest.
 
 use glam::Vec3;
@@ -14,12 +14,12 @@ pub(crate) struct RestShape {
     pub(crate) direction: Vec<Lane3>,
     /// Second difference around each point, metres; zero at both ends.
     pub(crate) bend: Vec<Lane3>,
-    /// Acceleration with which a lock carries its own weight under a gravity of 1 m/s^2 along -Y.
+    /// Acceleration by which a guide carries its own weight under a gravity of 1 m/s^2 along -Y.
     pub(crate) support: Vec<Lane3>,
     /// Length of the link that ends at each point, metres.
     pub(crate) length: Vec<Lane>,
     pub(crate) inv_length: Vec<Lane>,
-    /// Mean link of each guide, metres.
+    /// Mean link length of each guide, metres.
     pub(crate) mean_link: Lane,
 }
 
@@ -39,7 +39,7 @@ impl RestShape {
         for (k, &guide) in lanes.iter().enumerate() {
             let points: Vec<Vec3> = (0..count).map(|i| guides.point(guide as usize, i)).collect();
             let directions = directions(&points);
-            // Beyond the end of a guide that was cut there is no hair.
+            // A guide that was cut ends at its last link of non-zero length.
             let links = (1..count).rfind(|&i| points[i] != points[i - 1]).unwrap_or(count - 1);
             for (i, &p) in points.iter().enumerate() {
                 put(&mut rest.position[i], k, p);
@@ -62,7 +62,7 @@ impl RestShape {
     }
 }
 
-/// Unit directions of the links; a link of no length takes the direction before it.
+/// Unit directions of the links; a zero-length link takes the direction of the previous one.
 fn directions(points: &[Vec3]) -> Vec<Vec3> {
     let mut last = points.windows(2).find_map(|w| (w[1] - w[0]).try_normalize()).unwrap_or(Vec3::NEG_Y);
     let mut out = vec![last; points.len()];
@@ -73,13 +73,13 @@ fn directions(points: &[Vec3]) -> Vec<Vec3> {
     out
 }
 
-/// What a lock must add to unit gravity so that it rests in the shape it was drawn in.
+/// The acceleration that must be added to unit gravity so that a guide rests in its given shape.
 ///
-/// The links carry what pulls them, as a hanging chain does: their tensions solve the system of the length
-/// constraint, and a link that would be pressed carries nothing. All that tension does not carry, the lock
-/// carries by its stiffness, as if it had been set in this shape while it hung ("sag-free" initial states:
-/// the force is that of the unloaded shape's bends, taken as constant in head space). A lock that hangs
-/// straight gets nothing; one that stands out from the head is held in full.
+/// Links under tension carry weight as in a hanging chain: their tensions solve the system of the length
+/// constraints, and a link under compression carries nothing. The stiffness carries whatever tension does
+/// not, as if the guide had been set in this shape while it hung ("sag-free" initial states: the force is
+/// that of the unloaded shape's bends, constant in head space). A guide that hangs straight gets nothing; one
+/// that stands out from the head is supported fully.
 fn support(direction: &[Vec3], first_free: usize) -> Vec<Vec3> {
     let (count, gravity) = (direction.len(), Vec3::NEG_Y);
     let first = first_free.max(1);
@@ -99,7 +99,7 @@ fn support(direction: &[Vec3], first_free: usize) -> Vec<Vec3> {
     for i in (first..count).rev() {
         multiplier[i] -= upper[i] * multiplier[i + 1];
     }
-    // A pulled link has a negative multiplier.
+    // A link under tension has a negative multiplier.
     let pull = |i: usize| multiplier[i].min(0.0) as f32;
     (0..count)
         .map(|i| {
@@ -113,8 +113,8 @@ fn support(direction: &[Vec3], first_free: usize) -> Vec<Vec3> {
         .collect()
 }
 
-/// The guides in an order in which neighbours on the scalp are neighbours in memory (along a Morton curve of
-/// their roots), cut into blocks; the last block repeats its last guide.
+/// Groups the guides into blocks, in the order of a Morton curve through their roots, so that neighbours on
+/// the scalp are neighbours in memory. The last block repeats its last guide.
 pub(crate) fn blocks_of(guides: &Guides) -> Vec<([u32; LANES], usize)> {
     let roots: Vec<Vec3> = (0..guides.count()).map(|g| guides.point(g, 0)).collect();
     let min = roots.iter().fold(Vec3::INFINITY, |m, p| m.min(*p));
@@ -146,7 +146,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_lock_that_hangs_needs_no_support_and_one_that_stands_out_needs_all() {
+    fn hanging_guides_need_no_support_and_horizontal_ones_need_all() {
         let hanging = support(&[Vec3::NEG_Y; 6], 1);
         assert!(hanging.iter().all(|s| s.length() < 1e-6), "{hanging:?}");
         let level = support(&[Vec3::X; 6], 1);
@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lock_that_stands_up_is_not_left_to_press_on_its_links() {
+    fn an_upright_guide_does_not_compress_its_links() {
         let standing = support(&[Vec3::Y; 6], 1);
         assert!(standing[1..].iter().all(|s| (*s - Vec3::Y).length() < 1e-6), "{standing:?}");
     }

@@ -23,16 +23,16 @@ use crate::wake::{Wakes, head_of};
 use crate::wind::{WindField, mean_of};
 use crate::{BodyPart, InsidePoint, MAX_SUBSTEPS, SimulationSettings, StepInput, StepReport};
 
-/// In less than this no time passes: velocities are differences over a step, and rounding would be all of them.
+/// Steps shorter than this do not advance time: velocities are differences over a step and would be mostly
+/// rounding error.
 const SHORTEST_SECS: f32 = 1e-6;
 
-/// Times of the wind that are nearer to each other than this are the same.
-const SAME_SECS: f64 = 1e-3;
+/// Wind times closer together than this are treated as equal.
+const SAME_WIND_SECS: f64 = 1e-3;
 
 /// Hair in motion: the guides of one hairstyle as chains of rigid links.
 ///
-/// A step depends on the state, the input and the settings alone: not on a clock, and not on how many threads
-/// share the work.
+/// A step depends only on the state, the input and the settings, not on a clock or on the number of threads.
 #[derive(Clone, Debug)]
 pub struct Simulation {
     style: Arc<Hairstyle>,
@@ -40,32 +40,34 @@ pub struct Simulation {
     /// Block and lane of each guide.
     slots: Vec<(u32, u32)>,
     grid: DensityGrid,
-    /// The body at the end of the last step.
+    /// The head at the end of the last step.
     head: HeadPose,
     time_secs: f64,
     colliders: Vec<PlacedCollider>,
     rest_colliders: RestColliders,
     field: Option<MovingField>,
-    /// Ties that are taking hold.
-    taking_hold: Option<TakingHold>,
-    /// Simulated since the last reset, for the wind.
+    /// Ties whose strength is still growing after a change of hairstyle.
+    tie_blend: Option<TieBlend>,
+    /// Seconds simulated since the last reset, for the wind.
     elapsed_secs: f64,
-    /// How far the mean wind has carried the air in that time, metres; `None` for as far as the present one would have.
-    air_way: Option<DVec3>,
-    /// The links at the root that the blocks are prepared for.
+    /// Distance that the mean wind has carried the air in that time, metres; `None` if it is to be computed
+    /// from the current mean wind.
+    air_travel: Option<DVec3>,
+    /// The number of root links for which the blocks are prepared.
     clamped_links: u32,
     mean_link: f32,
-    /// Whether to use the instructions of this processor and not those of every one; the bits are the same.
+    /// Whether to use the vector instructions of this CPU instead of the baseline; the result is the same,
+    /// bit for bit.
     wide: bool,
-    /// Whether to leave out tests that cannot find a contact; the bits are the same.
-    spare: bool,
+    /// Whether to skip tests that cannot find a contact; the result is the same, bit for bit.
+    culling: bool,
     substeps: Vec<Substep>,
     shapes: Vec<MovingShape>,
 }
 
 impl Simulation {
-    /// Hair of `style` at rest on a head at the world's origin. Call [`Simulation::reset`] before the first
-    /// step, or that step is taken for a jump.
+    /// Creates the hair of `style` at rest, with the head at the world's origin. Call [`Simulation::reset`]
+    /// before the first step, or that step counts as a jump.
     pub fn new(style: Arc<Hairstyle>) -> Self {
         let clamped_links = SimulationSettings::default().clamped_links;
         let guides = &style.guides;
@@ -79,11 +81,11 @@ impl Simulation {
                 slots[guide as usize] = (b as u32, lane as u32);
             }
             let mut block = Block::new(guides, lanes, used, first_free);
-            block.held = crate::ties::rows(&style, &lanes);
+            block.tie_hold = crate::ties::rows(&style, &lanes);
             block.place_at_rest(&Map::IDENTITY);
             blocks.push(block);
         }
-        // A guide that is not a number says nothing about the others.
+        // Non-finite guides do not affect the others.
         let known = || blocks.iter().flat_map(|b| &b.rest.mean_link[..b.used]).filter(|l| l.is_finite());
         let mean_link = known().sum::<f32>() / known().count().max(1) as f32;
         let grid = DensityGrid::new(&blocks);
@@ -97,13 +99,13 @@ impl Simulation {
             colliders: Vec::new(),
             rest_colliders: RestColliders::default(),
             field: None,
-            taking_hold: None,
+            tie_blend: None,
             elapsed_secs: 0.0,
-            air_way: None,
+            air_travel: None,
             clamped_links,
             mean_link,
             wide: true,
-            spare: true,
+            culling: true,
             substeps: Vec::new(),
             shapes: Vec::new(),
         }
@@ -114,80 +116,82 @@ impl Simulation {
         &self.style
     }
 
-    /// Carries the rest shape to the head of `input`, without motion.
+    /// Places the hair in its rest shape on the head of `input`, at rest.
     pub fn reset(&mut self, input: &StepInput) {
         self.head = HeadPose::new(&input.world_from_head).unwrap_or(self.head);
         self.time_secs = input.time_secs;
-        (self.elapsed_secs, self.air_way) = (0.0, None);
-        self.take_hold(f32::INFINITY);
+        (self.elapsed_secs, self.air_travel) = (0.0, None);
+        self.advance_ties(f32::INFINITY);
         self.colliders.clear();
         self.colliders.extend_from_slice(input.colliders);
-        self.meet_field(input);
-        self.learn_colliders();
+        self.update_field(input);
+        self.find_rest_colliders();
         self.reset_field(input);
         let from_head = self.head.map_from_head(self.head.place);
         self.blocks.par_iter_mut().for_each(|block| block.place_at_rest(&from_head));
     }
 
-    /// Takes the colliders of the next step for other ones, as many as they are: how they lie around the hair at rest is
-    /// found anew.
+    /// Treats the colliders of the next step as new ones even if their number is unchanged, so that their
+    /// arrangement around the hair at rest is found again.
     pub fn forget_colliders(&mut self) {
         self.colliders.clear();
     }
 
-    /// Tells the wind what time it is, seconds: the same wind blows at the same time, as if it had blown like this until
-    /// then, unless time only goes on. Without it, time counts from the last reset.
+    /// Sets the time of the wind, seconds. The same time gives the same wind, computed as if the current wind
+    /// had always blown, unless time continues from the last step. Without this call, time counts from the
+    /// last reset.
     pub fn set_wind_secs(&mut self, secs: f64) {
         if secs.is_finite() {
-            self.air_way = self.air_way.filter(|_| (secs - self.elapsed_secs).abs() < SAME_SECS);
+            self.air_travel = self.air_travel.filter(|_| (secs - self.elapsed_secs).abs() < SAME_WIND_SECS);
             self.elapsed_secs = secs;
         }
     }
 
-    /// Moves on by `dt_secs`, while the body moves from where it was to `input`.
+    /// Advances the hair by `dt_secs`, while the body moves from its last pose to `input`.
     ///
-    /// Roots, frames and colliders are taken through the substeps in between. Where the motion jumps (see
-    /// [`StepInput`]) hair is carried along with the head, velocities and all, and time stands still. So it is
-    /// where `dt_secs` is not a number or below a microsecond; one above 0.1 s counts as 0.1 s.
+    /// Roots, frames and colliders are interpolated over the substeps. If the motion jumps (see
+    /// [`StepInput`]), the hair is moved rigidly with the head, including its velocities, and no time passes.
+    /// The same happens if `dt_secs` is not a number or below a microsecond; values above 0.1 s count as 0.1
+    /// s.
     pub fn step(&mut self, input: &StepInput, settings: &SimulationSettings, dt_secs: f32) -> StepReport {
         let settings = settings.clamped();
         let head = HeadPose::new(&input.world_from_head).unwrap_or(self.head);
         let jumped = self.head.jumps_to(&head, self.time_secs, input.time_secs, dt_secs);
         self.time_secs = input.time_secs;
-        let met = self.meet_field(input);
+        let field_changed = self.update_field(input);
         if self.colliders.len() != input.colliders.len() {
             self.colliders.clear();
             self.colliders.extend_from_slice(input.colliders);
             let before = std::mem::replace(&mut self.head, head);
-            self.learn_colliders();
+            self.find_rest_colliders();
             self.head = before;
         }
         if self.clamped_links != settings.clamped_links {
             self.clamp_links(settings.clamped_links);
         }
         if jumped || !(dt_secs >= SHORTEST_SECS && dt_secs.is_finite()) {
-            let report = self.carry_to(head, input.colliders, jumped);
+            let report = self.move_with_head(head, input.colliders, jumped);
             self.reset_field(input);
             return report;
         }
         let dt_secs = dt_secs.min(0.1);
-        self.take_hold(dt_secs);
-        // All of it by the threads that share the work: they are woken once.
-        let report = rayon::scope(|_| self.simulate(&head, input, &settings, dt_secs, met));
+        self.advance_ties(dt_secs);
+        // The whole step runs inside the thread pool, so that its threads are woken only once.
+        let report = rayon::scope(|_| self.simulate(&head, input, &settings, dt_secs, field_changed));
         self.head = head;
         self.colliders.copy_from_slice(input.colliders);
         self.elapsed_secs += f64::from(dt_secs);
         report
     }
 
-    /// The step to `head` and `input`; `met` says whether the field has only just been taken up.
+    /// Simulates the step to `head` and `input`; `field_changed` says whether the field is a new one.
     fn simulate(
         &mut self,
         head: &HeadPose,
         input: &StepInput,
         settings: &SimulationSettings,
         dt_secs: f32,
-        met: bool,
+        field_changed: bool,
     ) -> StepReport {
         let colliders = input.colliders;
         let origin = head.place;
@@ -199,7 +203,7 @@ impl Simulation {
         let mut before = self.head;
         for s in 0..count {
             let t = (s + 1) as f32 / count as f32;
-            let now = self.head.toward(head, t);
+            let now = self.head.interpolate(head, t);
             self.substeps.push(substep(&before, &now, origin, h));
             place(
                 &self.rest_colliders,
@@ -214,24 +218,24 @@ impl Simulation {
             before = now;
         }
         let head_from_last = head_from(&self.head, self.head.place);
-        let (grid, blocks, spare) = (&mut self.grid, &self.blocks, self.spare);
+        let (grid, blocks, culling) = (&mut self.grid, &self.blocks, self.culling);
         let (field, placed) = (self.field.as_mut(), input.field);
-        // What takes longer first: the other thread may have to be woken.
+        // The longer task comes first, because the other thread may have to be woken.
         let ((), over_dense_cells) = rayon::join(
             || {
                 let (Some(field), Some(placed)) = (field, placed) else { return };
-                if met {
-                    // It begins where it is.
+                if field_changed {
+                    // A new field starts at rest in its current place.
                     field.reset(head, placed.pose);
                 }
-                field.advance(head, placed.pose, ContactRules::of(settings).reach(), dt_secs, spare);
+                field.advance(head, placed.pose, ContactRules::of(settings).reach(), dt_secs, culling);
             },
             || grid.update(blocks, &head_from_last, settings.repulsion),
         );
         let mean_wind = mean_of(&settings.wind).as_dvec3();
-        let way = self.air_way.unwrap_or(mean_wind * self.elapsed_secs);
-        self.air_way = Some(way + mean_wind * f64::from(dt_secs));
-        let wind = WindField::new(&settings.wind, self.elapsed_secs, way, origin);
+        let air_travel = self.air_travel.unwrap_or(mean_wind * self.elapsed_secs);
+        self.air_travel = Some(air_travel + mean_wind * f64::from(dt_secs));
+        let wind = WindField::new(&settings.wind, self.elapsed_secs, air_travel, origin);
         let shelter = if wind.blows() { settings.wind.sheltering } else { 0.0 };
         let along = Vec3::from_array(settings.wind.direction);
         let here = Affine3A::from_rotation_translation(self.head.turn, self.head.place - origin);
@@ -268,7 +272,7 @@ impl Simulation {
         StepReport { substeps: count, over_dense_cells, hair_volume, hair_volume_at_rest, ..all }
     }
 
-    /// Sums up the blocks, always in the same order.
+    /// Sums the results of the blocks, always in the same order.
     fn outcome(&self, first_free: usize) -> StepReport {
         let mut report = StepReport::default();
         let (mut energy, mut fastest) = (0.0, 0.0_f32);
@@ -296,11 +300,11 @@ impl Simulation {
                 (fastest, quick) = (out.max_speed_squared, Some(block));
             }
         }
-        // Where it is, is looked for in one block alone.
+        // The points are searched in the one block that holds the maximum.
         let first = first_free.max(1);
-        report.worst_stretch_at = stretched.and_then(|block: &Block| block.most(first, Block::stretch));
+        report.worst_stretch_at = stretched.and_then(|block: &Block| block.argmax(first, Block::stretch));
         let speed = |block: &Block, k: usize, i: usize| at(&block.velocity[i], k).length_squared();
-        report.fastest_at = quick.and_then(|block: &Block| block.most(first, speed));
+        report.fastest_at = quick.and_then(|block: &Block| block.argmax(first, speed));
         let free = self.slots.len() * self.style.guides.points_per_guide.saturating_sub(first_free);
         report.kinetic_energy = (energy / free.max(1) as f64) as f32;
         report.max_speed = fastest.sqrt();
@@ -308,17 +312,18 @@ impl Simulation {
     }
 
     /// Moves the hair rigidly with the head.
-    fn carry_to(&mut self, head: HeadPose, colliders: &[PlacedCollider], jumped: bool) -> StepReport {
+    fn move_with_head(&mut self, head: HeadPose, colliders: &[PlacedCollider], jumped: bool) -> StepReport {
         let turn = rigid_between(&self.head, &head, self.head.place).turn;
         // Both working spaces have their origin at the head.
         let by = Map { turn, shift: Vec3::ZERO };
-        self.blocks.par_iter_mut().for_each(|block| block.carry(&by));
+        self.blocks.par_iter_mut().for_each(|block| block.move_rigidly(&by));
         self.head = head;
         self.colliders.copy_from_slice(colliders);
         StepReport { jumped, ..StepReport::default() }
     }
 
-    /// No root may move further in a substep than half a link, as far as the most substeps allow.
+    /// Number of substeps such that no root moves further per substep than half a link, up to
+    /// [`MAX_SUBSTEPS`].
     fn substeps_for(&self, head: &HeadPose, asked: u32) -> u32 {
         let (turn, there) = (self.head.affine(), head.affine());
         let mut furthest = 0.0_f32;
@@ -333,15 +338,15 @@ impl Simulation {
         asked.max(half_links.ceil().min(MAX_SUBSTEPS as f32) as u32)
     }
 
-    /// Finds how the colliders lie around the hair at rest.
-    fn learn_colliders(&mut self) {
+    /// Finds the arrangement of the colliders around the hair at rest.
+    fn find_rest_colliders(&mut self) {
         let head_at_rest = self.field.as_ref().map(MovingField::head_at_rest);
         self.rest_colliders.find(self.head.affine(), &self.colliders, head_at_rest);
-        self.learn_rest_distances();
+        self.measure_rest_distances();
     }
 
-    /// Measures how far every point at rest is from every collider at rest.
-    fn learn_rest_distances(&mut self) {
+    /// Measures the rest distance of every point to every collider.
+    fn measure_rest_distances(&mut self) {
         let shapes: Vec<Option<Shape>> = self.rest_colliders.shapes.iter().map(Shape::new).collect();
         self.blocks.par_iter_mut().for_each(|block| {
             let points = block.points();
@@ -357,7 +362,7 @@ impl Simulation {
         });
     }
 
-    /// Writes the guides as they are now into `frame`, without allocating where it already fits.
+    /// Writes the current guides to `frame`; allocates only if its size differs.
     pub fn frame(&self, frame: &mut GuideFrame) {
         frame.time_secs = self.time_secs;
         frame.world_from_head = self.head.affine();
@@ -377,7 +382,7 @@ impl Simulation {
         }
     }
 
-    /// A fingerprint of positions and velocities: equal states have equal ones.
+    /// A fingerprint of positions and velocities. Equal states have equal fingerprints.
     pub fn state_hash(&self) -> u64 {
         let mut hasher = Hasher::default();
         for v in self.head.place.to_array() {
@@ -400,7 +405,7 @@ fn first_free(clamped_links: u32, points: usize) -> usize {
     (1 + clamped_links as usize).min(points)
 }
 
-/// From the space whose origin is at `origin` to head space.
+/// Maps the space whose origin is at `origin` to head space.
 fn head_from(head: &HeadPose, origin: Vec3) -> Map {
     let turn = glam::Mat3::from_quat(head.turn.inverse());
     Map { turn, shift: turn * (origin - head.place) }
@@ -410,7 +415,7 @@ mod body;
 mod restyle;
 mod snapshot;
 
-use restyle::TakingHold;
+use restyle::TieBlend;
 pub use snapshot::RestoreError;
 
 #[cfg(test)]

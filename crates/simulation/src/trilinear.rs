@@ -1,8 +1,8 @@
-//! Values at the eight corners of a cell, x fastest, and what lies between them.
+//! Trilinear interpolation between values at the eight corners of a cell, x fastest.
 
 use glam::Vec3;
 
-/// The weights of the corners at the fractions `f` of the way through the cell.
+/// Weights of the corners at the fractions `f` along the axes of the cell.
 #[inline(always)]
 pub(crate) fn weights(f: Vec3) -> [f32; 8] {
     let g = Vec3::ONE - f;

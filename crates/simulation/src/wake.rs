@@ -1,11 +1,11 @@
-//! Shelter from the wind: hair behind the body, as the wind sees it, is in its wake.
+//! Shelter from the wind: hair downwind of the body is in its wake.
 //!
-//! From each point a ray goes upwind. Where it passes through a collider, the point is in that collider's wake:
-//! fully right behind it, less the further away, and not at all to its sides or in front of it. With `x` the nearest
-//! distance of the ray to the collider's axis in radii, reached `s` metres upwind, and `r` the radius, a collider lets
-//! through `1 - w(x) b(s / r) f(s / r)`: `w` falls from 1 to 0 between 0.7 and 1.2 radii, `b` rises from 0 in front
-//! and beside to 1 behind, `f` is the wake's recovery over [`LENGTH`] radii. What all colliders let through is
-//! multiplied.
+//! A ray is traced upwind from each point. Where it passes through a collider, the point is in that
+//! collider's wake: fully sheltered directly behind it, less so further away, and not at all beside it or in
+//! front. Let `x` be the smallest distance between the ray and the collider's axis in radii, reached `s`
+//! metres upwind, and `r` the radius. The collider then lets through `1 - w(x) b(s / r) f(s / r)`: `w` falls
+//! from 1 to 0 between 0.7 and 1.2 radii, `b` rises from 0 in front and beside to 1 behind, and `f` is the
+//! recovery of the wake over [`LENGTH`] radii. The factors of all colliders are multiplied.
 
 use glam::{Affine3A, Vec3};
 use lovelock_groom::Scalp;
@@ -15,30 +15,30 @@ use crate::colliders::boxes::bounds;
 use crate::colliders::shape::Shape;
 use crate::lanes::{LANES, Lane, Lane3, at, greater, lesser};
 
-/// Length of a wake, in radii of what makes it.
+/// Length of a wake, in radii of the collider.
 const LENGTH: f32 = 10.0;
 
-/// The wakes of all colliders at one moment, in working space.
+/// The wakes of all colliders at one instant, in working space.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Wakes {
     /// Unit vector against the wind.
     upwind: Vec3,
-    /// How much of the wind a wake takes away, 0 to 1.
+    /// Fraction of the wind that a wake removes, 0 to 1.
     strength: f32,
     solids: Vec<Solid>,
 }
 
-/// A collider as the wind meets it.
+/// A collider as an obstacle to the wind.
 #[derive(Clone, Copy, Debug)]
 struct Solid {
     shape: Shape,
     centre: Vec3,
-    /// Of the sphere around it, metres.
+    /// Radius of its bounding sphere, metres.
     reach: f32,
 }
 
-/// The head as the wind meets it where it is no collider but part of a distance field: the ellipsoid in the box of
-/// its surface, which is at `head`. `None` where it has no surface.
+/// The head as an obstacle to the wind when it is part of a distance field and not a collider: the ellipsoid
+/// in the bounding box of its surface, at the transform `head`. `None` if it has no surface.
 pub(crate) fn head_of(scalp: &Scalp, head: &Affine3A) -> Option<Shape> {
     let low = scalp.positions.iter().fold(Vec3::INFINITY, |low, p| low.min(*p));
     let high = scalp.positions.iter().fold(Vec3::NEG_INFINITY, |high, p| high.max(*p));
@@ -47,7 +47,7 @@ pub(crate) fn head_of(scalp: &Scalp, head: &Affine3A) -> Option<Shape> {
 }
 
 impl Wakes {
-    /// Prepares the wakes of `shapes` in a wind along `along`; `strength` 0 makes none.
+    /// Prepares the wakes of `shapes` in a wind along `along`; a `strength` of 0 gives none.
     pub(crate) fn new(shapes: impl Iterator<Item = Shape>, along: Vec3, strength: f32) -> Self {
         let Some(along) = along.try_normalize().filter(|_| strength > 0.0) else { return Self::default() };
         let solid = |shape: Shape| {
@@ -57,7 +57,7 @@ impl Wakes {
         Self { upwind: -along, strength, solids: shapes.map(solid).collect() }
     }
 
-    /// The share of the wind that reaches each lane of a row of points.
+    /// The fraction of the wind that reaches each lane of a row of points.
     #[inline(always)]
     pub(crate) fn exposure(&self, points: &Lane3) -> Lane {
         let mut open = Lane::splat(1.0);
@@ -74,7 +74,7 @@ impl Wakes {
                 continue;
             }
             for k in 0..LANES {
-                let (x, s, radius) = solid.passed(at(points, k), self.upwind);
+                let (x, s, radius) = solid.ray_distance(at(points, k), self.upwind);
                 let within = smooth((1.2 - x) * 2.0);
                 let behind = smooth(s / (0.6 * radius));
                 let fades = greater(1.0 - s / (LENGTH * radius), 0.0);
@@ -89,13 +89,13 @@ impl Wakes {
 }
 
 impl Solid {
-    /// How near the ray from `p` along the unit vector `u` comes to the axis, in radii; how far along the ray; and
-    /// the radius there.
+    /// Smallest distance between the ray from `p` along the unit vector `u` and the axis, in radii; the
+    /// distance along the ray; and the radius there.
     #[inline(always)]
-    fn passed(&self, p: Vec3, u: Vec3) -> (f32, f32, f32) {
+    fn ray_distance(&self, p: Vec3, u: Vec3) -> (f32, f32, f32) {
         match self.shape {
             Shape::Capsule { a, axis, inv_axis_squared, radius_a, radius_change, .. } => {
-                // Nearest points of a ray and a segment (Ericson, Real-Time Collision Detection, 5.1.9).
+                // Closest points of a ray and a segment (Ericson, Real-Time Collision Detection, 5.1.9).
                 let r = p - a;
                 let (b, c, f, e) = (u.dot(axis), u.dot(r), axis.dot(r), axis.dot(axis));
                 let cross = e - b * b;
@@ -117,7 +117,7 @@ impl Solid {
     }
 }
 
-/// The smooth step from 0 at 0 to 1 at 1.
+/// Smoothstep from 0 at 0 to 1 at 1.
 #[inline(always)]
 fn smooth(t: f32) -> f32 {
     let t = lesser(greater(t, 0.0), 1.0);
@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn behind_the_head_there_is_less_wind_and_before_and_beside_it_all() {
+    fn the_head_shelters_points_behind_it_only() {
         for head in heads() {
             let wakes = Wakes::new([head].into_iter(), Vec3::X * 5.0, 1.0);
             assert!(open(&wakes, Vec3::X * 0.1) < 0.2, "right behind: {}", open(&wakes, Vec3::X * 0.1));
@@ -156,14 +156,14 @@ mod tests {
             for p in [Vec3::X * -0.1, Vec3::X * -0.5, Vec3::Z * 0.15, Vec3::Y * 0.2, Vec3::X * 2.0] {
                 assert_eq!(open(&wakes, p), 1.0, "at {p}");
             }
-            // The wind decides what is behind.
+            // The wind direction decides which side is sheltered.
             let other = Wakes::new([head].into_iter(), Vec3::NEG_X, 1.0);
             assert!(open(&other, Vec3::X * -0.1) < 0.2 && open(&other, Vec3::X * 0.1) == 1.0);
         }
     }
 
     #[test]
-    fn shelter_fades_smoothly_and_its_strength_is_the_setting() {
+    fn shelter_fades_smoothly_and_scales_with_its_strength() {
         let [head, _] = heads();
         let wakes = Wakes::new([head].into_iter(), Vec3::X, 1.0);
         let mut last = open(&wakes, Vec3::new(0.12, 0.0, -0.2));

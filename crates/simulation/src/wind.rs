@@ -1,14 +1,14 @@
-//! Wind: a mean, gusts that travel with it, and eddies, all from sums of waves.
+//! Wind: a mean, gusts that travel with it, and eddies, all sums of waves.
 //!
-//! A sum of waves is smooth in time and space, costs a few multiplications, and is the same on every run.
-//! Eddies move air across their waves' direction, so that they have no sources (solenoidal).
+//! A sum of waves is smooth in time and space, costs a few multiplications, and is the same in every run.
+//! Eddies move the air perpendicular to the direction of their waves, so the flow is solenoidal.
 
 use glam::{DVec3, Vec3};
 
 use crate::lanes::{LANES, Lane3, ZERO3, at, put};
 use crate::settings::Wind;
 
-/// Waves of gusts and of eddies.
+/// Numbers of waves of gusts and of eddies.
 const GUSTS: usize = 3;
 const EDDIES: usize = 6;
 
@@ -23,26 +23,26 @@ pub(crate) struct WindField {
 #[derive(Clone, Copy, Debug, Default)]
 struct Wave {
     amplitude: Vec3,
-    /// Turns a metre along each axis.
+    /// Wave vector in turns per metre.
     turns: Vec3,
     /// Phase at the origin, in turns.
     phase: f32,
 }
 
 impl WindField {
-    /// The wind at `elapsed_secs`, in which the mean wind has carried the air by `way`, metres; for points relative to
-    /// `origin` in world space.
+    /// The wind at `elapsed_secs`, for points relative to `origin` in world space. `air_travel` is the
+    /// distance by which the mean wind has carried the air until then, metres.
     ///
-    /// Eddies have gone as far as the air has, and not as far as its present speed would have carried it in all that time:
-    /// so a wind that freshens does not shuffle them.
-    pub(crate) fn new(wind: &Wind, elapsed_secs: f64, way: DVec3, origin: Vec3) -> Self {
+    /// Eddies are placed by the distance that the air has really travelled, not by the current speed times
+    /// the elapsed time, so that they do not shift abruptly when the wind changes.
+    pub(crate) fn new(wind: &Wind, elapsed_secs: f64, air_travel: DVec3, origin: Vec3) -> Self {
         let mean = mean_of(wind);
         let Some(along) = mean.try_normalize() else { return Self::default() };
         let mut random = Random(u64::from(wind.seed));
         let mut field = Self { mean, waves: [Wave::default(); GUSTS + EDDIES], blows: true };
         for (n, out) in field.waves.iter_mut().enumerate() {
             let start = random.unit();
-            // Turns a second seen at one place, and the direction and length of the wave.
+            // Frequency in turns per second at a fixed place, and direction and length of the wave.
             let (amplitude, wave, hertz, carried);
             if n < GUSTS {
                 hertz = [0.19, 0.53, 1.27][n] * (0.8 + 0.4 * random.unit());
@@ -53,9 +53,9 @@ impl WindField {
                 let direction = random.direction();
                 let length = 0.15 * 1.5_f32.powi((n - GUSTS) as i32);
                 wave = direction / length;
-                // Carried by the wind, and turning over slowly by themselves.
+                // Carried by the wind, and slowly changing by themselves.
                 hertz = 0.3 * (random.unit() - 0.5);
-                carried = wave.as_dvec3().dot(way);
+                carried = wave.as_dvec3().dot(air_travel);
                 let across =
                     direction.cross(random.direction()).normalize_or(direction.any_orthonormal_vector());
                 amplitude = across * (wind.speed * wind.turbulence * (2.0 / EDDIES as f32).sqrt());
@@ -67,7 +67,7 @@ impl WindField {
         field
     }
 
-    /// Whether the air moves at all.
+    /// Whether there is any wind.
     pub(crate) fn blows(&self) -> bool {
         self.blows
     }
@@ -90,18 +90,18 @@ impl WindField {
     }
 }
 
-/// The mean wind, metres per second; 0 where it has no direction.
+/// The mean wind, metres per second; 0 if it has no direction.
 pub(crate) fn mean_of(wind: &Wind) -> Vec3 {
     Vec3::from_array(wind.direction).normalize_or_zero() * wind.speed.max(0.0)
 }
 
-/// `sin(2 pi t)` by a polynomial: exact to 2e-4, and the same on every machine.
+/// Polynomial approximation of `sin(2 pi t)`: within 2e-4, and the same on every machine.
 #[inline(always)]
 fn sine_of_turns(t: f32) -> f32 {
-    // Adding and taking away 1.5 * 2^23 rounds to the nearest integer.
+    // Adding and subtracting 1.5 * 2^23 rounds to the nearest integer.
     const ROUND: f32 = 12_582_912.0;
     let t = t - ((t + ROUND) - ROUND);
-    // To a quarter turn: sin is symmetric about it.
+    // Folds to a quarter turn: sin is symmetric about it.
     let folded = if t > 0.25 {
         0.5 - t
     } else if t < -0.25 {
@@ -141,23 +141,23 @@ mod tests {
         crate::lanes::splat3(p)
     }
 
-    /// A wind that has blown like this all the time.
+    /// A wind that has always blown at the given settings.
     fn steady(wind: &Wind, secs: f64, origin: Vec3) -> WindField {
         WindField::new(wind, secs, mean_of(wind).as_dvec3() * secs, origin)
     }
 
     #[test]
-    fn the_sine_is_a_sine() {
+    fn the_sine_approximation_is_within_its_error() {
         for i in -4000..4000 {
             let t = i as f32 * 0.001;
             let want = (f64::from(t) * std::f64::consts::TAU).sin() as f32;
-            // The series' next term at a quarter turn is 1.6e-4.
+            // The next term of the series at a quarter turn is 1.6e-4.
             assert!((sine_of_turns(t) - want).abs() < 2e-4, "{t}");
         }
     }
 
     #[test]
-    fn wind_keeps_its_mean_is_smooth_and_repeats() {
+    fn wind_keeps_its_mean_and_is_smooth_and_repeatable() {
         let wind = Wind { speed: 4.0, ..Wind::default() };
         let mut sum = Vec3::ZERO;
         let mut last: Option<Vec3> = None;
@@ -165,7 +165,7 @@ mod tests {
             let field = steady(&wind, f64::from(i) / 60.0, Vec3::ZERO);
             let v = at(&field.velocity(&row(Vec3::new(0.1, 0.2, 0.0))), 0);
             if let Some(last) = last {
-                // The finest eddies pass at 4 m/s / 0.15 m, with 0.7 m/s each: 2 pi 27 * 0.7 / 60 = 2 m/s.
+                // The finest eddies pass at 4 m/s / 0.15 m with 0.7 m/s each: 2 pi 27 * 0.7 / 60 = 2 m/s.
                 assert!((v - last).length() < 4.0, "the wind jumps");
             }
             last = Some(v);
@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn the_wind_stays_where_it_is_in_the_world_when_the_origin_moves() {
+    fn wind_does_not_depend_on_the_origin() {
         let wind = Wind { speed: 3.0, turbulence: 1.0, ..Wind::default() };
         let p = Vec3::new(0.3, 1.5, -0.2);
         let a = steady(&wind, 3.0, Vec3::ZERO).velocity(&row(p));
@@ -188,22 +188,23 @@ mod tests {
     }
 
     #[test]
-    fn a_wind_that_freshens_does_not_shuffle_its_eddies() {
+    fn a_change_of_wind_speed_does_not_shift_the_eddies() {
         let (calm, fresh) = (Wind { speed: 4.0, ..Wind::default() }, Wind { speed: 4.02, ..Wind::default() });
         let secs = 600.0;
-        let way = mean_of(&calm).as_dvec3() * secs;
+        let air_travel = mean_of(&calm).as_dvec3() * secs;
         let p = row(Vec3::new(0.1, 0.2, 0.0));
-        let before = at(&WindField::new(&calm, secs, way, Vec3::ZERO).velocity(&p), 0);
-        let after = at(&WindField::new(&fresh, secs, way, Vec3::ZERO).velocity(&p), 0);
-        // Everything grows by half a percent of some metres a second; gusts move by theirs over half a metre.
+        let before = at(&WindField::new(&calm, secs, air_travel, Vec3::ZERO).velocity(&p), 0);
+        let after = at(&WindField::new(&fresh, secs, air_travel, Vec3::ZERO).velocity(&p), 0);
+        // Everything grows by half a per cent of a few metres per second; gusts shift by as much over half a
+        // metre.
         assert!((after - before).length() < 0.1, "{before} became {after}");
-        // The control: as if it had blown like that all the time.
+        // Control: computed as if the new wind had always blown.
         let always = at(&steady(&fresh, secs, Vec3::ZERO).velocity(&p), 0);
         assert!((always - before).length() > 0.3, "{before} and {always}");
     }
 
     #[test]
-    fn still_air_does_not_blow() {
+    fn no_wind_does_not_blow() {
         assert!(!steady(&Wind::default(), 1.0, Vec3::ZERO).blows());
         let nowhere = Wind { speed: 5.0, direction: [0.0; 3], ..Wind::default() };
         assert!(!steady(&nowhere, 1.0, Vec3::ZERO).blows());

@@ -1,4 +1,4 @@
-//! Hair against the skinned surface itself, not against what stands for it.
+//! Hair against the skinned surface itself, not against its approximations.
 
 use lovelock_groom::Preset;
 use lovelock_motion::{Skin, skin};
@@ -7,7 +7,8 @@ use lovelock_simulation::SimulationSettings;
 mod common;
 use common::{Depths, STEP_SECS, Stage};
 
-/// The deepest of a preset's hair in the skin of head, neck, shoulders and upper back over a motion, metres.
+/// Deepest penetration of a preset's hair into the skin of head, neck, shoulders and upper back over a
+/// motion, metres.
 fn deepest(preset: Preset, motion: &str, colliders: bool) -> f32 {
     let mut stage = Stage::of_wisps(preset, 12);
     stage.play(motion).expect("the motion");
@@ -29,7 +30,7 @@ fn deepest(preset: Preset, motion: &str, colliders: bool) -> f32 {
 }
 
 #[test]
-fn no_preset_enters_the_skin_by_a_millimetre_in_dance_and_backflip() {
+fn presets_enter_the_skin_by_less_than_a_millimetre_in_dance_and_backflip() {
     for preset in Preset::ALL {
         for motion in ["dance", "backflip"] {
             let depth = deepest(preset, motion, true);
@@ -37,12 +38,12 @@ fn no_preset_enters_the_skin_by_a_millimetre_in_dance_and_backflip() {
         }
     }
     let control = deepest(Preset::Long, "backflip", false);
-    assert!(control > 0.02, "without a body hair is no deeper than {control} m: the test shows nothing");
+    assert!(control > 0.02, "without a body hair is no deeper than {control} m: the test proves nothing");
 }
 
-// All the guides, in every second step: long hair 2.4 mm, two points of 4.7 million; see docs/simulation.md.
+// With all guides, every second step: long hair 2.4 mm, two points of 4.7 million; see docs/simulation.md.
 #[test]
-fn no_preset_enters_the_skin_by_a_millimetre_in_a_captured_dance() {
+fn presets_enter_the_skin_by_less_than_a_millimetre_in_a_captured_dance() {
     let Some(data) = lovelock_testkit::data_dir() else { return };
     let file = data.join("motion/jesse_dance.bvh");
     let motion = file.to_str().expect("a name in UTF-8");
@@ -51,5 +52,5 @@ fn no_preset_enters_the_skin_by_a_millimetre_in_a_captured_dance() {
         assert!(depth < 1e-3, "{preset:?}: {depth} m");
     }
     let control = deepest(Preset::Long, motion, false);
-    assert!(control > 0.02, "without a body hair is no deeper than {control} m: the test shows nothing");
+    assert!(control > 0.02, "without a body hair is no deeper than {control} m: the test proves nothing");
 }

@@ -1,4 +1,4 @@
-//! Bare chains: at rest they stay, and substeps are as many and as good as they should be.
+//! Bare chains: chains at rest stay at rest, and substeps have the expected number and accuracy.
 
 mod common;
 
@@ -13,7 +13,7 @@ fn at_rest(guides: &[Vec<Vec3>]) -> Simulation {
     simulation
 }
 
-/// Steps with a head that stands still; `seen` gets the simulation after every step.
+/// Steps with a head that stands still; `seen` receives the simulation after every step.
 fn stand(
     simulation: &mut Simulation,
     settings: &SimulationSettings,
@@ -33,19 +33,19 @@ fn tip(simulation: &Simulation) -> Vec3 {
 }
 
 #[test]
-fn a_hanging_chain_stays() {
+fn a_hanging_chain_stays_at_rest() {
     let guide = straight(Vec3::new(0.1, 1.5, 0.0), Vec3::NEG_Y, 30, 0.3);
     let mut simulation = at_rest(std::slice::from_ref(&guide));
     stand(&mut simulation, &bare(), 300, |_| ());
     let now = frame(&simulation).guides;
     for (i, rest) in guide.iter().enumerate() {
-        // A metre and a half from the world's origin, f32 has 1.2e-7.
+        // A metre and a half from the world's origin, f32 has a resolution of 1.2e-7.
         assert!((now.point(0, i) - *rest).length() < 5e-7, "point {i} moved");
     }
 }
 
 #[test]
-fn more_substeps_come_nearer_to_the_truth() {
+fn more_substeps_are_more_accurate() {
     let path = |substeps: u32| {
         let mut simulation = at_rest(&[straight(Vec3::ZERO, Vec3::X, 30, 0.3)]);
         let mut tips = Vec::new();
@@ -64,14 +64,14 @@ fn more_substeps_come_nearer_to_the_truth() {
 }
 
 #[test]
-fn a_fast_head_is_given_more_substeps() {
+fn a_fast_head_raises_the_number_of_substeps() {
     let guides = [straight(Vec3::ZERO, Vec3::NEG_Y, 30, 0.3)];
     let substeps = |speed: f32| {
         let mut simulation = at_rest(&guides);
         let place = Affine3A::from_translation(Vec3::X * (speed * STEP_SECS));
         simulation.step(&head(f64::from(STEP_SECS), place), &bare(), STEP_SECS).substeps
     };
-    // Half a link of 1 cm a substep.
+    // Half a link of 1 cm per substep.
     assert_eq!(substeps(0.5), 4);
     assert_eq!(substeps(2.4), 8);
     assert_eq!(substeps(20.0), 16);

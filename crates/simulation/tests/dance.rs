@@ -6,10 +6,10 @@ use lovelock_motion::signed_distance;
 use lovelock_simulation::{SimulationSettings, StepReport};
 
 mod common;
-use common::{STEP_SECS, Stage, away_from_style, frame, worse};
+use common::{STEP_SECS, Stage, distance_from_style, frame, worse};
 
 #[test]
-fn over_the_whole_dance_lengths_hold_and_nothing_enters_the_body() {
+fn lengths_hold_and_nothing_enters_the_body_over_the_dance() {
     for preset in Preset::ALL {
         let mut stage = Stage::new(preset);
         let mut simulation = stage.simulation(Some(0.0));
@@ -19,7 +19,7 @@ fn over_the_whole_dance_lengths_hold_and_nothing_enters_the_body() {
         for step in 1..=steps {
             let report = simulation.step(&stage.at(Some(f64::from(step) / 60.0)), &settings, STEP_SECS);
             assert!(report.max_stretch < 1e-5, "{preset:?} at step {step}: stretch {}", report.max_stretch);
-            // Between two colliders, and in front of one that moves at 5 m/s, a point may be 1 mm late.
+            // Between two colliders, and in front of one that moves at 5 m/s, a point may lag by 1 mm.
             assert!(
                 report.max_penetration_m < 1e-3,
                 "{preset:?} at step {step}: {} m",
@@ -28,16 +28,16 @@ fn over_the_whole_dance_lengths_hold_and_nothing_enters_the_body() {
             all = worse(all, report);
             volume += report.hair_volume / report.hair_volume_at_rest / steps as f32;
         }
-        println!("{preset:?}: {volume} of its volume at rest, {all:?}");
+        println!("{preset:?}: {volume} of the rest volume, {all:?}");
         // Measured: 1.13, 1.10, 1.12, 1.12 and 1.00.
-        assert!((volume - 1.0).abs() < 0.15, "{preset:?}: {volume} of its volume at rest");
+        assert!((volume - 1.0).abs() < 0.15, "{preset:?}: {volume} of the rest volume");
         assert_eq!(all.recovered_guides, 0);
         assert!(all.max_speed > 2.0 && all.max_speed < 20.0, "{preset:?}: {} m/s", all.max_speed);
     }
 }
 
 #[test]
-fn without_colliders_the_same_dance_does_enter_the_body() {
+fn hair_enters_the_body_without_colliders() {
     let mut stage = Stage::new(Preset::Long);
     let mut simulation = stage.simulation(Some(0.0));
     let (mut deepest, settings) = (0.0_f32, SimulationSettings::default());
@@ -53,11 +53,11 @@ fn without_colliders_the_same_dance_does_enter_the_body() {
             }
         }
     }
-    assert!(deepest > 0.01, "only {deepest} m: the test above shows nothing");
+    assert!(deepest > 0.01, "only {deepest} m: the test above proves nothing");
 }
 
 #[test]
-fn after_a_turn_hair_settles_within_two_seconds() {
+fn hair_settles_within_two_seconds_after_a_turn() {
     let mut stage = Stage::new(Preset::Long);
     let mut simulation = stage.simulation(Some(0.0));
     let settings = SimulationSettings::default();
@@ -71,7 +71,7 @@ fn after_a_turn_hair_settles_within_two_seconds() {
         speeds.push(report.kinetic_energy);
     }
     assert!(speeds[0] > 0.05, "the hair was not moving: {} J/kg", speeds[0]);
-    assert!(speeds[119] < 0.02 * speeds[0], "{} of {} J/kg is left after 2 s", speeds[119], speeds[0]);
+    assert!(speeds[119] < 0.02 * speeds[0], "{} of {} J/kg remain after 2 s", speeds[119], speeds[0]);
 }
 
 #[test]
@@ -93,11 +93,11 @@ fn one_two_and_eight_threads_give_the_same_bytes() {
     let one = run(1, 120);
     assert_eq!(one, run(2, 120));
     assert_eq!(one, run(8, 120));
-    assert_ne!(one, run(1, 119), "the hash does not see the state");
+    assert_ne!(one, run(1, 119), "the hash does not depend on the state");
 }
 
-/// How far guides are from their style, in their lengths, on the mean of their points: after two rounds of the dance and four
-/// seconds in which the dancer stands still.
+/// Mean distance of the points from their style, as a fraction of the guide length, after two rounds of the
+/// dance and four seconds in which the dancer stands still.
 fn away_after_two_rounds(preset: Preset, settings: &SimulationSettings) -> f32 {
     let mut stage = Stage::new(preset);
     let mut simulation = stage.simulation(Some(0.0));
@@ -108,20 +108,20 @@ fn away_after_two_rounds(preset: Preset, settings: &SimulationSettings) -> f32 {
     for _ in 0..240 {
         simulation.step(&stage.at(Some(0.0)), settings, STEP_SECS);
     }
-    let away = away_from_style(&simulation);
+    let away = distance_from_style(&simulation);
     away.iter().sum::<f32>() / away.len() as f32
 }
 
 #[test]
-fn after_two_rounds_of_the_dance_short_hair_is_in_its_style_again() {
-    // Measured: 0.030 and 0.027. Locks that flutter or hang over the face: 0.15 and more. Long hair may lie before a shoulder or
-    // behind it.
+fn short_hair_returns_to_its_style_after_two_rounds_of_the_dance() {
+    // Measured: 0.030 and 0.027. Guides that flutter or hang over the face: 0.15 and more. Long hair may lie
+    // in front of a shoulder or behind it.
     for preset in [Preset::Smooth, Preset::Curly] {
         let away = away_after_two_rounds(preset, &SimulationSettings::default());
-        println!("{preset:?}: {away} of its length away");
-        assert!(away < 0.06, "{preset:?}: {away} of its length away");
+        println!("{preset:?}: {away} of its length from its style");
+        assert!(away < 0.06, "{preset:?}: {away} of its length from its style");
     }
-    // The control: without stiffness and hold nothing brings a lock back.
+    // Control: without stiffness and hold nothing brings a guide back.
     let chain = SimulationSettings {
         stiffness_root: 0.0,
         stiffness_tip: 0.0,
@@ -131,5 +131,5 @@ fn after_two_rounds_of_the_dance_short_hair_is_in_its_style_again() {
     };
     let away = away_after_two_rounds(Preset::Smooth, &chain);
     println!("chains: {away}");
-    assert!(away > 0.06, "chains, only {away} of their length away");
+    assert!(away > 0.06, "chains are only {away} of their length from their style");
 }

@@ -1,12 +1,12 @@
-//! Random days in the life of a simulation: what the fuzz target does (`fuzz/`), on inputs that are the same on
-//! every run.
+//! Random sequences of actions on a simulation: the same as the fuzz target (`fuzz/`), on inputs that are the
+//! same in every run.
 
 use glam::{Affine3A, Vec3};
 use lovelock_groom::{GuideFrame, Guides};
 
 #[path = "common/drive.rs"]
 mod drive;
-use drive::{Met, drive, sound};
+use drive::{Coverage, drive, is_sound};
 
 /// `SplitMix64` (Steele, Lea, Flood 2014).
 fn bytes(seed: u64, count: usize) -> Vec<u8> {
@@ -22,37 +22,37 @@ fn bytes(seed: u64, count: usize) -> Vec<u8> {
 }
 
 #[test]
-fn no_order_of_settings_motions_and_edits_breaks_the_hair() {
-    let mut all = Met::default();
+fn random_sequences_of_actions_do_not_break_the_hair() {
+    let mut all = Coverage::default();
     for seed in 0..80 {
-        all.and(&drive(&bytes(seed, 700)));
+        all.add(&drive(&bytes(seed, 700)));
     }
     println!("{all:?}");
-    // The drives meet everything they are there for.
+    // The drives cover all kinds of actions.
     assert!(all.steps > 4000 && all.jumps > 100 && all.styles > 100 && all.resets > 100, "{all:?}");
     assert!(all.restored > 15 && all.refused > 25 && all.fastest > 1.0, "{all:?}");
     assert!(
-        all.fielded > 1000 && all.in_skin > 100 && all.folded > 20 && all.lifted > 50 && all.edited > 30,
+        all.with_field > 1000 && all.in_skin > 100 && all.folded > 20 && all.lifted > 50 && all.edited > 30,
         "{all:?}"
     );
     assert!(all.bent > 100 && all.tied > 10 && all.cut > 30 && all.regrown > 30, "{all:?}");
 }
 
 #[test]
-fn a_point_that_is_not_finite_or_lost_is_seen() {
+fn non_finite_and_lost_points_are_detected() {
     let mut guides = Guides { points_per_guide: 2, ..Guides::default() };
     guides.push(&[Vec3::ZERO, Vec3::X]);
     let good = GuideFrame::at_rest(&guides, Affine3A::IDENTITY, 0.0);
-    assert!(sound(&good));
+    assert!(is_sound(&good));
     for wrong in [f32::NAN, f32::INFINITY, 1e6] {
         let mut bad = good.clone();
         bad.guides.y[1] = wrong;
-        assert!(!sound(&bad), "{wrong}");
+        assert!(!is_sound(&bad), "{wrong}");
     }
 }
 
 #[test]
-fn inputs_that_end_early_are_inputs_too() {
+fn short_inputs_are_valid() {
     for count in 0..40 {
         drive(&bytes(count as u64 + 1000, count));
     }

@@ -1,4 +1,4 @@
-//! Hair of files on the shipped dancer: it moves as the shipped hairstyles do.
+//! Hair from files on the shipped dancer: it moves like the shipped hairstyles.
 
 use lovelock_motion::{Skin, skin};
 use lovelock_simulation::SimulationSettings;
@@ -7,7 +7,8 @@ use lovelock_testkit::data_dir;
 mod common;
 use common::{Depths, STEP_SECS, Stage};
 
-/// The whole dance with the hair of a file in so many wisps: the mean volume, of that at rest, and the deepest in the skin, metres.
+/// The whole dance with the hair of a file in `wisps` wisps: mean volume relative to the rest volume, and
+/// deepest penetration into the skin, metres.
 fn dance(file: &str, wisps: u32, body: bool) -> Option<(f32, f32)> {
     let mut stage = Stage::with_file(&data_dir()?.join("hair").join(file), wisps);
     let mut simulation = stage.simulation(Some(0.0));
@@ -28,24 +29,24 @@ fn dance(file: &str, wisps: u32, body: bool) -> Option<(f32, f32)> {
         }
     }
     let guides = stage.style.guides.count();
-    println!("{file}, {guides} guides: {volume} of its volume, deepest {:?}", depths.worst);
+    println!("{file}, {guides} guides: {volume} of the rest volume, deepest {:?}", depths.worst);
     Some((volume, depths.worst.depth))
 }
 
 #[test]
-fn hair_of_files_keeps_its_lengths_its_volume_and_out_of_the_skin() {
-    // Measured: 0.8, 2.0 and 0 mm; with as many wisps as the files have 1.3, 2.0 and 0. The second passes the lobe of an ear, thinner
-    // than the field is fine, and lies as deep in it at rest.
+fn imported_hair_keeps_its_lengths_and_volume_and_stays_out_of_the_skin() {
+    // Measured: 0.8, 2.0 and 0 mm; with as many wisps as the files have 1.3, 2.0 and 0. The second passes an
+    // ear lobe that is thinner than the resolution of the field, and is as deep in it at rest.
     for (file, wisps, most) in [
         ("yuksel/straight.hair", 24, 2e-3),
         ("tressfx/sintel_vk.tfx", 40, 3e-3),
         ("tressfx/TestHair1.tfx", 24, 1e-3),
     ] {
         let Some((volume, depth)) = dance(file, wisps, true) else { return };
-        assert!((volume - 1.0).abs() < 0.15, "{file}: {volume} of its volume at rest");
+        assert!((volume - 1.0).abs() < 0.15, "{file}: {volume} of the rest volume");
         assert!(depth < most, "{file}: {depth} m in the skin");
     }
-    // The control: without a body it does go in.
+    // Control: without a body it does penetrate.
     let (_, depth) = dance("yuksel/straight.hair", 24, false).expect("it was there before");
-    assert!(depth > 0.01, "without a body hair is no deeper than {depth} m: the test shows nothing");
+    assert!(depth > 0.01, "without a body hair is no deeper than {depth} m: the test proves nothing");
 }

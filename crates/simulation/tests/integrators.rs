@@ -1,11 +1,13 @@
-//! The methods that keep links at their length, each for what is known of it.
+//! The integrators, each tested for its known properties.
 
 use glam::{Affine3A, Vec3};
 use lovelock_simulation::{Integrator, Simulation, SimulationSettings};
 
 mod common;
 use common::reference::Chain;
-use common::{STEP_SECS, away_from_style, bare, frame, head, straight, stretch, stretches, style, violent};
+use common::{
+    STEP_SECS, bare, distance_from_style, frame, head, straight, stretch, stretches, style, violent,
+};
 
 const G: f32 = 9.81;
 
@@ -24,7 +26,7 @@ fn with(integrator: Integrator) -> SimulationSettings {
 }
 
 #[test]
-fn settings_of_old_projects_are_solved_directly() {
+fn settings_of_old_projects_use_the_direct_integrator() {
     let old: SimulationSettings = serde_json::from_str(r#"{"gravity": 5.0}"#).expect("settings");
     assert_eq!(old, SimulationSettings { gravity: 5.0, ..SimulationSettings::default() });
     assert_eq!((old.integrator, old.relaxation_sweeps, old.follow_damping), (Integrator::Direct, 20, 0.9));
@@ -33,7 +35,7 @@ fn settings_of_old_projects_are_solved_directly() {
 }
 
 #[test]
-fn every_method_falls_freely() {
+fn every_integrator_falls_freely() {
     for integrator in Integrator::ALL {
         let mut simulation = at_rest(&[straight(Vec3::ZERO, Vec3::X, 10, 0.5)]);
         let h = 1.0 / 240.0;
@@ -44,15 +46,15 @@ fn every_method_falls_freely() {
             let pose = Affine3A::from_translation(Vec3::new(0.0, -fallen as f32, 0.0));
             simulation.step(&head(n * h, pose), &settings, h as f32);
         }
-        let worst = away_from_style(&simulation).into_iter().fold(0.0, f32::max);
-        // As for the direct method in physics.rs: roundings of a way of 1.2 m.
+        let worst = distance_from_style(&simulation).into_iter().fold(0.0, f32::max);
+        // As for the direct integrator in physics.rs: rounding errors over a path of 1.2 m.
         println!("{integrator:?}: {} m from free fall", worst * 0.5);
         assert!(worst * 0.5 < 1e-4, "{integrator:?}: {} m from free fall", worst * 0.5);
     }
 }
 
 #[test]
-fn relaxation_stretches_and_sweeps_help_and_the_others_keep_lengths() {
+fn relaxation_stretches_less_with_more_sweeps_and_the_others_keep_lengths() {
     let guides: Vec<_> =
         (0..16).map(|g| straight(Vec3::new(0.0, 0.0, 0.01 * g as f32), Vec3::NEG_Y, 30, 0.3)).collect();
     let worst = |settings: SimulationSettings| {
@@ -81,8 +83,8 @@ fn relaxation_stretches_and_sweeps_help_and_the_others_keep_lengths() {
     assert!(twenty > 0.1, "the published method with 20 sweeps stretches: {twenty}");
 }
 
-/// Root mean square distance of the tip of a chain of 30 links let go level from the equations of motion, over
-/// `frames` frames.
+/// RMS distance of the tip of a chain of 30 links from the equations of motion, over `frames` frames. The
+/// chain is released from a horizontal position.
 fn tip_error(settings: &SimulationSettings, frames: u32, dt_secs: f32) -> f64 {
     let truth = Chain::new(&level(30), f64::from(G)).tips(frames, f64::from(dt_secs), 200);
     let mut simulation = at_rest(&[level(30)]);
@@ -97,7 +99,7 @@ fn tip_error(settings: &SimulationSettings, frames: u32, dt_secs: f32) -> f64 {
 
 #[test]
 fn the_reference_is_right_and_of_fourth_order() {
-    // The small pendulum of one link has its period from paper, and energy is kept.
+    // The small pendulum of one link has its theoretical period, and energy is conserved.
     let length = 0.25_f32;
     let mut one =
         Chain::new(&straight(Vec3::ZERO, Vec3::new(0.05, -1.0, 0.0).normalize_or_zero(), 1, length), 9.81);
@@ -126,8 +128,9 @@ fn the_reference_is_right_and_of_fourth_order() {
 }
 
 #[test]
-fn the_direct_method_converges_with_its_order_and_the_others_as_they_do() {
-    // A quarter of a second, before the tip whips round; 4 to 64 substeps in 1/60 s, as four steps of a fourth.
+fn the_integrators_converge_with_their_known_orders() {
+    // A quarter of a second, before the tip whips round; 4 to 64 substeps per 1/60 s, as four steps of a
+    // quarter each.
     let errors = |integrator: Integrator| {
         [1_u32, 2, 4, 8, 16].map(|substeps| {
             let settings = SimulationSettings { substeps, relaxation_sweeps: 100, ..with(integrator) };
@@ -144,14 +147,15 @@ fn the_direct_method_converges_with_its_order_and_the_others_as_they_do() {
     // Measured: 0.94. Velocities are first differences, so the order is one.
     assert!(order(&direct) > 0.85, "{direct:?}");
     assert!(direct.windows(2).all(|w| w[1] < w[0]), "{direct:?}");
-    // A hundred sweeps are enough for the first four, of order 0.8; where substeps are shorter, rounding is more.
+    // A hundred sweeps are enough for the first four, with order 0.8; with shorter substeps rounding
+    // dominates.
     assert!(order(&relaxed[..4]) > 0.7, "{relaxed:?}");
-    // The control: follow the leader does not come nearer to the truth with more substeps.
+    // Control: follow-the-leader does not converge with more substeps.
     assert!(order(&followed) < 0.3, "{followed:?}");
     assert!(direct[2] < 0.2 * followed[2], "{direct:?} against {followed:?}");
 }
 
-/// The most energy that a chain let go level has more than at the start, J/kg, over 5 s.
+/// The largest energy gain of a chain released from a horizontal position, J/kg, over 5 s.
 fn gained(settings: &SimulationSettings, links: usize) -> f32 {
     let mut simulation = at_rest(&[level(links)]);
     let mut most = f32::MIN;
@@ -170,24 +174,24 @@ fn the_correction_keeps_follow_the_leader_from_exploding() {
     let corrected = gained(&follow, 30);
     let bare = gained(&SimulationSettings { follow_damping: 0.0, ..follow }, 30);
     println!("energy gained: {corrected} J/kg corrected, {bare} J/kg without");
-    // Measured: 0.4 and 157 J/kg. Its swing may gain a little; without the correction it does not end.
+    // Measured: 0.4 and 157 J/kg. The swing may gain a little; without the correction it grows without bound.
     assert!(corrected < 1.0 && bare > 20.0, "{corrected} {bare}");
 }
 
 #[test]
-fn relaxation_and_the_direct_method_gain_no_energy() {
+fn relaxation_and_the_direct_integrator_gain_no_energy() {
     for integrator in [Integrator::Direct, Integrator::Relaxation] {
         for (links, substeps) in [(1, 4), (5, 4), (30, 4), (30, 16)] {
             let settings = SimulationSettings { substeps, ..with(integrator) };
             let most = gained(&settings, links);
-            // 1 % of what the chain can lose in all.
+            // 1 % of the energy that the chain can lose.
             assert!(most < 0.01 * G * 0.3, "{integrator:?}, {links} links, {substeps}: {most} J/kg");
         }
     }
 }
 
 #[test]
-fn every_method_keeps_a_style_that_hangs_and_remembers_its_shape() {
+fn every_integrator_keeps_a_hanging_style_and_its_shape_memory() {
     for integrator in Integrator::ALL {
         let curl: Vec<Vec3> = (0..=30)
             .map(|i| {
@@ -201,15 +205,15 @@ fn every_method_keeps_a_style_that_hangs_and_remembers_its_shape() {
         for step in 1..=300 {
             simulation.step(&head(f64::from(step) / 60.0, Affine3A::IDENTITY), &settings, STEP_SECS);
         }
-        let away = away_from_style(&simulation).into_iter().fold(0.0, f32::max);
+        let away = distance_from_style(&simulation).into_iter().fold(0.0, f32::max);
         let longest = stretches(&simulation).into_iter().fold(0.0, f32::max);
         println!("{integrator:?}: {away} of its length from its style, stretch {longest}");
         assert!(away < 0.02, "{integrator:?}: {away} of its length");
-        // The control: limp and without support the curl falls out.
+        // Control: without stiffness and support the curl falls out.
         let limp = SimulationSettings { integrator, relaxation_sweeps: 60, ..bare() };
         for step in 301..=600 {
             simulation.step(&head(f64::from(step) / 60.0, Affine3A::IDENTITY), &limp, STEP_SECS);
         }
-        assert!(away_from_style(&simulation).into_iter().fold(0.0, f32::max) > 0.1, "{integrator:?}");
+        assert!(distance_from_style(&simulation).into_iter().fold(0.0, f32::max) > 0.1, "{integrator:?}");
     }
 }

@@ -1,4 +1,4 @@
-//! How sharply hair turns from one segment to the next, on the shipped dancer.
+//! Angles between successive segments of hair on the shipped dancer.
 
 use glam::{Affine3A, Vec3};
 use lovelock_groom::{GuideFrame, Guides, Preset, Strands, interpolate};
@@ -22,7 +22,7 @@ fn of_strands(strands: &Strands) -> Vec<f32> {
     strands.first_point.windows(2).flat_map(|ends| turns(&line(ends)).collect::<Vec<_>>()).collect()
 }
 
-/// The value that all but a share `rest` of the values lie below.
+/// The quantile that all but a fraction `rest` of the values lie below.
 fn all_but(mut values: Vec<f32>, rest: f64) -> f32 {
     values.sort_by(f32::total_cmp);
     values[((values.len() - 1) as f64 * (1.0 - rest)) as usize]
@@ -30,8 +30,9 @@ fn all_but(mut values: Vec<f32>, rest: f64) -> f32 {
 
 #[test]
 fn hair_at_rest_has_no_kinks() {
-    // What a guide may turn, and all strands but one point of a thousand, and every strand; degrees. Measured: guides 41, 35
-    // and 68; strands 30, 63 and 44, at most 58, 84 and 71; where guides fold, 180, 178 and 85. A curl of 8.5 mm and a pitch of 32 mm turns 27 degrees a segment.
+    // Limits in degrees for guides, for all strands but one point in a thousand, and for every strand.
+    // Measured: guides 41, 35 and 68; strands 30, 63 and 44, at most 58, 84 and 71. Where guides fold it is
+    // 180, 178 and 85. A curl of 8.5 mm and a pitch of 32 mm turns by 27 degrees per segment.
     for (preset, guide, strand, every_strand) in [
         (Preset::Smooth, 45.0, 36.0, 75.0),
         (Preset::Curly, 45.0, 68.0, 95.0),
@@ -47,10 +48,10 @@ fn hair_at_rest_has_no_kinks() {
         assert!(guides < guide, "{preset:?}: a guide turns by {guides}");
         assert!(usual < strand && most < every_strand, "{preset:?}: strands turn by {usual} and {most}");
 
-        // The control: one point of one guide that is out by a link.
+        // Control: one point of one guide is displaced by a link.
         let n = frame.guides.points_per_guide;
         frame.guides.y[5 * n + 12] += frame.guides.point(5, 0).distance(frame.guides.point(5, 1));
-        assert!(all_but(of_guides(&frame.guides), 0.0) > guide, "{preset:?}: a kink must be found");
+        assert!(all_but(of_guides(&frame.guides), 0.0) > guide, "{preset:?}: the kink must be found");
     }
 }
 
@@ -61,7 +62,7 @@ fn hair_in_motion_does_not_fold_link_by_link() {
         let mut simulation = stage.simulation(Some(0.0));
         let rest = of_guides(&frame(&simulation).guides);
         let (mut worst, mut over_all) = (0.0_f64, 0.0_f64);
-        // Into the deepest bend of the dance, where hair falls over the face.
+        // Up to the deepest bend of the dance, where hair falls over the face.
         for step in 1..=330_u32 {
             simulation.step(&stage.at(Some(f64::from(step) * f64::from(STEP_SECS))), settings, STEP_SECS);
             if step % 15 == 0 {
@@ -75,18 +76,18 @@ fn hair_in_motion_does_not_fold_link_by_link() {
     };
     for preset in [Preset::Smooth, Preset::Curly, Preset::Long] {
         let (worst, mean) = folded(&SimulationSettings::default(), preset);
-        println!("{preset:?}: {worst:.5} of the points are folded at the worst, {mean:.5} in the mean");
-        // Measured: 0.009, 0.006 and 0.008 at the worst, 0.001 in the mean; 0.6 and 0.17 where the lengths do not
-        // know of the bends.
+        println!("{preset:?}: fraction of folded points: at worst {worst:.5}, mean {mean:.5}");
+        // Measured: at worst 0.009, 0.006 and 0.008, mean 0.001; 0.6 and 0.17 if the length step ignores the
+        // bends.
         assert!(worst < 0.02 && mean < 0.003, "{preset:?}: {worst} and {mean}");
     }
-    // The control: a chain folds.
+    // Control: a chain folds.
     let chain =
         SimulationSettings { stiffness_root: 0.0, stiffness_tip: 0.0, ..SimulationSettings::default() };
     let (worst, mean) = folded(&chain, Preset::Smooth);
     println!("a chain: {worst:.5}, {mean:.5}");
     assert!(
         worst > 0.02 && mean > 0.003,
-        "a chain without stiffness must be seen to fold: {worst} and {mean}"
+        "folds of a chain without stiffness must be found: {worst} and {mean}"
     );
 }

@@ -1,10 +1,10 @@
-//! Chains against answers known on paper.
+//! Chains against analytic solutions.
 
 use glam::{Affine3A, Vec3};
 use lovelock_simulation::{Simulation, SimulationSettings, Wind};
 
 mod common;
-use common::{STEP_SECS, away_from_style, bare, frame, head, straight, stretch, style, violent};
+use common::{STEP_SECS, bare, distance_from_style, frame, head, straight, stretch, style, violent};
 
 const G: f32 = 9.81;
 
@@ -15,9 +15,9 @@ fn at_rest(guides: &[Vec<Vec3>]) -> Simulation {
 }
 
 #[test]
-fn hair_beside_a_falling_head_falls_freely() {
-    // Root and hair fall together, so no link pulls: after n substeps of h the semi-implicit rule has fallen
-    // g h^2 n (n + 1) / 2, and so has the head.
+fn hair_on_a_falling_head_falls_freely() {
+    // Root and hair fall together, so no link is under tension. After n substeps of h the semi-implicit rule
+    // has fallen by g h^2 n (n + 1) / 2, and so has the head.
     let guides = [straight(Vec3::ZERO, Vec3::X, 10, 0.5)];
     let mut simulation = at_rest(&guides);
     let h = 1.0 / 240.0;
@@ -29,21 +29,21 @@ fn hair_beside_a_falling_head_falls_freely() {
         let report = simulation.step(&head(n * h, pose), &settings, h as f32);
         assert_eq!(report.substeps, 1);
         let speed = G * step as f32 / 240.0;
-        // The head's place is rounded to 1e-7 m, which is 3e-5 m/s over a substep.
-        assert!((report.max_speed - speed).abs() < 2e-4, "{} m/s where {speed} is right", report.max_speed);
+        // The head's position is rounded to 1e-7 m, which is 3e-5 m/s over a substep.
+        assert!((report.max_speed - speed).abs() < 2e-4, "{} m/s, expected {speed}", report.max_speed);
     }
-    // The chain keeps its shape: roundings of the head's way of 1.2 m and what they tug at it.
-    let worst = away_from_style(&simulation).into_iter().fold(0.0, f32::max);
+    // The chain keeps its shape, up to rounding over the head's path of 1.2 m.
+    let worst = distance_from_style(&simulation).into_iter().fold(0.0, f32::max);
     assert!(worst * 0.5 < 1e-4, "{} m from free fall", worst * 0.5);
-    // Held still instead, the chain hangs down far from where it was.
+    // With the head held still, the chain hangs down far from where it was.
     let mut held = at_rest(&guides);
     for step in 1..=30 {
         held.step(&head(f64::from(step) / 60.0, Affine3A::IDENTITY), &bare(), STEP_SECS);
     }
-    assert!(away_from_style(&held).into_iter().fold(0.0, f32::max) > 0.3);
+    assert!(distance_from_style(&held).into_iter().fold(0.0, f32::max) > 0.3);
 }
 
-/// A quarter and a half of the period of a one-link pendulum let go at `angle`: from its first two passes
+/// A quarter and a half of the period of a one-link pendulum released at `angle`, from its first two passes
 /// through the vertical.
 fn pendulum(angle: f32, length: f32) -> (f32, f32) {
     let direction = Vec3::new(angle.sin(), -angle.cos(), 0.0);
@@ -65,9 +65,9 @@ fn a_pendulum_swings_with_its_period() {
     for length in [0.1_f32, 0.25] {
         let paper = core::f32::consts::TAU * (length / G).sqrt();
         let (_, half) = pendulum(0.05, length);
-        assert!((2.0 * half / paper - 1.0).abs() < 0.01, "{} s where {paper} s is right", 2.0 * half);
+        assert!((2.0 * half / paper - 1.0).abs() < 0.01, "{} s, expected {paper} s", 2.0 * half);
         // From 120 degrees it takes 1.3729 times as long (complete elliptic integral). Wide swings lose some
-        // energy to the clean-up pass, so only the first quarter starts from there.
+        // energy to the placement pass, so only the first quarter is measured there.
         let (quarter, _) = pendulum(2.0944, length);
         assert!(
             (4.0 * quarter / paper / 1.3729 - 1.0).abs() < 0.01,
@@ -93,14 +93,14 @@ fn an_undriven_chain_never_gains_energy() {
                 simulation.step(&head(f64::from(step) / 60.0, Affine3A::IDENTITY), &bare(), STEP_SECS);
             let energy = report.kinetic_energy + G * height(&simulation);
             moved = moved.max(report.kinetic_energy);
-            // 1 % of what the chain can lose in all.
+            // 1 % of the energy that the chain can lose.
             assert!(
                 energy < start + 0.01 * fall,
                 "step {step}: {links} links gained {} J/kg",
                 energy - start
             );
         }
-        assert!(moved > 0.3 * fall, "a chain that does not move shows nothing");
+        assert!(moved > 0.3 * fall, "a chain that does not move proves nothing");
     }
 }
 
@@ -119,9 +119,9 @@ fn links_keep_their_length_at_every_step_of_a_violent_dance() {
             let time = f64::from(step) / 60.0;
             let report = simulation.step(&head(time, violent(time)), &settings, STEP_SECS);
             assert!(!report.jumped && report.recovered_guides == 0);
-            // Positions of up to 0.4 m in f32 are 3e-8 apart; a link of 1 cm takes two of them.
+            // Positions of up to 0.4 m in f32 are 3e-8 apart; a link of 1 cm has two of them.
             assert!(report.max_stretch < 1e-5, "step {step}: {}", report.max_stretch);
-            // In the world's coordinates, up to 0.7 m, rounding is twice as much.
+            // In world coordinates, up to 0.7 m, rounding is twice as large.
             assert!(stretch(&simulation) < 2e-5, "step {step}: {}", stretch(&simulation));
             assert!(report.max_speed < 20.0, "step {step}: {} m/s", report.max_speed);
         }
@@ -130,8 +130,8 @@ fn links_keep_their_length_at_every_step_of_a_violent_dance() {
 
 #[test]
 fn a_crowded_bundle_spreads() {
-    // 64 locks that fan out from a patch of 4 cm, let hang without stiffness: they meet below it in a bundle far
-    // denser than the fan that they were drawn as.
+    // 64 guides that fan out from a patch of 4 cm hang without stiffness: they meet below it in a bundle far
+    // denser than the original fan.
     let fan: Vec<_> = (0..64)
         .map(|g| {
             let out = Vec3::new((g % 8) as f32 - 3.5, 0.0, (g / 8) as f32 - 3.5);
@@ -153,15 +153,15 @@ fn a_crowded_bundle_spreads() {
     };
     let (hanging, _) = run(0.0);
     let (spread, crowded) = run(0.5);
-    // The roots' own mean distance from the axis is 19 mm: that is how wide a bundle hangs whose locks ignore
-    // each other.
+    // The mean distance of the roots from the axis is 19 mm, which is the width of a bundle of guides without
+    // interaction.
     assert!((hanging - 0.019).abs() < 0.004, "{hanging} m");
     assert!(crowded > 0, "the bundle is not crowded");
     assert!(spread > 1.1 * hanging, "{spread} m wide with repulsion, {hanging} m without");
 }
 
 #[test]
-fn the_same_seed_blows_the_same_wind() {
+fn the_same_seed_gives_the_same_wind() {
     let guides: Vec<_> = (0..9).map(|g| straight(Vec3::X * 0.01 * g as f32, Vec3::NEG_Y, 20, 0.25)).collect();
     let run = |seed: u32, speed: f32| {
         let wind = Wind { seed, speed, ..Wind::default() };

@@ -1,4 +1,4 @@
-//! The state saved and restored goes on with the same bits, and other bytes are refused.
+//! A saved and restored state continues with the same bits, and invalid bytes are refused.
 
 use glam::{Affine3A, Vec3};
 use lovelock_groom::{GroomSettings, Preset};
@@ -48,7 +48,7 @@ fn started(count: usize, length: f32) -> Simulation {
 }
 
 #[test]
-fn a_restored_state_goes_on_with_the_same_bits() {
+fn a_restored_state_continues_with_the_same_bits() {
     for integrator in Integrator::ALL {
         for clamped_links in [1, 2] {
             let mut settings =
@@ -57,13 +57,13 @@ fn a_restored_state_goes_on_with_the_same_bits() {
             let mut whole = started(21, 0.2);
             (1..40).for_each(|n| step(&mut whole, n, &settings));
             let (bytes, at) = (whole.save(), whole.state_hash());
-            // Into a simulation that has done other things, and not even been reset the same way.
+            // Restored into a simulation that has had another history and was not even reset in the same way.
             let mut other = Simulation::new(style(&locks(21, 0.2)));
             (1..9).for_each(|n| step(&mut other, 3 * n, &SimulationSettings::default()));
             assert_ne!(other.state_hash(), at);
             other.restore(&bytes).expect("its own bytes");
             assert_eq!((other.state_hash(), other.save() == bytes), (at, true));
-            // The control: the same without one part of the state, the time that the wind blows by.
+            // Control: the same without one part of the state, the wind time.
             let mut calm = started(21, 0.2);
             (1..40).for_each(|n| step(&mut calm, n, &SimulationSettings { gravity: 9.0, ..settings }));
             for n in 40..80 {
@@ -73,14 +73,14 @@ fn a_restored_state_goes_on_with_the_same_bits() {
                 assert_eq!(whole.state_hash(), other.state_hash(), "{integrator:?} at step {n}");
             }
             assert_ne!(whole.state_hash(), calm.state_hash());
-            assert_ne!(whole.state_hash(), at, "a state that stands still shows nothing");
+            assert_ne!(whole.state_hash(), at, "a state that does not change proves nothing");
         }
     }
 }
 
 #[test]
-fn a_state_saved_in_slow_motion_goes_on_with_the_same_bits() {
-    // Here lengths are factorised for the shape of some step before, which is state too.
+fn a_state_saved_in_slow_motion_continues_with_the_same_bits() {
+    // The lengths are factorised for the shape of some earlier step, which is part of the state.
     let settings = SimulationSettings::default();
     let slowly = |simulation: &mut Simulation, n: u32| {
         let time_secs = f64::from(n) / 60.0;
@@ -99,12 +99,12 @@ fn a_state_saved_in_slow_motion_goes_on_with_the_same_bits() {
             slowly(&mut other, n);
             assert_eq!(whole.state_hash(), other.state_hash(), "at step {n}");
         }
-        assert_ne!(whole.state_hash(), at, "a state that stands still shows nothing");
+        assert_ne!(whole.state_hash(), at, "a state that does not change proves nothing");
     }
 }
 
 #[test]
-fn states_of_other_things_are_refused_and_change_nothing() {
+fn invalid_states_are_refused_and_change_nothing() {
     let mut simulation = started(21, 0.2);
     (1..20).for_each(|n| step(&mut simulation, n, &SimulationSettings::default()));
     let (bytes, hash) = (simulation.save(), simulation.state_hash());
@@ -132,19 +132,19 @@ fn states_of_other_things_are_refused_and_change_nothing() {
     let mut longer = bytes.clone();
     longer.extend_from_slice(&[0; 12]);
     assert!(matches!(refused(&longer), RestoreError::Damaged { .. }));
-    // The control: the bytes as they were are taken.
+    // Control: the unchanged bytes are accepted.
     assert_eq!(simulation.clone().restore(&bytes), Ok(()));
 }
 
 #[test]
-fn a_simulation_without_hair_has_a_state_too() {
+fn a_simulation_without_hair_can_be_saved() {
     let mut empty = Simulation::new(style(&[]));
     let bytes = empty.save();
     assert_eq!(empty.restore(&bytes), Ok(()));
 }
 
 #[test]
-fn on_the_dancer_a_restored_state_goes_on_with_the_same_bits_on_any_number_of_threads() {
+fn a_restored_state_on_the_dancer_continues_with_the_same_bits_for_any_number_of_threads() {
     let mut stage = Stage::grown(&GroomSettings { wisps: 12, ..GroomSettings::preset(Preset::Long) });
     assert!(stage.field.is_some(), "the shipped dancer has a field");
     let settings = SimulationSettings::default();
@@ -164,14 +164,14 @@ fn on_the_dancer_a_restored_state_goes_on_with_the_same_bits_on_any_number_of_th
     on(1, &mut || dance(&mut whole, &mut stage, 60..100));
     on(8, &mut || dance(&mut other, &mut stage, 60..100));
     assert_eq!(whole.state_hash(), other.state_hash());
-    // Back to where it was, in the simulation itself.
+    // Restored in the simulation itself.
     whole.restore(&saved).expect("its own state");
     dance(&mut whole, &mut stage, 60..100);
     assert_eq!(whole.state_hash(), other.state_hash());
-    // Without the body it was saved on it is refused.
+    // Refused without the body it was saved on.
     let mut alone = Simulation::new(std::sync::Arc::clone(&stage.style));
     assert_eq!(alone.restore(&saved), Err(RestoreError::Body));
-    // The control: one step fewer is another state.
+    // Control: with one step fewer the state differs.
     other.restore(&saved).expect("the same hair on the same body");
     dance(&mut other, &mut stage, 60..99);
     assert_ne!(whole.state_hash(), other.state_hash());

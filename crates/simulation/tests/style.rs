@@ -1,4 +1,4 @@
-//! Hair keeps its style: at rest, through motion, and whatever the step.
+//! Hair keeps its style: at rest, through motion, and for any step length.
 
 use std::sync::Arc;
 
@@ -8,10 +8,10 @@ use lovelock_simulation::{Simulation, SimulationSettings};
 use lovelock_testkit::data_dir;
 
 mod common;
-use common::{STEP_SECS, Stage, away_from_style, bare, frame, head, straight, style};
+use common::{STEP_SECS, Stage, bare, distance_from_style, frame, head, straight, style};
 
 #[test]
-fn after_five_seconds_of_standing_still_no_point_has_moved_by_a_hundredth() {
+fn no_point_moves_by_a_hundredth_in_five_seconds_of_standing_still() {
     let mut stages: Vec<(String, Stage, SimulationSettings)> = Preset::ALL
         .into_iter()
         .map(|p| (format!("{p:?}"), Stage::new(p), SimulationSettings::preset(p)))
@@ -29,22 +29,22 @@ fn after_five_seconds_of_standing_still_no_point_has_moved_by_a_hundredth() {
             for _ in 0..300 {
                 speed = simulation.step(&stage.at(None), settings, STEP_SECS).max_speed;
             }
-            (away_from_style(&simulation).into_iter().fold(0.0, f32::max), speed)
+            (distance_from_style(&simulation).into_iter().fold(0.0, f32::max), speed)
         };
         let (most, speed) = still(&mut stage, &settings);
         println!("{name}: {most:.6} of its length, {speed:.6} m/s");
         assert!(most < 0.01, "{name}: moved by {most} of its length");
         assert!(speed < 1e-3, "{name}: {speed} m/s when it should be at rest");
-        // The control: hair that does not carry its weight, and that no tie pins, sags.
+        // Control: hair without support, and without ties, sags.
         let root = settings.stiffness_root.min(14.0);
         let limp = SimulationSettings { style_support: 0.0, stiffness_root: root, ..settings };
         Arc::make_mut(&mut stage.style).held.clear();
         let (most, _) = still(&mut stage, &limp);
-        assert!(most > 0.002, "{name}: without support it moved by {most} alone");
+        assert!(most > 0.002, "{name}: without support it moved only by {most}");
     }
 }
 
-/// A curl: a helix of 8 mm about a line of 16 cm, pitch 32 mm.
+/// A curl: a helix of radius 8 mm about a line of 16 cm, pitch 32 mm.
 fn curl() -> Vec<Vec3> {
     (0..=60)
         .map(|i| {
@@ -55,7 +55,7 @@ fn curl() -> Vec<Vec3> {
         .collect()
 }
 
-/// How long the curl hangs, from root to tip, metres.
+/// Distance from root to tip of the curl, metres.
 fn hang(simulation: &Simulation) -> f32 {
     let guides = frame(simulation).guides;
     (guides.point(0, 60) - guides.point(0, 0)).length()
@@ -81,30 +81,30 @@ fn a_curl_survives_motion_and_springs_back() {
             longest
         };
         let rest = hang(&simulation);
-        // Pulled by three times its weight it stretches, and it springs back when that is gone.
+        // Pulled by three times its weight it stretches, and it springs back when the load is gone.
         let heavy = SimulationSettings { gravity: 30.0, style_support: 0.0, ..*settings };
         let pulled = run(&mut simulation, &heavy, 2.0, 0.0) / rest;
         run(&mut simulation, settings, 4.0, 0.0);
-        let back = away_from_style(&simulation).into_iter().fold(0.0, f32::max);
-        // Shaken to and fro at over 2 m/s, then left alone.
+        let back = distance_from_style(&simulation).into_iter().fold(0.0, f32::max);
+        // Shaken at over 2 m/s, then left alone.
         run(&mut simulation, settings, 3.0, 0.25);
-        let shaken = away_from_style(&simulation).into_iter().fold(0.0, f32::max);
+        let shaken = distance_from_style(&simulation).into_iter().fold(0.0, f32::max);
         run(&mut simulation, settings, 4.0, 0.0);
-        (pulled, back, shaken, away_from_style(&simulation).into_iter().fold(0.0, f32::max))
+        (pulled, back, shaken, distance_from_style(&simulation).into_iter().fold(0.0, f32::max))
     };
     let (pulled, back, shaken, after) = tour(&settings);
     println!("pulled {pulled}, back {back}, shaken {shaken}, after {after}");
     assert!(pulled > 1.05, "pulled, the curl is {pulled} times as long");
-    assert!(shaken > 0.02, "shaken, it moved by {shaken} alone");
-    assert!(back < 0.01 && after < 0.01, "{back} and {after} of its length away");
-    // The control: a chain keeps nothing of its curl.
+    assert!(shaken > 0.02, "shaken, it moved only by {shaken}");
+    assert!(back < 0.01 && after < 0.01, "{back} and {after} of its length from its style");
+    // Control: a chain does not keep its curl.
     let chain = SimulationSettings { stiffness_root: 0.0, stiffness_tip: 0.0, hold: 0.0, ..settings };
     let (_, back, _, after) = tour(&chain);
     println!("a chain: back {back}, after {after}");
     assert!(back > 0.1 && after > 0.1, "a chain comes back to {back} and {after}");
 }
 
-/// A straight lock 0.2 m long, level, held at its root, with the same stiffness all along.
+/// A straight guide of 0.2 m, horizontal, clamped at its root, of uniform stiffness.
 fn level(links: usize, stiffness: f32) -> (Simulation, SimulationSettings) {
     let mut simulation = Simulation::new(style(&[straight(Vec3::ZERO, Vec3::X, links, 0.2)]));
     simulation.reset(&head(0.0, Affine3A::IDENTITY));
@@ -123,7 +123,7 @@ fn tip(simulation: &Simulation) -> f32 {
 }
 
 #[test]
-fn a_lock_sways_at_the_frequency_that_its_stiffness_names() {
+fn a_guide_sways_at_the_frequency_set_by_its_stiffness() {
     for stiffness in [10.0_f32, 20.0] {
         let (mut simulation, settings) = level(40, stiffness);
         let mut step = 0_u32;
@@ -148,12 +148,12 @@ fn a_lock_sways_at_the_frequency_that_its_stiffness_names() {
         let found = core::f32::consts::PI / (passes[2] - passes[1]);
         println!("stiffness {stiffness}: sways at {found}");
         // Measured: 10.003 and 20.01.
-        assert!((found / stiffness - 1.0).abs() < 0.01, "{found} 1/s where {stiffness} is set");
+        assert!((found / stiffness - 1.0).abs() < 0.01, "{found} 1/s, set to {stiffness}");
     }
 }
 
 #[test]
-fn the_sag_of_a_lock_does_not_depend_on_step_or_links() {
+fn sag_does_not_depend_on_step_length_or_link_count() {
     let sag = |links: usize, hertz: f32, substeps: u32| {
         let (mut simulation, settings) = level(links, 14.0);
         let settings = SimulationSettings { gravity: 2.0, settle: 6.0, substeps, ..settings };
@@ -167,7 +167,7 @@ fn the_sag_of_a_lock_does_not_depend_on_step_or_links() {
         -tip(&simulation)
     };
     let want = sag(40, 240.0, 16);
-    assert!((0.003..0.1).contains(&want), "a lock of 0.2 m sags by {want}");
+    assert!((0.003..0.1).contains(&want), "a guide of 0.2 m sags by {want}");
     for (links, hertz, substeps) in [
         (40, 30.0, 4),
         (40, 60.0, 1),
@@ -179,7 +179,7 @@ fn the_sag_of_a_lock_does_not_depend_on_step_or_links() {
     ] {
         let found = sag(links, hertz, substeps);
         println!("{links} links, {hertz} Hz, {substeps} substeps: {found:.4} of {want:.4} m");
-        // Measured: within 0.5 % for any step, 2 % for 20 links.
+        // Measured: within 0.5 % for any step length, 2 % for 20 links.
         let part = if links == 40 { 0.01 } else { 0.03 };
         assert!(
             (found / want - 1.0).abs() < part,

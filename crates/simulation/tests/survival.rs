@@ -1,4 +1,4 @@
-//! Nonsense, jumps and odd styles: nothing breaks, and what happened is counted.
+//! Invalid input, jumps and unusual styles: nothing breaks, and every incident is counted.
 
 use std::sync::Arc;
 
@@ -36,7 +36,7 @@ fn all_finite(simulation: &Simulation) -> bool {
 }
 
 #[test]
-fn colliders_and_heads_that_are_not_numbers_are_survived() {
+fn non_finite_colliders_and_heads_are_survived() {
     let settings = SimulationSettings::default();
     let nan = f32::NAN;
     let broken = [
@@ -74,7 +74,7 @@ fn colliders_and_heads_that_are_not_numbers_are_survived() {
 }
 
 #[test]
-fn a_guide_that_is_not_finite_is_counted_and_the_others_move_as_ever() {
+fn a_non_finite_guide_is_counted_and_does_not_affect_the_others() {
     let mut guides = locks(20);
     let good = style(&guides);
     guides[7][9].y = f32::NAN;
@@ -82,17 +82,17 @@ fn a_guide_that_is_not_finite_is_counted_and_the_others_move_as_ever() {
         let mut simulation = Simulation::new(style);
         simulation.reset(&input(0, &[]));
         let mut settings = SimulationSettings::default();
-        // Neighbours feel each other through the grid alone.
+        // Guides interact through the grid only.
         (settings.repulsion.strength, settings.repulsion.cohesion) = (0.0, 0.0);
         let recovered =
             (1..30).map(|s| simulation.step(&input(s, &[]), &settings, STEP_SECS).recovered_guides).sum();
-        // One of the same sixteen, and one of others.
+        // One in the same block of sixteen, and one in another block.
         (recovered, [1, 3].map(|guide| frame(&simulation).guides.point(guide, 15)))
     };
     let (none, tips) = run(good);
     let (some, same) = run(style(&guides));
     assert_eq!(none, 0);
-    assert!(some > 0, "a guide of nonsense must be counted");
+    assert!(some > 0, "a non-finite guide must be counted");
     assert_eq!(tips, same);
 }
 
@@ -105,9 +105,9 @@ fn tips(simulation: &Simulation) -> Vec<Vec3> {
 }
 
 #[test]
-fn a_jump_carries_the_hair_along() {
+fn a_jump_moves_the_hair_rigidly() {
     let settings = SimulationSettings::default();
-    // A teleport, a seek back, a seek far on, a turn of the whole body.
+    // A teleport, a seek back, a seek forward, a rotation of the whole body.
     let shift = Affine3A::from_translation(Vec3::new(3.0, 0.2, -1.0));
     let turned = Affine3A::from_rotation_y(2.5);
     for (there, clock) in [(shift, 0.0), (shift, -0.4), (shift, 5.0), (turned, 0.0)] {
@@ -130,7 +130,7 @@ fn a_jump_carries_the_hair_along() {
         assert!(report.jumped, "{clock} s");
         for (a, b) in before.iter().zip(tips(&jumps)) {
             // Rounding of world positions of 3 m.
-            assert!((*a - b).length() < 2e-6, "hair moved against the head in a jump");
+            assert!((*a - b).length() < 2e-6, "hair moved relative to the head in a jump");
         }
         // In the next second the hair moves as if nothing had happened.
         let mut whip = 0.0_f32;
@@ -140,13 +140,13 @@ fn a_jump_carries_the_hair_along() {
             whip = whip.max(b.max_speed - a.max_speed);
             assert!(!b.jumped);
         }
-        // Rounding at another place grows a little in a second of motion.
+        // Rounding at another place grows a little over a second of motion.
         assert!(whip < 0.02, "the jump whips the hair by {whip} m/s");
         for (a, b) in tips(&stays).iter().zip(tips(&jumps)) {
             assert!((*a - b).length() < 2e-3, "{a} became {b}");
         }
     }
-    // The same way within a step that is no jump does whip it.
+    // The same movement within an ordinary step does whip it.
     let mut dragged = Simulation::new(style(&locks(30)));
     dragged.reset(&head(0.0, Affine3A::IDENTITY));
     let far = Affine3A::from_translation(Vec3::X * 0.4);
@@ -170,19 +170,19 @@ fn a_new_style_keeps_the_motion() {
     for (n, (a, b)) in before.iter().zip(tips(&simulation)).enumerate() {
         let root = longer[n][0];
         // The same shape, a tenth longer.
-        assert!(((b - root) - (*a - root) * 1.1).length() < 2e-3, "lock {n} moved from {a} to {b}");
+        assert!(((b - root) - (*a - root) * 1.1).length() < 2e-3, "guide {n} moved from {a} to {b}");
     }
     let after = simulation.step(&input(25, &[]), &settings, STEP_SECS);
-    assert!(after.kinetic_energy > 0.5 * report.kinetic_energy, "the motion is gone");
+    assert!(after.kinetic_energy > 0.5 * report.kinetic_energy, "the motion was lost");
     assert!(after.max_speed < 2.0 * report.max_speed, "the change threw the hair");
-    // Another number of guides cannot carry it over and starts at rest.
+    // A different number of guides cannot take over the motion and starts at rest.
     simulation.set_style(style(&locks(12)));
     assert_eq!(frame(&simulation).guides.count(), 12);
     assert!(all_finite(&simulation));
 }
 
 #[test]
-fn odd_styles_are_safe() {
+fn degenerate_styles_are_safe() {
     let settings = SimulationSettings::default();
     let p = Vec3::new(0.0, 0.1, 0.0);
     let odd: Vec<Arc<Hairstyle>> = vec![
@@ -209,12 +209,12 @@ fn odd_styles_are_safe() {
     }
 }
 
-/// Any number at all, with those that break things more often than chance would have them.
+/// Any number, with a bias to those that cause problems.
 fn number() -> impl Strategy<Value = f32> {
     prop_oneof![any::<f32>(), -10.0_f32..300.0, Just(f32::NAN), Just(f32::INFINITY), Just(0.0)]
 }
 
-/// Settings of twenty-four numbers, in the order of the fields, and five whole ones.
+/// Settings from twenty-four floats in the order of the fields, and five integers.
 fn settings_of(v: &[f32], n: [u32; 5]) -> SimulationSettings {
     let mut s = SimulationSettings {
         gravity: v[0],
@@ -255,14 +255,14 @@ const GREATEST: [f32; 24] = [
     20.0, 1.0, 0.95, 1.0, 1.0,
 ];
 
-/// What a swaying lock on a skull does under `s` for 40 steps: nothing that breaks it.
+/// A swaying guide on a skull survives 40 steps with the settings `s`.
 fn survives(s: &SimulationSettings) -> Result<(), TestCaseError> {
     let mut simulation = Simulation::new(style(&locks(17)));
     simulation.reset(&input(0, &[skull(0.08)]));
     for step in 1..40 {
         let report = simulation.step(&input(step, &[skull(0.08)]), s, STEP_SECS);
-        // Without its correction follow the leader gains energy until guides are lost, which is why it has one; the
-        // relaxation stretches.
+        // Without its correction follow-the-leader gains energy until guides are lost, and relaxation
+        // stretches.
         if s.integrator != Integrator::FollowTheLeader {
             prop_assert_eq!(report.recovered_guides, 0);
             // 30 m/s^2 and a storm of 60 m/s.
@@ -277,10 +277,10 @@ fn survives(s: &SimulationSettings) -> Result<(), TestCaseError> {
 }
 
 #[test]
-fn the_ranges_below_are_those_of_the_settings() {
+fn the_tested_ranges_are_those_of_the_settings() {
     let most = settings_of(&[f32::MAX; 24], [u32::MAX; 5]).clamped();
     let mut v = GREATEST;
-    // A wind without end blows nowhere: the direction has no range, and its default is taken.
+    // An infinite wind direction is replaced by the default, because the direction has no range.
     (v[11], v[12], v[13]) = (1.0, 0.0, 0.0);
     assert_eq!(most, settings_of(&v, [16, 2, u32::MAX, u32::MAX, 200]));
     let least = settings_of(&[f32::MIN; 24], [0; 5]).clamped();

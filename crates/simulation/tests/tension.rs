@@ -1,4 +1,4 @@
-//! What a chain is pulled by: gravity and its ends, and nothing between them.
+//! The forces on a chain: gravity and the pull of its ends, and nothing in between.
 
 use std::sync::Arc;
 
@@ -12,12 +12,12 @@ use common::{STEP_SECS, bare, frame, head, straight, style};
 
 const G: f32 = 9.81;
 
-/// Length of a chain and how far apart its ends are held, metres.
+/// Length of a chain and distance of its held ends, metres.
 const LENGTH: f32 = 0.5;
 const APART: f32 = 0.3;
 
-/// A chain of `links` links whose tip a tie holds beside its root, in two straight parts that meet below, off the
-/// middle.
+/// A chain of `links` links whose tip a tie holds beside its root, in two straight parts that meet below, off
+/// the middle.
 fn hung(links: usize) -> Arc<Hairstyle> {
     let left = links / 2 - 2;
     let a = LENGTH * left as f32 / links as f32;
@@ -36,7 +36,7 @@ fn hung(links: usize) -> Arc<Hairstyle> {
     Arc::new(Hairstyle { held, ..Hairstyle::clone(&style) })
 }
 
-/// Where the points of that chain come to rest in a head that is turned by `lean`, head space.
+/// Rest positions of the points of that chain in a head rotated by `lean`, head space.
 fn at_rest(links: usize, lean: f32) -> Vec<DVec3> {
     let mut simulation = Simulation::new(hung(links));
     let pose = Affine3A::from_rotation_z(lean);
@@ -50,29 +50,30 @@ fn at_rest(links: usize, lean: f32) -> Vec<DVec3> {
         moved = now.iter().zip(&last).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
         last = now;
     }
-    assert!(moved < 1e-5, "it still moves by {moved} m a step");
+    assert!(moved < 1e-5, "it still moves by {moved} m per step");
     let head_from_world = pose.inverse();
     last.into_iter().map(|p| head_from_world.transform_point3(p).as_dvec3()).collect()
 }
 
 #[test]
-fn a_lock_whose_tip_a_tie_holds_hangs_as_a_catenary() {
+fn a_guide_tied_at_its_tip_hangs_as_a_catenary() {
     let off = |points: &[DVec3]| off_the_catenary(points, f64::from(LENGTH), f64::from(APART));
     for links in [10, 40] {
         let found = off(&at_rest(links, 0.0));
-        println!("{found} m off the catenary with {links} links");
-        // 1.3 and 1.6 mm measured. Factors of lengths serve until a link has turned by a tenth of a radian, which lets a lock lie
-        // still a little beside its curve: made anew in every substep they leave 1.4 and 0.17 mm.
+        println!("deviation from the catenary with {links} links: {found} m");
+        // Measured: 1.3 and 1.6 mm. Length factors are reused until a link has rotated by a tenth of a
+        // radian, so a guide may come to rest slightly off its curve. Computed in every substep they leave
+        // 1.4 and 0.17 mm.
         assert!(found < 2e-3, "{found} m with {links} links");
     }
-    // The control: in a head that leans it is another curve.
+    // Control: in a tilted head the curve is another one.
     let leant = off(&at_rest(40, 0.3));
-    println!("{leant} m in a head that leans");
+    println!("{leant} m in a tilted head");
     assert!(leant > 0.01, "{leant} m");
 }
 
-/// By how much the momentum of a falling chain changes in a substep otherwise than by gravity and along its first link, as a
-/// part of what gravity gives; root of the mean square over a second.
+/// Momentum change of a falling chain per substep that is caused neither by gravity nor by the pull along its
+/// first link, relative to that of gravity; RMS over a second.
 fn strange_momentum(integrator: Integrator, substeps_per_sec: u32) -> f64 {
     let links = 30;
     let mut simulation = Simulation::new(style(&[straight(Vec3::ZERO, Vec3::X, links, 0.3)]));
@@ -87,7 +88,7 @@ fn strange_momentum(integrator: Integrator, substeps_per_sec: u32) -> f64 {
         simulation.step(&head(f64::from(step) * h, Affine3A::IDENTITY), &settings, h as f32);
         let now = points(&simulation);
         let momentum = now.iter().zip(&was).map(|(a, b)| *a - *b).sum::<DVec3>() / h;
-        // What holds the first link pulls along it.
+        // The constraint force at the first link acts along it.
         let pull = (was[1] - was[0]).normalize_or_zero();
         sum += (momentum - before - given).reject_from(pull).length_squared();
         (was, before) = (now, momentum);
@@ -96,15 +97,16 @@ fn strange_momentum(integrator: Integrator, substeps_per_sec: u32) -> f64 {
 }
 
 #[test]
-fn the_momentum_of_a_chain_changes_by_gravity_and_the_pull_of_its_first_link_alone() {
+fn only_gravity_and_the_first_link_change_the_momentum_of_a_chain() {
     for integrator in Integrator::ALL {
         let [coarse, fine] = [240, 960].map(|rate| strange_momentum(integrator, rate));
-        println!("{integrator:?}: {coarse} of gravity's at 240 substeps a second, {fine} at 960");
+        println!("{integrator:?}: {coarse} of gravity's at 240 substeps per second, {fine} at 960");
         match integrator {
-            // Measured: 0.9 and 0.28 %, 2.7 and 0.81 %; a first order would be a quarter.
+            // Measured: 0.9 and 0.28 %, 2.7 and 0.81 %; first order would give a quarter.
             Integrator::Direct => assert!(coarse < 0.012 && fine < 0.4 * coarse, "{coarse} {fine}"),
             Integrator::Relaxation => assert!(coarse < 0.035 && fine < 0.4 * coarse, "{coarse} {fine}"),
-            // The control: who follows a leader gives it back a part of what moved him, and in velocities alone. 43 and 57 %.
+            // Control: follow-the-leader returns only a part of the leader's displacement, and only in
+            // velocities. 43 and 57 %.
             Integrator::FollowTheLeader => assert!(coarse > 0.3 && fine > 0.3, "{coarse} {fine}"),
         }
     }

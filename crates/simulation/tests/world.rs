@@ -1,4 +1,4 @@
-//! Ties, cuts, wind and volume: what the world does to hair on the dancer.
+//! Ties, cuts, wind and volume: external influences on the dancer's hair.
 
 use glam::{Affine3A, Vec3};
 use lovelock_groom::{
@@ -15,7 +15,7 @@ fn few(preset: Preset) -> Stage {
     Stage::grown(&GroomSettings { wisps: 60, strands_per_wisp: 4, ..GroomSettings::preset(preset) })
 }
 
-/// Seconds of the dance, from its start.
+/// Simulates seconds of the dance, from its start.
 fn dance(
     stage: &mut Stage,
     simulation: &mut Simulation,
@@ -27,7 +27,8 @@ fn dance(
         let input = stage.at(Some(f64::from(step) / 60.0));
         let report = simulation.step(&input, &settings, STEP_SECS);
         assert!(report.max_stretch < 1e-5, "step {step}: {report:?}");
-        // As for loose hair: between colliders, and before one that moves at 5 m/s, a point may be 1 mm late.
+        // As for loose hair: between colliders, and in front of one that moves at 5 m/s, a point may lag by 1
+        // mm.
         assert!(report.max_penetration_m < 1e-3, "step {step}: {report:?}");
         assert_eq!(report.recovered_guides, 0);
         each(simulation, input.world_from_head);
@@ -35,7 +36,7 @@ fn dance(
 }
 
 #[test]
-fn a_tie_holds_what_passes_through_it_and_a_tail_swings() {
+fn a_tie_holds_the_hair_in_its_ring_and_the_tail_swings() {
     let mut stage = few(Preset::Long);
     for kind in [TieKind::Ponytail, TieKind::Bun] {
         stage.style = few(Preset::Long).style;
@@ -61,7 +62,7 @@ fn a_tie_holds_what_passes_through_it_and_a_tail_swings() {
             tips = (0..style.guides.count()).map(|g| away(g * n + n - 1)).fold(tips, f32::max);
         });
         println!("{kind:?}: ring {in_ring} m, firm {on_head} m, tips {tips} m");
-        // Measured: 0.2 mm in the ring, of a radius of 14 mm.
+        // Measured: 0.2 mm in the ring, whose radius is 14 mm.
         assert!(in_ring < 0.003, "{kind:?}: hair moves by {in_ring} m in its ring");
         assert!(on_head < 0.02, "{kind:?}: hair before the ring moves by {on_head} m");
         match kind {
@@ -72,7 +73,7 @@ fn a_tie_holds_what_passes_through_it_and_a_tail_swings() {
 }
 
 #[test]
-fn hair_that_is_cut_in_motion_goes_on_from_where_it_was() {
+fn hair_cut_in_motion_continues_from_where_it_was() {
     let mut stage = few(Preset::Long);
     let mut simulation = stage.simulation(Some(0.0));
     dance(&mut stage, &mut simulation, 0.8, &mut |_, _| {});
@@ -87,7 +88,7 @@ fn hair_that_is_cut_in_motion_goes_on_from_where_it_was() {
     simulation.set_style(Arc::clone(&short));
     let after = frame(&simulation);
 
-    // Guides up to their new ends, and strands: nothing moves by more than what laying 31 links anew in f32 rounds.
+    // Guides up to their new ends, and strands: nothing moves by more than the rounding of 31 links in f32.
     let n = short.guides.points_per_guide;
     let (mut most, mut compared) = (0.0_f32, 0);
     for g in 0..short.guides.count() {
@@ -111,7 +112,8 @@ fn hair_that_is_cut_in_motion_goes_on_from_where_it_was() {
     println!("guides {most} m over {compared} points, strands {strands} m");
     assert!(most < 2e-5 && strands < 2e-5, "guides jump by {most} m, strands by {strands} m");
 
-    // It goes on: a step later what is left is close to where the whole hair would be, and nothing has stretched.
+    // It continues: a step later the remaining hair is close to where the whole hair would be, and nothing
+    // has stretched.
     let settings = SimulationSettings::default();
     let input = stage.at(Some(0.8 + 1.0 / 60.0));
     let report = simulation.step(&input, &settings, STEP_SECS);
@@ -121,7 +123,7 @@ fn hair_that_is_cut_in_motion_goes_on_from_where_it_was() {
     let middle = |g: usize| (cut_now.point(g, 6) - whole_now.point(g, 6)).length();
     assert!((0..short.guides.count()).map(middle).fold(0.0, f32::max) < 0.02);
     dance(&mut stage, &mut simulation, 1.0, &mut |_, _| {});
-    // The control: another hairstyle does move what is drawn.
+    // Control: another hairstyle does move the drawn hair.
     let mut other = whole.clone();
     let longer =
         GroomSettings { wisps: 60, strands_per_wisp: 4, length: 0.5, ..GroomSettings::preset(Preset::Long) };
@@ -131,8 +133,8 @@ fn hair_that_is_cut_in_motion_goes_on_from_where_it_was() {
 }
 
 #[test]
-fn behind_the_head_hair_feels_less_wind_and_before_it_the_same() {
-    // A straight lock a hand's breadth before a head of 9 cm, one behind it, and one far aside.
+fn the_head_shelters_hair_behind_it_only() {
+    // A straight guide 10 cm in front of a head of 9 cm, one behind it, and one far aside.
     let lock = |x: f32, z: f32| straight(Vec3::new(x, 0.08, z), Vec3::NEG_Y, 15, 0.15);
     let guides = style(&[lock(-0.16, 0.0), lock(0.16, 0.0), lock(0.0, 0.6)]);
     let shape = ColliderShape::Capsule { a: Vec3::ZERO, b: Vec3::ZERO, radius_a: 0.09, radius_b: 0.09 };
@@ -158,7 +160,7 @@ fn behind_the_head_hair_feels_less_wind_and_before_it_the_same() {
     };
     let ([front, behind, aside], [front_open, behind_open, aside_open]) = (blown(1.0), blown(0.0));
     println!("sheltered: {front} {behind} {aside}; open: {front_open} {behind_open} {aside_open}");
-    assert_eq!((front, aside), (front_open, aside_open), "in front and aside nothing shelters");
+    assert_eq!((front, aside), (front_open, aside_open), "nothing shelters in front and aside");
     assert!(behind_open > 0.03 && behind < 0.4 * behind_open, "behind: {behind} of {behind_open} m");
 }
 
@@ -166,7 +168,7 @@ fn behind_the_head_hair_feels_less_wind_and_before_it_the_same() {
 mod brush;
 
 #[test]
-fn without_the_grid_hair_that_nothing_else_holds_apart_collapses() {
+fn hair_without_shape_memory_collapses_without_the_grid() {
     let kept = |grid: bool, centre: bool| {
         let mut settings = brush::settings(grid);
         if centre {
@@ -177,7 +179,7 @@ fn without_the_grid_hair_that_nothing_else_holds_apart_collapses() {
     let (with, without, centre) = (kept(true, false), kept(false, false), kept(true, true));
     println!("volume kept: {with} with the grid, {without} without, {centre} with the published force");
     // Measured: 0.58 and 0.37.
-    assert!(with > 0.5, "with the grid {with} is left");
-    assert!(without < 0.42, "without it, {without} is left: the test shows nothing");
+    assert!(with > 0.5, "with the grid {with} remains");
+    assert!(without < 0.42, "without it {without} remains: the test proves nothing");
     assert!(centre > without, "the published force keeps {centre}");
 }

@@ -1,5 +1,5 @@
-//! Limp hair that stands out of a plate in rows: without shape memory it falls into one sheet, unless hair keeps hair
-//! away.
+//! Limp hair that stands out of a plate in rows: without shape memory it collapses into one sheet unless hair
+//! repels hair.
 
 use std::sync::Arc;
 
@@ -7,13 +7,13 @@ use glam::{Affine3A, Vec3};
 use lovelock_groom::{GuideFrame, Guides, Hairstyle, StrandSet};
 use lovelock_simulation::{Simulation, SimulationSettings, StepInput};
 
-/// Rows, hairs in a row, and points of a hair.
+/// Rows, hairs per row, and points per hair.
 const SIZE: (usize, usize, usize) = (14, 18, 25);
 /// Distance between rows and between the hairs of a row, metres, and length of a hair.
 const GAP: f32 = 0.008;
 const LENGTH: f32 = 0.18;
 
-/// Hair without shape memory and friction of its own.
+/// Hair without shape memory and without friction.
 pub fn settings(grid: bool) -> SimulationSettings {
     let mut settings = SimulationSettings {
         style_support: 0.0,
@@ -29,13 +29,13 @@ pub fn settings(grid: bool) -> SimulationSettings {
     settings
 }
 
-/// Lets it fall for so many steps; where it is then, and the share of its volume at rest that is left.
+/// Lets it fall for `steps` steps; returns the guides and the remaining fraction of the rest volume.
 pub fn fall(settings: &SimulationSettings, steps: u32) -> (Guides, f32) {
     let (rows, across, points) = SIZE;
     let mut guides = Guides { points_per_guide: points, ..Guides::default() };
     for row in 0..rows {
         for n in 0..across {
-            // Like bristles that hang already a little, so that they fall all to the same side.
+            // Bristles that already hang a little, so that all fall to the same side.
             let root = Vec3::new(n as f32 * GAP, row as f32 * GAP, 0.0);
             let along = Vec3::new(0.0, -0.5, 1.0).normalize_or(Vec3::Z);
             let hair: Vec<Vec3> =

@@ -1,11 +1,11 @@
-//! Draws limp hair that grows in rows on a plate and has fallen, seen along the plate: `brush WITH.png WITHOUT.png`, with and without the
-//! density grid.
+//! Draws limp hair that grows in rows on a plate and has fallen, seen along the plate:
+//! `brush WITH.png WITHOUT.png`, with and without the density grid.
 
 use image::{Rgb, RgbImage};
 
 mod hair;
 
-/// Pixels of a picture and of a metre.
+/// Image size in pixels, and pixels per metre.
 const SIZE: (u32, u32) = (480, 640);
 const SCALE: f32 = 1700.0;
 
@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             }
         }
         picture.save(&out)?;
-        println!("{out}: {:.0} % of the volume at rest is left", 100.0 * kept);
+        println!("{out}: {:.0} % of the rest volume remains", 100.0 * kept);
     }
     Ok(())
 }

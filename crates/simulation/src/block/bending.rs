@@ -1,32 +1,34 @@
 //! Shape memory: bending stiffness toward the rest shape, implicit and damped.
 //!
-//! The bend at a point is the second difference of the chain, `b_i = x_(i-1) - 2 x_i + x_(i+1)`; at rest, in
-//! the frame carried along the chain by least rotations, it is `b*_i`. Energy `1/2 c |b - b*|^2` and damping
-//! of its change are taken implicitly (backward Euler), which is stable for any stiffness. The matrix is
-//! pentadiagonal and depends on stiffness, hold, link length and time step alone, so it is factorised when one
-//! of these changes and a substep only substitutes: a whole chain responds at once, where local corrections from
-//! link to link would need many rounds and would change their stiffness with the number of substeps.
+//! The bend at a point is the second difference of the chain, `b_i = x_(i-1) - 2 x_i + x_(i+1)`; `b*_i` is
+//! the rest bend in the frame that is carried along the chain by smallest rotations. Energy
+//! `1/2 c |b - b*|^2` and the damping of its change are integrated implicitly (backward Euler), which is
+//! stable for any stiffness. The matrix is pentadiagonal and depends only on stiffness, hold, link length and
+//! time step, so it is factorised when one of these changes, and a substep only substitutes. The whole chain
+//! responds at once; local corrections from link to link would need many iterations, and their stiffness
+//! would change with the number of substeps.
 //!
 //! The coefficient is `c = h^2 B / l^4` with `B = EI / (rho A)`, the bending stiffness per mass of a fibre
-//! (Euler and Bernoulli's beam).
+//! (Euler-Bernoulli beam).
 
 use crate::SimulationSettings;
 use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, lesser, put};
 
-/// The largest `c (1 + gamma)`: beyond it single precision loses the answer and hair is a wire anyway.
+/// The largest `c (1 + gamma)`. Beyond it single precision loses the solution, and the hair is as stiff as
+/// wire anyway.
 const STIFFEST: f32 = 2e4;
 
-/// The sharpness at which a bend follows the head and the lock in equal parts; see [`Bending::fixed`]. The
-/// shipped styles flutter from about ten times this.
-const SHARP: f32 = 4.0;
+/// The sharpness at which a bend follows the head and the guide in equal parts; see [`Bending::head_share`].
+/// The shipped styles flutter from about ten times this.
+const HALF_SHARPNESS: f32 = 4.0;
 
-/// Length of the lock that the settings' angular frequency speaks of, metres.
+/// Length of the guide strand to which the angular frequency of the settings refers, metres.
 const REFERENCE_LENGTH: f32 = 0.2;
 
-/// `(beta_1 L)^2` of the slowest sway of a beam held at one end.
+/// `(beta_1 L)^2` of the lowest vibration mode of a beam clamped at one end.
 const CANTILEVER: f32 = 3.516;
 
-/// What the matrix is made from, beside the link lengths.
+/// The inputs of the matrix, besides the link lengths.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct BendingKey {
     pub(crate) h: f32,
@@ -39,7 +41,7 @@ pub(crate) struct BendingKey {
 }
 
 impl BendingKey {
-    /// What `settings` ask for in substeps of `h` seconds.
+    /// The inputs that `settings` give for substeps of `h` seconds.
     pub(crate) fn new(settings: &SimulationSettings, h: f32, first_free: usize) -> Self {
         Self {
             h,
@@ -62,13 +64,13 @@ impl BendingKey {
         ramp.stiffness_at(along)
     }
 
-    /// How much stronger the damping is than the stiffness in one substep.
+    /// Ratio of damping to stiffness in one substep.
     pub(crate) fn gamma(&self) -> f32 {
         self.damping_secs / self.h
     }
 }
 
-/// The factorised matrix of each lane: rows are points.
+/// The factorised matrix of each lane. Rows are points.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Bending {
     key: Option<BendingKey>,
@@ -76,17 +78,18 @@ pub(crate) struct Bending {
     stiffness: Vec<Lane>,
     /// Weight of the pull toward the style: `(h omega)^2`.
     hold: Vec<Lane>,
-    /// How far the bend at rest around each point turns with the head, 0 to 1; else it turns with the lock.
+    /// How far the rest bend around each point rotates with the head, 0 to 1; the remainder rotates with the
+    /// guide.
     ///
-    /// A bend that turns with the lock pushes like a thruster: its force has no potential, and where it is
-    /// sharp and stiff it makes the lock flutter. But what is that stiff hardly turns against the head, so
-    /// there the head's frame is as good, and with it the force is conservative. The more `c (1 + gamma)`
-    /// times the bend per link, the more of it is the head's.
-    fixed: Vec<Lane>,
+    /// A rest bend that rotates with the guide acts like a thruster: its force has no potential, and where
+    /// the bend is sharp and stiff it makes the guide flutter. A part that stiff hardly rotates relative to
+    /// the head, so the head's frame is as good there, and in it the force is conservative. The share grows
+    /// with `c (1 + gamma)` times the bend per link.
+    head_share: Vec<Lane>,
     inv_pivot: Vec<Lane>,
     below: Vec<Lane>,
     below2: Vec<Lane>,
-    /// How the free part beyond a point follows it: the factors of the same matrix from the tip on.
+    /// Factors of the same matrix, eliminated from the tip: how the free part beyond a point follows it.
     follow: Vec<Lane>,
     follow2: Vec<Lane>,
 }
@@ -97,7 +100,7 @@ impl Bending {
             key: None,
             stiffness: vec![ZERO; points],
             hold: vec![ZERO; points],
-            fixed: vec![ZERO; points],
+            head_share: vec![ZERO; points],
             inv_pivot: vec![ZERO; points],
             below: vec![ZERO; points],
             below2: vec![ZERO; points],
@@ -114,13 +117,14 @@ impl Bending {
         &self.hold[point]
     }
 
-    pub(crate) fn fixed(&self, point: usize) -> &Lane {
-        &self.fixed[point]
+    pub(crate) fn head_share(&self, point: usize) -> &Lane {
+        &self.head_share[point]
     }
 
-    /// Factorises anew where the settings or the time step have changed, and says whether it did. `link` is each
-    /// guide's mean link, `inv_length` one over every link or 0 beyond a guide's end, and `rest_bend` the bends at
-    /// rest; `held` says how firmly ties hold each point, and is negative elsewhere.
+    /// Factorises the matrix if the settings or the time step have changed, and returns whether it did.
+    /// `link` is the mean link of each guide, `inv_length` the inverse length of every link (0 beyond a
+    /// guide's end), `rest_bend` the rest bends, and `tie_hold` the strength of ties at each point (negative
+    /// where there is none).
     #[inline(always)]
     pub(crate) fn prepare(
         &mut self,
@@ -128,7 +132,7 @@ impl Bending {
         link: &Lane,
         inv_length: &[Lane],
         rest_bend: &[Lane3],
-        held: &[Lane],
+        tie_hold: &[Lane],
     ) -> bool {
         if self.key == Some(key) {
             return false;
@@ -147,11 +151,11 @@ impl Bending {
                 // The end of a guide that was cut is a tip.
                 let bends = bends && inv_length[i + 1][k] > 0.0;
                 self.stiffness[i][k] = if bends { lesser(c * c, STIFFEST / gain) } else { 0.0 };
-                let pull = if held[i][k] >= 0.0 { key.h * held[i][k] } else { pull };
+                let pull = if tie_hold[i][k] >= 0.0 { key.h * tie_hold[i][k] } else { pull };
                 self.hold[i][k] = pull * pull;
                 let bend = at(&rest_bend[i], k).length_squared().sqrt() / (link[k] + 1e-9);
                 let sharpness = self.stiffness[i][k] * gain * bend;
-                self.fixed[i][k] = sharpness / (sharpness + SHARP);
+                self.head_share[i][k] = sharpness / (sharpness + HALF_SHARPNESS);
             }
         }
         self.factorise(key.first_free, gain);
@@ -159,13 +163,13 @@ impl Bending {
         true
     }
 
-    /// Whether nothing resists a bend: the matrix is the identity.
+    /// Whether nothing resists bending, so that the matrix is the identity.
     pub(crate) fn is_chain(&self) -> bool {
         self.stiffness.iter().chain(&self.hold).all(|row| *row == ZERO)
     }
 
-    /// Gives the lower triangle of `H = D A^-1 D^T` to `fill`, by row and column: they are the links from the first with
-    /// a free end on, `D` takes the difference of a link's ends.
+    /// Passes the lower triangle of `H = D A^-1 D^T` to `fill`, by row and column. Rows and columns are the
+    /// links from the first one with a free end on; `D` takes the difference of a link's ends.
     #[inline(always)]
     pub(crate) fn response(&self, first_free: usize, mut fill: impl FnMut(usize, usize, Lane)) {
         let count = self.stiffness.len();
@@ -184,7 +188,7 @@ impl Bending {
             for (axis, link) in (from..count.min(from + 3)).enumerate() {
                 for r in link..count {
                     let (low, high) = (rows[r - 1][axis], rows[r][axis]);
-                    let difference = if r > first_free { high.less(low) } else { high };
+                    let difference = if r > first_free { high.minus(low) } else { high };
                     fill(r - first, link - first, difference);
                 }
             }
@@ -222,8 +226,8 @@ impl Bending {
         }
     }
 
-    /// `U D U^T` of the same matrix, from the tip to the root. Row `i` of `follow` holds what point `i + 1` takes
-    /// from point `i`, and of `follow2` what point `i + 2` takes from it.
+    /// `U D U^T` of the same matrix, from the tip to the root. Row `i` of `follow` is the coefficient of
+    /// point `i` for point `i + 1`, and row `i` of `follow2` that for point `i + 2`.
     #[inline(always)]
     fn factorise_from_tip(&mut self, first_free: usize, gain: f32) {
         let count = self.stiffness.len();
@@ -252,8 +256,8 @@ impl Bending {
         }
     }
 
-    /// Where the point after two others goes when they are moved by `before` and `here`, the one before `point` and
-    /// `point` itself, and nothing else acts on what lies beyond.
+    /// Displacement of the point after `point` when its two predecessors are displaced by `before` and `here`
+    /// (`here` belongs to `point`) and no other force acts beyond them.
     #[inline(always)]
     pub(crate) fn follow(&self, point: usize, before: &Lane3, here: &Lane3) -> Lane3 {
         let mut out = ZERO3;
@@ -265,38 +269,40 @@ impl Bending {
         out
     }
 
-    /// Solves for the displacement that the force `rhs` gives, in place.
+    /// Solves for the displacement caused by the force `rhs`, in place.
     #[inline(always)]
     pub(crate) fn solve(&self, first_free: usize, rhs: &mut [Lane3]) {
         let (mut one, mut two) = (ZERO3, ZERO3);
         for i in first_free..rhs.len() {
-            let y = self.down(i, &rhs[i], &one, &two);
+            let y = self.forward(i, &rhs[i], &one, &two);
             rhs[i] = y;
             (two, one) = (one, y);
         }
         (one, two) = (ZERO3, ZERO3);
         for i in (first_free..rhs.len()).rev() {
-            let y = self.up(i, &rhs[i], &one, &two);
+            let y = self.backward(i, &rhs[i], &one, &two);
             rhs[i] = y;
             (two, one) = (one, y);
         }
     }
 
-    /// The second half of [`Bending::solve`], of rows that have been [`Bending::down`]; moves `points` by what it finds.
+    /// Back substitution, the second half of [`Bending::solve`], for rows that have been through
+    /// [`Bending::forward`]; adds the displacements to `points`.
     #[inline(always)]
     pub(crate) fn finish(&self, first_free: usize, rhs: &mut [Lane3], points: &mut [Lane3]) {
         let (mut one, mut two) = (ZERO3, ZERO3);
         for (i, (row, point)) in rhs.iter_mut().zip(points).enumerate().skip(first_free).rev() {
-            let y = self.up(i, row, &one, &two);
+            let y = self.backward(i, row, &one, &two);
             *row = y;
             *point = [point[0].plus(y[0]), point[1].plus(y[1]), point[2].plus(y[2])];
             (two, one) = (one, y);
         }
     }
 
-    /// What the elimination leaves of the force at point `i`, when it has left `one` and `two` of those of the two before.
+    /// Forward elimination of the force at point `i`; `one` and `two` are the results for the two points
+    /// before.
     #[inline(always)]
-    pub(crate) fn down(&self, i: usize, force: &Lane3, one: &Lane3, two: &Lane3) -> Lane3 {
+    pub(crate) fn forward(&self, i: usize, force: &Lane3, one: &Lane3, two: &Lane3) -> Lane3 {
         let (mut y, l1, l2) = (ZERO3, &self.below[i], &self.below2[i]);
         for k in 0..LANES {
             let v = at(force, k) - at(two, k) * l2[k] - at(one, k) * l1[k];
@@ -305,9 +311,10 @@ impl Bending {
         y
     }
 
-    /// The displacement of point `i`, of whose force `left` is left, when the two beyond go by `one` and `two`.
+    /// Back substitution at point `i`, whose eliminated force is `left`; `one` and `two` are the
+    /// displacements of the next two points.
     #[inline(always)]
-    fn up(&self, i: usize, left: &Lane3, one: &Lane3, two: &Lane3) -> Lane3 {
+    fn backward(&self, i: usize, left: &Lane3, one: &Lane3, two: &Lane3) -> Lane3 {
         let (mut y, inv) = (ZERO3, &self.inv_pivot[i]);
         let l1 = self.below.get(i + 1).unwrap_or(&ZERO);
         let l2 = self.below2.get(i + 2).unwrap_or(&ZERO);
@@ -337,7 +344,7 @@ mod tests {
         }
     }
 
-    /// `(1 + hold + gain D2^T c D2) x`, written out from the definition.
+    /// `(1 + hold + gain D2^T c D2) x`, computed from the definition.
     fn multiply(b: &Bending, gain: f32, first_free: usize, x: &[Vec3]) -> Vec<Vec3> {
         let mut out: Vec<Vec3> = (0..x.len()).map(|i| x[i] * (1.0 + b.hold(i)[0])).collect();
         for i in 1..x.len() - 1 {
@@ -373,14 +380,14 @@ mod tests {
             }
             b.solve(first_free, &mut rows);
             for (row, want) in rows.iter().zip(&x).skip(first_free) {
-                // The matrix' condition is about a thousand; f32 leaves four digits of a value near 1.
+                // The condition number is about a thousand; f32 leaves four digits of a value near 1.
                 assert!((at(row, 5) - *want).length() < 1e-3, "{} against {want}", at(row, 5));
             }
         }
     }
 
     #[test]
-    fn what_hangs_from_a_moved_point_follows_without_force() {
+    fn the_chain_beyond_a_moved_point_follows_without_force() {
         let mut b = Bending::new(12);
         b.prepare(
             key(2),
@@ -400,13 +407,13 @@ mod tests {
         let forces = multiply(&b, 1.0 + key(0).gamma(), 0, &x);
         let size = forces[4].length();
         assert!(size > 1.0, "what moves them is a force");
-        // Rounding of numbers of the size of those forces.
+        // Rounding errors relative to the size of those forces.
         assert!(forces[6..].iter().all(|f| f.length() < 1e-3 * size), "{forces:?}");
         assert!(x[11].length() > 0.1, "a stiff lock goes along");
     }
 
     #[test]
-    fn without_stiffness_it_is_the_identity() {
+    fn zero_stiffness_gives_the_identity() {
         let mut b = Bending::new(5);
         let soft = BendingKey { stiffness_root: 0.0, stiffness_tip: 0.0, hold: 0.0, ..key(1) };
         b.prepare(soft, &Lane::splat(0.01), &[Lane::splat(100.0); 5], &[ZERO3; 5], &[Lane::splat(-1.0); 5]);
@@ -416,7 +423,7 @@ mod tests {
     }
 
     #[test]
-    fn links_of_no_length_give_finite_factors() {
+    fn zero_length_links_give_finite_factors() {
         let mut b = Bending::new(5);
         b.prepare(key(1), &ZERO, &[Lane::splat(100.0); 5], &[ZERO3; 5], &[Lane::splat(-1.0); 5]);
         assert!(b.inv_pivot[1..].iter().flat_map(|row| row.iter()).all(|v| v.is_finite()));

@@ -1,68 +1,71 @@
-//! Lengths and bends solved as one: the step of the links' lengths, in the metric of the bends.
+//! Lengths and bends coupled: the length step of the links in the metric of the bends.
 //!
-//! Bends are solved without lengths, and the lengths are then put right by moving points. Where every point moves
-//! as easily as any other, that takes back what the bends have done: a lock that is folded link by link can only
-//! straighten by pushing all that hangs below it along, which costs more than folding again. So the step of the
-//! lengths is taken in the norm of the implicit bends, `A = 1 + hold + (1 + gamma) D2^T c D2`: what would bend
-//! the lock costs as much as its stiffness says. It is then the exact solution of one linear system,
-//! `[A J^T; J 0]`, as in fast projection (Goldenthal et al. 2007) with bends taken implicitly.
+//! Bends are solved without regard to lengths; moving points then restores the lengths. If every point moved
+//! equally easily, that would undo the bends: a guide that is folded link by link can only straighten by
+//! pushing everything below it along, which costs more than folding again. The length step therefore uses the
+//! norm of the implicit bends, `A = 1 + hold + (1 + gamma) D2^T c D2`, in which a displacement that bends the
+//! guide costs as much as its stiffness demands. The result is the exact solution of one linear system,
+//! `[A J^T; J 0]`, as in fast projection (Goldenthal et al. 2007) with implicit bends.
 //!
-//! The multipliers solve `S l = r` with `S_ij = (n_i . n_j) H_ij`, where `H = D A^-1 D^T` is how the difference
-//! across link `i` answers a force along link `j`. `A` does not know directions, so `H` depends on settings and
-//! time step alone and is worked out with the factors; `S` is dense, symmetric and positive definite (the Schur
-//! product of two such matrices), and is solved by Cholesky's method.
+//! The multipliers solve `S l = r` with `S_ij = (n_i . n_j) H_ij`, where `H = D A^-1 D^T` is the change of
+//! the difference across link `i` caused by a force along link `j`. `A` does not depend on directions, so `H`
+//! depends only on settings and time step and is computed when `A` is factorised. `S` is dense, symmetric and
+//! positive definite (the Schur product of two such matrices), and is solved by Cholesky factorisation.
 
 use super::bending::Bending;
 use super::lengths::LengthScratch;
-use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, choose, greater, inv_sqrt, put, row_done};
+use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, choose, greater, inv_sqrt, put, row_barrier};
 
-/// Factors serve as long as no link has turned further than this against the head since they were made: its radians, squared.
-const ALIKE: f32 = 0.1 * 0.1;
+/// The factor is reused while no link has rotated further than this relative to the head since it was
+/// computed: radians, squared.
+const SAME_DIRECTION: f32 = 0.1 * 0.1;
 
-/// A pivot below this part of its diagonal is rounding.
+/// A pivot below this fraction of its diagonal is a rounding error.
 const LEAST_PIVOT: f32 = 1e-4;
 
 /// The metric of one block. Rows and columns are links.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Coupled {
-    /// `H` in tiles, as they are asked for: those of two columns from the diagonal down, and then the next two columns'. Above
-    /// the diagonal and beyond the last link there is nothing.
+    /// `H` in tiles, in the order in which they are read: for each pair of columns the tiles from the
+    /// diagonal down. Entries above the diagonal and beyond the last link are 0.
     response: Vec<Tile>,
     links: usize,
-    /// The directions of the links, in head space, that the factor is of or will be: the only state that there is here.
+    /// The link directions, in head space, for which the factor was or will be computed. This is the only
+    /// state in here.
     pub(crate) directions: Vec<Lane3>,
     factor: Factor,
 }
 
-/// Cholesky's factor of `S`.
+/// The Cholesky factor of `S`.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Factor {
-    /// In panels of [`ROWS`] rows, each column by column: what is summed up is summed up for all rows of a panel at once.
-    /// Entries on and above the diagonal, and of rows that are not there, are 0.
+    /// Panels of [`ROWS`] rows, column by column, so that sums run over all rows of a panel at once. Entries
+    /// on and above the diagonal and of missing rows are 0.
     panels: Vec<Lane>,
-    /// One over the factor's diagonal; 0 for rows that are not there.
+    /// Inverse of the factor's diagonal; 0 for missing rows.
     inv_diagonal: Vec<Lane>,
     links: usize,
-    /// Whether it has been worked out.
-    made: bool,
+    /// Whether the factor has been computed.
+    is_computed: bool,
 }
 
-/// Rows of a panel of the factor.
+/// Rows per panel of the factor.
 const ROWS: usize = 4;
 
-/// Rows and columns of the factor that are worked out together: as many as registers of any width hold.
+/// Rows and columns of the factor that are computed together; the tile fits the registers of every vector
+/// width.
 const TILE: usize = 2;
 
-/// `s - a b^T` over all columns of two panels that are there, from row `i` of the one and `j` of the other on.
+/// `s - a b^T` over all present columns of two panels, for the tile at row `i` of `a` and row `j` of `b`.
 #[inline(always)]
-fn less_products(s: Tile, a: &[Lane], i: usize, b: &[Lane], j: usize) -> Tile {
-    // Through memory, where the lanes lie side by side: otherwise the compiler may keep lanes apart that were worked out
-    // apart, and take the whole loop in pieces of a register.
+fn minus_products(s: Tile, a: &[Lane], i: usize, b: &[Lane], j: usize) -> Tile {
+    // `black_box` forces the values through memory, where the lanes are contiguous. Otherwise the compiler
+    // may keep lanes apart and split the whole loop into parts of a register.
     let mut s = std::hint::black_box(s);
     for (a, b) in a.as_chunks::<ROWS>().0.iter().zip(b.as_chunks::<ROWS>().0) {
         for (sums, a) in s.iter_mut().zip(&a[i..i + TILE]) {
             for (sum, b) in sums.iter_mut().zip(&b[j..j + TILE]) {
-                *sum = sum.less_product(*a, *b);
+                *sum = sum.minus_product(*a, *b);
             }
         }
     }
@@ -74,7 +77,8 @@ type Tile = [[Lane; TILE]; TILE];
 
 const NO_TILE: Tile = [[ZERO; TILE]; TILE];
 
-/// The tile of `S` at row `r` and column `c` for links along `directions`; `response` is that of `H`.
+/// The tile of `S` at row `r` and column `c` for links along `directions`; `response` is the same tile of
+/// `H`.
 #[inline(always)]
 fn products(response: &Tile, r: usize, c: usize, directions: &[Lane3]) -> Tile {
     let mut s = *response;
@@ -85,13 +89,13 @@ fn products(response: &Tile, r: usize, c: usize, directions: &[Lane3]) -> Tile {
             for k in 0..LANES {
                 product[k] *= at(n, k).dot(at(m, k));
             }
-            row_done();
+            row_barrier();
         }
     }
     s
 }
 
-/// One over the root of a pivot, of whose diagonal `whole` was there before elimination.
+/// Inverse square root of a pivot; `whole` is its diagonal before elimination.
 #[inline(always)]
 fn inv_root(pivot: Lane, whole: Lane) -> Lane {
     let mut inv = ZERO;
@@ -101,7 +105,7 @@ fn inv_root(pivot: Lane, whole: Lane) -> Lane {
     inv
 }
 
-/// Where panel `p` of the factor begins.
+/// Index of the first entry of panel `p`.
 #[inline(always)]
 fn panel(p: usize) -> usize {
     ROWS * ROWS * p * (p + 1) / 2
@@ -112,25 +116,26 @@ impl Coupled {
         Self { directions: vec![ZERO3; points], ..Self::default() }
     }
 
-    /// Forgets the factor and what it is of.
-    pub(crate) fn forget(&mut self) {
+    /// Discards the factor and its directions.
+    pub(crate) fn reset(&mut self) {
         self.directions.fill(ZERO3);
-        self.forget_factor();
+        self.invalidate_factor();
     }
 
-    /// Forgets the factor: it is made anew, of the directions that are known.
-    pub(crate) fn forget_factor(&mut self) {
-        self.factor.made = false;
+    /// Discards the factor; it is computed again from the stored directions.
+    pub(crate) fn invalidate_factor(&mut self) {
+        self.factor.is_computed = false;
     }
 
-    /// Works out `H` for factors of `bending` that have just been made; `first_free` is the first point that is not carried.
+    /// Computes `H` from newly computed factors of `bending`; `first_free` is the first point that the scalp
+    /// does not carry.
     #[inline(always)]
     pub(crate) fn prepare(&mut self, bending: &Bending, first_free: usize, points: usize) {
         let first = first_free.max(1);
         let links = points.saturating_sub(first);
         self.links = links;
-        self.forget_factor();
-        // So many tiles each two columns have.
+        self.invalidate_factor();
+        // Number of tiles in a column of tiles, at most.
         let most = links.div_ceil(TILE);
         self.response.clear();
         self.response.resize(most * (most + 1) / 2, NO_TILE);
@@ -141,26 +146,27 @@ impl Coupled {
         });
     }
 
-    /// Sees to it that the factor is of directions like those in `scratch`; `to_head` turns them into head space. A lane that has
-    /// turned takes its new directions, and the others keep theirs: of these they get the same factor again.
+    /// Updates the factor if the directions in `scratch` have changed; `to_head` rotates them into head
+    /// space. Lanes that have rotated take their new directions. The others keep theirs, which gives them the
+    /// same factor again.
     #[inline(always)]
-    fn renew(&mut self, first: usize, scratch: &LengthScratch, to_head: &Map) {
+    fn update_factor(&mut self, first: usize, scratch: &LengthScratch, to_head: &Map) {
         let mut furthest = ZERO;
         for (n, was) in scratch.direction[first..].iter().zip(&self.directions[first..]) {
             for k in 0..LANES {
                 let turned = (to_head.rotate(at(n, k)) - at(was, k)).length_squared();
-                // What is not a number stays.
+                // NaN stays.
                 furthest[k] = if turned > furthest[k] || turned.is_nan() { turned } else { furthest[k] };
             }
         }
-        let alike = furthest.map(|turned| turned <= ALIKE);
-        if alike == [true; LANES] && self.factor.made {
+        let unchanged = furthest.map(|turned| turned <= SAME_DIRECTION);
+        if unchanged == [true; LANES] && self.factor.is_computed {
             return;
         }
         for (n, to) in scratch.direction[first..].iter().zip(&mut self.directions[first..]) {
             let mut next = *to;
             for k in 0..LANES {
-                let turned = choose(alike[k], at(to, k), to_head.rotate(at(n, k)));
+                let turned = choose(unchanged[k], at(to, k), to_head.rotate(at(n, k)));
                 put(&mut next, k, turned);
             }
             *to = next;
@@ -168,9 +174,9 @@ impl Coupled {
         self.factor.factorise(&self.response, self.links, &self.directions[first..]);
     }
 
-    /// One Newton step that brings the links of `position` to their lengths. `force` is working memory. With `to_head`,
-    /// the turn into head space, `S` is factorised anew where directions have changed; without it, the factors are those of
-    /// the last call.
+    /// One Newton step toward the lengths of the links of `position`. `force` is working memory. With
+    /// `to_head`, the rotation into head space, `S` is factorised again where directions have changed;
+    /// without it the last factor is reused.
     #[inline(always)]
     pub(crate) fn project(
         &mut self,
@@ -186,29 +192,29 @@ impl Coupled {
         let first = first_free.max(1);
         scratch.errors(first, length, position);
         if let Some(to_head) = to_head {
-            self.renew(first, scratch, to_head);
+            self.update_factor(first, scratch, to_head);
         }
         self.factor.solve(first, scratch);
-        // What the links pull a point with: its own the one way, the next the other.
+        // Each link pulls its two ends in opposite directions.
         let (mut own, mut one, mut two) = (ZERO3, ZERO3, ZERO3);
         for i in first..count {
             let (n, l) = (&scratch.direction[i], scratch.multiplier[i]);
             let pull = [n[0].times(l), n[1].times(l), n[2].times(l)];
             if i > first_free {
-                let both = [own[0].less(pull[0]), own[1].less(pull[1]), own[2].less(pull[2])];
-                let left = bending.down(i - 1, &both, &one, &two);
+                let both = [own[0].minus(pull[0]), own[1].minus(pull[1]), own[2].minus(pull[2])];
+                let left = bending.forward(i - 1, &both, &one, &two);
                 force[i - 1] = left;
                 (two, one) = (one, left);
             }
             own = pull;
         }
-        force[count - 1] = bending.down(count - 1, &own, &one, &two);
+        force[count - 1] = bending.forward(count - 1, &own, &one, &two);
         bending.finish(first_free, force, position);
     }
 }
 
 impl Factor {
-    /// Factorises `S` for `links` links along `directions`, of whose metric `response` is the `H`.
+    /// Factorises `S` for `links` links along `directions`; `response` is `H`.
     #[inline(always)]
     fn factorise(&mut self, response: &[Tile], links: usize, directions: &[Lane3]) {
         if self.links != links {
@@ -218,9 +224,9 @@ impl Factor {
             self.inv_diagonal.clear();
             self.inv_diagonal.resize(ROWS * links.div_ceil(ROWS), ZERO);
         }
-        self.made = true;
-        // Two columns by two rows at a time: what is loaded is used twice, and no sum waits for another. Each two columns from
-        // their diagonal down: below it no tile waits for the one before.
+        self.is_computed = true;
+        // Tiles of two columns by two rows: each loaded value is used twice, and no sum waits for another.
+        // Within a pair of columns the tiles below the diagonal are independent of each other.
         let mut responses = response.iter();
         for c in (0..links).step_by(TILE) {
             let Some(response) = responses.next() else { return };
@@ -231,56 +237,56 @@ impl Factor {
                 let (above, own) = self.panels.split_at_mut(panel(r / ROWS));
                 let other = if c / ROWS < r / ROWS { &above[panel(c / ROWS)..] } else { &*own };
                 let s = products(response, r, c, &directions[..links]);
-                let s = less_products(s, &own[..ROWS * c], r % ROWS, &other[..ROWS * c], c % ROWS);
+                let s = minus_products(s, &own[..ROWS * c], r % ROWS, &other[..ROWS * c], c % ROWS);
                 for (i, row) in s.iter().enumerate().take(links - r) {
                     let one = row[0].times(inv[0]);
-                    let two = row[1].less_product(one, corner).times(inv[1]);
+                    let two = row[1].minus_product(one, corner).times(inv[1]);
                     own[ROWS * c + r % ROWS + i] = one;
                     own[ROWS * (c + 1) + r % ROWS + i] = two;
-                    row_done();
+                    row_barrier();
                 }
             }
         }
     }
 
-    /// The tile on the diagonal at row and column `c`.
+    /// Factorises the tile on the diagonal at row and column `c`.
     #[inline(always)]
     fn pivots(&mut self, response: &Tile, c: usize, directions: &[Lane3]) {
         let own = &mut self.panels[panel(c / ROWS)..];
         let whole = products(response, c, c, &directions[..self.links]);
-        let s = less_products(whole, &own[..ROWS * c], c % ROWS, &own[..ROWS * c], c % ROWS);
+        let s = minus_products(whole, &own[..ROWS * c], c % ROWS, &own[..ROWS * c], c % ROWS);
         let inv = inv_root(s[0][0], whole[0][0]);
         self.inv_diagonal[c] = inv;
         if c + 1 < self.links {
             let below = s[1][0].times(inv);
             own[ROWS * c + c % ROWS + 1] = below;
-            self.inv_diagonal[c + 1] = inv_root(s[1][1].less_product(below, below), whole[1][1]);
+            self.inv_diagonal[c + 1] = inv_root(s[1][1].minus_product(below, below), whole[1][1]);
         }
     }
 
-    /// Solves for the rows of panel `p` alone, from the first on. Row by row, that they stay in registers.
+    /// Forward substitution within panel `p`, row by row, so that the values stay in registers.
     #[inline(always)]
-    fn down_corner(&self, p: usize, [a, b, c, d]: [Lane; ROWS]) -> [Lane; ROWS] {
+    fn forward_corner(&self, p: usize, [a, b, c, d]: [Lane; ROWS]) -> [Lane; ROWS] {
         let (l, inv) = self.corner(p);
         let a = a.times(inv[0]);
-        let b = b.less_product(l[0][1], a).times(inv[1]);
-        let c = c.less_product(l[0][2], a).less_product(l[1][2], b).times(inv[2]);
-        let d = d.less_product(l[0][3], a).less_product(l[1][3], b).less_product(l[2][3], c).times(inv[3]);
+        let b = b.minus_product(l[0][1], a).times(inv[1]);
+        let c = c.minus_product(l[0][2], a).minus_product(l[1][2], b).times(inv[2]);
+        let d = d.minus_product(l[0][3], a).minus_product(l[1][3], b).minus_product(l[2][3], c).times(inv[3]);
         [a, b, c, d]
     }
 
-    /// The same with the transpose, from the last on.
+    /// Back substitution with the transpose within panel `p`.
     #[inline(always)]
-    fn up_corner(&self, p: usize, [a, b, c, d]: [Lane; ROWS]) -> [Lane; ROWS] {
+    fn backward_corner(&self, p: usize, [a, b, c, d]: [Lane; ROWS]) -> [Lane; ROWS] {
         let (l, inv) = self.corner(p);
         let d = d.times(inv[3]);
-        let c = c.less_product(l[2][3], d).times(inv[2]);
-        let b = b.less_product(l[1][3], d).less_product(l[1][2], c).times(inv[1]);
-        let a = a.less_product(l[0][3], d).less_product(l[0][2], c).less_product(l[0][1], b).times(inv[0]);
+        let c = c.minus_product(l[2][3], d).times(inv[2]);
+        let b = b.minus_product(l[1][3], d).minus_product(l[1][2], c).times(inv[1]);
+        let a = a.minus_product(l[0][3], d).minus_product(l[0][2], c).minus_product(l[0][1], b).times(inv[0]);
         [a, b, c, d]
     }
 
-    /// The columns of panel `p` that have a row of it on the diagonal, and one over what is there.
+    /// The columns of panel `p` that cross its diagonal, and the inverse diagonal.
     #[inline(always)]
     fn corner(&self, p: usize) -> (&[[Lane; ROWS]], &[Lane]) {
         (
@@ -289,7 +295,7 @@ impl Factor {
         )
     }
 
-    /// Solves for the multipliers with the factors that are there, in place of the right side.
+    /// Solves for the multipliers with the current factor, in place of the right-hand side.
     #[inline(always)]
     fn solve(&self, first: usize, scratch: &mut LengthScratch) {
         let links = self.links;
@@ -301,10 +307,10 @@ impl Factor {
             let mut y: [Lane; ROWS] = std::array::from_fn(|r| if r < rows { own[r] } else { ZERO });
             for (l, x) in factor.as_chunks::<ROWS>().0.iter().zip(&*before) {
                 for (y, l) in y.iter_mut().zip(l) {
-                    *y = y.less_product(*l, *x);
+                    *y = y.minus_product(*l, *x);
                 }
             }
-            let y = self.down_corner(p, y);
+            let y = self.forward_corner(p, y);
             own[..rows].copy_from_slice(&y[..rows]);
         }
         for p in (0..links.div_ceil(ROWS)).rev() {
@@ -312,14 +318,14 @@ impl Factor {
             let rows = ROWS.min(links - start);
             let (before, own) = x.split_at_mut(start);
             let y = std::array::from_fn(|r| if r < rows { own[r] } else { ZERO });
-            let y = self.up_corner(p, y);
+            let y = self.backward_corner(p, y);
             for (l, x) in factor.as_chunks::<ROWS>().0.iter().zip(before) {
                 let mut sum = *x;
                 for (y, l) in y.iter().zip(l).rev() {
-                    sum = sum.less_product(*l, *y);
+                    sum = sum.minus_product(*l, *y);
                 }
                 *x = sum;
-                row_done();
+                row_barrier();
             }
             own[..rows].copy_from_slice(&y[..rows]);
         }
@@ -365,7 +371,7 @@ mod tests {
         c
     }
 
-    /// A lock folded link by link, `fold` radians to either side of straight down, the same in every lane.
+    /// A guide folded link by link, `fold` radians to either side of straight down, the same in every lane.
     fn folded(fold: f32) -> Vec<Lane3> {
         let mut rows = vec![ZERO3; POINTS];
         let mut p = Vec3::ZERO;
@@ -388,7 +394,7 @@ mod tests {
     }
 
     #[test]
-    fn a_newton_step_in_the_metric_of_bends_squares_the_error_of_lengths() {
+    fn a_newton_step_in_the_metric_of_bends_squares_the_length_error() {
         for first_free in 0..3 {
             let b = bending(first_free);
             let mut x = folded(0.3);
@@ -412,13 +418,14 @@ mod tests {
                 Some(&Map::IDENTITY),
             );
             let after = lengths_after(&x);
-            // A step moves folded links by about their errors' size sideways: measured 3.6 times the square.
+            // A step moves folded links sideways by about the size of their errors: measured 3.6 times the
+            // square.
             assert!(before > 0.02 && after < 5.0 * before * before, "{before} became {after}");
-            assert!((0..first_free).all(|i| x[i] == was[i]), "what is carried was moved");
+            assert!((0..first_free).all(|i| x[i] == was[i]), "a carried point was moved");
         }
     }
 
-    /// Rounds of bends and lengths without inertia, and how much of the fold is left.
+    /// Iterates bends and lengths without inertia; returns the remaining fraction of the fold.
     fn left_of_fold(
         rounds: usize,
         project: impl Fn(&Bending, &mut [Lane3], &mut LengthScratch, &mut [Lane3]),
@@ -458,15 +465,16 @@ mod tests {
     }
 
     #[test]
-    fn a_folded_lock_unfolds_at_the_rate_of_its_damping() {
+    fn a_folded_guide_unfolds_at_the_rate_of_its_damping() {
         let length = [Lane::splat(LINK); POINTS];
         let together = left_of_fold(8, |b, x, scratch, force| {
             coupled(b, 2).project(2, &length, x, b, scratch, force, Some(&Map::IDENTITY));
         });
-        // Without inertia a stiff bend dies by 1 - 1 / (1 + gamma) a substep: 0.37 after eight, gamma 7.2.
+        // Without inertia a stiff bend decays by 1 - 1 / (1 + gamma) per substep: 0.37 after eight, with
+        // gamma 7.2.
         assert!((0.3..0.45).contains(&together), "{together} of the fold is left");
-        // The control: lengths put right without regard to bends fold the lock again.
+        // Control: a length step that ignores bends folds the guide again.
         let apart = left_of_fold(8, |_, x, scratch, _| project_position(2, &length, x, scratch));
-        assert!(apart > 0.7, "{apart} of the fold is left where lengths do not know of bends");
+        assert!(apart > 0.7, "{apart} of the fold is left where lengths ignore bends");
     }
 }

@@ -1,22 +1,22 @@
-//! Links keep their length: the constraint of a whole chain solved at once.
+//! Rigid links: the length constraints of a whole chain solved at once.
 //!
 //! The lengths of a chain couple only neighbours, so the multipliers solve a symmetric tridiagonal system
-//! `A l = r` with `A_ii = w_(i-1) + w_i` and `A_i,i+1 = -w_i n_i . n_(i+1)`, and one Thomas elimination does
-//! what sweeps along the chain need tens of rounds for (fast projection, Goldenthal et al. 2007; tridiagonal
-//! hair, Han and Harada 2013). `w` is 1 for a free point and 0 for one that the scalp carries.
+//! `A l = r` with `A_ii = w_(i-1) + w_i` and `A_i,i+1 = -w_i n_i . n_(i+1)`. One Thomas elimination replaces
+//! tens of relaxation sweeps along the chain (fast projection, Goldenthal et al. 2007; tridiagonal hair, Han
+//! and Harada 2013). `w` is 1 for a free point and 0 for a point that the scalp carries.
 
 use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, inv_sqrt, put};
 
-/// Working memory of the elimination: one row a point.
+/// Working memory of the elimination: one row per point.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LengthScratch {
-    /// Right side on the way in, multiplier on the way out.
+    /// Right-hand side on input, multipliers on output.
     pub(super) multiplier: Vec<Lane>,
     /// The upper diagonal after elimination.
     upper: Vec<Lane>,
     /// Unit directions of the links; link `i` ends at point `i`.
     pub(super) direction: Vec<Lane3>,
-    /// What the last point's `w` lacks of 1: nothing, or all of it where it is held too.
+    /// 1 minus the last point's `w`: 0, or 1 where the tip is held too.
     tip_held: f32,
 }
 
@@ -28,14 +28,14 @@ impl LengthScratch {
         scratch
     }
 
-    /// Makes room for guides of `points` points.
+    /// Resizes the rows for guides of `points` points.
     pub(crate) fn fit(&mut self, points: usize) {
         self.multiplier.resize(points, ZERO);
         self.upper.resize(points, ZERO);
         self.direction.resize(points, ZERO3);
     }
 
-    /// Directions of the links from `first` on, and by how much each is too short.
+    /// Computes the directions of the links from `first` on, and how much each is too short.
     #[inline(always)]
     pub(crate) fn errors(&mut self, first: usize, length: &[Lane], position: &[Lane3]) {
         for i in first..position.len() {
@@ -46,8 +46,8 @@ impl LengthScratch {
                 let squared = link.length_squared();
                 let inv = inv_sqrt(squared);
                 let now = squared * inv;
-                // A link of no length has no direction; it gets one from the clean-up pass. One that shall have none lies
-                // beyond the end of a guide that was cut, and pulls nothing.
+                // A zero-length link has no direction; the placement pass gives it one. A link whose rest
+                // length is 0 lies beyond the end of a guide that was cut, and exerts no force.
                 let there = wanted[k] > 0.0;
                 put(&mut direction, k, link * if there { inv } else { 0.0 });
                 rhs[k] = if there { wanted[k] - now } else { 0.0 };
@@ -58,10 +58,11 @@ impl LengthScratch {
     }
 }
 
-/// Takes from `velocity` what would change the length of a link, keeping the momentum of the free points, and leaves in `next`
-/// where what is left takes `position` in `h`.
+/// Removes the part of `velocity` that would change the length of a link, conserving the momentum of the free
+/// points, and writes the positions after `h` seconds to `next`.
 ///
-/// `inv_length` is one over each link's length in `position`; points before `first_free` are carried.
+/// `inv_length` is the inverse length of each link in `position`; points before `first_free` are carried by
+/// the scalp.
 #[inline(always)]
 pub(crate) fn project_velocity(
     first_free: usize,
@@ -110,7 +111,7 @@ pub(crate) fn project_position(
     apply(first_free, position, scratch);
 }
 
-/// Thomas elimination of every lane. The matrix is weakly diagonally dominant: no pivoting.
+/// Thomas elimination in every lane. The matrix is weakly diagonally dominant, so no pivoting is needed.
 #[inline(always)]
 fn solve(first_free: usize, scratch: &mut LengthScratch) {
     let (first, count) = (first_free.max(1), scratch.direction.len());

@@ -1,4 +1,4 @@
-//! Guides side by side: their state and the working memory of a step.
+//! Guides stored side by side: their state and the working memory of a step.
 
 mod bending;
 mod coupled;
@@ -15,49 +15,49 @@ pub(crate) use bending::{Bending, BendingKey};
 pub(crate) use coupled::Coupled;
 pub(crate) use lengths::{LengthScratch, project_position, project_velocity};
 
-/// `LANES` guides. Rows are points, root first. Positions are in working space: the axes of the world, the
-/// origin where the head was at the end of the last step, so that single precision is spent on hair and not
-/// on the way to the dancer.
+/// A block of `LANES` guides. Rows are points, root first. Positions are in working space: the axes of the
+/// world, with the origin at the head's position at the end of the last step, so that single precision
+/// resolves the hair well wherever the dancer stands.
 #[derive(Clone, Debug)]
 pub(crate) struct Block {
-    /// The guide of each lane; lanes from `used` on repeat the last.
+    /// The guide in each lane. Lanes from `used` on repeat the last guide.
     pub(crate) guides: [u32; LANES],
     pub(crate) used: usize,
     pub(crate) rest: RestShape,
-    /// Signed distance at rest of point `i` to collider `c` at `c * points + i`, metres.
+    /// Signed rest distance of point `i` to collider `c` at `c * points + i`, metres.
     pub(crate) rest_distance: Vec<Lane>,
-    /// Signed distance at rest of each point to the field of head and shoulders, metres; empty without one.
+    /// Signed rest distance of each point to the field of head and shoulders, metres; empty without a field.
     pub(crate) field_distance: Vec<Lane>,
-    /// Where at rest the skin is that was last found near each point; see [`PlaneRow::rest`].
+    /// Rest position of the skin that was last found near each point; see [`PlaneRow::rest`].
     pub(crate) skin: Vec<Lane3>,
 
-    /// How firmly ties hold each point; negative where none does.
-    pub(crate) held: Vec<Lane>,
+    /// Strength with which ties hold each point, 1/s; negative where no tie holds it.
+    pub(crate) tie_hold: Vec<Lane>,
 
     pub(crate) position: Vec<Lane3>,
     pub(crate) velocity: Vec<Lane3>,
-    /// The bend at rest in the frame of the last substep.
+    /// The rest bend in the frame of the last substep.
     pub(crate) bend: Vec<Lane3>,
-    /// What contacts have moved each point by in the last substep, where they still do, metres.
-    pub(crate) leans: Vec<Lane3>,
-    /// Whether there is any of that; see [`Block::leans`].
-    pub(crate) leaning: bool,
+    /// Accumulated displacement of each point by contacts that still act on it, metres.
+    pub(crate) contact_push: Vec<Lane3>,
+    /// Whether any entry of `contact_push` is not zero.
+    pub(crate) has_contact_push: bool,
     pub(crate) bending: Bending,
     pub(crate) coupled: Coupled,
-    /// Lent for the time of a step; empty between steps.
+    /// Lent by the thread for the duration of a step; empty between steps.
     pub(crate) work: Work,
     pub(crate) outcome: Outcome,
 }
 
-/// Working memory of a step: nothing in it outlives the step. Each thread has one and lends it to the blocks that it
-/// takes through a step, so that it stays in the cache however many blocks there are.
+/// Working memory of a step; nothing in it outlives the step. Each thread owns one and lends it to the blocks
+/// that it steps, so that it stays in the cache however many blocks there are.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Work {
-    /// The pose at the beginning of the step, to which what has been lost is put back.
-    pub(crate) good: Vec<Lane3>,
-    /// Where points were at the beginning of the substep, once they have been laid.
-    pub(crate) was: Vec<Lane3>,
-    /// What forces add to velocities in a substep, and what they leave of them.
+    /// The pose at the beginning of the step, which non-finite guides are reset to.
+    pub(crate) start_pose: Vec<Lane3>,
+    /// Positions at the beginning of the substep, once the points have been placed.
+    pub(crate) previous: Vec<Lane3>,
+    /// Velocity that the forces add per substep, and the factor by which they scale the old velocity.
     pub(crate) push: Vec<Lane3>,
     pub(crate) keep: Vec<Lane>,
     pub(crate) next: Vec<Lane3>,
@@ -66,22 +66,22 @@ pub(crate) struct Work {
     pub(crate) next_bend: Vec<Lane3>,
     pub(crate) residual: Vec<Lane3>,
     pub(crate) lengths: LengthScratch,
-    /// What the points have learnt of the field.
+    /// What is known of the field around the points.
     pub(crate) planes: Vec<PlaneRow>,
-    /// The rows that look for skin.
+    /// The rows whose skin is being searched.
     pub(crate) searches: Vec<Search>,
-    /// The colliders near the block, and how deep they have closed over the roots.
+    /// The colliders near the block, and how much deeper than at rest they enclose the roots.
     pub(crate) active: Vec<u32>,
     pub(crate) boxes: Boxes,
-    pub(crate) buried: Vec<Lane>,
+    pub(crate) root_penetration: Vec<Lane>,
 }
 
 impl Work {
-    /// Makes room for guides of `points` points. What is in the rows is of some other step.
+    /// Resizes the rows for guides of `points` points. The contents are left over from another step.
     pub(crate) fn fit(&mut self, points: usize) {
         for rows in [
-            &mut self.good,
-            &mut self.was,
+            &mut self.start_pose,
+            &mut self.previous,
             &mut self.push,
             &mut self.next,
             &mut self.links,
@@ -96,42 +96,42 @@ impl Work {
     }
 }
 
-/// Shorter links are measured by this length, metres: single precision rounds the ends of a link of a micrometre by percents of it,
-/// and nobody sees that.
-const FINE: f32 = 1e-3;
+/// Links shorter than this are measured relative to it, metres: single precision rounds the ends of a link of
+/// a micrometre by several per cent of its length, which is invisible.
+const SHORTEST_LINK: f32 = 1e-3;
 
-/// Relative change of the length of a link, now `link`, whose length at rest is one over `inv`; 0 where that is 0, beyond the end
+/// Relative length change of `link`, whose inverse rest length is `inv`. 0 where `inv` is 0, beyond the end
 /// of a guide that was cut.
 #[inline(always)]
 pub(crate) fn stretch_of(link: Vec3, inv: f32) -> f32 {
     let change = (link.length_squared().sqrt() * inv - 1.0).abs();
-    if inv > 0.0 { change * lesser(1.0, 1.0 / (FINE * inv)) } else { 0.0 }
+    if inv > 0.0 { change * lesser(1.0, 1.0 / (SHORTEST_LINK * inv)) } else { 0.0 }
 }
 
-/// What a block has to report of a step.
+/// What a block reports about a step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Outcome {
     pub(crate) max_stretch: f32,
     pub(crate) deepest: Depth,
     pub(crate) deepest_guide: u32,
-    /// Points in skin of which only a guess is known, and the first of them: its guide and its number.
+    /// Number of points near skin whose position is only a guess, and the guide and index of the first.
     pub(crate) unsure: u32,
     pub(crate) first_unsure: Option<(u32, u32)>,
     pub(crate) recovered: u32,
-    /// The first lane that was put back.
+    /// The first lane that was reset.
     pub(crate) first_recovered: Option<usize>,
     /// Sum of `v^2 / 2` over the free points.
     pub(crate) energy: f64,
     pub(crate) max_speed_squared: f32,
 }
 
-/// How deep a point is inside a collider.
+/// Penetration of a point into a collider.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Depth {
     /// Metres.
     pub(crate) metres: f32,
     pub(crate) point: u32,
-    /// Its index; [`crate::colliders::contact::FIELD`] for the field.
+    /// Index of the collider; [`crate::colliders::contact::FIELD`] for the field.
     pub(crate) collider: u32,
 }
 
@@ -143,14 +143,14 @@ impl Block {
             used,
             rest: RestShape::new(guides, &lanes, first_free),
             rest_distance: Vec::new(),
-            held: vec![Lane::splat(-1.0); points],
+            tie_hold: vec![Lane::splat(-1.0); points],
             field_distance: Vec::new(),
             skin: vec![PlaneRow::NO_SKIN; points],
             position: vec![ZERO3; points],
             velocity: vec![ZERO3; points],
             bend: vec![ZERO3; points],
-            leans: vec![ZERO3; points],
-            leaning: false,
+            contact_push: vec![ZERO3; points],
+            has_contact_push: false,
             bending: Bending::new(points),
             coupled: Coupled::new(points),
             work: Work::default(),
@@ -162,9 +162,8 @@ impl Block {
         self.position.len()
     }
 
-    /// The guide and the point at which `of` a lane and a point is largest, beginning with the point `first`; what is not a
-    /// number is none.
-    pub(crate) fn most(&self, first: usize, of: impl Fn(&Self, usize, usize) -> f32) -> Option<(u32, u32)> {
+    /// The guide and point from `first` on at which `of(lane, point)` is largest. NaNs are ignored.
+    pub(crate) fn argmax(&self, first: usize, of: impl Fn(&Self, usize, usize) -> f32) -> Option<(u32, u32)> {
         let places = (0..self.used).flat_map(|k| (first..self.points()).map(move |i| (k, i)));
         let (mut most, mut found) = (0.0, None);
         for (k, i) in places {
@@ -176,11 +175,11 @@ impl Block {
         found
     }
 
-    /// Whether contacts still move any point.
+    /// Whether contacts still displace any point.
     #[inline(always)]
-    pub(crate) fn leans(&self) -> bool {
+    pub(crate) fn any_contact_push(&self) -> bool {
         let mut most = ZERO;
-        for row in &self.leans {
+        for row in &self.contact_push {
             for k in 0..LANES {
                 most[k] = greater(most[k], at(row, k).length_squared());
             }
@@ -195,7 +194,7 @@ impl Block {
         stretch_of(b - a, inv)
     }
 
-    /// Puts the rest shape, without motion, where `from_head` carries it.
+    /// Places the guides in their rest shape, at rest, with the transform `from_head`.
     pub(crate) fn place_at_rest(&mut self, from_head: &Map) {
         for i in 0..self.points() {
             for k in 0..LANES {
@@ -204,17 +203,17 @@ impl Block {
             }
         }
         self.velocity.fill(ZERO3);
-        self.leans.fill(ZERO3);
-        self.leaning = false;
+        self.contact_push.fill(ZERO3);
+        self.has_contact_push = false;
         self.skin.fill(PlaneRow::NO_SKIN);
-        self.coupled.forget();
+        self.coupled.reset();
     }
 
-    /// Moves everything rigidly, velocities included.
-    pub(crate) fn carry(&mut self, by: &Map) {
+    /// Moves the block rigidly, including its velocities.
+    pub(crate) fn move_rigidly(&mut self, by: &Map) {
         self.skin.fill(PlaneRow::NO_SKIN);
-        self.leans.fill(ZERO3);
-        self.leaning = false;
+        self.contact_push.fill(ZERO3);
+        self.has_contact_push = false;
         for i in 0..self.points() {
             for k in 0..LANES {
                 let p = by.apply(at(&self.position[i], k));
@@ -227,9 +226,10 @@ impl Block {
         }
     }
 
-    /// Takes the motion of `old`, a block of the same guides in another style: each link keeps the turn that
-    /// it has from its rest direction, and the lock is laid anew with its own lengths from its own root.
-    pub(crate) fn adopt(&mut self, old: &Block, from_head: &Map) {
+    /// Takes over the motion of `old`, a block of the same guides in another style: each link keeps its
+    /// rotation relative to its rest direction, and the guide is rebuilt from its own root with its own link
+    /// lengths.
+    pub(crate) fn copy_motion(&mut self, old: &Block, from_head: &Map) {
         use crate::lanes::{Turn, direction_or};
         let head = Turn::new(glam::Quat::from_mat3(&from_head.turn));
         for k in 0..LANES {
@@ -241,7 +241,7 @@ impl Block {
                 } else {
                     let was = turn.apply(at(&old.rest.direction[i], k));
                     let link = at(&old.position[i], k) - at(&old.position[i - 1], k);
-                    turn = turn.then_least(was, direction_or(link, was).0);
+                    turn = turn.then_smallest(was, direction_or(link, was).0);
                     end += turn.apply(at(&self.rest.direction[i], k)) * self.rest.length[i][k];
                 }
                 put(&mut self.position[i], k, end);

@@ -1,4 +1,4 @@
-//! Boxes around colliders side by side: a row of points asks all of them at once.
+//! Bounding boxes of colliders in lanes, so that a row of points is tested against several at once.
 
 use glam::Vec3;
 
@@ -9,7 +9,7 @@ use crate::lanes::{LANES, Lane, Lane3, at, fold, greater, lesser, splat3};
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Boxes {
     count: usize,
-    /// Least and greatest corners of as many boxes as there are lanes; lanes without one are further than anything.
+    /// Lowest and highest corners of as many boxes as there are lanes; unused lanes are infinitely far away.
     groups: Vec<(Lane3, Lane3)>,
 }
 
@@ -42,7 +42,7 @@ impl Boxes {
         self.count += 1;
     }
 
-    /// The numbers of the boxes within `reach` of the one from `min` to `max`, in order.
+    /// The indices of the boxes within `reach` of the box from `min` to `max`, in order.
     #[inline(always)]
     pub(crate) fn near(&self, min: Vec3, max: Vec3, reach: f32) -> Reached<'_> {
         Reached { groups: &self.groups, next: 0, bits: 0, min, max, reach }
@@ -52,7 +52,7 @@ impl Boxes {
 /// See [`Boxes::near`].
 pub(crate) struct Reached<'a> {
     groups: &'a [(Lane3, Lane3)],
-    /// The next group, and what is left of the one before it, a bit each.
+    /// The next group, and the remaining hits of the previous one, one bit each.
     next: usize,
     bits: u32,
     min: Vec3,
@@ -93,7 +93,7 @@ impl Iterator for Reached<'_> {
     }
 }
 
-/// The box around a row of points.
+/// The bounding box of a row of points.
 #[inline(always)]
 pub(crate) fn bounds(row: &Lane3) -> (Vec3, Vec3) {
     let (mut min, mut max) = (Vec3::ZERO, Vec3::ZERO);
@@ -121,7 +121,7 @@ mod tests {
     use crate::lanes::Map;
 
     #[test]
-    fn boxes_side_by_side_are_found_as_one_by_one() {
+    fn boxes_in_lanes_are_found_as_one_by_one() {
         let mover = |n: u32| {
             let min = Vec3::new((n * 7 % 11) as f32, (n * 5 % 13) as f32, (n * 3 % 7) as f32);
             MovingShape {
@@ -144,7 +144,7 @@ mod tests {
             (found, missed) = (found + want.len(), missed + movers.len() - want.len());
         }
         assert!(found > 20 && missed > 20, "{found} found and {missed} not: the case is too easy");
-        // What is not a number is near nothing.
+        // NaN is near nothing.
         assert_eq!(boxes.near(Vec3::NAN, Vec3::NAN, 1.0).count(), 0);
     }
 }

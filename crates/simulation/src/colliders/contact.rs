@@ -1,5 +1,5 @@
-//! Follow the leader over obstacles: the clean-up pass that makes every link exactly as long as it is and
-//! keeps every point outside every collider.
+//! Follow the leader around obstacles: the placement pass, which gives every link its exact length and keeps
+//! every point outside every collider.
 
 use glam::Vec3;
 
@@ -10,63 +10,64 @@ use crate::SimulationSettings;
 use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, choose, direction_or, greater, lesser, put};
 use crate::motion::Substep;
 
-/// How contacts behave in one step.
+/// The rules for contacts in one step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ContactRules {
-    /// Distance at which hair stays off surfaces, metres.
+    /// Distance that hair keeps from surfaces, metres.
     pub(crate) margin: f32,
-    /// How much of its height at rest a point keeps above the head's colliders.
+    /// Fraction of its rest height that a point keeps above the head's colliders.
     pub(crate) layering: f32,
     /// Friction coefficient.
     pub(crate) friction: f32,
-    /// Time step of the substep, seconds.
+    /// Length of the substep, seconds.
     pub(crate) h: f32,
 }
 
-/// Radius of the sphere that stands for the field's surface where hair touches it, metres: nearly a plane.
-const FLAT: f32 = 1.0;
+/// Radius of the sphere that approximates the field's surface at a contact, metres: nearly a plane.
+const CONTACT_RADIUS: f32 = 1.0;
 
 /// Height above the head up to which layers keep their order, metres.
 pub(crate) const LAYER_HEIGHT: f32 = 0.025;
 
-/// A point's own clearance at rest is undercut by this, so that rounding makes no contact of it, metres.
+/// Subtracted from a point's own rest clearance, so that rounding does not create a contact, metres.
 const SLACK: f32 = 1e-4;
 
-/// Rounds over the colliders of a point: the later ones see what the push-outs of the earlier did to each other.
-const ROUNDS: usize = 4;
+/// Iterations over the colliders of a point; the later ones resolve conflicts between the push-outs of the
+/// earlier.
+const ITERATIONS: usize = 4;
 
-/// From this round on a point that is still pushed to and fro lies between two colliders: comfort gives way
-/// there, so that the surfaces need not.
-const TIGHT: usize = 2;
+/// From this iteration on, a point that is still pushed lies between two colliders. Margin and layering are
+/// dropped there, so that the surfaces themselves are not violated.
+const BARE_FROM: usize = 2;
 
-/// After the first round, what is less deep than this is left, metres.
-const CLOSE_ENOUGH: f32 = 1e-5;
+/// After the first iteration, smaller penetrations than this are left, metres.
+const TOLERANCE: f32 = 1e-5;
 
 impl ContactRules {
-    /// The rules that settings make, for a step of a second.
+    /// The rules that follow from the settings, with a time step of a second.
     pub(crate) fn of(settings: &SimulationSettings) -> Self {
         let SimulationSettings { skin_margin: margin, layering, friction, .. } = *settings;
         Self { margin, layering, friction, h: 1.0 }
     }
 
-    /// The most that any point stays away from a surface, metres.
+    /// The largest distance that any point keeps from a surface, metres.
     pub(crate) fn reach(&self) -> f32 {
         self.margin + self.layering * LAYER_HEIGHT
     }
 
-    /// The same for a collider: only on the head do layers keep their order.
+    /// The same for one collider: layering applies only to the head.
     #[inline(always)]
     fn reach_of(&self, mover: &MovingShape) -> f32 {
         if mover.on_head { self.reach() } else { self.margin }
     }
 
-    /// The same without what is for comfort: the margin and the layers.
+    /// The same rules without margin and layering.
     #[inline(always)]
     fn bare(&self) -> Self {
         Self { margin: 0.0, layering: 0.0, ..*self }
     }
 
-    /// How near to the surface each lane may come whose distance at rest is `rest`.
+    /// The distance to the surface that is allowed in each lane, given its rest distance `rest`.
     #[inline(always)]
     fn allowed(&self, on_head: bool, rest: &Lane) -> Lane {
         let keep = if on_head { self.layering } else { 0.0 };
@@ -79,37 +80,38 @@ impl ContactRules {
     }
 }
 
-/// The colliders that a block may touch in a substep, and each point's distance to them at rest.
+/// The colliders that a block may touch in a substep, and the rest distance of each point to them.
 #[derive(Clone, Copy)]
 pub(crate) struct Near<'a> {
     pub(crate) shapes: &'a [MovingShape],
-    /// Which of them, in order.
+    /// Indices of the colliders that are near, in order.
     pub(crate) active: &'a [u32],
-    /// The boxes around these.
+    /// The boxes of those.
     pub(crate) boxes: &'a Boxes,
-    /// Signed distance at rest of point `i` to collider `c` at `c * points + i`.
+    /// Signed rest distance of point `i` to collider `c` at `c * points + i`.
     pub(crate) rest_distance: &'a [Lane],
     pub(crate) points: usize,
     /// The last point that the scalp carries.
     pub(crate) carried: usize,
-    /// How much deeper than at rest that point is inside each of the active colliders, metres; see [`buried`].
-    pub(crate) buried: &'a [Lane],
-    /// Mean link of each guide, metres.
+    /// How much deeper than at rest that point is inside each of the active colliders, metres; see
+    /// [`root_penetration`].
+    pub(crate) root_penetration: &'a [Lane],
+    /// Mean link length of each guide, metres.
     pub(crate) link: &'a Lane,
     /// The field of head and shoulders.
     pub(crate) field: Option<NearField<'a>>,
 }
 
-/// The field in a substep, and each point's distance to it at rest.
+/// The field in a substep, and the rest distance of each point to it.
 #[derive(Clone, Copy)]
 pub(crate) struct NearField<'a> {
     pub(crate) moving: &'a MovingField,
     pub(crate) substep: &'a Substep,
-    /// How much of the step has passed.
+    /// Fraction of the step that has passed.
     pub(crate) passed: f32,
     pub(crate) rest_distance: &'a [Lane],
-    /// How much deeper than at rest the last carried point is inside, metres; see [`buried`].
-    pub(crate) buried: Lane,
+    /// How much deeper than at rest the last carried point is inside, metres; see [`root_penetration`].
+    pub(crate) root_penetration: Lane,
 }
 
 impl NearField<'_> {
@@ -119,10 +121,10 @@ impl NearField<'_> {
     }
 }
 
-/// How much deeper than at rest points that the scalp carries are inside the field, metres: where neck and shoulders
-/// move under roots that the head carries.
+/// How much deeper than at rest points carried by the scalp are inside the field, metres. This happens when
+/// neck and shoulders move under roots that the head carries.
 #[inline(always)]
-pub(crate) fn buried_in_field(
+pub(crate) fn field_root_penetration(
     carried: &Lane3,
     moving: &MovingField,
     substep: &Substep,
@@ -139,15 +141,15 @@ pub(crate) fn buried_in_field(
     out
 }
 
-/// How steeply a lock leaves a collider that its root has been carried into: the sine of its angle.
-const WAY_OUT: f32 = 0.5;
+/// Sine of the angle at which a guide leaves a collider that encloses its root.
+const EXIT_SLOPE: f32 = 0.5;
 
-/// How much deeper than at rest points that the scalp carries are inside a collider, metres.
+/// How much deeper than at rest points carried by the scalp are inside a collider, metres.
 ///
-/// The scalp is carried by the head alone, so where the head bends over the neck, the body's own shapes close
-/// over roots. Hair there cannot be outside; it is let out along a slope instead of being bent straight up.
+/// Only the head carries the scalp, so when the head bends over the neck, the body's own shapes may enclose
+/// roots. Hair there cannot be outside; it leaves along a slope instead of being bent straight up.
 #[inline(always)]
-pub(crate) fn buried(carried: &Lane3, mover: &MovingShape, rest: &Lane) -> Lane {
+pub(crate) fn root_penetration(carried: &Lane3, mover: &MovingShape, rest: &Lane) -> Lane {
     let mut out = ZERO;
     if let (Some(shape), false) = (mover.shape, mover.on_head) {
         let now = shape.nearest(carried, &ZERO3).distance;
@@ -163,16 +165,16 @@ impl Near<'_> {
         &self.rest_distance[collider as usize * self.points + point]
     }
 
-    /// How near to the surface of the `n`-th active collider each lane of a point may come.
+    /// The distance to the surface of the `n`-th active collider that is allowed in each lane of a point.
     #[inline(always)]
     fn allowed(&self, n: usize, point: usize, rules: &ContactRules) -> Lane {
         let c = self.active[n];
         let mut out = rules.allowed(self.shapes[c as usize].on_head, self.rest(c, point));
-        self.let_out(&mut out, &self.buried[n], point);
+        self.lower_by_slope(&mut out, &self.root_penetration[n], point);
         out
     }
 
-    /// The same for the field. Only the skin that goes with the head keeps layers in order.
+    /// The same for the field. Layering applies only to skin that moves with the head.
     #[inline(always)]
     fn allowed_by_field(
         &self,
@@ -187,24 +189,26 @@ impl Near<'_> {
             let height = lesser(greater(rest[k], 0.0), LAYER_HEIGHT);
             out[k] = lesser(rest[k] - SLACK, rules.margin + rules.layering * row.head[k] * height);
         }
-        self.let_out(&mut out, &field.buried, point);
+        self.lower_by_slope(&mut out, &field.root_penetration, point);
         out
     }
 
-    /// Lets points of a guide whose root is buried come out along a slope.
+    /// Lets the points of a guide whose root is enclosed leave along a slope.
     #[inline(always)]
-    fn let_out(&self, allowed: &mut Lane, buried: &Lane, point: usize) {
+    fn lower_by_slope(&self, allowed: &mut Lane, root_penetration: &Lane, point: usize) {
         for k in 0..LANES {
-            allowed[k] -= greater(buried[k] - WAY_OUT * self.link[k] * (point - self.carried) as f32, 0.0);
+            allowed[k] -=
+                greater(root_penetration[k] - EXIT_SLOPE * self.link[k] * (point - self.carried) as f32, 0.0);
         }
     }
 }
 
-/// Lays point `i` at its link's length from `before` toward `wanted` and outside the colliders.
+/// Places point `i` at its link's length from `before` in the direction of `wanted`, outside the colliders.
 ///
-/// `was` is where it was at the start of the substep, for friction; `fallback` is the link's direction then.
+/// `was` is its position at the start of the substep, for friction; `fallback` is the direction of the link
+/// then.
 #[inline(always)]
-pub(crate) fn lay_point(
+pub(crate) fn place_point(
     point: usize,
     before: &Lane3,
     wanted: &Lane3,
@@ -214,7 +218,7 @@ pub(crate) fn lay_point(
     near: &Near,
     rules: &ContactRules,
     planes: &mut PlaneRow,
-) -> Laid {
+) -> PlacedPoint {
     let mut placed = ZERO3;
     for k in 0..LANES {
         let from = at(before, k);
@@ -223,14 +227,14 @@ pub(crate) fn lay_point(
     }
     let free = placed;
     if near.active.is_empty() && near.field.is_none() {
-        return Laid { placed, free, touched: false };
+        return PlacedPoint { placed, free, touched: false };
     }
     let mut touched = false;
-    for round in 0..ROUNDS {
-        let rules = if round < TIGHT { *rules } else { rules.bare() };
-        let enough = if round == 0 { 0.0 } else { CLOSE_ENOUGH };
+    for iteration in 0..ITERATIONS {
+        let rules = if iteration < BARE_FROM { *rules } else { rules.bare() };
+        let enough = if iteration == 0 { 0.0 } else { TOLERANCE };
         let mut pushed =
-            push_out_of_field(point, before, was, length, near, &rules, round, planes, &mut placed);
+            push_out_of_field(point, before, was, length, near, &rules, iteration, planes, &mut placed);
         let (min, max) = bounds(&placed);
         for n in near.boxes.near(min, max, rules.reach()) {
             let mover = &near.shapes[near.active[n] as usize];
@@ -251,7 +255,7 @@ pub(crate) fn lay_point(
                 continue;
             }
             pushed = true;
-            let friction = if round == 0 { rules.friction } else { 0.0 };
+            let friction = if iteration == 0 { rules.friction } else { 0.0 };
             for k in 0..LANES {
                 let depth = allowed[k] - nearest.distance[k];
                 let (p, from, l) = (at(&placed, k), at(before, k), length[k]);
@@ -267,20 +271,20 @@ pub(crate) fn lay_point(
         }
         touched = true;
     }
-    Laid { placed, free, touched }
+    PlacedPoint { placed, free, touched }
 }
 
-/// What [`lay_point`] has made of a row of points.
+/// The result of [`place_point`] for a row of points.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Laid {
+pub(crate) struct PlacedPoint {
     pub(crate) placed: Lane3,
-    /// Where it would have laid them if nothing were in the way.
+    /// The positions without any obstacle.
     pub(crate) free: Lane3,
-    /// Whether anything was; otherwise all of them are outside.
+    /// Whether any lane was pushed; if not, all are outside.
     pub(crate) touched: bool,
 }
 
-/// Pushes the lanes of a point out of the field; whether there was anything to push.
+/// Pushes the lanes of a point out of the field; returns whether any was inside.
 #[inline(always)]
 fn push_out_of_field(
     point: usize,
@@ -289,33 +293,33 @@ fn push_out_of_field(
     length: &Lane,
     near: &Near,
     rules: &ContactRules,
-    round: usize,
+    iteration: usize,
     planes: &mut PlaneRow,
     placed: &mut Lane3,
 ) -> bool {
     let Some(field) = &near.field else { return false };
     let Some(row) = field.row(placed, rules.reach(), planes) else { return false };
     let allowed = near.allowed_by_field(field, &row, point, rules);
-    let enough = if round == 0 { 0.0 } else { CLOSE_ENOUGH };
+    let enough = if iteration == 0 { 0.0 } else { TOLERANCE };
     if !any_deeper(&allowed, &row.distance, enough) {
         return false;
     }
-    let friction = if round == 0 { rules.friction } else { 0.0 };
+    let friction = if iteration == 0 { rules.friction } else { 0.0 };
     for k in 0..LANES {
         let depth = allowed[k] - row.distance[k];
         let (p, from, l) = (at(placed, k), at(before, k), length[k]);
-        // The sphere that stands for the surface.
-        let centre = p - at(&row.normal, k) * (row.distance[k] + FLAT);
+        // The sphere that approximates the surface.
+        let centre = p - at(&row.normal, k) * (row.distance[k] + CONTACT_RADIUS);
         let velocity = row.velocity(k, p, field.substep);
         let slid = slide(p, at(was, k), centre, depth, friction, velocity, rules.h);
-        let out = push_out(from, slid, l, centre, FLAT + allowed[k]);
+        let out = push_out(from, slid, l, centre, CONTACT_RADIUS + allowed[k]);
         let touching = depth > 0.0;
         put(placed, k, choose(touching, out, p));
     }
     true
 }
 
-/// Whether any lane is nearer than allowed by more than `enough`, metres.
+/// Whether any lane is closer than allowed by more than `enough`, metres.
 #[inline(always)]
 fn any_deeper(allowed: &Lane, distance: &Lane, enough: f32) -> bool {
     let mut any = false;
@@ -325,8 +329,8 @@ fn any_deeper(allowed: &Lane, distance: &Lane, enough: f32) -> bool {
     any
 }
 
-/// Coulomb friction: the velocity along the surface, relative to it, loses `friction` times the velocity that
-/// the push-out takes away across it, and at most all.
+/// Coulomb friction: the velocity along the surface, relative to the surface, loses `friction` times the
+/// velocity that the push-out removes perpendicular to it, and at most all of itself.
 #[inline(always)]
 fn slide(p: Vec3, was: Vec3, centre: Vec3, depth: f32, friction: f32, surface: Vec3, h: f32) -> Vec3 {
     let (normal, _) = direction_or(p - centre, Vec3::Y);
@@ -337,11 +341,11 @@ fn slide(p: Vec3, was: Vec3, centre: Vec3, depth: f32, friction: f32, surface: V
     p - tangential * lost
 }
 
-/// The point at distance `length` from `from` and on the sphere, nearest in direction to `p`.
+/// The point on the sphere at distance `length` from `from` whose direction is closest to that of `p`.
 ///
 /// With `D = |c - from|` and `e = (c - from) / D` the angle at `from` in the triangle of the three lengths is
-/// `cos g = (l^2 + D^2 - R^2) / (2 l D)`. Where the triangle does not close, `from` is so deep inside that the
-/// link cannot reach the surface, and it points straight out.
+/// `cos g = (l^2 + D^2 - R^2) / (2 l D)`. Where the triangle does not close, `from` is so deep inside that
+/// the link cannot reach the surface, and it points straight out.
 #[inline(always)]
 pub(crate) fn push_out(from: Vec3, p: Vec3, length: f32, centre: Vec3, radius: f32) -> Vec3 {
     let to_centre = centre - from;
@@ -358,24 +362,24 @@ pub(crate) fn push_out(from: Vec3, p: Vec3, length: f32, centre: Vec3, radius: f
     from + turned * length
 }
 
-/// How deep lanes are inside what they may touch.
+/// Penetration of a row of points.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Depths {
-    /// The deepest of each lane, metres; 0 outside.
+    /// The largest penetration in each lane, metres; 0 outside.
     pub(crate) depth: Lane,
-    /// The collider of that depth; [`FIELD`] for the field.
+    /// The collider with that penetration; [`FIELD`] for the field.
     pub(crate) collider: [u32; LANES],
-    /// Whether it is inside the field, and nobody knows how deep.
-    pub(crate) unsure: [bool; LANES],
+    /// Whether the lane is inside the field at an unknown depth.
+    pub(crate) is_unsure: [bool; LANES],
 }
 
-/// Stands for the field among colliders.
+/// Stands for the field in place of a collider index.
 pub(crate) const FIELD: u32 = u32::MAX;
 
-/// What is less deep in a guess than this is taken for outside, metres.
-const UNSURE_FROM: f32 = 1e-3;
+/// Guessed penetrations below this count as outside, metres.
+const LEAST_GUESSED_DEPTH: f32 = 1e-3;
 
-/// How deep the lanes of point `i` are inside what they may touch.
+/// Penetration of the lanes of point `i` into the colliders and the field.
 #[inline(always)]
 pub(crate) fn penetration(
     point: usize,
@@ -384,18 +388,18 @@ pub(crate) fn penetration(
     rules: &ContactRules,
     planes: &mut PlaneRow,
 ) -> Depths {
-    let mut worst = Depths { depth: ZERO, collider: [FIELD; LANES], unsure: [false; LANES] };
-    // What counts is the surface, or the distance at rest where that is less.
+    let mut worst = Depths { depth: ZERO, collider: [FIELD; LANES], is_unsure: [false; LANES] };
+    // Measured against the surface, or against the rest distance where that is smaller.
     let bare = rules.bare();
     if let Some(field) = &near.field
         && let Some(row) = field.row(placed, rules.reach(), planes)
     {
         let allowed = near.allowed_by_field(field, &row, point, &bare);
         for k in 0..LANES {
-            // The depth in what is a guess is one too, and tells nothing.
+            // The depth inside guessed skin is itself a guess.
             let depth = greater(0.0, allowed[k] - row.distance[k]);
             worst.depth[k] = depth * (1.0 - row.guess[k]);
-            worst.unsure[k] = row.guess[k] > 0.0 && depth > UNSURE_FROM;
+            worst.is_unsure[k] = row.guess[k] > 0.0 && depth > LEAST_GUESSED_DEPTH;
         }
     }
     let (min, max) = bounds(placed);

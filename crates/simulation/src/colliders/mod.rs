@@ -1,4 +1,4 @@
-//! Colliders over one step: how they lie at rest, and where they are at each substep.
+//! Colliders during one step: their arrangement at rest, and their places at each substep.
 
 pub(crate) mod boxes;
 pub(crate) mod contact;
@@ -14,17 +14,17 @@ use shape::Shape;
 /// A collider at one substep, in the step's working space.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MovingShape {
-    /// `None` where the collider is not usable.
+    /// `None` if the collider is not usable.
     pub(crate) shape: Option<Shape>,
     pub(crate) min: Vec3,
     pub(crate) max: Vec3,
     /// Velocity of the surface at a point, metres per second.
     pub(crate) velocity_at: Map,
-    /// Whether it moves rigidly with the head, so that layers above it keep their order.
+    /// Whether it moves rigidly with the head, so that layering applies above it.
     pub(crate) on_head: bool,
 }
 
-/// The colliders as they lie around the head in the rest pose.
+/// The colliders around the head in the rest pose.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RestColliders {
     /// In head space.
@@ -33,12 +33,13 @@ pub(crate) struct RestColliders {
 }
 
 impl RestColliders {
-    /// Finds the arrangement at rest from the arrangement now.
+    /// Finds the arrangement at rest from the current arrangement.
     ///
-    /// At rest the head is `head_at_rest` from the world's origin, unturned, where that is known: a field of the body
-    /// knows it. Else a collider of the head turns with it, so that the rest pose's head is at `world_from_rest^-1 *
-    /// world_from_head` of that collider, a pure translation. From there all others are placed. Where nothing says where
-    /// the head was, the arrangement now is taken for the one at rest.
+    /// At rest the head is at `head_at_rest` in the world, without rotation, if the field of the body
+    /// provides that position. Otherwise a collider that moves with the head gives it: the head at rest is at
+    /// `world_from_rest^-1 * world_from_head` of that collider, which must be a pure translation. All other
+    /// colliders follow from there. If neither is available, the current arrangement is used as the rest
+    /// arrangement.
     pub(crate) fn find(
         &mut self,
         world_from_head: Affine3A,
@@ -71,13 +72,13 @@ impl RestColliders {
     }
 }
 
-/// Whether `m` neither turns nor scales, within what single precision makes of a chain of joints.
+/// Whether `m` neither rotates nor scales, within the single-precision error of a chain of joints.
 fn is_translation(m: &Affine3A) -> bool {
     m.is_finite() && m.matrix3.abs_diff_eq(glam::Mat3A::IDENTITY, 2e-3)
 }
 
-/// Fills `out` with the colliders a fraction `t` of the way from `before` to `now`, in the space whose origin
-/// is at `origin`. `head` carries head space to that space at the same moment.
+/// Fills `out` with the colliders interpolated by `t` from `before` to `now`, in the space whose origin is at
+/// `origin`. `world_from_head` is the head at the same time.
 pub(crate) fn place(
     rest: &RestColliders,
     before: &[PlacedCollider],
@@ -104,7 +105,7 @@ pub(crate) fn place(
     }
 }
 
-/// The map from a point to the velocity of a collider's surface there.
+/// Maps a point to the velocity of the collider's surface there.
 fn surface_velocity(was: &PlacedCollider, now: &PlacedCollider, dt_secs: f32, origin: Vec3) -> Map {
     let before_from_now = was.world_from_rest * now.world_from_rest.inverse();
     if !before_from_now.is_finite() || dt_secs <= 0.0 {
@@ -116,7 +117,7 @@ fn surface_velocity(was: &PlacedCollider, now: &PlacedCollider, dt_secs: f32, or
     Map { turn: (Mat3::IDENTITY - turn) * rate, shift: still * rate }
 }
 
-/// A shape seen in another space; `m` is rigid.
+/// A shape transformed by the rigid map `m`.
 pub(crate) fn transformed(shape: &ColliderShape, m: &Affine3A) -> ColliderShape {
     match *shape {
         ColliderShape::Capsule { a, b, radius_a, radius_b } => {
@@ -126,7 +127,7 @@ pub(crate) fn transformed(shape: &ColliderShape, m: &Affine3A) -> ColliderShape 
     }
 }
 
-/// The shape between two moments of the same collider.
+/// Interpolates the shape of a collider between two times.
 fn between(was: &ColliderShape, now: &ColliderShape, t: f32) -> ColliderShape {
     match (*was, *now) {
         (
@@ -166,7 +167,7 @@ mod tests {
         let head_at_rest = Vec3::new(0.0, 1.5, 0.02);
         let skull = sphere(Vec3::new(0.0, 1.58, 0.02), 0.1);
         let shoulder = sphere(Vec3::new(0.18, 1.35, 0.0), 0.06);
-        // A pose in which the head has turned and nodded, and the arm has gone elsewhere.
+        // A pose in which the head has turned and nodded, and the arm has moved.
         let head_now = Affine3A::from_rotation_translation(
             Quat::from_euler(glam::EulerRot::XYZ, 0.4, -1.0, 0.2),
             Vec3::new(1.0, 1.2, -0.5),
@@ -186,23 +187,23 @@ mod tests {
         // Two rotations and their inverses in f32 over a metre.
         assert!((centre(&rest.shapes[0]) - (Vec3::new(0.18, 1.35, 0.0) - head_at_rest)).length() < 1e-5);
         assert!((centre(&rest.shapes[1]) - Vec3::new(0.0, 0.08, 0.0)).length() < 1e-5);
-        // Where a field stands for the skull, it says where the head was.
+        // A field that replaces the skull provides the position of the head.
         let mut arm_alone = RestColliders::default();
         arm_alone.find(head_now, &placed[..1], Some(head_at_rest));
         assert!((centre(&arm_alone.shapes[0]) - centre(&rest.shapes[0])).length() < 1e-5);
-        // The control: an arm alone does not know.
+        // Control: an arm alone does not determine it.
         arm_alone.find(head_now, &placed[..1], None);
         assert!((centre(&arm_alone.shapes[0]) - centre(&rest.shapes[0])).length() > 0.1);
     }
 
     #[test]
-    fn a_turning_surface_moves_with_its_rim() {
+    fn a_rotating_surface_has_the_velocity_of_its_rim() {
         let at = |angle: f32| PlacedCollider {
             shape: sphere(Vec3::ZERO, 1.0),
             world_from_rest: Affine3A::from_rotation_y(angle),
         };
         let v = surface_velocity(&at(0.0), &at(0.001), 0.001, Vec3::new(5.0, 0.0, 0.0));
-        // One radian a second: the rim at +X moves toward -Z at 1 m/s.
+        // One radian per second: the rim at +X moves toward -Z at 1 m/s.
         let rim = v.apply(Vec3::X - Vec3::new(5.0, 0.0, 0.0));
         assert!((rim - Vec3::NEG_Z).length() < 2e-3, "{rim}");
     }

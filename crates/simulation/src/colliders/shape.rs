@@ -1,6 +1,7 @@
-//! The nearest point of a collider, for a row of points at once.
+//! Nearest points on colliders, for a row of points at once.
 //!
-//! Every surface answers with a sphere that touches it at the nearest point, so one push-out serves all.
+//! Every query returns a sphere that touches the surface at the nearest point, so one push-out serves all
+//! shapes.
 
 use glam::Vec3;
 use lovelock_motion::ColliderShape;
@@ -15,7 +16,7 @@ pub(crate) enum Shape {
         a: Vec3,
         axis: Vec3,
         inv_axis_squared: f32,
-        /// Tangent of the cone's half angle over the axis' length: the surface's normal leans by it.
+        /// Tangent of the cone's half angle divided by the axis' length: how far the surface normal contact_push.
         lean: f32,
         radius_a: f32,
         radius_change: f32,
@@ -25,13 +26,13 @@ pub(crate) enum Shape {
         centre: Vec3,
         axes: [Vec3; 3],
         radii: Vec3,
-        /// The axes over their radii: what takes it to the unit sphere.
+        /// The axes divided by their radii: the map to the unit sphere.
         to_unit: [Vec3; 3],
         inv_least_radius: f32,
     },
 }
 
-/// What a row of points learns from a collider.
+/// The nearest surface for a row of points.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Nearest {
     /// Centre of the touching sphere.
@@ -42,15 +43,16 @@ pub(crate) struct Nearest {
     pub(crate) distance: Lane,
 }
 
-/// Rounds of Newton's iteration for the nearest point of an ellipsoid. It converges quadratically from the
-/// surface, where hair is; far away only the sign matters.
+/// Newton iterations for the nearest point of an ellipsoid. They converge quadratically near the surface,
+/// where hair is; far away only the sign matters.
 const ELLIPSOID_ROUNDS: usize = 4;
 
-/// By so much what is within reach may seem to be further away, metres: what lies on a surface must not be taken for far.
+/// Tolerance of the conservative tests, metres, so that points on a surface never count as beyond it.
 const ROUNDING: f32 = 1e-5;
 
 impl Shape {
-    /// Prepares `shape`; one that is not finite or has no size gives `None`, and then nothing touches it.
+    /// Prepares `shape`. A shape that is not finite or has no size gives `None`, and nothing collides with
+    /// it.
     pub(crate) fn new(shape: &ColliderShape) -> Option<Self> {
         match *shape {
             ColliderShape::Capsule { a, b, radius_a, radius_b } => {
@@ -63,7 +65,7 @@ impl Shape {
                 let length = (b - a).length();
                 let change = radius_b - radius_a;
                 if length <= change.abs() * 1.0001 + 1e-6 {
-                    // One sphere holds the other.
+                    // One sphere contains the other.
                     let (a, radius_a) = if change > 0.0 { (b, radius_b) } else { (a, radius_a) };
                     return Some(Self::Capsule {
                         a,
@@ -99,7 +101,7 @@ impl Shape {
         }
     }
 
-    /// The box around it.
+    /// The bounding box.
     pub(crate) fn bounds(&self) -> (Vec3, Vec3) {
         match *self {
             Self::Capsule { a, axis, radius_a, radius_change, .. } => {
@@ -116,13 +118,14 @@ impl Shape {
         }
     }
 
-    /// Whether every lane of `points` is surely further away than `reach`: cheaper than to ask how far.
+    /// Whether every lane of `points` is certainly further away than `reach`; cheaper than computing the
+    /// distance.
     #[inline(always)]
     pub(crate) fn surely_beyond(&self, points: &Lane3, reach: f32) -> bool {
-        // What is not a number is far.
+        // NaN counts as far.
         let mut squared = ZERO;
         let within = match *self {
-            // As if it were as wide all along as at its wider end.
+            // As if the whole capsule were as wide as its wider end.
             Self::Capsule { a, axis, inv_axis_squared, radius_a, radius_change, .. } => {
                 for k in 0..LANES {
                     let q = at(points, k) - a;
@@ -131,8 +134,8 @@ impl Shape {
                 }
                 radius_a + greater(radius_change, 0.0) + reach + ROUNDING
             }
-            // Seen from outside, the ellipsoid grown by a factor of 1 + reach / (smallest radius) holds all within reach, but
-            // for some 2e-8 m of rounding.
+            // For points outside, the ellipsoid scaled by 1 + reach / (smallest radius) contains everything
+            // within reach, up to 2e-8 m of rounding.
             Self::Ellipsoid { centre, to_unit, inv_least_radius, .. } => {
                 for k in 0..LANES {
                     let q = in_units(at(points, k) - centre, &to_unit);
@@ -144,7 +147,7 @@ impl Shape {
         fold(squared, lesser) > within * within
     }
 
-    /// The same for a reach of each lane's own, where that is cheaper than to ask how far: next to a capsule the answer is no.
+    /// The same with a reach per lane. Only ellipsoids have a cheap test; for capsules it returns false.
     #[inline(always)]
     pub(crate) fn each_surely_beyond(&self, points: &Lane3, reach: &Lane) -> bool {
         let Self::Ellipsoid { centre, to_unit, inv_least_radius, .. } = *self else { return false };
@@ -152,14 +155,14 @@ impl Shape {
         for k in 0..LANES {
             let within = 1.0 + (greater(reach[k], 0.0) + ROUNDING) * inv_least_radius;
             let squared = in_units(at(points, k) - centre, &to_unit).length_squared();
-            // What is not a number is far.
+            // NaN counts as far.
             beyond &= (squared > within * within) | squared.is_nan();
         }
         beyond
     }
 
     /// The nearest point for every lane of `points`. `along` is the direction in which a push-out may move
-    /// each point; the touching sphere of an ellipsoid is curved as its surface is in that direction.
+    /// each point; the touching sphere of an ellipsoid has the curvature of its surface in that direction.
     #[inline(always)]
     pub(crate) fn nearest(&self, points: &Lane3, along: &Lane3) -> Nearest {
         let mut out = Nearest { centre: ZERO3, radius: ZERO, distance: ZERO };
@@ -254,7 +257,7 @@ mod tests {
 
     #[test]
     fn a_tapered_capsule_is_the_hull_of_its_spheres() {
-        // The distance to the hull is the smallest distance to any of the spheres between its ends.
+        // The distance to the hull is the smallest distance to any sphere between its ends.
         let c = capsule(0.15, 0.05);
         for p in [Vec3::new(0.5, 0.2, 0.1), Vec3::new(0.2, 0.45, 0.0), Vec3::new(0.0, -0.3, 0.2)] {
             let brute = (0..=10_000)
@@ -285,8 +288,8 @@ mod tests {
     }
 
     #[test]
-    fn an_ellipsoid_is_met_along_its_normal() {
-        // Points at a known distance: from the surface along its normal.
+    fn ellipsoid_distances_are_along_the_normal() {
+        // Points at a known distance from the surface, along its normal.
         let Shape::Ellipsoid { centre, axes, radii, .. } = ellipsoid() else { unreachable!() };
         for i in 0..200 {
             let (u, v) = (i as f32 * 0.37, i as f32 * 0.73);
@@ -296,7 +299,7 @@ mod tests {
                 let q = unit * radii + normal * distance;
                 let p = centre + axes[0] * q.x + axes[1] * q.y + axes[2] * q.z;
                 let found = ellipsoid().distance(p);
-                assert!((found - distance).abs() < 1e-5, "{found} where {distance} is right");
+                assert!((found - distance).abs() < 1e-5, "found {found}, expected {distance}");
             }
         }
     }
@@ -307,7 +310,7 @@ mod tests {
         Vec3::new(u.sin() * v.cos(), u.sin() * v.sin(), u.cos())
     }
 
-    /// A row of which lane `i`, counted round, is at `p`; the others are far away, or nowhere.
+    /// A row with lane `i` (modulo the number of lanes) at `p`; the other lanes are far away or NaN.
     fn alone(p: Vec3, i: usize) -> Lane3 {
         let mut row = crate::lanes::splat3(if i.is_multiple_of(2) { Vec3::splat(9.0) } else { Vec3::NAN });
         put(&mut row, i % LANES, p);
@@ -315,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_surely_beyond_reach_is_so() {
+    fn the_conservative_test_never_misses_a_point_within_reach() {
         let middle = [Vec3::new(0.0, 0.1, 0.02), Vec3::new(0.1, 0.25, 0.0), Vec3::new(0.1, 0.25, 0.0)];
         let shapes = [(ellipsoid(), 0.012), (capsule(0.1, 0.07), 0.003), (capsule(0.07, 0.1), 0.003)];
         for ((shape, reach), middle) in shapes.into_iter().zip(middle) {
@@ -328,21 +331,21 @@ mod tests {
                 in_vain += usize::from(!beyond && !within);
             }
             assert!(sure > 500 && near > 500, "{sure} beyond, {near} within: too few to show anything");
-            // Measured: 31, and 291 and 276 by the taper of the capsules.
-            assert!(in_vain < 320, "{in_vain} of 3000 are asked in vain");
+            // Measured: 31, and 291 and 276 because of the taper of the capsules.
+            assert!(in_vain < 320, "{in_vain} of 3000 are tested in vain");
         }
-        // What lies on the surface, as contacts leave it, is not beyond it.
+        // Points on the surface, where contacts leave them, are not beyond it.
         let on = Vec3::new(0.1 + 0.1 + 0.003 + 1e-6, 0.0, 0.0);
         assert!(!capsule(0.1, 0.07).surely_beyond(&alone(on, 3), 0.003));
     }
 
     #[test]
-    fn every_lane_has_a_reach_of_its_own() {
+    fn the_test_per_lane_never_misses_a_point_within_reach() {
         let e = ellipsoid();
         let (mut sure, mut near) = (0, 0);
         for i in 0..3000 {
             let p = Vec3::new(0.0, 0.1, 0.02) + direction(i) * (0.07 + 0.000_03 * i as f32);
-            // All lanes are there, and all but one are content with next to nothing.
+            // All lanes are at the same place; all but one have a negative reach.
             let (odd, reach) = (i % LANES, 0.000_01 * (i % 2000) as f32 - 0.002);
             let mut reaches = Lane::splat(-1.0);
             reaches[odd] = reach;
@@ -352,20 +355,20 @@ mod tests {
             (sure, near) = (sure + usize::from(beyond), near + usize::from(distance < reach));
         }
         assert!(sure > 500 && near > 500, "{sure} beyond, {near} within: too few to show anything");
-        // What lies within reach but for rounding, at the end of the shortest axis, where nothing is to spare.
+        // Points within reach up to rounding, at the end of the shortest axis, where the bound is tight.
         let Shape::Ellipsoid { centre, axes, radii, .. } = e else { unreachable!() };
         let at_end = |further: f32| centre + axes[0] * (radii.x + 0.004 + further);
         assert!(!e.each_surely_beyond(&alone(at_end(1e-6), 5), &Lane::splat(0.004)));
         assert!(e.each_surely_beyond(&alone(at_end(1e-4), 5), &Lane::splat(0.004)));
         assert!(!capsule(0.1, 0.1).each_surely_beyond(&crate::lanes::splat3(Vec3::ONE), &ZERO));
-        assert!(e.each_surely_beyond(&crate::lanes::splat3(Vec3::NAN), &ZERO), "it is nowhere");
+        assert!(e.each_surely_beyond(&crate::lanes::splat3(Vec3::NAN), &ZERO), "NaN counts as far");
     }
 
     #[test]
     fn the_centre_of_an_ellipsoid_is_inside() {
         assert!(
             ellipsoid().distance(Vec3::new(0.0, 0.1, 0.02)) < 0.0 || {
-                // Exactly at the centre every direction is as near; only not-a-number would be wrong.
+                // At the exact centre every direction is equally near; only NaN would be wrong.
                 ellipsoid().distance(Vec3::new(0.0, 0.1, 0.02)).is_finite()
             }
         );
@@ -373,7 +376,7 @@ mod tests {
     }
 
     #[test]
-    fn shapes_without_size_or_with_nonsense_are_refused() {
+    fn shapes_without_size_or_with_nan_are_refused() {
         let nan = Vec3::new(f32::NAN, 0.0, 0.0);
         assert!(
             Shape::new(&ColliderShape::Capsule { a: nan, b: Vec3::X, radius_a: 0.1, radius_b: 0.1 })

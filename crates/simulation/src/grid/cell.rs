@@ -1,6 +1,6 @@
-//! What lies in a cell of the density grid, and the cells that one task fills.
+//! The contents of a cell of the density grid, and the cells that one task fills.
 
-// Integers of numbers that are known to fit.
+// `unsafe` converts floats that are known to fit to integers.
 #![allow(unsafe_code)]
 
 use rayon::prelude::*;
@@ -8,20 +8,20 @@ use rayon::prelude::*;
 use super::SIDE;
 use crate::lanes::greater;
 
-/// Numbers of a cell: mass, momentum along each axis, sums of directions, what fills a line of the cache, and two that hair
-/// adds nothing to.
+/// Numbers per cell: mass, momentum along each axis, sums of directions, padding to a cache line, and two
+/// that are not sums over hair.
 pub(super) const NUMBERS: usize = 16;
 
-/// Those of them that hair adds to.
+/// The number of sums.
 pub(super) const PARTS: usize = 10;
 
-/// Where a cell keeps the bits of one over its density at rest.
+/// Index of the bits of the inverse rest density.
 const INV_REST: usize = NUMBERS - 1;
 
-/// Where a cell keeps the bits of its excess, once it has been counted.
+/// Index of the bits of the excess, valid after counting.
 const EXCESS: usize = NUMBERS - 2;
 
-/// What lies in a cell, in fixed point.
+/// The contents of a cell, in fixed point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(align(64))]
 pub(super) struct Cell(pub(super) [i32; NUMBERS]);
@@ -34,7 +34,7 @@ impl Cell {
         self.0[0]
     }
 
-    /// One over the density at rest, where there is some, and over a typical one elsewhere.
+    /// Inverse of the rest density, or of a typical one where there is no hair at rest.
     #[inline(always)]
     pub(super) fn inv_rest(&self) -> f32 {
         f32::from_bits(self.0[INV_REST] as u32)
@@ -44,39 +44,40 @@ impl Cell {
         self.0[INV_REST] = inv.to_bits() as i32;
     }
 
-    /// By how much the cell is denser than `1 / inv_threshold` times what it is at rest, as a part of that; 0 where it is not.
+    /// Computes and stores the excess: how much denser the cell is than its threshold, relative to the
+    /// threshold; 0 below it.
     #[inline(always)]
-    fn learn_excess(&mut self, inv_threshold: f32) -> f32 {
+    fn update_excess(&mut self, inv_threshold: f32) -> f32 {
         let excess = greater(0.0, self.mass() as f32 * self.inv_rest() * inv_threshold - 1.0);
         self.0[EXCESS] = excess.to_bits() as i32;
         excess
     }
 
-    /// What [`Cells::gather`] has found; 0 where nothing has been counted since the cell was emptied.
+    /// The excess stored by [`Cells::gather`]; 0 if nothing has been counted since the cell was cleared.
     #[inline(always)]
     pub(super) fn excess(&self) -> f32 {
         f32::from_bits(self.0[EXCESS] as u32)
     }
 
-    /// Adds `weight` times `parts` to what [`Held`] keeps of the cell.
+    /// Adds `weight` times `parts` to the contents, which `mask` keeps or clears.
     ///
     /// # Safety
     ///
-    /// The products are numbers that an `i32` holds.
+    /// The products must be numbers that fit an `i32`.
     #[inline(always)]
-    pub(super) unsafe fn add(&mut self, held: Held, weight: f32, parts: &[f32; NUMBERS]) {
+    pub(super) unsafe fn add(&mut self, mask: KeepMask, weight: f32, parts: &[f32; NUMBERS]) {
         let mut sum = *self;
         for (sum, part) in sum.0.iter_mut().zip(parts).take(PARTS) {
-            // SAFETY: as asked for.
-            *sum = (*sum & held.0).wrapping_add(unsafe { (weight * part).to_int_unchecked() });
+            // SAFETY: guaranteed by the caller.
+            *sum = (*sum & mask.0).wrapping_add(unsafe { (weight * part).to_int_unchecked() });
         }
         *self = sum;
     }
 
-    /// Adds what another grid has of the same cell to what [`Held`] keeps of this one.
-    fn plus(&mut self, held: Held, other: &Self) {
+    /// Adds the same cell of another grid to the contents, which `mask` keeps or clears.
+    fn plus(&mut self, mask: KeepMask, other: &Self) {
         for (sum, part) in self.0.iter_mut().zip(&other.0).take(PARTS) {
-            *sum = (*sum & held.0).wrapping_add(*part);
+            *sum = (*sum & mask.0).wrapping_add(*part);
         }
     }
 
@@ -85,23 +86,23 @@ impl Cell {
     }
 }
 
-/// Whether a cell holds hair of this time already: all bits are set where it does, and none where what is in it was left
-/// there some earlier time.
+/// A mask over the contents of a cell: all bits set if the cell already holds hair of this deposit, none if
+/// its contents are left over from an earlier one.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Held(i32);
+pub(super) struct KeepMask(i32);
 
-impl Held {
-    /// By the bit `x` of the row of the cell.
+impl KeepMask {
+    /// From bit `x` of the cell's row.
     #[inline(always)]
     fn of(mask: u64, x: usize) -> Self {
         Self(-((mask >> x & 1) as i32))
     }
 }
 
-/// Cells of as many layers as one task counts.
+/// Number of cells that one task counts.
 const CHUNK: usize = 8 * (SIDE * SIDE) as usize;
 
-/// Cells of a row along x.
+/// Cells per row along x.
 const ROW: usize = SIDE as usize;
 
 const _: () = assert!(ROW <= 64, "a row has a bit for each of its cells");
@@ -110,24 +111,24 @@ const _: () = assert!(ROW <= 64, "a row has a bit for each of its cells");
 #[derive(Clone, Debug)]
 pub(super) struct Cells {
     pub(super) each: Vec<Cell>,
-    /// Which cells of each row along x may hold hair, a bit each. What is in the others is old and does not count;
-    /// [`Cells::gather`] empties it in the grid that it adds to.
+    /// One bit per cell of each row along x: set if the cell may hold hair. Other cells hold outdated
+    /// contents, which [`Cells::gather`] clears in the grid that it sums into.
     masks: Vec<u64>,
-    /// Which did the last time.
+    /// The masks of the previous deposit.
     before: Vec<u64>,
 }
 
-/// What is counted of cells.
+/// Counts over cells.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Tally {
+pub(super) struct Counts {
     /// Cells that may hold hair.
     pub(super) held: u32,
     pub(super) over_dense: u32,
-    /// Masses, none counted for more than that of a full cell.
+    /// Sum of the masses, each clamped to the mass of a full cell.
     pub(super) fullness: i64,
 }
 
-impl Tally {
+impl Counts {
     pub(super) fn plus(self, other: Self) -> Self {
         Self {
             held: self.held + other.held,
@@ -146,39 +147,41 @@ impl Cells {
         }
     }
 
-    /// No cell holds hair any more. What was in them stays until hair is put there again or all is gathered.
+    /// Starts a deposit: marks all cells as empty. Outdated contents stay until hair is added or everything
+    /// is gathered.
     pub(super) fn begin(&mut self) {
         std::mem::swap(&mut self.masks, &mut self.before);
         self.masks.fill(0);
     }
 
-    /// Says that the eight cells whose first is at `base` may hold hair; and which of them did, in the order of
-    /// [`super::OFFSETS`].
+    /// Marks the eight cells whose first is at `base` as holding hair, and returns masks of which did so
+    /// before, in the order of [`super::OFFSETS`].
     #[inline(always)]
-    pub(super) fn mark(&mut self, base: usize) -> [Held; 8] {
+    pub(super) fn mark(&mut self, base: usize) -> [KeepMask; 8] {
         let (row, x) = (base / ROW, base % ROW);
-        let mut held = [Held(0); 8];
+        let mut held = [KeepMask(0); 8];
         for (pair, row) in
             held.as_chunks_mut::<2>().0.iter_mut().zip([row, row + 1, row + ROW, row + ROW + 1])
         {
-            *pair = [Held::of(self.masks[row], x), Held::of(self.masks[row], x + 1)];
+            *pair = [KeepMask::of(self.masks[row], x), KeepMask::of(self.masks[row], x + 1)];
             self.masks[row] |= 0b11 << x;
         }
         held
     }
 
-    /// Adds what `others` hold, empties what holds nothing any more, counts, and leaves in each cell its excess; `most` is the
-    /// mass of a full cell, and what is over-dense has more than `1 / inv_threshold` of its density at rest.
-    pub(super) fn gather(&mut self, others: &[Self], most: i32, inv_threshold: f32) -> Tally {
+    /// Adds the contents of `others`, clears cells that have become empty, counts, and stores the excess in
+    /// each cell. `most` is the mass of a full cell; a cell is over-dense above `1 / inv_threshold` times its
+    /// rest density.
+    pub(super) fn gather(&mut self, others: &[Self], most: i32, inv_threshold: f32) -> Counts {
         let before = &self.before;
         let chunks = self.each.par_chunks_mut(CHUNK).zip(self.masks.par_chunks_mut(CHUNK / ROW)).enumerate();
-        let tally = |(n, (cells, masks)): (usize, (&mut [Cell], &mut [u64]))| {
-            let mut out = Tally::default();
+        let counts = |(n, (cells, masks)): (usize, (&mut [Cell], &mut [u64]))| {
+            let mut out = Counts::default();
             let rows = masks.iter_mut().zip(cells.as_chunks_mut::<ROW>().0);
             for (row, (mask, cells)) in (n * CHUNK / ROW..).zip(rows) {
                 for other in others {
                     for x in bits(other.masks[row]) {
-                        cells[x].plus(Held::of(*mask, x), &other.each[row * ROW + x]);
+                        cells[x].plus(KeepMask::of(*mask, x), &other.each[row * ROW + x]);
                     }
                     *mask |= other.masks[row];
                 }
@@ -188,17 +191,17 @@ impl Cells {
                 out.held += mask.count_ones();
                 for x in bits(*mask) {
                     let cell = &mut cells[x];
-                    out.over_dense += u32::from(cell.learn_excess(inv_threshold) > 0.0);
+                    out.over_dense += u32::from(cell.update_excess(inv_threshold) > 0.0);
                     out.fullness += i64::from(cell.mass().min(most));
                 }
             }
             out
         };
-        chunks.map(tally).reduce(Tally::default, Tally::plus)
+        chunks.map(counts).reduce(Counts::default, Counts::plus)
     }
 }
 
-/// The places of the bits that are set, lowest first.
+/// The indices of the set bits, lowest first.
 fn bits(mut mask: u64) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
         let place = mask.trailing_zeros();
@@ -212,17 +215,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bits_are_found_from_the_lowest_on() {
+    fn bits_are_found_from_the_lowest() {
         assert_eq!(bits(0).count(), 0);
         assert_eq!(bits(1 | 1 << 5 | 1 << 63).collect::<Vec<_>>(), [0, 5, 63]);
     }
 
     #[test]
-    fn parts_of_a_grid_add_up_and_forget_what_they_held() {
+    fn parts_of_a_grid_add_up_and_drop_outdated_contents() {
         let at = |n: usize| (3 * n * ROW + 5) * ROW + 7;
         let mut parts = [Cells::new(), Cells::new(), Cells::new()];
-        // Which part puts how much into which cell, time after time: cells that go from part to part, that parts share, that
-        // stay, and that nothing is put into any more.
+        // The deposits of each round as (part, cell, mass): cells that move from part to part, that parts
+        // share, that stay, and that receive nothing any more.
         let times: [&[(usize, usize, f32)]; 3] = [
             &[(0, 1, 3.0), (1, 2, 5.0), (2, 2, 7.0), (0, 3, 11.0), (1, 4, 13.0)],
             &[(2, 1, 17.0), (0, 2, 19.0), (0, 3, 23.0), (0, 3, 29.0)],
@@ -238,22 +241,22 @@ mod tests {
             }
             let (all, others) = parts.split_first_mut().expect("three");
             all.each.iter_mut().for_each(|cell| cell.set_inv_rest(0.1));
-            let tally = all.gather(others, i32::MAX, 1.0);
+            let counts = all.gather(others, i32::MAX, 1.0);
             let sum = |cell: usize| puts.iter().filter(|put| put.1 == cell).map(|put| put.2).sum::<f32>();
             for cell in 0..6 {
                 let (found, mass) = (&all.each[at(cell)], sum(cell));
                 assert_eq!((found.mass(), found.0[9]), (mass as i32, 9 * mass as i32), "cell {cell}");
                 assert_eq!(found.excess(), greater(0.0, mass * 0.1 - 1.0), "cell {cell}");
             }
-            assert_eq!(tally.fullness, puts.iter().map(|put| put.2 as i64).sum::<i64>());
+            assert_eq!(counts.fullness, puts.iter().map(|put| put.2 as i64).sum::<i64>());
         }
     }
 
     #[test]
-    fn a_cell_that_is_cleared_still_knows_its_density_at_rest() {
+    fn a_cleared_cell_keeps_its_rest_density() {
         let mut cell = Cell([7; NUMBERS]);
         cell.set_inv_rest(0.25);
-        assert_eq!((cell.learn_excess(1.0), cell.excess()), (0.75, 0.75));
+        assert_eq!((cell.update_excess(1.0), cell.excess()), (0.75, 0.75));
         cell.clear();
         assert_eq!((cell.mass(), cell.inv_rest(), cell.excess()), (0, 0.25, 0.0));
     }

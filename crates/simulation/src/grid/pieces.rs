@@ -1,8 +1,8 @@
-//! How hair is put into the grid: a row of points is placed side by side, and added piece by piece.
-// Calls of functions that ask for features of the processor, made by the macro after it has asked for them; and integers of
-// numbers that are known to fit.
+//! Depositing hair into the grid: a row of points is located at once and added piece by piece.
+// `unsafe` is used by the macro, which calls functions that require CPU features after checking for them, and
+// converts floats that are known to fit to integers.
 #![allow(unsafe_code)]
-// Lazy operators are branches, and loops over lanes with branches stay loops.
+// Lazy operators are branches, and the compiler does not vectorise loops over lanes that branch.
 #![allow(clippy::needless_bitwise_bool)]
 
 use glam::Vec3;
@@ -14,28 +14,28 @@ use super::direction::outer;
 use super::{FASTEST, FULL, Lattice, MOMENTUM, OFFSETS, SIDE};
 use crate::block::Block;
 use crate::lanes::{
-    LANES, Lane, Lane3, Map, ZERO, ZERO3, at, choose, direction_or, greater, lesser, put, row_done,
+    LANES, Lane, Lane3, Map, ZERO, ZERO3, at, choose, direction_or, greater, lesser, put, row_barrier,
     transposed,
 };
 use crate::trilinear::weights;
 
-/// The square of the longest tangent that is one.
+/// Upper limit of the squared length of a tangent.
 const UNIT: f32 = 1.01;
 
-/// Which hair is put into the grid.
+/// Which state of the hair is deposited.
 pub(super) enum Source<'a> {
-    /// The hair at rest, without motion and directions.
+    /// The hair at rest, without velocities and directions.
     Rest,
-    /// The hair as it is.
+    /// The current hair.
     Now {
-        /// To head space.
+        /// Maps positions to head space.
         head_from_last: &'a Map,
-        /// Whether anything heeds directions.
+        /// Whether anything uses directions.
         directed: bool,
     },
 }
 
-/// Unit directions of the hair at a row of points; 0 where it has none.
+/// Unit tangents at a row of points; 0 where there is none.
 #[inline(always)]
 pub(super) fn tangents(block: &Block, i: usize) -> Lane3 {
     between(&block.position[i.saturating_sub(1)], &block.position[(i + 1).min(block.points() - 1)])
@@ -51,7 +51,7 @@ fn between(from: &Lane3, to: &Lane3) -> Lane3 {
     out
 }
 
-/// Every second lane of one of two rows, beginning with the first, and the others of the other.
+/// Takes the even lanes from one row and the odd lanes from another.
 #[inline(always)]
 fn alternate(rows: &[Lane3], even: usize, odd: usize) -> Lane3 {
     let (even, odd) = (rows[even], rows[odd]);
@@ -62,18 +62,18 @@ fn alternate(rows: &[Lane3], even: usize, odd: usize) -> Lane3 {
     out
 }
 
-/// Where a row of points lies in the grid.
+/// Positions of a row of points in the grid.
 pub(super) struct Corners {
-    /// The first of the eight cells around each point.
+    /// Index of the first of the eight cells around each point.
     pub(super) base: [u32; LANES],
-    /// Where it is between them, from 0 to 1 along each axis.
+    /// Position between those cells, 0 to 1 along each axis.
     pub(super) fraction: Lane3,
-    /// Whether it is in the grid at all; if not, it is given the first cell.
+    /// Whether the point is in the grid; if not, it is assigned to the first cell.
     pub(super) inside: [bool; LANES],
 }
 
 impl Corners {
-    /// What each of the eight cells has of each point.
+    /// Weights of the eight cells for each point.
     #[inline(always)]
     pub(super) fn weights(&self) -> [Lane; 8] {
         let mut out = [ZERO; 8];
@@ -87,14 +87,14 @@ impl Corners {
 }
 
 impl Lattice {
-    /// Finds the points `p`, in head space.
+    /// Locates the points `p`, in head space.
     #[inline(always)]
     pub(super) fn corners(&self, p: &Lane3) -> Corners {
         let mut out = Corners { base: [0; LANES], fraction: ZERO3, inside: [true; LANES] };
         let strides = [1, SIDE, SIDE * SIDE];
         for k in 0..LANES {
             let q = (at(p, k) - self.min) / self.cell - 0.5;
-            // Written so that what is not a number is outside.
+            // Written so that NaN is outside.
             let within = |q: f32| q >= 0.0 && q < (SIDE - 1) as f32;
             let inside = within(q.x) & within(q.y) & within(q.z);
             let mut base = 0;
@@ -110,14 +110,15 @@ impl Lattice {
     }
 }
 
-/// Adds to `cells` every `stride`-th point of each guide of `block`, in every second lane half a run further on: where pieces
-/// lie side by side there are no gaps. A cell gets of a unit of mass 1, the velocity in units of the grid, and `t t^T`.
+/// Adds every `stride`-th point of each guide of `block` to `cells`. In every second lane the points are
+/// shifted by half a stride, so that neighbouring guides leave no gaps. Per unit of mass a cell receives 1,
+/// the velocity in units of the grid, and `t t^T`.
 #[inline(always)]
 fn add(lattice: &Lattice, source: &Source, block: &Block, cells: &mut Cells) {
     let Lattice { stride, units, .. } = *lattice;
     let (points, on) = (block.points(), stride / 2);
     let first = 1 + (stride - 1) / 2;
-    // A piece stands for its share of the links, however they divide.
+    // Each piece represents an equal share of the links.
     let share =
         |first: usize| (points - 1) as f32 / (first..points).step_by(stride).count().max(1) as f32 * units;
     let shares = [share(first), share(first + on)];
@@ -143,11 +144,11 @@ fn add(lattice: &Lattice, source: &Source, block: &Block, cells: &mut Cells) {
         let (mut parts, mut masses) = ([ZERO; NUMBERS], ZERO);
         for k in 0..LANES {
             let (t, u) = (at(&t, k), at(&v, k));
-            // Beyond the end of a guide that was cut there is no hair.
+            // There is no hair beyond the end of a guide that was cut.
             let inv_length =
                 if k % 2 == 0 { block.rest.inv_length[i][k] } else { block.rest.inv_length[odd][k] };
             let hair = corners.inside[k] & (inv_length > 0.0) & there[k % 2] & (k < block.used);
-            // What is not a number is none.
+            // Rejects NaN.
             let sound = hair & (t.length_squared() <= UNIT) & !(u.x + u.y + u.z).is_nan();
             let u = u.to_array().map(|u| lesser(greater(u, -FASTEST), FASTEST) * MOMENTUM);
             let directions = outer(t);
@@ -159,7 +160,7 @@ fn add(lattice: &Lattice, source: &Source, block: &Block, cells: &mut Cells) {
                 parts[4 + n][k] = directions[n];
             }
             let mass = block.rest.mean_link[k] * shares[k % 2];
-            // What is not a number, or more than all hair, has no mass.
+            // NaN, or more than all the hair, counts as no mass.
             masses[k] = if sound & (0.0..=FULL).contains(&mass) { mass } else { 0.0 };
         }
         let (weights, parts) = (corners.weights().map(|weight| masses.times(weight)), transposed(&parts));
@@ -168,9 +169,10 @@ fn add(lattice: &Lattice, source: &Source, block: &Block, cells: &mut Cells) {
                 let base = corners.base[k] as usize;
                 let held = cells.mark(base);
                 for ((offset, weight), held) in OFFSETS.into_iter().zip(&weights).zip(held) {
-                    // SAFETY: numbers, and none larger than the mass but for rounding, the mass of all hair being 2^29.
+                    // SAFETY: finite numbers, none larger than the mass up to rounding, and the mass of all
+                    // hair is 2^29.
                     unsafe { cells.each[base + offset].add(held, weight[k], &parts[k]) };
-                    row_done();
+                    row_barrier();
                 }
             }
         }

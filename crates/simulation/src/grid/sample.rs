@@ -1,17 +1,17 @@
-//! What hair learns from the density grid.
+//! The effect of the density grid on hair.
 
 use std::ops::Range;
 
 use glam::{IVec3, Mat3, Vec3};
 
 use super::cell::{NUMBERS, PARTS};
-use super::direction::{crossing, drawn_to, push_across};
+use super::direction::{crossing, friction_target, push_across};
 use super::pieces::tangents;
 use super::{DensityGrid, MOMENTUM, MOST_OF_A_CELL, OFFSETS, SIDE, index};
 use crate::block::Block;
 #[cfg(test)]
 use crate::lanes::splat3;
-use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, put, row_done, transposed};
+use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, put, row_barrier, transposed};
 use crate::settings::RepulsionMode;
 use crate::trilinear::gradient;
 
@@ -25,24 +25,24 @@ pub(crate) struct GridStep<'a> {
     pub(crate) head_from_last: &'a Map,
 }
 
-/// What a row of points learns from the grid, in head space; only lanes that are `found` have hair around.
-struct Learnt {
+/// The grid around a row of points, in head space; only lanes with `found` have hair around them.
+struct RowSample {
     found: [bool; LANES],
-    /// Away from over-dense places, 1/m: to be multiplied by the strength.
+    /// Direction away from over-dense places, 1/m, to be multiplied by the strength.
     push: Lane3,
-    /// Mean velocity of the hair around, metres per second, in the axes that were deposited.
+    /// Mean velocity of the surrounding hair, metres per second, in the axes in which it was deposited.
     mean_velocity: Lane3,
-    /// How much of the hair around crosses the direction that was asked for; 0 where that is heeded by nothing.
+    /// Fraction of the surrounding hair that crosses the given direction; 0 if nothing uses it.
     crossing: Lane,
 }
 
 impl DensityGrid {
-    /// What hair at the points `p` that runs along `t`, both in head space, learns from the grid.
+    /// Samples the grid at the points `p` for hair along `t`, both in head space.
     #[inline(always)]
-    fn learn(&self, p: &Lane3, t: &Lane3) -> Learnt {
+    fn sample_row(&self, p: &Lane3, t: &Lane3) -> RowSample {
         let corners = self.lattice.corners(p);
         let (weights, cells) = (corners.weights(), self.cells());
-        // What lies around each point, lane by lane; what is worked out from it, all lanes at once.
+        // Gathers lane by lane first, so that the arithmetic can run over all lanes at once.
         let (mut around, mut excesses) = ([ZERO; LANES], [ZERO; 8]);
         for k in 0..LANES {
             if !corners.inside[k] {
@@ -55,12 +55,12 @@ impl DensityGrid {
                     *sum += weight * value as f32;
                 }
                 excesses[n][k] = cell.excess();
-                row_done();
+                row_barrier();
             }
             around[k] = Lane(all);
         }
         let sums = transposed(&around);
-        let mut out = Learnt { found: [false; LANES], push: ZERO3, mean_velocity: ZERO3, crossing: ZERO };
+        let mut out = RowSample { found: [false; LANES], push: ZERO3, mean_velocity: ZERO3, crossing: ZERO };
         let mut crowded = [false; LANES];
         for k in 0..LANES {
             let excess: [f32; 8] = std::array::from_fn(|n| excesses[n][k]);
@@ -82,8 +82,8 @@ impl DensityGrid {
         out
     }
 
-    /// The published force: away from the centre of the cell that `p` is in, where that cell is over-dense;
-    /// faded at the centre, where it would be singular, and at the faces, where it would jump.
+    /// The published force: away from the centre of the cell that contains `p`, if that cell is over-dense.
+    /// It is faded at the centre, where it would be singular, and at the faces, where it would jump.
     #[cold]
     fn away_from_centre(&self, p: Vec3) -> Vec3 {
         let cell = ((p - self.lattice.min) / self.lattice.cell)
@@ -96,7 +96,7 @@ impl DensityGrid {
             / (out.length().max(0.1 * self.lattice.cell) * self.lattice.cell))
     }
 
-    /// Adds the grid's part to the forces of a block, whose positions are still those of the last step.
+    /// Adds the forces of the grid to a block whose positions are still those of the last step.
     #[inline(always)]
     pub(crate) fn act(&self, block: &mut Block, step: &GridStep, cohesion: f32) {
         for keep in &mut block.work.keep {
@@ -107,9 +107,9 @@ impl DensityGrid {
         }
         let count = block.points();
         let (mut from, mut to) = (0, 0);
-        let mut row = SampleRow { dv: ZERO3, mean: ZERO3 };
+        let mut row = GridEffect { dv: ZERO3, mean: ZERO3 };
         loop {
-            let next = self.sample_row(block, step, to);
+            let next = self.effect(block, step, to);
             if to > 0 {
                 between(
                     block,
@@ -128,10 +128,10 @@ impl DensityGrid {
     }
 
     #[inline(always)]
-    fn sample_row(&self, block: &Block, step: &GridStep, i: usize) -> SampleRow {
+    fn effect(&self, block: &Block, step: &GridStep, i: usize) -> GridEffect {
         let most = MOST_OF_A_CELL * self.lattice.cell / step.h;
         let turn: Mat3 = step.last_head.turn;
-        // The published force knows no directions.
+        // The published force is isotropic.
         let anisotropy = match self.repulsion.mode {
             RepulsionMode::Pressure => self.repulsion.anisotropy,
             RepulsionMode::Centre => 0.0,
@@ -142,16 +142,16 @@ impl DensityGrid {
             put(&mut p, k, step.head_from_last.apply(at(&here, k)));
             put(&mut along, k, step.head_from_last.rotate(at(&tangent, k)));
         }
-        let learnt = self.learn(&p, &along);
-        let mut out = SampleRow { dv: ZERO3, mean: ZERO3 };
+        let sample = self.sample_row(&p, &along);
+        let mut out = GridEffect { dv: ZERO3, mean: ZERO3 };
         for k in 0..LANES {
             let (t, v) = (at(&tangent, k), at(&velocity, k));
-            let push = push_across(turn * at(&learnt.push, k), t, learnt.crossing[k], anisotropy);
+            let push = push_across(turn * at(&sample.push, k), t, sample.crossing[k], anisotropy);
             let dv = push * (self.repulsion.strength * step.h);
             let size = dv.length_squared();
             let shorter = (dv / size.sqrt()) * most;
-            let mean = drawn_to(at(&learnt.mean_velocity, k), v, t, anisotropy);
-            let (long, found) = (size > most * most, learnt.found[k]);
+            let mean = friction_target(at(&sample.mean_velocity, k), v, t, anisotropy);
+            let (long, found) = (size > most * most, sample.found[k]);
             let pick = |long: bool, a: f32, b: f32| if long { a } else { b };
             for axis in 0..3 {
                 let dv = pick(long, shorter[axis], dv[axis]);
@@ -162,30 +162,32 @@ impl DensityGrid {
         out
     }
 
-    /// What [`DensityGrid::learn`] finds at one point: push, mean velocity and crossing.
+    /// The sample at one point: push, mean velocity and crossing fraction.
     #[cfg(test)]
     pub(super) fn sample(&self, p: Vec3, t: Vec3) -> Option<(Vec3, Vec3, f32)> {
-        let learnt = self.learn(&splat3(p), &splat3(t));
+        let sample = self.sample_row(&splat3(p), &splat3(t));
         let lane = LANES / 3;
-        let found = learnt.found[lane];
-        found.then(|| (at(&learnt.push, lane), at(&learnt.mean_velocity, lane), learnt.crossing[lane]))
+        let found = sample.found[lane];
+        found.then(|| (at(&sample.push, lane), at(&sample.mean_velocity, lane), sample.crossing[lane]))
     }
 }
 
-/// What a row of points learns from the grid: the change of velocity a substep, and the neighbours' mean.
-struct SampleRow {
+/// The effect of the grid on a row of points: the change of velocity per substep, and the neighbours' mean
+/// velocity.
+struct GridEffect {
     dv: Lane3,
     mean: Lane3,
 }
 
-/// Gives `points` what lies between `row`, at the first of them, and `next`, `run` points on.
+/// Interpolates the effect over `points` from `row`, at the first of them, to `next`, `run` points further
+/// on.
 #[inline(always)]
 fn between(
     block: &mut Block,
     points: Range<usize>,
     run: usize,
-    row: &SampleRow,
-    next: &SampleRow,
+    row: &GridEffect,
+    next: &GridEffect,
     cohesion: f32,
 ) {
     for i in points.clone() {

@@ -2,7 +2,7 @@ use lovelock_groom::Guides;
 
 use glam::Mat3;
 
-use super::direction::{drawn_to, push_across};
+use super::direction::{friction_target, push_across};
 use super::*;
 use crate::lanes::{LANES, put};
 use crate::rest::blocks_of;
@@ -29,19 +29,20 @@ fn all_the_hair_is_in_the_grid() {
     let blocks = lattice(5, 0.02);
     let grid = DensityGrid::new(&blocks);
     let mass: f64 = grid.cells().iter().map(|c| f64::from(c.mass())).sum();
-    // 25 guides of 20 cm; each of the eight shares of a point loses at most one unit in rounding. Measured: 2.2e-6.
+    // 25 guides of 20 cm; each of the eight shares of a point loses at most one unit by rounding. Measured:
+    // 2.2e-6.
     let want = 25.0 * 0.2 * f64::from(grid.lattice.units);
     assert!((mass / want - 1.0).abs() < 1e-5, "{mass} against {want}");
 }
 
 #[test]
-fn at_rest_nothing_is_over_dense_and_squeezed_it_is() {
+fn hair_is_over_dense_when_compressed_but_not_at_rest() {
     let mut blocks = lattice(5, 0.02);
     let mut grid = DensityGrid::new(&blocks);
     assert_eq!(grid.update(&blocks, &Map::IDENTITY, Repulsion::default()), 0);
     let squeeze = Map { turn: Mat3::from_diagonal(Vec3::new(0.3, 1.0, 0.3)), shift: Vec3::ZERO };
     assert!(grid.update(&blocks, &squeeze, Repulsion::default()) > 0);
-    // Order does not matter.
+    // The order does not matter.
     let forward = grid.cells().to_vec();
     blocks.reverse();
     grid.update(&blocks, &squeeze, Repulsion::default());
@@ -49,24 +50,24 @@ fn at_rest_nothing_is_over_dense_and_squeezed_it_is() {
 }
 
 #[test]
-fn hair_leaves_nothing_behind_where_it_was() {
+fn moved_hair_leaves_no_residue() {
     let blocks = lattice(5, 0.02);
     let away = Map { turn: Mat3::IDENTITY, shift: Vec3::new(0.05, 0.03, -0.04) };
     let (mut fresh, mut used) = (DensityGrid::new(&blocks), DensityGrid::new(&blocks));
     fresh.update(&blocks, &away, Repulsion::default());
     let squeeze = Map { turn: Mat3::from_diagonal(Vec3::new(0.3, 1.0, 0.3)), shift: Vec3::ZERO };
     assert!(used.update(&blocks, &squeeze, Repulsion::default()) > 0);
-    assert!(fresh.cells() != used.cells(), "hair that is elsewhere must not look the same");
+    assert!(fresh.cells() != used.cells(), "hair at another place must give other cells");
     used.update(&blocks, &away, Repulsion::default());
     assert!(fresh.cells() == used.cells());
     let mass: f64 = used.cells().iter().map(|c| f64::from(c.mass())).sum();
-    // As in the test above; what hair at rest has left would be as much again.
+    // As in the test above; leftovers of the hair at rest would be as much again.
     let want = 25.0 * 0.2 * f64::from(used.lattice.units);
     assert!((mass / want - 1.0).abs() < 1e-5, "{mass} against {want}");
 }
 
 #[test]
-fn crowded_hair_is_pushed_apart() {
+fn over_dense_hair_is_pushed_apart() {
     for mode in [RepulsionMode::Pressure, RepulsionMode::Centre] {
         let blocks = lattice(5, 0.02);
         let mut grid = DensityGrid::new(&blocks);
@@ -87,7 +88,7 @@ fn crowded_hair_is_pushed_apart() {
 }
 
 #[test]
-fn the_mean_velocity_is_that_of_the_hair_around() {
+fn the_mean_velocity_is_that_of_the_surrounding_hair() {
     let mut blocks = lattice(4, 0.01);
     let mut grid = DensityGrid::new(&blocks);
     for block in &mut blocks {
@@ -101,11 +102,11 @@ fn the_mean_velocity_is_that_of_the_hair_around() {
     let (_, mean, _) = grid.sample(Vec3::new(0.015, -0.1, 0.015), Vec3::Y).expect("hair");
     // Momentum is rounded down to about a thousandth.
     assert!((mean - Vec3::new(1.0, -2.0, 0.5)).length() < 0.01, "{mean}");
-    assert!(grid.sample(Vec3::splat(0.25), Vec3::Y).is_none(), "where no hair is there is no mean");
+    assert!(grid.sample(Vec3::splat(0.25), Vec3::Y).is_none(), "there is no mean without hair");
 }
 
 #[test]
-fn hair_outside_the_grid_and_nonsense_are_left_out() {
+fn hair_outside_the_grid_and_nan_are_ignored() {
     let blocks = lattice(2, 0.01);
     let mut grid = DensityGrid::new(&blocks);
     let away = Map { turn: Mat3::IDENTITY, shift: Vec3::splat(100.0) };
@@ -116,7 +117,7 @@ fn hair_outside_the_grid_and_nonsense_are_left_out() {
 }
 
 #[test]
-fn crossing_hair_pushes_harder_than_parallel_hair_and_none_along_itself() {
+fn crossing_hair_is_pushed_harder_than_parallel_hair_and_never_along_itself() {
     let blocks = lattice(5, 0.02);
     let mut grid = DensityGrid::new(&blocks);
     let squeeze = Map { turn: Mat3::from_diagonal(Vec3::new(0.3, 1.0, 0.3)), shift: Vec3::ZERO };
@@ -131,10 +132,10 @@ fn crossing_hair_pushes_harder_than_parallel_hair_and_none_along_itself() {
     assert!(push(Vec3::Y, 1.0, 1.0).length() > 3.9 * push(Vec3::Y, 0.0, 1.0).length());
     let out = pushed.normalize_or_zero();
     assert!(push(out, 0.0, 1.0).length() < 1e-5 * pushed.length());
-    assert_eq!(push(out, 0.3, 0.0), pushed, "without anisotropy nothing changes");
+    assert_eq!(push(out, 0.3, 0.0), pushed, "an anisotropy of 0 changes nothing");
     // Friction lets hair slide along itself.
     let (v, mean) = (Vec3::ZERO, Vec3::new(1.0, 1.0, 0.0));
-    let drawn = drawn_to(mean, v, Vec3::Y, 1.0);
+    let drawn = friction_target(mean, v, Vec3::Y, 1.0);
     assert!((drawn - Vec3::new(1.0, 0.3, 0.0)).length() < 1e-6);
 }
 
@@ -153,17 +154,17 @@ fn hair_of_any_length_is_in_the_grid() {
         let grid = DensityGrid::new(&blocks);
         let mass: f64 = grid.cells().iter().map(|c| f64::from(c.mass())).sum();
         let want = 20.0 * f64::from(length) * f64::from(grid.lattice.units);
-        // Pieces stand for whole strides of links: up to one of them is missing or too much at the tip.
+        // Pieces represent whole strides of links: up to one of them is missing or too much at the tip.
         assert!((mass / want - 1.0).abs() < 0.1, "{length} m: {mass} against {want}");
     }
 }
 
 #[test]
-fn every_guide_has_the_mass_of_its_length_whatever_lane_it_is_in() {
+fn the_mass_of_a_guide_is_its_length_in_every_lane() {
     for (points, length) in [(31, 0.25), (31, 0.08), (16, 0.05), (21, 0.12), (8, 0.04), (4, 0.03), (2, 0.02)]
     {
         for n in 0..2 {
-            // Alone in the first lane or the second: the others are cut off.
+            // Alone in the first or the second lane: the other guides are cut off.
             let mut guides = Guides { points_per_guide: points, ..Guides::default() };
             for g in 0..2 {
                 let root = Vec3::new(0.01 * g as f32, 0.0, 0.0);
@@ -179,7 +180,7 @@ fn every_guide_has_the_mass_of_its_length_whatever_lane_it_is_in() {
             grid.fill(&blocks, &Source::Rest);
             let mass: f64 = grid.cells().iter().map(|c| f64::from(c.mass())).sum();
             let want = f64::from(length) * f64::from(grid.lattice.units);
-            // Each of the eight shares of a piece loses at most one unit in rounding.
+            // Each of the eight shares of a piece loses at most one unit by rounding.
             let stride = grid.lattice.stride;
             assert!(
                 (mass / want - 1.0).abs() < 1e-3,
@@ -191,26 +192,28 @@ fn every_guide_has_the_mass_of_its_length_whatever_lane_it_is_in() {
 }
 
 #[test]
-fn hair_that_slides_along_itself_is_nowhere_over_dense() {
+fn hair_that_slides_along_itself_is_not_over_dense() {
     let blocks = lattice(8, 0.004);
     let mut grid = DensityGrid::new(&blocks);
     assert!(grid.lattice.stride > 1);
     let half = 0.005 * grid.lattice.stride as f32;
     let along = Map { turn: Mat3::IDENTITY, shift: Vec3::NEG_Y * half };
     let dense = grid.update(&blocks, &along, Repulsion::default());
-    // Measured: 4 of 288, at the end that has come where none was; 28 where all lanes have their pieces at the same points.
-    assert!(30 * dense < grid.tally.held, "{dense} of {} cells", grid.tally.held);
-    // The control: pressed together it is crowded.
+    // Measured: 4 of 288, at the end that has entered empty cells; 28 if all lanes have their pieces at the
+    // same points.
+    assert!(30 * dense < grid.counts.held, "{dense} of {} cells", grid.counts.held);
+    // Control: compressed hair is over-dense.
     let squeeze = Map { turn: Mat3::from_diagonal(Vec3::new(0.5, 1.0, 1.0)), shift: Vec3::ZERO };
-    assert!(10 * grid.update(&blocks, &squeeze, Repulsion::default()) > grid.tally.held);
+    assert!(10 * grid.update(&blocks, &squeeze, Repulsion::default()) > grid.counts.held);
 }
 
 #[test]
-fn hair_in_half_the_room_has_half_the_volume() {
+fn hair_compressed_to_half_has_half_the_volume() {
     let blocks = lattice(12, 0.015);
     let mut grid = DensityGrid::new(&blocks);
     let rest = grid.volume_at_rest();
-    // Twelve by twelve guides 15 mm apart and 20 cm long, seen through cells of 12 mm: many are fuller than others.
+    // Twelve by twelve guides 15 mm apart and 20 cm long, in cells of 12 mm: many cells are fuller than
+    // others.
     let exact = (12.0 * 0.015_f32).powi(2) * 0.2;
     assert!(rest / exact > 0.6 && rest / exact < 1.2, "{rest} against {exact}");
     let off = Repulsion { strength: 0.0, cohesion: 0.0, ..Repulsion::default() };

@@ -1,4 +1,5 @@
-//! The simulator and the body: the field of head and shoulders, and what of the hair at rest is inside.
+//! The simulator and the body: the field of head and shoulders, and which part of the hair at rest penetrates
+//! the body.
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -10,13 +11,14 @@ use crate::lanes::{LANES, at};
 use crate::{BodyPart, InsidePoint, SimulationSettings, StepInput};
 
 impl Simulation {
-    /// Takes up the field of `input` where it is another one than before; whether it was.
-    pub(super) fn meet_field(&mut self, input: &StepInput) -> bool {
+    /// Switches to the field of `input` if it differs from the current one; returns whether the new input has
+    /// a field that differs.
+    pub(super) fn update_field(&mut self, input: &StepInput) -> bool {
         match input.field {
             None => {
                 let had = self.field.take().is_some();
                 if had {
-                    self.learn_field_distances();
+                    self.measure_field_distances();
                 }
                 false
             }
@@ -26,22 +28,22 @@ impl Simulation {
                     let reach = SimulationSettings::default().skin_margin + LAYER_HEIGHT;
                     self.field = Some(MovingField::new(placed.field, placed.pose.lift, reach));
                     self.blocks.iter_mut().for_each(|block| block.skin.fill(PlaneRow::NO_SKIN));
-                    self.learn_field_distances();
+                    self.measure_field_distances();
                 }
                 !known
             }
         }
     }
 
-    /// Puts the field where it is now, without motion.
+    /// Places the field at its current pose, without motion.
     pub(super) fn reset_field(&mut self, input: &StepInput) {
         if let (Some(field), Some(placed)) = (&mut self.field, input.field) {
             field.reset(&self.head, placed.pose);
         }
     }
 
-    /// Measures how far every point at rest is from the field at rest.
-    pub(super) fn learn_field_distances(&mut self) {
+    /// Measures the rest distance of every point to the field.
+    pub(super) fn measure_field_distances(&mut self) {
         let field = self.field.as_ref();
         self.blocks.par_iter_mut().for_each(|block| {
             block.field_distance.clear();
@@ -51,14 +53,14 @@ impl Simulation {
         });
     }
 
-    /// Whether tests against the body that cannot find a contact are left out, as they are at first. The motion is
-    /// the same, bit for bit; this is to measure what is gained.
-    pub fn spare_contacts(&mut self, spare: bool) {
-        self.spare = spare;
+    /// Sets whether contact tests that cannot find a contact are skipped (the default). The motion is the
+    /// same, bit for bit; switching it off serves to measure the gain.
+    pub fn set_contact_culling(&mut self, culling: bool) {
+        self.culling = culling;
     }
 
-    /// Where a point of a guide is now, world space, metres; the guide's tip where it has fewer points. `None` where there is no
-    /// such guide.
+    /// Current position of a point of a guide, world space, metres; the tip if the guide has fewer points.
+    /// `None` if there is no such guide.
     pub fn guide_point(&self, guide: u32, point: u32) -> Option<Vec3> {
         let &(block, lane) = self.slots.get(guide as usize)?;
         let rows = &self.blocks.get(block as usize)?.position;
@@ -66,8 +68,8 @@ impl Simulation {
         Some(at(row, lane as usize) + self.head.place)
     }
 
-    /// The point of the hairstyle at rest that is deepest inside the body, among those that the scalp does not carry;
-    /// `None` where all are outside. Known from the first [`Simulation::reset`] on.
+    /// The point of the hairstyle at rest with the deepest penetration into the body, among the points that
+    /// the scalp does not carry; `None` if all are outside. Known after the first [`Simulation::reset`].
     pub fn rest_inside(&self) -> Option<InsidePoint> {
         let mut deepest: Option<InsidePoint> = None;
         let first_free = super::first_free(self.clamped_links, self.style.guides.points_per_guide);

@@ -1,9 +1,9 @@
-//! Another hairstyle in the middle of a motion: what moves goes on moving.
+//! Changing the hairstyle during a motion, without interrupting the motion.
 //!
-//! Where ties gather the same guides in another way, every link stays where it is, and over [`HOLD_SECS`] its shape at rest
-//! goes over from the one that it has to the one that the tie gives it, while the tie's spring to the head's frame grows from a
-//! gentle one to its own strength. So hair goes to its new place by being simulated, around the body and not through it. What
-//! a tie held before, and holds again nearby, it does not let go.
+//! When ties gather the same guides in another way, every link keep_rest where it is. Over [`GROWTH_SECS`] the rest
+//! shape changes from the current shape to the one that the ties demand, while the spring that ties the
+//! points to the head's frame grows from a weak one to its full strength. The hair thus reaches its new place
+//! by simulation, around the body and not through it. Points that a tie already held nearby stay held.
 
 use std::sync::Arc;
 
@@ -14,32 +14,33 @@ use crate::block::{Bending, Block};
 use crate::lanes::{LANES, Lane3, Map, ZERO3, at, direction_or, put};
 use crate::rest::RestShape;
 
-/// How long ties take to hold what is new to them, seconds.
-const HOLD_SECS: f32 = 0.7;
-/// How firmly they begin, 1/s: hair is half way to them in a quarter of a second.
-const FIRST_HOLD: f32 = 6.0;
-/// What a tie holds and is to lie no further from where it lay is held on, metres: a tie that is dragged.
+/// Time that ties take to reach their full strength, seconds.
+const GROWTH_SECS: f32 = 0.7;
+/// Strength of new ties at the start, 1/s: hair covers half the distance in a quarter of a second.
+const INITIAL_HOLD: f32 = 6.0;
+/// A point keep_rest held at full strength if its new rest position is closer to the old one than this, metres.
+/// This is the case while a tie is dragged.
 const NEARBY: f32 = 0.03;
 
-/// Ties on their way to their strength.
+/// Ties that grow to their full strength.
 #[derive(Clone, Debug)]
-pub(super) struct TakingHold {
-    /// How firmly each point was held at the start, 1/s.
+pub(super) struct TieBlend {
+    /// Initial strength at each point, 1/s.
     held: Vec<f32>,
-    /// For each block the directions of its links at the start, head space.
+    /// For each block the initial directions of its links, head space.
     from: Vec<Vec<Lane3>>,
-    /// For each block the shape at rest that the ties give it.
+    /// For each block the rest shape that the ties demand.
     to: Vec<RestShape>,
-    since_secs: f32,
+    grown_secs: f32,
 }
 
-/// What [`Simulation::taking_hold`] knows.
-type Held<'a> = (f32, &'a [f32], &'a [Vec<Lane3>]);
+/// Elapsed seconds, initial strengths and initial directions of [`TieBlend`].
+type TieBlendState<'a> = (f32, &'a [f32], &'a [Vec<Lane3>]);
 
 impl Simulation {
-    /// Changes the hairstyle. Where the guides are as many and as finely cut as before, the motion is carried
-    /// over: every lock keeps its turns and velocities, or, where ties gather it in another way, its place. Otherwise the
-    /// new style starts at rest.
+    /// Changes the hairstyle. If the numbers of guides and points are unchanged, the motion continues: every
+    /// guide keeps its rotations and velocities or, if ties gather it in another way, its place. Otherwise
+    /// the new style starts at rest.
     pub fn set_style(&mut self, style: Arc<Hairstyle>) {
         let same = style.guides.points_per_guide == self.style.guides.points_per_guide
             && style.guides.count() == self.style.guides.count();
@@ -50,7 +51,7 @@ impl Simulation {
         }
         next.head = self.head;
         next.time_secs = self.time_secs;
-        (next.elapsed_secs, next.air_way) = (self.elapsed_secs, self.air_way);
+        (next.elapsed_secs, next.air_travel) = (self.elapsed_secs, self.air_travel);
         next.colliders = std::mem::take(&mut self.colliders);
         next.rest_colliders = std::mem::take(&mut self.rest_colliders);
         let from_head = next.head.map_from_head(next.head.place);
@@ -58,67 +59,66 @@ impl Simulation {
             block.place_at_rest(&from_head);
         }
         if same {
-            // The blocks are cut along a curve through the roots, so another style may order them otherwise:
-            // each new block first gathers its guides' old state.
+            // Blocks follow a curve through the roots, so another style may assign guides to other blocks.
+            // Each new block first collects the old state of its guides.
             let mut gathered = next.blocks.clone();
             for block in &mut gathered {
                 self.gather(block, retied);
             }
             for (block, old) in next.blocks.iter_mut().zip(&gathered) {
-                block.adopt(old, &from_head);
+                block.copy_motion(old, &from_head);
             }
         }
         if retied {
             let from = next.blocks.iter().map(|block| directions(block, &from_head)).collect();
             let to = next.blocks.iter().map(|block| block.rest.clone()).collect();
-            next.taking_hold = Some(TakingHold { held: self.holds_before(&next), from, to, since_secs: 0.0 });
+            next.tie_blend = Some(TieBlend { held: self.initial_holds(&next), from, to, grown_secs: 0.0 });
         }
         next.field = self.field.take();
-        next.learn_rest_distances();
-        next.learn_field_distances();
+        next.measure_rest_distances();
+        next.measure_field_distances();
         *self = next;
     }
 
-    /// Prepares the blocks for another number of carried links.
+    /// Prepares the blocks for another number of clamped links.
     pub(super) fn clamp_links(&mut self, clamped_links: u32) {
-        let taking = self.taking_hold.clone();
-        self.take_hold(f32::INFINITY);
+        let blend = self.tie_blend.clone();
+        self.advance_ties(f32::INFINITY);
         self.clamped_links = clamped_links;
         let guides = &self.style.guides;
         let first_free = first_free(clamped_links, guides.points_per_guide);
         for block in &mut self.blocks {
             block.rest = RestShape::new(guides, &block.guides, first_free);
-            // Of points that are carried now nobody keeps account.
-            block.leans.fill(ZERO3);
-            block.leaning = false;
+            // Contact displacements are not tracked for points that the scalp carries now.
+            block.contact_push.fill(ZERO3);
+            block.has_contact_push = false;
         }
-        if let Some(taking) = taking {
-            self.go_on_taking_hold(taking.since_secs, taking.held, taking.from);
+        if let Some(blend) = blend {
+            self.restore_tie_blend(blend.grown_secs, blend.held, blend.from);
         }
     }
 
-    /// What is known of ties on their way to their strength: since when, how firmly each point of each guide was held at the
-    /// start, and for each block the directions of its links then.
-    pub(super) fn taking_hold(&self) -> Option<Held<'_>> {
-        let taking = self.taking_hold.as_ref()?;
-        Some((taking.since_secs, &taking.held, &taking.from))
+    /// The state of the growing ties, for a snapshot.
+    pub(super) fn tie_blend_state(&self) -> Option<TieBlendState<'_>> {
+        let blend = self.tie_blend.as_ref()?;
+        Some((blend.grown_secs, &blend.held, &blend.from))
     }
 
-    /// Goes on from what [`Simulation::taking_hold`] knew, where all ties hold in full.
-    pub(super) fn go_on_taking_hold(&mut self, since_secs: f32, held: Vec<f32>, from: Vec<Vec<Lane3>>) {
+    /// Restores the state returned by [`Simulation::tie_blend_state`]; all ties must be at full strength.
+    pub(super) fn restore_tie_blend(&mut self, grown_secs: f32, held: Vec<f32>, from: Vec<Vec<Lane3>>) {
         let to = self.blocks.iter().map(|block| block.rest.clone()).collect();
-        self.taking_hold = Some(TakingHold { held, from, to, since_secs });
-        self.take_hold(0.0);
+        self.tie_blend = Some(TieBlend { held, from, to, grown_secs });
+        self.advance_ties(0.0);
     }
 
-    /// Fills `block` with the rest shape and the motion of its guides, wherever they are here. Where it `stays`, it keeps its
-    /// own rest shape: links then turn from that to where they are.
-    fn gather(&self, block: &mut Block, stays: bool) {
+    /// Copies rest directions and motion of the guides of `block` from this simulation. With `keep_rest` the
+    /// block keeps its own rest directions, so that its links rotate from those to where they are.
+    fn gather(&self, block: &mut Block, keep_rest: bool) {
         for k in 0..LANES {
             let (from, lane) = self.slots[block.guides[k] as usize];
             let (from, lane) = (&self.blocks[from as usize], lane as usize);
             for i in 0..block.points() {
-                if !stays {
+                if !keep_rest {
                     put(&mut block.rest.direction[i], k, at(&from.rest.direction[i], lane));
                 }
                 put(&mut block.position[i], k, at(&from.position[i], lane));
@@ -127,37 +127,37 @@ impl Simulation {
         }
     }
 
-    /// Whether ties hold the guides of `style`, or held those before, and not in the same way.
+    /// Whether `style` or the current style has ties, and the two tie the hair differently.
     fn is_retied(&self, style: &Hairstyle) -> bool {
         let loose = |style: &Hairstyle| style.held.iter().all(|hold| *hold < 0.0);
         !(loose(&self.style) && loose(style))
             && (self.style.held != style.held || self.style.guides != style.guides)
     }
 
-    /// How firmly the ties of `next` begin to hold.
-    fn holds_before(&self, next: &Self) -> Vec<f32> {
+    /// Initial strengths of the ties of `next`.
+    fn initial_holds(&self, next: &Self) -> Vec<f32> {
         let (guides, points) = (&next.style.guides, next.style.guides.points_per_guide);
         let of = |guide: usize, i: usize| {
             let (block, lane) = self.slots[guide];
-            let hold = self.blocks[block as usize].held[i][lane as usize];
+            let hold = self.blocks[block as usize].tie_hold[i][lane as usize];
             let moved = guides.point(guide, i).distance(self.style.guides.point(guide, i));
-            if hold >= 0.0 && moved < NEARBY { hold } else { FIRST_HOLD }
+            if hold >= 0.0 && moved < NEARBY { hold } else { INITIAL_HOLD }
         };
         let from = (0..self.slots.len()).flat_map(|guide| (0..points).map(move |i| (guide, i)));
         from.map(|(guide, i)| of(guide, i)).collect()
     }
 
-    /// Lets ties hold as firmly as they do after `dt_secs` more.
-    pub(super) fn take_hold(&mut self, dt_secs: f32) {
-        let Some(mut taking) = self.taking_hold.take() else { return };
-        taking.since_secs += dt_secs;
-        let t = (taking.since_secs / HOLD_SECS).min(1.0);
+    /// Advances the growth of the ties by `dt_secs`.
+    pub(super) fn advance_ties(&mut self, dt_secs: f32) {
+        let Some(mut blend) = self.tie_blend.take() else { return };
+        blend.grown_secs += dt_secs;
+        let t = (blend.grown_secs / GROWTH_SECS).min(1.0);
         let points = self.style.guides.points_per_guide;
-        for ((block, from), to) in self.blocks.iter_mut().zip(&taking.from).zip(&taking.to) {
-            block.held = crate::ties::rows(&self.style, &block.guides);
-            for (i, row) in block.held.iter_mut().enumerate() {
+        for ((block, from), to) in self.blocks.iter_mut().zip(&blend.from).zip(&blend.to) {
+            block.tie_hold = crate::ties::rows(&self.style, &block.guides);
+            for (i, row) in block.tie_hold.iter_mut().enumerate() {
                 for (hold, guide) in row.iter_mut().zip(block.guides) {
-                    let before = taking.held[guide as usize * points + i];
+                    let before = blend.held[guide as usize * points + i];
                     if *hold > before {
                         *hold = before * (*hold / before.max(1e-3)).powf(t);
                     }
@@ -168,16 +168,16 @@ impl Simulation {
             } else {
                 block.rest.clone_from(to);
             }
-            // Made ready for what held before.
+            // The factors are outdated.
             block.bending = Bending::new(points);
         }
         if t < 1.0 {
-            self.taking_hold = Some(taking);
+            self.tie_blend = Some(blend);
         }
     }
 }
 
-/// The directions of the links as they are, head space.
+/// The current directions of the links, head space.
 fn directions(block: &Block, from_head: &Map) -> Vec<Lane3> {
     let mut out = block.rest.direction.clone();
     let back = from_head.turn.transpose();
@@ -191,7 +191,8 @@ fn directions(block: &Block, from_head: &Map) -> Vec<Lane3> {
     out
 }
 
-/// The shape at rest whose links are turned by the fraction `t` of the way from the directions `from` to those of `to`.
+/// Interpolates the rest shape: its links are rotated by the fraction `t` from the directions `from` to those
+/// of `to`.
 fn between(from: &[Lane3], to: &RestShape, t: f32, out: &mut RestShape) {
     let points = to.position.len();
     for k in 0..LANES {
@@ -248,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn hair_that_is_tied_and_untied_in_motion_goes_over_and_does_not_jump() {
+    fn tying_and_untying_in_motion_does_not_make_hair_jump() {
         for kind in [TieKind::Ponytail, TieKind::Bun] {
             let [loose, tied] = loose_and(kind);
             let mut simulation = Simulation::new(Arc::clone(&loose));
@@ -263,12 +264,12 @@ mod tests {
                 let before = frame(&simulation);
                 simulation.set_style(Arc::clone(to));
                 let jump = furthest(&before, &frame(&simulation));
-                // Measured: 0.27 mm, where a bun's lock folds back and least turns lose digits.
-                assert!(jump < 5e-4, "{kind:?}: {jump} m at once");
+                // Measured: 0.27 mm, where a guide in a bun folds back and smallest rotations lose digits.
+                assert!(jump < 5e-4, "{kind:?}: jumps by {jump} m");
                 let at_rest: Vec<Vec3> = (0..to.guides.x.len())
                     .map(|i| Vec3::new(to.guides.x[i], to.guides.y[i], to.guides.z[i]))
                     .collect();
-                assert!(furthest(&before, &at_rest) > 0.1, "the control: it has far to go");
+                assert!(furthest(&before, &at_rest) > 0.1, "control: the styles differ by far");
                 let (mut last, mut fastest) = (before, 0.0_f32);
                 for _ in 0..120 {
                     step += 1;
@@ -278,9 +279,9 @@ mod tests {
                     fastest = fastest.max(furthest(&last, &now));
                     last = now;
                 }
-                println!("{kind:?} {is_tied}: {fastest} m in a step at most");
-                // Measured: 0.05 m, 3 m/s. Where the shape at rest changes at once it is 0.34 m.
-                assert!(fastest < 0.1, "{kind:?}: {fastest} m in a step");
+                println!("{kind:?} {is_tied}: at most {fastest} m per step");
+                // Measured: 0.05 m, 3 m/s. If the rest shape changed at once, it would be 0.34 m.
+                assert!(fastest < 0.1, "{kind:?}: {fastest} m per step");
                 let head = input(step).world_from_head;
                 for (i, p) in
                     last.iter().enumerate().filter(|(i, _)| to.held.get(*i).is_some_and(|h| *h > 1000.0))
@@ -293,7 +294,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tie_that_is_dragged_does_not_let_go() {
+    fn a_dragged_tie_keeps_its_hold() {
         let [loose, tied_here] = loose_and(TieKind::Bun);
         let moved =
             HairTie { kind: TieKind::Bun, at: HairTie::DEFAULT.at + Vec3::X * 0.004, ..HairTie::DEFAULT };
@@ -320,13 +321,13 @@ mod tests {
         let mut other = Simulation::new(Arc::clone(&loose));
         other.reset(&input(0));
         let (dragged, new) = (sagged(&mut simulation, &style), sagged(&mut other, &style));
-        // Measured: 22 mm, of locks that are wound otherwise, and 208 mm.
-        println!("{dragged} m dragged, {new} m tied anew");
-        assert!(dragged < 0.2 * new, "{dragged} m on average, and the control {new} m");
+        // Measured: 22 mm for guides that are wound differently, and 208 mm.
+        println!("{dragged} m dragged, {new} m newly tied");
+        assert!(dragged < 0.2 * new, "mean {dragged} m, control {new} m");
     }
 
     #[test]
-    fn a_state_saved_while_a_tie_takes_hold_goes_on_with_the_same_bits() {
+    fn a_state_saved_while_ties_grow_continues_with_the_same_bits() {
         let [loose, tied] = loose_and(TieKind::Ponytail);
         let mut simulation = Simulation::new(loose);
         simulation.reset(&input(0));
@@ -334,7 +335,7 @@ mod tests {
         let settings = SimulationSettings::default();
         let go_on = |simulation: &mut Simulation, steps: std::ops::Range<i32>| {
             for step in steps {
-                // The roots are carried one link further on the way.
+                // The number of clamped links changes during the motion.
                 let settings = SimulationSettings { clamped_links: 1 + u32::from(step > 15), ..settings };
                 simulation.step(&input(step), &settings, DT);
             }
@@ -343,20 +344,20 @@ mod tests {
         let saved = simulation.save();
         let mut other = Simulation::new(tied);
         other.reset(&input(0));
-        assert!(other.taking_hold().is_none());
+        assert!(other.tie_blend_state().is_none());
         other.restore(&saved).expect("a state of the same hair");
         let mut held = other.clone();
         go_on(&mut simulation, 12..40);
         go_on(&mut other, 12..40);
         assert_eq!(simulation.state_hash(), other.state_hash());
-        // The control: a tie that holds at once.
-        held.take_hold(f32::INFINITY);
+        // Control: a tie at full strength at once.
+        held.advance_ties(f32::INFINITY);
         go_on(&mut held, 12..40);
         assert_ne!(held.state_hash(), other.state_hash());
     }
 
     #[test]
-    fn a_reset_holds_at_once() {
+    fn a_reset_gives_ties_their_full_strength() {
         let [loose, tied] = loose_and(TieKind::Ponytail);
         let mut simulation = Simulation::new(Arc::clone(&loose));
         simulation.reset(&input(0));

@@ -1,7 +1,8 @@
-//! The state as bytes: [`Simulation::save`] and [`Simulation::restore`].
+//! Serialisation of the state: [`Simulation::save`] and [`Simulation::restore`].
 //!
-//! Little-endian: the four bytes `LLWS`, the version (u32), a fingerprint of the guides at rest (u64), the state,
-//! and a fingerprint of all before it (u64). What follows from style and state is worked out again.
+//! Little-endian: the four bytes `LLWS`, the version (u32), a fingerprint of the rest guides (u64), the
+//! state, and a fingerprint of everything before it (u64). Data that follows from style and state is
+//! recomputed.
 
 use glam::{Affine3A, DVec3, Mat3A, Quat, Vec3, Vec3A};
 use lovelock_groom::Guides;
@@ -17,50 +18,51 @@ use crate::rest::RestShape;
 
 const MAGIC: [u8; 4] = *b"LLWS";
 
-/// Raised whenever the bytes change their meaning.
+/// Incremented whenever the meaning of the bytes changes.
 const VERSION: u32 = 5;
 
-/// The most colliders that a state may speak of: beyond it the bytes are no state.
-const MOST_COLLIDERS: u32 = 4096;
+/// The largest number of colliders in a valid state.
+const MAX_COLLIDERS: u32 = 4096;
 
-/// Why bytes are not a state of this simulation.
+/// Why a saved state cannot be restored.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RestoreError {
-    /// The bytes are not a saved state at all.
-    #[error("the state of the simulation begins with {found:02x?}; a saved state begins with {MAGIC:02x?}")]
+    /// The bytes are not a saved state.
+    #[error(
+        "simulation state: found the bytes {found:02x?} at the start; a saved state starts with {MAGIC:02x?}"
+    )]
     Foreign {
-        /// The first bytes, four at the most.
+        /// The first bytes, at most four.
         found: Vec<u8>,
     },
-    /// Another version of the program wrote them.
-    #[error("the state of the simulation has version {found}; this program reads version {VERSION}")]
+    /// The state was written by another version of the program.
+    #[error("simulation state: found version {found}; this program reads version {VERSION}")]
     Version {
-        /// The version that was found.
+        /// The version found in the bytes.
         found: u32,
     },
-    /// It is the state of other guides.
+    /// The state belongs to other guides.
     #[error(
-        "the state of the simulation is that of another hairstyle; restore it with the style it was saved with"
+        "simulation state: it belongs to another hairstyle; restore it with the hairstyle it was saved with"
     )]
     Style,
-    /// It was saved with a field of the body, and this simulation knows none or another.
-    #[error(
-        "the state of the simulation was saved beside a body that is not here; reset the simulation on its body first"
-    )]
+    /// The state was saved with a field of the body that this simulation does not have.
+    #[error("simulation state: it was saved with another body; reset the simulation on that body first")]
     Body,
-    /// The bytes end too early, go on too long, or have changed.
-    #[error("the state of the simulation is damaged: {problem}")]
+    /// The bytes are truncated, too long or modified.
+    #[error("simulation state: damaged: {problem}")]
     Damaged {
-        /// What was found and what was wanted.
+        /// What was found and what was expected.
         problem: String,
     },
 }
 
 impl Simulation {
-    /// All of the state as bytes, from which [`Simulation::restore`] goes on with the same bits.
+    /// Serialises the state. A simulation restored from it with [`Simulation::restore`] continues with the
+    /// same bits.
     ///
-    /// Settings, style and the body's field are not in it: restore it where the same style is, and after a
-    /// [`Simulation::reset`] on the same body.
+    /// The state does not include settings, style and the body's field. Restore it with the same style, after
+    /// a [`Simulation::reset`] on the same body.
     pub fn save(&self) -> Vec<u8> {
         let mut out = Writer(Vec::with_capacity(self.blocks.len() * 5 * LANES * 3 * 4 * 32));
         out.0.extend_from_slice(&MAGIC);
@@ -70,9 +72,9 @@ impl Simulation {
         out.floats(&self.head.place.to_array());
         out.u64(self.time_secs.to_bits());
         out.u64(self.elapsed_secs.to_bits());
-        out.u32(u32::from(self.air_way.is_some()));
-        for way in self.air_way.unwrap_or_default().to_array() {
-            out.u64(way.to_bits());
+        out.u32(u32::from(self.air_travel.is_some()));
+        for distance in self.air_travel.unwrap_or_default().to_array() {
+            out.u64(distance.to_bits());
         }
         out.u32(self.clamped_links);
         out.u32(self.colliders.len() as u32);
@@ -99,9 +101,9 @@ impl Simulation {
                 out.floats(&axis[..]);
             }
         }
-        out.u32(u32::from(self.taking_hold().is_some()));
-        if let Some((since_secs, held, from)) = self.taking_hold() {
-            out.floats(&[since_secs]);
+        out.u32(u32::from(self.tie_blend_state().is_some()));
+        if let Some((grown_secs, held, from)) = self.tie_blend_state() {
+            out.floats(&[grown_secs]);
             out.floats(held);
             for axis in from.iter().flatten().flatten() {
                 out.floats(&axis[..]);
@@ -111,10 +113,10 @@ impl Simulation {
         out.0
     }
 
-    /// Goes back to the state that `bytes` hold, saved from a simulation of the same guides.
+    /// Restores the state in `bytes`, which must be saved from a simulation of the same guides.
     ///
     /// # Errors
-    /// [`RestoreError`]; the simulation then is as it was.
+    /// [`RestoreError`]; the simulation is then unchanged.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), RestoreError> {
         let mut input = Reader(bytes);
         match input.take::<4>() {
@@ -130,42 +132,42 @@ impl Simulation {
         }
         let Some((held, check)) = bytes.split_last_chunk::<8>() else { return Err(short()) };
         if u64::from_le_bytes(*check) != sum(held) {
-            return Err(damaged("its bytes do not give the fingerprint at its end"));
+            return Err(damaged("the checksum does not match"));
         }
         let mut next = self.clone();
-        next.take_hold(f32::INFINITY);
+        next.advance_ties(f32::INFINITY);
         let turn = Quat::from_array(input.floats()?);
         let place = Vec3::from_array(input.floats()?);
         if !(turn.is_finite() && place.is_finite() && (turn.length_squared() - 1.0).abs() < 1e-3) {
-            return Err(damaged("the place of the head is not one"));
+            return Err(damaged("the head pose is not a rigid transform"));
         }
         next.head = HeadPose { turn, place };
         next.time_secs = f64::from_bits(input.u64()?);
         next.elapsed_secs = f64::from_bits(input.u64()?);
         let blown = input.u32()? != 0;
-        let way = [input.u64()?, input.u64()?, input.u64()?].map(f64::from_bits);
-        next.air_way = blown.then_some(DVec3::from_array(way));
-        if !way.iter().all(|way| way.is_finite()) {
-            return Err(damaged("the wind has come from nowhere"));
+        let distance = [input.u64()?, input.u64()?, input.u64()?].map(f64::from_bits);
+        next.air_travel = blown.then_some(DVec3::from_array(distance));
+        if !distance.iter().all(|distance| distance.is_finite()) {
+            return Err(damaged("the distance travelled by the wind is not finite"));
         }
         next.clamped_links = input.u32()?;
         if next.clamped_links > 2 {
-            return Err(damaged("it clamps more than two links"));
+            return Err(damaged("it clamps more than two links per guide"));
         }
         next.colliders.clear();
-        for _ in 0..input.count(MOST_COLLIDERS)? {
+        for _ in 0..input.count(MAX_COLLIDERS)? {
             let world_from_rest = input.affine()?;
             next.colliders.push(PlacedCollider { shape: input.shape()?, world_from_rest });
         }
         let rest = &mut next.rest_colliders;
         rest.shapes.clear();
         rest.on_head.clear();
-        for _ in 0..input.count(MOST_COLLIDERS)? {
+        for _ in 0..input.count(MAX_COLLIDERS)? {
             rest.shapes.push(input.shape()?);
             rest.on_head.push(input.u32()? != 0);
         }
         if rest.shapes.len() != next.colliders.len() {
-            return Err(damaged("it knows other colliders at rest than in motion"));
+            return Err(damaged("the numbers of colliders at rest and in motion differ"));
         }
         let weightings = input.u32()?;
         if weightings == 0 {
@@ -184,13 +186,13 @@ impl Simulation {
             if clamped_links != self.clamped_links {
                 block.rest = RestShape::new(guides, &block.guides, first_free);
             }
-            block.coupled.forget_factor();
+            block.coupled.invalidate_factor();
             for rows in rows_of_mut(block) {
                 for axis in rows.iter_mut().flatten() {
                     *axis = Lane(input.floats()?);
                 }
             }
-            block.leaning = block.leans();
+            block.has_contact_push = block.any_contact_push();
         }
         for row in next.blocks.iter_mut().flat_map(|block| &mut block.skin) {
             *row = PlaneRow::NO_SKIN;
@@ -201,7 +203,7 @@ impl Simulation {
             }
         }
         if input.u32()? != 0 {
-            let [since_secs] = input.floats()?;
+            let [grown_secs] = input.floats()?;
             let mut held = vec![0.0; guides.x.len()];
             for hold in &mut held {
                 [*hold] = input.floats()?;
@@ -210,26 +212,26 @@ impl Simulation {
             for axis in from.iter_mut().flatten().flatten() {
                 *axis = Lane(input.floats()?);
             }
-            next.go_on_taking_hold(since_secs, held, from);
+            next.restore_tie_blend(grown_secs, held, from);
         }
         if input.0.len() != 8 {
-            return Err(damaged("it goes on after its end"));
+            return Err(damaged("there are bytes after its end"));
         }
-        next.learn_rest_distances();
-        next.learn_field_distances();
+        next.measure_rest_distances();
+        next.measure_field_distances();
         *self = next;
         Ok(())
     }
 }
 
-/// What of a block is state and not working memory.
+/// The part of a block that is state, not working memory.
 fn rows_of(block: &Block) -> [&[Lane3]; 5] {
-    [&block.position, &block.velocity, &block.bend, &block.leans, &block.coupled.directions]
+    [&block.position, &block.velocity, &block.bend, &block.contact_push, &block.coupled.directions]
 }
 
 fn rows_of_mut(block: &mut Block) -> [&mut [Lane3]; 5] {
     let directions = &mut block.coupled.directions;
-    [&mut block.position, &mut block.velocity, &mut block.bend, &mut block.leans, directions]
+    [&mut block.position, &mut block.velocity, &mut block.bend, &mut block.contact_push, directions]
 }
 
 fn fingerprint(guides: &Guides) -> u64 {
@@ -260,7 +262,7 @@ fn damaged(problem: &str) -> RestoreError {
 }
 
 fn short() -> RestoreError {
-    damaged("it ends too early")
+    damaged("it is truncated")
 }
 
 struct Writer(Vec<u8>);
@@ -326,7 +328,7 @@ impl Reader<'_> {
     fn count(&mut self, most: u32) -> Result<u32, RestoreError> {
         let count = self.u32()?;
         if count > most {
-            return Err(damaged(&format!("{count} shapes, where {most} are the most")));
+            return Err(damaged(&format!("found {count} colliders; at most {most} are allowed")));
         }
         Ok(count)
     }
@@ -345,7 +347,7 @@ impl Reader<'_> {
                 Ok(ColliderShape::Capsule { a, b, radius_a, radius_b })
             }
             1 => Ok(ColliderShape::Ellipsoid { from_unit: self.affine()? }),
-            other => Err(damaged(&format!("a collider of the kind {other}, where 0 or 1 was wanted"))),
+            other => Err(damaged(&format!("found collider kind {other}; must be 0 or 1"))),
         }
     }
 }

@@ -6,7 +6,7 @@ use super::*;
 use crate::lanes::splat3;
 use crate::{Integrator, Wind};
 
-/// Thirty locks around a head of 8 cm, and what they collide with.
+/// Thirty guides around a head of 8 cm, and the skull that they collide with.
 fn head_of_hair() -> (Simulation, PlacedCollider) {
     let mut guides = Guides { points_per_guide: 16, ..Guides::default() };
     for g in 0..30 {
@@ -33,7 +33,7 @@ fn settings() -> SimulationSettings {
 }
 
 #[test]
-fn the_processor_s_own_instructions_and_everyone_s_give_the_same_bits() {
+fn all_vector_widths_give_the_same_bits() {
     for integrator in Integrator::ALL {
         let (mut wide, skull) = head_of_hair();
         let mut portable = Simulation { wide: false, ..wide.clone() };
@@ -47,7 +47,7 @@ fn the_processor_s_own_instructions_and_everyone_s_give_the_same_bits() {
 }
 
 #[test]
-fn a_guide_gone_non_finite_is_put_back_counted_and_moves_on() {
+fn a_non_finite_guide_is_reset_and_counted_and_keeps_moving() {
     let (mut hurt, skull) = head_of_hair();
     for step in 1..20 {
         hurt.step(&input(step, &[skull]), &settings(), 1.0 / 60.0);
@@ -65,14 +65,14 @@ fn a_guide_gone_non_finite_is_put_back_counted_and_moves_on() {
         let (block, lane) = s.slots[guide];
         at(&s.blocks[block as usize].position[15], lane as usize)
     };
-    // It is where it was, carried with the head: near where it would have been.
+    // It was reset to where it was and carried with the head, so it is near where it would have been.
     assert!(
         (tip(&hurt, 17) - tip(&sound, 17)).length() < 0.05,
         "{} against {}",
         tip(&hurt, 17),
         tip(&sound, 17)
     );
-    // One whose place is lost too is put back to its place at rest.
+    // A guide whose stored pose is lost too is reset to its rest pose.
     let report = lost.step(&input(20, &[skull]), &settings(), 1.0 / 60.0);
     assert_eq!((report.recovered_guides, report.recovered_at), (1, Some(17)));
     let styled = at(&lost.blocks[block].rest.position[15], lane);
@@ -85,13 +85,13 @@ fn a_guide_gone_non_finite_is_put_back_counted_and_moves_on() {
         assert_eq!(report.recovered_guides, 0);
         assert!(report.max_stretch < 1e-5);
     }
-    assert!((tip(&hurt, 17) - before).length() > 0.01, "it must move on");
-    // After half a second it has found back to what it would have done.
+    assert!((tip(&hurt, 17) - before).length() > 0.01, "it must keep moving");
+    // After half a second it is back to the undisturbed motion.
     assert!((tip(&hurt, 17) - tip(&sound, 17)).length() < 0.02);
 }
 
 #[test]
-fn links_that_are_too_many_for_a_guide_hold_it_whole() {
+fn clamping_more_links_than_a_guide_has_clamps_it_entirely() {
     let mut guides = Guides { points_per_guide: 2, ..Guides::default() };
     guides.push(&[Vec3::ZERO, Vec3::X * 0.1]);
     let mut simulation = Simulation::new(Arc::new(Hairstyle { guides, ..Hairstyle::default() }));
@@ -105,7 +105,7 @@ fn links_that_are_too_many_for_a_guide_hold_it_whole() {
 }
 
 #[test]
-fn a_report_says_where_its_worst_is() {
+fn a_report_locates_its_maxima() {
     let (mut simulation, skull) = head_of_hair();
     for step in 1..40 {
         let report = simulation.step(&input(step, &[skull]), &settings(), 1.0 / 60.0);
@@ -125,7 +125,7 @@ fn a_report_says_where_its_worst_is() {
 
 /// A skull with hair on it, its field, and a motion in which neck and shoulders turn under it.
 #[test]
-fn what_is_spared_could_not_have_touched() {
+fn culling_does_not_change_the_motion() {
     use lovelock_motion::{BodyField, FieldPose, Pose, RestDistance, load_character, pose_at};
     let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/dancer.glb");
     let character = load_character(&file).expect("the shipped dancer loads");
@@ -139,10 +139,10 @@ fn what_is_spared_could_not_have_touched() {
             (0..16).map(|i| Vec3::new(0.0, 0.09 - 0.012 * i as f32, 0.0) + out * 0.13).collect();
         guides.push(&points);
     }
-    let run = |spare: bool, with_field: bool| {
+    let run = |culling: bool, with_field: bool| {
         let mut simulation =
             Simulation::new(Arc::new(Hairstyle { guides: guides.clone(), ..Hairstyle::default() }));
-        simulation.spare = spare;
+        simulation.culling = culling;
         let (mut pose, mut placed) = (Pose::default(), FieldPose::default());
         for step in 0..150 {
             pose_at(body, Some(dance), f64::from(step) / 60.0, &mut pose);
@@ -160,13 +160,13 @@ fn what_is_spared_could_not_have_touched() {
         }
         simulation.state_hash()
     };
-    let spared = run(true, true);
-    assert_eq!(spared, run(false, true), "sparing tests changes the motion");
-    assert_ne!(spared, run(true, false), "no hair touches the field: the test shows nothing");
+    let culled = run(true, true);
+    assert_eq!(culled, run(false, true), "culling changes the motion");
+    assert_ne!(culled, run(true, false), "no hair touches the field: the test proves nothing");
 }
 
 #[test]
-fn what_only_shelters_keeps_the_wind_off_and_hair_goes_through_it() {
+fn sheltering_shapes_block_the_wind_but_not_the_hair() {
     let mut guides = Guides { points_per_guide: 11, ..Guides::default() };
     guides.push(&std::array::from_fn::<Vec3, 11, _>(|i| Vec3::NEG_Y * (0.02 * i as f32)));
     let style = Arc::new(Hairstyle { guides, ..Hairstyle::default() });
@@ -188,13 +188,13 @@ fn what_only_shelters_keeps_the_wind_off_and_hair_goes_through_it() {
     };
     let (open, lee, beside) = (blown(&[]), blown(&[ball(-0.3)]), blown(&[ball(0.4)]));
     assert!(open > 0.01 && lee < 0.5 * open, "{open} m in the open, {lee} m in the lee");
-    // The control: what stands downwind shelters nothing.
-    assert!((beside - open).abs() < 0.05 * open, "{beside} m before it, {open} m in the open");
+    // Control: a shape downwind shelters nothing.
+    assert!((beside - open).abs() < 0.05 * open, "{beside} m upwind, {open} m in the open");
 }
 
 #[test]
-fn links_too_short_to_see_are_no_stretch() {
-    // As some strands of files are: a link of 0.1 micrometres, a tenth of a metre from the head's joint.
+fn invisibly_short_links_report_no_stretch() {
+    // As in some hair files: a link of 0.1 micrometres, a tenth of a metre from the head joint.
     let mut guides = Guides { points_per_guide: 11, ..Guides::default() };
     guides.push(&std::array::from_fn::<Vec3, 11, _>(|i| Vec3::new(0.0, 0.1, 1e-7 * i as f32)));
     let mut simulation = Simulation::new(Arc::new(Hairstyle { guides, ..Hairstyle::default() }));
@@ -208,13 +208,13 @@ fn links_too_short_to_see_are_no_stretch() {
             (2..11).map(|i| (length(i) * block.rest.inv_length[i][0] - 1.0).abs()).fold(of_itself, f32::max);
     }
     // Half a unit in the last place at 0.1 m is 3.7 nanometres for each coordinate of either end.
-    println!("{seen} as it is reported, {of_itself} of its own length");
+    println!("{seen} reported, {of_itself} relative to its own length");
     assert!(seen < 2e-5, "{seen}");
-    assert!(of_itself > 1e-3, "the control, measured 0.5 %: {of_itself} of its own length");
+    assert!(of_itself > 1e-3, "control, measured 0.5 %: {of_itself} relative to its own length");
 }
 
 #[test]
-fn of_what_lengths_were_factorised_is_state() {
+fn factorised_directions_are_part_of_the_state() {
     let (mut whole, skull) = head_of_hair();
     let slowly = |simulation: &mut Simulation, step: i32| {
         let turn = Quat::from_rotation_y(0.04 * (0.4 * step as f32).sin());
@@ -227,15 +227,15 @@ fn of_what_lengths_were_factorised_is_state() {
         slowly(&mut whole, step);
     }
     let (mut again, mut anew) = (whole.clone(), whole.clone());
-    again.blocks.iter_mut().for_each(|block| block.coupled.forget_factor());
-    anew.blocks.iter_mut().for_each(|block| block.coupled.forget());
+    again.blocks.iter_mut().for_each(|block| block.coupled.invalidate_factor());
+    anew.blocks.iter_mut().for_each(|block| block.coupled.reset());
     let same = slowly(&mut whole, 30);
-    assert_eq!(slowly(&mut again, 30), same, "a factor follows from its directions");
-    assert_ne!(slowly(&mut anew, 30), same, "the control: of other directions it is another");
+    assert_eq!(slowly(&mut again, 30), same, "the directions determine the factor");
+    assert_ne!(slowly(&mut anew, 30), same, "control: other directions give another factor");
 }
 
 #[test]
-fn links_that_are_clamped_and_let_go_leave_nothing_that_is_not_saved() {
+fn clamping_and_releasing_links_leaves_no_unsaved_state() {
     let (mut whole, _) = head_of_hair();
     let stepped = |simulation: &mut Simulation, step: i32, clamped_links: u32| {
         let settings = SimulationSettings { clamped_links, ..settings() };
@@ -243,10 +243,10 @@ fn links_that_are_clamped_and_let_go_leave_nothing_that_is_not_saved() {
         simulation.state_hash()
     };
     stepped(&mut whole, 1, 1);
-    // Something has pushed the points that are carried next.
+    // Contacts have displaced the points that are clamped next.
     for block in &mut whole.blocks {
-        block.leans[2] = splat3(Vec3::splat(1e-3));
-        block.leaning = true;
+        block.contact_push[2] = splat3(Vec3::splat(1e-3));
+        block.has_contact_push = true;
     }
     for step in 2..6 {
         stepped(&mut whole, step, 2);

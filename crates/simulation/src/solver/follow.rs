@@ -1,16 +1,16 @@
-//! Dynamic follow-the-leader: what laying a chain from root to tip does to velocities, and its correction.
+//! Dynamic follow-the-leader: the effect of the placement pass on velocities, and its correction.
 //!
-//! In the pass from root to tip only the follower of a link moves, as if every point were infinitely heavier
-//! than the next. With velocities taken from positions alone a chain gains energy. Müller, Kim and Chentanez
-//! (2012) therefore give each leader part of its follower's correction, turned round:
-//! `v_i = (p_i - x_i) / h - s d_(i+1) / h`, where `d` is what the pass moved a point by.
+//! The pass from root to tip moves only the follower of a link, as if every point were infinitely heavier
+//! than the next. With velocities derived from positions alone, a chain gains energy. Müller, Kim and
+//! Chentanez (2012) therefore give each leader part of its follower's correction with opposite sign:
+//! `v_i = (p_i - x_i) / h - s d_(i+1) / h`, where `d` is the displacement by the pass.
 
 use super::Plan;
 use crate::block::Block;
 use crate::lanes::{LANES, at, direction_or, put};
 
-/// Corrects the velocities of the free points; positions have been laid, and `next` still holds where points
-/// wanted to be. What contacts moved them by is not a follower's and does not count.
+/// Corrects the velocities of the free points after the placement pass; `next` still holds the unconstrained
+/// positions. Displacements by contacts are not part of the follower's correction and do not count.
 #[inline(always)]
 pub(crate) fn correct_velocities(block: &mut Block, plan: &Plan) {
     let scale = plan.settings.follow_damping / plan.h;

@@ -1,4 +1,4 @@
-//! The forces of a step, worked out once and applied in every substep.
+//! The forces of a step, computed once and applied in every substep.
 
 use glam::Vec3;
 
@@ -7,22 +7,23 @@ use crate::block::Block;
 use crate::grid::GridStep;
 use crate::lanes::{LANES, Lane, ZERO3, at, direction_or, greater, lesser, put};
 
-/// A point that has gone no further along its support than this part of the lock up to it is carried in full, and one that
-/// has gone further than the second not at all: a lock that stood out level, 24 and 64 degrees down.
-const CARRIED: f32 = 0.4;
-const LOST: f32 = 0.9;
+/// Limits of the displacement along the support, as fractions of the arc length from the root. Up to the
+/// first the support is full, beyond the second it is 0. For a guide that was level they correspond to 24 and
+/// 64 degrees below it.
+const FULL_SUPPORT: f32 = 0.4;
+const NO_SUPPORT: f32 = 0.9;
 
-/// Moves the block into this step's working space and gathers what acts on each point.
+/// Moves the block into the working space of this step and collects the forces on each point.
 ///
-/// In a substep of `h` seconds drag, cohesion and friction against the hair around relax the velocity toward
-/// the wind, the mean of the neighbours and the head at their rates, exactly (`1 - e^(-rate h)`).
+/// Over a substep of `h` seconds drag, cohesion and settling relax the velocity toward the wind, the mean of
+/// the neighbours and the head's motion. Each relaxation is exact: `1 - e^(-rate h)`.
 #[inline(always)]
 pub(crate) fn prepare(block: &mut Block, plan: &Plan) {
     let settings = &plan.settings;
     let take = |rate: f32| 1.0 - (-rate * plan.h).exp();
     let (drag, cohesion) = (take(settings.drag), take(settings.repulsion.cohesion));
     let rest = &block.rest;
-    if block.bending.prepare(plan.bending, &rest.mean_link, &rest.inv_length, &rest.bend, &block.held) {
+    if block.bending.prepare(plan.bending, &rest.mean_link, &rest.inv_length, &rest.bend, &block.tie_hold) {
         block.coupled.prepare(&block.bending, plan.first_free, block.position.len());
     }
     let gravity = Vec3::new(0.0, -settings.gravity, 0.0);
@@ -32,14 +33,15 @@ pub(crate) fn prepare(block: &mut Block, plan: &Plan) {
         let (support, rest, here) = (&block.rest.support[i], &block.rest.position[i], &block.position[i]);
         let mut push = ZERO3;
         for k in 0..LANES {
-            // The bends that carry a lock at rest carry it no more once it has left its shape: flung hair falls
-            // with its whole weight. How much is left depends on how far the point has gone along its support alone, so
-            // that the force has a potential: one that heeds the lock's direction drives locks around for ever.
+            // The support that carries a guide at rest fades once the guide leaves its shape, so that flung
+            // hair falls with its whole weight. The remainder depends only on the displacement along the
+            // support, so the force has a potential; if it depended on the guide's direction, it would drive
+            // the guide for ever.
             let support = plan.last_head.rotate(at(support, k));
             let (along, _) = direction_or(support, Vec3::ZERO);
             let gone = (at(here, k) - plan.last_head.apply(at(rest, k))).dot(along);
             let lock = block.rest.mean_link[k] * i as f32 + 1e-6;
-            let share = (LOST - greater(gone, -gone) / lock) * (1.0 / (LOST - CARRIED));
+            let share = (NO_SUPPORT - greater(gone, -gone) / lock) * (1.0 / (NO_SUPPORT - FULL_SUPPORT));
             let a = gravity + support * (carried * lesser(greater(share, 0.0), 1.0));
             put(&mut push, k, a * plan.h);
         }
@@ -54,7 +56,7 @@ pub(crate) fn prepare(block: &mut Block, plan: &Plan) {
                 *v += shift;
             }
         }
-        (block.position[i], block.work.good[i]) = (position, position);
+        (block.position[i], block.work.start_pose[i]) = (position, position);
         let (mut push, mut keep) = (block.work.push[i], block.work.keep[i]);
         let (mut air, mut open) = (ZERO3, Lane::splat(1.0));
         if windy {

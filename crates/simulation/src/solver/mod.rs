@@ -1,8 +1,9 @@
-//! One block of guides through one step.
+//! Advances one block of guides by one step.
 //!
-//! A substep is: forces on velocities; velocities projected so that no link stretches; a step of positions;
-//! shape memory, implicit; one Newton step of the lengths; and the clean-up pass from root to tip that makes
-//! lengths exact and keeps points out of the body. Velocities then are what positions did.
+//! A substep consists of: forces on velocities; projection of the velocities so that no link stretches; a
+//! step of the positions; implicit shape memory; one Newton step of the lengths; and the placement pass from
+//! root to tip, which makes the lengths exact and keeps points out of the body. The velocities follow from
+//! the positions.
 
 mod follow;
 mod forces;
@@ -16,7 +17,7 @@ use crate::block::{Block, Outcome, stretch_of};
 use crate::colliders::field::PlaneRow;
 use crate::lanes::{LANES, ZERO, at, greater, put};
 
-/// Takes `block` through the step of `plan`.
+/// Advances `block` by the step of `plan`.
 #[inline(always)]
 pub(crate) fn advance(block: &mut Block, plan: &Plan) {
     block.outcome = Outcome::default();
@@ -38,7 +39,7 @@ pub(crate) fn advance(block: &mut Block, plan: &Plan) {
     measure(block, plan);
 }
 
-/// Puts back guides that are not finite and reports on the others.
+/// Resets guides that are not finite and measures the others.
 #[inline(always)]
 fn measure(block: &mut Block, plan: &Plan) {
     let count = block.points();
@@ -50,10 +51,10 @@ fn measure(block: &mut Block, plan: &Plan) {
         }
     }
     for k in 0..LANES {
-        // Hair further than 300 m from its head has been lost as surely as one at infinity.
+        // Hair further than 300 m from its head counts as lost.
         if size[k].is_nan() || size[k] > 1e5 * count as f32 {
             restore(block, plan, k);
-            block.leaning = block.leans();
+            block.has_contact_push = block.any_contact_push();
             if k < block.used {
                 block.outcome.recovered += 1;
                 block.outcome.first_recovered.get_or_insert(k);
@@ -79,18 +80,18 @@ fn measure(block: &mut Block, plan: &Plan) {
     }
 }
 
-/// Puts lane `k` back to its pose at the beginning of the step, carried with the head and moving with it; to its pose at
-/// rest where that was lost already.
+/// Resets lane `k` to its pose at the beginning of the step, carried along with the head; to its rest pose
+/// where that pose was not finite either.
 #[cold]
 fn restore(block: &mut Block, plan: &Plan, k: usize) {
     let last = plan.substeps.last();
-    let known = block.work.good.iter().all(|row| at(row, k).is_finite());
+    let known = block.work.start_pose.iter().all(|row| at(row, k).is_finite());
     for i in 0..block.points() {
-        let was = plan.carry_all.apply(at(&block.work.good[i], k));
+        let was = plan.carry_all.apply(at(&block.work.start_pose[i], k));
         let rest = at(&block.rest.position[i], k);
         let p = if known { was } else { last.map_or(rest, |s| s.head.apply(rest)) };
         put(&mut block.position[i], k, p);
-        put(&mut block.leans[i], k, glam::Vec3::ZERO);
+        put(&mut block.contact_push[i], k, glam::Vec3::ZERO);
         let v = last.map_or(glam::Vec3::ZERO, |s| s.rigid_velocity(p));
         put(&mut block.velocity[i], k, v);
         let bend = last.map_or(at(&block.rest.bend[i], k), |s| s.head.rotate(at(&block.rest.bend[i], k)));

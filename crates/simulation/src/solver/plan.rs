@@ -1,4 +1,4 @@
-//! What all blocks share in one step.
+//! The data that all blocks share in one step.
 
 use glam::Vec3;
 
@@ -13,21 +13,21 @@ use crate::motion::Substep;
 use crate::wake::Wakes;
 use crate::wind::WindField;
 
-/// One step, worked out once and read by every block.
+/// One step, prepared once and read by every block.
 pub(crate) struct Plan<'a> {
-    /// Whether to use the instructions of this processor.
+    /// Whether to use the vector instructions of this CPU.
     pub(crate) wide: bool,
     pub(crate) settings: SimulationSettings,
     pub(crate) h: f32,
     /// The first point that the scalp does not carry.
     pub(crate) first_free: usize,
-    /// From the last step's working space to this one's.
+    /// Translation from the last step's working space to this one's.
     pub(crate) rebase: Vec3,
     /// From the head at the start of the step to the head at its end, both in this step's working space.
     pub(crate) carry_all: Map,
     /// From the last step's working space to head space at the start of the step.
     pub(crate) head_from_last: Map,
-    /// The turn of the head at the start of the step.
+    /// From head space to the last step's working space, at the start of the step.
     pub(crate) last_head: Map,
     pub(crate) substeps: &'a [Substep],
     /// The colliders of every substep, one substep after the other.

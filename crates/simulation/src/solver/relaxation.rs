@@ -1,15 +1,15 @@
-//! Links restored one after the other: the method that the published hair used.
+//! Relaxation of one link after the other: the integrator of the published hair.
 //!
-//! Points have moved freely; each link that is too long or too short is then displaced at both ends along its
-//! own direction, by halves, so that the momentum of the pair is kept, and sweeps along the chain repeat this
-//! (van Overveld 1991, known from its use in Bertails, Ménier and Cani 2005; in today's words a Gauss-Seidel
-//! projection of positions). A sweep carries an error one link against its direction, so sweeps go to the tip
-//! and back in turn.
+//! Points move freely. Each link that is too long or too short then displaces both ends along its direction
+//! by halves, which conserves the momentum of the pair, and sweeps along the chain repeat this (van Overveld
+//! 1991, known from its use in Bertails, Ménier and Cani 2005; today called a Gauss-Seidel projection of
+//! positions). A sweep carries an error only one link against its direction, so sweeps alternate between root
+//! to tip and tip to root.
 
 use super::Plan;
 use crate::lanes::{LANES, Lane, Lane3, at, put};
 
-/// Sweeps over the links of `position`, of the lengths `length`.
+/// Relaxes the links of `position` toward the lengths `length`.
 #[inline(always)]
 pub(crate) fn relax(plan: &Plan, length: &[Lane], position: &mut [Lane3]) {
     sweep(plan.first_free, plan.settings.relaxation_sweeps, length, position);
@@ -31,7 +31,7 @@ fn sweep(first_free: usize, sweeps: u32, length: &[Lane], position: &mut [Lane3]
     }
 }
 
-/// Displaces the ends of the link that ends at point `i`; its first end only where that is `free`.
+/// Displaces the ends of the link that ends at point `i`; the first end only if it is `free`.
 #[inline(always)]
 fn restore_link(free: bool, i: usize, length: &Lane, position: &mut [Lane3]) {
     let (mut a, mut b) = (position[i - 1], position[i]);
@@ -76,7 +76,7 @@ mod tests {
     }
 
     #[test]
-    fn more_sweeps_leave_less_stretch_and_few_leave_some() {
+    fn more_sweeps_leave_less_stretch() {
         let after = |sweeps: u32| {
             let (length, mut x) = pulled();
             sweep(1, sweeps, &length, &mut x);
@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn a_chain_cut_loose_keeps_its_centre_and_a_held_one_its_root() {
+    fn a_free_chain_keeps_its_centre_and_a_held_one_its_root() {
         let centre = |x: &[Lane3]| x.iter().fold(Vec3::ZERO, |s, row| s + at(row, 2)) / 12.0;
         let (length, mut x) = pulled();
         let before = centre(&x);

@@ -6,12 +6,14 @@ use super::relaxation::relax;
 use crate::Integrator;
 use crate::block::{Block, Depth, Work, project_position, project_velocity};
 use crate::colliders::boxes::{apart, bounds};
-use crate::colliders::contact::{Near, NearField, buried, buried_in_field, lay_point, penetration};
+use crate::colliders::contact::{
+    Near, NearField, field_root_penetration, penetration, place_point, root_penetration,
+};
 use crate::lanes::{LANES, Lane, Map, Turns, ZERO, ZERO3, at, choose, direction_or, greater, lesser, put};
 use crate::motion::Substep;
 use glam::Vec3;
 
-/// Takes the block through substep `s`.
+/// Advances the block by substep `s`.
 #[inline(always)]
 pub(crate) fn run(block: &mut Block, plan: &Plan, s: usize) {
     forces(block, plan, s);
@@ -30,40 +32,41 @@ pub(crate) fn run(block: &mut Block, plan: &Plan, s: usize) {
     }
     shape_memory(block, plan, s);
     if plan.settings.integrator == Integrator::Direct {
-        lean(block, plan);
+        apply_contact_push(block, plan);
     }
-    // One pass for all: it is compiled once for each width of the processor's instructions.
-    let lay = match plan.settings.integrator {
+    // One placement pass serves all integrators, so that it is compiled only once per vector width.
+    let link_length = match plan.settings.integrator {
         Integrator::Direct => {
             lengths(block, plan, s);
-            Lay::AtLength
+            LinkLength::Rest
         }
         Integrator::Relaxation => {
             relax(plan, &block.rest.length, &mut block.work.next);
-            Lay::AsIs
+            LinkLength::Current
         }
-        Integrator::FollowTheLeader => Lay::Behind,
+        Integrator::FollowTheLeader => LinkLength::FollowLeader,
     };
     find_near(block, plan, s);
-    lay_out(block, plan, s, lay);
+    place_points(block, plan, s, link_length);
     if plan.settings.integrator == Integrator::FollowTheLeader {
         correct_velocities(block, plan);
     }
 }
 
-/// How long the pass from root to tip makes links.
+/// The length that the placement pass gives to links.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Lay {
-    /// As long as they are at rest.
-    AtLength,
-    /// The same, but nothing that hangs from a point follows what has moved it: the next link pulls it.
-    Behind,
-    /// As long as they have become.
-    AsIs,
+enum LinkLength {
+    /// The rest length.
+    Rest,
+    /// The rest length, but the rest of the guide does not follow the displacement of a point: the next link
+    /// pulls it.
+    FollowLeader,
+    /// Their current length.
+    Current,
 }
 
-/// Once in so many substeps it is asked whether the factors of the coupled lengths still serve.
-const SAME_FACTORS: usize = 4;
+/// The factors of the coupled lengths are checked once per this many substeps.
+const FACTOR_CHECK_INTERVAL: usize = 4;
 
 /// One Newton step of the lengths, in the metric of the bends.
 #[inline(always)]
@@ -79,12 +82,12 @@ fn lengths(block: &mut Block, plan: &Plan, s: usize) {
             &block.bending,
             &mut block.work.lengths,
             &mut block.work.residual,
-            s.is_multiple_of(SAME_FACTORS).then_some(&to_head),
+            s.is_multiple_of(FACTOR_CHECK_INTERVAL).then_some(&to_head),
         );
     }
 }
 
-/// Forces on velocities, and the velocities of points that the scalp carries.
+/// Applies forces to velocities, and sets the velocities of points that the scalp carries.
 #[inline(always)]
 fn forces(block: &mut Block, plan: &Plan, s: usize) {
     let (substep, h, inv_h) = (&plan.substeps[s], plan.h, 1.0 / plan.h);
@@ -109,7 +112,7 @@ fn forces(block: &mut Block, plan: &Plan, s: usize) {
     }
 }
 
-/// The step of positions into `next`.
+/// Advances the positions into `next`.
 #[inline(always)]
 fn step_positions(block: &mut Block, h: f32) {
     for i in 0..block.points() {
@@ -122,14 +125,15 @@ fn step_positions(block: &mut Block, h: f32) {
     }
 }
 
-/// A direction's first component where there is none.
-const NOWHERE: f32 = 2.0;
+/// Marks a missing direction in its first component.
+const NO_DIRECTION: f32 = 2.0;
 
-/// Carries the head's frame along `next` by least turns: leaves in `links` the direction of each link, and in `next_bend` the
-/// direction that the link after it would have if the lock went on from there as at rest.
+/// Carries the head's frame along `next` by smallest rotations. Writes the direction of each link to `links`,
+/// and to `next_bend` the direction that the following link would have if the guide continued in its rest
+/// shape.
 ///
-/// What a row takes from the one before is a chain of dependent numbers, and as short as it can be here: all else is worked out
-/// for every row by itself, before and after.
+/// The dependency from row to row is kept as short as possible; everything else is computed row by row,
+/// before and after.
 #[inline(always)]
 fn carry_frames(block: &mut Block, substep: &Substep) {
     let count = block.points();
@@ -140,7 +144,7 @@ fn carry_frames(block: &mut Block, substep: &Substep) {
         let (a, b) = (&block.work.next[i - 1], &block.work.next[i]);
         let mut link = ZERO3;
         for k in 0..LANES {
-            let (direction, _) = direction_or(at(b, k) - at(a, k), Vec3::splat(NOWHERE));
+            let (direction, _) = direction_or(at(b, k) - at(a, k), Vec3::splat(NO_DIRECTION));
             put(&mut link, k, direction);
         }
         block.work.links[i] = link;
@@ -154,8 +158,8 @@ fn carry_frames(block: &mut Block, substep: &Substep) {
         let (mut link, next_direction) = (block.work.links[i], &block.rest.direction[i + 1]);
         for k in 0..LANES {
             let was_expected = at(&expected, k);
-            let now = choose(link[0][k] < NOWHERE, at(&link, k), was_expected);
-            let frame = frames.at(k).then_least(was_expected, now);
+            let now = choose(link[0][k] < NO_DIRECTION, at(&link, k), was_expected);
+            let frame = frames.at(k).then_smallest(was_expected, now);
             frames.put(k, frame);
             put(&mut expected, k, frame.apply(at(next_direction, k)));
             put(&mut link, k, now);
@@ -177,13 +181,13 @@ fn shape_memory(block: &mut Block, plan: &Plan, s: usize) {
         let (link, goes_on, rest_bend) =
             (&block.work.links[i], &block.work.next_bend[i], &block.rest.bend[i]);
         let (length, next_length) = (&block.rest.length[i], &block.rest.length[i + 1]);
-        let (old, c, fixed) = (&block.bend[i], block.bending.stiffness(i), block.bending.fixed(i));
+        let (old, c, head_share) = (&block.bend[i], block.bending.stiffness(i), block.bending.head_share(i));
         let (mut bend, mut residual) = (ZERO3, ZERO3);
         for k in 0..LANES {
-            // The bend at rest is the next link less this one, both as long as at rest.
+            // The rest bend is the next link minus this one, both at rest length.
             let with_lock = at(goes_on, k) * next_length[k] - at(link, k) * length[k];
             let with_head = substep.head.rotate(at(rest_bend, k));
-            let wanted = with_lock + (with_head - with_lock) * fixed[k];
+            let wanted = with_lock + (with_head - with_lock) * head_share[k];
             let now = at(p0, k) - 2.0 * at(p1, k) + at(p2, k);
             let before = at(x0, k) - 2.0 * at(x1, k) + at(x2, k);
             let r = (now - wanted) * (1.0 + gamma) - (before - at(old, k)) * gamma;
@@ -195,7 +199,7 @@ fn shape_memory(block: &mut Block, plan: &Plan, s: usize) {
     }
     block.work.residual[0] = ZERO3;
     block.work.residual[count - 1] = ZERO3;
-    // -D^T r, and the pull toward the style, in place; and at once what the elimination leaves of it.
+    // -D^T r and the pull toward the style, in place, followed directly by the forward elimination.
     let (mut one, mut two) = (ZERO3, ZERO3);
     let mut left = if plan.first_free > 0 { block.work.residual[plan.first_free - 1] } else { ZERO3 };
     for i in plan.first_free..count {
@@ -209,7 +213,7 @@ fn shape_memory(block: &mut Block, plan: &Plan, s: usize) {
             put(&mut force, k, f);
         }
         left = middle;
-        force = block.bending.down(i, &force, &one, &two);
+        force = block.bending.forward(i, &force, &one, &two);
         block.work.residual[i] = force;
         (two, one) = (one, force);
     }
@@ -217,20 +221,23 @@ fn shape_memory(block: &mut Block, plan: &Plan, s: usize) {
     block.bending.finish(plan.first_free, residual, next);
 }
 
-/// Of what contacts have moved a point by in the last substep this is left to do in the next.
-const LEANS: f32 = 0.9;
+/// Fraction of the last substep's contact displacement that is applied in advance in the next.
+const CONTACT_PUSH_KEPT: f32 = 0.9;
 
-/// Points lean that are held to the style by more than this part of what holds the first. Further out, where a lock may lie
-/// between a shoulder and an arm, what is moved beforehand from the one would be moved into the other.
+/// The displacement is applied only to points whose hold on the style exceeds this fraction of the first
+/// point's. Further out, where a guide may lie between a shoulder and an arm, moving it away from the one
+/// would push it into the other.
 const NEAR_ROOT: f32 = 0.25;
 
-/// Moves points beforehand by most of what contacts did in the last substep, and what hangs from them along.
+/// Moves points in advance by most of the contact displacement of the last substep, together with everything
+/// beyond them.
 ///
-/// Hair that leans on skin pulls into it with its stiffness and is put out again. Were that begun anew in every substep,
-/// a stiff lock would be turned to and fro by degrees, and what is lost and won by that would drive it.
+/// Hair that lies against skin is pulled into it by its stiffness and pushed out again. If every substep
+/// started from scratch, a stiff guide would swing back and forth by degrees, and the energy of that motion
+/// would drive it.
 #[inline(always)]
-fn lean(block: &mut Block, plan: &Plan) {
-    if !block.leaning {
+fn apply_contact_push(block: &mut Block, plan: &Plan) {
+    if !block.has_contact_push {
         return;
     }
     let (mut moved, mut moved_before) = (ZERO3, ZERO3);
@@ -238,20 +245,20 @@ fn lean(block: &mut Block, plan: &Plan) {
     for i in plan.first_free.max(1)..block.points() {
         let shift = block.bending.follow(i - 1, &moved_before, &moved);
         let (pull, hold) = (block.work.residual[i], *block.bending.hold(i));
-        let (mut push, mut next) = (block.leans[i], block.work.next[i]);
+        let (mut push, mut next) = (block.contact_push[i], block.work.next[i]);
         moved_before = moved;
         for k in 0..LANES {
             let (out, size) = direction_or(at(&push, k), Vec3::ZERO);
-            // No more than the stiffness pulls in.
+            // At most as far as the stiffness pulls inward.
             let against = greater(0.0, lesser(size, -at(&pull, k).dot(out)));
             let near_root = hold[k] > NEAR_ROOT * root[k];
             let against = if near_root { against } else { 0.0 };
-            put(&mut push, k, out * (LEANS * against));
+            put(&mut push, k, out * (CONTACT_PUSH_KEPT * against));
             put(&mut moved, k, at(&shift, k) + at(&push, k));
             let p = at(&next, k) + at(&moved, k);
             put(&mut next, k, p);
         }
-        (block.leans[i], block.work.next[i]) = (push, next);
+        (block.contact_push[i], block.work.next[i]) = (push, next);
     }
 }
 
@@ -260,7 +267,7 @@ fn lean(block: &mut Block, plan: &Plan) {
 fn find_near(block: &mut Block, plan: &Plan, s: usize) {
     block.work.active.clear();
     block.work.boxes.clear();
-    block.work.buried.clear();
+    block.work.root_penetration.clear();
     let shapes = &plan.shapes[s * plan.shapes_per_substep..][..plan.shapes_per_substep];
     if shapes.is_empty() {
         return;
@@ -275,14 +282,14 @@ fn find_near(block: &mut Block, plan: &Plan, s: usize) {
         }
     }
     let ((min, _), (_, max)) = (bounds(&low), bounds(&high));
-    // The clean-up pass may lay points a little outside the box of where they want to be.
+    // The placement pass may move points slightly outside the box of their unconstrained positions.
     let reach = plan.rules.reach() + 0.03;
     let carried = plan.first_free.saturating_sub(1);
     for (c, mover) in shapes.iter().enumerate() {
         if mover.shape.is_some() && !apart(min, max, mover, reach) {
             block.work.active.push(c as u32);
             block.work.boxes.push(mover);
-            block.work.buried.push(buried(
+            block.work.root_penetration.push(root_penetration(
                 &block.work.next[carried],
                 mover,
                 &block.rest_distance[c * block.points() + carried],
@@ -291,25 +298,26 @@ fn find_near(block: &mut Block, plan: &Plan, s: usize) {
     }
 }
 
-/// The clean-up pass, and the velocities that follow from it.
+/// The placement pass, and the velocities that follow from it.
 #[inline(always)]
-fn lay_out(block: &mut Block, plan: &Plan, s: usize, lay: Lay) {
+fn place_points(block: &mut Block, plan: &Plan, s: usize, link_length: LinkLength) {
     let (count, inv_h) = (block.points(), 1.0 / plan.h);
     let carried = plan.first_free.saturating_sub(1);
-    // Not by a closure: that would keep the baseline's instructions.
+    // Not a closure: closures keep the baseline instruction set.
     let mut field = None;
     if let Some(moving) = plan.field {
         let (substep, passed) = (&plan.substeps[s], (s + 1) as f32 / plan.substeps.len() as f32);
         let (rest_distance, root) = (&block.field_distance[..], &block.work.next[carried]);
         let plane = &mut block.work.planes[carried];
-        let buried = buried_in_field(root, moving, substep, passed, &rest_distance[carried], plane);
+        let root_penetration =
+            field_root_penetration(root, moving, substep, passed, &rest_distance[carried], plane);
         let (first, reach) = (plan.first_free.clamp(1, count), plan.rules.reach());
         let Work { next, planes, searches, .. } = &mut block.work;
-        // What follows the leader is not yet where it will be.
-        if lay != Lay::Behind {
-            moving.foresee(&next[first..], substep, passed, reach, &mut planes[first..], searches);
+        // With follow-the-leader the points are not yet where they will be.
+        if link_length != LinkLength::FollowLeader {
+            moving.prefetch_planes(&next[first..], substep, passed, reach, &mut planes[first..], searches);
         }
-        field = Some(NearField { moving, substep, passed, rest_distance, buried });
+        field = Some(NearField { moving, substep, passed, rest_distance, root_penetration });
     }
     let near = Near {
         shapes: &plan.shapes[s * plan.shapes_per_substep..][..plan.shapes_per_substep],
@@ -318,23 +326,24 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize, lay: Lay) {
         rest_distance: &block.rest_distance,
         points: count,
         carried,
-        buried: &block.work.buried,
+        root_penetration: &block.work.root_penetration,
         link: &block.rest.mean_link,
         field,
     };
     let last = s + 1 == plan.substeps.len();
     let touches = near.field.is_some() || !near.active.is_empty();
     let mut deepest = [Depth::default(); LANES];
-    std::mem::swap(&mut block.position, &mut block.work.was);
+    std::mem::swap(&mut block.position, &mut block.work.previous);
     let mut before = ZERO3;
     let mut was_before = &ZERO3;
-    // What bodies and lengths have moved a point by, what hangs from it follows as its stiffness has it. Otherwise a
-    // stiff lock that leans on a shoulder would be bent there anew in every substep, and the shoulder do work on it.
+    // The guide beyond a point follows its displacement by contacts and lengths as its stiffness demands.
+    // Otherwise a stiff guide on a shoulder would be bent there in every substep, and the shoulder would do
+    // work on it.
     let (mut moved, mut moved_before) = (ZERO3, ZERO3);
     for i in 0..count {
-        let (was, wanted) = (&block.work.was[i], &block.work.next[i]);
+        let (was, wanted) = (&block.work.previous[i], &block.work.next[i]);
         let mut placed = *wanted;
-        if i >= plan.first_free.max(1) && lay != Lay::Behind {
+        if i >= plan.first_free.max(1) && link_length != LinkLength::FollowLeader {
             let shift = block.bending.follow(i - 1, &moved_before, &moved);
             for k in 0..LANES {
                 let p = at(&placed, k) + at(&shift, k);
@@ -343,7 +352,7 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize, lay: Lay) {
         }
         if i >= plan.first_free.max(1) {
             let (inv, mut length) = (&block.rest.inv_length[i], block.rest.length[i]);
-            if lay == Lay::AsIs {
+            if link_length == LinkLength::Current {
                 for k in 0..LANES {
                     length[k] = (at(&placed, k) - at(&before, k)).length_squared().sqrt();
                 }
@@ -353,23 +362,24 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize, lay: Lay) {
                 put(&mut fallback, k, (at(was, k) - at(was_before, k)) * inv[k]);
             }
             let planes = &mut block.work.planes[i];
-            let laid = lay_point(i, &before, &placed, was, &fallback, &length, &near, &plan.rules, planes);
-            placed = laid.placed;
-            if laid.touched {
-                let mut leans = block.leans[i];
+            let result =
+                place_point(i, &before, &placed, was, &fallback, &length, &near, &plan.rules, planes);
+            placed = result.placed;
+            if result.touched {
+                let mut contact_push = block.contact_push[i];
                 for k in 0..LANES {
-                    let push = at(&placed, k) - at(&laid.free, k);
-                    let sum = at(&leans, k) + push;
-                    put(&mut leans, k, choose(push.length_squared() > 0.0, sum, Vec3::ZERO));
+                    let push = at(&placed, k) - at(&result.free, k);
+                    let sum = at(&contact_push, k) + push;
+                    put(&mut contact_push, k, choose(push.length_squared() > 0.0, sum, Vec3::ZERO));
                 }
-                block.leans[i] = leans;
-            } else if block.leaning {
-                block.leans[i] = ZERO3;
+                block.contact_push[i] = contact_push;
+            } else if block.has_contact_push {
+                block.contact_push[i] = ZERO3;
             }
-            if last && laid.touched {
+            if last && result.touched {
                 let found = penetration(i, &placed, &near, &plan.rules, planes);
                 for k in 0..LANES {
-                    if found.unsure[k] && k < block.used {
+                    if found.is_unsure[k] && k < block.used {
                         block.outcome.unsure += 1;
                         block.outcome.first_unsure.get_or_insert((block.guides[k], i as u32));
                     }
@@ -391,10 +401,10 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize, lay: Lay) {
         block.velocity[i] = velocity;
         (before, was_before) = (placed, was);
     }
-    block.leaning = touches && block.leans();
-    if touches && lay == Lay::AtLength {
-        take_bounces(block, plan, s);
-        keep_energy(block, plan, s);
+    block.has_contact_push = touches && block.any_contact_push();
+    if touches && link_length == LinkLength::Rest {
+        remove_bounces(block, plan, s);
+        limit_energy(block, plan, s);
     }
     std::mem::swap(&mut block.bend, &mut block.work.next_bend);
     for (depth, &guide) in deepest.iter().zip(&block.guides).take(block.used) {
@@ -404,20 +414,21 @@ fn lay_out(block: &mut Block, plan: &Plan, s: usize, lay: Lay) {
     }
 }
 
-/// What of the velocity `v` against the head is there only because bodies have moved a point by `push`, a velocity too: hair
-/// that lies on a body does not bounce off it. What moves outward of itself goes on.
+/// The part of `v`, a velocity relative to the head, that exists only because contacts pushed the point at
+/// the velocity `push`. Hair on a body does not bounce off it; hair that already moves outward keeps its
+/// velocity.
 #[inline(always)]
 fn bounce(v: Vec3, push: Vec3) -> Vec3 {
     let (out, size) = direction_or(push, Vec3::ZERO);
     out * greater(0.0, lesser(v.dot(out), size))
 }
 
-/// Takes from velocities what is a [`bounce`].
+/// Removes the [`bounce`] from the velocities.
 #[inline(always)]
-fn take_bounces(block: &mut Block, plan: &Plan, s: usize) {
+fn remove_bounces(block: &mut Block, plan: &Plan, s: usize) {
     let (substep, inv_h) = (&plan.substeps[s], 1.0 / plan.h);
     for i in 0..block.points() {
-        let (p, was, wanted) = (&block.position[i], &block.work.was[i], &block.work.next[i]);
+        let (p, was, wanted) = (&block.position[i], &block.work.previous[i], &block.work.next[i]);
         let mut velocity = block.velocity[i];
         for k in 0..LANES {
             let (push, v) = (at(p, k) - at(wanted, k), at(&velocity, k));
@@ -428,13 +439,14 @@ fn take_bounces(block: &mut Block, plan: &Plan, s: usize) {
     }
 }
 
-/// Takes from the velocities of a lock what the pass from root to tip has given it.
+/// Removes the kinetic energy that the placement pass has added to a guide.
 ///
-/// Contacts and lengths do no work in the head's frame, yet a push-out drags what hangs from its point along at no cost:
-/// a lock that is held between neck and shoulder would be whipped about for ever. Its velocities against the head's own
-/// motion are scaled so that it has no more energy than before the pass. Where the pass has taken energy, nothing is done.
+/// Contacts and lengths do no work in the head's frame, yet a push-out drags the rest of the guide along for
+/// free: a guide between neck and shoulder would be whipped about for ever. Its velocities relative to the
+/// head are scaled so that it has no more energy than before the pass. Where the pass has removed energy,
+/// nothing is done.
 #[inline(always)]
-fn keep_energy(block: &mut Block, plan: &Plan, s: usize) {
+fn limit_energy(block: &mut Block, plan: &Plan, s: usize) {
     let (substep, inv_h) = (&plan.substeps[s], 1.0 / plan.h);
     let (mut before, mut after) = (ZERO, ZERO);
     for i in plan.first_free.max(1)..block.points() {
@@ -449,7 +461,7 @@ fn keep_energy(block: &mut Block, plan: &Plan, s: usize) {
     }
     let mut keep = Lane::splat(1.0);
     for k in 0..LANES {
-        // What is not a number is left to the end of the step, which puts such guides back.
+        // Guides that are not finite are reset at the end of the step.
         if after[k] > before[k] {
             keep[k] = (before[k] / after[k]).sqrt();
         }
@@ -471,9 +483,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_a_body_puts_out_does_not_bounce() {
+    fn pushed_out_points_do_not_bounce() {
         let push = Vec3::new(0.0, 2.0, 0.0);
-        // It came in slower than it was pushed, as fast, faster than one push stops, and was on its way out.
+        // Points that came in slower than they were pushed, as fast, faster, and already on their way out.
         for (came, left) in [(-1.0, 0.0), (-2.0, 0.0), (-3.0, -1.0), (0.5, 0.5)] {
             let v = Vec3::new(0.7, came, 0.0) + push;
             assert_eq!(v - bounce(v, push), Vec3::new(0.7, left, 0.0), "{came}");

@@ -1,4 +1,4 @@
-//! Any number, setting, lock, collider and place, from bytes.
+//! Arbitrary numbers, settings, guides, colliders and poses, generated from bytes.
 
 use std::sync::Arc;
 
@@ -7,11 +7,11 @@ use lovelock_groom::{Guides, Hairstyle, StrandSet};
 use lovelock_motion::{ColliderShape, PlacedCollider};
 use lovelock_simulation::{Integrator, RepulsionMode, SimulationSettings};
 
-/// What is left of the input.
+/// The remaining input.
 pub struct Bytes<'a>(pub &'a [u8]);
 
 impl Bytes<'_> {
-    /// The next byte, 0 where there are no more.
+    /// The next byte, 0 at the end of the input.
     pub fn byte(&mut self) -> u8 {
         let Some((&first, rest)) = self.0.split_first() else { return 0 };
         self.0 = rest;
@@ -23,7 +23,7 @@ impl Bytes<'_> {
         f32::from(self.byte()) / 255.0
     }
 
-    /// Any number, usual ones, large, small and none at all.
+    /// Any number: ordinary, large, small, infinite or NaN.
     pub fn number(&mut self) -> f32 {
         match self.byte() % 16 {
             0 => f32::from_bits(u32::from_le_bytes([self.byte(), self.byte(), self.byte(), self.byte()])),
@@ -50,7 +50,8 @@ impl Bytes<'_> {
     }
 }
 
-/// Finite locks of a few shapes around a head of 10 cm: also no lock, one point apart, and links of no length.
+/// Finite guides of a few shapes around a head of 10 cm, including no guide, single points, and zero-length
+/// links.
 pub fn style(input: &mut Bytes) -> Arc<Hairstyle> {
     let points = [2, 3, 4, 9, 16][input.byte() as usize % 5];
     let count = [0, 1, 5, 16, 17, 33][input.byte() as usize % 6];
@@ -144,7 +145,7 @@ pub fn any_collider(input: &mut Bytes) -> PlacedCollider {
     PlacedCollider { shape, world_from_rest }
 }
 
-/// Any twelve numbers.
+/// A head transform of any twelve numbers.
 pub fn any_head(input: &mut Bytes) -> Affine3A {
     let (x, y, z) = (input.vector(), input.vector(), input.vector());
     let mut m = Affine3A::from_translation(input.vector());

@@ -1,11 +1,12 @@
-//! The curve in which a chain hangs whose ends are held level.
+//! The catenary, the curve of a chain whose ends are held at the same height.
 
 use glam::DVec3;
 
-/// The furthest that any point is from the catenary of that length between the origin and `apart` metres along X, along Y, metres.
+/// Largest distance along Y between the points and the catenary of that length from the origin to `apart`
+/// metres along X, metres.
 pub fn off_the_catenary(points: &[DVec3], length: f64, apart: f64) -> f64 {
     let half = 0.5 * apart;
-    // Its parameter: `2 a sinh(half / a) = length`.
+    // Its parameter `a` solves `2 a sinh(half / a) = length`.
     let (mut low, mut high) = (0.01_f64, 1.0_f64);
     for _ in 0..100 {
         let a = 0.5 * (low + high);

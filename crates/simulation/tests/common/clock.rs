@@ -1,8 +1,8 @@
-//! Processor time, which other work on the machine does not add to.
+//! CPU time, which does not include other work on the machine.
 
 use std::time::Duration;
 
-/// Time that this process has spent on processors, all threads together; wall time where the system does not say.
+/// CPU time of all threads of this process; wall time where the system does not report it.
 pub fn process_time() -> Duration {
     #[cfg(unix)]
     {
@@ -14,7 +14,7 @@ pub fn process_time() -> Duration {
     }
 }
 
-/// The same of this thread alone.
+/// CPU time of this thread alone.
 pub fn thread_time() -> Duration {
     #[cfg(unix)]
     {

@@ -1,12 +1,13 @@
-//! Bytes as a day in the life of a simulation: settings, motions and edits in any order and with any numbers.
+//! Bytes interpreted as actions on a simulation: settings, motions and edits in any order and with any
+//! numbers.
 //!
-//! Shared by the fuzz target (`fuzz/`) and the tests; needs glam, the groom, the motion and the simulator alone.
+//! Shared by the fuzz target (`fuzz/`) and the tests; depends only on glam, groom, motion and simulation.
 #![allow(dead_code, missing_docs, reason = "every user takes its part")]
 
 #[path = "any.rs"]
 mod any;
-#[path = "dress.rs"]
-mod dress;
+#[path = "edited_hair.rs"]
+mod edited_hair;
 #[path = "figure.rs"]
 mod figure;
 
@@ -18,12 +19,12 @@ use lovelock_motion::{
 use lovelock_simulation::{BodyPart, PlacedField, Simulation, SimulationSettings, StepInput};
 
 use any::{Bytes, any_collider, any_colliders, any_head, any_settings, one_setting, style};
-use dress::Dress;
+use edited_hair::EditedHair;
 use figure::{Bends, FIGURE, Figure};
 
-/// What a drive has met, so that a test can tell that drives meet everything.
+/// Counts of what a drive has covered, so that a test can check that drives cover everything.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Met {
+pub struct Coverage {
     pub steps: u32,
     pub jumps: u32,
     pub recovered: u32,
@@ -32,24 +33,24 @@ pub struct Met {
     pub restored: u32,
     pub refused: u32,
     pub fastest: f32,
-    /// Steps with the field of a figure, and those in which it found hair in its skin.
-    pub fielded: u32,
+    /// Steps with the field of a figure, and those in which hair was in its skin.
+    pub with_field: u32,
     pub in_skin: u32,
     /// Steps with points in skin that is folded over itself.
     pub folded: u32,
-    /// Ties that gather hair, cuts that meet some, and the same hair grown in another length, all in the midst of motion.
+    /// Ties that gather hair, cuts that cut some, and changes of hair length, all during motion.
     pub tied: u32,
     pub cut: u32,
     pub regrown: u32,
-    /// Changes of the field's surface, of the colliders of the figure, and of how its joints are bent.
+    /// Changes of the field's lift, of the colliders of the figure, and of the bend of its joints.
     pub lifted: u32,
     pub edited: u32,
     pub bent: u32,
 }
 
-impl Met {
-    /// What both have met.
-    pub fn and(&mut self, other: &Self) {
+impl Coverage {
+    /// Adds the counts of another drive.
+    pub fn add(&mut self, other: &Self) {
         for (mine, more) in [
             (&mut self.steps, other.steps),
             (&mut self.jumps, other.jumps),
@@ -58,7 +59,7 @@ impl Met {
             (&mut self.resets, other.resets),
             (&mut self.restored, other.restored),
             (&mut self.refused, other.refused),
-            (&mut self.fielded, other.fielded),
+            (&mut self.with_field, other.with_field),
             (&mut self.in_skin, other.in_skin),
             (&mut self.folded, other.folded),
             (&mut self.tied, other.tied),
@@ -74,27 +75,27 @@ impl Met {
     }
 }
 
-/// The most that one drive does, so that every input ends soon.
+/// Largest number of actions per drive, so that every input ends soon.
 const MOST_ACTIONS: u32 = 120;
 
 /// A figure, or bare colliders, around a head.
-struct Wearer {
+struct TestBody {
     /// Whether there is a figure.
     figure: bool,
     bends: Bends,
-    /// A joint that is anywhere at all.
+    /// A joint at an arbitrary transform.
     astray: Option<(usize, Affine3A)>,
     edits: ColliderEdits,
-    /// The colliders of the figure that the edits leave.
+    /// The colliders of the figure after the edits.
     used: Vec<Collider>,
-    /// Colliders of no figure.
+    /// Colliders that belong to no figure.
     loose: Vec<PlacedCollider>,
     pose: Pose,
     placed: Vec<PlacedCollider>,
     field: FieldPose,
 }
 
-impl Wearer {
+impl TestBody {
     fn new() -> Self {
         Self {
             figure: false,
@@ -131,7 +132,7 @@ impl Wearer {
         self.bends = Bends { neck, nod, shoulder };
     }
 
-    /// Which field there is, by its surface.
+    /// Identifies the field by its lift.
     fn key(&self) -> Option<u32> {
         (self.figure && self.edits.field.enabled).then(|| self.edits.field.lift_m().to_bits())
     }
@@ -150,20 +151,26 @@ impl Wearer {
             FIGURE.field.place(&FIGURE.body, &self.pose, self.edits.field.lift_m(), &mut self.field);
             PlacedField { field: &FIGURE.field, pose: &self.field }
         });
-        // Any shapes keep the wind off.
+        // Any shapes may shelter from the wind.
         StepInput { field, sheltering: &self.loose, ..StepInput::new(time_secs, head, &self.placed) }
     }
 }
 
-/// A state, and the field that there was.
+/// A saved state, and the field at that time.
 struct Saved {
     bytes: Vec<u8>,
     field: Option<u32>,
 }
 
 impl Saved {
-    /// Goes back to it, or to what is left of it once it is damaged.
-    fn restore(&self, simulation: &mut Simulation, field: Option<u32>, input: &mut Bytes, met: &mut Met) {
+    /// Restores it, possibly after damaging its bytes.
+    fn restore(
+        &self,
+        simulation: &mut Simulation,
+        field: Option<u32>,
+        input: &mut Bytes,
+        coverage: &mut Coverage,
+    ) {
         let mut bytes = self.bytes.clone();
         let hurt = input.byte().is_multiple_of(2);
         if hurt {
@@ -174,36 +181,36 @@ impl Saved {
             }
         }
         let before = simulation.state_hash();
-        // What stands for the body is no part of a state: on another, either may be.
+        // The body is not part of a state; on another body the restore may succeed or fail.
         let same = field == self.field;
         match simulation.restore(&bytes) {
             Ok(()) => {
-                assert!(!hurt && (!same || simulation.save() == bytes), "a damaged state was taken");
-                met.restored += 1;
+                assert!(!hurt && (!same || simulation.save() == bytes), "a damaged state was accepted");
+                coverage.restored += 1;
             }
             Err(error) => {
                 assert!((hurt || !same) && before == simulation.state_hash(), "{error}");
-                met.refused += 1;
+                coverage.refused += 1;
             }
         }
     }
 }
 
-/// Takes a simulation through what `bytes` say.
+/// Performs the actions that `bytes` describe on a simulation.
 ///
 /// # Panics
-/// Where a point is not finite or far from the head, a report is not a number, or a state that was saved and
-/// restored is another.
-pub fn drive(bytes: &[u8]) -> Met {
+/// If a point is not finite or far from the head, a report contains NaN, or a saved and restored state
+/// differs.
+pub fn drive(bytes: &[u8]) -> Coverage {
     let mut input = Bytes(bytes);
-    let mut met = Met::default();
-    let mut dress = Dress::new(style(&mut input));
-    let mut simulation = Simulation::new(dress.worn());
+    let mut coverage = Coverage::default();
+    let mut hair = EditedHair::new(style(&mut input));
+    let mut simulation = Simulation::new(hair.result());
     let mut settings = SimulationSettings::default();
-    let mut wearer = Wearer::new();
+    let mut body = TestBody::new();
     let (mut time_secs, mut head, mut dt) = (0.0, Affine3A::IDENTITY, 1.0 / 60.0);
     let mut saved: Option<Saved> = None;
-    let mut field = wearer.key();
+    let mut field = body.key();
     for _ in 0..MOST_ACTIONS {
         if input.0.is_empty() {
             break;
@@ -211,117 +218,117 @@ pub fn drive(bytes: &[u8]) -> Met {
         match input.byte() % 32 {
             0 => settings = any_settings(&mut input),
             1 => one_setting(&mut input, &mut settings),
-            2 => wearer.loose = any_colliders(&mut input),
+            2 => body.loose = any_colliders(&mut input),
             3 => {
                 let at = input.byte() as usize;
-                if let Some(collider) = wearer.loose.get_mut(at % 4) {
+                if let Some(collider) = body.loose.get_mut(at % 4) {
                     *collider = any_collider(&mut input);
                 }
             }
             4 => {
-                dress = if input.byte().is_multiple_of(3) {
-                    Dress::new(style(&mut input))
+                hair = if input.byte().is_multiple_of(3) {
+                    EditedHair::new(style(&mut input))
                 } else {
-                    Dress::grown(&mut input)
+                    EditedHair::grown(&mut input)
                 };
-                simulation.set_style(dress.worn());
-                met.styles += 1;
+                simulation.set_style(hair.result());
+                coverage.styles += 1;
                 saved = None;
             }
             5 => {
-                simulation.reset(&wearer.input(time_secs, head));
-                met.resets += 1;
+                simulation.reset(&body.input(time_secs, head));
+                coverage.resets += 1;
             }
             6 => saved = Some(Saved { bytes: simulation.save(), field }),
             7 => {
                 if let Some(saved) = &saved {
-                    saved.restore(&mut simulation, field, &mut input, &mut met);
+                    saved.restore(&mut simulation, field, &mut input, &mut coverage);
                 }
             }
             8 => dt = input.number(),
             9 => time_secs = f64::from(input.number()),
             10 => head = any_head(&mut input),
             11 | 12 => {
-                wearer.bend(&mut input);
-                met.bent += u32::from(wearer.figure);
+                body.bend(&mut input);
+                coverage.bent += u32::from(body.figure);
             }
             13 => {
                 let joint = input.byte() as usize % 4;
-                wearer.astray = (!input.byte().is_multiple_of(4)).then(|| (joint, any_head(&mut input)));
+                body.astray = (!input.byte().is_multiple_of(4)).then(|| (joint, any_head(&mut input)));
             }
             14 | 15 => {
                 let (tied, cut) = if input.byte().is_multiple_of(2) {
-                    (dress.tie(&mut input), false)
+                    (hair.tie(&mut input), false)
                 } else {
-                    (false, dress.cut(&mut input, &simulation))
+                    (false, hair.cut(&mut input, &simulation))
                 };
                 if tied || cut {
-                    simulation.set_style(dress.worn());
+                    simulation.set_style(hair.result());
                     saved = None;
                 }
-                met.tied += u32::from(tied);
-                met.cut += u32::from(cut);
+                coverage.tied += u32::from(tied);
+                coverage.cut += u32::from(cut);
             }
             16 => {
-                if dress.regrow(&mut input) {
-                    simulation.set_style(dress.worn());
-                    met.regrown += 1;
+                if hair.regrow(&mut input) {
+                    simulation.set_style(hair.result());
+                    coverage.regrown += 1;
                     saved = None;
                 }
             }
             17 => {
-                wearer.edits.field.lift = 0.1 * input.number();
-                met.lifted += u32::from(wearer.figure);
+                body.edits.field.lift = 0.1 * input.number();
+                coverage.lifted += u32::from(body.figure);
             }
             18 => {
-                wearer.edit(&mut input);
+                body.edit(&mut input);
                 if input.byte().is_multiple_of(2) {
                     simulation.forget_colliders();
                 }
-                met.edited += u32::from(wearer.figure);
+                coverage.edited += u32::from(body.figure);
             }
-            19 | 20 => wearer.figure = !input.byte().is_multiple_of(4),
+            19 | 20 => body.figure = !input.byte().is_multiple_of(4),
             21 => simulation.set_wind_secs(f64::from(input.number())),
-            22 => simulation.spare_contacts(input.byte().is_multiple_of(2)),
+            22 => simulation.set_contact_culling(input.byte().is_multiple_of(2)),
             _ => {
                 dt = if dt > 0.0 && dt < 1.0 { dt } else { 1.0 / 60.0 };
-                head = moved(&mut input, head);
+                head = next_head(&mut input, head);
             }
         }
         time_secs += f64::from(dt);
-        let at = wearer.input(time_secs, head);
-        met.fielded += u32::from(at.field.is_some());
+        let at = body.input(time_secs, head);
+        coverage.with_field += u32::from(at.field.is_some());
         let report = simulation.step(&at, &settings, dt);
-        field = wearer.key();
-        met.steps += 1;
-        met.jumps += u32::from(report.jumped);
-        met.recovered += report.recovered_guides;
-        met.fastest = met.fastest.max(report.max_speed);
-        met.folded += u32::from(report.unsure_points > 0);
-        met.in_skin += u32::from(report.deepest.is_some_and(|d| d.within == BodyPart::Field));
+        field = body.key();
+        coverage.steps += 1;
+        coverage.jumps += u32::from(report.jumped);
+        coverage.recovered += report.recovered_guides;
+        coverage.fastest = coverage.fastest.max(report.max_speed);
+        coverage.folded += u32::from(report.unsure_points > 0);
+        coverage.in_skin += u32::from(report.deepest.is_some_and(|d| d.within == BodyPart::Field));
         assert!(report.substeps <= lovelock_simulation::MAX_SUBSTEPS);
-        // Stretch and speed may be large where a setting asks for it, but they are numbers.
+        // Stretch and speed may be large if a setting asks for it, but they are numbers.
         let numbers = [report.max_stretch, report.max_penetration_m, report.kinetic_energy, report.max_speed];
         assert!(numbers.iter().all(|v| !v.is_nan()), "{report:?}");
         let mut frame = GuideFrame::at_rest(&Guides::default(), Affine3A::IDENTITY, 0.0);
         simulation.frame(&mut frame);
-        assert!(sound(&frame), "a point is not finite after {report:?}");
+        assert!(is_sound(&frame), "a point is not finite after {report:?}");
     }
-    met
+    coverage
 }
 
 /// Whether every point is finite and within reach of the head.
-pub fn sound(frame: &GuideFrame) -> bool {
+pub fn is_sound(frame: &GuideFrame) -> bool {
     let place = Vec3::from(frame.world_from_head.translation);
     let (g, size) = (&frame.guides, place.abs().max_element());
-    // 320 m from the head is where the simulator itself takes a guide for lost; a head far away rounds.
+    // The simulator itself treats a guide as lost 320 m from the head; a distant head adds rounding.
     let near =
         |v: f32, at: f32| v.is_finite() && (v - at).abs() < 320.0 * (g.points_per_guide as f32).sqrt() + size;
     (0..g.x.len()).all(|i| near(g.x[i], place.x) && near(g.y[i], place.y) && near(g.z[i], place.z))
 }
 
-/// A head that has moved on as heads do.
-fn moved(input: &mut Bytes, head: Affine3A) -> Affine3A {
+/// A plausible next pose of a head.
+fn next_head(input: &mut Bytes, head: Affine3A) -> Affine3A {
     let signed = |input: &mut Bytes| 2.0 * input.unit() - 1.0;
     let (turn, axis) = (0.4 * signed(input), input.byte());
     let axis = [Vec3::X, Vec3::Y, Vec3::Z][axis as usize % 3];

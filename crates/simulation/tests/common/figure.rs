@@ -1,6 +1,6 @@
-//! A figure to drive hair with: a column of trunk, neck and head that four joints bend, with its field and its colliders.
-//! Small enough to be made in a moment, and all that a body can do to hair it does: skin of one joint alone, skin between
-//! joints, and a shoulder that is raised until the skin folds over itself.
+//! A test figure: a column of trunk, neck and head that four joints bend, with its field and its colliders.
+//! It is quick to build and covers everything that a body can do to hair: skin of a single joint, skin
+//! between joints, and a shoulder that is raised until the skin folds over itself.
 
 use std::sync::{Arc, LazyLock};
 
@@ -30,7 +30,7 @@ const OUTLINE: [[f32; 3]; 14] = [
 /// Rows of vertices between two heights, and vertices around.
 const ROWS: usize = 3;
 const AROUND: usize = 24;
-/// Joints: chest, neck, head and the one shoulder, from the one above each.
+/// Joints: chest, neck, head and one shoulder, relative to their parents.
 const PLACES: [(Option<usize>, Vec3); 4] = [
     (None, Vec3::new(0.0, 1.2, 0.0)),
     (Some(0), Vec3::new(0.0, 0.18, 0.0)),
@@ -39,7 +39,7 @@ const PLACES: [(Option<usize>, Vec3); 4] = [
 ];
 const HEAD: usize = 2;
 
-/// The figure and what is made of it once.
+/// The figure and everything derived from it once.
 pub struct Figure {
     pub body: Body,
     pub field: Arc<BodyField>,
@@ -48,7 +48,7 @@ pub struct Figure {
     rest: RestDistance,
 }
 
-/// How its joints are bent.
+/// Rotations of its joints.
 #[derive(Clone, Copy, Debug)]
 pub struct Bends {
     pub neck: Quat,
@@ -90,7 +90,7 @@ impl Figure {
         Self { colliders: fit_colliders(&body), body, field, scalp, rest }
     }
 
-    /// The figure with its head where it is said to be, bent as it is.
+    /// The figure with its head at the given transform and its joints bent.
     pub fn pose(world_from_head: Affine3A, bends: &Bends, pose: &mut Pose) {
         let local = |joint: usize, turn: Quat| Affine3A::from_rotation_translation(turn, PLACES[joint].1);
         let neck = world_from_head * local(HEAD, bends.nod).inverse();

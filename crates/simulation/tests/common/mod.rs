@@ -1,5 +1,5 @@
-//! What tests, the benchmark and the example share: the dancer with hair on, and hairstyles of plain chains.
-#![allow(dead_code, missing_docs, reason = "every user takes its part")]
+//! Shared by tests, benchmark and examples: the dancer with hair, and hairstyles of plain chains.
+#![allow(dead_code, missing_docs, reason = "each user needs only a part")]
 
 pub mod catenary;
 pub mod clock;
@@ -21,7 +21,7 @@ use lovelock_motion::{
 use lovelock_simulation::{PlacedField, Simulation, SimulationSettings, StepInput, StepReport};
 use rayon::prelude::*;
 
-/// The step of the product, seconds.
+/// The step length of the program, seconds.
 pub const STEP_SECS: f32 = 1.0 / 60.0;
 
 /// The dancer, her dance and her hair.
@@ -31,7 +31,7 @@ pub struct Stage {
     pub colliders: Vec<Collider>,
     pub field: Option<Arc<BodyField>>,
     pub style: Arc<Hairstyle>,
-    /// The same before any tie gathered it.
+    /// The same hair without ties.
     pub loose: Arc<Hairstyle>,
     pub pose: Pose,
     pub placed: Vec<PlacedCollider>,
@@ -47,7 +47,7 @@ impl Obstacle for RestBody {
 }
 
 impl Stage {
-    /// The dancer with a preset as the program shows it: gathered by its ties, where it has any.
+    /// The dancer with a preset as the program shows it: with its ties, if it has any.
     pub fn new(preset: Preset) -> Self {
         Self::of_wisps(preset, GroomSettings::preset(preset).wisps)
     }
@@ -62,7 +62,7 @@ impl Stage {
     }
 
     /// The dancer with a preset's hair, by its name, or with that of a file.
-    pub fn called(style: &str, wisps: Option<u32>) -> Self {
+    pub fn named(style: &str, wisps: Option<u32>) -> Self {
         match (Preset::from_id(style), wisps) {
             (Some(preset), None) => Self::new(preset),
             (Some(preset), Some(wisps)) => Self::of_wisps(preset, wisps),
@@ -70,20 +70,20 @@ impl Stage {
         }
     }
 
-    /// The dancer with the hair of a file, in so many wisps; 0 leaves that to the file.
+    /// The dancer with the hair of a file, in `wisps` wisps; 0 lets the file decide.
     pub fn with_file(hair: &Path, wisps: u32) -> Self {
         let file = load_hair(hair).expect("the hair loads");
         let settings = ImportSettings { wisps, ..ImportSettings::default() };
-        Self::dressed(|scalp, body| {
+        Self::with_hair(|scalp, body| {
             import_around(&file, &settings, scalp, Some(body)).expect("the hair fits")
         })
     }
 
     pub fn grown(groom: &GroomSettings) -> Self {
-        Self::dressed(|scalp, body| grow(groom, scalp, body).expect("the preset grows"))
+        Self::with_hair(|scalp, body| grow(groom, scalp, body).expect("the preset grows"))
     }
 
-    fn dressed(hair: impl FnOnce(&Scalp, &RestBody) -> Hairstyle) -> Self {
+    fn with_hair(hair: impl FnOnce(&Scalp, &RestBody) -> Hairstyle) -> Self {
         let file = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../assets/dancer.glb");
         let character = load_character(&file).expect("the shipped dancer loads");
         let dance = character.clips.iter().find(|c| c.name == "dance").expect("the shipped dancer dances");
@@ -111,7 +111,7 @@ impl Stage {
         }
     }
 
-    /// Gathers the hair by these ties and no others.
+    /// Replaces the ties.
     pub fn tie(&mut self, ties: &[HairTie]) {
         self.style = Arc::new(tied(&self.loose, ties, &RestBody(RestDistance::new(&self.body))));
         self.style.check().expect("a tied style is sound");
@@ -130,7 +130,7 @@ impl Stage {
         StepInput { field, ..StepInput::new(time_secs, self.pose.world_from_head, &self.placed) }
     }
 
-    /// Takes another motion: `dance`, `backflip`, or a file that is retargeted.
+    /// Changes the motion: `dance`, `backflip`, or a file that is retargeted.
     pub fn play(&mut self, motion: &str) -> Result<(), Box<dyn std::error::Error>> {
         self.dance = match motion {
             "dance" => return Ok(()),
@@ -140,7 +140,7 @@ impl Stage {
         Ok(())
     }
 
-    /// The same body without its field: with all the colliders that are fitted to it.
+    /// The same body without its field: with all of its fitted colliders.
     pub fn without_field(mut self) -> Self {
         self.colliders = fit_colliders(&self.body);
         self.field = None;
@@ -170,7 +170,7 @@ pub fn straight(root: Vec3, direction: Vec3, links: usize, length: f32) -> Vec<V
     (0..=links).map(|i| root + direction * (length * i as f32 / links as f32)).collect()
 }
 
-/// A chain and nothing else: no stiffness, no drag, no neighbours.
+/// A chain only: no stiffness, no drag, no neighbours.
 pub fn bare() -> SimulationSettings {
     let mut s = SimulationSettings {
         style_support: 0.0,
@@ -202,7 +202,7 @@ pub fn head(time_secs: f64, world_from_head: Affine3A) -> StepInput<'static> {
     StepInput::new(time_secs, world_from_head, &[])
 }
 
-/// Where the guides are.
+/// The current guides.
 pub fn frame(simulation: &Simulation) -> GuideFrame {
     let mut frame = GuideFrame::at_rest(&Guides::default(), Affine3A::IDENTITY, 0.0);
     simulation.frame(&mut frame);
@@ -210,7 +210,7 @@ pub fn frame(simulation: &Simulation) -> GuideFrame {
 }
 
 /// Distance of every point from the style carried with the head, as a fraction of its guide's length.
-pub fn away_from_style(simulation: &Simulation) -> Vec<f32> {
+pub fn distance_from_style(simulation: &Simulation) -> Vec<f32> {
     let now = frame(simulation);
     let rest = GuideFrame::at_rest(&simulation.style().guides, now.world_from_head, 0.0).guides;
     let n = rest.points_per_guide;
@@ -222,7 +222,7 @@ pub fn away_from_style(simulation: &Simulation) -> Vec<f32> {
     out
 }
 
-/// Relative error of every link's length, from the positions themselves.
+/// Relative error of every link's length, computed from the positions.
 pub fn stretches(simulation: &Simulation) -> Vec<f32> {
     let (now, rest) = (frame(simulation).guides, &simulation.style().guides);
     let n = rest.points_per_guide;
@@ -242,7 +242,7 @@ pub fn stretch(simulation: &Simulation) -> f32 {
     stretches(simulation).into_iter().fold(0.0, f32::max)
 }
 
-/// The worst of two reports.
+/// The larger value of each quantity of two reports.
 pub fn worse(a: StepReport, b: StepReport) -> StepReport {
     StepReport {
         substeps: a.substeps.max(b.substeps),
@@ -260,30 +260,31 @@ pub fn worse(a: StepReport, b: StepReport) -> StepReport {
     }
 }
 
-/// How deep hair is in the skin of a frame, beyond what it is at rest, and what roots that the skin closes over allow.
+/// Penetration of hair into the skin in a frame, beyond that at rest and beyond the allowance for roots that
+/// the skin encloses.
 pub struct Depths {
-    /// Depth at rest of every point, metres, guide by guide; 0 outside.
+    /// Rest depth of every point, metres, guide by guide; 0 outside.
     rest: Vec<f32>,
     pub worst: InSkin,
-    /// The same without any allowance but that of the point itself at rest.
+    /// The same without the allowance for roots.
     pub worst_of_all: InSkin,
-    /// How many points were deeper than each of [`Depths::LIMITS`], and how many there were.
+    /// Number of points deeper than each of [`Depths::LIMITS`], and the number of all points.
     pub over: [usize; 4],
     pub count: usize,
-    /// The worst in the skin of arms, hands and the lower trunk, which the other numbers leave out.
+    /// The deepest point in the skin of arms, hands and lower trunk, which the other numbers leave out.
     pub elsewhere: InSkin,
     /// Which vertices are head, neck, shoulders and upper back.
     region: Vec<bool>,
 }
 
-/// One place in the skin.
+/// A point in the skin.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct InSkin {
     pub depth: f32,
     pub guide: usize,
     pub point: usize,
     pub step: u32,
-    /// In the axes of the world, from the head joint, metres.
+    /// World axes, relative to the head joint, metres.
     pub at: Vec3,
 }
 
@@ -314,7 +315,7 @@ impl Depths {
         }
     }
 
-    /// Measures the hair of a step against the skin then.
+    /// Measures the hair of a step against the skin at that time.
     pub fn measure(&mut self, stage: &Stage, simulation: &Simulation, surface: &Skin, step: u32) {
         let skin = SurfaceDistance::new(&surface.positions, &stage.body.mesh.triangles);
         let (now, rest) = (frame(simulation), &stage.style.guides);
@@ -329,7 +330,7 @@ impl Depths {
                 let all = -skin.distance(p) - self.rest[i];
                 let mut depth = all;
                 if all > 0.0 {
-                    // The scalp carries the first two points; see `buried` of the contacts.
+                    // The scalp carries the first two points; see `root_penetration` of the contacts.
                     let root = -skin.distance(now.guides.point(guide, 1)) - self.rest[guide * points + 1];
                     let link: f32 =
                         (1..points).map(|k| (rest.point(guide, k) - rest.point(guide, k - 1)).length()).sum();
@@ -365,7 +366,7 @@ impl Depths {
     }
 }
 
-/// How a hairstyle of that name moves in the program: a preset by its own settings, hair of a file by the usual ones.
+/// The settings of that hairstyle in the program: its own for a preset, the default for hair of a file.
 pub fn settings_of(style: &str) -> SimulationSettings {
     Preset::from_id(style).map_or_else(SimulationSettings::default, SimulationSettings::preset)
 }

@@ -1,9 +1,10 @@
-//! A chain of rigid links by its equations of motion, in double precision and by another way than the simulator's:
-//! tensions from the second derivative of the lengths, and the classical Runge-Kutta rule of fourth order.
+//! Reference for a chain of rigid links: its equations of motion in double precision, solved by a different
+//! method from the simulator's: tensions from the second derivative of the lengths, and the classical
+//! Runge-Kutta method of fourth order.
 
 use glam::{DVec3, Vec3};
 
-/// Points and velocities of a chain whose first point stands still; every other has the same mass.
+/// Points and velocities of a chain whose first point is fixed; the other points have equal masses.
 #[derive(Clone)]
 pub struct Chain {
     pub position: Vec<DVec3>,
@@ -72,14 +73,15 @@ impl Chain {
         }
     }
 
-    /// Energy of motion and height, per mass of all the points together, J/kg.
+    /// Kinetic plus potential energy per mass of all points, J/kg.
     pub fn energy(&self) -> f64 {
         let free = (self.position.len() - 1) as f64;
         let each = self.position.iter().zip(&self.velocity);
         each.map(|(x, v)| 0.5 * v.length_squared() - self.gravity.dot(*x)).sum::<f64>() / free
     }
 
-    /// Where the last point is after each of `frames` times of `frame_secs`, in steps of `frame_secs / steps`.
+    /// The position of the last point after each of `frames` intervals of `frame_secs`, in steps of
+    /// `frame_secs / steps`.
     pub fn tips(mut self, frames: u32, frame_secs: f64, steps: u32) -> Vec<DVec3> {
         (0..frames)
             .map(|_| {

@@ -32,7 +32,7 @@ fn velocities(points: usize) -> Vec<Lane3> {
     rows
 }
 
-/// Projects the velocities of a zigzag of twelve points onto rigid links of 1 cm, without a step in time.
+/// Projects the velocities of a zigzag of twelve points onto rigid links of 1 cm, without advancing time.
 fn project_zigzag(first_free: usize, x: &[Lane3], v: &mut [Lane3]) {
     let over_length = [Lane::splat(100.0); 12];
     project_velocity(first_free, x, &over_length, v, 0.0, &mut zigzag(12), &mut LengthScratch::new(12));
@@ -58,7 +58,7 @@ fn projected_velocities_stretch_no_link() {
 }
 
 #[test]
-fn a_chain_cut_loose_keeps_its_momentum() {
+fn a_free_chain_keeps_its_momentum() {
     let (x, mut v) = (zigzag(12), velocities(12));
     let sum = |v: &[Lane3]| v.iter().fold(Vec3::ZERO, |s, row| s + at(row, 3));
     let before = sum(&v);
@@ -66,11 +66,11 @@ fn a_chain_cut_loose_keeps_its_momentum() {
     assert!((sum(&v) - before).length() < 1e-6 * 12.0, "{before} became {}", sum(&v));
     let mut held = velocities(12);
     project_zigzag(1, &x, &mut held);
-    assert!((sum(&held) - before).length() > 0.01, "a chain that is held must not keep it");
+    assert!((sum(&held) - before).length() > 0.01, "a held chain does not conserve momentum");
 }
 
 #[test]
-fn a_newton_step_squares_the_error_of_lengths() {
+fn a_newton_step_squares_the_length_error() {
     let mut x = zigzag(12);
     let length = [Lane::splat(0.01); 12];
     let worst = |x: &[Lane3]| {
@@ -88,12 +88,12 @@ fn a_newton_step_squares_the_error_of_lengths() {
     assert!(before > 0.02 && after < 4.0 * before * before, "{before} became {after}");
 }
 
-/// Points of a chain of `links` links in all, 0.5 m long, held at both ends 0.3 m apart, after it has come to rest
-/// under gravity; by the projections alone, as a substep uses them.
+/// Points of a chain of `links` links, 0.5 m long in all, held at both ends 0.3 m apart, after it has come to
+/// rest under gravity by the projections alone, as a substep uses them.
 fn hung_at_both_ends(links: usize, gravity: Vec3) -> Vec<Vec3> {
     let (length, h) = (0.5 / links as f32, 1.0 / 240.0);
     let mut scratch = LengthScratch { tip_held: 1.0, ..LengthScratch::new(links + 1) };
-    // Two straight halves that meet below, off the middle, so that the chain has to find its shape.
+    // Starts as two straight halves that meet below, off the middle, so that the chain has to find its shape.
     let (end, left) = (Vec3::X * 0.3, links / 2 - 2);
     let (a, b) = (length * left as f32, length * (links - left) as f32);
     let x = (a * a - b * b + 0.09) / 0.6;
@@ -127,7 +127,7 @@ fn hung_at_both_ends(links: usize, gravity: Vec3) -> Vec<Vec3> {
     position.iter().map(|p| at(p, 0)).collect()
 }
 
-/// The furthest that any point is from the curve, along Y.
+/// Largest distance of a point from the curve, along Y.
 fn off_the_catenary(points: &[Vec3]) -> f64 {
     let points: Vec<_> = points.iter().map(|p| p.as_dvec3()).collect();
     catenary::off_the_catenary(&points, 0.5, 0.3)
@@ -138,24 +138,26 @@ fn a_chain_held_at_both_ends_hangs_as_a_catenary() {
     let down = Vec3::NEG_Y * 9.81;
     let fine = off_the_catenary(&hung_at_both_ends(40, down));
     let coarse = off_the_catenary(&hung_at_both_ends(10, down));
-    println!("off the catenary: {coarse} m with 10 links, {fine} m with 40");
-    // A chain of n links is off its curve by the square of its link: 1.8 mm and 0.11 mm measured.
+    println!("deviation from the catenary: {coarse} m with 10 links, {fine} m with 40");
+    // A chain of n links deviates from its curve by the square of its link length: 1.8 mm and 0.11 mm
+    // measured.
     assert!(fine < 2e-4, "{fine} m");
     assert!(coarse > 8.0 * fine, "{coarse} m with 10 links, {fine} m with 40");
-    // The control: under a gravity that leans it is another curve.
+    // Control: under a tilted gravity the curve is another one.
     let leant = off_the_catenary(&hung_at_both_ends(40, Vec3::new(3.0, -9.34, 0.0)));
     assert!(leant > 0.01, "{leant} m");
 }
 
 #[test]
-fn every_link_of_a_hanging_chain_pulls_sideways_alike() {
-    // The same in the chain's own terms, exact for any number of links: the slopes of its links grow by equal steps.
+fn the_horizontal_tension_of_a_hanging_chain_is_constant() {
+    // The same in terms of the chain, exact for any number of links: the slopes of its links grow by equal
+    // steps.
     let points = hung_at_both_ends(16, Vec3::NEG_Y * 9.81);
     let slopes: Vec<f32> = points.windows(2).map(|w| (w[1].y - w[0].y) / (w[1].x - w[0].x)).collect();
     let steps: Vec<f32> = slopes.windows(2).map(|w| w[1] - w[0]).collect();
     let mean = steps.iter().sum::<f32>() / steps.len() as f32;
     for step in &steps {
-        assert!((step / mean - 1.0).abs() < 0.01, "{step} where the mean is {mean}");
+        assert!((step / mean - 1.0).abs() < 0.01, "step {step}, mean {mean}");
     }
-    assert!(mean > 0.1, "a straight chain would show nothing");
+    assert!(mean > 0.1, "a straight chain would prove nothing");
 }

@@ -23,7 +23,7 @@ fn splat(p: Vec3) -> Lane3 {
 
 const RULES: ContactRules = ContactRules { margin: 0.0, layering: 0.0, friction: 0.0, h: 1.0 / 240.0 };
 
-/// Lays a point next to `from` toward `wanted`, over one collider, without friction.
+/// Places a point at the end of a link from `from` toward `wanted`, over one collider, without friction.
 fn lay(shape: ColliderShape, from: Vec3, wanted: Vec3, length: f32) -> Vec3 {
     let shapes = [still(shape)];
     let near = Near {
@@ -33,11 +33,11 @@ fn lay(shape: ColliderShape, from: Vec3, wanted: Vec3, length: f32) -> Vec3 {
         rest_distance: &[Lane::splat(1.0)],
         points: 1,
         carried: 0,
-        buried: &[ZERO],
+        root_penetration: &[ZERO],
         link: &ZERO,
         field: None,
     };
-    let placed = lay_point(
+    let placed = place_point(
         0,
         &splat(from),
         &splat(wanted),
@@ -52,7 +52,7 @@ fn lay(shape: ColliderShape, from: Vec3, wanted: Vec3, length: f32) -> Vec3 {
     at(&placed, 7)
 }
 
-/// Without a field there is nothing to learn of it.
+/// Planes of a row without a field.
 fn nowhere() -> PlaneRow {
     PlaneRow::unknown(PlaneRow::NO_SKIN)
 }
@@ -84,7 +84,7 @@ fn push_out_of_a_sphere_is_exact_in_distance_and_length() {
             assert!((x - free).length() < 1e-7);
         }
     }
-    assert!(pushed > 100, "only {pushed} cases touched: the test shows nothing");
+    assert!(pushed > 100, "only {pushed} cases touched: the test proves nothing");
 }
 
 #[test]
@@ -111,7 +111,7 @@ fn push_out_of_capsules_and_ellipsoids_ends_on_the_surface() {
             pushed += 1;
             let x = lay(shape, from, wanted, length);
             assert!(((x - from).length() - length).abs() < 2e-7);
-            // Two rounds with the touching sphere: a tenth of a hair's width is left at most.
+            // Two iterations with the touching sphere leave at most a tenth of a hair's width.
             assert!(query.distance(x).abs() < exact, "{} m off {shape:?}", query.distance(x));
         }
         assert!(pushed > 50, "only {pushed} cases touched");
@@ -125,7 +125,7 @@ fn a_link_that_cannot_reach_the_surface_points_out() {
 }
 
 #[test]
-fn a_point_that_rests_inside_is_left_there() {
+fn a_point_inside_at_rest_stays_inside() {
     let c = Vec3::ZERO;
     let shapes = [still(ColliderShape::Capsule { a: c, b: c, radius_a: 0.1, radius_b: 0.1 })];
     let near = Near {
@@ -135,44 +135,44 @@ fn a_point_that_rests_inside_is_left_there() {
         rest_distance: &[Lane::splat(-0.02)],
         points: 1,
         carried: 0,
-        buried: &[ZERO],
+        root_penetration: &[ZERO],
         link: &ZERO,
         field: None,
     };
     let rules = ContactRules { margin: 0.003, ..RULES };
     let (from, wanted) = (splat(Vec3::new(0.0, 0.07, 0.0)), splat(Vec3::new(0.0, 0.08, 0.0)));
     let placed =
-        lay_point(0, &from, &wanted, &wanted, &from, &Lane::splat(0.01), &near, &rules, &mut nowhere())
+        place_point(0, &from, &wanted, &wanted, &from, &Lane::splat(0.01), &near, &rules, &mut nowhere())
             .placed;
     assert!((at(&placed, 0) - Vec3::new(0.0, 0.08, 0.0)).length() < 1e-7);
     let deeper = splat(Vec3::new(0.0, 0.0, 0.0));
     let placed =
-        lay_point(0, &from, &deeper, &deeper, &from, &Lane::splat(0.01), &near, &rules, &mut nowhere())
+        place_point(0, &from, &deeper, &deeper, &from, &Lane::splat(0.01), &near, &rules, &mut nowhere())
             .placed;
-    assert!(at(&placed, 0).length() > 0.0799, "it may not go deeper than it rests: {}", at(&placed, 0));
+    assert!(at(&placed, 0).length() > 0.0799, "it must not go deeper than at rest: {}", at(&placed, 0));
 }
 
 #[test]
-fn friction_takes_no_more_than_the_coefficient_allows() {
+fn friction_is_limited_by_its_coefficient() {
     let c = Vec3::ZERO;
     let was = Vec3::new(0.0, 1.0, 0.0);
     let p = Vec3::new(0.01, 1.0, 0.0);
     let half = slide(p, was, c, 0.01, 0.5, Vec3::ZERO, 1.0);
-    assert!((half.x - 0.005).abs() < 1e-4, "half of the sliding is left: {half}");
+    assert!((half.x - 0.005).abs() < 1e-4, "half of the sliding remains: {half}");
     let stuck = slide(p, was, c, 0.1, 0.5, Vec3::ZERO, 1.0);
-    assert!(stuck.x.abs() < 1e-4, "and never more than all is taken: {stuck}");
+    assert!(stuck.x.abs() < 1e-4, "friction never reverses the sliding: {stuck}");
     assert_eq!(slide(p, was, c, 0.1, 0.0, Vec3::ZERO, 1.0), p);
 }
 
 #[test]
-fn hair_whose_root_is_buried_comes_out_along_a_slope() {
+fn hair_with_an_enclosed_root_leaves_along_a_slope() {
     let c = Vec3::ZERO;
     let shapes = [still(ColliderShape::Capsule { a: c, b: c, radius_a: 0.1, radius_b: 0.1 })];
     let length = Lane::splat(0.01);
     let rest = [Lane::splat(0.001); 12];
-    // The surface has closed 2 cm over a root that lay 1 mm above it.
+    // The surface has risen 2 cm above a root that was 1 mm outside.
     let root = splat(Vec3::new(0.0, 0.08, 0.0));
-    let deep = [buried(&root, &shapes[0], &rest[0])];
+    let deep = [root_penetration(&root, &shapes[0], &rest[0])];
     assert!((deep[0][0] - 0.02).abs() < 1e-6);
     let near = Near {
         shapes: &shapes,
@@ -181,25 +181,25 @@ fn hair_whose_root_is_buried_comes_out_along_a_slope() {
         rest_distance: &rest,
         points: 12,
         carried: 0,
-        buried: &deep,
+        root_penetration: &deep,
         link: &length,
         field: None,
     };
     let mut before = root;
     for i in 1..12 {
-        // It wants to run on inside.
+        // Unconstrained, it would continue inside.
         let wanted = splat(at(&before, 0) + Vec3::new(0.01, -0.002, 0.0));
         let placed =
-            lay_point(i, &before, &wanted, &wanted, &root, &length, &near, &RULES, &mut nowhere()).placed;
+            place_point(i, &before, &wanted, &wanted, &root, &length, &near, &RULES, &mut nowhere()).placed;
         let least = (0.1 - 0.02 + 0.005 * i as f32).min(0.1);
         assert!(
             at(&placed, 0).length() > least - 2e-4,
             "point {i} is {} from the centre",
             at(&placed, 0).length()
         );
-        // Straight up would be 1 cm a link; the slope is half of that.
+        // Straight up would be 1 cm per link; the slope is half of that.
         if i == 1 {
-            assert!(at(&placed, 0).length() < 0.0865, "point {i} stands up: {}", at(&placed, 0));
+            assert!(at(&placed, 0).length() < 0.0865, "point {i} rises too steeply: {}", at(&placed, 0));
         }
         before = placed;
     }

@@ -1,10 +1,11 @@
-//! An affine map of a weighting of joints, and what lies between those of the nodes around a place.
+//! Affine maps of weighted joints, and interpolation between the nodes around a point.
 
 use glam::{Vec3, Vec4};
 
 use crate::lanes::Lane;
 
-/// A matrix by columns and a shift, four numbers each; the last of the shift is the head's share of the weights.
+/// A matrix by columns and a translation, four numbers each; the last number of the translation is the head's
+/// weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(64))]
 pub(super) struct Affine([f32; 16]);
@@ -13,17 +14,17 @@ impl Affine {
     pub(super) const IDENTITY: Self =
         Self([1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
 
-    /// What is added up to others.
-    pub(super) const NOTHING: Self = Self([0.0; 16]);
+    /// The neutral element of a sum.
+    pub(super) const ZERO: Self = Self([0.0; 16]);
 
-    /// The map of a point; the last number says nothing.
+    /// The image of a point; the last component has no meaning.
     #[inline(always)]
     pub(super) fn apply(&self, p: Vec3) -> Vec4 {
         let column = |i: usize| Vec4::from_slice(&self.0[4 * i..4 * i + 4]);
         column(0) * p.x + column(1) * p.y + (column(2) * p.z + column(3))
     }
 
-    /// All of it, one number after the other; the last is the head's share of the weights.
+    /// All numbers in order; the last is the head's weight.
     #[inline(always)]
     pub(super) fn numbers(&self) -> [f32; 16] {
         self.0
@@ -39,7 +40,7 @@ impl Affine {
         Self(out)
     }
 
-    /// A fraction `t` of the way to `other`.
+    /// Interpolates by the fraction `t` toward `other`.
     #[inline(always)]
     pub(super) fn toward(&self, other: &Self, t: f32) -> Self {
         let mut out = [0.0; 16];
@@ -57,7 +58,8 @@ impl From<Lane> for Affine {
     }
 }
 
-/// What lies between eight places, x fastest, at the fractions `f`, and how it changes along the axes.
+/// Trilinear interpolation of eight values, x fastest, at the fractions `f`, and its derivatives along the
+/// axes.
 #[inline(always)]
 pub(super) fn between(q: &[Vec4; 8], f: Vec3) -> (Vec4, [Vec4; 3]) {
     let mix = |a: Vec4, b: Vec4, t: f32| a + (b - a) * t;

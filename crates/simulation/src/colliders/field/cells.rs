@@ -1,29 +1,29 @@
-//! The grid of cells in head space in which the body is looked up.
+//! The grid of cells in head space in which the body is marked.
 
 use glam::{IVec3, UVec3, Vec3};
 
-/// Most cells to each side that a place is deposited into.
+/// Largest number of cells to each side over which a probe is spread.
 pub(super) const WIDEST: i32 = 4;
-/// Where nothing is tested for sparing's sake, so many cells more to each side are tested.
-pub(super) const UNSPARING: i32 = 3;
-/// No skin but the head's.
+/// Additional cells to each side that are tested when culling is off.
+pub(super) const UNCULLED_WIDTH: i32 = 3;
+/// No skin other than the head's.
 pub(super) const NONE: u32 = u32::MAX;
 
 /// A grid of cells in head space.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Grid {
+pub(super) struct CellGrid {
     pub(super) low: Vec3,
     pub(super) cell: f32,
     pub(super) inv_cell: f32,
     pub(super) size: UVec3,
 }
 
-impl Grid {
+impl CellGrid {
     pub(super) fn count(&self) -> usize {
         self.size.as_usizevec3().element_product()
     }
 
-    /// The cells within `width` of one, as far as there are any: the first and the last.
+    /// The first and the last cell within `width` of `middle`, clipped to the grid.
     pub(super) fn around(&self, middle: IVec3, width: i32) -> (IVec3, IVec3) {
         ((middle - width).max(IVec3::ZERO), (middle + width).min(self.size.as_ivec3() - 1))
     }
@@ -34,8 +34,8 @@ impl Grid {
     }
 }
 
-/// Marks the cells within `width` of those that the places are in.
-pub(super) fn mark(cells: &mut [bool], grid: &Grid, places: &[Vec3], width: i32) {
+/// Marks the cells within `width` of the cells that contain `places`.
+pub(super) fn mark(cells: &mut [bool], grid: &CellGrid, places: &[Vec3], width: i32) {
     for place in places {
         let middle = ((*place - grid.low) * grid.inv_cell).floor().as_ivec3();
         let (from, to) = grid.around(middle, width);

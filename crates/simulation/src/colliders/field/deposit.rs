@@ -1,6 +1,6 @@
-//! How the body gets into the cells of its [`Occupancy`]: places near the skin or inside are carried along,
-//! sixteen side by side, and tell the cells around of themselves.
-// Calls of functions that ask for features of the processor, made by the macro after it has asked for them.
+//! Deposits the body into the cells of its [`Occupancy`](super::occupancy::Occupancy): probes near the skin
+//! or inside are carried along with the joints, sixteen at a time, and spread to the cells around them.
+// `unsafe` is used by the macro, which calls functions that require CPU features after checking for them.
 #![allow(unsafe_code)]
 
 use glam::{IVec3, Vec3};
@@ -8,12 +8,12 @@ use lovelock_groom::simd::{Width, whole_part};
 use lovelock_groom::simd_versions;
 use lovelock_motion::FieldWeights;
 
-use super::cells::{Grid, NONE, UNSPARING, WIDEST};
+use super::cells::{CellGrid, NONE, UNCULLED_WIDTH, WIDEST};
 use super::weightings::{Joints, Weightings};
-use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, fold, greater, put, row_done};
+use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, fold, greater, put, row_barrier};
 
-/// Places that are deposited, a row at a time: where they are at rest, and their slots and weightings. What
-/// fills up the last row has slot 0, which is the head's.
+/// Probes, a row at a time: their rest positions, slots and weightings. Padding in the last row has slot 0,
+/// which is the head's.
 #[derive(Clone, Debug)]
 pub(super) struct Probes {
     rest: Vec<Lane3>,
@@ -42,7 +42,7 @@ impl Probes {
     }
 }
 
-/// A cell with probes in it: the one nearest to its middle.
+/// An occupied cell, with the probe nearest to its centre.
 #[derive(Clone, Copy, Debug)]
 struct Occupied {
     index: u32,
@@ -52,33 +52,35 @@ struct Occupied {
     slot: u16,
 }
 
-/// The place among the occupied cells of one that is none of them.
+/// Index of a cell that is not occupied.
 const FREE: u32 = u32::MAX;
 
-/// The cells with probes at one end of a step.
+/// The occupied cells at the start or at the end of a step.
 #[derive(Clone, Debug)]
-pub(super) struct End {
+pub(super) struct StepEnd {
     occupied: Vec<Occupied>,
-    /// For each cell its place among them.
+    /// For each cell its index in `occupied`.
     own: Vec<u32>,
-    /// Where each probe is; empty where nothing is known of this end.
+    /// Position of each probe; empty if unknown.
     pub(super) places: Vec<Lane3>,
 }
 
-impl End {
+impl StepEnd {
     pub(super) fn new(cells: usize) -> Self {
         Self { occupied: Vec::new(), own: vec![FREE; cells], places: Vec::new() }
     }
 
-    pub(super) fn forget(&mut self) {
+    pub(super) fn discard(&mut self) {
         self.places.clear();
     }
 }
 
-const _: () =
-    assert!(2 * (WIDEST + UNSPARING) < LANES as i32, "the cells around one along x fit in a row of lanes");
+const _: () = assert!(
+    2 * (WIDEST + UNCULLED_WIDTH) < LANES as i32,
+    "the cells around one along x fit in a row of lanes"
+);
 
-/// The number of each lane.
+/// The index of each lane.
 const FROM_0: Lane = {
     let mut lane = ZERO;
     let mut k = 0;
@@ -90,25 +92,24 @@ const FROM_0: Lane = {
 };
 
 simd_versions! {
-    /// Puts the probes where `joints` have them.
-    pub(super) fn place_probes(probes: &Probes, grid: &Grid, joints: &Joints, end: &mut End) -> () {
+    /// Moves the probes to where `joints` carry them.
+    pub(super) fn place_probes(probes: &Probes, grid: &CellGrid, joints: &Joints, end: &mut StepEnd) -> () {
         place_all(probes, grid, joints, end)
     }
 }
 
 simd_versions! {
-    /// The square of the longest way of a probe from one end to the other.
-    pub(super) fn furthest(ends: &[End; 2]) -> f32 {
-        longest_way(ends)
+    /// The square of the longest path of a probe from the start to the end of the step.
+    pub(super) fn longest_path_squared(ends: &[StepEnd; 2]) -> f32 {
+        longest_path(ends)
     }
 }
 
 simd_versions! {
-    /// Tells the cells around the occupied ones of the nearest of these; `skip` leaves out the start of the
-    /// step.
+    /// Spreads the occupied cells of `ends` to the cells within `width`, keeping the nearest in each.
     pub(super) fn spread_all(
-        grid: &Grid,
-        ends: &[End],
+        grid: &CellGrid,
+        ends: &[StepEnd],
         nearest: &mut [u32],
         touched: &mut (IVec3, IVec3),
         width: i32,
@@ -118,7 +119,7 @@ simd_versions! {
 }
 
 #[inline(always)]
-fn place_all(probes: &Probes, grid: &Grid, joints: &Joints, end: &mut End) {
+fn place_all(probes: &Probes, grid: &CellGrid, joints: &Joints, end: &mut StepEnd) {
     for cell in end.occupied.drain(..) {
         end.own[cell.index as usize] = FREE;
     }
@@ -135,7 +136,7 @@ fn place_all(probes: &Probes, grid: &Grid, joints: &Joints, end: &mut End) {
         let (mut cells, mut squared, mut inside) = ([[0; LANES]; 3], ZERO, [false; LANES]);
         for k in 0..LANES {
             let q = (at(&place, k) - grid.low) * grid.inv_cell;
-            // Written so that what is not a number is outside.
+            // Written so that NaN is outside.
             inside[k] = (q.x >= 0.0)
                 & (q.y >= 0.0)
                 & (q.z >= 0.0)
@@ -170,7 +171,7 @@ fn place_all(probes: &Probes, grid: &Grid, joints: &Joints, end: &mut End) {
 }
 
 #[inline(always)]
-fn longest_way(ends: &[End; 2]) -> f32 {
+fn longest_path(ends: &[StepEnd; 2]) -> f32 {
     let mut most = ZERO;
     for (a, b) in ends[0].places.iter().zip(&ends[1].places) {
         for k in 0..LANES {
@@ -181,14 +182,14 @@ fn longest_way(ends: &[End; 2]) -> f32 {
 }
 
 #[inline(always)]
-fn spread(grid: &Grid, ends: &[End], nearest: &mut [u32], touched: &mut (IVec3, IVec3), width: i32) {
+fn spread(grid: &CellGrid, ends: &[StepEnd], nearest: &mut [u32], touched: &mut (IVec3, IVec3), width: i32) {
     for end in ends {
         for cell in &end.occupied {
             let (from, to) = grid.around(cell.at, width);
             *touched = (touched.0.min(from), touched.1.max(to));
             let first = grid.low + (from.as_vec3() + 0.5) * grid.cell - cell.place;
             let wide = (to.x - from.x + 1) as f32;
-            // Squares along x, which all rows have; what is beyond the last cell is not written.
+            // Squares along x are the same for all rows; lanes beyond the last cell are not written.
             let (mut along, mut slot) = (ZERO, [NONE; LANES]);
             for k in 0..LANES {
                 let x = first.x + FROM_0[k] * grid.cell;
@@ -208,7 +209,7 @@ fn spread(grid: &Grid, ends: &[End], nearest: &mut [u32], touched: &mut (IVec3, 
                         own[k] = if near < own[k] { near } else { own[k] };
                     }
                     *cells = own;
-                    row_done();
+                    row_barrier();
                 }
             }
         }

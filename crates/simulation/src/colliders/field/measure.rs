@@ -1,16 +1,17 @@
-//! Distances of rows of points from the skin, by the planes that the rows keep.
+//! Distances of rows of points from the skin, by means of the planes that the rows keep.
 
 use glam::Vec3;
 
 use super::planes::{FieldRow, NEAR, NONE, NOWHERE, PlaneRow};
 use super::search::Search;
-use super::{DEEP, MovingField, UNSURE};
+use super::{GUESSED_DEPTH, IMPLAUSIBLE_DEPTH, MovingField};
 use crate::lanes::{LANES, Lane, Lane3, Map, ZERO, ZERO3, at, choose, greater, lesser, put};
 use crate::motion::Substep;
 
 impl MovingField {
-    /// What a row of points in working space learns at the end of a substep, when `passed` of the step has
-    /// passed; nothing further away than `reach` is of interest. `None` where all lanes are far.
+    /// The field around a row of points in working space at the end of a substep, when the fraction `passed`
+    /// of the step has passed. Skin further away than `reach` is ignored. `None` if all lanes are far from
+    /// it.
     #[inline(always)]
     pub(crate) fn row(
         &self,
@@ -20,13 +21,13 @@ impl MovingField {
         reach: f32,
         planes: &mut PlaneRow,
     ) -> Option<FieldRow> {
-        let (local, asked, stays) = gone(row, substep, planes);
+        let (local, asked, stays) = left_planes(row, substep, planes);
         if !stays {
             let mut search = [self.search(0, &local, asked, reach, planes)];
             if search[0].any {
                 self.find_skins(&mut search, passed, reach);
             }
-            settle(&search[0], passed, reach, planes);
+            store_search(&search[0], passed, reach, planes);
         }
         if !planes.any {
             return None;
@@ -40,9 +41,9 @@ impl MovingField {
             let (n, m) = (at(&planes.head_normal, k), at(&planes.skin_normal, k));
             let head = planes.head_distance[k] + n.dot(moved);
             let skin = planes.skin_distance[k] + m.dot(against);
-            // Skin that comes on too quickly to be measured on its way is a guess.
-            let lost = skin < -DEEP;
-            let (skin, guess) = if lost { (-UNSURE, 1.0) } else { (skin, planes.guess[k]) };
+            // Skin that approaches too fast to be measured on the way is a guess.
+            let lost = skin < -IMPLAUSIBLE_DEPTH;
+            let (skin, guess) = if lost { (-GUESSED_DEPTH, 1.0) } else { (skin, planes.guess[k]) };
             let nearer = skin < head;
             let pick = |a: f32, b: f32| if nearer { a } else { b };
             out.distance[k] = pick(skin, head);
@@ -56,10 +57,10 @@ impl MovingField {
         Some(out)
     }
 
-    /// Measures beforehand, all together, what [`MovingField::row`] will be asked for if points come to be
-    /// where `rows` have them. `planes` are those of these rows, `searches` is working memory.
+    /// Measures in advance, all rows together, what [`MovingField::row`] will need if the points end up at
+    /// `rows`. `planes` belong to these rows; `searches` is working memory.
     #[inline(always)]
-    pub(crate) fn foresee(
+    pub(crate) fn prefetch_planes(
         &self,
         rows: &[Lane3],
         substep: &Substep,
@@ -70,7 +71,7 @@ impl MovingField {
     ) {
         searches.clear();
         for (n, (row, planes)) in rows.iter().zip(planes.iter_mut()).enumerate() {
-            let (local, asked, stays) = gone(row, substep, planes);
+            let (local, asked, stays) = left_planes(row, substep, planes);
             if stays {
                 continue;
             }
@@ -78,55 +79,56 @@ impl MovingField {
             if search.any {
                 searches.push(search);
             } else {
-                settle(&search, passed, reach, planes);
+                store_search(&search, passed, reach, planes);
             }
         }
         self.find_skins(searches, passed, reach);
         for search in &*searches {
-            settle(search, passed, reach, &mut planes[search.row]);
+            store_search(search, passed, reach, &mut planes[search.row]);
         }
     }
 }
 
-/// Writes down what a search has found of the lanes that it was asked for.
+/// Stores the results of a search in the planes of the lanes that were measured.
 #[inline(always)]
-fn settle(search: &Search, passed: f32, reach: f32, planes: &mut PlaneRow) {
+fn store_search(search: &Search, passed: f32, reach: f32, planes: &mut PlaneRow) {
     let Search { p: local, asked, near, to_next, heads, skins, .. } = search;
     for k in 0..LANES {
-        let (p, alone, besides) = (at(local, k), heads.alone[k], near.besides[k]);
+        let (p, alone, forced) = (at(local, k), heads.alone[k], near.forced[k]);
         let other_skin = near.slot[k] != 0;
         let of_head = lesser(heads.nearest[k], skins.nearest[k]);
         let nearest = if alone { of_head } else { skins.nearest[k] };
-        // What is measured besides, to show that it need not be, leaves no trace unless there is something.
-        let nothing = besides & (nearest > reach);
+        // Points that are measured only to verify the culling leave no trace unless skin is found.
+        let nothing = forced & (nearest > reach);
         let nearest = if nothing { NONE } else { nearest };
         let found = skins.found[k] & !nothing;
-        // In another cell there may be other skin; within a few millimetres this cell knows of it.
+        // Another cell may contain other skin, which this cell takes into account within a few millimetres.
         let to_next = to_next[k] + NEAR;
         let free = greater(lesser(0.5 * (nearest - reach), to_next), NEAR);
-        // Where there is no way back from here, or to skin that is far, there may be another from near by.
-        let lost = (near.head[k] | other_skin) & !besides;
+        // Where no rest position is found from here, or only one at skin that is far, another may be found
+        // nearby.
+        let lost = (near.head[k] | other_skin) & !forced;
         let (known, only_head) = (nearest < NONE, alone & !other_skin);
-        let serves = if known & only_head { free } else { to_next };
-        let serves = if (known & !only_head) | (!known & lost) { NEAR } else { serves };
+        let valid_squared = if known & only_head { free } else { to_next };
+        let valid_squared = if (known & !only_head) | (!known & lost) { NEAR } else { valid_squared };
         let finite = p.length_squared() < f32::MAX;
-        let serves = if finite { serves * serves } else { -1.0 };
-        let anew = asked[k];
-        renew(&mut planes.serves, k, anew, serves);
-        renew3(&mut planes.place, k, anew, p);
-        renew(&mut planes.passed, k, anew, passed);
+        let valid_squared = if finite { valid_squared * valid_squared } else { -1.0 };
+        let stale = asked[k];
+        replace(&mut planes.valid_squared, k, stale, valid_squared);
+        replace3(&mut planes.place, k, stale, p);
+        replace(&mut planes.passed, k, stale, passed);
         let head_distance = if alone & !nothing { heads.distance[k] } else { NONE };
-        renew(&mut planes.head_distance, k, anew, head_distance);
-        renew3(&mut planes.head_normal, k, anew, at(&heads.normal, k));
+        replace(&mut planes.head_distance, k, stale, head_distance);
+        replace3(&mut planes.head_normal, k, stale, at(&heads.normal, k));
         let skin_distance = if found { skins.distance[k] } else { NONE };
-        renew(&mut planes.skin_distance, k, anew, skin_distance);
-        renew3(&mut planes.rest, k, anew, choose(found, at(&skins.rest, k), NOWHERE));
-        // Of skin that is not there the rest says nothing.
-        renew3(&mut planes.skin_normal, k, anew, at(&skins.normal, k));
-        renew(&mut planes.share, k, anew, skins.share[k]);
+        replace(&mut planes.skin_distance, k, stale, skin_distance);
+        replace3(&mut planes.rest, k, stale, choose(found, at(&skins.rest, k), NOWHERE));
+        // Without skin the remaining values have no meaning.
+        replace3(&mut planes.skin_normal, k, stale, at(&skins.normal, k));
+        replace(&mut planes.share, k, stale, skins.share[k]);
         let guess = if skins.sure[k] { 0.0 } else { 1.0 };
-        renew(&mut planes.guess, k, anew, guess);
-        renew3(&mut planes.drift, k, anew, at(&skins.drift, k));
+        replace(&mut planes.guess, k, stale, guess);
+        replace3(&mut planes.drift, k, stale, at(&skins.drift, k));
     }
     planes.any = false;
     for k in 0..LANES {
@@ -134,33 +136,33 @@ fn settle(search: &Search, passed: f32, reach: f32, planes: &mut PlaneRow) {
     }
 }
 
-/// A row of points in working space taken to head space; the lanes that have gone too far from where they
-/// were measured; and whether none has.
+/// Takes a row of points from working space to head space. Returns the points, the lanes that are too far
+/// from where they were measured, and whether there are none of those.
 #[inline(always)]
-fn gone(row: &Lane3, substep: &Substep, planes: &PlaneRow) -> (Lane3, [bool; LANES], bool) {
+fn left_planes(row: &Lane3, substep: &Substep, planes: &PlaneRow) -> (Lane3, [bool; LANES], bool) {
     let Map { turn, shift } = substep.head;
-    let (mut local, mut gone, mut stays) = (ZERO3, [false; LANES], true);
+    let (mut local, mut left_planes, mut stays) = (ZERO3, [false; LANES], true);
     for k in 0..LANES {
         let p = at(row, k) - shift;
         let p = Vec3::new(turn.x_axis.dot(p), turn.y_axis.dot(p), turn.z_axis.dot(p));
         put(&mut local, k, p);
-        let off = (p - at(&planes.place, k)).length_squared() - planes.serves[k];
-        // What is not a number is measured too, and found nowhere.
-        gone[k] = (off > 0.0) | off.is_nan();
-        stays &= !gone[k];
+        let off = (p - at(&planes.place, k)).length_squared() - planes.valid_squared[k];
+        // NaN is measured too, and found nowhere.
+        left_planes[k] = (off > 0.0) | off.is_nan();
+        stays &= !left_planes[k];
     }
-    (local, gone, stays)
+    (local, left_planes, stays)
 }
 
-/// Writes lane `k` where it is `anew`.
+/// Writes lane `k` if `stale` is true.
 #[inline(always)]
-fn renew(row: &mut Lane, k: usize, anew: bool, new: f32) {
-    row[k] = if anew { new } else { row[k] };
+fn replace(row: &mut Lane, k: usize, stale: bool, new: f32) {
+    row[k] = if stale { new } else { row[k] };
 }
 
 /// The same for a vector.
 #[inline(always)]
-fn renew3(row: &mut Lane3, k: usize, anew: bool, new: Vec3) {
+fn replace3(row: &mut Lane3, k: usize, stale: bool, new: Vec3) {
     let was = at(row, k);
-    put(row, k, choose(anew, new, was));
+    put(row, k, choose(stale, new, was));
 }

@@ -1,9 +1,11 @@
-//! The field of head and shoulders in one step: points near it are taken back to rest and measured there.
+//! The field of head and shoulders during one step: points near it are mapped back to the rest pose and
+//! measured there.
 //!
-//! All of it happens in head space, where the skull never moves: a point over it is at rest where it is now.
-//! What the other joints move has a map from head space now to rest for each weighting that occurs, at the
-//! start and at the end of the step; in between, maps are mixed, and the head itself turns exactly.
-// Loops over lanes hold no branches: a lazy operator is one, and made the field 7 % slower.
+//! Everything is computed in head space, where the skull never moves: a point above it is at its rest
+//! position already. For skin moved by other joints there is a map from current head space to the rest pose
+//! for each weighting that occurs, at the start and at the end of the step. In between, the maps are
+//! interpolated, and the head itself rotates exactly.
+// Loops over lanes contain no branches. A lazy operator is a branch and made the field 7 % slower.
 #![allow(clippy::needless_bitwise_bool)]
 
 mod affine;
@@ -34,44 +36,44 @@ pub(crate) use search::Search;
 pub(crate) use weightings::Joints;
 use weightings::Weightings;
 
-/// A point taken back to rest is near enough when it moves less than this in a round, metres: after a step of
-/// Newton's what is left is of second order.
-const SETTLED: f32 = 1e-3;
+/// The iteration stops when a point moves less than this, metres: after a Newton step the remaining error is
+/// of second order.
+const CONVERGED: f32 = 1e-3;
 
-/// Most rounds of taking a point back.
+/// Largest number of iterations.
 const ROUNDS: usize = 6;
 
-/// A way back that ends further from the first guess than this leads to another part of the skin, spacings of
-/// nodes.
-const STRAYED: f32 = 3.0;
+/// A rest position further than this from the first guess belongs to another part of the skin; in node
+/// spacings.
+const FURTHEST_FROM_GUESS: f32 = 3.0;
 
-/// A way back that begins closer than this to a place that another has found leads there too, spacings of
-/// nodes.
-const CLOSE: f32 = 1.0;
+/// Starting points closer than this to a rest position that has been found would lead there again; in node
+/// spacings.
+const SAME_START: f32 = 1.0;
 
-/// Nothing is deeper than this in skin of which only a guess is known, metres.
-const UNSURE: f32 = 0.002;
+/// Largest penetration into skin whose position is only a guess, metres.
+const GUESSED_DEPTH: f32 = 0.002;
 
-/// What seems deeper than this has rather been taken back to the wrong part of the skin, metres.
-const DEEP: f32 = 0.02;
+/// A larger penetration means that the point was mapped to the wrong part of the skin, metres.
+const IMPLAUSIBLE_DEPTH: f32 = 0.02;
 
-/// Where the skin is folded more than this it has no way back: the least determinant of how it unfolds.
-const UNFOLDED: f32 = 0.05;
+/// Smallest determinant of the Newton matrix; below it the skin is folded too much to be inverted.
+const LEAST_DETERMINANT: f32 = 0.05;
 
-/// A field with its motion in the present step.
+/// A field and its motion during the current step.
 #[derive(Clone, Debug)]
 pub(crate) struct MovingField {
     field: Arc<BodyField>,
     lift: f32,
     weightings: Weightings,
-    /// Where the joints are at the start and at the end of the step, and from there the ways of all
-    /// weightings back to rest.
+    /// The joints at the start and at the end of the step, and the inverse maps of all weightings at both
+    /// times.
     joints_before: Joints,
     joints: Joints,
     before: Vec<Affine>,
     now: Vec<Affine>,
     occupancy: Occupancy,
-    /// For each cell of nodes, by its first: whether all eight are the head's.
+    /// For each cell of nodes, by its first node: whether all eight are moved by the head alone.
     head_alone: Vec<bool>,
     inv_spacing: f32,
     inv_node: f32,
@@ -79,11 +81,11 @@ pub(crate) struct MovingField {
 }
 
 impl MovingField {
-    /// A field at rest around the head. `reach` is the distance within which hair may touch it, metres.
+    /// A field at rest around the head. Hair may touch it within `reach`, metres.
     pub(crate) fn new(field: &Arc<BodyField>, lift: f32, reach: f32) -> Self {
         let weightings = Weightings::new(field.slots());
         let (joints, mut now) = (Joints::default(), Vec::new());
-        weightings.ways_back(Width::widest(), &joints, &mut now);
+        weightings.inverse_maps(Width::widest(), &joints, &mut now);
         Self {
             lift,
             weightings,
@@ -100,19 +102,19 @@ impl MovingField {
         }
     }
 
-    /// Whether this is the field that is wanted.
+    /// Whether this is the given field with the given lift.
     pub(crate) fn is(&self, field: &Arc<BodyField>, lift: f32) -> bool {
         Arc::ptr_eq(&self.field, field) && self.lift == lift
     }
 
-    /// Where the head is at rest, in the world of the rest pose.
+    /// Position of the head in the rest pose, world space.
     pub(crate) fn head_at_rest(&self) -> Vec3 {
         self.field.rest_from_head()
     }
 
-    /// Distance at rest of every lane of a row in head space; [`f32::MAX`] where the field ends.
+    /// Rest distance of every lane of a row in head space; [`f32::MAX`] outside the field.
     pub(crate) fn rest_distance(&self, row: &Lane3) -> Lane {
-        // As [`MovingField::heads`] measures it: else hair would be pushed where it lies at rest.
+        // Must agree with [`MovingField::measure_head_skin`], or hair would be pushed at its rest position.
         Lane(std::array::from_fn(|k| {
             self.field
                 .sample(at(row, k))
@@ -120,51 +122,51 @@ impl MovingField {
         }))
     }
 
-    /// Goes on from where the last step ended to `pose`.
+    /// Advances from the end of the last step to `pose`.
     pub(crate) fn advance(
         &mut self,
         head: &HeadPose,
         pose: &FieldPose,
         reach: f32,
         dt_secs: f32,
-        spare: bool,
+        culling: bool,
     ) {
         std::mem::swap(&mut self.before, &mut self.now);
         std::mem::swap(&mut self.joints_before, &mut self.joints);
         self.dt_secs = dt_secs;
         self.joints = self.joints_at(head, pose);
-        self.weightings.ways_back(Width::widest(), &self.joints, &mut self.now);
+        self.weightings.inverse_maps(Width::widest(), &self.joints, &mut self.now);
         let ends = [&self.joints_before, &self.joints];
-        self.occupancy.update(Width::widest(), self.lift.max(0.0) + reach + planes::NEAR, ends, spare);
+        self.occupancy.update(Width::widest(), self.lift.max(0.0) + reach + planes::NEAR, ends, culling);
     }
 
-    /// Starts anew at `pose`.
+    /// Restarts at `pose`.
     pub(crate) fn reset(&mut self, head: &HeadPose, pose: &FieldPose) {
         self.joints = self.joints_at(head, pose);
-        self.weightings.ways_back(Width::widest(), &self.joints, &mut self.now);
+        self.weightings.inverse_maps(Width::widest(), &self.joints, &mut self.now);
         self.before.clone_from(&self.now);
         self.joints_before.clone_from(&self.joints);
-        self.occupancy.forget();
+        self.occupancy.discard_end();
     }
 
-    /// How many weightings it has, at least the head's: other fields have others.
+    /// Number of weightings, at least 1 (the head's); distinguishes fields from each other.
     pub(crate) fn weightings(&self) -> u32 {
         self.field.slots().len().max(1) as u32
     }
 
-    /// Where the joints are against the head: all of the motion that the next step begins with.
+    /// The joints relative to the head: the whole motion that the next step starts with.
     pub(crate) const fn joints(&self) -> &Joints {
         &self.joints
     }
 
-    /// Puts the joints where [`MovingField::joints`] had them.
+    /// Restores the joints returned by [`MovingField::joints`].
     pub(crate) fn set_joints(&mut self, joints: Joints) {
-        self.occupancy.forget();
+        self.occupancy.discard_end();
         self.joints = joints;
-        self.weightings.ways_back(Width::widest(), &self.joints, &mut self.now);
+        self.weightings.inverse_maps(Width::widest(), &self.joints, &mut self.now);
     }
 
-    /// Where `pose` has the joints against the head.
+    /// The joints of `pose` relative to the head.
     fn joints_at(&self, head: &HeadPose, pose: &FieldPose) -> Joints {
         let head_from_world = head.affine().inverse();
         let rest_from_head = Affine3A::from_translation(self.field.rest_from_head());
@@ -176,7 +178,7 @@ impl MovingField {
     }
 }
 
-/// For each node whether it and the seven after it are the head's.
+/// For each node, whether it and the seven nodes after it are moved by the head alone.
 fn head_alone(field: &BodyField) -> Vec<bool> {
     let (lattice, slots) = (field.node_lattice(), field.slot_of_node());
     let (row, layer) = (lattice.size.x as usize, (lattice.size.x * lattice.size.y) as usize);

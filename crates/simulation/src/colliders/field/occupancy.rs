@@ -1,65 +1,65 @@
-//! Where the body is, once a step: cells of a grid that turns with the head say which points need to be
+//! Where the body is during a step: cells of a grid that turns with the head tell which points need to be
 //! measured.
 //!
-//! Every place near the skin or inside is deposited into the cells around it, where it is at the start of the
-//! step and at its end, or at its end alone where that covers the way; a point in a cell without any is further
-//! from the skin than hair can touch, all step long.
+//! Every probe near the skin or inside is deposited into the cells around its position at the start and at
+//! the end of the step, or at the end alone where that covers the whole path. A point in an empty cell is
+//! further from the skin than hair can touch, for the whole step.
 
 use glam::{IVec3, UVec3, Vec3};
 use lovelock_groom::simd::{Width, whole_part};
 use lovelock_motion::BodyField;
 
-use super::cells::{Grid, NONE, UNSPARING, WIDEST, mark};
-use super::deposit::{End, Probes, furthest, place_probes, spread_all};
+use super::cells::{CellGrid, NONE, UNCULLED_WIDTH, WIDEST, mark};
+use super::deposit::{Probes, StepEnd, longest_path_squared, place_probes, spread_all};
 use super::weightings::Joints;
 use crate::lanes::{LANES, Lane, Lane3, ZERO, at, greater, lesser};
 
-/// A cell in spacings of the field's nodes.
+/// Cell size in spacings of the field's nodes.
 const CELL: f32 = 2.5;
-/// How far beyond the resting field the grid goes on, as a part of the field's longest side.
-const BEYOND: f32 = 0.35;
+/// How far the grid extends beyond the field at rest, as a fraction of the field's longest side.
+const MARGIN: f32 = 0.35;
 
 /// What may be near the points of a row.
 #[derive(Clone, Debug)]
 pub(super) struct Near {
     /// Skin that only the head moves.
     pub(super) head: [bool; LANES],
-    /// The weighting of the nearest other skin; 0 where there is none.
+    /// The weighting of the nearest other skin; 0 if there is none.
     pub(super) slot: [u16; LANES],
-    /// Whether there is nothing, and the point is to be measured all the same.
-    pub(super) besides: [bool; LANES],
+    /// Whether nothing is near, but the point is measured anyway because culling is off.
+    pub(super) forced: [bool; LANES],
 }
 
-/// The cells of a row of points.
+/// The cells that contain a row of points.
 pub(super) struct Cells {
-    /// Their places; [`OUTSIDE`] where the grid ends.
+    /// Cell indices; [`OUTSIDE`] outside the grid.
     pub(super) index: [u32; LANES],
-    /// How far the next cell is at least, metres.
+    /// Lower bound of the distance to the next cell, metres.
     pub(super) to_next: Lane,
 }
 
-/// Stands for a cell that is not there.
+/// Marks a point outside the grid.
 const OUTSIDE: u32 = u32::MAX;
 
 #[derive(Clone, Debug)]
 pub(super) struct Occupancy {
-    pub(super) grid: Grid,
+    pub(super) grid: CellGrid,
     pub(super) probes: Probes,
     head_probes: Vec<Vec3>,
-    /// So many cells to each side the head was deposited into.
+    /// Number of cells to each side over which the head was spread.
     pub(super) head_width: i32,
     pub(super) head: Vec<bool>,
-    /// Cells in which the head is tried for nothing, where nothing is spared; otherwise empty.
+    /// Cells in which the head is tested only because culling is off; otherwise empty.
     extra: Vec<bool>,
-    /// For each cell the probe that is nearest to its middle, to within 1 % of the square of the distance:
-    /// the upper half of the square of its distance, square metres, and its slot. Of two numbers the lesser
-    /// is the nearer. [`NONE`] where there is none.
+    /// For each cell the probe nearest to its centre, to within 1 % of the squared distance: the upper half
+    /// holds the squared distance in square metres, the lower half the slot. The smaller of two numbers is
+    /// the nearer probe. [`NONE`] if there is none.
     pub(super) nearest: Vec<u32>,
-    /// The cells that may have any: the first and the last.
+    /// The first and the last cell that may hold a probe.
     pub(super) touched: (IVec3, IVec3),
     /// The start and the end of the step.
-    pub(super) ends: [End; 2],
-    /// How far a point may be from the nearest probe and still be at the skin, metres.
+    pub(super) ends: [StepEnd; 2],
+    /// Largest distance between a point at the skin and the nearest probe, metres.
     cover: f32,
 }
 
@@ -69,15 +69,15 @@ impl Occupancy {
         let side = (nodes.high() - nodes.low).max_element();
         let centre = nodes.low.midpoint(nodes.high());
         let cell = CELL * nodes.spacing;
-        let half = (0.5 + BEYOND) * side;
+        let half = (0.5 + MARGIN) * side;
         let size = UVec3::splat(((2.0 * half / cell).ceil() as u32).clamp(1, 96));
-        let grid = Grid { low: centre - half, cell, inv_cell: 1.0 / cell, size };
+        let grid = CellGrid { low: centre - half, cell, inv_cell: 1.0 / cell, size };
         let (mut probes, mut head_probes) = (Vec::new(), Vec::new());
         for i in 0..nodes.count() {
             let rest = nodes.place(i);
             let at = ((rest - nodes.low) / nodes.spacing).round().as_uvec3();
             let depth = field.distances()[lattice.index(at * 2)] / nodes.spacing;
-            // All near the skin, and every second one deep inside.
+            // All probes near the skin, and every second one deep inside.
             let kept = depth < 0.9 && (depth > -0.9 || at % 2 == UVec3::ZERO);
             if kept {
                 match field.slot_of_node()[i] {
@@ -92,10 +92,10 @@ impl Occupancy {
             head_width: 0,
             head: vec![false; grid.count()],
             extra: Vec::new(),
-            // Beyond the last a whole row of lanes may be written, without effect.
+            // Padding: a whole row of lanes may be written beyond the last cell, without effect.
             nearest: vec![NONE; grid.count() + LANES],
             touched: (IVec3::ONE, IVec3::ZERO),
-            ends: [End::new(grid.count()), End::new(grid.count())],
+            ends: [StepEnd::new(grid.count()), StepEnd::new(grid.count())],
             cover: nodes.spacing,
             grid,
         };
@@ -103,7 +103,7 @@ impl Occupancy {
         occupancy
     }
 
-    /// So many cells to each side hold all that is within `reach` of a probe.
+    /// Number of cells to each side that contains everything within `reach` of a probe.
     pub(super) fn width(&self, reach: f32) -> i32 {
         (((reach + self.cover) * self.grid.inv_cell).ceil() as i32).clamp(1, WIDEST)
     }
@@ -116,50 +116,50 @@ impl Occupancy {
         }
     }
 
-    /// Finds the cells in which the head is tried for nothing; where `spare`, there are none.
-    pub(super) fn place_extra(&mut self, spare: bool, known: &[bool]) {
+    /// Finds the cells in which the head is tested only because `culling` is off.
+    pub(super) fn mark_extra(&mut self, culling: bool, known: &[bool]) {
         self.extra.clear();
-        if !spare {
+        if !culling {
             self.extra.resize(self.head.len(), false);
-            mark(&mut self.extra, &self.grid, &self.head_probes, self.head_width + UNSPARING);
+            mark(&mut self.extra, &self.grid, &self.head_probes, self.head_width + UNCULLED_WIDTH);
             self.extra.iter_mut().zip(known).for_each(|(extra, known)| *extra &= !known);
         }
     }
 
-    /// Deposits the body at both `ends` of the step. Where `spare` is false the cells around are to be tested
+    /// Deposits the body at both `ends` of the step. With `culling` off, the cells around are to be tested
     /// too.
-    pub(super) fn update(&mut self, wide: Width, reach: f32, ends: [&Joints; 2], spare: bool) {
+    pub(super) fn update(&mut self, wide: Width, reach: f32, ends: [&Joints; 2], culling: bool) {
         self.clear();
         self.place_head(self.width(reach));
         let moved = self.collect(wide, ends);
-        // What is on its way is nearest to one end, by half the way at most. A little more width spares one
-        // end.
+        // A probe on its way is at most half the path from the nearer end. A slightly larger width makes one
+        // end sufficient.
         let one = self.width(reach + moved);
         let (width, skip) =
             if one <= self.width(reach) { (one, 1) } else { (self.width(reach + 0.5 * moved), 0) };
         self.spread(wide, width, skip);
         let mut known = Vec::new();
-        if !spare {
+        if !culling {
             known
                 .extend(self.head.iter().zip(&self.nearest).map(|(&head, &nearest)| head || nearest != NONE));
-            // The second round only fills what the first has left, and so changes nothing there.
+            // The second pass fills only cells that the first has left empty.
             let first = self.nearest.clone();
-            self.spread(wide, width + UNSPARING, skip);
+            self.spread(wide, width + UNCULLED_WIDTH, skip);
             for ((own, &first), _) in
                 self.nearest.iter_mut().zip(&first).zip(&known).filter(|(_, known)| **known)
             {
                 *own = first;
             }
         }
-        self.place_extra(spare, &known);
+        self.mark_extra(culling, &known);
     }
 
-    /// Tells the cells around the occupied ones of the nearest of these; `skip` leaves out the start of the step.
+    /// Spreads the occupied cells to their neighbours; `skip` leaves out the start of the step.
     fn spread(&mut self, wide: Width, width: i32, skip: usize) {
         spread_all(wide, &self.grid, &self.ends[skip..], &mut self.nearest, &mut self.touched, width);
     }
 
-    /// Empties the cells that may have any probe near them.
+    /// Clears the cells that may hold a probe.
     fn clear(&mut self) {
         let (from, to) = std::mem::replace(&mut self.touched, (self.grid.size.as_ivec3(), IVec3::NEG_ONE));
         for z in from.z..=to.z {
@@ -170,8 +170,8 @@ impl Occupancy {
         }
     }
 
-    /// Finds the probe nearest to the middle of each cell that has any, at both ends; the furthest way of a
-    /// probe. A step begins where the last one has ended.
+    /// Finds the probe nearest to the centre of each occupied cell, at both ends, and returns the longest
+    /// path of a probe. A step starts where the last one ended.
     fn collect(&mut self, wide: Width, joints: [&Joints; 2]) -> f32 {
         self.ends.swap(0, 1);
         for (n, joints) in joints.into_iter().enumerate() {
@@ -179,23 +179,23 @@ impl Occupancy {
                 place_probes(wide, &self.probes, &self.grid, joints, &mut self.ends[n]);
             }
         }
-        furthest(wide, &self.ends).sqrt()
+        longest_path_squared(wide, &self.ends).sqrt()
     }
 
-    /// Forgets where the last step ended: the next one begins elsewhere.
-    pub(super) fn forget(&mut self) {
-        self.ends[1].forget();
+    /// Discards the end of the last step, because the next one starts elsewhere.
+    pub(super) fn discard_end(&mut self) {
+        self.ends[1].discard();
     }
 
-    /// The cells that a row of points of head space is in.
+    /// The cells that contain a row of points in head space.
     #[inline(always)]
     pub(super) fn cells(&self, row: &Lane3) -> Cells {
         let mut out = Cells { index: [OUTSIDE; LANES], to_next: ZERO };
-        let Grid { low, cell: side_m, inv_cell, size: cells } = self.grid;
+        let CellGrid { low, cell: side_m, inv_cell, size: cells } = self.grid;
         let (size, last) = (cells.as_vec3(), (cells - 1).as_vec3());
         for k in 0..LANES {
             let q = (at(row, k) - low) * inv_cell;
-            // Written so that what is not a number is outside.
+            // Written so that NaN is outside.
             let within = |q: f32, size: f32| (q >= 0.0) & (q < size);
             let inside = within(q.x, size.x) & within(q.y, size.y) & within(q.z, size.z);
             let whole = |q: f32, last: f32| whole_part(lesser(q, last)) as u32;
@@ -214,16 +214,16 @@ impl Occupancy {
         out
     }
 
-    /// What may be near the points of a row in these `cells`; nothing where it is not `asked` for.
+    /// What may be near the points in these `cells`; nothing for lanes that are not `asked`.
     #[inline(always)]
     pub(super) fn near(&self, cells: &Cells, asked: &[bool; LANES]) -> Near {
-        let mut out = Near { head: [false; LANES], slot: [0; LANES], besides: [false; LANES] };
+        let mut out = Near { head: [false; LANES], slot: [0; LANES], forced: [false; LANES] };
         for k in 0..LANES {
             let index = cells.index[k] as usize;
             if asked[k] && index < self.head.len() {
                 let nearest = self.nearest[index];
-                out.besides[k] = !self.extra.is_empty() && self.extra[index];
-                out.head[k] = self.head[index] || out.besides[k];
+                out.forced[k] = !self.extra.is_empty() && self.extra[index];
+                out.head[k] = self.head[index] || out.forced[k];
                 out.slot[k] = if nearest == NONE { 0 } else { nearest as u16 };
             }
         }

@@ -1,5 +1,5 @@
-//! Rows of points in the field at rest: which nodes are around, and how far the skin is. Over the skin that goes with the
-//! head a point is at rest wherever it is now.
+//! Rows of points in the field at rest: the nodes around them, and their distance to the skin. Over skin that
+//! moves with the head a point is at its rest position already.
 
 use glam::Vec3;
 use lovelock_groom::simd::whole_part;
@@ -10,36 +10,36 @@ use super::planes::NONE;
 use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, choose, greater, inv_sqrt, lesser, put};
 use crate::trilinear::{gradient, weights};
 
-/// What a row of points learns of the skin that goes with the head.
+/// Skin that moves with the head, around a row of points.
 #[derive(Clone, Debug)]
-pub(super) struct Heads {
-    /// Whether the head alone moves the skin there; where it does not, the rest says nothing.
+pub(super) struct HeadSkinRow {
+    /// Whether the head alone moves the skin there; if not, the other values have no meaning.
     pub(super) alone: [bool; LANES],
-    /// Distance, metres; [`NONE`] where it is too far to be of interest.
+    /// Distance, metres; [`NONE`] beyond reach.
     pub(super) distance: Lane,
     pub(super) normal: Lane3,
-    /// How far the skin is at least, metres; [`NONE`] where the field ends.
+    /// Lower bound of the distance, metres; [`NONE`] outside the field.
     pub(super) nearest: Lane,
 }
 
-/// Distances at rest of a row, and their gradients.
-pub(super) struct AtRest {
-    /// Whether it was asked for, and is in the field; elsewhere the rest says nothing.
+/// Rest distances of a row, and their gradients.
+pub(super) struct RestDistances {
+    /// Whether the lane was asked for and is in the field; if not, the other values have no meaning.
     pub(super) there: [bool; LANES],
     pub(super) value: Lane,
     pub(super) slope: Lane3,
 }
 
 impl MovingField {
-    /// Measures the lanes of a row in head space that `asked` names against the skin that goes with the head; nothing
-    /// further than `reach` is of interest.
+    /// Measures the `asked` lanes of a row in head space against skin that moves with the head. Skin further
+    /// away than `reach` is ignored.
     #[inline(always)]
-    pub(super) fn heads(&self, row: &Lane3, asked: &[bool; LANES], reach: f32) -> Heads {
+    pub(super) fn measure_head_skin(&self, row: &Lane3, asked: &[bool; LANES], reach: f32) -> HeadSkinRow {
         let mut out =
-            Heads { alone: [false; LANES], distance: ZERO, normal: ZERO3, nearest: Lane::splat(NONE) };
+            HeadSkinRow { alone: [false; LANES], distance: ZERO, normal: ZERO3, nearest: Lane::splat(NONE) };
         let nodes = Places::new(self.field.node_lattice(), self.inv_node, row);
         for k in 0..LANES {
-            // A place that is not inside has no node.
+            // A point outside has no node.
             out.alone[k] = asked[k] && self.head_alone.get(nodes.first[k] as usize).is_some_and(|&own| own);
         }
         let at_rest = self.at_rest(row, &out.alone);
@@ -56,24 +56,25 @@ impl MovingField {
         out
     }
 
-    /// Whether the head alone moves the skin at `p`, if it is where it is at rest; and whether that is in the field.
+    /// Whether the head alone moves the skin at `p`, if `p` is a rest position, and whether `p` is in the
+    /// field.
     #[inline(always)]
-    pub(super) fn is_heads(&self, p: Vec3) -> (bool, bool) {
+    pub(super) fn is_moved_by_head_alone(&self, p: Vec3) -> (bool, bool) {
         let lattice = self.field.node_lattice();
         let (q, last) = ((p - lattice.low) * self.inv_node, (lattice.size - 1).as_vec3());
-        // What is not a number is outside.
+        // NaN is outside.
         let inside = q.cmpge(Vec3::ZERO).all() && q.cmplt(last).all();
         (inside && self.head_alone[lattice.index(q.as_uvec3())], inside)
     }
 
-    /// Measures the lanes of a row of places at rest that `asked` names.
+    /// Measures the `asked` lanes of a row of rest positions.
     #[inline(always)]
-    pub(super) fn at_rest(&self, row: &Lane3, asked: &[bool; LANES]) -> AtRest {
+    pub(super) fn at_rest(&self, row: &Lane3, asked: &[bool; LANES]) -> RestDistances {
         let lattice = self.field.distance_lattice();
         let places = Places::new(lattice, self.inv_spacing, row);
         let (all, mut corners) = (self.field.distances(), [ZERO; 8]);
         let (up, behind) = (lattice.size.x as usize, (lattice.size.x * lattice.size.y) as usize);
-        let mut out = AtRest { there: [false; LANES], value: ZERO, slope: ZERO3 };
+        let mut out = RestDistances { there: [false; LANES], value: ZERO, slope: ZERO3 };
         for k in 0..LANES {
             let first = places.first[k] as usize;
             if !asked[k] || first >= all.len() {
@@ -98,7 +99,7 @@ impl MovingField {
     }
 }
 
-/// The direction of a gradient, and how steep it is.
+/// The direction of a gradient, and its length.
 #[inline(always)]
 pub(super) fn normal_of(slope: Vec3) -> (Vec3, f32) {
     let squared = slope.length_squared();
@@ -107,9 +108,9 @@ pub(super) fn normal_of(slope: Vec3) -> (Vec3, f32) {
     (choose(steepness <= 1e-6, Vec3::Y, slope * inv), steepness)
 }
 
-/// Where the points of a row are between the points of a lattice.
+/// Positions of a row of points in a lattice.
 pub(super) struct Places {
-    /// The first of the eight around each; [`u32::MAX`] where the lattice ends.
+    /// Index of the first of the eight lattice points around each; [`u32::MAX`] outside the lattice.
     pub(super) first: [u32; LANES],
     pub(super) fraction: Lane3,
 }
@@ -121,7 +122,7 @@ impl Places {
         let (size, last) = (lattice.size, (lattice.size - 1).as_vec3());
         for k in 0..LANES {
             let q = (at(row, k) - lattice.low) * inv_spacing;
-            // Written so that what is not a number is outside.
+            // Written so that NaN is outside.
             let within = |q: f32, last: f32| (q >= 0.0) & (q < last);
             let inside = within(q.x, last.x) & within(q.y, last.y) & within(q.z, last.z);
             let (x, y, z) = (whole_part(q.x) as u32, whole_part(q.y) as u32, whole_part(q.z) as u32);

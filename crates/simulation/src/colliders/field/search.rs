@@ -1,45 +1,45 @@
-//! Rows of points that look for the skin that other joints than the head move. Only some lanes of a row are
-//! near any: those of all rows of a block are measured together, sixteen at a time.
+//! The search for skin that is moved by other joints than the head. Only some lanes of a row are near such
+//! skin; those of all rows of a block are measured together, sixteen at a time.
 
 use glam::Vec3;
 
 use super::occupancy::Near;
 use super::planes::{NOWHERE, PlaneRow};
-use super::rows::{Heads, Places};
-use super::skins::{Skins, Starts};
-use super::{CLOSE, MovingField};
+use super::rows::{HeadSkinRow, Places};
+use super::skins::{SkinRow, Starts};
+use super::{MovingField, SAME_START};
 use crate::lanes::{LANES, Lane, Lane3, ZERO3, at, choose, lesser, put, splat3};
 
-/// A row of points that looks for skin, in head space.
+/// A row of points for which skin is searched, in head space.
 #[derive(Clone, Debug)]
 pub(crate) struct Search {
-    /// Which of the rows that were given it is.
+    /// Index of the row in the list that was passed in.
     pub(super) row: usize,
     pub(super) p: Lane3,
-    /// The lanes that it is about.
+    /// The lanes to be searched.
     pub(super) asked: [bool; LANES],
     pub(super) near: Near,
-    /// How far the next cell is at least, metres.
+    /// Lower bound of the distance to the next cell, metres.
     pub(super) to_next: Lane,
-    pub(super) heads: Heads,
+    pub(super) heads: HeadSkinRow,
     /// Whether any lane may find skin that other joints move.
     pub(super) any: bool,
-    /// Near the head, where not the head alone moves what is at the point.
+    /// Lanes near the head whose place is not moved by the head alone.
     others: [bool; LANES],
-    /// Where the points were at rest when they last found such skin; and whether that was in this step.
+    /// Rest positions where such skin was last found, and whether that was in this step.
     was: Lane3,
     in_this_step: [bool; LANES],
-    /// Whether the points stay on the side of a fold that they were found on.
+    /// Whether the points stay on their side of a fold.
     stays: [bool; LANES],
-    /// Where the nearest other joints have the points at rest.
+    /// Rest positions according to the nearest other joints.
     guess: Lane3,
-    /// From where a way back has been tried.
+    /// A starting point that has been tried.
     tried: Lane3,
-    /// What has been found.
-    pub(super) skins: Skins,
+    /// The skin found so far.
+    pub(super) skins: SkinRow,
 }
 
-/// A way back that is to be tried: of which point, and from where.
+/// An attempt to find a rest position: for which point, and from which starting point.
 #[derive(Clone, Copy)]
 struct Trial {
     search: usize,
@@ -50,32 +50,32 @@ struct Trial {
     alone: bool,
 }
 
-/// From where a point is taken back to rest. Where skin is folded there are several ways back.
+/// Where the iteration for the rest position starts. Folded skin has several rest positions.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Way {
-    /// From where it was found last, in this step or the one before.
-    Again,
-    /// From where the nearest other joints have it.
-    OfSlot,
-    /// From where the head has it.
-    OfHead,
-    /// From midway between these.
+enum Start {
+    /// The rest position found last, in this step or the one before.
+    Previous,
+    /// The rest position according to the nearest other joints.
+    Slot,
+    /// The rest position according to the head.
+    Head,
+    /// Halfway between those two.
     Between,
 }
 
-impl Way {
-    const ALL: [Self; 4] = [Self::Again, Self::OfSlot, Self::OfHead, Self::Between];
+impl Start {
+    const ALL: [Self; 4] = [Self::Previous, Self::Slot, Self::Head, Self::Between];
 }
 
-/// Trials that wait: a full row of them, and what one more row of points may add.
-struct Waiting {
+/// Queued trials: a full row, and those that one more row of points may add.
+struct TrialQueue {
     trials: [Trial; 2 * LANES],
     count: usize,
 }
 
 impl MovingField {
-    /// Begins the search of the lanes `asked` of the row `p`, the `row`-th of those that were given: what the
-    /// cells know, and the skin that goes with the head.
+    /// Starts the search of the lanes `asked` of the row `p`, which has index `row`: looks up the cells and
+    /// measures the skin that moves with the head.
     #[inline(always)]
     pub(super) fn search(
         &self,
@@ -87,11 +87,11 @@ impl MovingField {
     ) -> Search {
         let cells = self.occupancy.cells(p);
         let near = self.occupancy.near(&cells, &asked);
-        let heads = self.heads(p, &near.head, reach);
+        let heads = self.measure_head_skin(p, &near.head, reach);
         let (mut others, mut in_this_step, mut any) = ([false; LANES], [false; LANES], false);
         for k in 0..LANES {
             others[k] = near.head[k] & !heads.alone[k];
-            in_this_step[k] = planes.serves[k] >= 0.0;
+            in_this_step[k] = planes.valid_squared[k] >= 0.0;
             any |= others[k] | (near.slot[k] != 0);
         }
         Search {
@@ -108,38 +108,38 @@ impl MovingField {
             stays: [false; LANES],
             guess: ZERO3,
             tried: splat3(NOWHERE),
-            skins: Skins::NONE,
+            skins: SkinRow::NONE,
         }
     }
 
-    /// Looks for skin that other joints than the head move, at the fraction `t` of the step; nothing further
-    /// than `reach` is of interest.
+    /// Searches skin that is moved by other joints than the head, at the fraction `t` of the step. Skin
+    /// further away than `reach` is ignored.
     #[inline(always)]
     pub(super) fn find_skins(&self, searches: &mut [Search], t: f32, reach: f32) {
         let none = Trial { search: 0, lane: 0, p: Vec3::ZERO, from: Vec3::ZERO, slot: 0, alone: false };
-        let mut waiting = Waiting { trials: [none; 2 * LANES], count: 0 };
-        for way in Way::ALL {
+        let mut queue = TrialQueue { trials: [none; 2 * LANES], count: 0 };
+        for start in Start::ALL {
             for next in 0..=searches.len() {
                 if let Some(search) = searches.get_mut(next) {
-                    if way == Way::OfSlot {
-                        self.go_on(search, t);
+                    if start == Start::Slot {
+                        self.prepare_starts(search, t);
                     }
-                    self.ask(search, next, way, &mut waiting);
+                    self.queue_trials(search, next, start, &mut queue);
                 }
                 let last = next == searches.len();
-                while waiting.count >= LANES || (last && waiting.count > 0) {
-                    self.try_all(searches, way, &mut waiting, t, reach);
+                while queue.count >= LANES || (last && queue.count > 0) {
+                    self.run_trials(searches, start, &mut queue, t, reach);
                 }
             }
         }
     }
 
-    /// What a search knows after its points have gone on from where they were found last.
+    /// Prepares the remaining starting points once the previous rest positions have been tried.
     #[inline(always)]
-    fn go_on(&self, search: &mut Search, t: f32) {
+    fn prepare_starts(&self, search: &mut Search, t: f32) {
         search.tried = search.skins.rest;
         for k in 0..LANES {
-            // Within a step it stays on the side of a fold that it was found on.
+            // Within a step a point stays on its side of a fold.
             search.stays[k] = (search.skins.rest[0][k] < NOWHERE.x) & search.in_this_step[k];
             let slot = search.near.slot[k];
             if slot != 0 && !search.stays[k] {
@@ -148,41 +148,41 @@ impl MovingField {
         }
     }
 
-    /// Lists the trials of one way.
+    /// Queues the trials of one kind of starting point.
     #[inline(always)]
-    fn ask(&self, search: &mut Search, number: usize, way: Way, waiting: &mut Waiting) {
+    fn queue_trials(&self, search: &mut Search, number: usize, start: Start, queue: &mut TrialQueue) {
         let (slot, alone) = (&search.near.slot, &search.heads.alone);
         let (mut asked, mut froms) = ([false; LANES], ZERO3);
-        match way {
-            Way::Again => {
+        match start {
+            Start::Previous => {
                 froms = search.was;
                 for k in 0..LANES {
                     asked[k] = (slot[k] != 0) & (froms[0][k] < NOWHERE.x);
                 }
             }
-            Way::OfSlot => {
+            Start::Slot => {
                 froms = search.guess;
                 for k in 0..LANES {
                     asked[k] = (slot[k] != 0) & !search.stays[k];
                 }
             }
-            Way::OfHead => {
+            Start::Head => {
                 froms = search.p;
                 for k in 0..LANES {
                     asked[k] = search.others[k] & !search.stays[k];
                 }
             }
-            Way::Between => {
+            Start::Between => {
                 for k in 0..LANES {
                     put(&mut froms, k, 0.5 * (at(&search.guess, k) + at(&search.p, k)));
                     asked[k] = (slot[k] != 0) & !search.stays[k];
                 }
             }
         }
-        if way != Way::Again {
-            let close = (CLOSE * self.field.node_lattice().spacing).powi(2);
+        if start != Start::Previous {
+            let close = (SAME_START * self.field.node_lattice().spacing).powi(2);
             for k in 0..LANES {
-                // From close to a place that is known it would lead there.
+                // A starting point close to a known rest position would lead there from_previous.
                 let (from, known) = (at(&froms, k), at(&search.tried, k));
                 let untried = known.x >= NOWHERE.x;
                 asked[k] &= untried | ((from - known).length_squared() >= close);
@@ -196,34 +196,34 @@ impl MovingField {
         if !any {
             return;
         }
-        if way == Way::OfSlot {
+        if start == Start::Slot {
             let nodes = Places::new(self.field.node_lattice(), self.inv_node, &froms);
             for k in 0..LANES {
-                // It would lead to the skin that goes with the head, which is known.
+                // It would lead to the skin that moves with the head, which is known.
                 let first = nodes.first[k] as usize;
                 asked[k] &= !(alone[k] && self.head_alone.get(first).is_some_and(|&own| own));
             }
         }
         for k in 0..LANES {
             if asked[k] {
-                waiting.trials[waiting.count] = Trial {
+                queue.trials[queue.count] = Trial {
                     search: number,
                     lane: k,
                     p: at(&search.p, k),
                     from: at(&froms, k),
-                    slot: if way == Way::OfSlot { slot[k] } else { 0 },
+                    slot: if start == Start::Slot { slot[k] } else { 0 },
                     alone: alone[k],
                 };
-                waiting.count += 1;
+                queue.count += 1;
             }
         }
     }
 
-    /// Tries a row of the ways that wait, the last ones.
+    /// Runs the last row of the queued trials.
     #[inline(always)]
-    fn try_all(&self, searches: &mut [Search], way: Way, waiting: &mut Waiting, t: f32, reach: f32) {
-        let first = waiting.count.saturating_sub(LANES);
-        let trials = &waiting.trials[first..waiting.count];
+    fn run_trials(&self, searches: &mut [Search], start: Start, queue: &mut TrialQueue, t: f32, reach: f32) {
+        let first = queue.count.saturating_sub(LANES);
+        let trials = &queue.trials[first..queue.count];
         let (mut p, mut alone) = (ZERO3, [false; LANES]);
         let mut starts = Starts { asked: [false; LANES], guess: ZERO3, slot: [0; LANES] };
         for (k, trial) in trials.iter().enumerate() {
@@ -233,20 +233,20 @@ impl MovingField {
         }
         let found = self.measure_skins(&p, &starts, &alone, t, reach);
         for (k, trial) in trials.iter().enumerate() {
-            searches[trial.search].skins.learn(trial.lane, &found, k, way == Way::Again);
+            searches[trial.search].skins.merge(trial.lane, &found, k, start == Start::Previous);
         }
-        waiting.count = first;
+        queue.count = first;
     }
 }
 
-impl Skins {
-    /// Takes what a trial has found, lane `of` of `found`, into `lane`: if it is nearer than what is known;
-    /// where it only went on from the last place, if it is sure.
+impl SkinRow {
+    /// Merges lane `of` of `found` into `lane` if it is nearer than the known skin or, for a trial from the
+    /// previous rest position, if it is certain.
     #[inline(always)]
-    fn learn(&mut self, lane: usize, found: &Self, of: usize, again: bool) {
+    fn merge(&mut self, lane: usize, found: &Self, of: usize, from_previous: bool) {
         let nearer = !self.found[lane] | (found.distance[of] < self.distance[lane]);
-        let taken = found.found[of] & if again { found.sure[of] } else { nearer };
-        if !again || taken {
+        let taken = found.found[of] & if from_previous { found.sure[of] } else { nearer };
+        if !from_previous || taken {
             self.nearest[lane] = lesser(self.nearest[lane], found.nearest[of]);
         }
         if taken {

@@ -1,34 +1,37 @@
-//! Rows of points against skin that other joints than the head move: taken back to rest and measured there.
+//! Rows of points against skin that is moved by other joints than the head: mapped to the rest pose and
+//! measured there.
 
 use glam::{Mat3, Mat4, Vec3, Vec4};
 
 use super::affine::{Affine, between};
 use super::planes::{NONE, NOWHERE};
 use super::rows::{Places, normal_of};
-use super::{DEEP, MovingField, ROUNDS, SETTLED, STRAYED, UNFOLDED, UNSURE};
+use super::{
+    CONVERGED, FURTHEST_FROM_GUESS, GUESSED_DEPTH, IMPLAUSIBLE_DEPTH, LEAST_DETERMINANT, MovingField, ROUNDS,
+};
 use crate::lanes::{LANES, Lane, Lane3, ZERO, ZERO3, at, choose, greater, lesser, put, splat3, transposed};
 use crate::trilinear::weights;
 
-/// What a row of points learns of a skin, in head space. Of what is not found the rest says nothing.
+/// Skin around a row of points, in head space. Lanes without skin hold no meaningful values.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Skins {
+pub(super) struct SkinRow {
     pub(super) found: [bool; LANES],
-    /// How far it is at least, metres; [`NONE`] where nothing is known.
+    /// Lower bound of the distance, metres; [`NONE`] if nothing is known.
     pub(super) nearest: Lane,
     pub(super) distance: Lane,
     pub(super) normal: Lane3,
-    /// The head's share of the skin there.
+    /// The head's weight at the skin.
     pub(super) share: Lane,
-    /// Velocity of the skin against the head, metres per second.
+    /// Velocity of the skin relative to the head, metres per second.
     pub(super) drift: Lane3,
-    /// Whether this is measured, and not a guess that may push a little.
+    /// Whether the skin is measured; otherwise it is a guess that may push only a little.
     pub(super) sure: [bool; LANES],
-    /// Where the point is at rest, to go on from in the next measurement; [`NOWHERE`] where the head alone
-    /// moves it or it is a guess.
+    /// Rest position of the point, the starting point of the next search; [`NOWHERE`] if the head alone moves
+    /// it or it is a guess.
     pub(super) rest: Lane3,
 }
 
-impl Skins {
+impl SkinRow {
     pub(super) const NONE: Self = Self {
         found: [false; LANES],
         nearest: Lane::splat(NONE),
@@ -41,35 +44,35 @@ impl Skins {
     };
 }
 
-/// Where the ways of a row back to rest begin.
+/// Starting points for the rest positions of a row.
 pub(super) struct Starts {
-    /// The lanes that are asked for.
+    /// The lanes to be computed.
     pub(super) asked: [bool; LANES],
-    /// First guesses of where the points are at rest.
+    /// First guesses of the rest positions.
     pub(super) guess: Lane3,
-    /// The weightings that they come from; 0 where no guess may stand in for what is not found.
+    /// The weightings that the guesses come from; 0 if the guess may not replace a missing solution.
     pub(super) slot: [u16; LANES],
 }
 
-/// Where a row is at rest, and how well that is known.
+/// Rest positions of a row, and their certainty.
 struct Rest {
-    /// Whether there is a way back at all.
+    /// Whether there is a rest position at all.
     there: [bool; LANES],
     place: Lane3,
     sure: [bool; LANES],
-    /// The weightings of the nodes around, and where between them it is.
+    /// The weightings of the surrounding nodes, and the position between them.
     slots: [[u16; 8]; LANES],
     fraction: Lane3,
-    /// Whether the head alone moves it, so that it is where it was.
+    /// Whether the head alone moves the point, so that it is at its rest position already.
     heads: [bool; LANES],
-    /// Rows of what a small step now makes of the place at rest, besides what the weightings do.
+    /// Rows of the derivative of the rest position, apart from the effect of the weightings.
     stretch: [Lane3; 3],
 }
 
 impl MovingField {
-    /// Measures a row `p` at the fraction `t` of the step; nothing further than `reach` is of interest.
-    /// `alone` says where the head alone moves what is at a point: a way back that leads there finds what is
-    /// known already.
+    /// Measures a row `p` at the fraction `t` of the step. Skin further away than `reach` is ignored. `alone`
+    /// marks points whose place is moved by the head alone: a trial that ends there finds skin that is known
+    /// already.
     #[inline(always)]
     pub(super) fn measure_skins(
         &self,
@@ -78,12 +81,12 @@ impl MovingField {
         alone: &[bool; LANES],
         t: f32,
         reach: f32,
-    ) -> Skins {
-        let rest = self.ways_back(p, starts, t);
+    ) -> SkinRow {
+        let rest = self.rest_positions(p, starts, t);
         let mut wanted = rest.there;
         for k in 0..LANES {
-            // Of the head's own weighting there is no guess: it says that the point has not moved. Nor is
-            // where it was.
+            // The head's own weighting gives no guess: it would mean that the point has not moved. Skin that
+            // is already known is not measured again.
             wanted[k] &= rest.sure[k] | (starts.slot[k] != 0);
             wanted[k] &= !(alone[k] & rest.heads[k]);
         }
@@ -93,7 +96,7 @@ impl MovingField {
             if !at_rest.there[k] || at_rest.value[k] - self.lift > 2.0 * reach {
                 continue;
             }
-            let (mut before, mut now) = (Affine::NOTHING, Affine::NOTHING);
+            let (mut before, mut now) = (Affine::ZERO, Affine::ZERO);
             if rest.heads[k] {
                 (before, now) = (Affine::IDENTITY, Affine::IDENTITY);
             } else {
@@ -106,7 +109,7 @@ impl MovingField {
             put(&mut moved, k, (before.apply(at(p, k)) - now.apply(at(p, k))).truncate());
         }
         let back = transposed(&back);
-        let mut out = Skins::NONE;
+        let mut out = SkinRow::NONE;
         let inv_dt = 1.0 / self.dt_secs;
         for k in 0..LANES {
             let (value, gradient) = (at_rest.value[k], at(&at_rest.slope, k));
@@ -117,11 +120,11 @@ impl MovingField {
             let (normal, steepness) = normal_of(times_transposed(&back, k, bent));
             put(&mut out.normal, k, normal);
             let distance = value / lesser(greater(steepness, 0.5), 2.0) - self.lift;
-            // A guess may push, but not far; nor may skin that is stretched or pressed beyond what skin can
-            // be, or that hair has never been so deep in.
-            let sound = rest.sure[k] & (0.5..2.0).contains(&steepness) & (distance > -DEEP);
-            let distance = if sound { distance } else { greater(distance, -UNSURE) };
-            // A stretched skin is further away than it was at rest, by half at most.
+            // Guessed skin may push only a little. The same holds for skin that is stretched or compressed
+            // beyond what is possible, and for penetrations deeper than hair ever gets.
+            let sound = rest.sure[k] & (0.5..2.0).contains(&steepness) & (distance > -IMPLAUSIBLE_DEPTH);
+            let distance = if sound { distance } else { greater(distance, -GUESSED_DEPTH) };
+            // Stretched skin is further away than at rest, by at most half.
             let far = value - self.lift > 2.0 * reach;
             let there = at_rest.there[k];
             out.found[k] = there & !far;
@@ -138,21 +141,21 @@ impl MovingField {
         out
     }
 
-    /// What the weighting `slot` makes of `p` at the fraction `t` of the step.
+    /// The image of `p` under the weighting `slot` at the fraction `t` of the step.
     #[inline(always)]
     pub(super) fn mapped(&self, p: Vec3, slot: u16, t: f32) -> Vec4 {
         let (a, b) = (self.before[usize::from(slot)].apply(p), self.now[usize::from(slot)].apply(p));
         a + (b - a) * t
     }
 
-    /// Takes a row back to rest from first guesses of where that is.
+    /// Computes the rest positions of a row from first guesses.
     ///
-    /// Wanted is `X = V(X)`, where `V` mixes what the weightings of the eight nodes around `X` make of `p`.
-    /// Newton's iteration, `(1 - V') dX = V - X`, goes where a plain one would swing to and fro: around a
-    /// raised arm. Where the skin is so folded that it finds nothing near by, the weighting of the guess
-    /// alone says where the point is.
+    /// Solves `X = V(X)`, where `V` interpolates the images of `p` under the weightings of the eight nodes
+    /// around `X`. Newton's iteration, `(1 - V') dX = V - X`, converges where a fixed-point iteration would
+    /// oscillate, such as around a raised arm. Where the skin is folded so much that no solution is found
+    /// nearby, the weighting of the guess alone determines the rest position.
     #[inline(always)]
-    fn ways_back(&self, p: &Lane3, starts: &Starts, t: f32) -> Rest {
+    fn rest_positions(&self, p: &Lane3, starts: &Starts, t: f32) -> Rest {
         let (nodes, all) = (self.field.node_lattice(), self.field.slot_of_node());
         let (up, behind) = (nodes.size.x as usize, (nodes.size.x * nodes.size.y) as usize);
         let mut rest = Rest {
@@ -167,7 +170,7 @@ impl MovingField {
         let mut going = starts.asked;
         for _ in 0..ROUNDS {
             let places = Places::new(nodes, self.inv_node, &rest.place);
-            // What a lane is mapped to, and how that changes along each axis.
+            // The image of each lane, and its derivatives along the axes.
             let (mut mapped_to, mut mixed) = ([ZERO; LANES], [false; LANES]);
             for k in 0..LANES {
                 if !going[k] {
@@ -180,9 +183,9 @@ impl MovingField {
                 };
                 let here = at(p, k);
                 if head_alone {
-                    // Only if that is where it is.
+                    // Valid only if the point itself lies there.
                     (going[k], rest.heads[k]) = (false, true);
-                    (rest.sure[k], rest.there[k]) = self.is_heads(here);
+                    (rest.sure[k], rest.there[k]) = self.is_moved_by_head_alone(here);
                     put(&mut rest.place, k, here);
                     continue;
                 }
@@ -218,8 +221,8 @@ impl MovingField {
                     left.x_axis.cross(left.y_axis),
                 ];
                 let determinant = left.z_axis.dot(cross[2]);
-                // Where the skin is folded over itself there is no way back that keeps its sides apart.
-                let newton = mixed[k] & (determinant >= UNFOLDED);
+                // Where the skin is folded over itself, no inverse keeps its sides apart.
+                let newton = mixed[k] & (determinant >= LEAST_DETERMINANT);
                 let inv = 1.0 / determinant;
                 let row = |c: Vec3, unit: Vec3| choose(newton, c * inv, unit);
                 let stretch = [row(cross[0], Vec3::X), row(cross[1], Vec3::Y), row(cross[2], Vec3::Z)];
@@ -234,7 +237,7 @@ impl MovingField {
                     let was = at(rows, k);
                     put(rows, k, choose(going[k], row, was));
                 }
-                let settled = going[k] & (step.length_squared() < SETTLED * SETTLED);
+                let settled = going[k] & (step.length_squared() < CONVERGED * CONVERGED);
                 rest.sure[k] |= settled;
                 going[k] &= !settled;
                 any |= going[k];
@@ -243,7 +246,7 @@ impl MovingField {
                 break;
             }
         }
-        let furthest = (STRAYED * nodes.spacing).powi(2);
+        let furthest = (FURTHEST_FROM_GUESS * nodes.spacing).powi(2);
         for k in 0..LANES {
             let guess = at(&starts.guess, k);
             rest.sure[k] &= (at(&rest.place, k) - guess).length_squared() <= furthest;
@@ -264,7 +267,7 @@ impl MovingField {
     }
 }
 
-/// The transpose of the matrix in lane `k`, whose columns are four numbers each, times `v`.
+/// The transpose of the matrix in lane `k`, whose columns have four numbers each, times `v`.
 #[inline(always)]
 fn times_transposed(matrix: &[Lane; LANES], k: usize, v: Vec3) -> Vec3 {
     let column = |i: usize| Vec3::new(matrix[4 * i][k], matrix[4 * i + 1][k], matrix[4 * i + 2][k]);

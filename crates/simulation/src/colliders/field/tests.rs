@@ -26,7 +26,7 @@ fn moment(body: &Body, dance: &Clip, field: &BodyField, time_secs: f64) -> Momen
     Moment { head: HeadPose::new(&pose.world_from_head).expect("a head"), pose, placed }
 }
 
-/// The dancer's field in a step of the dance, and places about her skin in the space of the step.
+/// The dancer's field in a step of the dance, and points on her skin in the working space of the step.
 fn in_the_dance(time: f64, every: usize) -> (MovingField, crate::motion::Substep, Vec<Vec3>) {
     let (body, dance, field) = dancer();
     let (was, now) = (moment(&body, &dance, &field, time - 1.0 / 60.0), moment(&body, &dance, &field, time));
@@ -44,8 +44,9 @@ fn in_the_dance(time: f64, every: usize) -> (MovingField, crate::motion::Substep
     (moving, substep(&was.head, &now.head, origin, 1.0 / 60.0), places)
 }
 
-/// Distances of the places `out` above the vertices of head, neck and shoulders at the end of a step of the dance.
-fn distances(spare: bool, moved: bool, out: f32) -> Vec<f32> {
+/// Distances of points `out` metres above the vertices of head, neck and shoulders, at the end of a step of
+/// the dance.
+fn distances(culling: bool, moved: bool, out: f32) -> Vec<f32> {
     let (body, dance, field) = dancer();
     let mut all = Vec::new();
     for time in [0.7, 2.3, 3.9, 5.2, 7.7] {
@@ -54,9 +55,9 @@ fn distances(spare: bool, moved: bool, out: f32) -> Vec<f32> {
         let mut moving = MovingField::new(&field, 0.0, 0.012);
         moving.reset(&was.head, &was.placed);
         if moved {
-            moving.advance(&now.head, &now.placed, 0.012, 1.0 / 60.0, spare);
+            moving.advance(&now.head, &now.placed, 0.012, 1.0 / 60.0, culling);
         } else {
-            moving.advance(&was.head, &was.placed, 0.012, 1.0 / 60.0, spare);
+            moving.advance(&was.head, &was.placed, 0.012, 1.0 / 60.0, culling);
         }
         let origin = now.head.place;
         let step = substep(&was.head, &now.head, origin, 1.0 / 60.0);
@@ -65,7 +66,7 @@ fn distances(spare: bool, moved: bool, out: f32) -> Vec<f32> {
         for (v, rest) in body.mesh.positions.iter().enumerate().step_by(7) {
             let q = *rest - field.rest_from_head();
             let inner = q.y > -0.3 && q.x.abs() < 0.2;
-            // The lashes and the inside of the mouth are no skin.
+            // The lashes and the inside of the mouth are not skin.
             let skin = field.sample(q).is_some_and(|(d, _)| d.abs() < 2e-4);
             if inner && skin {
                 let p = surface.positions[v] + surface.normals[v] * out - origin;
@@ -82,16 +83,16 @@ fn distances(spare: bool, moved: bool, out: f32) -> Vec<f32> {
 }
 
 #[test]
-fn the_skin_is_where_the_field_says_in_the_midst_of_a_dance() {
+fn the_field_matches_the_skin_during_a_dance() {
     let d = distances(true, true, 0.0);
     let (low, high) = (d[d.len() / 200], d[d.len() - 1 - d.len() / 200]);
     println!("{} vertices: {} to {}, 99 % from {low} to {high}", d.len(), d[0], d[d.len() - 1]);
     assert!(d.len() > 4000);
     assert!(low > -1.5e-3 && high < 1.5e-3, "99 % from {low} to {high}");
-    assert_eq!(d, distances(false, true, 0.0), "what is tested besides changes nothing");
-    // The control: the field where it was a frame before.
+    assert_eq!(d, distances(false, true, 0.0), "tests with culling off change nothing");
+    // Control: the field one frame earlier.
     let late = distances(true, false, 0.0);
-    assert!(late[late.len() / 200] < -2e-3, "a frame before it was {}", late[late.len() / 200]);
+    assert!(late[late.len() / 200] < -2e-3, "one frame earlier it was {}", late[late.len() / 200]);
 }
 
 #[test]
@@ -102,13 +103,13 @@ fn distances_grow_above_the_skin() {
 }
 
 #[test]
-fn what_a_point_learns_does_not_depend_on_the_others_of_its_row() {
+fn a_point_does_not_depend_on_the_others_of_its_row() {
     let (moving, step, near) = in_the_dance(3.9, 37);
-    // Every second point far off, so that there is always one that is not measured beside one that is.
+    // Every second point is far away, so that measured and unmeasured lanes lie side by side.
     let places: Vec<Vec3> = near.into_iter().flat_map(|p| [p, p + Vec3::Z]).collect();
     let learn = |row: &Lane3| {
         let mut planes = PlaneRow::unknown(PlaneRow::NO_SKIN);
-        // Twice, so that the second begins where the first has been found.
+        // Twice, so that the second search starts where the first one ended.
         let _ = moving.row(row, &step, 0.5, 0.012, &mut planes);
         let mut planes = PlaneRow::unknown(planes.rest);
         let found = moving.row(row, &step, 1.0, 0.012, &mut planes);
@@ -132,15 +133,15 @@ fn what_a_point_learns_does_not_depend_on_the_others_of_its_row() {
             taken_back += usize::from(rest[0][k] < f32::MAX);
         }
     }
-    println!("{touched} of {} points at skin, {taken_back} taken back to rest", places.len());
+    println!("{touched} of {} points at skin, {taken_back} mapped to rest", places.len());
     assert!(
         touched > places.len() / 4 && taken_back > places.len() / 20,
-        "the control: there is something to learn"
+        "control: the field is near enough points"
     );
 }
 
 #[test]
-fn what_is_foreseen_for_all_rows_is_what_each_row_finds() {
+fn prefetched_planes_equal_those_of_single_rows() {
     let (moving, step, places) = in_the_dance(3.9, 5);
     let rows: Vec<Lane3> = places
         .as_chunks::<LANES>()
@@ -150,13 +151,13 @@ fn what_is_foreseen_for_all_rows_is_what_each_row_finds() {
         .collect();
     let mut foreseen = vec![PlaneRow::unknown(PlaneRow::NO_SKIN); rows.len()];
     let (mut found, mut searches) = (0, Vec::new());
-    // The second time they go on from where they were found.
+    // The second search starts where the first one ended.
     for t in [0.5, 1.0] {
         for planes in &mut foreseen {
             *planes = PlaneRow::unknown(planes.rest);
         }
         let known: Vec<Lane3> = foreseen.iter().map(|planes| planes.rest).collect();
-        moving.foresee(&rows, &step, t, 0.012, &mut foreseen, &mut searches);
+        moving.prefetch_planes(&rows, &step, t, 0.012, &mut foreseen, &mut searches);
         for ((row, planes), rest) in rows.iter().zip(&mut foreseen).zip(known) {
             let mut by_itself = PlaneRow::unknown(rest);
             let alone = moving.row(row, &step, t, 0.012, &mut by_itself);
@@ -167,45 +168,45 @@ fn what_is_foreseen_for_all_rows_is_what_each_row_finds() {
             found += usize::from(by_itself.rest[0].iter().any(|&x| x < f32::MAX));
         }
     }
-    assert!(found > 20 && searches.len() > 20, "the control: {found} rows have skin to find");
+    assert!(found > 20 && searches.len() > 20, "control: {found} rows have skin to find");
 }
 
 #[test]
-fn the_body_is_in_the_same_cells_with_any_instructions() {
+fn all_vector_widths_occupy_the_same_cells() {
     let (moving, ..) = in_the_dance(3.9, 1000);
     let at_rest = Joints::default();
     let of = |width: Width| {
         let mut cells = moving.occupancy.clone();
         cells.update(width, 0.013, [&at_rest, &moving.joints], true);
         let mut back = Vec::new();
-        moving.weightings.ways_back(width, &moving.joints, &mut back);
+        moving.weightings.inverse_maps(width, &moving.joints, &mut back);
         (cells.nearest.clone(), back)
     };
     let everyone = of(Width::Baseline);
     for &width in Width::ALL.iter().filter(|width| width.is_available()) {
         let own = of(width);
         assert!(own.0 == everyone.0, "{width:?}: other cells");
-        assert!(own.1 == everyone.1, "{width:?}: other ways back");
+        assert!(own.1 == everyone.1, "{width:?}: other inverse maps");
     }
     let known = everyone.0.iter().filter(|&&nearest| nearest != u32::MAX).count();
-    assert!(known > 500, "the control: {known} cells know of skin");
-    assert_ne!(everyone.1, moving.before, "the control: the joints have moved");
+    assert!(known > 500, "control: {known} cells hold skin");
+    assert_ne!(everyone.1, moving.before, "control: the joints have moved");
 }
 
 #[test]
-fn skin_that_has_no_place_or_no_way_back_stays_at_rest() {
+fn non_finite_and_singular_skin_stays_at_rest() {
     let (moving, ..) = in_the_dance(3.9, 1000);
     let mut joints = *moving.joints.all();
     let rest = |joints: &Joints| {
         let mut back = Vec::new();
-        moving.weightings.ways_back(Width::widest(), joints, &mut back);
+        moving.weightings.inverse_maps(Width::widest(), joints, &mut back);
         back.iter().filter(|back| back.apply(Vec3::ONE).truncate() == Vec3::ONE).count()
     };
     let usually = rest(&moving.joints);
     joints[1].translation.x = f32::NAN;
     let lost = rest(&Joints::new(joints));
     joints[1] = Affine3A::from_scale(Vec3::new(1.0, 1e-6, 1.0));
-    // In a mixture there may be something left of it.
+    // A mixture with other joints may still be invertible.
     let flat = rest(&Joints::new(joints));
     assert!(usually < lost && usually < flat, "{usually} at rest, {lost} where one is lost, {flat} flat");
 }

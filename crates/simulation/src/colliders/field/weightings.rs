@@ -1,5 +1,5 @@
-//! Where weightings of a field's joints are, sixteen side by side: from rest to head space, and back.
-// Calls of functions that ask for features of the processor, made by the macro after it has asked for them.
+//! Weightings of a field's joints, sixteen at a time: maps from the rest pose to head space, and back.
+// `unsafe` is used by the macro, which calls functions that require CPU features after checking for them.
 #![allow(unsafe_code)]
 
 use glam::Affine3A;
@@ -8,50 +8,50 @@ use lovelock_groom::simd_versions;
 use lovelock_motion::{FIELD_JOINTS, FieldWeights};
 
 use super::affine::Affine;
-use crate::lanes::{LANES, Lane, Lane3, ZERO, row_done, transposed};
+use crate::lanes::{LANES, Lane, Lane3, ZERO, row_barrier, transposed};
 
-/// The least volume of a skin, as a part of that at rest: one pressed flatter has no way back and is left at
+/// Smallest volume of skin as a fraction of its rest volume. Flatter skin cannot be inverted and is left at
 /// rest.
-const FLATTEST: f32 = 1e-3;
+const LEAST_VOLUME: f32 = 1e-3;
 
-/// The sum of the numbers of a map that still is one, metres.
-const FURTHEST: f32 = 1e6;
+/// Largest sum of the absolute numbers of a usable map, metres.
+const LARGEST_MAP: f32 = 1e6;
 
 /// Weightings of a field's joints, [`LANES`] in a row.
 #[derive(Clone, Debug)]
 pub(super) struct Weightings {
     rows: Vec<Row>,
-    /// For each row the weights of its joints, one after the other.
+    /// The weights of each row's joints, concatenated.
     weights: Vec<Lane>,
 }
 
 /// A row of weightings.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Row {
-    /// Its weights among all.
+    /// Index of its first weight.
     first: usize,
-    /// A bit for each joint that any of them has.
+    /// One bit per joint that any lane uses.
     joints: u32,
     /// The weights of the first joint, the head.
     head: Lane,
 }
 
-/// The joints of a field, each from rest to head space.
+/// The joints of a field, each from the rest pose to head space.
 #[derive(Clone, Debug)]
 pub(crate) struct Joints {
     all: [Affine3A; FIELD_JOINTS],
-    /// The same as plain numbers, zero where there are none, and a bit for each of these.
+    /// The same as plain numbers, zero where a joint is not finite, and one bit per joint that is not.
     numbers: [[f32; 12]; FIELD_JOINTS],
     lost: u32,
 }
 
 impl Joints {
-    /// The first is the head, which stays where it is at rest.
+    /// The first joint is the head, which stays at rest.
     pub(crate) fn new(mut all: [Affine3A; FIELD_JOINTS]) -> Self {
         all[0] = Affine3A::IDENTITY;
         let (mut numbers, mut lost) = ([[0.0; 12]; FIELD_JOINTS], 0);
         for (j, joint) in all.iter().enumerate() {
-            // Zero times what is not a number is none either.
+            // Zero times NaN would be NaN.
             if joint.is_finite() {
                 numbers[j] = joint.to_cols_array();
             } else {
@@ -79,7 +79,7 @@ impl Weightings {
             let of = |j: usize| {
                 let mut lane = ZERO;
                 for (own, weights) in lane.0.iter_mut().zip(all) {
-                    // What is no weight counts as none.
+                    // Invalid weights count as zero.
                     *own = if weights[j] > 0.0 { weights[j] } else { 0.0 };
                 }
                 lane
@@ -101,17 +101,17 @@ impl Weightings {
         &self.rows
     }
 
-    /// What takes head space back to rest, for each weighting; rows are full. The first is the head's own and
-    /// never moves.
-    pub(super) fn ways_back(&self, width: Width, joints: &Joints, out: &mut Vec<Affine>) {
+    /// The inverse map, from head space to the rest pose, of each weighting; rows are padded. The first is
+    /// the head's own and is exactly the identity.
+    pub(super) fn inverse_maps(&self, width: Width, joints: &Joints, out: &mut Vec<Affine>) {
         out.resize(self.rows.len() * LANES, Affine::IDENTITY);
-        undo_all(width, self, joints, out);
-        // To the last bit.
+        invert_all(width, self, joints, out);
+        // Exact to the last bit.
         out.first_mut().into_iter().for_each(|head| *head = Affine::IDENTITY);
     }
 
-    /// The maps of a row from rest to head space, three numbers a column; the identity where there is none,
-    /// or none back.
+    /// The maps of a row from the rest pose to head space, three numbers per column; the identity where there
+    /// is none, or where it cannot be inverted.
     #[inline(always)]
     pub(super) fn mixed(&self, row: &Row, joints: &Joints) -> [Lane; 12] {
         let (mut map, mut sound) = ([ZERO; 12], [true; LANES]);
@@ -123,7 +123,7 @@ impl Weightings {
             next += 1;
             for (lane, number) in map.iter_mut().zip(&joints.numbers[j]) {
                 *lane = lane.plus(weight.times(Lane::splat(*number)));
-                row_done();
+                row_barrier();
             }
             let lost = joints.lost >> j & 1 != 0;
             for k in 0..LANES {
@@ -136,11 +136,11 @@ impl Weightings {
             for k in 0..LANES {
                 size[k] += number[k].abs();
             }
-            row_done();
+            row_barrier();
         }
         let mut all = true;
         for k in 0..LANES {
-            sound[k] &= (volume[k].abs() > FLATTEST) & (size[k] < FURTHEST);
+            sound[k] &= (volume[k].abs() > LEAST_VOLUME) & (size[k] < LARGEST_MAP);
             all &= sound[k];
         }
         if !all {
@@ -156,17 +156,17 @@ impl Weightings {
 }
 
 simd_versions! {
-    /// [`Weightings::ways_back`].
-    fn undo_all(weightings: &Weightings, joints: &Joints, out: &mut [Affine]) -> () {
+    /// [`Weightings::inverse_maps`].
+    fn invert_all(weightings: &Weightings, joints: &Joints, out: &mut [Affine]) -> () {
         for (row, out) in weightings.rows.iter().zip(out.as_chunks_mut().0) {
-            undo(&weightings.mixed(row, joints), &row.head, out);
+            invert(&weightings.mixed(row, joints), &row.head, out);
         }
     }
 }
 
-/// Writes what undoes the maps of a row, with the head's share of their weights.
+/// Writes the inverse maps of a row, with the head's weights.
 #[inline(always)]
-fn undo(map: &[Lane; 12], head: &Lane, out: &mut [Affine; LANES]) {
+fn invert(map: &[Lane; 12], head: &Lane, out: &mut [Affine; LANES]) {
     let [xx, xy, xz, yx, yy, yz, zx, zy, zz, shift @ ..] = map;
     let (x, y, z) = ([*xx, *xy, *xz], [*yx, *yy, *yz], [*zx, *zy, *zz]);
     let rows = [cross(&y, &z), cross(&z, &x), cross(&x, &y)];
@@ -175,7 +175,7 @@ fn undo(map: &[Lane; 12], head: &Lane, out: &mut [Affine; LANES]) {
         inv[k] = 1.0 / inv[k];
     }
     let rows = rows.map(|row| row.map(|number| number.times(inv)));
-    let away = rows.map(|row| ZERO.less(dot(&row, shift)));
+    let away = rows.map(|row| ZERO.minus(dot(&row, shift)));
     let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = rows;
     let columns = [xx, yx, zx, xy, yy, zy, xz, yz, zz, away[0], away[1], away[2]];
     let mut numbers = [ZERO; LANES];
@@ -192,9 +192,9 @@ fn undo(map: &[Lane; 12], head: &Lane, out: &mut [Affine; LANES]) {
 #[inline(always)]
 fn cross(a: &Lane3, b: &Lane3) -> Lane3 {
     [
-        a[1].times(b[2]).less_product(b[1], a[2]),
-        a[2].times(b[0]).less_product(b[2], a[0]),
-        a[0].times(b[1]).less_product(b[0], a[1]),
+        a[1].times(b[2]).minus_product(b[1], a[2]),
+        a[2].times(b[0]).minus_product(b[2], a[0]),
+        a[0].times(b[1]).minus_product(b[0], a[1]),
     ]
 }
 

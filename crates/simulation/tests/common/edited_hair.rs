@@ -1,4 +1,4 @@
-//! Hair in the hands of somebody: grown on the figure, cut and tied in any order, as the program does it.
+//! Hair under edit: grown on the figure, cut and tied in any order, in the same way as the program does.
 
 use std::sync::Arc;
 
@@ -12,26 +12,26 @@ use lovelock_simulation::Simulation;
 use super::any::Bytes;
 use super::figure::FIGURE;
 
-/// The most that is grown and tied in one drive, because it is dear beside a step.
+/// Limit of growing and tying per drive, because they cost much more than a step.
 const MOST_WORK: u32 = 6;
 
-pub struct Dress {
+pub struct EditedHair {
     base: Arc<Hairstyle>,
-    /// What it was grown from; none for bare chains.
+    /// The settings it was grown from; none for bare chains.
     groom: Option<GroomSettings>,
     cut: Haircut,
     ties: Vec<HairTie>,
-    worn: Arc<Hairstyle>,
+    result: Arc<Hairstyle>,
     work: u32,
 }
 
-impl Dress {
+impl EditedHair {
     pub fn new(base: Arc<Hairstyle>) -> Self {
-        let worn = Arc::clone(&base);
-        Self { base, groom: None, cut: Haircut::default(), ties: Vec::new(), worn, work: 0 }
+        let result = Arc::clone(&base);
+        Self { base, groom: None, cut: Haircut::default(), ties: Vec::new(), result, work: 0 }
     }
 
-    /// Some hair on the figure's head: few short guides, so that drives are quick.
+    /// Some hair on the figure's head: few short guides, so that drives are fast.
     pub fn grown(input: &mut Bytes) -> Self {
         let preset = Preset::ALL[input.byte() as usize % Preset::ALL.len()];
         let groom = GroomSettings {
@@ -45,18 +45,18 @@ impl Dress {
         Self { groom: Some(groom), ..Self::new(grow_on_figure(&groom)) }
     }
 
-    pub fn worn(&self) -> Arc<Hairstyle> {
-        Arc::clone(&self.worn)
+    pub fn result(&self) -> Arc<Hairstyle> {
+        Arc::clone(&self.result)
     }
 
-    /// Other ties, or none; whether that gathers anything.
+    /// Replaces the ties; returns whether they gather any hair.
     pub fn tie(&mut self, input: &mut Bytes) -> bool {
         self.ties = (0..input.byte() % 3).map(|_| any_tie(input)).collect();
-        self.wear();
-        !self.worn.held.is_empty() && self.worn.held.iter().any(|hold| *hold >= 0.0)
+        self.update();
+        !self.result.held.is_empty() && self.result.held.iter().any(|hold| *hold >= 0.0)
     }
 
-    /// Cuts the hair as it is now; whether that meets any.
+    /// Cuts the hair in its current pose; returns whether that cuts any.
     pub fn cut(&mut self, input: &mut Bytes, simulation: &Simulation) -> bool {
         let mut frame = GuideFrame::at_rest(&Guides::default(), glam::Affine3A::IDENTITY, 0.0);
         simulation.frame(&mut frame);
@@ -65,15 +65,15 @@ impl Dress {
         } else {
             Blade::Sphere { centre: 0.3 * input.vector(), radius: 0.3 * input.number() }
         };
-        let Some(cut) = Haircut::of(&self.worn, &frame, &blade.moved(&frame.world_from_head)) else {
+        let Some(cut) = Haircut::of(&self.result, &frame, &blade.moved(&frame.world_from_head)) else {
             return false;
         };
         self.cut = self.cut.and(&cut);
-        self.wear();
+        self.update();
         true
     }
 
-    /// The same hair of another length; whether there is any that was grown.
+    /// Grows the same hair at another length; returns whether it was grown hair.
     pub fn regrow(&mut self, input: &mut Bytes) -> bool {
         let Some(groom) = &mut self.groom else { return false };
         if self.work >= MOST_WORK {
@@ -82,21 +82,21 @@ impl Dress {
         self.work += 1;
         groom.length = any_length(input);
         self.base = grow_on_figure(groom);
-        self.wear();
+        self.update();
         true
     }
 
-    /// What is worn: cut first, then tied, as the program has it.
-    fn wear(&mut self) {
-        self.worn = Arc::clone(&self.base);
+    /// The resulting hair: cut first, then tied, as in the program.
+    fn update(&mut self) {
+        self.result = Arc::clone(&self.base);
         if !self.cut.is_empty() {
-            self.worn = Arc::new(trimmed(&self.worn, &self.cut));
+            self.result = Arc::new(trimmed(&self.result, &self.cut));
         }
         if !self.ties.is_empty() && self.work < MOST_WORK {
             self.work += 1;
-            self.worn = Arc::new(tied(&self.worn, &self.ties, &*FIGURE));
+            self.result = Arc::new(tied(&self.result, &self.ties, &*FIGURE));
         }
-        self.worn.check().expect("hair that is cut and tied is sound");
+        self.result.check().expect("hair that is cut and tied is sound");
     }
 }
 
@@ -109,7 +109,7 @@ fn grow_on_figure(groom: &GroomSettings) -> Arc<Hairstyle> {
     Arc::new(grow(groom, &FIGURE.scalp, &*FIGURE).expect("hair grows on the figure"))
 }
 
-/// Rings about a head of usual size, and any at all.
+/// Rings about a head of ordinary size, and arbitrary ones.
 fn any_tie(input: &mut Bytes) -> HairTie {
     let mut tie = HairTie::default();
     if input.byte().is_multiple_of(2) {
