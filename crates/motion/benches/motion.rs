@@ -1,4 +1,5 @@
-//! Times of one frame's work on a real body: pose, skin, colliders; and of what happens once: fit, distance.
+//! Times of the work per frame on a real body (pose, skin, colliders) and of one-time work (fitting,
+//! distance).
 
 use std::{hint::black_box, path::Path};
 

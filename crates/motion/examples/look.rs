@@ -1,5 +1,5 @@
-//! Draws frames of a motion on a body as pictures: skinned vertices from the front and the side, with the bones and
-//! the colliders. `look BODY MOTION|- CLIP_OR_COLUMNS OUT.png`.
+//! Draws frames of a motion on a body: skinned vertices from the front and the side, with bones and
+//! colliders. `look BODY MOTION|-|CLIP COLUMNS OUT.png`.
 
 use std::path::Path;
 

@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut depth = vec![f32::MIN; (CELL * 3 * CELL) as usize];
     for triangle in &head.triangles {
         let [a, b, c] = triangle.map(|v| v as usize);
-        // Enough samples to close the picture; this is a tool to look with, not a renderer.
+        // Enough samples to close gaps in the image; this is a viewing tool, not a renderer.
         for k in 0..400 {
             let (u, v) = ((k % 20) as f32 / 19.0, (k / 20) as f32 / 19.0);
             let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };

@@ -7,20 +7,21 @@ use glam::{Mat3A, Quat, Vec3};
 use crate::humanoid::{Humanoid, Role, Side};
 use crate::{Body, Clip, Interpolation, JointTracks, Track, pose::rotation_of};
 
-/// One key pose. Angles in degrees, from standing with the arms down.
+/// One key pose. Angles in degrees, relative to standing with the arms down.
 struct Key {
     time_secs: f32,
-    /// Of the hips against standing, metres on a figure of 1.7 m; in the air the flight's own parabola counts.
+    /// Height of the hips relative to standing, metres on a figure of 1.7 m; in the air the parabola of the
+    /// flight is added.
     height: f32,
-    /// Turn of the whole figure about the hips, backward.
+    /// Backward rotation of the whole figure about the hips.
     turn: f32,
-    /// Knees, hips, and bend of the trunk, forward.
+    /// Forward bend of knees, hips and trunk.
     knee: f32,
     hip: f32,
     trunk: f32,
     /// Arms swung forward and up.
     arm: f32,
-    /// Head back.
+    /// Backward bend of the head.
     head: f32,
 }
 
@@ -29,9 +30,9 @@ const fn key(time_secs: f32, height: f32, turn: f32, bends: [f32; 3], arm: f32, 
     Key { time_secs, height, turn, knee, hip, trunk, arm, head }
 }
 
-/// When the feet leave the ground and when they are back, seconds.
+/// Takeoff and landing, seconds.
 const FLIGHT: [f32; 2] = [0.78, 1.44];
-/// Standing, crouching, leaving the ground, tucked, opening, landing, standing.
+/// Standing, crouching, takeoff, tucked, opening, landing, standing.
 const KEYS: [Key; 11] = [
     key(0.00, 0.00, 0.0, [0.0, 0.0, 0.0], 0.0, 0.0),
     key(0.25, 0.00, 0.0, [0.0, 0.0, 0.0], 60.0, 0.0),
@@ -45,11 +46,11 @@ const KEYS: [Key; 11] = [
     key(2.05, 0.00, 360.0, [0.0, 0.0, 0.0], 10.0, 0.0),
     key(2.40, 0.00, 360.0, [0.0, 0.0, 0.0], 0.0, 0.0),
 ];
-/// Keys of the clip a second.
+/// Keys per second of the clip.
 const RATE: f32 = 60.0;
 const GRAVITY: f32 = 9.81;
 
-/// A standing backflip of 2.4 s that loops; `None` where hips, thighs, shins, upper arms or the head are not known.
+/// A standing backflip of 2.4 s that loops; `None` if hips, thighs, shins, upper arms or head are unknown.
 pub fn backflip(body: &Body) -> Option<Clip> {
     let figure = Humanoid::of_skeleton(&body.skeleton);
     let hips = figure.get(Role::Hips)?;
@@ -108,7 +109,7 @@ pub fn backflip(body: &Body) -> Option<Clip> {
     Some(clip)
 }
 
-/// A value of the keys at a time: cubic between them, with the slopes of their neighbours (Catmull-Rom).
+/// Interpolates the keys at a time with cubics whose slopes come from the neighbouring keys (Catmull-Rom).
 fn at(time: f32, of: &dyn Fn(&Key) -> f32) -> f32 {
     let after = KEYS.partition_point(|k| k.time_secs <= time).clamp(1, KEYS.len() - 1);
     let [a, b] = [&KEYS[after - 1], &KEYS[after]];
@@ -127,7 +128,7 @@ fn at(time: f32, of: &dyn Fn(&Key) -> f32) -> f32 {
         + spacing * (slope(after - 1) * (u3 - 2.0 * u2 + u) + slope(after) * (u3 - u2))
 }
 
-/// Height of the hips over standing, metres: in the air a parabola from where it leaves the ground to where it lands.
+/// Height of the hips above standing, metres; in the air a parabola from takeoff to landing.
 fn height(time: f32) -> f32 {
     let [from, to] = FLIGHT;
     let of = |k: &Key| k.height;
@@ -140,14 +141,14 @@ fn height(time: f32) -> f32 {
     }
 }
 
-/// A turn in the axes of the rest pose's world, as a rotation relative to the parent.
+/// Converts a rotation in the axes of the rest pose's world to one relative to the parent.
 fn in_parent(body: &Body, joint: usize, turn: Quat) -> Quat {
     let own = &body.skeleton.joints[joint];
     let parent = own.parent.map_or(Quat::IDENTITY, |p| rotation_of(&body.skeleton.world_at_rest[p].matrix3));
     (parent.conjugate() * turn * parent * own.rotation).normalize()
 }
 
-/// The turn that lets an arm hang straight down, a little to the side.
+/// The rotation that makes an arm hang straight down, slightly to the side.
 fn hanging(body: &Body, arm: usize) -> Quat {
     let skeleton = &body.skeleton;
     let child = (0..skeleton.joints.len()).find(|&j| {
@@ -174,11 +175,11 @@ mod tests {
     }
 
     #[test]
-    fn the_dancer_turns_over_backward_and_lands() {
+    fn the_dancer_flips_backward_and_lands() {
         let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/dancer.glb");
         let body = load_character(&file).expect("the shipped dancer loads").body;
         let clip = backflip(&body).expect("she has limbs");
-        assert!(clip.loops, "it ends as it begins");
+        assert!(clip.loops, "the last pose equals the first");
         let mut pose = Pose::default();
         let mut up = |time: f64| {
             pose_at(&body, Some(&clip), time, &mut pose);
@@ -188,17 +189,17 @@ mod tests {
         };
         let (stand, above, _) = up(0.0);
         assert!(stand.y > 0.99 && above.y > 1.4);
-        // Half way over she is head down and above the ground, and before that she has gone backward.
+        // Halfway through she is upside down above the ground; before that she moves backward.
         let (over, head, hips) = up(1.08);
         assert!(over.y < -0.5 && head.y > 0.5 && hips.y > head.y, "{over} {head} {hips}");
-        assert!(up(0.92).1.z < -0.2, "the head goes backward first: {}", up(0.92).1);
+        assert!(up(0.92).1.z < -0.2, "the head moves backward first: {}", up(0.92).1);
         let (mut last, mut fastest) = (up(0.0).1, 0.0_f32);
         for i in 1..=144 {
             let now = up(f64::from(i) / 60.0).1;
             fastest = fastest.max((now - last).length() * 60.0);
             last = now;
         }
-        assert!((3.0..12.0).contains(&fastest), "the head goes at {fastest} m/s");
+        assert!((3.0..12.0).contains(&fastest), "the head moves at {fastest} m/s");
         assert!(backflip(&Body::default()).is_none());
     }
 }

@@ -1,4 +1,4 @@
-//! A character: a skeleton and the meshes that it bends.
+//! A character: a skeleton and the meshes that it deforms.
 
 use glam::{Affine3A, Quat, Vec3};
 
@@ -22,7 +22,7 @@ pub struct Joint {
 pub struct Skeleton {
     /// The joints, parents first.
     pub joints: Vec<Joint>,
-    /// Transform of each joint to the world in the rest pose.
+    /// World transform of each joint in the rest pose.
     pub world_at_rest: Vec<Affine3A>,
 }
 
@@ -48,7 +48,7 @@ impl Skeleton {
         self.world_at_rest[joint].translation.into()
     }
 
-    /// True where `joint` is `ancestor` or hangs below it.
+    /// Whether `joint` is `ancestor` or one of its descendants.
     pub fn is_below(&self, joint: usize, ancestor: usize) -> bool {
         let mut at = Some(joint);
         while let Some(j) = at {
@@ -61,7 +61,8 @@ impl Skeleton {
     }
 }
 
-/// A triangle mesh bound to joints, in the rest pose in world space. Structure of arrays, one entry a vertex.
+/// A triangle mesh bound to joints, in the rest pose in world space. Structure of arrays with one entry per
+/// vertex.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// Rest positions in world space, metres.
@@ -70,7 +71,7 @@ pub struct Mesh {
     pub normals: Vec<Vec3>,
     /// Colour, linear sRGB (base colour of the material times the vertex colour).
     pub colors: Vec<Vec3>,
-    /// 1 where hair grows, from the attribute `_SCALP`; empty where the file has none.
+    /// 1 where hair grows, from the attribute `_SCALP`; empty if the file has none.
     pub scalp: Vec<f32>,
     /// Joints (indices into the skeleton) that move each vertex.
     pub joints: Vec<[u16; 8]>,
@@ -80,7 +81,7 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// A joint together with the transform that brings bind-space positions into it.
+/// A joint together with the transform from bind space to the joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bind {
     /// Index of the joint in the skeleton.
@@ -89,53 +90,53 @@ pub struct Bind {
     pub joint_from_bind: Affine3A,
 }
 
-/// A shape that the surface is blended toward, in bind space. Only the vertices that it moves are kept.
+/// A shape that the surface is blended toward, in bind space. Only the vertices that it moves are stored.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MorphTarget {
-    /// Its name in the file, else its number.
+    /// Its name in the file, otherwise its number.
     pub name: String,
     /// Vertices that it moves.
     pub vertices: Vec<u32>,
-    /// By how much at weight 1, metres; one entry a vertex.
+    /// Displacements at weight 1, metres; one entry per vertex.
     pub positions: Vec<Vec3>,
-    /// Change of the normal at weight 1; one entry a vertex.
+    /// Change of the normal at weight 1; one entry per vertex.
     pub normals: Vec<Vec3>,
     /// Weight at rest.
     pub rest_weight: f32,
 }
 
-/// What skinning needs: the surface as its meshes were bound, which need not be the rest pose.
+/// The data for skinning: the surface as its meshes were bound, which may differ from the rest pose.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SkinData {
-    /// Positions in bind space, one a vertex of the mesh, metres.
+    /// Positions in bind space, one per vertex of the mesh, metres.
     pub positions: Vec<Vec3>,
     /// Unit normals in bind space.
     pub normals: Vec<Vec3>,
     /// The joints with their bind transforms; different skins may bind one joint differently.
     pub palette: Vec<Bind>,
-    /// Entries of the palette that move each vertex, heaviest first; the weights are the mesh's.
+    /// Palette entries that move each vertex, heaviest first; the weights are those of the mesh.
     pub binds: Vec<[u16; 8]>,
-    /// Shapes to blend.
+    /// The morph targets.
     pub morphs: Vec<MorphTarget>,
 }
 
 /// A character, immutable once loaded.
 #[derive(Clone, Debug, Default)]
 pub struct Body {
-    /// What the interface calls it.
+    /// The name shown in the interface.
     pub name: String,
     /// Its joints.
     pub skeleton: Skeleton,
-    /// Its surface, all meshes of the file together.
+    /// Its surface: all meshes of the file together.
     pub mesh: Mesh,
-    /// The surface as it was bound.
+    /// The surface in bind space.
     pub skin: SkinData,
-    /// The joint that carries the hair; a guess that the user may change.
+    /// The joint that carries the hair; guessed, and the user may change it.
     pub head_joint: usize,
 }
 
 impl Body {
-    /// Head to toe: the extent of the rest pose along Y, metres.
+    /// Extent of the rest pose along Y, metres.
     pub fn height(&self) -> f32 {
         let (low, high) = self
             .mesh
@@ -145,7 +146,7 @@ impl Body {
         (high - low).max(0.0)
     }
 
-    /// The joint that moves a vertex most.
+    /// The joint with the largest weight at a vertex.
     pub fn dominant_joint(&self, vertex: usize) -> usize {
         let weights = &self.mesh.weights[vertex];
         let heaviest = (1..8).fold(0, |best, k| if weights[k] > weights[best] { k } else { best });

@@ -4,15 +4,16 @@ use std::sync::Arc;
 
 use glam::{Quat, Vec3};
 
-/// How values between keys are found (glTF 2.0, section 3.11 and appendix C).
+/// How values between keys are interpolated (glTF 2.0, section 3.11 and appendix C).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Interpolation {
-    /// The value of the key before.
+    /// The value of the previous key.
     Step,
-    /// A straight line; for rotations the shorter great arc.
+    /// Linear interpolation; for rotations along the shorter great arc.
     #[default]
     Linear,
-    /// A cubic Hermite spline. Values come three a key: in-tangent, value, out-tangent, tangents per second.
+    /// A cubic Hermite spline. Each key has three values: in-tangent, value, out-tangent, with tangents per
+    /// second.
     Cubic,
 }
 
@@ -21,13 +22,13 @@ pub enum Interpolation {
 pub struct Track<T> {
     /// Times of the keys, increasing, seconds. Tracks of one clip often share them.
     pub times: Arc<[f32]>,
-    /// Values: one a key, or three a key where the interpolation is cubic.
+    /// One value per key, or three per key for cubic interpolation.
     pub values: Vec<T>,
-    /// How values between keys are found.
+    /// How values between keys are interpolated.
     pub interpolation: Interpolation,
 }
 
-/// What moves one joint; a missing track leaves the rest pose's value.
+/// The tracks of one joint; a missing track keeps the value of the rest pose.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct JointTracks {
     /// Index of the joint in the skeleton.
@@ -40,29 +41,31 @@ pub struct JointTracks {
     pub scale: Option<Track<Vec3>>,
 }
 
-/// What drives a run of morph targets.
+/// The track of a range of morph targets.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MorphTrack {
     /// The first morph target of the body that it drives.
     pub first: usize,
-    /// How many it drives; `values` holds this many numbers a key (or in-tangents, values, out-tangents).
+    /// Number of morph targets; the track has this many values per key (or in-tangents, values,
+    /// out-tangents).
     pub count: usize,
-    /// Weights, key after key.
+    /// Weights, key by key.
     pub track: Track<f32>,
 }
 
-/// A motion of one body, immutable once made.
+/// A motion of one body; immutable.
 #[derive(Clone, Debug, Default)]
 pub struct Clip {
-    /// What the interface calls it.
+    /// The name shown in the interface.
     pub name: String,
-    /// After this time it starts again, seconds. Shorter than the keys last where ends are cross-faded.
+    /// Length of one round, seconds. Shorter than the range of the keys if the ends are cross-faded.
     pub duration_secs: f64,
-    /// True where it starts again without a jump.
+    /// Whether it repeats without a jump.
     pub loops: bool,
-    /// The part of the keys that plays, first and last second; all of them where none.
+    /// First and last second of the keys that play; all keys if `None`.
     pub part_secs: Option<[f64; 2]>,
-    /// For this long after each start the end of the keys fades into their beginning, seconds; 0 for no fade.
+    /// Length of the cross-fade from the end of the keys to their start at each start of a round, seconds; 0
+    /// for none.
     pub loop_blend_secs: f64,
     /// Tracks of joints, sorted by joint.
     pub joints: Vec<JointTracks>,
@@ -93,8 +96,8 @@ impl Clip {
         self.part_secs.unwrap_or([0.0, self.keys_end_secs()])
     }
 
-    /// The same clip from one second of its keys to another, without a fade: at least a tenth of a second of what there is.
-    /// Whether it loops has to be found out anew ([`Clip::detect_loop`]).
+    /// The same clip limited to a range of its keys, without a cross-fade. The range is at least a tenth of a
+    /// second. Whether the result loops must be determined again ([`Clip::detect_loop`]).
     #[must_use]
     pub fn trimmed(mut self, start_secs: f64, end_secs: Option<f64>) -> Self {
         const LEAST_SECS: f64 = 0.1;
@@ -107,8 +110,8 @@ impl Clip {
         self
     }
 
-    /// The same clip with its last `blend_secs` faded into its first, so that it starts again without a jump. It
-    /// gets shorter by that time, of which at most half its length is taken; 0 removes the fade.
+    /// The same clip with its last `blend_secs` cross-faded into its start, so that it repeats without a
+    /// jump. It becomes shorter by that time, which is limited to half its length; 0 removes the cross-fade.
     #[must_use]
     pub fn with_loop_blend(mut self, blend_secs: f64) -> Self {
         let [start, end] = self.part();

@@ -1,11 +1,11 @@
-//! What hair collides with: simple shapes that follow joints.
+//! Colliders: simple shapes that follow joints.
 
 use glam::{Affine3A, Vec3};
 
 /// A shape in some space, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ColliderShape {
-    /// The hull of two spheres: a sphere where `a == b`, a capsule where the radii are equal.
+    /// The hull of two spheres: a sphere if `a == b`, a capsule if the radii are equal.
     Capsule {
         /// Centre of the first sphere.
         a: Vec3,
@@ -16,7 +16,8 @@ pub enum ColliderShape {
         /// Radius of the second sphere.
         radius_b: f32,
     },
-    /// An ellipsoid: the unit sphere under `from_unit`, a rotation, three radii as scale and a centre.
+    /// An ellipsoid: the unit sphere transformed by `from_unit`, which consists of a rotation, three radii
+    /// and a centre.
     Ellipsoid {
         /// Carries the unit sphere to the ellipsoid.
         from_unit: Affine3A,
@@ -43,7 +44,7 @@ impl ColliderShape {
 /// A shape that follows one joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Collider {
-    /// What the interface calls it, such as `upper arm left`.
+    /// The name shown in the interface, such as `upper arm left`.
     pub name: String,
     /// The joint that it follows.
     pub joint: usize,
@@ -56,7 +57,7 @@ pub struct Collider {
 pub struct PlacedCollider {
     /// The shape in world space.
     pub shape: ColliderShape,
-    /// Carries a point fixed to the collider from the rest pose's world to the world now. The simulator
-    /// takes the surface's velocity from the change of this transform over a step.
+    /// Maps points fixed to the collider from the world of the rest pose to the current world. The simulator
+    /// derives the surface velocity from the change of this transform over a step.
     pub world_from_rest: Affine3A,
 }

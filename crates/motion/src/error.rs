@@ -1,57 +1,58 @@
-//! What can be wrong with a character, a motion, or the pair of them.
+//! Errors of characters, motions, and pairs of them.
 
 use std::path::Path;
 
-/// Why a character or a motion was refused. Every message names the file, what was found and what would be right.
+/// Why a character or a motion was refused. Every message contains the file, what was found and what is
+/// valid.
 #[derive(Debug, thiserror::Error)]
 pub enum MotionError {
-    /// The operating system refused the file.
+    /// The operating system could not read the file.
     #[error("{file}: cannot be read: {source}")]
     Read {
         /// The file as the user named it.
         file: String,
-        /// What the system said.
+        /// The system's error.
         source: std::io::Error,
     },
-    /// The bytes are not what the format says.
+    /// The content does not conform to the format.
     #[error("{file}: {place}: {problem}")]
     Malformed {
         /// The file as the user named it.
         file: String,
         /// The byte, line or element, such as `accessor 3`.
         place: String,
-        /// What was found and what was wanted.
+        /// What was found and what was expected.
         problem: String,
     },
-    /// The file needs an extension of glTF that is not read here.
-    #[error("{file}: needs the glTF extension {extension}, which is not read here; {advice}")]
+    /// The file needs a glTF extension that is not supported.
+    #[error("{file}: needs the glTF extension {extension}, which is not supported; {advice}")]
     Extension {
         /// The file as the user named it.
         file: String,
         /// Name of the extension.
         extension: String,
-        /// What to do about it.
+        /// How to fix it.
         advice: &'static str,
     },
-    /// The file asks for data outside its own folder.
-    #[error("{file}: refers to `{uri}`; only files in its own folder and below it are read")]
+    /// The file refers to data outside its own folder.
+    #[error("{file}: refers to `{uri}`; only files in its own folder and its subfolders are read")]
     Outside {
         /// The file as the user named it.
         file: String,
-        /// The reference as it stands in the file.
+        /// The reference as written in the file.
         uri: String,
     },
-    /// The file is well formed and holds nothing of use.
-    #[error("{file}: holds {found}; wanted {wanted}")]
+    /// The file is well formed but contains nothing usable.
+    #[error("{file}: contains {found}; must contain {wanted}")]
     Empty {
         /// The file as the user named it.
         file: String,
-        /// What it holds.
+        /// What it contains.
         found: String,
-        /// What would be useful.
+        /// What was expected.
         wanted: &'static str,
     },
-    /// Two skeletons have too little in common.
+    /// The skeletons of motion and body do not correspond.
     #[error("{motion} cannot move {body}: {problem}")]
     Retarget {
         /// Name of the motion.
@@ -81,13 +82,13 @@ impl MotionError {
     }
 }
 
-/// Reads a whole file, refusing those of more than `limit` bytes before any of it is in memory.
+/// Reads a whole file. Files larger than `limit` bytes are refused before they are loaded into memory.
 pub(crate) fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, MotionError> {
     let file = path.display().to_string();
     let read = |source| MotionError::Read { file: file.clone(), source };
     let data = std::fs::metadata(path).map_err(read)?;
     if data.is_dir() {
-        return Err(MotionError::malformed(&file, "the path", "is a folder; wanted a file"));
+        return Err(MotionError::malformed(&file, "the path", "is a folder; must be a file"));
     }
     if data.len() > limit {
         let problem = format!("{} bytes; files of at most {limit} bytes are read", data.len());

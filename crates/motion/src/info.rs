@@ -1,4 +1,4 @@
-//! What `lovelock info` says about characters and motions.
+//! The summaries of characters and motions that `lovelock info` prints.
 
 use std::collections::BTreeMap;
 
@@ -11,22 +11,22 @@ use crate::{Character, MotionFile};
 pub struct ClipInfo {
     /// Its name in the file.
     pub name: String,
-    /// How long it lasts, seconds.
+    /// Its duration, seconds.
     pub duration_secs: f64,
-    /// True where it starts again without a jump.
+    /// Whether it repeats without a jump.
     pub loops: bool,
 }
 
-/// A character file in numbers.
+/// Summary of a character file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CharacterInfo {
     /// Its format.
     pub format: String,
-    /// What was left out, with counts.
+    /// Counts of what was left out.
     pub dropped: BTreeMap<String, u64>,
-    /// Guesses and other things to know.
+    /// Guesses and other remarks.
     pub notes: Vec<String>,
-    /// Joints that skins use; nodes with meshes where there is no skin.
+    /// Joints used by skins; nodes with meshes if there is no skin.
     pub joints: usize,
     /// Number of skins.
     pub skins: usize,
@@ -38,14 +38,14 @@ pub struct CharacterInfo {
     pub morph_targets: usize,
     /// Height of the rest pose, metres.
     pub height_m: f32,
-    /// Name of the joint that was taken for the head.
+    /// Name of the joint that was chosen as the head.
     pub head: String,
     /// Its clips.
     pub clips: Vec<ClipInfo>,
 }
 
 impl Character {
-    /// What the command line prints.
+    /// The summary for the command line.
     pub fn info(&self) -> CharacterInfo {
         let body = &self.body;
         CharacterInfo {
@@ -68,14 +68,14 @@ impl Character {
     }
 }
 
-/// A motion file in numbers.
+/// Summary of a motion file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MotionInfo {
     /// Its format.
     pub format: String,
-    /// What was left out, with counts.
+    /// Counts of what was left out.
     pub dropped: BTreeMap<String, u64>,
-    /// Guesses and other things to know.
+    /// Guesses and other remarks.
     pub notes: Vec<String>,
     /// Number of joints, without end sites.
     pub joints: usize,
@@ -83,12 +83,12 @@ pub struct MotionInfo {
     pub frames: usize,
     /// Time between rows, seconds.
     pub frame_secs: f64,
-    /// Metres of one unit of the file.
+    /// Metres per unit of the file.
     pub unit_metres: f32,
 }
 
 impl MotionFile {
-    /// What the command line prints.
+    /// The summary for the command line.
     pub fn info(&self) -> MotionInfo {
         MotionInfo {
             format: "BVH".into(),

@@ -1,7 +1,7 @@
-//! Bodies and motion: glTF, BVH, retargeting, the pose at a time and its colliders.
+//! Bodies and motion: glTF, BVH, retargeting, poses and colliders.
 //!
-//! A [`Body`] is immutable and shared by `Arc`. Everything is in metres, right-handed, Y up, the face of the
-//! rest pose toward +Z; loaders convert.
+//! A [`Body`] is immutable and shared by `Arc`. Everything is in metres, right-handed, Y up, with the face of
+//! the rest pose toward +Z; loaders convert.
 
 mod backflip;
 mod body;

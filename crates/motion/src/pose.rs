@@ -4,21 +4,21 @@ use glam::{Affine3A, Mat3A, Quat, Vec3};
 
 use crate::Body;
 
-/// Where every joint is at one instant.
+/// The transforms of all joints at one instant.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pose {
-    /// When, on the clip's clock, seconds.
+    /// Time on the clip's clock, seconds.
     pub time_secs: f64,
-    /// Transform of each joint to the world.
+    /// World transform of each joint.
     pub world_from_joint: Vec<Affine3A>,
     /// Carries head space (see `lovelock_groom`) to the world: rigid, no scale.
     pub world_from_head: Affine3A,
-    /// Weights of the morph targets; empty where the body has none.
+    /// Weights of the morph targets; empty if the body has none.
     pub morph_weights: Vec<f32>,
 }
 
 /// The rotation nearest to a linear map (its orthogonal polar factor), by Newton's iteration
-/// `Q <- (Q + Q^-T) / 2` (Higham 1986); identity where the map is singular or mirrors.
+/// `Q <- (Q + Q^-T) / 2` (Higham 1986); the identity if the map is singular or mirrors.
 pub(crate) fn rotation_of(linear: &Mat3A) -> Quat {
     let size = linear.determinant().abs().cbrt();
     if !(size.is_finite() && size > 1e-12 && linear.determinant() > 0.0) {
@@ -32,7 +32,7 @@ pub(crate) fn rotation_of(linear: &Mat3A) -> Quat {
     if rotation.is_finite() { rotation.normalize() } else { Quat::IDENTITY }
 }
 
-/// Carries head space to the world: the head joint's motion since the rest pose, without scale.
+/// Maps head space to the world: the motion of the head joint relative to the rest pose, without scale.
 pub(crate) fn rigid_head(body: &Body, world_from_joint: &[Affine3A]) -> Affine3A {
     let (Some(now), Some(rest)) =
         (world_from_joint.get(body.head_joint), body.skeleton.world_at_rest.get(body.head_joint))

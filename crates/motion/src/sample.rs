@@ -1,13 +1,13 @@
-//! A clip at an instant: the pose of a body at any time and any rate.
+//! Sampling a clip: the pose of a body at any time.
 
 use glam::{Affine3A, Quat, Vec3};
 
 use crate::{Body, Clip, Interpolation, Joint, JointTracks, MorphTrack, Pose, Track, pose::rigid_head};
 
-/// A value that tracks can hold.
+/// A value that a track can hold.
 trait Key: Copy {
     fn linear(a: Self, b: Self, u: f32) -> Self;
-    /// Sum of four values by their weights.
+    /// Weighted sum of four values.
     fn weighted(values: [Self; 4], weights: [f32; 4]) -> Self;
 }
 
@@ -21,7 +21,7 @@ impl Key for Vec3 {
 }
 
 impl Key for Quat {
-    /// The shorter great arc; `Quat::slerp` flips the sign where it must.
+    /// Along the shorter great arc; `Quat::slerp` flips the sign if necessary.
     fn linear(a: Self, b: Self, u: f32) -> Self {
         a.slerp(b, u)
     }
@@ -41,7 +41,8 @@ impl Key for f32 {
     }
 }
 
-/// The keys around `time`: index of the one before, and the fraction of the way to the next.
+/// Finds the keys around `time`: the index of the key before, the fraction of the way to the next, and their
+/// spacing.
 fn locate(times: &[f32], time: f64) -> (usize, f32, f32) {
     let after = times.partition_point(|&t| f64::from(t) <= time);
     if after == 0 || times.len() == 1 {
@@ -54,7 +55,7 @@ fn locate(times: &[f32], time: f64) -> (usize, f32, f32) {
     (after - 1, ((time - t0) / (t1 - t0)) as f32, (t1 - t0) as f32)
 }
 
-/// One value of a track whose keys hold `stride` numbers each, of which `lane` is wanted.
+/// Samples component `lane` of a track whose keys hold `stride` numbers each.
 fn value<T: Key>(track: &Track<T>, stride: usize, lane: usize, time: f64) -> T {
     let (key, u, spacing) = locate(&track.times, time);
     let next = (key + 1).min(track.times.len() - 1);
@@ -81,21 +82,21 @@ fn value<T: Key>(track: &Track<T>, stride: usize, lane: usize, time: f64) -> T {
 }
 
 impl Track<Vec3> {
-    /// The value at a time; before the first key and after the last it holds theirs.
+    /// The value at a time. It is constant before the first key and after the last.
     pub fn at(&self, time_secs: f64) -> Vec3 {
         value(self, 1, 0, time_secs)
     }
 }
 
 impl Track<Quat> {
-    /// The value at a time; before the first key and after the last it holds theirs.
+    /// The value at a time. It is constant before the first key and after the last.
     pub fn at(&self, time_secs: f64) -> Quat {
         value(self, 1, 0, time_secs)
     }
 }
 
 impl MorphTrack {
-    /// Weight of target `lane` of the run at a time.
+    /// Weight of target `lane` of the range at a time.
     pub fn at(&self, lane: usize, time_secs: f64) -> f32 {
         value(&self.track, self.count, lane, time_secs)
     }
@@ -131,8 +132,8 @@ impl Local {
     }
 }
 
-/// Times at which a clip's keys are read for one instant: the main one, and where the ends are being
-/// cross-faded the one in the tail, with the main one's share.
+/// The times at which a clip's keys are sampled for one instant: the main time and, during a cross-fade, the
+/// time in the tail together with the main one's weight.
 struct Instant {
     main: f64,
     fade: Option<(f64, f32)>,
@@ -151,10 +152,10 @@ impl Instant {
     }
 }
 
-/// The pose of a body at a time of a clip, or at rest where there is none.
+/// Computes the pose of a body at a time of a clip, or the rest pose without a clip.
 ///
-/// Any time in seconds will do: the clip starts again every [`Clip::duration_secs`], backwards too. Nothing is
-/// allocated where `pose` was used with this body before.
+/// Any time in seconds is valid: the clip repeats every [`Clip::duration_secs`], also for negative times.
+/// Nothing is allocated if `pose` was used with this body before.
 pub fn pose_at(body: &Body, clip: Option<&Clip>, time_secs: f64, pose: &mut Pose) {
     pose.time_secs = time_secs;
     pose.morph_weights.clear();

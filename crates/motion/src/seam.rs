@@ -1,21 +1,21 @@
-//! Whether a clip that repeats does so without a jump.
+//! Detection of clips that repeat without a jump.
 
 use glam::Vec3;
 
 use crate::{Body, Clip, Pose, pose::rotation_of, pose_at};
 
-/// How far a clip's last pose is from its first.
+/// Difference between the last and the first pose of a clip.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Seam {
-    /// Largest distance that a joint jumps, metres.
+    /// Largest distance between the two positions of a joint, metres.
     pub distance: f32,
-    /// Largest angle that a joint turns, radians.
+    /// Largest angle between the two orientations of a joint, radians.
     pub angle: f32,
 }
 
 impl Clip {
-    /// Largest jump of a joint, as a fraction of the body's height, with which a clip still counts as looping:
-    /// 2 cm on a person, about what a limb travels between two frames of a dance.
+    /// Largest jump of a joint with which a clip still counts as looping, as a fraction of the body's height:
+    /// 2 cm on a person, about the movement of a limb between two frames of a dance.
     const LOOP_DISTANCE: f32 = 0.012;
 
     /// Measures the jump from the last pose to the first.
@@ -24,7 +24,7 @@ impl Clip {
         let unfaded = Self { duration_secs: end - start, loop_blend_secs: 0.0, ..self.clone() };
         let (mut first, mut last) = (Pose::default(), Pose::default());
         pose_at(body, Some(&unfaded), 0.0, &mut first);
-        // Wrapping would bring the end itself back to the start.
+        // The end itself would wrap to the start.
         pose_at(body, Some(&unfaded), unfaded.duration_secs.next_down(), &mut last);
         let mut seam = Seam::default();
         for (a, b) in first.world_from_joint.iter().zip(&last.world_from_joint) {
@@ -35,11 +35,11 @@ impl Clip {
         seam
     }
 
-    /// Finds out whether the clip starts again without a jump and sets `loops`.
+    /// Determines whether the clip repeats without a jump, and sets `loops`.
     pub fn detect_loop(&mut self, body: &Body) {
         let seam = self.seam(body);
         let reach = body.height().max(0.1) * Self::LOOP_DISTANCE;
-        // An ankle turned by 10 degrees about its own axis moves no joint, and is seen.
+        // An ankle that turns by 10 degrees about its own axis moves no joint but is visible.
         self.loops = self.duration_secs > 0.0 && seam.distance <= reach && seam.angle <= 10_f32.to_radians();
     }
 }

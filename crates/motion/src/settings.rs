@@ -1,15 +1,15 @@
-//! Units and axes of files that name neither.
+//! Units and axes of files that do not specify them.
 
 use serde::{Deserialize, Serialize};
 
-/// The length that one unit of a file stands for.
+/// The length of one unit of a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LengthUnit {
     /// Guessed from the size of the figure.
     #[default]
     Auto,
-    /// Metres, as glTF has it.
+    /// Metres, as in glTF.
     Metres,
     /// Decimetres (`MakeHuman`).
     Decimetres,
@@ -24,7 +24,7 @@ pub enum LengthUnit {
 }
 
 impl LengthUnit {
-    /// Metres of one unit; `None` for [`LengthUnit::Auto`].
+    /// Metres per unit; `None` for [`LengthUnit::Auto`].
     pub fn metres(self) -> Option<f32> {
         match self {
             Self::Auto => None,
@@ -37,7 +37,7 @@ impl LengthUnit {
         }
     }
 
-    /// What the interface and the notes call it.
+    /// The name shown in the interface and in notes.
     pub fn label(self) -> &'static str {
         match self {
             Self::Auto => "automatic",
@@ -55,45 +55,45 @@ impl LengthUnit {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum UpAxis {
-    /// The format's own (glTF: Y) or a guess from the figure (BVH).
+    /// The default of the format (glTF: Y) or a guess from the figure (BVH).
     #[default]
     Auto,
     /// Y is up.
     Y,
-    /// Z is up, and the front is -Y; turned by -90 degrees about X.
+    /// Z is up, and the front is -Y; rotated by -90 degrees about X.
     Z,
 }
 
-/// The way that a rest pose faces.
+/// The direction that a rest pose faces.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Facing {
     /// Guessed from the legs.
     #[default]
     Auto,
-    /// As glTF has it.
+    /// As in glTF.
     PlusZ,
-    /// Turned by a quarter to the figure's left.
+    /// Rotated by 90 degrees to the figure's left.
     PlusX,
-    /// Turned round.
+    /// Rotated by 180 degrees.
     MinusZ,
-    /// Turned by a quarter to the figure's right.
+    /// Rotated by 90 degrees to the figure's right.
     MinusX,
 }
 
-/// How to read a character.
+/// How to interpret a character file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct BodySettings {
-    /// The unit of the file. The guess is metres unless the figure would be a giant.
+    /// The unit of the file. The guess is metres unless the figure would be larger than 10 m.
     pub unit: LengthUnit,
-    /// The axis that points up. Automatic is Y, as glTF has it.
+    /// The axis that points up. Automatic is Y, as in glTF.
     pub up: UpAxis,
-    /// The way that the rest pose faces; it is turned to +Z.
+    /// The direction that the rest pose faces; it is rotated to +Z.
     pub facing: Facing,
 }
 
-/// How the root's position of a BVH row is meant.
+/// How the root position of a BVH row is interpreted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RootPosition {
@@ -106,14 +106,14 @@ pub enum RootPosition {
     Added,
 }
 
-/// How to read a motion.
+/// How to interpret a motion file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct MotionSettings {
-    /// The unit of the file. The guess supposes a figure between 1.2 and 2.2 m.
+    /// The unit of the file. The guess assumes a figure between 1.2 and 2.2 m.
     pub unit: LengthUnit,
     /// The axis that points up.
     pub up: UpAxis,
-    /// What the root's position channels mean.
+    /// The meaning of the root's position channels.
     pub root: RootPosition,
 }

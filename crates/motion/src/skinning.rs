@@ -5,11 +5,11 @@ use rayon::prelude::*;
 
 use crate::{Body, Pose, pose_at};
 
-/// The surface of a body at one instant, in world space; triangles and colours are the mesh's. Reused from frame
-/// to frame without allocation.
+/// The surface of a body at one instant, in world space; triangles and colours are those of the mesh. It is
+/// reused from frame to frame without allocation.
 #[derive(Clone, Debug, Default)]
 pub struct Skin {
-    /// Positions, metres, one a vertex of the mesh.
+    /// Positions, metres, one per vertex of the mesh.
     pub positions: Vec<Vec3>,
     /// Outward unit normals.
     pub normals: Vec<Vec3>,
@@ -17,14 +17,14 @@ pub struct Skin {
     morphed: Vec<(Vec3, Vec3)>,
 }
 
-/// Vertices that one task skins: small enough to share, large enough to be worth it.
+/// Vertices per task.
 const CHUNK: usize = 1024;
 
-/// Bends the surface into a pose.
+/// Deforms the surface into a pose.
 ///
-/// Linear blend skinning: `p = sum_k w_k * world_from_joint_k * joint_from_bind_k * p_bind` (glTF 2.0, section
-/// 3.7.3). Normals go through the cofactor of the blended map, so they stay right under uneven scale. The result
-/// does not depend on the number of threads.
+/// Linear blend skinning: `p = sum_k w_k * world_from_joint_k * joint_from_bind_k * p_bind` (glTF 2.0,
+/// section 3.7.3). Normals are transformed by the cofactor of the blended map, so they stay correct under
+/// non-uniform scale. The result does not depend on the number of threads.
 pub fn skin(body: &Body, pose: &Pose, out: &mut Skin) {
     let data = &body.skin;
     out.palette.clear();
@@ -79,7 +79,7 @@ fn skin_vertex(
     let (p, n) = (Vec3A::from(position), Vec3A::from(normal));
     let (mut at, mut facing) = (Vec3A::ZERO, Vec3A::ZERO);
     for (&bind, &weight) in binds.iter().zip(weights) {
-        // Heaviest first: the rest is zero.
+        // Weights are sorted, heaviest first, so the remaining ones are zero.
         if weight == 0.0 {
             break;
         }
@@ -90,8 +90,8 @@ fn skin_vertex(
     (at.into(), Vec3::from(facing).normalize_or(normal))
 }
 
-/// Inverse transpose of a linear map up to a positive factor, so that maps of different scale blend evenly and a
-/// singular one still gives something finite.
+/// Inverse transpose of a linear map up to a positive factor, so that maps of different scale blend evenly
+/// and a singular map still gives a finite result.
 fn normal_map(linear: &Mat3A) -> Mat3A {
     let (a, b, c) = (linear.x_axis, linear.y_axis, linear.z_axis);
     let cofactor = Mat3A::from_cols(b.cross(c), c.cross(a), a.cross(b));

@@ -1,4 +1,4 @@
-//! BVH files: answers known on paper, every trap, and every real file.
+//! BVH files: analytic cases, special cases, and real files.
 
 mod common;
 
@@ -7,7 +7,7 @@ use lovelock_motion::{
     LengthUnit, MotionFile, MotionSettings, RootPosition, UpAxis, load_motion, load_motion_bytes,
 };
 
-/// One joint a metre along X from its root, with the given channels and rows.
+/// One joint, a metre along X from its root, with the given channels and rows.
 fn arm(channels: &str, rows: &str) -> String {
     format!(
         "HIERARCHY\nROOT root of all\n{{\n OFFSET 0 0 0\n CHANNELS {channels}\n JOINT arm {{ OFFSET 1 0 0 \
@@ -36,7 +36,7 @@ fn rotations_multiply_in_listed_order() {
     assert!(place(&zy, 0, 1).distance(Vec3::NEG_Z) < 1e-6);
     let yz = load(&arm("3 Yrotation Zrotation Xrotation", "90 90 0"));
     assert!(place(&yz, 0, 1).distance(Vec3::Y) < 1e-6);
-    // Rx(90) y = z, seen through Rz first: Rz(90) x = y, then Rx(90) y = z.
+    // Rx(90) y = z, after Rz: Rz(90) x = y, then Rx(90) y = z.
     let xz = load(&arm("3 Xrotation Zrotation Yrotation", "90 90 0"));
     assert!(place(&xz, 0, 1).distance(Vec3::Z) < 1e-6);
 }
@@ -50,10 +50,10 @@ fn tolerant_of_what_people_write() {
     assert_eq!(motion.joints[0].name, "root of all");
     assert_eq!(motion.frames, 3);
     assert_eq!((motion.dropped["numbers"], motion.dropped["rows"]), (1, 1));
-    assert!(motion.notes.iter().any(|n| n.contains("1 frames and 3 were found")), "{:?}", motion.notes);
-    // A whole turn between two frames is none.
+    assert!(motion.notes.iter().any(|n| n.contains("promises 1 frames; the 3")), "{:?}", motion.notes);
+    // A full turn between two frames is no rotation.
     assert!(motion.rotations[2 * 2].dot(motion.rotations[0]) > 0.999_999);
-    // Rows broken over lines.
+    // Rows split over lines.
     assert_eq!(load(&arm("3 Zrotation Yrotation Xrotation", "0\n0\n0 0\n0 0")).frames, 2);
     // No frame time.
     let timeless = arm("3 Zrotation Yrotation Xrotation", "0 0 0").replace("0.1", "-1");
@@ -79,7 +79,7 @@ fn positions_replace_or_add() {
         assert!(place(&motion, 0, 0).distance(Vec3::Y * 0.89) < 1e-5, "{root}: {:?}", motion.notes);
         assert!(place(&motion, 0, 2).distance(Vec3::new(0.1, 0.01, 0.0)) < 1e-5, "{limb}");
     }
-    // The switch overrules the guess.
+    // The setting overrides the guess.
     let settings = MotionSettings { root: RootPosition::Added, ..MotionSettings::default() };
     let floating = load_motion_bytes("x.bvh", text("0 89 0", "10 0 0").as_bytes(), settings).unwrap();
     assert!((place(&floating, 0, 0).y - 1.79).abs() < 1e-5);
@@ -123,7 +123,7 @@ fn real_files() {
         assert_eq!((info.joints, info.frames, info.frame_secs), (joints, frames, frame_secs), "{file}");
         assert!((info.unit_metres - unit).abs() < 1e-6 && motion.up == up, "{file} {:?}", info.notes);
         assert!(info.dropped.is_empty(), "{file}");
-        // The root hangs about a leg's length above the lowest joint, once it is metres and Y up.
+        // After conversion the root is about a leg's length above the lowest joint.
         let mut world = Vec::new();
         motion.world(0, &mut world);
         let low = world.iter().map(|w| w.translation.y).fold(f32::MAX, f32::min);

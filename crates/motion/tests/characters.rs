@@ -1,4 +1,4 @@
-//! Every real and every broken character: what is read of it, or why it is refused.
+//! All real and all broken characters: what is read of them, or why they are refused.
 
 mod common;
 
@@ -10,10 +10,11 @@ use lovelock_motion::{
     load_character_bytes, load_character_with, pose_at, skin,
 };
 
-/// What each file holds: joints, skins, vertices, triangles, clips, morph targets, head, height in metres.
+/// Expected content of a file: joints, skins, vertices, triangles, clips, morph targets, head, height in
+/// metres.
 type Row = (&'static str, usize, usize, usize, usize, usize, usize, &'static str, f32);
 
-/// See [`Row`]; counted in the files with another program.
+/// See [`Row`]; counted with another program.
 const GOOD: [Row; 10] = [
     ("CesiumMan.glb", 19, 1, 3273, 4672, 1, 0, "node 20", 1.51),
     ("CesiumMan_quantized.glb", 19, 1, 3273, 4672, 1, 0, "node 20", 1.51),
@@ -28,7 +29,7 @@ const GOOD: [Row; 10] = [
 ];
 
 #[test]
-fn real_characters_load_whole() {
+fn real_characters_load_completely() {
     let Some(data) = common::data_dir() else { return };
     for (file, joints, skins, vertices, triangles, clips, morphs, head, height) in GOOD {
         let character = load_character(&data.join("characters").join(file)).unwrap_or_else(|e| panic!("{e}"));
@@ -43,8 +44,8 @@ fn real_characters_load_whole() {
     }
 }
 
-/// What holds for every body: unit normals, weights that sum to 1, parents first, and a rest pose that skinning
-/// gives back.
+/// Invariants of every body: unit normals, weights that sum to 1, parents first, and a rest pose that
+/// skinning reproduces.
 fn check_invariants(file: &str, character: &Character) {
     let body = &character.body;
     let mesh = &body.mesh;
@@ -64,7 +65,7 @@ fn check_invariants(file: &str, character: &Character) {
     let paths = joint_paths(&body.skeleton);
     let distinct: std::collections::BTreeSet<_> = paths.iter().collect();
     assert_eq!(distinct.len(), body.skeleton.joints.len(), "{file}");
-    // Every clip at a few times, and far outside: finite, near the body, and rigid at the head.
+    // Every clip at several times, also far outside its range: finite, near the body, and rigid at the head.
     for clip in &character.clips {
         for k in -3..8 {
             pose_at(body, Some(clip), f64::from(k) * 0.37, &mut pose);
@@ -81,7 +82,7 @@ fn check_invariants(file: &str, character: &Character) {
 }
 
 #[test]
-fn refusals_name_file_and_fault() {
+fn errors_contain_file_and_problem() {
     let Some(data) = common::data_dir() else { return };
     for (file, words) in [
         ("CesiumMan_draco.glb", "KHR_draco_mesh_compression"),
@@ -128,15 +129,16 @@ fn difference(a: &Character, b: &Character) -> f32 {
 }
 
 #[test]
-fn quantised_equals_plain() {
+fn quantised_meshes_equal_plain_ones() {
     let Some(data) = common::data_dir() else { return };
     let load = |file: &str| load_character(&data.join("characters").join(file)).unwrap();
     let (plain, quantised) = (load("CesiumMan.glb"), load("CesiumMan_quantized.glb"));
-    // Positions keep 14 bits (6e-5) and weights 8 bits: 1/255 of a weight across a limb of a tenth of the height.
+    // Positions keep 14 bits (6e-5) and weights 8 bits: 1/255 of a weight across a limb of a tenth of the
+    // height.
     let worst = difference(&plain, &quantised);
     println!("{worst}");
     assert!(worst < 2e-3, "{worst}");
-    // Negative control: half a step of animation is far more.
+    // Negative control: half of the animation differs far more.
     let mut late = plain.clone();
     let mut clip = (*late.clips[0]).clone();
     clip.joints.truncate(3);
@@ -145,7 +147,7 @@ fn quantised_equals_plain() {
 }
 
 #[test]
-fn sparse_equals_dense() {
+fn sparse_accessors_equal_dense_ones() {
     let Some(data) = common::data_dir() else { return };
     let load = |file: &str| load_character(&data.join("characters").join(file)).unwrap();
     let (dense, sparse) = (load("MorphStressTest.gltf"), load("MorphStress_sparse.glb"));

@@ -1,4 +1,4 @@
-//! Clips against answers known on paper: interpolation, wrapping, cross-fading, the rigid head.
+//! Clips against analytic solutions: interpolation, wrapping, cross-fading, the rigid head.
 
 mod common;
 
@@ -13,7 +13,7 @@ fn track<T>(times: &[f32], values: Vec<T>, interpolation: Interpolation) -> Trac
     Track { times: Arc::from(times), values, interpolation }
 }
 
-/// Two joints, one a metre above the other, the upper one the head, scaled by 3.
+/// Two joints, one a metre above the other; the upper one is the head, scaled by 3.
 fn body() -> Body {
     let joint = |name: &str, parent, y, scale| Joint {
         name: name.into(),
@@ -54,7 +54,7 @@ fn step_holds_and_linear_is_straight() {
     let linear = moving(track(&[0.0, 1.0, 3.0], vec![Vec3::ZERO, Vec3::X, Vec3::Y], Interpolation::Linear));
     assert_eq!(place(&linear, 0.25), Vec3::X * 0.25);
     assert_eq!(place(&linear, 2.0), Vec3::new(0.5, 0.5, 0.0));
-    // Backwards and far ahead, it starts again.
+    // It repeats, also for negative and large times.
     assert!(place(&linear, -2.75).distance(Vec3::X * 0.25) < 1e-6);
     assert!(place(&linear, 3000.25).distance(Vec3::X * 0.25) < 1e-5);
     assert_eq!(place(&linear, f64::NAN), Vec3::ZERO);
@@ -62,7 +62,8 @@ fn step_holds_and_linear_is_straight() {
 
 #[test]
 fn cubic_follows_its_polynomial() {
-    // x(t) = t^3 on 0..2 and beyond: slopes 0, 12, 27 at 0, 2, 3. A Hermite spline gives any cubic exactly.
+    // x(t) = t^3 on 0..2 and beyond: slopes 0, 12, 27 at 0, 2, 3. A Hermite spline reproduces any cubic
+    // exactly.
     let value = |x: f32| Vec3::X * x;
     let (v, s): (Vec<f32>, Vec<f32>) = [0.0_f32, 2.0, 3.0].iter().map(|t| (t * t * t, 3.0 * t * t)).unzip();
     let values = (0..3).flat_map(|k| [value(s[k]), value(v[k]), value(s[k])]).collect();
@@ -77,9 +78,9 @@ fn cubic_follows_its_polynomial() {
 }
 
 #[test]
-fn rotations_take_the_shorter_way() {
+fn rotations_take_the_shorter_arc() {
     let turn = |angle: f32| Quat::from_rotation_y(angle);
-    // The second key stands for the same rotation with the other sign.
+    // The second key is the same rotation with the opposite sign.
     let rotation = track(&[0.0, 1.0], vec![turn(0.0), -turn(FRAC_PI_2)], Interpolation::Linear);
     let joints = vec![JointTracks { joint: 0, rotation: Some(rotation), ..JointTracks::default() }];
     let clip = Clip { joints, duration_secs: 1.0, ..Clip::default() };
@@ -87,7 +88,7 @@ fn rotations_take_the_shorter_way() {
     pose_at(&body(), Some(&clip), 0.5, &mut pose);
     let expected = turn(FRAC_PI_2 / 2.0) * Vec3::X;
     assert!(pose.world_from_joint[0].transform_vector3(Vec3::X).distance(expected) < 1e-6);
-    // The head is rigid though its joint is scaled by 3, and sits where the joint is.
+    // The head is rigid although its joint is scaled by 3, and is at the position of the joint.
     assert!(pose.world_from_head.transform_vector3(Vec3::X).distance(expected) < 1e-5);
     assert!(pose.world_from_head.transform_point3(Vec3::ZERO).distance(Vec3::Y * 2.0) < 1e-6);
 }
@@ -103,26 +104,26 @@ fn a_pose_is_reused_without_allocation() {
 }
 
 #[test]
-fn a_faded_clip_starts_again_without_a_jump() {
+fn a_cross_faded_clip_repeats_without_a_jump() {
     let open =
         moving(track(&[0.0, 1.0, 2.0], vec![Vec3::ZERO, Vec3::X, Vec3::X * 4.0], Interpolation::Linear));
     let jump = |clip: &Clip| {
         let end = clip.duration_secs;
         place(clip, end - 1e-4).distance(place(clip, end + 1e-4))
     };
-    // Negative control: without the fade it jumps by 4 m.
+    // Negative control: without the cross-fade it jumps by 4 m.
     assert!(jump(&open) > 3.9);
     let faded = open.clone().with_loop_blend(0.5);
     assert!(faded.loops && (faded.duration_secs - 1.5).abs() < 1e-12);
     assert!(jump(&faded) < 2e-3, "{}", jump(&faded));
-    // Outside the fade it is the clip as it was.
+    // Outside the cross-fade the clip is unchanged.
     assert_eq!(place(&faded, 0.75), place(&open, 0.75));
     let again = faded.with_loop_blend(0.0);
     assert_eq!(again.duration_secs, 2.0);
 }
 
 #[test]
-fn real_clips_that_end_as_they_begin_are_found() {
+fn real_looping_clips_are_detected() {
     let Some(data) = common::data_dir() else { return };
     let load = |file: &str| load_character(&data.join("characters").join(file)).unwrap();
     let robot = load("robot.glb");
@@ -134,7 +135,7 @@ fn real_clips_that_end_as_they_begin_are_found() {
 }
 
 #[test]
-fn cubic_and_step_forms_of_a_walk_agree_with_it_at_its_keys() {
+fn cubic_and_step_versions_of_a_walk_agree_at_its_keys() {
     let Some(data) = common::data_dir() else { return };
     let fox = load_character(&data.join("characters/Fox_cubicspline_step.glb")).unwrap();
     let clip = |name: &str| fox.clips.iter().find(|c| c.name == name).unwrap();
@@ -171,13 +172,13 @@ fn a_trimmed_clip_is_a_part_of_the_whole_one() {
     for secs in [0.0, 0.3, 1.0, 1.99] {
         assert!((x(&part, secs) - start - (1.0 + secs) as f32).abs() < 1e-5, "{secs}");
     }
-    assert!((x(&part, 2.0) - x(&part, 0.0)).abs() < 1e-5, "and round");
-    // With its end faded into its start it reads keys of the part alone.
+    assert!((x(&part, 2.0) - x(&part, 0.0)).abs() < 1e-5, "it repeats");
+    // With its end cross-faded into its start it reads only keys of the range.
     let faded = part.with_loop_blend(0.5);
     assert_eq!(faded.duration_secs, 1.5);
-    assert!((x(&faded, 0.0) - start - 2.5).abs() < 1e-5, "the tail begins the round");
-    assert!((x(&faded, 0.5) - start - 1.5).abs() < 1e-5, "and is gone after the fade");
-    // What makes no sense is brought into the keys.
+    assert!((x(&faded, 0.0) - start - 2.5).abs() < 1e-5, "the round starts in the tail");
+    assert!((x(&faded, 0.5) - start - 1.5).abs() < 1e-5, "the tail has no effect after the cross-fade");
+    // Invalid ranges are limited to the keys.
     for (from, to) in [(f64::NAN, None), (9.0, Some(1.0)), (-3.0, Some(f64::INFINITY)), (3.0, Some(2.0))] {
         let odd = clip.clone().trimmed(from, to);
         let [first, last] = odd.part();

@@ -1,4 +1,4 @@
-//! Colliders and the distance of the resting body, on real characters.
+//! Colliders and the rest distance, on real characters.
 
 mod common;
 
@@ -6,22 +6,22 @@ use glam::Vec3;
 use lovelock_motion::{RestDistance, fit_colliders, head_mesh, load_character, signed_distance};
 
 #[test]
-fn colliders_hug_head_neck_and_shoulders() {
+fn colliders_fit_head_neck_and_shoulders() {
     let Some(data) = common::data_dir() else { return };
-    hugs(&data.join("characters/mh_body.glb"));
+    check_fit(&data.join("characters/mh_body.glb"));
 }
 
 #[test]
-fn colliders_hug_the_dancer() {
+fn colliders_fit_the_dancer() {
     let dancer = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/dancer.glb");
     if dancer.is_file() {
-        hugs(&dancer);
+        check_fit(&dancer);
     } else {
         println!("skipped: no assets/dancer.glb");
     }
 }
 
-fn hugs(path: &std::path::Path) {
+fn check_fit(path: &std::path::Path) {
     let body = load_character(path).unwrap().body;
     println!("{} {:?}", body.name, body.skeleton.joints[body.head_joint].name);
     let colliders = fit_colliders(&body);
@@ -77,8 +77,8 @@ fn distance_of_the_resting_body() {
     for ((p, n), _) in scalp {
         for (offset, sign) in [(0.01, 1.0), (-0.01, -1.0)] {
             let (d, normal) = distance.distance(*p + *n * offset);
-            // A point is never farther from the surface than from the vertex that it left, but for the grid's
-            // interpolation: up to 0.5 mm where facets meet.
+            // A point is never farther from the surface than from its vertex, except for interpolation errors
+            // of up to 0.5 mm where facets meet.
             assert!(d.abs() <= 0.01 + 5e-4, "{d}");
             askew += usize::from(d * sign < 0.005 || normal.dot(*n) < 0.7);
             count += 1;

@@ -1,11 +1,12 @@
-//! Broken bytes: every cut and every flipped bit is an error or a character, never a panic and never a hang.
+//! Corrupt bytes: every truncation and every flipped bit gives an error or a character, never a panic or a
+//! hang.
 
 mod common;
 
 use lovelock_motion::{MotionSettings, load_character_bytes, load_motion_bytes};
 use proptest::prelude::*;
 
-/// A small skinned, morphed and animated figure: a sound file to break.
+/// A small skinned, morphed and animated figure: a valid file to corrupt.
 fn glb() -> Vec<u8> {
     let mut bin: Vec<u8> = Vec::new();
     let mut floats = |values: &[f32]| {
@@ -54,7 +55,7 @@ const BVH: &str = "HIERARCHY\nROOT Hips\n{\n OFFSET 0 90 0\n CHANNELS 6 Xpositio
     0 20 0\n  }\n }\n}\nMOTION\nFrames: 2\nFrame Time: 0.033\n0 90 0 1 2 3 4 5 6\n0 91 0 1 2 3 4 5 7\n";
 
 #[test]
-fn the_sound_files_are_sound() {
+fn the_original_files_are_valid() {
     let character = load_character_bytes("x.glb", &glb(), None).unwrap();
     assert_eq!((character.joints, character.clips.len(), character.body.skin.morphs.len()), (2, 1, 1));
     assert_eq!(character.body.skin.morphs[0].vertices, [1]);
@@ -63,7 +64,7 @@ fn the_sound_files_are_sound() {
 }
 
 #[test]
-fn every_cut_is_survived() {
+fn every_truncation_is_handled() {
     let (glb, bvh) = (glb(), BVH.as_bytes());
     for cut in 0..glb.len() {
         assert!(load_character_bytes("x.glb", &glb[..cut], None).is_err(), "{cut}");
@@ -77,7 +78,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn every_flip_is_survived(flips in prop::collection::vec((any::<prop::sample::Index>(), 0..8_u32), 1..6)) {
+    fn every_flipped_bit_is_handled(flips in prop::collection::vec((any::<prop::sample::Index>(), 0..8_u32), 1..6)) {
         let (mut glb, mut bvh) = (glb(), BVH.as_bytes().to_vec());
         for (place, bit) in flips {
             let (i, j) = (place.index(glb.len()), place.index(bvh.len()));
@@ -92,7 +93,7 @@ proptest! {
     }
 
     #[test]
-    fn numbers_may_be_anything(number in "-?[0-9]{1,20}|1e400|-1|4294967296|18446744073709551615", which in 0..40_usize) {
+    fn any_number_is_handled(number in "-?[0-9]{1,20}|1e400|-1|4294967296|18446744073709551615", which in 0..40_usize) {
         // Replaces the n-th number of the document.
         let glb = glb();
         let length = u32::from_le_bytes(glb[12..16].try_into().unwrap()) as usize;
@@ -113,7 +114,7 @@ proptest! {
 }
 
 #[test]
-fn real_files_cut_anywhere_are_survived() {
+fn truncated_real_files_are_handled() {
     let Some(data) = common::data_dir() else { return };
     for file in ["SimpleSkin.gltf", "Fox.glb", "broken/quad_skin.glb", "CesiumMan_quantized.glb"] {
         let bytes = std::fs::read(data.join("characters").join(file)).unwrap();

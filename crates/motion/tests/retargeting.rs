@@ -1,4 +1,4 @@
-//! Real motions on real bodies: head up, feet on the ground, facing the viewer, limbs where they should be.
+//! Real motions on real bodies: head up, feet on the ground, facing the viewer, plausible limbs.
 
 mod common;
 
@@ -9,7 +9,7 @@ use lovelock_motion::{
     Body, Clip, MotionError, Pose, Skin, load_character, load_motion, pose_at, retarget, skin,
 };
 
-/// What is measured over a clip.
+/// Measurements over a clip.
 struct Measures {
     /// Fraction of frames with the head more than a fifth of the height above the hips.
     head_up: f32,
@@ -47,13 +47,13 @@ fn measure(body: &Body, clip: &Clip) -> Measures {
         m.head_up += if above > 0.2 * body.height() { share } else { 0.0 };
         m.grounded += if lowest.abs() < 0.03 { share } else { 0.0 };
         m.lowest = m.lowest.min(lowest);
-        // The front of a thigh is the front of the hips as the thigh carries it.
+        // The front of a thigh is the front of the hips, moved with the thigh.
         let fine = legs.iter().all(|&[thigh, shin, foot]| {
             let rest = body.skeleton.world_at_rest[thigh];
             let front = (pose.world_from_joint[thigh] * rest.inverse()).transform_vector3(Vec3::Z);
             let upper = (at(shin) - at(thigh)).normalize_or_zero();
             let lower = (at(foot) - at(shin)).normalize_or_zero();
-            // A shin that goes to the front of its thigh by more than 20 degrees is a broken knee.
+            // A shin bent to the front of its thigh by more than 20 degrees is a broken knee.
             (lower - upper * lower.dot(upper)).dot(front) < 0.35
         });
         m.knees += if fine { share } else { 0.0 };
@@ -81,8 +81,9 @@ fn bodies(data: &Path) -> Vec<std::sync::Arc<Body>> {
 fn motions_stand_on_the_ground_with_the_head_up() {
     let Some(data) = common::data_dir() else { return };
     for body in bodies(&data) {
-        // The dance hops twice a second, with both feet in the air for nearly half of the time: the hips rise by 0.2 m
-        // in 0.2 s, as a thrown body does. Boxing_Toes sits down at its end, and one cannot say that of its head.
+        // The dance hops twice per second, with both feet in the air for nearly half of the time: the hips
+        // rise by 0.2 m in 0.2 s, as in free flight. Boxing_Toes sits down at its end, so the limit for its
+        // head is lower.
         for (file, head_up, grounded) in [
             ("jesse_dance", 1.0, 0.42),
             ("cmu1_jumping_jacks", 1.0, 0.8),
@@ -124,7 +125,7 @@ fn a_cycle_without_its_repeated_frame_loops() {
 }
 
 #[test]
-fn a_pose_of_the_same_rig_comes_back() {
+fn a_pose_of_the_same_rig_is_reproduced() {
     let Some(data) = common::data_dir() else { return };
     let body = load_character(&data.join("characters/mh_body.glb")).unwrap().body;
     let pose_file = load_motion(&data.join("motion/mh_tpose.bvh")).unwrap();
@@ -144,13 +145,14 @@ fn a_pose_of_the_same_rig_comes_back() {
             Vec3::from(world[pose_file.joints.iter().position(|j| j.name == name).unwrap()].translation)
         };
         let angle = (of_body(to) - of_body(from)).angle_between(of_file(to) - of_file(from)).to_degrees();
-        // Both files round to six digits; the second bone of a limb may turn a little against the first.
+        // Both files round to six digits; the second bone of a limb may rotate slightly relative to the
+        // first.
         assert!(angle < 3.0, "{from} {angle}°");
     }
 }
 
 #[test]
-fn what_does_not_correspond_is_refused() {
+fn figures_that_do_not_correspond_are_refused() {
     let Some(data) = common::data_dir() else { return };
     let motion = load_motion(&data.join("motion/mh_walk1.bvh")).unwrap();
     let man = load_character(&data.join("characters/CesiumMan.glb")).unwrap();

@@ -1,4 +1,4 @@
-//! Rigs whose bones all lie along +X while nothing is turned, and are rolled about themselves besides.
+//! Rigs whose bones all lie along +X at zero rotation, and are rolled about themselves.
 
 mod common;
 
@@ -23,11 +23,11 @@ fn named(body: &Body, name: &str) -> usize {
     body.skeleton.joints.iter().position(|j| j.name == name).expect("a joint")
 }
 
-/// A bone: its name, its parent, its place there, where it points in a T-pose, and whether the rig rolls it.
+/// A bone: name, parent, offset, direction in a T-pose, and the roll by the rig.
 type Bone = (&'static str, Option<usize>, [f32; 3], Vec3, f32);
 
-/// A figure of which nothing stands while nothing is turned. `half` and `quarter` are by how much the right arm and the feet are
-/// rolled, radians.
+/// A figure whose zero pose does not stand. `half` and `quarter` are the rolls of the right arm and of the
+/// feet, radians.
 fn bones(half: f32, quarter: f32) -> Vec<Bone> {
     let (l, r, down) = (Vec3::X, Vec3::NEG_X, Vec3::NEG_Y);
     vec![
@@ -63,7 +63,7 @@ fn motion(half: f32, quarter: f32) -> MotionFile {
         let end = (!bones.iter().any(|b| b.1.is_some_and(|p| bones[p].0 == name))).then_some(Vec3::X * 0.1);
         file.joints.push(MotionJoint { name: name.into(), parent, offset: offset.into(), end });
     }
-    // By the smallest turns from the parent's, and then rolled.
+    // By the smallest rotations from the parent's, and then rolled.
     let mut pose: Vec<Quat> = Vec::new();
     for &(_, parent, _, along, _) in &bones {
         let carried = parent.map_or(Quat::IDENTITY, |p| pose[p]);
@@ -89,8 +89,8 @@ fn motion(half: f32, quarter: f32) -> MotionFile {
     file
 }
 
-/// How far two clips turn a joint apart, at most, radians.
-fn apart(a: &Clip, b: &Clip, joint: usize) -> f32 {
+/// Largest angle between the rotations of a joint in two clips, radians.
+fn largest_angle(a: &Clip, b: &Clip, joint: usize) -> f32 {
     let turns = |clip: &Clip| {
         let track = clip.joints.iter().find(|track| track.joint == joint);
         track.and_then(|track| track.rotation.as_ref()).map(|track| track.values.clone()).unwrap_or_default()
@@ -101,24 +101,24 @@ fn apart(a: &Clip, b: &Clip, joint: usize) -> f32 {
 }
 
 #[test]
-fn rolled_bones_move_as_others_do() {
+fn rolled_bones_move_like_others() {
     let Some(body) = dancer() else { return };
     let plain = retarget(&motion(0.0, 0.0), &body).unwrap();
     let joints = 0..body.skeleton.joints.len();
     for (half, quarter) in [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (1.0, -1.0)] {
         let (half, quarter) = (half * std::f32::consts::PI, quarter * std::f32::consts::FRAC_PI_2);
         let rolled = retarget(&motion(half, quarter), &body).unwrap();
-        let most = joints.clone().map(|j| apart(&plain, &rolled, j)).fold(0.0, f32::max);
-        assert!(most < 2e-3, "rolled by {half} and {quarter}: {most} radians");
+        let most = joints.clone().map(|j| largest_angle(&plain, &rolled, j)).fold(0.0, f32::max);
+        assert!(most < 2e-3, "rolled by {half} and {quarter}: off by {most} radians");
     }
-    // The control: what is no multiple is no rig's, and stays.
+    // Control: a roll that is not such a multiple does not come from the rig and stays.
     let turned = retarget(&motion(0.6, 0.0), &body).unwrap();
-    let most = joints.map(|j| apart(&plain, &turned, j)).fold(0.0, f32::max);
+    let most = joints.map(|j| largest_angle(&plain, &turned, j)).fold(0.0, f32::max);
     assert!((0.5..0.7).contains(&most), "{most} radians");
 }
 
 #[test]
-fn the_neck_takes_a_half_of_what_the_head_alone_bends() {
+fn a_stiff_neck_takes_half_of_the_bend_of_the_head() {
     let Some(body) = dancer() else { return };
     let clip = retarget(&motion(0.0, 0.0), &body).unwrap();
     let neck = body.skeleton.joints[body.head_joint].parent.expect("a neck");
@@ -132,7 +132,7 @@ fn the_neck_takes_a_half_of_what_the_head_alone_bends() {
 }
 
 #[test]
-fn a_moment_of_a_dance_is_carried_as_the_whole() {
+fn a_part_of_a_dance_is_retargeted_like_the_whole() {
     let (Some(data), Some(body)) = (common::data_dir(), dancer()) else { return };
     let whole = load_motion(&data.join("motion/jesse_dance.bvh")).unwrap();
     let all = retarget(&whole, &body).unwrap();
@@ -147,7 +147,7 @@ fn a_moment_of_a_dance_is_carried_as_the_whole() {
         "shin_r",
     ];
     let count = whole.joints.len();
-    // Arms are rolled by up to 101 degrees in it of themselves, 84 on the average of its last second.
+    // In this motion arms roll by up to 101 degrees, by 84 degrees on average in its last second.
     let moments = (0..whole.frames).step_by(10).map(|first| (first, 1)).chain([(whole.frames - 66, 66)]);
     for (first, frames) in moments {
         let mut cut = whole.clone();
@@ -167,13 +167,13 @@ fn a_moment_of_a_dance_is_carried_as_the_whole() {
     }
 }
 
-/// How far a joint is rolled about its bone against the joint that carries it, degrees: the mean over a clip.
+/// Mean roll of a joint about its bone relative to its parent over a clip, degrees.
 fn roll(body: &Body, clip: &Clip, joint: usize) -> f32 {
     let skeleton = &body.skeleton;
     let carrier = skeleton.joints[joint].parent.expect("a carrier");
     let bones = (0..skeleton.joints.len()).filter(|&j| skeleton.joints[j].parent == Some(joint));
     let bones = bones.map(|j| skeleton.rest_position(j) - skeleton.rest_position(joint));
-    // Joints that share its roll may be at the same place.
+    // Joints that share its roll may be at the same position.
     let bone = bones.max_by(|a, b| a.length().total_cmp(&b.length()));
     let axis = bone.expect("a bone").normalize_or(Vec3::Y);
     let (mut pose, mut sum) = (Pose::default(), Vec2::ZERO);
@@ -187,24 +187,25 @@ fn roll(body: &Body, clip: &Clip, joint: usize) -> f32 {
 }
 
 #[test]
-fn no_shoulder_or_foot_is_wrung() {
+fn no_shoulder_or_foot_is_twisted() {
     let Some(data) = common::data_dir() else { return };
     let Some(body) = dancer() else { return };
     let named = |name: &str| named(&body, name);
-    // Every bone of jesse_dance lies along +X while nothing is turned, and those of the right arm and of the feet are rolled: the
-    // smallest turns alone left the right shoulder wrung by 180 degrees and the feet by 85 and 94.
+    // In jesse_dance every bone lies along +X at zero rotation, and those of the right arm and of the feet
+    // are rolled. Smallest rotations alone left the right shoulder twisted by 180 degrees and the feet by 85
+    // and 94.
     for file in ["jesse_dance", "cmu1_jumping_jacks", "fair1_dab", "mh_walk1", "assimp_Boxing_Toes"] {
         let motion = load_motion(&data.join("motion").join(file).with_extension("bvh")).unwrap();
         let clip = retarget(&motion, &body).unwrap();
         let rolls = ["clavicle", "upper_arm", "forearm", "thigh", "shin", "foot"].map(|limb| {
             let [left, right] = ["l", "r"].map(|side| roll(&body, &clip, named(&format!("{limb}_{side}"))));
-            // Arms turn out and in by more than a quarter.
+            // Arms rotate outward and inward by more than 45 degrees.
             let most = if limb == "upper_arm" { 80.0 } else { 45.0 };
             assert!(left.abs().max(right.abs()) < most, "{file}: {limb} {left:.0} and {right:.0} degrees");
             [left, right].map(|angle| angle.round() as i32)
         });
         println!("{file}: {rolls:?} degrees, left and right");
-        // The control: a shoulder that is turned by hand is found.
+        // Control: a shoulder that is twisted on purpose is detected.
         let mut wrung = clip.clone();
         let shoulder = named("clavicle_r");
         for track in wrung.joints.iter_mut().filter(|track| track.joint == shoulder) {
@@ -223,14 +224,14 @@ fn no_shoulder_or_foot_is_wrung() {
 }
 
 #[test]
-fn a_neck_that_was_not_captured_shares_the_bend_of_the_head() {
+fn an_uncaptured_neck_shares_the_bend_of_the_head() {
     let Some(data) = common::data_dir() else { return };
     let Some(body) = dancer() else { return };
     let skeleton = &body.skeleton;
     let neck = skeleton.joints[body.head_joint].parent.expect("a neck");
     let chest = skeleton.joints[neck].parent.expect("a chest");
     let mut pose = Pose::default();
-    // How far the neck and the head have bent against the chest, degrees, at most.
+    // Largest bend of the neck and of the head relative to the chest, degrees.
     let mut bends = |file: &str| {
         let motion = load_motion(&data.join("motion").join(file)).unwrap();
         let clip = retarget(&motion, &body).unwrap();
@@ -250,15 +251,15 @@ fn a_neck_that_was_not_captured_shares_the_bend_of_the_head() {
     let [neck, head] = bends("jesse_dance.bvh");
     println!("neck {neck:.1}, head {head:.1} degrees");
     assert!(head > 20.0 && (neck - 0.5 * head).abs() < 0.5, "neck {neck} and head {head} degrees");
-    // The control: a neck that was captured has its own bend.
+    // Control: a captured neck has its own bend.
     let [neck, head] = bends("mh_walk1.bvh");
     assert!((neck - 0.5 * head).abs() > 3.0, "neck {neck} and head {head} degrees");
 }
 
 #[test]
-fn any_motion_of_any_figure_is_carried_or_refused() {
+fn any_motion_of_any_figure_is_retargeted_or_refused() {
     let Some(body) = dancer() else { return };
-    // Weyl's sequence, mixed: from -1 to 1.
+    // A mixed Weyl sequence, from -1 to 1.
     let mut state = 7_u64;
     let mut next = || {
         state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
@@ -277,7 +278,7 @@ fn any_motion_of_any_figure_is_carried_or_refused() {
             }
         }
         for joint in &mut file.joints {
-            // Bones of no length, of metres, and of a length that only noise has.
+            // Bones of zero length, of metres, and of a tiny length.
             joint.offset *= [1.0, 0.0, 1e6, 1e-30][(4.0 * next().abs()) as usize % 4];
             if next() > 0.9 {
                 joint.name = "Lost".into();
@@ -289,6 +290,6 @@ fn any_motion_of_any_figure_is_carried_or_refused() {
             assert!(rotations.flat_map(|track| &track.values).all(|turn| turn.is_finite()), "round {round}");
         }
     }
-    println!("{carried} of 60 were carried");
+    println!("{carried} of 60 were retargeted");
     assert!((10..60).contains(&carried), "{carried}");
 }

@@ -1,7 +1,7 @@
-//! What the numbers of a BVH file mean: rotations, positions, axis and unit.
+//! Interpretation of the numbers of a BVH file: rotations, positions, axis and unit.
 //!
-//! The format says none of it. Each rule here is the one that sorts the files that people have; the settings
-//! override all of them.
+//! The format specifies none of these. Each rule here is correct for the files in circulation, and the
+//! settings override all of them.
 
 use std::path::Path;
 
@@ -18,12 +18,12 @@ use crate::{
 
 /// How a joint's position channels combine with its OFFSET.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Meaning {
+enum PositionMeaning {
     Replace,
     Add,
 }
 
-/// Brings a parsed file to metres, Y up, and quaternions.
+/// Converts a parsed file to metres, Y up, and quaternions.
 pub(super) fn interpret(file: &str, raw: &RawMotion, settings: MotionSettings) -> MotionFile {
     let stem =
         Path::new(file).file_stem().map_or_else(|| file.to_owned(), |s| s.to_string_lossy().into_owned());
@@ -38,7 +38,7 @@ pub(super) fn interpret(file: &str, raw: &RawMotion, settings: MotionSettings) -
         up: UpAxis::Y,
         ..MotionFile::default()
     };
-    let rest = meaning_of_joints(raw);
+    let rest = joint_position_meaning(raw);
     decode(raw, rest, &mut motion);
     let probe = Probe::new(&motion);
     motion.up = match settings.up {
@@ -60,9 +60,9 @@ fn joint(raw: &RawJoint) -> MotionJoint {
     }
 }
 
-/// Over the joints below the root: where most positions of the first frame are close to OFFSET they replace it,
-/// where most are close to zero they add to it.
-fn meaning_of_joints(raw: &RawMotion) -> Meaning {
+/// Examines the joints below the root. If most positions of the first frame are close to OFFSET, they replace
+/// it; if most are close to zero, they are added to it.
+fn joint_position_meaning(raw: &RawMotion) -> PositionMeaning {
     let (mut replace, mut add) = (0, 0);
     let mut at = 0;
     for joint in &raw.joints {
@@ -71,13 +71,13 @@ fn meaning_of_joints(raw: &RawMotion) -> Meaning {
         let (position, given) = position(joint, numbers, Vec3::ZERO);
         let offset = Vec3::from(joint.offset);
         let near = 0.1 * offset.length();
-        // A zero offset says nothing.
+        // A zero offset is ambiguous.
         if joint.parent.is_some() && given && near > 1e-6 {
             replace += u32::from(position.distance(offset) < near);
             add += u32::from(position.length() < near);
         }
     }
-    if add > replace { Meaning::Add } else { Meaning::Replace }
+    if add > replace { PositionMeaning::Add } else { PositionMeaning::Replace }
 }
 
 /// The position channels of a row, and whether there are any; axes without a channel keep `missing`.
@@ -104,7 +104,7 @@ fn rotation(joint: &RawJoint, numbers: &[f32]) -> Quat {
 }
 
 /// Fills rotations and positions in the file's own unit and axes; roots replace their OFFSET for now.
-fn decode(raw: &RawMotion, below_root: Meaning, motion: &mut MotionFile) {
+fn decode(raw: &RawMotion, below_root: PositionMeaning, motion: &mut MotionFile) {
     let count = raw.joints.len();
     motion.rotations.reserve_exact(count * raw.frames);
     motion.positions.reserve_exact(count * raw.frames);
@@ -114,7 +114,7 @@ fn decode(raw: &RawMotion, below_root: Meaning, motion: &mut MotionFile) {
             let numbers = &row[at..at + joint.channels.len()];
             at += joint.channels.len();
             let offset = Vec3::from(joint.offset);
-            let adds = joint.parent.is_some() && below_root == Meaning::Add;
+            let adds = joint.parent.is_some() && below_root == PositionMeaning::Add;
             let missing = if adds { Vec3::ZERO } else { offset };
             let (position, given) = position(joint, numbers, missing);
             motion.positions.push(if given && adds {
@@ -125,7 +125,7 @@ fn decode(raw: &RawMotion, below_root: Meaning, motion: &mut MotionFile) {
                 offset
             });
             let mut q = rotation(joint, numbers).normalize();
-            // The same side of the sphere as in the frame before, so that nothing jumps between them.
+            // On the same side of the sphere as in the previous frame, so that interpolation does not jump.
             if let Some(&before) = motion.rotations.len().checked_sub(count).map(|i| &motion.rotations[i])
                 && before.dot(q) < 0.0
             {
@@ -136,17 +136,17 @@ fn decode(raw: &RawMotion, below_root: Meaning, motion: &mut MotionFile) {
     }
 }
 
-/// What some frames of the motion show about the figure, in the file's own unit and axes.
+/// Observations about the figure over some frames of the motion, in the file's own unit and axes.
 struct Probe {
     up: UpAxis,
-    /// From the feet to the head along the bones; 0 where it cannot be told.
+    /// Distance from the feet to the head along the bones; 0 if unknown.
     height: f32,
-    /// Lowest point of any joint over the probed frames, along Y and along Z.
+    /// Lowest point of any joint over the observed frames, along Y and along Z.
     lowest: [f32; 2],
 }
 
 impl Probe {
-    /// As many frames as tell a lying figure from a standing one.
+    /// Number of frames that suffices to distinguish a lying figure from a standing one.
     const FRAMES: usize = 48;
 
     fn new(motion: &MotionFile) -> Self {
@@ -175,8 +175,8 @@ impl Probe {
             spread += high - low;
             lowest = [lowest[0].min(low.y), lowest[1].min(low.z)];
         }
-        let stands_in = if upward == Vec3::ZERO { spread } else { upward };
-        let up = if stands_in.z.abs() > stands_in.y.abs() { UpAxis::Z } else { UpAxis::Y };
+        let direction = if upward == Vec3::ZERO { spread } else { upward };
+        let up = if direction.z.abs() > direction.y.abs() { UpAxis::Z } else { UpAxis::Y };
         let path = |mut j: usize| {
             let mut length = 0.0;
             while let Some(parent) = motion.joints[j].parent {
@@ -193,7 +193,7 @@ impl Probe {
     }
 }
 
-/// Adds the root's OFFSET to its positions where that is what they mean.
+/// Adds the root's OFFSET to its positions if they are relative to it.
 fn choose_root(raw: &RawMotion, setting: RootPosition, probe: &Probe, motion: &mut MotionFile) {
     let count = motion.joints.len();
     for (j, joint) in raw.joints.iter().enumerate().filter(|(_, joint)| joint.parent.is_none()) {
@@ -209,7 +209,7 @@ fn choose_root(raw: &RawMotion, setting: RootPosition, probe: &Probe, motion: &m
                 let (axis, lowest) =
                     if motion.up == UpAxis::Z { (2, probe.lowest[1]) } else { (1, probe.lowest[0]) };
                 let (replaced, added) = (lowest.abs(), (lowest + offset[axis]).abs());
-                // Only a plain difference overrules the common meaning.
+                // Only a clear difference overrides the common interpretation.
                 let adds = added + 0.2 * probe.height < replaced;
                 if adds || replaced + 0.2 * probe.height < added {
                     let how = if adds { "were added to" } else { "replaced" };
@@ -228,8 +228,8 @@ fn choose_root(raw: &RawMotion, setting: RootPosition, probe: &Probe, motion: &m
 }
 
 fn choose_unit(setting: LengthUnit, height: f32, motion: &mut MotionFile) {
-    /// From the feet to the head joint of a grown person, metres.
-    const USUAL: f32 = 1.5;
+    /// Distance from the feet to the head joint of an adult, metres.
+    const ADULT: f32 = 1.5;
     if let Some(metres) = setting.metres() {
         motion.unit_metres = metres;
         return;
@@ -242,18 +242,18 @@ fn choose_unit(setting: LengthUnit, height: f32, motion: &mut MotionFile) {
         LengthUnit::Inches,
         LengthUnit::Cmu,
     ];
-    let miss = |unit: &LengthUnit| (height * unit.metres().unwrap_or(1.0) / USUAL).ln().abs();
-    let best = candidates.into_iter().min_by(|a, b| miss(a).total_cmp(&miss(b))).filter(|_| height > 0.0);
+    let error = |unit: &LengthUnit| (height * unit.metres().unwrap_or(1.0) / ADULT).ln().abs();
+    let best = candidates.into_iter().min_by(|a, b| error(a).total_cmp(&error(b))).filter(|_| height > 0.0);
     let unit = best.unwrap_or(LengthUnit::Centimetres);
     motion.unit_metres = unit.metres().unwrap_or(0.01);
     motion.notes.push(format!(
-        "from foot to head the figure is {height:.1} units, so they were taken for {}: {:.2} m",
+        "from foot to head the figure is {height:.1} units; interpreted as {}: {:.2} m",
         unit.label(),
         height * motion.unit_metres
     ));
 }
 
-/// Brings everything to metres and Y up.
+/// Converts everything to metres and Y up.
 fn convert(motion: &mut MotionFile) {
     let scale = motion.unit_metres;
     let turn = match motion.up {
@@ -267,8 +267,8 @@ fn convert(motion: &mut MotionFile) {
     }
     motion.positions.iter_mut().for_each(carry);
     if motion.up == UpAxis::Z {
-        motion.notes.push("Z points up; turned so that Y does".into());
-        // A rotation about an axis becomes the same rotation about the turned axis.
+        motion.notes.push("Z points up; rotated to Y up".into());
+        // A rotation about an axis becomes the same rotation about the rotated axis.
         motion.rotations.iter_mut().for_each(|q| *q = (turn * *q * turn.conjugate()).normalize());
     }
 }

@@ -1,7 +1,7 @@
 //! Motion capture from BVH files.
 //!
-//! The text is parsed tolerantly ([`parse`]); what its numbers mean (unit, axis, whether positions add to offsets)
-//! is decided in [`interpret`].
+//! The text is parsed tolerantly ([`parse`]). The meaning of its numbers (unit, axis, whether positions are
+//! added to offsets) is decided in [`interpret`].
 
 mod interpret;
 mod parse;
@@ -12,26 +12,26 @@ use glam::{Affine3A, Quat, Vec3};
 
 use crate::{MotionError, MotionSettings, UpAxis, error::read_file, humanoid::Humanoid};
 
-/// Largest file that is read.
+/// Size of the largest file that is read.
 const FILE_LIMIT: u64 = 1 << 30;
 
 /// One joint of a motion file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MotionJoint {
-    /// Its name, which may hold spaces.
+    /// Its name, which may contain spaces.
     pub name: String,
     /// Index of its parent, always smaller than its own.
     pub parent: Option<usize>,
-    /// Its place relative to the parent at rest, metres, Y up.
+    /// Its rest position relative to the parent, metres, Y up.
     pub offset: Vec3,
-    /// Where the bone ends, for a joint without children, relative to it, metres, Y up.
+    /// End of the bone relative to the joint, for a joint without children, metres, Y up.
     pub end: Option<Vec3>,
 }
 
-/// A motion file, brought to metres and Y up.
+/// A motion file, converted to metres and Y up.
 #[derive(Clone, Debug, Default)]
 pub struct MotionFile {
-    /// The file's name without folder and ending.
+    /// The file's name without folder and extension.
     pub name: String,
     /// Its joints, parents first.
     pub joints: Vec<MotionJoint>,
@@ -39,22 +39,22 @@ pub struct MotionFile {
     pub frames: usize,
     /// Time between frames, seconds.
     pub frame_secs: f64,
-    /// Rotation of each joint relative to its parent: frame after frame, joint after joint.
+    /// Rotation of each joint relative to its parent: frame by frame, joint by joint.
     pub rotations: Vec<Quat>,
-    /// Position of each joint relative to its parent, metres, laid out likewise.
+    /// Position of each joint relative to its parent, metres, in the same order.
     pub positions: Vec<Vec3>,
-    /// What was left out, with counts.
+    /// Counts of what was left out.
     pub dropped: BTreeMap<String, u64>,
-    /// Guesses and other things to know.
+    /// Guesses and other remarks.
     pub notes: Vec<String>,
-    /// Metres of one unit of the file.
+    /// Metres per unit of the file.
     pub unit_metres: f32,
-    /// The axis of the file that pointed up.
+    /// The axis that pointed up in the file.
     pub up: UpAxis,
 }
 
 impl MotionFile {
-    /// Transforms of all joints to the world in one frame; frames past the end hold the last.
+    /// World transforms of all joints in one frame; frames past the end repeat the last.
     pub fn world(&self, frame: usize, world: &mut Vec<Affine3A>) {
         let first = frame.min(self.frames.saturating_sub(1)) * self.joints.len();
         world.clear();
@@ -74,7 +74,7 @@ impl MotionFile {
         )
     }
 
-    /// Places of all joints with every rotation at zero, metres.
+    /// Positions of all joints with zero rotations, metres.
     pub fn rest(&self) -> Vec<Vec3> {
         let mut rest: Vec<Vec3> = Vec::with_capacity(self.joints.len());
         for joint in &self.joints {
@@ -84,10 +84,10 @@ impl MotionFile {
     }
 }
 
-/// Loads a BVH file, guessing what it does not say.
+/// Loads a BVH file, guessing what it does not specify.
 ///
 /// # Errors
-/// Refuses text that is no BVH, naming the line, and files without joints or frames.
+/// If the text is not BVH (the error contains the line), or the file has no joints or no frames.
 pub fn load_motion(path: &Path) -> Result<MotionFile, MotionError> {
     load_motion_with(path, MotionSettings::default())
 }
@@ -101,7 +101,7 @@ pub fn load_motion_with(path: &Path, settings: MotionSettings) -> Result<MotionF
     load_motion_bytes(&path.display().to_string(), &bytes, settings)
 }
 
-/// Loads a BVH file from bytes; `name` is what messages call it.
+/// Loads a BVH file from bytes; `name` is used in messages.
 ///
 /// # Errors
 /// As [`load_motion`].

@@ -1,10 +1,10 @@
-//! The text of a BVH file, taken as people write it: names with spaces, any line ends, wrong counts.
+//! Tolerant parsing of the text of a BVH file: names with spaces, any line ends, wrong counts.
 
 use std::collections::BTreeMap;
 
 use crate::MotionError;
 
-/// Most joints of one file.
+/// Largest number of joints of a file.
 const JOINT_LIMIT: usize = 10_000;
 /// Deepest nesting of joints.
 const DEPTH_LIMIT: usize = 1_000;
@@ -25,11 +25,11 @@ pub(super) struct RawJoint {
     pub(super) end: Option<[f32; 3]>,
 }
 
-/// A file as it stands, in its own unit and axes.
+/// The content of a file, in its own unit and axes.
 #[derive(Clone, Debug, Default)]
 pub(super) struct RawMotion {
     pub(super) joints: Vec<RawJoint>,
-    /// Numbers of a row.
+    /// Numbers per row.
     pub(super) channels: usize,
     /// Rows, one after the other; all numbers are finite.
     pub(super) rows: Vec<f32>,
@@ -39,7 +39,7 @@ pub(super) struct RawMotion {
     pub(super) notes: Vec<String>,
 }
 
-/// A place in the text that knows its line.
+/// A position in the text, with its line number.
 struct Cursor<'a> {
     file: &'a str,
     rest: &'a str,
@@ -54,7 +54,7 @@ impl<'a> Cursor<'a> {
         self.rest = trimmed;
     }
 
-    /// The next word; braces stand alone even without spaces.
+    /// The next word; a brace is a word of its own even without spaces.
     fn word(&mut self) -> Option<&'a str> {
         self.skip_space();
         let first = self.rest.chars().next()?;
@@ -76,14 +76,14 @@ impl<'a> Cursor<'a> {
         name.trim()
     }
 
-    fn fault(&self, problem: impl Into<String>) -> MotionError {
+    fn error(&self, problem: impl Into<String>) -> MotionError {
         MotionError::malformed(self.file, format!("line {}", self.line), problem)
     }
 
     fn expect(&mut self, wanted: &str) -> Result<(), MotionError> {
         match self.word() {
             Some(word) if word.eq_ignore_ascii_case(wanted) => Ok(()),
-            found => Err(self.fault(format!("{}; wanted `{wanted}`", quote(found)))),
+            found => Err(self.error(format!("{}; expected `{wanted}`", quote(found)))),
         }
     }
 }
@@ -105,14 +105,18 @@ pub(super) fn parse(file: &str, bytes: &[u8]) -> Result<RawMotion, MotionError> 
     parse_hierarchy(&mut cursor, &mut raw)?;
     parse_rows(&mut cursor, &mut raw)?;
     if raw.frames == 0 {
-        let found = format!("{} joints and no frame of {} numbers", raw.joints.len(), raw.channels);
+        let found = format!("{} joints and no complete frame of {} numbers", raw.joints.len(), raw.channels);
         return Err(MotionError::Empty { file: file.into(), found, wanted: "at least one frame of motion" });
     }
-    // A joint without channels has no bytes in a row: a text of joints times a text of rows must not explode.
+    // A joint without channels has no bytes in a row, so a small file could otherwise claim a huge number of
+    // transforms.
     if (raw.frames as u64) * (raw.joints.len() as u64) > (bytes.len() as u64).max(1 << 20) {
-        let problem =
-            format!("{} frames of {} joints, nearly all without channels", raw.frames, raw.joints.len());
-        return Err(cursor.fault(problem));
+        let problem = format!(
+            "{} frames of {} joints; too many for the size of the file",
+            raw.frames,
+            raw.joints.len()
+        );
+        return Err(cursor.error(problem));
     }
     Ok(raw)
 }
@@ -128,7 +132,7 @@ fn parse_hierarchy(cursor: &mut Cursor, raw: &mut RawMotion) -> Result<(), Motio
                 let name = cursor.name().to_owned();
                 let parent = open.last().copied().flatten();
                 if kind != "ROOT" && parent.is_none() {
-                    return Err(cursor.fault(format!("`{kind} {name}` outside a joint")));
+                    return Err(cursor.error(format!("`{kind} {name}` outside a joint")));
                 }
                 cursor.expect("{")?;
                 if kind == "END" {
@@ -139,7 +143,7 @@ fn parse_hierarchy(cursor: &mut Cursor, raw: &mut RawMotion) -> Result<(), Motio
                 }
                 if raw.joints.len() > JOINT_LIMIT || open.len() > DEPTH_LIMIT {
                     let problem = format!("more than {JOINT_LIMIT} joints or {DEPTH_LIMIT} levels");
-                    return Err(cursor.fault(problem));
+                    return Err(cursor.error(problem));
                 }
             }
             Some("OFFSET") => {
@@ -147,29 +151,29 @@ fn parse_hierarchy(cursor: &mut Cursor, raw: &mut RawMotion) -> Result<(), Motio
                 match (open.last(), open.len().checked_sub(2).map(|i| open[i])) {
                     (Some(Some(joint)), _) => raw.joints[*joint].offset = offset,
                     (Some(None), Some(Some(joint))) => raw.joints[joint].end = Some(offset),
-                    _ => return Err(cursor.fault("an OFFSET outside a joint")),
+                    _ => return Err(cursor.error("an OFFSET outside a joint")),
                 }
             }
             Some("CHANNELS") => {
                 let joint = open.last().copied().flatten();
                 let channels = parse_channels(cursor)?;
                 let Some(joint) = joint.filter(|&j| raw.joints[j].channels.is_empty()) else {
-                    return Err(cursor.fault("CHANNELS outside a joint, or twice in one"));
+                    return Err(cursor.error("CHANNELS outside a joint, or twice in one"));
                 };
                 raw.channels += channels.len();
                 raw.joints[joint].channels = channels;
             }
             Some("}") => {
                 if open.pop().is_none() {
-                    return Err(cursor.fault("a closing brace too many"));
+                    return Err(cursor.error("a closing brace too many"));
                 }
             }
             Some("MOTION") if open.is_empty() && !raw.joints.is_empty() => return Ok(()),
             Some("MOTION") => {
-                return Err(cursor.fault(format!("MOTION with {} joints still open", open.len())));
+                return Err(cursor.error(format!("MOTION with {} joints still open", open.len())));
             }
             _ => {
-                return Err(cursor.fault(format!("{}; wanted a joint, its end, or MOTION", quote(word))));
+                return Err(cursor.error(format!("{}; expected a joint, its end, or MOTION", quote(word))));
             }
         }
     }
@@ -180,7 +184,7 @@ fn parse_offset(cursor: &mut Cursor, dropped: &mut BTreeMap<String, u64>) -> Res
     for value in &mut offset {
         let word = cursor.word();
         let number = word.and_then(|w| w.parse::<f32>().ok());
-        *value = number.ok_or_else(|| cursor.fault(format!("{}; wanted a number", quote(word))))?;
+        *value = number.ok_or_else(|| cursor.error(format!("{}; expected a number", quote(word))))?;
     }
     if offset.iter().all(|v| v.is_finite() && v.abs() < 1e9) {
         Ok(offset)
@@ -193,12 +197,12 @@ fn parse_offset(cursor: &mut Cursor, dropped: &mut BTreeMap<String, u64>) -> Res
 fn parse_channels(cursor: &mut Cursor) -> Result<Vec<Channel>, MotionError> {
     let word = cursor.word();
     let count = word.and_then(|w| w.parse::<usize>().ok()).filter(|&n| n <= 9);
-    let count = count.ok_or_else(|| cursor.fault(format!("{}; wanted up to 9 channels", quote(word))))?;
+    let count = count.ok_or_else(|| cursor.error(format!("{}; expected up to 9 channels", quote(word))))?;
     (0..count)
         .map(|_| {
             let word = cursor.word();
             channel(word.unwrap_or_default())
-                .ok_or_else(|| cursor.fault(format!("{}; wanted a channel such as Xrotation", quote(word))))
+                .ok_or_else(|| cursor.error(format!("{}; expected a channel such as Xrotation", quote(word))))
         })
         .collect()
 }
@@ -219,7 +223,7 @@ fn channel(word: &str) -> Option<Channel> {
 }
 
 fn parse_rows(cursor: &mut Cursor, raw: &mut RawMotion) -> Result<(), MotionError> {
-    let mut promised = None;
+    let mut promised_frames = None;
     let mut frame_secs = None;
     // `Frames: 12`, `Frames:12` and `Frame Time: 0.01`, in any order and case.
     while let Some((line, rest)) = {
@@ -230,10 +234,12 @@ fn parse_rows(cursor: &mut Cursor, raw: &mut RawMotion) -> Result<(), MotionErro
     } {
         let (key, value) = (line.0.trim().to_ascii_lowercase(), line.1.trim());
         match key.as_str() {
-            "frames" => promised = value.parse::<u64>().ok(),
+            "frames" => promised_frames = value.parse::<u64>().ok(),
             "frame time" => frame_secs = value.parse::<f64>().ok(),
             _ => {
-                return Err(cursor.fault(format!("{}; wanted `Frames:` or `Frame Time:`", quote(Some(&key)))));
+                return Err(
+                    cursor.error(format!("{}; expected `Frames:` or `Frame Time:`", quote(Some(&key))))
+                );
             }
         }
         cursor.rest = rest;
@@ -241,7 +247,7 @@ fn parse_rows(cursor: &mut Cursor, raw: &mut RawMotion) -> Result<(), MotionErro
     raw.frame_secs = match frame_secs {
         Some(secs) if secs.is_finite() && secs > 1e-6 && secs < 1e4 => secs,
         _ => {
-            raw.notes.push("no usable frame time; 30 frames a second were taken".into());
+            raw.notes.push("no usable frame time; 30 frames per second are used".into());
             1.0 / 30.0
         }
     };
@@ -255,16 +261,16 @@ fn parse_rows(cursor: &mut Cursor, raw: &mut RawMotion) -> Result<(), MotionErro
         read_stream(cursor.rest, raw);
     }
     raw.frames = raw.rows.len() / raw.channels;
-    if let Some(promised) = promised.filter(|&n| n != raw.frames as u64) {
+    if let Some(promised_frames) = promised_frames.filter(|&n| n != raw.frames as u64) {
         raw.notes.push(format!(
-            "the header says {promised} frames and {} were found; those were taken",
+            "the header promises {promised_frames} frames; the {} in the file are used",
             raw.frames
         ));
     }
     Ok(())
 }
 
-/// A number of a row; one that is none, or not finite, is taken from the row before and counted.
+/// Parses a number of a row. Invalid numbers are counted and replaced by that of the previous row.
 fn number(word: &str, raw: &mut RawMotion) -> f32 {
     match word.parse::<f32>() {
         Ok(value) if value.is_finite() && value.abs() < 1e9 => value,
@@ -275,7 +281,7 @@ fn number(word: &str, raw: &mut RawMotion) -> f32 {
     }
 }
 
-/// A row a line; lines of another length are dropped and counted.
+/// One row per line; lines of another length are dropped and counted.
 fn read_lines(text: &str, raw: &mut RawMotion) {
     for line in text.lines() {
         let count = line.split_whitespace().count();
@@ -290,7 +296,7 @@ fn read_lines(text: &str, raw: &mut RawMotion) {
     }
 }
 
-/// Rows broken over lines: numbers are taken one after the other; an unfinished row is dropped and counted.
+/// Rows split over lines: all numbers are concatenated; an incomplete row is dropped and counted.
 fn read_stream(text: &str, raw: &mut RawMotion) {
     for word in text.split_whitespace() {
         let value = number(word, raw);

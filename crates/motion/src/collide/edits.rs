@@ -1,4 +1,4 @@
-//! What the user changes about the colliders that were fitted.
+//! The user's edits of the fitted colliders.
 
 use std::collections::BTreeMap;
 
@@ -7,25 +7,25 @@ use serde::{Deserialize, Serialize};
 
 use crate::{BodyField, Collider, ColliderShape};
 
-/// Changes of the fitted colliders, by name, and of the field. Names that no collider has are kept and do nothing.
+/// Edits of the fitted colliders, by name, and of the field. Unknown names are kept and have no effect.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ColliderEdits {
-    /// The changed colliders.
+    /// The edited colliders.
     pub shapes: BTreeMap<String, ColliderEdit>,
     /// The field of head and shoulders.
     pub field: FieldEdit,
 }
 
-/// A change of one collider.
+/// An edit of one collider.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ColliderEdit {
-    /// Whether hair meets it at all.
+    /// Whether hair collides with it.
     pub enabled: bool,
     /// Factor of its radii: 0.2 to 3.
     pub scale: f32,
-    /// Where it is moved in the rest pose, metres, along each axis: -0.5 to 0.5.
+    /// Displacement in the rest pose along each axis, metres: -0.5 to 0.5.
     pub offset: [f32; 3],
 }
 
@@ -35,13 +35,13 @@ impl Default for ColliderEdit {
     }
 }
 
-/// A change of the field.
+/// An edit of the field.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct FieldEdit {
-    /// Whether hair meets the field; where not, it meets the colliders that the field stands for.
+    /// Whether hair collides with the field; if not, it collides with the colliders that the field replaces.
     pub enabled: bool,
-    /// By how much its surface is moved outward, metres: -0.02 to 0.02.
+    /// Outward displacement of its surface, metres: -0.02 to 0.02.
     pub lift: f32,
 }
 
@@ -52,7 +52,7 @@ impl Default for FieldEdit {
 }
 
 impl ColliderEdit {
-    /// The same change inside its ranges; what is not a number changes nothing.
+    /// The same edit limited to its ranges; NaN is replaced by the default.
     #[must_use]
     pub fn clamped(&self) -> Self {
         Self {
@@ -62,7 +62,7 @@ impl ColliderEdit {
         }
     }
 
-    /// The shape at rest with its change, whether or not hair meets it.
+    /// The edited shape at rest, even if the collider is disabled.
     pub fn apply(&self, shape: &ColliderShape) -> ColliderShape {
         let Self { scale, offset, .. } = self.clamped();
         let offset = Vec3::from(offset);
@@ -84,15 +84,15 @@ impl ColliderEdit {
 }
 
 impl FieldEdit {
-    /// The lift inside its range, metres.
+    /// The lift limited to its range, metres.
     pub fn lift_m(&self) -> f32 {
         within(self.lift, -0.02, 0.02, 0.0)
     }
 }
 
 impl ColliderEdits {
-    /// The colliders that hair meets: without those that are switched off, and without those that the field, where
-    /// there is one and it is on, stands for. A changed collider acts in any case.
+    /// The colliders that hair collides with. Disabled ones are left out, and so are those that an enabled
+    /// field replaces. An edited collider is always included.
     pub fn apply(&self, fitted: &[Collider], field: Option<&BodyField>) -> Vec<Collider> {
         let used = fitted.iter().filter_map(|collider| {
             let edit = self.of(&collider.name);
@@ -102,17 +102,18 @@ impl ColliderEdits {
         used.collect()
     }
 
-    /// The shapes that the field stands for: no hair meets them, but they keep the wind off.
+    /// The shapes that the field replaces: hair does not collide with them, but they shelter it from the
+    /// wind.
     pub fn stood_for(&self, fitted: &[Collider], field: Option<&BodyField>) -> Vec<Collider> {
         fitted.iter().filter(|collider| self.is_spared(collider, field)).cloned().collect()
     }
 
-    /// The change of the collider of that name.
+    /// The edit of the collider with that name.
     pub fn of(&self, name: &str) -> ColliderEdit {
         self.shapes.get(name).copied().unwrap_or_default()
     }
 
-    /// Changes the collider of that name; an edit that changes nothing is not kept.
+    /// Sets the edit of the collider with that name; an edit without effect is removed.
     pub fn set(&mut self, name: &str, edit: ColliderEdit) {
         if edit == ColliderEdit::default() {
             self.shapes.remove(name);
@@ -121,8 +122,8 @@ impl ColliderEdits {
         }
     }
 
-    /// Whether the field, where there is one and it is on, stands for a collider whose size and place are as they were fitted: hair
-    /// does not meet it then, be it enabled or not.
+    /// Whether an enabled field replaces a collider of unedited size and place. Hair then does not collide
+    /// with it, whether or not it is enabled.
     pub fn is_spared(&self, collider: &Collider, field: Option<&BodyField>) -> bool {
         let as_fitted = ColliderEdit { enabled: true, ..self.of(&collider.name) } == ColliderEdit::default();
         as_fitted && self.field.enabled && field.is_some_and(|field| field.covers(&collider.shape_at_rest))
@@ -143,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn edits_go_by_name_and_stay_in_their_ranges() {
+    fn edits_apply_by_name_and_stay_in_their_ranges() {
         let fitted = [ball("neck"), ball("skull"), ball("face")];
         let mut edits = ColliderEdits::default();
         assert_eq!(edits.apply(&fitted, None), fitted);

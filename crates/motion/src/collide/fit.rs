@@ -1,4 +1,4 @@
-//! Which shapes a body gets, and where they begin.
+//! The shapes that a body gets, and their initial placement.
 
 use glam::{Affine3A, Mat3A, Vec3};
 
@@ -9,22 +9,23 @@ use super::{
 };
 use crate::{Body, Collider, ColliderShape};
 
-/// How far the skull's shape stays below the scalp, so that hair is rooted outside, metres.
+/// Distance of the skull's shape below the scalp, so that hair is rooted outside it, metres.
 const SKULL_INSET: f32 = 0.002;
-/// Name of the shape under the scalp.
+/// Name of the shape below the scalp.
 const SKULL: &str = "skull";
-/// How far other shapes stay below the skin, metres.
+/// Distance of other shapes below the skin, metres.
 const SKIN_INSET: f32 = 0.001;
-/// Greatest height of a slice of the trunk, metres.
+/// Largest height of a slice of the trunk, metres.
 const SLICE: f32 = 0.13;
-/// Most vertices that a refinement looks at.
+/// Largest number of vertices used by the refinement.
 const POINTS: usize = 6_000;
 
-/// Fits spheres, capsules and ellipsoids to the resting surface of a body, part by part, and then all together.
+/// Fits spheres, capsules and ellipsoids to the resting surface of a body, first part by part and then all
+/// together.
 ///
-/// Each vertex belongs to the joint that moves it most. The skull is an ellipsoid through the scalp, a little below
-/// it; face, neck, shoulders and limbs are tapered capsules; the trunk is made of capsules that lie across. The
-/// result is in a fixed order, head first.
+/// Each vertex belongs to the joint with the largest weight. The skull is an ellipsoid slightly below the
+/// scalp; face, neck, shoulders and limbs are tapered capsules; the trunk consists of horizontal capsules.
+/// The order of the result is fixed, head first.
 pub fn fit_colliders(body: &Body) -> Vec<Collider> {
     let parts = parts(body);
     let mut labels: Vec<(String, usize)> = Vec::new();
@@ -37,7 +38,7 @@ pub fn fit_colliders(body: &Body) -> Vec<Collider> {
             Kind::Neck | Kind::Limb => vec![(part.name.clone(), limb(part), SKIN_INSET)],
         };
         for (name, shape, inset) in shapes {
-            // The skull is fitted to the scalp alone, which the points of ears and neck would only spoil.
+            // The skull is fitted to the scalp alone; points of ears and neck would distort it.
             fits.push(Fit { shape, inset, fixed: name == SKULL });
             labels.push((name, part.joint));
         }
@@ -56,14 +57,14 @@ fn head_shapes(part: &Part) -> Vec<(String, ColliderShape, f32)> {
         part.points.iter().zip(&part.scalp).filter(|(_, s)| **s > 0.5).map(|(p, _)| *p).collect();
     let (low, high) = (percentile(&part.points, 0.05), percentile(&part.points, 0.95));
     let fitted = if scalp.len() < 24 { None } else { skull(&scalp) };
-    // Heads of animals and machines: an ellipsoid about all of it.
+    // Heads of animals and machines: an ellipsoid around everything.
     let Some((centre, half)) =
-        fitted.filter(|(c, half)| half.cmpge(0.25 * (high - low)).all() && part.holds(*c))
+        fitted.filter(|(c, half)| half.cmpge(0.25 * (high - low)).all() && part.contains(*c))
     else {
         return vec![("head".into(), ellipsoid(0.5 * (low + high), 0.5 * (high - low)), SKULL_INSET)];
     };
     let mut shapes = vec![(SKULL.into(), ellipsoid(centre, half), SKULL_INSET)];
-    // The face: from the cheeks to the jaw, in front of the skull's middle and below it.
+    // The face: from the cheeks to the jaw, in front of the centre of the skull and below it.
     let face: Vec<Vec3> = part
         .points
         .iter()
@@ -101,7 +102,7 @@ fn head_shapes(part: &Part) -> Vec<(String, ColliderShape, f32)> {
     shapes
 }
 
-/// Centre and radii of an ellipsoid along the axes through the scalp, by linear least squares on
+/// Centre and radii of an axis-aligned ellipsoid through the scalp, by linear least squares on
 /// `A x² + B y² + C z² + D x + E y + F z = 1`.
 fn skull(scalp: &[Vec3]) -> Option<(Vec3, Vec3)> {
     let (middle, half) = bounds(scalp);
@@ -109,7 +110,7 @@ fn skull(scalp: &[Vec3]) -> Option<(Vec3, Vec3)> {
     let mut normal = [[0.0_f64; 6]; 6];
     let mut right = [0.0_f64; 6];
     for p in scalp {
-        // Centred below the crown and scaled, for rounding's sake.
+        // Centred and scaled, to limit rounding errors.
         let q = ((*p - middle) / size).as_dvec3();
         let row = [q.x * q.x, q.y * q.y, q.z * q.z, q.x, q.y, q.z];
         for i in 0..6 {
@@ -130,19 +131,19 @@ fn skull(scalp: &[Vec3]) -> Option<(Vec3, Vec3)> {
         let level = 1.0 + a * centre.x * centre.x + b * centre.y * centre.y + c * centre.z * centre.z;
         let radii = glam::DVec3::new(level / a, level / b, level / c).map(f64::sqrt);
         let (centre, radii) = (middle + centre.as_vec3() * size, radii.as_vec3() * size);
-        // A scalp that is nearly flat may fit a giant.
+        // A nearly flat scalp may fit a giant ellipsoid.
         (radii.is_finite() && radii.max_element() < 2.0 * size && centre.distance(middle) < size)
             .then_some((centre, radii))
     });
     let (centre, radii) = fitted?;
-    // Below the scalp at all but its deepest twentieth.
+    // Shrinks it until it lies below the scalp, except for the deepest twentieth.
     let mut depths: Vec<f32> = scalp.iter().map(|&p| signed_distance(&ellipsoid(centre, radii), p)).collect();
     depths.sort_by(f32::total_cmp);
     let lift = depths[depths.len() / 20].clamp(-3.0 * SKULL_INSET, 0.0);
     Some((centre, radii + (lift.min(-SKULL_INSET))))
 }
 
-/// Capsules across the trunk, one a slice.
+/// Horizontal capsules across the trunk, one per slice.
 fn trunk_shapes(part: &Part) -> Vec<(String, ColliderShape, f32)> {
     let (low, high) = (percentile(&part.points, 0.02), percentile(&part.points, 0.98));
     let slices = ((high.y - low.y) / SLICE).ceil().clamp(1.0, 4.0) as usize;
@@ -152,7 +153,7 @@ fn trunk_shapes(part: &Part) -> Vec<(String, ColliderShape, f32)> {
             let top = low.y + (high.y - low.y) * (i + 1) as f32 / slices as f32;
             let slice: Vec<Vec3> =
                 part.points.iter().copied().filter(|p| (bottom..=top).contains(&p.y)).collect();
-            // A few stray vertices are no slice.
+            // A few stray vertices do not make a slice.
             if slice.len() < 12 || slice.len() * 12 < part.points.len() {
                 return None;
             }
@@ -166,11 +167,11 @@ fn trunk_shapes(part: &Part) -> Vec<(String, ColliderShape, f32)> {
         .collect()
 }
 
-/// A tapered capsule along a bone; its radii are the median distances of the nearer and the farther half.
+/// A tapered capsule along a bone; its radii are the median distances in the nearer and the farther half.
 fn limb(part: &Part) -> ColliderShape {
     let points = &part.points;
     if let (Some(begin), Some(end)) = (part.begin, part.end) {
-        // A shoulder: across the slope from the neck to the arm, thin enough to start below the skin.
+        // A shoulder: along the slope from the neck to the arm, thin enough to start below the skin.
         let length = begin.distance(end);
         return capsule(begin.lerp(end, 0.3), begin.lerp(end, 0.85), 0.3 * length, 0.25 * length);
     }
@@ -188,13 +189,13 @@ fn limb(part: &Part) -> ColliderShape {
         radii.get(radii.len() / 2).copied().unwrap_or(0.01).max(1e-3)
     };
     let (near, far) = (radius(true), radius(false));
-    // Round ends reach beyond the centres, so these stay inside by a part of the radius.
+    // The round ends extend beyond the centres, so the centres are moved inward by a part of the radius.
     let (a, b) = (from + 0.5 * near, to - 0.5 * far);
     let (a, b) = if a < b { (a, b) } else { (0.5 * (a + b), 0.5 * (a + b)) };
     capsule(mean + direction * a, mean + direction * b, near, far)
 }
 
-/// Direction in which points spread most, by power iteration on their covariance.
+/// Direction of the largest spread of the points, by power iteration on their covariance.
 fn principal_axis(points: &[Vec3], mean: Vec3) -> Vec3 {
     let mut covariance = Mat3A::ZERO;
     for p in points {
@@ -228,7 +229,7 @@ fn bounds(points: &[Vec3]) -> (Vec3, Vec3) {
     (0.5 * (low + high), 0.5 * (high - low))
 }
 
-/// A quantile along each axis on its own.
+/// A quantile along each axis separately.
 fn percentile(points: &[Vec3], quantile: f32) -> Vec3 {
     let along = |axis: usize| {
         let mut values: Vec<f32> = points.iter().map(|p| p[axis]).collect();

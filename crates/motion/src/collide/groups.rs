@@ -1,4 +1,4 @@
-//! The surface sorted by the part of the body that it belongs to.
+//! Grouping of the surface by body part.
 
 use glam::Vec3;
 
@@ -8,12 +8,12 @@ use crate::{
     humanoid::{Humanoid, Role, Side},
 };
 
-/// What a part is, which decides the shapes that fit it.
+/// The kind of a part, which determines its shapes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     Head,
     Neck,
-    /// Wide and flat: capsules lying across.
+    /// Wide and flat: horizontal capsules.
     Trunk,
     /// Round and long: a capsule from this joint toward the next.
     Limb,
@@ -21,25 +21,26 @@ pub(super) enum Kind {
     Ignored,
 }
 
-/// A part of the body with its resting vertices, world space.
+/// A body part with its resting vertices, world space.
 #[derive(Clone, Debug)]
 pub(super) struct Part {
     pub(super) name: String,
     pub(super) kind: Kind,
     pub(super) joint: usize,
-    /// Where the bone ends, where that is known.
+    /// End of the bone, if known.
     pub(super) end: Option<Vec3>,
-    /// Where the bone begins, where that is not the joint: a shoulder begins at the neck.
+    /// Start of the bone, if that is not the joint: a shoulder starts at the neck.
     pub(super) begin: Option<Vec3>,
     pub(super) points: Vec<Vec3>,
-    /// How much of each point is scalp; only the head has it.
+    /// Scalp mask of each point; 0 except on the head.
     pub(super) scalp: Vec<f32>,
 }
 
-/// Fewest vertices that a shape is fitted to.
+/// Smallest number of vertices for a shape.
 const FEWEST: usize = 12;
 
-/// Sorts the surface into parts. A body whose names say nothing gets a limb a joint, and its head.
+/// Groups the surface into parts. If the joint names are unknown, every joint becomes a limb, besides the
+/// head.
 pub(super) fn parts(body: &Body) -> Vec<Part> {
     let skeleton = &body.skeleton;
     if skeleton.joints.is_empty() {
@@ -101,7 +102,7 @@ pub(super) fn parts(body: &Body) -> Vec<Part> {
         }
     }
     part_of_joint[body.head_joint] = Some(0);
-    // A joint without a part of its own belongs to the nearest one above it that has one.
+    // A joint without a part of its own belongs to the nearest ancestor that has one.
     for j in 0..skeleton.joints.len() {
         part_of_joint[j] = part_of_joint[j].or(skeleton.joints[j].parent.and_then(|p| part_of_joint[p]));
     }
@@ -125,8 +126,8 @@ fn part(name: &str, kind: Kind, joint: usize, end: Option<Vec3>) -> Part {
 }
 
 impl Part {
-    /// True where a place is inside the part's bounds.
-    pub(super) fn holds(&self, p: Vec3) -> bool {
+    /// Whether a position is inside the bounding box of the part.
+    pub(super) fn contains(&self, p: Vec3) -> bool {
         let low = self.points.iter().fold(Vec3::INFINITY, |a, &b| a.min(b));
         let high = self.points.iter().fold(Vec3::NEG_INFINITY, |a, &b| a.max(b));
         p.cmpge(low).all() && p.cmple(high).all()

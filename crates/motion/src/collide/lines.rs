@@ -1,4 +1,4 @@
-//! Colliders as lines to be drawn.
+//! Outlines of colliders for drawing.
 
 use std::f32::consts::TAU;
 
@@ -6,11 +6,11 @@ use glam::{Affine3A, Quat, Vec3};
 
 use crate::ColliderShape;
 
-/// Straight pieces of a circle.
+/// Segments per circle.
 const PIECES: usize = 32;
 
-/// Appends the outline of a shape: circles, and the sides of a capsule; ends of straight lines in the space of the
-/// shape, metres.
+/// Appends the outline of a shape, circles and the sides of a capsule, as the ends of straight lines in the
+/// space of the shape, metres.
 pub fn collider_lines(shape: &ColliderShape, lines: &mut Vec<[Vec3; 2]>) {
     match *shape {
         ColliderShape::Ellipsoid { from_unit } => {
@@ -38,7 +38,7 @@ pub fn collider_lines(shape: &ColliderShape, lines: &mut Vec<[Vec3; 2]>) {
     }
 }
 
-/// A part of the unit circle from `u` over `v`, mapped.
+/// An arc of the unit circle from `u` toward `v`, transformed by `map`.
 fn arc(map: &Affine3A, u: Vec3, v: Vec3, angle: f32, lines: &mut Vec<[Vec3; 2]>) {
     let at = |i: usize| {
         let (sin, cos) = (angle * i as f32 / PIECES as f32).sin_cos();
@@ -65,7 +65,7 @@ mod tests {
             let mut lines = Vec::new();
             collider_lines(&shape, &mut lines);
             assert!(lines.len() > 90);
-            // Chords of a circle of 20 cm in 32 pieces are within a millimetre of it; their ends are on it.
+            // The ends of the chords are on the surface.
             assert!(lines.iter().flatten().all(|&p| signed_distance(&shape, p).abs() < 1e-5));
         }
         let mut lines = Vec::new();

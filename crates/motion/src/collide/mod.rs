@@ -16,8 +16,7 @@ pub use fit::fit_colliders;
 pub use lines::collider_lines;
 pub use shape::signed_distance;
 
-/// Carries colliders along with their joints into a pose. Nothing is allocated where `placed` was used with them
-/// before.
+/// Moves colliders with their joints into a pose. Nothing is allocated if `placed` was used with them before.
 pub fn place_colliders(colliders: &[Collider], body: &Body, pose: &Pose, placed: &mut Vec<PlacedCollider>) {
     placed.clear();
     placed.extend(colliders.iter().map(|collider| {
@@ -25,12 +24,12 @@ pub fn place_colliders(colliders: &[Collider], body: &Body, pose: &Pose, placed:
         let rest = body.skeleton.world_at_rest.get(collider.joint).copied().unwrap_or(Affine3A::IDENTITY);
         let world_from_rest = now * rest.inverse();
         let world_from_rest = if world_from_rest.is_finite() { world_from_rest } else { Affine3A::IDENTITY };
-        PlacedCollider { shape: moved(&collider.shape_at_rest, &world_from_rest), world_from_rest }
+        PlacedCollider { shape: transformed(&collider.shape_at_rest, &world_from_rest), world_from_rest }
     }));
 }
 
-/// A shape under a transform. Capsules have round ends in any case: uneven scale changes their radii evenly.
-fn moved(shape: &ColliderShape, transform: &Affine3A) -> ColliderShape {
+/// A transformed shape. Capsules keep round ends: non-uniform scale changes their radii uniformly.
+fn transformed(shape: &ColliderShape, transform: &Affine3A) -> ColliderShape {
     match *shape {
         ColliderShape::Capsule { a, b, radius_a, radius_b } => {
             let scale = transform.matrix3.determinant().abs().cbrt();

@@ -1,11 +1,11 @@
-//! Shapes moved and resized until they hug the points that they are to stand for.
+//! Refinement of shapes until they fit their points closely.
 
 use glam::{Affine3A, Mat3A, Vec3};
 
 use super::shape::signed_distance;
 use crate::ColliderShape;
 
-/// Parameters of a shape: two centres and two radii, or a centre and three radii along the shape's own axes.
+/// Parameters of a shape: two centres and two radii, or a centre and three radii along its own axes.
 const PARAMETERS: usize = 8;
 
 /// A shape during fitting.
@@ -14,16 +14,16 @@ pub(super) struct Fit {
     pub(super) shape: ColliderShape,
     /// Depth below the points at which the surface should lie, metres.
     pub(super) inset: f32,
-    /// True for a shape that is right already.
+    /// Whether the shape is final and must not change.
     pub(super) fixed: bool,
 }
 
-/// Distances beyond this count less: ears, noses and fingers are no reason to swell, metres.
+/// Beyond this distance points weigh less, so that ears, noses and fingers do not inflate the shapes, metres.
 const OUTLIER: f32 = 0.015;
-/// Points farther than this from the first guess, on either side, belong to no shape, metres.
+/// Points farther than this from the initial shapes, on either side, are ignored, metres.
 const DEEP: f32 = 0.03;
 /// Smallest radius, metres.
-const THIN: f32 = 0.004;
+const LEAST_RADIUS: f32 = 0.004;
 
 fn to_parameters(shape: &ColliderShape) -> [f32; PARAMETERS] {
     match *shape {
@@ -42,12 +42,12 @@ fn from_parameters(like: &ColliderShape, p: &[f32; PARAMETERS]) -> ColliderShape
         ColliderShape::Capsule { .. } => ColliderShape::Capsule {
             a: Vec3::new(p[0], p[1], p[2]),
             b: Vec3::new(p[3], p[4], p[5]),
-            radius_a: p[6].max(THIN),
-            radius_b: p[7].max(THIN),
+            radius_a: p[6].max(LEAST_RADIUS),
+            radius_b: p[7].max(LEAST_RADIUS),
         },
         ColliderShape::Ellipsoid { from_unit } => {
             let m = from_unit.matrix3;
-            let axis = |v: glam::Vec3A, length: f32| v.normalize_or_zero() * length.max(THIN);
+            let axis = |v: glam::Vec3A, length: f32| v.normalize_or_zero() * length.max(LEAST_RADIUS);
             ColliderShape::Ellipsoid {
                 from_unit: Affine3A {
                     matrix3: Mat3A::from_cols(
@@ -62,7 +62,7 @@ fn from_parameters(like: &ColliderShape, p: &[f32; PARAMETERS]) -> ColliderShape
     }
 }
 
-/// Distance from the union of shapes, and the shape that is closest.
+/// Distance from the union of shapes, and the index of the closest shape.
 pub(super) fn union(fits: &[Fit], p: Vec3) -> (f32, usize) {
     fits.iter()
         .enumerate()
@@ -71,10 +71,10 @@ pub(super) fn union(fits: &[Fit], p: Vec3) -> (f32, usize) {
         .unwrap_or((f32::INFINITY, 0))
 }
 
-/// Refines all shapes in turn, each by damped Gauss-Newton steps on the points to which it is closest, held softly
-/// at where it began.
+/// Refines all shapes in turn by damped Gauss-Newton steps on the points to which each is closest, with a
+/// weak pull toward its initial parameters.
 pub(super) fn refine(fits: &mut [Fit], points: &[Vec3], rounds: usize) {
-    // Insides of mouth and nose lie deep in the first guess, and are no skin.
+    // The insides of mouth and nose lie deep inside the initial shapes and are not skin.
     let points: Vec<Vec3> = points.iter().copied().filter(|&p| union(fits, p).0.abs() < DEEP).collect();
     let start: Vec<[f32; PARAMETERS]> = fits.iter().map(|f| to_parameters(&f.shape)).collect();
     for _ in 0..rounds {
@@ -90,7 +90,7 @@ pub(super) fn refine(fits: &mut [Fit], points: &[Vec3], rounds: usize) {
     }
 }
 
-/// Sum of robust squared distances (Huber) and of the hold.
+/// Sum of robust squared distances (Huber) and of the pull.
 fn cost(fit: &Fit, points: &[Vec3], parameters: &[f32; PARAMETERS], start: &[f32; PARAMETERS]) -> f32 {
     let shape = from_parameters(&fit.shape, parameters);
     let points_cost: f32 = points
@@ -100,11 +100,11 @@ fn cost(fit: &Fit, points: &[Vec3], parameters: &[f32; PARAMETERS], start: &[f32
             if d < OUTLIER { d * d } else { OUTLIER * (2.0 * d - OUTLIER) }
         })
         .sum();
-    points_cost + hold(points) * parameters.iter().zip(start).map(|(p, s)| (p - s) * (p - s)).sum::<f32>()
+    points_cost + pull(points) * parameters.iter().zip(start).map(|(p, s)| (p - s) * (p - s)).sum::<f32>()
 }
 
-/// Weight of the hold: a twentieth of the points.
-fn hold(points: &[Vec3]) -> f32 {
+/// Weight of the pull: a twentieth of the number of points.
+fn pull(points: &[Vec3]) -> f32 {
     0.05 * points.len() as f32
 }
 
@@ -140,8 +140,8 @@ fn step(fits: &mut [Fit], k: usize, points: &[Vec3], start: &[f32; PARAMETERS]) 
             }
         }
         for i in 0..PARAMETERS {
-            normal[i][i] += f64::from(hold(points));
-            right[i] -= f64::from(hold(points) * (at[i] - start[i]));
+            normal[i][i] += f64::from(pull(points));
+            right[i] -= f64::from(pull(points) * (at[i] - start[i]));
         }
         let mut improved = false;
         for _ in 0..4 {
@@ -169,7 +169,8 @@ fn step(fits: &mut [Fit], k: usize, points: &[Vec3], start: &[f32; PARAMETERS]) 
     fits[k].shape = from_parameters(&fits[k].shape, &at);
 }
 
-/// Solves a symmetric positive system by Cholesky's method; `None` where it is not positive.
+/// Solves a symmetric positive definite system by Cholesky factorisation; `None` if it is not positive
+/// definite.
 pub(super) fn solve<const N: usize>(mut m: [[f64; N]; N], mut x: [f64; N]) -> Option<[f64; N]> {
     for i in 0..N {
         for j in 0..=i {

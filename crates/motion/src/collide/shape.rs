@@ -1,4 +1,4 @@
-//! Distance from shapes.
+//! Signed distances of collider shapes.
 
 use glam::{Affine3A, Vec3};
 
@@ -6,8 +6,9 @@ use crate::ColliderShape;
 
 /// Signed distance from a shape's surface, negative inside, metres.
 ///
-/// Exact for spheres and for capsules, also tapered ones (Quilez, "round cone"). For ellipsoids the first-order
-/// estimate `k0 (k0 - 1) / k1`, exact on the surface and good to some per cent of the distance near it.
+/// Exact for spheres and capsules, including tapered ones (Quilez, "round cone"). For ellipsoids it is the
+/// first-order estimate `k0 (k0 - 1) / k1`, which is exact on the surface and within a few per cent of the
+/// distance near it.
 pub fn signed_distance(shape: &ColliderShape, p: Vec3) -> f32 {
     match *shape {
         ColliderShape::Capsule { a, b, radius_a, radius_b } => round_cone(a, b, radius_a, radius_b, p),
@@ -20,7 +21,7 @@ fn round_cone(a: Vec3, b: Vec3, radius_a: f32, radius_b: f32, p: Vec3) -> f32 {
     let length_squared = axis.length_squared();
     let taper = radius_a - radius_b;
     let squared = length_squared - taper * taper;
-    // One sphere holds the other.
+    // One sphere contains the other.
     if squared <= 0.0 || length_squared < 1e-12 {
         let (centre, radius) = if radius_a >= radius_b { (a, radius_a) } else { (b, radius_b) };
         return p.distance(centre) - radius;
@@ -48,7 +49,7 @@ fn ellipsoid(from_unit: &Affine3A, p: Vec3) -> f32 {
     // Gradient of |q| with respect to p.
     let k1 = (unit_from_world.matrix3.transpose() * q).length() / k0.max(1e-6);
     if k1 < 1e-12 || k0 < 1e-3 {
-        // Near the centre the estimate fails; the smallest radius is the distance there.
+        // The estimate fails near the centre, where the distance is the smallest radius.
         let m = from_unit.matrix3;
         return -m.x_axis.length().min(m.y_axis.length()).min(m.z_axis.length());
     }

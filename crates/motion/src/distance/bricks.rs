@@ -1,4 +1,4 @@
-//! Coarse cells that lie near the surface, divided into finer ones.
+//! Coarse cells near the surface, divided into finer ones.
 
 use glam::UVec3;
 use rayon::prelude::*;
@@ -6,15 +6,14 @@ use rayon::prelude::*;
 use super::{
     Exact,
     lattice::{Lattice, WHOLE, interpolate},
-    signs::{Known, sign_points},
+    signs::{MeasuredPoint, sign_points},
 };
 
-/// A coarse cell is divided into so many along each side.
+/// Number of finer cells along each side of a coarse one.
 pub(super) const CELLS: usize = 4;
 const CORNERS: usize = CELLS + 1;
 
-/// Distances at the corners of the finer cells of one coarse cell, x fastest, its own and its neighbours' faces
-/// included.
+/// Distances at the corners of the finer cells of one coarse cell, x fastest, including all of its faces.
 #[derive(Clone, Debug)]
 pub(super) struct Brick([f32; CORNERS * CORNERS * CORNERS]);
 
@@ -23,7 +22,7 @@ impl Brick {
         (at.z as usize * CORNERS + at.y as usize) * CORNERS + at.x as usize
     }
 
-    /// The distances at a finer cell's eight corners, x fastest.
+    /// The distances at the eight corners of a finer cell, x fastest.
     pub(super) fn corners_of(&self, cell: UVec3) -> [f32; 8] {
         const LAYER: usize = CORNERS * CORNERS;
         let first = Self::index(cell);
@@ -32,11 +31,12 @@ impl Brick {
             .map(|k| corners[k])
     }
 
-    /// Exact distances at the corners that are not on the faces shared with the next cells.
+    /// Measures exact distances at the corners that are not on the faces shared with the next cells.
     fn measure(exact: &Exact, lattice: &Lattice, cell: UVec3) -> Self {
         let low = lattice.position(cell);
         let step = lattice.cell / CELLS as f32;
-        let mut points = own_corners().map(|at| Known { at: low + at.as_vec3() * step, distance: f32::MAX });
+        let mut points =
+            own_corners().map(|at| MeasuredPoint { at: low + at.as_vec3() * step, distance: f32::MAX });
         let mut leaves = Vec::new();
         let mut guess = None;
         for block in 0..8 {
@@ -46,7 +46,7 @@ impl Brick {
             let centre = points[members[0]].at.midpoint(points[members[7]].at);
             let Some(hit) = exact.tree.closest(centre, guess) else { break };
             guess = Some(hit.triangle);
-            // From a corner, the closest point is no farther than through the centre.
+            // The closest point is no farther from a corner than through the centre.
             exact.tree.leaves_around(centre, hit.distance_squared.sqrt() + 2.0 * 0.867 * step, &mut leaves);
             for i in members {
                 let hit = exact.tree.closest_of(&leaves, points[i].at, hit.triangle);
@@ -54,7 +54,7 @@ impl Brick {
             }
         }
         let distances = lattice.corners_of(cell);
-        let around: [Known; 8] = std::array::from_fn(|k| Known {
+        let around: [MeasuredPoint; 8] = std::array::from_fn(|k| MeasuredPoint {
             at: lattice.position(cell + UVec3::new(k as u32 & 1, k as u32 >> 1 & 1, k as u32 >> 2)),
             distance: distances[k],
         });
@@ -67,14 +67,14 @@ impl Brick {
     }
 }
 
-/// The corners of finer cells that no cell but this one counts as its own.
+/// The corners of finer cells that belong to this cell and to no other.
 fn own_corners() -> [UVec3; CELLS * CELLS * CELLS] {
     std::array::from_fn(|i| {
         UVec3::new((i % CELLS) as u32, (i / CELLS % CELLS) as u32, (i / CELLS / CELLS) as u32)
     })
 }
 
-/// Divides the cells `near` the surface; `numbers` holds for each cell its place among them.
+/// Divides the cells `near` the surface; `numbers` holds the index of each cell among them.
 pub(super) fn make_bricks(exact: &Exact, lattice: &Lattice, numbers: &[u32], near: &[UVec3]) -> Vec<Brick> {
     let own: Vec<Brick> =
         near.par_iter().with_min_len(8).map(|&cell| Brick::measure(exact, lattice, cell)).collect();
@@ -94,13 +94,13 @@ pub(super) fn make_bricks(exact: &Exact, lattice: &Lattice, numbers: &[u32], nea
                 if next == UVec3::ZERO && !first.any() {
                     continue;
                 }
-                // Where a cell is whole, its neighbours follow it on the face between them, so that the distance
-                // has no steps.
+                // On a face shared with an undivided cell, the finer corners follow its interpolation, so
+                // that the distance is continuous.
                 let divided = (0..8_u32).all(|k| {
                     let aside = UVec3::new(k & 1, k >> 1 & 1, k >> 2);
                     let back = aside * UVec3::new(first.x.into(), first.y.into(), first.z.into());
                     let ahead = aside * next;
-                    // Outside of the grid there is nobody to agree with.
+                    // There is no neighbour outside the grid.
                     let beside = (cell + ahead).wrapping_sub(back);
                     beside.cmpge(lattice.cells).any() || number(beside) != WHOLE
                 });

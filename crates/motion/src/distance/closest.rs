@@ -2,8 +2,8 @@
 
 use glam::Vec3;
 
-/// Closest point of a triangle (Ericson 2004, "Real-Time Collision Detection", section 5.1.5). Rounding moves it
-/// within the triangle, never off it.
+/// Closest point of a triangle (Ericson 2004, "Real-Time Collision Detection", section 5.1.5). Rounding moves
+/// it within the triangle, never off it.
 pub(super) fn closest_on_triangle([a, b, c]: [Vec3; 3], p: Vec3) -> Vec3 {
     let (ab, ac, ap) = (b - a, c - a, p - a);
     let (d1, d2) = (ab.dot(ap), ac.dot(ap));
@@ -36,10 +36,10 @@ pub(super) fn closest_on_triangle([a, b, c]: [Vec3; 3], p: Vec3) -> Vec3 {
     a + ab * (vb * scale) + ac * (vc * scale)
 }
 
-/// So many triangles are measured to at once.
+/// Number of triangles that are measured at once.
 pub(super) const LANES: usize = 8;
 
-/// Triangles side by side, for vector instructions: one corner of each, and the edges from it.
+/// Triangles in lanes for vector instructions: one corner of each, and the edges from it.
 #[derive(Clone, Debug)]
 pub(super) struct Pack {
     corner: [[f32; LANES]; 3],
@@ -47,7 +47,7 @@ pub(super) struct Pack {
 }
 
 impl Pack {
-    /// Up to [`LANES`] triangles, at least one; the last one fills what is left.
+    /// Packs between one and [`LANES`] triangles; the last one is repeated.
     pub(super) fn new(triangles: &[[Vec3; 3]]) -> Self {
         let lanes: [[Vec3; 3]; LANES] = std::array::from_fn(|lane| triangles[lane.min(triangles.len() - 1)]);
         let apart =
@@ -55,8 +55,9 @@ impl Pack {
         Self { corner: apart(|[a, ..]| *a), edges: [apart(|[a, b, _]| b - a), apart(|[a, _, c]| c - a)] }
     }
 
-    /// The lane of the triangle closest to a point, and the square of its distance, by the formulas of
-    /// [`closest_on_triangle`] without branches: the least over the edges, or the face where the point is above it.
+    /// The lane of the triangle closest to a point, and its squared distance. Uses the formulas of
+    /// [`closest_on_triangle`] without branches: the minimum over the edges, or the face if the point is
+    /// above it.
     pub(super) fn closest(&self, p: Vec3) -> (usize, f32) {
         let mut squares = [0.0_f32; LANES];
         let [[abx, aby, abz], [acx, acy, acz]] = &self.edges;
@@ -67,7 +68,7 @@ impl Pack {
             let (d1, d2) = (dot(ab, ap), dot(ac, ap));
             let (d3, d4, d5, d6) = (d1 - bb, d2 - bc, d1 - bc, d2 - cc);
             let (va, vb, vc) = (d3 * d6 - d5 * d4, d5 * d2 - d1 * d6, d1 * d4 - d3 * d2);
-            // How much farther or nearer than the corner: a quadratic form of the weights of the edges.
+            // Difference of squared distances to the corner: a quadratic form of the edge weights.
             let beside =
                 |v: f32, w: f32| v * (v * bb - 2.0 * d1) + w * (w * cc - 2.0 * d2) + 2.0 * v * w * bc;
             let (along_ab, along_ac) = (unit(d1 / bb), unit(d2 / cc));
@@ -90,8 +91,9 @@ impl Pack {
 }
 
 impl Pack {
-    /// Cosine and sine of half the solid angle of each triangle seen from a point, times a size of their own, the sine positive
-    /// from behind (Van Oosterom and Strackee 1983, "The solid angle of a plane triangle", equation 8).
+    /// Cosine and sine of half the solid angle of each triangle seen from a point, up to a common factor; the
+    /// sine is positive from behind (Van Oosterom and Strackee 1983, "The solid angle of a plane triangle",
+    /// equation 8).
     #[inline]
     pub(super) fn half_solid_angles(&self, p: Vec3) -> ([f32; LANES], [f32; LANES]) {
         let (mut cosines, mut sines) = ([0.0; LANES], [0.0; LANES]);
@@ -102,14 +104,14 @@ impl Pack {
             let (ab, ac) = ([abx[k], aby[k], abz[k]], [acx[k], acy[k], acz[k]]);
             let (b, c) =
                 ([a[0] + ab[0], a[1] + ab[1], a[2] + ab[2]], [a[0] + ac[0], a[1] + ac[1], a[2] + ac[2]]);
-            // The volume of three corners is that of one and the edges from it.
+            // The determinant of the three corners equals that of one corner and the two edges from it.
             sines[k] = a[0] * (ab[1] * ac[2] - ab[2] * ac[1])
                 + a[1] * (ab[2] * ac[0] - ab[0] * ac[2])
                 + a[2] * (ab[0] * ac[1] - ab[1] * ac[0]);
             (lengths[0][k], lengths[1][k], lengths[2][k]) = (dot(a, a), dot(b, b), dot(c, c));
             (dots[0][k], dots[1][k], dots[2][k]) = (dot(b, c), dot(c, a), dot(a, b));
         }
-        // Roots in loops of their own are vector instructions.
+        // Square roots vectorise in a loop of their own.
         for row in &mut lengths {
             for length in row {
                 *length = length.sqrt();
@@ -127,7 +129,7 @@ fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Unlike [`f32::min`], one instruction; not a number gives `b`.
+/// One instruction, unlike [`f32::min`]; NaN gives `b`.
 fn least(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }

@@ -8,27 +8,27 @@ use super::{
     lattice::{Lattice, WHOLE, interpolate},
 };
 
-/// Most coarse cells, and so many along the longest side: 20 mm for the reach of hair.
+/// Largest number of coarse cells, and their number along the longest side: 20 mm for the reach of hair.
 const MOST_CELLS: f32 = 60_000.0;
-const ALONG: f32 = 85.0;
-/// Most cells that are divided, 500 bytes each; surfaces that fill their space get larger cells.
+const CELLS_ALONG: f32 = 85.0;
+/// Largest number of divided cells, 500 bytes each; surfaces that fill their volume get larger cells.
 const MOST_BRICKS: usize = 40_000;
 
-/// Distances by interpolation: some ten nanoseconds each.
+/// Interpolated distances: about ten nanoseconds per query.
 #[derive(Clone, Debug)]
 pub(super) struct Grid {
     lattice: Lattice,
     inverse_cell: f32,
-    /// Number of each cell's brick, or [`WHOLE`].
+    /// Index of each cell's brick, or [`WHOLE`].
     numbers: Vec<u32>,
     bricks: Vec<Brick>,
 }
 
 impl Grid {
-    /// Measures between two corners of a box, whose sides are positive.
+    /// Measures the box from `low` to `high`, which must not be empty.
     pub(super) fn new(exact: &Exact, low: Vec3, high: Vec3) -> Self {
         let size = high - low;
-        let mut cell = (size.max_element() / ALONG).max((size.element_product() / MOST_CELLS).cbrt());
+        let mut cell = (size.max_element() / CELLS_ALONG).max((size.element_product() / MOST_CELLS).cbrt());
         loop {
             let lattice = Lattice::new(exact, low, high, cell);
             let (numbers, near) = lattice.near();
@@ -40,12 +40,12 @@ impl Grid {
         }
     }
 
-    /// Distance and normal within the grid.
+    /// Distance and normal inside the grid.
     pub(super) fn sample(&self, p: Vec3) -> Option<(f32, Vec3)> {
         let lattice = &self.lattice;
         let at = (p - lattice.low) * self.inverse_cell;
         let size = lattice.cells.as_vec3();
-        // Not a number is not within.
+        // NaN is outside.
         if !(at.cmpge(Vec3::ZERO) & at.cmplt(size)).all() {
             return None;
         }
@@ -62,7 +62,7 @@ impl Grid {
         Some((distance, slope.normalize_or(Vec3::Y)))
     }
 
-    /// Bytes that it holds.
+    /// Memory used, bytes.
     #[cfg(test)]
     pub(super) fn bytes(&self) -> usize {
         self.lattice.distances.len() * 4 + self.numbers.len() * 4 + self.bricks.len() * size_of::<Brick>()

@@ -5,11 +5,11 @@ use rayon::prelude::*;
 
 use super::{
     Exact,
-    signs::{Known, on_one_side},
+    signs::{MeasuredPoint, on_same_side},
 };
 
-/// Cells with a corner closer to the surface than this, in sizes of a cell, are divided.
-const NEAR: f32 = 1.2;
+/// Cells with a corner closer to the surface than this are divided, in cell sizes.
+const DIVIDE_WITHIN: f32 = 1.2;
 /// Marks a cell that is not divided.
 pub(super) const WHOLE: u32 = u32::MAX;
 
@@ -32,7 +32,7 @@ impl Lattice {
         self.low + at.as_vec3() * self.cell
     }
 
-    /// The distances at a cell's eight corners, x fastest.
+    /// The distances at the eight corners of a cell, x fastest.
     pub(super) fn corners_of(&self, cell: UVec3) -> [f32; 8] {
         let first = self.corner(cell);
         let (row, layer) = (self.cells.x as usize + 1, self.corner(UVec3::Z));
@@ -44,18 +44,19 @@ impl Lattice {
         ((cell.z * self.cells.y + cell.y) * self.cells.x + cell.x) as usize
     }
 
-    /// The cells in the order of their indices.
+    /// The cells in index order.
     fn each_cell(&self) -> impl Iterator<Item = UVec3> + use<> {
         let n = self.cells;
         (0..n.z).flat_map(move |z| (0..n.y).flat_map(move |y| (0..n.x).map(move |x| UVec3::new(x, y, z))))
     }
 
-    /// Exact distances at the corners.
+    /// Measures exact distances at the corners.
     pub(super) fn new(exact: &Exact, low: Vec3, high: Vec3, cell: f32) -> Self {
         let cells = ((high - low) / cell).ceil().as_uvec3().max(UVec3::ONE);
         let mut lattice = Self { low, cell, cells, distances: Vec::new() };
         let row = cells.x as usize + 1;
-        let mut points = vec![Known::default(); row * (cells.y as usize + 1) * (cells.z as usize + 1)];
+        let mut points =
+            vec![MeasuredPoint::default(); row * (cells.y as usize + 1) * (cells.z as usize + 1)];
         points.par_chunks_exact_mut(row).enumerate().for_each(|(i, points)| {
             let (y, z) = (i as u32 % (cells.y + 1), i as u32 / (cells.y + 1));
             let mut guess = None;
@@ -63,7 +64,8 @@ impl Lattice {
                 let at = lattice.position(UVec3::new(x, y, z));
                 let hit = exact.tree.closest(at, guess);
                 guess = hit.map(|hit| hit.triangle);
-                *point = Known { at, distance: hit.map_or(f32::MAX, |hit| hit.distance_squared.sqrt()) };
+                *point =
+                    MeasuredPoint { at, distance: hit.map_or(f32::MAX, |hit| hit.distance_squared.sqrt()) };
             }
         });
         lattice.sign(exact, &mut points);
@@ -71,8 +73,9 @@ impl Lattice {
         lattice
     }
 
-    /// Signs the distances at the corners: one winding number for all corners that a closed surface cannot part.
-    fn sign(&self, exact: &Exact, points: &mut [Known]) {
+    /// Determines the signs at the corners: one winding number for each set of corners that a closed surface
+    /// cannot separate.
+    fn sign(&self, exact: &Exact, points: &mut [MeasuredPoint]) {
         if !exact.closed {
             points.par_iter_mut().with_min_len(256).for_each(|point| {
                 point.distance = point.distance.copysign(if exact.inside(point.at) { -1.0 } else { 1.0 });
@@ -81,22 +84,22 @@ impl Lattice {
         }
         let strides = [1, self.corner(UVec3::Y), self.corner(UVec3::Z)];
         let mut signed = vec![false; points.len()];
-        let mut waiting = Vec::new();
+        let mut stack = Vec::new();
         for first in 0..points.len() {
             if signed[first] {
                 continue;
             }
             let sign = if exact.inside(points[first].at) { -1.0 } else { 1.0 };
             signed[first] = true;
-            waiting.push(first);
-            while let Some(i) = waiting.pop() {
+            stack.push(first);
+            while let Some(i) = stack.pop() {
                 points[i].distance = points[i].distance.copysign(sign);
                 for stride in strides {
-                    // A step over the end of a row lands far away, where the test by places still holds.
+                    // A step over the end of a row leads far away, where the test by distance is still valid.
                     for next in [i.checked_sub(stride), Some(i + stride)].into_iter().flatten() {
-                        if next < points.len() && !signed[next] && on_one_side(&points[i], &points[next]) {
+                        if next < points.len() && !signed[next] && on_same_side(&points[i], &points[next]) {
                             signed[next] = true;
-                            waiting.push(next);
+                            stack.push(next);
                         }
                     }
                 }
@@ -104,13 +107,13 @@ impl Lattice {
         }
     }
 
-    /// The number of each cell that lies near the surface, [`WHOLE`] for the others, and the cells by number.
+    /// The index of each cell near the surface ([`WHOLE`] for the others), and those cells in order.
     pub(super) fn near(&self) -> (Vec<u32>, Vec<UVec3>) {
         let mut numbers = vec![WHOLE; self.cells.as_usizevec3().element_product()];
         let mut near = Vec::new();
         for (number, cell) in numbers.iter_mut().zip(self.each_cell()) {
             let corners = self.corners_of(cell);
-            if corners.iter().any(|d| d.abs() < NEAR * self.cell) {
+            if corners.iter().any(|d| d.abs() < DIVIDE_WITHIN * self.cell) {
                 *number = near.len() as u32;
                 near.push(cell);
             }
@@ -119,7 +122,7 @@ impl Lattice {
     }
 }
 
-/// Trilinear interpolation between the corners of a cell, x fastest, and its slope in units of the cell.
+/// Trilinear interpolation between the corners of a cell, x fastest, and its gradient per cell size.
 pub(crate) fn interpolate(c: &[f32; 8], Vec3 { x, y, z }: Vec3) -> (f32, Vec3) {
     let along_x = [c[1] - c[0], c[3] - c[2], c[5] - c[4], c[7] - c[6]];
     let edge = [0, 1, 2, 3].map(|k| c[2 * k] + along_x[k] * x);

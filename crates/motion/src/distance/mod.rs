@@ -19,23 +19,24 @@ pub(crate) use lattice::interpolate;
 use tree::Tree;
 use winding::Winding;
 
-/// Where hair can reach around the head of a body of [`TALL`] metres, in head space, metres.
+/// Region that hair can reach around the head of a body of [`USUAL_SIZE`] metres, in head space, metres.
 const REACH: [Vec3; 2] = [Vec3::new(-0.32, -0.75, -0.34), Vec3::new(0.32, 0.32, 0.32)];
-/// The longest side of a body of a usual size, metres; for others the reach grows and shrinks.
-const TALL: f32 = 1.7;
-/// Beyond the surface the grid goes on for so much of the body's longest side.
+/// The longest side of a body of ordinary size, metres; the reach scales with it.
+const USUAL_SIZE: f32 = 1.7;
+/// Margin of the grid beyond the surface, as a fraction of the body's longest side.
 const MARGIN: f32 = 0.18;
-/// Smaller and larger surfaces, metres, are left to the search: squares of lengths overflow.
+/// Sizes of surfaces with a grid, metres; for others squared lengths would overflow.
 const SIZES: std::ops::Range<f32> = 1e-5..1e6;
 
-/// Signed distance and outward normal of the resting body, in head space (see [`crate::Pose::world_from_head`]).
+/// Signed distance and outward normal of the resting body, in head space (see
+/// [`crate::Pose::world_from_head`]).
 ///
-/// Which side of the surface a point is on is told by the winding number, so that bodies with holes, overlaps and
-/// folds have an inside too. Where hair can reach, distances come from a grid by trilinear interpolation. For a body
-/// of usual size its cells are 5 mm near the surface, where it is off by 0.1 mm on smooth skin and by some 0.5 mm
-/// on sharp edges, and 20 mm elsewhere, where it is off by a millimetre, and by some more halfway between two parts
-/// of the body. Outside of the grid, a bounding volume tree finds the closest point of the surface, in
-/// microseconds.
+/// The winding number determines the side of the surface, so bodies with holes, overlaps and folds have an
+/// inside too. Where hair can reach, distances come from a grid by trilinear interpolation. For a body of
+/// ordinary size its cells are 5 mm near the surface, with errors of 0.1 mm on smooth skin and about 0.5 mm
+/// at sharp edges; elsewhere they are 20 mm, with errors of a millimetre, and somewhat more halfway between
+/// two parts of the body. Outside the grid, a bounding volume tree finds the closest point of the surface
+/// within microseconds.
 #[derive(Clone, Debug, Default)]
 pub struct RestDistance {
     exact: Exact,
@@ -43,26 +44,27 @@ pub struct RestDistance {
 }
 
 impl RestDistance {
-    /// Prepares the whole surface of a body, with the grid around its head, neck and upper torso; a quarter
-    /// of a second on two cores for fifty thousand triangles.
+    /// Prepares the whole surface of a body, with the grid around its head, neck and upper torso. Takes a
+    /// quarter of a second on two cores for fifty thousand triangles.
     pub fn new(body: &Body) -> Self {
         let origin =
             body.skeleton.world_at_rest.get(body.head_joint).map_or(Vec3::ZERO, |w| w.translation.into());
         let positions: Vec<Vec3> = body.mesh.positions.iter().map(|&p| p - origin).collect();
-        // Of machines and models of a head alone the head is larger than a person's part of the body.
+        // Heads of machines, and models of a head alone, are larger relative to the body than a person's
+        // head.
         let head = head_mesh(body).positions.into_iter().filter(|p| p.is_finite());
         let head = head.fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |[a, b], p| [a.min(p), b.max(p)]);
         Self::within(&positions, &body.mesh.triangles, Some(head))
     }
 
-    /// Prepares any surface of counter-clockwise triangles, with the grid around all of it; distances are in the
-    /// space of its positions. Triangles without an area, or with corners that are missing or not finite, do not
-    /// count.
+    /// Prepares any surface of counter-clockwise triangles, with the grid around all of it. Distances are in
+    /// the space of its positions. Triangles without area, or with corners that are missing or not finite,
+    /// are ignored.
     pub fn of_triangles(positions: &[Vec3], triangles: &[[u32; 3]]) -> Self {
         Self::within(positions, triangles, None)
     }
 
-    /// The grid is around all of the surface, or as far as hair reaches from a `head`.
+    /// The grid covers the whole surface, or the reach of hair around `head`.
     fn within(positions: &[Vec3], triangles: &[[u32; 3]], head: Option<[Vec3; 2]>) -> Self {
         let exact = Exact::new(&surface::corners(positions, triangles));
         let grid = exact.tree.bounds().and_then(|(low, high)| {
@@ -70,7 +72,7 @@ impl RestDistance {
             let margin = Vec3::splat(MARGIN * size);
             let (mut low, mut high) = (low - margin, high + margin);
             if let Some([head_low, head_high]) = head {
-                let [reach_low, reach_high] = REACH.map(|corner| corner * (size / TALL));
+                let [reach_low, reach_high] = REACH.map(|corner| corner * (size / USUAL_SIZE));
                 // A person's head is well within the reach.
                 low = low.max(Vec3::select(head_low.cmplt(reach_low), head_low - margin, reach_low));
                 high = high.min(Vec3::select(head_high.cmpgt(reach_high), head_high + margin, reach_high));
@@ -80,15 +82,15 @@ impl RestDistance {
         Self { exact, grid }
     }
 
-    /// Distance in metres, negative inside, and the outward unit normal there: the direction in which the distance
-    /// grows. An empty surface is infinitely far.
+    /// Distance in metres, negative inside, and the outward unit normal, the direction in which the distance
+    /// grows. An empty surface is infinitely far away.
     pub fn distance(&self, p: Vec3) -> (f32, Vec3) {
         self.grid.as_ref().and_then(|grid| grid.sample(p)).unwrap_or_else(|| self.exact.distance(p))
     }
 }
 
-/// Signed distance of a surface by search, for surfaces that are measured to a few thousand times, such as the skin
-/// of one frame. A point takes microseconds, the preparation some tens of milliseconds for fifty thousand triangles.
+/// Signed distance of a surface by search, for surfaces with only a few thousand queries, such as the skin of
+/// one frame. A query takes microseconds, the preparation tens of milliseconds for fifty thousand triangles.
 #[derive(Clone, Debug, Default)]
 pub struct SurfaceDistance(Exact);
 
@@ -98,13 +100,13 @@ impl SurfaceDistance {
         Self(Exact::new(&surface::corners(positions, triangles)))
     }
 
-    /// Distance in metres, negative inside; an empty surface is infinitely far.
+    /// Distance in metres, negative inside; an empty surface is infinitely far away.
     pub fn distance(&self, p: Vec3) -> f32 {
         self.0.distance(p).0
     }
 }
 
-/// Distances by search: microseconds each.
+/// Distances by search: microseconds per query.
 #[derive(Clone, Debug, Default)]
 struct Exact {
     tree: Tree,
@@ -120,7 +122,7 @@ impl Exact {
     }
 
     fn inside(&self, p: Vec3) -> bool {
-        // Nothing is inside of what it is beside.
+        // A point outside the bounding box is outside the surface.
         let beside = self.tree.bounds().is_none_or(|(low, high)| (p.cmplt(low) | p.cmpgt(high)).any());
         !beside && self.winding.inside(&self.tree, p)
     }
@@ -132,7 +134,7 @@ impl Exact {
         let length = hit.distance_squared.sqrt();
         let sign = if self.inside(p) { -1.0 } else { 1.0 };
         let face = self.tree.normal(hit.triangle);
-        // On the surface itself the direction is lost in rounding: a tenth of a micrometre.
+        // On the surface itself, within a tenth of a micrometre, the direction is lost to rounding.
         let normal = if length > 1e-7 { (p - hit.at) * (sign / length) } else { face };
         (sign * length, normal.normalize_or(face))
     }

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-/// Corners of the triangles worth measuring to: finite, and with an area.
+/// Corners of the usable triangles: finite, and with an area.
 pub(super) fn corners(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<[Vec3; 3]> {
     let corners = triangles.iter().filter_map(|&[a, b, c]| {
         let at = |v: u32| positions.get(v as usize).copied().filter(|p| p.is_finite());
@@ -11,9 +11,10 @@ pub(super) fn corners(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<[Vec3; 
     corners.filter(|&[a, b, c]| (b - a).cross(c - a).try_normalize().is_some()).collect()
 }
 
-/// Whether a surface has no border: each edge is run through as often one way as the other. Corners in one place
-/// count as one, since seams of texture coordinates and normals split vertices. Then its winding number is a whole
-/// number, and changes only where the surface is crossed, even if the surface intersects itself.
+/// Whether a surface has no border, that is, each edge occurs equally often in both directions. Corners at
+/// the same position count as one, because seams of texture coordinates and normals split vertices. The
+/// winding number of such a surface is an integer and changes only where the surface is crossed, even if the
+/// surface intersects itself.
 pub(super) fn is_closed(corners: &[[Vec3; 3]]) -> bool {
     let mut places: Vec<([u32; 3], u32)> = (corners.iter().flatten().zip(0..))
         .map(|(p, corner)| ((*p + 0.0).to_array().map(f32::to_bits), corner))

@@ -23,7 +23,8 @@ impl Random {
 
 type Surface = (Vec<Vec3>, Vec<[u32; 3]>);
 
-/// Calls `at` over a grid of `n` by `n` parameters on each side of a cube, split along the cube's edges.
+/// Maps a grid of `n` by `n` parameters on each side of a cube by `at`; the surface is split along the cube's
+/// edges.
 fn from_cube(n: u32, at: impl Fn(Vec3) -> Vec3) -> Surface {
     let (mut positions, mut triangles) = (Vec::new(), Vec::new());
     for axis in 0..3 {
@@ -49,7 +50,7 @@ fn from_cube(n: u32, at: impl Fn(Vec3) -> Vec3) -> Surface {
     (positions, triangles)
 }
 
-/// Every triangle with vertices of its own.
+/// The same surface with separate vertices for every triangle.
 fn split((positions, triangles): &Surface) -> Surface {
     let corners = triangles.iter().flatten().map(|&v| positions[v as usize]).collect();
     (corners, (0..triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect())
@@ -59,7 +60,7 @@ fn sphere(centre: Vec3, radius: f32) -> Surface {
     from_cube(48, |p| centre + radius * p.normalize_or(Vec3::Y))
 }
 
-/// Half a length along Y between the centres of the caps.
+/// A capsule along Y with half the distance `half` between the centres of its caps.
 fn capsule(half: f32, radius: f32) -> Surface {
     from_cube(48, |p| {
         // The middle half of the sides is the cylinder.
@@ -69,7 +70,7 @@ fn capsule(half: f32, radius: f32) -> Surface {
     })
 }
 
-/// Largest errors of distance within `near` of the surface and everywhere, with a formula for the truth.
+/// Largest errors of distance within `near` of the surface and overall, compared with the formula `truth`.
 fn errors(surface: &Surface, near: f32, truth: impl Fn(Vec3) -> f32) -> (f32, f32) {
     let distance = RestDistance::of_triangles(&surface.0, &surface.1);
     let mut random = Random(1);
@@ -87,8 +88,8 @@ fn errors(surface: &Surface, near: f32, truth: impl Fn(Vec3) -> f32) -> (f32, f3
 
 #[test]
 fn simple_solids() {
-    // The triangles lie inside the sphere by r (1 - cos(angle / 2)), up to 0.06 mm, and interpolation between corners
-    // 7 mm apart is off by cell^2 / 4r, 0.15 mm; over the centre by less than half a cell.
+    // The triangles lie inside the sphere by r (1 - cos(angle / 2)), up to 0.06 mm, and interpolation between
+    // corners 7 mm apart is off by cell^2 / 4r, 0.15 mm; over the centre by less than half a cell.
     let ball = sphere(Vec3::ZERO, 0.1);
     for surface in [&ball, &split(&ball)] {
         let (near, far) = errors(surface, 0.02, |p| p.length() - 0.1);
@@ -102,8 +103,8 @@ fn simple_solids() {
             let out = (turn.inverse() * p).abs() - half;
             out.max(Vec3::ZERO).length() + out.max_element().min(0.0)
         };
-        // Fine cells of 2 mm on an edge cut its corner by less than a third of their side, and coarse ones
-        // of 7 mm the ridges of the middle by less than theirs.
+        // Fine cells of 2 mm at an edge cut its corner by less than a third of their side, and coarse ones of
+        // 7 mm the ridges in the middle by less than a third of theirs.
         let (near, far) = errors(surface, 0.003, truth);
         assert!(near < 7e-4 && far < 5e-3, "{near} {far}");
     }
@@ -117,10 +118,10 @@ fn simple_solids() {
 }
 
 #[test]
-fn closed_however_its_vertices_are_split() {
+fn a_closed_surface_is_recognised_with_split_vertices() {
     let (positions, mut triangles) = split(&from_cube(2, |p| p));
     assert!(surface::is_closed(&surface::corners(&positions, &triangles)));
-    // Turned over or missing, a triangle leaves a border.
+    // A flipped or missing triangle leaves a border.
     triangles[3].swap(0, 1);
     assert!(!surface::is_closed(&surface::corners(&positions, &triangles)));
     triangles.remove(3);
@@ -135,7 +136,7 @@ fn inside_of_imperfect_surfaces() {
     // A hole of 3 cm, as for an eye.
     let holed: Vec<_> =
         (ball.1.iter().copied()).filter(|t| ball.0[t[0] as usize].distance(Vec3::Z * 0.1) > 0.015).collect();
-    // Another ball through the side, which leaves walls within.
+    // A second ball through the side, which leaves walls inside.
     let (mut positions, mut crossed) = ball.clone();
     let other = sphere(Vec3::X * 0.09, 0.05);
     crossed.extend(other.1.iter().map(|t| t.map(|v| v + positions.len() as u32)));
@@ -151,7 +152,7 @@ fn inside_of_imperfect_surfaces() {
             if name == "crossed" {
                 truth = truth.min(p.distance(Vec3::X * 0.09) - 0.05);
             }
-            // Over the hole the surface is wherever half of the ball is seen; 2 mm are some cells.
+            // Over the hole the surface is where half of the ball is visible; 2 mm are a few cells.
             let over_hole = name == "holed" && p.z > 0.0 && p.truncate().length() < 0.03;
             if truth.abs() > 0.002 && !over_hole {
                 assert_eq!(distance.distance(p).0 < 0.0, truth < 0.0, "{name} {p}");
@@ -175,13 +176,13 @@ fn winding_numbers_are_whole() {
     }
 }
 
-/// How many of some pairs of points, one of them `near` the surface, have distances that differ by more than the
-/// points are apart, `steep` metres more.
-fn torn(
+/// Counts pairs of points, one of them within `near` of the surface, whose distances differ by more than the
+/// distance between the points plus `tolerance` metres.
+fn steep_pairs(
     distance: impl Fn(Vec3) -> f32,
     [low, high]: [Vec3; 2],
     pairs: usize,
-    steep: f32,
+    tolerance: f32,
     near: f32,
 ) -> usize {
     let mut random = Random(4);
@@ -191,12 +192,12 @@ fn torn(
         let q = p + apart * random.within(Vec3::NEG_ONE, Vec3::ONE).normalize_or(Vec3::X);
         let q = q.clamp(low, high);
         let [from, to] = [p, q].map(&distance);
-        usize::from(from.abs().min(to.abs()) < near && (from - to).abs() > p.distance(q) + steep)
+        usize::from(from.abs().min(to.abs()) < near && (from - to).abs() > p.distance(q) + tolerance)
     };
     (0..pairs).map(pair).sum()
 }
 
-/// The sign by the angle-weighted normal of the closest vertex alone, which folded triangles mislead.
+/// The sign by the angle-weighted normal of the closest vertex alone, which is wrong at folded triangles.
 fn signed_by_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> impl Fn(Vec3) -> f32 {
     let corners = surface::corners(positions, triangles);
     let mut normals: HashMap<[u32; 3], Vec3> = HashMap::new();
@@ -228,14 +229,15 @@ fn is_lipschitz(file: &Path) -> Option<Character> {
     let distance = RestDistance::new(body);
     let grid = distance.grid.as_ref().unwrap();
     assert!(grid.bytes() < 10_000_000, "{}", grid.bytes());
-    // Interpolated, a distance is steeper than one by a tenth or so in cells with an edge or a middle of two parts of
-    // the body: 0.9 mm at most on these bodies in the coarse cells of 20 mm, and 0.6 mm for pairs with a point near the surface.
+    // Interpolated distances have a gradient up to a tenth above 1 in cells with an edge or halfway between
+    // two parts of the body: at most 0.9 mm on these bodies in the coarse cells of 20 mm, and 0.6 mm for
+    // pairs with a point near the surface.
     let interpolated = |p| distance.distance(p).0;
-    assert_eq!(torn(interpolated, REACH_OF_PAIRS, 100_000, 1.5e-3, f32::MAX), 0, "{}", file.display());
-    assert_eq!(torn(interpolated, REACH_OF_PAIRS, 100_000, 8e-4, 0.01), 0, "near: {}", file.display());
-    // A hundredth of a millimetre is for rounding.
+    assert_eq!(steep_pairs(interpolated, REACH_OF_PAIRS, 100_000, 1.5e-3, f32::MAX), 0, "{}", file.display());
+    assert_eq!(steep_pairs(interpolated, REACH_OF_PAIRS, 100_000, 8e-4, 0.01), 0, "near: {}", file.display());
+    // A hundredth of a millimetre allows for rounding.
     assert_eq!(
-        torn(|p| distance.exact.distance(p).0, REACH_OF_PAIRS, 10_000, 1e-5, f32::MAX),
+        steep_pairs(|p| distance.exact.distance(p).0, REACH_OF_PAIRS, 10_000, 1e-5, f32::MAX),
         0,
         "{}",
         file.display()
@@ -249,8 +251,8 @@ fn neighbours_agree_on_the_dancer() {
     let Some(Character { body, .. }) = is_lipschitz(&root.join("assets/dancer.glb")) else { return };
     let head = body.skeleton.rest_position(body.head_joint);
     let positions: Vec<Vec3> = body.mesh.positions.iter().map(|&p| p - head).collect();
-    let misled = signed_by_normals(&positions, &body.mesh.triangles);
-    assert!(torn(misled, REACH_OF_PAIRS, 50_000, 1.5e-3, f32::MAX) > 0, "negative control");
+    let by_normals = signed_by_normals(&positions, &body.mesh.triangles);
+    assert!(steep_pairs(by_normals, REACH_OF_PAIRS, 50_000, 1.5e-3, f32::MAX) > 0, "negative control");
 }
 
 #[test]
@@ -261,8 +263,8 @@ fn neighbours_agree_on_a_body() {
 }
 
 #[test]
-fn folded_slivers_do_not_mislead() {
-    // Behind the shoulder, outside, closest to a sliver that folds over its neighbour.
+fn folded_slivers_do_not_change_the_sign() {
+    // A point behind the shoulder, outside, closest to a sliver that folds over its neighbour.
     let Ok(character) =
         load_character(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/dancer.glb"))
     else {
@@ -277,7 +279,7 @@ fn folded_slivers_do_not_mislead() {
 }
 
 #[test]
-fn the_same_for_any_number_of_threads() {
+fn the_grid_is_the_same_for_any_number_of_threads() {
     let (positions, triangles) = sphere(Vec3::ZERO, 0.1);
     let [one, three] = [1, 3].map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -307,7 +309,7 @@ fn degenerate_and_huge_surfaces() {
         }
     }
     let mut random = Random(5);
-    // A cloud of triangles that fills its space: cells grow rather than their number.
+    // A cloud of triangles that fills its volume makes the cells larger, not more numerous.
     let positions: Vec<Vec3> = (0..30_000).map(|_| random.within(Vec3::NEG_ONE, Vec3::ONE)).collect();
     let cloud: Vec<Vec3> =
         positions.chunks(3).flat_map(|c| [c[0], c[0].lerp(c[1], 0.02), c[0].lerp(c[2], 0.02)]).collect();
@@ -317,12 +319,12 @@ fn degenerate_and_huge_surfaces() {
 }
 
 #[test]
-fn what_is_beside_a_surface_is_outside_however_often_it_is_doubled() {
+fn points_outside_the_bounds_are_outside_a_repeated_surface() {
     let corners = [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y];
     let sheets: Vec<[u32; 3]> = (0..5).flat_map(|_| [[0, 1, 2], [0, 2, 3]]).collect();
     let exact = Exact::new(&surface::corners(&corners, &sheets));
     let p = Vec3::new(0.5, 0.5, -0.01);
     let number = exact.winding.number(&exact.tree, p);
-    assert!(number.abs() > 2.0, "the control: five sheets near by wind twice around a point, {number}");
+    assert!(number.abs() > 2.0, "control: five nearby sheets wind twice around a point, {number}");
     assert!(exact.distance(p).0 > 0.0);
 }

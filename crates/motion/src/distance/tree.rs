@@ -1,4 +1,4 @@
-//! A bounding volume tree over triangles.
+//! A bounding volume tree of triangles.
 
 use glam::Vec3;
 
@@ -11,9 +11,9 @@ pub(super) struct Node {
     pub(super) high: Vec3,
     /// A leaf's first triangle, or an inner node's second child; the first child follows the node.
     pub(super) at: u32,
-    /// Triangles of a leaf; 0 for an inner node.
+    /// Number of triangles of a leaf; 0 for an inner node.
     pub(super) count: u32,
-    /// A leaf's pack of triangles.
+    /// Index of a leaf's pack of triangles.
     pack: u32,
 }
 
@@ -56,7 +56,7 @@ impl Tree {
         Self { nodes, corners, packs }
     }
 
-    /// The box around everything.
+    /// The bounding box of everything.
     pub(super) fn bounds(&self) -> Option<(Vec3, Vec3)> {
         self.nodes.first().map(|root| (root.low, root.high))
     }
@@ -66,7 +66,7 @@ impl Tree {
         &self.packs[leaf.pack as usize]
     }
 
-    /// The surface's normal at a triangle, counter-clockwise.
+    /// The normal of a counter-clockwise triangle.
     pub(super) fn normal(&self, triangle: u32) -> Vec3 {
         let [a, b, c] = self.corners[triangle as usize];
         (b - a).cross(c - a).normalize_or(Vec3::Y)
@@ -77,7 +77,7 @@ impl Tree {
         Hit { triangle, at, distance_squared: (p - at).length_squared() }
     }
 
-    /// Keeps the closest of a hit and a leaf.
+    /// Updates the best hit with a leaf.
     fn approach(&self, leaf: &Node, p: Vec3, best: &mut Option<Hit>, nearest: &mut f32) {
         let (lane, square) = self.packs[leaf.pack as usize].closest(p);
         if square < *nearest {
@@ -88,17 +88,17 @@ impl Tree {
         }
     }
 
-    /// The closest point of the surface; `None` where there is no surface. A `guess` of the triangle, such as that
-    /// of a point near by, spares much of the search.
+    /// The closest point of the surface; `None` if there is no surface. A `guess` of the triangle, such as
+    /// that of a nearby point, shortens the search.
     pub(super) fn closest(&self, p: Vec3, guess: Option<u32>) -> Option<Hit> {
         let mut best = guess.map(|triangle| self.hit(triangle, p));
         let mut nearest = best.map_or(f32::INFINITY, |hit| hit.distance_squared);
-        // The depth of a median tree over 2^32 triangles is 32; each level leaves one node waiting.
-        let mut waiting = [(0.0_f32, 0_u32); 64];
+        // The depth of a median tree over 2^32 triangles is 32; each level leaves one node on the stack.
+        let mut stack = [(0.0_f32, 0_u32); 64];
         let mut count = usize::from(!self.nodes.is_empty());
         'nodes: while count > 0 {
             count -= 1;
-            let (bound, mut index) = waiting[count];
+            let (bound, mut index) = stack[count];
             if bound >= nearest {
                 continue;
             }
@@ -108,7 +108,7 @@ impl Tree {
                 let (near, far) = if first <= second { (0, 1) } else { (1, 0) };
                 let farther = first.max(second);
                 if farther < nearest {
-                    waiting[count] = (farther, children[far]);
+                    stack[count] = (farther, children[far]);
                     count += 1;
                 }
                 if first.min(second) >= nearest {
@@ -121,14 +121,14 @@ impl Tree {
         best
     }
 
-    /// Replaces `leaves` by those that come within `radius` of a point.
+    /// Replaces `leaves` by those within `radius` of a point.
     pub(super) fn leaves_around(&self, p: Vec3, radius: f32, leaves: &mut Vec<u32>) {
         leaves.clear();
-        let mut waiting = [0_u32; 64];
+        let mut stack = [0_u32; 64];
         let mut count = usize::from(!self.nodes.is_empty());
         while count > 0 {
             count -= 1;
-            let index = waiting[count];
+            let index = stack[count];
             let node = &self.nodes[index as usize];
             if node.distance_squared(p) > radius * radius {
                 continue;
@@ -136,7 +136,7 @@ impl Tree {
             if node.count > 0 {
                 leaves.push(index);
             } else {
-                (waiting[count], waiting[count + 1]) = (node.at, index + 1);
+                (stack[count], stack[count + 1]) = (node.at, index + 1);
                 count += 2;
             }
         }
@@ -156,7 +156,7 @@ impl Tree {
     }
 }
 
-/// Halves a run of triangles, the first of which is `start`, at the median of the longest axis; the depth is
+/// Splits a range of triangles, whose first index is `start`, at the median of the longest axis; the depth is
 /// logarithmic.
 fn split(nodes: &mut Vec<Node>, corners: &[[Vec3; 3]], centres: &[Vec3], order: &mut [u32], start: usize) {
     let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
@@ -174,7 +174,7 @@ fn split(nodes: &mut Vec<Node>, corners: &[[Vec3; 3]], centres: &[Vec3], order: 
         return;
     }
     let axis = (centre_high - centre_low).max_position();
-    // Full packs, as far as can be.
+    // Full packs as far as possible.
     let middle = (order.len() / 2).next_multiple_of(LANES);
     order.select_nth_unstable_by(middle, |&a, &b| {
         centres[a as usize][axis].total_cmp(&centres[b as usize][axis]).then(a.cmp(&b))

@@ -1,5 +1,5 @@
-//! How often a surface winds around a point: what tells inside from outside even where triangles fold over, overlap,
-//! intersect or leave holes, which mislead the normal of the closest point.
+//! Winding numbers, which separate inside from outside even where triangles fold over, overlap, intersect or
+//! leave holes; the normal of the closest point fails there.
 
 use std::f32::consts::TAU;
 
@@ -8,23 +8,23 @@ use glam::Vec3;
 use super::closest::{LANES, Pack};
 use super::tree::Tree;
 
-/// A run of triangles is one dipole from farther away than so many of its radii; whole windings are then off by
-/// less than 0.1 (see the tests), and a half is what tells.
+/// A range of triangles is approximated by one dipole beyond this many of its radii. Integer winding numbers
+/// are then off by less than 0.1 (see the tests), and the threshold is 0.5.
 const FAR: f32 = 2.0;
 
-/// What a run of triangles looks like from afar.
+/// Far-field approximation of a range of triangles.
 #[derive(Clone, Copy, Debug, Default)]
 struct Dipole {
-    /// Mean of the triangles' centres by area.
+    /// Area-weighted mean of the triangles' centres.
     centre: Vec3,
-    /// Sum of the triangles' normals by area.
+    /// Sum of the triangles' normals times their areas.
     area: Vec3,
-    /// Of the ball around the centre that holds the triangles.
+    /// Radius of the ball around the centre that contains the triangles.
     radius: f32,
     total_area: f32,
 }
 
-/// One dipole for each node of the tree.
+/// One dipole per node of the tree.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Winding {
     dipoles: Vec<Dipole>,
@@ -61,7 +61,7 @@ impl Winding {
                     dipole.radius = dipole.radius.max(corner.distance(dipole.centre));
                 }
             }
-            // A box's own diagonal bounds the radius too, and is less than what adds up over the levels.
+            // The diagonal of the box bounds the radius too, and more tightly than the sum over the levels.
             let corner = (dipole.centre - node.low).max(node.high - dipole.centre);
             dipole.radius = dipole.radius.min(corner.length());
             dipoles[i] = dipole;
@@ -69,17 +69,17 @@ impl Winding {
         Self { dipoles }
     }
 
-    /// The generalised winding number (Jacobson et al. 2013, "Robust inside-outside segmentation using generalized
-    /// winding numbers"; far triangles as in Barill et al. 2018, "Fast winding numbers for soups and clouds"):
-    /// 1 inside a closed surface, 0 outside, between them near holes.
+    /// The generalised winding number (Jacobson et al. 2013, "Robust inside-outside segmentation using
+    /// generalized winding numbers"; far triangles as in Barill et al. 2018, "Fast winding numbers for soups
+    /// and clouds"): 1 inside a closed surface, 0 outside, in between near holes.
     pub(super) fn number(&self, tree: &Tree, p: Vec3) -> f32 {
         let mut solid_angle = 0.0;
         let mut near = Angles::default();
-        let mut waiting = [0_u32; 64];
+        let mut stack = [0_u32; 64];
         let mut count = usize::from(!self.dipoles.is_empty());
         while count > 0 {
             count -= 1;
-            let index = waiting[count] as usize;
+            let index = stack[count] as usize;
             let dipole = &self.dipoles[index];
             let away = dipole.centre - p;
             let squared = away.length_squared();
@@ -89,7 +89,7 @@ impl Winding {
             }
             let node = &tree.nodes[index];
             if node.count == 0 {
-                (waiting[count], waiting[count + 1]) = (index as u32 + 1, node.at);
+                (stack[count], stack[count + 1]) = (index as u32 + 1, node.at);
                 count += 2;
                 continue;
             }
@@ -98,24 +98,26 @@ impl Winding {
         (solid_angle + near.solid_angle()) / (2.0 * TAU)
     }
 
-    /// Whether the surface winds around a point, either way: some files turn all their triangles inside out.
+    /// Whether the surface winds around a point in either direction; in some files all triangles are inside
+    /// out.
     pub(super) fn inside(&self, tree: &Tree, p: Vec3) -> bool {
         self.number(tree, p).abs() >= 0.5
     }
 }
 
-/// A sum of angles as a product of complex numbers, so that one arc tangent does for all: eight sums side by side.
+/// Sums of angles as products of complex numbers, so that a single arc tangent is needed: eight sums in
+/// lanes.
 #[derive(Clone, Copy, Debug)]
 struct Angles {
     re: [f32; LANES],
     im: [f32; LANES],
-    /// How often each sum has gone around beyond what its number says.
-    rounds: [f32; LANES],
+    /// Full turns of each sum in addition to its complex number.
+    turns: [f32; LANES],
 }
 
 impl Default for Angles {
     fn default() -> Self {
-        Self { re: [1.0; LANES], im: [0.0; LANES], rounds: [0.0; LANES] }
+        Self { re: [1.0; LANES], im: [0.0; LANES], turns: [0.0; LANES] }
     }
 }
 
@@ -124,49 +126,50 @@ impl Angles {
     #[inline]
     #[expect(
         clippy::needless_bitwise_bool,
-        reason = "a short circuit is a branch, and no vector instruction"
+        reason = "a short circuit is a branch, which prevents vectorisation"
     )]
     fn add(&mut self, pack: &Pack, used: usize, p: Vec3) {
         let (re, im) = pack.half_solid_angles(p);
         let (mut unit_re, mut unit_im) = ([1.0; LANES], [0.0; LANES]);
         for k in 0..LANES {
             let size = re[k].abs() + im[k].abs();
-            // In the plane of the triangle the sign is that of rounding; nor counts what has no size.
+            // In the plane of the triangle the sign is a rounding error; triangles without size are ignored
+            // too.
             let flat = (re[k] < 0.0) & (im[k].abs() <= f32::EPSILON * size);
             let counts = (k < used) & (size > 0.0) & (size < f32::INFINITY) & !flat;
             let inverse = 1.0 / size;
             unit_re[k] = if counts { re[k] * inverse } else { 1.0 };
             unit_im[k] = if counts { im[k] * inverse } else { 0.0 };
         }
-        let Self { re: all_re, im: all_im, rounds } = self;
+        let Self { re: all_re, im: all_im, turns } = self;
         for k in 0..LANES {
-            let (re, im, round) = sum([all_re[k], all_im[k]], [unit_re[k], unit_im[k]]);
-            (all_re[k], all_im[k], rounds[k]) = (re, im, rounds[k] + round);
+            let (re, im, turn) = sum([all_re[k], all_im[k]], [unit_re[k], unit_im[k]]);
+            (all_re[k], all_im[k], turns[k]) = (re, im, turns[k] + turn);
         }
     }
 
-    /// Twice the sum.
+    /// Twice the sum of the half angles.
     fn solid_angle(&self) -> f32 {
-        let (mut re, mut im, mut rounds) = (1.0, 0.0, 0.0);
+        let (mut re, mut im, mut turns) = (1.0, 0.0, 0.0);
         for k in 0..LANES {
-            let round;
-            (re, im, round) = sum([re, im], [self.re[k], self.im[k]]);
-            rounds += self.rounds[k] + round;
+            let turn;
+            (re, im, turn) = sum([re, im], [self.re[k], self.im[k]]);
+            turns += self.turns[k] + turn;
         }
-        // A minus before a zero would be another half turn.
-        2.0 * ((im + 0.0).atan2(re) + TAU * rounds)
+        // Adding 0 removes the sign of a negative zero, which would add half a turn.
+        2.0 * ((im + 0.0).atan2(re) + TAU * turns)
     }
 }
 
-/// The sum of two angles between minus and plus half a turn, as numbers of about size one, and the rounds by which it goes
-/// beyond that.
+/// The sum of two angles between minus and plus half a turn, as complex numbers of size about one, and the
+/// full turns by which it exceeds that range.
 #[inline]
-#[expect(clippy::needless_bitwise_bool, reason = "a short circuit is a branch, and no vector instruction")]
+#[expect(clippy::needless_bitwise_bool, reason = "a short circuit is a branch, which prevents vectorisation")]
 fn sum([ar, ai]: [f32; 2], [br, bi]: [f32; 2]) -> (f32, f32, f32) {
     let (re, im) = (ar * br - ai * bi, ar * bi + ai * br);
     let up = if (ai >= 0.0) & (bi >= 0.0) & (im < 0.0) { 1.0 } else { 0.0 };
     let down = if (ai < 0.0) & (bi < 0.0) & (im >= 0.0) { 1.0 } else { 0.0 };
-    // Sizes were one in the sum of their parts: this one is a half at the least.
+    // The summands have size one, so the sum has at least size one half.
     let inverse = 1.0 / (re.abs() + im.abs());
     (re * inverse, im * inverse, up - down)
 }
@@ -192,7 +195,7 @@ mod tests {
         ((*seed >> 40) as f32 / (1 << 23) as f32) - 1.0
     }
 
-    /// An open soup of triangles that overlap, and a patch of a surface that is wound around many times.
+    /// An open soup of overlapping triangles, and a surface that winds around its inside many times.
     fn soups(seed: &mut u64) -> [Vec<[Vec3; 3]>; 2] {
         let mut at = |size: f32| Vec3::new(random(seed), random(seed), random(seed)) * size;
         let soup = (0..300)
@@ -208,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn a_product_of_numbers_is_the_sum_of_the_angles() {
+    fn complex_products_sum_the_angles() {
         let mut seed = 5;
         for soup in soups(&mut seed) {
             let tree = Tree::new(&soup);
@@ -223,16 +226,16 @@ mod tests {
                 let wanted: f64 = soup.iter().map(|t| solid_angle_of(t.map(|corner| corner - p))).sum();
                 let off = (f64::from(all.solid_angle()) - wanted).abs();
                 most = most.max(wanted.abs());
-                // Measured: 4e-5. A round that is lost would be 12.6.
+                // Measured: 4e-5. A lost turn would be 12.6.
                 assert!(off < 1e-3, "{p}: {} for {wanted}", all.solid_angle());
             }
-            assert!(most > 6.0, "the control: the sum goes around, {most}");
-            assert!(all.rounds.iter().all(|rounds| rounds.abs() < 20.0));
+            assert!(most > 6.0, "control: the sum exceeds a full turn, {most}");
+            assert!(all.turns.iter().all(|turns| turns.abs() < 20.0));
         }
     }
 
     #[test]
-    fn what_is_in_the_plane_of_a_triangle_or_on_its_corner_sees_nothing_of_it() {
+    fn points_in_the_plane_of_a_triangle_or_on_its_corners_have_winding_number_zero() {
         let tree = Tree::new(&[[Vec3::ZERO, Vec3::X, Vec3::Y]]);
         let winding = Winding::new(&tree);
         for p in [Vec3::new(0.2, 0.2, 0.0), Vec3::ZERO, Vec3::X, Vec3::new(0.5, 0.5, 0.0)] {

@@ -1,4 +1,4 @@
-//! The field of a body: which joints, which box, the distances, and the weights around.
+//! Building the field of a body: its joints, box, distances and weights.
 
 use std::collections::HashMap;
 
@@ -8,23 +8,24 @@ use rayon::prelude::*;
 use super::{BodyField, FIELD_JOINTS, FieldLattice, FieldWeights, lines};
 use crate::{Body, RestDistance, head_mesh};
 
-/// What the field spans around the head joint of a body of [`TALL`] metres, metres.
+/// Box of the field grid the head joint of a body of [`USUAL_SIZE`] metres, metres.
 const REACH: [Vec3; 2] = [Vec3::new(-0.27, -0.42, -0.26), Vec3::new(0.27, 0.32, 0.26)];
-const TALL: f32 = 1.7;
-/// Beyond the surface the field goes on for so much of a body of that height, metres.
+const USUAL_SIZE: f32 = 1.7;
+/// Margin of the field beyond the surface of a body of that height, metres.
 const MARGIN: f32 = 0.035;
-/// Points of the lattice of distances.
+/// Number of points of the distance lattice.
 const POINTS: f32 = 64.0 * 64.0 * 64.0;
-/// Weights are told apart in steps of this; the surface is off by as much of how far two joints part, at most.
+/// Quantisation of weights. The error of the surface is at most this fraction of the distance by which two
+/// joints move apart.
 const STEP: f32 = 1.0 / 64.0;
-/// Most different weightings.
+/// Largest number of different weightings.
 const SLOTS: usize = 6_000;
-/// Samples of the surface, from one to the next, in spacings of the distances.
+/// Distance between samples of the surface, in spacings of the distance lattice.
 const SAMPLE: f32 = 0.75;
-/// Most samples of the surface.
+/// Largest number of samples.
 const SAMPLES: usize = 400_000;
 
-/// A place of the surface at rest, head space, with the weights of the field's joints.
+/// A point of the resting surface, head space, with the weights of the field's joints.
 struct Sample {
     at: Vec3,
     normal: Vec3,
@@ -46,13 +47,13 @@ pub(super) fn build(body: &Body, rest: &RestDistance) -> Option<BodyField> {
     }
     let joints = joints_of(body, origin, low, high);
     let samples = samples_of(body, origin, &joints, low, high, SAMPLE * spacing);
-    let around = Around::new(&samples, 2.0 * spacing);
+    let grid = SampleGrid::new(&samples, 2.0 * spacing);
     let wanted: Vec<Option<FieldWeights>> = (0..nodes.count())
         .into_par_iter()
         .map(|i| {
             let p = nodes.place(i);
             let (d, normal) = rest.distance(p);
-            (d < 4.0 * nodes.spacing).then(|| around.weights(p - normal * d, normal, spacing))
+            (d < 4.0 * nodes.spacing).then(|| grid.weights(p - normal * d, normal, spacing))
         })
         .collect();
     let (slots, slot_of_node) = slots_of(&wanted, joints.len());
@@ -70,12 +71,12 @@ pub(super) fn build(body: &Body, rest: &RestDistance) -> Option<BodyField> {
     Some(field)
 }
 
-/// The box around head and shoulders in head space, with a margin.
+/// The box grid head and shoulders in head space, with a margin.
 fn reach(body: &Body, origin: Vec3) -> Option<(Vec3, Vec3)> {
     let mesh = &body.mesh.positions;
     let (low, high) = bounds(mesh.iter().map(|p| *p - origin))?;
-    let scale = (high - low).max_element() / TALL;
-    // Animals and machines have heads of other sizes.
+    let scale = (high - low).max_element() / USUAL_SIZE;
+    // Heads of animals and machines have other sizes.
     let (head_low, head_high) = bounds(head_mesh(body).positions.into_iter())?;
     let [mut from, mut to] = REACH.map(|corner| corner * scale);
     (from, to) = (from.min(head_low), to.max(head_high));
@@ -90,7 +91,7 @@ fn bounds(points: impl Iterator<Item = Vec3>) -> Option<(Vec3, Vec3)> {
     (ends.0.is_finite() && ends.1.is_finite()).then_some(ends)
 }
 
-/// The head, and the joints that move most of the box besides; what hangs below the head is the head.
+/// The head, and the joints with most weight in the box. Descendants of the head count as the head.
 fn joints_of(body: &Body, origin: Vec3, low: Vec3, high: Vec3) -> Vec<usize> {
     let mesh = &body.mesh;
     let mut share = vec![0.0_f64; body.skeleton.joints.len()];
@@ -109,7 +110,8 @@ fn joints_of(body: &Body, origin: Vec3, low: Vec3, high: Vec3) -> Vec<usize> {
     std::iter::once(body.head_joint).chain(order).collect()
 }
 
-/// Which of the field's joints stands for each joint of the body: itself, or the nearest above it.
+/// The joint of the field that represents each joint of the body: itself, or its nearest ancestor in the
+/// field.
 fn stand_ins(body: &Body, joints: &[usize]) -> Vec<usize> {
     let skeleton = &body.skeleton;
     (0..skeleton.joints.len())
@@ -121,13 +123,13 @@ fn stand_ins(body: &Body, joints: &[usize]) -> Vec<usize> {
                 }
                 at = skeleton.joints[joint].parent;
             }
-            // Above all of them: with the heaviest of the trunk.
+            // Ancestors of all of them are represented by the heaviest joint of the trunk.
             1.min(joints.len() - 1)
         })
         .collect()
 }
 
-/// Places all over the surface in the box, so that coarse meshes tell as much as fine ones.
+/// Samples the surface in the box evenly, so that coarse meshes give as much information as fine ones.
 fn samples_of(
     body: &Body,
     origin: Vec3,
@@ -168,14 +170,14 @@ fn samples_of(
     out
 }
 
-/// Samples by the cell that they are in.
-struct Around<'a> {
+/// Samples by cell.
+struct SampleGrid<'a> {
     samples: &'a [Sample],
     cell: f32,
     cells: HashMap<IVec3, Vec<u32>>,
 }
 
-impl<'a> Around<'a> {
+impl<'a> SampleGrid<'a> {
     fn new(samples: &'a [Sample], cell: f32) -> Self {
         let mut cells: HashMap<IVec3, Vec<u32>> = HashMap::new();
         for (i, sample) in samples.iter().enumerate() {
@@ -184,7 +186,7 @@ impl<'a> Around<'a> {
         Self { samples, cell, cells }
     }
 
-    /// Mean of the weights around a place of the surface, of samples that face the same way.
+    /// Weighted mean of the weights grid a point of the surface, over samples that face the same way.
     fn weights(&self, at: Vec3, normal: Vec3, width: f32) -> FieldWeights {
         let middle = (at / self.cell).floor().as_ivec3();
         let (mut sum, mut total) = ([0.0_f32; FIELD_JOINTS], 0.0_f32);
@@ -215,7 +217,7 @@ impl<'a> Around<'a> {
     }
 }
 
-/// Nodes of nearly equal weights share a slot. Far nodes have that of the head.
+/// Assigns a slot to each node; nodes with nearly equal weights share one. Distant nodes have the head's.
 fn slots_of(wanted: &[Option<FieldWeights>], joints: usize) -> (Vec<FieldWeights>, Vec<u16>) {
     let alone = |j: usize| std::array::from_fn(|k| f32::from(u8::from(k == j)));
     let mut slots: Vec<FieldWeights> = (0..joints).map(alone).collect();

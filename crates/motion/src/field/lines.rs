@@ -1,10 +1,10 @@
-//! The field as lines to be drawn: the surface's contours in slices, carried along with the joints.
+//! Outline of the field for drawing: contours of the surface in slices, moved with the joints.
 
 use glam::{Affine3A, UVec3, Vec3};
 
 use super::{BodyField, FieldPose, FieldWeights};
 
-/// One end of a line at rest: where, which way is out, and the slot of its weights.
+/// One end of a line at rest: position, outward direction, and slot of its weights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct End {
     at: Vec3,
@@ -12,7 +12,7 @@ pub(super) struct End {
     slot: u16,
 }
 
-/// Every so many layers of the lattice there is a contour.
+/// Spacing of the contours in layers of the lattice.
 const EVERY: u32 = 3;
 
 impl BodyField {
@@ -27,7 +27,7 @@ impl BodyField {
     }
 }
 
-/// The joints' transforms blended as skinning does it.
+/// Blends the joints' transforms as in skinning.
 pub(crate) fn blend(weights: &FieldWeights, maps: &[Affine3A]) -> Affine3A {
     let mut sum = Affine3A::from_mat3(glam::Mat3::ZERO);
     for (&weight, map) in weights.iter().zip(maps) {
@@ -39,7 +39,7 @@ pub(crate) fn blend(weights: &FieldWeights, maps: &[Affine3A]) -> Affine3A {
     sum
 }
 
-/// The contours of every few layers along each axis, by marching squares.
+/// Contours of every few layers along each axis, by marching squares.
 pub(super) fn outline(field: &BodyField) -> Vec<[End; 2]> {
     let lattice = field.distances;
     let mut lines = Vec::new();

@@ -1,10 +1,11 @@
-//! A signed distance field of head, neck, shoulders and upper back at rest, which the joints carry along.
+//! A signed distance field of head, neck, shoulders and upper back at rest, which moves with the joints.
 //!
-//! The field itself never changes: distances of the resting skin on a lattice of about 64^3 points, and on one half
-//! as fine the joints that move the skin near by, with their weights. In a pose a point near the body is taken back
-//! to where it is at rest, `X = (sum_j w_j(X) M_j)^-1 x`, the inverse of what skinning does, and the distance is read
-//! there. Where one joint moves all (the skull), that is the inverse of its transform alone; between joints the
-//! weights pass smoothly from one to the other, as those of the skin do, so the surface has no seams.
+//! The field itself never changes. It consists of the distances of the resting skin on a lattice of about
+//! 64^3 points and, on a lattice half as fine, the weights of the joints that move the nearby skin. In a
+//! pose, a point near the body is mapped back to its rest position, `X = (sum_j w_j(X) M_j)^-1 x`, the
+//! inverse of skinning, and the distance is read there. Where one joint moves everything (the skull), that is
+//! the inverse of its transform alone. Between joints the weights change smoothly, as those of the skin do,
+//! so the surface has no seams.
 
 mod build;
 mod lines;
@@ -15,7 +16,7 @@ use glam::{Affine3A, UVec3, Vec3};
 
 use crate::{Body, ColliderShape, Pose, RestDistance};
 
-/// Most joints that move a field.
+/// Largest number of joints that move a field.
 pub const FIELD_JOINTS: usize = 16;
 
 /// A lattice of points in head space at rest.
@@ -23,9 +24,9 @@ pub const FIELD_JOINTS: usize = 16;
 pub struct FieldLattice {
     /// The first point, metres.
     pub low: Vec3,
-    /// From point to point, metres.
+    /// Distance between neighbouring points, metres.
     pub spacing: f32,
-    /// Points along each axis; a point's index is `(z * size.y + y) * size.x + x`.
+    /// Points along each axis; the index of a point is `(z * size.y + y) * size.x + x`.
     pub size: UVec3,
 }
 
@@ -36,12 +37,12 @@ impl FieldLattice {
         ((at.z * self.size.y + at.y) * self.size.x + at.x) as usize
     }
 
-    /// How many points there are.
+    /// Number of points.
     pub fn count(&self) -> usize {
         self.size.as_usizevec3().element_product()
     }
 
-    /// Place of a point, metres.
+    /// Position of a point, metres.
     pub fn place(&self, index: usize) -> Vec3 {
         let (x, y) = (self.size.x as usize, self.size.y as usize);
         let at = UVec3::new((index % x) as u32, (index / x % y) as u32, (index / x / y) as u32);
@@ -57,7 +58,8 @@ impl FieldLattice {
 /// A weighting of the field's joints.
 pub type FieldWeights = [f32; FIELD_JOINTS];
 
-/// Signed distances around head and shoulders at rest; see the head of this module. Immutable, shared by `Arc`.
+/// Signed distances around head and shoulders at rest; see the module documentation. Immutable, shared by
+/// `Arc`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BodyField {
     joints: Vec<usize>,
@@ -70,18 +72,18 @@ pub struct BodyField {
     outline: Vec<[lines::End; 2]>,
 }
 
-/// Where a field is at one instant.
+/// A field at one instant.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FieldPose {
-    /// Carries each joint's part from the rest pose's world to the world now, in the order of
+    /// For each joint the map from the world of the rest pose to the current world, in the order of
     /// [`BodyField::joints`].
     pub world_from_rest: Vec<Affine3A>,
-    /// By how much the surface is moved outward, metres; see [`crate::FieldEdit`].
+    /// Outward displacement of the surface, metres; see [`crate::FieldEdit`].
     pub lift: f32,
 }
 
 impl BodyField {
-    /// Measures the field of a body, whose distance at rest is `rest`; `None` where nothing of it can be measured.
+    /// Builds the field of a body from its rest distance `rest`; `None` if nothing can be measured.
     pub fn new(body: &Body, rest: &RestDistance) -> Option<Self> {
         build::build(body, rest)
     }
@@ -91,7 +93,7 @@ impl BodyField {
         &self.joints
     }
 
-    /// From head space at rest to the world at rest.
+    /// Translation from head space at rest to the world at rest.
     pub fn rest_from_head(&self) -> Vec3 {
         self.rest_from_head
     }
@@ -114,23 +116,23 @@ impl BodyField {
         &self.nodes
     }
 
-    /// For each node the entry of [`BodyField::slots`] that it has.
+    /// For each node the index of its weights in [`BodyField::slots`].
     #[inline]
     pub fn slot_of_node(&self) -> &[u16] {
         &self.slot_of_node
     }
 
-    /// Weights of the joints, which sum to 1. The first entries are those of one joint alone, in order.
+    /// Weights of the joints, which sum to 1. The first entries belong to single joints, in order.
     pub fn slots(&self) -> &[FieldWeights] {
         &self.slots
     }
 
-    /// Distance at a point of head space at rest, metres, and its gradient; `None` outside of the lattice.
+    /// Distance at a point of head space at rest, metres, and its gradient; `None` outside the lattice.
     pub fn sample(&self, p: Vec3) -> Option<(f32, Vec3)> {
         let lattice = &self.distances;
         let at = (p - lattice.low) / lattice.spacing;
         let last = (lattice.size - 1).as_vec3();
-        // Not a number is not within.
+        // NaN is outside.
         if !(at.cmpge(Vec3::ZERO) & at.cmplt(last)).all() {
             return None;
         }
@@ -143,7 +145,7 @@ impl BodyField {
         Some((distance, slope / lattice.spacing))
     }
 
-    /// Whether all of a shape at rest lies where the field tells more than the shape does.
+    /// Whether the field covers the whole shape, so that it can replace it.
     pub fn covers(&self, shape_at_rest: &ColliderShape) -> bool {
         let (low, high) = shape_at_rest.bounds();
         let inner = Vec3::splat(self.distances.spacing);
@@ -151,7 +153,7 @@ impl BodyField {
         low.cmpge(self.distances.low + inner).all() && high.cmple(self.distances.high() - inner).all()
     }
 
-    /// Carries the field along with its joints. Nothing is allocated where `placed` was used with it before.
+    /// Moves the field with its joints. Nothing is allocated if `placed` was used with it before.
     pub fn place(&self, body: &Body, pose: &Pose, lift: f32, placed: &mut FieldPose) {
         placed.lift = lift;
         placed.world_from_rest.clear();

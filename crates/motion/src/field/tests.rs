@@ -3,7 +3,7 @@ use glam::{Quat, Vec3};
 use super::*;
 use crate::{Bind, Joint, Mesh, Skeleton, Skin, SkinData, pose_at, skin};
 
-/// A pillar of 40 cm with a head on top: two joints, whose weights pass over within 10 cm.
+/// A pillar of 40 cm with a head on top: two joints, whose weights blend over 10 cm.
 fn pillar() -> Body {
     let joint = |name: &str, parent, y: f32| Joint {
         name: name.into(),
@@ -55,7 +55,7 @@ fn pillar() -> Body {
 }
 
 #[test]
-fn a_field_says_what_the_distance_says_and_its_outline_lies_on_the_skin() {
+fn a_field_matches_the_distance_and_its_outline_lies_on_the_skin() {
     let body = pillar();
     let rest = RestDistance::new(&body);
     let field = BodyField::new(&body, &rest).expect("a field");
@@ -67,15 +67,15 @@ fn a_field_says_what_the_distance_says_and_its_outline_lies_on_the_skin() {
         let r = 0.03 + 0.006 * (i % 10) as f32;
         let p = Vec3::new(r * u.sin() * v.cos(), 0.1 * (u * 0.3).cos() - 0.02, r * u.cos());
         let Some((d, _)) = field.sample(p) else { continue };
-        // Cells of some 4 mm on a pillar of 6 cm: h^2 / 8 r is 0.03 mm; its rims are sharp.
-        assert!((d - rest.distance(p).0).abs() < 1.5e-3, "{d} where {} is right", rest.distance(p).0);
+        // Cells of about 4 mm on a pillar of 6 cm: h^2 / 8 r is 0.03 mm; its rims are sharp.
+        assert!((d - rest.distance(p).0).abs() < 1.5e-3, "found {d}, expected {}", rest.distance(p).0);
         inside += i32::from(d < 0.0);
         outside += i32::from(d > 0.0);
     }
-    assert!(inside > 50 && outside > 50, "{inside} and {outside}: too few to show anything");
+    assert!(inside > 50 && outside > 50, "{inside} and {outside}: too few to prove anything");
     assert!(field.sample(Vec3::splat(9.0)).is_none() && field.sample(Vec3::NAN).is_none());
 
-    // Head thrown back: the outline is where the skin is.
+    // With the head thrown back the outline lies on the skin.
     let mut pose = Pose::default();
     pose_at(&body, None, 0.0, &mut pose);
     pose.world_from_joint[1] *= Affine3A::from_rotation_x(-0.7);
@@ -87,13 +87,13 @@ fn a_field_says_what_the_distance_says_and_its_outline_lies_on_the_skin() {
     let worst =
         |lines: &[[Vec3; 2]]| lines.iter().flatten().fold(0.0_f32, |w, &p| w.max(now.distance(p).0.abs()));
     assert!(lines.len() > 500);
-    // Ends take the weights of the nearest node, 4 mm away: it is for drawing.
+    // Ends take the weights of the nearest node, up to 4 mm away; the outline is only for drawing.
     assert!(worst(&lines) < 4e-3, "{}", worst(&lines));
     let mut stiff = Vec::new();
     pose_at(&body, None, 0.0, &mut pose);
     field.place(&body, &pose, 0.0, &mut placed);
     field.lines(&placed, &mut stiff);
-    assert!(worst(&stiff) > 0.02, "the outline at rest is elsewhere: {}", worst(&stiff));
+    assert!(worst(&stiff) > 0.02, "control: the outline at rest is elsewhere: {}", worst(&stiff));
 }
 
 #[test]

@@ -1,16 +1,18 @@
-//! Typed numbers out of buffers: every component type, normalisation, strides, sparse and zero-filled accessors.
+//! Typed numbers from buffers: every component type, normalisation, strides, sparse and zero-filled
+//! accessors.
 
 use std::cell::Cell;
 
 use super::document::{Accessor, Document};
 use crate::MotionError;
 
-/// Reads the accessors of one file, and refuses those that reach past their buffers.
+/// Reads the accessors of one file, and refuses those that exceed their buffers.
 pub(super) struct Accessors<'a> {
     pub(super) file: &'a str,
     pub(super) document: &'a Document,
     pub(super) buffers: &'a [Vec<u8>],
-    /// Numbers that may still be decoded: a small file that names the same bytes a thousand times ends here.
+    /// Remaining number of values that may be decoded, so that a small file cannot refer to the same bytes a
+    /// thousand times.
     budget: Cell<u64>,
 }
 
@@ -46,7 +48,7 @@ impl Component {
         }
     }
 
-    /// One number from its first bytes; integers are normalised by the rule of glTF 2.0, section 3.11.
+    /// Decodes one number from its bytes; integers are normalised as in glTF 2.0, section 3.11.
     fn decode(self, b: &[u8], normalized: bool) -> f32 {
         let n = |value: f32, largest: f32| if normalized { (value / largest).max(-1.0) } else { value };
         match self {
@@ -59,7 +61,7 @@ impl Component {
         }
     }
 
-    /// One unsigned integer; `None` for types that are none.
+    /// Decodes one unsigned integer; `None` for other types.
     fn decode_index(self, b: &[u8]) -> Option<u32> {
         Some(match self {
             Self::U8 => u32::from(b[0]),
@@ -81,9 +83,9 @@ fn components_of(kind: &str) -> Option<usize> {
     })
 }
 
-/// A run of elements: bytes from the first element on, and the step between elements.
+/// A sequence of elements: the bytes from the first element on, and the distance between elements.
 #[derive(Clone, Copy)]
-struct Run<'a> {
+struct ElementRun<'a> {
     bytes: &'a [u8],
     stride: usize,
 }
@@ -94,7 +96,7 @@ impl<'a> Accessors<'a> {
         Self { file, document, buffers, budget: Cell::new(64 * bytes.max(1 << 16)) }
     }
 
-    fn fault(&self, index: usize, problem: impl Into<String>) -> MotionError {
+    fn error(&self, index: usize, problem: impl Into<String>) -> MotionError {
         MotionError::malformed(self.file, format!("accessor {index}"), problem)
     }
 
@@ -103,10 +105,10 @@ impl<'a> Accessors<'a> {
         self.document
             .accessors
             .get(index)
-            .ok_or_else(|| self.fault(index, format!("is not there; the file has {count}")))
+            .ok_or_else(|| self.error(index, format!("does not exist; the file has {count}")))
     }
 
-    /// Number of elements, not yet known to exist.
+    /// Number of elements, not yet checked.
     pub(super) fn count(&self, index: usize) -> Result<u64, MotionError> {
         Ok(self.get(index)?.count)
     }
@@ -119,12 +121,12 @@ impl<'a> Accessors<'a> {
         offset: u64,
         count: u64,
         element: usize,
-    ) -> Result<Run<'a>, MotionError> {
+    ) -> Result<ElementRun<'a>, MotionError> {
         let missing =
-            |what: &str, i: usize| self.fault(index, format!("needs {what} {i}, which is not there"));
+            |what: &str, i: usize| self.error(index, format!("needs {what} {i}, which does not exist"));
         let v = self.document.buffer_views.get(view).ok_or_else(|| missing("bufferView", view))?;
         let buffer = self.buffers.get(v.buffer).ok_or_else(|| missing("buffer", v.buffer))?;
-        // Zero is not allowed and means that elements are packed.
+        // Zero is not allowed but is interpreted as tightly packed.
         let stride = v.byte_stride.filter(|&s| s != 0).unwrap_or(element as u64);
         let length = match count {
             0 => Some(0),
@@ -135,9 +137,9 @@ impl<'a> Accessors<'a> {
         match (end_in_view, end) {
             (Some(in_view), Some(end)) if in_view <= v.byte_length && end <= buffer.len() as u64 => {
                 let start = (v.byte_offset + offset) as usize;
-                Ok(Run { bytes: &buffer[start..end as usize], stride: stride as usize })
+                Ok(ElementRun { bytes: &buffer[start..end as usize], stride: stride as usize })
             }
-            _ => Err(self.fault(
+            _ => Err(self.error(
                 index,
                 format!(
                     "{count} elements of {element} bytes from byte {offset} of bufferView {view}, which has {} bytes \
@@ -150,8 +152,8 @@ impl<'a> Accessors<'a> {
         }
     }
 
-    /// Calls `store` with the bytes of each element: the base run, then what a sparse accessor puts in its place.
-    /// Elements without bytes are left alone, which is zero.
+    /// Calls `store` with the bytes of each element: first the base elements, then the replacements of a
+    /// sparse accessor. Elements without bytes are skipped and stay zero.
     fn each(
         &self,
         index: usize,
@@ -167,7 +169,7 @@ impl<'a> Accessors<'a> {
         }
         let Some(sparse) = &accessor.sparse else { return Ok(()) };
         let component = Component::new(sparse.indices.component_type)
-            .ok_or_else(|| self.fault(index, "sparse indices of an unknown component type"))?;
+            .ok_or_else(|| self.error(index, "sparse indices of an unknown component type"))?;
         let places = self.run(
             index,
             sparse.indices.buffer_view,
@@ -180,10 +182,10 @@ impl<'a> Accessors<'a> {
         for k in 0..sparse.count as usize {
             let place = component
                 .decode_index(&places.bytes[k * places.stride..])
-                .ok_or_else(|| self.fault(index, "sparse indices that are not unsigned integers"))?;
+                .ok_or_else(|| self.error(index, "sparse indices that are not unsigned integers"))?;
             if u64::from(place) >= accessor.count {
                 let problem = format!("sparse index {place}; the accessor has {} elements", accessor.count);
-                return Err(self.fault(index, problem));
+                return Err(self.error(index, problem));
             }
             store(place as usize, &values.bytes[k * values.stride..][..element])?;
         }
@@ -191,21 +193,16 @@ impl<'a> Accessors<'a> {
     }
 
     /// Checks that `count` elements may be allocated, before they are.
-    fn spend(&self, index: usize, accessor: &Accessor, components: usize) -> Result<(), MotionError> {
+    fn check_budget(&self, index: usize, accessor: &Accessor, components: usize) -> Result<(), MotionError> {
         let bytes: u64 = self.buffers.iter().map(|b| b.len() as u64).sum();
-        // Where the file holds no bytes for the elements, their number must still be of the file's order.
+        // If the file has no bytes for the elements, their number must not exceed the size of the file.
         if accessor.buffer_view.is_none() && accessor.count > bytes.max(1 << 16) {
-            return Err(
-                self.fault(index, format!("{} elements that the file holds no bytes for", accessor.count))
-            );
+            return Err(self.error(index, format!("{} elements without bytes in the file", accessor.count)));
         }
         let wanted = accessor.count.saturating_mul(components as u64);
         let left = self.budget.get().checked_sub(wanted);
         let left = left.ok_or_else(|| {
-            self.fault(
-                index,
-                format!("{} elements: far more than a file of {bytes} bytes can mean", accessor.count),
-            )
+            self.error(index, format!("{} elements; too many for a file of {bytes} bytes", accessor.count))
         })?;
         self.budget.set(left);
         Ok(())
@@ -215,13 +212,15 @@ impl<'a> Accessors<'a> {
     pub(super) fn read<const N: usize>(&self, index: usize) -> Result<Vec<[f32; N]>, MotionError> {
         let (accessor, component, components) = self.shape(index)?;
         if components != N {
-            return Err(self.fault(index, format!("is {}; wanted {N} numbers an element", accessor.kind)));
+            return Err(
+                self.error(index, format!("type {}; must have {N} numbers per element", accessor.kind))
+            );
         }
-        // Bounds first: the allocation below is then no larger than the file warrants.
+        // Bounds are checked first, so that the allocation below is justified by the file.
         if let Some(view) = accessor.buffer_view {
             self.run(index, view, accessor.byte_offset, accessor.count, N * component.size())?;
         }
-        self.spend(index, accessor, N)?;
+        self.check_budget(index, accessor, N)?;
         let mut out = vec![[0.0; N]; accessor.count as usize];
         let size = component.size();
         self.each(index, N * size, |i, bytes| {
@@ -245,12 +244,12 @@ impl<'a> Accessors<'a> {
     pub(super) fn read_indices<const N: usize>(&self, index: usize) -> Result<Vec<[u32; N]>, MotionError> {
         let (accessor, component, components) = self.shape(index)?;
         if components != N || component.decode_index(&[0; 4]).is_none() {
-            return Err(self.fault(index, format!("wanted elements of {N} unsigned integers")));
+            return Err(self.error(index, format!("must have {N} unsigned integers per element")));
         }
         if let Some(view) = accessor.buffer_view {
             self.run(index, view, accessor.byte_offset, accessor.count, N * component.size())?;
         }
-        self.spend(index, accessor, N)?;
+        self.check_budget(index, accessor, N)?;
         let mut out = vec![[0; N]; accessor.count as usize];
         let size = component.size();
         self.each(index, N * size, |i, bytes| {
@@ -265,11 +264,10 @@ impl<'a> Accessors<'a> {
     fn shape(&self, index: usize) -> Result<(&'a Accessor, Component, usize), MotionError> {
         let accessor = self.get(index)?;
         let component = Component::new(accessor.component_type).ok_or_else(|| {
-            self.fault(index, format!("unknown component type {}", accessor.component_type))
+            self.error(index, format!("unknown component type {}", accessor.component_type))
         })?;
-        let components = components_of(&accessor.kind).ok_or_else(|| {
-            self.fault(index, format!("type `{}`, which no attribute read here has", accessor.kind))
-        })?;
+        let components = components_of(&accessor.kind)
+            .ok_or_else(|| self.error(index, format!("type `{}`, which is not supported", accessor.kind)))?;
         Ok((accessor, component, components))
     }
 }

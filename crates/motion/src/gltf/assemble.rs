@@ -1,4 +1,4 @@
-//! From checked parts to a body and its clips: nodes, surface, rest pose, unit, head.
+//! Assembles a body and its clips: nodes, surface, rest pose, unit, head.
 
 use std::{
     collections::{BTreeMap, HashMap},
@@ -20,7 +20,7 @@ use super::{
 };
 use crate::{Body, BodySettings, Clip, LengthUnit, MotionError, guess_head, skinning::update_rest_surface};
 
-/// A file whose largest extent passes this many units is not in metres.
+/// A file whose largest extent exceeds this many units is not in metres.
 const GIANT: f32 = 10.0;
 
 pub(super) fn assemble(accessors: &Accessors, settings: BodySettings) -> Result<Character, MotionError> {
@@ -35,14 +35,14 @@ pub(super) fn assemble(accessors: &Accessors, settings: BodySettings) -> Result<
         let node = &document.nodes[n];
         let Some(mesh) = node.mesh else { continue };
         if mesh >= document.meshes.len() {
-            let problem = format!("mesh {mesh} is not there; the file has {}", document.meshes.len());
+            let problem = format!("mesh {mesh} does not exist; the file has {}", document.meshes.len());
             return Err(MotionError::malformed(file, format!("node {n}"), problem));
         }
         match node.skin {
             None => wanted[n] = true,
             Some(skin) => {
                 let Some(skin) = document.skins.get(skin).filter(|s| !s.joints.is_empty()) else {
-                    let problem = format!("skin {skin} is not there or has no joints");
+                    let problem = format!("skin {skin} does not exist or has no joints");
                     return Err(MotionError::malformed(file, format!("node {n}"), problem));
                 };
                 for &joint in &skin.joints {
@@ -79,11 +79,7 @@ pub(super) fn assemble(accessors: &Accessors, settings: BodySettings) -> Result<
         let rigid = if node.skin.is_none() {
             let joint = joint_of_node[n].unwrap_or(0);
             palette.add(joint, Affine3A::IDENTITY).ok_or_else(|| {
-                MotionError::malformed(
-                    file,
-                    format!("node {n}"),
-                    "more nodes with meshes than can be told apart",
-                )
+                MotionError::malformed(file, format!("node {n}"), "too many nodes with meshes")
             })?
         } else {
             0
@@ -96,7 +92,7 @@ pub(super) fn assemble(accessors: &Accessors, settings: BodySettings) -> Result<
     surface.skin.palette = palette.binds;
     let (mesh, skin_data) = surface.finish();
     if mesh.triangles.is_empty() {
-        let found = found_instead(document, &dropped);
+        let found = describe_contents(document, &dropped);
         return Err(MotionError::Empty { file: file.to_owned(), found, wanted: "a mesh of triangles" });
     }
     let stem =
@@ -104,7 +100,7 @@ pub(super) fn assemble(accessors: &Accessors, settings: BodySettings) -> Result<
     let mut body = Body { name: stem, skeleton, mesh, skin: skin_data, head_joint: 0 };
     update_rest_surface(&mut body);
     if !body.mesh.positions.iter().all(|p| p.is_finite() && p.max_element() < 1e12) {
-        return Err(MotionError::malformed(file, "the scene", "its transforms carry vertices to infinity"));
+        return Err(MotionError::malformed(file, "the scene", "its transforms move vertices to infinity"));
     }
 
     let targets = Targets { joint_of_node: &joint_of_node, morphs_of_node: &morphs_of_node };
@@ -124,12 +120,12 @@ pub(super) fn assemble(accessors: &Accessors, settings: BodySettings) -> Result<
         rescale(&mut body, &mut clips, unit_metres);
     }
     turn_to_face(&mut body, &mut clips, settings, &mut notes);
-    mend_winding(&mut body);
+    fix_winding(&mut body);
     body.head_joint = guess_head(&body.skeleton, &body.mesh);
     for clip in &mut clips {
         clip.detect_loop(&body);
     }
-    note_pictures(document, &mut notes);
+    note_textures(document, &mut notes);
     Ok(Character {
         body: Arc::new(body),
         clips: clips.into_iter().map(Arc::new).collect(),
@@ -142,9 +138,9 @@ pub(super) fn assemble(accessors: &Accessors, settings: BodySettings) -> Result<
     })
 }
 
-fn found_instead(document: &Document, dropped: &BTreeMap<String, u64>) -> String {
-    let lost = ["triangles", "primitives_without_triangles", "node_links"];
-    let lost: Vec<String> = lost
+fn describe_contents(document: &Document, dropped: &BTreeMap<String, u64>) -> String {
+    let dropped_parts = ["triangles", "primitives_without_triangles", "node_links"];
+    let dropped_parts: Vec<String> = dropped_parts
         .iter()
         .filter_map(|&what| dropped.get(what).map(|n| format!("{n} {} dropped", what.replace('_', " "))))
         .collect();
@@ -153,7 +149,7 @@ fn found_instead(document: &Document, dropped: &BTreeMap<String, u64>) -> String
         document.nodes.len(),
         document.meshes.len()
     );
-    if lost.is_empty() { found } else { format!("{found} ({})", lost.join(", ")) }
+    if dropped_parts.is_empty() { found } else { format!("{found} ({})", dropped_parts.join(", ")) }
 }
 
 fn morph_names(mesh: &MeshEntry) -> Vec<String> {
@@ -163,16 +159,18 @@ fn morph_names(mesh: &MeshEntry) -> Vec<String> {
     })
 }
 
-fn note_pictures(document: &Document, notes: &mut Vec<String>) {
+fn note_textures(document: &Document, notes: &mut Vec<String>) {
     let textured =
         document.materials.iter().filter(|m| m.pbr_metallic_roughness.base_color_texture.is_some()).count();
     if textured > 0 && !document.textures.is_empty() {
-        notes.push(format!("{textured} materials have pictures, which are not drawn; their plain colour is"));
+        notes.push(format!(
+            "{textured} materials have textures, which are ignored; only their base colour is used"
+        ));
     }
 }
 
-/// Turns round the triangles that the rest pose mirrors, so that all are counter-clockwise from outside.
-fn mend_winding(body: &mut Body) {
+/// Flips the triangles that the rest pose mirrors, so that all are counter-clockwise from outside.
+fn fix_winding(body: &mut Body) {
     let mirrors: Vec<bool> = body
         .skin
         .palette
@@ -191,8 +189,8 @@ fn mend_winding(body: &mut Body) {
     }
 }
 
-/// Metres of one unit. glTF says metres; a figure of more than ten of them was exported in centimetres or
-/// millimetres.
+/// Metres per unit. glTF specifies metres, but a figure of more than ten of them was exported in centimetres
+/// or millimetres.
 fn choose_unit(body: &Body, unit: LengthUnit, notes: &mut Vec<String>) -> f32 {
     let size = extent(&body.mesh.positions).max_element();
     if let Some(metres) = unit.metres() {
@@ -207,7 +205,7 @@ fn choose_unit(body: &Body, unit: LengthUnit, notes: &mut Vec<String>) -> f32 {
     };
     let metres = guess.metres().unwrap_or(1.0);
     notes.push(format!(
-        "the figure is {size:.0} units long, so they were taken for {}: {:.2} m",
+        "the figure is {size:.0} units long; interpreted as {}: {:.2} m",
         guess.label(),
         size * metres
     ));
@@ -220,7 +218,8 @@ fn extent(positions: &[Vec3]) -> Vec3 {
     (high - low).max(Vec3::ZERO)
 }
 
-/// Multiplies every length by `scale`. Scales and rotations stay: a joint's transform `W` becomes `S W S^-1`.
+/// Multiplies every length by `scale`. Scales and rotations stay: the transform `W` of a joint becomes
+/// `S W S^-1`.
 fn rescale(body: &mut Body, clips: &mut [Clip], scale: f32) {
     for joint in &mut body.skeleton.joints {
         joint.translation *= scale;

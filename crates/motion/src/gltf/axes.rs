@@ -1,4 +1,4 @@
-//! A figure turned upright, with its face toward +Z.
+//! Rotates a figure upright, with its face toward +Z.
 
 use std::f32::consts::{FRAC_PI_2, PI};
 
@@ -10,8 +10,8 @@ use crate::{
     skinning::update_rest_surface,
 };
 
-/// Turns the body as the settings say, else as the figure shows: glTF has Y up and the face toward +Z, and files
-/// keep the first more often than the second.
+/// Rotates the body according to the settings, otherwise according to the figure. glTF requires Y up and the
+/// face toward +Z, and files violate the second more often than the first.
 pub(super) fn turn_to_face(
     body: &mut Body,
     clips: &mut [Clip],
@@ -37,7 +37,8 @@ pub(super) fn turn_to_face(
     insert_root(body, clips, "facing", Quat::from_rotation_y(angle));
 }
 
-/// The axis that the rest pose faces: by the thighs where names tell left from right, else by the toes.
+/// The axis that the rest pose faces, from the thighs if names distinguish left and right, otherwise from the
+/// toes.
 fn guess_facing(body: &Body) -> Facing {
     let figure = Humanoid::of_skeleton(&body.skeleton);
     let thigh = |side: Side| figure.get(Role::Thigh(side)).map(|j| body.skeleton.rest_position(j));
@@ -45,7 +46,7 @@ fn guess_facing(body: &Body) -> Facing {
         (Some(left), Some(right)) => (left - right).normalize_or_zero().cross(Vec3::Y),
         _ => toes(body).unwrap_or(Vec3::Z),
     };
-    // Only a plain quarter turn is taken back.
+    // Only clear quarter turns are undone.
     match (forward.x, forward.z) {
         (x, z) if x.abs() < 2.0 * z.abs() && z >= -0.5 * forward.length() => Facing::PlusZ,
         (x, z) if z < -2.0 * x.abs() => Facing::MinusZ,
@@ -55,7 +56,7 @@ fn guess_facing(body: &Body) -> Facing {
     }
 }
 
-/// Where the soles reach out from the ankles, for an upright figure without names.
+/// Direction in which the soles extend from the ankles, for an upright figure without names.
 fn toes(body: &Body) -> Option<Vec3> {
     let height = body.height();
     let low = body.mesh.positions.iter().map(|p| p.y).reduce(f32::min)?;
@@ -66,11 +67,11 @@ fn toes(body: &Body) -> Option<Vec3> {
         (count > 8).then(|| sum / count as f32)
     };
     let out = (mean(-0.01, 0.03)? - mean(0.06, 0.14)?) * Vec3::new(1.0, 0.0, 1.0);
-    // Feet reach out by some hundredths of the height; less tells nothing.
+    // Feet extend by a few hundredths of the height; less is not significant.
     (out.length() > 0.01 * height).then(|| out.normalize_or_zero())
 }
 
-/// Puts a turned joint above all others.
+/// Adds a rotated root joint above all others.
 fn insert_root(body: &mut Body, clips: &mut [Clip], name: &str, rotation: Quat) {
     for joint in &mut body.skeleton.joints {
         joint.parent = Some(joint.parent.map_or(0, |p| p + 1));

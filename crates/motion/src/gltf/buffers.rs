@@ -1,4 +1,4 @@
-//! Bytes of a glTF file: the binary container, data URIs, and files beside it.
+//! The bytes of a glTF file: the binary container, data URIs, and separate files.
 
 use std::{
     io::Read as _,
@@ -10,15 +10,15 @@ use percent_encoding::percent_decode_str;
 use super::document::{Buffer, Document};
 use crate::MotionError;
 
-/// A `.glb` file taken apart, or a `.gltf` text.
+/// The chunks of a `.glb` file, or the text of a `.gltf` file.
 pub(super) struct Container<'a> {
     pub(super) json: &'a [u8],
     pub(super) bin: Option<&'a [u8]>,
-    /// What to call the format.
+    /// The name of the format.
     pub(super) format: &'static str,
 }
 
-/// Splits a binary file into its chunks (glTF 2.0, section 4.4); anything else is taken for text.
+/// Splits a binary file into its chunks (glTF 2.0, section 4.4); anything else is treated as text.
 pub(super) fn open<'a>(file: &str, bytes: &'a [u8]) -> Result<Container<'a>, MotionError> {
     let Some(rest) = bytes.strip_prefix(b"glTF") else {
         let json = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
@@ -39,7 +39,7 @@ pub(super) fn open<'a>(file: &str, bytes: &'a [u8]) -> Result<Container<'a>, Mot
         return Err(MotionError::malformed(
             file,
             "byte 4",
-            format!("glTF version {version}; version 2 is read"),
+            format!("glTF version {version}; must be version 2"),
         ));
     }
     let (mut json, mut bin, mut at) = (None, None, 8_usize);
@@ -54,7 +54,9 @@ pub(super) fn open<'a>(file: &str, bytes: &'a [u8]) -> Result<Container<'a>, Mot
             MotionError::malformed(
                 file,
                 format!("byte {}", at + 4),
-                format!("a chunk of {length} bytes, of which the file holds {left}; it is cut short"),
+                format!(
+                    "a chunk of {length} bytes, of which the file contains {left}; the file is truncated"
+                ),
             )
         })?;
         match kind {
@@ -64,12 +66,13 @@ pub(super) fn open<'a>(file: &str, bytes: &'a [u8]) -> Result<Container<'a>, Mot
         }
         at += 8 + length;
     }
-    let json =
-        json.ok_or_else(|| MotionError::malformed(file, "byte 12", "no JSON chunk; the first must be one"))?;
+    let json = json.ok_or_else(|| {
+        MotionError::malformed(file, "byte 12", "no JSON chunk; the first chunk must be JSON")
+    })?;
     Ok(Container { json, bin, format: "glTF 2.0 (binary)" })
 }
 
-/// Fetches every buffer. `bin` is the binary chunk, which the first buffer without a URI stands for.
+/// Fetches every buffer. `bin` is the binary chunk, which is the first buffer if that has no URI.
 pub(super) fn load(
     file: &str,
     document: &Document,
@@ -82,7 +85,7 @@ pub(super) fn load(
         let place = format!("buffer {i}");
         let bytes = fetch(file, &place, buffer, (i == 0).then_some(bin).flatten(), folder)?;
         if (bytes.len() as u64) < buffer.byte_length {
-            let problem = format!("{} bytes; byteLength says {}", bytes.len(), buffer.byte_length);
+            let problem = format!("{} bytes; must have {} (byteLength)", bytes.len(), buffer.byte_length);
             return Err(MotionError::malformed(file, place, problem));
         }
         total += bytes.len() as u64;
@@ -90,7 +93,7 @@ pub(super) fn load(
             return Err(MotionError::malformed(
                 file,
                 place,
-                format!("all buffers together pass {} bytes", super::FILE_LIMIT),
+                format!("all buffers together exceed {} bytes", super::FILE_LIMIT),
             ));
         }
         buffers.push(bytes);
@@ -108,19 +111,17 @@ fn fetch(
     let Some(uri) = &buffer.uri else {
         return match bin {
             Some(bin) => Ok(bin.to_vec()),
-            // A meshopt fallback buffer has no bytes; whoever reads from it is told.
+            // A meshopt fallback buffer has no bytes; reading from it reports an error.
             None if buffer.byte_length == 0 => Ok(Vec::new()),
-            None => {
-                Err(MotionError::malformed(file, place, "neither a URI nor a binary chunk holds its bytes"))
-            }
+            None => Err(MotionError::malformed(file, place, "has neither a URI nor a binary chunk")),
         };
     };
     if let Some(data) = uri.strip_prefix("data:") {
         let Some((_, text)) = data.split_once(";base64,") else {
-            return Err(MotionError::malformed(file, place, "a data URI that is not base64"));
+            return Err(MotionError::malformed(file, place, "its data URI is not base64"));
         };
         return base64(text.as_bytes())
-            .ok_or_else(|| MotionError::malformed(file, place, "broken base64 in its data URI"));
+            .ok_or_else(|| MotionError::malformed(file, place, "invalid base64 in its data URI"));
     }
     let path = resolve(file, uri, folder)?;
     let read = |source| MotionError::Read { file: format!("{file}: {place}: {}", path.display()), source };
@@ -130,7 +131,7 @@ fn fetch(
     Ok(bytes)
 }
 
-/// Turns a reference into a path, which must stay in the file's folder even through links.
+/// Resolves a reference to a path, which must stay in the file's folder even through links.
 fn resolve(file: &str, uri: &str, folder: Option<&Path>) -> Result<PathBuf, MotionError> {
     let outside = || MotionError::Outside { file: file.to_owned(), uri: uri.chars().take(200).collect() };
     let relative = gltf_reference(uri).ok_or_else(outside)?;
@@ -145,12 +146,12 @@ fn resolve(file: &str, uri: &str, folder: Option<&Path>) -> Result<PathBuf, Moti
     Ok(path)
 }
 
-/// The file that a URI of a glTF names, as a path from the glTF's folder on: percent-encoded as RFC 3986 has it, or plain, as
-/// many programs write it (glTF 2.0, section 2.8). Nothing for a URI with data in it, for one with a scheme, and for one that
-/// leads out of the folder.
+/// The file that a URI in a glTF refers to, as a path relative to the glTF's folder. The URI is
+/// percent-encoded as in RFC 3986, or plain, as many programs write it (glTF 2.0, section 2.8). `None` for
+/// data URIs, for URIs with a scheme, and for those that lead out of the folder.
 pub fn gltf_reference(uri: &str) -> Option<PathBuf> {
     let name = percent_decode_str(uri).decode_utf8().ok()?;
-    // A scheme or a drive letter, a path of another system, or one that climbs.
+    // A scheme or drive letter, a path of another system, or a path upward.
     if name.contains([':', '\\', '\0']) {
         return None;
     }
@@ -216,7 +217,7 @@ mod tests {
             ("a%20b/c.bin", "models/a b/c.bin"),
             ("./a b/%e9%A6%99.bin", "models/a b/香.bin"),
             ("a%23b%3Fc%25d+e.bin", "models/a#b?c%d+e.bin"),
-            // No code at all: a name that was not encoded.
+            // Not a code: a name that was not encoded.
             ("100%.bin", "models/100%.bin"),
             ("50%zz", "models/50%zz"),
         ] {
@@ -243,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn a_cut_container_is_refused() {
+    fn a_truncated_container_is_refused() {
         let mut glb = b"glTF\x02\0\0\0\x1c\0\0\0\x04\0\0\0JSON{}  ".to_vec();
         assert_eq!(open("f", &glb).unwrap().json, b"{}  ");
         glb.truncate(22);

@@ -1,4 +1,4 @@
-//! Animations of a glTF file as clips.
+//! Reads the animations of a glTF file as clips.
 
 use std::{
     collections::{BTreeMap, HashMap, hash_map::Entry},
@@ -10,15 +10,15 @@ use glam::{Quat, Vec3};
 use super::{accessor::Accessors, document::Animation};
 use crate::{Clip, Interpolation, JointTracks, MorphTrack, MotionError, Track};
 
-/// What the nodes of a file became.
+/// What the nodes of a file have become.
 pub(super) struct Targets<'a> {
     pub(super) joint_of_node: &'a [Option<usize>],
-    /// First morph target and their number, of each node that has a mesh with some.
+    /// First morph target and number of morph targets of each node that has some.
     pub(super) morphs_of_node: &'a BTreeMap<usize, (usize, usize)>,
 }
 
-/// Reads one animation. Channels that cannot be followed are dropped and counted; channels of nodes that move
-/// nothing (cameras, lights) are left out.
+/// Reads one animation. Invalid channels are dropped and counted; channels of nodes that move nothing
+/// (cameras, lights) are ignored.
 pub(super) fn read_clip(
     accessors: &Accessors,
     number: usize,
@@ -76,7 +76,7 @@ pub(super) fn read_clip(
     Ok(clip)
 }
 
-/// One sampler, with its times checked.
+/// One sampler with verified times.
 struct Source<'a> {
     accessors: &'a Accessors<'a>,
     times: Arc<[f32]>,
@@ -111,8 +111,8 @@ impl<'a> Source<'a> {
         Ok(times.map(|times| Self { accessors, times, output: sampler.output, interpolation }))
     }
 
-    /// Values that one key holds: three where the interpolation is cubic.
-    fn values_a_key(&self) -> usize {
+    /// Values per key: three for cubic interpolation.
+    fn values_per_key(&self) -> usize {
         if self.interpolation == Interpolation::Cubic { 3 } else { 1 }
     }
 
@@ -122,7 +122,7 @@ impl<'a> Source<'a> {
         make: impl Fn(usize, [f32; N]) -> T,
     ) -> Result<Option<Track<T>>, MotionError> {
         let values = self.accessors.read::<N>(self.output)?;
-        if values.len() != self.times.len() * self.values_a_key() * lanes
+        if values.len() != self.times.len() * self.values_per_key() * lanes
             || !values.iter().flatten().all(|v| v.is_finite() && v.abs() < 1e9)
         {
             return Ok(None);
@@ -135,7 +135,7 @@ impl<'a> Source<'a> {
         self.track::<_, 3>(1, |_, v| Vec3::from(v))
     }
 
-    /// Rotations of unit length; the tangents of a cubic track are left as they are.
+    /// Rotations of unit length; the tangents of a cubic track are left unchanged.
     fn rotations(&self) -> Result<Option<Track<Quat>>, MotionError> {
         let cubic = self.interpolation == Interpolation::Cubic;
         self.track::<_, 4>(1, |i, v| {

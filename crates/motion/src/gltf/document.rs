@@ -1,7 +1,7 @@
 //! The part of a glTF 2.0 document that a moving body needs.
 //!
-//! Everything else in a file (textures, cameras, lights) is not even parsed, so a fault there costs nothing. Names
-//! are the specification's. Indices are raw: nothing here has been checked.
+//! Everything else in a file (textures, cameras, lights) is not parsed, so errors there are harmless. Names
+//! are those of the specification. Indices are not checked here.
 
 use std::collections::BTreeMap;
 

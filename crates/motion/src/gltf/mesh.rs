@@ -1,4 +1,4 @@
-//! Triangles of all meshes, gathered into one surface in bind space.
+//! Collects the triangles of all meshes in one surface in bind space.
 
 use std::collections::BTreeMap;
 
@@ -8,21 +8,21 @@ use super::{
     accessor::Accessors,
     document::{Document, Primitive},
     normals::fill_normals,
-    skin::{Influence, read_influences},
+    skin::{VertexWeights, read_vertex_weights},
 };
 use crate::{Mesh, MorphTarget, MotionError, SkinData};
 
-/// Most vertices of one character: beyond it is no character, and drawing would take minutes a frame.
+/// Largest number of vertices of a character; drawing more would take minutes per frame.
 const VERTEX_LIMIT: usize = 8_000_000;
-/// Most triangles of one character.
+/// Largest number of triangles of a character.
 const TRIANGLE_LIMIT: usize = 16_000_000;
-/// Coordinates beyond this are faults of the file: ten kilometres in the smallest unit that people use.
+/// Larger coordinates are errors of the file: ten kilometres in the smallest common unit.
 const FAR: f32 = 1e7;
 
-/// Colour of a surface that its file gives none: a warm, matt clay.
+/// Default colour of a surface: a warm, matt clay.
 const CLAY: Vec3 = Vec3::new(0.52, 0.40, 0.34);
 
-/// The surface as it grows, primitive by primitive.
+/// The surface under construction.
 #[derive(Default)]
 pub(super) struct Surface {
     pub(super) mesh: Mesh,
@@ -30,11 +30,11 @@ pub(super) struct Surface {
     has_scalp: bool,
 }
 
-/// How the vertices of a primitive move.
+/// What moves the vertices of a primitive.
 pub(super) enum Binding<'a> {
-    /// By a skin: the palette entries of its joints.
+    /// A skin: the palette entries of its joints.
     Skin(&'a [u16]),
-    /// With one node: its palette entry.
+    /// One node: its palette entry.
     Rigid(u16),
 }
 
@@ -50,7 +50,7 @@ impl Surface {
         first
     }
 
-    /// Adds one primitive. Vertices that are not finite go, with their triangles.
+    /// Adds one primitive. Vertices that are not finite are dropped with their triangles.
     pub(super) fn add(
         &mut self,
         accessors: &Accessors,
@@ -89,7 +89,7 @@ impl Surface {
             return Err(MotionError::malformed(accessors.file, "the meshes", problem));
         }
 
-        // Where each vertex of the primitive goes; `None` where it is dropped.
+        // New index of each vertex of the primitive; `None` if it is dropped.
         let mut next = base as u32;
         let slot: Vec<Option<u32>> = positions
             .iter()
@@ -122,10 +122,10 @@ impl Surface {
         let factor = base_color(accessors.document, primitive.material, colors.is_some());
         let influences = match binding {
             Binding::Skin(skin) if primitive.attributes.contains_key("JOINTS_0") => {
-                read_influences(accessors, primitive, count, skin, dropped)?
+                read_vertex_weights(accessors, primitive, count, skin, dropped)?
             }
-            Binding::Skin(skin) => vec![Influence::rigid(skin.first().copied().unwrap_or(0)); count],
-            Binding::Rigid(bind) => vec![Influence::rigid(*bind); count],
+            Binding::Skin(skin) => vec![VertexWeights::rigid(skin.first().copied().unwrap_or(0)); count],
+            Binding::Rigid(bind) => vec![VertexWeights::rigid(*bind); count],
         };
         self.skin.positions.extend((0..count).filter(kept).map(|v| Vec3::from(positions[v])));
         for v in (0..count).filter(kept) {
@@ -168,7 +168,7 @@ impl Surface {
         Ok(())
     }
 
-    /// Ends the gathering: no mask is left where no primitive had one.
+    /// Finishes the surface: without a scalp mask in any primitive the mask is empty.
     pub(super) fn finish(mut self) -> (Mesh, SkinData) {
         if !self.has_scalp {
             self.mesh.scalp = Vec::new();
@@ -183,7 +183,7 @@ impl Surface {
     }
 }
 
-/// A primitive whose positions exist only compressed would read as zeros.
+/// Positions that exist only in compressed form would be read as zeros.
 fn refuse_draco(accessors: &Accessors, primitive: &Primitive, positions: usize) -> Result<(), MotionError> {
     let empty = |a: &super::document::Accessor| a.buffer_view.is_none() && a.sparse.is_none();
     let name = super::DRACO;

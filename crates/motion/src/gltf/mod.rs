@@ -1,8 +1,8 @@
 //! Characters from glTF 2.0 files.
 //!
-//! The document is parsed leniently and every index, offset and count is checked here, in 64 bits, before it is
-//! used; a validating reader would refuse files that are legal (accessors without bytes, quantised meshes) or that
-//! only lack a picture.
+//! The document is parsed leniently, and every index, offset and count is checked in 64 bits before use. A
+//! validating reader would refuse files that are legal (accessors without bytes, quantised meshes) or that
+//! only lack a texture.
 
 mod accessor;
 mod assemble;
@@ -21,38 +21,38 @@ pub use buffers::gltf_reference;
 
 use crate::{Body, BodySettings, Clip, MotionError, error::read_file};
 
-/// Largest file, and largest sum of buffers, that is read.
+/// Largest file, and largest total size of buffers, that is read.
 const FILE_LIMIT: u64 = 2 << 30;
 
-/// The extension that Google's compressor writes.
+/// The extension for meshes compressed with Draco.
 const DRACO: &str = "KHR_draco_mesh_compression";
 
-/// A character file: a body, its clips, and what was lost on the way.
+/// A character file: a body, its clips, and what was lost.
 #[derive(Clone, Debug, Default)]
 pub struct Character {
-    /// What moves.
+    /// The body.
     pub body: Arc<Body>,
-    /// How it can move; may be empty.
+    /// Its clips; may be empty.
     pub clips: Vec<Arc<Clip>>,
-    /// What was left out, with counts; empty where all was read.
+    /// Counts of what was left out; empty if everything was read.
     pub dropped: BTreeMap<String, u64>,
-    /// Guesses made and other things to know, as sentences.
+    /// Guesses and other remarks, as sentences.
     pub notes: Vec<String>,
     /// The format, such as `glTF 2.0 (binary)`.
     pub format: String,
-    /// Joints that skins use; all nodes that carry meshes where there is no skin.
+    /// Joints used by skins; all nodes with meshes if there is no skin.
     pub joints: usize,
     /// Number of skins.
     pub skins: usize,
-    /// Metres of one unit of the file.
+    /// Metres per unit of the file.
     pub unit_metres: f32,
 }
 
 /// Loads a `.glb` or `.gltf` file with automatic unit and axis.
 ///
 /// # Errors
-/// Refuses what cannot be read, is cut short, points outside itself or its folder, needs an extension that is not
-/// read here, or holds no triangle.
+/// If the file cannot be read, is truncated, refers outside itself or its folder, needs an unsupported
+/// extension, or contains no triangle.
 pub fn load_character(path: &Path) -> Result<Character, MotionError> {
     load_character_with(path, BodySettings::default())
 }
@@ -66,8 +66,8 @@ pub fn load_character_with(path: &Path, settings: BodySettings) -> Result<Charac
     load_character_bytes_with(&path.display().to_string(), &bytes, path.parent(), settings)
 }
 
-/// Loads a character from bytes. `name` is what messages call it; buffers in other files are looked for in
-/// `base_dir` and below, and refused where there is none.
+/// Loads a character from bytes. `name` is used in messages. Other files with buffers are searched in
+/// `base_dir` and its subfolders, and refused without it.
 ///
 /// # Errors
 /// As [`load_character`].
@@ -91,7 +91,7 @@ pub fn load_character_bytes_with(
 ) -> Result<Character, MotionError> {
     let container = buffers::open(name, bytes)?;
     let document: document::Document = serde_json::from_slice(container.json).map_err(|e| {
-        MotionError::malformed(name, "the JSON text", format!("{e}; wanted a glTF 2.0 document"))
+        MotionError::malformed(name, "the JSON text", format!("{e}; must be a glTF 2.0 document"))
     })?;
     for extension in &document.extensions_required {
         if !is_harmless(extension) {
@@ -105,7 +105,7 @@ pub fn load_character_bytes_with(
     Ok(character)
 }
 
-/// Extensions that a file may require and that change nothing about shape and motion, or that are read.
+/// Required extensions that are supported or do not affect shape and motion.
 fn is_harmless(extension: &str) -> bool {
     const KNOWN: [&str; 9] = [
         "KHR_mesh_quantization",
@@ -121,7 +121,7 @@ fn is_harmless(extension: &str) -> bool {
     KNOWN.contains(&extension) || extension.starts_with("KHR_materials_")
 }
 
-/// The refusal of an extension, with what to do about it.
+/// The error for an unsupported extension, with advice.
 fn refuse(file: &str, extension: &str) -> MotionError {
     let advice = if extension == DRACO {
         "export it again without Draco compression"

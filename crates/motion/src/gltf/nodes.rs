@@ -7,7 +7,7 @@ use glam::{Mat4, Quat, Vec3};
 use super::document::{Document, Node};
 use crate::{Joint, MotionError, Skeleton};
 
-/// The nodes of the scene in an order that has parents first.
+/// The nodes of the scene, ordered with parents first.
 pub(super) struct Tree {
     /// Nodes, parents first.
     pub(super) order: Vec<usize>,
@@ -15,7 +15,7 @@ pub(super) struct Tree {
 }
 
 impl Tree {
-    /// Walks the scene. Links that close a cycle or give a node a second parent are dropped and counted.
+    /// Traverses the scene. Links that close a cycle or give a node a second parent are dropped and counted.
     pub(super) fn new(
         file: &str,
         document: &Document,
@@ -27,7 +27,7 @@ impl Tree {
         for (n, node) in nodes.iter().enumerate() {
             for &child in &node.children {
                 if child >= nodes.len() {
-                    let problem = format!("child {child} is not there; the file has {} nodes", nodes.len());
+                    let problem = format!("child {child} does not exist; the file has {} nodes", nodes.len());
                     return Err(MotionError::malformed(file, format!("node {n}"), problem));
                 }
                 claimed[child].get_or_insert(n);
@@ -37,15 +37,15 @@ impl Tree {
             scene.nodes.clone()
         } else {
             if let Some(scene) = document.scene {
-                notes.push(format!("scene {scene} is not there; all nodes were taken"));
+                notes.push(format!("scene {scene} does not exist; all nodes are used"));
             }
             (0..nodes.len()).filter(|&n| claimed[n].is_none()).collect()
         };
-        // Joints outside the scene belong to it all the same.
+        // Joints outside the scene are included too.
         for skin in &document.skins {
             for &joint in &skin.joints {
                 if joint >= nodes.len() {
-                    let problem = format!("joint {joint} is not there; the file has {} nodes", nodes.len());
+                    let problem = format!("joint {joint} does not exist; the file has {} nodes", nodes.len());
                     return Err(MotionError::malformed(file, "a skin", problem));
                 }
                 roots.push(top_of(joint, &claimed));
@@ -55,7 +55,7 @@ impl Tree {
         let mut seen = vec![false; nodes.len()];
         for root in roots {
             if root >= nodes.len() {
-                let problem = format!("node {root} is not there; the file has {}", nodes.len());
+                let problem = format!("node {root} does not exist; the file has {}", nodes.len());
                 return Err(MotionError::malformed(file, "the scene", problem));
             }
             if !seen[root] {
@@ -81,8 +81,8 @@ impl Tree {
         }
     }
 
-    /// Makes a skeleton of the nodes that `wanted` names and of those above them. The second value is the joint of
-    /// each node.
+    /// Builds a skeleton of the `wanted` nodes and their ancestors. The second value is the joint of each
+    /// node.
     pub(super) fn skeleton(
         &self,
         file: &str,
@@ -116,7 +116,7 @@ impl Tree {
     }
 }
 
-/// The highest node above another, or some node of the cycle that it hangs from.
+/// The topmost ancestor of a node, or some node of the cycle that it belongs to.
 fn top_of(mut node: usize, parent: &[Option<usize>]) -> usize {
     for _ in 0..parent.len() {
         match parent[node] {
@@ -127,7 +127,7 @@ fn top_of(mut node: usize, parent: &[Option<usize>]) -> usize {
     node
 }
 
-/// Translation, rotation and scale of a node; `None` where they are not finite.
+/// Translation, rotation and scale of a node; `None` if they are not finite.
 fn local(node: &Node) -> Option<(Vec3, Quat, Vec3)> {
     let (scale, rotation, translation) = if let Some(matrix) = &node.matrix {
         let matrix = Mat4::from_cols_array(matrix);

@@ -1,11 +1,12 @@
-//! Smooth normals for surfaces that bring none.
+//! Smooth normals for surfaces without normals.
 
 use std::collections::HashMap;
 
 use glam::Vec3;
 
-/// Gives a normal to every vertex from `first` on that has none (zero): the mean of its triangles' normals weighted
-/// by their angles there (Thürmer and Wüthrich 1998). Vertices in one place share it, so seams do not show.
+/// Computes a normal for every vertex from `first` on that has none (zero): the mean of its triangles'
+/// normals weighted by their angles there (Thürmer and Wüthrich 1998). Vertices at the same position share
+/// it, so that seams are invisible.
 pub(super) fn fill_normals(positions: &[Vec3], triangles: &[[u32; 3]], first: usize, normals: &mut [Vec3]) {
     if normals[first..].iter().all(|n| *n != Vec3::ZERO) {
         return;

@@ -1,4 +1,4 @@
-//! The head: which joint carries it, and the surface on which hair grows.
+//! The head: the joint that carries it, and the surface on which hair grows.
 
 mod pick;
 mod scalp;

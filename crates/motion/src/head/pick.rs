@@ -1,4 +1,4 @@
-//! The joint that carries the hair: a guess, and paths to choose from.
+//! The joint that carries the hair: a guess, and paths for the user to choose from.
 
 use crate::{
     Mesh, Skeleton,
@@ -7,8 +7,8 @@ use crate::{
 
 /// Guesses the joint that carries the head.
 ///
-/// A joint named head that moves some of the surface; of several the one that moves most. Where no name helps, the
-/// joint that moves the topmost part of the rest pose.
+/// It is the joint named head that moves some of the surface, and of several the one that moves most. If no
+/// name helps, it is the joint that moves the topmost part of the rest pose.
 pub fn guess_head(skeleton: &Skeleton, mesh: &Mesh) -> usize {
     let count = skeleton.joints.len();
     if count == 0 {
@@ -22,7 +22,7 @@ pub fn guess_head(skeleton: &Skeleton, mesh: &Mesh) -> usize {
             }
         }
     }
-    // A head without weights of its own may carry bones of the face.
+    // A head without weights of its own may carry facial bones.
     let mut carried = weight.clone();
     for j in (0..count).rev() {
         if let Some(p) = skeleton.joints[j].parent {
@@ -37,7 +37,7 @@ pub fn guess_head(skeleton: &Skeleton, mesh: &Mesh) -> usize {
     topmost(skeleton, mesh, &weight)
 }
 
-/// The joint that moves most of the top tenth of the surface; where there is none, the topmost joint.
+/// The joint that moves most of the top tenth of the surface; if there is none, the topmost joint.
 fn topmost(skeleton: &Skeleton, mesh: &Mesh, weight: &[f64]) -> usize {
     let count = skeleton.joints.len();
     let (low, high) =
@@ -47,7 +47,7 @@ fn topmost(skeleton: &Skeleton, mesh: &Mesh, weight: &[f64]) -> usize {
     for (v, p) in mesh.positions.iter().enumerate().filter(|(_, p)| p.y >= line) {
         for (&j, &w) in mesh.joints[v].iter().zip(&mesh.weights[v]) {
             if let Some(sum) = top.get_mut(usize::from(j)) {
-                // Higher vertices speak louder, so that raised hands do not outvote the crown.
+                // Higher vertices weigh more, so that raised hands do not outweigh the crown.
                 *sum += f64::from(w * (p.y - line));
             }
         }
@@ -61,14 +61,14 @@ fn topmost(skeleton: &Skeleton, mesh: &Mesh, weight: &[f64]) -> usize {
     })
 }
 
-/// A path for each joint, such as `hips/spine/neck/head`, which tells joints of one name apart. Joints whose paths
-/// are equal too get their number.
+/// A path for each joint, such as `hips/spine/neck/head`, which distinguishes joints of the same name. Joints
+/// with equal paths also get their number.
 pub fn joint_paths(skeleton: &Skeleton) -> Vec<String> {
     let mut paths: Vec<String> = Vec::with_capacity(skeleton.joints.len());
     let mut seen = std::collections::BTreeSet::new();
     for (j, joint) in skeleton.joints.iter().enumerate() {
         let mut path = match joint.parent {
-            // Deep chains keep their near end: a path is for reading.
+            // Deep chains keep their end, to stay readable.
             Some(p) if paths[p].len() < 400 => format!("{}/{}", paths[p], joint.name),
             Some(p) => format!("…/{}/{}", skeleton.joints[p].name, joint.name),
             None => joint.name.clone(),

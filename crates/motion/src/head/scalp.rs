@@ -1,10 +1,10 @@
-//! Where hair grows on a head whose file does not say.
+//! A guess of the scalp for heads whose file has no mask.
 
 use glam::Vec3;
 
-/// Height of the hairline around a head, as a fraction of the way from chin to crown, by the angle from the front in
-/// degrees. Drawn from the proportions of adult heads: the forehead is the upper third of the face; temples recede;
-/// the line comes down before the ear, passes behind it, and ends at the nape.
+/// Height of the hairline around a head as a fraction of the distance from chin to crown, by the angle from
+/// the front in degrees. It follows the proportions of adult heads: the forehead is the upper third of the
+/// face; temples recede; the line comes down in front of the ear, passes behind it, and ends at the nape.
 const HAIRLINE: [(f32, f32); 11] = [
     (0.0, 0.855),
     (25.0, 0.85),
@@ -22,7 +22,8 @@ const HAIRLINE: [(f32, f32); 11] = [
 /// Length over which the mask fades at the hairline, as a fraction of the head's height: 12 mm.
 const FADE: f32 = 0.05;
 
-/// Guesses a scalp mask for vertices in head space. `of_head` tells the vertices of the head from those of the neck.
+/// Guesses a scalp mask for vertices in head space. `of_head` marks the vertices of the head, as opposed to
+/// the neck.
 pub(super) fn guess_scalp(positions: &[Vec3], normals: &[Vec3], of_head: &[bool]) -> Vec<f32> {
     let head = || positions.iter().zip(of_head).filter(|(_, of_head)| **of_head).map(|(p, _)| *p);
     let Some(frame) = HeadFrame::new(&head().collect::<Vec<_>>()) else {
@@ -31,19 +32,19 @@ pub(super) fn guess_scalp(positions: &[Vec3], normals: &[Vec3], of_head: &[bool]
     positions.iter().zip(normals).map(|(&p, &n)| frame.mask(p, n)).collect()
 }
 
-/// A head measured: chin, crown, and the middle of its skull.
+/// Measurements of a head: chin, crown, and the centre of the skull.
 struct HeadFrame {
     chin: f32,
     height: f32,
     middle: Vec3,
-    /// Half of the width and depth of the skull, metres.
+    /// Half the width and depth of the skull, metres.
     half: Vec3,
 }
 
 impl HeadFrame {
     fn new(head: &[Vec3]) -> Option<Self> {
         let crown = head.iter().map(|p| p.y).reduce(f32::max)?;
-        // The skull's upper part: no nose, no jaw, no neck. A head is about as high as 1.2 times its depth.
+        // The upper part of the skull, without nose, jaw and neck. A head is about 1.2 times as high as deep.
         let extent = |points: &mut dyn Iterator<Item = Vec3>| {
             points.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
         };
@@ -52,7 +53,8 @@ impl HeadFrame {
         let (low, high) = extent(&mut head.iter().copied().filter(|p| p.y > crown - 0.4 * rough));
         let depth = (high.z - low.z).max(high.x - low.x);
         let middle = 0.5 * (low + high);
-        // The chin is the lowest point of the front; heads whose weights reach down the throat are cut off there.
+        // The chin is the lowest point of the front; the throat is cut off there if the head's weights
+        // include it.
         let front = head.iter().filter(|p| p.z > middle.z + 0.2 * depth);
         let chin = front.map(|p| p.y).reduce(f32::min).unwrap_or(low.y);
         let height = (crown - chin).clamp(1.0 * depth, 1.3 * depth).max(1e-3);
@@ -65,7 +67,7 @@ impl HeadFrame {
         let angle = from_middle.x.abs().atan2(from_middle.z).to_degrees();
         let height = (p.y - self.chin) / self.height;
         let above = (height - hairline(angle)) / FADE;
-        // Ears stand off the skull; insides of mouth and eyes look inward.
+        // Ears stand off the skull; the insides of mouth and eyes face inward.
         let ring = Vec3::new(from_middle.x / self.half.x, 0.0, from_middle.z / self.half.z).length();
         let ear = if height < 0.62 && (60.0..135.0).contains(&angle) {
             ((ring - 1.02) / 0.06).clamp(0.0, 1.0)

@@ -16,14 +16,14 @@ pub struct HeadMesh {
     pub triangles: Vec<[u32; 3]>,
     /// 1 where hair grows, fading to 0 at the hairline.
     pub scalp: Vec<f32>,
-    /// The vertex of the body's mesh that each vertex is.
+    /// Index of each vertex in the body's mesh.
     pub vertex: Vec<u32>,
-    /// True where the file had no mask and the hairline is a guess.
+    /// Whether the file had no mask, so that the hairline is a guess.
     pub scalp_is_guessed: bool,
 }
 
-/// Cuts head and neck out of the resting body: what the head joint, the joints below it and those of the neck move
-/// most. A body whose head joint moves next to nothing gives its whole surface.
+/// Extracts head and neck from the resting body: the vertices moved mostly by the head joint, its descendants
+/// and the neck joints. If the head joint moves hardly anything, the whole surface is returned.
 pub fn head_mesh(body: &Body) -> HeadMesh {
     let mesh = &body.mesh;
     let head = body.head_joint;

@@ -1,4 +1,4 @@
-//! What the joints of a figure are for, from their names and their tree.
+//! The roles of the joints of a figure, derived from their names and their tree.
 
 mod names;
 
@@ -8,12 +8,12 @@ use crate::Skeleton;
 use names::{Label, Part, label};
 pub(crate) use names::{Side, is_twist};
 
-/// What a joint is for.
+/// The role of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Role {
-    /// Where legs and spine meet: what carries the whole figure.
+    /// Where legs and spine meet; carries the whole figure.
     Hips,
-    /// Where the legs meet, where that is another joint than the hips.
+    /// Where the legs meet, if that is another joint than the hips.
     Pelvis,
     /// Where the arms meet.
     Chest,
@@ -30,7 +30,7 @@ pub(crate) enum Role {
 }
 
 impl Role {
-    /// What an error calls it.
+    /// Its name in errors.
     pub(crate) fn label(self) -> String {
         let side = |s: Side| if s == Side::Left { "left" } else { "right" };
         match self {
@@ -51,7 +51,7 @@ impl Role {
     }
 }
 
-/// The role that a name alone tells.
+/// The role that follows from a name alone.
 pub(crate) fn role_of(name: &str) -> Option<Role> {
     label(name).filter(|l| l.part == Part::Head).map(|_| Role::Head)
 }
@@ -60,9 +60,9 @@ pub(crate) fn role_of(name: &str) -> Option<Role> {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Humanoid {
     joints: BTreeMap<Role, usize>,
-    /// Joints between hips and neck, from below.
+    /// Joints between hips and neck, from the bottom.
     pub(crate) spine: Vec<usize>,
-    /// Joints of the neck, from below.
+    /// Joints of the neck, from the bottom.
     pub(crate) neck: Vec<usize>,
 }
 
@@ -88,7 +88,8 @@ impl Humanoid {
     pub(crate) fn new(names: &[&str], parents: &[Option<usize>]) -> Self {
         let labels: Vec<Option<Label>> = names.iter().map(|n| label(n)).collect();
         let depth = depths(parents);
-        // The best joint of a part: no helper, the lowest number, then the deepest (`LHipJoint` above `LeftHip`).
+        // The best joint for a part: not a helper, the lowest number, then the deepest (`LHipJoint` above
+        // `LeftHip`).
         let best = |parts: &[Part], side: Option<Side>| {
             parts.iter().find_map(|&part| {
                 (0..names.len())
@@ -156,7 +157,7 @@ impl Humanoid {
         figure
     }
 
-    /// Sorts the joints between hips and head into spine and neck.
+    /// Splits the joints between hips and head into spine and neck.
     fn split_trunk(&mut self, labels: &[Option<Label>], parents: &[Option<usize>], hips: usize, head: usize) {
         let mut path = Vec::new();
         let mut at = parents[head];
@@ -169,7 +170,7 @@ impl Humanoid {
             return;
         }
         let is_neck = |j: &usize| labels[*j].as_ref().is_some_and(|l| l.part == Part::Neck);
-        // Above the arms all is neck; where the arms are not known, a name or the last joint tells.
+        // Everything above the arms is neck. If the arms are unknown, a name decides, or else the last joint.
         let chest = self.get(Role::Chest).and_then(|c| path.iter().position(|&j| j == c));
         let split = match chest {
             Some(c) => c + 1,
@@ -192,7 +193,7 @@ fn depths(parents: &[Option<usize>]) -> Vec<usize> {
     depth
 }
 
-/// The lowest joint above both, or one of them where it is above the other.
+/// The lowest common ancestor, which may be one of the two.
 fn common(parents: &[Option<usize>], depth: &[usize], mut a: usize, mut b: usize) -> Option<usize> {
     while a != b {
         if depth[a] >= depth[b] {

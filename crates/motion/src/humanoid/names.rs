@@ -1,6 +1,6 @@
-//! Names of joints taken apart: side, number, and the part of the body.
+//! Parsing of joint names: side, numbers, and body part.
 
-/// Left or right, as the figure itself sees it.
+/// Left or right from the figure's own view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Side {
     /// Toward +X in a rest pose that faces +Z.
@@ -18,7 +18,7 @@ impl Side {
     }
 }
 
-/// A part of the body as a name has it; some words mean one of two parts, which depends on the joint's fellows.
+/// A body part as named; some words stand for one of two parts, depending on the other joints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Part {
     Hips,
@@ -31,25 +31,25 @@ pub(crate) enum Part {
     Forearm,
     Hand,
     Thigh,
-    /// The shin where the thigh has a name of its own, else the thigh.
+    /// The shin if the thigh has a name of its own, otherwise the thigh.
     Leg,
     Shin,
     Foot,
     Toe,
 }
 
-/// A name taken apart.
+/// A parsed name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Label {
     pub(crate) part: Part,
     pub(crate) side: Option<Side>,
     /// Numbers in the name: `upperleg02` comes after `upperleg01`.
     pub(crate) numbers: Vec<u32>,
-    /// True for helpers that rigs put beside the real joint, such as `__UpLeg_L`.
+    /// Whether it is a helper that rigs put beside the real joint, such as `__UpLeg_L`.
     pub(crate) helper: bool,
 }
 
-/// Words that say nothing about the part.
+/// Words without meaning for the part.
 const NOISE: [&str; 22] = [
     "mixamorig",
     "bip",
@@ -113,7 +113,7 @@ const OTHERS: [&str; 34] = [
     "fingers",
 ];
 
-/// Takes a name apart; `None` where it names no part of a limb, hips, neck or head.
+/// Parses a name; `None` if it names no limb, hips, neck or head.
 pub(crate) fn label(name: &str) -> Option<Label> {
     let local = name.rsplit([':', '|']).next().unwrap_or(name);
     let (mut side, mut numbers, mut words) = (None, Vec::new(), Vec::new());
@@ -132,7 +132,7 @@ pub(crate) fn label(name: &str) -> Option<Label> {
     }
     let mut word = words.concat();
     if part(&word, side.is_some()).is_none() && side.is_none() {
-        // `leftarm`, `lhand`: a side grown together with the word.
+        // `leftarm`, `lhand`: a side joined to the word.
         for (prefix, s) in
             [("left", Side::Left), ("right", Side::Right), ("l", Side::Left), ("r", Side::Right)]
         {
@@ -147,7 +147,7 @@ pub(crate) fn label(name: &str) -> Option<Label> {
     Some(Label { part, side, numbers, helper: local.starts_with("__") })
 }
 
-/// True for joints that spread a limb's roll, such as `forearm_twist_l` or `lThighTwist`.
+/// Whether the joint distributes a limb's roll, such as `forearm_twist_l` or `lThighTwist`.
 pub(crate) fn is_twist(name: &str) -> bool {
     tokens(name).iter().any(|t| t == "twist" || t == "roll")
 }
@@ -171,8 +171,8 @@ fn part(word: &str, sided: bool) -> Option<Part> {
     })
 }
 
-/// Lower-case words and numbers of a name: split at signs, at digits, and where case changes (`LHipJoint` is
-/// `l hip joint`).
+/// Lower-case words and numbers of a name, split at punctuation, at digits and at changes of case
+/// (`LHipJoint` becomes `l hip joint`).
 fn tokens(name: &str) -> Vec<String> {
     let chars: Vec<char> = name.chars().take(200).collect();
     let mut tokens = vec![String::new()];

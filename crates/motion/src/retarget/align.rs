@@ -1,10 +1,11 @@
-//! The pose in which the source has all rotations at zero, compared with the target's rest pose.
+//! Compares the pose in which all rotations of the source are zero with the rest pose of the target.
 //!
-//! Where that pose is one of standing, the trunk differs only in the way that it faces, and only limbs are aligned
-//! bone by bone (T-pose against A-pose). Where it is no pose at all (exporters that lay every bone along +X), every
-//! bone is aligned, from the hips outward: each by the smallest turn left after its parent's, which is the turn that
-//! such an exporter's first frame takes back. Some rigs roll bones about themselves as well, by half or a quarter of a
-//! turn; of that the motion tells, in which no joint is wrung.
+//! If that zero pose is a standing pose, the trunks differ only in the direction that they face, and only
+//! limbs are aligned bone by bone (T-pose against A-pose). If it is not a plausible pose (exporters that lay
+//! every bone along +X), every bone is aligned, from the hips outward, by the smallest rotation that remains
+//! after its parent's; this is the rotation that the first frame of such an exporter undoes. Some rigs also
+//! roll bones about themselves by half or a quarter turn. That is detected from the motion, in which no joint
+//! is twisted so far.
 
 use std::f32::consts::PI;
 
@@ -13,7 +14,7 @@ use glam::{Mat3, Quat, Vec3};
 use crate::humanoid::{Humanoid, Role, Side};
 use crate::{MotionFile, Skeleton};
 
-/// By source joint, the rotation from the target's rest pose to the source's zero pose, in the world.
+/// For each source joint the rotation from the target's rest pose to the source's zero pose, in the world.
 pub(super) struct Alignment {
     turns: Vec<Quat>,
 }
@@ -39,13 +40,13 @@ impl Alignment {
             turns: vec![Quat::IDENTITY; motion.joints.len()],
             turned,
         };
-        let stands = builder.stands();
-        builder.trunk(stands);
+        let is_standing = builder.is_standing();
+        builder.trunk(is_standing);
         for side in Side::BOTH {
-            builder.arm(side, stands);
-            builder.leg(side, stands);
+            builder.arm(side, is_standing);
+            builder.leg(side, is_standing);
         }
-        if !stands {
+        if !is_standing {
             builder.flatten_feet();
             builder.head();
         }
@@ -60,18 +61,20 @@ struct Builder<'a> {
     source_rest: Vec<Vec3>,
     target_rest: Vec<Vec3>,
     turns: Vec<Quat>,
-    /// The rotations of all joints, in the world, in some frames.
+    /// World rotations of all joints in some frames.
     turned: &'a [Vec<Quat>],
 }
 
-/// By multiples of this a rig rolls arms and legs, which roll so far themselves that less could not be told, radians.
+/// Rigs roll arms and legs by multiples of this. These joints roll so far themselves that smaller multiples
+/// could not be detected, radians.
 const HALF: f32 = PI;
 
-/// By multiples of this it rolls collar bones and feet, radians.
+/// Rigs roll collar bones and feet by multiples of this, radians.
 const QUARTER: f32 = PI / 2.0;
 
-/// A roll is taken for the rig's from this part of a multiple on: people hold their hands up for a while, too.
-const PLAIN: f32 = 0.75;
+/// A roll is attributed to the rig from this fraction of a multiple on, because people also hold their hands
+/// up for a while.
+const LEAST_MULTIPLE: f32 = 0.75;
 
 impl Builder<'_> {
     fn source_at(&self, role: Role) -> Option<Vec3> {
@@ -93,39 +96,40 @@ impl Builder<'_> {
         }
     }
 
-    /// True where the zero pose has the head above the hips and the feet below, legs nearly straight down.
-    fn stands(&self) -> bool {
+    /// Whether the zero pose has the head above the hips and the feet below, with nearly vertical legs.
+    fn is_standing(&self) -> bool {
         let up = |from: Role, to: Role| self.source_bone(from, to).map_or(1.0, |d| d.y);
         let legs =
             Side::BOTH.map(|s| up(Role::Shin(s), Role::Thigh(s)).min(up(Role::Foot(s), Role::Shin(s))));
         up(Role::Hips, Role::Head) > 0.7 && legs[0].min(legs[1]) > 0.6
     }
 
-    /// The frame of the hips: left along X, up along the spine as far as it is not.
-    fn hips(&self, stands: bool) -> Quat {
+    /// The frame of the hips: left along X, up along the spine, orthogonalised against X.
+    fn hips(&self, is_standing: bool) -> Quat {
         let sides = Side::BOTH.map(|s| self.source_at(Role::Thigh(s)));
         let [Some(left), Some(right)] = sides else { return Quat::IDENTITY };
         let Some(x) = (left - right).try_normalize() else { return Quat::IDENTITY };
         let hips = self.source_at(Role::Hips).unwrap_or_default();
         let mut first_up =
             self.source.spine.iter().chain(&self.source.neck).map(|&j| self.source_rest[j] - hips);
-        let up = if stands { Vec3::Y } else { first_up.find_map(Vec3::try_normalize).unwrap_or(Vec3::Y) };
+        let up =
+            if is_standing { Vec3::Y } else { first_up.find_map(Vec3::try_normalize).unwrap_or(Vec3::Y) };
         let Some(y) = (up - x * up.dot(x)).try_normalize() else { return Quat::IDENTITY };
-        if stands {
-            // Only the way that it faces: hips that hang askew in a file do so in no pose.
+        if is_standing {
+            // Only the facing direction counts: tilted hips in a file do not belong to a pose.
             let forward = x.cross(Vec3::Y);
             return Quat::from_rotation_y(forward.x.atan2(forward.z));
         }
         Quat::from_mat3(&Mat3::from_cols(x, y, x.cross(y))).normalize()
     }
 
-    fn trunk(&mut self, stands: bool) {
-        let hips = self.hips(stands);
+    fn trunk(&mut self, is_standing: bool) {
+        let hips = self.hips(is_standing);
         self.turns.fill(hips);
-        if stands {
+        if is_standing {
             return;
         }
-        // In a standing figure spine, neck and head point up, whatever bends a rig's joints describe.
+        // In a standing figure spine, neck and head point up, whatever bends the joints of a rig describe.
         let mut turn = hips;
         let mut chain: Vec<usize> = self.source.spine.iter().chain(&self.source.neck).copied().collect();
         chain.extend(self.source.get(Role::Head));
@@ -146,34 +150,50 @@ impl Builder<'_> {
         chest.map_or(Quat::IDENTITY, |j| self.turns[j])
     }
 
-    /// The alignment `turn` of a role, whose bone points along `axis` at rest, without the multiple of `part` by which the
-    /// joint is rolled on the average against its carrier.
-    fn unwrung(&self, role: Role, carrier: Option<usize>, axis: Vec3, turn: Quat, part: f32) -> Quat {
+    /// The alignment `turn` of a role, whose bone points along `axis` at rest, without the multiple of `part`
+    /// by which the joint is rolled relative to its carrier on average.
+    fn without_rig_roll(
+        &self,
+        role: Role,
+        carrier: Option<usize>,
+        axis: Vec3,
+        turn: Quat,
+        part: f32,
+    ) -> Quat {
         let (Some(joint), Some(carrier)) = (self.source.get(role), carrier) else { return turn };
         let (mut sin, mut cos, mut all) = (0.0, 0.0, 0.0);
         for world in self.turned {
             let held = world[carrier] * self.turns[carrier];
             let against = held.conjugate() * (world[joint] * turn);
-            // Sine and cosine of twice the half angle, by how well it is told: not at all where the bone points back.
+            // Sine and cosine of twice the half angle, weighted by certainty, which is zero where the bone
+            // points back.
             let (along, w) = (against.xyz().dot(axis), against.w);
             (sin, cos, all) =
                 (sin + 2.0 * along * w, cos + w * w - along * along, all + w * w + along * along);
         }
-        let told = sin.hypot(cos) > 0.5 * all;
+        let is_certain = sin.hypot(cos) > 0.5 * all;
         let roll = sin.atan2(cos);
-        let multiples = (roll.abs() / part + 1.0 - PLAIN).floor();
-        if !told || multiples < 1.0 {
+        let multiples = (roll.abs() / part + 1.0 - LEAST_MULTIPLE).floor();
+        if !is_certain || multiples < 1.0 {
             return turn;
         }
         (turn * Quat::from_axis_angle(axis, -roll.signum() * multiples * part)).normalize()
     }
 
-    fn arm(&mut self, side: Side, stands: bool) {
+    fn arm(&mut self, side: Side, is_standing: bool) {
         let mut turn = self.chest();
         let mut carrier = self.source.spine.last().copied().or(self.source.get(Role::Hips));
-        if let Some(bone) = self.source_bone(Role::Clavicle(side), Role::UpperArm(side)).filter(|_| !stands) {
+        if let Some(bone) =
+            self.source_bone(Role::Clavicle(side), Role::UpperArm(side)).filter(|_| !is_standing)
+        {
             let aside = Vec3::X * side.sign();
-            turn = self.unwrung(Role::Clavicle(side), carrier, aside, swing(turn, aside, bone), QUARTER);
+            turn = self.without_rig_roll(
+                Role::Clavicle(side),
+                carrier,
+                aside,
+                swing(turn, aside, bone),
+                QUARTER,
+            );
         }
         self.set(Role::Clavicle(side), turn);
         carrier = self.source.get(Role::Clavicle(side)).or(carrier);
@@ -182,28 +202,28 @@ impl Builder<'_> {
         {
             if let (Some(target), Some(source)) = (self.target_bone(from, to), self.source_bone(from, to)) {
                 turn = swing(turn, target, source);
-                if !stands {
-                    turn = self.unwrung(from, carrier, target, turn, HALF);
+                if !is_standing {
+                    turn = self.without_rig_roll(from, carrier, target, turn, HALF);
                 }
             }
             self.set(from, turn);
             carrier = self.source.get(from).or(carrier);
         }
-        if let Some(bone) = self.target_bone(Role::Forearm(side), Role::Hand(side)).filter(|_| !stands) {
-            turn = self.unwrung(Role::Hand(side), carrier, bone, turn, HALF);
+        if let Some(bone) = self.target_bone(Role::Forearm(side), Role::Hand(side)).filter(|_| !is_standing) {
+            turn = self.without_rig_roll(Role::Hand(side), carrier, bone, turn, HALF);
         }
         self.set(Role::Hand(side), turn);
     }
 
-    fn leg(&mut self, side: Side, stands: bool) {
+    fn leg(&mut self, side: Side, is_standing: bool) {
         let pelvis = self.source.get(Role::Pelvis).or(self.source.get(Role::Hips));
         let trunk = pelvis.map_or(Quat::IDENTITY, |j| self.turns[j]);
         let (mut turn, mut carrier) = (trunk, pelvis);
         for (from, to) in [(Role::Thigh(side), Role::Shin(side)), (Role::Shin(side), Role::Foot(side))] {
             if let (Some(target), Some(source)) = (self.target_bone(from, to), self.source_bone(from, to)) {
                 turn = swing(turn, target, source);
-                if !stands {
-                    turn = self.unwrung(from, carrier, target, turn, HALF);
+                if !is_standing {
+                    turn = self.without_rig_roll(from, carrier, target, turn, HALF);
                 }
             }
             self.set(from, turn);
@@ -214,31 +234,32 @@ impl Builder<'_> {
             self.source_bone(Role::Foot(side), Role::Toe(side)),
         );
         let foot = match bones {
-            (Some(target), Some(source)) if stands => {
-                // Both soles lie flat, however high the ankles are: only the way that the toes point counts.
+            (Some(target), Some(source)) if is_standing => {
+                // Both soles are level whatever the height of the ankles: only the direction of the toes
+                // counts.
                 let (a, b) = (trunk * target, source);
                 Quat::from_rotation_y(b.x.atan2(b.z) - a.x.atan2(a.z)) * trunk
             }
-            _ if stands => trunk,
+            _ if is_standing => trunk,
             (Some(target), Some(source)) => {
-                self.unwrung(Role::Foot(side), carrier, target, swing(turn, target, source), QUARTER)
+                self.without_rig_roll(Role::Foot(side), carrier, target, swing(turn, target, source), QUARTER)
             }
             _ => turn,
         };
         self.set(Role::Foot(side), foot);
         self.set(Role::Toe(side), foot);
-        if let (Some(bone), false) = (self.target_bone(Role::Foot(side), Role::Toe(side)), stands)
+        if let (Some(bone), false) = (self.target_bone(Role::Foot(side), Role::Toe(side)), is_standing)
             && let Some(end) = self.source.get(Role::Toe(side)).and_then(|j| self.motion.joints[j].end)
             && let (Some(forward), Some(end)) =
                 ((bone * Vec3::new(1.0, 0.0, 1.0)).try_normalize(), end.try_normalize())
         {
-            // Toes lie flat at rest, though the bone of the foot slopes.
+            // Toes are level at rest, although the bone of the foot slopes.
             self.set(Role::Toe(side), swing(foot, forward, end));
         }
     }
 
-    /// Corrects the alignment of the feet so that the soles are level in the frames in which an ankle is lowest,
-    /// when it stands. A file may have one foot standing and never the other, so both are corrected alike.
+    /// Corrects the alignment of the feet so that the soles are level in the frames in which an ankle is
+    /// lowest, where it is_standing. In some files one foot never is_standing, so both are corrected alike.
     fn flatten_feet(&mut self) {
         let feet: Vec<(Side, usize)> =
             Side::BOTH.iter().filter_map(|&s| Some((s, self.source.get(Role::Foot(s))?))).collect();
@@ -253,10 +274,10 @@ impl Builder<'_> {
             }
         }
         samples.sort_by(|a, b| a.0.total_cmp(&b.0));
-        // Few enough that a dance on the toes, with one moment of standing, still finds that moment.
+        // Few enough samples that a single moment of standing is enough in a dance on the toes.
         let lowest = samples.len().div_ceil(33);
         let up = samples[..lowest].iter().map(|(_, up)| *up).sum::<Vec3>().normalize_or(Vec3::Y);
-        // Feet that never stand tell nothing.
+        // Feet that never stand give no information.
         if up.y > 0.5 {
             for (side, foot) in feet {
                 self.turns[foot] *=
@@ -265,8 +286,8 @@ impl Builder<'_> {
         }
     }
 
-    /// Chooses the alignment of the head. Its frame may follow the neck's or the hips', and its end site may point
-    /// anywhere; people mostly hold their heads as they hold their chests.
+    /// Chooses the alignment of the head. Its frame may follow that of the neck or the hips, and its end site
+    /// may point anywhere; people mostly hold their heads like their chests.
     fn head(&mut self) {
         let (Some(head), Some(hips)) = (self.source.get(Role::Head), self.source.get(Role::Hips)) else {
             return;
@@ -286,7 +307,8 @@ impl Builder<'_> {
     }
 }
 
-/// `turn` followed by the smallest rotation that brings a bone, which points along `target` at rest, along `source`.
+/// `turn` followed by the smallest rotation that brings a bone, which points along `target` at rest, along
+/// `source`.
 fn swing(turn: Quat, target: Vec3, source: Vec3) -> Quat {
     (Quat::from_rotation_arc((turn * target).normalize_or(source), source) * turn).normalize()
 }

@@ -1,4 +1,4 @@
-//! Feet on the ground: the height of a retargeted clip.
+//! Puts the feet on the ground: corrects the height of a retargeted clip.
 
 use std::collections::VecDeque;
 
@@ -7,8 +7,8 @@ use glam::{Affine3A, Vec3};
 use crate::humanoid::{Humanoid, Role, Side};
 use crate::{Body, Clip, Pose, pose_at};
 
-/// Longest time from ground to ground, seconds: a jump of 0.4 m, higher than dancers leap and shorter than the
-/// heights of captured motion drift.
+/// Longest time between ground contacts, seconds: a jump of 0.4 m, higher than dancers leap; the drift of
+/// captured heights is slower.
 const LONGEST_JUMP_SECS: f32 = 0.55;
 
 /// Points of the soles, each fixed to a joint.
@@ -17,7 +17,7 @@ struct Soles {
 }
 
 impl Soles {
-    /// Points of one foot that are followed: enough for heel, ball and toes.
+    /// Number of tracked points per foot: enough for heel, ball and toes.
     const POINTS: usize = 96;
 
     fn new(body: &Body, figure: &Humanoid) -> Self {
@@ -30,7 +30,7 @@ impl Soles {
                 .collect();
             let lowest = of_foot.iter().map(|&v| body.mesh.positions[v].y).fold(f32::MAX, f32::min);
             let height = skeleton.rest_position(foot).y - lowest;
-            // The sole: what lies in the lowest part of the foot.
+            // The sole: the lowest part of the foot.
             let sole: Vec<usize> = of_foot
                 .into_iter()
                 .filter(|&v| body.mesh.positions[v].y < lowest + 0.4 * height.max(0.0))
@@ -43,7 +43,7 @@ impl Soles {
                 let v = sole[k * sole.len() / sole.len().min(Self::POINTS)];
                 points.push(Self::fixed(body, body.dominant_joint(v), body.mesh.positions[v]));
             }
-            // Heel and toe decide most: the ends of the sole are always among the points.
+            // Heel and toe matter most, so the ends of the sole are always included.
             for pick in [f32::total_cmp, |a: &f32, b: &f32| b.total_cmp(a)] {
                 if let Some(&v) =
                     sole.iter().min_by(|&&a, &&b| pick(&body.mesh.positions[a].z, &body.mesh.positions[b].z))
@@ -64,12 +64,12 @@ impl Soles {
     }
 }
 
-/// Shifts the hips of every frame so that the feet stand on y = 0.
+/// Shifts the hips in every frame so that the feet stand on y = 0.
 ///
-/// The ground is where the soles come lowest within some time around each frame, which follows the drift of
-/// captured heights and leaves jumps alone. Then frame by frame: a sole that is nearly on the ground is put on it,
-/// which makes up for other proportions, and one that is high is left. The correction is smoothed over time; what
-/// then still sinks is lifted.
+/// The ground is the lowest position of the soles within a time window around each frame, which follows the
+/// drift of captured heights and ignores jumps. Then frame by frame a sole that is nearly on the ground is
+/// put on it, which compensates for different proportions, and one that is high is left. The correction is
+/// smoothed over time; any remaining penetration is lifted.
 pub(super) fn set_on_ground(body: &Body, figure: &Humanoid, clip: &mut Clip) {
     let soles = Soles::new(body, figure);
     let Some(hips) = figure.get(Role::Hips) else { return };
@@ -85,7 +85,7 @@ pub(super) fn set_on_ground(body: &Body, figure: &Humanoid, clip: &mut Clip) {
         .iter()
         .enumerate()
         .map(|(i, &t)| {
-            // The last key's own time would wrap to the first.
+            // The time of the last key would wrap to the first.
             let t = if i + 1 == times.len() { f64::from(t).next_down() } else { f64::from(t) };
             pose_at(body, Some(clip), t, &mut pose);
             soles.lowest(&pose.world_from_joint)
@@ -103,13 +103,13 @@ pub(super) fn set_on_ground(body: &Body, figure: &Humanoid, clip: &mut Clip) {
     }
 }
 
-/// What to add to the height of each frame, given the height of its lowest sole point.
+/// The height correction of each frame, given the height of its lowest sole point.
 fn corrections(heights: &[f32], frame_secs: f32, body_height: f32) -> Vec<f32> {
     let window = (LONGEST_JUMP_SECS / frame_secs.max(1e-4)).max(1.0);
     let reach = (window * 0.5) as usize;
     let lowest = windowed(heights, reach, f32::min);
     let ground = smoothed(&lowest, window * 0.5);
-    // Within 2 % of the body's height (3.5 cm) a sole is meant to stand; beyond 6 % (10 cm) it is not.
+    // Within 2 % of the body's height (3.5 cm) a sole is assumed to stand; beyond 6 % (10 cm) it is not.
     let (near, far) = (0.02 * body_height, 0.06 * body_height);
     let wanted: Vec<f32> = heights
         .iter()
@@ -123,14 +123,15 @@ fn corrections(heights: &[f32], frame_secs: f32, body_height: f32) -> Vec<f32> {
     // A tenth of a second: shorter than a step, longer than the jitter of captured feet.
     let width = 0.1 / frame_secs.max(1e-4);
     let smooth = smoothed(&wanted, width);
-    let sunk: Vec<f32> = (0..heights.len()).map(|i| (ground[i] - heights[i] - smooth[i]).max(0.0)).collect();
-    // The widest need around, smoothed, lifts everything that sinks without a kink.
+    let penetration: Vec<f32> =
+        (0..heights.len()).map(|i| (ground[i] - heights[i] - smooth[i]).max(0.0)).collect();
+    // The smoothed maximum of the nearby penetrations lifts everything without a kink.
     let reach = (width as usize / 2).max(1);
-    let lift = smoothed(&windowed(&sunk, reach, f32::max), reach as f32 * 0.5);
+    let lift = smoothed(&windowed(&penetration, reach, f32::max), reach as f32 * 0.5);
     (0..heights.len()).map(|i| smooth[i] + lift[i] - ground[i]).collect()
 }
 
-/// The least or greatest value within `reach` frames of each; the queue of candidates makes it linear in time.
+/// The minimum or maximum within `reach` frames of each, in linear time by a queue of candidates.
 fn windowed(values: &[f32], reach: usize, pick: fn(f32, f32) -> f32) -> Vec<f32> {
     let mut queue: VecDeque<usize> = VecDeque::new();
     let mut next = 0;
@@ -151,7 +152,7 @@ fn windowed(values: &[f32], reach: usize, pick: fn(f32, f32) -> f32) -> Vec<f32>
         .collect()
 }
 
-/// Gaussian mean over time; `width` is two standard deviations, in frames. Ends are repeated.
+/// Gaussian mean over time; `width` is two standard deviations, in frames. End values are repeated.
 fn smoothed(values: &[f32], width: f32) -> Vec<f32> {
     let sigma = width * 0.5;
     let reach = (3.0 * sigma).ceil() as isize;

@@ -1,9 +1,9 @@
-//! Motion of one skeleton carried to another, by world rotations relative to rest.
+//! Transfers the motion of one skeleton to another by world rotations relative to rest.
 //!
-//! For each source joint an *alignment* `A` is found: the world rotation that brings the target's rest pose into the
-//! pose that the source has when all its rotations are zero ([`align`]). With the source's rotation `Q` in a frame,
-//! the target's joint then turns by `Q * A` from its own rest. The root follows the middle of the source's hips,
-//! scaled by the length of the legs, and the figure is set on the ground ([`ground`]).
+//! For each source joint an *alignment* `A` is computed: the world rotation that brings the target's rest
+//! pose into the zero pose of the source ([`align`]). With the source's rotation `Q` in a frame, the target's
+//! joint rotates by `Q * A` from its own rest. The root follows the midpoint of the source's hips, scaled by
+//! the length of the legs, and the figure is put on the ground ([`ground`]).
 
 mod align;
 mod ground;
@@ -19,7 +19,7 @@ use crate::{
 };
 use align::Alignment;
 
-/// Where a target joint's turn comes from: a source joint, or a place between two.
+/// The source of a target joint's rotation: a source joint, or an interpolation between two.
 #[derive(Clone, Copy, Debug)]
 struct Source {
     a: usize,
@@ -27,28 +27,28 @@ struct Source {
     fraction: f32,
 }
 
-/// The joints that correspond, and what stays the same over all frames.
+/// The corresponding joints and everything else that is constant over the frames.
 struct Plan<'a> {
     motion: &'a MotionFile,
     skeleton: &'a Skeleton,
     source: Humanoid,
     target: Humanoid,
-    /// By target joint.
+    /// For each target joint.
     sources: Vec<Option<Source>>,
     alignment: Alignment,
     /// World rotation of each target joint at rest.
     rest_rotations: Vec<Quat>,
-    /// Length of the target's legs over the source's.
+    /// Ratio of the leg lengths of target and source.
     scale: f32,
 }
 
-/// Carries a motion to a body.
+/// Transfers a motion to a body.
 ///
-/// The clip starts facing +Z at the body's own place, has a key a frame, and stands on the ground at y = 0. Rest
-/// poses may differ (T-pose, A-pose, or none that a person could stand in).
+/// The clip starts at the body's own position facing +Z, has one key per frame, and stands on the ground at y
+/// = 0. Rest poses may differ (T-pose, A-pose, or implausible poses).
 ///
 /// # Errors
-/// Refuses pairs in which hips, head, thighs or upper arms cannot be found by name, and says on which side.
+/// If hips, head, thighs or upper arms cannot be found by name; the error contains the side.
 pub fn retarget(motion: &MotionFile, body: &Body) -> Result<Clip, MotionError> {
     let plan = Plan::new(motion, body)?;
     let mut turns = plan.turns();
@@ -82,7 +82,7 @@ impl<'a> Plan<'a> {
             .map(|(role, _, of)| format!("{} of {of}", role.label()))
             .collect();
         if !missing.is_empty() {
-            let problem = format!("no joint is named like the {}", missing.join(", the "));
+            let problem = format!("no joint name matches the {}", missing.join(", the "));
             return Err(MotionError::Retarget {
                 motion: motion.name.clone(),
                 body: body.name.clone(),
@@ -107,8 +107,8 @@ impl<'a> Plan<'a> {
         Ok(Self { motion, skeleton, source, target, sources, alignment, rest_rotations, scale })
     }
 
-    /// How each mapped target joint turns from its rest, in the world: frame by frame, joint by joint; identity for
-    /// joints that are not mapped.
+    /// World rotation of each mapped target joint relative to its rest: frame by frame, joint by joint;
+    /// identity for joints that are not mapped.
     fn turns(&self) -> Vec<Vec<Quat>> {
         let count = self.motion.joints.len();
         let mut world = vec![Quat::IDENTITY; count];
@@ -131,7 +131,7 @@ impl<'a> Plan<'a> {
             .collect()
     }
 
-    /// The turn about Y that makes the hips face +Z in the first frame.
+    /// The rotation about Y that makes the hips face +Z in the first frame.
     fn start_turn(&self, turns: &[Vec<Quat>]) -> Quat {
         let hips = self.target.get(Role::Pelvis).or(self.target.get(Role::Hips));
         let Some((first, hips)) = turns.first().zip(hips) else { return Quat::IDENTITY };
@@ -142,7 +142,8 @@ impl<'a> Plan<'a> {
         Quat::from_rotation_y(-facing.x.atan2(facing.z))
     }
 
-    /// Place of the target's hips joint in each frame, world space, metres; heights are the source's, scaled.
+    /// World position of the target's hips joint in each frame, metres; heights are those of the source,
+    /// scaled.
     fn hips_path(&self, start: Quat, turns: &[Vec<Quat>]) -> Vec<Vec3> {
         let thighs = |figure: &Humanoid| Side::BOTH.map(|s| figure.get(Role::Thigh(s)));
         let middle = |joints: [Option<usize>; 2], at: &dyn Fn(usize) -> Vec3| {
@@ -151,7 +152,8 @@ impl<'a> Plan<'a> {
         let hips = self.target.get(Role::Hips).unwrap_or(0);
         let carrier = self.target.get(Role::Pelvis).unwrap_or(hips);
         let hips_at_rest = self.skeleton.rest_position(hips);
-        // The hips joint sits anywhere in the pelvis; the middle between the thighs is the same in all rigs.
+        // The hips joint may be anywhere in the pelvis; the midpoint between the thighs is the same in all
+        // rigs.
         let middle_at_rest = middle(thighs(&self.target), &|j| self.skeleton.rest_position(j));
         let mut world: Vec<Affine3A> = Vec::new();
         let mut first = None;
@@ -206,10 +208,10 @@ impl<'a> Plan<'a> {
     }
 }
 
-/// So many frames tell how joints are held.
+/// Number of frames that are sampled to determine how joints are held.
 const SAMPLES: usize = 100;
 
-/// The rotations of all joints of a motion, in the world, in about [`SAMPLES`] frames.
+/// World rotations of all joints of a motion in about [`SAMPLES`] frames.
 fn sampled_turns(motion: &MotionFile) -> Vec<Vec<Quat>> {
     let mut world = Vec::new();
     let frames = (0..motion.frames).step_by((motion.frames / SAMPLES).max(1));
@@ -220,10 +222,10 @@ fn sampled_turns(motion: &MotionFile) -> Vec<Vec<Quat>> {
     turns.collect()
 }
 
-/// A neck that turns by no more than this against the chest has not been captured, radians.
+/// A neck that rotates by no more than this relative to the chest was not captured, radians.
 const STIFF: f32 = 0.01;
 
-/// Whether the neck of a motion goes with the chest all the time, or there is none, and the head alone bends.
+/// Whether the neck is missing or always moves with the chest, so that the head alone bends.
 fn has_stiff_neck(source: &Humanoid, turned: &[Vec<Quat>]) -> bool {
     let chest = source.spine.last().copied().or(source.get(Role::Hips));
     let (Some(chest), Some(head)) = (chest, source.get(Role::Head)) else { return false };
@@ -235,8 +237,9 @@ fn has_stiff_neck(source: &Humanoid, turned: &[Vec<Quat>]) -> bool {
     bends(head) > STIFF && source.neck.iter().all(|&joint| bends(joint) <= STIFF)
 }
 
-/// Pairs target joints with source joints by role; the joints of spine and neck by their place in the chain. A neck that is
-/// stiff in the motion shares the bend of the head beyond its own: were all of it at the skull, the nape would fold.
+/// Pairs target joints with source joints by role, and joints of spine and neck by their position in the
+/// chain. If the source's neck is stiff, the target's neck takes a share of the head's bend; otherwise all of
+/// it would be at the skull, and the nape would fold.
 fn sources(source: &Humanoid, target: &Humanoid, joints: usize, stiff_neck: bool) -> Vec<Option<Source>> {
     let mut sources = vec![None; joints];
     let whole = |j: usize| Source { a: j, b: j, fraction: 0.0 };
@@ -244,7 +247,7 @@ fn sources(source: &Humanoid, target: &Humanoid, joints: usize, stiff_neck: bool
     let base = source.get(Role::Hips);
     for (role, joint) in target.roles() {
         let found = match role {
-            // A target whose hips are also its pelvis turns as the legs do.
+            // A target whose hips are also its pelvis rotates like the legs.
             Role::Hips if target.get(Role::Pelvis).is_none() => pelvis,
             Role::Pelvis => pelvis,
             Role::Chest | Role::Neck => None,
@@ -258,7 +261,8 @@ fn sources(source: &Humanoid, target: &Humanoid, joints: usize, stiff_neck: bool
     for (chain, on, below) in [(&target.spine, &source.spine, base), (&target.neck, &source.neck, chest)] {
         let Some(below) = below else { continue };
         for (i, &joint) in chain.iter().enumerate() {
-            // The chain's joints share its bend: the last one has all of it. Place 0 is what carries the chain.
+            // The joints of a chain share its bend, and the last one has all of it. Position 0 is the joint
+            // that carries the chain.
             let place = (i + 1) as f32 * on.len() as f32 / chain.len() as f32;
             let at = |k: usize| if k == 0 { below } else { on[(k - 1).min(on.len() - 1)] };
             let low = place.floor() as usize;
@@ -283,7 +287,7 @@ fn sources(source: &Humanoid, target: &Humanoid, joints: usize, stiff_neck: bool
     sources
 }
 
-/// Mean length of thigh and shin (and only of the thigh where there are no feet), metres.
+/// Mean length of thigh and shin (only of the thigh if there are no feet), metres.
 fn leg_length(figure: &Humanoid, rest: impl Fn(usize) -> Vec3) -> f32 {
     let length = |side: Side| {
         let joints =
@@ -293,8 +297,8 @@ fn leg_length(figure: &Humanoid, rest: impl Fn(usize) -> Vec3) -> f32 {
     Side::BOTH.into_iter().map(length).sum::<f32>() * 0.5
 }
 
-/// Lets a clip start again: as it is where its ends meet, and with one more key, equal to the first, where the step
-/// from the last key to the first is like any other (cycles are often stored without the repeated frame).
+/// Makes a clip repeat: unchanged if its ends meet; with one more key, equal to the first, if the step from
+/// the last key to the first is like any other (cycles are often stored without the repeated frame).
 fn close_loop(body: &Body, clip: &mut Clip, frame_secs: f64) {
     clip.detect_loop(body);
     let frames = clip.joints.first().and_then(|j| j.rotation.as_ref()).map_or(0, |r| r.values.len());

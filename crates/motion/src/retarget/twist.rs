@@ -1,4 +1,5 @@
-//! Twist joints: helpers of a rig that spread the roll of a limb along it, so that skin does not wring.
+//! Twist joints: helpers of a rig that distribute the roll of a limb along it, so that the skin does not
+//! collapse.
 
 use std::f32::consts::{PI, TAU};
 
@@ -7,24 +8,24 @@ use glam::{Quat, Vec3};
 use crate::Skeleton;
 use crate::humanoid::{Humanoid, Role, Side, is_twist};
 
-/// One twist joint and what it follows.
+/// A twist joint and the joints that drive it.
 struct Twist {
     joint: usize,
     limb: usize,
-    /// The roll is that of `to` against `from`, about the limb.
+    /// The roll is that of `to` relative to `from`, about the limb.
     from: usize,
     to: usize,
     /// Direction of the limb at rest, world space.
     axis: Vec3,
-    /// Part of the roll that the joint has on top of the limb's own turn.
+    /// Fraction of the roll that the joint adds to the limb's own rotation.
     share: f32,
 }
 
-/// Share of its own roll that a limb's upper end takes back; the lower end keeps all.
+/// Fraction of its own roll that a limb's upper end takes back; the lower end keeps all.
 const TAKEN_BACK: f32 = -0.6;
 
-/// The twist joints of a figure: those at the upper end of upper arms and thighs take back a part of the limb's roll,
-/// those along the forearm have a part of the hand's.
+/// The twist joints of a figure. Those at the upper end of upper arms and thighs take back a part of the
+/// limb's roll; those along the forearm take over a part of the hand's.
 fn find(skeleton: &Skeleton, figure: &Humanoid) -> Vec<Twist> {
     let mut twists = Vec::new();
     for side in Side::BOTH {
@@ -67,7 +68,7 @@ fn find(skeleton: &Skeleton, figure: &Humanoid) -> Vec<Twist> {
     twists
 }
 
-/// Fills in the turns of twist joints, frame by frame, and returns which joints those are.
+/// Computes the rotations of twist joints frame by frame, and returns those joints.
 pub(super) fn drive(
     skeleton: &Skeleton,
     figure: &Humanoid,
@@ -82,7 +83,7 @@ pub(super) fn drive(
         let mut before = 0.0;
         for frame in turns.iter_mut() {
             let roll = angle_about(frame[twist.from].conjugate() * frame[twist.to], twist.axis);
-            // A roll past half a turn goes on instead of coming back from the other side.
+            // Unwraps the roll, so that it continues past half a turn instead of jumping to the other side.
             before += (roll - before + PI).rem_euclid(TAU) - PI;
             frame[twist.joint] = frame[twist.limb] * Quat::from_axis_angle(twist.axis, twist.share * before);
         }
@@ -90,10 +91,10 @@ pub(super) fn drive(
     twists.into_iter().map(|t| t.joint).collect()
 }
 
-/// The part of a rotation that turns about a unit vector, radians (swing times twist).
+/// The twist of a rotation about a unit vector, radians (swing times twist).
 fn angle_about(rotation: Quat, axis: Vec3) -> f32 {
     let along = rotation.xyz().dot(axis);
-    // A half turn about another axis has no twist that could be told.
+    // A half turn about another axis has no defined twist.
     if along.hypot(rotation.w) < 1e-6 { 0.0 } else { 2.0 * along.atan2(rotation.w) }
 }
 
@@ -102,12 +103,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn twist_is_told_from_swing() {
+    fn twist_is_separated_from_swing() {
         let axis = Vec3::new(0.6, 0.0, 0.8);
         for angle in [-2.0, -0.3, 0.0, 1.0, 3.0] {
             let swing = Quat::from_rotation_y(0.7);
             let found = angle_about(swing * Quat::from_axis_angle(axis, angle), axis);
-            // The swing's axis is at a right angle to the limb, so the twist comes back whole.
+            // The swing's axis is perpendicular to the limb, so the twist is recovered exactly.
             assert!(((found - angle + PI).rem_euclid(TAU) - PI).abs() < 1e-5, "{angle} {found}");
         }
     }

@@ -1,8 +1,8 @@
-//! Where the real files are.
+//! The location of the real files.
 
 use std::path::PathBuf;
 
-/// The folder of real test files; `None`, with a line that says so, where it is absent.
+/// The folder of real test files. If it is missing, prints a line and returns `None`.
 pub fn data_dir() -> Option<PathBuf> {
     let beside = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data");
     let folder = std::env::var_os("LOVELOCK_DATA").map_or_else(|| PathBuf::from(beside), PathBuf::from);
