@@ -206,9 +206,9 @@ fn no_shoulder_or_foot_is_twisted() {
         });
         println!("{file}: {rolls:?} degrees, left and right");
         // Control: a shoulder that is twisted on purpose is detected.
-        let mut wrung = clip.clone();
+        let mut twisted = clip.clone();
         let shoulder = named("clavicle_r");
-        for track in wrung.joints.iter_mut().filter(|track| track.joint == shoulder) {
+        for track in twisted.joints.iter_mut().filter(|track| track.joint == shoulder) {
             let axis = body.skeleton.world_at_rest[shoulder]
                 .inverse()
                 .transform_vector3(
@@ -219,7 +219,7 @@ fn no_shoulder_or_foot_is_twisted() {
                 *turn *= Quat::from_axis_angle(axis, 3.0);
             }
         }
-        assert!(roll(&body, &wrung, shoulder).abs() > 120.0, "{file}");
+        assert!(roll(&body, &twisted, shoulder).abs() > 120.0, "{file}");
     }
 }
 

@@ -128,15 +128,15 @@ fn strands<M: Measurement>(c: &mut Criterion<M>) {
         let mut simulation = Simulation::new(Arc::clone(&style(&guides)));
         simulation.reset(&StepInput::new(0.0, Affine3A::IDENTITY, &[]));
         group.throughput(Throughput::Elements(count));
-        let usual = SimulationSettings::default();
+        let defaults = SimulationSettings::default();
         if count == 20_000 {
-            let (half, two) = (simulation.clone(), SimulationSettings { substeps: 2, ..usual });
+            let (half, two) = (simulation.clone(), SimulationSettings { substeps: 2, ..defaults });
             bench_steps(&mut group, "20000, two substeps", half, &two, &poses);
             let (lead, follows) = (simulation.clone(), Integrator::FollowTheLeader);
-            let follows = SimulationSettings { integrator: follows, ..usual };
+            let follows = SimulationSettings { integrator: follows, ..defaults };
             bench_steps(&mut group, "20000, follow the leader", lead, &follows, &poses);
         }
-        bench_steps(&mut group, &format!("{count}"), simulation, &usual, &poses);
+        bench_steps(&mut group, &format!("{count}"), simulation, &defaults, &poses);
     }
     group.finish();
 }

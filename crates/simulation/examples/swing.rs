@@ -51,7 +51,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         stage.dance.duration_secs
     );
     let mut simulation = stage.simulation((!still).then_some(0.0));
-    let mut picture = RgbImage::from_pixel(CELL.0 * frames, CELL.1 * 3, Rgb([28, 29, 33]));
+    let mut image = RgbImage::from_pixel(CELL.0 * frames, CELL.1 * 3, Rgb([28, 29, 33]));
     let mut surface = Skin::default();
     let end = from + f64::from(frames - 1) * every;
     let steps = (end / f64::from(STEP_SECS)).round().max(stage.dance.duration_secs * 60.0) as u32;
@@ -70,7 +70,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         if drawn < frames && time >= from + f64::from(drawn) * every - 1e-6 {
             stage.at((!still).then_some(time));
             skin(&stage.body, &stage.pose, &mut surface);
-            draw(&mut picture, drawn, &stage, &surface, &simulation);
+            draw(&mut image, drawn, &stage, &surface, &simulation);
             drawn += 1;
         }
         if still && step % 60 == 0 {
@@ -88,18 +88,18 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("final hair volume: {:.1} % of the rest volume", 100.0 * last.0 / last.1);
     println!("mean hair volume: {:.1} % of the rest volume", 100.0 * volume);
     println!("stretch from the frames {real_stretch:.2e}");
-    picture.save(out)?;
+    image.save(out)?;
     Ok(())
 }
 
 /// Draws one instant as a column of three views that follow the head.
-fn draw(picture: &mut RgbImage, column: u32, stage: &Stage, surface: &Skin, simulation: &Simulation) {
+fn draw(image: &mut RgbImage, column: u32, stage: &Stage, surface: &Skin, simulation: &Simulation) {
     let guides = frame(simulation).guides;
     let centre = Vec3::from(stage.pose.world_from_head.translation) - Vec3::Y * 0.22;
     for view in 0..3 {
         let (right, toward) = [(Vec3::X, Vec3::Z), (Vec3::NEG_Z, Vec3::X), (Vec3::NEG_X, Vec3::NEG_Z)][view];
         let mut canvas = Canvas {
-            picture,
+            image,
             corner: (column * CELL.0, view as u32 * CELL.1),
             depth: vec![f32::MIN; (CELL.0 * CELL.1) as usize],
             axes: [right, toward],
@@ -142,7 +142,7 @@ fn draw(picture: &mut RgbImage, column: u32, stage: &Stage, surface: &Skin, simu
 
 /// One image with its depth buffer: orthographic, seen from `toward`.
 struct Canvas<'a> {
-    picture: &'a mut RgbImage,
+    image: &'a mut RgbImage,
     corner: (u32, u32),
     depth: Vec<f32>,
     axes: [Vec3; 2],
@@ -162,7 +162,7 @@ impl Canvas<'_> {
         if *depth < d.dot(self.axes[1]) + nearer {
             *depth = d.dot(self.axes[1]) + nearer;
             let color = color.to_array().map(|v| v.clamp(0.0, 255.0) as u8);
-            self.picture.put_pixel(self.corner.0 + x, self.corner.1 + y, Rgb(color));
+            self.image.put_pixel(self.corner.0 + x, self.corner.1 + y, Rgb(color));
         }
     }
 }

@@ -85,10 +85,10 @@ impl DensityGrid {
         let (mut centre, mut count, mut total, mut links) = (Vec3::ZERO, 0.0_f32, 0.0_f32, 0.0_f32);
         let mut longest = 0.0_f32;
         // Non-finite guides do not affect the others.
-        let sound =
+        let is_finite =
             |b: &Block, k: usize| b.rest.mean_link[k].is_finite() && at(&b.rest.position[0], k).is_finite();
         let lanes =
-            || blocks.iter().flat_map(|b| (0..b.used).map(move |k| (b, k))).filter(|&(b, k)| sound(b, k));
+            || blocks.iter().flat_map(|b| (0..b.used).map(move |k| (b, k))).filter(|&(b, k)| is_finite(b, k));
         for (block, k) in lanes() {
             centre += at(&block.rest.position[0], k);
             count += 1.0;

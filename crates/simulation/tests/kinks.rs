@@ -43,10 +43,10 @@ fn hair_at_rest_has_no_kinks() {
         let mut strands = Strands::default();
         interpolate(&stage.style, &frame, &mut strands);
         let guides = all_but(of_guides(&frame.guides), 0.0);
-        let (usual, most) = (all_but(of_strands(&strands), 1e-3), all_but(of_strands(&strands), 0.0));
-        println!("{preset:?}: guides turn up to {guides}, strands {usual} and at most {most}");
+        let (most_strands, most) = (all_but(of_strands(&strands), 1e-3), all_but(of_strands(&strands), 0.0));
+        println!("{preset:?}: guides turn up to {guides}, strands {most_strands} and at most {most}");
         assert!(guides < guide, "{preset:?}: a guide turns by {guides}");
-        assert!(usual < strand && most < every_strand, "{preset:?}: strands turn by {usual} and {most}");
+        assert!(most_strands < strand && most < every_strand, "{preset:?}: strands turn by {most_strands} and {most}");
 
         // Control: one point of one guide is displaced by a link.
         let n = frame.guides.points_per_guide;

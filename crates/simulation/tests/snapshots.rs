@@ -8,7 +8,7 @@ use lovelock_simulation::{Integrator, RestoreError, Simulation, SimulationSettin
 mod common;
 use common::{STEP_SECS, Stage, straight, style, violent};
 
-fn locks(count: usize, length: f32) -> Vec<Vec<Vec3>> {
+fn guides(count: usize, length: f32) -> Vec<Vec<Vec3>> {
     (0..count)
         .map(|g| {
             let out = Vec3::new((g as f32).cos(), 0.5 - 0.04 * g as f32, (g as f32).sin());
@@ -41,7 +41,7 @@ fn step(simulation: &mut Simulation, n: u32, settings: &SimulationSettings) {
 }
 
 fn started(count: usize, length: f32) -> Simulation {
-    let mut simulation = Simulation::new(style(&locks(count, length)));
+    let mut simulation = Simulation::new(style(&guides(count, length)));
     let colliders = body(0.0);
     simulation.reset(&StepInput::new(0.0, violent(0.0), &colliders));
     simulation
@@ -58,7 +58,7 @@ fn a_restored_state_continues_with_the_same_bits() {
             (1..40).for_each(|n| step(&mut whole, n, &settings));
             let (bytes, at) = (whole.save(), whole.state_hash());
             // Restored into a simulation that has had another history and was not even reset in the same way.
-            let mut other = Simulation::new(style(&locks(21, 0.2)));
+            let mut other = Simulation::new(style(&guides(21, 0.2)));
             (1..9).for_each(|n| step(&mut other, 3 * n, &SimulationSettings::default()));
             assert_ne!(other.state_hash(), at);
             other.restore(&bytes).expect("its own bytes");
@@ -91,7 +91,7 @@ fn a_state_saved_in_slow_motion_continues_with_the_same_bits() {
     for saved_at in [20, 33, 47] {
         let mut whole = started(21, 0.2);
         (1..saved_at).for_each(|n| slowly(&mut whole, n));
-        let mut other = Simulation::new(style(&locks(21, 0.2)));
+        let mut other = Simulation::new(style(&guides(21, 0.2)));
         other.restore(&whole.save()).expect("its own bytes");
         let at = whole.state_hash();
         for n in saved_at..saved_at + 20 {

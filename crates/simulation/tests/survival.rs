@@ -11,7 +11,7 @@ use proptest::prelude::*;
 mod common;
 use common::{STEP_SECS, frame, head, straight, style};
 
-fn locks(count: usize) -> Vec<Vec<Vec3>> {
+fn guides(count: usize) -> Vec<Vec<Vec3>> {
     (0..count)
         .map(|g| {
             let out = Vec3::new((g as f32).cos(), -0.5, (g as f32).sin());
@@ -49,7 +49,7 @@ fn non_finite_colliders_and_heads_are_survived() {
         },
     ];
     for bad in broken {
-        let mut simulation = Simulation::new(style(&locks(20)));
+        let mut simulation = Simulation::new(style(&guides(20)));
         simulation.reset(&input(0, &[skull(0.08)]));
         for step in 1..60 {
             let collider = if step % 7 == 3 { bad } else { skull(0.08) };
@@ -57,7 +57,7 @@ fn non_finite_colliders_and_heads_are_survived() {
             assert!(all_finite(&simulation), "{bad:?} at step {step}");
         }
     }
-    let mut simulation = Simulation::new(style(&locks(20)));
+    let mut simulation = Simulation::new(style(&guides(20)));
     simulation.reset(&input(0, &[]));
     for step in 1..60 {
         let mut input = input(step, &[]);
@@ -75,7 +75,7 @@ fn non_finite_colliders_and_heads_are_survived() {
 
 #[test]
 fn a_non_finite_guide_is_counted_and_does_not_affect_the_others() {
-    let mut guides = locks(20);
+    let mut guides = guides(20);
     let good = style(&guides);
     guides[7][9].y = f32::NAN;
     let run = |style: Arc<Hairstyle>| -> (u32, [Vec3; 2]) {
@@ -111,7 +111,7 @@ fn a_jump_moves_the_hair_rigidly() {
     let shift = Affine3A::from_translation(Vec3::new(3.0, 0.2, -1.0));
     let turned = Affine3A::from_rotation_y(2.5);
     for (there, clock) in [(shift, 0.0), (shift, -0.4), (shift, 5.0), (turned, 0.0)] {
-        let mut stays = Simulation::new(style(&locks(30)));
+        let mut stays = Simulation::new(style(&guides(30)));
         stays.reset(&input(0, &[]));
         for step in 1..20 {
             stays.step(&input(step, &[]), &settings, STEP_SECS);
@@ -147,7 +147,7 @@ fn a_jump_moves_the_hair_rigidly() {
         }
     }
     // The same movement within an ordinary step does whip it.
-    let mut dragged = Simulation::new(style(&locks(30)));
+    let mut dragged = Simulation::new(style(&guides(30)));
     dragged.reset(&head(0.0, Affine3A::IDENTITY));
     let far = Affine3A::from_translation(Vec3::X * 0.4);
     let report = dragged.step(&head(1.0 / 60.0, far), &settings, STEP_SECS);
@@ -158,8 +158,8 @@ fn a_jump_moves_the_hair_rigidly() {
 fn a_new_style_keeps_the_motion() {
     let settings = SimulationSettings::default();
     let longer: Vec<Vec<Vec3>> =
-        locks(30).iter().map(|g| straight(g[0], (g[1] - g[0]).normalize_or(Vec3::Y), 15, 0.22)).collect();
-    let mut simulation = Simulation::new(style(&locks(30)));
+        guides(30).iter().map(|g| straight(g[0], (g[1] - g[0]).normalize_or(Vec3::Y), 15, 0.22)).collect();
+    let mut simulation = Simulation::new(style(&guides(30)));
     simulation.reset(&input(0, &[]));
     let mut report = StepReport::default();
     for step in 1..25 {
@@ -176,7 +176,7 @@ fn a_new_style_keeps_the_motion() {
     assert!(after.kinetic_energy > 0.5 * report.kinetic_energy, "the motion was lost");
     assert!(after.max_speed < 2.0 * report.max_speed, "the change threw the hair");
     // A different number of guides cannot take over the motion and starts at rest.
-    simulation.set_style(style(&locks(12)));
+    simulation.set_style(style(&guides(12)));
     assert_eq!(frame(&simulation).guides.count(), 12);
     assert!(all_finite(&simulation));
 }
@@ -192,7 +192,7 @@ fn degenerate_styles_are_safe() {
         style(&[vec![p, p + Vec3::Y * 0.05]]),
         style(&[vec![p; 8]]),
         style(&[vec![p, p, p + Vec3::X * 0.01, p + Vec3::X * 0.01, p]]),
-        style(&locks(17)),
+        style(&guides(17)),
     ];
     for style in odd {
         for clamped_links in 0..3 {
@@ -257,7 +257,7 @@ const GREATEST: [f32; 24] = [
 
 /// A swaying guide on a skull survives 40 steps with the settings `s`.
 fn survives(s: &SimulationSettings) -> Result<(), TestCaseError> {
-    let mut simulation = Simulation::new(style(&locks(17)));
+    let mut simulation = Simulation::new(style(&guides(17)));
     simulation.reset(&input(0, &[skull(0.08)]));
     for step in 1..40 {
         let report = simulation.step(&input(step, &[skull(0.08)]), s, STEP_SECS);

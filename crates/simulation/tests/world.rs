@@ -135,8 +135,8 @@ fn hair_cut_in_motion_continues_from_where_it_was() {
 #[test]
 fn the_head_shelters_hair_behind_it_only() {
     // A straight guide 10 cm in front of a head of 9 cm, one behind it, and one far aside.
-    let lock = |x: f32, z: f32| straight(Vec3::new(x, 0.08, z), Vec3::NEG_Y, 15, 0.15);
-    let guides = style(&[lock(-0.16, 0.0), lock(0.16, 0.0), lock(0.0, 0.6)]);
+    let guide = |x: f32, z: f32| straight(Vec3::new(x, 0.08, z), Vec3::NEG_Y, 15, 0.15);
+    let guides = style(&[guide(-0.16, 0.0), guide(0.16, 0.0), guide(0.0, 0.6)]);
     let shape = ColliderShape::Capsule { a: Vec3::ZERO, b: Vec3::ZERO, radius_a: 0.09, radius_b: 0.09 };
     let skull = [PlacedCollider { shape, world_from_rest: Affine3A::IDENTITY }];
     let blown = |sheltering: f32| {

@@ -14,7 +14,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for grid in [true, false] {
         let out = args.next().ok_or("brush WITH.png WITHOUT.png")?;
         let (guides, kept) = hair::fall(&hair::settings(grid), 240);
-        let mut picture = RgbImage::from_pixel(SIZE.0, SIZE.1, Rgb([28, 29, 33]));
+        let mut image = RgbImage::from_pixel(SIZE.0, SIZE.1, Rgb([28, 29, 33]));
         for g in 0..guides.count() {
             // Rows from the lowest, dark, to the highest, light.
             let shade = guides.point(g, 0).y / 0.11;
@@ -29,12 +29,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                     let p = a.lerp(b, k as f32 / 40.0);
                     let (x, y) = (0.5 * SIZE.0 as f32 + p.z * SCALE, 240.0 - p.y * SCALE);
                     if x >= 0.0 && y >= 0.0 && (x as u32) < SIZE.0 && (y as u32) < SIZE.1 {
-                        picture.put_pixel(x as u32, y as u32, color);
+                        image.put_pixel(x as u32, y as u32, color);
                     }
                 }
             }
         }
-        picture.save(&out)?;
+        image.save(&out)?;
         println!("{out}: {:.0} % of the rest volume remains", 100.0 * kept);
     }
     Ok(())

@@ -409,7 +409,7 @@ mod tests {
         assert!(size > 1.0, "what moves them is a force");
         // Rounding errors relative to the size of those forces.
         assert!(forces[6..].iter().all(|f| f.length() < 1e-3 * size), "{forces:?}");
-        assert!(x[11].length() > 0.1, "a stiff lock goes along");
+        assert!(x[11].length() > 0.1, "a stiff guide goes along");
     }
 
     #[test]

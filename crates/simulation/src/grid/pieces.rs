@@ -149,7 +149,7 @@ fn add(lattice: &Lattice, source: &Source, block: &Block, cells: &mut Cells) {
                 if k % 2 == 0 { block.rest.inv_length[i][k] } else { block.rest.inv_length[odd][k] };
             let hair = corners.inside[k] & (inv_length > 0.0) & there[k % 2] & (k < block.used);
             // Rejects NaN.
-            let sound = hair & (t.length_squared() <= UNIT) & !(u.x + u.y + u.z).is_nan();
+            let valid = hair & (t.length_squared() <= UNIT) & !(u.x + u.y + u.z).is_nan();
             let u = u.to_array().map(|u| lesser(greater(u, -FASTEST), FASTEST) * MOMENTUM);
             let directions = outer(t);
             parts[0][k] = 1.0;
@@ -161,7 +161,7 @@ fn add(lattice: &Lattice, source: &Source, block: &Block, cells: &mut Cells) {
             }
             let mass = block.rest.mean_link[k] * shares[k % 2];
             // NaN, or more than all the hair, counts as no mass.
-            masses[k] = if sound & (0.0..=FULL).contains(&mass) { mass } else { 0.0 };
+            masses[k] = if valid & (0.0..=FULL).contains(&mass) { mass } else { 0.0 };
         }
         let (weights, parts) = (corners.weights().map(|weight| masses.times(weight)), transposed(&parts));
         for k in 0..LANES {

@@ -111,8 +111,8 @@ fn hair_outside_the_grid_and_nan_are_ignored() {
     let mut grid = DensityGrid::new(&blocks);
     let away = Map { turn: Mat3::IDENTITY, shift: Vec3::splat(100.0) };
     assert_eq!(grid.update(&blocks, &away, Repulsion::default()), 0);
-    let nonsense = Map { turn: Mat3::IDENTITY, shift: Vec3::splat(f32::NAN) };
-    assert_eq!(grid.update(&blocks, &nonsense, Repulsion::default()), 0);
+    let nan = Map { turn: Mat3::IDENTITY, shift: Vec3::splat(f32::NAN) };
+    assert_eq!(grid.update(&blocks, &nan, Repulsion::default()), 0);
     assert!(grid.cells().iter().all(|c| c.mass() == 0));
 }
 

@@ -48,18 +48,18 @@ fn all_vector_widths_give_the_same_bits() {
 
 #[test]
 fn a_non_finite_guide_is_reset_and_counted_and_keeps_moving() {
-    let (mut hurt, skull) = head_of_hair();
+    let (mut disturbed, skull) = head_of_hair();
     for step in 1..20 {
-        hurt.step(&input(step, &[skull]), &settings(), 1.0 / 60.0);
+        disturbed.step(&input(step, &[skull]), &settings(), 1.0 / 60.0);
     }
-    let mut sound = hurt.clone();
-    let (block, lane) = hurt.slots[17];
-    let (mut lost, block, lane) = (hurt.clone(), block as usize, lane as usize);
+    let mut undisturbed = disturbed.clone();
+    let (block, lane) = disturbed.slots[17];
+    let (mut lost, block, lane) = (disturbed.clone(), block as usize, lane as usize);
     lost.blocks[block].position[7][1][lane] = f32::INFINITY;
-    let length = std::mem::replace(&mut hurt.blocks[block].rest.length[7][lane], f32::NAN);
-    let report = hurt.step(&input(20, &[skull]), &settings(), 1.0 / 60.0);
-    hurt.blocks[block].rest.length[7][lane] = length;
-    sound.step(&input(20, &[skull]), &settings(), 1.0 / 60.0);
+    let length = std::mem::replace(&mut disturbed.blocks[block].rest.length[7][lane], f32::NAN);
+    let report = disturbed.step(&input(20, &[skull]), &settings(), 1.0 / 60.0);
+    disturbed.blocks[block].rest.length[7][lane] = length;
+    undisturbed.step(&input(20, &[skull]), &settings(), 1.0 / 60.0);
     assert_eq!((report.recovered_guides, report.recovered_at), (1, Some(17)));
     let tip = |s: &Simulation, guide: usize| {
         let (block, lane) = s.slots[guide];
@@ -67,10 +67,10 @@ fn a_non_finite_guide_is_reset_and_counted_and_keeps_moving() {
     };
     // It was reset to where it was and carried with the head, so it is near where it would have been.
     assert!(
-        (tip(&hurt, 17) - tip(&sound, 17)).length() < 0.05,
+        (tip(&disturbed, 17) - tip(&undisturbed, 17)).length() < 0.05,
         "{} against {}",
-        tip(&hurt, 17),
-        tip(&sound, 17)
+        tip(&disturbed, 17),
+        tip(&undisturbed, 17)
     );
     // A guide whose stored pose is lost too is reset to its rest pose.
     let report = lost.step(&input(20, &[skull]), &settings(), 1.0 / 60.0);
@@ -78,16 +78,16 @@ fn a_non_finite_guide_is_reset_and_counted_and_keeps_moving() {
     let styled = at(&lost.blocks[block].rest.position[15], lane);
     let styled = lost.head.map_from_head(lost.head.place).apply(styled);
     assert!((tip(&lost, 17) - styled).length() < 1e-5, "{} against {styled}", tip(&lost, 17));
-    let before = tip(&hurt, 17);
+    let before = tip(&disturbed, 17);
     for step in 21..60 {
-        let report = hurt.step(&input(step, &[skull]), &settings(), 1.0 / 60.0);
-        sound.step(&input(step, &[skull]), &settings(), 1.0 / 60.0);
+        let report = disturbed.step(&input(step, &[skull]), &settings(), 1.0 / 60.0);
+        undisturbed.step(&input(step, &[skull]), &settings(), 1.0 / 60.0);
         assert_eq!(report.recovered_guides, 0);
         assert!(report.max_stretch < 1e-5);
     }
-    assert!((tip(&hurt, 17) - before).length() > 0.01, "it must keep moving");
+    assert!((tip(&disturbed, 17) - before).length() > 0.01, "it must keep moving");
     // After half a second it is back to the undisturbed motion.
-    assert!((tip(&hurt, 17) - tip(&sound, 17)).length() < 0.02);
+    assert!((tip(&disturbed, 17) - tip(&undisturbed, 17)).length() < 0.02);
 }
 
 #[test]
@@ -226,12 +226,12 @@ fn factorised_directions_are_part_of_the_state() {
     for step in 1..30 {
         slowly(&mut whole, step);
     }
-    let (mut again, mut anew) = (whole.clone(), whole.clone());
+    let (mut again, mut other) = (whole.clone(), whole.clone());
     again.blocks.iter_mut().for_each(|block| block.coupled.invalidate_factor());
-    anew.blocks.iter_mut().for_each(|block| block.coupled.reset());
+    other.blocks.iter_mut().for_each(|block| block.coupled.reset());
     let same = slowly(&mut whole, 30);
     assert_eq!(slowly(&mut again, 30), same, "the directions determine the factor");
-    assert_ne!(slowly(&mut anew, 30), same, "control: other directions give another factor");
+    assert_ne!(slowly(&mut other, 30), same, "control: other directions give another factor");
 }
 
 #[test]

@@ -39,9 +39,9 @@ pub(crate) fn prepare(block: &mut Block, plan: &Plan) {
             // the guide for ever.
             let support = plan.last_head.rotate(at(support, k));
             let (along, _) = direction_or(support, Vec3::ZERO);
-            let gone = (at(here, k) - plan.last_head.apply(at(rest, k))).dot(along);
-            let lock = block.rest.mean_link[k] * i as f32 + 1e-6;
-            let share = (NO_SUPPORT - greater(gone, -gone) / lock) * (1.0 / (NO_SUPPORT - FULL_SUPPORT));
+            let displacement = (at(here, k) - plan.last_head.apply(at(rest, k))).dot(along);
+            let arc_length = block.rest.mean_link[k] * i as f32 + 1e-6;
+            let share = (NO_SUPPORT - greater(displacement, -displacement) / arc_length) * (1.0 / (NO_SUPPORT - FULL_SUPPORT));
             let a = gravity + support * (carried * lesser(greater(share, 0.0), 1.0));
             put(&mut push, k, a * plan.h);
         }

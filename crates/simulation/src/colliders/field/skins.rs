@@ -122,8 +122,8 @@ impl MovingField {
             let distance = value / lesser(greater(steepness, 0.5), 2.0) - self.lift;
             // Guessed skin may push only a little. The same holds for skin that is stretched or compressed
             // beyond what is possible, and for penetrations deeper than hair ever gets.
-            let sound = rest.sure[k] & (0.5..2.0).contains(&steepness) & (distance > -IMPLAUSIBLE_DEPTH);
-            let distance = if sound { distance } else { greater(distance, -GUESSED_DEPTH) };
+            let valid = rest.sure[k] & (0.5..2.0).contains(&steepness) & (distance > -IMPLAUSIBLE_DEPTH);
+            let distance = if valid { distance } else { greater(distance, -GUESSED_DEPTH) };
             // Stretched skin is further away than at rest, by at most half.
             let far = value - self.lift > 2.0 * reach;
             let there = at_rest.there[k];
@@ -131,10 +131,10 @@ impl MovingField {
             out.distance[k] = distance;
             let least = if far { 0.5 * value - self.lift } else { distance };
             out.nearest[k] = if there { least } else { NONE };
-            out.sure[k] = sound;
+            out.sure[k] = valid;
             out.share[k] = back[15][k];
             put(&mut out.drift, k, times_transposed(&back, k, at(&moved, k)) * inv_dt);
-            let (goes_on, place) = (sound & !rest.heads[k], at(&rest.place, k));
+            let (goes_on, place) = (valid & !rest.heads[k], at(&rest.place, k));
             let place = choose(goes_on, place, NOWHERE);
             put(&mut out.rest, k, place);
         }

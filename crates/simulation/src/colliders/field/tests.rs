@@ -107,7 +107,7 @@ fn a_point_does_not_depend_on_the_others_of_its_row() {
     let (moving, step, near) = in_the_dance(3.9, 37);
     // Every second point is far away, so that measured and unmeasured lanes lie side by side.
     let places: Vec<Vec3> = near.into_iter().flat_map(|p| [p, p + Vec3::Z]).collect();
-    let learn = |row: &Lane3| {
+    let measure = |row: &Lane3| {
         let mut planes = PlaneRow::unknown(PlaneRow::NO_SKIN);
         // Twice, so that the second search starts where the first one ended.
         let _ = moving.row(row, &step, 0.5, 0.012, &mut planes);
@@ -121,9 +121,9 @@ fn a_point_does_not_depend_on_the_others_of_its_row() {
         for (k, &p) in group.iter().enumerate() {
             put(&mut row, k, p);
         }
-        let (together, rest) = learn(&row);
+        let (together, rest) = measure(&row);
         for (k, &p) in group.iter().enumerate() {
-            let (alone, rest_alone) = learn(&splat3(p));
+            let (alone, rest_alone) = measure(&splat3(p));
             let of =
                 |found: &(Lane, Lane3, Lane, Lane)| (found.0[k], at(&found.1, k), found.2[k], found.3[k]);
             let near = |found: &Option<_>| found.as_ref().map(of).filter(|found| found.0 < 1.0);
@@ -202,11 +202,11 @@ fn non_finite_and_singular_skin_stays_at_rest() {
         moving.weightings.inverse_maps(Width::widest(), joints, &mut back);
         back.iter().filter(|back| back.apply(Vec3::ONE).truncate() == Vec3::ONE).count()
     };
-    let usually = rest(&moving.joints);
+    let at_rest = rest(&moving.joints);
     joints[1].translation.x = f32::NAN;
     let lost = rest(&Joints::new(joints));
     joints[1] = Affine3A::from_scale(Vec3::new(1.0, 1e-6, 1.0));
     // A mixture with other joints may still be invertible.
     let flat = rest(&Joints::new(joints));
-    assert!(usually < lost && usually < flat, "{usually} at rest, {lost} where one is lost, {flat} flat");
+    assert!(at_rest < lost && at_rest < flat, "{at_rest} at rest, {lost} where one is lost, {flat} flat");
 }

@@ -114,7 +114,7 @@ impl Weightings {
     /// is none, or where it cannot be inverted.
     #[inline(always)]
     pub(super) fn mixed(&self, row: &Row, joints: &Joints) -> [Lane; 12] {
-        let (mut map, mut sound) = ([ZERO; 12], [true; LANES]);
+        let (mut map, mut valid) = ([ZERO; 12], [true; LANES]);
         let (mut left, mut next) = (row.joints, row.first);
         while left != 0 {
             let j = left.trailing_zeros() as usize % FIELD_JOINTS;
@@ -127,7 +127,7 @@ impl Weightings {
             }
             let lost = joints.lost >> j & 1 != 0;
             for k in 0..LANES {
-                sound[k] &= !(lost & (weight[k] > 0.0));
+                valid[k] &= !(lost & (weight[k] > 0.0));
             }
         }
         let [xx, xy, xz, yx, yy, yz, zx, zy, zz, ..] = map;
@@ -140,14 +140,14 @@ impl Weightings {
         }
         let mut all = true;
         for k in 0..LANES {
-            sound[k] &= (volume[k].abs() > LEAST_VOLUME) & (size[k] < LARGEST_MAP);
-            all &= sound[k];
+            valid[k] &= (volume[k].abs() > LEAST_VOLUME) & (size[k] < LARGEST_MAP);
+            all &= valid[k];
         }
         if !all {
             for (n, number) in map.iter_mut().enumerate() {
                 let rest = if n % 4 == 0 && n < 9 { 1.0 } else { 0.0 };
                 for k in 0..LANES {
-                    number[k] = if sound[k] { number[k] } else { rest };
+                    number[k] = if valid[k] { number[k] } else { rest };
                 }
             }
         }
