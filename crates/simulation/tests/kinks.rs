@@ -46,7 +46,10 @@ fn hair_at_rest_has_no_kinks() {
         let (most_strands, most) = (all_but(of_strands(&strands), 1e-3), all_but(of_strands(&strands), 0.0));
         println!("{preset:?}: guides turn up to {guides}, strands {most_strands} and at most {most}");
         assert!(guides < guide, "{preset:?}: a guide turns by {guides}");
-        assert!(most_strands < strand && most < every_strand, "{preset:?}: strands turn by {most_strands} and {most}");
+        assert!(
+            most_strands < strand && most < every_strand,
+            "{preset:?}: strands turn by {most_strands} and {most}"
+        );
 
         // Control: one point of one guide is displaced by a link.
         let n = frame.guides.points_per_guide;

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::{BodyField, FIELD_JOINTS, FieldLattice, FieldWeights, lines};
 use crate::{Body, RestDistance, head_mesh};
 
-/// Box of the field grid the head joint of a body of [`USUAL_SIZE`] metres, metres.
+/// Box of the field around the head joint of a body of [`USUAL_SIZE`] metres, metres.
 const REACH: [Vec3; 2] = [Vec3::new(-0.27, -0.42, -0.26), Vec3::new(0.27, 0.32, 0.26)];
 const USUAL_SIZE: f32 = 1.7;
 /// Margin of the field beyond the surface of a body of that height, metres.
@@ -71,7 +71,7 @@ pub(super) fn build(body: &Body, rest: &RestDistance) -> Option<BodyField> {
     Some(field)
 }
 
-/// The box grid head and shoulders in head space, with a margin.
+/// The box around head and shoulders in head space, with a margin.
 fn reach(body: &Body, origin: Vec3) -> Option<(Vec3, Vec3)> {
     let mesh = &body.mesh.positions;
     let (low, high) = bounds(mesh.iter().map(|p| *p - origin))?;
@@ -186,7 +186,7 @@ impl<'a> SampleGrid<'a> {
         Self { samples, cell, cells }
     }
 
-    /// Weighted mean of the weights grid a point of the surface, over samples that face the same way.
+    /// Weighted mean of the weights around a point of the surface, over samples that face the same way.
     fn weights(&self, at: Vec3, normal: Vec3, width: f32) -> FieldWeights {
         let middle = (at / self.cell).floor().as_ivec3();
         let (mut sum, mut total) = ([0.0_f32; FIELD_JOINTS], 0.0_f32);

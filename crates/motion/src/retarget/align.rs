@@ -259,7 +259,7 @@ impl Builder<'_> {
     }
 
     /// Corrects the alignment of the feet so that the soles are level in the frames in which an ankle is
-    /// lowest, where it is_standing. In some files one foot never is_standing, so both are corrected alike.
+    /// lowest, where it stands. In some files one foot never stands, so both are corrected alike.
     fn flatten_feet(&mut self) {
         let feet: Vec<(Side, usize)> =
             Side::BOTH.iter().filter_map(|&s| Some((s, self.source.get(Role::Foot(s))?))).collect();

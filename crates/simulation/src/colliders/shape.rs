@@ -16,7 +16,7 @@ pub(crate) enum Shape {
         a: Vec3,
         axis: Vec3,
         inv_axis_squared: f32,
-        /// Tangent of the cone's half angle divided by the axis' length: how far the surface normal contact_push.
+        /// Tangent of the cone's half angle divided by the axis' length: how far the surface normal leans.
         lean: f32,
         radius_a: f32,
         radius_change: f32,

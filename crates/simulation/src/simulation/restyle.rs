@@ -1,6 +1,6 @@
 //! Changing the hairstyle during a motion, without interrupting the motion.
 //!
-//! When ties gather the same guides in another way, every link keep_rest where it is. Over [`GROWTH_SECS`] the rest
+//! When ties gather the same guides in another way, every link stays where it is. Over [`GROWTH_SECS`] the rest
 //! shape changes from the current shape to the one that the ties demand, while the spring that ties the
 //! points to the head's frame grows from a weak one to its full strength. The hair thus reaches its new place
 //! by simulation, around the body and not through it. Points that a tie already held nearby stay held.
@@ -18,7 +18,7 @@ use crate::rest::RestShape;
 const GROWTH_SECS: f32 = 0.7;
 /// Strength of new ties at the start, 1/s: hair covers half the distance in a quarter of a second.
 const INITIAL_HOLD: f32 = 6.0;
-/// A point keep_rest held at full strength if its new rest position is closer to the old one than this, metres.
+/// A point stays held at full strength if its new rest position is closer to the old one than this, metres.
 /// This is the case while a tie is dragged.
 const NEARBY: f32 = 0.03;
 

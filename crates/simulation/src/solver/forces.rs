@@ -41,7 +41,8 @@ pub(crate) fn prepare(block: &mut Block, plan: &Plan) {
             let (along, _) = direction_or(support, Vec3::ZERO);
             let displacement = (at(here, k) - plan.last_head.apply(at(rest, k))).dot(along);
             let arc_length = block.rest.mean_link[k] * i as f32 + 1e-6;
-            let share = (NO_SUPPORT - greater(displacement, -displacement) / arc_length) * (1.0 / (NO_SUPPORT - FULL_SUPPORT));
+            let share = (NO_SUPPORT - greater(displacement, -displacement) / arc_length)
+                * (1.0 / (NO_SUPPORT - FULL_SUPPORT));
             let a = gravity + support * (carried * lesser(greater(share, 0.0), 1.0));
             put(&mut push, k, a * plan.h);
         }

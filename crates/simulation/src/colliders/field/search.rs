@@ -182,7 +182,7 @@ impl MovingField {
         if start != Start::Previous {
             let close = (SAME_START * self.field.node_lattice().spacing).powi(2);
             for k in 0..LANES {
-                // A starting point close to a known rest position would lead there from_previous.
+                // A starting point close to a known rest position would lead there again.
                 let (from, known) = (at(&froms, k), at(&search.tried, k));
                 let untried = known.x >= NOWHERE.x;
                 asked[k] &= untried | ((from - known).length_squared() >= close);
