@@ -4,7 +4,7 @@
 #![allow(unsafe_code)]
 
 use glam::{IVec3, Vec3};
-use lovelock_groom::simd::{Width, whole_part};
+use lovelock_groom::simd::whole_part;
 use lovelock_groom::simd_versions;
 use lovelock_motion::FieldWeights;
 
