@@ -8,6 +8,9 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use glam::{Affine3A, Mat4, Quat, Vec3};
+use lovelock_base::glb::{
+    self, ARRAY_BUFFER, Buffer, ELEMENT_ARRAY_BUFFER, FLOAT, UNSIGNED_INT, UNSIGNED_SHORT,
+};
 use serde_json::{Value, json};
 
 use super::spool::{Spool, bounds};
@@ -15,11 +18,7 @@ use super::{CurveBody, CurveFrame, CurveReport, CurveScene};
 use crate::RecordError;
 use crate::partial::{Opener, PartialFile};
 
-const FLOAT: u32 = 5126;
-const UNSIGNED_SHORT: u32 = 5123;
-const UNSIGNED_INT: u32 = 5125;
-const ARRAY_BUFFER: u32 = 34962;
-const ELEMENT_ARRAY_BUFFER: u32 = 34963;
+/// Mode of a primitive: separate lines.
 const LINES: u32 = 1;
 
 pub(super) struct GlbWriter {
@@ -71,52 +70,37 @@ impl GlbWriter {
         if let Some(body) = &self.scene.body {
             asset.body(body, &self.joints, &self.scene);
         }
-        let mut json = asset.json();
-        // Parts of a binary glTF end on a multiple of four bytes.
-        json.resize(json.len().next_multiple_of(4), b' ');
-        asset.rest.resize(asset.rest.len().next_multiple_of(4), 0);
-        let binary = spooled + asset.rest.len() as u64;
-        let whole = 12 + 8 + json.len() as u64 + 8 + binary;
-        let too_long = || {
+        let head = glb::head(asset.json(), asset.buffer.len()).map_err(|whole| {
             RecordError::request(format!(
                 "{}: {whole} bytes, and a binary glTF has {} at most: write fewer frames",
                 self.target.display(),
                 u32::MAX
             ))
-        };
-        let whole_length = u32::try_from(whole).map_err(|_| too_long())?;
+        })?;
+        let rest = asset.buffer.into_bytes();
+        let bytes = head.len() as u64 + spooled + rest.len() as u64;
         let (file, spool) = (&mut self.file, &mut self.spool);
         let mut write = || -> io::Result<()> {
-            for word in [0x4654_6c67, 2, whole_length, json.len() as u32, 0x4e4f_534a] {
-                file.write_all(&u32::to_le_bytes(word))?;
-            }
-            file.write_all(&json)?;
-            for word in [binary as u32, 0x004e_4942] {
-                file.write_all(&u32::to_le_bytes(word))?;
-            }
+            file.write_all(&head)?;
             let mut row = vec![[0.0; 3]; points];
             for frame in 0..frames {
                 spool.read(frame, 0, &mut row)?;
                 file.write_all(bytemuck::cast_slice(&row))?;
             }
-            file.write_all(&asset.rest)
+            file.write_all(&rest)
         };
         let target = &self.target;
         let failed = |error| RecordError::io(target, "write the file", error);
         write().map_err(failed)?;
         self.file.commit(true).map_err(failed)?;
-        Ok(CurveReport { frames, bytes: whole })
+        Ok(CurveReport { frames, bytes })
     }
 }
 
 /// A glTF asset as it is put together. Its buffer begins with the curves' points, frame after frame, which are not
 /// held here.
 struct Asset {
-    spooled: u64,
-    /// The buffer behind the curves' points.
-    rest: Vec<u8>,
-    views: Vec<Value>,
-    accessors: Vec<Value>,
+    buffer: Buffer,
     meshes: Vec<Value>,
     nodes: Vec<Value>,
     roots: Vec<usize>,
@@ -127,15 +111,13 @@ struct Asset {
 
 impl Asset {
     fn new(spooled: u64) -> Self {
-        let views = vec![json!({
+        let mut buffer = Buffer::after(spooled);
+        buffer.views.push(json!({
             "buffer": 0, "byteOffset": 0, "byteLength": spooled, "byteStride": 12, "target": ARRAY_BUFFER,
             "name": "points of the hair, frame after frame",
-        })];
+        }));
         Self {
-            spooled,
-            rest: Vec::new(),
-            views,
-            accessors: Vec::new(),
+            buffer,
             meshes: Vec::new(),
             nodes: Vec::new(),
             roots: Vec::new(),
@@ -154,22 +136,9 @@ impl Asset {
         target: Option<u32>,
         more: Value,
     ) -> usize {
-        self.rest.resize(self.rest.len().next_multiple_of(4), 0);
-        let bytes: &[u8] = bytemuck::cast_slice(values);
-        let mut view = json!({
-            "buffer": 0, "byteOffset": self.spooled + self.rest.len() as u64, "byteLength": bytes.len(),
-        });
-        if let Some(target) = target {
-            view["target"] = target.into();
-        }
-        self.rest.extend_from_slice(bytes);
-        self.views.push(view);
-        let mut accessor = json!({
-            "bufferView": self.views.len() - 1, "componentType": component, "count": values.len(), "type": kind,
-        });
-        merge(&mut accessor, more);
-        self.accessors.push(accessor);
-        self.accessors.len() - 1
+        let accessor = self.buffer.add(bytemuck::cast_slice(values), kind, component, values.len(), target);
+        merge(&mut self.buffer.accessors[accessor], more);
+        accessor
     }
 
     /// Times and values of an animated property of a node.
@@ -194,11 +163,11 @@ impl Asset {
         let frames = boxes.len();
         let mut children = Vec::with_capacity(frames);
         for (frame, [low, high]) in boxes.iter().enumerate() {
-            self.accessors.push(json!({
+            self.buffer.accessors.push(json!({
                 "bufferView": 0, "byteOffset": 12 * points as u64 * frame as u64,
                 "componentType": FLOAT, "count": points, "type": "VEC3", "min": low, "max": high,
             }));
-            let positions = self.accessors.len() - 1;
+            let positions = self.buffer.accessors.len() - 1;
             let number = scene.first_frame + frame as u64;
             self.meshes.push(json!({
                 "name": format!("Hair of frame {number}"),
@@ -329,9 +298,9 @@ impl Asset {
                 { "name": "Hair", "extensions": { "KHR_materials_unlit": {} } },
                 { "name": "Body", "pbrMetallicRoughness": { "metallicFactor": 0.0, "roughnessFactor": 0.8 } },
             ],
-            "accessors": self.accessors,
-            "bufferViews": self.views,
-            "buffers": [{ "byteLength": self.spooled + self.rest.len() as u64 }],
+            "accessors": self.buffer.accessors,
+            "bufferViews": self.buffer.views,
+            "buffers": [{ "byteLength": self.buffer.len() }],
         });
         if self.skins.is_empty() {
             // What nothing uses is noted by validators.

@@ -1,6 +1,9 @@
 //! Writes glTF 2.0 in its binary form: one skinned mesh, a skeleton and clips.
 
 use glam::{Quat, Vec3};
+use lovelock_base::glb::{
+    self, ARRAY_BUFFER, Buffer, ELEMENT_ARRAY_BUFFER, FLOAT, UNSIGNED_BYTE, UNSIGNED_SHORT,
+};
 use serde_json::{Value, json};
 
 use super::rig::RigJoint;
@@ -38,51 +41,23 @@ pub(super) struct Dancer {
     pub(super) clips: Vec<SampledClip>,
 }
 
-const FLOAT: u32 = 5126;
-const UNSIGNED_BYTE: u32 = 5121;
-const UNSIGNED_SHORT: u32 = 5123;
-const ARRAY_BUFFER: u32 = 34962;
-const ELEMENT_ARRAY_BUFFER: u32 = 34963;
-
-/// The binary chunk with the views and accessors into it.
-#[derive(Default)]
-struct Buffer {
-    bytes: Vec<u8>,
-    views: Vec<Value>,
-    accessors: Vec<Value>,
+fn floats<const N: usize>(
+    buffer: &mut Buffer,
+    values: &[[f32; N]],
+    kind: &str,
+    target: Option<u32>,
+) -> usize {
+    let bytes: Vec<u8> = values.iter().flatten().flat_map(|v| v.to_le_bytes()).collect();
+    buffer.add(&bytes, kind, FLOAT, values.len(), target)
 }
 
-impl Buffer {
-    /// Appends data as a view of its own with one accessor; returns the accessor's index.
-    fn add(&mut self, data: &[u8], kind: &str, component: u32, count: usize, target: Option<u32>) -> usize {
-        while !self.bytes.len().is_multiple_of(4) {
-            self.bytes.push(0);
-        }
-        let mut view = json!({"buffer": 0, "byteOffset": self.bytes.len(), "byteLength": data.len()});
-        if let Some(target) = target {
-            view["target"] = json!(target);
-        }
-        self.bytes.extend_from_slice(data);
-        self.views.push(view);
-        self.accessors.push(json!({
-            "bufferView": self.views.len() - 1, "componentType": component, "count": count, "type": kind,
-        }));
-        self.accessors.len() - 1
-    }
-
-    fn floats<const N: usize>(&mut self, values: &[[f32; N]], kind: &str, target: Option<u32>) -> usize {
-        let bytes: Vec<u8> = values.iter().flatten().flat_map(|v| v.to_le_bytes()).collect();
-        self.add(&bytes, kind, FLOAT, values.len(), target)
-    }
-
-    /// States the extremes of accessor `index`, as positions and times must.
-    fn bound<const N: usize>(&mut self, index: usize, values: &[[f32; N]]) {
-        let fold = |f: fn(f32, f32) -> f32| -> Vec<f32> {
-            (0..N).map(|c| values.iter().map(|v| v[c]).reduce(f).unwrap_or(0.0)).collect()
-        };
-        self.accessors[index]["min"] = json!(fold(f32::min));
-        self.accessors[index]["max"] = json!(fold(f32::max));
-    }
+/// Writes the smallest and largest values into an accessor, as glTF requires for positions and times.
+fn bound<const N: usize>(accessor: &mut Value, values: &[[f32; N]]) {
+    let fold = |f: fn(f32, f32) -> f32| -> Vec<f32> {
+        (0..N).map(|c| values.iter().map(|v| v[c]).reduce(f).unwrap_or(0.0)).collect()
+    };
+    accessor["min"] = json!(fold(f32::min));
+    accessor["max"] = json!(fold(f32::max));
 }
 
 /// The bytes of the `.glb` file.
@@ -98,7 +73,7 @@ pub(super) fn write(dancer: &Dancer) -> anyhow::Result<Vec<u8>> {
             [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, t.x, t.y, t.z, 1.0]
         })
         .collect();
-    let bind = buffer.floats(&bind, "MAT4", None);
+    let bind = floats(&mut buffer, &bind, "MAT4", None);
 
     // Node 0 is the mesh, the joints follow.
     let mut nodes = vec![json!({"name": "dancer", "mesh": 0, "skin": 0})];
@@ -133,39 +108,22 @@ pub(super) fn write(dancer: &Dancer) -> anyhow::Result<Vec<u8>> {
             "joints": (1..=dancer.joints.len()).collect::<Vec<_>>(),
         }],
         "animations": animations,
-        "buffers": [{"byteLength": buffer.bytes.len()}],
+        "buffers": [{"byteLength": buffer.len()}],
         "bufferViews": buffer.views,
         "accessors": buffer.accessors,
     });
-    let mut text = serde_json::to_vec(&document)?;
-    while !text.len().is_multiple_of(4) {
-        text.push(b' ');
-    }
-    let mut binary = buffer.bytes;
-    while !binary.len().is_multiple_of(4) {
-        binary.push(0);
-    }
-    let total = 12 + 8 + text.len() + 8 + binary.len();
-    let mut out = Vec::with_capacity(total);
-    out.extend_from_slice(b"glTF");
-    for word in [2, total as u32, text.len() as u32] {
-        out.extend_from_slice(&word.to_le_bytes());
-    }
-    out.extend_from_slice(b"JSON");
-    out.extend_from_slice(&text);
-    out.extend_from_slice(&(binary.len() as u32).to_le_bytes());
-    out.extend_from_slice(b"BIN\0");
-    out.extend_from_slice(&binary);
-    Ok(out)
+    let head = glb::head(serde_json::to_vec(&document)?, buffer.len())
+        .map_err(|whole| anyhow::anyhow!("a binary glTF file of {whole} bytes: wanted less than 4 GiB"))?;
+    Ok([head, buffer.into_bytes()].concat())
 }
 
 fn primitive(dancer: &Dancer, buffer: &mut Buffer) -> Value {
     let count = dancer.positions.len();
     let positions: Vec<[f32; 3]> = dancer.positions.iter().map(Vec3::to_array).collect();
-    let position = buffer.floats(&positions, "VEC3", Some(ARRAY_BUFFER));
-    buffer.bound(position, &positions);
+    let position = floats(buffer, &positions, "VEC3", Some(ARRAY_BUFFER));
+    bound(&mut buffer.accessors[position], &positions);
     let normals: Vec<[f32; 3]> = dancer.normals.iter().map(Vec3::to_array).collect();
-    let normal = buffer.floats(&normals, "VEC3", Some(ARRAY_BUFFER));
+    let normal = floats(buffer, &normals, "VEC3", Some(ARRAY_BUFFER));
     let colours: Vec<u8> = dancer
         .colours
         .iter()
@@ -175,7 +133,7 @@ fn primitive(dancer: &Dancer, buffer: &mut Buffer) -> Value {
     let colour = buffer.add(&colours, "VEC4", UNSIGNED_SHORT, count, Some(ARRAY_BUFFER));
     buffer.accessors[colour]["normalized"] = json!(true);
     let scalp: Vec<[f32; 1]> = dancer.scalp.iter().map(|v| [*v]).collect();
-    let scalp = buffer.floats(&scalp, "SCALAR", Some(ARRAY_BUFFER));
+    let scalp = floats(buffer, &scalp, "SCALAR", Some(ARRAY_BUFFER));
     let joints: Vec<u8> = dancer.influences.iter().flatten().map(|(joint, _)| *joint).collect();
     let joints = buffer.add(&joints, "VEC4", UNSIGNED_BYTE, count, Some(ARRAY_BUFFER));
     let weights: Vec<u8> = dancer.influences.iter().flatten().flat_map(|(_, w)| w.to_le_bytes()).collect();
@@ -202,8 +160,8 @@ fn primitive(dancer: &Dancer, buffer: &mut Buffer) -> Value {
 
 fn animation(clip: &SampledClip, buffer: &mut Buffer) -> Value {
     let times: Vec<[f32; 1]> = clip.times.iter().map(|t| [*t]).collect();
-    let input = buffer.floats(&times, "SCALAR", None);
-    buffer.bound(input, &times);
+    let input = floats(buffer, &times, "SCALAR", None);
+    bound(&mut buffer.accessors[input], &times);
     let mut samplers = Vec::new();
     let mut channels = Vec::new();
     let mut channel = |output: usize, node: usize, path: &str| {
@@ -211,7 +169,7 @@ fn animation(clip: &SampledClip, buffer: &mut Buffer) -> Value {
         samplers.push(json!({"input": input, "output": output, "interpolation": "LINEAR"}));
     };
     let places: Vec<[f32; 3]> = clip.hips.iter().map(Vec3::to_array).collect();
-    let places = buffer.floats(&places, "VEC3", None);
+    let places = floats(buffer, &places, "VEC3", None);
     channel(places, 1, "translation");
     for (joint, rotations) in clip.rotations.iter().enumerate() {
         // Neighbouring keys keep to the same half of the sphere, so that any reader takes the short way.
@@ -223,7 +181,7 @@ fn animation(clip: &SampledClip, buffer: &mut Buffer) -> Value {
                 last.to_array()
             })
             .collect();
-        let keys = buffer.floats(&keys, "VEC4", None);
+        let keys = floats(buffer, &keys, "VEC4", None);
         channel(keys, joint + 1, "rotation");
     }
     json!({"name": clip.name, "channels": channels, "samplers": samplers})
