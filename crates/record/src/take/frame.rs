@@ -3,6 +3,8 @@
 use glam::Affine3A;
 use lovelock_groom::{GuideFrame, Guides};
 
+use super::interpolate::mix_guides;
+
 /// One instant of a recorded simulation: all that a picture needs of it.
 ///
 /// The pose of the body follows from the clip at `clip_secs`; lights, camera, look and methods from the project at
@@ -24,13 +26,29 @@ pub struct TakeFrame {
 }
 
 impl TakeFrame {
-    /// Becomes the instant at the fraction `t` (0 to 1) from `a` to `b`, which follows it, as a take shows it: heads turn, and
-    /// hair is mixed as the head sees it and keeps its length. `clip_secs` is the length of the clip, over whose end the time of
-    /// the clip may run between the two; 0 where it has none. Of frames between which the motion jumped, or whose guides are
-    /// others, it is the nearer one.
+    /// Sets `self` to the instant at the fraction `t` (0 to 1) from frame `a` to the next frame `b`. See [`mix_guides`] for the
+    /// hair. `clip_secs` is the length of the clip, 0 if there is none; the time of the clip may wrap around its end between
+    /// the two frames. If the motion jumped between them, or their guides differ in number, the nearer frame is taken as it is.
     pub fn set_between(&mut self, a: &Self, b: &Self, t: f64, clip_secs: f64) {
-        super::interpolate::between(a, b, t, clip_secs, self);
+        let layout = |frame: &Self| (frame.guides.guides.points_per_guide, frame.guides.guides.x.len());
+        if b.jumped || layout(a) != layout(b) {
+            self.clone_from(if t < 0.5 { a } else { b });
+            return;
+        }
+        self.clone_from(a);
+        self.guides.time_secs = a.guides.time_secs + (b.guides.time_secs - a.guides.time_secs) * t;
+        self.clip_secs = mix_clip(a.clip_secs, b.clip_secs, t, clip_secs);
+        mix_guides(&a.guides, &b.guides, t, &mut self.guides);
     }
+}
+
+/// The time of a clip between two frames; past its end it starts again.
+fn mix_clip(a: f64, b: f64, t: f64, clip_secs: f64) -> f64 {
+    if b >= a || clip_secs <= 0.0 {
+        return a + (b - a) * t;
+    }
+    let on = a + (b + clip_secs - a) * t;
+    if on < clip_secs { on } else { on - clip_secs }
 }
 
 impl Default for TakeFrame {

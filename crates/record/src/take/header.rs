@@ -12,9 +12,6 @@ use super::TAKE_VERSION;
 use super::layout::Layout;
 use crate::FrameRate;
 
-/// The most guide points that a take can hold: ten times what the largest hairstyle has.
-pub const MOST_GUIDE_POINTS: u64 = 1 << 20;
-
 /// The longest project text, bytes; a project has some kilobytes.
 pub const MOST_PROJECT_BYTES: usize = 4 << 20;
 

@@ -1,29 +1,11 @@
-//! Between two frames of a take.
+//! Interpolation between two frames of guides.
 
 use glam::{Affine3A, DMat3, DQuat, DVec3};
 use lovelock_groom::GuideFrame;
 
-use super::TakeFrame;
-
-/// Writes the instant at the fraction `t` (0 to 1) from `a` to `b` into `out`. `clip_secs` is the length of the clip,
-/// over whose end the time of the clip may run between the two. Where the motion jumped or the guides are others, it is the nearer
-/// of the two.
-pub(super) fn between(a: &TakeFrame, b: &TakeFrame, t: f64, clip_secs: f64, out: &mut TakeFrame) {
-    let layout = |frame: &TakeFrame| (frame.guides.guides.points_per_guide, frame.guides.guides.x.len());
-    if b.jumped || layout(a) != layout(b) {
-        out.clone_from(if t < 0.5 { a } else { b });
-        return;
-    }
-    out.clone_from(a);
-    out.guides.time_secs = a.guides.time_secs + (b.guides.time_secs - a.guides.time_secs) * t;
-    out.clip_secs = mix_clip(a.clip_secs, b.clip_secs, t, clip_secs);
-
-    mix_guides(&a.guides, &b.guides, t, &mut out.guides);
-}
-
-/// Writes the guides at the fraction `t` (0 to 1) from `a` to `b`, which have the same layout, into `out`: the head turns
-/// and moves, each point goes straight in the head's space, and links keep a length between those of the two. The time of
-/// `out` stays.
+/// Writes the guides at the fraction `t` (0 to 1) from `a` to `b`, which have the same layout, into `out`. The head's rotation
+/// is interpolated by slerp and its position linearly; points move in straight lines in head space; each link's length lies
+/// between its lengths in `a` and `b`. The time of `out` is left as it is.
 pub fn mix_guides(a: &GuideFrame, b: &GuideFrame, t: f64, out: &mut GuideFrame) {
     let (from, to) = (Head::new(&a.world_from_head), Head::new(&b.world_from_head));
     let turn = from.turn.slerp(to.turn, t);
@@ -56,7 +38,7 @@ pub fn mix_guides(a: &GuideFrame, b: &GuideFrame, t: f64, out: &mut GuideFrame) 
     }
 }
 
-/// Where the head is, in double precision.
+/// The transform of the head in double precision.
 struct Head {
     turn: DQuat,
     place: DVec3,
@@ -71,13 +53,4 @@ impl Head {
     fn to_head(&self, world: DVec3) -> DVec3 {
         self.turn.inverse() * (world - self.place)
     }
-}
-
-/// The time of a clip between two frames; past its end it starts again.
-fn mix_clip(a: f64, b: f64, t: f64, clip_secs: f64) -> f64 {
-    if b >= a || clip_secs <= 0.0 {
-        return a + (b - a) * t;
-    }
-    let on = a + (b + clip_secs - a) * t;
-    if on < clip_secs { on } else { on - clip_secs }
 }

@@ -1,7 +1,9 @@
 //! The size of a frame, which may change from chunk to chunk.
 
-use super::MOST_GUIDE_POINTS;
 use super::bytes::Bytes;
+
+/// The most guide points that a take can hold: ten times what the largest hairstyle has.
+pub const MOST_GUIDE_POINTS: u64 = 1 << 20;
 
 /// The size of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

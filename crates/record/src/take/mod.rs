@@ -23,6 +23,7 @@ mod header;
 mod index;
 mod interpolate;
 mod layout;
+mod locate;
 mod map;
 mod predict;
 mod probe;
@@ -37,11 +38,9 @@ mod writer;
 pub use condition::TakeCondition;
 pub use error::TakeError;
 pub use frame::TakeFrame;
-pub use header::{
-    AssetState, MOST_GUIDE_POINTS, MOST_PROJECT_BYTES, TakeAsset, TakeHeader, hairstyle_fingerprint,
-};
+pub use header::{AssetState, MOST_PROJECT_BYTES, TakeAsset, TakeHeader, hairstyle_fingerprint};
 pub use interpolate::mix_guides;
-pub use layout::TakeLayout;
+pub use layout::{MOST_GUIDE_POINTS, TakeLayout};
 pub use reader::TakeReader;
 pub use writer::{TakeReport, TakeWriter};
 

@@ -13,9 +13,9 @@ use super::chunk::{ChunkHeader, HEADER_BYTES, MOST_START_BYTES, Part, unpack, un
 use super::codec::{self, Decoded};
 use super::disk::part_path;
 use super::index::Entry;
-use super::interpolate::between;
 use super::layout::{LAYOUT_BYTES, Layout, TakeLayout};
-use super::map::{Map, map};
+use super::locate::{inspect, locate};
+use super::map::Map;
 use super::probe::is_sound;
 use super::quantise::restore;
 use super::settings::Settings;
@@ -76,7 +76,7 @@ impl TakeReader {
         mut source: Box<dyn Source>,
         length: u64,
     ) -> Result<Self, TakeError> {
-        let map = map(&mut *source, length).map_err(|error| error.at(path))?;
+        let map = locate(&mut *source, length).map_err(|error| error.at(path))?;
         if map.entries.is_empty() {
             let why = map.cut.or(map.damage).unwrap_or_else(|| "its index is empty".to_owned());
             return Err(TakeError::Empty { path: path.to_owned(), why });
@@ -161,7 +161,7 @@ impl TakeReader {
             self.bad.entry(chunk).or_insert(why);
         }
         if self.map.damage.is_none() && self.map.cut.is_none() {
-            let found = self.map.inspect(&mut *self.source);
+            let found = inspect(&self.map, &mut *self.source);
             self.map.damage = found.map_err(|error| TakeError::io(&self.path, "read", error))?;
         }
         Ok(self.condition())
@@ -220,7 +220,7 @@ impl TakeReader {
         let mut ends = std::mem::take(&mut self.ends);
         let result = match (self.frame_into(before, &mut ends.0), self.frame_into(before + 1, &mut ends.1)) {
             (Ok(()), Ok(())) => {
-                between(&ends.0, &ends.1, t, self.map.header.clip_secs, out);
+                out.set_between(&ends.0, &ends.1, t, self.map.header.clip_secs);
                 Ok(before + u64::from(t >= 0.5))
             }
             (Ok(()), Err(TakeError::Lost { .. })) => {
