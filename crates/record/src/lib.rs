@@ -1,27 +1,28 @@
-//! Films, picture sequences, takes and curves, written beside their final name and renamed when whole.
+//! Writes films, image sequences, takes and curves under a temporary name and renames them when they are complete.
 //!
-//! A picture comes in as 8-bit sRGB, four bytes a pixel (RGBA, row by row from the top), and goes out either as
-//! an H.264 film in an MP4 file ([`FilmWriter`]) or as a folder of PNG files with a manifest
-//! ([`SequenceWriter`], which writes EXR files of linear light and its layers as well), or as a small animated PNG ([`PreviewWriter`]). [`PictureSink`] is the one type over them; it picks
-//! by the output's name.
+//! Images are 8-bit sRGB, four bytes per pixel (RGBA, row by row from the top). [`FilmWriter`] writes them as an H.264 film
+//! in an MP4 file, [`SequenceWriter`] as a folder of PNG files with a manifest, and [`PreviewWriter`] as a small animated
+//! PNG. [`SequenceWriter`] also writes EXR files of linear light with depth and transmittance. [`PictureSink`] wraps the
+//! three and picks one by the output's name.
 //!
-//! Three promises hold for every film and sequence:
+//! Films and sequences have these properties:
 //!
-//! - Nothing unfinished ever carries the final name: a file grows as `NAME.partial` beside it and is renamed when it
-//!   is whole. An error or a cancel removes it.
-//! - Memory does not grow with the length: frames are encoded on a named thread behind a short bounded queue, so
-//!   `push` waits when the encoder is behind.
-//! - The same pictures give the same bytes: the encoder runs on one thread and no clock is read.
+//! - An unfinished file never has the final name. It is written as `NAME.partial` in the same folder and renamed when it is
+//!   complete. An error or a cancel removes it.
+//! - Memory does not grow with the number of frames. Frames are encoded on a separate thread behind a short bounded queue;
+//!   `push` waits while the queue is full.
+//! - The same images give the same bytes: the encoder runs on one thread, and nothing depends on the clock.
 //!
-//! A [`TakeWriter`] records the simulation itself, and a [`TakeReader`] plays it. A take grows as `NAME.part`, and what
-//! is there is kept and can be played, whatever ends it.
+//! [`TakeWriter`] records the simulation itself, and [`TakeReader`] plays it back. A take is written as `NAME.part`; whatever
+//! ends the recording, the frames written so far are kept and can be played.
 //!
-//! A [`CurveWriter`] hands the hair and the body on to other programs, as USD or glTF.
+//! [`CurveWriter`] exports the hair and the body to other programs, as USD or glTF.
 //!
-//! [`read_film`] and [`FilmReader`] read a film back without any other program.
+//! [`read_film`] and [`FilmReader`] read films back without any other program.
 
 mod claim;
 mod curves;
+mod dither;
 mod error;
 mod film;
 mod join;

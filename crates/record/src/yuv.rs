@@ -1,4 +1,4 @@
-//! sRGB pictures to the planes that H.264 codes, and back.
+//! Conversion of sRGB images to the planes that H.264 encodes, and back.
 //!
 //! ITU-R BT.709-6, section 3, 8 bits, limited range: with R', G', B' in 0..=1,
 //!
@@ -8,12 +8,21 @@
 //! Pr = (R' − Y') / 1.5748                       chroma = 128 + 224 Pr
 //! ```
 //!
-//! Chroma has half the resolution each way. Its samples lie on the even columns and midway between two rows, which is
-//! what H.264 means where a stream says nothing else (ITU-T H.264, figure 6-1), so it is filtered by 1-2-1 along
-//! the row and averaged over the two rows. A plain 2×2 average would shift the colours by half a pixel.
+//! Chroma has half the resolution in each direction. Its samples lie on the even columns and midway between two rows, the
+//! default of H.264 (ITU-T H.264, figure 6-1). It is therefore filtered by 1-2-1 along the row and averaged over the two
+//! rows. A plain 2×2 average would shift the colours by half a pixel.
 
-/// Fraction bits of the fixed-point coefficients.
+use crate::dither::Dither;
+
+/// Fraction bits of the fixed-point coefficients and of the noise.
 const BITS: u32 = 16;
+
+/// Luma of black and white, 0 and 219 codes above the offset of 16.
+const WHITE: i32 = 219 << BITS;
+
+/// Largest difference of luma among 2×2 pixels of a smooth area: 2.5 codes. Only smooth areas are dithered, so that hair stays
+/// sharp and costs no more.
+const SMOOTH: i32 = 5 << (BITS - 1);
 
 /// `x · scale / 255` in fixed point.
 const fn fixed(x: f64, scale: f64) -> i32 {
@@ -22,26 +31,29 @@ const fn fixed(x: f64, scale: f64) -> i32 {
 }
 
 const LUMA: [i32; 3] = [fixed(0.2126, 219.0), fixed(0.7152, 219.0), fixed(0.0722, 219.0)];
-// The middle coefficients are the rests, so that greys come out as exactly 128.
+// The middle coefficients are what the others leave to zero, so that greys become exactly 128.
 const BLUE: [i32; 3] =
     [fixed(-0.2126 / 1.8556, 224.0), -fixed(-0.2126 / 1.8556, 224.0) - fixed(0.5, 224.0), fixed(0.5, 224.0)];
 const RED: [i32; 3] =
     [fixed(0.5, 224.0), -fixed(-0.0722 / 1.5748, 224.0) - fixed(0.5, 224.0), fixed(-0.0722 / 1.5748, 224.0)];
 
-/// One picture as three planes, 4:2:0: luma of every pixel, chroma of every second column and row.
+/// One image as three planes, 4:2:0: luma of every pixel, chroma of every second column and row.
 pub(crate) struct Planes {
     width: usize,
     height: usize,
     luma: Vec<u8>,
     blue: Vec<u8>,
     red: Vec<u8>,
+    dither: Dither,
     /// Sums over two rows of R, G and B, with one column repeated on the left. Scratch of [`Planes::read_rgba`].
     sums: [Vec<u16>; 3],
+    /// Luma of two rows in fixed point, without the offset. Scratch of [`Planes::read_rgba`].
+    weighted: [Vec<i32>; 2],
 }
 
 impl Planes {
     /// Planes for an even size in pixels.
-    pub(crate) fn new(width: usize, height: usize) -> Self {
+    pub(crate) fn new(width: usize, height: usize, dither: Dither) -> Self {
         debug_assert!(width.is_multiple_of(2) && height.is_multiple_of(2));
         let quarter = width / 2 * (height / 2);
         Self {
@@ -50,22 +62,25 @@ impl Planes {
             luma: vec![0; width * height],
             blue: vec![0; quarter],
             red: vec![0; quarter],
+            dither,
             sums: [vec![0; width + 1], vec![0; width + 1], vec![0; width + 1]],
+            weighted: [vec![0; width], vec![0; width]],
         }
     }
 
-    /// Converts a picture, `width × height` pixels of RGBA. Alpha is ignored: a film has none.
+    /// Converts an image, `width × height` pixels of RGBA. Alpha is ignored: a film has none.
     pub(crate) fn read_rgba(&mut self, rgba: &[u8]) {
-        let width = self.width;
+        let (width, dither) = (self.width, &self.dither);
         let [sum_r, sum_g, sum_b] = &mut self.sums;
+        let [weighted_upper, weighted_lower] = &mut self.weighted;
         let row_pairs = rgba.chunks_exact(width * 8);
         let luma_pairs = self.luma.chunks_exact_mut(width * 2);
         let chroma_rows = self.blue.chunks_exact_mut(width / 2).zip(self.red.chunks_exact_mut(width / 2));
-        for ((pair, luma), (blue, red)) in row_pairs.zip(luma_pairs).zip(chroma_rows) {
+        for (row, ((pair, luma), (blue, red))) in row_pairs.zip(luma_pairs).zip(chroma_rows).enumerate() {
             let (upper, lower) = pair.split_at(width * 4);
             let (luma_upper, luma_lower) = luma.split_at_mut(width);
-            luma_row(upper, luma_upper);
-            luma_row(lower, luma_lower);
+            weigh_row(upper, weighted_upper);
+            weigh_row(lower, weighted_lower);
             let sums = sum_r[1..].iter_mut().zip(&mut sum_g[1..]).zip(&mut sum_b[1..]);
             let pixels = upper.chunks_exact(4).zip(lower.chunks_exact(4));
             for (((r, g), b), (a, c)) in sums.zip(pixels) {
@@ -77,26 +92,47 @@ impl Planes {
             sum_g[0] = sum_g[1];
             sum_b[0] = sum_b[1];
             for (column, (blue, red)) in blue.iter_mut().zip(red.iter_mut()).enumerate() {
+                let at = column * 2;
+                let cell =
+                    [weighted_upper[at], weighted_upper[at + 1], weighted_lower[at], weighted_lower[at + 1]];
+                let range =
+                    cell.into_iter().fold(i32::MIN, i32::max) - cell.into_iter().fold(i32::MAX, i32::min);
+                let is_smooth = range <= SMOOTH;
+                let noise = if is_smooth { dither.luma.at(at, row * 2) } else { 0 };
+                let [a, b, c, d] = cell.map(|weighted| luma_code(weighted, noise));
+                luma_upper[at..at + 2].copy_from_slice(&[a, b]);
+                luma_lower[at..at + 2].copy_from_slice(&[c, d]);
                 // Two rows of 1-2-1: weights of 8 in all, hence three more bits to shift out.
                 let filtered = |sums: &[u16]| {
-                    let at = &sums[column * 2..column * 2 + 3];
-                    i32::from(at[0]) + 2 * i32::from(at[1]) + i32::from(at[2])
+                    let sums = &sums[at..at + 3];
+                    i32::from(sums[0]) + 2 * i32::from(sums[1]) + i32::from(sums[2])
                 };
                 let (r, g, b) = (filtered(sum_r), filtered(sum_g), filtered(sum_b));
-                let half = 1 << (BITS + 2);
-                *blue = (((BLUE[0] * r + BLUE[1] * g + BLUE[2] * b + half) >> (BITS + 3)) + 128) as u8;
-                *red = (((RED[0] * r + RED[1] * g + RED[2] * b + half) >> (BITS + 3)) + 128) as u8;
+                let code = |weights: [i32; 3], noise: i32| {
+                    let noise = if is_smooth { noise << 3 } else { 0 };
+                    let weighted = weights[0] * r + weights[1] * g + weights[2] * b + noise;
+                    (((weighted + (1 << (BITS + 2))) >> (BITS + 3)) + 128).clamp(16, 240) as u8
+                };
+                *blue = code(BLUE, dither.blue.at(column, row));
+                *red = code(RED, dither.red.at(column, row));
             }
         }
     }
 }
 
-fn luma_row(rgba: &[u8], luma: &mut [u8]) {
-    for (luma, pixel) in luma.iter_mut().zip(rgba.chunks_exact(4)) {
-        let weighted =
+/// Luma of a row of RGBA pixels in fixed point, without the offset.
+fn weigh_row(rgba: &[u8], weighted: &mut [i32]) {
+    for (weighted, pixel) in weighted.iter_mut().zip(rgba.chunks_exact(4)) {
+        *weighted =
             LUMA[0] * i32::from(pixel[0]) + LUMA[1] * i32::from(pixel[1]) + LUMA[2] * i32::from(pixel[2]);
-        *luma = (((weighted + (1 << (BITS - 1))) >> BITS) + 16) as u8;
     }
+}
+
+/// Rounds luma to its code. Noise is limited to the distance from black and white, so that they stay as they are and the mean
+/// does not change beside them.
+fn luma_code(weighted: i32, noise: i32) -> u8 {
+    let limit = weighted.min(WHITE - weighted).max(0);
+    (((weighted + noise.clamp(-limit, limit) + (1 << (BITS - 1))) >> BITS) + 16) as u8
 }
 
 impl openh264::formats::YUVSource for Planes {
@@ -123,7 +159,7 @@ impl openh264::formats::YUVSource for Planes {
 
 /// Converts planes back to RGBA (alpha 255), chroma interpolated along the row where its samples lie.
 ///
-/// The reverse of [`Planes::read_rgba`] up to the lost chroma resolution; for looking at films and testing them.
+/// The inverse of [`Planes::read_rgba`] except for the lost chroma resolution. Used to read films back and in tests.
 pub(crate) fn write_rgba(source: &impl openh264::formats::YUVSource, rgba: &mut Vec<u8>) {
     let (width, height) = source.dimensions();
     let (luma_stride, blue_stride, red_stride) = source.strides();
@@ -149,14 +185,20 @@ pub(crate) fn write_rgba(source: &impl openh264::formats::YUVSource, rgba: &mut 
 #[cfg(test)]
 mod tests {
     use super::{Planes, write_rgba};
+    use crate::dither::Dither;
+
+    /// Planes without dithering.
+    fn planes(width: usize, height: usize) -> Planes {
+        Planes::new(width, height, Dither::none())
+    }
 
     fn flat(colour: [u8; 3]) -> (u8, u8, u8) {
-        let mut planes = Planes::new(4, 4);
+        let mut planes = planes(4, 4);
         planes.read_rgba(&[colour[0], colour[1], colour[2], 255].repeat(16));
         (planes.luma[5], planes.blue[1], planes.red[1])
     }
 
-    /// BT.709 colour bars at 100 % as printed in tables of 8-bit codes.
+    /// BT.709 colour bars at 100 %, from published tables of 8-bit codes.
     #[test]
     fn primaries_have_the_published_codes() {
         for (colour, codes) in [
@@ -187,7 +229,7 @@ mod tests {
     #[test]
     fn flat_colours_come_back() {
         for colour in [[10_u8, 200, 90], [90, 45, 20], [250, 250, 240], [1, 2, 3], [128, 0, 64]] {
-            let mut planes = Planes::new(6, 4);
+            let mut planes = planes(6, 4);
             planes.read_rgba(&[colour[0], colour[1], colour[2], 0].repeat(24));
             let mut rgba = Vec::new();
             write_rgba(&planes, &mut rgba);
@@ -200,11 +242,11 @@ mod tests {
         }
     }
 
-    /// A colour edge at an even column: the sample on the edge's right column weighs its neighbours 1-2-1, so three
-    /// quarters of the weight are right of it. A centred 2×2 average would have all of it there: the negative control.
+    /// A colour edge at an even column. The sample on the column right of the edge weighs its neighbours 1-2-1, so three
+    /// quarters of its weight are right of the edge. A centred 2×2 average would put all of the weight there.
     #[test]
     fn chroma_lies_on_the_even_columns() {
-        let mut planes = Planes::new(8, 2);
+        let mut planes = planes(8, 2);
         let row: Vec<u8> =
             (0..8).flat_map(|x| if x < 4 { [0, 0, 0, 255] } else { [0, 0, 255, 255] }).collect();
         planes.read_rgba(&[row.clone(), row].concat());
@@ -213,9 +255,36 @@ mod tests {
 
     #[test]
     fn odd_rows_and_even_rows_weigh_the_same() {
-        let mut planes = Planes::new(2, 2);
+        let mut planes = planes(2, 2);
         planes.read_rgba(&[0, 0, 255, 255, 0, 0, 255, 255, 0, 0, 0, 255, 0, 0, 0, 255]);
         assert_eq!(planes.blue, [128 + 56]);
         assert_eq!(planes.luma, [32, 32, 16, 16]);
+    }
+
+    /// A grey between two codes, as noise leaves it on average; a rounded one is half a code off.
+    #[test]
+    fn dithering_keeps_the_mean_of_smooth_areas_and_spares_edges() {
+        let (width, height) = (256, 256);
+        // Grey 33 is luma 16 + 28.34.
+        let grey = [33, 33, 33, 255].repeat(width * height);
+        let mean = |dither: Dither| {
+            let mut planes = Planes::new(width, height, dither);
+            planes.read_rgba(&grey);
+            planes.luma.iter().map(|&code| f64::from(code)).sum::<f64>() / planes.luma.len() as f64
+        };
+        let exact = 16.0 + 33.0 * 219.0 / 255.0;
+        let (dithered, rounded) = (mean(Dither::for_quantiser(20)), mean(Dither::none()));
+        assert!((dithered - exact).abs() < 0.04, "{dithered} {exact}");
+        assert!((rounded - exact).abs() > 0.3, "{rounded} {exact}");
+        // Black, white and pixels that differ from their neighbours have no noise.
+        let stripes: Vec<u8> = (0..width * height).flat_map(|x| [60 + x as u8 % 2 * 8; 4]).collect();
+        for image in [vec![0; grey.len()], vec![255; grey.len()], stripes] {
+            let [with, without] = [Dither::for_quantiser(20), Dither::none()].map(|dither| {
+                let mut planes = Planes::new(width, height, dither);
+                planes.read_rgba(&image);
+                planes.luma
+            });
+            assert_eq!(with, without);
+        }
     }
 }

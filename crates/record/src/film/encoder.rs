@@ -2,6 +2,7 @@
 
 use super::FilmSettings;
 use crate::FrameRate;
+use crate::dither::Dither;
 use crate::mp4::{AvcConfig, append_sample};
 use crate::yuv::Planes;
 use openh264::OpenH264API;
@@ -23,7 +24,11 @@ pub(super) struct FrameEncoder {
 }
 
 impl FrameEncoder {
-    pub(super) fn new(settings: FilmSettings, rate: FrameRate) -> Result<Self, openh264::Error> {
+    pub(super) fn new(
+        settings: FilmSettings,
+        rate: FrameRate,
+        dither: Dither,
+    ) -> Result<Self, openh264::Error> {
         let FilmSettings { width, height, quality, .. } = settings;
         let fps = rate.as_f64();
         let quantiser = quality.quantiser();
@@ -50,7 +55,7 @@ impl FrameEncoder {
             .vui(VuiConfig::bt709().transfer_characteristics(TransferCharacteristics::Srgb));
         Ok(Self {
             encoder: Encoder::with_api_config(OpenH264API::from_source(), config)?,
-            planes: Planes::new(width as usize, height as usize),
+            planes: Planes::new(width as usize, height as usize, dither),
             stream: Vec::new(),
             sample: Vec::new(),
             config: AvcConfig::default(),

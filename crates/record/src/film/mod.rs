@@ -247,4 +247,6 @@ pub(crate) fn give_back(done: &SyncSender<Vec<u8>>, buffer: Vec<u8>) {
 }
 
 #[cfg(test)]
+mod banding_tests;
+#[cfg(test)]
 mod tests;

@@ -2,6 +2,7 @@
 
 use super::encoder::FrameEncoder;
 use super::{FilmReport, FilmSettings, give_back};
+use crate::dither::Dither;
 use crate::mp4::{Mp4Writer, Track};
 use crate::partial::{Opener, PartialFile};
 use crate::{FrameRate, RecordError};
@@ -50,7 +51,8 @@ impl Film {
         todo: &Receiver<Job>,
         done: &SyncSender<Vec<u8>>,
     ) -> Result<Option<FilmReport>, RecordError> {
-        let mut encoder = FrameEncoder::new(self.settings, self.rate)
+        let dither = Dither::for_quantiser(self.settings.quality.quantiser());
+        let mut encoder = FrameEncoder::new(self.settings, self.rate, dither)
             .map_err(|error| self.encoder_error(&error.to_string()))?;
         while let Ok(job) = todo.recv() {
             match job {
