@@ -1,28 +1,28 @@
-//! Files that one recording at a time may write.
+//! Locks on files, so that only one recording at a time writes to them.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io;
 use std::path::Path;
 
-/// Opens the file of an unfinished recording, making it where it is missing, and keeps others away as long as it is open. What
-/// an earlier recording has left in it stays.
+/// Opens the file of an unfinished recording, creates it if it is missing, and locks it for as long as it is open. What
+/// an earlier recording left in it stays.
 ///
 /// # Errors
-/// [`io::ErrorKind::ResourceBusy`] where another recording has it.
+/// [`io::ErrorKind::ResourceBusy`] if another recording holds the lock.
 pub(crate) fn claim(path: &Path) -> io::Result<File> {
     let file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)?;
     let busy = || io::Error::new(io::ErrorKind::ResourceBusy, "another recording is writing to it");
     match file.try_lock() {
-        // Its writer may have given it another name meanwhile: then it is finished.
+        // The other recording may have finished and renamed the file between `open` and `try_lock`.
         Ok(()) if is_still(&file, path) => Ok(file),
         Ok(()) | Err(TryLockError::WouldBlock) => Err(busy()),
-        // Some network disks know no locks; then nothing keeps two writers apart.
+        // Some network file systems support no locks; two writers are then not kept apart.
         Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => Ok(file),
         Err(TryLockError::Error(error)) => Err(error),
     }
 }
 
-/// Whether the open file is the one of that name.
+/// Whether `path` still names the open file.
 #[cfg(unix)]
 pub(crate) fn is_still(file: &File, path: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
@@ -32,7 +32,7 @@ pub(crate) fn is_still(file: &File, path: &Path) -> bool {
     }
 }
 
-/// Elsewhere a file that is open keeps its name.
+/// On other systems a file that is open cannot be renamed.
 #[cfg(not(unix))]
 pub(crate) fn is_still(_: &File, _: &Path) -> bool {
     true
@@ -43,7 +43,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn one_at_a_time_and_what_is_there_stays() {
+    fn a_second_claim_fails_and_the_contents_stay() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.partial");
         fs::write(&path, b"left").unwrap();

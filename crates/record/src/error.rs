@@ -1,25 +1,25 @@
-//! What can go wrong while pictures are written or read back.
+//! Errors of writing images and reading them back.
 
 use std::io;
 use std::path::PathBuf;
 
-/// Why a recording could not start, go on, finish, or be read back.
+/// Why a recording could not be started, continued, finished or read back.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordError {
-    /// The request itself cannot be met, whatever the disk does: an odd size, an unknown extension.
+    /// The request is invalid, such as an odd size or an unknown extension.
     #[error("{what}")]
     Request {
-        /// The whole sentence: what was asked, and what would be right.
+        /// The whole sentence: what was found and what is valid.
         what: String,
     },
-    /// A file or folder could not be created, written or renamed. The unfinished file is gone by then.
+    /// A file or folder could not be created, written or renamed. The unfinished file has been removed.
     #[error("{}: could not {action}: {source}", path.display())]
     Io {
         /// The output as the user named it (not the `.partial` beside it).
         path: PathBuf,
-        /// What was being done, such as `write frame 12`.
+        /// The action that failed, such as `write frame 12`.
         action: String,
-        /// The system's reason, such as a full disk.
+        /// The operating system's reason, such as a full disk.
         source: io::Error,
     },
     /// The H.264 encoder refused a frame.
@@ -29,39 +29,37 @@ pub enum RecordError {
         path: PathBuf,
         /// The frame, counted from 0.
         frame: u64,
-        /// The encoder's own words.
+        /// The encoder's message.
         reason: String,
     },
-    /// A picture of another size than the settings say was handed over.
-    #[error(
-        "a frame of {found} bytes was handed over, {wanted} were wanted ({width}x{height} pixels of RGBA)"
-    )]
+    /// The size of an image differs from the size in the settings.
+    #[error("a frame has {found} bytes; must be {wanted} ({width}x{height} pixels of RGBA)")]
     FrameSize {
-        /// Bytes handed over.
+        /// Bytes of the image.
         found: usize,
-        /// Bytes wanted: width × height × 4.
+        /// Bytes expected: width × height × 4.
         wanted: usize,
         /// Width in pixels.
         width: u32,
         /// Height in pixels.
         height: u32,
     },
-    /// The recording had already ended by an earlier error.
+    /// An earlier error has already ended the recording.
     #[error("{}: the recording has stopped after an earlier error", path.display())]
     Stopped {
         /// The output as the user named it.
         path: PathBuf,
     },
-    /// A file that is read back is not what it should be.
+    /// A file that is read back is invalid.
     #[error("{}: at byte {offset}: found {found}, wanted {wanted}", path.display())]
     Malformed {
         /// The file.
         path: PathBuf,
-        /// Where, in bytes from the start of the file.
+        /// Position in bytes from the start of the file.
         offset: u64,
-        /// What is there.
+        /// What the file contains there.
         found: String,
-        /// What should be there.
+        /// What was expected.
         wanted: String,
     },
 }
@@ -72,7 +70,7 @@ impl RecordError {
         matches!(self, Self::Request { .. } | Self::Malformed { .. })
     }
 
-    /// The file or folder that the error is about, where there is one.
+    /// The file or folder that the error is about, if there is one.
     pub fn path(&self) -> Option<&std::path::Path> {
         match self {
             Self::Io { path, .. }

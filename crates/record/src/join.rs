@@ -1,4 +1,4 @@
-//! Sequences that were drawn in parts, put together into one.
+//! Joins the parts of a sequence.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -10,24 +10,24 @@ use crate::manifest::{MANIFEST_NAME, Manifest, ManifestFrame, read_manifest};
 use crate::partial::{PartialFile, open_file};
 use crate::{RecordError, SequenceReport};
 
-/// Puts the sequences in the folders of `parts` together into one in `out`, as if one program had drawn all of
-/// `frames`: the same files, byte for byte, and the same manifest.
+/// Joins the sequences in the subfolders of `parts` into one sequence in `out`. The result is the same, byte for byte, as if
+/// one run had rendered all of `frames`.
 ///
-/// Every file is held against its part's manifest. The manifest of `out` comes last; parts stay as they are.
+/// Every file is checked against its part's manifest. The manifest of `out` is written last; the parts are not changed.
 ///
 /// # Errors
-/// [`RecordError::Request`] for parts that differ in size, rate or settings, that are not complete, and for a frame that
-/// no part has; [`RecordError::Malformed`] for a file that is not what its manifest says; [`RecordError::Io`] for the disk.
+/// [`RecordError::Request`] for parts that differ in size, rate or settings or are not complete, and for a frame that
+/// is in no part; [`RecordError::Malformed`] for a file that differs from its manifest; [`RecordError::Io`] for disk errors.
 pub fn join_sequences(parts: &Path, frames: Range<u64>, out: &Path) -> Result<SequenceReport, RecordError> {
     if frames.is_empty() {
         return Err(RecordError::request(format!("frames {}..{}: an empty range", frames.start, frames.end)));
     }
-    let (head, mut found) = look(parts)?;
+    let (head, mut found) = read_parts(parts)?;
     found.retain(|number, _| frames.contains(number));
     if found.len() as u64 != frames.end - frames.start {
         let missing = frames.clone().find(|number| !found.contains_key(number)).unwrap_or(frames.start);
         return Err(RecordError::request(format!(
-            "{}: no part has frame {missing} of {}..{}; draw it before the parts are put together",
+            "{}: no part has frame {missing} of {}..{}; render it before you join the parts",
             parts.display(),
             frames.start,
             frames.end
@@ -57,17 +57,17 @@ pub fn join_sequences(parts: &Path, frames: Range<u64>, out: &Path) -> Result<Se
     };
     write().map_err(|error| RecordError::io(&manifest_path, "write the manifest", error))?;
     for frame in old.iter().filter(|old| is_plain(&old.file) && !frames.contains(&old.number)) {
-        // Of the sequence that was here before. One that cannot go does no harm: the manifest is what counts.
+        // Frames of the sequence that was here before. Errors do no harm, because the new manifest does not list them.
         let _ = fs::remove_file(out.join(&frame.file));
     }
     let bytes = manifest.frames.iter().map(|frame| frame.bytes).sum();
     Ok(SequenceReport { folder: out.to_owned(), frames: manifest.frames.len() as u64, kept: 0, bytes })
 }
 
-/// What all parts have in common, and each frame with the folder that it lies in.
+/// The manifest that all parts share, and each frame with its folder.
 type Parts = (Manifest, BTreeMap<u64, (PathBuf, ManifestFrame)>);
 
-fn look(parts: &Path) -> Result<Parts, RecordError> {
+fn read_parts(parts: &Path) -> Result<Parts, RecordError> {
     let listed = |error| RecordError::io(parts, "list the parts", error);
     let mut folders = Vec::new();
     for entry in fs::read_dir(parts).map_err(listed)? {
@@ -83,14 +83,14 @@ fn look(parts: &Path) -> Result<Parts, RecordError> {
         let mut manifest = read_manifest(&folder)?;
         if !manifest.complete {
             return Err(RecordError::request(format!(
-                "{}: was not drawn to its end; draw it again",
+                "{}: the part is incomplete; render it again",
                 folder.display()
             )));
         }
         for frame in std::mem::take(&mut manifest.frames) {
             if !is_plain(&frame.file) {
                 return Err(RecordError::request(format!(
-                    "{}: its manifest names `{}`, which is no file of its folder",
+                    "{}: its manifest names `{}`, which is not a file in its folder",
                     folder.display(),
                     frame.file
                 )));
@@ -103,19 +103,22 @@ fn look(parts: &Path) -> Result<Parts, RecordError> {
             Some(head) if *head == manifest => {}
             Some(_) => {
                 return Err(RecordError::request(format!(
-                    "{}: drawn with another size, rate or settings than the parts before it",
+                    "{}: size, rate or settings differ from those of the other parts",
                     folder.display()
                 )));
             }
         }
     }
     let head = head.ok_or_else(|| {
-        RecordError::request(format!("{}: holds no part; wanted folders of frames", parts.display()))
+        RecordError::request(format!(
+            "{}: contains no parts; must contain folders of frames",
+            parts.display()
+        ))
     })?;
     Ok((head, found))
 }
 
-/// Whether a name is that of a file in its folder, and leads nowhere else.
+/// Whether `name` is a plain file name without any folder.
 fn is_plain(name: &str) -> bool {
     Path::new(name).file_name().is_some_and(|file| file == name)
 }
@@ -184,7 +187,7 @@ mod tests {
         let report = join_sequences(&at("parts"), 3..13, &at("out")).expect("a sequence");
         assert_eq!(report.frames, 10);
         assert_eq!(files(&at("out")), files(&at("whole")));
-        // The control: one frame that is another is found, by the comparison and by its checksum.
+        // Negative control: an altered frame is found by its checksum.
         draw(&at("parts/c"), 8..9, 8);
         draw(&at("parts/d"), 7..8, 8);
         let frame = at("parts/d").join(frame_name(7, SequenceFormat::Png));
@@ -194,7 +197,7 @@ mod tests {
         fs::write(&frame, &bytes).expect("a file");
         let error = join_sequences(&at("parts"), 3..13, &at("out")).expect_err("an altered frame");
         assert!(error.to_string().contains("CRC-32") && error.is_request(), "{error}");
-        assert!(!at("out").join(MANIFEST_NAME).exists(), "what is not whole says so");
+        assert!(!at("out").join(MANIFEST_NAME).exists(), "an incomplete sequence has no manifest");
     }
 
     #[test]
@@ -205,19 +208,19 @@ mod tests {
         let refused = |frames: Range<u64>, wanted: &str| {
             let error = join_sequences(&at("parts"), frames, &at("out")).expect_err(wanted).to_string();
             assert!(error.contains(wanted), "{error}");
-            assert!(!at("out").exists(), "nothing was begun");
+            assert!(!at("out").exists(), "nothing was written");
         };
-        refused(0..2, "holds no part");
+        refused(0..2, "contains no parts");
         draw(&at("parts/a"), 0..2, 8);
         refused(0..0, "empty range");
         refused(0..3, "no part has frame 2 of 0..3");
         draw(&at("parts/b"), 2..3, 9);
-        refused(0..3, "another size");
+        refused(0..3, "size, rate or settings differ");
         let manifest = at("parts/b").join(MANIFEST_NAME);
         let text = fs::read_to_string(&manifest).expect("a manifest");
         fs::write(&manifest, text.replace("\"complete\": true", "\"complete\": false")).expect("a file");
-        refused(0..3, "was not drawn to its end");
+        refused(0..3, "the part is incomplete");
         fs::write(&manifest, text.replace("frame_000002.png", "../a/frame_000000.png")).expect("a file");
-        refused(0..3, "no file of its folder");
+        refused(0..3, "not a file in its folder");
     }
 }

@@ -1,4 +1,4 @@
-//! The file that says what a folder of frames holds.
+//! The manifest of a folder of frames.
 
 use crate::RecordError;
 use serde::{Deserialize, Serialize};
@@ -10,15 +10,15 @@ pub const MANIFEST_NAME: &str = "manifest.json";
 /// The version that this crate writes.
 pub(crate) const VERSION: u32 = 1;
 
-/// What a folder of frames holds.
+/// The contents of a folder of frames.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
     /// Always `lovelock-sequence`.
     pub format: String,
     /// Version of the format, 1.
     pub version: u32,
-    /// Whether the recording ran to its end. False after a cancel or an error: the frames listed are whole, but there
-    /// should have been more.
+    /// Whether the recording was finished. False after a cancel or an error: the listed frames are complete, but some are
+    /// missing.
     pub complete: bool,
     /// Width of every frame in pixels.
     pub width: u32,
@@ -26,11 +26,11 @@ pub struct Manifest {
     pub height: u32,
     /// Frames per second.
     pub fps: f64,
-    /// Number of the first frame, as in the range that was asked for.
+    /// Number of the first frame of the requested range.
     pub first_frame: u64,
     /// The frames, by rising number.
     pub frames: Vec<ManifestFrame>,
-    /// What drew them, as the caller gave it.
+    /// How the frames were rendered, as given by the caller.
     pub settings: serde_json::Value,
 }
 
@@ -39,9 +39,9 @@ pub struct Manifest {
 pub struct ManifestFrame {
     /// The frame's number.
     pub number: u64,
-    /// Its file, beside the manifest.
+    /// Name of its file in the manifest's folder.
     pub file: String,
-    /// The file's length.
+    /// Length of the file in bytes.
     pub bytes: u64,
     /// CRC-32 of the file's bytes (as in zip and PNG), eight hexadecimal digits.
     pub crc32: String,
@@ -50,7 +50,7 @@ pub struct ManifestFrame {
 /// Reads a folder's manifest.
 ///
 /// # Errors
-/// [`RecordError::Io`] where there is none, [`RecordError::Malformed`] where it is not one of ours.
+/// [`RecordError::Io`] if there is none, [`RecordError::Malformed`] if it is not a manifest of this program.
 pub fn read_manifest(folder: &Path) -> Result<Manifest, RecordError> {
     let path = folder.join(MANIFEST_NAME);
     let text = std::fs::read(&path).map_err(|error| RecordError::io(&path, "read the manifest", error))?;

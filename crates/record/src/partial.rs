@@ -1,13 +1,13 @@
-//! A file that grows as `NAME.partial` and gets its name when it is whole.
+//! Files that are written as `NAME.partial` and renamed when they are complete.
 
 use crate::claim::claim;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-/// What an unfinished file is written to. A file, except in tests of full disks.
+/// What an unfinished file is written to: a file, except in tests of full disks.
 pub(crate) trait Medium: Write + Seek + Send {
-    /// Waits until what was written is on the disk.
+    /// Waits until everything written is on the disk.
     fn sync(&mut self) -> io::Result<()>;
 }
 
@@ -17,18 +17,18 @@ impl Medium for File {
     }
 }
 
-/// Opens the medium for the path of the unfinished file.
+/// Opens the medium of an unfinished file by its path.
 pub(crate) type Opener = dyn Fn(&Path) -> io::Result<Box<dyn Medium>> + Send + Sync;
 
-/// The opener of every real recording: an empty file that no other recording has.
+/// The opener of every real recording: an empty file, locked against other recordings.
 pub(crate) fn open_file(partial: &Path) -> io::Result<Box<dyn Medium>> {
     let file = claim(partial)?;
-    // A crash may have left something behind.
+    // A crash may have left data in the file.
     file.set_len(0)?;
     Ok(Box::new(file))
 }
 
-/// An unfinished file. Dropped before [`PartialFile::commit`], it leaves nothing.
+/// An unfinished file. If it is dropped before [`PartialFile::commit`], the file is removed.
 pub(crate) struct PartialFile {
     target: PathBuf,
     partial: PathBuf,
@@ -42,18 +42,19 @@ impl PartialFile {
         Ok(Self { target: target.to_owned(), partial, medium: Some(medium) })
     }
 
-    /// Gives the file its name. `durable` waits for the disk first, so that a name never stands for lost bytes.
+    /// Renames the file to its final name. With `durable` it waits for the disk first, so that after a power failure a file with
+    /// the final name is never incomplete.
     pub(crate) fn commit(mut self, durable: bool) -> io::Result<()> {
         let medium = self.medium()?;
         medium.flush()?;
         if durable {
             medium.get_mut().sync()?;
         }
-        // Before it is closed: no other recording begins with it in between.
+        // Renamed while it is still open and locked, so that no other recording can claim it in between.
         fs::rename(&self.partial, &self.target)?;
         self.close();
         if durable && let Some(folder) = self.target.parent() {
-            // The rename itself lives in the folder. Not every system lets a folder be opened; the file is safe anyway.
+            // The rename is stored in the folder. Not every system can open a folder; the file's data is safe without it.
             let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
             let _ = File::open(folder).and_then(|folder| folder.sync_all());
         }
@@ -64,7 +65,7 @@ impl PartialFile {
         self.medium.as_mut().ok_or_else(|| io::Error::other("the file is closed"))
     }
 
-    /// Closes without flushing: what matters was flushed, and a full disk should not be asked again.
+    /// Closes without flushing: `commit` has flushed already, and writing to a full disk again would fail again.
     fn close(&mut self) {
         if let Some(medium) = self.medium.take() {
             drop(medium.into_parts());
@@ -90,8 +91,8 @@ impl Seek for PartialFile {
 
 impl Drop for PartialFile {
     fn drop(&mut self) {
-        // After a commit the name is gone already, and may be another's; otherwise this is the cleaning up, and there is no one
-        // to tell.
+        // After a commit the partial name no longer exists, or belongs to another recording. Errors of the removal cannot be
+        // reported from here.
         if self.medium.is_some() {
             let _ = fs::remove_file(&self.partial);
             self.close();
@@ -106,7 +107,7 @@ pub(crate) fn partial_path(target: &Path) -> PathBuf {
     target.with_file_name(name)
 }
 
-/// Creates the folder that `target` lies in, where it is missing.
+/// Creates the folder of `target` if it is missing.
 pub(crate) fn create_parent(target: &Path) -> io::Result<()> {
     match target.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => fs::create_dir_all(folder),
@@ -114,14 +115,14 @@ pub(crate) fn create_parent(target: &Path) -> io::Result<()> {
     }
 }
 
-/// Media that fail, for tests.
+/// Media that fail, for tests of errors.
 #[cfg(test)]
 pub(crate) mod failing {
     use super::{Medium, open_file};
     use std::io::{self, Seek, SeekFrom, Write};
     use std::path::Path;
 
-    /// A disk with room for so many bytes more.
+    /// A disk with room for only a given number of bytes.
     pub(crate) struct SmallDisk {
         inner: Box<dyn Medium>,
         room: u64,
@@ -154,12 +155,12 @@ pub(crate) mod failing {
         }
     }
 
-    /// An opener of files on such a disk.
+    /// An opener of files on a [`SmallDisk`] with `room` bytes.
     pub(crate) fn small_disk(room: u64) -> impl Fn(&Path) -> io::Result<Box<dyn Medium>> + Send + Sync {
         move |path| Ok(Box::new(SmallDisk { inner: open_file(path)?, room }) as Box<dyn Medium>)
     }
 
-    /// An opener of a file whose bytes go to the device that is always full.
+    /// An opener that writes to `/dev/full`, the device that is always full.
     #[cfg(target_os = "linux")]
     pub(crate) fn full_device(_: &Path) -> io::Result<Box<dyn Medium>> {
         Ok(Box::new(std::fs::OpenOptions::new().write(true).open("/dev/full")?))
@@ -175,7 +176,7 @@ mod tests {
     use std::path::Path;
 
     #[test]
-    fn the_name_appears_only_when_the_file_is_whole() {
+    fn the_name_appears_only_when_the_file_is_complete() {
         let folder = tempfile::tempdir().unwrap();
         let target = folder.path().join("a file ü.bin");
         let mut file = PartialFile::create(&target, &open_file).unwrap();
@@ -205,7 +206,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let target = folder.path().join("film.mp4");
         let mut file = PartialFile::create(&target, &small_disk(3)).unwrap();
-        file.write_all(b"four").unwrap(); // Buffered: the disk has not been asked yet.
+        file.write_all(b"four").unwrap(); // Buffered: nothing has reached the disk yet.
         assert!(file.commit(true).is_err());
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
     }

@@ -1,4 +1,4 @@
-//! Animated previews: PNG that moves (APNG), for web pages and messages. Every colour is kept.
+//! Animated previews (APNG) for web pages and messages. They are lossless.
 
 use std::path::{Path, PathBuf};
 
@@ -8,13 +8,13 @@ use crate::film::check_frame;
 use crate::partial::{PartialFile, create_parent, open_file};
 use crate::{FrameRate, RecordError};
 
-/// The largest side in pixels: previews are small, and a browser holds all their frames in memory.
+/// The largest side in pixels. A browser holds all frames of a preview in memory.
 pub const MOST_PREVIEW_SIDE: u32 = 2048;
 
-/// The most frames: a minute and a half at 24 a second.
+/// The most frames: a minute and a half at 24 frames per second.
 pub const MOST_PREVIEW_FRAMES: u64 = 2160;
 
-/// What a preview is.
+/// Settings of a preview.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PreviewSettings {
     /// Width in pixels, 1 to [`MOST_PREVIEW_SIDE`].
@@ -23,27 +23,27 @@ pub struct PreviewSettings {
     pub height: u32,
     /// Frames per second, 1 to 240.
     pub fps: f64,
-    /// Frames, 1 to [`MOST_PREVIEW_FRAMES`]: the file says so before the first of them.
+    /// Number of frames, 1 to [`MOST_PREVIEW_FRAMES`]. The file stores it before the first frame.
     pub frames: u64,
     /// Whether the alpha channel is kept (not premultiplied).
     pub alpha: bool,
 }
 
 impl PreviewSettings {
-    /// Whether there can be such a preview.
+    /// Checks the settings without starting anything.
     ///
     /// # Errors
-    /// [`RecordError::Request`] with what was asked and what would be right.
+    /// [`RecordError::Request`] with what was found and what is valid.
     pub fn check(&self) -> Result<FrameRate, RecordError> {
         let Self { width, height, fps, frames, .. } = *self;
         if width.min(height) == 0 || width.max(height) > MOST_PREVIEW_SIDE {
             return Err(RecordError::request(format!(
-                "a preview of {width}x{height} pixels: wanted sides of 1 to {MOST_PREVIEW_SIDE}"
+                "a preview of {width}x{height} pixels: each side must be 1 to {MOST_PREVIEW_SIDE}"
             )));
         }
         if frames == 0 || frames > MOST_PREVIEW_FRAMES {
             return Err(RecordError::request(format!(
-                "a preview of {frames} frames: wanted 1 to {MOST_PREVIEW_FRAMES}; a film (.mp4) takes any number"
+                "a preview of {frames} frames: must have 1 to {MOST_PREVIEW_FRAMES}; a film (.mp4) can have any number"
             )));
         }
         FrameRate::from_fps(fps)
@@ -61,7 +61,7 @@ pub struct PreviewReport {
     pub bytes: u64,
 }
 
-/// A preview in the making. It grows as `NAME.partial`; dropped before [`PreviewWriter::finish`] it leaves nothing.
+/// A preview that is being written, as `NAME.partial`. If it is dropped before [`PreviewWriter::finish`], the file is removed.
 pub struct PreviewWriter {
     path: PathBuf,
     settings: PreviewSettings,
@@ -71,7 +71,7 @@ pub struct PreviewWriter {
     opaque: Vec<u8>,
 }
 
-/// The file, which the encoder writes to and the writer commits.
+/// The file, shared by the encoder, which writes to it, and the [`PreviewWriter`], which commits it.
 #[derive(Clone)]
 struct Shared(std::sync::Arc<std::sync::Mutex<Option<PartialFile>>>);
 
@@ -106,11 +106,11 @@ impl std::io::Write for Shared {
 }
 
 impl PreviewWriter {
-    /// Starts a preview at `path`, creating its folder where missing. A file already there stays until the new one is
-    /// whole.
+    /// Starts a preview at `path` and creates its folder if it is missing. An existing file stays until the new one is
+    /// complete.
     ///
     /// # Errors
-    /// As [`PreviewSettings::check`]; [`RecordError::Io`] where the file cannot be made.
+    /// As [`PreviewSettings::check`]; [`RecordError::Io`] if the file cannot be created.
     pub fn create(path: &Path, settings: PreviewSettings) -> Result<Self, RecordError> {
         let rate = settings.check()?;
         let failed = |error| RecordError::io(path, "create the preview", error);
@@ -122,7 +122,7 @@ impl PreviewWriter {
         encoder.set_color(if settings.alpha { ColorType::Rgba } else { ColorType::Rgb });
         encoder.set_depth(BitDepth::Eight);
         encoder.set_compression(Compression::Balanced);
-        // Round and round; each frame is shown `den / num` seconds.
+        // 0 plays: it loops forever.
         encoder.set_animated(settings.frames as u32, 0).map_err(coded)?;
         let (num, den) = delay(rate);
         encoder.set_frame_delay(num, den).map_err(coded)?;
@@ -137,16 +137,16 @@ impl PreviewWriter {
         })
     }
 
-    /// Hands over the next frame: RGBA, 8 bits sRGB, rows from the top, `width × height × 4` bytes.
+    /// Writes the next frame: RGBA, 8-bit sRGB, rows from the top, `width × height × 4` bytes.
     ///
     /// # Errors
-    /// [`RecordError::FrameSize`] for another number of bytes; [`RecordError::Request`] for more frames than were promised;
-    /// [`RecordError::Io`] for a full disk and the like, and [`RecordError::Stopped`] after that.
+    /// [`RecordError::FrameSize`] for a wrong number of bytes; [`RecordError::Request`] for more frames than the settings say;
+    /// [`RecordError::Io`] for errors such as a full disk, and [`RecordError::Stopped`] after that.
     pub fn push(&mut self, rgba: &[u8]) -> Result<(), RecordError> {
         check_frame(rgba, self.settings.width, self.settings.height)?;
         if self.pushed == self.settings.frames {
             return Err(RecordError::request(format!(
-                "{}: more than the {} frames that were promised",
+                "{}: more frames than the {} of its settings",
                 self.path.display(),
                 self.settings.frames
             )));
@@ -171,17 +171,17 @@ impl PreviewWriter {
         Ok(())
     }
 
-    /// Makes the preview whole and gives it its name.
+    /// Completes the preview and renames it to its final name.
     ///
     /// # Errors
-    /// As [`PreviewWriter::push`]; also [`RecordError::Request`] for fewer frames than were promised.
+    /// As [`PreviewWriter::push`]; also [`RecordError::Request`] for fewer frames than the settings say.
     pub fn finish(mut self) -> Result<PreviewReport, RecordError> {
         let Some(writer) = self.writer.take() else {
             return Err(RecordError::Stopped { path: self.path.clone() });
         };
         if self.pushed < self.settings.frames {
             return Err(RecordError::request(format!(
-                "{}: {} frames of the {} that were promised",
+                "{}: {} frames; must be the {} of its settings",
                 self.path.display(),
                 self.pushed,
                 self.settings.frames
@@ -196,11 +196,11 @@ impl PreviewWriter {
     }
 }
 
-/// How long a frame is shown, as two numbers of 16 bits.
+/// How long a frame is shown, in seconds, as numerator and denominator.
 fn delay(rate: FrameRate) -> (u16, u16) {
     match (u16::try_from(rate.den), u16::try_from(rate.num)) {
         (Ok(den), Ok(num)) => (den, num),
-        // Such as 24000/1001: to a 65,000th of a second, the nearest.
+        // Rates such as 24000/1001 do not fit into 16 bits: round to 1/65,000 s.
         _ => ((65_000.0 / rate.as_f64()).round().clamp(1.0, 65_000.0) as u16, 65_000),
     }
 }

@@ -2,32 +2,32 @@
 
 use crate::RecordError;
 
-/// Frames per second as a fraction in lowest terms, so that the times in a film add up without drift.
+/// Frames per second as a fraction in lowest terms, so that the times of a film's frames add up without drift.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FrameRate {
-    /// Frames in `den` seconds.
+    /// Frames per `den` seconds.
     pub num: u32,
     /// Seconds.
     pub den: u32,
 }
 
 impl FrameRate {
-    /// The fraction that a decimal number of frames per second means.
+    /// The fraction for a decimal number of frames per second.
     ///
-    /// Whole numbers and thousandths are exact. The broadcast rates, however rounded (23.98, 29.97, 59.94), become
-    /// n·1000/1001.
+    /// Whole numbers and thousandths are exact. The broadcast rates become n·1000/1001, to however many decimals they are
+    /// rounded (23.98, 29.97, 59.94).
     ///
     /// # Errors
     /// [`RecordError::Request`] outside 1 to 240 frames per second, and for NaN.
     pub fn from_fps(fps: f64) -> Result<Self, RecordError> {
         if !(1.0..=240.0).contains(&fps) {
             return Err(RecordError::request(format!(
-                "{fps} frames per second: wanted a number from 1 to 240"
+                "{fps} frames per second: must be a number from 1 to 240"
             )));
         }
         for whole in [24_u32, 30, 48, 60, 120] {
             let broadcast = f64::from(whole) * 1000.0 / 1001.0;
-            // 0.006 covers two decimals (23.98 stands for 23.976) and stays clear of the whole number (0.024 off).
+            // 0.006 covers rates rounded to two decimals (23.98 for 23.976) and excludes the whole number, 0.024 away.
             if (fps - broadcast).abs() < 0.006 {
                 return Ok(Self { num: whole * 1000, den: 1001 });
             }
@@ -44,8 +44,8 @@ impl FrameRate {
 
     /// The MP4 clock for this rate: ticks per second, and ticks per frame.
     ///
-    /// The clock runs at 10,000 ticks a second or more, since some players round times to their own milliseconds and
-    /// do so better on a fine clock.
+    /// The clock has at least 10,000 ticks per second, because some players round times to milliseconds and do so more
+    /// accurately with a fine clock.
     pub(crate) fn clock(self) -> (u32, u32) {
         let factor = 10_000_u32.div_ceil(self.num).next_multiple_of(2);
         (self.num * factor, self.den * factor)
@@ -78,14 +78,14 @@ mod tests {
     }
 
     #[test]
-    fn rates_that_no_film_has_are_refused() {
+    fn rates_outside_the_range_are_refused() {
         for fps in [0.0, -30.0, 0.5, 241.0, f64::NAN, f64::INFINITY] {
             assert!(FrameRate::from_fps(fps).unwrap_err().is_request(), "{fps}");
         }
     }
 
     #[test]
-    fn the_clock_keeps_the_rate_and_is_fine() {
+    fn the_clock_is_exact_and_fine() {
         for fps in [1.0, 12.5, 23.976, 30.0, 60.0, 240.0] {
             let rate = FrameRate::from_fps(fps).unwrap();
             let (ticks_per_second, ticks_per_frame) = rate.clock();

@@ -1,4 +1,4 @@
-//! Reading films back.
+//! Reads films back.
 
 use crate::RecordError;
 use crate::mp4::{Movie, parse};
@@ -9,26 +9,26 @@ use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
-/// What a film's tables say.
+/// What the tables of a film say.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FilmInfo {
     /// Width in pixels.
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
-    /// Frames.
+    /// Number of frames.
     pub frames: u64,
-    /// Length in seconds.
+    /// Duration in seconds.
     pub duration_secs: f64,
-    /// Four letters of the coding: `avc1` is H.264.
+    /// Four-letter code of the codec: `avc1` is H.264.
     pub codec: String,
 }
 
-/// Reads what a film is, without decoding it.
+/// Reads the tables of a film without decoding it.
 ///
 /// # Errors
-/// [`RecordError::Io`] where it cannot be read; [`RecordError::Malformed`] where it is no MP4 file, or its tables
-/// disagree with each other or with the file's length.
+/// [`RecordError::Io`] if it cannot be read; [`RecordError::Malformed`] if it is not an MP4 file, or if its tables contradict
+/// each other or the file's length.
 pub fn read_film(path: &Path) -> Result<FilmInfo, RecordError> {
     let mut file = open(path)?;
     Ok(info(&parse(path, &mut file)?))
@@ -48,7 +48,7 @@ fn info(movie: &Movie) -> FilmInfo {
     }
 }
 
-/// Decodes a film of this crate (H.264 without reordered frames), frame by frame.
+/// Decodes a film written by this crate (H.264 without reordered frames), frame by frame.
 pub struct FilmReader {
     path: PathBuf,
     file: File,
@@ -62,7 +62,7 @@ impl FilmReader {
     /// Opens a film.
     ///
     /// # Errors
-    /// As [`read_film`]; also [`RecordError::Malformed`] for a coding other than H.264.
+    /// As [`read_film`]; also [`RecordError::Malformed`] for a codec other than H.264.
     pub fn open(path: &Path) -> Result<Self, RecordError> {
         let mut file = open(path)?;
         let movie = parse(path, &mut file)?;
@@ -70,7 +70,7 @@ impl FilmReader {
             return Err(RecordError::Malformed {
                 path: path.to_owned(),
                 offset: 0,
-                found: format!("pictures coded as `{}`", String::from_utf8_lossy(&movie.codec)),
+                found: format!("the codec `{}`", String::from_utf8_lossy(&movie.codec)),
                 wanted: "H.264 (`avc1`)".into(),
             });
         };
@@ -87,15 +87,15 @@ impl FilmReader {
         Ok(Self { path: path.to_owned(), file, movie, decoder, next: 0, stream })
     }
 
-    /// What the film is.
+    /// What the tables of the film say.
     pub fn info(&self) -> FilmInfo {
         info(&self.movie)
     }
 
-    /// Decodes the next frame into `rgba` (`width × height × 4` bytes, alpha 255). False at the end.
+    /// Decodes the next frame into `rgba` (`width × height × 4` bytes, alpha 255). Returns false after the last frame.
     ///
     /// # Errors
-    /// [`RecordError::Io`] where the file cannot be read, [`RecordError::Malformed`] where a frame does not decode.
+    /// [`RecordError::Io`] if the file cannot be read, [`RecordError::Malformed`] if a frame cannot be decoded.
     pub fn next_frame(&mut self, rgba: &mut Vec<u8>) -> Result<bool, RecordError> {
         let Some(&(offset, size)) = self.movie.frames.get(self.next) else {
             return Ok(false);
@@ -110,20 +110,20 @@ impl FilmReader {
             found,
             wanted: format!("frame {} as H.264 of {}x{}", self.next, self.movie.width, self.movie.height),
         };
-        // The first frame goes in behind the parameter sets that `open` left in the stream.
+        // For the first frame the stream already contains the parameter sets, which `open` put there.
         let mut rest = &sample[..];
         while let Some((length, tail)) = rest.split_first_chunk::<4>() {
             let unit = tail.split_at_checked(u32::from_be_bytes(*length) as usize);
-            let (unit, tail) = unit.ok_or_else(|| malformed("a unit longer than its frame".into()))?;
+            let (unit, tail) = unit.ok_or_else(|| malformed("a NAL unit longer than its frame".into()))?;
             self.stream.extend([0, 0, 0, 1]);
             self.stream.extend(unit);
             rest = tail;
         }
         let decoded = self.decoder.decode(&self.stream).map_err(|error| malformed(error.to_string()))?;
-        let picture = decoded.ok_or_else(|| malformed("no picture".into()))?;
+        let picture = decoded.ok_or_else(|| malformed("no image".into()))?;
         let size = openh264::formats::YUVSource::dimensions(&picture);
         if size != (self.movie.width as usize, self.movie.height as usize) {
-            return Err(malformed(format!("a picture of {}x{}", size.0, size.1)));
+            return Err(malformed(format!("an image of {}x{}", size.0, size.1)));
         }
         write_rgba(&picture, rgba);
         self.stream.clear();

@@ -1,4 +1,4 @@
-//! One type over films and sequences.
+//! One type for every output of images: films, previews and sequences.
 
 use crate::{
     FilmQuality, FilmReport, FilmSettings, FilmWriter, FrameLayers, PreviewReport, PreviewSettings,
@@ -6,7 +6,7 @@ use crate::{
 };
 use std::path::Path;
 
-/// What an output's name asks for.
+/// The kind of output, by its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum OutputKind {
     /// `.mp4`: a film.
@@ -18,15 +18,15 @@ pub enum OutputKind {
 }
 
 impl OutputKind {
-    /// The kind that `path` asks for: `.mp4` (in any case) is a film, `.apng` a preview; a folder that exists, a name that ends in a
-    /// separator, or a name without an extension is a sequence. `v1.2` has no extension: digits are none.
+    /// The kind of the output `path`: `.mp4` (in upper or lower case) is a film, `.apng` a preview. An existing folder, a name that
+    /// ends in a separator, and a name without an extension are sequences. Digits are not an extension: `v1.2` has none.
     ///
     /// # Errors
     /// [`RecordError::Request`] for any other extension, and for an empty path.
     pub fn of(path: &Path) -> Result<Self, RecordError> {
         if path.as_os_str().is_empty() {
             return Err(RecordError::request(
-                "the output has no name: wanted a name ending in .mp4 or .apng, or a folder",
+                "the output has no name: must be a name ending in .mp4 or .apng, or a folder",
             ));
         }
         let ends_in_separator = path
@@ -42,8 +42,8 @@ impl OutputKind {
             Some(extension) if extension == "apng" => Ok(Self::Preview),
             Some(extension) if extension.chars().any(|letter| !letter.is_ascii_digit()) => {
                 Err(RecordError::request(format!(
-                    "{}: cannot record to `.{extension}`: wanted a name ending in .mp4 (a film) or .apng (a preview), \
-                     or a folder (a sequence of pictures; end it with / if its name holds a dot)",
+                    "{}: cannot record to `.{extension}`: the name must end in .mp4 (a film) or .apng (a preview), \
+                     or be a folder (an image sequence; end it with / if its name contains a dot)",
                     path.display()
                 )))
             }
@@ -52,7 +52,7 @@ impl OutputKind {
     }
 }
 
-/// What is recorded, for either kind of output.
+/// Settings of a recording, for every kind of output.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SinkSettings {
     /// Width in pixels.
@@ -61,24 +61,24 @@ pub struct SinkSettings {
     pub height: u32,
     /// Frames per second.
     pub fps: f64,
-    /// Number of the first frame; names the files of a sequence.
+    /// Number of the first frame, which names the files of a sequence.
     pub first_frame: u64,
-    /// Frames that will come; a preview says so at its start.
+    /// Number of frames. A preview stores it before its first frame.
     pub frames: u64,
-    /// How finely a film is coded.
+    /// Quality of a film.
     pub quality: FilmQuality,
-    /// What the files of a sequence are.
+    /// File format of a sequence.
     pub format: SequenceFormat,
     /// Whether a sequence or a preview keeps the alpha channel.
     pub alpha: bool,
-    /// Whether to go on with a sequence that is there.
+    /// Whether to resume an existing sequence.
     pub resume: bool,
-    /// What draws the frames, for a sequence's manifest.
+    /// How the frames are rendered, for the manifest of a sequence.
     pub settings: serde_json::Value,
 }
 
 impl SinkSettings {
-    /// Settings of a size and rate, the rest as usual: one frame, from frame 0, high quality, no alpha.
+    /// Settings with this size and rate and default values otherwise: one frame, from frame 0, high quality, no alpha.
     pub fn new(width: u32, height: u32, fps: f64) -> Self {
         Self {
             width,
@@ -96,21 +96,21 @@ impl SinkSettings {
 }
 
 impl SinkSettings {
-    /// Whether this kind of output can be so.
+    /// Checks that this kind of output supports the settings.
     ///
     /// # Errors
-    /// [`RecordError::Request`] with what it cannot be and what can.
+    /// [`RecordError::Request`] with what is not supported and what can be done instead.
     pub fn check_kind(&self, kind: OutputKind) -> Result<(), RecordError> {
         let refuse = |what: &str| Err(RecordError::request(what));
         match kind {
             OutputKind::Sequence => Ok(()),
             OutputKind::Film if self.alpha => refuse(
-                "a film (.mp4) has no transparent background: H.264 keeps no alpha; record a folder of pictures or a \
+                "a film (.mp4) cannot have a transparent background: H.264 stores no alpha; record a folder of images or a \
                  preview (.apng)",
             ),
-            _ if self.resume => refuse("only a folder of pictures can be gone on with, not a single file"),
+            _ if self.resume => refuse("only a folder of images can be resumed, not a single file"),
             _ if self.format == SequenceFormat::Exr => {
-                refuse("EXR files need a folder to lie in, not the name of a film or a preview")
+                refuse("EXR files need a folder, not the name of a film or a preview")
             }
             OutputKind::Film | OutputKind::Preview => Ok(()),
         }
@@ -138,7 +138,7 @@ impl SinkReport {
         }
     }
 
-    /// Frames of a sequence that were there and are kept.
+    /// Frames of a resumed sequence that already existed and were kept.
     pub fn kept(&self) -> u64 {
         match self {
             Self::Film(_) | Self::Preview(_) => 0,
@@ -165,23 +165,23 @@ impl SinkReport {
     }
 }
 
-/// Where the frames of a recording go. Dropping it without [`PictureSink::finish`] is a cancel.
+/// The output that receives the frames of a recording. Dropping it without [`PictureSink::finish`] cancels the recording.
 #[derive(Debug)]
 pub enum PictureSink {
-    /// Into a film.
+    /// A film.
     Film(FilmWriter),
-    /// Into a preview.
+    /// A preview.
     Preview(PreviewWriter),
-    /// Into a folder.
+    /// A folder of files.
     Sequence(SequenceWriter),
 }
 
 impl PictureSink {
-    /// Starts the output that `path` asks for (see [`OutputKind::of`]), creating missing folders.
+    /// Starts the output `path` (its kind is that of [`OutputKind::of`]) and creates missing folders.
     ///
     /// # Errors
     /// As [`FilmWriter::create`], [`PreviewWriter::create`], [`SequenceWriter::create`] and [`OutputKind::of`]; also
-    /// [`RecordError::Request`] for what the kind of output cannot keep: alpha in a film, and going on with one.
+    /// [`RecordError::Request`] for settings that the kind of output does not support ([`SinkSettings::check_kind`]).
     pub fn for_path(path: &Path, settings: SinkSettings) -> Result<Self, RecordError> {
         let kind = OutputKind::of(path)?;
         settings.check_kind(kind)?;
@@ -213,7 +213,7 @@ impl PictureSink {
         }
     }
 
-    /// Hands over the next frame: RGBA, 8 bits sRGB, rows from the top, `width × height × 4` bytes.
+    /// Writes the next frame: RGBA, 8-bit sRGB, rows from the top, `width × height × 4` bytes.
     ///
     /// # Errors
     /// As [`FilmWriter::push`], [`PreviewWriter::push`] and [`SequenceWriter::push`].
@@ -225,7 +225,7 @@ impl PictureSink {
         }
     }
 
-    /// Hands over the next frame of EXR files.
+    /// Writes the next frame of a sequence of EXR files.
     ///
     /// # Errors
     /// As [`SequenceWriter::push_layers`]; [`RecordError::Request`] for any other output.
@@ -233,24 +233,24 @@ impl PictureSink {
         match self {
             Self::Sequence(writer) => writer.push_layers(layers),
             Self::Film(_) | Self::Preview(_) => {
-                Err(RecordError::request("layers of pictures go into EXR files alone"))
+                Err(RecordError::request("only sequences of EXR files can store layers"))
             }
         }
     }
 
-    /// Whether the next frame is there and whole: see [`SequenceWriter::next_is_kept`].
+    /// Whether the next frame already exists and is complete; see [`SequenceWriter::next_is_kept`].
     pub fn next_is_kept(&self) -> bool {
         matches!(self, Self::Sequence(writer) if writer.next_is_kept())
     }
 
-    /// Goes on to the frame after it.
+    /// Skips the next frame; see [`SequenceWriter::keep_next`].
     pub fn keep_next(&mut self) {
         if let Self::Sequence(writer) = self {
             writer.keep_next();
         }
     }
 
-    /// Makes the output whole.
+    /// Completes the output.
     ///
     /// # Errors
     /// As [`FilmWriter::finish`], [`PreviewWriter::finish`] and [`SequenceWriter::finish`].
@@ -262,7 +262,7 @@ impl PictureSink {
         }
     }
 
-    /// Gives up: a film and a preview leave nothing, a sequence the frames that are whole.
+    /// Cancels the recording. The file of a film or a preview is removed; complete frames of a sequence stay.
     pub fn cancel(self) {}
 }
 
@@ -286,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn both_kinds_are_made_in_missing_folders() {
+    fn missing_folders_are_created_for_every_kind() {
         let folder = tempfile::tempdir().unwrap();
         for (name, file) in [
             ("new/ö film/dance.mp4", "new/ö film/dance.mp4"),

@@ -1,4 +1,4 @@
-//! One picture as a PNG file.
+//! Writes a single image as a PNG file.
 
 use std::io::Write;
 use std::path::Path;
@@ -9,14 +9,14 @@ use image::{ExtendedColorType, ImageEncoder};
 use crate::RecordError;
 use crate::partial::{PartialFile, open_file};
 
-/// Writes a picture as a PNG file, beside its name first, then renamed. An older file of that name is replaced.
+/// Writes an image as a PNG file, under a temporary name that is changed at the end. An existing file is replaced.
 ///
-/// `rgba` holds `width * height` pixels, rows from the top, four bytes each, sRGB encoded.
+/// `rgba` contains `width * height` pixels, rows from the top, four bytes each, sRGB encoded.
 ///
 /// # Errors
-/// The disk is full, the folder is missing or may not be written.
+/// [`RecordError::Io`] if the disk is full, or the folder is missing or not writable.
 pub fn write_png(path: &Path, width: u32, height: u32, rgba: &[u8]) -> Result<(), RecordError> {
-    let failed = |error| RecordError::io(path, "write the picture", error);
+    let failed = |error| RecordError::io(path, "write the image", error);
     let mut file = Vec::new();
     PngEncoder::new(&mut file)
         .write_image(rgba, width, height, ExtendedColorType::Rgba8)

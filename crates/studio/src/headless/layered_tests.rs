@@ -76,7 +76,7 @@ fn a_transparent_frame_is_clear_beside_the_figure_and_covered_on_it() {
     done(&small_project(), &RecordRequest { transparent: true, ..request(&at("a.apng")) });
     assert!(pixels(&at("a.apng")).chunks_exact(4).any(|pixel| pixel[3] == 0));
     let film = RecordRequest { transparent: true, ..request(&at("a.mp4")) };
-    assert!(refused(&small_project(), &film).contains("H.264 keeps no alpha"));
+    assert!(refused(&small_project(), &film).contains("H.264 stores no alpha"));
     let mut project = small_project();
     project.recording.transparent = true;
     assert!(refused(&project, &request(&at("a.mp4"))).contains("H.264"), "the project says so too");
@@ -227,7 +227,7 @@ fn a_sequence_that_was_stopped_is_gone_on_with_and_another_is_refused_by_name() 
     }
     let dir = tempfile::tempdir().expect("a folder");
     let film = RecordRequest { resume: true, ..request(&dir.path().join("a.mp4")) };
-    assert!(refused(&small_project(), &film).contains("only a folder of pictures"));
+    assert!(refused(&small_project(), &film).contains("only a folder of images"));
 }
 
 #[test]
