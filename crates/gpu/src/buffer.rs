@@ -1,8 +1,8 @@
-//! Buffers that grow and are written whole.
+//! Buffers that grow and whose whole content is written at once.
 
 use bytemuck::Pod;
 
-/// A buffer of `T` that is written whole and grows when more is written than it holds.
+/// A buffer of `T` whose whole content is written at once. It grows when more is written than it holds.
 #[derive(Debug)]
 pub struct GrowBuffer<T> {
     label: &'static str,
@@ -13,23 +13,23 @@ pub struct GrowBuffer<T> {
 }
 
 impl<T: Pod> GrowBuffer<T> {
-    /// An empty buffer that can be used as `usage` says; it can always be written and copied from.
+    /// An empty buffer with the given `usage`, to which `COPY_DST` and `COPY_SRC` are added.
     pub fn new(device: &wgpu::Device, label: &'static str, usage: wgpu::BufferUsages) -> Self {
         let usage = usage | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
         let buffer = make(device, label, usage, size_of::<T>().max(16) as u64);
         Self { label, usage, buffer, len: 0, _of: std::marker::PhantomData }
     }
 
-    /// Makes room for `len` items without writing any. Returns whether the buffer is a new one, so that bind
-    /// groups of the old one must be made again.
+    /// Makes room for `len` items without writing any. Returns whether the buffer was replaced: then bind groups that use
+    /// it must be made again.
     pub fn reserve(&mut self, device: &wgpu::Device, len: usize) -> bool {
         self.len = len;
         let size = ((len * size_of::<T>()).max(16) as u64).next_multiple_of(16);
         if size <= self.buffer.size() {
             return false;
         }
-        // Grow by half as much again, so that a slider does not make a new buffer at every step.
-        // Whole buffers are bound.
+        // Half as much again, so that dragging a slider does not replace the buffer at every step; but no more than can be
+        // bound, because buffers are bound whole.
         let limits = device.limits();
         let limit = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
         let grown = (size + size / 2).next_multiple_of(16).min(limit).max(size);
@@ -37,7 +37,7 @@ impl<T: Pod> GrowBuffer<T> {
         true
     }
 
-    /// Writes `items` as the whole content. Returns as [`Self::reserve`].
+    /// Replaces the content by `items`. Returns what [`Self::reserve`] returns.
     pub fn write(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, items: &[T]) -> bool {
         let new = self.reserve(device, items.len());
         if !items.is_empty() {
@@ -46,17 +46,17 @@ impl<T: Pod> GrowBuffer<T> {
         new
     }
 
-    /// The buffer.
+    /// The wgpu buffer.
     pub fn raw(&self) -> &wgpu::Buffer {
         &self.buffer
     }
 
-    /// Items that were last written or reserved.
+    /// The number of items that were last written or reserved.
     pub fn len(&self) -> usize {
         self.len
     }
 
-    /// Whether nothing was written.
+    /// Whether the buffer holds no items.
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
@@ -71,7 +71,7 @@ fn make(device: &wgpu::Device, label: &str, usage: wgpu::BufferUsages, size: u64
     })
 }
 
-/// A uniform buffer that holds one value and is never written again.
+/// A uniform buffer with a constant value.
 pub fn constants<T: Pod>(gpu: &crate::Gpu, label: &str, value: &T) -> wgpu::Buffer {
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(label),

@@ -1,20 +1,20 @@
-//! The passes of one frame, timed where the device can.
+//! The passes of one frame and their durations.
 
 use wgpu_profiler::{GpuProfiler, GpuProfilerQuery, GpuProfilerSettings, GpuTimerQueryResult};
 
 use crate::{Gpu, GpuError, Stopwatch};
 
-/// What one pass took on the device. Passes of one name are summed.
+/// The duration of one pass on the device. Passes with the same name are added up.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PassTime {
-    /// The pass.
+    /// The name of the pass.
     pub name: String,
     /// Milliseconds.
     pub ms: f64,
 }
 
-/// Measures passes: by the timestamps of a graphics card; on the processor, where a driver works through them one after
-/// another anyway, by waiting for each. Measures nothing where a card has no timestamps.
+/// Measures the duration of passes: with timestamps on a GPU; on a software adapter, which executes passes one after another
+/// anyway, by waiting for each. Measures nothing on a GPU without timestamps.
 pub struct PassTimer(Clock);
 
 enum Clock {
@@ -36,10 +36,10 @@ impl Default for PassTimer {
 }
 
 impl PassTimer {
-    /// A timer of the device's passes.
+    /// A timer for the passes of `gpu`.
     ///
     /// # Errors
-    /// The device refuses.
+    /// The device cannot create the queries.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         if gpu.is_software() {
             return Ok(Self::default());
@@ -62,8 +62,7 @@ impl PassTimer {
         Commands { gpu, label, encoder: encoder(gpu, label), clock: &mut self.0 }
     }
 
-    /// Times of the last frame that is finished, in the order of its passes; empty where none was measured. Wait for the
-    /// device before.
+    /// The times of the last finished frame in the order of its passes; empty if none was measured. Wait for the device first.
     pub fn times(&mut self, gpu: &Gpu) -> Vec<PassTime> {
         match &mut self.0 {
             Clock::Wall(times) => std::mem::take(times),
@@ -82,7 +81,7 @@ fn encoder(gpu: &Gpu, label: &str) -> wgpu::CommandEncoder {
     gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some(label) })
 }
 
-/// Adds a pass to those of its name.
+/// Adds the duration of a pass to that of earlier passes with the same name.
 fn add(times: &mut Vec<PassTime>, name: &str, ms: f64) {
     match times.iter_mut().find(|time| time.name == name) {
         Some(time) => time.ms += ms,
@@ -125,7 +124,7 @@ impl Commands<'_> {
         });
     }
 
-    /// A render pass of what `descriptor` says but for its label and timestamps.
+    /// A render pass. Label and timestamps of `descriptor` are replaced.
     pub fn render(
         &mut self,
         name: &str,
@@ -158,26 +157,26 @@ impl Commands<'_> {
                 let next = encoder(self.gpu, self.label);
                 let done = std::mem::replace(&mut self.encoder, next);
                 self.gpu.queue.submit([done.finish()]);
-                // A device that is lost says so when the frame is read back.
+                // The loss of the device is reported when the frame is read back.
                 let _ = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
                 add(times, name, watch.ms());
             }
         }
     }
 
-    /// Everything else that goes to the device, between passes.
+    /// The encoder, for commands between passes.
     pub fn encoder(&mut self) -> &mut wgpu::CommandEncoder {
         &mut self.encoder
     }
 
-    /// Hands everything to the device.
+    /// Submits all commands to the device.
     pub fn submit(mut self) {
         if let Clock::Timestamps(profiler) = &mut *self.clock {
             profiler.resolve_queries(&mut self.encoder);
         }
         self.gpu.queue.submit([self.encoder.finish()]);
         if let Clock::Timestamps(profiler) = &mut *self.clock {
-            // Fails where a pass was left open, which `timed` does not do.
+            // This fails only if a pass was left open, and `timed` closes them all.
             let _ = profiler.end_frame();
         }
     }

@@ -1,33 +1,33 @@
-//! The device that pictures are made on.
+//! The graphics device and its errors.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::{ShaderSource, check_shader};
 
-/// What can go wrong with the graphics device.
+/// An error of the graphics device.
 #[derive(Debug, thiserror::Error)]
 pub enum GpuError {
     /// No adapter was found.
     #[error("no graphics adapter was found, not even a software one: {0}")]
     NoAdapter(String),
-    /// The adapter refused to make a device.
-    #[error("the graphics adapter `{adapter}` made no device: {reason}")]
+    /// The adapter could not create a device.
+    #[error("the graphics adapter `{adapter}` could not create a device: {reason}")]
     NoDevice {
         /// The adapter's name.
         adapter: String,
-        /// What it said.
+        /// The reason that it gave.
         reason: String,
     },
     /// A shader does not compile.
     #[error("{0}")]
     Shader(String),
-    /// What is to be drawn does not fit the device, or contradicts itself. The device is as good as before.
-    #[error("the graphics device cannot draw this: {0}")]
+    /// The scene exceeds a limit of the device or is inconsistent. The device can still be used.
+    #[error("the graphics device cannot render this: {0}")]
     Input(String),
-    /// The driver takes no more work as it was asked.
-    #[error("the graphics device refused: {0}")]
+    /// The driver rejected a command.
+    #[error("the graphics device rejected a command: {0}")]
     Refused(String),
-    /// The device is gone: reset, unplugged or updated. It must be opened again.
+    /// The device was lost: reset, unplugged, or its driver updated. It must be opened again.
     #[error("the graphics device was lost: {0}")]
     Lost(String),
     /// A buffer could not be read back.
@@ -35,16 +35,16 @@ pub enum GpuError {
     Readback(String),
 }
 
-/// A graphics device with its queue, and what it is.
+/// A graphics device, its queue and a description of its adapter.
 #[derive(Clone, Debug)]
 pub struct Gpu {
-    /// Makes resources.
+    /// Creates resources.
     pub device: wgpu::Device,
-    /// Takes work.
+    /// Receives commands.
     pub queue: wgpu::Queue,
-    /// What the adapter says of itself.
+    /// Name, type and backend of the adapter.
     pub info: wgpu::AdapterInfo,
-    /// The first thing that went wrong and that nobody has heard of yet, or that the device is lost.
+    /// The first error since the last [`Gpu::check`], or the loss of the device.
     fault: Fault,
 }
 
@@ -53,32 +53,32 @@ type Fault = Arc<Mutex<Option<GpuError>>>;
 fn note(fault: &Fault, error: GpuError) {
     tracing::error!(%error, "graphics device");
     let mut fault = fault.lock().unwrap_or_else(PoisonError::into_inner);
-    // A device that is lost refuses everything: that it is lost says why.
+    // A lost device rejects every command: the loss is the cause of the other errors.
     if fault.is_none() || matches!(error, GpuError::Lost(_)) {
         *fault = Some(error);
     }
 }
 
 impl Gpu {
-    /// Opens the best adapter that there is, a software one where there is nothing else.
+    /// Opens the best adapter; a software adapter if there is no other.
     ///
     /// # Errors
-    /// No adapter, or an adapter that makes no device.
+    /// There is no adapter, or it cannot create a device.
     pub fn open() -> Result<Arc<Self>, GpuError> {
         Self::open_adapter(false)
     }
 
-    /// Opens a software adapter, which draws on the processor (Mesa's llvmpipe, where it is installed).
+    /// Opens a software adapter, which renders on the CPU (Mesa's llvmpipe, where it is installed).
     ///
     /// # Errors
-    /// No software adapter, or one that makes no device.
+    /// There is no software adapter, or it cannot create a device.
     pub fn open_software() -> Result<Arc<Self>, GpuError> {
         Self::open_adapter(true)
     }
 
     fn open_adapter(force_fallback_adapter: bool) -> Result<Arc<Self>, GpuError> {
         let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
-        // OpenGL lacks what the shaders use (a mask of samples, storage in vertices): it counts as no adapter.
+        // OpenGL lacks features that the shaders use (a sample mask, storage buffers in vertex shaders), so it is left out.
         descriptor.backends &= wgpu::Backends::PRIMARY;
         let instance = wgpu::Instance::new(descriptor);
         let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions {
@@ -89,7 +89,7 @@ impl Gpu {
         }))
         .map_err(|error| GpuError::NoAdapter(error.to_string()))?;
         let info = adapter.get_info();
-        // Ask for what the adapter has where more is better, and for the defaults elsewhere.
+        // The highest limits of the adapter where size matters; the defaults elsewhere.
         let has = adapter.limits();
         let required_limits = wgpu::Limits {
             max_texture_dimension_2d: has.max_texture_dimension_2d,
@@ -97,7 +97,7 @@ impl Gpu {
             max_buffer_size: has.max_buffer_size,
             ..wgpu::Limits::default()
         };
-        // Timers are of use wherever they are; nothing else that is optional is needed.
+        // Timestamps are the only optional feature that is used.
         let required_features = adapter.features() & wgpu::Features::TIMESTAMP_QUERY;
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("lovelock"),
@@ -117,39 +117,39 @@ impl Gpu {
         Ok(Arc::new(Self { device, queue, info, fault }))
     }
 
-    /// Hears of what went wrong since the last time.
+    /// Returns the error that occurred since the last call, if any.
     ///
     /// # Errors
-    /// The first thing that the driver refused, or that the device is lost.
+    /// The first command that the driver rejected, or the loss of the device.
     pub fn check(&self) -> Result<(), GpuError> {
         self.fault.lock().unwrap_or_else(PoisonError::into_inner).take().map_or(Ok(()), Err)
     }
 
-    /// Whether the device measures the time of passes.
+    /// Whether the device can measure the duration of passes.
     pub fn has_timestamps(&self) -> bool {
         self.device.features().contains(wgpu::Features::TIMESTAMP_QUERY)
     }
 
-    /// The most bytes of one buffer that a shader reads or writes.
+    /// The size of the largest buffer that a shader can read or write, bytes.
     pub fn most_storage_bytes(&self) -> u64 {
         let limits = self.device.limits();
         limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
     }
 
-    /// Whether the adapter runs on the processor.
+    /// Whether the adapter renders on the CPU.
     pub fn is_software(&self) -> bool {
         self.info.device_type == wgpu::DeviceType::Cpu
     }
 
-    /// Longest side of a picture, pixels.
+    /// The longest side that an image can have, pixels.
     pub fn max_picture_side(&self) -> u32 {
         self.device.limits().max_texture_dimension_2d
     }
 
-    /// Makes things on the device, and says why where it refuses.
+    /// Creates resources with `make` and returns validation errors of the driver.
     ///
     /// # Errors
-    /// What the driver says of the first thing that it does not take.
+    /// The first error that the driver reports.
     pub fn checked<T>(&self, make: impl FnOnce() -> T) -> Result<T, GpuError> {
         let scope = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
         let made = make();
@@ -162,7 +162,7 @@ impl Gpu {
     /// Compiles a composed shader.
     ///
     /// # Errors
-    /// The file and line that do not compile, and why. The device is not disturbed.
+    /// The file, the line and the reason where it does not compile. The device can still be used.
     pub fn shader(&self, label: &str, source: &ShaderSource) -> Result<wgpu::ShaderModule, GpuError> {
         check_shader(source)?;
         Ok(self.module(label, source))

@@ -1,24 +1,24 @@
-//! Compute kernels: a pipeline with what it binds.
+//! Compute kernels: a pipeline and the bindings that it uses.
 
 use std::collections::BTreeSet;
 
 use crate::{Gpu, GpuError, ShaderSource, shader};
 
-/// Threads of a workgroup in every kernel whose threads are numbered in one row.
+/// Threads per workgroup of every kernel with a one-dimensional range of threads.
 pub const THREADS: u32 = 64;
 
-/// Workgroups along one axis of a dispatch: WebGPU's limit.
+/// The most workgroups along one axis of a dispatch that WebGPU allows.
 const MOST_GROUPS: u32 = 65_535;
 
 /// The name and the value of an `override` of a shader.
 ///
-/// What every thread would find to be the same is better known when a kernel is compiled: where kernels run on the processor,
-/// both sides of a branch are carried out, and the driver only leaves out what can never be reached.
+/// Values that are the same for all threads are set when a kernel is compiled, because software adapters execute both sides of
+/// a branch unless the compiler removes one.
 pub type Constant = (&'static str, f64);
 
 /// A compute pipeline whose resources are all in group 0.
 ///
-/// Its layout comes from the shader. Composed shaders declare more than one entry point uses; what it does not use is not
+/// Its layout comes from the shader. Composed shaders declare more bindings than one entry point uses; unused ones are not
 /// bound.
 #[derive(Debug)]
 pub struct Kernel {
@@ -32,12 +32,12 @@ impl Kernel {
     /// Compiles `entry` of a composed shader.
     ///
     /// # Errors
-    /// The file and line that do not compile, and why; or what the driver says.
+    /// The file, the line and the reason where the shader does not compile; or the error of the driver.
     pub fn new(gpu: &Gpu, label: &'static str, source: &ShaderSource, entry: &str) -> Result<Self, GpuError> {
         Self::specialised(gpu, label, source, entry, &[])
     }
 
-    /// As [`Kernel::new`], for these values of the shader's `override`s; names that it does not declare are left out.
+    /// As [`Kernel::new`], with values for the shader's `override`s. Names that the shader does not declare are ignored.
     ///
     /// # Errors
     /// As [`Kernel::new`].
@@ -70,7 +70,7 @@ impl Kernel {
         })
     }
 
-    /// Binds resources by their numbers. Those that the kernel does not use are left out.
+    /// Binds resources by their binding numbers. Those that the kernel does not use are ignored.
     pub fn bind(&self, gpu: &Gpu, resources: &[(u32, wgpu::BindingResource)]) -> wgpu::BindGroup {
         let entries: Vec<_> = resources
             .iter()
@@ -84,14 +84,14 @@ impl Kernel {
         })
     }
 
-    /// Runs it on so many threads or a few more, which the kernel must leave out itself: thread numbers are
+    /// Dispatches at least `threads` threads; the kernel must return early in the surplus ones. The number of a thread is
     /// `id.x + id.y * groups.x * 64`.
     pub fn run(&self, pass: &mut wgpu::ComputePass, group: &wgpu::BindGroup, threads: u64) {
         let groups = u32::try_from(threads.div_ceil(u64::from(THREADS))).unwrap_or(u32::MAX);
         if groups > 0 {
             pass.set_pipeline(&self.pipeline);
             pass.set_bind_group(0, group, &[]);
-            // As square as needed: a row that is full leaves as few threads over as one that is not.
+            // The fewest rows that are possible, all of one length, leave the fewest surplus threads.
             let rows = groups.div_ceil(MOST_GROUPS);
             pass.dispatch_workgroups(groups.div_ceil(rows), rows, 1);
         }

@@ -1,10 +1,10 @@
-//! Reading textures back.
+//! Copying buffers and textures from the device to memory.
 
 use bytemuck::Pod;
 
 use crate::{Gpu, GpuError};
 
-/// Brings what a frame left in some buffers back; its memory is kept from frame to frame.
+/// Reads several buffers of a frame back at once. The staging buffer is kept from frame to frame.
 #[derive(Debug, Default)]
 pub struct Readback {
     buffer: Option<wgpu::Buffer>,
@@ -13,7 +13,7 @@ pub struct Readback {
 }
 
 impl Readback {
-    /// Encodes copying the first bytes of some buffers, as many as are named with each; multiples of 4.
+    /// Encodes copying the first bytes of each of the `wanted` buffers; their numbers are multiples of 4.
     pub fn copy(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, wanted: &[(&wgpu::Buffer, u64)]) {
         self.parts.clear();
         self.parts.extend(wanted.iter().map(|(_, bytes)| *bytes));
@@ -35,12 +35,12 @@ impl Readback {
         self.buffer = Some(buffer);
     }
 
-    /// Waits for the device and takes what was copied, part by part.
+    /// Waits for the device, then writes the bytes of each buffer of [`Readback::copy`] into the vector at the same place.
     ///
     /// # Errors
     /// The device is lost or the buffer cannot be mapped.
     pub fn read(&mut self, gpu: &Gpu, into: &mut [&mut Vec<u8>]) -> Result<(), GpuError> {
-        // Put back when all went well: a buffer that stays mapped cannot be used again.
+        // Kept only on success: a buffer that stays mapped after an error cannot be used again.
         let Some(buffer) = self.buffer.take() else {
             return Err(GpuError::Readback("nothing was copied".to_owned()));
         };
@@ -61,7 +61,7 @@ impl Readback {
     }
 }
 
-/// Reads a texture of four bytes a pixel back; rows from the top, tightly packed, into `out`.
+/// Reads a texture of four bytes per pixel into `out`, row by row from the top without padding.
 ///
 /// # Errors
 /// The device is lost or the buffer cannot be mapped.
@@ -101,7 +101,7 @@ pub fn read_texture_rgba8(gpu: &Gpu, texture: &wgpu::Texture, out: &mut Vec<u8>)
     Ok(())
 }
 
-/// Reads the first `out.len()` items of a buffer back, which must be usable as the source of a copy.
+/// Reads the first `out.len()` items of a buffer, whose usage must include `COPY_SRC`.
 ///
 /// # Errors
 /// The device is lost or the buffer cannot be mapped.
@@ -125,9 +125,9 @@ pub fn read_buffer<T: Pod>(gpu: &Gpu, from: &wgpu::Buffer, out: &mut [T]) -> Res
     Ok(())
 }
 
-/// Waits until the device is done, and maps a buffer.
+/// Waits until the device has finished, then maps a buffer.
 fn map(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<(), GpuError> {
-    // What went wrong before is why it cannot be read.
+    // An earlier error of the device explains the failure better than the failure itself.
     let failed = |reason: String| gpu.check().err().unwrap_or(GpuError::Readback(reason));
     let (sender, receiver) = std::sync::mpsc::sync_channel(1);
     buffer.map_async(wgpu::MapMode::Read, .., move |result| {

@@ -1,4 +1,4 @@
-//! Shaders composed of parts, with errors that name the part and its line.
+//! Shaders composed of several files, with errors that name the file and its line.
 
 use std::collections::BTreeSet;
 
@@ -7,13 +7,13 @@ use crate::GpuError;
 /// One file of WGSL.
 #[derive(Clone, Copy, Debug)]
 pub struct ShaderPart {
-    /// Its path, as errors name it.
+    /// Its path, for error messages.
     pub name: &'static str,
     /// Its text.
     pub text: &'static str,
 }
 
-/// A shader made of parts that follow each other.
+/// A shader that is the concatenation of several files.
 #[derive(Clone, Debug)]
 pub struct ShaderSource {
     parts: Vec<ShaderPart>,
@@ -21,18 +21,18 @@ pub struct ShaderSource {
 }
 
 impl ShaderSource {
-    /// Joins `parts` in their order.
+    /// Concatenates `parts` in this order.
     pub fn new(parts: &[ShaderPart]) -> Self {
         let text = parts.iter().flat_map(|part| [part.text, "\n"]).collect();
         Self { parts: parts.to_vec(), text }
     }
 
-    /// The whole text.
+    /// The concatenated text.
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// The part and the line in it (from 1) of line `line` (from 1) of the whole.
+    /// Translates a line of the concatenated text into a part and its line; lines count from 1.
     fn locate(&self, line: usize) -> (&'static str, usize) {
         let mut first = 1;
         for part in &self.parts {
@@ -54,14 +54,14 @@ pub fn check_shader(source: &ShaderSource) -> Result<naga::Module, GpuError> {
     check(source).map(|checked| checked.module)
 }
 
-/// A shader that is valid, with what is known of it.
+/// A valid shader and the results of its validation.
 pub(crate) struct Checked {
     module: naga::Module,
     info: naga::valid::ModuleInfo,
 }
 
 impl Checked {
-    /// Whether a constant can be set when a pipeline is made.
+    /// Whether the shader declares an `override` of this name.
     pub(crate) fn has_override(&self, name: &str) -> bool {
         self.module.overrides.iter().any(|(_, constant)| constant.name.as_deref() == Some(name))
     }
@@ -85,7 +85,7 @@ pub(crate) fn check(source: &ShaderSource) -> Result<Checked, GpuError> {
         let (name, line) = source.locate(line);
         GpuError::Shader(format!("{name}, line {line}: {}", error.message()))
     })?;
-    // `pack2x16float` and its inverse are part of core WebGPU; every adapter has them.
+    // `pack2x16float` and its inverse belong to core WebGPU, so every adapter supports them.
     let capabilities =
         naga::valid::Capabilities::default() | naga::valid::Capabilities::SHADER_FLOAT16_IN_FLOAT32;
     let mut validator = naga::valid::Validator::new(naga::valid::ValidationFlags::all(), capabilities);
