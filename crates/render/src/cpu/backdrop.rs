@@ -1,8 +1,9 @@
 //! The background: the twin of `backdrop.wgsl`.
-// Compiled within the versions of `dispatch`.
-#![allow(clippy::inline_always)]
+// Functions are inlined into the loops that `simd_versions!` compiles; calling those takes `unsafe`.
+#![allow(clippy::inline_always, unsafe_code)]
 
 use glam::Vec3;
+use lovelock_groom::simd_versions;
 
 use super::math::{max, mix, smoothstep, three};
 use super::tile::TILE;
@@ -22,6 +23,13 @@ const LANES: usize = 16;
 pub(super) struct Ground {
     origin: [f32; 2],
     corners: [[Option<[f32; 3]>; CORNERS]; CORNERS],
+}
+
+simd_versions! {
+    /// [`Ground::new`] for the vectors of `width`.
+    pub(super) fn ground_simd(view: &View, origin: [f32; 2]) -> Option<Ground> {
+        Ground::new(view, origin)
+    }
 }
 
 /// Difference of two corners' light that is not worth a look between them: half a step of 8 bits.

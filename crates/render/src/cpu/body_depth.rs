@@ -1,13 +1,13 @@
 //! The body's depth as a light sees it.
-// Compiled within the versions of `dispatch`.
-#![allow(clippy::inline_always)]
+// Functions are inlined into the loops that `simd_versions!` compiles; calling those takes `unsafe`.
+#![allow(clippy::inline_always, unsafe_code)]
 
 use glam::{Mat4, Vec3};
+use lovelock_groom::simd::Width;
+use lovelock_groom::simd_versions;
 use rayon::prelude::*;
 
-use super::dispatch;
 use super::math::{floor, index_of, max, min};
-use lovelock_groom::simd::Width;
 
 /// Texels along each edge of a map: two millimetres of a standing figure each.
 pub(super) const SIZE: usize = 1024;
@@ -83,7 +83,7 @@ impl DepthMap {
             .for_each(|(band, (rows, blocks))| {
                 let list = &sorted[starts[band] as usize..starts[band + 1] as usize];
                 let input = Band { first_row: band * BAND_ROWS, placed, triangles, list };
-                dispatch::depth_band(width, &input, rows, blocks);
+                draw_band_simd(width, &input, rows, blocks);
             });
     }
 
@@ -210,9 +210,16 @@ impl DepthMap {
     }
 }
 
+simd_versions! {
+    /// [`draw_band`] for the vectors of `width`.
+    fn draw_band_simd(input: &Band, rows: &mut [f32], blocks: &mut [[f32; 2]]) -> () {
+        draw_band(input, rows, blocks)
+    }
+}
+
 /// Draws the triangles of a band and bounds its blocks.
 #[inline(always)]
-pub(super) fn draw_band(input: &Band, rows: &mut [f32], blocks: &mut [[f32; 2]]) {
+fn draw_band(input: &Band, rows: &mut [f32], blocks: &mut [[f32; 2]]) {
     rows.fill(1.0);
     for &triangle in input.list {
         let [i, j, k] = input.triangles[triangle as usize];

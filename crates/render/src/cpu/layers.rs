@@ -5,13 +5,14 @@
 
 use rayon::prelude::*;
 
-use super::hair::segment::{LANES, Span, SpanSink, each_span, pixel_of};
+use super::finish::{PixelsIn, compose_row, noise_at};
+use super::hair::segment::{Span, SpanSink, each_span};
 use super::math::{clamp, floor, index_of};
 use super::placed::{Placed, PosedBody, TileScratch, copy_rows, posed_body};
 use super::points::ShadedPoint;
 use super::pool::Pool;
 use super::surface::raster::SurfaceSamples;
-use super::tile::{Grid, PixelsIn, STRIDE, TILE, compose_row, noise_at};
+use super::tile::{BLOCK_LANES, Grid, STRIDE, TILE, pixel_of};
 use super::tone::encode;
 use super::view::View;
 use crate::camera::NEAR_METRES;
@@ -155,7 +156,7 @@ impl SpanSink for Nearest<'_> {
     }
 
     fn take(&mut self, _: &ShadedPoint, _: &ShadedPoint, span: &Span) {
-        for lane in 0..LANES {
+        for lane in 0..BLOCK_LANES {
             let (alpha, depth) = (span.alpha[lane], span.depth[lane]);
             if alpha < Layers::LEAST_COVER {
                 continue;

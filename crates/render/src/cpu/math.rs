@@ -3,7 +3,7 @@
 //! Only additions, products, roots and bits are used, never a library's function and never a fused product: every
 //! processor and every width of vectors gives the same bits. (A few numbers of the whole frame, such as the tangent
 //! of the field of view, come from the system's library.)
-// Compiled within the versions of `dispatch`; a call would keep the loop around it from becoming vectors.
+// Inlined into the loops that `simd_versions!` compiles; a call would keep the loop around it from becoming vectors.
 #![allow(clippy::inline_always)]
 
 /// Adding this to a number below 2^22 rounds it to a whole number, which then stands in the lowest bits.

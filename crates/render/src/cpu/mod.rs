@@ -19,7 +19,7 @@
 mod backdrop;
 mod bins;
 mod body_depth;
-mod dispatch;
+mod finish;
 mod hair;
 mod layers;
 mod math;

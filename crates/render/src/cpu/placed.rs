@@ -7,14 +7,13 @@ use lovelock_motion::{Body, Skin};
 use rayon::prelude::*;
 
 use super::bins::Bins;
-use super::dispatch;
-use super::hair::blend::{BlendState, BlendTile};
-use super::hair::list::{Fragments, ListTile};
+use super::hair::blend::{BlendState, BlendTile, blend_segments_simd};
+use super::hair::list::{Fragments, ListTile, list_segments_simd};
 use super::hair::order::SegmentKeys;
 use super::hair::segment::{bounds, is_drawn};
 use super::points::{PointsIn, ShadedPoint, shade_all};
 use super::surface::PlacedSurface;
-use super::surface::raster::{Occlusion, SurfaceSamples, TriangleTile};
+use super::surface::raster::{Occlusion, SurfaceSamples, TriangleTile, raster_triangles_simd};
 use super::tile::{Grid, HairPlanes, TILE};
 use super::transparency::resolve_tile;
 use super::view::View;
@@ -151,7 +150,7 @@ impl Placed {
         {
             let (vertices, triangles) = (&self.surface.vertices[..], &body.mesh.triangles[..]);
             let input = TriangleTile { origin: grid.origin(tile), vertices, triangles, list };
-            dispatch::triangles(self.width, &input, &mut scratch.samples, &mut scratch.hidden);
+            raster_triangles_simd(self.width, &input, &mut scratch.samples, &mut scratch.hidden);
         }
     }
 
@@ -178,7 +177,7 @@ impl Placed {
                     }));
                     let input =
                         BlendTile { origin, segments: &scratch.segments, hidden: &scratch.hidden, opacity };
-                    dispatch::blend(self.width, &input, &mut scratch.blend);
+                    blend_segments_simd(self.width, &input, &mut scratch.blend);
                     if scratch.blend.is_full() {
                         break;
                     }
@@ -198,7 +197,7 @@ impl Placed {
                     samples: &scratch.samples,
                     opacity,
                 };
-                dispatch::list(self.width, &input, &mut scratch.fragments);
+                list_segments_simd(self.width, &input, &mut scratch.fragments);
                 resolve_tile(transparency, &mut scratch.fragments, &mut scratch.hair);
             }
         }

@@ -1,16 +1,15 @@
 //! Projects and shades every strand point once: the twin of `strand_points.wgsl` and `strand_shading.wgsl`.
-// Compiled within the versions of `dispatch`.
-#![allow(clippy::inline_always)]
+// Functions are inlined into the loops that `simd_versions!` compiles; calling those takes `unsafe`.
+#![allow(clippy::inline_always, unsafe_code)]
 
 use glam::Vec4;
-use lovelock_groom::Strands;
+use lovelock_groom::simd::Width;
+use lovelock_groom::{Strands, simd_versions};
 use rayon::prelude::*;
 
-use super::dispatch;
 use super::math::{exp, exp2, floor, log2, max, mix, pow, saturate, smoothstep};
 use super::view::View;
 use crate::MAX_LIGHTS;
-use lovelock_groom::simd::Width;
 
 /// Points that are shaded together.
 const LANES: usize = 16;
@@ -52,7 +51,7 @@ pub(super) fn shade_all(width: Width, view: &View, input: &PointsIn, out: &mut V
     out.resize(out_of(input), ShadedPoint::default());
     out.par_chunks_mut(PIECE)
         .enumerate()
-        .for_each(|(piece, out)| dispatch::points(width, view, input, piece * PIECE, out));
+        .for_each(|(piece, out)| shade_points_simd(width, view, input, piece * PIECE, out));
 }
 
 type Lane = [f32; LANES];
@@ -63,9 +62,16 @@ fn out_of(input: &PointsIn) -> usize {
     x.len().min(y.len()).min(z.len()).min(input.details.len()).min(input.transmittance.len())
 }
 
+simd_versions! {
+    /// [`shade_points`] for the vectors of `width`.
+    fn shade_points_simd(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoint]) -> () {
+        shade_points(view, input, first, out)
+    }
+}
+
 /// Shades the points from `first` on.
 #[inline(always)]
-pub(super) fn shade_points(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoint]) {
+fn shade_points(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoint]) {
     for (group, out) in out.chunks_mut(LANES).enumerate() {
         shade_group(view, input, first + group * LANES, out);
     }

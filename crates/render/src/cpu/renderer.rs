@@ -8,14 +8,14 @@ use lovelock_groom::Strands;
 use lovelock_groom::simd::Width;
 use rayon::prelude::*;
 
-use super::backdrop::Ground;
+use super::backdrop::{Ground, ground_simd};
 use super::body_depth::{self, DepthMap};
-use super::dispatch;
+use super::finish::{PixelsIn, TILE_BYTES, finish_pixels_simd};
 use super::layers::{LayerTiles, finish_light};
 use super::placed::{Placed, TileScratch, copy_rows, posed_body, surface_of};
 use super::pool::Pool;
 use super::surface::light::SurfaceLight;
-use super::tile::{Grid, PixelsIn, SurfacePlanes, TILE, TILE_BYTES};
+use super::tile::{Grid, SurfacePlanes, TILE};
 use super::view::View;
 use crate::light_view::{bounding_sphere, light_view};
 use crate::picture::check_size;
@@ -179,7 +179,7 @@ impl CpuRenderer {
                 held.light.par_chunks_mut(TILE * TILE).enumerate().for_each_init(
                     || self.scratch.take(),
                     |lease, (tile, out)| {
-                        let ground = dispatch::ground(self.placed.width, &view, grid.origin(tile));
+                        let ground = ground_simd(self.placed.width, &view, grid.origin(tile));
                         let scratch = lease.get();
                         self.draw_seen(&view, &grid, input, tile, scratch);
                         finish_light(
@@ -210,7 +210,7 @@ impl CpuRenderer {
             .for_each_init(
                 || self.scratch.take(),
                 |lease, (tile, ((out, plain), known))| {
-                    let ground = dispatch::ground(self.placed.width, &view, grid.origin(tile));
+                    let ground = ground_simd(self.placed.width, &view, grid.origin(tile));
                     let is_plain = ground.is_none() && self.placed.is_empty(tile);
                     if is_plain && *known {
                         out.copy_from_slice(plain);
@@ -272,7 +272,7 @@ impl CpuRenderer {
         out: &mut [u8],
     ) {
         self.draw_seen(view, grid, input, tile, scratch);
-        dispatch::finish(self.placed.width, view, &scratch.seen(grid.origin(tile), ground), out);
+        finish_pixels_simd(self.placed.width, view, &scratch.seen(grid.origin(tile), ground), out);
     }
 
     /// Draws the body and the hair of a tile.

@@ -1,24 +1,32 @@
-//! The picture cut into tiles, and the last step of each: what is behind the hair, tone mapping, bytes.
-// Compiled within the versions of `dispatch`.
+//! The tiles of a picture, what each of them holds, and the blocks of pixels within it.
+// Functions are inlined into the loops that `simd_versions!` compiles.
 #![allow(clippy::inline_always)]
 
-use super::backdrop::{Ground, backdrop};
 use super::bins::TileRange;
-use super::math::{clamp, floor, index_of, max};
-use super::tone::encode;
-use super::view::View;
 
 /// Pixels along each edge of a tile.
 pub(super) const TILE: usize = 32;
 /// Places of a row of a tile: as many more as a run of pixels may pass its end.
 pub(super) const STRIDE: usize = TILE + 8;
-/// Bytes of a finished tile.
-pub(super) const TILE_BYTES: usize = TILE * TILE * 4;
+/// Pixels that are drawn together: a block of two columns and four rows, since hair falls more than it lies.
+pub(super) const BLOCK_LANES: usize = BLOCK_WIDTH * BLOCK_HEIGHT;
+pub(super) const BLOCK_WIDTH: usize = 2;
+pub(super) const BLOCK_HEIGHT: usize = 4;
+/// Blocks in a row of them, and in a tile.
+pub(super) const BLOCKS_IN_ROW: usize = TILE / BLOCK_WIDTH;
+pub(super) const BLOCKS: usize = BLOCKS_IN_ROW * (TILE / BLOCK_HEIGHT);
 /// Light that comes through hair and is no longer worth shading what is behind: a fourth of a step of 8 bits.
 pub(super) const UNSEEN: f32 = 1.0 / 1024.0;
 
 /// One number for each pixel of a tile, with spare places at the end of each row.
 pub(super) type Plane = [f32; TILE * STRIDE];
+
+/// Column and row in the tile of a lane of a block.
+#[inline(always)]
+pub(super) fn pixel_of(block: usize, lane: usize) -> (usize, usize) {
+    let (x, y) = (block % BLOCKS_IN_ROW * BLOCK_WIDTH, block / BLOCKS_IN_ROW * BLOCK_HEIGHT);
+    (x + lane % BLOCK_WIDTH, y + lane / BLOCK_WIDTH)
+}
 
 /// The tiles of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -97,84 +105,6 @@ impl SurfacePlanes {
         self.color.iter_mut().for_each(|plane| plane.fill(0.0));
         self.cover.fill(0.0);
     }
-}
-
-/// What a finished tile is made of.
-pub(super) struct PixelsIn<'a> {
-    pub origin: [f32; 2],
-    pub hair: &'a HairPlanes,
-    pub surface: &'a SurfacePlanes,
-    /// The shadows on the ground, where there are any.
-    pub ground: Option<&'a Ground>,
-}
-
-/// The light of a row of a tile, and the share of it that neither hair nor body covers. Without `over_background` nothing comes
-/// through from behind them.
-#[inline(always)]
-pub(super) fn compose_row(
-    view: &View,
-    input: &PixelsIn,
-    y: usize,
-    over_background: bool,
-) -> ([[f32; TILE]; 3], [f32; TILE]) {
-    let PixelsIn { origin, hair, surface, ground } = *input;
-    let at = y * STRIDE;
-    let mut row = [[0.0_f32; TILE]; 3];
-    let mut open = [0.0_f32; TILE];
-    let mut most = 0.0;
-    for x in 0..TILE {
-        open[x] = hair.through[at + x] * (1.0 - surface.cover[at + x]);
-        most = max(open[x], most);
-    }
-    if most > UNSEEN && over_background {
-        backdrop(view, origin[0] + 0.5, origin[1] + y as f32 + 0.5, &mut row);
-        if let Some(ground) = ground {
-            for x in 0..TILE {
-                if open[x] > UNSEEN {
-                    let light = ground.light(view, x, y);
-                    (row[0][x], row[1][x], row[2][x]) =
-                        (row[0][x] * light[0], row[1][x] * light[1], row[2][x] * light[2]);
-                }
-            }
-        }
-    }
-    for ((row, hair_color), surface_color) in row.iter_mut().zip(&hair.color).zip(&surface.color) {
-        for x in 0..TILE {
-            row[x] = hair_color[at + x] + hair.through[at + x] * surface_color[at + x] + open[x] * row[x];
-        }
-    }
-    (row, open)
-}
-
-/// Puts a tile together and writes its bytes, [`TILE_BYTES`] of them.
-#[inline(always)]
-pub(super) fn finish_pixels(view: &View, input: &PixelsIn, out: &mut [u8]) {
-    let exposure = view.uniform.size_scale_exposure.w;
-    let origin = input.origin;
-    for y in 0..TILE {
-        let (mut row, _) = compose_row(view, input, y, true);
-        encode(&mut row, exposure);
-        let mut bytes = [[0_i32; TILE]; 3];
-        for (bytes, row) in bytes.iter_mut().zip(&row) {
-            for x in 0..TILE {
-                let noise = noise_at(origin[0] + x as f32, origin[1] + y as f32);
-                // Rounded to the nearest, as a card stores what it is given.
-                bytes[x] = index_of(floor(clamp(row[x] * 255.0 + noise + 0.5, 0.0, 255.0))) as i32;
-            }
-        }
-        let Some(out) = out.get_mut(y * TILE * 4..(y + 1) * TILE * 4) else { return };
-        for (x, pixel) in out.as_chunks_mut::<4>().0.iter_mut().enumerate().take(TILE) {
-            *pixel = (bytes[0][x] | bytes[1][x] << 8 | bytes[2][x] << 16 | 0xff << 24).to_le_bytes();
-        }
-    }
-}
-
-/// Half a step of ordered noise at a pixel, so that smooth gradients do not band.
-#[inline(always)]
-pub(super) fn noise_at(x: f32, y: f32) -> f32 {
-    let inner = x * 0.067_110_56 + y * 0.005_837_15;
-    let inner = (inner - floor(inner)) * 52.982_918_9;
-    inner - floor(inner) - 0.5
 }
 
 #[cfg(test)]

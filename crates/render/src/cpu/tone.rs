@@ -1,7 +1,7 @@
 //! Linear light to the screen: the twin of `tone_map.wgsl`.
 //!
 //! `AgX` is Troy Sobotka's; the polynomial for its curve and the matrices are Benjamin Wrensch's fit (2023).
-// Compiled within the versions of `dispatch`.
+// Functions are inlined into the loops that `simd_versions!` compiles.
 #![allow(clippy::inline_always)]
 
 use super::math::{clamp, exp2, log2, max, pow, saturate};

@@ -1,5 +1,5 @@
 //! What every stage knows of the picture: the same numbers that the shaders read, and the lights' maps.
-// Compiled within the versions of `dispatch`.
+// Functions are inlined into the loops that `simd_versions!` compiles.
 #![allow(clippy::inline_always)]
 
 use glam::{Mat4, Vec2, Vec3};

@@ -1,12 +1,16 @@
 //! Segments put together from near to far as they come: `Transparency::Sorted`.
-// Compiled within the versions of `dispatch`.
-#![allow(clippy::inline_always)]
+// Functions are inlined into the loops that `simd_versions!` compiles; calling those takes `unsafe`.
+#![allow(clippy::inline_always, unsafe_code)]
 
-use super::segment::{BLOCK_WIDTH, BLOCKS, BLOCKS_IN_ROW, LANES, Span, SpanSink, each_span, pixel_of};
+use lovelock_groom::simd_versions;
+
+use super::segment::{Span, SpanSink, each_span};
 use crate::cpu::math::max;
 use crate::cpu::points::ShadedPoint;
 use crate::cpu::surface::raster::Occlusion;
-use crate::cpu::tile::{HairPlanes, STRIDE, UNSEEN};
+use crate::cpu::tile::{
+    BLOCK_LANES, BLOCK_WIDTH, BLOCKS, BLOCKS_IN_ROW, HairPlanes, STRIDE, UNSEEN, pixel_of,
+};
 
 /// What to draw into a tile.
 pub(crate) struct BlendTile<'a> {
@@ -23,8 +27,8 @@ pub(crate) struct BlendTile<'a> {
 /// A tile on its way: by blocks, and how full it is.
 #[derive(Clone, Debug)]
 pub(crate) struct BlendState {
-    color: [[[f32; LANES]; BLOCKS]; 3],
-    through: [[f32; LANES]; BLOCKS],
+    color: [[[f32; BLOCK_LANES]; BLOCKS]; 3],
+    through: [[f32; BLOCK_LANES]; BLOCKS],
     /// Blocks behind which nothing can be seen any more.
     closed: [bool; BLOCKS],
     /// How many others each row of blocks has, and the whole tile.
@@ -35,8 +39,8 @@ pub(crate) struct BlendState {
 impl Default for BlendState {
     fn default() -> Self {
         Self {
-            color: [[[0.0; LANES]; BLOCKS]; 3],
-            through: [[1.0; LANES]; BLOCKS],
+            color: [[[0.0; BLOCK_LANES]; BLOCKS]; 3],
+            through: [[1.0; BLOCK_LANES]; BLOCKS],
             closed: [false; BLOCKS],
             open_in_row: [BLOCKS_IN_ROW; BLOCKS / BLOCKS_IN_ROW],
             open: BLOCKS,
@@ -47,8 +51,8 @@ impl Default for BlendState {
 impl BlendState {
     /// Begins another tile.
     pub fn clear(&mut self) {
-        self.color.iter_mut().for_each(|plane| plane.fill([0.0; LANES]));
-        self.through.fill([1.0; LANES]);
+        self.color.iter_mut().for_each(|plane| plane.fill([0.0; BLOCK_LANES]));
+        self.through.fill([1.0; BLOCK_LANES]);
         self.closed.fill(false);
         self.open_in_row.fill(BLOCKS_IN_ROW);
         self.open = BLOCKS;
@@ -74,9 +78,16 @@ impl BlendState {
     }
 }
 
+simd_versions! {
+    /// [`blend_segments`] for the vectors of `width`.
+    pub(crate) fn blend_segments_simd(input: &BlendTile, out: &mut BlendState) -> () {
+        blend_segments(input, out)
+    }
+}
+
 /// Draws segments into a tile.
 #[inline(always)]
-pub(crate) fn blend_segments(input: &BlendTile, out: &mut BlendState) {
+fn blend_segments(input: &BlendTile, out: &mut BlendState) {
     let mut sink = Blend { hidden: input.hidden, out };
     for [a, b] in input.segments {
         if sink.out.is_full() {
@@ -109,8 +120,8 @@ impl SpanSink for Blend<'_> {
         let Occlusion { near, far, share: hidden } = self.hidden;
         let (near, far, hidden) = (near[at], far[at], hidden[at]);
         let mut through = self.out.through[at];
-        let mut share = [0.0; LANES];
-        for lane in 0..LANES {
+        let mut share = [0.0; BLOCK_LANES];
+        for lane in 0..BLOCK_LANES {
             let z = span.depth[lane];
             let seen = if z >= near[lane] { 1.0 } else { 1.0 - hidden[lane] };
             let alpha = if z >= far[lane] { span.alpha[lane] * seen } else { 0.0 };
@@ -121,13 +132,13 @@ impl SpanSink for Blend<'_> {
         for (c, plane) in self.out.color.iter_mut().enumerate() {
             let mut color = plane[at];
             let (from, to) = (a.color[c], b.color[c]);
-            for lane in 0..LANES {
+            for lane in 0..BLOCK_LANES {
                 color[lane] += share[lane] * (from + (to - from) * span.along[lane]);
             }
             plane[at] = color;
         }
         let mut most = 0.0;
-        for lane in 0..LANES {
+        for lane in 0..BLOCK_LANES {
             most = max(through[lane], most);
         }
         if most <= UNSEEN {

@@ -1,12 +1,14 @@
 //! Every fragment of a tile, pixel by pixel.
-// Compiled within the versions of `dispatch`.
-#![allow(clippy::inline_always)]
+// Functions are inlined into the loops that `simd_versions!` compiles; calling those takes `unsafe`.
+#![allow(clippy::inline_always, unsafe_code)]
 
-use super::segment::{LANES, Span, SpanSink, each_span, pixel_of};
+use lovelock_groom::simd_versions;
+
+use super::segment::{Span, SpanSink, each_span};
 use crate::cpu::math::{clamp, floor, three};
 use crate::cpu::points::ShadedPoint;
 use crate::cpu::surface::raster::SurfaceSamples;
-use crate::cpu::tile::{STRIDE, TILE};
+use crate::cpu::tile::{BLOCK_LANES, STRIDE, TILE, pixel_of};
 
 /// What one segment leaves in one pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -66,9 +68,16 @@ pub(crate) struct ListTile<'a> {
     pub opacity: f32,
 }
 
+simd_versions! {
+    /// [`list_segments`] for the vectors of `width`.
+    pub(crate) fn list_segments_simd(input: &ListTile, out: &mut Fragments) -> () {
+        list_segments(input, out)
+    }
+}
+
 /// Lists what segments leave in the pixels of a tile.
 #[inline(always)]
-pub(crate) fn list_segments(input: &ListTile, out: &mut Fragments) {
+fn list_segments(input: &ListTile, out: &mut Fragments) {
     out.found.clear();
     let mut sink = List { origin: input.origin, samples: input.samples, found: &mut out.found };
     for &segment in input.segments {
@@ -97,7 +106,7 @@ impl SpanSink for List<'_> {
 
     #[inline(always)]
     fn take(&mut self, a: &ShadedPoint, b: &ShadedPoint, span: &Span) {
-        for lane in 0..LANES {
+        for lane in 0..BLOCK_LANES {
             let alpha = span.alpha[lane];
             if alpha <= 0.0 {
                 continue;

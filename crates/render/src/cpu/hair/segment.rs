@@ -2,21 +2,14 @@
 //!
 //! Below a pixel, width becomes coverage: a strand of 0.2 pixels is drawn one pixel wide at a fifth of its
 //! opacity, so it neither breaks up nor gains weight as it recedes.
-// Compiled within the versions of `dispatch`.
+// Functions are inlined into the loops that `simd_versions!` compiles.
 #![allow(clippy::inline_always)]
 
 use crate::cpu::math::{max, min, saturate, sin, smoothstep};
 use crate::cpu::points::ShadedPoint;
-use crate::cpu::tile::TILE;
+use crate::cpu::tile::{BLOCK_HEIGHT, BLOCK_LANES, BLOCK_WIDTH, BLOCKS_IN_ROW, TILE};
 
-/// Pixels that are drawn together: a block of two columns and four rows, since hair falls more than it lies.
-pub(crate) const LANES: usize = BLOCK_WIDTH * BLOCK_HEIGHT;
-pub(crate) const BLOCK_WIDTH: usize = 2;
-pub(crate) const BLOCK_HEIGHT: usize = 4;
-/// Blocks in a row of them, and in a tile.
-pub(crate) const BLOCKS_IN_ROW: usize = TILE / BLOCK_WIDTH;
-pub(crate) const BLOCKS: usize = BLOCKS_IN_ROW * (TILE / BLOCK_HEIGHT);
-type Lane = [f32; LANES];
+type Lane = [f32; BLOCK_LANES];
 
 /// A block of pixels that a segment may cover.
 pub(crate) struct Span {
@@ -30,13 +23,6 @@ pub(crate) struct Span {
     pub along: Lane,
     /// Factor on the colour.
     pub gain: Lane,
-}
-
-/// Column and row in the tile of a lane of a block.
-#[inline(always)]
-pub(crate) fn pixel_of(block: usize, lane: usize) -> (usize, usize) {
-    let (x, y) = (block % BLOCKS_IN_ROW * BLOCK_WIDTH, block / BLOCKS_IN_ROW * BLOCK_HEIGHT);
-    (x + lane % BLOCK_WIDTH, y + lane / BLOCK_WIDTH)
 }
 
 /// Whether a segment is drawn at all.
@@ -126,12 +112,12 @@ pub(crate) fn each_span(
             let (x, y) = ((column * BLOCK_WIDTH) as f32, y as f32);
             let mut span = Span {
                 block,
-                alpha: [0.0; LANES],
-                depth: [0.0; LANES],
-                along: [0.0; LANES],
-                gain: [1.0; LANES],
+                alpha: [0.0; BLOCK_LANES],
+                depth: [0.0; BLOCK_LANES],
+                along: [0.0; BLOCK_LANES],
+                gain: [1.0; BLOCK_LANES],
             };
-            for lane in 0..LANES {
+            for lane in 0..BLOCK_LANES {
                 let (cx, cy) = (x + CENTRES[0][lane], y + CENTRES[1][lane]);
                 let (px, py) = (cx - ax, cy - ay);
                 let after_a = px * a.run_x + py * a.run_y;
@@ -148,7 +134,7 @@ pub(crate) fn each_span(
             }
             if streaked {
                 // A drawn strand stands for many hairs: where it is wide enough to show them, it is streaked.
-                for lane in 0..LANES {
+                for lane in 0..BLOCK_LANES {
                     let (px, py) = (x + CENTRES[0][lane] - ax, y + CENTRES[1][lane] - ay);
                     let half = half_a + (half_b - half_a) * span.along[lane];
                     let across = (px * nx + py * ny) / half;
@@ -167,9 +153,9 @@ pub(crate) fn each_span(
 
 /// Centres of the pixels of a block, from its corner.
 const CENTRES: [Lane; 2] = {
-    let mut centres = [[0.0; LANES]; 2];
+    let mut centres = [[0.0; BLOCK_LANES]; 2];
     let mut lane = 0;
-    while lane < LANES {
+    while lane < BLOCK_LANES {
         centres[0][lane] = (lane % BLOCK_WIDTH) as f32 + 0.5;
         centres[1][lane] = (lane / BLOCK_WIDTH) as f32 + 0.5;
         lane += 1;

@@ -5,8 +5,7 @@ use lovelock_motion::Body;
 
 use super::PlacedSurface;
 use super::raster::{Edges, NOTHING, SurfaceSamples};
-use super::shade::{LANES, SurfaceBatch};
-use crate::cpu::dispatch;
+use super::shade::{LANES, SurfaceBatch, shade_batch_simd};
 use crate::cpu::tile::{HairPlanes, STRIDE, SurfacePlanes, TILE, UNSEEN};
 use crate::cpu::view::View;
 
@@ -124,7 +123,7 @@ impl SurfaceLight {
     }
 
     fn flush(&mut self, width: Width, view: &View, out: &mut SurfacePlanes) {
-        dispatch::surface(width, view, &mut self.batch);
+        shade_batch_simd(width, view, &mut self.batch);
         for lane in 0..self.batch.count {
             for (plane, color) in out.color.iter_mut().zip(&self.batch.color) {
                 plane[self.batch.pixel[lane]] += self.batch.weight[lane] * color[lane];

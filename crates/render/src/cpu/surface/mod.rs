@@ -1,5 +1,5 @@
 //! The body on the processor: placed once a frame, drawn tile by tile, shaded where it is seen.
-// Compiled within the versions of `dispatch`.
+// Functions are inlined into the loops that `simd_versions!` compiles.
 #![allow(clippy::inline_always)]
 
 pub(super) mod light;

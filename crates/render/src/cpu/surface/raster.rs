@@ -2,14 +2,15 @@
 //!
 //! Edges are planes in the homogeneous coordinates of the picture (Olano, Greer 1997, "Triangle Scan
 //! Conversion using 2D Homogeneous Coordinates"), so that a triangle through the near plane needs no clipping.
-// Compiled within the versions of `dispatch`.
-#![allow(clippy::inline_always)]
+// Functions are inlined into the loops that `simd_versions!` compiles; calling those takes `unsafe`.
+#![allow(clippy::inline_always, unsafe_code)]
+
+use lovelock_groom::simd_versions;
 
 use super::pixel_bounds;
 use crate::camera::NEAR_METRES;
-use crate::cpu::hair::segment::{BLOCKS, LANES as BLOCK, pixel_of};
 use crate::cpu::math::{max, min, three};
-use crate::cpu::tile::{STRIDE, TILE};
+use crate::cpu::tile::{BLOCK_LANES, BLOCKS, STRIDE, TILE, pixel_of};
 
 /// Samples of a pixel and where they lie in it: the usual pattern of graphics cards.
 pub(crate) const SAMPLES: [[f32; 2]; 4] = [[0.375, 0.125], [0.875, 0.375], [0.125, 0.625], [0.625, 0.875]];
@@ -61,30 +62,30 @@ impl SurfaceSamples {
 /// pixel, and what lies behind `far` wholly. By blocks, as hair is drawn.
 #[derive(Clone, Debug)]
 pub(crate) struct Occlusion {
-    pub near: [[f32; BLOCK]; BLOCKS],
-    pub far: [[f32; BLOCK]; BLOCKS],
-    pub share: [[f32; BLOCK]; BLOCKS],
+    pub near: [[f32; BLOCK_LANES]; BLOCKS],
+    pub far: [[f32; BLOCK_LANES]; BLOCKS],
+    pub share: [[f32; BLOCK_LANES]; BLOCKS],
 }
 
 impl Default for Occlusion {
     fn default() -> Self {
-        let nothing = [[0.0; BLOCK]; BLOCKS];
+        let nothing = [[0.0; BLOCK_LANES]; BLOCKS];
         Self { near: nothing, far: nothing, share: nothing }
     }
 }
 
 impl Occlusion {
     pub fn clear(&mut self) {
-        self.near.fill([0.0; BLOCK]);
-        self.far.fill([0.0; BLOCK]);
-        self.share.fill([0.0; BLOCK]);
+        self.near.fill([0.0; BLOCK_LANES]);
+        self.far.fill([0.0; BLOCK_LANES]);
+        self.share.fill([0.0; BLOCK_LANES]);
     }
 
     /// Gathers the samples of each pixel: the nearest, the farthest, and how many are with the nearest.
     #[inline(always)]
     pub fn gather(&mut self, samples: &SurfaceSamples) {
         for block in 0..BLOCKS {
-            for lane in 0..BLOCK {
+            for lane in 0..BLOCK_LANES {
                 let (x, y) = pixel_of(block, lane);
                 let d = samples.depths(y * STRIDE + x);
                 let near = max(max(d[0], d[1]), max(d[2], d[3]));
@@ -159,9 +160,16 @@ fn scaled([a, b, c]: [f32; 3], by: f32) -> [f32; 3] {
     [a * by, b * by, c * by]
 }
 
+simd_versions! {
+    /// [`raster_triangles`] for the vectors of `width`.
+    pub(crate) fn raster_triangles_simd(input: &TriangleTile, out: &mut SurfaceSamples, hidden: &mut Occlusion) -> () {
+        raster_triangles(input, out, hidden)
+    }
+}
+
 /// Draws triangles into a tile, the nearest one in front.
 #[inline(always)]
-pub(crate) fn raster_triangles(input: &TriangleTile, out: &mut SurfaceSamples, hidden: &mut Occlusion) {
+fn raster_triangles(input: &TriangleTile, out: &mut SurfaceSamples, hidden: &mut Occlusion) {
     raster(input, out);
     hidden.gather(out);
 }

@@ -1,6 +1,8 @@
 //! Light on the body: the twin of `surface_shading.wgsl`, some pixels at a time.
-// Compiled within the versions of `dispatch`.
-#![allow(clippy::inline_always)]
+// Functions are inlined into the loops that `simd_versions!` compiles; calling those takes `unsafe`.
+#![allow(clippy::inline_always, unsafe_code)]
+
+use lovelock_groom::simd_versions;
 
 use crate::cpu::math::{exp, exp2, log2, max, mix, pow, saturate, smoothstep};
 use crate::cpu::view::View;
@@ -28,9 +30,16 @@ pub(crate) struct SurfaceBatch {
     pub color: [Lane; 3],
 }
 
+simd_versions! {
+    /// [`shade_batch`] for the vectors of `width`.
+    pub(crate) fn shade_batch_simd(view: &View, batch: &mut SurfaceBatch) -> () {
+        shade_batch(view, batch)
+    }
+}
+
 /// Shades the places of `batch`.
 #[inline(always)]
-pub(crate) fn shade_batch(view: &View, batch: &mut SurfaceBatch) {
+fn shade_batch(view: &View, batch: &mut SurfaceBatch) {
     let uniform = view.uniform;
     let eye = uniform.eye_lights.to_array();
     // Under hair the skin is painted with the colour of the roots, so that gaps never read as baldness.

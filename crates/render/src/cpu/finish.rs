@@ -1,0 +1,99 @@
+//! The last step of a tile: what is behind the hair, tone mapping, bytes.
+// Functions are inlined into the loops that `simd_versions!` compiles; calling those takes `unsafe`.
+#![allow(clippy::inline_always, unsafe_code)]
+
+use lovelock_groom::simd_versions;
+
+use super::backdrop::{Ground, backdrop};
+use super::math::{clamp, floor, index_of, max};
+use super::tile::{HairPlanes, STRIDE, SurfacePlanes, TILE, UNSEEN};
+use super::tone::encode;
+use super::view::View;
+
+/// Bytes of a finished tile.
+pub(super) const TILE_BYTES: usize = TILE * TILE * 4;
+
+/// What a finished tile is made of.
+pub(super) struct PixelsIn<'a> {
+    pub origin: [f32; 2],
+    pub hair: &'a HairPlanes,
+    pub surface: &'a SurfacePlanes,
+    /// The shadows on the ground, where there are any.
+    pub ground: Option<&'a Ground>,
+}
+
+/// The light of a row of a tile, and the share of it that neither hair nor body covers. Without `over_background` nothing comes
+/// through from behind them.
+#[inline(always)]
+pub(super) fn compose_row(
+    view: &View,
+    input: &PixelsIn,
+    y: usize,
+    over_background: bool,
+) -> ([[f32; TILE]; 3], [f32; TILE]) {
+    let PixelsIn { origin, hair, surface, ground } = *input;
+    let at = y * STRIDE;
+    let mut row = [[0.0_f32; TILE]; 3];
+    let mut open = [0.0_f32; TILE];
+    let mut most = 0.0;
+    for x in 0..TILE {
+        open[x] = hair.through[at + x] * (1.0 - surface.cover[at + x]);
+        most = max(open[x], most);
+    }
+    if most > UNSEEN && over_background {
+        backdrop(view, origin[0] + 0.5, origin[1] + y as f32 + 0.5, &mut row);
+        if let Some(ground) = ground {
+            for x in 0..TILE {
+                if open[x] > UNSEEN {
+                    let light = ground.light(view, x, y);
+                    (row[0][x], row[1][x], row[2][x]) =
+                        (row[0][x] * light[0], row[1][x] * light[1], row[2][x] * light[2]);
+                }
+            }
+        }
+    }
+    for ((row, hair_color), surface_color) in row.iter_mut().zip(&hair.color).zip(&surface.color) {
+        for x in 0..TILE {
+            row[x] = hair_color[at + x] + hair.through[at + x] * surface_color[at + x] + open[x] * row[x];
+        }
+    }
+    (row, open)
+}
+
+simd_versions! {
+    /// [`finish_pixels`] for the vectors of `width`.
+    pub(super) fn finish_pixels_simd(view: &View, input: &PixelsIn, out: &mut [u8]) -> () {
+        finish_pixels(view, input, out)
+    }
+}
+
+/// Puts a tile together and writes its bytes, [`TILE_BYTES`] of them.
+#[inline(always)]
+fn finish_pixels(view: &View, input: &PixelsIn, out: &mut [u8]) {
+    let exposure = view.uniform.size_scale_exposure.w;
+    let origin = input.origin;
+    for y in 0..TILE {
+        let (mut row, _) = compose_row(view, input, y, true);
+        encode(&mut row, exposure);
+        let mut bytes = [[0_i32; TILE]; 3];
+        for (bytes, row) in bytes.iter_mut().zip(&row) {
+            for x in 0..TILE {
+                let noise = noise_at(origin[0] + x as f32, origin[1] + y as f32);
+                // Rounded to the nearest, as a card stores what it is given.
+                bytes[x] = index_of(floor(clamp(row[x] * 255.0 + noise + 0.5, 0.0, 255.0))) as i32;
+            }
+        }
+        let Some(out) = out.get_mut(y * TILE * 4..(y + 1) * TILE * 4) else { return };
+        for (x, pixel) in out.as_chunks_mut::<4>().0.iter_mut().enumerate().take(TILE) {
+            *pixel = (bytes[0][x] | bytes[1][x] << 8 | bytes[2][x] << 16 | 0xff << 24).to_le_bytes();
+        }
+    }
+}
+
+/// Half a step of ordered noise at a pixel, so that smooth gradients do not band.
+#[inline(always)]
+pub(super) fn noise_at(x: f32, y: f32) -> f32 {
+    let inner = x * 0.067_110_56 + y * 0.005_837_15;
+    let inner = (inner - floor(inner)) * 52.982_918_9;
+    inner - floor(inner) - 0.5
+}
