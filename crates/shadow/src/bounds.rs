@@ -1,9 +1,9 @@
 //! How far the hair reaches along the axes of a light, and sizes of cells that stay from frame to frame.
-// Bounds are compiled within the versions of the voxel map's `simd`.
-#![allow(clippy::inline_always)]
+// Functions are inlined into the loops that `simd_versions!` compiles; calling those takes `unsafe`.
+#![allow(clippy::inline_always, unsafe_code)]
 
 use glam::Vec3;
-use lovelock_groom::Strands;
+use lovelock_groom::{Strands, simd_versions};
 use rayon::prelude::*;
 
 use crate::{LightFrame, ShadowInput};
@@ -16,6 +16,13 @@ pub(crate) const SMALLEST_CELL: f32 = 1e-5;
 
 /// Points of one parallel piece.
 const POINTS_PER_PIECE: usize = 1 << 14;
+
+simd_versions! {
+    /// [`Bounds::of_points`] for the vectors of `width`.
+    pub(crate) fn bounds_simd(x: &[f32], y: &[f32], z: &[f32], light: &LightFrame, anchor: Vec3) -> Bounds {
+        Bounds::of_points(x, y, z, light, anchor)
+    }
+}
 
 /// The hair's extent along the light's axes, relative to the anchor, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,13 +3,7 @@
 use glam::{Mat4, Vec3};
 use lovelock_groom::Strands;
 
-use crate::methods::deep_opacity_maps::DeepOpacityMaps;
-use crate::methods::density_clustering::DensityClustering;
-use crate::methods::exact::ExactMap;
-use crate::methods::occupancy_maps::OccupancyMaps;
-use crate::methods::opacity_maps::OpacityMaps;
-use crate::methods::{none, voxel_map};
-use crate::{LightFrame, RayStructure, ShadowError, ShadowMethod, ShadowSettings};
+use crate::{LightFrame, RayStructure, ShadowError, ShadowSettings};
 
 /// What a map is built from.
 #[derive(Clone, Copy, Debug)]
@@ -94,17 +88,4 @@ pub trait CpuShadow {
 
     /// What the last build keeps along the light through `p` (world space, metres), to be looked at.
     fn along_ray(&self, p: Vec3) -> RayStructure;
-}
-
-/// An empty map of `method`: everything is lit until it is built.
-pub fn cpu_shadow(method: ShadowMethod) -> Box<dyn CpuShadow + Send + Sync> {
-    match method {
-        ShadowMethod::None => Box::new(none::NoShadow),
-        ShadowMethod::VoxelMap => Box::new(voxel_map::VoxelMap::default()),
-        ShadowMethod::OpacityMaps => Box::new(OpacityMaps::default()),
-        ShadowMethod::DeepOpacityMaps => Box::new(DeepOpacityMaps::default()),
-        ShadowMethod::DensityClustering => Box::new(DensityClustering::default()),
-        ShadowMethod::OccupancyMaps => Box::new(OccupancyMaps::default()),
-        ShadowMethod::Exact => Box::new(ExactMap::default()),
-    }
 }

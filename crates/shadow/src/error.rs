@@ -10,7 +10,7 @@ pub enum ShadowError {
     /// The map of this hair would take more memory than the method may use.
     #[error(
         "{method} needs {} for this hair, more than its limit of {}{}: {}",
-        Bytes(*.needed_bytes), Bytes(*.limit_bytes), Share(*.maps), advice(*.method)
+        Bytes(*.needed_bytes), Bytes(*.limit_bytes), Share(*.maps), .method.advice()
     )]
     TooLarge {
         /// The method that was asked.
@@ -26,7 +26,7 @@ pub enum ShadowError {
     #[error(
         "{method} needs a buffer of {} for this hair, and this graphics device takes at most {}: {}, or draw by the \
          processor",
-        Bytes(*.needed_bytes), Bytes(*.limit_bytes), advice(*.method)
+        Bytes(*.needed_bytes), Bytes(*.limit_bytes), .method.advice()
     )]
     Device {
         /// The method that was asked.
@@ -36,22 +36,6 @@ pub enum ShadowError {
         /// The device's limit.
         limit_bytes: u64,
     },
-}
-
-/// What to change when a map does not fit.
-const fn advice(method: ShadowMethod) -> &'static str {
-    match method {
-        ShadowMethod::None | ShadowMethod::VoxelMap | ShadowMethod::DeepOpacityMaps => {
-            "lower the map's resolution or the number of strands"
-        }
-        ShadowMethod::OpacityMaps | ShadowMethod::OccupancyMaps => {
-            "lower the map's resolution, the slices or the number of strands"
-        }
-        ShadowMethod::DensityClustering => {
-            "lower the map's resolution, the clusters or the number of strands"
-        }
-        ShadowMethod::Exact => "lower the map's resolution or the number of strands, or raise the limit",
-    }
 }
 
 /// Says how many maps share a limit, where it is shared.

@@ -1,5 +1,5 @@
 //! `e^(−τ)` in a form that vectorises and gives the same bits on every processor.
-// Compiled within the versions of the voxel map's `simd`.
+// Functions are inlined into the loops that `simd_versions!` compiles.
 #![allow(clippy::inline_always)]
 
 use lovelock_groom::simd::whole_part;

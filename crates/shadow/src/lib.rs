@@ -4,8 +4,7 @@
 //! [`CpuShadow`] is the behaviour: build from strands and a light, then answer a transmittance in `0..=1` for
 //! any point. The processor's version of a method is its definition.
 //!
-//! Adding a method is a folder in `methods/`, a variant of [`ShadowMethod`], and the lines that the compiler
-//! then asks for.
+//! Adding a method is a folder in `methods/` and its lines in `methods/mod.rs`: see `docs/how_to_add.md`.
 
 mod bounds;
 mod converged;
@@ -23,14 +22,12 @@ pub mod methods;
 
 pub use bounds::Bounds;
 pub use converged::{CONVERGED_CHANGE, Converged, MOST_CONVERGED_SAMPLES, converged};
-pub use cpu::{ColumnMap, CpuShadow, ShadowInput, ShadowReport, cpu_shadow};
+pub use cpu::{ColumnMap, CpuShadow, ShadowInput, ShadowReport};
 pub use error::ShadowError;
-pub use gpu::{
-    GpuColumns, GpuShadow, GpuShadowError, GpuShadowInput, GpuStrands, GpuTargets, SUM_WORDS, all_shaders,
-    gpu_shadow,
-};
+pub use gpu::{GpuColumns, GpuShadow, GpuShadowError, GpuShadowInput, GpuStrands, GpuTargets, SUM_WORDS};
 pub use light::LightFrame;
-pub use method::{ShadowMethod, UnknownShadowMethod};
+pub use method::{MapKind, MapSize, UnknownShadowMethod, all_shaders, cpu_shadow, gpu_shadow};
+pub use methods::ShadowMethod;
 pub use methods::deep_opacity_maps::{DeepOpacityMapsSettings, LayerGrowth};
 pub use methods::density_clustering::{ClusterDeviation, ClusterSeeds, DensityClusteringSettings};
 pub use methods::exact::{ExactMap, ExactSettings};

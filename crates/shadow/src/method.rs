@@ -1,114 +1,138 @@
-//! The names of the shadow methods.
+//! What the registry holds about each shadow method, and the names of methods.
 
 use std::fmt;
 use std::str::FromStr;
 
-use serde::{Deserialize, Serialize};
+use lovelock_gpu::{Gpu, GpuError, ShaderSource};
 
-/// A way to find the light that reaches a point inside hair.
-///
-/// Menus, the command line, comparisons and tests go through [`ShadowMethod::ALL`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(try_from = "String", into = "String")]
-pub enum ShadowMethod {
-    /// No shadow inside hair: every point receives all light.
+use crate::{CpuShadow, GpuShadow, RayMarkKind, ShadowMethod, ShadowSettings};
+
+/// Everything about one shadow method that the rest of the program asks for. Each method's folder has one.
+#[derive(Debug)]
+pub(crate) struct Method {
+    /// The stable name of the command line, of projects and of reports.
+    pub id: &'static str,
+    /// The name in the interface.
+    pub label: &'static str,
+    /// One sentence: what it does and whose it is.
+    pub description: &'static str,
+    /// The publication that the method comes from.
+    pub source: Option<&'static str>,
+    /// What to change where the map does not fit into memory: the end of an error message.
+    pub advice: &'static str,
+    /// What a map consists of.
+    pub map: MapKind,
+    /// The size of the map with these settings; `None` where there is no map.
+    pub size: fn(&ShadowSettings) -> Option<MapSize>,
+    /// What a map holds along a ray of its light.
+    pub marks: &'static [RayMarkKind],
+    /// Whether strands block light, with these settings, by the number of their points and not by their length.
+    pub counts_points: fn(&ShadowSettings) -> bool,
+    /// An empty map on the CPU.
+    pub cpu: fn() -> Box<dyn CpuShadow + Send + Sync>,
+    /// The pipelines of the GPU's passes.
+    pub gpu: fn(&Gpu) -> Result<Box<dyn GpuShadow>, GpuError>,
+    /// Every composed shader with its label.
+    pub shaders: fn() -> Vec<(String, ShaderSource)>,
+}
+
+/// What the map of a method consists of, and so what a transmittance is the mean of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum MapKind {
+    /// There is no map.
     None,
-    /// Light-oriented map of density and transmittance (Bertails, Ménier, Cani 2005).
-    #[default]
-    VoxelMap,
-    /// Optical depth at uniform slices along the light (Kim, Neumann 2001).
-    OpacityMaps,
-    /// A few layers that begin at the first hair (Yuksel, Keyser 2008).
-    DeepOpacityMaps,
-    /// A few bins of even density where the hair is (Mertens, Kautz, Bekaert, Van Reeth 2004).
-    DensityClustering,
-    /// Bits for slices with hair and counts for slabs of them (Sintorn, Assarsson 2009).
-    OccupancyMaps,
-    /// Every fragment, sorted: what the other methods are judged by.
-    Exact,
+    /// A record per texel across the light; its depths are those of its hair.
+    Texels,
+    /// Cells of a cube.
+    Cells,
+}
+
+/// The size of a map, as it is set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MapSize {
+    /// Texels or cells along each edge.
+    pub edge: u32,
+    /// Slices, layers or bins per texel, where their number is set.
+    pub per_texel: Option<u32>,
 }
 
 impl ShadowMethod {
-    /// Every method, in the order of menus and reports.
-    pub const ALL: &'static [Self] = &[
-        Self::None,
-        Self::VoxelMap,
-        Self::OpacityMaps,
-        Self::DeepOpacityMaps,
-        Self::DensityClustering,
-        Self::OccupancyMaps,
-        Self::Exact,
-    ];
-
     /// The stable name of the command line, of projects and of reports.
     pub const fn id(self) -> &'static str {
-        match self {
-            Self::None => "none",
-            Self::VoxelMap => "voxel-map",
-            Self::OpacityMaps => "opacity-maps",
-            Self::DeepOpacityMaps => "deep-opacity-maps",
-            Self::DensityClustering => "density-clustering",
-            Self::OccupancyMaps => "occupancy-maps",
-            Self::Exact => "exact",
-        }
+        self.method().id
     }
 
-    /// What the interface calls it.
+    /// The name in the interface.
     pub const fn label(self) -> &'static str {
-        match self {
-            Self::None => "None",
-            Self::VoxelMap => "Voxel map",
-            Self::OpacityMaps => "Opacity maps",
-            Self::DeepOpacityMaps => "Deep opacity maps",
-            Self::DensityClustering => "Density clustering",
-            Self::OccupancyMaps => "Occupancy maps",
-            Self::Exact => "Exact",
-        }
+        self.method().label
     }
 
     /// One sentence: what it does and whose it is.
     pub const fn description(self) -> &'static str {
-        match self {
-            Self::None => "No shadow inside hair: every strand receives all light.",
-            Self::VoxelMap => {
-                "Density of hair in a grid along the light, summed slice by slice (Bertails, Ménier, Cani 2005)."
-            }
-            Self::OpacityMaps => {
-                "Optical depth at equal slices along the light, for each light texel (Kim, Neumann 2001)."
-            }
-            Self::DeepOpacityMaps => {
-                "A few layers for each light texel that begin at its first hair (Yuksel, Keyser 2008)."
-            }
-            Self::DensityClustering => {
-                "A few bins of even density for each light texel, placed where its hair is (Mertens and others 2004)."
-            }
-            Self::OccupancyMaps => {
-                "Bits for slices with hair and counts for slabs of them, for each light texel (Sintorn, Assarsson 2009)."
-            }
-            Self::Exact => {
-                "Every fragment of each light texel, sorted by depth: what the others are judged by."
-            }
-        }
+        self.method().description
     }
 
     /// The publication that the method comes from; `None` where there is none.
     pub const fn source(self) -> Option<&'static str> {
-        match self {
-            Self::None | Self::Exact => None,
-            Self::VoxelMap => Some(
-                "Bertails, Ménier, Cani 2005, A Practical Self-Shadowing Algorithm for Interactive Hair Animation",
-            ),
-            Self::OpacityMaps => Some("Kim, Neumann 2001, Opacity Shadow Maps"),
-            Self::DeepOpacityMaps => Some("Yuksel, Keyser 2008, Deep Opacity Maps"),
-            Self::DensityClustering => Some(
-                "Mertens, Kautz, Bekaert, Van Reeth 2004, A Self-Shadow Algorithm for Dynamic Hair using Density \
-                 Clustering",
-            ),
-            Self::OccupancyMaps => Some(
-                "Sintorn, Assarsson 2009, Hair Self Shadowing and Transparency Depth Ordering Using Occupancy Maps",
-            ),
-        }
+        self.method().source
     }
+
+    /// What to change where the map does not fit into memory.
+    pub(crate) const fn advice(self) -> &'static str {
+        self.method().advice
+    }
+
+    /// What a map of the method consists of.
+    pub const fn map_kind(self) -> MapKind {
+        self.method().map
+    }
+
+    /// What a map of the method holds along a ray of its light.
+    pub const fn marks(self) -> &'static [RayMarkKind] {
+        self.method().marks
+    }
+}
+
+impl ShadowSettings {
+    /// The size of the map of the method in use; `None` where it has no map.
+    pub fn map_size(&self) -> Option<MapSize> {
+        (self.method.method().size)(self)
+    }
+
+    /// The size of the map in short, such as `128³` or `512² × 4`; empty where there is no map.
+    pub fn size_label(&self) -> String {
+        let Some(MapSize { edge, per_texel }) = self.map_size() else { return String::new() };
+        let power = if self.method.map_kind() == MapKind::Cells { '³' } else { '²' };
+        per_texel.map_or_else(|| format!("{edge}{power}"), |count| format!("{edge}{power} × {count}"))
+    }
+
+    /// Whether strands block light by the number of their points and not by their length: then shadows depend on how finely
+    /// strands are sampled.
+    pub fn counts_points(&self) -> bool {
+        (self.method.method().counts_points)(self)
+    }
+}
+
+/// An empty map of `method` on the CPU: everything is lit until it is built.
+pub fn cpu_shadow(method: ShadowMethod) -> Box<dyn CpuShadow + Send + Sync> {
+    (method.method().cpu)()
+}
+
+/// Compiles a method's pipelines for the GPU; its maps are empty.
+///
+/// # Errors
+/// A shader that does not compile, by file and line.
+pub fn gpu_shadow(method: ShadowMethod, gpu: &Gpu) -> Result<Box<dyn GpuShadow>, GpuError> {
+    (method.method().gpu)(gpu)
+}
+
+/// Every composed shader of every method with its label, so that a test can validate them without a device.
+pub fn all_shaders() -> Vec<(String, ShaderSource)> {
+    let of = |method: &ShadowMethod| {
+        let named = move |(label, source)| (format!("{method}: {label}"), source);
+        (method.method().shaders)().into_iter().map(named).collect::<Vec<_>>()
+    };
+    ShadowMethod::ALL.iter().flat_map(of).collect()
 }
 
 impl fmt::Display for ShadowMethod {
@@ -164,6 +188,23 @@ mod tests {
             assert_eq!(String::from(method), method.to_string());
             assert!(ShadowMethod::ALL[..i].iter().all(|other| other.id() != method.id()));
         }
+    }
+
+    #[test]
+    fn every_method_is_listed_in_order() {
+        assert!(ShadowMethod::ALL.iter().enumerate().all(|(at, method)| *method as usize == at));
+    }
+
+    #[test]
+    fn a_map_has_a_size_marks_and_a_label() {
+        let labels = ShadowMethod::ALL.iter().map(|&method| {
+            let settings = ShadowSettings { method, ..ShadowSettings::default() };
+            let has_map = method.map_kind() != MapKind::None;
+            assert_eq!((settings.map_size().is_some(), !method.marks().is_empty()), (has_map, has_map));
+            settings.size_label()
+        });
+        let expected = ["", "128³", "512² × 128", "512² × 4", "512² × 4", "512² × 128", "512²"];
+        assert_eq!(labels.collect::<Vec<_>>(), expected);
     }
 
     #[test]

@@ -2,40 +2,23 @@
 
 use std::fmt;
 
-/// A piece of what a method keeps.
+/// A kind of piece that a map holds: a slice, a bin, a fragment. Each method's folder names its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum RayMarkKind {
-    /// A slice of even depth: of opacity maps, every one of them; of occupancy maps, those whose bit is set.
-    Slice,
-    /// A layer of deep opacity maps.
-    Layer,
-    /// A slab of occupancy maps, with its count of fragments times their mean optical depth.
-    Slab,
-    /// A bin of density clustering: a cluster with even density.
-    Bin,
-    /// A cell of the voxel map.
-    Cell,
-    /// A fragment of the exact shadow: a step.
-    Fragment,
+pub struct RayMarkKind {
+    /// The name in the interface.
+    pub label: &'static str,
+    /// Whether the method resolves depth down to pieces of this kind: then their thickness is what banding shows.
+    pub resolves_depth: bool,
 }
 
 impl RayMarkKind {
-    /// What the interface calls it.
-    pub const fn label(self) -> &'static str {
-        match self {
-            Self::Slice => "Slice",
-            Self::Layer => "Layer",
-            Self::Slab => "Slab",
-            Self::Bin => "Bin",
-            Self::Cell => "Cell",
-            Self::Fragment => "Fragment",
-        }
-    }
+    /// One fragment of the hair: a step.
+    pub const FRAGMENT: Self = Self { label: "Fragment", resolves_depth: false };
 }
 
 impl fmt::Display for RayMarkKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.label())
+        f.pad(self.label)
     }
 }
 

@@ -4,7 +4,7 @@ mod common;
 
 use std::sync::Arc;
 
-use common::{HEAD, Random, SMOOTH, Style, grow, strands};
+use common::{HEAD, Random, SMOOTH, Style, grow, strands, texel_methods};
 use glam::Vec3;
 use lovelock_groom::Strands;
 use lovelock_shadow::{
@@ -178,10 +178,7 @@ fn maps_that_do_not_fit_are_refused_with_the_number() {
     settings.occupancy_maps.resolution = 2048;
     settings.exact.resolution = 2048;
     settings.exact.memory_limit_bytes = 1 << 30;
-    for &method in ShadowMethod::ALL {
-        if [ShadowMethod::None, ShadowMethod::VoxelMap].contains(&method) {
-            continue;
-        }
+    for method in texel_methods() {
         let mut map = cpu_shadow(method);
         map.build(&input(&strands(&grow(Style { wisps: 2, ..SMOOTH }, 1))), &settings)
             .expect("a little fits");

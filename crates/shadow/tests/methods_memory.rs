@@ -2,21 +2,12 @@
 
 mod common;
 
-use common::{HEAD, Random, SMOOTH, Style, grow, strands};
+use common::{HEAD, Random, SMOOTH, Style, grow, strands, texel_methods};
 use glam::Vec3;
 use lovelock_groom::Strands;
 use lovelock_shadow::{LightFrame, ShadowError, ShadowInput, ShadowMethod, ShadowSettings, cpu_shadow};
 
 const LIGHT: Vec3 = Vec3::new(0.4, -1.0, -0.5);
-
-/// The methods that have a limit.
-const LIMITED: [ShadowMethod; 5] = [
-    ShadowMethod::OpacityMaps,
-    ShadowMethod::DeepOpacityMaps,
-    ShadowMethod::DensityClustering,
-    ShadowMethod::OccupancyMaps,
-    ShadowMethod::Exact,
-];
 
 fn input(strands: &Strands) -> ShadowInput<'_> {
     ShadowInput { strands, strand_width: 1e-4, light: LightFrame::new(LIGHT), anchor: HEAD, maps: 1 }
@@ -78,7 +69,7 @@ fn what_is_held_is_no_more_than_was_counted() {
     let little = strands(&grow(Style { wisps: 1, ..SMOOTH }, 2));
     for (what, hair) in [("hair", &hair), ("wandering", &wandering(500, 50)), ("little", &little)] {
         for (which, settings) in [("usual", ShadowSettings::default()), ("finest", finest())] {
-            for method in LIMITED {
+            for method in texel_methods() {
                 let mut map = cpu_shadow(method);
                 map.build(&input(hair), &settings).expect("fits");
                 let report = map.report();

@@ -37,18 +37,6 @@ fn some_points(hair: &Strands) -> Vec<Vec3> {
     (0..60).map(|_| hair.point((random.unit() * (hair.points() - 1) as f32) as usize)).collect()
 }
 
-fn kinds(method: ShadowMethod) -> &'static [RayMarkKind] {
-    match method {
-        ShadowMethod::None => &[],
-        ShadowMethod::VoxelMap => &[RayMarkKind::Cell],
-        ShadowMethod::OpacityMaps => &[RayMarkKind::Slice],
-        ShadowMethod::DeepOpacityMaps => &[RayMarkKind::Layer],
-        ShadowMethod::DensityClustering => &[RayMarkKind::Bin],
-        ShadowMethod::OccupancyMaps => &[RayMarkKind::Slab, RayMarkKind::Slice],
-        ShadowMethod::Exact => &[RayMarkKind::Fragment],
-    }
-}
-
 #[test]
 fn marks_say_what_the_map_answers_behind_them() {
     let hair = hair();
@@ -69,11 +57,11 @@ fn marks_say_what_the_map_answers_behind_them() {
             }
             let ray = map.along_ray(p);
             for mark in &ray.marks {
-                assert!(kinds(method).contains(&mark.kind), "{method}: {mark:?}");
+                assert!(method.marks().contains(&mark.kind), "{method}: {mark:?}");
                 assert!(mark.start <= mark.end && mark.optical_depth >= 0.0, "{method}: {mark:?}");
                 // A little behind it: what lies at a depth does not count before it. Rounding of a place in the world is
                 // some 1e-7 m; another fragment may lie as near as that.
-                let step = mark.kind == RayMarkKind::Fragment;
+                let step = mark.kind == RayMarkKind::FRAGMENT;
                 if step
                     && ray
                         .marks
@@ -110,7 +98,7 @@ fn pieces_of_one_kind_add_up_to_all_hair() {
         let mut seen = 0;
         for p in some_points(&hair) {
             let ray = map.along_ray(p);
-            for &kind in kinds(method) {
+            for &kind in method.marks() {
                 let of: Vec<_> = ray.marks.iter().filter(|mark| mark.kind == kind).collect();
                 if of.is_empty() {
                     continue;
@@ -125,7 +113,7 @@ fn pieces_of_one_kind_add_up_to_all_hair() {
             }
         }
         // A strand's end may lie in a texel over whose middle no strand goes.
-        assert!(seen >= 55 * kinds(method).len(), "{method}: {seen}");
+        assert!(seen >= 55 * method.marks().len(), "{method}: {seen}");
     }
 }
 

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{HEAD, Random, strands};
+use common::{HEAD, Random, strands, texel_methods};
 use glam::Vec3;
 use lovelock_groom::Strands;
 use lovelock_shadow::methods::exact::ExactMap;
@@ -15,15 +15,6 @@ use lovelock_shadow::{
 /// Along every axis, and slantwise.
 const LIGHTS: [Vec3; 7] =
     [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z, Vec3::new(0.4, -1.0, -0.5)];
-
-/// The methods with a record a texel.
-const METHODS: [ShadowMethod; 5] = [
-    ShadowMethod::OpacityMaps,
-    ShadowMethod::DeepOpacityMaps,
-    ShadowMethod::DensityClustering,
-    ShadowMethod::OccupancyMaps,
-    ShadowMethod::Exact,
-];
 
 fn input(strands: &Strands, direction: Vec3, strand_width: f32) -> ShadowInput<'_> {
     ShadowInput { strands, strand_width, light: LightFrame::new(direction), anchor: HEAD, maps: 1 }
@@ -101,7 +92,7 @@ fn layers_of_known_coverage_dim_by_its_power() {
             settings.opacity_maps.slices = 256;
             settings.density_clustering.clusters = 8;
             settings.density_clustering.seeds = ClusterSeeds::Uniform;
-            for method in METHODS {
+            for method in texel_methods() {
                 let map = built(method, &input, &settings);
                 for n in 0..=8 {
                     // Deep opacity maps do not tell layers apart; all methods agree behind the last.
@@ -193,7 +184,8 @@ fn scattered_strands_dim_as_chance_has_it() {
             let hair = strands(&scattered(&light, count));
             let input = input(&hair, direction, width);
             let settings = settings(TexelFilter::Nearest);
-            let mut maps = METHODS.map(|method| (method, built(method, &input, &settings)));
+            let mut maps: Vec<_> =
+                texel_methods().map(|method| (method, built(method, &input, &settings))).collect();
             for along in [0.05, 0.1, 0.2_f32] {
                 // σd = s w ℓ n d, with n strands of length ℓ in a volume.
                 let sigma_d =
@@ -291,7 +283,7 @@ fn one_strand_shadows_what_lies_behind_it_and_nothing_else() {
         let hair = strands(&of);
         let input = input(&hair, direction, 0.5 * frame.texel_size);
         let expected = (-0.25_f32).exp();
-        for method in METHODS {
+        for method in texel_methods() {
             let map = built(method, &input, &settings(TexelFilter::Nearest));
             for (depth, t) in
                 [(-3.0, 1.0), (0.1, 1.0), (0.49, 1.0), (0.9, expected), (1.0, expected), (50.0, expected)]
@@ -336,7 +328,7 @@ fn a_strand_on_the_border_of_the_map_counts() {
         let square = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0)];
         let hair = strands(&[square.map(|(y, z)| at(0.1 * Vec3::new(0.0, y, z))).to_vec()]);
         let input = input(&hair, direction, 1e-3);
-        for method in METHODS {
+        for method in texel_methods() {
             for filter in [TexelFilter::Nearest, TexelFilter::Bilinear] {
                 let map = built(method, &input, &settings(filter));
                 for (y, z) in [(-0.1, 0.03), (0.1, -0.02), (0.05, 0.1), (0.0, -0.1)] {
@@ -364,7 +356,7 @@ fn the_column_map_is_what_lies_behind_all_hair() {
     let light = LightFrame::new(direction);
     let hair = strands(&scattered(&light, 4000));
     let input = input(&hair, direction, 1e-3);
-    for method in METHODS {
+    for method in texel_methods() {
         let map = built(method, &input, &settings(TexelFilter::Bilinear));
         let columns = map.column_map().expect("built");
         let n = columns.size as usize;

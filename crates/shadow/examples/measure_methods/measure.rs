@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use glam::Vec3;
 use lovelock_shadow::{
-    CpuShadow, ExactMap, ShadowMethod, ShadowReport, ShadowSettings, converged, cpu_shadow,
+    CpuShadow, ExactMap, MapKind, ShadowMethod, ShadowReport, ShadowSettings, converged, cpu_shadow,
 };
 
 use crate::common::Random;
@@ -68,24 +68,17 @@ pub(crate) fn all_methods(groom: &Groom) -> Vec<Measured> {
     measured.collect()
 }
 
-/// Texels or cells along the edge of the map, by usual settings. `none` has no map and is compared with `exact`.
+/// Texels or cells along the edge of the map with default settings. `none` has no map and is compared with `exact`.
 fn resolution(method: ShadowMethod) -> u32 {
-    let settings = ShadowSettings::default();
-    match method {
-        ShadowMethod::VoxelMap => settings.voxel_map.safe_resolution(),
-        ShadowMethod::OpacityMaps => settings.opacity_maps.safe_resolution(),
-        ShadowMethod::DeepOpacityMaps => settings.deep_opacity_maps.safe_resolution(),
-        ShadowMethod::DensityClustering => settings.density_clustering.safe_resolution(),
-        ShadowMethod::OccupancyMaps => settings.occupancy_maps.safe_resolution(),
-        ShadowMethod::None | ShadowMethod::Exact => settings.exact.safe_resolution(),
-    }
+    let settings = ShadowSettings { method, ..ShadowSettings::default() };
+    settings.map_size().map_or_else(|| settings.exact.safe_resolution(), |size| size.edge)
 }
 
 /// Texels or cells along the edge of the map that was made: texels are no narrower than strands, so that there may be
 /// fewer of them than asked for.
 fn edge(report: &ShadowReport, method: ShadowMethod) -> u32 {
     let cells = report.cells_total as f64;
-    let edge = if method == ShadowMethod::VoxelMap { cells.cbrt() } else { cells.sqrt() };
+    let edge = if method.map_kind() == MapKind::Cells { cells.cbrt() } else { cells.sqrt() };
     edge.round() as u32
 }
 

@@ -123,8 +123,9 @@ mod tests {
     use std::mem::offset_of;
 
     use super::*;
+    use crate::all_shaders;
     use crate::gpu::layout::layout_in_shader;
-    use crate::gpu::{all_shaders, wgsl};
+    use crate::gpu::wgsl;
 
     #[test]
     fn the_uniform_has_the_layout_of_every_shader() {

@@ -1,7 +1,7 @@
-// Asks the map of one light at many points. A method's query defines `hair_transmittance`.
+// Looks up many points in the map of one light. A method's query defines `hair_transmittance`.
 
 struct Ask {
-    // Points, items from one to the next, slot of the light, 1 where the sum is wanted.
+    // Points, items from one point to the next, slot of the light, 1 if the sum is wanted.
     count: u32,
     stride: u32,
     slot: u32,
@@ -30,7 +30,7 @@ fn ask_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups)
         answers[i] = (answers[i] & ~(0xffu << shift)) | (byte << shift);
     }
     if (ask.sums != 0u) {
-        // Over many words, which wait for each other less than one would.
+        // Spread over many words to reduce contention.
         atomicAdd(&sum[(i >> 6u) % SUM_WORDS], byte);
     }
 }

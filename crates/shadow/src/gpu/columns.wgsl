@@ -1,4 +1,4 @@
-// Writes what the whole hair lets through, texel by texel. A method's query defines `behind_column` and `column_count`.
+// Writes the transmittance of the whole hair, texel by texel. A method's query defines `behind_column` and `column_count`.
 
 @group(0) @binding(14) var columns: texture_storage_2d<rgba8unorm, write>;
 

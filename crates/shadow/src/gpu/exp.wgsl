@@ -14,7 +14,7 @@ fn exp_of_minus_steps(depth: f32) -> f32 {
     return bitcast<f32>(bitcast<i32>(p) - (whole << 23u));
 }
 
-// e^(-depth), 1 at 0 and for what is no number.
+// e^(-depth); 1 at 0 and for NaN.
 fn exp_of_minus(depth: f32) -> f32 {
     var steps = select(0.0, depth, depth > 0.0);
     steps = select(64.0, steps, steps < 64.0) * 4096.0;

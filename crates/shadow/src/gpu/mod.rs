@@ -8,18 +8,10 @@ mod memory;
 use std::fmt::Debug;
 
 use glam::{Mat4, Vec3};
-use lovelock_gpu::{Commands, Gpu, GpuError, ShaderPart, ShaderSource, wgpu};
+use lovelock_gpu::{Commands, Gpu, GpuError, ShaderPart, wgpu};
 
 use crate::bounds::Bounds;
-use crate::methods::deep_opacity_maps::Layers;
-use crate::methods::density_clustering::Clustering;
-use crate::methods::exact::Sorted;
-use crate::methods::none;
-use crate::methods::occupancy_maps::Occupancy;
-use crate::methods::opacity_maps::Slices;
-use crate::methods::texels::TexelShadow;
-use crate::methods::voxel_map::GpuVoxelMap;
-use crate::{LightFrame, ShadowError, ShadowMethod, ShadowReport, ShadowSettings};
+use crate::{LightFrame, ShadowError, ShadowReport, ShadowSettings};
 
 pub(crate) use ask::Ask;
 pub(crate) use memory::{Buffer, fits_device};
@@ -148,40 +140,6 @@ pub enum GpuShadowError {
     /// The device failed.
     #[error(transparent)]
     Gpu(#[from] GpuError),
-}
-
-/// Makes a method's pipelines; its maps are empty.
-///
-/// # Errors
-/// A shader that does not compile, by file and line.
-pub fn gpu_shadow(method: ShadowMethod, gpu: &Gpu) -> Result<Box<dyn GpuShadow>, GpuError> {
-    Ok(match method {
-        ShadowMethod::None => Box::new(none::GpuNoShadow::new(gpu)?),
-        ShadowMethod::VoxelMap => Box::new(GpuVoxelMap::new(gpu)?),
-        ShadowMethod::OpacityMaps => Box::new(TexelShadow::<Slices>::new(gpu)?),
-        ShadowMethod::DeepOpacityMaps => Box::new(TexelShadow::<Layers>::new(gpu)?),
-        ShadowMethod::DensityClustering => Box::new(TexelShadow::<Clustering>::new(gpu)?),
-        ShadowMethod::OccupancyMaps => Box::new(TexelShadow::<Occupancy>::new(gpu)?),
-        ShadowMethod::Exact => Box::new(TexelShadow::<Sorted>::new(gpu)?),
-    })
-}
-
-/// Every composed shader of every method with its label, so that a test can validate them without a device.
-pub fn all_shaders() -> Vec<(String, ShaderSource)> {
-    let mut all = Vec::new();
-    for &method in ShadowMethod::ALL {
-        let sources = match method {
-            ShadowMethod::None => none::GpuNoShadow::shaders(),
-            ShadowMethod::VoxelMap => GpuVoxelMap::shaders(),
-            ShadowMethod::OpacityMaps => TexelShadow::<Slices>::shaders(),
-            ShadowMethod::DeepOpacityMaps => TexelShadow::<Layers>::shaders(),
-            ShadowMethod::DensityClustering => TexelShadow::<Clustering>::shaders(),
-            ShadowMethod::OccupancyMaps => TexelShadow::<Occupancy>::shaders(),
-            ShadowMethod::Exact => TexelShadow::<Sorted>::shaders(),
-        };
-        all.extend(sources.into_iter().map(|(label, source)| (format!("{method}: {label}"), source)));
-    }
-    all
 }
 
 /// The file of a shader beside the Rust file that names it.

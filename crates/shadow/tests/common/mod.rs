@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 use lovelock_groom::Strands;
+use lovelock_shadow::{MapKind, ShadowMethod};
 
 /// Random numbers that are the same everywhere (Steele, Lea, Flood 2014, split-mix of 64 bits).
 pub struct Random(pub u64);
@@ -28,6 +29,11 @@ impl Random {
     pub fn cube(&mut self) -> Vec3 {
         Vec3::new(self.signed(), self.signed(), self.signed())
     }
+}
+
+/// The methods with a record per texel, which have a limit of memory.
+pub fn texel_methods() -> impl Iterator<Item = ShadowMethod> {
+    ShadowMethod::ALL.iter().copied().filter(|method| method.map_kind() == MapKind::Texels)
 }
 
 /// Strands through the given points.

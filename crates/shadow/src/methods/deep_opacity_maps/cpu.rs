@@ -1,9 +1,9 @@
-//! Optical depth at the ends of layers that begin at the first fragment.
-// Compiled within the versions of `texels::lookup`.
+//! Optical depth at the ends of layers that start at the first fragment.
+// Functions are inlined into the loops that `simd_versions!` compiles.
 #![allow(clippy::inline_always)]
 
 use super::super::texels::{Fragment, TexelFilter, TexelMap, TexelMethod};
-use super::{DeepOpacityMapsSettings, LayerGrowth};
+use super::{DeepOpacityMapsSettings, LAYER, LayerGrowth};
 use crate::{RayMarkKind, ShadowMethod, ShadowSettings};
 
 /// The map of [`ShadowMethod::DeepOpacityMaps`].
@@ -16,14 +16,14 @@ const MOST_LAYERS: usize = *DeepOpacityMapsSettings::LAYERS.end() as usize;
 pub struct Layers {
     settings: DeepOpacityMapsSettings,
     pub(super) count: usize,
-    /// Where each layer begins, from the first fragment on.
+    /// The start of each layer, relative to the first fragment.
     pub(super) starts: [f32; MOST_LAYERS],
-    /// One over its thickness.
+    /// 1 over the thickness of each layer.
     pub(super) per_depth: [f32; MOST_LAYERS],
 }
 
 impl Layers {
-    /// The layer that lies `depth` behind the first fragment, which is not negative; the last one reaches on.
+    /// The layer at `depth` (not negative) behind the first fragment. The last layer is unbounded.
     #[inline(always)]
     fn layer(&self, depth: f32) -> usize {
         self.starts[1..self.count].iter().filter(|start| **start <= depth).count()
@@ -102,7 +102,7 @@ impl TexelMethod for Layers {
         let Some((near, sums)) = record.split_first() else { return };
         let mut before = 0.0;
         for ((sum, start), per_depth) in sums.iter().zip(&self.starts).zip(&self.per_depth) {
-            put(RayMarkKind::Layer, [near + start, near + (start + 1.0 / per_depth)], sum - before);
+            put(LAYER, [near + start, near + (start + 1.0 / per_depth)], sum - before);
             before = *sum;
         }
     }
@@ -133,7 +133,7 @@ mod tests {
 
     #[test]
     fn optical_depth_rises_through_layers_and_stays_behind_them() {
-        // Layers of 0.05, 0.1, 0.15 and 0.2 from the first fragment on.
+        // Layers of 0.05, 0.1, 0.15 and 0.2, starting at the first fragment.
         let method = method(4, LayerGrowth::Linear);
         let mut record = [0.0; 5];
         let mut fragments =

@@ -12,7 +12,32 @@ use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
 
-use super::texels::{self, TexelFilter};
+use super::texels::{self, TexelFilter, TexelShadow};
+use crate::RayMarkKind;
+use crate::method::{MapKind, MapSize, Method};
+
+pub(super) static METHOD: Method = Method {
+    id: "deep-opacity-maps",
+    label: "Deep opacity maps",
+    description: "A few layers for each light texel that begin at its first hair (Yuksel, Keyser 2008).",
+    source: Some("Yuksel, Keyser 2008, Deep Opacity Maps"),
+    advice: "lower the map's resolution or the number of strands",
+    map: MapKind::Texels,
+    size: |settings| {
+        Some(MapSize {
+            edge: settings.deep_opacity_maps.resolution,
+            per_texel: Some(settings.deep_opacity_maps.layers),
+        })
+    },
+    marks: &[LAYER],
+    counts_points: |_| false,
+    cpu: || Box::new(DeepOpacityMaps::default()),
+    gpu: |gpu| Ok(Box::new(TexelShadow::<Layers>::new(gpu)?)),
+    shaders: TexelShadow::<Layers>::shaders,
+};
+
+/// A layer of a texel.
+pub(crate) const LAYER: RayMarkKind = RayMarkKind { label: "Layer", resolves_depth: true };
 
 /// How thick layers are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

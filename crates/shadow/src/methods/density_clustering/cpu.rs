@@ -1,51 +1,51 @@
-//! Clusters of fragments, and the bins that they become.
-// Compiled within the versions of `texels::lookup`.
+//! Clusters of fragments, and the bins made of them.
+// Functions are inlined into the loops that `simd_versions!` compiles.
 #![allow(clippy::inline_always)]
 
 use super::super::texels::{Fragment, TexelFilter, TexelMap, TexelMethod};
 use super::seeds::seeds;
-use super::{ClusterDeviation, DensityClusteringSettings};
+use super::{BIN, ClusterDeviation, DensityClusteringSettings};
 use crate::{RayMarkKind, ShadowMethod, ShadowSettings};
 
 /// The map of [`ShadowMethod::DensityClustering`].
 pub type DensityClustering = TexelMap<Clustering>;
 
-/// Most clusters of a texel.
+/// The most clusters per texel.
 pub(super) const MOST: usize = *DensityClusteringSettings::CLUSTERS.end() as usize;
 
-/// Half the width of an even distribution over its standard deviation (the paper's γ).
+/// Half the width of a uniform distribution divided by its standard deviation (the paper's γ).
 const GAMMA: f64 = 1.732_050_807_568_877_2;
 
-/// Least width of a bin, a part of the texel's range: a cluster at one depth has no spread.
+/// The least width of a bin, as a fraction of the texel's range: a cluster at a single depth has no spread.
 const LEAST_WIDTH: f64 = 1.0 / 256.0;
 
-/// A fragment that lies so little outside the bin of its own cluster, a part of the texel's range, counts as within: where a
-/// bin ends at a centre that is itself a fragment, rounding must not decide.
+/// The distance outside the bin of its own cluster, as a fraction of the texel's range, at which a fragment still counts as
+/// inside. Otherwise rounding would decide where a bin ends at a centre that is itself a fragment.
 const SLACK: f64 = 1.0 / 65_536.0;
 
-/// One over the width of a bin without: a step.
+/// 1 over the width of a bin without width: a step.
 const STEEPEST: f64 = 1e30;
 
-/// A range of depths with even density.
+/// A range of depths with uniform density.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bin {
-    /// Depth at which it begins.
+    /// The depth at its start.
     pub start: f32,
-    /// One over its width.
+    /// 1 over its width.
     pub per_depth: f32,
-    /// Its optical depth; 0 for a bin that is not there.
+    /// Its optical depth; 0 for an unused bin.
     pub optical_depth: f32,
 }
 
-/// A record has a bin for each cluster.
+/// A record has one bin per cluster.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clustering {
     pub(super) settings: DensityClusteringSettings,
     count: usize,
 }
 
-/// Sums over the fragments of a cluster: optical depth, and its products with the offset from the seed and with the
-/// square of that.
+/// Sums over the fragments of a cluster: optical depth, and its products with the offset from the seed and with the squared
+/// offset.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sums {
     weight: f64,
@@ -53,7 +53,7 @@ struct Sums {
     square: f64,
 }
 
-/// The borders between clusters: half way between neighbouring centres. Those beyond the last are never passed.
+/// The borders between clusters: half way between neighbouring centres. Unused borders are infinite.
 fn borders<const K: usize>(centres: &[f32; K], count: usize) -> [f32; K] {
     let mut borders = [f32::INFINITY; K];
     for j in 1..count {
@@ -62,13 +62,14 @@ fn borders<const K: usize>(centres: &[f32; K], count: usize) -> [f32; K] {
     borders
 }
 
-/// The cluster of a depth; a tie goes to the nearer one. Centres are in order, and one step of clustering keeps them so.
+/// The cluster of a depth; a tie goes to the cluster nearer to the light. Centres are sorted, and a clustering step keeps them
+/// sorted.
 #[inline]
 fn cluster<const K: usize>(borders: &[f32; K], depth: f32) -> usize {
     borders.iter().map(|border| usize::from(depth > *border)).sum()
 }
 
-/// Sums by cluster, about the centres.
+/// Sums per cluster, relative to the centres.
 fn sums<const K: usize>(fragments: &[Fragment], centres: &[f32; K]) -> [Sums; K] {
     let borders = borders(centres, K);
     let mut sums = [Sums::default(); K];
@@ -84,7 +85,7 @@ fn sums<const K: usize>(fragments: &[Fragment], centres: &[f32; K]) -> [Sums; K]
 }
 
 impl Clustering {
-    /// Centres and standard deviations of the clusters, and which of them have hair.
+    /// Centres and standard deviations of the clusters, and whether each contains hair.
     fn clusters<const K: usize>(
         &self,
         fragments: &[Fragment],
@@ -127,7 +128,7 @@ impl Clustering {
     fn fill_bins<const K: usize>(&self, fragments: &[Fragment], record: &mut [Bin]) {
         record.fill(Bin::default());
         if let [fragment] = fragments {
-            // A step: all that the rest would come to.
+            // A step: the code below gives the same result.
             record[0] = Bin {
                 start: fragment.depth(),
                 per_depth: STEEPEST as f32,
@@ -141,7 +142,7 @@ impl Clustering {
             far = far.max(fragment.depth());
         }
         let (centres, deviations, has_hair) = self.clusters::<K>(fragments, near, far);
-        // Those without hair go before anything is compared with its neighbour.
+        // Clusters without hair are removed before neighbours are compared.
         let (mut kept_centres, mut kept_deviations, mut kept) = ([0.0; K], [0.0; K], 0);
         for j in (0..K).filter(|j| has_hair[*j]) {
             (kept_centres[kept], kept_deviations[kept]) = (centres[j], deviations[j]);
@@ -157,7 +158,7 @@ impl Clustering {
         let borders = borders(&kept_centres, kept);
         let mut depths = [0.0_f64; K];
         for fragment in fragments {
-            // The nearest centre, but for a bin that holds the fragment.
+            // The cluster with the nearest centre, unless the bin of a neighbour contains the fragment.
             let mut j = cluster(&borders, fragment.depth());
             let depth = f64::from(fragment.depth());
             if depth < ranges[j].0 - slack && j > 0 && depth <= ranges[j - 1].1 {
@@ -169,15 +170,15 @@ impl Clustering {
         }
         for (j, bin) in record.iter_mut().enumerate().take(kept) {
             let (start, end) = ranges[j];
-            // Without width it is a step.
+            // A bin without width is a step.
             let per_depth = if end > start { (1.0 / (end - start)).min(STEEPEST) } else { STEEPEST };
             *bin = Bin { start: start as f32, per_depth: per_depth as f32, optical_depth: depths[j] as f32 };
         }
     }
 }
 
-/// Start and end of the bins: ±√3 standard deviations about their centres, where two overlap up to the middle of the
-/// overlap. Only the first `count` of `bins` are there.
+/// Start and end of the bins: ±√3 standard deviations around their centres. Two bins that overlap end at the middle of the
+/// overlap. Only the first `count` entries are used.
 fn ranges<const K: usize>(
     centres: &[f32; K],
     deviations: &[f64; K],
@@ -192,7 +193,7 @@ fn ranges<const K: usize>(
     for j in 1..count {
         let (end, start) = (ranges[j - 1].1, ranges[j].0);
         if end > start {
-            // A bin holds its own centre, however far a neighbour reaches.
+            // A bin always contains its own centre.
             let border = (0.5 * (end + start)).clamp(f64::from(centres[j - 1]), f64::from(centres[j]));
             ranges[j - 1].1 = border;
             ranges[j].0 = border;
@@ -252,9 +253,9 @@ impl TexelMethod for Clustering {
         record: &[Bin],
         put: &mut dyn FnMut(RayMarkKind, [f32; 2], f32),
     ) {
-        // Those that are there come in the order of their centres.
+        // The bins in use have the order of their centres.
         for bin in record.iter().filter(|bin| bin.optical_depth > 0.0) {
-            put(RayMarkKind::Bin, [bin.start, bin.start + 1.0 / bin.per_depth], bin.optical_depth);
+            put(BIN, [bin.start, bin.start + 1.0 / bin.per_depth], bin.optical_depth);
         }
     }
 }

@@ -14,7 +14,35 @@ use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
 
-use super::texels::{self, TexelFilter};
+use super::texels::{self, TexelFilter, TexelShadow};
+use crate::RayMarkKind;
+use crate::method::{MapKind, MapSize, Method};
+
+pub(super) static METHOD: Method = Method {
+    id: "density-clustering",
+    label: "Density clustering",
+    description: "A few bins of even density for each light texel, placed where its hair is (Mertens and others 2004).",
+    source: Some(
+        "Mertens, Kautz, Bekaert, Van Reeth 2004, A Self-Shadow Algorithm for Dynamic Hair using Density \
+         Clustering",
+    ),
+    advice: "lower the map's resolution, the clusters or the number of strands",
+    map: MapKind::Texels,
+    size: |settings| {
+        Some(MapSize {
+            edge: settings.density_clustering.resolution,
+            per_texel: Some(settings.density_clustering.clusters),
+        })
+    },
+    marks: &[BIN],
+    counts_points: |_| false,
+    cpu: || Box::new(DensityClustering::default()),
+    gpu: |gpu| Ok(Box::new(TexelShadow::<Clustering>::new(gpu)?)),
+    shaders: TexelShadow::<Clustering>::shaders,
+};
+
+/// A cluster as a bin of even density.
+pub(crate) const BIN: RayMarkKind = RayMarkKind { label: "Bin", resolves_depth: false };
 
 /// Where clusters start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

@@ -1,4 +1,4 @@
-//! Where clusters start.
+//! The initial centres of clusters.
 
 use super::super::texels::Fragment;
 use super::ClusterSeeds;
@@ -10,7 +10,7 @@ const BINS: usize = 32;
 /// The paper's "75 % towards the left": seeds lie at three quarters of their distance from the nearest hair.
 const TOWARD_LIGHT: f32 = 0.75;
 
-/// The first centres, in order, for hair from `near` to `far`.
+/// The initial centres, sorted, for hair from `near` to `far`.
 pub(super) fn seeds<const K: usize>(
     of: ClusterSeeds,
     fragments: &[Fragment],
@@ -35,7 +35,7 @@ pub(super) fn seeds<const K: usize>(
     seeds
 }
 
-/// The depths, as parts of the range, at which (j + ½) / K of the light that the texel takes is lost.
+/// The depths, as fractions of the range, at which (j + ½) / K of the light that the texel absorbs is lost.
 fn quantiles_of_lost_light<const K: usize>(fragments: &[Fragment], near: f32, far: f32) -> [f32; K] {
     let mut histogram = [0.0_f64; BINS];
     let per_depth = BINS as f32 / (far - near);
@@ -80,14 +80,14 @@ mod tests {
 
     #[test]
     fn quantiles_of_even_hair_follow_the_exponential() {
-        // τ = 2 spread evenly: 1 − e^(−2x) = q (1 − e^−2).
+        // τ = 2, spread uniformly: 1 − e^(−2x) = q (1 − e^−2).
         let fragments: Vec<_> =
             (0..3200).map(|i| Fragment::new((i as f32 + 0.5) / 3200.0, 2.0 / 3200.0)).collect();
         let at = quantiles_of_lost_light::<4>(&fragments, 0.0, 1.0);
         for (j, at) in at.iter().enumerate() {
             let q = (j as f64 + 0.5) / 4.0;
             let truth = -0.5 * (1.0 - q * (1.0 - (-2.0_f64).exp())).ln();
-            // Light falls off a little within a bin of 1/32, where the quantile is linear.
+            // The quantile is linear within a bin of 1/32, where light falls off a little.
             assert!((f64::from(*at) - truth).abs() < 1e-3, "{j}: {at} not {truth}");
         }
     }

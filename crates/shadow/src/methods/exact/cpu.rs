@@ -1,5 +1,5 @@
 //! Sorted fragments with running sums.
-// Compiled within the versions of `texels::lookup`.
+// Functions are inlined into the loops that `simd_versions!` compiles.
 #![allow(clippy::inline_always)]
 
 use glam::Vec3;
@@ -16,7 +16,7 @@ pub type ExactMap = TexelMap<Sorted>;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sorted(ExactSettings);
 
-/// Sorts fragments by depth and gives each the sum of optical depths up to and including itself.
+/// Sorts fragments by depth and replaces the optical depth of each by the sum up to and including itself.
 pub(crate) fn sort_and_sum(fragments: &mut [Fragment]) {
     fragments.sort_unstable();
     let mut sum = 0.0_f64;
@@ -26,30 +26,30 @@ pub(crate) fn sort_and_sum(fragments: &mut [Fragment]) {
     }
 }
 
-/// Optical depth of the fragments before `depth`, as [`sort_and_sum`] left them. Those at the depth itself do not
+/// Optical depth of the fragments before `depth`, which [`sort_and_sum`] has sorted. Fragments at exactly `depth` do not
 /// count.
 #[inline(always)]
 pub(crate) fn sum_before(fragments: &[Fragment], depth: f32) -> f32 {
     count_before(fragments, depth).checked_sub(1).map_or(0.0, |last| fragments[last].optical_depth())
 }
 
-/// How many of them lie before `depth`.
+/// The number of fragments before `depth`.
 #[inline(always)]
 fn count_before(fragments: &[Fragment], depth: f32) -> usize {
     fragments.partition_point(|fragment| fragment.depth() < depth)
 }
 
 impl ExactMap {
-    /// The fragments of a texel of the last build, sorted by depth, each with the optical depth up to and including itself;
-    /// none before the first build and beside the map.
+    /// The fragments of a texel of the last build, sorted by depth, each with the optical depth up to and including itself.
+    /// Empty before the first build and beside the map.
     pub fn fragments(&self, column: u32, row: u32) -> &[Fragment] {
         let Some(frame) = self.frame() else { return &[] };
         let centre = Vec3::new(column as f32 + 0.5, row as f32 + 0.5, 0.0);
         self.fragments_at(frame.world_from_texel(centre)).0
     }
 
-    /// Fragments before each of some points (world space, metres) in the texel that it lies in: how deep in the hair it is.
-    /// 0 beside the map and before the first build.
+    /// The number of fragments before each point (world space, metres) in its texel: how deep it lies in the hair. 0 beside the
+    /// map and before the first build.
     pub fn fragments_before(&self, points: &[Vec3]) -> Vec<u32> {
         let count = |p: &Vec3| {
             let (fragments, depth) = self.fragments_at(*p);
@@ -104,7 +104,7 @@ impl TexelMethod for Sorted {
         let mut before = 0.0;
         for fragment in fragments {
             let sum = fragment.optical_depth();
-            put(RayMarkKind::Fragment, [fragment.depth(); 2], sum - before);
+            put(RayMarkKind::FRAGMENT, [fragment.depth(); 2], sum - before);
             before = sum;
         }
     }
@@ -131,7 +131,7 @@ mod tests {
     fn sums_of_a_hundred_thousand_do_not_drift() {
         let mut fragments: Vec<_> = (0..100_000).map(|i| Fragment::new(i as f32 * 1e-5, 0.1)).collect();
         sort_and_sum(&mut fragments);
-        // Exact but for the rounding of 0.1 and of the result, where adding floats would lose 1e-2.
+        // Exact except for the rounding of 0.1 and of the result; a sum of floats would be off by 1e-2.
         assert!((sum_before(&fragments, 2.0) - 10_000.0).abs() < 2e-3);
     }
 }

@@ -12,7 +12,24 @@ use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
 
-use super::texels::{self, TexelFilter};
+use super::texels::{self, TexelFilter, TexelShadow};
+use crate::RayMarkKind;
+use crate::method::{MapKind, MapSize, Method};
+
+pub(super) static METHOD: Method = Method {
+    id: "exact",
+    label: "Exact",
+    description: "Every fragment of each light texel, sorted by depth: what the others are judged by.",
+    source: None,
+    advice: "lower the map's resolution or the number of strands, or raise the limit",
+    map: MapKind::Texels,
+    size: |settings| Some(MapSize { edge: settings.exact.resolution, per_texel: None }),
+    marks: &[RayMarkKind::FRAGMENT],
+    counts_points: |_| false,
+    cpu: || Box::new(ExactMap::default()),
+    gpu: |gpu| Ok(Box::new(TexelShadow::<Sorted>::new(gpu)?)),
+    shaders: TexelShadow::<Sorted>::shaders,
+};
 
 /// What a user sets about the exact shadow.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

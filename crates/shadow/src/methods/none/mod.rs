@@ -4,7 +4,23 @@ use glam::Vec3;
 use lovelock_gpu::{Commands, Gpu, GpuError, ShaderPart, ShaderSource, wgpu};
 
 use crate::gpu::{Ask, GpuColumns, GpuShadow, GpuShadowError, GpuShadowInput, GpuTargets, wgsl};
+use crate::method::{MapKind, Method};
 use crate::{ColumnMap, CpuShadow, RayStructure, ShadowError, ShadowInput, ShadowReport, ShadowSettings};
+
+pub(super) static METHOD: Method = Method {
+    id: "none",
+    label: "None",
+    description: "No shadow inside hair: every strand receives all light.",
+    source: None,
+    advice: "lower the map's resolution or the number of strands",
+    map: MapKind::None,
+    size: |_| None,
+    marks: &[],
+    counts_points: |_| false,
+    cpu: || Box::new(NoShadow),
+    gpu: |gpu| Ok(Box::new(GpuNoShadow::new(gpu)?)),
+    shaders: GpuNoShadow::shaders,
+};
 
 /// Every point receives all light.
 #[derive(Clone, Copy, Debug, Default)]

@@ -1,20 +1,20 @@
-//! Occupied slices as bits, and counts of fragments a slab.
-// Compiled within the versions of `texels::lookup`.
+//! Bits of occupied slices, and counts of fragments per slab.
+// Functions are inlined into the loops that `simd_versions!` compiles.
 #![allow(clippy::inline_always)]
 
-use super::super::texels::{Fragment, TexelFilter, TexelMap, TexelMethod};
-use super::OccupancyMapsSettings;
+use super::super::texels::{Fragment, SLICE, TexelFilter, TexelMap, TexelMethod};
+use super::{OccupancyMapsSettings, SLAB};
 use crate::{RayMarkKind, ShadowMethod, ShadowSettings};
 use lovelock_groom::simd::whole_part;
 
 /// The map of [`ShadowMethod::OccupancyMaps`].
 pub type OccupancyMaps = TexelMap<Occupancy>;
 
-/// A record is, in words of 32 bits: depth of the nearest fragment, depth of the farthest, mean optical depth of a
-/// fragment (floats); a bit for each slice, from the lowest on; and a count of 16 bits for each slab, two a word.
+/// A record consists of 32-bit words: depth of the nearest fragment, depth of the farthest one, mean optical depth of a fragment
+/// (floats); one bit per slice, lowest first; and one 16-bit count per slab, two per word.
 ///
-/// Optical depth is the number of fragments before a point times their mean, so that all of them together are exact
-/// though fragments differ. Counts stop at 65,535; the mean then makes up for it.
+/// Optical depth is the number of fragments before a point times the mean optical depth, so that the total is exact although
+/// fragments differ. Counts saturate at 65,535; the mean then compensates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Occupancy {
     resolution: u32,
@@ -31,19 +31,19 @@ impl Occupancy {
         self.slices as usize / 32
     }
 
-    /// Slices of a slab as a power of two.
+    /// Base-2 logarithm of the slices per slab.
     pub(super) fn slab_shift(&self) -> u32 {
         self.slices.trailing_zeros() - self.slabs.trailing_zeros()
     }
 }
 
-/// The number in slab `slab` of packed counts.
+/// The count of slab `slab` in packed counts.
 #[inline(always)]
 fn count(counts: &[u32], slab: usize) -> u32 {
     counts[slab / 2] >> (slab % 2 * 16) & 0xffff
 }
 
-/// The bits of the slab of `slice` that are set, and those of them that lie before it; slabs have `1 << shift` bits.
+/// The number of bits that are set in the slab of `slice`, and of those before it; slabs have `1 << shift` bits.
 #[inline(always)]
 fn occupied<const BITS: usize>(bits: &[u32; BITS], slice: u32, shift: u32) -> (u32, u32) {
     let word = (slice / 32) as usize % BITS;
@@ -64,13 +64,13 @@ fn occupied<const BITS: usize>(bits: &[u32; BITS], slice: u32, shift: u32) -> (u
     (all, passed)
 }
 
-/// Fragments of the slabs before `slab`, of itself, and of all.
+/// The number of fragments in the slabs before `slab`, in `slab` itself, and in all slabs.
 #[inline(always)]
 fn counts_around<const WORDS: usize>(counts: &[u32; WORDS], slab: u32) -> (u32, u32, u32) {
     let (mut before, mut all) = (0, 0);
     let bits_before = 16 * slab;
     for (word, packed) in counts.iter().enumerate() {
-        // By shifts: of comparisons the compiler would make branches that no processor foretells.
+        // Shifts: comparisons would become branches, which are unpredictable here.
         let bits = bits_before.saturating_sub(32 * word as u32).min(32);
         let passed = packed & ((1_u64 << bits) - 1) as u32;
         before += (passed & 0xffff) + (passed >> 16);
@@ -79,7 +79,7 @@ fn counts_around<const WORDS: usize>(counts: &[u32; WORDS], slab: u32) -> (u32, 
     (before, count(counts, slab as usize % (2 * WORDS)), all)
 }
 
-/// [`TexelMethod::depth_before`] for a record of so many words: known lengths leave neither loops nor checks.
+/// [`TexelMethod::depth_before`] for a record of a known number of words: the compiler unrolls loops and removes bounds checks.
 #[inline(always)]
 fn depth_before<const BITS: usize, const WORDS: usize>(record: &[u32], depth: f32) -> f32 {
     let Some((header, rest)) = record.split_first_chunk::<HEADER>() else { return 0.0 };
@@ -93,17 +93,17 @@ fn depth_before<const BITS: usize, const WORDS: usize>(record: &[u32], depth: f3
     let own_bit = (bits[(slice / 32) as usize % BITS] >> (slice % 32) & 1) as f32;
     let share = (passed as f32 + part * own_bit) / occupied.max(1) as f32;
     let within = before as f32 + share * own as f32;
-    // These two come before all else: where all fragments lie at one depth, slices have no meaning. Masked, as no branch
-    // could be foretold here.
+    // These two cases take precedence: where all fragments have the same depth, slices have no meaning. Masks, because a
+    // branch would be unpredictable.
     let count = if depth >= far { all as f32 } else { within };
     f32::from_bits((count * mean).to_bits() & 0_u32.wrapping_sub(u32::from(depth > near)))
 }
 
-/// The slice, of `slices`, of a depth within a texel's range, and where in it the depth lies, 0 to 1.
+/// The slice, out of `slices`, that contains a depth within a texel's range, and the position in it, 0 to 1.
 #[inline(always)]
 fn slice_of(slices: u32, near: f32, far: f32, depth: f32) -> (u32, f32) {
-    // With one fragment, or all at one depth, there is no range and this is no number, or infinite: any slice will do.
-    // The GPU divides by the inverse too.
+    // With one fragment, or all at one depth, the range is empty and this is NaN or infinite: any slice will do. The GPU
+    // multiplies by the inverse too.
     let part = (depth - near) * (1.0 / (far - near));
     let part = if part > 0.0 { part } else { 0.0 };
     let part = if part < 1.0 { part } else { 1.0 } * slices as f32;
@@ -191,14 +191,14 @@ impl TexelMethod for Occupancy {
         let per_slab = 1 << self.slab_shift();
         for slab in 0..self.slabs {
             let optical_depth = count(counts, slab as usize) as f32 * mean;
-            put(RayMarkKind::Slab, [slab, slab + 1].map(|end| depth(end * per_slab)), optical_depth);
+            put(SLAB, [slab, slab + 1].map(|end| depth(end * per_slab)), optical_depth);
         }
         let is_set = |slice: u32| bits[(slice / 32) as usize] >> (slice % 32) & 1 != 0;
         for slice in (0..self.slices).filter(|slice| is_set(*slice)) {
             let slab = slice / per_slab;
             let occupied = (slab * per_slab..(slab + 1) * per_slab).filter(|slice| is_set(*slice)).count();
             let share = count(counts, slab as usize) as f32 * mean / occupied as f32;
-            put(RayMarkKind::Slice, [depth(slice), depth(slice + 1)], share);
+            put(SLICE, [depth(slice), depth(slice + 1)], share);
         }
     }
 }
@@ -253,7 +253,7 @@ mod tests {
     fn the_count_of_fragments_is_exact_at_the_borders_of_slabs_and_ramps_within_occupied_slices() {
         for (slices, slabs) in ALL {
             let method = method(slices, slabs);
-            // The range is 0 to 1; a fragment in each of the first, third and last slices, and two in the middle.
+            // The range is 0 to 1; one fragment each in the first, third and last slice, and two in the middle.
             let width = 1.0 / slices as f32;
             let at = [0.0, 2.5 * width, 0.5 + 0.25 * width, 0.5 + 0.75 * width, 1.0];
             let record = filled(&method, &at.map(|z| (z, 0.5)));

@@ -11,7 +11,34 @@ pub use cpu::{Occupancy, OccupancyMaps};
 
 use serde::{Deserialize, Serialize};
 
-use super::texels::{self, TexelFilter};
+use super::texels::{self, TexelFilter, TexelShadow};
+use crate::RayMarkKind;
+use crate::method::{MapKind, MapSize, Method};
+
+pub(super) static METHOD: Method = Method {
+    id: "occupancy-maps",
+    label: "Occupancy maps",
+    description: "Bits for slices with hair and counts for slabs of them, for each light texel (Sintorn, Assarsson 2009).",
+    source: Some(
+        "Sintorn, Assarsson 2009, Hair Self Shadowing and Transparency Depth Ordering Using Occupancy Maps",
+    ),
+    advice: "lower the map's resolution, the slices or the number of strands",
+    map: MapKind::Texels,
+    size: |settings| {
+        Some(MapSize {
+            edge: settings.occupancy_maps.resolution,
+            per_texel: Some(settings.occupancy_maps.slices),
+        })
+    },
+    marks: &[SLAB, texels::SLICE],
+    counts_points: |_| false,
+    cpu: || Box::new(OccupancyMaps::default()),
+    gpu: |gpu| Ok(Box::new(TexelShadow::<Occupancy>::new(gpu)?)),
+    shaders: TexelShadow::<Occupancy>::shaders,
+};
+
+/// A slab of slices, with its count of fragments times their mean optical depth.
+pub(crate) const SLAB: RayMarkKind = RayMarkKind { label: "Slab", resolves_depth: false };
 
 /// What a user sets about occupancy maps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -1,8 +1,8 @@
 //! Optical depth at the ends of uniform slices.
-// Compiled within the versions of `texels::lookup`.
+// Functions are inlined into the loops that `simd_versions!` compiles.
 #![allow(clippy::inline_always)]
 
-use super::super::texels::{Fragment, TexelFilter, TexelMap, TexelMethod};
+use super::super::texels::{Fragment, SLICE, TexelFilter, TexelMap, TexelMethod};
 use super::OpacityMapsSettings;
 use crate::{RayMarkKind, ShadowMethod, ShadowSettings};
 
@@ -18,7 +18,7 @@ pub struct Slices {
 }
 
 impl Slices {
-    /// The slice of a depth, and where in it the depth lies, 0 to 1; more than that for depths behind all slices.
+    /// The slice that contains a depth, and the position in it, 0 to 1; above 1 for depths behind all slices.
     #[inline(always)]
     fn slice(&self, depth: f32) -> (usize, f32) {
         let slices = depth * self.count as f32;
@@ -50,7 +50,7 @@ impl TexelMethod for Slices {
     }
 
     fn fill(&self, fragments: &mut [Fragment], record: &mut [f32]) {
-        // Nothing before the first slice with hair, and the same from the last one on.
+        // Cells are 0 before the first slice with hair, and constant from the last one on.
         let (mut first, mut last) = (self.count - 1, 0);
         for fragment in fragments.iter() {
             let (slice, _) = self.slice(fragment.depth());
@@ -89,7 +89,7 @@ impl TexelMethod for Slices {
     ) {
         let (thickness, mut before) = (1.0 / self.count as f32, 0.0);
         for (slice, sum) in record.iter().enumerate() {
-            put(RayMarkKind::Slice, [slice, slice + 1].map(|end| end as f32 * thickness), sum - before);
+            put(SLICE, [slice, slice + 1].map(|end| end as f32 * thickness), sum - before);
             before = *sum;
         }
     }

@@ -12,7 +12,28 @@ use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
 
-use super::texels::{self, TexelFilter};
+use super::texels::{self, TexelFilter, TexelShadow};
+use crate::method::{MapKind, MapSize, Method};
+
+pub(super) static METHOD: Method = Method {
+    id: "opacity-maps",
+    label: "Opacity maps",
+    description: "Optical depth at equal slices along the light, for each light texel (Kim, Neumann 2001).",
+    source: Some("Kim, Neumann 2001, Opacity Shadow Maps"),
+    advice: "lower the map's resolution, the slices or the number of strands",
+    map: MapKind::Texels,
+    size: |settings| {
+        Some(MapSize {
+            edge: settings.opacity_maps.resolution,
+            per_texel: Some(settings.opacity_maps.slices),
+        })
+    },
+    marks: &[texels::SLICE],
+    counts_points: |_| false,
+    cpu: || Box::new(OpacityMaps::default()),
+    gpu: |gpu| Ok(Box::new(TexelShadow::<Slices>::new(gpu)?)),
+    shaders: TexelShadow::<Slices>::shaders,
+};
 
 /// What a user sets about opacity maps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

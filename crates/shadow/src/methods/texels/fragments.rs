@@ -1,7 +1,7 @@
 //! The fragments of all texels, sorted by texel.
 //!
-//! Every worker draws strands of its own and puts their fragments into bands of rows. Each band is then sorted by
-//! texel, by counting. Within a texel, fragments lie in the order of the strands, whatever the number of workers.
+//! Every worker rasterises some of the strands and appends their fragments to bands of rows. A counting sort then orders each
+//! band by texel. The fragments of a texel keep the order of the strands for any number of workers.
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -10,34 +10,34 @@ use super::frame::TexelFrame;
 use super::lines::Draw;
 use crate::ShadowInput;
 
-/// Rows of a band: its counters fit into the processor's first cache.
+/// Rows per band: its counters fit into the L1 cache.
 pub(crate) const BAND_ROWS: u32 = 16;
-/// Points that are worth a worker of their own.
+/// Points per worker: with fewer, another worker does not pay off.
 const POINTS_PER_PIECE: usize = 4096;
-/// Most pieces that strands are cut into.
+/// The most pieces that strands are divided into.
 const MOST_PIECES: usize = 16;
 
-/// Loose fragments of a block. A list that doubled as it grows would hold up to twice what it needs, and three times
-/// while it is moved; with blocks only the last one of a piece and band is partly empty.
+/// Unsorted fragments per block. A list that doubles as it grows would hold up to twice what it needs, and three times while
+/// it is moved. With blocks, only the last one of a piece and band is partly empty.
 const BLOCK: usize = 256;
-/// Bytes of a block, with the list that it is in, which doubles.
+/// Bytes per block, including its entry in a list that doubles.
 const BLOCK_BYTES: u64 = (BLOCK * size_of::<Loose>() + 2 * size_of::<Vec<Loose>>()) as u64;
 
-/// Bytes that one fragment takes while it is sorted and after, with its part of a block.
+/// Bytes per fragment during and after sorting, including its share of a block.
 pub(crate) const BYTES_PER_FRAGMENT: u64 = BLOCK_BYTES.div_ceil(BLOCK as u64) + size_of::<Fragment>() as u64;
 
-/// The most memory that [`Fragments`] of `resolution`² texels hold when `count` fragments of `input` are drawn, bytes.
+/// The most memory that [`Fragments`] of `resolution`² texels use for `count` fragments of `input`, bytes.
 pub(crate) fn needed_bytes(input: &ShadowInput, resolution: u32, count: u64) -> u64 {
     let bands = u64::from(resolution.div_ceil(BAND_ROWS));
     let pieces = piece_count(input.strands.points()) as u64;
     let ends = 4 * bands * u64::from(BAND_ROWS * resolution);
     let begun = (pieces * bands).min(count).saturating_mul(BLOCK_BYTES);
-    // A list has room for four blocks from the first one on.
+    // The first block of a list allocates room for four.
     let lists = pieces * bands * 4 * size_of::<Vec<Loose>>() as u64;
     count.saturating_mul(BYTES_PER_FRAGMENT).saturating_add(ends + begun + lists)
 }
 
-/// Makes a list `len` long and takes no more for it. What it held is gone before more is taken.
+/// Resizes a list to exactly `len` items. The old allocation is freed before a larger one is made.
 pub(crate) fn refit<T: Copy + Default>(list: &mut Vec<T>, len: usize) {
     if list.capacity() < len {
         *list = Vec::new();
@@ -46,19 +46,19 @@ pub(crate) fn refit<T: Copy + Default>(list: &mut Vec<T>, len: usize) {
     list.resize(len, T::default());
 }
 
-/// What a strand leaves in a texel. Ordered by depth first, then by optical depth, so that sorting leaves no choice.
+/// The part of a strand in a texel. Ordered by depth, then by optical depth, so that the sorted order is unique.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Fragment(u64);
 
 impl Fragment {
-    /// A fragment at a depth of 0 to 1 with an optical depth; neither may be negative.
+    /// A fragment with a depth from 0 to 1 and an optical depth. Neither may be negative.
     #[inline]
     pub fn new(depth: f32, optical_depth: f32) -> Self {
-        // Floats that are not negative are ordered as their bits. Adding 0 turns −0 into 0.
+        // Non-negative floats have the order of their bits. Adding 0 turns −0 into 0.
         Self(u64::from((depth + 0.0).to_bits()) << 32 | u64::from((optical_depth + 0.0).to_bits()))
     }
 
-    /// Depth along the light, 0 to 1 over the hair's range.
+    /// Depth along the light, 0 to 1 over the depth range of the hair.
     #[inline]
     pub fn depth(self) -> f32 {
         f32::from_bits((self.0 >> 32) as u32)
@@ -71,27 +71,27 @@ impl Fragment {
     }
 }
 
-/// A fragment on its way to its texel.
+/// An unsorted fragment.
 #[derive(Clone, Copy, Debug)]
 struct Loose {
-    /// Its texel within the band.
+    /// The index of its texel in the band.
     texel: u32,
     depth: f32,
     optical_depth: f32,
 }
 
-/// The texels of one band and their fragments, which [`Fragments::bands`] hands out.
+/// The texels of one band and their fragments; see [`Fragments::bands`].
 #[derive(Debug)]
 pub(crate) struct Band<'a> {
-    /// Where each texel's fragments end in the whole list.
+    /// The end of the fragments of each texel in the whole list.
     ends: &'a [u32],
-    /// Where those of the first one begin.
+    /// The start of the fragments of the first texel.
     start: u32,
     fragments: &'a mut [Fragment],
 }
 
 impl Band<'_> {
-    /// Calls `with` for each texel that has fragments, in order, with its number in the band.
+    /// Calls `with` for each texel that has fragments, in order, with its index in the band.
     pub(crate) fn for_each_texel(&mut self, mut with: impl FnMut(usize, &mut [Fragment])) {
         let (mut rest, mut start) = (&mut *self.fragments, self.start);
         for (at, &end) in self.ends.iter().enumerate() {
@@ -104,8 +104,8 @@ impl Band<'_> {
     }
 }
 
-/// Sorts the fragments that pieces have for band `band` by texel, keeping their order, and says how many texels have
-/// any. `ends` becomes where each texel's fragments end, counted from `start` on.
+/// Sorts the fragments of all pieces in band `band` by texel, keeping their order. Returns the number of texels that have
+/// fragments. `ends` receives the end of the fragments of each texel, counted from `start`.
 fn gather(pieces: &[Piece], band: usize, start: u32, ends: &mut [u32], fragments: &mut [Fragment]) -> u64 {
     let blocks = || pieces.iter().flat_map(|piece| piece.bands[band].blocks());
     ends.fill(0);
@@ -119,7 +119,7 @@ fn gather(pieces: &[Piece], band: usize, start: u32, ends: &mut [u32], fragments
         in_use += u64::from(*end != 0);
         sum += std::mem::replace(end, sum);
     }
-    // Beginnings become ends as fragments are put there.
+    // Starts become ends as fragments are appended.
     for block in blocks() {
         for fragment in block {
             let at = &mut ends[fragment.texel as usize];
@@ -133,13 +133,13 @@ fn gather(pieces: &[Piece], band: usize, start: u32, ends: &mut [u32], fragments
     in_use
 }
 
-/// One worker's fragments of one band, in blocks.
+/// The fragments of one worker in one band, in blocks.
 #[derive(Clone, Debug, Default)]
 struct Blocks {
     full: Vec<Vec<Loose>>,
-    /// The last one, which is filled.
+    /// The last block, which is being filled.
     open: Vec<Loose>,
-    /// Empty ones of the last build, the next one last. None between builds.
+    /// Empty blocks of the last build, the next one last. Empty between builds.
     spare: Vec<Vec<Loose>>,
 }
 
@@ -161,7 +161,7 @@ impl Blocks {
         }
     }
 
-    /// Empties it and keeps the blocks, each for the place in the list that it had.
+    /// Clears the list and keeps its blocks, in their order.
     fn clear(&mut self) {
         self.open.clear();
         if !self.full.is_empty() {
@@ -173,7 +173,7 @@ impl Blocks {
         }
     }
 
-    /// All of them, in the order in which they came.
+    /// All fragments in the order in which they were added.
     fn blocks(&self) -> impl Iterator<Item = &[Loose]> {
         self.full.iter().chain([&self.open]).map(Vec::as_slice)
     }
@@ -188,7 +188,7 @@ impl Blocks {
     }
 }
 
-/// One worker's fragments by band.
+/// The fragments of one worker per band.
 #[derive(Clone, Debug, Default)]
 struct Piece {
     bands: Vec<Blocks>,
@@ -198,7 +198,7 @@ struct Piece {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Fragments {
     columns: u32,
-    /// Where the fragments of each texel end, row after row.
+    /// The end of the fragments of each texel, row after row.
     ends: Vec<u32>,
     sorted: Vec<Fragment>,
     /// Texels with fragments in each band.
@@ -207,9 +207,9 @@ pub(crate) struct Fragments {
 }
 
 impl Fragments {
-    /// Draws all strands of `input` into `rows` rows of `columns` texels. Memory is kept from time to time.
+    /// Rasterises all strands of `input` into `rows` rows of `columns` texels. Memory is reused from build to build.
     ///
-    /// At most `u32::MAX` fragments may come of it.
+    /// There may be at most `u32::MAX` fragments.
     pub(crate) fn draw(
         &mut self,
         input: &ShadowInput,
@@ -261,12 +261,12 @@ impl Fragments {
         &self.in_use
     }
 
-    /// Texels of one band.
+    /// Texels per band.
     pub(crate) fn band_texels(&self) -> usize {
         (BAND_ROWS * self.columns) as usize
     }
 
-    /// The number of a texel.
+    /// The index of a texel.
     #[inline]
     pub(crate) fn place(&self, column: u32, row: u32) -> usize {
         (row * self.columns + column) as usize
@@ -279,7 +279,7 @@ impl Fragments {
         &self.sorted[start as usize..self.ends[texel] as usize]
     }
 
-    /// The bands, to be worked on side by side.
+    /// The bands, for parallel work.
     pub(crate) fn bands(&mut self) -> Vec<Band<'_>> {
         let texels = self.band_texels();
         let (mut rest, mut start) = (&mut self.sorted[..], 0);
@@ -294,7 +294,7 @@ impl Fragments {
         bands
     }
 
-    /// Memory of the sorted fragments, and of what only sorting needs, bytes.
+    /// Memory of the sorted fragments, and memory that only sorting needs, bytes.
     pub(crate) fn memory_bytes(&self) -> (u64, u64) {
         let sorted = 4 * self.ends.capacity() + 8 * self.sorted.capacity();
         let loose =
@@ -303,7 +303,7 @@ impl Fragments {
     }
 }
 
-/// Calls `with` for both ends, in texel coordinates, of each segment of the strands `strands` that is whole.
+/// Calls `with` with both ends, in texel coordinates, of each valid segment of the strands `strands`.
 pub(crate) fn for_each_segment(
     input: &ShadowInput,
     frame: &TexelFrame,
@@ -326,7 +326,7 @@ pub(crate) fn for_each_segment(
     }
 }
 
-/// The sum over all segments of what `of` makes of their ends.
+/// The sum of `of` over the ends of all segments.
 pub(crate) fn sum_over_segments(
     input: &ShadowInput,
     frame: &TexelFrame,
@@ -342,12 +342,12 @@ pub(crate) fn sum_over_segments(
     (0..pieces).into_par_iter().with_max_len(1).map(sum).reduce(|| 0, u64::saturating_add)
 }
 
-/// How many pieces to cut strands into here and now.
+/// The number of pieces to divide strands into in the current thread pool.
 fn piece_count(points: usize) -> usize {
     (2 * rayon::current_num_threads()).min(points / POINTS_PER_PIECE).clamp(1, MOST_PIECES)
 }
 
-/// The strand at which piece `piece` of `pieces` begins: pieces have about equally many points.
+/// The first strand of piece `piece` of `pieces`, which have about the same number of points.
 fn first_strand(input: &ShadowInput, piece: usize, pieces: usize) -> usize {
     let strands = input.strands;
     if piece == pieces {

@@ -1,9 +1,9 @@
-//! Where the texels of a map lie in the world.
+//! The placement of the texels of a map in the world.
 //!
-//! Texels are a window of `N × N` on an infinite lattice across the light, one corner of which is the anchor: hair
-//! that moves along with the head keeps its texels. Depth along the light is divided by a range, so that it lies
-//! within 0 and 1.
-// Compiled within the versions of `texels::lookup`.
+//! Texels are a window of `N × N` on an infinite lattice across the light, one corner of which is the anchor, so that hair
+//! that moves with the head stays in its texels. Depth along the light is divided by the depth range of the hair, so that it
+//! lies between 0 and 1.
+// Functions are inlined into the loops that `simd_versions!` compiles.
 #![allow(clippy::inline_always)]
 
 use glam::{IVec2, Mat4, Vec3, Vec4};
@@ -11,18 +11,18 @@ use glam::{IVec2, Mat4, Vec3, Vec4};
 use crate::bounds::{Bounds, SMALLEST_CELL, round_up_to_step};
 use crate::{LightFrame, ShadowInput};
 
-/// Texels of the window that hair cannot use: an empty one on each side, and one that hair's bounds may cut where
-/// they begin between two corners of the lattice.
+/// Texels along each edge that hair cannot use: an empty one on each side, and one because the bounds of the hair may start
+/// between two corners of the lattice.
 const SPARE_TEXELS: u32 = 3;
 
 /// Texels along each edge of the smallest map.
 const LEAST_RESOLUTION: u32 = *super::TEXEL_RESOLUTIONS.start();
 
-/// The start of the depth range lies on multiples of this part of it, so that it stays as it is while the hair's
-/// extent changes little.
+/// The depth range starts at a multiple of its length divided by this, so that it stays the same while the extent of the hair
+/// changes little.
 const DEPTH_STEPS: f32 = 64.0;
 
-/// The window of texels and the depth range, and the way from the world into them.
+/// The window of texels, the depth range, and the transform from world space into both.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TexelFrame {
     /// Texels along each edge.
@@ -31,26 +31,26 @@ pub struct TexelFrame {
     pub texel_size: f32,
     /// Length of the depth range, metres.
     pub depth_range: f32,
-    /// The corner of the lattice that is fixed, world space.
+    /// The fixed corner of the lattice, world space.
     pub anchor: Vec3,
     /// The light's axes; columns run along `y`, rows along `z`.
     pub light: LightFrame,
-    /// Lattice coordinates of the window's first texel: column, row.
+    /// Lattice coordinates of the first texel of the window: column, row.
     pub first: IVec2,
-    /// Depth of the anchor, a part of the range.
+    /// Depth of the anchor, as a fraction of the range.
     pub anchor_depth: f32,
 }
 
 impl TexelFrame {
     /// The window for hair within `bounds` with at most `resolution` texels along each edge.
     ///
-    /// Texels are no narrower than a strand is wide, as long as there are [`LEAST_RESOLUTION`] of them: a strand is
-    /// drawn one texel wide, and in narrower ones it would be too thin and too dark.
+    /// Texels are at least as wide as a strand, as long as there are [`LEAST_RESOLUTION`] of them: strands are drawn one texel
+    /// wide, and in narrower texels they would be too thin and too dark.
     pub(crate) fn new(input: &ShadowInput, resolution: u32, bounds: &Bounds) -> Self {
         Self::place((input.light, input.anchor), input.strand_width, resolution, bounds)
     }
 
-    /// [`TexelFrame::new`] for strands that are elsewhere.
+    /// [`TexelFrame::new`] for strands in GPU memory.
     pub(crate) fn place(
         locked_to: (LightFrame, Vec3),
         strand_width: f32,
@@ -70,7 +70,7 @@ impl TexelFrame {
         Self::with_texel_size(locked_to, resolution, texel_size, bounds)
     }
 
-    /// The same with texels of a given size, which must be large enough.
+    /// The window with texels of a given size, which must be large enough.
     pub(crate) fn with_texel_size(
         (light, anchor): (LightFrame, Vec3),
         resolution: u32,
@@ -83,9 +83,9 @@ impl TexelFrame {
             (min.truncate_along() * per_texel).floor().as_ivec2(),
             (max.truncate_along() * per_texel).floor().as_ivec2(),
         );
-        // What the hair does not need lies half on each side.
+        // Texels that the hair does not need are split evenly between both sides.
         let spare = (IVec2::splat(resolution as i32) - (high - low + 1)).max(IVec2::ZERO);
-        // A step for the start, and a little more for rounding.
+        // One step for the rounded start, and a margin for rounding errors.
         let depth_range = round_up_to_step(((max.x - min.x) * (1.0 + 2.0 / DEPTH_STEPS)).max(SMALLEST_CELL));
         let start_steps = (min.x / depth_range * DEPTH_STEPS).floor();
         Self {
@@ -99,13 +99,13 @@ impl TexelFrame {
         }
     }
 
-    /// Column and row in texels (the texel is their whole part; its centre is at a half) and depth along the light
-    /// as a part of the range, 0 to 1 for the hair.
+    /// Column and row in texels (the integer part is the texel, whose centre is at 0.5), and depth along the light as a fraction
+    /// of the range, 0 to 1 for hair.
     pub fn texel_from_world(&self, p: Vec3) -> Vec3 {
         self.axes().transform(p)
     }
 
-    /// A point in the world, of column, row and depth.
+    /// The world position of a column, row and depth.
     pub fn world_from_texel(&self, p: Vec3) -> Vec3 {
         let first = self.first.as_vec2();
         let along = (p.z - self.anchor_depth) * self.depth_range;
@@ -130,7 +130,7 @@ impl TexelFrame {
         .transpose()
     }
 
-    /// The axes as scalar products want them.
+    /// The axes, scaled for dot products.
     pub(crate) fn axes(&self) -> TexelAxes {
         let first = self.first.as_vec2();
         TexelAxes {
@@ -142,22 +142,20 @@ impl TexelFrame {
         }
     }
 
-    /// Whether a point in texel coordinates is one of those that the window was made for: finite, and not one that
-    /// was left out for its distance.
+    /// Whether a point in texel coordinates was included in the bounds of the window: it is finite and not too far away.
     pub(crate) fn holds(&self, p: Vec3) -> bool {
         let far = 2.0 * self.resolution as f32;
         p.x.abs() <= far && p.y.abs() <= far && p.z.abs() <= 2.0
     }
 
-    /// A point that the window was made for, held within it: rounding must not put hair into the empty texels at
-    /// the border.
+    /// Clamps a point of the hair to the window: rounding must not move it into the empty texels at the border.
     pub(crate) fn held(&self, p: Vec3) -> Vec3 {
         let highest = (self.resolution - 1) as f32 * (1.0 - f32::EPSILON);
         Vec3::new(p.x.clamp(1.0, highest), p.y.clamp(1.0, highest), p.z.clamp(0.0, 1.0))
     }
 }
 
-/// The affine map into texels, ready for many points.
+/// The affine transform into texels, prepared for many points.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TexelAxes {
     pub anchor: Vec3,
@@ -175,12 +173,12 @@ impl TexelAxes {
     }
 }
 
-/// Corners of the bounds; both 0 where there is nothing.
+/// Corners of the bounds; both 0 where the bounds are empty.
 fn extent(bounds: &Bounds) -> (Vec3, Vec3) {
     if bounds.min.x <= bounds.max.x { (bounds.min, bounds.max) } else { (Vec3::ZERO, Vec3::ZERO) }
 }
 
-/// The part across the light of a vector in the light's axes.
+/// The components across the light of a vector in the light's axes.
 trait AcrossTheLight {
     fn truncate_along(self) -> glam::Vec2;
 }
@@ -229,7 +227,7 @@ mod tests {
                 assert!(t.x > 0.99 && t.x < 63.01 && t.y > 0.99 && t.y < 63.01, "{t}");
                 assert!((-1e-3..1.001).contains(&t.z), "{t}");
                 assert!(frame.holds(t) && frame.held(t).distance(t) < 0.01);
-                // f32 at 300 m resolves 3e-5.
+                // f32 resolves 3e-5 at 300 m.
                 assert!(frame.world_from_texel(t).distance(*p) < 1e-6 * (1.0 + at.length() * 50.0));
             }
         }

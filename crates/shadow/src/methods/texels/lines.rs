@@ -1,36 +1,36 @@
-//! Segments to the fragments that they leave in texels.
+//! Rasterisation of segments into fragments.
 
 use glam::Vec3;
 
-/// Draws segments into texels.
+/// Rasterises segments.
 pub(crate) trait Draw: Sync {
-    /// The fragments of the segment between two points, given as column, row and a depth within 0 and 1: each as
-    /// column, row, depth and optical depth.
+    /// Calls `put` for each fragment of the segment between two points, which are columns, rows and depths from 0 to 1. A fragment
+    /// is a column, a row, a depth and an optical depth.
     fn draw(&self, from: Vec3, to: Vec3, put: &mut impl FnMut(u32, u32, f32, f32));
 }
 
-/// A segment as steps along the axis on which it is longer, from its lower end to its higher.
+/// A segment as steps along its longer axis, from its lower to its higher end.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Steps {
     /// Whether rows are the longer axis.
     pub by_row: bool,
     /// The first texel on the longer axis whose centre lies between the ends, the lower end included.
     pub first: i32,
-    /// After the last one.
+    /// One after the last texel.
     pub end: i32,
-    /// Length of the segment across the light for each step, texels: 1 to √2.
+    /// Length of the segment across the light per step, texels: 1 to √2.
     pub length: f32,
-    /// The lower end: on the longer axis, on the shorter, and in depth.
+    /// The lower end: coordinates on the longer and the shorter axis, and depth.
     start: [f32; 3],
-    /// The higher end on the longer axis.
+    /// The coordinate of the higher end on the longer axis.
     high: f32,
-    /// From the lower end to the higher, on the shorter axis and in depth.
+    /// The difference between the ends on the shorter axis and in depth.
     rise: [f32; 2],
     per_texel: f32,
 }
 
 impl Steps {
-    /// The steps of a segment within coordinates that are not negative; none where it passes no centre.
+    /// The steps of a segment with non-negative coordinates; none if it passes no centre of a texel.
     ///
     /// The interval is half open, so that a vertex that two segments share is counted once.
     #[inline]
@@ -41,7 +41,7 @@ impl Steps {
         let (a, b) = (turned(from), turned(to));
         let (low, high) = if a[0] <= b[0] { (a, b) } else { (b, a) };
         let long = high[0] - low[0];
-        // Without length, no centre lies between the ends and nothing of this is used.
+        // A segment without length contains no centre, so these values are not used.
         let per_texel = 1.0 / long;
         Self {
             by_row,
@@ -60,13 +60,13 @@ impl Steps {
         (self.end - self.first) as u64
     }
 
-    /// The texels of the longer axis that the segment touches at all.
+    /// The texels of the longer axis that the segment touches.
     pub(crate) fn touched(&self) -> std::ops::Range<i32> {
         self.start[0].floor() as i32..self.high.ceil() as i32
     }
 
-    /// The part of texel `at` of the longer axis that lies between the ends, 0 to 1, and in the middle of it the
-    /// coordinate on the shorter axis and depth. Only where the part is above 0 do these mean anything.
+    /// The fraction of texel `at` of the longer axis that lies between the ends, 0 to 1, and the coordinate on the shorter axis
+    /// and the depth in the middle of that part. The latter are valid only if the fraction is above 0.
     #[inline]
     pub(crate) fn covered(&self, at: i32) -> (f32, f32, f32) {
         let (low, high) = (self.start[0].max(at as f32), self.high.min(at as f32 + 1.0));
@@ -74,28 +74,28 @@ impl Steps {
         (high - low, self.start[1] + t * self.rise[0], (self.start[2] + t * self.rise[1]).clamp(0.0, 1.0))
     }
 
-    /// Coordinate on the shorter axis, and depth, at the centre of texel `at` of the longer.
+    /// The coordinate on the shorter axis, and the depth, at the centre of texel `at` of the longer axis.
     #[inline]
     pub(crate) fn at(&self, at: i32) -> (f32, f32) {
         let t = (at as f32 + 0.5 - self.start[0]) * self.per_texel;
-        // Rounding must not lead out of the range of depths.
+        // Rounding must not leave the range of depths.
         (self.start[1] + t * self.rise[0], (self.start[2] + t * self.rise[1]).clamp(0.0, 1.0))
     }
 }
 
-/// How many centres of texels lie below `c`, which is not negative: `⌈c − ½⌉`.
+/// The number of texel centres below `c`, which is not negative: `⌈c − ½⌉`.
 #[inline]
 fn centres_below(c: f32) -> i32 {
     let whole = c as i32;
     whole + i32::from(c - whole as f32 > 0.5)
 }
 
-/// One texel wide lines: a step along the longer axis is one fragment, which takes all of the step's optical depth.
+/// Lines one texel wide: a step along the longer axis is one fragment with the whole optical depth of the step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lines {
     /// Texels along each edge; those at the border stay empty.
     pub resolution: u32,
-    /// Optical depth of a piece that is one texel long across the light.
+    /// Optical depth of a piece of strand whose length across the light is one texel.
     pub depth_per_texel: f32,
 }
 
@@ -115,13 +115,13 @@ impl Draw for Lines {
     }
 }
 
-/// Pre-filtered lines: a step is a fragment in each of the two texels nearest to it across the longer axis, which share its
-/// optical depth as their centres are near (Wu 1991, "An Efficient Antialiasing Technique"; Mertens et al. 2004, section 3.4).
+/// Pre-filtered lines: a step is one fragment in each of the two nearest texels across the longer axis, which share its optical
+/// depth by the distance of their centres (Wu 1991, "An Efficient Antialiasing Technique"; Mertens et al. 2004, section 3.4).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FilteredLines(pub Lines);
 
 impl FilteredLines {
-    /// Fragments of one step.
+    /// Fragments per step.
     pub(crate) const PER_STEP: u64 = 2;
 }
 
@@ -199,7 +199,7 @@ mod tests {
             let d = 25.0 * Vec3::new(angle.cos(), angle.sin(), 0.0);
             let found = fragments(&[Vec3::new(32.1, 31.7, 0.5) - d, Vec3::new(32.1, 31.7, 0.5) + d]);
             let sum: f32 = found.iter().map(|f| f.3).sum();
-            // A step more or less at the ends, of about 40.
+            // One step more or less at the ends, out of about 40.
             assert!((sum - 5.0).abs() < 0.15, "{angle}: {sum}");
         }
     }

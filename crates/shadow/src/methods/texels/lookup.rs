@@ -1,9 +1,8 @@
 //! Filtered lookups of many points.
 //!
-//! Points go through in blocks, stage by stage: where they lie, which records they read, what these say, and
-//! exponentials. Loads of one stage do not wait for each other, and most of the time goes to waiting for them.
-// Calls of functions that ask for features of the processor, made by the macro after it has asked for them; and every
-// loop must be compiled within the version that calls it.
+//! Blocks of points go through stages: placement, addresses of records, optical depths, and exponentials. The loads of one
+//! stage do not depend on each other, which hides their latency, the largest part of the time.
+// Functions are inlined into the loops that `simd_versions!` compiles; calling those takes `unsafe`.
 #![allow(unsafe_code, clippy::inline_always, clippy::needless_range_loop, clippy::needless_bitwise_bool)]
 
 use glam::Vec3;
@@ -12,7 +11,7 @@ use lovelock_groom::simd_versions;
 
 use super::fragments::Fragments;
 use super::frame::TexelFrame;
-use super::map::TexelMethod;
+use super::method::TexelMethod;
 use crate::exp::exp_of_minus;
 
 /// Points that are looked up together.
@@ -21,29 +20,29 @@ const BLOCK: usize = 64;
 /// A depth behind all hair.
 pub(super) const BEHIND: f32 = 2.0;
 
-/// A map that is ready to be read.
+/// A map that can be read.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lookup<'a, M: TexelMethod> {
     pub method: &'a M,
     pub frame: &'a TexelFrame,
     pub fragments: &'a Fragments,
-    /// One more than the number of each texel's record; 0 where it has none.
+    /// The index of the record of each texel plus 1; 0 where it has none.
     pub slots: &'a [u32],
     pub cells: &'a [M::Cell],
 }
 
-/// What the texels around a block of points are read for: `TAPS` of them a point.
+/// The texels around a block of points, `TAPS` per point.
 struct Taps<const TAPS: usize> {
     /// Texels, or [`OUTSIDE`].
     texels: [[u32; BLOCK]; TAPS],
-    /// Depths of the points; 0 for those that are surely lit.
+    /// Depths of the points; 0 for those that are known to be lit.
     depths: [f32; BLOCK],
-    /// Where points lie between the centres of the texels.
+    /// The positions of points between the centres of the texels.
     u: [f32; BLOCK],
     v: [f32; BLOCK],
 }
 
-/// The number of no texel.
+/// The index that stands for no texel.
 const OUTSIDE: u32 = u32::MAX;
 
 impl<M: TexelMethod> Lookup<'_, M> {
@@ -62,17 +61,17 @@ impl<M: TexelMethod> Lookup<'_, M> {
         slot.map_or(1.0, |slot| exp_of_minus(self.depth_before(texel, slot, BEHIND)))
     }
 
-    /// The number of a texel, or [`OUTSIDE`].
+    /// The index of a texel, or [`OUTSIDE`].
     #[inline(always)]
     fn texel(&self, column: i32, row: i32) -> u32 {
         let n = self.frame.resolution;
         let (column, row) = (column as u32, row as u32);
-        // Both are compared: a branch would keep the loop from becoming vectors.
+        // No short-circuit: a branch would prevent vectorisation.
         if (column < n) & (row < n) { row.wrapping_mul(n).wrapping_add(column) } else { OUTSIDE }
     }
 
-    /// Transmittance of many points, by the texel that each lies in (one tap) or as the bilinear mean of the four
-    /// around it; slices of one length. With `JITTER`, points are moved by up to half a texel first.
+    /// Transmittance of many points, from the texel that contains each (one tap) or as the bilinear mean of the four texels around
+    /// it. With `JITTER`, points are first moved by up to half a texel. All slices have the same length.
     #[inline(always)]
     fn run<const TAPS: usize, const JITTER: bool>(&self, x: &[f32], y: &[f32], z: &[f32], out: &mut [f32]) {
         let axes = self.frame.axes();
@@ -84,7 +83,7 @@ impl<M: TexelMethod> Lookup<'_, M> {
             let (x, y, z) = (block_of(x), block_of(y), block_of(z));
             for lane in 0..BLOCK {
                 let p = axes.transform(Vec3::new(x[lane], y[lane], z[lane]));
-                // False for what is no number. Before all hair everything is lit.
+                // False for NaN. Points before all hair are lit.
                 let inside = (p.x > -1.0) & (p.x < end) & (p.y > -1.0) & (p.y < end) & (p.z > 0.0);
                 let depth = if p.z < BEHIND { p.z } else { BEHIND };
                 taps.depths[lane] = if inside { depth } else { 0.0 };
@@ -113,7 +112,7 @@ impl<M: TexelMethod> Lookup<'_, M> {
             for (slot, texel) in slots.iter_mut().zip(texels).take(out.len()) {
                 *slot = self.slots.get(*texel as usize).copied().unwrap_or(0);
             }
-            // Records lie anywhere in memory: all of a block are asked for before the first one is read.
+            // Records are scattered in memory: all of a block are prefetched before the first one is read.
             let cells = self.method.cells();
             for (slot, depth) in slots.iter().zip(&taps.depths) {
                 let first = (*slot as usize).wrapping_sub(1).wrapping_mul(cells);
@@ -144,20 +143,20 @@ impl<M: TexelMethod> Lookup<'_, M> {
     }
 }
 
-/// Asks for the memory of an item, if there is one, to be at hand soon.
+/// Prefetches an item into the cache, if it exists.
 #[inline(always)]
 fn prefetch<T>(of: &[T], at: usize) {
     #[cfg(target_arch = "x86_64")]
     if let Some(item) = of.get(at) {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-        // SAFETY: a prefetch is a hint: it reads nothing, and the address is that of an item.
+        // SAFETY: a prefetch is a hint that reads nothing, and the address is that of an item.
         unsafe { _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(item).cast()) };
     }
     #[cfg(not(target_arch = "x86_64"))]
     let _ = (of, at);
 }
 
-/// A block of coordinates; the last one of a list is filled up with zeros.
+/// A block of coordinates; the last one of a list is padded with zeros.
 #[inline(always)]
 fn block_of(axis: &[f32]) -> [f32; BLOCK] {
     axis.try_into().unwrap_or_else(|_| {
@@ -168,7 +167,7 @@ fn block_of(axis: &[f32]) -> [f32; BLOCK] {
 }
 
 simd_versions! {
-    /// Transmittance of many points, by the texel that each lies in.
+    /// Transmittance of many points, from the texel that contains each.
     pub(super) fn nearest<M: TexelMethod>(
         lookup: &Lookup<M>, x: &[f32], y: &[f32], z: &[f32], out: &mut [f32],
     ) -> () {
@@ -177,7 +176,7 @@ simd_versions! {
 }
 
 simd_versions! {
-    /// Transmittance of many points, by the texel that each lies in after it was moved by up to half a texel.
+    /// Transmittance of many points, from the texel that contains each after it is moved by up to half a texel.
     pub(super) fn jittered<M: TexelMethod>(
         lookup: &Lookup<M>, x: &[f32], y: &[f32], z: &[f32], out: &mut [f32],
     ) -> () {
@@ -194,11 +193,11 @@ simd_versions! {
     }
 }
 
-/// A hash of a place in two numbers of 0 to 1, the same for all places of an eighth of a millimetre: PCG in three
+/// Two hash values from 0 to 1 of a position, the same within a cube of an eighth of a millimetre: PCG in three
 /// dimensions (Jarzynski, Olano 2020, "Hash Functions for GPU Rendering"). Twin of `place_hash` in lookup.wgsl.
 #[inline(always)]
 fn place_hash(p: [f32; 3]) -> [f32; 2] {
-    // Conversion saturates, and what is no number becomes 0.
+    // The conversion saturates, and NaN becomes 0.
     let cell = |c: f32| (c * 8192.0).floor() as i32 as u32;
     let scatter = |c: u32| c.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
     let [mut x, mut y, mut z] = [scatter(cell(p[0])), scatter(cell(p[1])), scatter(cell(p[2]))];
@@ -212,7 +211,7 @@ fn place_hash(p: [f32; 3]) -> [f32; 2] {
     [part(x), part(y)]
 }
 
-/// The whole number at or below `c`, which is above −2 and below 2^26.
+/// The floor of `c`, which is above −2 and below 2^26.
 #[inline(always)]
 fn floor(c: f32) -> i32 {
     whole_part(c + 2.0) - 2

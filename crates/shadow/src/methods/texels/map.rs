@@ -1,87 +1,26 @@
 //! The map of any method with a record for each texel.
-// Compiled within the versions of `lookup`.
-#![allow(clippy::inline_always)]
-
-use std::fmt::Debug;
 
 use glam::Vec3;
 use lovelock_groom::simd::Width;
 use rayon::prelude::*;
 
+use super::TexelFilter;
 use super::fragments::{Fragment, Fragments, needed_bytes, refit, sum_over_segments};
 use super::frame::TexelFrame;
 use super::lines::{FilteredLines, Lines, Steps};
 use super::lookup::{self, Lookup};
-use super::{MAP_MEMORY_LIMIT_BYTES, TexelFilter};
+use super::method::TexelMethod;
 use crate::bounds::Bounds;
 use crate::exp::exp_of_minus;
 use crate::{
-    ColumnMap, CpuShadow, RayMark, RayMarkKind, RayStructure, ShadowError, ShadowInput, ShadowMethod,
-    ShadowReport, ShadowSettings,
+    ColumnMap, CpuShadow, RayMark, RayStructure, ShadowError, ShadowInput, ShadowReport, ShadowSettings,
 };
 
-/// Points of one parallel piece of a lookup.
+/// Points per parallel task of a lookup.
 const POINTS_PER_LOOKUP: usize = 2048;
 
-/// Fragments are no darker than this, so that sums of them stay finite; e^−10⁴ is 0 in any float.
+/// The largest optical depth of a fragment, so that sums stay finite; e^−10⁴ is 0 in any float.
 const MOST_DEPTH_PER_FRAGMENT: f32 = 1e4;
-
-/// What sets a method with a record for each texel apart. The value holds the method's settings, made safe.
-pub trait TexelMethod: Copy + Debug + Send + Sync {
-    /// What records are made of.
-    type Cell: Copy + Debug + Default + Send + Sync;
-
-    /// Its name.
-    const METHOD: ShadowMethod;
-
-    /// Whether [`TexelMethod::depth_before`] reads the fragments as [`TexelMethod::fill`] left them. Else it gets none.
-    const READS_FRAGMENTS: bool = false;
-
-    /// The method with its part of `settings`.
-    fn new(settings: &ShadowSettings) -> Self;
-
-    /// Most texels along each edge, one of [`TEXEL_RESOLUTIONS`](super::TEXEL_RESOLUTIONS).
-    fn resolution(&self) -> u32;
-
-    /// How a point reads the texels around it.
-    fn filter(&self) -> TexelFilter;
-
-    /// Whether strands are drawn as pre-filtered lines, which share each step between two texels.
-    fn prefiltered(&self) -> bool {
-        false
-    }
-
-    /// Memory that the map and its build may take together, bytes.
-    fn memory_limit_bytes(&self) -> u64 {
-        MAP_MEMORY_LIMIT_BYTES
-    }
-
-    /// Cells of one record.
-    fn cells(&self) -> usize;
-
-    /// Makes the record of a texel from its fragments, of which there is at least one. They come in the order of the
-    /// strands and may be put into another. `record` has [`TexelMethod::cells`] cells with anything in them.
-    fn fill(&self, fragments: &mut [Fragment], record: &mut [Self::Cell]);
-
-    /// The first and the last cell of a record that [`TexelMethod::depth_before`] reads for `depth`. Only speed depends
-    /// on it.
-    #[inline(always)]
-    fn reads(&self, _depth: f32) -> [usize; 2] {
-        [0, self.cells().saturating_sub(1)]
-    }
-
-    /// Optical depth of the texel's hair before `depth`: 0 to 1 within the hair's range, more behind it.
-    fn depth_before(&self, fragments: &[Fragment], record: &[Self::Cell], depth: f32) -> f32;
-
-    /// Calls `put` for each piece of a record, those of one kind by depth: what it is, the depths at which it begins and ends,
-    /// and its optical depth.
-    fn pieces(
-        &self,
-        fragments: &[Fragment],
-        record: &[Self::Cell],
-        put: &mut dyn FnMut(RayMarkKind, [f32; 2], f32),
-    );
-}
 
 /// The map of a method with a record for each texel; everything is lit until it is built.
 ///
@@ -89,7 +28,7 @@ pub trait TexelMethod: Copy + Debug + Send + Sync {
 #[derive(Clone, Debug)]
 pub struct TexelMap<M: TexelMethod> {
     fragments: Fragments,
-    /// One more than the number of each texel's record; 0 where it has none.
+    /// The index of the record of each texel plus 1; 0 where it has none.
     slots: Vec<u32>,
     cells: Vec<M::Cell>,
     width: Width,
@@ -116,7 +55,7 @@ impl<M: TexelMethod> Default for TexelMap<M> {
 }
 
 impl<M: TexelMethod> TexelMap<M> {
-    /// Where the texels of the last build lie; `None` before the first.
+    /// The placement of the texels of the last build; `None` before the first.
     pub fn frame(&self) -> Option<&TexelFrame> {
         self.built.as_ref().map(|built| &built.frame)
     }
@@ -132,24 +71,24 @@ impl<M: TexelMethod> TexelMap<M> {
         Some(&self.cells[slot * cells..(slot + 1) * cells])
     }
 
-    /// The fragments, as [`TexelMethod::fill`] left them, of the texel that a point lies in, and the point's depth; none
+    /// The fragments of the texel that contains a point, as [`TexelMethod::fill`] left them, and the depth of the point. Empty
     /// beside the map.
     pub(crate) fn fragments_at(&self, p: Vec3) -> (&[Fragment], f32) {
         let Some((_, texel, depth)) = self.texel_of(p) else { return (&[], 0.0) };
         (self.fragments.texel(texel), depth)
     }
 
-    /// The texel that a point lies in, and the point's depth; `None` beside the map.
+    /// The texel that contains a point, and the depth of the point; `None` beside the map.
     fn texel_of(&self, p: Vec3) -> Option<(&Built<M>, usize, f32)> {
         let built = self.built.as_ref()?;
         let p = built.frame.texel_from_world(p);
         let end = built.frame.resolution as f32;
-        // False for what is no number.
+        // False for NaN.
         let inside = p.x >= 0.0 && p.x < end && p.y >= 0.0 && p.y < end && p.z.is_finite();
         inside.then(|| (built, self.fragments.place(p.x as u32, p.y as u32), p.z))
     }
 
-    /// Refuses what would not fit, without allocating it.
+    /// Returns an error if the map would exceed its limit. Allocates nothing.
     fn check(needed_bytes: u64, method: &M, input: &ShadowInput) -> Result<(), ShadowError> {
         let limit_bytes = input.share_of(method.memory_limit_bytes());
         if needed_bytes > limit_bytes {
@@ -159,7 +98,7 @@ impl<M: TexelMethod> TexelMap<M> {
         Ok(())
     }
 
-    /// Memory of the records, of the sorted fragments, and of what only sorting needs, bytes.
+    /// Memory of the records, of the sorted fragments, and memory that only sorting needs, bytes.
     fn memory_bytes(&self) -> (u64, u64, u64) {
         let (sorted, loose) = self.fragments.memory_bytes();
         let records = 4 * self.slots.capacity() + size_of::<M::Cell>() * self.cells.capacity();
@@ -178,11 +117,11 @@ impl<M: TexelMethod> TexelMap<M> {
         let texels = u64::from(resolution).pow(2);
         let per_step = if method.prefiltered() { FilteredLines::PER_STEP } else { 1 };
         let count = sum_over_segments(input, &frame, |from, to| per_step * Steps::new(from, to).count());
-        // Slots, and all that sorting takes.
+        // Slots, and the memory that sorting needs.
         let sorting = needed_bytes(input, resolution, count).saturating_add(4 * texels);
         Self::check(sorting, &method, input)?;
         let cell_bytes = size_of::<M::Cell>() as u64 * method.cells() as u64;
-        // What is kept from the last build goes where the limit has no room for both.
+        // The buffers of the last build are freed if they and the new ones together would exceed the limit.
         let (records, sorted, loose) = self.memory_bytes();
         let most = sorting + texels.min(count) * cell_bytes;
         if records + sorted + loose + most > input.share_of(method.memory_limit_bytes()) {
@@ -217,7 +156,7 @@ impl<M: TexelMethod> TexelMap<M> {
         Ok(Built { method, frame, report })
     }
 
-    /// Makes the records of all texels with fragments, `in_use` of them.
+    /// Computes the records of all `in_use` texels with fragments.
     fn fill(&mut self, method: &M, in_use: usize) {
         let cells = method.cells();
         self.slots.clear();
@@ -245,7 +184,7 @@ impl<M: TexelMethod> TexelMap<M> {
     }
 }
 
-/// Optical depth of a piece of strand that is a texel long across the light: `s w ℓ sinθ / A` with ℓ sinθ = t and
+/// Optical depth of a piece of strand whose length across the light is one texel: `s w ℓ sinθ / A` with ℓ sinθ = t and
 /// A = t², for texels of edge t.
 pub(crate) fn depth_per_texel(settings: &ShadowSettings, strand_width: f32, frame: &TexelFrame) -> f32 {
     let depth = settings.safe_extinction_scale() * strand_width / frame.texel_size;
@@ -331,7 +270,7 @@ impl<M: TexelMethod> CpuShadow for TexelMap<M> {
         let fragments = if M::READS_FRAGMENTS { self.fragments.texel(texel) } else { &[] };
         method.pieces(fragments, record, &mut |kind, depths, optical_depth| {
             let [start, end] = depths.map(|depth| (depth - here) * built.frame.depth_range);
-            // What lies at a depth itself does not count before it.
+            // A fragment at exactly this depth does not count as before it.
             let behind = method.depth_before(fragments, record, depths[1].next_up());
             marks.push(RayMark { kind, start, end, optical_depth, transmittance: exp_of_minus(behind) });
         });

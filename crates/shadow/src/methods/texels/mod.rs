@@ -10,21 +10,28 @@ pub(crate) mod gpu;
 pub(crate) mod lines;
 mod lookup;
 pub(crate) mod map;
+mod method;
 
 pub use fragments::Fragment;
 pub use frame::TexelFrame;
 pub(crate) use gpu::TexelShadow;
-pub use map::{TexelMap, TexelMethod};
+pub use map::TexelMap;
+pub use method::TexelMethod;
 
 use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
+
+use crate::RayMarkKind;
 
 /// Texels along each edge that a map can have; multiples of 16.
 ///
 /// A setting is the most that a map has: texels are no narrower than strands are wide, so that hair of few, wide
 /// strands has fewer.
 pub const TEXEL_RESOLUTIONS: RangeInclusive<u32> = 64..=2048;
+
+/// A slice of even depth: of opacity maps every one, of occupancy maps those whose bit is set.
+pub(crate) const SLICE: RayMarkKind = RayMarkKind { label: "Slice", resolves_depth: true };
 
 /// Texels along each edge to begin with.
 pub(crate) const DEFAULT_RESOLUTION: u32 = 512;

@@ -1,38 +1,37 @@
-//! The quick voxel map: the stages of a build, and lookups in parallel.
+//! The voxel map on the CPU: the stages of a build, and parallel lookups.
 
 use glam::Vec3;
 use lovelock_groom::Strands;
 use lovelock_groom::simd::Width;
 use rayon::prelude::*;
 
-use super::deposit::Deposit;
+use super::deposit::{Deposit, deposit_simd};
 use super::grid::{DEPTH_ONE, Grid};
 use super::lattice::Lattice;
 use super::layout::Layout;
-use super::lookup::{Lookup, behind_all};
-use super::{VoxelDeposit, VoxelFilter, VoxelMapSettings, simd, sum};
-use crate::bounds::Bounds;
+use super::lookup::{Lookup, behind_all, look_up_simd};
+use super::{CELL, VoxelDeposit, VoxelFilter, VoxelMapSettings, sum};
+use crate::bounds::{Bounds, bounds_simd};
 use crate::exp::{DEPTH_STEPS, exp_of_minus_steps};
 use crate::{
-    ColumnMap, CpuShadow, RayMark, RayMarkKind, RayStructure, ShadowError, ShadowInput, ShadowReport,
-    ShadowSettings,
+    ColumnMap, CpuShadow, RayMark, RayStructure, ShadowError, ShadowInput, ShadowReport, ShadowSettings,
 };
 
-/// Points that are worth a worker of their own.
+/// Points per worker: with fewer, another worker does not pay off.
 const POINTS_PER_WORKER: usize = 4096;
-/// Most private grids: beyond, merging them costs more than it saves.
+/// The most private grids. Merging more of them costs more than it saves.
 const MOST_GRIDS: usize = 8;
-/// Most cells of all private grids together, which bounds their address space to 1 GiB.
+/// The most cells of all private grids together, which bounds their address space to 1 GiB.
 const MOST_CELLS: usize = 1 << 28;
-/// Points of one parallel piece of the bounds.
+/// Points per parallel task of the bounds.
 const POINTS_PER_BOUNDS: usize = 1 << 16;
-/// Points of one parallel piece of a lookup.
+/// Points per parallel task of a lookup.
 const POINTS_PER_LOOKUP: usize = 4096;
 
 /// A voxel map; everything is lit until it is built.
 ///
-/// Every worker adds its strands to a grid of its own. Sums of integers make the map the same for any number
-/// of them.
+/// Every worker adds its strands to a grid of its own. Cells hold integers, so the map is the same for any number of
+/// workers.
 #[derive(Clone, Debug, Default)]
 pub struct VoxelMap {
     built: Option<Built>,
@@ -44,9 +43,9 @@ struct Built {
     lattice: Lattice,
     filter: VoxelFilter,
     width: Width,
-    /// The first one holds the map once it is built.
+    /// The first one holds the map after the build.
     grids: Vec<Grid>,
-    /// Groups of slices with hair in them, a tile.
+    /// Bits of the groups of slices that contain hair, per tile.
     touched: Vec<u64>,
     report: ShadowReport,
 }
@@ -57,8 +56,8 @@ impl VoxelMap {
         self.built.as_ref().map(|built| &built.lattice)
     }
 
-    /// Optical depth, in steps of 1/4096, at the front and at the back face of a cell of the last build, the light's axis
-    /// first; `None` before the first build and outside the window.
+    /// Optical depth, in steps of 1/4096, at the front and the back face of a cell of the last build. The first index runs along
+    /// the light. `None` before the first build and outside the window.
     pub fn faces(&self, [i, j, k]: [u32; 3]) -> Option<[u16; 2]> {
         let built = self.built.as_ref()?;
         if [i, j, k].iter().any(|c| *c >= built.layout.resolution) {
@@ -108,7 +107,7 @@ impl VoxelMap {
 }
 
 impl Built {
-    /// Empties the grids and adds the strands to them; says how many samples that were.
+    /// Clears the grids and adds the strands to them. Returns the number of samples.
     fn deposit(&mut self, input: &ShadowInput, settings: &ShadowSettings) -> u64 {
         let (layout, width) = (self.layout, self.width);
         let deposit = Deposit {
@@ -126,7 +125,7 @@ impl Built {
                 grid.clear(&layout);
                 let (first, last) =
                     (first_strand(strands, piece, pieces), first_strand(strands, piece + 1, pieces));
-                let samples = simd::deposit(width, &deposit, strands, first, last, grid);
+                let samples = deposit_simd(width, &deposit, strands, first, last, grid);
                 grid.take_marks(&layout);
                 samples
             })
@@ -169,7 +168,7 @@ fn bounds(width: Width, input: &ShadowInput) -> Bounds {
         .zip(y.par_chunks(POINTS_PER_BOUNDS))
         .zip(z.par_chunks(POINTS_PER_BOUNDS));
     pieces
-        .map(|((x, y), z)| simd::bounds(width, x, y, z, &input.light, input.anchor))
+        .map(|((x, y), z)| bounds_simd(width, x, y, z, &input.light, input.anchor))
         .reduce(|| Bounds::EMPTY, Bounds::join)
 }
 
@@ -186,13 +185,13 @@ pub(super) fn fixed_point_depth(strand_width: f32, settings: &ShadowSettings, la
     if depth > 0.0 { (depth * DEPTH_ONE).min(1e30) } else { 0.0 }
 }
 
-/// How many private grids to use here and now.
+/// The number of private grids for this map in the current thread pool.
 fn grid_count(layout: &Layout, points: usize) -> usize {
     let useful = rayon::current_num_threads().min(points / POINTS_PER_WORKER).min(MOST_GRIDS);
     useful.min(MOST_CELLS / layout.cells()).max(1)
 }
 
-/// The strand at which piece `piece` of `pieces` begins: pieces have about equally many points.
+/// The first strand of piece `piece` of `pieces`, which have about the same number of points.
 fn first_strand(strands: &Strands, piece: usize, pieces: usize) -> usize {
     if piece == pieces {
         return strands.count();
@@ -223,7 +222,7 @@ impl CpuShadow for VoxelMap {
         let points = x.par_chunks(piece).zip(y.par_chunks(piece)).zip(z.par_chunks(piece));
         points
             .zip(out.par_chunks_mut(piece))
-            .for_each(|(((x, y), z), out)| simd::lookup(width, &lookup, x, y, z, out));
+            .for_each(|(((x, y), z), out)| look_up_simd(width, &lookup, x, y, z, out));
     }
 
     fn report(&self) -> ShadowReport {
@@ -249,7 +248,7 @@ impl CpuShadow for VoxelMap {
         let Some(built) = &self.built else { return RayStructure::default() };
         let at = built.lattice.window_from_world(p);
         let n = built.layout.resolution;
-        // False for what is no number.
+        // False for NaN.
         let within = |c: f32| c >= 0.0 && c < n as f32;
         if !(within(at.y) && within(at.z) && at.x.is_finite()) {
             return RayStructure::default();
@@ -258,7 +257,7 @@ impl CpuShadow for VoxelMap {
             let [front, back] = self.faces([i, at.y as u32, at.z as u32])?.map(f32::from);
             let [start, end] = [i, i + 1].map(|face| (face as f32 - at.x) * built.lattice.cell_size);
             let (optical_depth, transmittance) = ((back - front) / DEPTH_STEPS, exp_of_minus_steps(back));
-            Some(RayMark { kind: RayMarkKind::Cell, start, end, optical_depth, transmittance })
+            Some(RayMark { kind: CELL, start, end, optical_depth, transmittance })
         };
         let mut marks: Vec<_> = (0..n).filter_map(mark).collect();
         if marks.iter().all(|mark| mark.optical_depth <= 0.0) {
@@ -275,7 +274,7 @@ mod tests {
     use super::*;
     use crate::LightFrame;
 
-    /// Strands that wind through a box, with a broken point and a segment across the whole box.
+    /// Strands that wind through a box, with a NaN point and a segment across the whole box.
     fn strands() -> Strands {
         let mut made = Strands::default();
         let mut first_point = vec![0];

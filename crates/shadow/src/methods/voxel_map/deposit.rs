@@ -1,35 +1,43 @@
-//! Density: every piece of strand adds its optical depth to the cell that it lies in.
+//! Density: every sample of a strand adds its optical depth to the cell that contains it.
 //!
-//! Points go through in blocks of 64. Coordinates, lengths and addresses are computed in loops over fixed
-//! arrays, which the compiler turns into vector code; only the additions themselves go one by one.
-// Every loop must be compiled within the version of `simd` that calls it, and must not branch.
-#![allow(clippy::inline_always, clippy::needless_bitwise_bool, clippy::needless_range_loop)]
+//! Points are processed in blocks of 64. Coordinates, lengths and addresses are computed in loops over fixed-size
+//! arrays, which the compiler vectorises; only the additions themselves are scalar.
+// Functions are inlined into the loops that `simd_versions!` compiles; calling those takes `unsafe`.
+// No loop may branch.
+#![allow(unsafe_code, clippy::inline_always, clippy::needless_bitwise_bool, clippy::needless_range_loop)]
 
-use lovelock_groom::Strands;
+use lovelock_groom::simd::whole_part;
+use lovelock_groom::{Strands, simd_versions};
 
 use super::grid::{DEPTH_ONE, Grid};
 use super::lattice::Lattice;
 use super::layout::Layout;
 use super::samples::{sample_at, sample_count};
-use lovelock_groom::simd::whole_part;
 
-/// Points that are transformed together; all but the last begin a segment.
+/// Points that are transformed together; each but the last is the start of a segment.
 const BLOCK: usize = 64;
 /// Segments whose samples are addressed together.
 const LANES: usize = 16;
-/// Segments with more samples than this, among shorter ones, go one by one.
+/// Segments with more samples than this, among shorter ones, are processed one at a time.
 const LONG: u32 = 24;
-/// The most that one sample adds, in fixed point: τ = 32, twice what a cell can tell from darkness.
+/// The most that one sample adds, in fixed point: τ = 32, twice the largest depth of a cell.
 const MOST_PER_SAMPLE: f32 = 32.0 * DEPTH_ONE;
 
-/// What a deposit needs beside the strands.
+simd_versions! {
+    /// [`Deposit::run`] for the vectors of `width`.
+    pub(super) fn deposit_simd(deposit: &Deposit, strands: &Strands, first: usize, last: usize, grid: &mut Grid) -> u64 {
+        deposit.run(strands, first, last, grid)
+    }
+}
+
+/// The parameters of a deposit.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Deposit {
     pub layout: Layout,
     pub lattice: Lattice,
-    /// Optical depth, in fixed point: of a segment a cell of its length across the light, or of a point.
+    /// Optical depth in fixed point: of a segment whose length across the light is one cell, or of a point.
     pub depth: f32,
-    /// Each point adds one `depth`, as the paper has it; else each segment by its length.
+    /// Whether each point adds `depth`, as in the paper. Otherwise each segment adds it times its length.
     pub by_point: bool,
 }
 
@@ -37,14 +45,14 @@ pub(super) struct Deposit {
 struct Block {
     from: [[f32; BLOCK]; 3],
     step: [[f32; BLOCK]; 3],
-    /// Samples of a segment; 0 where the lane holds none.
+    /// The number of samples per segment; 0 in unused lanes.
     samples: [u32; BLOCK],
     inverse: [f32; BLOCK],
     /// Fixed-point depth of one sample.
     depth: [u32; BLOCK],
     /// Whether a point is finite and near the window.
     valid: [bool; BLOCK],
-    /// Whether a lane begins no segment, since its strand or the block ends there.
+    /// Whether a lane starts no segment, because its strand or the block ends there.
     ends: [bool; BLOCK],
 }
 
@@ -59,8 +67,8 @@ impl Block {
         ends: [true; BLOCK],
     };
 
-    /// Marks the lanes of points `at..` that end a strand; `strand` goes to the one that holds the next block's
-    /// first point, which is this block's last.
+    /// Marks the lanes of points `at..` that end a strand. Advances `strand` to the strand of the next block's first point,
+    /// which is the last point of this block.
     #[inline(always)]
     fn mark_ends(&mut self, first_point: &[u32], strand: &mut usize, at: usize) {
         self.ends = [false; BLOCK];
@@ -82,9 +90,9 @@ impl Block {
 }
 
 impl Deposit {
-    /// Adds strands `first..last` to `grid`; says how many samples that were.
+    /// Adds strands `first..last` to `grid`. Returns the number of samples.
     #[inline(always)]
-    pub(super) fn run(&self, strands: &Strands, first: usize, last: usize, grid: &mut Grid) -> u64 {
+    fn run(&self, strands: &Strands, first: usize, last: usize, grid: &mut Grid) -> u64 {
         if first == last {
             return 0;
         }
@@ -107,7 +115,7 @@ impl Deposit {
             }
             samples += block.samples.iter().map(|n| u64::from(*n)).sum::<u64>();
             self.scatter(&block, grid);
-            // The last point begins the next block.
+            // The last point is the first of the next block.
             at += BLOCK - 1;
         }
         samples
@@ -123,7 +131,7 @@ impl Deposit {
         }
     }
 
-    /// Window coordinates, and whether a point is one that the window was made for.
+    /// Window coordinates, and whether a point is finite and within the range of the window.
     #[inline(always)]
     fn transform(&self, block: &mut Block, points: [&[f32; BLOCK]; 3]) {
         let (lattice, anchor) = (&self.lattice, self.lattice.anchor);
@@ -138,7 +146,7 @@ impl Deposit {
                     (points[0][lane] - anchor.x, points[1][lane] - anchor.y, points[2][lane] - anchor.z);
                 let c = (x * to.x + y * to.y + z * to.z) - first[axis];
                 block.valid[lane] &= c.abs() <= limit;
-                // Rounding must not put hair into the empty cells at the border. NaN becomes 1.
+                // Rounding must not move hair into the empty cells at the border. NaN becomes 1.
                 let c = if c > 1.0 { c } else { 1.0 };
                 block.from[axis][lane] = if c < highest { c } else { highest };
             }
@@ -202,8 +210,8 @@ impl Deposit {
         }
     }
 
-    /// Addresses and depths of sample `sample` of the lanes from `start` on. A lane with fewer samples adds
-    /// nothing to the cell of its end.
+    /// Addresses and depths of sample `sample` of the lanes from `start` on. A lane with fewer samples adds 0 to the cell at
+    /// its end.
     #[inline(always)]
     fn addresses(&self, block: &Block, start: usize, sample: u32) -> ([u32; LANES], [u32; LANES]) {
         let mut addresses = [0; LANES];
@@ -234,13 +242,13 @@ impl Deposit {
     #[inline(always)]
     fn add(&self, grid: &mut Grid, address: u32, depth: u32) {
         let cell = &mut grid.cells[address as usize];
-        // Saturating sums of numbers that are not negative do not depend on their order either.
+        // Saturating sums of non-negative numbers do not depend on their order either.
         *cell = cell.saturating_add(depth);
         grid.marks[(address >> self.layout.group_len_shift()) as usize] = 1;
     }
 }
 
-/// The largest coordinate whose cell leaves one empty cell before the window's end.
+/// The largest coordinate whose cell leaves one empty cell at the end of the window.
 fn highest_inside(resolution: u32) -> f32 {
     (resolution - 1) as f32 * (1.0 - f32::EPSILON)
 }

@@ -1,24 +1,24 @@
-//! One worker's grid of density, and which of its cells are in use.
+//! The grid of density of one worker, and which of its cells are in use.
 
 use super::layout::Layout;
 
-/// One optical depth in the fixed point of cells: sums of integers do not depend on their order.
+/// Optical depth 1 in the fixed-point format of cells. Sums of integers do not depend on their order.
 pub(super) const DEPTH_ONE: f32 = (1 << 20) as f32;
 
-/// Density by cell, all zero outside the groups in use.
+/// Density per cell; 0 outside the groups in use.
 #[derive(Clone, Debug)]
 pub(super) struct Grid {
     pub cells: Vec<u32>,
-    /// One byte a group of slices of a tile: 1 where a deposit went. Bytes, since storing one needs no load of
-    /// what was there; they become bits with [`Grid::take_marks`].
+    /// One byte per group of slices of a tile: 1 if the group received a deposit. Unlike a bit, a byte is stored without a
+    /// load; [`Grid::take_marks`] turns bytes into bits.
     pub marks: Vec<u8>,
-    /// One bit a group, one number a tile: groups that may hold something other than 0.
+    /// One number per tile with one bit per group: groups that may contain non-zero cells.
     pub used: Vec<u64>,
 }
 
 impl Grid {
     pub(super) fn new(layout: &Layout) -> Self {
-        // Zeroed memory comes from the operating system page by page as it is used.
+        // The operating system maps zeroed memory page by page, at the first use.
         Self {
             cells: vec![0; layout.cells()],
             marks: vec![0; layout.tiles() * layout.groups()],
@@ -26,7 +26,7 @@ impl Grid {
         }
     }
 
-    /// Makes the grid empty.
+    /// Clears the grid.
     pub(super) fn clear(&mut self, layout: &Layout) {
         for (tile, used) in self.cells.chunks_exact_mut(layout.tile_len()).zip(&mut self.used) {
             for group in bits(std::mem::take(used)) {
@@ -50,7 +50,7 @@ impl Grid {
     }
 }
 
-/// The positions of the bits that are set, from the lowest.
+/// The positions of the bits that are set, lowest first.
 pub(super) fn bits(mut word: u64) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
         let at = word.trailing_zeros();

@@ -1,7 +1,7 @@
-//! Where the map's cells lie in the world.
+//! The placement of the map's cells in the world.
 //!
-//! The cells are a window of `N × N × N` on an infinite lattice of cubes along the light's axes, one corner of
-//! which is the anchor. The window follows the hair; the lattice follows the anchor alone.
+//! The cells are a window of `N × N × N` cubes on an infinite lattice along the light's axes, one corner of which is the
+//! anchor. The window follows the hair; the lattice follows only the anchor.
 
 use glam::{IVec3, Mat4, Vec3, Vec4};
 use lovelock_groom::Strands;
@@ -10,35 +10,35 @@ use super::{MapExtent, VoxelMapSettings};
 use crate::bounds::{Bounds, FARTHEST, SMALLEST_CELL, round_up_to_step};
 use crate::{LightFrame, ShadowInput};
 
-/// Cells of the window that hair cannot use: an empty one on each side, and one that hair's bounds may cut
-/// where they begin between two corners of the lattice.
+/// Cells along each edge that hair cannot use: an empty one on each side, and one because the bounds of the hair may start
+/// between two corners of the lattice.
 const SPARE_CELLS: u32 = 3;
 
-/// The window of cells, and the way from the world into it.
+/// The window of cells and the transform from world space into it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lattice {
     /// Cells along each edge, *N*.
     pub resolution: u32,
     /// Edge of a cell, *ds*, metres.
     pub cell_size: f32,
-    /// The corner of the lattice that is fixed, world space.
+    /// The fixed corner of the lattice, world space.
     pub anchor: Vec3,
-    /// The light's axes divided by the cell's size: scalar products with them count cells.
+    /// The light's axes divided by the size of a cell: dot products with them are in cells.
     pub axes_per_cell: [Vec3; 3],
-    /// Lattice coordinates of the window's first cell (the paper's i with index min, and its like for j and k).
+    /// Lattice coordinates of the first cell of the window (the paper's i_min, and likewise for j and k).
     pub first: IVec3,
 }
 
 impl Lattice {
     /// The window for hair within `bounds`.
     ///
-    /// The cell's size moves in steps of a sixteenth of an octave, so that it stays as it is from frame to
-    /// frame while the hair's extent changes little.
+    /// The size of a cell is rounded up to a sixteenth of an octave, so that it stays the same from frame to frame while the
+    /// extent of the hair changes little.
     pub fn new(input: &ShadowInput, settings: &VoxelMapSettings, bounds: &Bounds) -> Self {
         Self::place((input.light, input.anchor), || longest_strand(input.strands), settings, bounds)
     }
 
-    /// [`Lattice::new`] for strands that are elsewhere. Their longest one is asked for where the extent depends on it.
+    /// [`Lattice::new`] for strands in GPU memory. `longest_strand` is called only where the extent depends on it.
     pub(crate) fn place(
         (light, anchor): (LightFrame, Vec3),
         longest_strand: impl FnOnce() -> f32,
@@ -62,7 +62,7 @@ impl Lattice {
         let cell_size = round_up_to_step(wanted.max(SMALLEST_CELL).max(farthest / 65_536.0));
         let per_cell = 1.0 / cell_size;
         let (low, high) = ((min * per_cell).floor().as_ivec3(), (max * per_cell).floor().as_ivec3());
-        // What the hair does not need lies half on each side.
+        // Cells that the hair does not need are split evenly between both sides.
         let spare = (IVec3::splat(resolution as i32) - (high - low + 1)).max(IVec3::ZERO);
         Self {
             resolution,
@@ -79,7 +79,7 @@ impl Lattice {
         Vec3::from(self.axes_per_cell.map(|axis| d.x * axis.x + d.y * axis.y + d.z * axis.z))
     }
 
-    /// Coordinates of `p` in the window, in cells: its cell is their whole part.
+    /// Coordinates of `p` in the window, in cells; the integer part is the cell.
     pub fn window_from_world(&self, p: Vec3) -> Vec3 {
         self.lattice_from_world(p) - self.first.as_vec3()
     }
@@ -96,27 +96,26 @@ impl Lattice {
         Mat4::from_cols(row(2), row(1), row(0), Vec4::W).transpose()
     }
 
-    /// Whether a point in window coordinates is one of those that the window was made for: finite, and not one
-    /// that was left out for its distance.
+    /// Whether a point in window coordinates was included in the bounds of the window: it is finite and not too far away.
     pub fn holds(&self, p: Vec3) -> bool {
         p.abs().cmple(Vec3::splat(2.0 * self.resolution as f32)).all()
     }
 
-    /// The paper's mapping Ψ: the cell of `p` in a map that is addressed modulo *N*, so that the window may
-    /// slide over the lattice without moving what is stored.
+    /// The paper's mapping Ψ: the cell of `p` in a map addressed modulo *N*, so that the window can slide over the lattice
+    /// without moving stored cells.
     ///
-    /// Read with the floor and the Euclidean modulus: truncation is wrong by a cell below zero.
+    /// This uses the floor and the Euclidean modulus; truncation would be off by one cell below zero.
     pub fn psi(&self, p: Vec3) -> [usize; 3] {
         self.wrapped(self.lattice_from_world(p).floor().as_ivec3())
     }
 
-    /// Where a map addressed modulo *N* stores a cell of the lattice.
+    /// The place of a lattice cell in a map addressed modulo *N*.
     pub fn wrapped(&self, cell: IVec3) -> [usize; 3] {
         cell.to_array().map(|c| c.rem_euclid(self.resolution as i32) as usize)
     }
 }
 
-/// Length of the longest strand along its points, metres; strands that are not finite count for nothing.
+/// The largest sum of segment lengths of a strand, metres. Strands that are not finite are ignored.
 pub fn longest_strand(strands: &Strands) -> f32 {
     let ends = strands.first_point.windows(2).map(|ends| ends[0] as usize..ends[1] as usize);
     let length = |range: std::ops::Range<usize>| -> f32 {

@@ -1,18 +1,17 @@
-//! Where a cell of the quick map lies in memory.
+//! The memory layout of the map on the CPU.
 //!
-//! Columns of cells (along the light) are bundled by 4 × 4 into *tiles*: `[tile j][tile k][i][4 × 4]`. One
-//! slice of a tile is one cache line, and the address is a sum of one term for each coordinate. Hair
-//! fills few tiles, and a short run of slices in each; nothing else is ever cleared, summed or even mapped by
-//! the operating system.
-// Compiled within the versions of `simd`.
+//! Columns of cells (along the light) are grouped by 4 × 4 into *tiles*: `[tile j][tile k][i][4 × 4]`. One slice of a tile is
+//! one cache line, and an address is the sum of one term per coordinate. Hair fills few tiles, and a short run of slices in
+//! each; other memory is neither cleared nor summed, and the operating system does not map it.
+// Functions are inlined into the loops that `simd_versions!` compiles.
 #![allow(clippy::inline_always)]
 
-/// Logarithm of the columns along the edge of a tile. Tiles of 8 × 8 were as quick, but fill half as many cells
-/// again: 41 % against 25 % of the published hairstyle at 128³.
+/// Base-2 logarithm of the columns along the edge of a tile. Tiles of 8 × 8 are as fast but fill more cells: 41 % instead of
+/// 25 % of the map of the published hairstyle at 128³.
 const EDGE_SHIFT: u32 = 2;
 /// Cells of one slice of a tile.
 pub(super) const TILE_CELLS: usize = 1 << (2 * EDGE_SHIFT);
-/// From slices to cells of a tile.
+/// Shift from slices to cells of a tile.
 const SLICE_SHIFT: u32 = 2 * EDGE_SHIFT;
 /// The bits of j and k within a tile.
 const WITHIN: u32 = (1 << EDGE_SHIFT) - 1;
@@ -24,9 +23,9 @@ pub(super) struct Layout {
     pub resolution: u32,
     /// Tiles along each edge across the light.
     pub tiles_per_edge: u32,
-    /// Logarithm of a tile's number of cells, to which slices are padded: a power of two.
+    /// Base-2 logarithm of the number of cells of a tile; slices are padded to a power of two.
     pub tile_shift: u32,
-    /// Logarithm of the slices in a *group*, the unit in which touched slices are recorded.
+    /// Base-2 logarithm of the slices in a *group*, the unit in which touched slices are recorded.
     pub group_shift: u32,
 }
 
@@ -53,12 +52,12 @@ impl Layout {
         self.tiles() << self.tile_shift
     }
 
-    /// Groups of slices in a tile.
+    /// Groups of slices per tile.
     pub(super) fn groups(&self) -> usize {
         self.tile_len() >> self.group_len_shift()
     }
 
-    /// Logarithm of the cells in a group of slices: an address shifted right by it counts groups of all tiles.
+    /// Base-2 logarithm of the cells in a group of slices: an address shifted right by it is the index of a group.
     pub(super) fn group_len_shift(&self) -> u32 {
         self.group_shift + SLICE_SHIFT
     }

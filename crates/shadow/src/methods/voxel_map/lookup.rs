@@ -1,9 +1,10 @@
-//! Filtered lookups: four loads and four exponentials a point.
-// Every loop must be compiled within the version of `simd` that calls it.
-#![allow(clippy::inline_always, clippy::needless_range_loop)]
+//! Filtered lookups: four loads and four exponentials per point.
+// Functions are inlined into the loops that `simd_versions!` compiles; calling those takes `unsafe`.
+#![allow(unsafe_code, clippy::inline_always, clippy::needless_range_loop)]
 
 use glam::Vec3;
 use lovelock_groom::simd::whole_part;
+use lovelock_groom::simd_versions;
 
 use super::lattice::Lattice;
 use super::layout::{Layout, TILE_CELLS};
@@ -12,22 +13,29 @@ use crate::exp::exp_of_minus_steps;
 /// Points that are looked up together.
 pub(super) const BLOCK: usize = 64;
 
-/// A map that is ready to be read.
+simd_versions! {
+    /// [`Lookup::run`] for the vectors of `width`.
+    pub(super) fn look_up_simd(lookup: &Lookup, x: &[f32], y: &[f32], z: &[f32], out: &mut [f32]) -> () {
+        lookup.run(x, y, z, out)
+    }
+}
+
+/// A map that can be read.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lookup<'a> {
     pub layout: Layout,
     pub lattice: &'a Lattice,
     /// Faces; see `sum`.
     pub cells: &'a [u32],
-    /// Groups of slices with hair in them, a tile.
+    /// Groups of slices that contain hair, per tile.
     pub touched: &'a [u64],
-    /// Groups that hold faces, a tile. Elsewhere the last one before counts; before all of them a column is lit.
+    /// Groups that hold faces, per tile. Elsewhere the last group before it counts; before the first one a column is lit.
     pub filled: &'a [u64],
-    /// Filter as printed in the paper.
+    /// Whether to filter as printed in the paper.
     pub as_printed: bool,
 }
 
-/// Where a block of points lies.
+/// The positions of a block of points in the map.
 struct Places {
     along: [f32; BLOCK],
     across_y: [f32; BLOCK],
@@ -35,7 +43,7 @@ struct Places {
     /// Addresses of the four columns: `(j, k)`, `(j, k + 1)`, `(j + 1, k)`, `(j + 1, k + 1)`.
     addresses: [[u32; BLOCK]; 4],
     slice: [u32; BLOCK],
-    /// The tile that the point itself lies in.
+    /// The tile that contains the point.
     tile: [u32; BLOCK],
 }
 
@@ -47,9 +55,9 @@ impl Lookup<'_> {
         out[0]
     }
 
-    /// Transmittance of many points; slices of one length.
+    /// Transmittance of many points. All slices have the same length.
     #[inline(always)]
-    pub(super) fn run(&self, x: &[f32], y: &[f32], z: &[f32], out: &mut [f32]) {
+    fn run(&self, x: &[f32], y: &[f32], z: &[f32], out: &mut [f32]) {
         let blocks = x.chunks(BLOCK).zip(y.chunks(BLOCK)).zip(z.chunks(BLOCK)).zip(out.chunks_mut(BLOCK));
         for (((x, y), z), out) in blocks {
             if let (Ok(x), Ok(y), Ok(z), Ok(out)) =
@@ -85,7 +93,7 @@ impl Lookup<'_> {
         let (layout, lattice, anchor) = (&self.layout, self.lattice, self.lattice.anchor);
         let first = lattice.first.as_vec3();
         let n = layout.resolution as f32;
-        // A column's value belongs to its centre; as printed, to its far edge.
+        // The value of a column belongs to its centre; in the printed filter, to its far edge.
         let lead = if self.as_printed { 1.0 } else { 0.5 };
         let mut places = Places {
             along: [0.0; BLOCK],
@@ -101,7 +109,7 @@ impl Lookup<'_> {
             let u = (d[0] * to_i.x + d[1] * to_i.y + d[2] * to_i.z) - first.x;
             let v = (d[0] * to_j.x + d[1] * to_j.y + d[2] * to_j.z) - first.y;
             let w = (d[0] * to_k.x + d[1] * to_k.y + d[2] * to_k.z) - first.z;
-            // Before the window and for what is no number: its first face and its border, which are lit.
+            // Points before the window and NaN read the first face and the border, which are lit.
             let (u, i) = split(u, n, layout.resolution - 1);
             let (fy, j) = split(v - lead, n - 1.0, layout.resolution - 2);
             let (fz, k) = split(w - lead, n - 1.0, layout.resolution - 2);
@@ -127,7 +135,7 @@ impl Lookup<'_> {
     fn load(&self, places: &Places) -> [[u32; BLOCK]; 4] {
         let mut faces = [[0; BLOCK]; 4];
         for lane in 0..BLOCK {
-            // Where a tile has hair, it and the tiles around it are filled. Hair itself hardly lies elsewhere.
+            // Tiles with hair and their neighbours are filled, and most points of hair lie there.
             let groups = self.touched[places.tile[lane] as usize];
             if groups >> (places.slice[lane] >> self.layout.group_shift) & 1 == 0 {
                 self.load_anywhere(places, lane, &mut faces);
@@ -140,7 +148,7 @@ impl Lookup<'_> {
         faces
     }
 
-    /// The four cells of a point that may lie outside the groups that are filled.
+    /// The four cells of a point that may lie outside the filled groups.
     #[cold]
     #[inline(never)]
     fn load_anywhere(&self, places: &Places, lane: usize, faces: &mut [[u32; BLOCK]; 4]) {
@@ -149,7 +157,7 @@ impl Lookup<'_> {
         }
     }
 
-    /// The faces of any cell: in a gap both are the last back face before it.
+    /// The faces of any cell. In a gap between groups both are the last back face before it.
     pub(super) fn cell_anywhere(&self, address: usize) -> u32 {
         let layout = &self.layout;
         let tile = address >> layout.tile_shift;
@@ -165,7 +173,7 @@ impl Lookup<'_> {
     }
 }
 
-/// The fraction and the whole part of `c`, held within `0..=end` and at most `last`.
+/// The fractional and the integer part of `c`, clamped to `0..=end`; the integer part is at most `last`.
 #[inline(always)]
 fn split(c: f32, end: f32, last: u32) -> (f32, u32) {
     // NaN becomes 0.
@@ -185,7 +193,7 @@ fn filter<const AS_PRINTED: bool>(places: &Places, faces: &[[u32; BLOCK]; 4], ou
             if AS_PRINTED {
                 mix(exp_of_minus_steps(front), exp_of_minus_steps(back), places.along[lane])
             } else {
-                // Exact for a cell of even density.
+                // Exact for a cell of uniform density.
                 exp_of_minus_steps(mix(front, back, places.along[lane]))
             }
         };
@@ -201,7 +209,7 @@ fn mix(a: f32, b: f32, t: f32) -> f32 {
     a + (b - a) * t
 }
 
-/// Transmittance of a whole column: what its last back face says.
+/// Transmittance of a whole column, from its last back face.
 pub(super) fn behind_all(cell: u32) -> f32 {
     exp_of_minus_steps((cell >> 16) as i32 as f32)
 }

@@ -19,11 +19,10 @@ mod layout;
 mod lookup;
 pub mod reference;
 mod samples;
-mod simd;
 mod sum;
 
 pub use cpu::VoxelMap;
-pub(crate) use gpu::GpuVoxelMap;
+use gpu::GpuVoxelMap;
 pub use lattice::{Lattice, longest_strand};
 
 pub use crate::bounds::Bounds;
@@ -31,6 +30,29 @@ pub use crate::bounds::Bounds;
 use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
+
+use crate::RayMarkKind;
+use crate::method::{MapKind, MapSize, Method};
+
+pub(super) static METHOD: Method = Method {
+    id: "voxel-map",
+    label: "Voxel map",
+    description: "Density of hair in a grid along the light, summed slice by slice (Bertails, Ménier, Cani 2005).",
+    source: Some(
+        "Bertails, Ménier, Cani 2005, A Practical Self-Shadowing Algorithm for Interactive Hair Animation",
+    ),
+    advice: "lower the map's resolution or the number of strands",
+    map: MapKind::Cells,
+    size: |settings| Some(MapSize { edge: settings.voxel_map.resolution, per_texel: None }),
+    marks: &[CELL],
+    counts_points: |settings| settings.voxel_map.deposit == VoxelDeposit::PointCount,
+    cpu: || Box::new(VoxelMap::default()),
+    gpu: |gpu| Ok(Box::new(GpuVoxelMap::new(gpu)?)),
+    shaders: GpuVoxelMap::shaders,
+};
+
+/// A cell of the column.
+pub(crate) const CELL: RayMarkKind = RayMarkKind { label: "Cell", resolves_depth: true };
 
 /// How large the map is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

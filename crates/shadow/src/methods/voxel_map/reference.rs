@@ -1,7 +1,7 @@
-//! The voxel map in plain code: dense, in double precision, one loop a step of the paper.
+//! The voxel map in plain code: dense, in double precision, one loop per step of the paper.
 //!
-//! The quick map is held against it, and it carries the paper's own addressing. It is for tests and
-//! benchmarks: building one takes a hundred times as long.
+//! Tests compare the fast map with it. It also implements the addressing of the paper. It is for tests and benchmarks only,
+//! because building one takes a hundred times as long.
 
 use glam::{IVec3, Vec3};
 use lovelock_groom::Strands;
@@ -24,7 +24,7 @@ pub enum Addressing {
 /// A dense map of optical depth.
 #[derive(Clone, Debug)]
 pub struct DenseMap {
-    /// Where its cells lie.
+    /// The placement of its cells.
     pub lattice: Lattice,
     /// Optical depth added to each cell, `[i][j][k]` with i along the light.
     pub density: Vec<f64>,
@@ -42,7 +42,7 @@ impl DenseMap {
         Self::build_in(Lattice::new(input, &settings.voxel_map, &bounds), input, settings, addressing)
     }
 
-    /// Builds the map of `input` in a window that is given.
+    /// Builds the map of `input` in a given window.
     pub fn build_in(
         lattice: Lattice,
         input: &ShadowInput,
@@ -100,13 +100,13 @@ impl DenseMap {
     }
 
     fn add(&mut self, p: Vec3, depth: f64) {
-        // Rounding must not put hair into the empty cells at the border.
+        // Rounding must not move hair into the empty cells at the border.
         let cell = p.floor().as_ivec3().clamp(IVec3::ONE, IVec3::splat(self.lattice.resolution as i32 - 2));
         let at = self.address(cell);
         self.density[at] += depth;
     }
 
-    /// Where a cell of the window is stored.
+    /// The index at which a cell of the window is stored.
     fn address(&self, cell: IVec3) -> usize {
         let n = self.lattice.resolution as usize;
         let [i, j, k] = match self.addressing {
@@ -116,7 +116,7 @@ impl DenseMap {
         (i * n + j) * n + k
     }
 
-    /// Equation 3 in optical depth: from the slice nearest to the light to the farthest, inclusive.
+    /// Equation 3 in terms of optical depth: an inclusive sum from the slice nearest to the light to the farthest.
     fn sum_along_light(&mut self) {
         let n = self.lattice.resolution as i32;
         for j in 0..n {
@@ -131,8 +131,8 @@ impl DenseMap {
         }
     }
 
-    /// Optical depth at the back face of a cell of the window; before the first slice it is none, and beside
-    /// the window it is that of the border.
+    /// Optical depth at the back face of a cell of the window: 0 before the first slice, and that of the border beside the
+    /// window.
     fn back_face(&self, i: i32, j: i32, k: i32) -> f64 {
         let last = self.lattice.resolution as i32 - 1;
         if i < 0 {
@@ -151,7 +151,7 @@ impl DenseMap {
         let along = p.x.clamp(0.0, n);
         let i = (along as i32).min(n as i32 - 1);
         let along = f64::from(along) - f64::from(i);
-        // The value of a column belongs to its centre; the paper's print has it at the far edge.
+        // The value of a column belongs to its centre; as printed in the paper, to its far edge.
         let lead = match self.filter {
             VoxelFilter::Centred => 0.5,
             VoxelFilter::Paper => 1.0,
@@ -174,7 +174,7 @@ impl DenseMap {
         sum
     }
 
-    /// Transmittance of the cell that `p` lies in, unfiltered.
+    /// Unfiltered transmittance of the cell that contains `p`.
     pub fn unfiltered(&self, p: Vec3) -> f64 {
         let cell = self.lattice.window_from_world(p).floor().as_ivec3();
         (-self.back_face(cell.x, cell.y, cell.z)).exp()

@@ -1,24 +1,24 @@
-//! Transmittance: optical depth summed along the light, in place.
+//! The sum of optical depth along the light, in place.
 //!
-//! A cell becomes two numbers of 16 bits in steps of 1/4096: optical depth at its front face below, at its back
-//! face above. One load then holds all that interpolation along the light needs.
+//! A cell becomes two 16-bit numbers in steps of 1/4096: optical depth at its front face in the low half, at its back face in
+//! the high half. One load then provides everything that interpolation along the light needs.
 
-// Compiled within the versions of `simd`.
-#![allow(clippy::inline_always)]
+// Functions are inlined into the loops that `simd_versions!` compiles; calling those takes `unsafe`.
+#![allow(clippy::inline_always, unsafe_code)]
 
 use lovelock_groom::simd::Width;
+use lovelock_groom::simd_versions;
 use rayon::prelude::*;
 
 use super::grid::{Grid, bits};
 use super::layout::{Layout, TILE_CELLS};
-use super::simd;
 
-/// Where sums stop: above 16 in fixed point, the largest depth that a cell can hold, and far from overflow.
+/// The value at which sums saturate: above 16 in fixed point, the largest depth that a cell can hold, and far from overflow.
 const MOST: u32 = 1 << 25;
-/// From the fixed point of density (2^20) to that of faces (2^12).
+/// Shift from the fixed-point format of density (2^20) to that of faces (2^12).
 const FACE_SHIFT: u32 = 8;
 
-/// The groups with hair in them, a tile, of all grids together.
+/// The groups that contain hair in any of the grids, per tile.
 pub(super) fn touched(grids: &[Grid], touched: &mut Vec<u64>) {
     touched.clear();
     if let Some((first, others)) = grids.split_first() {
@@ -29,8 +29,8 @@ pub(super) fn touched(grids: &[Grid], touched: &mut Vec<u64>) {
     }
 }
 
-/// The groups of `tile` to fill: those touched in it or in a tile around it. A point reads columns up to one
-/// beyond its own on either side, so these must be filled where the point lies.
+/// The groups of `tile` to fill: those that contain hair in it or in a tile around it, because a point reads the columns next
+/// to its own.
 pub(super) fn dilated(layout: &Layout, touched: &[u64], tile: usize) -> u64 {
     let edge = layout.tiles_per_edge as usize;
     let (j, k) = (tile / edge, tile % edge);
@@ -40,22 +40,29 @@ pub(super) fn dilated(layout: &Layout, touched: &[u64], tile: usize) -> u64 {
         .fold(0, |groups, more| groups | more)
 }
 
-/// Sums every tile over all grids into the first, in the groups that hair may read; these become the first
-/// grid's groups in use.
+/// Adds all grids to the first one and sums along the light, in the groups that hair may read. These become the groups in use
+/// of the first grid.
 pub(super) fn sum_along_light(width: Width, layout: &Layout, grids: &mut [Grid], touched: &[u64]) {
     let Some((target, others)) = grids.split_first_mut() else { return };
     let tiles = target.cells.par_chunks_exact_mut(layout.tile_len()).zip(&mut target.used);
     tiles.enumerate().with_min_len(64).for_each(|(tile, (cells, used))| {
         *used = dilated(layout, touched, tile);
         if *used != 0 {
-            simd::sum_tile(width, layout, tile, *used, cells, others);
+            sum_tile_simd(width, layout, tile, *used, cells, others);
         }
     });
 }
 
-/// Adds the `others` to `cells`, those of `tile`, and sums the groups of `used` along the light.
+simd_versions! {
+    /// [`sum_tile`] for the vectors of `width`.
+    fn sum_tile_simd(layout: &Layout, tile: usize, used: u64, cells: &mut [u32], others: &[Grid]) -> () {
+        sum_tile(layout, tile, used, cells, others)
+    }
+}
+
+/// Adds the cells of `tile` of the `others` to `cells`, then sums the groups in `used` along the light.
 #[inline(always)]
-pub(super) fn sum_tile(layout: &Layout, tile: usize, used: u64, cells: &mut [u32], others: &[Grid]) {
+fn sum_tile(layout: &Layout, tile: usize, used: u64, cells: &mut [u32], others: &[Grid]) {
     let mut faces = Faces::default();
     for group in bits(used) {
         let cells = &mut cells[layout.group_cells(group)];
@@ -71,7 +78,7 @@ pub(super) fn sum_tile(layout: &Layout, tile: usize, used: u64, cells: &mut [u32
     }
 }
 
-/// The state of a tile's columns on the way from the light.
+/// The running sums of the columns of a tile.
 struct Faces {
     sum: [u32; TILE_CELLS],
     front: [u32; TILE_CELLS],
@@ -84,7 +91,7 @@ impl Default for Faces {
 }
 
 impl Faces {
-    /// Takes up one slice of density and leaves its faces there.
+    /// Adds one slice of density and replaces it by its faces.
     #[inline(always)]
     fn pass(&mut self, slice: &mut [u32; TILE_CELLS]) {
         for ((cell, sum), front) in slice.iter_mut().zip(&mut self.sum).zip(&mut self.front) {

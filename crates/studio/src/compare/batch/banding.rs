@@ -6,7 +6,7 @@ use glam::Vec3;
 use lovelock_groom::Strands;
 use lovelock_metrics::{banding, errors};
 use lovelock_render::{ShadowMethod, ShadowSettings, VoxelDeposit};
-use lovelock_shadow::{LightFrame, RayMarkKind, RayStructure, ShadowInput, cpu_shadow};
+use lovelock_shadow::{LightFrame, RayStructure, ShadowInput, cpu_shadow};
 
 use crate::BandingReport;
 
@@ -77,10 +77,9 @@ pub(super) fn slab(settings: &ShadowSettings) -> Option<BandingReport> {
 
 /// The depth of a slice, metres, where a method has some of one depth.
 fn slice(ray: &RayStructure) -> Option<f32> {
-    let kinds = [RayMarkKind::Slice, RayMarkKind::Layer, RayMarkKind::Cell];
-    let of = |kind| ray.marks.iter().filter(move |mark| mark.kind == kind).map(|mark| mark.end - mark.start);
-    let kind = kinds.into_iter().find(|kind| of(*kind).next().is_some())?;
-    let (low, high) = of(kind).fold((f32::INFINITY, 0.0_f32), |(low, high), d| (low.min(d), high.max(d)));
+    let slices = ray.marks.iter().filter(|mark| mark.kind.resolves_depth);
+    let depths = slices.map(|mark| mark.end - mark.start);
+    let (low, high) = depths.fold((f32::INFINITY, 0.0_f32), |(low, high), d| (low.min(d), high.max(d)));
     // Depths are rounded differently from slice to slice.
     (low > 0.0 && high < 1.02 * low).then_some(0.5 * (low + high))
 }

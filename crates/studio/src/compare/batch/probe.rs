@@ -73,7 +73,7 @@ impl Probe {
             .map(|truth| truth.map.along_ray(hit.position).marks)
             .unwrap_or_default()
             .iter()
-            .filter(|mark| mark.kind == RayMarkKind::Fragment)
+            .filter(|mark| mark.kind == RayMarkKind::FRAGMENT)
             .map(|mark| (mark.start, mark.transmittance))
             .collect();
         let reach = |of: Option<&(f32, f32)>, usual: f32| of.map_or(usual, |step| step.0);

@@ -139,7 +139,7 @@ impl ExactReference {
     /// [`ExactReference::transmittance`] was last asked for: depth from `p`, metres, and transmittance from there on.
     pub(super) fn steps(&mut self, p: Vec3) -> Vec<(f32, f32)> {
         let found = self.unseen.along_ray(0, p).unwrap_or_default();
-        let steps = found.marks.iter().filter(|mark| mark.kind == RayMarkKind::Fragment);
+        let steps = found.marks.iter().filter(|mark| mark.kind == RayMarkKind::FRAGMENT);
         steps.map(|mark| (mark.start, mark.transmittance)).collect()
     }
 }

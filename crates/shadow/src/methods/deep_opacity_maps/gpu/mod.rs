@@ -24,15 +24,15 @@ impl GpuTexelMethod for Layers {
     const QUERY: &'static [ShaderPart] = &[LAYER, QUERY];
 
     fn needs(&self) -> Needs {
-        let mut broken = [0.0; 32];
-        let (starts, per_depth) = broken.split_at_mut(self.starts.len());
+        let mut floats = [0.0; 32];
+        let (starts, per_depth) = floats.split_at_mut(self.starts.len());
         starts.copy_from_slice(&self.starts);
         per_depth.copy_from_slice(&self.per_depth);
         Needs {
             map_words: self.cells() as u64,
             scratch_words: 0,
-            whole: [self.count as u32, 0, 0, 0],
-            broken,
+            integers: [self.count as u32, 0, 0, 0],
+            floats,
         }
     }
 }

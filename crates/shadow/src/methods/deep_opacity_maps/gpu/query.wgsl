@@ -1,4 +1,4 @@
-// Optical depth before a point: between the ends of two layers.
+// Optical depth before a point, interpolated between the ends of two layers.
 
 fn depth_before(texel: u32, depth: f32) -> f32 {
     let record = record_of(texel);

@@ -1,4 +1,4 @@
-// Adds weights by layer.
+// Adds weights per layer.
 
 fn put(texel: u32, depth: f32, weight: u32) {
     let record = record_of(texel);

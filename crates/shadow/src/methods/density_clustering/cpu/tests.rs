@@ -54,7 +54,7 @@ fn one_fragment_and_many_at_one_depth_are_a_step() {
 
 #[test]
 fn clusters_without_hair_or_spread_leave_the_others_alone() {
-    // Two depths for up to eight clusters: all others are empty, and these two have no spread.
+    // Two depths and up to eight clusters: two clusters have no spread, and the others are empty.
     for seeds in SEEDS {
         for clusters in 2..=8 {
             let method = method(clusters, seeds);
@@ -81,12 +81,12 @@ fn hair_without_optical_depth_casts_nothing() {
 
 #[test]
 fn bins_that_overlap_meet_half_way_and_hold_their_centres() {
-    // The first reaches far over the second's centre.
+    // The first bin extends far over the centre of the second.
     let ranges = ranges(&[0.4, 0.5, 0.9], &[0.2, 0.01, 0.0], 0.002, 3);
     let (first, second, third) = (ranges[0], ranges[1], ranges[2]);
     assert_eq!(first.1, second.0);
     assert!((0.4..=0.5).contains(&first.1) && first.0 < 0.4 && second.1 > 0.5);
-    // Without overlap nothing is moved, and what has no spread has the least width.
+    // Without overlap nothing is moved, and a cluster without spread has the least width.
     assert!((third.1 - third.0 - 0.002).abs() < 1e-9 && third.0 > second.1);
     // Half way, where both centres lie outside the overlap.
     let [a, b] = super::ranges(&[0.3, 0.6], &[0.1, 0.1], 0.0, 2);
@@ -96,7 +96,7 @@ fn bins_that_overlap_meet_half_way_and_hold_their_centres() {
 
 #[test]
 fn all_of_the_hair_counts_wherever_it_falls() {
-    // Fragments outside all bins go to the nearest: nothing is lost and nothing counted twice.
+    // Fragments outside all bins go to the nearest one: none is lost or counted twice.
     let mut state = 7_u64;
     let mut unit = move || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -110,7 +110,7 @@ fn all_of_the_hair_counts_wherever_it_falls() {
             let record = filled(&method, &fragments);
             let total: f32 = record.iter().map(|bin| bin.optical_depth).sum();
             assert!((total - sum).abs() < 1e-4 * sum, "{total} of {sum}");
-            // Bins do not overlap, and light never returns.
+            // Bins do not overlap, and transmittance never rises.
             let mut last = 0.0;
             for step in 0..=100 {
                 let before = method.depth_before(&[], &record, step as f32 * 0.0105 - 0.01);
@@ -123,7 +123,7 @@ fn all_of_the_hair_counts_wherever_it_falls() {
 
 #[test]
 fn the_merged_deviation_is_that_of_the_pass_that_found_the_centres() {
-    // With hair that changes no cluster, both are the same.
+    // If no hair changes its cluster, both are the same.
     let fragments = [(0.1, 1.0), (0.12, 1.0), (0.35, 0.5), (0.6, 1.0), (0.63, 2.0), (0.88, 1.0), (0.9, 1.0)];
     let mut settings = ShadowSettings::default();
     settings.density_clustering.seeds = ClusterSeeds::Uniform;
@@ -131,7 +131,7 @@ fn the_merged_deviation_is_that_of_the_pass_that_found_the_centres() {
     settings.density_clustering.deviation = ClusterDeviation::Merged;
     let merged = filled(&Clustering::new(&settings), &fragments);
     for (a, b) in exact.iter().zip(&merged) {
-        // Sums of differences from the seed against those from the centre.
+        // One sums offsets from the seed, the other offsets from the centre.
         assert!(close(a.start, b.start) && close(1.0 / a.per_depth, 1.0 / b.per_depth), "{a:?}, {b:?}");
         assert_eq!(a.optical_depth, b.optical_depth);
     }

@@ -1,10 +1,10 @@
-// Clusters to bins. What scratch memory had of a cluster becomes the border behind it, and start and end of its bin.
+// Turns clusters into bins. Scratch memory of a cluster becomes the border behind it, and start and end of its bin.
 
-// Half the width of an even distribution over its standard deviation.
+// Half the width of a uniform distribution divided by its standard deviation.
 const GAMMA: f32 = 1.7320508;
-// Half the least width of a bin: a cluster at one depth has no spread.
+// Half the least width of a bin: a cluster at a single depth has no spread.
 const LEAST_HALF: f32 = 0.5 / 256.0;
-// One over the width of a bin without: a step.
+// 1 over the width of a bin without width: a step.
 const STEEPEST: f32 = 1e30;
 
 fn texel_pass(texel: u32) {
@@ -16,18 +16,18 @@ fn texel_pass(texel: u32) {
     var ends: array<f32, 8>;
     var kept = 0u;
     var last = 0.0;
-    for (var j = 0u; j < texels.whole.x; j++) {
+    for (var j = 0u; j < texels.integers.x; j++) {
         var middle = centre(texel, j);
         let border = select(0.5 * (last + middle), 0.0, j == 0u);
         last = middle;
         let sums = sums_of(texel, j);
         let weight = atomicLoad(&scratch[sums]);
-        // Those without hair go before anything is compared with its neighbour.
+        // Clusters without hair are removed before neighbours are compared.
         if (weight == 0u) {
             continue;
         }
         var square = over_weight(atomicLoad(&scratch[sums + 1u]), atomicLoad(&scratch[sums + 2u]), weight);
-        if (texels.whole.z != 0u) {
+        if (texels.integers.z != 0u) {
             let mean = square;
             let at = bin_of(texel, j) + 1u;
             square = over_weight(atomicLoad(&map[at]), atomicLoad(&map[at + 1u]), weight);
@@ -42,7 +42,7 @@ fn texel_pass(texel: u32) {
     }
     for (var j = 1u; j < kept; j++) {
         if (ends[j - 1u] > starts[j]) {
-            // A bin holds its own centre, however far a neighbour reaches.
+            // A bin always contains its own centre.
             let border = clamp(0.5 * (ends[j - 1u] + starts[j]), centres[j - 1u], centres[j]);
             ends[j - 1u] = border;
             starts[j] = border;
@@ -50,7 +50,7 @@ fn texel_pass(texel: u32) {
     }
     let range = range_of(texel);
     let depth = range.y - range.x;
-    for (var j = 0u; j < texels.whole.x; j++) {
+    for (var j = 0u; j < texels.integers.x; j++) {
         let bin = bin_of(texel, j);
         let sums = sums_of(texel, j);
         var border = NOWHERE;

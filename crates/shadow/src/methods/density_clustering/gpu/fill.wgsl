@@ -1,20 +1,20 @@
-// Adds weights to bins: to that of the nearest centre, but for a bin that holds the fragment.
+// Adds the weight of a fragment to the bin of the nearest centre, unless the bin of a neighbour contains the fragment.
 
-// A fragment that lies so little outside the bin of its own cluster counts as within.
+// The distance outside the bin of its own cluster at which a fragment still counts as inside.
 const SLACK: f32 = 1.0 / 65536.0;
 
 fn put(texel: u32, depth: f32, weight: u32) {
     let part = part_of(texel, depth);
     let first = sums_of(texel, 0u);
     var j = 0u;
-    while (j + 1u < texels.whole.x && part > bitcast<f32>(atomicLoad(&scratch[first + 3u * j]))) {
+    while (j + 1u < texels.integers.x && part > bitcast<f32>(atomicLoad(&scratch[first + 3u * j]))) {
         j++;
     }
     let at = first + 3u * j;
     if (j > 0u && part < bitcast<f32>(atomicLoad(&scratch[at + 1u])) - SLACK
         && part <= bitcast<f32>(atomicLoad(&scratch[at - 1u]))) {
         j--;
-    } else if (j + 1u < texels.whole.x && part > bitcast<f32>(atomicLoad(&scratch[at + 2u])) + SLACK
+    } else if (j + 1u < texels.integers.x && part > bitcast<f32>(atomicLoad(&scratch[at + 2u])) + SLACK
         && part >= bitcast<f32>(atomicLoad(&scratch[at + 4u]))) {
         j++;
     }

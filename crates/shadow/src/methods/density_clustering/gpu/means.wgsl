@@ -1,4 +1,4 @@
-// Weights by cluster, and their distances from the border before it.
+// Sums per cluster: weights, and weighted distances from the border before the cluster.
 
 fn put(texel: u32, depth: f32, weight: u32) {
     let part = part_of(texel, depth);

@@ -1,4 +1,4 @@
-// Weights by cluster, their distances from the border before it, and the squares of these.
+// Sums per cluster: weights, weighted distances from the border before the cluster, and weighted squares of them.
 
 fn put(texel: u32, depth: f32, weight: u32) {
     let part = part_of(texel, depth);

@@ -61,7 +61,7 @@ impl GpuTexelMethod for Clustering {
         Needs {
             map_words: 3 * clusters,
             scratch_words: RANGE_WORDS + histogram.max(3 * clusters),
-            whole: [clusters as u32, seeds, u32::from(merged), u32::from(self.settings.prefiltered)],
+            integers: [clusters as u32, seeds, u32::from(merged), u32::from(self.settings.prefiltered)],
             ..Needs::default()
         }
     }

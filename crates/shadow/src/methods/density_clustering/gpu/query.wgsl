@@ -1,9 +1,9 @@
-// Optical depth before a point: it rises evenly through each bin.
+// Optical depth before a point: it rises linearly through each bin.
 
 fn depth_before(texel: u32, depth: f32) -> f32 {
     var sum = 0.0;
-    for (var j = 0u; j < texels.whole.x; j++) {
-        let bin = 3u * (texel * texels.whole.x + j);
+    for (var j = 0u; j < texels.integers.x; j++) {
+        let bin = 3u * (texel * texels.integers.x + j);
         let weight = map[bin + 2u];
         if (weight > 0u) {
             let part = (depth - bitcast<f32>(map[bin])) * bitcast<f32>(map[bin + 1u]);

@@ -1,7 +1,7 @@
 // The depth range of each texel.
 
 fn put(texel: u32, depth: f32, weight: u32) {
-    // Depths are not negative: their bits are ordered as they are.
+    // Depths are not negative, so their bits have the same order.
     let bits = bitcast<u32>(depth);
     let at = scratch_of(texel);
     if (atomicLoad(&scratch[at]) < ~bits) {

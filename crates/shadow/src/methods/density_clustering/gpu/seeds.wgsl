@@ -1,16 +1,16 @@
-// Where clusters start. Twin of seeds.rs.
+// The initial centres of clusters. Twin of seeds.rs.
 
 fn even(j: u32) -> f32 {
-    return (f32(j) + 0.5) / f32(texels.whole.x);
+    return (f32(j) + 0.5) / f32(texels.integers.x);
 }
 
 fn texel_pass(texel: u32) {
     if (is_empty(texel)) {
         return;
     }
-    if (texels.whole.y != 2u) {
-        let drawn = select(1.0, 0.75, texels.whole.y == 1u);
-        for (var j = 0u; j < texels.whole.x; j++) {
+    if (texels.integers.y != 2u) {
+        let drawn = select(1.0, 0.75, texels.integers.y == 1u);
+        for (var j = 0u; j < texels.integers.x; j++) {
             set_centre(texel, j, even(j) * drawn);
         }
         return;
@@ -25,8 +25,8 @@ fn texel_pass(texel: u32) {
         atomicStore(&scratch[first + bin], 0u);
     }
     var bin = 0u;
-    for (var j = 0u; j < texels.whole.x; j++) {
-        let wanted = lost[HISTOGRAM_BINS] * (f32(j) + 0.5) / f32(texels.whole.x);
+    for (var j = 0u; j < texels.integers.x; j++) {
+        let wanted = lost[HISTOGRAM_BINS] * (f32(j) + 0.5) / f32(texels.integers.x);
         while (bin + 1u < HISTOGRAM_BINS && lost[bin + 1u] < wanted) {
             bin++;
         }

@@ -1,4 +1,4 @@
-// Weights by cluster, and squares of their distances from its centre.
+// Sums per cluster: weights, and weighted squares of distances from the centre.
 
 fn put(texel: u32, depth: f32, weight: u32) {
     let part = part_of(texel, depth);

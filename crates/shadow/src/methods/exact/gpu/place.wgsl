@@ -1,10 +1,10 @@
-// Gives each texel its place in the list, in no order: texels of a workgroup lie together. Its count becomes the place of its
-// first fragment, from where scattering goes on.
+// Allocates a range of the list for each texel. Texels of a workgroup are adjacent; workgroups have no order. The count of a
+// texel becomes the index of its first fragment, which the scatter pass advances.
 
 var<workgroup> counts: array<u32, 64>;
 var<workgroup> group_start: u32;
 
-// A sum that stops at the largest number.
+// A saturating sum.
 fn sum_of(a: u32, b: u32) -> u32 {
     return select(a + b, 0xffffffffu, a + b < a);
 }
@@ -22,7 +22,7 @@ fn each_group(
     }
     counts[local] = own;
     workgroupBarrier();
-    // Running sums (Hillis, Steele 1986).
+    // Prefix sums (Hillis, Steele 1986).
     for (var reach = 1u; reach < 64u; reach <<= 1u) {
         var sum = counts[local];
         if (local >= reach) {

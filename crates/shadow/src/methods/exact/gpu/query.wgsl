@@ -1,11 +1,11 @@
-// Optical depth of the fragments before a point. Those at its own depth do not count.
+// Optical depth of the fragments before a point. Fragments at exactly its depth do not count.
 
 @group(0) @binding(5) var<storage, read> list: array<vec2u>;
 
 const LIST_HEAD: u32 = 2u;
 
 fn depth_before(texel: u32, depth: f32) -> f32 {
-    // A list without room is drawn anew; until then nothing beyond its end is read.
+    // A list that was too small is rebuilt; until then nothing beyond its end is read.
     let end = min(map[texel * 2u + 1u], arrayLength(&list) - LIST_HEAD);
     let start = min(map[texel * 2u], end);
     var low = start;

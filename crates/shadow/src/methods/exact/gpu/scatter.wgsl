@@ -1,4 +1,5 @@
-// Puts each fragment into the list. What there is no room for is left out; the list is then made larger and all drawn anew.
+// Writes each fragment into the list. Fragments beyond its capacity are dropped; then the list is enlarged and the frame is
+// rendered again.
 
 fn put(texel: u32, depth: f32, weight: u32) {
     let at = atomicAdd(&map[texel * 2u + 1u], 1u);

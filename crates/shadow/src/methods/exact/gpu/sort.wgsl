@@ -1,9 +1,9 @@
-// Sorts the fragments of a texel, where they are few; weights become running sums.
+// Sorts the fragments of texels with few; weights become running sums.
 
-// Longer lists are sorted in a heap.
+// Longer lists use heapsort.
 const SHORT: u32 = 24u;
 
-// Lets the fragment at `top` of the heap that begins at `first` and has `count` fragments sink to its place.
+// Sifts the fragment at `top` down in the heap of `count` fragments that starts at `first`.
 fn sink(first: u32, count: u32, top: u32) {
     let own = list[first + top];
     var hole = top;

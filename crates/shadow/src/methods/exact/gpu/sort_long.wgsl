@@ -1,8 +1,8 @@
-// Sorts the fragments of texels with many, all threads of a workgroup together, one of its 64 texels after the other; weights
+// Sorts the fragments of texels with many. All threads of a workgroup cooperate on its 64 texels, one after another; weights
 // become running sums.
 //
-// Steps are taken four at a time: software Vulkan (Mesa's llvmpipe) leaves a shader's loops after 65,535 rounds in all, which
-// is enough for 500,000 fragments in the long lists of these texels then.
+// Loops are unrolled by four: Mesa's llvmpipe ends the loops of a shader after 65,535 iterations in all, which is then enough
+// for 500,000 fragments in the long lists of these texels.
 
 const GROUP: u32 = 256u;
 const AT_ONCE: u32 = 4u;
@@ -11,7 +11,7 @@ var<workgroup> lists: array<vec2u, 64>;
 var<workgroup> longest: atomic<u32>;
 var<workgroup> sums: array<u32, 256>;
 
-// Puts two fragments of a list into order, where there are both.
+// Orders two fragments of a list if both exist.
 fn compare(list_at: vec2u, low: u32, high: u32) {
     if (high >= list_at.y) {
         return;
@@ -24,7 +24,7 @@ fn compare(list_at: vec2u, low: u32, high: u32) {
     }
 }
 
-// Pair `pair` of a stage that merges runs of `1 << shift`: the first one with the last, and so on.
+// Pair `pair` of a stage that merges runs of `1 << shift`: the first fragment with the last, and so on.
 fn compare_mirrored(list_at: vec2u, pair: u32, shift: u32) {
     let run = (pair >> shift) << (shift + 1u);
     let place = pair & ((1u << shift) - 1u);
@@ -37,8 +37,8 @@ fn compare_apart(list_at: vec2u, pair: u32, shift: u32) {
     compare(list_at, low, low + (1u << shift));
 }
 
-// A bitonic sort (Batcher 1968) in the form in which every comparison puts the smaller one first, so that what lies behind
-// the end needs no place.
+// A bitonic sort (Batcher 1968) in the form in which every comparison puts the smaller item first, so that items beyond the end
+// need no storage.
 fn sort_together(list_at: vec2u, local: u32) {
     // Pairs of the next power of two.
     let bits = 32u - countLeadingZeros(list_at.y - 1u);
@@ -63,7 +63,7 @@ fn sort_together(list_at: vec2u, local: u32) {
     }
 }
 
-// Each thread sums a piece, adds the pieces before, and leaves the running sums.
+// Each thread sums one piece, adds the sums of the pieces before, and writes running sums.
 fn sum_together(list_at: vec2u, local: u32) {
     let piece = (list_at.y + GROUP - 1u) / GROUP;
     let first = min(local * piece, list_at.y);

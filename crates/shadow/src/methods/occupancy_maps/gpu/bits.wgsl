@@ -13,11 +13,11 @@ fn put(texel: u32, depth: f32, weight: u32) {
     let shift = 16u * (slab & 1u);
     var before = atomicLoad(&map[counts]);
     if (((before >> shift) & 0xffffu) < 0x8000u) {
-        // As many threads as would fill the rest do not run at once.
+        // There are never enough threads in flight to overflow the remainder.
         atomicAdd(&map[counts], 1u << shift);
         return;
     }
-    // Counts stop when they are full.
+    // Counts saturate.
     while (((before >> shift) & 0xffffu) != 0xffffu) {
         let tried = atomicCompareExchangeWeak(&map[counts], before, before + (1u << shift));
         if (tried.exchanged) {

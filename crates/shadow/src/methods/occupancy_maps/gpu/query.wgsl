@@ -1,8 +1,9 @@
-// Optical depth before a point: that of the slabs before its own, and of its own the share of occupied slices before it.
+// Optical depth before a point: that of the slabs before its own, and the fraction of its own slab given by the share of
+// occupied slices before the point.
 //
-// Nothing is branched on but what the pipeline is made for: every reading is done for every point.
+// Branches depend on pipeline constants only: every point performs every read.
 
-// Fragments of the slabs before one, and of itself, among two whose counts are in one word.
+// For two slabs whose counts are in one word: fragments before slab `slab`, and in it.
 fn around(counts: u32, two: u32, slab: u32) -> vec2u {
     let words = map[counts + two];
     let low = words & 0xffffu;
@@ -14,7 +15,7 @@ fn around(counts: u32, two: u32, slab: u32) -> vec2u {
     );
 }
 
-// The bits of a word of a slab that are set, and those of them that lie before the slice.
+// The number of bits that are set in a word of a slab, and of those before the slice.
 fn occupied_in(bits: u32, first: u32, k: u32, slice: u32) -> vec2u {
     let ones = countOneBits(map[bits + first + k]);
     return vec2u(ones, select(0u, ones, first + k < (slice >> 5u)));
@@ -31,7 +32,7 @@ fn depth_before(texel: u32, depth: f32) -> f32 {
     let counts = counts_of(record);
     let place = slice_of(near, far, depth);
     let slice = u32(place.x);
-    // Behind all hair every slab lies before.
+    // Behind all hair, every slab counts.
     let slab = select(slice >> SLAB_SHIFT, SLABS, depth >= far);
     var sums = around(counts, 0u, slab) + around(counts, 1u, slab);
     if (SLABS > 4u) {
@@ -41,7 +42,7 @@ fn depth_before(texel: u32, depth: f32) -> f32 {
         sums += around(counts, 4u, slab) + around(counts, 5u, slab);
         sums += around(counts, 6u, slab) + around(counts, 7u, slab);
     }
-    // Bits of the slab, and those of them before the slice.
+    // The number of bits of the slab, and of those before the slice.
     let slice_bits = map[bits + (slice >> 5u)];
     let before_slice = slice_bits & ((1u << (slice & 31u)) - 1u);
     var occupied: vec2u;
@@ -60,7 +61,7 @@ fn depth_before(texel: u32, depth: f32) -> f32 {
     }
     let own_bit = f32((slice_bits >> (slice & 31u)) & 1u);
     let share = (f32(occupied.y) + place.y * own_bit) / f32(max(occupied.x, 1u));
-    // Fragments of one depth lie between two neighbouring numbers here. A point at this depth comes before them.
+    // Fragments of one depth lie between two neighbouring numbers here. A point at this depth counts as before them.
     let one_depth = (far_word >> SPARE) - (near_word >> SPARE) <= 1u;
     let within = select(f32(sums.x) + share * f32(sums.y), 0.0, one_depth);
     let fragments = select(within, f32(sums.x), depth >= far);

@@ -1,28 +1,28 @@
-// A texel's record, in words: the nearest and the farthest depth, whose lowest bits hold the mean weight of a fragment; a bit
-// for each slice; a count of 16 bits for each slab, two a word.
+// A record consists of words: the nearest and the farthest depth, whose lowest bits hold the mean weight of a fragment; one bit
+// per slice; one 16-bit count per slab, two per word.
 
 override SLICES: u32 = 128u;
 override SLABS: u32 = 8u;
-// Slices of a slab, as a power of two.
+// Base-2 logarithm of the slices per slab.
 override SLAB_SHIFT: u32 = 4u;
 
-// The mean weight less 1023, in 1..425, has nine bits; a depth within 0 and 1 leaves its two highest bits free and can spare
-// three of its lowest: 2^-20 of it.
+// The mean weight minus 1023, in 1..425, has nine bits. A depth between 0 and 1 leaves its two highest bits free and can do
+// without its three lowest, 2^-20 of it.
 const SPARE: u32 = 5u;
 
 fn record_of(texel: u32) -> u32 {
     return texel * (2u + SLICES / 32u + SLABS / 2u);
 }
 
-// Where the counts of a record begin.
+// The first word of the counts of a record.
 fn counts_of(record: u32) -> u32 {
     return record + 2u + SLICES / 32u;
 }
 
-// The slice of a depth within a texel's range as a whole and a broken part.
+// The slice of a depth within a texel's range: integer part and fraction.
 fn slice_of(near: f32, far: f32, depth: f32) -> vec2f {
     let slices = f32(SLICES);
-    // With one fragment, or all at one depth, there is no range and this is no number, or infinite: any slice will do.
+    // With one fragment, or all at one depth, the range is empty and this is NaN or infinite: any slice will do.
     var part = (depth - near) * (1.0 / (far - near));
     part = select(0.0, part, part > 0.0);
     part = select(1.0, part, part < 1.0) * slices;

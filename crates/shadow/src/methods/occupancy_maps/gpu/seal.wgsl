@@ -1,4 +1,4 @@
-// Puts the range and the mean weight into the record.
+// Writes the depth range and the mean weight into the record.
 
 fn texel_pass(texel: u32) {
     let weight = weight_of(texel);
@@ -12,7 +12,7 @@ fn texel_pass(texel: u32) {
         let two = atomicLoad(&map[first + k]);
         count += (two & 0xffffu) + (two >> 16u);
     }
-    // Where counts have stopped, the mean makes up for it.
+    // Where counts have saturated, the mean compensates.
     let mean = u32(clamp(round(f32(weight) / f32(max(count, 1u))) - 1023.0, 1.0, 1023.0));
     let near = bitcast<u32>(near_of(texel)) >> 3u;
     let far = (bitcast<u32>(far_of(texel)) + 7u) >> 3u;

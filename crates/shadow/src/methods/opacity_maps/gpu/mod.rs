@@ -26,7 +26,7 @@ impl GpuTexelMethod for Slices {
         Needs {
             map_words: slices as u64,
             scratch_words: 1,
-            whole: [slices as u32, 0, 0, 0],
+            integers: [slices as u32, 0, 0, 0],
             ..Needs::default()
         }
     }

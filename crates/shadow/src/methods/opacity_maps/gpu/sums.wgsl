@@ -1,10 +1,10 @@
-// Sums weights along the light, in place. Before the first slice with hair, and where there is none, all is 0 already.
+// Sums weights along the light, in place, from the first slice with hair on. The slices before it are 0 already.
 
 fn texel_pass(texel: u32) {
     let after = atomicLoad(&scratch[texel]);
-    let record = texel * texels.whole.x;
+    let record = texel * texels.integers.x;
     var sum = 0u;
-    for (var slice = texels.whole.x - after; slice < texels.whole.x; slice++) {
+    for (var slice = texels.integers.x - after; slice < texels.integers.x; slice++) {
         sum += atomicLoad(&map[record + slice]);
         atomicStore(&map[record + slice], sum);
     }

@@ -1,5 +1,5 @@
-// What passes write. Everything is 0 when a build begins.
+// The buffers that passes write. They are cleared before a build.
 
 @group(0) @binding(3) var<storage, read_write> map: array<atomic<u32>>;
-// Needed while the map is made, and by all lights in turn.
+// Needed during a build only; all lights share it.
 @group(0) @binding(4) var<storage, read_write> scratch: array<atomic<u32>>;

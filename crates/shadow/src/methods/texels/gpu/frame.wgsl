@@ -1,25 +1,25 @@
-// Where the texels of a map lie, and the method's settings. Twin of `TexelUniform` in gpu/mod.rs.
+// The placement of the texels of a map, and the method's settings. Twin of `TexelUniform` in gpu/mod.rs.
 
 struct TexelUniform {
-    // World space; w is the optical depth of a piece of strand that is one texel long.
+    // World space; w is the optical depth of a piece of strand whose length across the light is one texel.
     anchor: vec4f,
-    // Axes in texels and in parts of the depth range; w is added to the product.
+    // Axes, in texels and in fractions of the depth range; w is added to the dot product.
     column: vec4f,
     row: vec4f,
     depth: vec4f,
     // Texels along each edge, segments, texels.
     size: vec3u,
-    // What the method sets.
-    whole: vec4u,
-    broken: array<vec4f, 8>,
+    // Settings of the method.
+    integers: vec4u,
+    floats: array<vec4f, 8>,
 }
 
 @group(0) @binding(0) var<uniform> texels: TexelUniform;
 
-// The weight of one fragment is a whole number: 1024 stand for a piece of strand one texel long.
+// The weight of a fragment is an integer: 1024 for a piece of strand one texel long.
 const WEIGHT_ONE: f32 = 1024.0;
 
-// Optical depth of a sum of weights.
+// The optical depth of a sum of weights.
 fn depth_of_weight(weight: f32) -> f32 {
     return weight * (texels.anchor.w / WEIGHT_ONE);
 }

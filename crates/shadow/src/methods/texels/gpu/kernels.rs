@@ -1,14 +1,14 @@
-//! The kernels of a method, compiled for what its settings make the same for every thread.
+//! The kernels of a method, compiled with its settings as constants.
 
 use lovelock_gpu::{Constant, Gpu, GpuError, Kernel, ShaderPart};
 
 use super::Pass;
 use crate::gpu::Ask;
 
-/// Sets of kernels that are kept, so that turning a setting to and fro compiles nothing anew.
+/// The number of cached sets of kernels, so that switching a setting back and forth does not recompile.
 const MOST_KEPT: usize = 8;
 
-/// The kernels for some values of the shaders' constants.
+/// The kernels for certain values of the shaders' constants.
 #[derive(Debug)]
 pub(super) struct Kernels {
     constants: Vec<Constant>,
@@ -16,7 +16,7 @@ pub(super) struct Kernels {
     pub ask: Ask,
 }
 
-/// The sets of kernels of a method; there is always one. The set in use is the first.
+/// The cached sets of kernels of a method, at least one. The first one is in use.
 #[derive(Debug)]
 pub(super) struct KernelSets(Vec<Kernels>);
 
@@ -34,7 +34,7 @@ impl Kernels {
 }
 
 impl KernelSets {
-    /// Compiles a first set.
+    /// Compiles the first set.
     pub fn new(
         gpu: &Gpu,
         passes: &[Pass],
@@ -44,7 +44,7 @@ impl KernelSets {
         Ok(Self(vec![Kernels::new(gpu, passes, query, constants)?]))
     }
 
-    /// Uses the set for these constants, which is compiled where there is none.
+    /// Selects the set for these constants. Compiles it if it is not cached.
     pub fn choose(
         &mut self,
         gpu: &Gpu,

@@ -1,28 +1,28 @@
-// Draws segments into texels by steps along the longer axis, for which thin_step.wgsl or filtered_step.wgsl defines `put_step`.
+// Rasterises segments in steps along the longer axis, for which thin_step.wgsl or filtered_step.wgsl defines `put_step`.
 // Twin of lines.rs. A pass defines `put(texel, depth, weight)`.
 
 @group(0) @binding(1) var<storage, read> points: array<vec4f>;
 @group(0) @binding(2) var<storage, read> segments: array<u32>;
 
-// Whether a point is one of those that the window was made for. False for what is no number.
+// Whether a point was included in the bounds of the window. False for NaN.
 fn holds(p: vec3f) -> bool {
     let far = 2.0 * f32(texels.size.x);
     return abs(p.x) <= far && abs(p.y) <= far && abs(p.z) <= 2.0;
 }
 
-// Held within the window: rounding must not put hair into the empty texels at the border.
+// Clamped to the window: rounding must not move hair into the empty texels at the border.
 fn held(p: vec3f) -> vec3f {
     let highest = f32(texels.size.x - 1u) * (1.0 - 1.1920929e-7);
     return clamp(p, vec3f(1.0, 1.0, 0.0), vec3f(highest, highest, 1.0));
 }
 
-// How many centres of texels lie below `c`, which is not negative.
+// The number of texel centres below `c`, which is not negative.
 fn centres_below(c: f32) -> i32 {
     let whole = i32(c);
     return whole + select(0, 1, c - f32(whole) > 0.5);
 }
 
-// The texel at these places on the longer axis and on the shorter; those at the border stay empty.
+// The texel at these coordinates on the longer and the shorter axis; texels at the border stay empty.
 fn texel_of(by_row: bool, major: i32, minor: i32) -> u32 {
     let held_minor = u32(clamp(minor, 1, i32(texels.size.x) - 2));
     let at = select(vec2u(u32(major), held_minor), vec2u(held_minor, u32(major)), by_row);

@@ -1,14 +1,14 @@
-//! Lists of fragments, for methods that keep all of them. How many there are is known only when they are counted.
+//! Lists of fragments for methods that store all of them. Their number is known only after the GPU has counted them.
 //!
-//! A list holds items of two words. The first two items are its head: the number of fragments modulo 2³², and the sum of
-//! the 2⁻¹⁶-th parts of what each workgroup counted, which together give the number though no word holds it.
+//! An item has two words. The first two items are the header: the number of fragments modulo 2³², and the sum over workgroups of
+//! their counts divided by 2¹⁶. Together they give the number even if it exceeds a word.
 
 use lovelock_gpu::{Gpu, GpuError, ShaderPart, read_buffer, wgpu};
 
 use crate::gpu::{Buffer, fits_device, wgsl};
 use crate::{ShadowError, ShadowMethod};
 
-/// Counts fragments and gives out places.
+/// Counts fragments and allocates ranges of the list.
 pub(crate) const LIST_HEAD: ShaderPart = wgsl!("methods/texels/gpu/", "list_head.wgsl");
 /// Reads and writes fragments.
 pub(crate) const LIST_BODY: ShaderPart = wgsl!("methods/texels/gpu/", "list_body.wgsl");
@@ -16,23 +16,23 @@ pub(crate) const LIST_BODY: ShaderPart = wgsl!("methods/texels/gpu/", "list_body
 const HEAD_BYTES: u64 = 16;
 const ITEM_BYTES: u64 = 8;
 
-/// Fragments that there is room for at least.
+/// The least capacity, fragments.
 const LEAST_ROOM: u64 = 1024;
 
-/// What a list may take.
+/// The memory budget of a list.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Share {
     pub method: ShadowMethod,
-    /// Bytes that the method may use for this map.
+    /// The most bytes that the method may use for this map.
     pub limit_bytes: u64,
-    /// Bytes of these that go elsewhere.
+    /// Bytes of these that other buffers use.
     pub other_bytes: u64,
-    /// How many maps share the limit of all.
+    /// The number of maps that share the limit.
     pub maps: u32,
 }
 
 impl Share {
-    /// Refuses `items` fragments that do not fit.
+    /// Returns an error if `items` fragments do not fit.
     fn check(&self, gpu: &Gpu, items: u64) -> Result<(), ShadowError> {
         let bytes = bytes(items);
         let (method, limit_bytes, maps) = (self.method, self.limit_bytes, self.maps);
@@ -58,7 +58,7 @@ fn bytes(items: u64) -> u64 {
 #[derive(Debug)]
 pub(crate) struct List {
     buffer: Buffer,
-    /// Set by a build until its number is read back.
+    /// Whether the count of the last build has not been read back yet.
     pending: Option<Share>,
     /// Fragments of the last build that was counted.
     found: u64,
@@ -82,14 +82,14 @@ impl List {
         self.found
     }
 
-    /// Its words, the head included.
+    /// The words of the list, including the header.
     pub fn words(&self, gpu: &Gpu) -> Result<Vec<u32>, GpuError> {
         let mut words = vec![0; bytes(self.found).min(self.buffer.bytes()) as usize / 4];
         read_buffer(gpu, self.buffer.raw(), &mut words)?;
         Ok(words)
     }
 
-    /// Makes room as the last build needed it and a little more, or by guess, as far as that may be; encodes emptying it.
+    /// Makes room for a little more than the last build needed, or for an estimate, within the budget. Encodes clearing the list.
     pub fn begin(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, share: Share, segments: u32) {
         let wanted = if self.found == 0 { 2 * u64::from(segments) } else { self.found + self.found / 8 };
         self.buffer.fit(gpu, bytes(wanted.max(LEAST_ROOM).min(share.most(gpu))) / 4);
@@ -97,8 +97,8 @@ impl List {
         self.pending = Some(share);
     }
 
-    /// Reads the number of fragments back: the bytes that the map needs, and whether there was no room for all, and is now.
-    /// Nothing where no build came before.
+    /// Reads the number of fragments back. Returns the bytes that the map needs, and whether the list was too small and has been
+    /// enlarged; `None` if nothing was built since the last call.
     pub fn settle(&mut self, gpu: &Gpu) -> Result<Option<(u64, bool)>, Unsettled> {
         let Some(share) = self.pending.take() else { return Ok(None) };
         let mut head = [0_u32; 2];
@@ -113,7 +113,7 @@ impl List {
     }
 }
 
-/// Why the number of fragments leads nowhere.
+/// Why a list could not be settled.
 #[derive(Debug)]
 pub(crate) enum Unsettled {
     Shadow(ShadowError),
@@ -132,8 +132,8 @@ impl From<GpuError> for Unsettled {
     }
 }
 
-/// The number that a head stands for. At most 2¹⁶ workgroups lose less than 2¹⁶ each in the second word, so that it is
-/// between that word times 2¹⁶ and 2³² more; the first word says where.
+/// The number of fragments in a header. Each of at most 2¹⁶ workgroups loses less than 2¹⁶ in the second word, so the number lies
+/// between that word times 2¹⁶ and 2³² more; the first word determines it.
 fn total([low, high]: [u32; 2]) -> u64 {
     let base = u64::from(high) << 16;
     base + u64::from(low.wrapping_sub(base as u32))

@@ -1,10 +1,10 @@
-// The fragments of a list: bits of the depth, and what the pass says. The first two are the head.
+// The fragments of a list: bits of the depth, and a value of the pass. The first two items are the header.
 
 @group(0) @binding(5) var<storage, read_write> list: array<vec2u>;
 
 const LIST_HEAD: u32 = 2u;
 
-// How many fragments there is room for.
+// The capacity, fragments.
 fn list_room() -> u32 {
     return arrayLength(&list) - LIST_HEAD;
 }

@@ -1,9 +1,9 @@
-// Filtered lookups: transmittance of the texel that a point lies in, or the bilinear mean of the four around it. Twin of
+// Filtered lookups: transmittance of the texel that contains a point, or the bilinear mean of the four around it. Twin of
 // lookup.rs. A method's query defines `depth_before(texel, depth)`.
 
 @group(0) @binding(3) var<storage, read> map: array<u32>;
 
-// What a point reads: the texel that it lies in (0), the mean of the four around it (1), or the texel of a place near by (2).
+// The filter: the texel that contains the point (0), the mean of the four around it (1), or the texel of a jittered position (2).
 override FILTER: u32 = 1u;
 
 // A depth behind all hair.
@@ -16,8 +16,8 @@ fn texel_light(column: i32, row: i32, depth: f32) -> f32 {
     return select(1.0, light, all(at == vec2i(column, row)));
 }
 
-// A hash of a place, the same on every device as long as it is not within a rounding of an eighth of a millimetre's
-// border: PCG in three dimensions (Jarzynski, Olano 2020, "Hash Functions for GPU Rendering").
+// A hash of a position, the same on every device unless rounding moves it across a border of the grid of an eighth of a
+// millimetre: PCG in three dimensions (Jarzynski, Olano 2020, "Hash Functions for GPU Rendering").
 fn place_hash(p: vec3f) -> vec2f {
     var v = bitcast<vec3u>(vec3i(floor(p * 8192.0))) * 1664525u + 1013904223u;
     v.x += v.y * v.z;
@@ -30,7 +30,7 @@ fn place_hash(p: vec3f) -> vec2f {
     return vec2f(v.xy >> vec2u(8u)) * (1.0 / 16777216.0);
 }
 
-// Share of the light that reaches a place of the map.
+// Transmittance at a position in the map.
 fn light_at(p: vec3f, world_position: vec3f) -> f32 {
     let depth = min(p.z, BEHIND);
     if (FILTER != 1u) {
@@ -54,13 +54,13 @@ fn light_at(p: vec3f, world_position: vec3f) -> f32 {
     return min(near + (far - near) * part.y, 1.0);
 }
 
-// Share of the light that reaches a point through the hair.
+// Transmittance at a point.
 fn hair_transmittance(world_position: vec3f) -> f32 {
     let p = texel_from_world(world_position);
     let end = f32(texels.size.x) + 1.0;
-    // False for what is no number. Before all hair everything is lit.
+    // False for NaN. Points before all hair are lit.
     let inside = p.x > -1.0 && p.x < end && p.y > -1.0 && p.y < end && p.z > 0.0;
-    // Asked for every point: where kernels run on the processor, a branch would be no quicker.
+    // Evaluated for every point: on software adapters a branch would not be faster.
     return select(1.0, light_at(select(vec3f(0.0), p, inside), world_position), inside);
 }
 
@@ -68,7 +68,7 @@ fn column_count() -> u32 {
     return texels.size.x;
 }
 
-// Share of the light that all hair of a texel lets through.
+// Transmittance of all hair of a texel.
 fn behind_column(at: vec2u) -> f32 {
     return texel_light(i32(at.x), i32(at.y), BEHIND);
 }

@@ -1,8 +1,8 @@
-//! Maps with a record for each light texel, on the GPU.
+//! Maps with a record per light texel on the GPU.
 //!
-//! Strands are drawn into texels by compute kernels with integer atomics, a thread a segment: nothing depends on the order
-//! in which threads run. Each pass over the segments is lines.wgsl with its own `put`; each pass over the texels is
-//! `each_texel.wgsl` with its own `texel_pass`. A method is a list of passes and a query.
+//! Compute kernels rasterise strands with integer atomics, one thread per segment, so that results do not depend on the order of
+//! threads. Each pass over the segments is lines.wgsl with its own `put`; each pass over the texels is `each_texel.wgsl` with its
+//! own `texel_pass`. A method is a list of passes and a query.
 
 mod kernels;
 pub(crate) mod list;
@@ -32,11 +32,11 @@ const FILTERED_STEP: ShaderPart = wgsl!("methods/texels/gpu/", "filtered_step.wg
 const LINES: ShaderPart = wgsl!("methods/texels/gpu/", "lines.wgsl");
 const EACH_TEXEL: ShaderPart = wgsl!("methods/texels/gpu/", "each_texel.wgsl");
 const LOOKUP: ShaderPart = wgsl!("methods/texels/gpu/", "lookup.wgsl");
-/// The depth range of each texel, which several methods begin with.
+/// The depth range of each texel, the first pass of several methods.
 pub(crate) const RANGE: ShaderPart = wgsl!("methods/texels/gpu/", "range.wgsl");
-/// Reads what [`RANGE`] left.
+/// Reads the result of [`RANGE`].
 pub(crate) const RANGE_READ: ShaderPart = wgsl!("methods/texels/gpu/", "range_read.wgsl");
-/// Words of scratch memory a texel that [`RANGE`] uses, the first ones of all.
+/// Words of scratch memory per texel that [`RANGE`] uses, at the start of the buffer.
 pub(crate) const RANGE_WORDS: u64 = 3;
 
 /// Twin of `TexelUniform` in frame.wgsl.
@@ -49,27 +49,27 @@ pub(crate) struct TexelUniform {
     depth: Vec4,
     size: [u32; 3],
     pad: u32,
-    whole: [u32; 4],
-    broken: [f32; 32],
+    integers: [u32; 4],
+    floats: [f32; 32],
 }
 
-/// What a pass goes over.
+/// What the threads of a pass iterate over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Over {
     /// Every segment: the part defines `put`.
     Segments,
-    /// Every segment, by pre-filtered lines where the last word of [`Needs::whole`] is set: the part defines `put`.
+    /// Every segment, as pre-filtered lines if the last word of [`Needs::integers`] is set: the part defines `put`.
     FilteredSegments,
     /// Every texel: the part defines `texel_pass`.
     Texels,
-    /// Every texel, by workgroups that do something together: the part is the entry point `each_group`.
+    /// Every texel, by cooperating workgroups: the part defines the entry point `each_group`.
     Groups,
 }
 
 /// One pass of a method.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pass {
-    /// As statistics name it, `shadow/…`.
+    /// Its name in statistics, `shadow/…`.
     pub name: &'static str,
     pub over: Over,
     pub parts: &'static [ShaderPart],
@@ -97,22 +97,22 @@ impl Pass {
     }
 }
 
-/// What a method needs for one texel, in words of 32 bits, and the settings that its shaders read.
+/// The 32-bit words that a method needs per texel, and the settings that its shaders read.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Needs {
-    /// Words of the map a texel.
+    /// Words of the map per texel.
     pub map_words: u64,
-    /// Words of scratch memory a texel.
+    /// Words of scratch memory per texel.
     pub scratch_words: u64,
-    /// `TexelUniform::whole`.
-    pub whole: [u32; 4],
-    /// `TexelUniform::broken`.
-    pub broken: [f32; 32],
+    /// `TexelUniform::integers`.
+    pub integers: [u32; 4],
+    /// `TexelUniform::floats`.
+    pub floats: [f32; 32],
 }
 
-/// The GPU's part of a method with a record for each texel.
+/// The GPU's part of a method with a record per texel.
 pub(crate) trait GpuTexelMethod: TexelMethod {
-    /// All passes, in the order in which they stand in [`GpuTexelMethod::schedule`].
+    /// All passes. [`GpuTexelMethod::schedule`] refers to them by index.
     const PASSES: &'static [Pass];
     /// The part that defines `depth_before`.
     const QUERY: &'static [ShaderPart];
@@ -121,18 +121,18 @@ pub(crate) trait GpuTexelMethod: TexelMethod {
 
     fn needs(&self) -> Needs;
 
-    /// The method's own constants of its shaders: settings of which there are few, for each set of them is compiled.
+    /// The method's own constants of its shaders: settings with few values, because kernels are compiled for each combination.
     fn constants(&self) -> Vec<Constant> {
         Vec::new()
     }
 
-    /// The passes to run, by their place in [`GpuTexelMethod::PASSES`]; one may run more than once.
+    /// The passes to run, as indices into [`GpuTexelMethod::PASSES`]; a pass may run more than once.
     fn schedule(&self) -> Vec<usize> {
         (0..Self::PASSES.len()).collect()
     }
 }
 
-/// A method with a record for each texel, on the GPU.
+/// A method with a record per texel on the GPU.
 #[derive(Debug)]
 pub(crate) struct TexelShadow<M: GpuTexelMethod> {
     kernels: KernelSets,
@@ -147,7 +147,7 @@ struct Map {
     uniform: wgpu::Buffer,
     words: Buffer,
     list: Option<List>,
-    /// Words that the last build uses.
+    /// Words that the last build used.
     used: u64,
     frame: Option<TexelFrame>,
     report: ShadowReport,
@@ -197,7 +197,7 @@ impl<M: GpuTexelMethod> TexelShadow<M> {
 }
 
 impl Map {
-    /// A map of nothing: everything is lit.
+    /// An empty map: everything is lit.
     fn new(gpu: &Gpu, lists: bool) -> Self {
         Self {
             uniform: gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -214,7 +214,7 @@ impl Map {
         }
     }
 
-    /// What a query reads.
+    /// The bindings of a query.
     fn resources(&self) -> Vec<(u32, wgpu::BindingResource<'_>)> {
         let list = self.list.as_ref().map(|list| (5, list.raw().as_entire_binding()));
         let map = [(0, self.uniform.as_entire_binding()), (3, self.words.raw().as_entire_binding())];
@@ -233,8 +233,8 @@ impl TexelUniform {
             depth: axes.depth.extend(axes.offset.z),
             size: [frame.resolution, segments, texels],
             pad: 0,
-            whole: needs.whole,
-            broken: needs.broken,
+            integers: needs.integers,
+            floats: needs.floats,
         }
     }
 }
@@ -248,7 +248,7 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
         input: &GpuShadowInput,
         settings: &ShadowSettings,
     ) -> Result<(), GpuShadowError> {
-        // Lights that are gone leave nothing behind.
+        // Frees the maps of lights that were removed.
         self.maps.truncate(input.maps.max(1) as usize);
         let method = M::new(settings);
         let frame = TexelFrame::place(

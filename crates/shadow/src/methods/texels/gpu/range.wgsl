@@ -1,9 +1,9 @@
-// The depth range of each texel and the sum of its weights, in `RANGE` words of the scratch memory a texel.
+// The depth range of each texel and the sum of its weights, in `RANGE` words of scratch memory per texel.
 //
-// The nearest depth is kept turned round, so that 0 stands for none at all.
+// The bits of the nearest depth are inverted, so that 0 means no hair.
 
 fn put(texel: u32, depth: f32, weight: u32) {
-    // Depths are not negative: their bits are ordered as they are.
+    // Depths are not negative, so their bits have the same order.
     let bits = bitcast<u32>(depth);
     let at = texel * 3u;
     if (atomicLoad(&scratch[at]) < ~bits) {

@@ -1,4 +1,4 @@
-// What range.wgsl left.
+// Reads the results of range.wgsl.
 
 fn near_of(texel: u32) -> f32 {
     return bitcast<f32>(~atomicLoad(&scratch[texel * 3u]));

@@ -3,7 +3,7 @@
 use std::mem::offset_of;
 
 use super::*;
-use crate::gpu::all_shaders;
+use crate::all_shaders;
 use crate::gpu::layout::layout_in_shader;
 
 #[test]
@@ -14,8 +14,8 @@ fn the_uniform_has_the_layout_of_every_shader() {
         offset_of!(TexelUniform, row),
         offset_of!(TexelUniform, depth),
         offset_of!(TexelUniform, size),
-        offset_of!(TexelUniform, whole),
-        offset_of!(TexelUniform, broken),
+        offset_of!(TexelUniform, integers),
+        offset_of!(TexelUniform, floats),
         size_of::<TexelUniform>(),
     ];
     let shaders = all_shaders();

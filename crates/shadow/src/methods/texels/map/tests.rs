@@ -6,7 +6,7 @@ use super::*;
 use crate::LightFrame;
 use crate::methods::{deep_opacity_maps, density_clustering, exact, occupancy_maps, opacity_maps};
 
-/// Strands that wind through a box, with a broken point.
+/// Strands that wind through a box, with a NaN point.
 fn strands() -> Strands {
     let mut made = Strands::default();
     let mut first_point = vec![0];
@@ -32,7 +32,7 @@ fn same_bits<M: TexelMethod>(settings: &ShadowSettings) {
     map.build(&input, settings).expect("fits");
     let mut bits = |width| {
         map.width = width;
-        // One point more than whole blocks, and points beside the hair.
+        // One point more than full blocks, and points beside the hair.
         let ends = [0.0, 3.0, f32::INFINITY];
         let [x, y, z] = [&strands.x, &strands.y, &strands.z]
             .map(|axis| axis.iter().copied().chain(ends).collect::<Vec<_>>());

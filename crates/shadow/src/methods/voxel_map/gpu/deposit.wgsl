@@ -1,21 +1,21 @@
-// Every piece of strand adds its optical depth to the cell that it lies in. Twin of deposit.rs and samples.rs.
+// Every sample of a strand adds its optical depth to the cell that contains it. Twin of deposit.rs and samples.rs.
 
 @group(0) @binding(1) var<storage, read> points: array<vec4f>;
 @group(0) @binding(2) var<storage, read> segments: array<u32>;
 @group(0) @binding(3) var<storage, read_write> map: array<atomic<u32>>;
-// A bit a cell whose sum has wrapped around.
+// One bit per cell: set if its sum has wrapped around.
 @group(0) @binding(4) var<storage, read_write> full: array<atomic<u32>>;
 
 // The most that one sample adds, in fixed point: an optical depth of 32.
 const MOST_PER_SAMPLE: f32 = 33554432.0;
 
-// Whether a point is one of those that the window was made for. False for what is no number.
+// Whether a point was included in the bounds of the window. False for NaN.
 fn holds(p: vec3f) -> bool {
     let far = 2.0 * f32(voxels.size.x);
     return abs(p.x) <= far && abs(p.y) <= far && abs(p.z) <= far;
 }
 
-// Held within the window: rounding must not put hair into the empty cells at the border.
+// Clamped to the window: rounding must not move hair into the empty cells at the border.
 fn held(p: vec3f) -> vec3f {
     let highest = f32(voxels.size.x - 1u) * (1.0 - 1.1920929e-7);
     return clamp(p, vec3f(1.0), vec3f(highest));
@@ -24,7 +24,7 @@ fn held(p: vec3f) -> vec3f {
 fn add(cell: vec3u, depth: u32) {
     let at = cell_at(cell);
     let before = atomicAdd(&map[at], depth);
-    // However many threads add at once, one of them sees it.
+    // However many threads add at once, exactly one of them sees the sum wrap around.
     if (before + depth < before) {
         atomicOr(&full[at >> 5u], 1u << (at & 31u));
     }
@@ -45,7 +45,7 @@ fn deposit_segments(@builtin(global_invocation_id) id: vec3u, @builtin(num_workg
     let start = held(from_free);
     let d = held(to_free) - start;
     let across = d.y * d.y + d.z * d.z;
-    // No two samples are more than half a cell apart.
+    // Neighbouring samples are at most half a cell apart.
     let count = u32(2.0 * sqrt(d.x * d.x + across)) + 1u;
     let inverse = 1.0 / f32(count);
     // The length across the light, in cells, counts.

@@ -1,9 +1,9 @@
-// Where the cells of a map lie. Twin of `VoxelUniform` in gpu/mod.rs.
+// The placement of the cells of a map. Twin of `VoxelUniform` in gpu/mod.rs.
 
 struct VoxelUniform {
-    // World space; w is what a segment one cell long across the light, or a point, adds to its cell, in fixed point.
+    // World space; w is what a segment whose length across the light is one cell, or a point, adds to its cell, in fixed point.
     anchor: vec4f,
-    // Axes in cells, along the light and twice across it; w is the first cell of the window.
+    // Axes in cells, one along the light and two across it; w is the first cell of the window.
     along: vec4f,
     row: vec4f,
     column: vec4f,
@@ -23,7 +23,7 @@ fn window_from_world(p: vec3f) -> vec3f {
     ) - vec3f(voxels.along.w, voxels.row.w, voxels.column.w);
 }
 
-// Cells lie slice by slice along the light, so that threads of neighbouring columns read and write side by side.
+// Cells are stored slice by slice along the light, so that threads of neighbouring columns access neighbouring words.
 fn cell_at(cell: vec3u) -> u32 {
     return (cell.x * voxels.size.x + cell.y) * voxels.size.x + cell.z;
 }

@@ -1,6 +1,6 @@
-//! The voxel map on the GPU: density by integer atomics, a thread a segment; sums along the light, a thread a column.
+//! The voxel map on the GPU: density with integer atomics, one thread per segment; sums along the light, one thread per column.
 //!
-//! Cells hold the same integers as on the processor.
+//! Cells hold the same integers as on the CPU.
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec4;
@@ -18,7 +18,7 @@ const DEPOSIT: ShaderPart = wgsl!("methods/voxel_map/gpu/", "deposit.wgsl");
 const SUM: ShaderPart = wgsl!("methods/voxel_map/gpu/", "sum.wgsl");
 const QUERY: [ShaderPart; 2] = [FRAME, wgsl!("methods/voxel_map/gpu/", "query.wgsl")];
 
-/// As statistics name the passes.
+/// The names of the passes in statistics.
 const DENSITY_PASS: &str = "shadow/density";
 const SUM_PASS: &str = "shadow/sum";
 
@@ -56,7 +56,7 @@ pub(crate) struct GpuVoxelMap {
     points: Kernel,
     sum: Kernel,
     ask: Ask,
-    /// A bit a cell; needed while a map is made, and by all lights in turn.
+    /// One bit per cell, needed during a build. All lights share the buffer.
     full: Buffer,
     maps: Vec<Map>,
 }
@@ -71,7 +71,7 @@ struct Map {
 }
 
 impl Map {
-    /// A map of nothing: everything is lit.
+    /// An empty map: everything is lit.
     fn new(gpu: &Gpu) -> Self {
         Self {
             uniform: gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -86,7 +86,7 @@ impl Map {
         }
     }
 
-    /// What a query reads.
+    /// The bindings of a query.
     fn resources(&self) -> [(u32, wgpu::BindingResource<'_>); 2] {
         [(0, self.uniform.as_entire_binding()), (3, self.cells.raw().as_entire_binding())]
     }
@@ -132,7 +132,7 @@ impl GpuShadow for GpuVoxelMap {
         let placed = (input.light, input.anchor);
         let lattice = Lattice::place(placed, || input.longest_strand, ours, &input.bounds);
         let cells = u64::from(lattice.resolution).pow(3);
-        // Lights that are gone leave nothing behind.
+        // Frees the maps of lights that were removed.
         self.maps.truncate(input.maps.max(1) as usize);
         while self.maps.len() <= slot {
             self.maps.push(Map::new(gpu));

@@ -1,8 +1,8 @@
-// Filtered lookups: four columns a point. Twin of lookup.rs.
+// Filtered lookups: four columns per point. Twin of lookup.rs.
 
 @group(0) @binding(3) var<storage, read> map: array<u32>;
 
-// The broken and the whole part of `c`, held within 0 and `end` and at most `last`; 0 for what is no number.
+// The fractional and the integer part of `c`, clamped to 0 to `end`; the integer part is at most `last`. 0 for NaN.
 fn split(c: f32, end: f32, last: u32) -> vec2f {
     let positive = select(0.0, c, c > 0.0);
     let inside = select(end, positive, positive < end);
@@ -21,20 +21,20 @@ fn column_light(cell: vec3u, along: f32) -> f32 {
     if (voxels.size.w != 0u) {
         return mix_of(exp_of_minus_steps(front), exp_of_minus_steps(back), along);
     }
-    // Exact for a cell of even density.
+    // Exact for a cell of uniform density.
     return exp_of_minus_steps(mix_of(front, back, along));
 }
 
-// Share of the light that reaches a point through the hair.
+// Transmittance at a point.
 fn hair_transmittance(world_position: vec3f) -> f32 {
     if (voxels.size.x == 0u) {
         return 1.0;
     }
     let p = window_from_world(world_position);
     let n = f32(voxels.size.x);
-    // A column's value belongs to its centre; as printed, to its far edge.
+    // The value of a column belongs to its centre; in the printed filter, to its far edge.
     let lead = select(0.5, 1.0, voxels.size.w != 0u);
-    // Before the window and for what is no number: its first face and its border, which are lit.
+    // Points before the window and NaN read the first face and the border, which are lit.
     let u = split(p.x, n, voxels.size.x - 1u);
     let v = split(p.y - lead, n - 1.0, voxels.size.x - 2u);
     let w = split(p.z - lead, n - 1.0, voxels.size.x - 2u);
@@ -49,7 +49,7 @@ fn column_count() -> u32 {
     return voxels.size.x;
 }
 
-// Share of the light that all hair of a column lets through.
+// Transmittance of all hair of a column.
 fn behind_column(at: vec2u) -> f32 {
     return exp_of_minus_steps(f32(map[cell_at(vec3u(voxels.size.x - 1u, at.y, at.x))] >> 16u));
 }

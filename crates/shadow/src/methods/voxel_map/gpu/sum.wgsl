@@ -1,12 +1,12 @@
-// Optical depth summed along the light, in place: a cell becomes the depth at its front face below and at its back face
-// above, 16 bits each. Twin of sum.rs.
+// Sums optical depth along the light, in place: a cell becomes the depth at its front face (low 16 bits) and at its back face
+// (high 16 bits). Twin of sum.rs.
 
 @group(0) @binding(3) var<storage, read_write> map: array<u32>;
 @group(0) @binding(4) var<storage, read> full: array<u32>;
 
-// Where sums stop: above 16 in fixed point.
+// The value at which sums saturate: above 16 in fixed point.
 const MOST: u32 = 1u << 25u;
-// From the fixed point of density to that of faces.
+// Shift from the fixed-point format of density to that of faces.
 const FACE_SHIFT: u32 = 8u;
 
 @compute @workgroup_size(64)
