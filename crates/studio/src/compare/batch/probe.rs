@@ -143,7 +143,7 @@ impl Probe {
             Err(_) => Vec::new(),
         };
         let marks = marks.iter().map(|mark| ProbeMark {
-            kind: mark.kind.label().to_lowercase(),
+            kind: mark.kind.label.to_lowercase(),
             start: mark.start,
             end: mark.end,
             weight: mark.optical_depth,

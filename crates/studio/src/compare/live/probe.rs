@@ -158,7 +158,7 @@ pub(super) fn curve(
         None => definition()?,
     };
     let marks = kept.marks.iter().map(|mark| ProbeMark {
-        kind: mark.kind.label().to_lowercase(),
+        kind: mark.kind.label.to_lowercase(),
         start: mark.start,
         end: mark.end,
         weight: mark.optical_depth,
