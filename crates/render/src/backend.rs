@@ -1,25 +1,25 @@
-//! What draws.
+//! The choice between GPU and CPU.
 
 use std::fmt;
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-/// What draws a picture.
+/// The device that renders.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Backend {
-    /// The graphics card, and the processor where there is none or where the adapter is itself software.
+    /// The GPU; the CPU if there is no GPU or only a software adapter.
     #[default]
     Auto,
-    /// A graphics adapter by wgpu, a software one where there is nothing else.
+    /// An adapter of wgpu; a software adapter if there is no other.
     Gpu,
-    /// The processor alone, without any driver.
+    /// The CPU, without a graphics driver.
     Cpu,
 }
 
 impl Backend {
-    /// All of them, in the order of menus.
+    /// All backends, in the order of menus.
     pub const ALL: [Self; 3] = [Self::Auto, Self::Gpu, Self::Cpu];
 
     /// The stable name of the command line, of projects and of reports.
@@ -47,11 +47,11 @@ impl fmt::Display for Backend {
     }
 }
 
-/// A name that is no backend's.
+/// An unknown name of a backend.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("unknown backend `{found}`: expected auto, gpu or cpu")]
 pub struct UnknownBackend {
-    /// The name that was asked for.
+    /// The name that was given.
     pub found: String,
 }
 

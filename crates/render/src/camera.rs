@@ -8,30 +8,30 @@ pub(crate) const NEAR_METRES: f32 = 0.02;
 /// A pinhole camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// Where it is, world space, metres.
+    /// The position, world space, metres.
     pub eye: Vec3,
-    /// What it looks at, world space, metres; not the same as `eye`.
+    /// The point that the camera looks at, world space, metres. Must differ from `eye`.
     pub target: Vec3,
     /// Vertical field of view, radians, between 0 and π.
     pub fov_y: f32,
 }
 
 impl Camera {
-    /// Carries world space to view space: right-handed, looking along -Z.
+    /// The transform from world space to view space, which is right-handed and looks along -Z.
     pub fn view_from_world(&self) -> Mat4 {
         let forward = (self.target - self.eye).normalize_or(Vec3::NEG_Z);
         let up = if forward.y.abs() > 0.999 { Vec3::Z } else { Vec3::Y };
         rh::view::look_at_mat4(self.eye, self.eye + forward, up)
     }
 
-    /// Carries world space to clip space; depth is 1 at the near plane and falls to 0 at infinity.
+    /// The transform from world space to clip space. Depth is 1 at the near plane and falls to 0 at infinity.
     pub fn clip_from_world(&self, aspect: f32) -> Mat4 {
         let fov_y = self.fov_y.clamp(0.01, 3.0);
         rh::proj::directx::perspective_infinite_reverse(fov_y, aspect.max(1e-3), NEAR_METRES)
             * self.view_from_world()
     }
 
-    /// Pixels that one metre covers at a distance of one metre, for a picture of `height` pixels.
+    /// Pixels per metre at a distance of one metre, for an image `height` pixels high.
     pub fn pixels_per_metre_at_one_metre(&self, height: u32) -> f32 {
         height as f32 * 0.5 / (self.fov_y.clamp(0.01, 3.0) * 0.5).tan()
     }

@@ -1,4 +1,4 @@
-//! Whether a surface has an inside: then what faces away is never seen from without and need not be drawn.
+//! Whether a surface is closed: then its back faces are hidden from outside and need not be drawn.
 
 use std::sync::Arc;
 
@@ -6,7 +6,7 @@ use glam::Vec3;
 use lovelock_motion::{Body, Mesh};
 use rayon::prelude::*;
 
-/// Remembers the answer for the body that was asked for last.
+/// Caches the result for the last body.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Closedness {
     body: Option<Arc<Body>>,
@@ -14,7 +14,7 @@ pub(crate) struct Closedness {
 }
 
 impl Closedness {
-    /// Whether the body's surface is closed and faces outward.
+    /// Whether the surface of the body is closed and faces outward.
     pub fn of(&mut self, body: &Arc<Body>) -> bool {
         if !self.body.as_ref().is_some_and(|old| Arc::ptr_eq(old, body)) {
             self.closed = is_closed(&body.mesh) && volume(&body.mesh) > 0.0;
@@ -34,17 +34,17 @@ fn is_closed(mesh: &Mesh) -> bool {
     !there.is_empty() && there == back && there.windows(2).all(|pair| pair[0] != pair[1])
 }
 
-/// Six times the volume that a closed surface encloses; below 0 where it faces inward.
+/// Six times the volume that a closed surface encloses; negative if it faces inward.
 fn volume(mesh: &Mesh) -> f64 {
     let at = |i: u32| mesh.positions.get(i as usize).copied().unwrap_or(Vec3::NAN).as_dvec3();
     mesh.triangles.iter().map(|&[a, b, c]| at(a).dot(at(b).cross(at(c)))).sum()
 }
 
-/// Whether `eye` lies within a closed surface: the crossings of a ray toward +X, each by the way it faces.
+/// Whether `eye` lies inside a closed surface: the sum of the crossings of a ray toward +X, signed by their orientation.
 pub(crate) fn encloses(eye: Vec3, positions: &[Vec3], triangles: &[[u32; 3]]) -> bool {
     let crossing = |triangle: &[u32; 3]| -> i32 {
         let [a, b, c] = triangle.map(|i| positions.get(i as usize).map_or(Vec3::NAN, |&p| p - eye));
-        // Shares of the corners, where the ray passes through the triangle: all of one sign.
+        // Barycentric coordinates: where the ray passes through the triangle, all have the same sign.
         let side = |p: Vec3, q: Vec3| p.y * q.z - p.z * q.y;
         let (of_a, of_b, of_c) = (side(b, c), side(c, a), side(a, b));
         let front = of_a > 0.0 && of_b > 0.0 && of_c > 0.0;

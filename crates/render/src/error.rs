@@ -1,53 +1,53 @@
-//! What can go wrong with a picture.
+//! Errors of rendering.
 
-/// Why a picture could not be made.
+/// Why rendering failed.
 #[derive(Debug, thiserror::Error)]
 pub enum RenderError {
-    /// The graphics device refused or is gone.
+    /// The graphics device rejected a command or was lost.
     #[error(transparent)]
     Gpu(#[from] lovelock_gpu::GpuError),
-    /// The shadow's map would be too large.
+    /// The shadow map would be too large.
     #[error(transparent)]
     Shadow(#[from] lovelock_shadow::ShadowError),
-    /// The asked size is out of range.
+    /// The size is out of range.
     #[error(
         "a picture of {width}x{height} pixels is out of range: each side must be 1 to {limit}, and both together at \
          most {} million pixels",
         crate::MOST_PIXELS / 1_000_000
     )]
     Size {
-        /// The width asked for, pixels.
+        /// The width that was given, pixels.
         width: u32,
-        /// The height asked for, pixels.
+        /// The height that was given, pixels.
         height: u32,
-        /// The longest side that the backend can draw.
+        /// The longest side that the backend supports.
         limit: u32,
     },
-    /// Something was asked about a picture, and none has been drawn.
-    #[error("no picture has been drawn that could be asked about")]
+    /// A picture was queried before one was rendered.
+    #[error("no picture has been rendered yet")]
     NoPicture,
-    /// A light was asked for that the last picture has not.
+    /// The last picture has no such light.
     #[error(
         "there is no light {light}: the picture has {lights} lights that are switched on, counted from 0"
     )]
     NoLight {
-        /// The light asked for.
+        /// The index that was given.
         light: usize,
-        /// How many there are.
+        /// The number of lights that are switched on.
         lights: usize,
     },
-    /// Transmittance or other values that are given do not fit the picture.
-    #[error("what is given for the picture has {found} {of}, not {needed}")]
+    /// The number of given values does not match the picture.
+    #[error("the values given for the picture have {found} {of}; {needed} are needed")]
     Known {
-        /// What is counted.
+        /// What the values belong to.
         of: &'static str,
-        /// How many are given.
+        /// The number that was given.
         found: usize,
-        /// How many are needed.
+        /// The number that is needed.
         needed: usize,
     },
-    /// Transmittance is given to the graphics card.
-    #[error("transmittance that is given is drawn by the processor alone: choose the backend `cpu`")]
+    /// Given transmittance is not supported on the GPU.
+    #[error("only the CPU renders with given transmittance: choose the backend `cpu`")]
     KnownOnGpu,
 }
 

@@ -1,4 +1,4 @@
-//! Everything that one picture shows.
+//! The input of one picture, and its statistics.
 
 use std::sync::Arc;
 
@@ -9,42 +9,42 @@ use lovelock_motion::{Body, Skin};
 
 use crate::{Camera, KnownTransmittance, Light, PictureSettings, ShadowSettings};
 
-/// Everything that one picture shows, at one instant.
+/// Everything that one picture shows, at one time.
 #[derive(Clone, Copy)]
 pub struct FrameInput<'a> {
     /// The hairstyle.
     pub style: &'a Arc<Hairstyle>,
-    /// Where its strands are.
+    /// The positions of its strands.
     pub hair: HairPose<'a>,
     /// Colour and width of the hair.
     pub look: &'a HairLook,
-    /// The body and its skinned surface; hair alone is drawn where there is none.
+    /// The body and its skinned surface. Without it only hair is drawn.
     pub body: Option<(&'a Arc<Body>, &'a Skin)>,
-    /// Where the head is: the shadow map's lattice is locked to it.
+    /// The transform of the head, which is the anchor of the shadow map's lattice.
     pub world_from_head: Affine3A,
     /// The lights; those beyond [`crate::MAX_LIGHTS`] are ignored.
     pub lights: &'a [Light],
-    /// How hair shadows itself.
+    /// Settings of shadows inside hair.
     pub shadow: &'a ShadowSettings,
-    /// Where the picture is taken from.
+    /// The camera.
     pub camera: &'a Camera,
     /// Settings of the picture as a whole.
     pub picture: &'a PictureSettings,
-    /// Transmittance that takes the place of what the shadow method says; the CPU backend alone draws it.
+    /// Transmittance that replaces the result of the shadow method; supported by the CPU backend only.
     pub known: Option<KnownTransmittance<'a>>,
 }
 
-/// Where the strands of a hairstyle are at one instant, world space.
+/// The positions of the strands of a hairstyle at one time, world space.
 #[derive(Clone, Copy, Debug)]
 pub enum HairPose<'a> {
-    /// Where their guides bring them: they are interpolated where they are drawn.
+    /// Given by guides, from which the backend interpolates strands.
     Guides(&'a GuideFrame),
-    /// As they are given: as many points as the hairstyle has.
+    /// Given strands, with as many points as the hairstyle.
     Strands(&'a Strands),
 }
 
 impl HairPose<'_> {
-    /// The strands on the processor: those that are given, or interpolated into `made`.
+    /// The strands in memory: the given ones, or strands interpolated into `made`.
     pub(crate) fn strands<'s>(&'s self, style: &Hairstyle, made: &'s mut Strands) -> &'s Strands {
         match self {
             Self::Strands(strands) => strands,
@@ -56,37 +56,36 @@ impl HairPose<'_> {
     }
 }
 
-/// What one picture cost, and what went into it.
+/// Statistics of one picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrameStats {
-    /// Time to make strands of guides, milliseconds; 0 where the device does not measure its passes.
+    /// Time to interpolate strands from guides, milliseconds; 0 if the device does not measure passes.
     pub interpolate_ms: f64,
-    /// Time to make the shadow maps and look them up at every strand point, milliseconds; 0 as above.
+    /// Time to build the shadow maps and look up every strand point, milliseconds; 0 as above.
     pub shadow_ms: f64,
-    /// The rest of the time until the picture was there, milliseconds.
+    /// The rest of the time of the picture, milliseconds.
     pub draw_ms: f64,
-    /// What the passes took, in their order: `shadow/…` and `draw/…`, those of all lights together. As far as the backend
-    /// measures them.
+    /// The times of the passes `shadow/…` and `draw/…` in their order, added up over lights, as far as the backend measures them.
     pub passes: Vec<PassTime>,
     /// Segments that were drawn.
     pub segments: u64,
     /// Bytes of the shadow maps.
     pub shadow_bytes: u64,
-    /// Bytes of the strands as they are drawn and of what is kept for the pixels, to put strands together in them.
+    /// Bytes of the shaded strands and of the buffers that blend them per pixel.
     pub draw_bytes: u64,
     /// Mean transmittance of the first light over the strands' points.
     pub mean_transmittance: f32,
 }
 
 impl FrameStats {
-    /// Time to make the shadow maps, milliseconds: all passes `shadow/…` but those of [`FrameStats::ask_ms`]; 0 where the
-    /// device does not measure its passes.
+    /// Time to build the shadow maps, milliseconds: all passes `shadow/…` except those of [`FrameStats::ask_ms`]; 0 if the device
+    /// does not measure passes.
     pub fn build_ms(&self) -> f64 {
         self.sum_ms(|name| name.starts_with("shadow/") && !ASKING.contains(&name))
     }
 
-    /// Time to read the shadow maps at strand points and at vertices of the body, and what lies behind all hair,
-    /// milliseconds; 0 where the device does not measure its passes.
+    /// Time to look up the shadow maps at strand points, at vertices of the body and behind all hair, milliseconds; 0 if the device
+    /// does not measure passes.
     pub fn ask_ms(&self) -> f64 {
         self.sum_ms(|name| ASKING.contains(&name))
     }
@@ -96,7 +95,7 @@ impl FrameStats {
     }
 }
 
-/// Passes that read maps which are made.
+/// Passes that look up finished maps.
 const ASKING: [&str; 2] = ["shadow/ask", "shadow/columns"];
 
 #[cfg(test)]

@@ -1,34 +1,34 @@
-//! Transmittance that is known from elsewhere.
+//! Given transmittance.
 
 use crate::RenderError;
 
-/// Transmittance that a picture is drawn with in place of what its shadow method says: a reference is drawn from
+/// Transmittance that replaces the result of the shadow method. References are rendered with
 /// [`converged`](lovelock_shadow::converged) transmittance.
 ///
-/// Lists are one a light, in the order of the lights that are switched on. The maps of the method `exact` say what is not
-/// given: what reaches the ground, and vertices of the body where their lists are left out.
+/// There is one list per light, in the order of the lights that are switched on. Values that are not given come from the method
+/// `exact`: those of the ground, and those of the body if its lists are empty.
 #[derive(Clone, Copy, Debug)]
 pub struct KnownTransmittance<'a> {
-    /// Transmittance at each strand point, 0 to 1, a list a light.
+    /// Transmittance at each strand point, 0 to 1, one list per light.
     pub at_points: &'a [Vec<f32>],
-    /// The same at each vertex of the body; no list at all where it is not known.
+    /// The same at each vertex of the body; no lists if it is not known.
     pub at_vertices: &'a [Vec<f32>],
 }
 
 impl KnownTransmittance<'_> {
-    /// Refuses lists that do not fit the picture.
+    /// Returns an error if the lists do not match the picture.
     pub(crate) fn check(&self, lights: usize, points: usize, vertices: usize) -> Result<(), RenderError> {
         let same = |of, found, needed| {
             if found == needed { Ok(()) } else { Err(RenderError::Known { of, found, needed }) }
         };
-        same("lists for strand points, one a light", self.at_points.len(), lights)?;
+        same("lists for strand points (one per light)", self.at_points.len(), lights)?;
         for list in self.at_points {
             same("strand points", list.len(), points)?;
         }
         if self.at_vertices.is_empty() {
             return Ok(());
         }
-        same("lists for vertices of the body, one a light", self.at_vertices.len(), lights)?;
+        same("lists for vertices of the body (one per light)", self.at_vertices.len(), lights)?;
         for list in self.at_vertices {
             same("vertices of the body", list.len(), vertices)?;
         }
@@ -57,7 +57,7 @@ mod tests {
         assert!(one.check(2, 5, 3).is_err());
         assert_eq!(
             known.check(2, 6, 3).unwrap_err().to_string(),
-            "what is given for the picture has 5 strand points, not 6"
+            "the values given for the picture have 5 strand points; 6 are needed"
         );
     }
 }

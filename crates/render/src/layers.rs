@@ -1,39 +1,39 @@
-//! A picture as numbers for a compositor: linear light with what it covers, depth, and the light that reaches the hair.
+//! A picture for compositing: linear light with alpha, depth, and transmittance.
 
 use rayon::prelude::*;
 
 use crate::Picture;
 
-/// What one picture shows, before any curve of a screen. Rows from the top; one item a pixel in each list.
+/// A picture before tone mapping. Rows from the top; one item per pixel in each list.
 ///
-/// All that is averaged over a pixel adds up as light does, so that the mean of several of them ([`Layers::add`]) is the
-/// picture of a shutter that was open for as long.
+/// Values averaged over a pixel are linear, so that the mean of several pictures ([`Layers::add`]) is the image with an open
+/// shutter.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Layers {
     /// Width, pixels.
     pub width: u32,
     /// Height, pixels.
     pub height: u32,
-    /// Red, green, blue and alpha. The light is that of the scene, linear, in the primaries of sRGB (Rec. 709), times the
-    /// exposure ([`crate::PictureSettings::exposure_stops`]) and before the view's curve; it is not bounded above. Alpha is the
-    /// share of the pixel that hair and body cover, and colour is multiplied by it; over a background both are whole: alpha is 1.
+    /// Red, green, blue and alpha: scene-linear light in the primaries of sRGB (Rec. 709), times the exposure
+    /// ([`crate::PictureSettings::exposure_stops`]), before tone mapping and without an upper bound. Alpha is the fraction of the
+    /// pixel that hair and body cover, and colour is multiplied by it. Over a background alpha is 1.
     pub light: Vec<[f32; 4]>,
-    /// Distance along the camera's axis of the nearest surface in the pixel, metres: the body in any of its four samples, or a
-    /// strand that covers at least [`Layers::LEAST_COVER`] of the pixel. [`Layers::NOTHING_METRES`] where there is none.
+    /// Distance along the camera's axis of the nearest surface in the pixel, metres: the body in any of the four samples, or a
+    /// strand that covers at least [`Layers::LEAST_COVER`] of the pixel. [`Layers::NOTHING_METRES`] if there is none.
     pub depth: Vec<f32>,
-    /// How much of the first light that is switched on the hair before it lets come to the hair of the pixel, 0 to 1:
-    /// `1 - Σ w (1 - T)` over what is seen of each strand, `w` of the pixel, with transmittance `T` in steps of 1/255. So it is 1
-    /// where there is no hair.
+    /// Transmittance of the first light that is switched on, averaged over the visible hair of the pixel, 0 to 1:
+    /// `1 - Σ w (1 - T)`, where `w` is the visible fraction of a strand in the pixel and `T` its transmittance in steps of 1/255.
+    /// It is 1 where there is no hair.
     pub transmittance: Vec<f32>,
 }
 
 impl Layers {
-    /// The depth where there is nothing, metres: large, as Blender writes it, and not infinite, so that no filter makes it a NaN.
+    /// The depth of empty pixels, metres: large as in Blender and not infinite, so that filters do not turn it into NaN.
     pub const NOTHING_METRES: f32 = 1e10;
-    /// The least part of a pixel that a strand must cover to count for its depth: a step of 8 bits.
+    /// The least fraction of a pixel that a strand must cover to count for its depth: one step of 8 bits.
     pub const LEAST_COVER: f32 = 1.0 / 255.0;
 
-    /// Makes room for a picture of this size.
+    /// Resizes all lists.
     pub(crate) fn resize(&mut self, width: u32, height: u32) {
         let pixels = width as usize * height as usize;
         (self.width, self.height) = (width, height);
@@ -42,7 +42,7 @@ impl Layers {
         self.transmittance.resize(pixels, 1.0);
     }
 
-    /// Begins a mean: nothing is in it yet.
+    /// Starts a mean, with all values 0.
     pub fn clear_to(&mut self, width: u32, height: u32) {
         self.resize(width, height);
         self.light.fill([0.0; 4]);
@@ -50,8 +50,7 @@ impl Layers {
         self.transmittance.fill(0.0);
     }
 
-    /// Adds another of the same size with this weight; the weights of all that are added should add up to 1. Depth is that of
-    /// the nearest.
+    /// Adds another picture of the same size with a weight. The weights should add up to 1. Depth becomes the nearest one.
     pub fn add(&mut self, other: &Self, weight: f32) {
         let light = self.light.par_iter_mut().zip(&other.light).with_min_len(4096);
         light.for_each(|(sum, light)| {
@@ -67,8 +66,8 @@ impl Layers {
         }
     }
 
-    /// The picture as the screen shows it, with the curve that every picture has; straight alpha, not premultiplied. Over a
-    /// background its bytes are those of the picture, but for rounding of the exposure.
+    /// The tone-mapped picture, with straight (not premultiplied) alpha. Over a background its bytes are those of the picture,
+    /// except for rounding of the exposure.
     pub fn tone_map(&self, picture: &mut Picture) {
         (picture.width, picture.height) = (self.width, self.height);
         let row = self.width as usize;

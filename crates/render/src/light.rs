@@ -3,7 +3,7 @@
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// The most lights that one picture takes: transmittance is stored once a light a strand point.
+/// The most lights of a picture: transmittance is stored per light and strand point.
 pub const MAX_LIGHTS: usize = 4;
 
 /// A directional light.

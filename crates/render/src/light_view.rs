@@ -1,10 +1,10 @@
-//! How a light sees the body.
+//! The view of a light onto the body.
 
 use glam::{Mat4, Vec3};
 
 use crate::uniform::LightMaps;
 
-/// The orthographic view of a light that travels along `direction` over a sphere, and its texels' size.
+/// The orthographic view of a sphere from a light that travels along `direction`, and the size of its texels.
 pub(crate) fn light_view(direction: Vec3, center: Vec3, radius: f32, texels: u32) -> LightMaps {
     let radius = radius.max(0.01);
     let up = if direction.y.abs() > 0.99 { Vec3::Z } else { Vec3::Y };
@@ -18,7 +18,7 @@ pub(crate) fn light_view(direction: Vec3, center: Vec3, radius: f32, texels: u32
     }
 }
 
-/// A sphere round all points: the middle of their box and half of its diagonal.
+/// A sphere around all points: the centre of their bounding box and half of its diagonal.
 pub(crate) fn bounding_sphere(points: &[Vec3]) -> (Vec3, f32) {
     let (low, high) = points
         .iter()

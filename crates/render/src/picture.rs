@@ -11,7 +11,7 @@ pub const MOST_SIDE: u32 = 8192;
 /// The most pixels of a picture: 8192 by 4320, a little more than 8K video.
 pub const MOST_PIXELS: u64 = 8192 * 4320;
 
-/// Refuses sizes that no backend draws.
+/// Returns an error for sizes that no backend supports.
 ///
 /// # Errors
 /// The size with the limit.
@@ -19,7 +19,7 @@ pub fn check_size(width: u32, height: u32) -> Result<(), RenderError> {
     check_size_for(width, height, MOST_SIDE)
 }
 
-/// Refuses sizes that cannot be drawn; `limit` is the longest side of the backend.
+/// Returns an error for sizes out of range. `limit` is the longest side that the backend supports.
 pub(crate) fn check_size_for(width: u32, height: u32, limit: u32) -> Result<(), RenderError> {
     let limit = limit.min(MOST_SIDE);
     let fits = (1..=limit).contains(&width) && (1..=limit).contains(&height);
@@ -90,13 +90,13 @@ impl PictureSettings {
     }
 }
 
-/// A finished picture in the memory of the processor.
+/// A finished picture in memory.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Picture {
     /// Width, pixels.
     pub width: u32,
     /// Height, pixels.
     pub height: u32,
-    /// Rows from the top, four bytes a pixel: red, green, blue (sRGB encoded) and alpha.
+    /// Rows from the top, four bytes per pixel: red, green, blue (sRGB-encoded) and alpha.
     pub rgba: Vec<u8>,
 }

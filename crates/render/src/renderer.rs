@@ -1,4 +1,4 @@
-//! One way to a picture, whatever draws it.
+//! The renderer, independent of the backend.
 
 use std::sync::Arc;
 
@@ -9,27 +9,26 @@ use crate::{
     Backend, CpuRenderer, FrameInput, FrameStats, GpuRenderer, Layers, Picture, RayStructure, RenderError,
 };
 
-/// Draws pictures on the backend that was chosen, and keeps what it needs for the next one.
+/// Renders pictures on the chosen backend. Keeps buffers from picture to picture.
 #[derive(Debug)]
 pub struct Renderer {
     choice: Backend,
     gpu: Option<GpuRenderer>,
     cpu: Option<Box<CpuRenderer>>,
-    /// Name of what draws.
+    /// The name of the device.
     adapter: String,
 }
 
 impl Renderer {
-    /// Opens what draws. [`Backend::Auto`] takes the graphics card where there is a real one.
+    /// Opens a backend. [`Backend::Auto`] selects the GPU if there is one that is not a software adapter.
     ///
     /// # Errors
-    /// No adapter for [`Backend::Gpu`], or one that cannot be used.
+    /// There is no adapter for [`Backend::Gpu`], or it cannot be used.
     pub fn open(choice: Backend) -> Result<Self, RenderError> {
         match choice {
             Backend::Cpu => Ok(Self::on_processor(choice)),
             Backend::Gpu => Self::on(Gpu::open()?, choice),
-            // What emulates a graphics card on the processor is slower than using the processor; and a card that cannot
-            // be used is none.
+            // A software adapter is slower than the CPU backend. A GPU that cannot be used counts as absent.
             Backend::Auto => match Gpu::open() {
                 Ok(gpu) if !gpu.is_software() => Ok(Self::on(gpu, choice).unwrap_or_else(|error| {
                     tracing::warn!(%error, "the graphics card cannot be used");
@@ -40,7 +39,7 @@ impl Renderer {
         }
     }
 
-    /// Draws on a device that is open.
+    /// A renderer on an open device.
     ///
     /// # Errors
     /// A shader that does not compile, by file and line.
@@ -57,35 +56,35 @@ impl Renderer {
         Self { choice, gpu: None, cpu: Some(Box::default()), adapter: CpuRenderer::adapter() }
     }
 
-    /// What was asked for.
+    /// The backend that was chosen.
     pub fn choice(&self) -> Backend {
         self.choice
     }
 
-    /// What draws: the graphics card or the processor.
+    /// The backend in use: GPU or CPU.
     pub fn backend(&self) -> Backend {
         if self.gpu.is_some() { Backend::Gpu } else { Backend::Cpu }
     }
 
-    /// The name of what draws: the adapter, or the processor's way.
+    /// The name of the device: that of the adapter, or the vector width of the CPU.
     pub fn adapter(&self) -> &str {
         &self.adapter
     }
 
-    /// Whether the processor does the drawing, by itself or as a software adapter.
+    /// Whether the CPU renders, by the CPU backend or by a software adapter.
     pub fn is_software(&self) -> bool {
         self.gpu.as_ref().is_none_or(|gpu| gpu.gpu().is_software())
     }
 
-    /// The device that it draws on; none on the processor.
+    /// The device in use; `None` on the CPU.
     pub fn gpu(&self) -> Option<&Arc<Gpu>> {
         self.gpu.as_ref().map(GpuRenderer::gpu)
     }
 
-    /// Draws `input` at `width` by `height` pixels.
+    /// Renders `input` at `width` by `height` pixels.
     ///
     /// # Errors
-    /// A size out of range, a shadow that needs too much memory, or a device that is lost.
+    /// The size is out of range, the shadow needs too much memory, or the device is lost.
     pub fn picture(
         &mut self,
         input: &FrameInput,
@@ -99,9 +98,9 @@ impl Renderer {
         }
     }
 
-    /// Draws the layers of a picture of `input`: what an exchange with a compositor, a transparent background or a shutter that is
-    /// open for a while needs. Costs about twice a picture. `over_background` draws the background and the ground behind hair and
-    /// body; without, there is nothing behind them, and no shadow on the ground.
+    /// Renders the layers of a picture of `input`, for compositing, transparent backgrounds and motion blur. Costs about twice as much
+    /// as a picture. `over_background` draws the background and the ground behind hair and body; without it there is nothing behind
+    /// them, and no shadow on the ground.
     ///
     /// # Errors
     /// As [`Renderer::picture`].
@@ -119,11 +118,11 @@ impl Renderer {
         }
     }
 
-    /// Transmittance that the last picture used at every strand point, 0 to 1, in the order of the points: of light `light`,
-    /// counted from 0 among those that are switched on. In steps of 1/255 on a graphics card, which keeps no more.
+    /// The transmittance of light `light` at every strand point of the last picture, 0 to 1, in the order of the points. Lights that
+    /// are switched on count from 0. On the GPU it has steps of 1/255.
     ///
     /// # Errors
-    /// No such light, no picture since the renderer was opened or the last one failed, or a device that is lost.
+    /// There is no such light, no picture has been rendered or the last one failed, or the device is lost.
     pub fn transmittance(&mut self, light: usize) -> Result<Vec<f32>, RenderError> {
         match &mut self.gpu {
             Some(gpu) => gpu.transmittance(light),
@@ -131,11 +130,11 @@ impl Renderer {
         }
     }
 
-    /// Asks the map of a light of the last picture at any points, world space, metres: transmittance, 0 to 1, in the
-    /// precision and for the lights of [`Renderer::transmittance`]. A point that is not finite gets 1.
+    /// Looks up any points (world space, metres) in the map of a light of the last picture: transmittance, 0 to 1, with the precision
+    /// and for the lights of [`Renderer::transmittance`]. A point that is not finite gets 1.
     ///
     /// # Errors
-    /// As [`Renderer::transmittance`], or more points than the device takes at once.
+    /// As [`Renderer::transmittance`], or more points than fit a buffer of the device.
     pub fn transmittance_at(&mut self, light: usize, points: &[Vec3]) -> Result<Vec<f32>, RenderError> {
         match &mut self.gpu {
             Some(gpu) => gpu.transmittance_at(light, points),
@@ -143,12 +142,11 @@ impl Renderer {
         }
     }
 
-    /// What the map of a light of the last picture keeps along the light through `p`, world space, metres. `None` on a graphics
-    /// card, whose maps stay there: build the method's [`CpuShadow`](lovelock_shadow::CpuShadow), its definition, to look into
-    /// it.
+    /// What the map of a light of the last picture holds along the light through `p` (world space, metres). `None` on the GPU, whose
+    /// maps are not read back: build the method's [`CpuShadow`](lovelock_shadow::CpuShadow) instead.
     ///
     /// # Errors
-    /// On the processor as [`Renderer::transmittance`].
+    /// On the CPU as [`Renderer::transmittance`].
     pub fn along_ray(&mut self, light: usize, p: Vec3) -> Result<Option<RayStructure>, RenderError> {
         match &self.gpu {
             Some(_) => Ok(None),

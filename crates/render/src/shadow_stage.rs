@@ -1,4 +1,4 @@
-//! The shadow methods of one frame on the processor: one map a light, asked once a strand point and once a vertex of the body.
+//! The shadow method of one frame on the CPU: one map per light, looked up once per strand point and once per vertex of the body.
 
 use glam::Vec3;
 use lovelock_gpu::{PassTime, Stopwatch};
@@ -8,25 +8,25 @@ use rayon::prelude::*;
 
 use crate::{FrameInput, Light, MAX_LIGHTS, RayStructure, RenderError};
 
-/// The shadow of every light, kept from frame to frame.
+/// The shadows of all lights, kept from frame to frame.
 #[derive(Default)]
 pub(crate) struct ShadowStage {
     method: Option<ShadowMethod>,
     lights: Vec<LightShadow>,
-    /// Four 8-bit transmittances a strand point, the first light in the lowest byte.
+    /// Four 8-bit transmittances per strand point, the first light in the lowest byte.
     pub at_points: Vec<u32>,
     /// The same for each vertex of the body.
     pub at_vertices: Vec<u32>,
-    /// What all hair lets through, a light; for the ground.
+    /// The transmittance behind all hair per light, for the ground.
     pub columns: Vec<Option<ColumnMap>>,
     /// Mean transmittance of the first light over the strands' points.
     pub mean: f32,
     /// Bytes of all maps.
     pub bytes: u64,
-    /// What building and asking took, all lights together.
+    /// The times of builds and lookups, added up over lights.
     pub passes: Vec<PassTime>,
     vertices: [Vec<f32>; 3],
-    /// Whether the last run came to its end.
+    /// Whether the last run was completed.
     is_whole: bool,
 }
 
@@ -47,7 +47,7 @@ impl LightShadow {
         input: &FrameInput,
         strands: &Strands,
     ) -> Result<(), ShadowError> {
-        // Carried along rather than made anew, so that the map does not roll while the light is dragged.
+        // Transported instead of recomputed, so that the map does not roll while the light is dragged.
         self.frame = self.frame.transported(direction);
         let strand_width = input.look.shadow_width(input.style.strands.count());
         let anchor = input.world_from_head.translation.into();
@@ -55,8 +55,8 @@ impl LightShadow {
         self.shadow.build(&from, input.shadow)
     }
 
-    /// Asks the map at strand points and at vertices, unless the answers are known.
-    fn ask(&mut self, strands: &Strands, vertices: &[Vec<f32>; 3], known: [Option<&[f32]>; 2]) {
+    /// Looks up strand points and vertices, unless their transmittance is given.
+    fn look_up(&mut self, strands: &Strands, vertices: &[Vec<f32>; 3], known: [Option<&[f32]>; 2]) {
         let points = [&strands.x, &strands.y, &strands.z];
         let [v, w, u] = vertices;
         let asked = [(points, &mut self.at_points), ([v, w, u], &mut self.at_vertices)];
@@ -80,10 +80,10 @@ impl std::fmt::Debug for ShadowStage {
 }
 
 impl ShadowStage {
-    /// Builds the maps and looks them up everywhere that they are needed.
+    /// Builds the maps and looks up all strand points and vertices.
     ///
     /// # Errors
-    /// The map would need more memory than its limit, or what is known does not fit the picture.
+    /// The map would exceed its memory limit, or given transmittance does not match the picture.
     pub fn run(&mut self, input: &FrameInput, strands: &Strands) -> Result<(), RenderError> {
         self.is_whole = false;
         let lights: Vec<Light> =
@@ -128,7 +128,7 @@ impl ShadowStage {
             let known = input.known.map_or([None; 2], |known| {
                 [known.at_points, known.at_vertices].map(|lists| lists.get(k).map(Vec::as_slice))
             });
-            shadow.ask(strands, vertices, known);
+            shadow.look_up(strands, vertices, known);
         });
         let at_points: Vec<&[f32]> = self.lights.iter().map(|light| &light.at_points[..]).collect();
         pack(&at_points, strands.points(), &mut self.at_points);
@@ -151,7 +151,7 @@ impl ShadowStage {
         self.light(light).map(|light| &light.at_points[..])
     }
 
-    /// Asks the map of light `light` of the last run.
+    /// Looks up points in the map of light `light` of the last run.
     pub fn transmittance_at(&self, light: usize, points: &[Vec3]) -> Result<Vec<f32>, RenderError> {
         let light = self.light(light)?;
         let [x, y, z] = [0, 1, 2].map(|axis| points.iter().map(|p| p[axis]).collect::<Vec<_>>());
@@ -160,7 +160,7 @@ impl ShadowStage {
         Ok(answers)
     }
 
-    /// What the map of light `light` of the last run keeps along the light through `p`.
+    /// What the map of light `light` of the last run holds along the light through `p`.
     pub fn along_ray(&self, light: usize, p: Vec3) -> Result<RayStructure, RenderError> {
         self.light(light).map(|light| light.shadow.along_ray(p))
     }
@@ -176,8 +176,8 @@ impl ShadowStage {
 /// Points that are packed or summed together.
 const PIECE: usize = 8192;
 
-/// Packs the values of up to four lights into one word each, the first in the lowest byte; bytes without a light are
-/// full.
+/// Packs the values of up to four lights into one word per point, the first light in the lowest byte. Bytes without a light are
+/// 255.
 fn pack(values: &[&[f32]], count: usize, packed: &mut Vec<u32>) {
     packed.clear();
     packed.resize(count, u32::MAX);
@@ -192,7 +192,7 @@ fn pack(values: &[&[f32]], count: usize, packed: &mut Vec<u32>) {
     });
 }
 
-/// The mean of some values, summed in an order that does not depend on the number of threads; 1 where there are none.
+/// The mean of values, added up in an order that does not depend on the number of threads; 1 if there are none.
 fn mean(values: &[f32]) -> f32 {
     let sums: Vec<f64> =
         values.par_chunks(PIECE).map(|piece| piece.iter().map(|&t| f64::from(t)).sum()).collect();

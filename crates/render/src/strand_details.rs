@@ -1,10 +1,10 @@
-//! What a hairstyle says of its strand points, whatever the instant.
+//! Properties of strand points that do not change over time.
 
 use std::sync::Arc;
 
 use lovelock_groom::Hairstyle;
 
-/// One packed word a point, and the list of segments; made anew when the hairstyle changes.
+/// One packed word per point, and the list of segments. Rebuilt when the hairstyle changes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct StrandDetails {
     style: Option<Arc<Hairstyle>>,
@@ -15,7 +15,7 @@ pub(crate) struct StrandDetails {
 }
 
 impl StrandDetails {
-    /// Follows the hairstyle; says whether it is another one.
+    /// Rebuilds if the hairstyle has changed. Returns whether it has.
     pub fn follow(&mut self, style: &Arc<Hairstyle>) -> bool {
         if self.style.as_ref().is_some_and(|old| Arc::ptr_eq(old, style)) {
             return false;
@@ -41,8 +41,8 @@ impl StrandDetails {
     }
 }
 
-/// Taper, place along the strand (0 root, 1 tip) and shade in 8 bits each, then whether the point is the first
-/// and whether it is the last of its strand.
+/// Taper, position along the strand (0 root, 1 tip) and shade in 8 bits each, then whether the point is the first and whether it
+/// is the last of its strand.
 fn pack_detail(taper: f32, along: f32, shade: f32, first: bool, last: bool) -> u32 {
     let byte = |v: f32| (v.clamp(0.0, 1.0) * 255.0 + 0.5) as u32;
     byte(taper) | byte(along) << 8 | byte(shade) << 16 | u32::from(first) << 24 | u32::from(last) << 25

@@ -1,4 +1,4 @@
-//! What every pass knows of the picture: the twin of `frame.wgsl`.
+//! The uniform of all passes: the twin of `frame.wgsl`.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3, Vec4};
@@ -33,7 +33,7 @@ pub(crate) struct FrameUniform {
     pub lights: [LightUniform; MAX_LIGHTS],
 }
 
-/// Where one light's maps lie.
+/// The placement of the maps of one light.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct LightMaps {
     pub shadow_from_world: Mat4,
@@ -41,12 +41,12 @@ pub(crate) struct LightMaps {
     pub metres_per_texel: f32,
 }
 
-/// Colour of the light from above and below, before `PictureSettings::ambient`.
+/// Ambient colour from above and below, before `PictureSettings::ambient`.
 const SKY: Vec3 = Vec3::new(0.62, 0.68, 0.78);
 const EARTH: Vec3 = Vec3::new(0.36, 0.33, 0.31);
 
 impl FrameUniform {
-    /// Gathers what `input` says. `maps` are those of its lights, in order.
+    /// The uniform of `input`. `maps` are those of its lights, in order.
     pub fn new(input: &FrameInput, width: u32, height: u32, maps: &[LightMaps], shadow_texels: u32) -> Self {
         let picture = input.picture.clamped();
         let look = input.look;
@@ -154,7 +154,7 @@ mod tests {
                 size_of::<FrameUniform>(),
             ]
         );
-        // Written and read by shaders alone, but Rust makes room for it.
+        // Only shaders access it, but Rust allocates it.
         assert_eq!(layout_in_shader("ShadedPoint").last(), Some(&32));
     }
 }

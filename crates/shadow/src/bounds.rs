@@ -1,4 +1,4 @@
-//! How far the hair reaches along the axes of a light, and sizes of cells that stay from frame to frame.
+//! The extent of the hair along the axes of a light, and sizes of cells that are stable from frame to frame.
 // Functions are inlined into the loops that `simd_versions!` compiles; calling those takes `unsafe`.
 #![allow(clippy::inline_always, unsafe_code)]
 
@@ -8,13 +8,13 @@ use rayon::prelude::*;
 
 use crate::{LightFrame, ShadowInput};
 
-/// Points farther from the anchor than this on any axis are left out, metres.
+/// Points farther from the anchor than this on any axis are ignored, metres.
 pub(crate) const FARTHEST: f32 = 1e4;
 
-/// Smallest cell, metres: hair that has collapsed to a point must not make cells of no size.
+/// The smallest cell, metres, so that hair collapsed to a point does not make cells of size 0.
 pub(crate) const SMALLEST_CELL: f32 = 1e-5;
 
-/// Points of one parallel piece.
+/// Points per parallel task.
 const POINTS_PER_PIECE: usize = 1 << 14;
 
 simd_versions! {
@@ -24,23 +24,23 @@ simd_versions! {
     }
 }
 
-/// The hair's extent along the light's axes, relative to the anchor, metres.
+/// The extent of the hair along the light's axes, relative to the anchor, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
-    /// Smallest coordinates; above `max` where there is no point.
+    /// Smallest coordinates; above `max` if there is no point.
     pub min: Vec3,
     /// Largest coordinates.
     pub max: Vec3,
-    /// Points left out because they are not finite or too far away.
+    /// Points that were ignored because they are not finite or too far away.
     pub ignored: u64,
 }
 
 impl Bounds {
-    /// Bounds of nothing.
+    /// Empty bounds.
     pub const EMPTY: Self =
         Self { min: Vec3::splat(f32::INFINITY), max: Vec3::splat(f32::NEG_INFINITY), ignored: 0 };
 
-    /// Bounds of points; slices of one length.
+    /// Bounds of points. All slices have the same length.
     #[inline(always)]
     pub(crate) fn of_points(x: &[f32], y: &[f32], z: &[f32], light: &LightFrame, anchor: Vec3) -> Self {
         let mut running = Running::default();
@@ -50,7 +50,7 @@ impl Bounds {
         for ((x, y), z) in xs.iter().zip(ys).zip(zs) {
             running.add([x, y, z], light, anchor);
         }
-        // The rest, filled up with points that are ignored.
+        // The rest, padded with points that are ignored.
         let fill = |rest: &[f32]| {
             let mut lanes = [f32::NAN; LANES];
             lanes[..rest.len()].copy_from_slice(rest);
@@ -74,7 +74,7 @@ impl Bounds {
             .reduce(|| Self::EMPTY, Self::join)
     }
 
-    /// The bounds of both.
+    /// The union of both.
     pub fn join(self, other: Self) -> Self {
         Self {
             min: self.min.min(other.min),
@@ -84,10 +84,10 @@ impl Bounds {
     }
 }
 
-/// Points that are bounded together.
+/// Points that are processed together.
 const LANES: usize = 16;
 
-/// Bounds on the way, one for each lane.
+/// Intermediate bounds, one per lane.
 struct Running {
     min: [[f32; LANES]; 3],
     max: [[f32; LANES]; 3],
@@ -136,9 +136,9 @@ impl Running {
     }
 }
 
-/// The next sixteenth of an octave at or above `size`, which must be positive and finite.
+/// `size`, which must be positive and finite, rounded up to a sixteenth of an octave.
 pub(crate) fn round_up_to_step(size: f32) -> f32 {
-    // 2^(k/16), so that the result is the same wherever this runs.
+    // 2^(k/16) as constants, so that the result is the same on every platform.
     const STEPS: [f32; 17] = [
         1.0,
         1.044_273_8,

@@ -1,91 +1,91 @@
-//! What every shadow method does on the processor.
+//! The interface of shadow methods on the CPU.
 
 use glam::{Mat4, Vec3};
 use lovelock_groom::Strands;
 
 use crate::{LightFrame, RayStructure, ShadowError, ShadowSettings};
 
-/// What a map is built from.
+/// The input of a build.
 #[derive(Clone, Copy, Debug)]
 pub struct ShadowInput<'a> {
     /// The strands that cast the shadow, world space.
     pub strands: &'a Strands,
-    /// Width with which one strand blocks light: the diameter of a hair times the number of real hairs that a
-    /// strand stands for, metres. See `HairLook::shadow_width`.
+    /// The width with which one strand blocks light, metres: the diameter of a hair times the number of real hairs that a
+    /// strand represents. See `HairLook::shadow_width`.
     pub strand_width: f32,
     /// The light's direction and axes.
     pub light: LightFrame,
-    /// The point that the map's lattice is locked to, world space: the head. Hair that moves along with it
-    /// keeps its cells, so its shadow does not swim.
+    /// The origin of the map's lattice, world space: the head. Hair that moves with it stays in its cells, so that its shadow
+    /// does not flicker.
     pub anchor: Vec3,
-    /// How many maps are built together, one a light: the memory limit is shared between them evenly. 0 is as 1.
+    /// The number of maps that are built together, one per light. They share the memory limit evenly. 0 counts as 1.
     pub maps: u32,
 }
 
 impl ShadowInput<'_> {
-    /// What one of the maps may take of a limit for all of them.
+    /// The share of one map in a limit for all of them.
     pub(crate) fn share_of(&self, limit_bytes: u64) -> u64 {
         limit_bytes / u64::from(self.maps.max(1))
     }
 }
 
-/// What a build cost and met. Times are the caller's to take.
+/// Statistics of a build, without times, which the caller measures.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ShadowReport {
-    /// Memory that the map holds, bytes of address space.
+    /// Memory of the map, bytes of address space.
     pub memory_bytes: u64,
-    /// Cells (or texels) that the build wrote; empty space is skipped.
+    /// Cells (or texels) that the build wrote. Empty space is skipped.
     pub cells_touched: u64,
     /// Cells (or texels) of the whole map.
     pub cells_total: u64,
-    /// Edge of one cell, metres; 0 where the method has none.
+    /// Edge of a cell (or texel), metres; 0 if the method has no map.
     pub cell_size: f32,
-    /// Pieces of strand that were put into the map.
+    /// Samples (or fragments) of strands that were added to the map.
     pub samples: u64,
-    /// Points left out because they are not finite or too far from the anchor.
+    /// Points that were ignored because they are not finite or too far from the anchor.
     pub points_ignored: u64,
-    /// Memory beside the map that builds alone use, kept from build to build, bytes.
+    /// Memory that only builds use, kept from build to build, bytes.
     pub scratch_bytes: u64,
-    /// Most memory that the map and its build may need, as counted before any was taken and held against the limit,
-    /// bytes; 0 where the method has no limit.
+    /// The most memory that the map and its build may need, bytes: computed before any is allocated, and compared with the limit.
+    /// 0 if the method has no limit.
     pub needed_bytes: u64,
 }
 
-/// What lies behind the whole hair, for surfaces far behind it (the ground): transmittance a light column.
+/// The transmittance behind the whole hair, for surfaces far behind it (the ground).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ColumnMap {
     /// Texels along each edge.
     pub size: u32,
-    /// `size * size` transmittances, row after row; a row runs along u. Texels at the border are 1, so that
-    /// clamping at the edge leaves everything beside the map lit.
+    /// `size * size` transmittances, row after row; rows run along u. Texels at the border are 1, so that clamped coordinates
+    /// outside the map are lit.
     pub transmittance: Vec<f32>,
     /// World position to `(u, v, depth)`: u and v in `0..1` over the map with texel centres at
     /// `(i + 0.5) / size`, depth along the light in `0..1` over the map's extent.
     pub uv_from_world: Mat4,
 }
 
-/// A shadow method on the processor: the definition of the method.
+/// A shadow method on the CPU. It defines the method; the GPU must agree with it.
 pub trait CpuShadow {
-    /// Makes the map of the strands as they lie now. Memory is reused from build to build.
+    /// Builds the map of the strands. Memory is reused from build to build.
     ///
     /// # Errors
-    /// [`ShadowError::TooLarge`] where the map would take more memory than the method may use; nothing of that
-    /// size is allocated, and everything is lit then.
+    /// [`ShadowError::TooLarge`] if the map would exceed the memory limit of the method. Then nothing of that size is allocated,
+    /// and everything is lit.
     fn build(&mut self, input: &ShadowInput, settings: &ShadowSettings) -> Result<(), ShadowError>;
 
-    /// How much light reaches `p` (world space, metres) through the hair, `0..=1`. Points before the hair or
-    /// beside it get 1; a point that is not finite gets 1.
+    /// The transmittance at `p` (world space, metres), `0..=1`: the fraction of the light that the hair lets through. It is 1
+    /// before and beside the hair, and for points that are not finite.
     fn transmittance(&self, p: Vec3) -> f32;
 
     /// [`CpuShadow::transmittance`] of many points, in parallel. All slices have the same length.
     fn transmittance_at(&self, x: &[f32], y: &[f32], z: &[f32], out: &mut [f32]);
 
-    /// What the last build cost and met.
+    /// Statistics of the last build.
     fn report(&self) -> ShadowReport;
 
-    /// What lies behind the whole hair along the light; `None` where the method cannot say or casts nothing.
+    /// The transmittance behind the whole hair; `None` before the first build and if the method casts no shadow.
     fn column_map(&self) -> Option<ColumnMap>;
 
-    /// What the last build keeps along the light through `p` (world space, metres), to be looked at.
+    /// What the last map holds along the light through `p` (world space, metres), for inspection.
     fn along_ray(&self, p: Vec3) -> RayStructure;
 }

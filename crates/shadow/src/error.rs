@@ -4,41 +4,41 @@ use std::fmt;
 
 use crate::ShadowMethod;
 
-/// Why a shadow could not be built. What was built before is gone: everything is lit until the next build.
+/// Why a shadow could not be built. The previous map is freed: everything is lit until the next build.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ShadowError {
-    /// The map of this hair would take more memory than the method may use.
+    /// The map of this hair would exceed the memory limit of the method.
     #[error(
         "{method} needs {} for this hair, more than its limit of {}{}: {}",
         Bytes(*.needed_bytes), Bytes(*.limit_bytes), Share(*.maps), .method.advice()
     )]
     TooLarge {
-        /// The method that was asked.
+        /// The method.
         method: ShadowMethod,
-        /// What it would have needed.
+        /// What it would need.
         needed_bytes: u64,
-        /// What it may use: its share of the limit of all maps.
+        /// What one map may use: its share of the limit of all maps.
         limit_bytes: u64,
-        /// How many maps share that limit; 1 or more.
+        /// The number of maps that share that limit, 1 or more.
         maps: u32,
     },
-    /// The graphics device gives no buffer of that size.
+    /// The graphics device cannot create a buffer of that size.
     #[error(
-        "{method} needs a buffer of {} for this hair, and this graphics device takes at most {}: {}, or draw by the \
-         processor",
+        "{method} needs a buffer of {} for this hair, and this graphics device allows at most {}: {}, or render on \
+         the CPU",
         Bytes(*.needed_bytes), Bytes(*.limit_bytes), .method.advice()
     )]
     Device {
-        /// The method that was asked.
+        /// The method.
         method: ShadowMethod,
-        /// What it would have needed.
+        /// What it would need.
         needed_bytes: u64,
         /// The device's limit.
         limit_bytes: u64,
     },
 }
 
-/// Says how many maps share a limit, where it is shared.
+/// The number of maps that share a limit, as text; empty for one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Share(u32);
 
@@ -48,7 +48,7 @@ impl fmt::Display for Share {
     }
 }
 
-/// A number of bytes as people read it.
+/// A number of bytes in a readable unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Bytes(u64);
 

@@ -1,16 +1,16 @@
-//! `e^(−τ)` in a form that vectorises and gives the same bits on every processor.
+//! `e^(−τ)` in a form that vectorises and gives the same bits on every CPU.
 // Functions are inlined into the loops that `simd_versions!` compiles.
 #![allow(clippy::inline_always)]
 
 use lovelock_groom::simd::whole_part;
 
-/// One optical depth in the 16-bit steps of a cell.
+/// Optical depth 1 in the 16-bit steps of a cell.
 pub(crate) const DEPTH_STEPS: f32 = 4096.0;
 
 /// `e^(−depth / 4096)` for `0 <= depth <= 65535`: exactly 1 at 0, relative error below 3e-7.
 ///
-/// The exponent is split into a whole power of two and a rest `g` in `0..1`; `2^(−g)` is a minimax polynomial of
-/// degree 5 whose constant term is held at 1. No fused operations, so that no processor rounds otherwise.
+/// The exponent is split into an integer power of two and a remainder `g` in `0..1`; `2^(−g)` is a minimax polynomial of
+/// degree 5 with the constant term fixed at 1. No fused operations, so that every CPU rounds alike.
 #[inline(always)]
 pub(crate) fn exp_of_minus_steps(depth: f32) -> f32 {
     let octaves = depth * (std::f32::consts::LOG2_E / DEPTH_STEPS);
@@ -22,11 +22,11 @@ pub(crate) fn exp_of_minus_steps(depth: f32) -> f32 {
     let p = p * g + 0.240_180_15;
     let p = p * g + -0.693_143_7;
     let p = p * g + 1.0;
-    // Lowering the exponent's bits divides by 2^whole; at most 24 here, far from the smallest float.
+    // Decreasing the exponent bits divides by 2^whole, which is at most 24 here, far from the smallest float.
     f32::from_bits((p.to_bits() as i32 - (whole << 23)) as u32)
 }
 
-/// `e^(−depth)` for any optical depth: 1 at 0 and for what is no number, 10⁻²⁸ from 64 on, always within 0 and 1.
+/// `e^(−depth)` for any optical depth: 1 at 0 and for NaN, 10⁻²⁸ from 64 on, always between 0 and 1.
 #[inline(always)]
 pub(crate) fn exp_of_minus(depth: f32) -> f32 {
     let depth = if depth > 0.0 { depth } else { 0.0 };

@@ -1,8 +1,8 @@
-//! Shadow methods inside hair: how much light reaches a point through the strands before it.
+//! Shadow methods inside hair: how much light reaches a point through the strands in front of it.
 //!
-//! [`ShadowMethod`] names the methods, [`ShadowSettings`] keeps the values of every one of them, and
-//! [`CpuShadow`] is the behaviour: build from strands and a light, then answer a transmittance in `0..=1` for
-//! any point. The processor's version of a method is its definition.
+//! [`ShadowMethod`] lists the methods, [`ShadowSettings`] holds the settings of all of them, and [`CpuShadow`] is their
+//! interface: build a map from strands and a light, then look up a transmittance in `0..=1` at any point. The CPU version of a
+//! method is its definition.
 //!
 //! Adding a method is a folder in `methods/` and its lines in `methods/mod.rs`: see `docs/how_to_add.md`.
 

@@ -4,8 +4,8 @@ use glam::{Quat, Vec3};
 
 /// Right-handed orthonormal axes along a directional light, in world space (`y × z = x`).
 ///
-/// Make the first with [`LightFrame::new`] and follow a light that moves with [`LightFrame::transported`]:
-/// axes found anew for every direction jump somewhere on the sphere, and with them the whole map.
+/// Create the first frame with [`LightFrame::new`] and follow a moving light with [`LightFrame::transported`]: axes computed
+/// from each direction alone jump somewhere on the sphere, and the whole map jumps with them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightFrame {
     /// Direction in which the light travels, unit length (the paper's *L*, also ω).
@@ -17,7 +17,7 @@ pub struct LightFrame {
 }
 
 impl LightFrame {
-    /// Axes for light that travels along `direction` (any length; straight down where it has none).
+    /// Axes for light that travels along `direction` (of any length; a zero vector becomes straight down).
     ///
     /// Duff et al. 2017, "Building an Orthonormal Basis, Revisited".
     pub fn new(direction: Vec3) -> Self {
@@ -30,24 +30,24 @@ impl LightFrame {
         Self { x, y, z }
     }
 
-    /// These axes carried to another direction by the shortest rotation, which adds no roll: a light that is
-    /// dragged a little turns its map a little. A direction of no length changes nothing.
+    /// These axes rotated to another direction by the smallest rotation, which adds no roll: a small change of the light rotates
+    /// the map by a small angle. A zero vector changes nothing.
     pub fn transported(&self, direction: Vec3) -> Self {
         let x = direction.normalize_or(self.x);
         let y = Quat::from_rotation_arc(self.x, x) * self.y;
-        // Rounding would add up over a long drag: make the axes orthonormal anew.
+        // Orthonormalise, because rounding errors would accumulate over a long drag.
         match (y - y.dot(x) * x).try_normalize() {
             Some(y) => Self { x, y, z: x.cross(y) },
             None => Self::new(x),
         }
     }
 
-    /// A world vector in the axes of the light.
+    /// Transforms a vector from world space into the axes of the light.
     pub fn light_from_world(&self, v: Vec3) -> Vec3 {
         Vec3::new(v.dot(self.x), v.dot(self.y), v.dot(self.z))
     }
 
-    /// A vector in the axes of the light, in world space.
+    /// Transforms a vector from the axes of the light into world space.
     pub fn world_from_light(&self, v: Vec3) -> Vec3 {
         v.x * self.x + v.y * self.y + v.z * self.z
     }

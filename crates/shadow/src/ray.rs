@@ -1,4 +1,4 @@
-//! What a map keeps along one ray of its light.
+//! The content of a map along one ray of its light, for inspection.
 
 use std::fmt;
 
@@ -22,28 +22,28 @@ impl fmt::Display for RayMarkKind {
     }
 }
 
-/// One piece of what a method keeps along a ray.
+/// One piece of a map along a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayMark {
-    /// What it is.
+    /// Its kind.
     pub kind: RayMarkKind,
-    /// Where it begins, metres along the light from the point; below 0 before it.
+    /// Its start, metres along the light from the point; negative before the point.
     pub start: f32,
-    /// Where it ends; the same as `start` for a step.
+    /// Its end; the same as `start` for a step.
     pub end: f32,
-    /// Optical depth that it holds.
+    /// Its optical depth.
     pub optical_depth: f32,
-    /// Transmittance behind it, by this column alone, before any filter: 0 to 1.
+    /// Unfiltered transmittance behind it in this column, 0 to 1.
     pub transmittance: f32,
 }
 
-/// What a method keeps in the column (of texels or cells) that a point lies in, by depth; those of one kind together.
+/// The content of the texel or the column of cells that contains a point. Pieces of one kind are together, sorted by depth.
 ///
-/// Filters read the columns around it too: what the method *answers* along the ray is
-/// [`CpuShadow::transmittance`](crate::CpuShadow::transmittance) at places on it.
+/// Filters also read the columns around it: the *result* of the method along the ray is
+/// [`CpuShadow::transmittance`](crate::CpuShadow::transmittance) at points on it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RayStructure {
-    /// The pieces; none where the column has no hair, beside the map, for a point that is not finite, and before the first
+    /// The pieces. Empty if the column contains no hair, beside the map, for a point that is not finite, and before the first
     /// build.
     pub marks: Vec<RayMark>,
 }

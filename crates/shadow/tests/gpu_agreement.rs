@@ -123,7 +123,7 @@ fn transmittance_is_that_of_the_definition_with_every_filter() {
             for (variant, settings) in variants(method).iter().enumerate() {
                 let defined = defined(method, &groom.input(), settings, &at);
                 built.build(0, &groom.input(), settings).expect("it fits");
-                let found = Differences::of(&defined, &built.ask(&at));
+                let found = Differences::of(&defined, &built.look_up(&at));
                 println!("{method}, {variant}, {}: {:.5} {:.5}", groom.name, found.p99, found.most);
                 assert!(found.within(&tolerance(method)), "{}, {method}, {variant}: {found:?}", groom.name);
                 shaded += defined.iter().filter(|t| **t < 0.9).count();
@@ -148,7 +148,7 @@ fn the_error_against_every_fragment_sorted_is_that_of_the_definition() {
         let truth = defined(ShadowMethod::Exact, &groom.input(), &settings, &at);
         for &method in ShadowMethod::ALL {
             let definition = rmse(&defined(method, &groom.input(), &settings, &at), &truth);
-            let on_gpu = rmse(&Built::new(gpu, method, &groom.input(), &settings).ask(&at), &truth);
+            let on_gpu = rmse(&Built::new(gpu, method, &groom.input(), &settings).look_up(&at), &truth);
             println!("{method}, {}: {definition:.5}, excess {:.5}", groom.name, on_gpu - definition);
             // Both ways: what is wrong can come nearer by chance.
             assert!(
@@ -194,11 +194,11 @@ fn a_moved_light_a_dropped_slab_and_a_swapped_method_are_found_out() {
             let mut built = Built::new(gpu, method, &groom.input(), &settings);
             let texel = built.shadow.report(0).cell_size;
             let moved: Vec<_> = at.iter().map(|&p| p + texel * groom.input().light.y).collect();
-            let moved = built.ask(&moved);
+            let moved = built.look_up(&moved);
             built.build(0, &ShadowInput { strands: &less, ..groom.input() }, &settings).expect("it fits");
-            let dropped = built.ask(&at);
+            let dropped = built.look_up(&at);
             let other = methods[(i + 1) % methods.len()];
-            let swapped = Built::new(gpu, other, &groom.input(), &settings).ask(&at);
+            let swapped = Built::new(gpu, other, &groom.input(), &settings).look_up(&at);
             for (what, wrong) in [("moved", moved), ("dropped", dropped), ("swapped", swapped)] {
                 let found = Differences::of(&definition, &wrong);
                 println!("{method}, {}, {what}: {found:?}", groom.name);

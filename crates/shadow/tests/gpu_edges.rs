@@ -145,7 +145,7 @@ fn broken_hair_and_broken_points_are_as_in_the_definition() {
                 let mut cpu = cpu_shadow(method);
                 cpu.build(&input(&hair), &settings).expect("it fits");
                 built.build(0, &input(&hair), &settings).expect("it fits");
-                let found = built.ask(&at);
+                let found = built.look_up(&at);
                 let wrong = |(p, t): &(&Vec3, &f32)| (cpu.transmittance(**p) - **t).abs() > tolerance(method);
                 let wrong: Vec<_> = at.iter().zip(&found).filter(wrong).collect();
                 assert!(
@@ -213,7 +213,7 @@ fn the_sum_of_answers_the_stride_and_what_lies_behind_are_right() {
         let targets = GpuTargets { points, stride, count, out: out.raw(), sum: Some(sum.raw()) };
         let mut timer = PassTimer::new(gpu).expect("a timer");
         let mut commands = timer.begin(gpu, "test");
-        built.shadow.ask(0, gpu, &mut commands, &targets);
+        built.shadow.look_up(0, gpu, &mut commands, &targets);
         let size = built.shadow.columns_size(0);
         let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: None,
@@ -306,7 +306,7 @@ fn what_does_not_fit_is_refused_with_its_bytes_and_leaves_all_lit() {
     let fine = ShadowInput { strand_width: 1e-5, maps: 64, ..input(&hair) };
     for &method in &ShadowMethod::ALL[1..] {
         let mut built = Built::new(gpu, method, &input(&hair), &ShadowSettings::default());
-        assert!(built.ask(&at).iter().any(|t| *t < 0.9), "{method}: control");
+        assert!(built.look_up(&at).iter().any(|t| *t < 0.9), "{method}: control");
         let error = built.build(0, &fine, &large);
         let (of, needed, limit) = match error {
             Err(ShadowError::TooLarge { method, needed_bytes, limit_bytes, maps }) => {
@@ -325,10 +325,10 @@ fn what_does_not_fit_is_refused_with_its_bytes_and_leaves_all_lit() {
         let mib = needed as f64 / f64::from(1 << 20);
         let named = [format!("{mib:.1} MiB"), format!("{:.1} GiB", mib / 1024.0)];
         assert!(text.starts_with(method.id()) && named.iter().any(|bytes| text.contains(bytes)), "{text}");
-        assert!(built.ask(&at).iter().all(|t| *t == 1.0), "{method}: lit until it fits");
+        assert!(built.look_up(&at).iter().all(|t| *t == 1.0), "{method}: lit until it fits");
         assert_eq!(built.shadow.columns_size(0), 0, "{method}");
         built.build(0, &input(&hair), &ShadowSettings::default()).expect("fits");
-        assert!(built.ask(&at).iter().any(|t| *t < 0.9), "{method}: control");
+        assert!(built.look_up(&at).iter().any(|t| *t < 0.9), "{method}: control");
     }
     // The exact shadow finds out when it has counted.
     let mut settings = ShadowSettings::default();
@@ -336,7 +336,7 @@ fn what_does_not_fit_is_refused_with_its_bytes_and_leaves_all_lit() {
     let one = ShadowInput { strand_width: 5e-4, ..input(&hair) };
     let mut built = Built::empty(gpu, ShadowMethod::Exact);
     built.build(0, &one, &settings).expect("one fits");
-    assert!(built.ask(&at).iter().any(|t| *t < 0.9), "control");
+    assert!(built.look_up(&at).iter().any(|t| *t < 0.9), "control");
     let report = built.shadow.report(0);
     let error = built.build(0, &ShadowInput { maps: 4, ..one }, &settings).expect_err("four do not");
     let (method, needed_bytes) = (ShadowMethod::Exact, report.needed_bytes);
@@ -345,5 +345,5 @@ fn what_does_not_fit_is_refused_with_its_bytes_and_leaves_all_lit() {
         needed_bytes > 8 * report.cells_total + 8 * report.samples && report.samples > 100_000,
         "{report:?}"
     );
-    assert!(built.ask(&at).iter().all(|t| *t == 1.0), "lit until it fits");
+    assert!(built.look_up(&at).iter().all(|t| *t == 1.0), "lit until it fits");
 }

@@ -24,7 +24,7 @@ fn every_composed_shader_is_valid_and_keeps_within_the_limits_of_webgpu() {
     for &method in ShadowMethod::ALL {
         let prefix = format!("{method}: ");
         let of: Vec<_> = shaders.iter().filter_map(|(label, _)| label.strip_prefix(&prefix)).collect();
-        assert!(of.contains(&"ask"), "{method}: {of:?}");
+        assert!(of.contains(&"lookup"), "{method}: {of:?}");
         // What casts a shadow is made by passes and falls on the ground.
         let passes = of.iter().filter(|label| label.starts_with("shadow/")).count();
         assert_eq!(

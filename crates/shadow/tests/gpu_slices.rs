@@ -284,7 +284,7 @@ fn many_fragments_of_one_texel_do_not_wrap() {
         let at: Vec<_> = (0..40).map(|i| Vec3::new(-0.01 + 0.0005 * i as f32, 0.1, 0.0) + behind).collect();
         let expected: Vec<_> = at.iter().map(|&p| cpu.transmittance(p)).collect();
         assert!(expected.iter().any(|t| (0.02..0.5).contains(t)), "neither all nor nothing: {expected:?}");
-        for (found, expected) in built.ask(&at).iter().zip(&expected) {
+        for (found, expected) in built.look_up(&at).iter().zip(&expected) {
             assert!((found - expected).abs() < 0.004, "{method}: {found}, not {expected}");
         }
     }

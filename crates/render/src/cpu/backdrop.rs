@@ -9,16 +9,16 @@ use super::math::{max, mix, smoothstep, three};
 use super::tile::TILE;
 use super::view::View;
 
-/// Pixels along each edge of a cell of ground: where its corners agree, so does what is between them.
+/// Pixels along each edge of a cell of ground, whose light is uniform if that of its corners is.
 const CELL: usize = 4;
 const CORNERS: usize = TILE / CELL + 1;
-/// Places that are asked together.
+/// Positions that are evaluated together.
 const LANES: usize = 16;
 
-/// The share of the light that is left on the ground of a tile.
+/// The fraction of the light that reaches the ground of a tile.
 ///
-/// Most of the ground is lit evenly: it is asked at the corners of cells first, and pixel by pixel only in cells
-/// whose corners differ.
+/// Most of the ground is lit uniformly: it is evaluated at the corners of cells first, and per pixel only in cells whose corners
+/// differ.
 #[derive(Clone, Debug)]
 pub(super) struct Ground {
     origin: [f32; 2],
@@ -32,12 +32,11 @@ simd_versions! {
     }
 }
 
-/// Difference of two corners' light that is not worth a look between them: half a step of 8 bits.
+/// The difference of the light at two corners up to which a cell counts as uniform: half a step of 8 bits.
 const ALIKE: f32 = 1.0 / 512.0;
 
 impl Ground {
-    /// Asks for the light at the corners of the cells of the tile at `origin`; none where there is no ground or all of
-    /// it lies in full light.
+    /// Evaluates the corners of the cells of the tile at `origin`. `None` if there is no ground or all of it is fully lit.
     #[inline(always)]
     pub fn new(view: &View, origin: [f32; 2]) -> Option<Self> {
         if view.uniform.ambient_up_ground.w <= 0.5 {
@@ -47,7 +46,7 @@ impl Ground {
         let (x0, y0) = (2.0 * origin[0] / size.x - 1.0, 1.0 - 2.0 * origin[1] / size.y);
         let (x1, y1) = (x0 + 2.0 * TILE as f32 / size.x, y0 - 2.0 * TILE as f32 / size.y);
         let (outline, is_ground) = ground_place(view, &[[x0, x1, x0, x1], [y0, y0, y1, y1]]);
-        // The ground of a tile has straight edges: it lies within the bounds of its corners.
+        // The ground in a tile is convex, so it lies within the bounds of its corners.
         let lit = is_ground == [1.0; 4] && view.lights.iter().all(|light| light.is_beside(&outline));
         if lit || is_ground == [0.0; 4] {
             return None;
@@ -72,7 +71,7 @@ impl Ground {
         any.then_some(Self { origin, corners })
     }
 
-    /// The share of the light at the centre of pixel `x`, `y` of the tile; 1 above the horizon.
+    /// The fraction of the light at the centre of pixel `x`, `y` of the tile; 1 above the horizon.
     #[inline(always)]
     pub fn light(&self, view: &View, x: usize, y: usize) -> [f32; 3] {
         let (i, j) = (x / CELL, y / CELL);
@@ -93,7 +92,7 @@ impl Ground {
     }
 }
 
-/// Colour of a row of a tile in full light; the first pixel has its centre at `x`, `y`.
+/// The fully lit colour of a row of a tile whose first pixel has its centre at `x`, `y`.
 #[inline(always)]
 pub(super) fn backdrop(view: &View, x: f32, y: f32, out: &mut [[f32; TILE]; 3]) {
     let uniform = view.uniform;
@@ -116,7 +115,7 @@ pub(super) fn backdrop(view: &View, x: f32, y: f32, out: &mut [[f32; TILE]; 3]) 
     }
 }
 
-/// The ground behind some places of the picture, and whether there is any: 1 or 0.
+/// The positions on the ground behind positions of the picture, and whether there is ground: 1 or 0.
 #[inline(always)]
 fn ground_place<const N: usize>(view: &View, ndc: &[[f32; N]; 2]) -> ([[f32; N]; 3], [f32; N]) {
     let eye = view.uniform.eye_lights.to_array();
@@ -138,8 +137,8 @@ fn ground_place<const N: usize>(view: &View, ndc: &[[f32; N]; 2]) -> ([[f32; N];
     (place, is_ground)
 }
 
-/// The share of the light that is left on the ground behind some places of the picture, and whether there is ground: 1
-/// or 0. Above the horizon the share is 1.
+/// The fraction of the light on the ground behind positions of the picture, and whether there is ground: 1 or 0. Above the
+/// horizon the fraction is 1.
 #[inline(always)]
 fn ground_light<const N: usize>(view: &View, ndc: &[[f32; N]; 2]) -> [[f32; N]; 4] {
     let mut out = [[1.0; N]; 4];

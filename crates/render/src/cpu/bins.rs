@@ -1,10 +1,10 @@
-//! Lists of the things that touch each tile of the picture.
+//! Lists of the items that touch each tile of the picture.
 
 use rayon::prelude::*;
 
-/// Most pieces that the things are listed in: more would make the counts larger than the lists.
+/// The most pieces that items are divided into: more would make the counts larger than the lists.
 const MOST_PIECES: usize = 64;
-/// Fewest things that are worth a task.
+/// Items per task at least.
 const PIECE: usize = 2048;
 
 /// Tiles from `x0` to `x1` and from `y0` to `y1`, both ends included.
@@ -16,10 +16,10 @@ pub(super) struct TileRange {
     pub y1: u16,
 }
 
-/// For each tile, the things that touch it in the order of their index: the same for any number of threads.
+/// For each tile, the items that touch it in the order of their index: the same for any number of threads.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Bins {
-    /// For each piece and tile, where its things go.
+    /// For each piece and tile, the position of its next item.
     next: Vec<u32>,
     starts: Vec<u32>,
     items: Vec<u32>,
@@ -27,7 +27,7 @@ pub(super) struct Bins {
 }
 
 impl Bins {
-    /// Sorts `count` things into a grid of `columns` by `rows` tiles.
+    /// Sorts `count` items into a grid of `columns` by `rows` tiles.
     pub fn fill(
         &mut self,
         count: usize,
@@ -70,7 +70,7 @@ impl Bins {
         }
         self.starts[tiles] = sum;
         self.items.resize(sum as usize, 0);
-        // One thread: a store for each, which memory bounds.
+        // One thread: one store per item, limited by memory bandwidth.
         for (piece, share) in self.shares.iter().enumerate() {
             let next = &mut self.next[piece * tiles..(piece + 1) * tiles];
             for &(tile, item) in share {
@@ -81,7 +81,7 @@ impl Bins {
         }
     }
 
-    /// The things that touch `tile`, in the order of their index.
+    /// The items that touch `tile`, in the order of their index.
     pub fn of(&self, tile: usize) -> &[u32] {
         &self.items[self.starts[tile] as usize..self.starts[tile + 1] as usize]
     }

@@ -1,4 +1,4 @@
-//! The body's depth as a light sees it.
+//! The depth map of the body for a light.
 // Functions are inlined into the loops that `simd_versions!` compiles; calling those takes `unsafe`.
 #![allow(clippy::inline_always, unsafe_code)]
 
@@ -9,26 +9,26 @@ use rayon::prelude::*;
 
 use super::math::{floor, index_of, max, min};
 
-/// Texels along each edge of a map: two millimetres of a standing figure each.
+/// Texels along each edge of a map. A texel is about two millimetres for a standing figure.
 pub(super) const SIZE: usize = 1024;
 /// Texels of a row that are drawn together.
 const LANES: usize = 8;
 
-/// Rows that one task draws.
+/// Rows per task.
 const BAND_ROWS: usize = 64;
-/// Texels along each edge of a block that keeps its nearest and farthest depth.
+/// Texels along each edge of a block, for which the nearest and farthest depth are stored.
 const BLOCK: usize = 32;
 /// Blocks along each edge of a map.
 const BLOCKS_IN_ROW: usize = SIZE / BLOCK;
 
-/// Depth along a light, 0 to 1 over its view, and 1 where there is no body.
+/// Depth along a light, 0 to 1 over its view; 1 where there is no body.
 #[derive(Clone, Debug)]
 pub(super) struct DepthMap {
     depth: Box<[f32; SIZE * SIZE]>,
-    /// Nearest and farthest depth of each block of texels, a row of blocks after the other.
+    /// Nearest and farthest depth of each block of texels, row after row.
     blocks: Vec<[f32; 2]>,
     placed: Vec<Vec3>,
-    /// Triangles by band: where each band's begin, and their indices.
+    /// Triangles per band: the start of each band, and indices.
     starts: Vec<u32>,
     sorted: Vec<u32>,
 }
@@ -48,7 +48,7 @@ impl Default for DepthMap {
     }
 }
 
-/// What to draw into a band of rows.
+/// The input of a band of rows.
 pub(super) struct Band<'a> {
     pub first_row: usize,
     /// Texels from the left and top, and depth.
@@ -58,7 +58,7 @@ pub(super) struct Band<'a> {
 }
 
 impl DepthMap {
-    /// Draws the triangles over `vertices`; `closed` says that those that face away from the light lie behind others.
+    /// Rasterises the triangles of `vertices`. `closed` states that triangles facing away from the light are behind others.
     pub fn draw(
         &mut self,
         width: Width,
@@ -94,12 +94,12 @@ impl DepthMap {
         let last = (SIZE - 1) as f32;
         let range = |corners: &[u32; 3]| {
             let [a, b, c] = corners.map(|i| placed.get(i as usize).copied().unwrap_or(Vec3::NAN));
-            // Rows count downward, which turns the counter-clockwise front round.
+            // Rows count downward, which reverses the counter-clockwise orientation of front faces.
             if closed && (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) > 0.0 {
                 return None;
             }
             let (low, high) = (a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y));
-            // Comparisons that a number that is none fails.
+            // False for NaN.
             let seen = low <= last && high >= 0.0 && (a.y + b.y + c.y).is_finite();
             let band = |y: f32| y.clamp(0.0, last) as usize / BAND_ROWS;
             seen.then(|| (band(low), band(high)))
@@ -126,11 +126,11 @@ impl DepthMap {
         }
     }
 
-    /// Adds, for some places at `u`, `v` and depth `z`, the share of the four texels around them that are not nearer
-    /// to the light.
+    /// Adds, for positions at `u`, `v` and depth `z`, the bilinear fraction of the four texels around them that are not nearer to
+    /// the light.
     #[inline(always)]
     pub fn add_compared<const N: usize>(&self, u: &[f32; N], v: &[f32; N], z: &[f32; N], sum: &mut [f32; N]) {
-        // One texel is left to the right and below for the neighbours.
+        // One texel remains to the right and below for the neighbours.
         const LAST: f32 = (SIZE - 1) as f32 - 1e-3;
         let size = SIZE as f32;
         let mut at = [0_u32; N];
@@ -145,14 +145,14 @@ impl DepthMap {
         }
         let mut lit = [[0.0; N]; 4];
         for (corner, lit) in [0, 1, SIZE as u32, SIZE as u32 + 1].into_iter().zip(&mut lit) {
-            // Loads in a loop of their own: with them in it, a loop does not become vectors.
+            // Loads have a loop of their own: they would prevent vectorisation of the other one.
             let mut depth = [0.0; N];
             for lane in 0..N {
-                // The size is a power of two: the compiler sees that no index is out of bounds.
+                // The size is a power of two, so the compiler removes the bounds check.
                 depth[lane] = self.depth[(at[lane] + corner) as usize % (SIZE * SIZE)];
             }
             for lane in 0..N {
-                // Behind the far end of the map nothing more keeps the light off.
+                // Nothing behind the far end of the map blocks light.
                 lit[lane] = if min(z[lane], 1.0) <= depth[lane] { 1.0 } else { 0.0 };
             }
         }
@@ -163,8 +163,8 @@ impl DepthMap {
         }
     }
 
-    /// What each of [`DepthMap::add_compared`] adds for taps within `radius`, where the blocks around all of the
-    /// places tell it. The taps' depth is within `steepest` times `radius` of that of their place.
+    /// What [`DepthMap::add_compared`] adds for every tap within `radius`, if the blocks around all positions determine it. The depth
+    /// of a tap differs by at most `steepest` times `radius` from that of its position.
     #[inline(always)]
     pub fn all_alike<const N: usize>(
         &self,
@@ -183,12 +183,12 @@ impl DepthMap {
             (low, high)
         };
         let ((left, right), (top, bottom), (near, far)) = (range(u), range(v), range(z));
-        // Half a texel to the neighbour that is interpolated, and one for rounding.
+        // Half a texel for interpolation, and one for rounding.
         let reach = radius * size + 1.5;
         let block = |c: f32| index_of(floor(min(max(c, 0.0), last))) as usize / BLOCK;
         let (left, right) = (block(left * size - 0.5 - reach), block(right * size - 0.5 + reach));
         let (top, bottom) = (block(top * size - 0.5 - reach), block(bottom * size - 0.5 + reach));
-        // More blocks than that take longer than the taps.
+        // Testing more blocks would take longer than the taps.
         if (right - left + 1) * (bottom - top + 1) > 36 {
             return None;
         }
@@ -217,7 +217,7 @@ simd_versions! {
     }
 }
 
-/// Draws the triangles of a band and bounds its blocks.
+/// Rasterises the triangles of a band and computes the depth range of its blocks.
 #[inline(always)]
 fn draw_band(input: &Band, rows: &mut [f32], blocks: &mut [[f32; 2]]) {
     rows.fill(1.0);
@@ -229,8 +229,7 @@ fn draw_band(input: &Band, rows: &mut [f32], blocks: &mut [[f32; 2]]) {
     bound_blocks(rows, blocks);
 }
 
-/// Draws one triangle into rows from `first_row` on: the texels whose centres it covers, whichever way it
-/// faces.
+/// Rasterises a triangle into the rows from `first_row` on: the texels whose centres it covers, in either orientation.
 #[inline(always)]
 fn draw_triangle([a, b, c]: [Vec3; 3], first_row: usize, rows: &mut [f32]) {
     let area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
@@ -241,7 +240,7 @@ fn draw_triangle([a, b, c]: [Vec3; 3], first_row: usize, rows: &mut [f32]) {
     let (low_x, high_x) = (min(a.x, min(b.x, c.x)), max(a.x, max(b.x, c.x)));
     let (low_y, high_y) = (min(a.y, min(b.y, c.y)), max(a.y, max(b.y, c.y)));
     let rows_here = rows.len() / SIZE;
-    // The first centre at or after, and the one past the last before.
+    // The first centre at or after a coordinate.
     let centre = |v: f32, most: f32| min(max(v + 0.5, 0.0), most) as usize;
     let (x0, x1) = (centre(low_x, SIZE as f32), centre(high_x, SIZE as f32));
     let from_row = |v: f32| centre(v - first_row as f32, rows_here as f32);
@@ -250,14 +249,14 @@ fn draw_triangle([a, b, c]: [Vec3; 3], first_row: usize, rows: &mut [f32]) {
         return;
     }
     let inverse = 1.0 / area;
-    // Depth and the shares of b and c are planes over the texels.
+    // Depth and the barycentric coordinates of b and c are linear over the texels.
     let (bx, by) = ((c.y - a.y) * inverse, (a.x - c.x) * inverse);
     let (cx, cy) = ((a.y - b.y) * inverse, (b.x - a.x) * inverse);
     let (zx, zy) = (bx * (b.z - a.z) + cx * (c.z - a.z), by * (b.z - a.z) + cy * (c.z - a.z));
     for y in y0..y1 {
         let dy = (first_row + y) as f32 + 0.5 - a.y;
         for x in (x0..x1).step_by(LANES) {
-            // The last run of a row begins early rather than pass its end.
+            // The last run of a row starts earlier, so that it does not exceed the row.
             let x = x.min(SIZE - LANES);
             let dx = x as f32 + 0.5 - a.x;
             let (share_b, share_c) = (bx * dx + by * dy, cx * dx + cy * dy);
@@ -273,7 +272,7 @@ fn draw_triangle([a, b, c]: [Vec3; 3], first_row: usize, rows: &mut [f32]) {
     }
 }
 
-/// The nearest and farthest depth of each block in some rows.
+/// Computes the nearest and farthest depth of each block of some rows.
 #[inline(always)]
 fn bound_blocks(rows: &[f32], blocks: &mut [[f32; 2]]) {
     for (rows, blocks) in rows.chunks_exact(BLOCK * SIZE).zip(blocks.chunks_exact_mut(SIZE / BLOCK)) {

@@ -1,4 +1,4 @@
-//! The last step of a tile: what is behind the hair, tone mapping, bytes.
+//! The last step of a tile: compositing, tone mapping, bytes.
 // Functions are inlined into the loops that `simd_versions!` compiles; calling those takes `unsafe`.
 #![allow(clippy::inline_always, unsafe_code)]
 
@@ -13,17 +13,17 @@ use super::view::View;
 /// Bytes of a finished tile.
 pub(super) const TILE_BYTES: usize = TILE * TILE * 4;
 
-/// What a finished tile is made of.
+/// The input of a finished tile.
 pub(super) struct PixelsIn<'a> {
     pub origin: [f32; 2],
     pub hair: &'a HairPlanes,
     pub surface: &'a SurfacePlanes,
-    /// The shadows on the ground, where there are any.
+    /// The shadows on the ground, if any.
     pub ground: Option<&'a Ground>,
 }
 
-/// The light of a row of a tile, and the share of it that neither hair nor body covers. Without `over_background` nothing comes
-/// through from behind them.
+/// The light of a row of a tile, and the fraction that neither hair nor body covers. Without `over_background` there is nothing
+/// behind them.
 #[inline(always)]
 pub(super) fn compose_row(
     view: &View,
@@ -67,7 +67,7 @@ simd_versions! {
     }
 }
 
-/// Puts a tile together and writes its bytes, [`TILE_BYTES`] of them.
+/// Composites and tone-maps a tile, and writes its [`TILE_BYTES`] bytes.
 #[inline(always)]
 fn finish_pixels(view: &View, input: &PixelsIn, out: &mut [u8]) {
     let exposure = view.uniform.size_scale_exposure.w;
@@ -79,7 +79,7 @@ fn finish_pixels(view: &View, input: &PixelsIn, out: &mut [u8]) {
         for (bytes, row) in bytes.iter_mut().zip(&row) {
             for x in 0..TILE {
                 let noise = noise_at(origin[0] + x as f32, origin[1] + y as f32);
-                // Rounded to the nearest, as a card stores what it is given.
+                // Rounded to nearest, as a GPU does.
                 bytes[x] = index_of(floor(clamp(row[x] * 255.0 + noise + 0.5, 0.0, 255.0))) as i32;
             }
         }
@@ -90,7 +90,7 @@ fn finish_pixels(view: &View, input: &PixelsIn, out: &mut [u8]) {
     }
 }
 
-/// Half a step of ordered noise at a pixel, so that smooth gradients do not band.
+/// Ordered dither of up to half a step, so that smooth gradients do not band.
 #[inline(always)]
 pub(super) fn noise_at(x: f32, y: f32) -> f32 {
     let inner = x * 0.067_110_56 + y * 0.005_837_15;

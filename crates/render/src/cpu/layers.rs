@@ -1,7 +1,7 @@
-//! A picture's layers on the processor: the twin of `layers.wgsl`, `value_points.wgsl` and `eye/near/`.
+//! The layers of a picture on the CPU: the twin of `layers.wgsl`, `value_points.wgsl` and `eye/near/`.
 //!
-//! The hair is drawn a second time with its transmittance in the place of its colour, so that every way of transparency weighs
-//! it as it weighs light; and a third time for what is nearest.
+//! The hair is drawn a second time with transmittance in place of colour, so that every transparency mode weights it like light; and
+//! a third time for the nearest depth.
 
 use rayon::prelude::*;
 
@@ -18,7 +18,7 @@ use super::view::View;
 use crate::camera::NEAR_METRES;
 use crate::{FrameInput, Layers};
 
-/// The share of hair from which on a pixel has a mean; less is rounding.
+/// The least coverage of hair with which a pixel has a mean; less is rounding.
 const LEAST_SHARE: f32 = 1e-6;
 
 /// Finished tiles, kept from frame to frame.
@@ -31,7 +31,7 @@ pub(super) struct LayerTiles {
 }
 
 impl LayerTiles {
-    /// Makes room for the tiles of a picture.
+    /// Resizes the buffers for a picture.
     pub fn fit(&mut self, grid: &Grid) {
         let places = grid.columns * grid.rows * TILE * TILE;
         self.light.resize(places, [0.0; 4]);
@@ -39,12 +39,12 @@ impl LayerTiles {
         self.transmittance.resize(places, 0.0);
     }
 
-    /// Memory that is held, bytes.
+    /// Memory in use, bytes.
     pub fn bytes(&self) -> u64 {
         16 * self.light.capacity() as u64 + 4 * (self.depth.capacity() + self.transmittance.capacity()) as u64
     }
 
-    /// Draws depth and transmittance. The points lose their colours to it: `at_points` has four packed transmittances each.
+    /// Draws depth and transmittance. Overwrites the colours of points. `at_points` has four packed transmittances per point.
     pub fn draw_values(
         &mut self,
         view: &View,
@@ -56,7 +56,7 @@ impl LayerTiles {
         let lit = view.lights.is_empty();
         placed.points.par_iter_mut().zip(at_points).with_min_len(8192).for_each(|(point, &packed)| {
             let left = if lit { 1.0 } else { (packed & 0xff) as f32 * (1.0 / 255.0) };
-            // The value and 1 in the place of colours: their quotient is the mean, whatever multiplies both.
+            // The value and 1 in place of colours: their quotient is the mean, whatever multiplies both.
             point.color = [left, 1.0, 0.0];
         });
         let Self { depth, transmittance, scratch, .. } = self;
@@ -88,7 +88,7 @@ impl LayerTiles {
         );
     }
 
-    /// Puts the tiles into rows.
+    /// Copies the tiles into rows.
     pub fn write(&self, grid: &Grid, out: &mut Layers) {
         out.resize(grid.width, grid.height);
         copy_rows(&self.light, 1, grid, &mut out.light);
@@ -97,7 +97,7 @@ impl LayerTiles {
     }
 }
 
-/// Puts a tile together as linear light, exposed.
+/// Composites a tile as exposed linear light.
 pub(super) fn finish_light(view: &View, input: &PixelsIn, over_background: bool, out: &mut [[f32; 4]]) {
     let exposure = view.uniform.size_scale_exposure.w;
     for (y, out) in out.chunks_exact_mut(TILE).enumerate() {
@@ -109,7 +109,7 @@ pub(super) fn finish_light(view: &View, input: &PixelsIn, over_background: bool,
     }
 }
 
-/// The nearest depth of each pixel of a tile, in the numbers of the depth map: 0 where there is nothing.
+/// The nearest depth of each pixel of a tile in clip space; 0 if it is empty.
 fn nearest_of(
     view: &View,
     grid: &Grid,
@@ -118,7 +118,7 @@ fn nearest_of(
     samples: &SurfaceSamples,
 ) -> Vec<f32> {
     let triangles = body.map_or(&[][..], |(body, _)| &body.mesh.triangles);
-    // The plane of a triangle that is seen from its edge rises without bound beside it: no farther than its corners.
+    // The plane of a triangle seen edge-on grows without bound beside it, so depth is clamped to that of its corners.
     let held = |(depth, id): (f32, u32)| {
         let Some(corners) = triangles.get(id as usize) else { return depth };
         let [a, b, c] = corners.map(|i| placed.surface.vertices[i as usize][2]);
@@ -171,10 +171,10 @@ impl SpanSink for Nearest<'_> {
     }
 }
 
-/// Pixels that are shown together.
+/// Pixels that are tone-mapped together.
 const SHOWN: usize = 16;
 
-/// Row `y` of a picture as the screen shows it, of light that is exposed and multiplied by alpha.
+/// Row `y` of a tone-mapped picture, from exposed light that is multiplied by alpha.
 pub(crate) fn show_row(light: &[[f32; 4]], y: u32, out: &mut [u8]) {
     for (group, (light, out)) in light.chunks(SHOWN).zip(out.chunks_mut(4 * SHOWN)).enumerate() {
         let mut row = [[0.0; SHOWN]; 3];

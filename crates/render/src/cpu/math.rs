@@ -1,72 +1,72 @@
-//! Elementary functions without branches, so that loops that call them become vector instructions.
+//! Elementary functions without branches, so that loops that call them vectorise.
 //!
-//! Only additions, products, roots and bits are used, never a library's function and never a fused product: every
-//! processor and every width of vectors gives the same bits. (A few numbers of the whole frame, such as the tangent
-//! of the field of view, come from the system's library.)
-// Inlined into the loops that `simd_versions!` compiles; a call would keep the loop around it from becoming vectors.
+//! They use only additions, products, roots and bit operations, no library functions and no fused products, so that every CPU and
+//! every vector width gives the same bits. (A few numbers per frame, such as the tangent of the field of view, come from the
+//! system's library.)
+// Inlined into the loops that `simd_versions!` compiles; a call would prevent vectorisation.
 #![allow(clippy::inline_always)]
 
-/// Adding this to a number below 2^22 rounds it to a whole number, which then stands in the lowest bits.
+/// Adding this to a number below 2^22 rounds it to an integer, which is then in the lowest bits.
 const ROUND: f32 = 12_582_912.0;
 
-/// The smaller; `b` where either is no number. One instruction, unlike `f32::min`.
+/// The minimum; `b` if either is NaN. One instruction, unlike `f32::min`.
 #[inline(always)]
 pub(super) fn min(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
-/// The larger; `b` where either is no number.
+/// The maximum; `b` if either is NaN.
 #[inline(always)]
 pub(super) fn max(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
-/// `x` held within `low` and `high`; `low` where it is no number.
+/// `x` clamped to `low` and `high`; `low` for NaN.
 #[inline(always)]
 pub(super) fn clamp(x: f32, low: f32, high: f32) -> f32 {
     min(max(x, low), high)
 }
 
-/// `x` held within 0 and 1; 0 where it is no number.
+/// `x` clamped to 0 and 1; 0 for NaN.
 #[inline(always)]
 pub(super) fn saturate(x: f32) -> f32 {
     clamp(x, 0.0, 1.0)
 }
 
-/// From `a` at 0 to `b` at 1.
+/// Linear interpolation from `a` at 0 to `b` at 1.
 #[inline(always)]
 pub(super) fn mix(a: f32, b: f32, t: f32) -> f32 {
     a + (b - a) * t
 }
 
-/// Three numbers, one for each channel or axis. Unlike `map` of an array it is always inlined, without which the
-/// loop around it does not become vectors.
+/// Three numbers, one per channel or axis. Unlike `map` of an array it is always inlined, which the loop around it needs to
+/// vectorise.
 #[inline(always)]
 pub(super) fn three(of: impl Fn(usize) -> f32) -> [f32; 3] {
     [of(0), of(1), of(2)]
 }
 
-/// 0 below `low`, 1 above `high`, smooth between; as WGSL's.
+/// 0 below `low`, 1 above `high`, smooth between, as in WGSL.
 #[inline(always)]
 pub(super) fn smoothstep(low: f32, high: f32, x: f32) -> f32 {
     let t = saturate((x - low) / (high - low));
     t * t * (3.0 - 2.0 * t)
 }
 
-/// The largest whole number that is not above `x`, for `x` within ±2^22.
+/// The floor of `x`, for `x` within ±2^22.
 #[inline(always)]
 pub(super) fn floor(x: f32) -> f32 {
     let rounded = (x + ROUND) - ROUND;
     rounded - if rounded > x { 1.0 } else { 0.0 }
 }
 
-/// The whole number `x` as an index, for `x` from 0 to 2^22: no conversion that saturates.
+/// The integer `x` as an index, for `x` from 0 to 2^22, without a saturating conversion.
 #[inline(always)]
 pub(super) fn index_of(x: f32) -> u32 {
     (x + ROUND).to_bits() & 0x003f_ffff
 }
 
-/// 2 to the power of `x`, for `x` in -126..127 and held there; relative error below 3e-7.
+/// 2 to the power of `x`, which is clamped to -126..127; relative error below 3e-7.
 #[inline(always)]
 pub(super) fn exp2(x: f32) -> f32 {
     let x = clamp(x, -126.0, 127.0);
@@ -100,7 +100,7 @@ pub(super) fn log2(x: f32) -> f32 {
     exponent as f32 + t * p
 }
 
-/// `x` to the power of `y` for `x` from 0; `x` below 1e-30 counts as that.
+/// `x` to the power of `y` for non-negative `x`; values below 1e-30 count as 1e-30.
 #[inline(always)]
 pub(super) fn pow(x: f32, y: f32) -> f32 {
     exp2(y * log2(max(x, 1e-30)))
@@ -127,7 +127,7 @@ pub(super) fn sin(x: f32) -> f32 {
     let p = p * r2 + 8.333_331e-3;
     let p = p * r2 - 0.166_666_67;
     let s = r + r * r2 * p;
-    // Odd half turns change the sign.
+    // An odd number of half turns changes the sign.
     f32::from_bits(s.to_bits() ^ (shifted.to_bits() << 31))
 }
 

@@ -1,19 +1,18 @@
-//! The CPU backend: the whole picture on the processor, without a graphics driver.
+//! The CPU backend: renders the whole picture without a graphics driver.
 //!
-//! What the shaders of the GPU backend say is said here once more, in loops over fixed-size arrays that the
-//! compiler turns into vector instructions. The picture is cut into tiles, and each tile is drawn whole by one
-//! thread: the body's visible samples, then the hair before them from near to far, then the light of what is
-//! still seen behind it, then tone mapping. No tile's result depends on another's, and every sum is taken in a
-//! fixed order: the same bytes for any number of threads and any width of vectors.
+//! It computes what the shaders of the GPU backend compute, in loops over fixed-size arrays that the compiler vectorises. The picture
+//! is divided into tiles, and one thread renders each tile: the visible samples of the body, then the hair in front of them from near
+//! to far, then the shading of what is still visible behind it, then tone mapping. Tiles are independent and every sum has a fixed
+//! order, so the bytes are the same for any number of threads and any vector width.
 #![allow(
     clippy::needless_range_loop,
     clippy::needless_bitwise_bool,
-    reason = "loops over lanes by index and tests without branches are what becomes vectors"
+    reason = "loops over lanes by index and tests without branches vectorise"
 )]
 #![allow(
     clippy::approx_constant,
     clippy::excessive_precision,
-    reason = "constants are those of the shaders and of fitted polynomials, digit for digit"
+    reason = "constants equal those of the shaders and of fitted polynomials, digit for digit"
 )]
 
 mod backdrop;

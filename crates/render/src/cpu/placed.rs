@@ -1,4 +1,4 @@
-//! Hair and body placed in the tiles of a picture, and what is seen of them in each.
+//! Hair and body sorted into the tiles of a picture, and what is visible of them in each.
 
 use glam::Vec3;
 use lovelock_groom::Strands;
@@ -24,7 +24,7 @@ use crate::{FrameInput, Transparency};
 /// Segments of a tile that are fetched and drawn together.
 const SEGMENTS_AT_ONCE: usize = 128;
 
-/// What a picture shows, ready to be drawn tile by tile; kept from frame to frame.
+/// The projected content of a picture, sorted into tiles; kept from frame to frame.
 #[derive(Debug)]
 pub(super) struct Placed {
     pub width: Width,
@@ -36,7 +36,7 @@ pub(super) struct Placed {
     closed: Closedness,
 }
 
-/// What a thread needs to find out what is seen in a tile.
+/// Scratch memory of a thread for one tile.
 #[derive(Debug, Default)]
 pub(super) struct TileScratch {
     pub samples: SurfaceSamples,
@@ -64,26 +64,26 @@ impl Placed {
         }
     }
 
-    /// Whether the body of a picture has an inside.
+    /// Whether the surface of the body is closed.
     pub fn is_closed(&mut self, input: &FrameInput) -> bool {
         input.body.is_some_and(|(body, _)| self.closed.of(body))
     }
 
-    /// Projects and shades the strands' points, which have four packed `transmittance`s each.
+    /// Projects and shades the strand points, which have four packed `transmittance`s each.
     pub fn shade(&mut self, view: &View, input: &FrameInput, strands: &Strands, transmittance: &[u32]) {
         self.details.follow(input.style);
         let from = PointsIn { strands, details: &self.details.words, transmittance };
         shade_all(self.width, view, &from, &mut self.points);
     }
 
-    /// First points of the segments whose points are all there, in the order of their points.
+    /// First points of the segments whose points both exist, in the order of points.
     pub fn segments(&self) -> &[u32] {
         let segments = &self.details.segments;
         &segments[..segments.partition_point(|&first| (first as usize + 1) < self.points.len())]
     }
 
-    /// Sorts segments and triangles into tiles, once points are shaded. `hair_on_body` holds one packed word of
-    /// transmittances a vertex.
+    /// Sorts segments and triangles into tiles, after points are shaded. `hair_on_body` holds one word of packed transmittances per
+    /// vertex.
     pub fn sort(
         &mut self,
         view: &View,
@@ -118,12 +118,12 @@ impl Placed {
         );
     }
 
-    /// Whether nothing lies in a tile.
+    /// Whether a tile is empty.
     pub fn is_empty(&self, tile: usize) -> bool {
         self.surface.bins.of(tile).is_empty() && self.segment_bins.of(tile).is_empty()
     }
 
-    /// Finds which part of the body each sample of a tile shows, and the hair before it.
+    /// Rasterises the body in a tile, and the hair in front of it.
     pub fn draw_tile(
         &self,
         view: &View,
@@ -140,7 +140,7 @@ impl Placed {
         }
     }
 
-    /// Finds which part of the body each sample of a tile shows.
+    /// Rasterises the body in a tile.
     pub fn draw_body(&self, grid: &Grid, body: PosedBody, tile: usize, scratch: &mut TileScratch) {
         scratch.samples.clear();
         scratch.hidden.clear();
@@ -168,7 +168,7 @@ impl Placed {
                 self.keys.sort(segments, &self.details.segments, &mut scratch.order);
                 let order = std::mem::take(&mut scratch.order);
                 scratch.blend.clear();
-                // Some at a time: what comes after the tile is full is not even fetched.
+                // In batches: segments behind an opaque tile are not fetched.
                 for order in order.chunks(SEGMENTS_AT_ONCE) {
                     scratch.segments.clear();
                     scratch.segments.extend(order.iter().map(|&first| {
@@ -214,7 +214,7 @@ pub(super) fn surface_of<'a>(input: &FrameInput<'a>) -> (&'a [Vec3], &'a [[u32; 
     posed_body(input).map_or((&[], &[]), |(body, skin)| (&skin.positions, &body.mesh.triangles))
 }
 
-/// Puts items of finished tiles, `per_pixel` of them a pixel, into the rows of a picture.
+/// Copies items of finished tiles, `per_pixel` per pixel, into the rows of a picture.
 pub(super) fn copy_rows<T: Copy + Default + Send + Sync>(
     tiles: &[T],
     per_pixel: usize,

@@ -13,10 +13,10 @@ use crate::MAX_LIGHTS;
 
 /// Points that are shaded together.
 const LANES: usize = 16;
-/// Points of one task.
+/// Points per task.
 const PIECE: usize = 1024;
 
-/// A strand point as it is drawn.
+/// A shaded strand point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct ShadedPoint {
     /// Pixels from the left and from the top.
@@ -25,7 +25,7 @@ pub(super) struct ShadedPoint {
     pub y: f32,
     /// 1 at the near plane, falling to 0 at infinity.
     pub depth: f32,
-    /// Half of the strand's width in pixels; negative where the point must not be drawn.
+    /// Half of the width of the strand, pixels; negative if the point must not be drawn.
     pub half_width: f32,
     /// Unit vector along the strand on the screen.
     pub run_x: f32,
@@ -33,16 +33,16 @@ pub(super) struct ShadedPoint {
     pub run_y: f32,
     /// Colour, linear.
     pub color: [f32; 3],
-    /// The strand's own number in 0..1.
+    /// A hash of the strand in 0..1.
     pub hash: f32,
 }
 
-/// What points are made of.
+/// The input of shading.
 pub(super) struct PointsIn<'a> {
     pub strands: &'a Strands,
     /// See `pack_detail`.
     pub details: &'a [u32],
-    /// Four 8-bit transmittances a point.
+    /// Four 8-bit transmittances per point.
     pub transmittance: &'a [u32],
 }
 
@@ -56,7 +56,7 @@ pub(super) fn shade_all(width: Width, view: &View, input: &PointsIn, out: &mut V
 
 type Lane = [f32; LANES];
 
-/// Points that are whole: strands and hairstyle should be of one size, but what is not is left out.
+/// The number of complete points: strands and hairstyle should have the same size, but surplus points are ignored.
 fn out_of(input: &PointsIn) -> usize {
     let Strands { x, y, z, .. } = input.strands;
     x.len().min(y.len()).min(z.len()).min(input.details.len()).min(input.transmittance.len())
@@ -117,7 +117,7 @@ fn shade_group(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoi
     };
     let (at, at_before, at_after) = (project(&here), project(&before), project(&after));
 
-    // The way along the strand on the screen and in space.
+    // The direction of the strand on the screen and in space.
     let mut run = [[0.0; LANES]; 2];
     let mut tangent = [[0.0; LANES]; 3];
     let mut to_eye = [[0.0; LANES]; 3];
@@ -158,7 +158,7 @@ fn shade_group(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoi
         cos_v[lane] = max(1.0 - sin_v[lane] * sin_v[lane], 0.0).sqrt();
     }
 
-    // The fibre's colours: paths of many lengths through absorbing hair.
+    // The colours of the fibre: paths of many lengths through absorbing hair.
     let absorption = uniform.absorption_variation.to_array();
     let (tip_lightening, variation) = (uniform.width_opacity_tip_scalp.z, absorption[3]);
     let mut stretched = [0.0; LANES];
@@ -187,7 +187,7 @@ fn shade_group(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoi
     let mut open = [0.0; LANES];
     let [primary, secondary, primary_exponent, secondary_exponent] = uniform.highlights.to_array();
     for (k, light) in view.lights.iter().enumerate().take(MAX_LIGHTS) {
-        // Roots lie on the skin: the bias keeps the skin under a strand from shadowing it.
+        // Roots lie on the skin: the bias prevents the skin under a strand from shadowing it.
         let shadow = light.body_light(&here, &[[0.0; LANES]; 3], 0.006, &view.strand_disc);
         let [lx, ly, lz] = (-light.direction).to_array();
         let (radiance, specular) = (light.radiance.to_array(), light.specular);
@@ -201,7 +201,7 @@ fn shade_group(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoi
             let lit = (packed[lane] >> (8 * k) & 0xff) as f32 * (1.0 / 255.0);
             open[lane] += lit.sqrt();
             share[lane] = lit * shadow[lane];
-            // Light that has passed other hair is the more coloured, the deeper it comes.
+            // Light that has passed through other hair is more coloured with depth.
             depth[lane] = 1.0 + 0.45 * (1.0 - lit);
             let sin_l = tangent[0][lane] * lx + tangent[1][lane] * ly + tangent[2][lane] * lz;
             let cos_l = max(1.0 - sin_l * sin_l, 0.0).sqrt();
@@ -234,7 +234,7 @@ fn shade_group(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoi
         }
     }
 
-    // What comes from everywhere reaches the inside through the same hair; some of it always does.
+    // Ambient light reaches the inside through the same hair; a part of it always does.
     let ambient = view.ambient(0.3);
     let lights = view.lights.len();
     let each = if lights > 0 { 1.0 / lights as f32 } else { 0.0 };
@@ -255,7 +255,7 @@ fn shade_group(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoi
         let w = at[2][lane];
         let visible = (w > 0.02) & (at_before[2][lane] > 0.02) & (at_after[2][lane] > 0.02);
         let wide = 0.5 * width * taper * scale / max(w, 1e-3);
-        // A point that is no number is not drawn: every comparison with it is false.
+        // A NaN point is not drawn: every comparison with it is false.
         let drawn = visible & (at[0][lane].abs() < 1e6) & (at[1][lane].abs() < 1e6) & (sum[0][lane] < 1e6);
         half_width[lane] = if drawn { wide } else { -1.0 };
     }

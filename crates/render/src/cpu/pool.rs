@@ -1,4 +1,4 @@
-//! Scratch memory that threads lend each other.
+//! A pool of scratch memory for threads.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -13,14 +13,14 @@ impl<T> Default for Pool<T> {
 }
 
 impl<T> Pool<T> {
-    /// Lends some, if there is any.
+    /// Takes an item, if there is any.
     pub fn take(&self) -> Lease<'_, T> {
         let scratch = self.0.lock().unwrap_or_else(PoisonError::into_inner).pop();
         Lease { pool: self, scratch }
     }
 }
 
-/// Scratch memory that goes back when the task is done.
+/// Scratch memory that returns to the pool when dropped.
 #[derive(Debug)]
 pub(super) struct Lease<'a, T> {
     pool: &'a Pool<T>,
@@ -28,7 +28,7 @@ pub(super) struct Lease<'a, T> {
 }
 
 impl<T: Default> Lease<'_, T> {
-    /// What was lent, or made where there was none.
+    /// An item of the pool, or a new one.
     pub fn get(&mut self) -> &mut T {
         self.scratch.get_or_insert_default()
     }

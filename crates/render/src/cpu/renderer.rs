@@ -1,4 +1,4 @@
-//! One picture from top to bottom, on the processor.
+//! The CPU renderer.
 
 mod inspect;
 
@@ -26,7 +26,7 @@ use crate::{FrameInput, FrameStats, Layers, MAX_LIGHTS, Picture, RenderError};
 /// Texels along each edge of the body's depth maps.
 const DEPTH_TEXELS: u32 = body_depth::SIZE as u32;
 
-/// Draws pictures on the processor, and keeps what it needs for the next one.
+/// Renders pictures on the CPU. Keeps buffers from picture to picture.
 #[derive(Debug)]
 pub struct CpuRenderer {
     strands: Strands,
@@ -39,14 +39,14 @@ pub struct CpuRenderer {
     scratch: Pool<Scratch>,
 }
 
-/// What is drawn.
+/// The output.
 enum Target<'a> {
     Picture(&'a mut Picture),
-    /// Its layers, over the background or nothing.
+    /// Layers, with or without the background.
     Layers(&'a mut Layers, bool),
 }
 
-/// What a thread needs to draw a tile.
+/// Scratch memory of a thread for one tile.
 #[derive(Debug, Default)]
 struct Scratch {
     tile: TileScratch,
@@ -55,7 +55,7 @@ struct Scratch {
 }
 
 impl Scratch {
-    /// What a finished tile is made of.
+    /// The input of a finished tile.
     fn seen<'a>(&'a self, origin: [f32; 2], ground: Option<&'a Ground>) -> PixelsIn<'a> {
         PixelsIn { origin, hair: &self.tile.hair, surface: &self.surface, ground }
     }
@@ -77,25 +77,25 @@ impl Default for CpuRenderer {
 }
 
 impl CpuRenderer {
-    /// A renderer whose loops are compiled for `width`, which the processor must have: for tests of equality.
+    /// A renderer whose loops are compiled for `width`, which the CPU must support: for tests of equality.
     ///
     /// # Panics
-    /// Where the processor has no such vectors.
+    /// If the CPU does not support such vectors.
     pub fn with_width(width: Width) -> Self {
         assert!(width.is_available(), "{width:?} on a processor without");
         Self { placed: Placed::new(width), ..Self::default() }
     }
 
-    /// What draws, in words: the vectors that are used.
+    /// The name of the device: the vector width in use.
     pub fn adapter() -> String {
         let threads = rayon::current_num_threads();
         format!("processor ({:?}, {threads} threads)", Width::widest())
     }
 
-    /// Draws `input` at `width` by `height` pixels.
+    /// Renders `input` at `width` by `height` pixels.
     ///
     /// # Errors
-    /// A size out of range, or a shadow that needs too much memory.
+    /// The size is out of range, or the shadow needs too much memory.
     pub fn picture(
         &mut self,
         input: &FrameInput,
@@ -106,7 +106,7 @@ impl CpuRenderer {
         self.draw_to(input, width, height, Target::Picture(picture))
     }
 
-    /// Draws the layers of `input` at `width` by `height` pixels, over the background or nothing.
+    /// Renders the layers of `input` at `width` by `height` pixels, with or without the background.
     ///
     /// # Errors
     /// As [`CpuRenderer::picture`].
@@ -244,7 +244,7 @@ impl CpuRenderer {
         }
     }
 
-    /// Draws the body as each light sees it.
+    /// Draws the depth maps of the body for all lights.
     fn draw_depth(&mut self, input: &FrameInput) -> Vec<LightMaps> {
         let (positions, triangles) = surface_of(input);
         let (center, radius) = bounding_sphere(positions);
@@ -295,18 +295,18 @@ impl CpuRenderer {
     }
 }
 
-/// Tiles that show the background alone: the same in every frame until it or the size changes.
+/// Tiles that show only the background: the same in every frame until the background or the size changes.
 #[derive(Debug, Default)]
 struct PlainTiles {
-    /// What they depend on.
+    /// What the tiles depend on.
     of: Option<([Vec4; 3], Grid)>,
     bytes: Vec<u8>,
-    /// Which of them have been drawn.
+    /// Whether each tile has been drawn.
     known: Vec<bool>,
 }
 
 impl PlainTiles {
-    /// Forgets them where the background or the size is another one.
+    /// Clears the tiles if the background or the size has changed.
     fn follow(&mut self, uniform: &FrameUniform, grid: &Grid) {
         let exposure = Vec4::splat(uniform.size_scale_exposure.w);
         let of = Some(([uniform.background_top, uniform.background_bottom, exposure], *grid));

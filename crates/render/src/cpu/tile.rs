@@ -6,19 +6,19 @@ use super::bins::TileRange;
 
 /// Pixels along each edge of a tile.
 pub(super) const TILE: usize = 32;
-/// Places of a row of a tile: as many more as a run of pixels may pass its end.
+/// Items per row of a tile: more than pixels, because a run of pixels may exceed the row.
 pub(super) const STRIDE: usize = TILE + 8;
-/// Pixels that are drawn together: a block of two columns and four rows, since hair falls more than it lies.
+/// Pixels that are drawn together: a block of two columns and four rows, because hair is mostly vertical.
 pub(super) const BLOCK_LANES: usize = BLOCK_WIDTH * BLOCK_HEIGHT;
 pub(super) const BLOCK_WIDTH: usize = 2;
 pub(super) const BLOCK_HEIGHT: usize = 4;
-/// Blocks in a row of them, and in a tile.
+/// Blocks per row of blocks, and per tile.
 pub(super) const BLOCKS_IN_ROW: usize = TILE / BLOCK_WIDTH;
 pub(super) const BLOCKS: usize = BLOCKS_IN_ROW * (TILE / BLOCK_HEIGHT);
-/// Light that comes through hair and is no longer worth shading what is behind: a fourth of a step of 8 bits.
+/// The transmittance of hair below which what is behind it is not shaded: a quarter of a step of 8 bits.
 pub(super) const UNSEEN: f32 = 1.0 / 1024.0;
 
-/// One number for each pixel of a tile, with spare places at the end of each row.
+/// One number per pixel of a tile, with unused items at the end of each row.
 pub(super) type Plane = [f32; TILE * STRIDE];
 
 /// Column and row in the tile of a lane of a block.
@@ -43,13 +43,12 @@ impl Grid {
         Self { width, height, columns: tiles(width), rows: tiles(height) }
     }
 
-    /// Pixels of a tile's corner.
+    /// The corner of a tile, pixels.
     pub fn origin(&self, tile: usize) -> [f32; 2] {
         [(tile % self.columns * TILE) as f32, (tile / self.columns * TILE) as f32]
     }
 
-    /// The tiles that a rectangle touches: left, top, right and bottom in pixels. None outside, and where a
-    /// number is none.
+    /// The tiles that a rectangle (left, top, right and bottom in pixels) touches. `None` outside the picture and for NaN.
     #[inline(always)]
     pub fn range(&self, [left, top, right, bottom]: [f32; 4]) -> Option<TileRange> {
         let (width, height) = (self.width as f32, self.height as f32);
@@ -67,7 +66,7 @@ impl Grid {
     }
 }
 
-/// The hair of a tile: its light, already multiplied by its cover, and what it lets through.
+/// The hair of a tile: its light, premultiplied by coverage, and its transmittance toward the eye.
 #[derive(Clone, Debug)]
 pub(super) struct HairPlanes {
     pub color: [Plane; 3],
@@ -87,7 +86,7 @@ impl HairPlanes {
     }
 }
 
-/// The body of a tile: its light times the part of each pixel that it covers, and that part.
+/// The body of a tile: its light, premultiplied by coverage, and its coverage.
 #[derive(Clone, Debug)]
 pub(super) struct SurfacePlanes {
     pub color: [Plane; 3],

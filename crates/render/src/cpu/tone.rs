@@ -1,4 +1,4 @@
-//! Linear light to the screen: the twin of `tone_map.wgsl`.
+//! Tone mapping: the twin of `tone_map.wgsl`.
 //!
 //! `AgX` is Troy Sobotka's; the polynomial for its curve and the matrices are Benjamin Wrensch's fit (2023).
 // Functions are inlined into the loops that `simd_versions!` compiles.
@@ -16,13 +16,13 @@ const OUTSET: [[f32; 3]; 3] = [
     [-0.052_896_85, 1.151_903_1, -0.098_961_18],
     [-0.052_971_636, -0.098_043_45, 1.151_073_7],
 ];
-/// Stops below and above middle grey that the curve spans, as logarithms.
+/// The range of the curve in stops below and above middle grey, as logarithms.
 const LOW: f32 = -12.473_93;
 const HIGH: f32 = 4.026_069;
 
 /// Linear light of `N` pixels to sRGB-encoded values in 0..1, in place.
 ///
-/// Stage by stage over all pixels, so that each loop becomes vectors.
+/// Stage by stage over all pixels, so that each loop vectorises.
 #[inline(always)]
 pub(super) fn encode<const N: usize>(color: &mut [[f32; N]; 3], exposure: f32) {
     let mut curved = [[0.0; N]; 3];
@@ -65,7 +65,7 @@ pub(super) fn encode<const N: usize>(color: &mut [[f32; N]; 3], exposure: f32) {
 mod tests {
     use super::*;
 
-    /// The shader's steps, one after the other, in double precision.
+    /// The steps of the shader in double precision.
     fn reference(linear: [f64; 3]) -> [f64; 3] {
         let apply = |m: &[[f32; 3]; 3], v: [f64; 3]| {
             [0, 1, 2].map(|r| (0..3).map(|c| f64::from(m[r][c]) * v[c]).sum::<f64>())

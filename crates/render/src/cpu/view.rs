@@ -1,4 +1,4 @@
-//! What every stage knows of the picture: the same numbers that the shaders read, and the lights' maps.
+//! The uniform of the shaders, and the maps of the lights.
 // Functions are inlined into the loops that `simd_versions!` compiles.
 #![allow(clippy::inline_always)]
 
@@ -10,30 +10,30 @@ use super::math::{floor, index_of, max, min, three};
 use crate::MAX_LIGHTS;
 use crate::uniform::FrameUniform;
 
-/// Taps of a soft shadow's edge on a surface. Six show their steps as bands.
+/// Taps of a soft shadow on a surface. Six taps would show bands.
 const SURFACE_TAPS: usize = 12;
-/// Taps of a soft shadow's edge on a strand's point, which its neighbours blur.
+/// Taps of a soft shadow on a strand point, which its neighbours blur.
 const STRAND_TAPS: usize = 3;
 
 /// The picture's settings with the maps of its lights.
 pub(super) struct View<'a> {
     pub uniform: &'a FrameUniform,
     pub lights: Vec<LightView<'a>>,
-    /// Golden-angle discs for surfaces and for strands, as the shader has them.
+    /// Golden-angle discs for surfaces and for strands, as in the shader.
     pub surface_disc: [Vec2; SURFACE_TAPS],
     pub strand_disc: [Vec2; STRAND_TAPS],
 }
 
 /// One light.
 pub(super) struct LightView<'a> {
-    /// The way the light travels.
+    /// The direction in which the light travels.
     pub direction: Vec3,
-    /// How much of it makes highlights.
+    /// The fraction that contributes to highlights.
     pub specular: f32,
     pub radiance: Vec3,
-    /// Blur of the body's shadow, part of the map's edge.
+    /// Blur of the body's shadow, as a fraction of the map's edge.
     blur: f32,
-    /// Part of the map's edge that one texel is.
+    /// The size of a texel, as a fraction of the map's edge.
     texel: f32,
     /// Unit vectors along the map's edges, to the right and down.
     edges: [Vec3; 2],
@@ -43,7 +43,7 @@ pub(super) struct LightView<'a> {
 }
 
 impl<'a> View<'a> {
-    /// Joins what the shaders would read.
+    /// Combines the uniform with the maps of its lights.
     pub fn new(
         uniform: &'a FrameUniform,
         depth: &'a [DepthMap],
@@ -73,7 +73,7 @@ impl<'a> View<'a> {
         Self { uniform, lights, surface_disc: disc(), strand_disc: disc() }
     }
 
-    /// Light from everywhere that reaches a surface whose normal has the height `up`.
+    /// Ambient light on a surface whose normal has the height `up`.
     #[inline(always)]
     pub fn ambient(&self, up: f32) -> [f32; 3] {
         let (below, above) = (self.uniform.ambient_down_texels, self.uniform.ambient_up_ground);
@@ -82,7 +82,7 @@ impl<'a> View<'a> {
     }
 }
 
-/// A golden-angle disc: even at any number of taps, and the same for every pixel, so it never shimmers.
+/// A golden-angle disc: uniform for any number of taps, and the same for every pixel, so that it does not flicker.
 fn disc<const N: usize>() -> [Vec2; N] {
     std::array::from_fn(|k| {
         let angle = 2.399_963_2 * k as f32;
@@ -91,8 +91,7 @@ fn disc<const N: usize>() -> [Vec2; N] {
 }
 
 impl LightView<'_> {
-    /// How surfaces with the unit normals `n` lean as the light sees them: their normals along u, v and toward the
-    /// light.
+    /// The components of the unit normals `n` along u, v and toward the light.
     #[inline(always)]
     pub fn lean_of<const N: usize>(&self, n: &[[f32; N]; 3]) -> [[f32; N]; 3] {
         let axes = [self.edges[0], self.edges[1], -self.direction];
@@ -105,11 +104,11 @@ impl LightView<'_> {
         lean
     }
 
-    /// Share of the light that the body lets through to some places, each of which is moved `bias` metres toward
-    /// the light first: the mean over the taps of `disc`.
+    /// The fraction of the light that the body lets through to positions, which are moved `bias` metres toward the light first: the
+    /// mean over the taps of `disc`.
     ///
-    /// The disc lies in the plane of the surface, which leans as `lean` says: a flat surface keeps no light from
-    /// itself. For what has no surface `lean` is zero and the disc lies across the light.
+    /// The disc lies in the plane of the surface, given by `lean`, so that a flat surface does not shadow itself. For points without a
+    /// surface `lean` is zero and the disc is perpendicular to the light.
     #[inline(always)]
     pub fn body_light<const N: usize>(
         &self,
@@ -131,8 +130,8 @@ impl LightView<'_> {
                 (p[0][lane] - toward.x * bias, p[1][lane] - toward.y * bias, p[2][lane] - toward.z * bias);
             u[lane] = (rx.x * x + rx.y * y + rx.z * w + rx.w) * 0.5 + 0.5;
             v[lane] = 0.5 - (ry.x * x + ry.y * y + ry.z * w + ry.w) * 0.5;
-            // Texels around a place lie as much nearer as the plane leans over one of them; a place that the light
-            // only grazes would need more than is right elsewhere.
+            // Texels around a position are nearer by the slope of the plane over one texel. The slope is limited, because at grazing
+            // angles it would be too large for other surfaces.
             let leans = lean[0][lane].abs() + lean[1][lane].abs();
             let nearer = self.texel * leans / max(lean[2][lane], 0.25);
             z[lane] = rz.x * x + rz.y * y + rz.z * w + rz.w - nearer;
@@ -161,7 +160,7 @@ impl LightView<'_> {
         for tap in disc {
             let tap = *tap * self.blur;
             for lane in 0..N {
-                // The map is as deep as it is wide, so that its three coordinates turn together.
+                // The map is as deep as it is wide, so its three coordinates can be rotated together.
                 let deeper = tap.x * lean[0][lane] + tap.y * lean[1][lane];
                 tap_u[lane] = u[lane] + tap.x - turn[0][lane] * deeper;
                 tap_v[lane] = v[lane] + tap.y - turn[1][lane] * deeper;
@@ -176,7 +175,7 @@ impl LightView<'_> {
         sum
     }
 
-    /// Whether the map does not reach what lies within the bounds of some places.
+    /// Whether the maps do not cover the bounds of positions.
     pub fn is_beside<const N: usize>(&self, p: &[[f32; N]; 3]) -> bool {
         let m = &self.shadow_from_world;
         let columns = self.columns.map(|map| &map.uv_from_world);
@@ -189,7 +188,7 @@ impl LightView<'_> {
         beside(m, -1.0, 1.0) && columns.is_none_or(|m| beside(m, 0.0, 1.0))
     }
 
-    /// Share of the light that all hair on the way lets through, for a point behind all of it.
+    /// The transmittance of all hair, for a point behind it.
     pub fn columns_light(&self, p: Vec3) -> f32 {
         let Some(map) = self.columns else { return 1.0 };
         let m = &map.uv_from_world;

@@ -1,8 +1,8 @@
-//! What every kernel of the picture binds: twin of the bindings in frame.wgsl.
+//! The bindings that all kernels of the picture share: twin of frame.wgsl.
 
 use lovelock_gpu::wgpu;
 
-/// The frame's uniform, the body's depth maps, what lies behind the hair, and how that is sampled.
+/// The uniform of the frame, the depth maps of the body, the transmittance behind the hair, and its sampler.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FrameResources<'a> {
     pub uniform: &'a wgpu::Buffer,
@@ -13,7 +13,7 @@ pub(super) struct FrameResources<'a> {
 }
 
 impl<'a> FrameResources<'a> {
-    /// These with a kernel's own, at bindings 4 to 14.
+    /// These bindings and those of a kernel, which are 4 to 14.
     pub fn with<const N: usize>(
         &self,
         own: [(u32, wgpu::BindingResource<'a>); N],

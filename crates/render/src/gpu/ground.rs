@@ -22,7 +22,7 @@ impl Ground {
         Self(GrowBuffer::new(&gpu.device, "light on the ground", wgpu::BufferUsages::STORAGE))
     }
 
-    /// Makes room for the corners of a picture.
+    /// Resizes the buffer for the corners of a picture.
     pub fn fit(&mut self, gpu: &Gpu, width: u32, height: u32) {
         let count = (width.div_ceil(CELL) + 1) * (height.div_ceil(CELL) + 1);
         self.0.reserve(&gpu.device, count as usize);
@@ -32,7 +32,7 @@ impl Ground {
         self.0.raw()
     }
 
-    /// Encodes asking for the light at the corners.
+    /// Encodes computing the light at the corners.
     pub fn run(&self, gpu: &Gpu, kernels: &LightKernels, commands: &mut Commands, frame: &FrameResources) {
         let group = kernels.ground.bind(gpu, &frame.with([(4, self.0.raw().as_entire_binding())]));
         commands.compute("draw/ground", |pass| kernels.ground.run(pass, &group, self.0.len() as u64));

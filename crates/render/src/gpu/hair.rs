@@ -1,4 +1,4 @@
-//! The strands on the GPU: where they are, and how each of their points is shaded.
+//! The strands on the GPU: positions, and shading of points.
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
@@ -13,13 +13,13 @@ use super::light_kernels::LightKernels;
 use crate::strand_details::StrandDetails;
 use crate::{FrameInput, HairPose};
 
-/// Twin of `ShadedPoint` in the shaders; never read on the processor.
+/// Twin of `ShadedPoint` in the shaders; never read on the CPU.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
 struct ShadedPoint([u32; 8]);
 
-/// The strands' buffers. What belongs to the hairstyle is written when it changes; of a frame only guides are, unless its
-/// strands are given.
+/// The buffers of the strands. Data of the hairstyle is uploaded when it changes. A frame uploads only guides, or its strands if they
+/// are given.
 #[derive(Debug)]
 pub(super) struct HairBuffers {
     style: StrandDetails,
@@ -50,10 +50,10 @@ impl HairBuffers {
         })
     }
 
-    /// Brings one frame's strands to the device.
+    /// Uploads the strands of one frame.
     ///
     /// # Errors
-    /// The hairstyle needs a buffer that the device does not give.
+    /// The hairstyle needs a larger buffer than the device supports.
     pub fn write(&mut self, gpu: &Gpu, commands: &mut Commands, input: &FrameInput) -> Result<(), GpuError> {
         let (device, queue) = (&gpu.device, &gpu.queue);
         let points = input.style.strands.points();
@@ -86,7 +86,7 @@ impl HairBuffers {
                     .zip(&strands.z)
                     .map(|((&x, &y), &z)| [x, y, z, 0.0])
                     .collect_into_vec(&mut self.staging);
-                // Strands and hairstyle should be of one size.
+                // Strands and hairstyle should have the same size.
                 self.staging.resize(points, [f32::NAN; 4]);
                 self.points.write(device, queue, &self.staging);
             }
@@ -94,8 +94,8 @@ impl HairBuffers {
         Ok(())
     }
 
-    /// Bounds of the strands along the axes of a light, relative to `anchor`, and the length of the longest strand; not
-    /// much larger than need be.
+    /// Bounds of the strands along the axes of a light, relative to `anchor`, and the length of the longest strand. Both are upper
+    /// bounds, not much larger than necessary.
     pub fn bounds(&mut self, input: &FrameInput, light: LightFrame, anchor: Vec3) -> (Bounds, f32) {
         let extent = self.extent.get_or_insert_with(|| StrandBounds::new(input.style));
         let bounds = match input.hair {
@@ -111,7 +111,7 @@ impl HairBuffers {
         (bounds, extent.longest_strand())
     }
 
-    /// The strands as shadow methods read them.
+    /// The strands as input of shadow methods.
     pub fn strands(&self) -> GpuStrands<'_> {
         GpuStrands {
             points: self.points.raw(),
@@ -121,24 +121,24 @@ impl HairBuffers {
         }
     }
 
-    /// Memory that is held, bytes.
+    /// Memory in use, bytes.
     pub fn memory_bytes(&self) -> u64 {
         let own = [&self.details, &self.segments, &self.transmittance].map(|buffer| buffer.raw().size());
         let own = own.iter().sum::<u64>() + self.points.raw().size() + self.shaded.raw().size();
         own + self.interpolation.bytes()
     }
 
-    /// Where shadow methods leave four transmittances a point.
+    /// Four transmittances per point, written by shadow methods.
     pub fn transmittance(&self) -> &wgpu::Buffer {
         self.transmittance.raw()
     }
 
-    /// Points as they are drawn.
+    /// Shaded points.
     pub fn shaded(&self) -> &wgpu::Buffer {
         self.shaded.raw()
     }
 
-    /// Puts the first light's transmittance in the place of the colours of points that are shaded.
+    /// Replaces the colours of shaded points by the transmittance of the first light.
     pub fn shade_values(&self, gpu: &Gpu, kernel: &Kernel, commands: &mut Commands, frame: &FrameResources) {
         self.run_over_points(gpu, kernel, "draw/values", commands, frame);
     }

@@ -1,26 +1,26 @@
-//! A picture's layers on the GPU: kernels over what a picture has left on the device.
+//! The layers of a picture on the GPU: kernels over the buffers of the last picture.
 
 use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, Kernel, Readback, ShaderSource, wgpu};
 
 use super::light_kernels::LISTS;
 use crate::{Layers, MAX_LIGHTS};
 
-/// Bytes of a pixel of the two buffers.
+/// Bytes per pixel of the two buffers.
 const LIGHT_BYTES: u64 = 16;
 const DATA_BYTES: u64 = 8;
 
-/// What the kernels are composed of.
+/// The parts of the kernels.
 #[derive(Debug)]
 pub(super) struct LayerShaders {
     pub layers: ShaderSource,
     pub values: ShaderSource,
 }
 
-/// The kernels for a number of lights, over the background or nothing.
+/// The kernels for a number of lights, with or without the background.
 #[derive(Debug)]
 pub(super) struct LayerKernels {
     pub background: Kernel,
-    /// Draws the pixels of each list.
+    /// The kernels that draw the pixels of each list.
     pub lit: [Kernel; LISTS],
     pub values: Kernel,
     pub transmittance: Kernel,
@@ -50,7 +50,7 @@ impl LayerKernels {
     }
 }
 
-/// The kernels that were used, and the memory of the pixels.
+/// The kernels that were used, and the buffers of the pixels.
 #[derive(Debug)]
 pub(super) struct LayerBuffers {
     kernels: Vec<((usize, bool), LayerKernels)>,
@@ -72,15 +72,15 @@ impl LayerBuffers {
         }
     }
 
-    /// Bytes of the largest buffer of a picture of so many pixels.
+    /// Bytes of the largest buffer for a picture of this many pixels.
     pub fn needed(pixels: u64) -> u64 {
         LIGHT_BYTES * pixels
     }
 
-    /// Makes room for a picture, and compiles what its kind needs.
+    /// Resizes the buffers for a picture, and compiles the kernels that it needs.
     ///
     /// # Errors
-    /// A shader that does not compile.
+    /// A shader does not compile.
     pub fn fit(
         &mut self,
         gpu: &Gpu,
@@ -109,16 +109,16 @@ impl LayerBuffers {
         [(16, self.light.raw().as_entire_binding()), (17, self.data.raw().as_entire_binding())]
     }
 
-    /// Encodes bringing them back.
+    /// Encodes the readback.
     pub fn copy(&mut self, gpu: &Gpu, commands: &mut Commands, pixels: u64) {
         let wanted = [(self.light.raw(), LIGHT_BYTES * pixels), (self.data.raw(), DATA_BYTES * pixels)];
         self.readback.copy(gpu, commands.encoder(), &wanted);
     }
 
-    /// Waits for them.
+    /// Waits for the readback.
     ///
     /// # Errors
-    /// A device that is lost.
+    /// The device is lost.
     pub fn read(
         &mut self,
         gpu: &Gpu,

@@ -1,4 +1,4 @@
-//! The kernels in which lights shine, compiled for how many do.
+//! The kernels that evaluate lights, compiled for the number of lights.
 
 use lovelock_gpu::{Constant, Gpu, GpuError, Kernel, ShaderSource};
 
@@ -12,11 +12,11 @@ pub(super) const LISTS: usize = 4;
 pub(super) struct LightKernels {
     pub shade_points: Kernel,
     pub ground: Kernel,
-    /// Draws the pixels of each list.
+    /// The kernels that draw the pixels of each list.
     pub picture_lit: [Kernel; LISTS],
 }
 
-/// What these kernels are composed of.
+/// The parts of these kernels.
 #[derive(Debug)]
 pub(super) struct LightShaders {
     pub points: ShaderSource,
@@ -51,10 +51,10 @@ impl LightVariants {
         Self { shaders, made: [const { None }; MAX_LIGHTS + 1] }
     }
 
-    /// The kernels for so many lights.
+    /// The kernels for a number of lights.
     ///
     /// # Errors
-    /// The driver does not compile them.
+    /// The driver cannot compile them.
     pub fn of(&mut self, gpu: &Gpu, lights: usize) -> Result<&LightKernels, GpuError> {
         let lights = lights.min(MAX_LIGHTS);
         let made = &mut self.made[lights];

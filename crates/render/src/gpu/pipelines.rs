@@ -1,4 +1,4 @@
-//! Shaders, kernels and pipelines, made once a device.
+//! Shaders, kernels and pipelines, created once per device.
 
 use lovelock_gpu::{Gpu, GpuError, ShaderPart, ShaderSource, wgpu};
 
@@ -31,7 +31,7 @@ const PICTURE: ShaderPart = part!("picture.wgsl");
 const LAYERS: ShaderPart = part!("layers.wgsl");
 const VALUE_POINTS: ShaderPart = part!("value_points.wgsl");
 
-/// The shaders of what is made here.
+/// The shaders of these kernels and pipelines.
 fn own_shaders() -> [(&'static str, ShaderSource); 7] {
     [
         ("strand points", &[FRAME, STRAND_SHADING, STRAND_POINTS][..]),
@@ -51,19 +51,19 @@ pub fn all_shaders() -> Vec<(String, ShaderSource)> {
     own.chain(eye::shaders()).chain(interpolate::shaders()).collect()
 }
 
-/// The kernels and pipelines, and the layouts of the latters' bind groups.
+/// The kernels and pipelines, and the bind group layouts of the pipelines.
 #[derive(Debug)]
 pub(super) struct Pipelines {
-    /// Those that light something.
+    /// The kernels that evaluate lights.
     pub lit: LightVariants,
     pub screen: ScreenKernels,
-    /// What kernels of layers are compiled of where they are wanted.
+    /// The parts of the kernels for layers, which are compiled on demand.
     pub layers: LayerShaders,
     /// A uniform for the vertices.
     pub uniform_layout: wgpu::BindGroupLayout,
-    /// The body as the eye sees it: all of it, and where it is closed what faces the eye.
+    /// The body seen from the camera: all faces, and front faces only if it is closed.
     pub surface: [wgpu::RenderPipeline; 2],
-    /// The same as a light sees it.
+    /// The body seen from a light.
     pub depth: [wgpu::RenderPipeline; 2],
 }
 
@@ -72,7 +72,7 @@ pub(super) const MOVING_VERTEX_BYTES: u64 = 32;
 /// Bytes of one vertex of the body that stay: colour and scalp.
 pub(super) const FIXED_VERTEX_BYTES: u64 = 16;
 
-/// No culling, and of faces that look away.
+/// Without culling, and with culling of back faces.
 const CULLS: [Option<wgpu::Face>; 2] = [None, Some(wgpu::Face::Back)];
 
 impl Pipelines {

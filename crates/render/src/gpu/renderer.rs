@@ -1,4 +1,4 @@
-//! One picture from top to bottom.
+//! The GPU renderer.
 
 mod inspect;
 mod layers;
@@ -24,10 +24,10 @@ use crate::picture::check_size_for;
 use crate::uniform::{FrameUniform, LightMaps};
 use crate::{FrameInput, FrameStats, MAX_LIGHTS, Picture, RenderError};
 
-/// How often a frame is drawn anew because lists had too little room: each time they have more, or bands are halved.
+/// The most attempts to render a frame whose lists were too short. Each attempt has longer lists or half as many rows per band.
 const MOST_ATTEMPTS: u32 = 16;
 
-/// Draws pictures on a GPU, and keeps what it needs for the next one.
+/// Renders pictures on a GPU. Keeps buffers from picture to picture.
 #[derive(Debug)]
 pub struct GpuRenderer {
     gpu: Arc<Gpu>,
@@ -51,12 +51,12 @@ pub struct GpuRenderer {
     numbers: Vec<u8>,
     /// The bytes of a picture of which layers alone are wanted.
     spare: Vec<u8>,
-    /// Whether the last picture came to its end.
+    /// Whether the last picture was completed.
     is_whole: bool,
 }
 
 impl GpuRenderer {
-    /// Compiles what drawing needs.
+    /// Compiles kernels and pipelines.
     ///
     /// # Errors
     /// A shader that does not compile, by file and line.
@@ -105,15 +105,15 @@ impl GpuRenderer {
         })
     }
 
-    /// The device that it draws on.
+    /// The device in use.
     pub fn gpu(&self) -> &Arc<Gpu> {
         &self.gpu
     }
 
-    /// Draws `input` at `width` by `height` pixels and reads the picture back.
+    /// Renders `input` at `width` by `height` pixels and reads the picture back.
     ///
     /// # Errors
-    /// A size out of range, maps that do not fit, or a device that is lost.
+    /// The size is out of range, maps do not fit, or the device is lost.
     pub fn picture(
         &mut self,
         input: &FrameInput,
@@ -132,7 +132,7 @@ impl GpuRenderer {
             let mut timer = std::mem::take(&mut self.timer);
             let drawn = self.draw(&gpu, timer.begin(&gpu, "frame"), input, width, height);
             if drawn.is_err() {
-                // What was begun is not timed to its end, and what the driver said of it belongs to this picture.
+                // The incomplete timings are dropped, and errors of the driver belong to this picture.
                 self.timer = PassTimer::new(&gpu)?;
                 let _ = gpu.check();
                 return drawn.map(|()| FrameStats::default());
@@ -179,7 +179,7 @@ impl GpuRenderer {
         })
     }
 
-    /// Encodes a whole picture and hands it to the device.
+    /// Encodes a whole picture and submits it.
     fn draw(
         &mut self,
         gpu: &Gpu,
@@ -194,7 +194,7 @@ impl GpuRenderer {
             return Err(too_large(gpu, 4 * pixels).into());
         }
         if self.targets.as_ref().is_none_or(|t| (t.width, t.height) != (width, height)) {
-            // The old ones are given back first.
+            // The old buffers are freed first.
             self.targets = None;
             self.targets = Some(Targets::new(device, width, height));
         }
@@ -257,7 +257,7 @@ impl GpuRenderer {
         Ok(())
     }
 
-    /// Where the eye may see hair, and how wide.
+    /// The area that may contain hair, and the largest width of a strand.
     fn seen_hair(&mut self, input: &FrameInput, uniform: &FrameUniform, size: [u32; 2]) -> SeenHair {
         let (bounds, _) = self.hair.bounds(input, Area::axes(input.camera), input.camera.eye);
         let strand_width = uniform.width_opacity_tip_scalp.x;
@@ -266,15 +266,14 @@ impl GpuRenderer {
         SeenHair {
             area: Area::of(input.camera, size, (bounds.min, bounds.max), strand_width),
             reach: reach_at(0.05),
-            // What is nearer than this is not drawn.
+            // Nothing nearer than this is drawn.
             streaked: reach_at(0.02) > WIDEST_PLAIN,
         }
     }
 
-    /// The body as the eye sees it, sample by sample, to be lit later.
+    /// Draws the attributes of the body per sample, for shading later.
     fn draw_body(&self, gpu: &Gpu, commands: &mut Commands, targets: &Targets) {
-        // Where there is no depth, nobody reads what was there before. Only to write it anew costs much where the processor draws;
-        // a card rather clears than loads.
+        // Samples without depth are never read. Clearing them is slow on software adapters, but on a GPU it is faster than loading.
         let clear = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
         let load = if gpu.is_software() { wgpu::LoadOp::Load } else { clear };
         let target = |view| {
@@ -303,7 +302,7 @@ impl GpuRenderer {
     }
 }
 
-/// Where the eye may see hair: see [`EyeInput`].
+/// See [`EyeInput`].
 #[derive(Clone, Copy, Debug)]
 struct SeenHair {
     area: Area,

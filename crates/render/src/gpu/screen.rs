@@ -1,4 +1,4 @@
-//! The finished pixels of one picture: hair over the body over the background.
+//! The final pixels of a picture: hair over the body over the background.
 
 use glam::Vec4;
 use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, Kernel, ShaderSource, constants, wgpu};
@@ -9,14 +9,13 @@ use super::ground::cells;
 use super::light_kernels::{LISTS, LightKernels};
 use super::targets::Targets;
 
-/// Threads that share the pixels that are lit one by one: enough to fill a card, and few enough that those without a pixel cost
-/// little where kernels run on the processor.
+/// Threads that share the listed pixels: enough to fill a GPU, and few enough that idle threads cost little on software adapters.
 const LIT_THREADS: [u64; 2] = [1 << 18, 1 << 15];
 
-/// The kernels that find out what the pixels show.
+/// The kernels that classify pixels.
 #[derive(Debug)]
 pub(super) struct ScreenKernels {
-    /// The background where nothing is before it.
+    /// The plain background.
     plain_background: Kernel,
     list_cells: Kernel,
     list_pixels: Kernel,
@@ -32,31 +31,31 @@ impl ScreenKernels {
     }
 }
 
-/// What the last kernels put together.
+/// The input of the last kernels.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ScreenInput<'a> {
-    /// The body as the eye sees it.
+    /// The attributes of the body per sample.
     pub targets: &'a Targets,
     /// The light on the ground.
     pub corners: &'a wgpu::Buffer,
-    /// The part of the picture that may have hair, and the hair of each of its pixels.
+    /// The area that may contain hair, and the hair of each of its pixels.
     pub area: Area,
     pub hair: &'a wgpu::Buffer,
-    /// The part that may have hair or body, of whole cells.
+    /// The area that may contain hair or body, in whole cells.
     pub figure: Area,
-    /// The picture's size and exposure and the colours of the background: what the plain background follows from.
+    /// The size, exposure and background colours of the picture, which determine the plain background.
     pub background: [Vec4; 3],
 }
 
-/// The pixels, and which of them are drawn one by one.
+/// The pixels, and the lists of those that are not plain background.
 #[derive(Debug)]
 pub(super) struct Screen {
     pixels: GrowBuffer<u32>,
-    /// The background where nothing is before it, and of what.
+    /// The plain background, and what it was computed from.
     plain: GrowBuffer<u32>,
     plain_of: Option<[Vec4; 3]>,
     cells: GrowBuffer<u32>,
-    /// Lists, two of which share the room of a picture.
+    /// Lists of pixels. Two lists share a buffer of the size of the picture.
     listed: GrowBuffer<u32>,
     list_count: wgpu::Buffer,
     lit_threads: u64,
@@ -82,7 +81,7 @@ impl Screen {
         }
     }
 
-    /// Makes room for a picture.
+    /// Resizes the buffers for a picture.
     pub fn fit(&mut self, gpu: &Gpu, width: u32, height: u32) {
         let pixels = width as usize * height as usize;
         self.pixels.reserve(&gpu.device, pixels);
@@ -100,12 +99,12 @@ impl Screen {
         [&self.pixels, &self.plain, &self.cells, &self.listed].iter().map(|buffer| buffer.raw().size()).sum()
     }
 
-    /// Threads that share the pixels that are lit one by one in a picture of so many.
+    /// Threads that share the listed pixels of a picture of this many pixels.
     pub fn lit_threads(&self, pixels: u64) -> u64 {
         pixels.min(self.lit_threads)
     }
 
-    /// What the kernels of layers read of the last picture; `hair_area` is its part that may have hair.
+    /// The buffers of the last picture that the kernels of layers read. `hair_area` is its area that may contain hair.
     pub fn bindings_of_last<'a>(
         &'a self,
         frame: &FrameResources<'a>,
@@ -127,7 +126,7 @@ impl Screen {
         ])
     }
 
-    /// Encodes making them.
+    /// Encodes computing the pixels.
     pub fn run(
         &mut self,
         gpu: &Gpu,

@@ -1,4 +1,4 @@
-//! The shadow methods of one frame on the GPU: a map a light, asked once a strand point and once a vertex of the body.
+//! The shadow method of one frame on the GPU: one map per light, looked up once per strand point and once per vertex of the body.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -13,9 +13,9 @@ use lovelock_shadow::{
 use super::hair::HairBuffers;
 use crate::{FrameInput, Light, MAX_LIGHTS, RenderError};
 
-/// The shadow of every light, kept from frame to frame.
+/// The shadows of all lights, kept from frame to frame.
 pub(super) struct GpuShadowStage {
-    /// Methods that were used, with their pipelines; maps has only the one in use.
+    /// Methods that were used, with their pipelines. Only the one in use has maps.
     methods: BTreeMap<ShadowMethod, Box<dyn GpuShadow>>,
     method: ShadowMethod,
     frames: Vec<LightFrame>,
@@ -31,13 +31,13 @@ impl fmt::Debug for GpuShadowStage {
     }
 }
 
-/// The vertices of the body, asked as the strands' points are.
+/// The vertices of the body, looked up like strand points.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Vertices<'a> {
-    /// Two `vec4f` a vertex, the first of which begins with the position.
+    /// Two `vec4f` per vertex; the first one starts with the position.
     pub positions: &'a wgpu::Buffer,
     pub count: u32,
-    /// One word a vertex.
+    /// One word per vertex.
     pub hair: &'a wgpu::Buffer,
 }
 
@@ -60,10 +60,10 @@ impl GpuShadowStage {
         }
     }
 
-    /// Encodes building the maps of all lights and asking them everywhere that they are needed.
+    /// Encodes building the maps of all lights and looking up all strand points and vertices.
     ///
     /// # Errors
-    /// The maps need more memory than they may have, or a shader does not compile.
+    /// The maps exceed their memory limit, or a shader does not compile.
     pub fn run(
         &mut self,
         gpu: &Gpu,
@@ -90,7 +90,7 @@ impl GpuShadowStage {
         let anchor: Vec3 = input.world_from_head.translation.into();
         commands.encoder().clear_buffer(&self.sum, 0, None);
         for (slot, light) in lights.iter().enumerate() {
-            // Carried along rather than made anew, so that the map does not roll while the light is dragged.
+            // Transported instead of recomputed, so that the map does not roll while the light is dragged.
             let frame = match self.frames.get(slot) {
                 Some(frame) => frame.transported(light.direction),
                 None => LightFrame::new(light.direction),
@@ -116,7 +116,7 @@ impl GpuShadowStage {
                 out: hair.transmittance(),
                 sum: Some(&self.sum),
             };
-            shadow.ask(slot, gpu, commands, &targets);
+            shadow.look_up(slot, gpu, commands, &targets);
             if let Some(vertices) = vertices {
                 let targets = GpuTargets {
                     points: vertices.positions,
@@ -125,11 +125,11 @@ impl GpuShadowStage {
                     out: vertices.hair,
                     sum: None,
                 };
-                shadow.ask(slot, gpu, commands, &targets);
+                shadow.look_up(slot, gpu, commands, &targets);
             }
         }
         if lights.is_empty() {
-            // All light, where there is none to be blocked.
+            // Without lights there is nothing to shadow.
             self.columns.clear();
         }
         let most = (0..lights.len()).map(|slot| shadow.columns_size(slot)).max().unwrap_or(0);
@@ -147,47 +147,47 @@ impl GpuShadowStage {
         Ok(settled.transpose()?.unwrap_or(false))
     }
 
-    /// Encodes asking the map of slot `slot` of the last frame.
-    pub fn ask(&mut self, slot: usize, gpu: &Gpu, commands: &mut Commands, targets: &GpuTargets) {
+    /// Encodes looking up the map of slot `slot` of the last frame.
+    pub fn look_up(&mut self, slot: usize, gpu: &Gpu, commands: &mut Commands, targets: &GpuTargets) {
         if let Some(shadow) = self.methods.get_mut(&self.method) {
-            shadow.ask(slot, gpu, commands, targets);
+            shadow.look_up(slot, gpu, commands, targets);
         }
     }
 
-    /// Lights that shone on the last frame.
+    /// The number of lights of the last frame.
     pub fn lights(&self) -> usize {
         self.lights
     }
 
-    /// Whether any light shone on the last frame.
+    /// Whether the last frame had a light.
     pub fn has_light(&self) -> bool {
         self.lights > 0
     }
 
-    /// Bytes that the maps hold.
+    /// Memory of the maps, bytes.
     pub fn memory_bytes(&self) -> u64 {
         let Some(shadow) = self.methods.get(&self.method) else { return 0 };
         let scratch = (0..self.lights).map(|slot| shadow.report(slot).scratch_bytes).max().unwrap_or(0);
         (0..self.lights).map(|slot| shadow.report(slot).memory_bytes).sum::<u64>() + scratch
     }
 
-    /// Words whose sum is that of the bytes of the first light's transmittances over the strands' points.
+    /// Words whose total is the sum of the first light's transmittance bytes over strand points.
     pub fn sum(&self) -> &wgpu::Buffer {
         &self.sum
     }
 
-    /// All layers of what lies behind the hair.
+    /// All layers of transmittance behind the hair.
     pub fn columns_view(&self) -> &wgpu::TextureView {
         &self.columns.view
     }
 
-    /// Carries world space to light `k`'s layer; far outside where it has none.
+    /// The transform from world space to the layer of light `k`; far outside if it has none.
     pub fn columns_from_world(&self, k: usize) -> Mat4 {
         self.columns.uv_from_world(k)
     }
 }
 
-/// What all hair lets through, a layer a light, for surfaces far behind it.
+/// The transmittance behind all hair, one layer per light, for surfaces far behind it.
 #[derive(Debug)]
 struct Columns {
     size: u32,
@@ -227,7 +227,7 @@ impl Columns {
         }
     }
 
-    /// Makes room for layers of `size` by `size` texels, with a few more so that hair that sways needs no other texture.
+    /// Makes room for layers of `size` by `size` texels, with a margin so that swaying hair does not need a new texture.
     fn fit(&mut self, device: &wgpu::Device, size: u32) {
         if size > self.size {
             *self = Self::new(device, size.next_multiple_of(64));
@@ -244,8 +244,8 @@ impl Columns {
             0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0, -1.0, 1.0, 1.0,
         ]);
         let Some(columns) = self.written.get(k).copied().flatten() else { return OUTSIDE };
-        // A map may be smaller than the texture that holds it: its coordinates are scaled to its corner, whose edge is what
-        // comes out as the third.
+        // A map may be smaller than the texture: its coordinates are scaled to its corner, and the third coordinate is the edge of that
+        // corner.
         let part = columns.size as f32 / self.size as f32;
         let scaled = Mat4::from_scale(Vec3::new(part, part, 1.0)) * columns.uv_from_world;
         let rows = scaled.transpose();

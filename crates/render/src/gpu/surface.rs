@@ -1,4 +1,4 @@
-//! The body on the GPU: its buffers, and its depth as each light sees it.
+//! The body on the GPU: its buffers, and its depth maps for all lights.
 
 use std::sync::Arc;
 
@@ -44,14 +44,14 @@ pub(super) struct SurfaceBuffers {
     pub depth: wgpu::TextureView,
     layers: Vec<wgpu::TextureView>,
     uniforms: Vec<(wgpu::Buffer, wgpu::BindGroup)>,
-    /// Texels of a depth map's edge.
+    /// Texels along the edge of a depth map.
     pub texels: u32,
 }
 
 impl SurfaceBuffers {
     pub fn new(gpu: &Gpu, pipelines: &Pipelines) -> Self {
         let device = &gpu.device;
-        // One millimetre of a standing figure a texel on a card; twice that where the processor draws.
+        // A texel is about one millimetre for a standing figure on a GPU, two on a software adapter.
         let texels = if gpu.is_software() { 1024 } else { 2048 };
         let texture = device.create_texture(&wgpu::TextureDescriptor {
             label: Some("body depth"),
@@ -111,7 +111,7 @@ impl SurfaceBuffers {
         }
     }
 
-    /// Writes one frame, to be seen from `eye`.
+    /// Uploads one frame, seen from `eye`.
     pub fn write(&mut self, gpu: &Gpu, body: Option<(&Arc<Body>, &Skin)>, eye: Vec3) {
         let (device, queue) = (&gpu.device, &gpu.queue);
         let Some((body, skin)) = body else {
@@ -143,7 +143,7 @@ impl SurfaceBuffers {
         self.hair.reserve(device, self.staging.len());
     }
 
-    /// The vertices, for shadow methods; none without a body.
+    /// The vertices for shadow methods; `None` without a body.
     pub fn vertices(&self) -> Option<Vertices<'_>> {
         (!self.moving.is_empty()).then(|| Vertices {
             positions: self.moving.raw(),
@@ -186,7 +186,7 @@ impl SurfaceBuffers {
         });
     }
 
-    /// Draws the body. `uniform` is the frame's.
+    /// Draws the body. `uniform` is that of the frame.
     pub fn draw(&self, pipelines: &Pipelines, pass: &mut wgpu::RenderPass, uniform: &wgpu::BindGroup) {
         if self.indices.is_empty() {
             return;

@@ -1,16 +1,16 @@
-//! The textures that the body is drawn in, as the eye sees it.
+//! The render targets of the body.
 
 use lovelock_gpu::wgpu;
 
-/// Samples a pixel: what every WebGPU device can do with every format used here.
+/// Samples per pixel: supported by every WebGPU device for every format in use.
 pub(super) const SAMPLES: u32 = 4;
-/// Normals and the light that hair leaves.
+/// Normals and transmittance of hair.
 pub(super) const NORMAL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Uint;
-/// Colour, and where hair grows.
+/// Colour, and 1 where hair grows.
 pub(super) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// The textures of one size of picture.
+/// The textures for one size of picture.
 #[derive(Debug)]
 pub(super) struct Targets {
     pub width: u32,
@@ -21,7 +21,7 @@ pub(super) struct Targets {
 }
 
 impl Targets {
-    /// Memory of all of them: 8 bytes for normals, 8 for colours and 4 for depth a sample.
+    /// Memory of all textures: per sample 8 bytes for normals, 8 for colours and 4 for depth.
     pub fn memory_bytes(&self) -> u64 {
         u64::from(self.width) * u64::from(self.height) * u64::from(SAMPLES) * 20
     }

@@ -42,7 +42,7 @@ pub(crate) fn measure(
     for _ in 0..=RUNS {
         built.build_from(0, &input, &settings).expect("hair fits");
         builds.push(built.passes.iter().fold(0.0, |sum, pass| sum + pass.ms));
-        light = built.ask(&at);
+        light = built.look_up(&at);
         lookups.push(built.passes.iter().fold(0.0, |sum, pass| sum + pass.ms));
     }
     let report = built.shadow.report(0);

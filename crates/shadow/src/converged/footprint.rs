@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::Vec3;
 
-/// Subtexels that a box covers along one axis, and how much of the first and the last.
+/// The subtexels that a box covers along one axis, and the covered fractions of the first and the last.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Span {
     start: f64,
@@ -12,7 +12,7 @@ struct Span {
 }
 
 impl Span {
-    /// The subtexels within `of` that it touches, each with the part that it covers.
+    /// The subtexels within `of` that it touches, each with its covered fraction.
     fn parts(self, of: &Range<u32>) -> impl Iterator<Item = (u32, f64)> {
         let first = self.start.max(f64::from(of.start)).floor() as u32;
         let end = self.end.min(f64::from(of.end)).ceil().max(0.0) as u32;
@@ -31,8 +31,8 @@ pub(super) struct Footprint {
 }
 
 impl Footprint {
-    /// The box around a point in texel coordinates, with `samples` subtexels along an edge; `None` for what is no
-    /// number and for what lies before all hair.
+    /// The box around a point in texel coordinates, with `samples` subtexels along an edge; `None` for NaN and for points before
+    /// all hair.
     pub(super) fn new(place: Vec3, samples: u32) -> Option<Self> {
         if !place.is_finite() || place.z <= 0.0 {
             return None;
@@ -43,8 +43,8 @@ impl Footprint {
         Some(Self { columns: span(place.x), rows: span(place.y) })
     }
 
-    /// The light that is lost in the box within the rows `rows` of `columns` subtexels: the sum over subtexels of the
-    /// part that the box covers times what is missing from 1 in `light` of column and row.
+    /// The light lost in the box within the rows `rows` of `columns` subtexels: the sum over subtexels of the covered fraction times
+    /// 1 minus `light` of column and row.
     pub(super) fn lost(&self, rows: &Range<u32>, columns: u32, light: impl Fn(u32, u32) -> f32) -> f64 {
         let mut lost = 0.0;
         for (row, high) in self.rows.parts(rows) {
@@ -68,7 +68,7 @@ mod tests {
                 let edge = 16 * samples;
                 let whole = footprint.lost(&(0..edge), edge, |_, _| 0.0);
                 assert!((whole - f64::from(samples * samples)).abs() < 1e-9);
-                // In strips it is the same.
+                // The sum over strips is the same.
                 let strips: f64 =
                     (0..edge).map(|row| footprint.lost(&(row..row + 1), edge, |_, _| 0.0)).sum();
                 assert!((strips - whole).abs() < 1e-9);

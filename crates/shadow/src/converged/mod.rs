@@ -1,8 +1,8 @@
-//! The truth that resolution itself is judged by.
+//! Converged transmittance: the reference for the error of a finite resolution.
 //!
-//! Strands are ribbons as wide as the width with which they block light, of which every point has the same optical
-//! depth. A point receives the mean of the light over the footprint of one texel around it. Both are cut into
-//! subtexels, twice as many along each edge in every round, until that changes nothing to speak of.
+//! Strands are ribbons of the width with which they block light, with uniform optical depth. A point receives the mean of the
+//! light over the footprint of one texel around it. Both are sampled by subtexels, twice as many along each edge in every round,
+//! until the result hardly changes.
 
 mod footprint;
 mod ribbons;
@@ -19,41 +19,39 @@ use rayon::prelude::*;
 use ribbons::Ribbons;
 use strips::Strips;
 
-/// Transmittance changes by less than this, root mean square over the points that are asked, when the samples of the
-/// last round are doubled. From four subtexels to eight it is some 3e-3 on hair.
+/// The RMS change of transmittance over the points, in the round that doubles the samples for the last time, below which the
+/// result counts as converged. From four subtexels to eight it is about 3e-3 on hair.
 pub const CONVERGED_CHANGE: f32 = 2e-3;
 
-/// Subtexels along the edge of a texel at which doubling ends at the latest.
+/// The most subtexels along the edge of a texel.
 pub const MOST_CONVERGED_SAMPLES: u32 = 32;
 
-/// Rounds before this one do not end it: features smaller than all of their subtexels could be missed by two alike.
+/// The first round that may be the last: two coarser rounds could agree because both miss features below a subtexel.
 const LEAST_SAMPLES: u32 = 4;
 
 /// Transmittance averaged over footprints.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Converged {
-    /// Transmittance of each point that was asked, 0 to 1.
+    /// Transmittance of each point, 0 to 1.
     pub transmittance: Vec<f32>,
     /// Subtexels along the edge of a texel in the last round.
     pub samples: u32,
-    /// Root mean square change in the last round. Above [`CONVERGED_CHANGE`] only where
-    /// [`MOST_CONVERGED_SAMPLES`] ended it.
+    /// RMS change in the last round. Above [`CONVERGED_CHANGE`] only if [`MOST_CONVERGED_SAMPLES`] was reached.
     pub change: f32,
-    /// All rounds but the first: their samples, and the change that each brought.
+    /// Samples and RMS change of every round but the first.
     pub changes: Vec<(u32, f32)>,
 }
 
-/// The mean of the light over the box of one texel around each of the points `x`, `y`, `z` (world space, metres;
-/// slices of one length) to within [`CONVERGED_CHANGE`]. A point that is not finite gets 1.
+/// The mean of the light over the box of one texel around each of the points `x`, `y`, `z` (world space, metres; slices of the
+/// same length), to within [`CONVERGED_CHANGE`]. A point that is not finite gets 1.
 ///
-/// The texel is that of the map of the method in `settings`: of the voxel map its cell, and of `none` the texel of
-/// `exact`. Only what strands are (their width, `extinction_scale`) enters beside it. The result is the same for any
-/// number of threads. Time grows with the square of the samples, and with the area around the points alone; memory is
-/// bounded, as the light plane is worked on in strips.
+/// The texel is that of the map of the method in `settings`: a cell of the voxel map, and for `none` the texel of `exact`. Only what strands are (their width, `extinction_scale`) enters beside it. The result is the same for any
+/// number of threads. Time grows with the square of the samples and with the area around the points; memory is bounded,
+/// because the light plane is processed in strips.
 ///
 /// # Errors
-/// [`ShadowError::TooLarge`] of [`ShadowMethod::Exact`] where even one row of subtexels needs more than the memory
-/// limit in the settings of `exact`.
+/// [`ShadowError::TooLarge`] of [`ShadowMethod::Exact`] if one row of subtexels needs more than the memory limit in the settings
+/// of `exact`.
 pub fn converged(
     input: &ShadowInput,
     settings: &ShadowSettings,
@@ -114,7 +112,7 @@ fn round(
 ) -> Result<Vec<f32>, ShadowError> {
     let ribbons = Ribbons::new(input, settings, frame, samples, places);
     let strips = Strips::new(input, settings, frame, &ribbons)?;
-    // What each footprint loses, in subtexels.
+    // The light lost in each footprint, in subtexels.
     let mut lost = vec![0.0_f64; places.len()];
     for rows in strips.rows {
         let strip = ribbons.within(&rows);

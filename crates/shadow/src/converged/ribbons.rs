@@ -1,4 +1,4 @@
-//! Strands as ribbons that cover subtexels by area.
+//! Strands as ribbons that cover fractions of subtexels.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -9,25 +9,24 @@ use crate::methods::texels::TexelFrame;
 use crate::methods::texels::lines::{Draw, Steps};
 use crate::{ShadowInput, ShadowSettings};
 
-/// Ribbons are no darker than this where they lie; e^−10⁴ is 0 in any float.
+/// The largest optical depth of a ribbon; e^−10⁴ is 0 in any float.
 const MOST_DEPTH: f32 = 1e4;
 
-/// Draws ribbons into rows of subtexels.
+/// Rasterises ribbons into rows of subtexels.
 ///
-/// Along the longer axis a segment goes subtexel by subtexel, and covers a part of the first and the last. On the shorter
-/// axis the ribbon covers the interval of its width over the cosine of its slope. Each subtexel receives the part of it
-/// that is covered.
+/// Along its longer axis a segment advances by subtexels, and covers fractions of the first and the last. On the shorter axis the
+/// ribbon covers an interval of its width divided by the cosine of its slope. Each subtexel receives its covered fraction.
 #[derive(Clone, Debug)]
 pub(super) struct Ribbons {
     /// Subtexels along the edge of a texel.
     pub samples: u32,
     /// Texels along the edge of the map.
     resolution: u32,
-    /// Rows of subtexels that are drawn.
+    /// The rows of subtexels to rasterise.
     pub rows: Range<u32>,
     /// Width of a ribbon, subtexels.
     width: f32,
-    /// Optical depth where it lies.
+    /// Optical depth of a ribbon.
     depth: f32,
     /// Texels that a footprint touches, row after row.
     wanted: Arc<[bool]>,
@@ -64,7 +63,7 @@ impl Ribbons {
         Self { samples, resolution, rows: 0..resolution * samples, width, depth, wanted: wanted.into() }
     }
 
-    /// The same within `rows` alone.
+    /// The same ribbons within `rows` only.
     pub(super) fn within(&self, rows: &Range<u32>) -> Self {
         Self { rows: rows.clone(), ..self.clone() }
     }
@@ -74,7 +73,7 @@ impl Ribbons {
         self.resolution * self.samples
     }
 
-    /// Calls `with` for the rows of texels that a segment may reach, each with a bound on its fragments there.
+    /// Calls `with` for the rows of texels that a segment may touch, each with an upper bound of its fragments there.
     pub(super) fn bound(&self, from: Vec3, to: Vec3, mut with: impl FnMut(u32, u64)) {
         let steps = self.steps(from, to);
         let across = f64::from(self.width * steps.length) + 2.0;
@@ -83,7 +82,7 @@ impl Ribbons {
         let low = ((from.y.min(to.y) - reach).max(0.0) as u32).min(last);
         let high = ((from.y.max(to.y) + reach).max(0.0) as u32).min(last);
         let rows = f64::from(high - low + 1);
-        // Fragments spread over the rows evenly, but never more than fit.
+        // Fragments are spread evenly over the rows, but there are never more than fit.
         let count = f64::from(steps.touched().len() as u32);
         let all = count * across;
         let most = f64::from(self.samples) * if steps.by_row { across } else { count };
@@ -96,9 +95,9 @@ impl Ribbons {
         Steps::new(from * scale, to * scale)
     }
 
-    /// Whether a segment may touch a texel that is wanted: a quick look at those around it.
+    /// Whether a segment may touch a texel of a footprint: a conservative test of the texels around it.
     fn may_touch_wanted(&self, from: Vec3, to: Vec3) -> bool {
-        /// A segment over more texels than this is surely worth drawing.
+        /// A segment over more texels than this is always rasterised.
         const MOST: u32 = 1024;
         // Half the width over the cosine of at most 45 degrees.
         let reach = Vec3::splat(0.71 * self.width / self.samples as f32);

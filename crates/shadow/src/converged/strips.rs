@@ -1,4 +1,4 @@
-//! The light plane in strips, so that memory is bounded.
+//! The light plane, divided into strips to bound memory.
 
 use std::ops::Range;
 
@@ -7,10 +7,10 @@ use crate::methods::texels::TexelFrame;
 use crate::methods::texels::fragments::{BYTES_PER_FRAGMENT, for_each_segment};
 use crate::{ShadowError, ShadowInput, ShadowMethod, ShadowSettings};
 
-/// Memory that a strip is meant to take, bytes, where the limit allows.
+/// The target memory of a strip within the limit, bytes.
 const STRIP_BYTES: u64 = 512 << 20;
 
-/// Rows of subtexels that are worked on one after the other.
+/// Ranges of rows of subtexels that are processed one after another.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Strips {
     pub rows: Vec<Range<u32>>,
@@ -32,7 +32,7 @@ impl Strips {
             });
         });
         let limit = input.share_of(settings.exact.safe_memory_limit_bytes());
-        // An index of two numbers a subtexel, and the fragments.
+        // An index of two numbers per subtexel, and the fragments.
         let row_bytes = |texel_row: usize| {
             let fragments = fragments[texel_row].div_ceil(u64::from(ribbons.samples));
             fragments.saturating_mul(BYTES_PER_FRAGMENT).saturating_add(u64::from(ribbons.columns()) * 8)

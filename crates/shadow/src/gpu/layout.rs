@@ -1,4 +1,4 @@
-//! The layout of structures in shaders, for tests that hold their Rust twins against it.
+//! The layout of structures in shaders, for tests that compare it with their Rust twins.
 
 use lovelock_gpu::{ShaderSource, check_shader};
 use naga::TypeInner;

@@ -4,7 +4,7 @@ use lovelock_gpu::{Gpu, wgpu};
 
 use crate::{ShadowError, ShadowMethod};
 
-/// A buffer of words that grows and is given back where much less is needed.
+/// A buffer of words that grows, and shrinks when much less is needed.
 #[derive(Debug)]
 pub(crate) struct Buffer {
     label: &'static str,
@@ -16,7 +16,7 @@ impl Buffer {
         Self { label, raw: make(gpu, label, 16) }
     }
 
-    /// Makes room for `words` words; what was in it is lost where it must be another one.
+    /// Makes room for `words` words. The content is lost if the buffer must be replaced.
     pub fn fit(&mut self, gpu: &Gpu, words: u64) {
         let size = (words * 4).next_multiple_of(16).max(16);
         if size > self.raw.size() || size < self.raw.size() / 4 {
@@ -42,7 +42,7 @@ fn make(gpu: &Gpu, label: &str, size: u64) -> wgpu::Buffer {
     })
 }
 
-/// Refuses a buffer that the device does not give.
+/// Returns an error if the device cannot create a buffer of this size.
 pub(crate) fn fits_device(gpu: &Gpu, method: ShadowMethod, needed_bytes: u64) -> Result<(), ShadowError> {
     let limit_bytes = gpu.most_storage_bytes();
     if needed_bytes > limit_bytes {

@@ -1,8 +1,8 @@
-//! Shadow methods on the GPU: the passes of each, in step with its definition on the processor.
+//! Shadow methods on the GPU. Each computes what its definition on the CPU computes.
 
-mod ask;
 #[cfg(test)]
 pub(crate) mod layout;
+mod lookup;
 mod memory;
 
 use std::fmt::Debug;
@@ -13,10 +13,10 @@ use lovelock_gpu::{Commands, Gpu, GpuError, ShaderPart, wgpu};
 use crate::bounds::Bounds;
 use crate::{LightFrame, ShadowError, ShadowReport, ShadowSettings};
 
-pub(crate) use ask::Ask;
+pub(crate) use lookup::PointLookup;
 pub(crate) use memory::{Buffer, fits_device};
 
-/// Strands that are on the device.
+/// Strands in GPU memory.
 #[derive(Clone, Copy, Debug)]
 pub struct GpuStrands<'a> {
     /// Positions, world space, metres: `array<vec4f>` whose last component is unused.
@@ -29,12 +29,12 @@ pub struct GpuStrands<'a> {
     pub segment_count: u32,
 }
 
-/// What a map is built from on the GPU.
+/// The input of a build on the GPU.
 #[derive(Clone, Copy, Debug)]
 pub struct GpuShadowInput<'a> {
     /// The strands that cast the shadow.
     pub strands: GpuStrands<'a>,
-    /// Bounds of their points along the light's axes, relative to the anchor, metres; may be a little larger.
+    /// Bounds of their points along the light's axes, relative to the anchor, metres. They may be a little larger.
     pub bounds: Bounds,
     /// Length of the longest strand, metres.
     pub longest_strand: f32,
@@ -48,7 +48,7 @@ pub struct GpuShadowInput<'a> {
     pub maps: u32,
 }
 
-/// Points that a map is asked at, and where its answers go.
+/// Points to look up, and the buffers for the results.
 #[derive(Clone, Copy, Debug)]
 pub struct GpuTargets<'a> {
     /// Positions, world space, metres: every `stride`-th of an `array<vec4f>`.
@@ -57,33 +57,32 @@ pub struct GpuTargets<'a> {
     pub stride: u32,
     /// Number of points.
     pub count: u32,
-    /// One word a point: four transmittances of 8 bits, the first light's in the lowest byte. Asking the map of slot *k*
-    /// sets byte *k*; that of slot 0 sets the others to all light.
+    /// One word per point: four 8-bit transmittances, the first light in the lowest byte. A lookup in slot *k* sets byte *k*;
+    /// a lookup in slot 0 sets the other bytes to full transmittance.
     pub out: &'a wgpu::Buffer,
-    /// Where the sum of the bytes of slot 0 is added, if anywhere: an `array<u32>` of [`SUM_WORDS`] words, which make it
-    /// together.
+    /// If set, an `array<u32>` of [`SUM_WORDS`] words whose total is increased by the bytes of slot 0.
     pub sum: Option<&'a wgpu::Buffer>,
 }
 
-/// Words of [`GpuTargets::sum`]; twin of the constant in `ask.wgsl`.
+/// Words of [`GpuTargets::sum`]; twin of the constant in `lookup.wgsl`.
 pub const SUM_WORDS: u64 = 256;
 
-/// What lies behind the whole hair, on the device: see [`ColumnMap`](crate::ColumnMap).
+/// The transmittance behind the whole hair in GPU memory; see [`ColumnMap`](crate::ColumnMap).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GpuColumns {
-    /// Texels along each edge that were written, from the texture's first corner.
+    /// Texels along each edge that were written, from the first corner of the texture.
     pub size: u32,
     /// World position to `(u, v, depth)`, u and v in `0..1` over these texels.
     pub uv_from_world: Mat4,
 }
 
-/// A shadow method on the GPU. It holds a map a light, in slots from 0 on.
+/// A shadow method on the GPU. It holds one map per light, in slots that count from 0.
 pub trait GpuShadow: Debug + Send {
-    /// Encodes the passes that make the map of slot `slot`. Memory is kept from build to build.
+    /// Encodes the passes that build the map of slot `slot`. Memory is reused from build to build.
     ///
     /// # Errors
-    /// The map would take more memory than the method may use or than the device gives to one buffer; or the driver does not
-    /// compile what these settings need.
+    /// The map would use more memory than the limit of the method or than one buffer of the device; or the driver cannot compile
+    /// the kernels for these settings.
     fn build(
         &mut self,
         slot: usize,
@@ -93,14 +92,14 @@ pub trait GpuShadow: Debug + Send {
         settings: &ShadowSettings,
     ) -> Result<(), GpuShadowError>;
 
-    /// Encodes asking the map of a slot, which must have been built, at many points.
-    fn ask(&mut self, slot: usize, gpu: &Gpu, commands: &mut Commands, targets: &GpuTargets);
+    /// Encodes looking up many points in the map of a slot, which must have been built.
+    fn look_up(&mut self, slot: usize, gpu: &Gpu, commands: &mut Commands, targets: &GpuTargets);
 
-    /// The most texels along an edge that [`GpuShadow::columns`] writes for the map of a slot; 0 where it writes none.
+    /// The most texels along an edge that [`GpuShadow::columns`] writes for the map of a slot; 0 if it writes none.
     fn columns_size(&self, slot: usize) -> u32;
 
-    /// Encodes writing what lies behind the whole hair into a texture of `rgba8unorm`, at least as large as
-    /// [`GpuShadow::columns_size`] says.
+    /// Encodes writing the transmittance behind the whole hair into a texture of `rgba8unorm` with at least
+    /// [`GpuShadow::columns_size`] texels along each edge.
     fn columns(
         &mut self,
         slot: usize,
@@ -109,22 +108,22 @@ pub trait GpuShadow: Debug + Send {
         into: &wgpu::TextureView,
     ) -> Option<GpuColumns>;
 
-    /// Call when the device is done with a frame: whether maps were too small for what they should hold and the frame
-    /// must be drawn anew; there is more room then.
+    /// Checks, after the device has finished a frame, whether maps were too small. Then they are enlarged, the result is `true`, and
+    /// the frame must be rendered again.
     ///
     /// # Errors
-    /// What is needed is more than the method may use, or the device is lost.
+    /// The maps need more than the limit of the method, or the device is lost.
     fn settle(&mut self, _gpu: &Gpu) -> Result<bool, GpuShadowError> {
         Ok(false)
     }
 
-    /// Gives the memory of all maps back; they must be built again before they are asked.
+    /// Frees the memory of all maps. They must be built again before the next lookup.
     fn forget(&mut self, _gpu: &Gpu) {}
 
-    /// What the last build of a slot cost and met, as far as the processor knows.
+    /// Statistics of the last build of a slot, as far as the CPU can determine them.
     fn report(&self, slot: usize) -> ShadowReport;
 
-    /// The words of the map of a slot, read back: for tests and for looking into it.
+    /// Reads back the words of the map of a slot, for tests and for inspection.
     ///
     /// # Errors
     /// The device is lost.
@@ -134,7 +133,7 @@ pub trait GpuShadow: Debug + Send {
 /// Why a shadow failed on the GPU.
 #[derive(Debug, thiserror::Error)]
 pub enum GpuShadowError {
-    /// It does not fit.
+    /// The map does not fit into memory.
     #[error(transparent)]
     Shadow(#[from] ShadowError),
     /// The device failed.
@@ -142,7 +141,7 @@ pub enum GpuShadowError {
     Gpu(#[from] GpuError),
 }
 
-/// The file of a shader beside the Rust file that names it.
+/// A shader file beside the Rust file that names it.
 macro_rules! wgsl {
     ($folder:literal, $name:literal) => {
         lovelock_gpu::ShaderPart {
@@ -153,5 +152,5 @@ macro_rules! wgsl {
 }
 pub(crate) use wgsl;
 
-/// The part that every shader begins with: the exponential of the processor's definitions.
+/// The first part of every shader: the exponential function of the definitions on the CPU.
 pub(crate) const EXP: ShaderPart = wgsl!("gpu/", "exp.wgsl");

@@ -154,7 +154,7 @@ impl Built {
     }
 
     /// Transmittance at some points by the first map, rounded to 8 bits as pictures have it.
-    pub fn ask(&mut self, at: &[Vec3]) -> Vec<f32> {
+    pub fn look_up(&mut self, at: &[Vec3]) -> Vec<f32> {
         let words = self.ask_slots(&[0], at);
         words.into_iter().map(|word| (word & 0xff) as f32 / 255.0).collect()
     }
@@ -167,7 +167,7 @@ impl Built {
             GpuTargets { points: points.raw(), stride: 1, count: at.len() as u32, out: out.raw(), sum: None };
         let mut commands = self.timer.begin(self.gpu, "test");
         for &slot in slots {
-            self.shadow.ask(slot, self.gpu, &mut commands, &targets);
+            self.shadow.look_up(slot, self.gpu, &mut commands, &targets);
         }
         commands.submit();
         self.gpu.check().expect("the device takes it");

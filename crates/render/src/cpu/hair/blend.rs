@@ -1,4 +1,4 @@
-//! Segments put together from near to far as they come: `Transparency::Sorted`.
+//! Blends sorted segments from near to far: `Transparency::Sorted`.
 // Functions are inlined into the loops that `simd_versions!` compiles; calling those takes `unsafe`.
 #![allow(clippy::inline_always, unsafe_code)]
 
@@ -12,26 +12,25 @@ use crate::cpu::tile::{
     BLOCK_LANES, BLOCK_WIDTH, BLOCKS, BLOCKS_IN_ROW, HairPlanes, STRIDE, UNSEEN, pixel_of,
 };
 
-/// What to draw into a tile.
+/// The input of a tile.
 pub(crate) struct BlendTile<'a> {
-    /// Pixels of the tile's corner.
+    /// The corner of the tile, pixels.
     pub origin: [f32; 2],
-    /// Both ends of each segment, from near to far. Gathered, since its place in memory has nothing to do with
-    /// its place in the order.
+    /// Both ends of each segment, from near to far. Gathered, because the order in memory differs from the order of depth.
     pub segments: &'a [[ShadedPoint; 2]],
     pub hidden: &'a Occlusion,
-    /// Opacity of a strand where it covers a pixel wholly.
+    /// Opacity of a strand where it covers a pixel completely.
     pub opacity: f32,
 }
 
-/// A tile on its way: by blocks, and how full it is.
+/// The state of a tile during blending, in blocks.
 #[derive(Clone, Debug)]
 pub(crate) struct BlendState {
     color: [[[f32; BLOCK_LANES]; BLOCKS]; 3],
     through: [[f32; BLOCK_LANES]; BLOCKS],
-    /// Blocks behind which nothing can be seen any more.
+    /// Blocks that are opaque: nothing behind them is visible.
     closed: [bool; BLOCKS],
-    /// How many others each row of blocks has, and the whole tile.
+    /// The number of other blocks in each row of blocks, and in the tile.
     open_in_row: [usize; BLOCKS / BLOCKS_IN_ROW],
     open: usize,
 }
@@ -49,7 +48,7 @@ impl Default for BlendState {
 }
 
 impl BlendState {
-    /// Begins another tile.
+    /// Clears the state for another tile.
     pub fn clear(&mut self) {
         self.color.iter_mut().for_each(|plane| plane.fill([0.0; BLOCK_LANES]));
         self.through.fill([1.0; BLOCK_LANES]);
@@ -58,12 +57,12 @@ impl BlendState {
         self.open = BLOCKS;
     }
 
-    /// Whether nothing more can be seen.
+    /// Whether all blocks are opaque.
     pub fn is_full(&self) -> bool {
         self.open == 0
     }
 
-    /// Lays the blocks out in rows of pixels.
+    /// Copies the blocks into rows of pixels.
     pub fn write(&self, out: &mut HairPlanes) {
         let planes = out.color.iter_mut().zip(&self.color).chain([(&mut out.through, &self.through)]);
         for (plane, blocks) in planes {
@@ -85,7 +84,7 @@ simd_versions! {
     }
 }
 
-/// Draws segments into a tile.
+/// Blends segments into a tile.
 #[inline(always)]
 fn blend_segments(input: &BlendTile, out: &mut BlendState) {
     let mut sink = Blend { hidden: input.hidden, out };
@@ -115,7 +114,7 @@ impl SpanSink for Blend<'_> {
 
     #[inline(always)]
     fn take(&mut self, a: &ShadedPoint, b: &ShadedPoint, span: &Span) {
-        // Blocks are copied, worked on and put back whole: the compiler cannot know that planes do not overlap.
+        // Blocks are copied, modified and written back: the compiler cannot prove that planes do not overlap.
         let at = span.block;
         let Occlusion { near, far, share: hidden } = self.hidden;
         let (near, far, hidden) = (near[at], far[at], hidden[at]);

@@ -1,4 +1,4 @@
-//! Every fragment of a tile, pixel by pixel.
+//! All fragments of a tile, per pixel.
 // Functions are inlined into the loops that `simd_versions!` compiles; calling those takes `unsafe`.
 #![allow(clippy::inline_always, unsafe_code)]
 
@@ -10,7 +10,7 @@ use crate::cpu::points::ShadedPoint;
 use crate::cpu::surface::raster::SurfaceSamples;
 use crate::cpu::tile::{BLOCK_LANES, STRIDE, TILE, pixel_of};
 
-/// What one segment leaves in one pixel.
+/// One segment in one pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Fragment {
     /// Depth, 1 at the near plane.
@@ -19,15 +19,15 @@ pub(crate) struct Fragment {
     pub alpha: f32,
     /// Light, linear.
     pub color: [f32; 3],
-    /// One bit for each sample of the pixel in which it lies before the body.
+    /// One bit per sample of the pixel: set if the fragment is in front of the body.
     pub seen: u32,
-    /// The samples that it takes where strands are opaque; see [`covered_samples`].
+    /// The samples that it covers if strands are opaque; see [`covered_samples`].
     pub covered: u32,
 }
 
-/// Samples of a pixel that an opacity takes: as many as its fourths, rounded up or down by a noise of the pixel and the
-/// strand, from one on that is the strand's own. Strands of a pixel take different samples, so that many thin ones add up. Twin
-/// of `covered_samples` in `eye/opaque/samples.wgsl`.
+/// The samples of a pixel that an opacity covers: their number is four times the opacity, rounded up or down by a hash of the
+/// pixel and the strand; the first one depends on the strand. Strands of a pixel cover different samples, so that many thin ones
+/// add up. Twin of `covered_samples` in `eye/opaque/samples.wgsl`.
 #[inline(always)]
 fn covered_samples(alpha: f32, [x, y]: [f32; 2], hash: f32) -> u32 {
     let inner = x * 0.067_110_56 + y * 0.005_837_15;
@@ -40,7 +40,7 @@ fn covered_samples(alpha: f32, [x, y]: [f32; 2], hash: f32) -> u32 {
 }
 
 impl Fragment {
-    /// Opacity with what the body hides taken off.
+    /// Opacity in the samples that the body does not hide.
     pub fn opacity(&self) -> f32 {
         self.alpha * 0.25 * self.seen.count_ones() as f32
     }
@@ -54,9 +54,9 @@ pub(crate) struct Fragments {
     by_pixel: Vec<Fragment>,
 }
 
-/// What to list.
+/// The input of a tile.
 pub(crate) struct ListTile<'a> {
-    /// Pixels of the tile's corner.
+    /// The corner of the tile, pixels.
     pub origin: [f32; 2],
     pub points: &'a [ShadedPoint],
     /// First point of each segment.
@@ -64,7 +64,7 @@ pub(crate) struct ListTile<'a> {
     /// For each of the indices in `segments`, the segment's first point.
     pub first_points: &'a [u32],
     pub samples: &'a SurfaceSamples,
-    /// Opacity of a strand where it covers a pixel wholly.
+    /// Opacity of a strand where it covers a pixel completely.
     pub opacity: f32,
 }
 
@@ -75,7 +75,7 @@ simd_versions! {
     }
 }
 
-/// Lists what segments leave in the pixels of a tile.
+/// Lists the fragments of segments in the pixels of a tile.
 #[inline(always)]
 fn list_segments(input: &ListTile, out: &mut Fragments) {
     out.found.clear();
@@ -129,8 +129,8 @@ impl SpanSink for List<'_> {
 }
 
 impl Fragments {
-    /// Groups the fragments by pixel and calls `visit` for each pixel that has any, with its place in the
-    /// planes and its fragments in the order of their segments.
+    /// Groups the fragments by pixel and calls `visit` for each pixel that has any, with its index in the planes and its fragments in
+    /// the order of their segments.
     pub fn each_pixel(&mut self, mut visit: impl FnMut(usize, &mut [Fragment])) {
         const PLACES: usize = TILE * STRIDE;
         if self.found.is_empty() {
@@ -145,7 +145,7 @@ impl Fragments {
             self.starts[at + 1] += self.starts[at];
         }
         self.by_pixel.resize(self.found.len(), Fragment::default());
-        // Each start moves to its pixel's end, which is where the next one began.
+        // Each start advances to the end of its pixel, the original start of the next one.
         for (at, fragment) in &self.found {
             let slot = &mut self.starts[*at as usize];
             self.by_pixel[*slot as usize] = *fragment;
@@ -181,7 +181,7 @@ mod tests {
                 }
             }
             let share = sum as f32 / (4.0 * 64_000.0);
-            // The noise is even to about a per cent over this many pixels.
+            // The hash is uniform to about one per cent over this many pixels.
             assert!((share - alpha).abs() < 0.01, "{alpha}: {share}");
             assert!(taken.iter().all(|&count| count > 0), "{alpha}: {taken:?}");
         }

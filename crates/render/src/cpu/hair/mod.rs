@@ -1,7 +1,6 @@
-//! Strands on the processor: sorted into tiles, then drawn with analytic coverage.
+//! Strands on the CPU: sorted into tiles, then rasterised with analytic coverage.
 //!
-//! `blend` puts segments together from near to far as they come; `list` keeps every fragment of a tile, for the
-//! ways of transparency that need them all.
+//! `blend` blends segments from near to far; `list` keeps all fragments of a tile, for the transparency modes that need them.
 
 pub(super) mod blend;
 pub(super) mod list;

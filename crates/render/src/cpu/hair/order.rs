@@ -1,21 +1,21 @@
-//! The order of segments: which is nearer.
+//! The order of segments by depth.
 
 use lovelock_groom::Strands;
 use rayon::prelude::*;
 
-/// A segment with its depth in one number: smaller is nearer; of equal depth, what has the larger index is.
+/// The depth and the index of a segment in one number: smaller is nearer; for equal depth, the larger index is nearer.
 ///
-/// The far to near order of `DepthSort`, reversed: the same 16 bits of depth, and ties the other way round.
+/// The reverse of the far-to-near order of `DepthSort`: the same 16 bits of depth, and ties reversed.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SegmentKeys {
     keys: Vec<u16>,
 }
 
-/// Fewest segments that are worth a task.
+/// Segments per task at least.
 const PIECE: usize = 8192;
 
 impl SegmentKeys {
-    /// Measures the segments along `forward`; `first_points` names the first point of each.
+    /// Computes the depths of segments along `forward`. `first_points` are their first points.
     pub fn measure(&mut self, strands: &Strands, first_points: &[u32], forward: glam::Vec3) {
         let depth_of =
             |i: usize| strands.x[i] * forward.x + strands.y[i] * forward.y + strands.z[i] * forward.z;
@@ -39,13 +39,13 @@ impl SegmentKeys {
             .collect_into_vec(&mut self.keys);
     }
 
-    /// The segments of a tile from near to far, each as its first point below its key. `segments` are indices
-    /// into `first_points`.
+    /// The segments of a tile from near to far: the first point in the low bits, the key above it. `segments` are indices into
+    /// `first_points`.
     pub fn sort(&self, segments: &[u32], first_points: &[u32], out: &mut Vec<u64>) {
         out.clear();
         out.extend(segments.iter().map(|&segment| {
             let (key, first) = (self.keys[segment as usize], first_points[segment as usize]);
-            // The index reversed puts the later one first among equals; undone below.
+            // The inverted index puts the later segment first among equal depths; undone below.
             u64::from(key) << 32 | u64::from(u32::MAX - first)
         }));
         out.sort_unstable();
@@ -75,7 +75,7 @@ mod tests {
         keys.sort(&firsts, &firsts, &mut order);
         let order: Vec<u32> = order.iter().map(|&entry| entry as u32).collect();
         let middle = |first: u32| 0.5 * (strands.z[first as usize] + strands.z[first as usize + 1]);
-        // A key is the 65,535th part of the range of 3 m; of one key the later segment comes first.
+        // Keys are steps of 1/65,535 of the range of 3 m; for equal keys the later segment comes first.
         assert!(order.windows(2).all(|w| middle(w[0]) <= middle(w[1]) + 2.0 * 3.0 / 65_535.0));
         assert!(order.windows(2).any(|w| middle(w[0]) < middle(w[1]) - 0.001), "the control: depths differ");
         let mut all = order;

@@ -1,7 +1,7 @@
 //! One segment as a ribbon over the pixels of a tile: the twin of `eye/fragments.wgsl`.
 //!
-//! Below a pixel, width becomes coverage: a strand of 0.2 pixels is drawn one pixel wide at a fifth of its
-//! opacity, so it neither breaks up nor gains weight as it recedes.
+//! Widths below a pixel become coverage: a strand of 0.2 pixels is drawn one pixel wide with a fifth of its opacity, so that it
+//! neither breaks up nor becomes heavier with distance.
 // Functions are inlined into the loops that `simd_versions!` compiles.
 #![allow(clippy::inline_always)]
 
@@ -13,13 +13,13 @@ type Lane = [f32; BLOCK_LANES];
 
 /// A block of pixels that a segment may cover.
 pub(crate) struct Span {
-    /// Which block of the tile it is, row after row.
+    /// Index of the block in the tile, row after row.
     pub block: usize,
     /// Opacity times coverage; 0 beside the segment. Lanes run along the rows of the block.
     pub alpha: Lane,
     /// Depth, 1 at the near plane.
     pub depth: Lane,
-    /// Place along the segment, 0 to 1.
+    /// Position along the segment, 0 to 1.
     pub along: Lane,
     /// Factor on the colour.
     pub gain: Lane,
@@ -31,7 +31,7 @@ pub(crate) fn is_drawn(a: &ShadedPoint, b: &ShadedPoint) -> bool {
     a.half_width >= 0.0 && b.half_width >= 0.0
 }
 
-/// The widest that a segment is drawn to each side of its middle, pixels.
+/// The largest distance from the middle line that a segment is drawn at, pixels.
 #[inline(always)]
 fn reach(a: &ShadedPoint, b: &ShadedPoint) -> f32 {
     max(max(a.half_width, b.half_width), 0.5) + 0.5
@@ -46,20 +46,20 @@ pub(crate) fn bounds(a: &ShadedPoint, b: &ShadedPoint) -> [f32; 4] {
     [min(a.x - ax, b.x - bx), min(a.y - ay, b.y - by), max(a.x + ax, b.x + bx), max(a.y + ay, b.y + by)]
 }
 
-/// What becomes of the blocks of a segment. A trait and no closure, which would not always be inlined.
+/// Receives the blocks of a segment. A trait, because closures are not always inlined.
 pub(crate) trait SpanSink {
-    /// Whether anything can be seen in a row of blocks.
+    /// Whether a row of blocks is not yet opaque.
     fn is_row_open(&self, row: usize) -> bool;
-    /// Whether anything can be seen in a block.
+    /// Whether a block is not yet opaque.
     fn is_open(&self, block: usize) -> bool;
-    /// Takes a block of the segment from `a` to `b`.
+    /// Receives a block of the segment from `a` to `b`.
     fn take(&mut self, a: &ShadedPoint, b: &ShadedPoint, span: &Span);
 }
 
-/// Hands `sink` each block of a tile that the segment from `a` to `b` may cover.
+/// Passes each block of a tile that the segment from `a` to `b` may cover to `sink`.
 ///
 /// A pixel belongs to the segment between the lines across the strand through its two ends. Neighbouring
-/// segments share those lines, so that no pixel is drawn by both or by none.
+/// segments share those lines, so that no pixel is drawn twice or left out.
 #[inline(always)]
 pub(crate) fn each_span(
     a: &ShadedPoint,
@@ -80,7 +80,7 @@ pub(crate) fn each_span(
     let reach = reach(a, b);
     let [left, top, right, bottom] = bounds(a, b);
     let (left, right) = (left - origin[0], right - origin[0]);
-    // Rows whose centres may lie within.
+    // Rows whose centres may lie inside.
     let (top, bottom) = (max(top - origin[1] - 0.5, 0.0), min(bottom - origin[1] + 0.5, TILE as f32 - 0.5));
     if top > bottom || left >= TILE as f32 || right < 0.0 {
         return;
@@ -89,7 +89,7 @@ pub(crate) fn each_span(
     let (opacity_a, opacity_b) =
         (opacity * min(a.half_width * 2.0, 1.0), opacity * min(b.half_width * 2.0, 1.0));
     let streaked = max(half_a, half_b) > 0.8;
-    // Where a row crosses the ribbon: a middle that moves from row to row, and half a width.
+    // The intersection of a row with the ribbon: a middle that moves from row to row, and half a width.
     let steep = nx.abs() > 0.05;
     let (slope, half_run) = if steep { (ny / nx, reach / nx.abs()) } else { (0.0, f32::INFINITY) };
     let wander = slope.abs() * (0.5 * (BLOCK_HEIGHT - 1) as f32);
@@ -133,7 +133,7 @@ pub(crate) fn each_span(
                 span.along[lane] = along;
             }
             if streaked {
-                // A drawn strand stands for many hairs: where it is wide enough to show them, it is streaked.
+                // A strand represents many hairs: where it is wide enough to show them, it is streaked.
                 for lane in 0..BLOCK_LANES {
                     let (px, py) = (x + CENTRES[0][lane] - ax, y + CENTRES[1][lane] - ay);
                     let half = half_a + (half_b - half_a) * span.along[lane];
@@ -151,7 +151,7 @@ pub(crate) fn each_span(
     }
 }
 
-/// Centres of the pixels of a block, from its corner.
+/// Centres of the pixels of a block, relative to its corner.
 const CENTRES: [Lane; 2] = {
     let mut centres = [[0.0; BLOCK_LANES]; 2];
     let mut lane = 0;

@@ -1,4 +1,4 @@
-//! Looking into what a picture was drawn with.
+//! Transmittance of the last picture.
 
 use glam::Vec3;
 
@@ -22,7 +22,7 @@ impl CpuRenderer {
         self.shadow.transmittance_at(light, points)
     }
 
-    /// What the map of a light of the last picture keeps along the light through `p`, world space, metres.
+    /// What the map of a light of the last picture holds along the light through `p` (world space, metres).
     ///
     /// # Errors
     /// As [`Renderer::transmittance`](crate::Renderer::transmittance).

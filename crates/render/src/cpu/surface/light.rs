@@ -1,4 +1,4 @@
-//! The body's light in a tile: which places of it are seen, and their attributes.
+//! Shading of the visible body in a tile.
 
 use lovelock_groom::simd::Width;
 use lovelock_motion::Body;
@@ -9,22 +9,22 @@ use super::shade::{LANES, SurfaceBatch, shade_batch_simd};
 use crate::cpu::tile::{HairPlanes, STRIDE, SurfacePlanes, TILE, UNSEEN};
 use crate::cpu::view::View;
 
-/// Two samples of a pixel that are nearer to each other than this part of their distance show the same surface.
+/// Two samples of a pixel whose depths differ by less than this fraction show the same surface.
 const SAME_SURFACE: f32 = 0.004;
 
-/// The places of a tile that wait for their light.
+/// The positions of a tile that are collected for shading.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SurfaceLight {
     batch: SurfaceBatch,
-    /// The triangle that was asked for last, with its edges in this tile.
+    /// The last triangle, with its edges in this tile.
     last: Option<(u32, Edges)>,
 }
 
-/// The body: where it lies in the picture, and its mesh.
+/// The body: its placement in the picture, and its mesh.
 type Surface<'a> = (&'a PlacedSurface, &'a Body);
 
 impl SurfaceLight {
-    /// Shades every place of the body that is seen in a tile.
+    /// Shades the visible body in a tile.
     pub fn shade_tile(
         &mut self,
         width: Width,
@@ -73,7 +73,7 @@ impl SurfaceLight {
         }
     }
 
-    /// Puts the place of a triangle at the centre of a pixel on the list of those to shade.
+    /// Adds the position on a triangle at the centre of a pixel to the batch.
     fn shade(
         &mut self,
         width: Width,

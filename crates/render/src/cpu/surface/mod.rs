@@ -1,4 +1,4 @@
-//! The body on the processor: placed once a frame, drawn tile by tile, shaded where it is seen.
+//! The body on the CPU: projected once per frame, rasterised per tile, shaded where it is visible.
 // Functions are inlined into the loops that `simd_versions!` compiles.
 #![allow(clippy::inline_always)]
 
@@ -14,14 +14,14 @@ use super::bins::{Bins, TileRange};
 use super::tile::{Grid, TILE};
 use crate::camera::NEAR_METRES;
 
-/// What a vertex gives to the places around it, side by side in memory: position, normal, colour, 1 where hair grows,
-/// transmittance of hair toward four lights, two spare.
+/// Interpolated attributes of a vertex, contiguous in memory: position, normal, colour, 1 where hair grows, transmittance of hair
+/// toward four lights, two unused.
 pub(super) type Attributes = [f32; 16];
 
-/// The body as the camera sees it.
+/// The projected body.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PlacedSurface {
-    /// What each vertex gives to its surroundings.
+    /// Attributes per vertex.
     pub attributes: Vec<Attributes>,
     /// Pixels from the left and top times w, and w.
     pub vertices: Vec<[f32; 3]>,
@@ -30,8 +30,8 @@ pub(super) struct PlacedSurface {
 }
 
 impl PlacedSurface {
-    /// Places the vertices and sorts the triangles into tiles.
-    /// `hair` holds one packed word of transmittances a vertex; `closed` says that what faces away need not be drawn.
+    /// Projects the vertices and sorts the triangles into tiles. `hair` holds one word of packed transmittances per vertex; `closed`
+    /// states that back faces need not be drawn.
     pub fn place(
         &mut self,
         clip_from_world: Mat4,
@@ -82,8 +82,8 @@ impl PlacedSurface {
     }
 }
 
-/// Whether the camera sees the back of a triangle, whose corners are given as pixels times w and w. Pixels count
-/// downward, which turns the counter-clockwise front round.
+/// Whether the camera sees the back of a triangle, whose corners are pixels times w, and w. Pixels count downward, which reverses
+/// the counter-clockwise orientation of front faces.
 #[inline(always)]
 fn faces_away([p, q, r]: [[f32; 3]; 3]) -> bool {
     let volume = p[0] * (q[1] * r[2] - r[1] * q[2])
@@ -101,8 +101,7 @@ fn tiles_of(corners: [[f32; 3]; 3], grid: &Grid) -> Option<TileRange> {
     grid.range(bounds.unwrap_or([0.0, 0.0, grid.width as f32, grid.height as f32]))
 }
 
-/// Left, top, right and bottom of a triangle in pixels; none where it passes the near plane and may reach
-/// anywhere.
+/// Left, top, right and bottom of a triangle in pixels; `None` if it crosses the near plane, where it may extend anywhere.
 #[inline(always)]
 pub(super) fn pixel_bounds(corners: [[f32; 3]; 3]) -> Option<[f32; 4]> {
     let mut bounds = [f32::INFINITY, f32::INFINITY, f32::NEG_INFINITY, f32::NEG_INFINITY];

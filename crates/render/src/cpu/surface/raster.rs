@@ -1,4 +1,4 @@
-//! Which triangle each sample of a tile shows.
+//! The visible triangle of each sample of a tile.
 //!
 //! Edges are planes in the homogeneous coordinates of the picture (Olano, Greer 1997, "Triangle Scan
 //! Conversion using 2D Homogeneous Coordinates"), so that a triangle through the near plane needs no clipping.
@@ -12,7 +12,7 @@ use crate::camera::NEAR_METRES;
 use crate::cpu::math::{max, min, three};
 use crate::cpu::tile::{BLOCK_LANES, BLOCKS, STRIDE, TILE, pixel_of};
 
-/// Samples of a pixel and where they lie in it: the usual pattern of graphics cards.
+/// The positions of samples in a pixel: the standard pattern of GPUs.
 pub(crate) const SAMPLES: [[f32; 2]; 4] = [[0.375, 0.125], [0.875, 0.375], [0.125, 0.625], [0.625, 0.875]];
 /// No triangle.
 pub(crate) const NOTHING: u32 = u32::MAX;
@@ -20,16 +20,16 @@ pub(crate) const NOTHING: u32 = u32::MAX;
 const PIXELS: usize = 4;
 const LANES: usize = PIXELS * SAMPLES.len();
 
-/// Depth and triangle of each sample of a tile, the samples of a pixel side by side; a row has [`STRIDE`] pixels.
+/// Depth and triangle of each sample of a tile. Samples of a pixel are contiguous; a row has [`STRIDE`] pixels.
 #[derive(Clone, Debug)]
 pub(crate) struct SurfaceSamples {
-    /// 1 at the near plane, 0 where there is nothing.
+    /// 1 at the near plane, 0 for empty samples.
     pub depth: [f32; TILE * STRIDE * SAMPLES.len()],
     pub triangle: [u32; TILE * STRIDE * SAMPLES.len()],
 }
 
 impl Default for SurfaceSamples {
-    #[expect(clippy::large_stack_arrays, reason = "made once a thread, and boxed at once")]
+    #[expect(clippy::large_stack_arrays, reason = "created once per thread and boxed immediately")]
     fn default() -> Self {
         Self {
             depth: [0.0; TILE * STRIDE * SAMPLES.len()],
@@ -58,8 +58,8 @@ impl SurfaceSamples {
     }
 }
 
-/// What the body hides of each pixel of a tile: what lies behind `near` is hidden in the part `share` of the
-/// pixel, and what lies behind `far` wholly. By blocks, as hair is drawn.
+/// What the body hides in each pixel of a tile: the body hides the fraction `share` of what is behind `near`, and all of what is
+/// behind `far`. In blocks, like hair.
 #[derive(Clone, Debug)]
 pub(crate) struct Occlusion {
     pub near: [[f32; BLOCK_LANES]; BLOCKS],
@@ -81,7 +81,7 @@ impl Occlusion {
         self.share.fill([0.0; BLOCK_LANES]);
     }
 
-    /// Gathers the samples of each pixel: the nearest, the farthest, and how many are with the nearest.
+    /// Summarises the samples of each pixel: the nearest, the farthest, and the number at the nearest depth.
     #[inline(always)]
     pub fn gather(&mut self, samples: &SurfaceSamples) {
         for block in 0..BLOCKS {
@@ -99,9 +99,9 @@ impl Occlusion {
     }
 }
 
-/// What to draw into a tile.
+/// The input of a tile.
 pub(crate) struct TriangleTile<'a> {
-    /// Pixels of the tile's corner.
+    /// The corner of the tile, pixels.
     pub origin: [f32; 2],
     /// Pixels from the left and top times w, and w.
     pub vertices: &'a [[f32; 3]],
@@ -113,14 +113,14 @@ pub(crate) struct TriangleTile<'a> {
 /// The three edges of a triangle as planes over a tile.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Edges {
-    /// Each edge's share of its opposite corner is `a x + b y + c`, up to a common factor; not below 0 inside.
+    /// The barycentric coordinate of the corner opposite to each edge is `a x + b y + c`, up to a common factor; not negative inside.
     pub planes: [[f32; 3]; 3],
     /// Their sum times this is 1/w.
     pub scale: f32,
 }
 
 impl Edges {
-    /// None where the triangle has no area or is not finite.
+    /// `None` if the triangle has no area or is not finite.
     #[inline(always)]
     pub fn new(corners: [[f32; 3]; 3], origin: [f32; 2]) -> Option<Self> {
         let local = |[x, y, w]: [f32; 3]| [x - origin[0] * w, y - origin[1] * w, w];
@@ -140,10 +140,10 @@ impl Edges {
         })
     }
 
-    /// The shares of the corners at a point of the tile, perspective undone; they sum to 1.
+    /// The perspective-correct barycentric coordinates of a point of the tile; their sum is 1.
     #[inline(always)]
     pub fn shares(&self, x: f32, y: f32) -> [f32; 3] {
-        // A pixel that is covered in part may have its centre outside: the nearest point inside will do.
+        // The centre of a partly covered pixel may lie outside: clamp it into the triangle.
         let e = three(|i| max(at(self.planes[i], x, y), 0.0));
         let sum = e[0] + e[1] + e[2];
         if sum > 0.0 { [e[0] / sum, e[1] / sum, e[2] / sum] } else { [1.0, 0.0, 0.0] }
@@ -167,7 +167,7 @@ simd_versions! {
     }
 }
 
-/// Draws triangles into a tile, the nearest one in front.
+/// Rasterises triangles into a tile with a depth test.
 #[inline(always)]
 fn raster_triangles(input: &TriangleTile, out: &mut SurfaceSamples, hidden: &mut Occlusion) {
     raster(input, out);
@@ -193,7 +193,7 @@ fn raster(input: &TriangleTile, out: &mut SurfaceSamples) {
         let (x0, x1) = (left.max(0.0) as usize, right.min(tile - 1.0) as usize);
         let (y0, y1) = (top.max(0.0) as usize, bottom.min(tile - 1.0) as usize);
         let near = edges.scale * NEAR_METRES;
-        // Each plane from the first sample of a run to the others.
+        // Differences of each plane between the first sample of a run and the others.
         let mut steps = [[0.0; LANES]; 3];
         for (steps, [a, b, _]) in steps.iter_mut().zip(edges.planes) {
             for lane in 0..LANES {
@@ -210,7 +210,7 @@ fn raster(input: &TriangleTile, out: &mut SurfaceSamples) {
     }
 }
 
-/// Where the samples of a run of pixels lie, from its corner.
+/// Positions of the samples of a run of pixels, relative to its corner.
 const OFFSETS: [[f32; LANES]; 2] = {
     let mut offsets = [[0.0; LANES]; 2];
     let mut lane = 0;
@@ -232,7 +232,7 @@ fn raster_run(
     place: usize,
     out: &mut SurfaceSamples,
 ) {
-    // Runs are copied, worked on and put back whole: the compiler cannot know that planes do not overlap.
+    // Runs are copied, modified and written back: the compiler cannot prove that planes do not overlap.
     let mut depth = [0.0; LANES];
     let mut shown = [0; LANES];
     depth.copy_from_slice(&out.depth[place..place + LANES]);

@@ -1,4 +1,4 @@
-//! Light on the body: the twin of `surface_shading.wgsl`, some pixels at a time.
+//! Shading of the body, several pixels at a time: the twin of `surface_shading.wgsl`.
 // Functions are inlined into the loops that `simd_versions!` compiles; calling those takes `unsafe`.
 #![allow(clippy::inline_always, unsafe_code)]
 
@@ -7,16 +7,16 @@ use lovelock_groom::simd_versions;
 use crate::cpu::math::{exp, exp2, log2, max, mix, pow, saturate, smoothstep};
 use crate::cpu::view::View;
 
-/// Places of the body that are shaded together.
+/// Positions that are shaded together.
 pub(crate) const LANES: usize = 16;
 type Lane = [f32; LANES];
 
-/// Places to shade, and the light that comes from them.
+/// Positions to shade, and the result.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SurfaceBatch {
-    /// Places that are used.
+    /// The number of positions in use.
     pub count: usize,
-    /// Which pixel of the tile each belongs to, and which part of it it fills.
+    /// The pixel of each position, and the fraction of the pixel that it fills.
     pub pixel: [usize; LANES],
     pub weight: Lane,
     pub position: [Lane; 3],
@@ -37,12 +37,12 @@ simd_versions! {
     }
 }
 
-/// Shades the places of `batch`.
+/// Shades the positions of `batch`.
 #[inline(always)]
 fn shade_batch(view: &View, batch: &mut SurfaceBatch) {
     let uniform = view.uniform;
     let eye = uniform.eye_lights.to_array();
-    // Under hair the skin is painted with the colour of the roots, so that gaps never read as baldness.
+    // Skin under hair has the colour of the roots, so that gaps do not look bald.
     let absorption = uniform.absorption_variation.to_array();
     let mut paint = [0.0; LANES];
     for lane in 0..LANES {
@@ -92,12 +92,12 @@ fn shade_batch(view: &View, batch: &mut SurfaceBatch) {
         let (radiance, specular) = (light.radiance.to_array(), light.specular);
         let mut facing = [0.0; LANES];
         let mut above = [0.0; LANES];
-        // Light wraps a little round skin; the shadow map is asked only where light can come.
+        // Light wraps a little around skin; the shadow map is looked up only where light can arrive.
         let mut reached = f32::NEG_INFINITY;
         for lane in 0..LANES {
             facing[lane] = normal[0][lane] * l[0] + normal[1][lane] * l[1] + normal[2][lane] * l[2];
             open[lane] += hair[lane];
-            // Where light grazes the skin, the flat triangles of a round limb keep it from each other.
+            // At grazing angles the flat triangles of a round limb shadow each other.
             above[lane] = 0.002 + 0.004 * (1.0 - saturate(facing[lane]));
             reached = max(facing[lane], reached);
         }

@@ -1,10 +1,10 @@
-//! `exact`: every fragment of a pixel sorted and blended, what depth peeling (Everitt 2001) gives.
+//! `exact`: all fragments of a pixel, sorted and blended, which is the result of depth peeling (Everitt 2001).
 
 use super::{Fragment, Layer};
 
 /// Blends from near to far.
 pub(super) fn resolve(fragments: &mut [Fragment]) -> Layer {
-    // Ties by the other values, so that the result does not depend on the order of the list.
+    // Ties are broken by the other values, so that the result does not depend on the order of the list.
     let bits =
         |fragment: &Fragment| (fragment.alpha.to_bits(), fragment.color.map(f32::to_bits), fragment.seen);
     fragments.sort_unstable_by(|a, b| b.depth.total_cmp(&a.depth).then_with(|| bits(a).cmp(&bits(b))));

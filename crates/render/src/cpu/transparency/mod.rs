@@ -1,7 +1,7 @@
-//! How the fragments of a pixel are put together: the definition of each way of transparency.
+//! The definition of each transparency mode: how the fragments of a pixel are blended.
 //!
-//! Each is a function from all fragments of a pixel to the light that comes from them and the share of the light
-//! behind that comes through. `Transparency::Sorted` needs no list of fragments and is in `hair::blend`.
+//! Each is a function from all fragments of a pixel to their light and the fraction of the light behind them that they let
+//! through. `Transparency::Sorted` needs no list of fragments and is in `hair::blend`.
 
 mod exact;
 mod occupancy;
@@ -15,24 +15,24 @@ use crate::Transparency;
 /// The hair of one pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Layer {
-    /// Light that comes from it, times what it covers.
+    /// Its light, multiplied by its coverage.
     pub color: [f32; 3],
-    /// Share of the light behind that comes through.
+    /// The fraction of the light behind it that it lets through.
     pub through: f32,
 }
 
-/// Puts together the fragments of one pixel, in any order and with an opacity above 0 and up to 1.
+/// Blends the fragments of one pixel, which are in any order and have opacities above 0 and up to 1.
 pub(crate) fn resolve(transparency: Transparency, fragments: &mut [Fragment]) -> Layer {
     match transparency {
         Transparency::Opaque => opaque::resolve(fragments),
         Transparency::WeightedAverage => weighted::resolve(fragments),
         Transparency::OccupancyOrder => occupancy::resolve(fragments),
-        // Segments of one pixel sorted are its fragments sorted.
+        // Sorted segments of one pixel are sorted fragments.
         Transparency::Sorted | Transparency::Exact => exact::resolve(fragments),
     }
 }
 
-/// Puts together the fragments of a whole tile.
+/// Blends the fragments of a whole tile.
 pub(super) fn resolve_tile(transparency: Transparency, fragments: &mut Fragments, out: &mut HairPlanes) {
     fragments.each_pixel(|at, fragments| {
         let layer = resolve(transparency, fragments);
@@ -62,7 +62,7 @@ mod tests {
     fn one_opaque_layer_gives_its_own_color() {
         for mode in modes() {
             let layer = resolve(mode, &mut [fragment(0.5, 1.0, 0.7)]);
-            // The estimate of occupancy is normalised, which leaves the color but for rounding.
+            // The occupancy estimate is normalised, so the colour differs by rounding only.
             assert!((layer.color[0] - 0.7).abs() < 1e-5 && layer.through < 1e-3, "{mode}: {layer:?}");
         }
     }
@@ -95,7 +95,7 @@ mod tests {
             let forward = resolve(mode, &mut layers.clone());
             let backward = resolve(mode, &mut layers.iter().rev().copied().collect::<Vec<_>>());
             for c in 0..3 {
-                // Sums in another order.
+                // Sums in a different order.
                 assert!((forward.color[c] - backward.color[c]).abs() < 1e-5, "{mode}");
             }
         }

@@ -1,17 +1,16 @@
-//! `occupancy-order`: colours weighted by the light that an occupancy map says comes past what is before them,
-//! then set right so that all of them cover what they must (Sintorn, Assarsson 2009, "Hair Self Shadowing and
+//! `occupancy-order`: colours weighted by the transmittance that an occupancy map estimates in front of them, then normalised
+//! to the exact total opacity (Sintorn, Assarsson 2009, "Hair Self Shadowing and
 //! Transparency Depth Ordering Using Occupancy Maps").
 //!
-//! A pixel keeps the range of its depths, one bit for each of 128 slices of it, and the optical depth in each of
-//! 8 slabs of 16 slices. The optical depth before a place is that of the slabs before it and a share of its own
-//! slab's: the share of that slab's occupied slices that lie before. With β = −ln(1 − α),
+//! A pixel stores its depth range, one bit for each of 128 slices of it, and the optical depth in each of 8 slabs of 16 slices.
+//! The optical depth before a fragment is that of the slabs before its slab, plus the fraction of its own slab given by the share
+//! of occupied slices before it. With β = −ln(1 − α),
 //!
 //! ```text
 //! out = Σ e^(−B) α (c, 1)      Λ = 1 − e^(−Σβ)      out.rgb Λ / out.a + behind (1 − Λ)
 //! ```
 //!
-//! Within a slice fragments are estimated to lie half a slice deep on average, which dims the sum; the factor
-//! Λ / out.a undoes it.
+//! Fragments count as half a slice deep on average, which dims the sum; the factor Λ / out.a compensates.
 
 use std::f32::consts::LN_2;
 
@@ -21,34 +20,34 @@ use crate::cpu::math::{exp, log2};
 const SLICES: f32 = 128.0;
 const SLABS: usize = 8;
 const SLICES_PER_SLAB: u32 = 16;
-/// One optical depth in fixed point, and the largest of one fragment.
+/// Optical depth 1 in fixed point, and the largest optical depth of a fragment.
 const ONE: f32 = 65_536.0;
 const MOST: f32 = 16.0;
 
-/// What the maps hold of one pixel.
+/// The record of one pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Record {
-    /// One bit a slice, a word a slab.
+    /// One bit per slice, one word per slab.
     bits: [u16; SLABS],
     /// Optical depth of each slab, fixed point.
     depths: [u32; SLABS],
 }
 
-/// Where distances lie between the nearest and the farthest: slice as a whole and a broken part.
+/// The position of distances between the nearest and the farthest: slice index and fraction.
 fn slice_of(distance: f32, near: f32, far: f32) -> f32 {
     if far > near { ((distance - near) / (far - near) * SLICES).clamp(0.0, SLICES) } else { 0.0 }
 }
 
 impl Record {
     fn add(&mut self, slice: f32, optical_depth: f32) {
-        // The farthest place belongs to the last slice.
+        // The farthest distance belongs to the last slice.
         let slice = (slice as u32).min(SLICES as u32 - 1);
         let slab = (slice / SLICES_PER_SLAB) as usize;
         self.bits[slab] |= 1 << (slice % SLICES_PER_SLAB);
         self.depths[slab] = self.depths[slab].saturating_add((optical_depth * ONE + 0.5) as u32);
     }
 
-    /// Optical depth before a place; `slice` 0 is the nearest fragment itself.
+    /// Optical depth before a position; `slice` 0 is the nearest fragment itself.
     fn before(&self, slice: f32) -> f32 {
         let whole = (slice as u32).min(SLICES as u32 - 1);
         let part = (slice - whole as f32).min(1.0);
@@ -70,7 +69,7 @@ fn optical_depth(alpha: f32) -> f32 {
     if alpha < 1.0 { (-LN_2 * log2(1.0 - alpha)).min(MOST) } else { MOST }
 }
 
-/// Weights by the estimated order, and the correction of opacity.
+/// Weights from the estimated order, and the normalisation of opacity.
 pub(super) fn resolve(fragments: &mut [Fragment]) -> Layer {
     // Depth falls with distance; its inverse is distance up to a factor.
     let distance = |fragment: &Fragment| 1.0 / fragment.depth.max(1e-9);
@@ -100,7 +99,7 @@ mod tests {
     use super::super::exact;
     use super::*;
 
-    /// Layers at uneven depths whose colour tells their order, as hair has them.
+    /// Layers at uneven depths whose colour depends on their order, as in hair.
     fn layers(count: u32, alpha: f32) -> Vec<Fragment> {
         (0..count)
             .map(|i| {
@@ -127,7 +126,7 @@ mod tests {
 
     #[test]
     fn the_correction_raises_what_the_estimate_dims() {
-        // Fragments anywhere in their slices lie half a fragment too deep on average: √(1 − α) of the light is found.
+        // On average fragments count as half a fragment too deep: the estimate is √(1 − α) of the light.
         let (alpha, sets, count) = (0.3, 400, 40_u32);
         let mut mean = 0.0;
         for set in 0..sets {
@@ -140,7 +139,7 @@ mod tests {
             let raw: f32 = places.iter().map(|&slice| (-record.before(slice)).exp() * alpha).sum();
             mean += raw / (1.0 - (-record.total()).exp()) / sets as f32;
         }
-        // Measured 0.850; a pixel's nearest fragment, which is found exactly, is left out here.
+        // Measured 0.850; the nearest fragment of the pixel, which is exact, is left out here.
         assert!((mean - 0.7_f32.sqrt()).abs() < 0.03, "{mean}");
     }
 
@@ -152,7 +151,7 @@ mod tests {
         }
         assert_eq!(record.before(0.0), 0.0);
         assert_eq!(record.before(16.0), 0.5, "the slabs before count whole");
-        // One of two occupied slices of the slab lies before, and half of the own one.
+        // One of two occupied slices of the slab is before, and half of its own slice.
         assert!((record.before(20.5) - (0.5 + 1.0 * 1.5)).abs() < 1e-4);
         assert_eq!(record.before(19.0), 1.5, "an empty slice has no ramp");
         assert!((record.before(128.0) - 2.75).abs() < 1e-4, "behind all of it");

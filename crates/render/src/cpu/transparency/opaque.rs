@@ -1,8 +1,8 @@
-//! `opaque`: every strand hides what is behind it; its coverage of a pixel is rounded to the pixel's samples.
+//! `opaque`: every strand hides what is behind it; its coverage is rounded to the samples of the pixel.
 
 use super::{Fragment, Layer};
 
-/// The nearest strand in each sample.
+/// The mean over samples of the nearest strand.
 pub(super) fn resolve(fragments: &mut [Fragment]) -> Layer {
     let mut color = [0.0; 3];
     let mut through = 0.0;

@@ -7,7 +7,7 @@
 
 use super::{Fragment, Layer};
 
-/// The average of all fragments, as often as there are.
+/// The average of all fragments, blended as many times as there are fragments.
 pub(super) fn resolve(fragments: &mut [Fragment]) -> Layer {
     let mut weighted = [0.0; 3];
     let mut sum = 0.0;

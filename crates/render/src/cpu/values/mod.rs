@@ -1,4 +1,4 @@
-//! Any number a strand point, drawn as a picture draws hair.
+//! Images of one number per strand point.
 
 mod pick;
 
@@ -15,46 +15,45 @@ use crate::picture::check_size;
 use crate::uniform::FrameUniform;
 use crate::{FrameInput, RenderError};
 
-/// Values from here on are none, so that sums of them stay finite.
+/// Values from this limit on count as missing, so that sums stay finite.
 const MOST: f32 = 1e30;
 
-/// Share of a pixel from which on it has a value; less is rounding.
+/// The least covered fraction of a pixel that has a value; less is rounding.
 const LEAST_SHARE: f32 = 1e-6;
 
-/// Draws numbers in place of colours, on the processor: for maps of errors, and to find the hair under a pixel. Neither
-/// lights nor shadows are looked at.
+/// Renders numbers in place of colours on the CPU, for error maps and to find the hair under a pixel. Ignores lights and shadows.
 #[derive(Debug)]
 pub struct ValueRenderer {
     strands: Strands,
     placed: Placed,
-    /// All light, a word a point.
+    /// Full transmittance, one word per point.
     lit: Vec<u32>,
     tiles: Vec<[f32; 2]>,
     pixels: Vec<[f32; 2]>,
     scratch: Pool<TileScratch>,
 }
 
-/// A number for each pixel, rows from the top.
+/// One number per pixel, rows from the top.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ValuePicture {
     /// Width, pixels.
     pub width: u32,
     /// Height, pixels.
     pub height: u32,
-    /// Mean of the values of the hair that a pixel shows; NaN where it shows none, or none that has a value.
+    /// Mean of the values of the visible hair in a pixel; NaN if there is no hair or none with a value.
     pub value: Vec<f32>,
-    /// Share of the pixel that hair covers, 0 to 1: what lies behind comes through as the rest.
+    /// The fraction of the pixel that hair covers, 0 to 1.
     pub weight: Vec<f32>,
 }
 
-/// A point of a strand that a pixel shows.
+/// The strand point that a pixel shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HairHit {
-    /// The strand.
+    /// The index of the strand.
     pub strand: usize,
-    /// The point, counted over the points of all strands.
+    /// The index of the point among the points of all strands.
     pub point: usize,
-    /// Where it is, world space, metres.
+    /// Its position, world space, metres.
     pub position: Vec3,
 }
 
@@ -72,11 +71,11 @@ impl Default for ValueRenderer {
 }
 
 impl ValueRenderer {
-    /// Draws `values`, one a strand point, as a picture of `input` draws hair: as wide, as transparent, and hidden by the body.
-    /// A value that is not finite is none: it hides what lies behind and counts for nothing.
+    /// Renders `values`, one per strand point, as a picture of `input` renders hair: with the same widths, transparency and occlusion
+    /// by the body. A value that is not finite is missing: it hides what is behind it but is not part of the mean.
     ///
     /// # Errors
-    /// A size out of range, or another number of values than of strand points.
+    /// The size is out of range, or the number of values differs from the number of strand points.
     pub fn picture(
         &mut self,
         input: &FrameInput,
@@ -102,12 +101,12 @@ impl ValueRenderer {
     ) -> Result<ValuePicture, RenderError> {
         if values.len() != strands.points() {
             let (found, needed) = (values.len(), strands.points());
-            return Err(RenderError::Known { of: "values, one a strand point", found, needed });
+            return Err(RenderError::Known { of: "values (one per strand point)", found, needed });
         }
         let uniform = FrameUniform::new(input, width, height, &[], 1);
         let view = View::new(&uniform, &[], &[], 1);
         let grid = self.place(&view, input, strands, width, height);
-        // In the place of colours: the value times 1 or 0, and that. Their quotient is the mean of the values.
+        // In place of colours: the value times 1 or 0, and 1 or 0. Their quotient is the mean of the values.
         self.placed.points.par_iter_mut().zip(values).with_min_len(8192).for_each(|(point, &value)| {
             point.color = if value.abs() < MOST { [value, 1.0, 0.0] } else { [0.0; 3] };
         });
@@ -132,7 +131,7 @@ impl ValueRenderer {
         Ok(ValuePicture { width, height, value, weight })
     }
 
-    /// Projects the strands' points.
+    /// Projects the strand points.
     fn place(&mut self, view: &View, input: &FrameInput, strands: &Strands, width: u32, height: u32) -> Grid {
         self.lit.resize(strands.points(), u32::MAX);
         self.placed.shade(view, input, strands, &self.lit);
@@ -140,7 +139,7 @@ impl ValueRenderer {
     }
 }
 
-/// Value and cover of each pixel of a tile.
+/// Value and coverage of each pixel of a tile.
 fn finish(hair: &HairPlanes, out: &mut [[f32; 2]]) {
     for (y, row) in out.chunks_mut(TILE).enumerate() {
         for (x, out) in row.iter_mut().enumerate() {

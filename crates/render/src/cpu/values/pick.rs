@@ -1,4 +1,4 @@
-//! Which hair a pixel shows.
+//! The hair under a pixel.
 
 use lovelock_groom::Strands;
 use rayon::prelude::*;
@@ -13,27 +13,27 @@ use crate::cpu::view::View;
 use crate::picture::check_size;
 use crate::uniform::FrameUniform;
 
-/// How far beside a pixel its hair may lie, pixels.
+/// The largest distance of hair from the pixel, pixels.
 const REACH: f32 = 4.0;
 
-/// A segment near a pixel, at the place that is nearest to it.
+/// A segment near a pixel, at its nearest position.
 #[derive(Clone, Copy, Debug)]
 struct Candidate {
     first: u32,
-    /// Pixels from the edge of the strand to the pixel; 0 on it.
+    /// Distance from the edge of the strand to the pixel, pixels; 0 on the strand.
     gap: f32,
     /// 1 at the near plane, falling to 0 at infinity.
     depth: f32,
-    /// Where it is, pixels from the left and from the top.
+    /// Its position, pixels from the left and from the top.
     place: [f32; 2],
-    /// Whether the segment's second end is the nearer one.
+    /// Whether the second end of the segment is nearer.
     is_second: bool,
 }
 
 impl ValueRenderer {
-    /// The strand point that the picture of `input` at `width` by `height` pixels shows at `pixel` (from the left and from the
-    /// top; the first pixel's centre is at a half): of the foremost strand there, or of the one that comes nearest within four
-    /// pixels. `None` where no hair is seen, and for a size that cannot be drawn.
+    /// The strand point at `pixel` (from the left and from the top; the centre of the first pixel is at 0.5) in the picture of `input`
+    /// at `width` by `height` pixels: on the frontmost strand there, or on the nearest one within four pixels. `None` if there is no
+    /// visible hair, or if the size is out of range.
     pub fn pick(&mut self, input: &FrameInput, width: u32, height: u32, pixel: [f32; 2]) -> Option<HairHit> {
         let inside =
             pixel[0] >= 0.0 && pixel[1] >= 0.0 && pixel[0] < width as f32 && pixel[1] < height as f32;
@@ -74,7 +74,7 @@ impl ValueRenderer {
     }
 }
 
-/// The segment from `a` to `b` where it comes nearest to a pixel, if it comes near.
+/// The nearest position to a pixel on the segment from `a` to `b`, if it is near.
 fn candidate(first: u32, a: &ShadedPoint, b: &ShadedPoint, pixel: [f32; 2]) -> Option<Candidate> {
     if !is_drawn(a, b) {
         return None;
@@ -87,7 +87,7 @@ fn candidate(first: u32, a: &ShadedPoint, b: &ShadedPoint, pixel: [f32; 2]) -> O
     let held = along.clamp(0.0, length);
     let part = if length > 1e-4 { held / length } else { 0.0 };
     let mix = |a: f32, b: f32| a + (b - a) * part;
-    // As wide as it is drawn: no narrower than a pixel. Beyond its ends other segments go on.
+    // At the drawn width, at least a pixel. Other segments continue beyond its ends.
     let half = mix(a.half_width, b.half_width).max(0.5);
     let gap = (along - held).hypot((across.abs() - half).max(0.0));
     let near = gap <= REACH;
@@ -95,7 +95,7 @@ fn candidate(first: u32, a: &ShadedPoint, b: &ShadedPoint, pixel: [f32; 2]) -> O
     near.then(|| Candidate { first, gap, depth: mix(a.depth, b.depth), place, is_second: part >= 0.5 })
 }
 
-/// The body before the strands, tile by tile as it is asked for.
+/// The body in front of strands, rasterised per tile on demand.
 struct BodyBefore<'a> {
     renderer: &'a ValueRenderer,
     grid: &'a Grid,
@@ -104,7 +104,7 @@ struct BodyBefore<'a> {
 }
 
 impl BodyBefore<'_> {
-    /// Whether the body hides a place in all samples of its pixel.
+    /// Whether the body hides a position in all samples of its pixel.
     fn hides(&mut self, candidate: &Candidate) -> bool {
         let within = |c: f32, side: u32| (c.max(0.0) as usize).min(side as usize - 1);
         let (x, y) =

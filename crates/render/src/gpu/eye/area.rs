@@ -1,4 +1,4 @@
-//! The part of a picture that may have hair.
+//! The area of a picture that may contain hair.
 
 use glam::Vec3;
 use lovelock_shadow::LightFrame;
@@ -19,7 +19,7 @@ impl Area {
         u64::from(self.columns) * u64::from(self.rows)
     }
 
-    /// What holds both.
+    /// The bounding rectangle of both.
     pub fn with(self, other: Self) -> Self {
         if self.is_empty() || other.is_empty() {
             return if self.is_empty() { other } else { self };
@@ -42,12 +42,12 @@ impl Area {
         self.pixels() == 0
     }
 
-    /// The axes along which [`Area::of`] wants bounds: forward, and two across.
+    /// The axes of the bounds for [`Area::of`]: forward, and two perpendicular ones.
     pub fn axes(camera: &Camera) -> LightFrame {
         LightFrame::new(camera.target - camera.eye)
     }
 
-    /// The part of a picture in which points may lie, world space. The whole picture where one is no number or close to the eye.
+    /// The area of a picture that contains points (world space). The whole picture if one is NaN or close to the eye.
     pub fn of_points(camera: &Camera, size: [u32; 2], points: &[Vec3]) -> Self {
         let axes = Self::axes(camera);
         let empty = (Vec3::INFINITY, Vec3::NEG_INFINITY);
@@ -58,8 +58,8 @@ impl Area {
         Self::of(camera, size, bounds.unwrap_or((Vec3::NAN, Vec3::NAN)), 0.0)
     }
 
-    /// The part of a picture in which hair may lie that is bounded, from the eye on, by `min` and `max` along the axes of
-    /// [`Area::axes`], and whose strands are `width` wide; metres. The whole picture where hair comes close to the eye.
+    /// The area of a picture that contains hair with the bounds `min` and `max` relative to the eye along the axes of [`Area::axes`],
+    /// and with strands `width` wide; metres. The whole picture if hair is close to the eye.
     pub fn of(
         camera: &Camera,
         [width, height]: [u32; 2],
@@ -70,7 +70,7 @@ impl Area {
         if min.x > max.x {
             return Self::default();
         }
-        // Nearer than this a strand grows without bound on the screen.
+        // Nearer than this the width of a strand on the screen is unbounded.
         let nearest = min.x;
         if !(nearest > 0.05 && (max - min).is_finite()) {
             return whole;
@@ -88,7 +88,7 @@ impl Area {
                 high[axis] = high[axis].max(pixel[axis]);
             }
         }
-        // Half a strand, the softness of its edge, and rounding.
+        // Half a strand, its soft edge, and rounding.
         let margin = 0.5 * strand_width * camera.pixels_per_metre_at_one_metre(height) / nearest + 3.0;
         if !(low.iter().chain(&high).all(|at| at.is_finite()) && margin.is_finite()) {
             return whole;
@@ -135,7 +135,7 @@ mod tests {
         assert!(Area::of_points(&camera, [640, 360], &[]).is_empty());
     }
 
-    /// Bounds of some points, as `Area::of` wants them.
+    /// Bounds of points for `Area::of`.
     fn bounds(camera: &Camera, points: &[Vec3]) -> (Vec3, Vec3) {
         let axes = Area::axes(camera);
         let along = points.iter().map(|&p| axes.light_from_world(p - camera.eye));
@@ -159,7 +159,7 @@ mod tests {
             assert!(x >= area.left as f32 && x <= (area.left + area.columns) as f32, "{x} {area:?}");
             assert!(y >= area.top as f32 && y <= (area.top + area.rows) as f32, "{y} {area:?}");
         }
-        // 0.24 m of 1.3 m that the picture is high there, with the depth of the box.
+        // 0.24 m of the 1.3 m that the picture shows at that distance, plus the depth of the box.
         assert!(area.rows < 130 && area.columns < 150, "{area:?}");
     }
 

@@ -1,4 +1,4 @@
-// The depths of the body in the four samples of each pixel of the area, side by side: fragments read them at once.
+// Copies the depths of the body in the four samples of each pixel of the area to contiguous memory, for one load per fragment.
 
 @group(0) @binding(9) var gathered: texture_storage_2d<rgba32float, write>;
 

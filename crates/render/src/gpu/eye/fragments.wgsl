@@ -1,9 +1,8 @@
-// Walks over the pixels of every segment, as ribbons that face the camera. Below a pixel, width becomes coverage: a strand of
-// 0.2 pixels is drawn one pixel wide at a fifth of its opacity, so it neither breaks up nor gains weight as it recedes. Twin of
+// Rasterises segments as ribbons that face the camera. Widths below a pixel become coverage: a strand of 0.2 pixels is drawn one
+// pixel wide with a fifth of its opacity, so that it neither breaks up nor becomes heavier with distance. Twin of
 // cpu/hair/segment.rs and cpu/hair/list.rs. A pass defines `take(pixel, fragment)`.
 //
-// A segment that may cover very many pixels is shared by some threads: where kernels run on the processor, one leaves its
-// loops after 65,535 rounds.
+// Several threads share a segment that may cover very many pixels, because software adapters end loops after 65,535 iterations.
 
 // Whether a strand may be wide enough on the screen to be streaked.
 override STREAKED: bool = true;
@@ -13,17 +12,17 @@ struct Fragment {
     depth: f32,
     // Opacity times coverage of the pixel, before the body hides it.
     alpha: f32,
-    // Samples of the pixel in which it lies before the body.
+    // Samples of the pixel in which it is in front of the body.
     seen: vec4<bool>,
     // Light, linear.
     color: vec3f,
-    // A hash of the strand in 0..1, the distance of the segment's middle up to a factor, and the pixel in the picture.
+    // A hash of the strand in 0..1, the distance of the middle of the segment up to a factor, and the pixel in the picture.
     hash: f32,
     middle: f32,
     at: vec2u,
 }
 
-// Opacity with what the body hides taken off.
+// Opacity in the samples that the body does not hide.
 fn opacity_of(fragment: Fragment) -> f32 {
     return fragment.alpha * dot(select(vec4f(0.0), vec4f(0.25), fragment.seen), vec4f(1.0));
 }
@@ -47,7 +46,7 @@ fn each_fragment(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
         return;
     }
     let normal = vec2f(-d.y, d.x) / length;
-    // `across` is the vector along the strand, turned.
+    // `across` is perpendicular to the strand.
     let run_a = vec2f(a.across.y, -a.across.x);
     let run_b = vec2f(b.across.y, -b.across.x);
     let half_a = max(a.half_width, 0.5);
@@ -62,7 +61,7 @@ fn each_fragment(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
     let hash = blue_hash.y;
     let middle_distance = 0.5 / max(a.at.z, 1e-9) + 0.5 / max(b.at.z, 1e-9);
 
-    // The axis on which it is longer is gone along; on the other one a run of pixels is crossed.
+    // The outer loop runs along the longer axis; on the other axis there is a run of pixels.
     let low_corner = min(a.at.xy - abs(a.across) * reach, b.at.xy - abs(b.across) * reach);
     let high_corner = max(a.at.xy + abs(a.across) * reach, b.at.xy + abs(b.across) * reach);
     let low = max(low_corner, vec2f(eye.area.xy));
@@ -78,7 +77,7 @@ fn each_fragment(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
     let slope = step.y / step.x;
     let half_run = reach * length / abs(step.x);
     let last = i32(ceil(until.x - 0.5));
-    // One loop over both axes: where kernels run on the processor, each inner loop has a round that does nothing.
+    // One loop over both axes: on software adapters each inner loop would cost an empty iteration.
     let lanes = i32(eye.lanes);
     var major = i32(ceil(begin.x - 0.5)) + i32(thread % eye.lanes) - lanes;
     var minor = 0;
@@ -120,7 +119,7 @@ fn each_fragment(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
             }
             var gain = 1.0;
             if (STREAKED && streaked) {
-                // A drawn strand stands for many hairs: where it is wide enough to show them, it is streaked like them.
+                // A strand represents many hairs: where it is wide enough to show them, it is streaked.
                 let across = offset / half_width;
                 let wave = smoothstep(0.8, 2.0, half_width)
                     * (sin(across * 5.0 + hash * 41.0) * 0.6 + sin(across * 11.0 - hash * 73.0) * 0.4);

@@ -1,25 +1,25 @@
-// The picture's pixels, strands as they are drawn, and what is behind them. Twin of `EyeUniform` in mod.rs.
+// The pixels of the picture, shaded strands, and what is behind them. Twin of `EyeUniform` in mod.rs.
 
 struct EyeUniform {
-    // The first column and row of the area that is drawn, its columns and its rows.
+    // First column and row of the area, columns and rows.
     area: vec4u,
-    // Segments, and room in the list of fragments.
+    // Segments, and the capacity of the list of fragments.
     segments: u32,
     room: u32,
-    // Opacity of a strand where it covers a pixel wholly.
+    // Opacity of a strand where it covers a pixel completely.
     opacity: f32,
-    // The first pixel of the area among those of all areas of the picture.
+    // Index of the first pixel of the area among the pixels of all areas of the picture.
     first: u32,
-    // Threads that share a segment.
+    // Threads per segment.
     lanes: u32,
 }
 
 struct ShadedPoint {
     // Pixels from the left and top, depth.
     at: vec3f,
-    // Half of the strand's width in pixels; negative where the point must not be drawn.
+    // Half of the width of the strand in pixels; negative if the point must not be drawn.
     half_width: f32,
-    // Unit vector across the strand on the screen.
+    // Unit vector perpendicular to the strand on the screen.
     across: vec2f,
     // Colour as four half floats; the fourth is a hash of the strand in 0..1.
     color: vec2u,
@@ -29,17 +29,17 @@ struct ShadedPoint {
 @group(0) @binding(1) var<storage, read> shaded: array<ShadedPoint>;
 // First point of each segment.
 @group(0) @binding(2) var<storage, read> segments: array<u32>;
-// Depths of the body in the four samples of each pixel of the area, which behind.wgsl gathers from those of the picture.
+// Depths of the body in the four samples of each pixel of the area, copied by behind.wgsl.
 @group(0) @binding(3) var depths: texture_2d<f32>;
 @group(0) @binding(8) var samples: texture_depth_multisampled_2d;
-// What modes keep for the pixels of the area; everything is 0 to begin with.
+// Records of the modes per pixel of the area, cleared to 0.
 @group(0) @binding(4) var<storage, read_write> map: array<atomic<u32>>;
 // Fragments of all pixels of the area, `FRAGMENT_WORDS` each.
 @group(0) @binding(5) var<storage, read_write> list: array<u32>;
-// Fragments in the list.
+// The number of fragments in the list.
 @group(0) @binding(6) var<storage, read_write> total: array<atomic<u32>>;
-// The hair of each pixel: its light times what it covers, and the share of the light behind that comes
-// through, as four half floats.
+// The hair of each pixel: its light, premultiplied by coverage, and the fraction of the light behind it that it lets through, as
+// four half floats.
 @group(0) @binding(7) var<storage, read_write> layer: array<vec2u>;
 
 fn area_pixels() -> u32 {

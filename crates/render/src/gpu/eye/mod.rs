@@ -1,9 +1,8 @@
-//! The hair as the eye sees it: every way of transparency by compute kernels.
+//! Rasterisation and blending of hair by compute kernels, for every transparency mode.
 //!
-//! A thread walks over the pixels of a segment and leaves its fragments in integer atomics, so that nothing depends on the
-//! order of threads. Each pass over the fragments is `fragments.wgsl` with its own `take`, each pass over the pixels
-//! `each_pixel.wgsl` with its own `pixel_pass`. Where the device gives no buffer that holds a whole picture, it is drawn in
-//! bands of rows.
+//! A thread iterates over the pixels of a segment and accumulates fragments with integer atomics, so that results do not depend on
+//! the order of threads. Each pass over fragments is `fragments.wgsl` with its own `take`, each pass over pixels is
+//! `each_pixel.wgsl` with its own `pixel_pass`. A picture that does not fit a buffer of the device is rendered in bands of rows.
 
 mod area;
 mod modes;
@@ -33,10 +32,10 @@ const FRAGMENTS: ShaderPart = part!("fragments.wgsl");
 const EACH_PIXEL: ShaderPart = part!("each_pixel.wgsl");
 const BEHIND: ShaderPart = part!("behind.wgsl");
 
-/// Half the width in pixels up to which no strand is streaked; less than what fragments.wgsl says, for rounding.
+/// Half the width in pixels up to which no strand is streaked; a little less than in fragments.wgsl, to allow for rounding.
 pub(super) const WIDEST_PLAIN: f32 = 0.79;
 
-/// Words of one fragment in a list.
+/// Words per fragment in a list.
 const FRAGMENT_WORDS: u64 = 3;
 
 /// Twin of `EyeUniform` in frame.wgsl.
@@ -52,33 +51,33 @@ pub(super) struct EyeUniform {
     pad: [u32; 3],
 }
 
-/// What the eye's passes draw.
+/// The input of the passes.
 pub(super) struct EyeInput<'a> {
-    /// The part of the picture that may have hair.
+    /// The area of the picture that may contain hair.
     pub area: Area,
-    /// Points as `ShadedPoint` has them.
+    /// Shaded points; see `ShadedPoint`.
     pub shaded: &'a wgpu::Buffer,
     /// First point of each segment.
     pub segments: &'a wgpu::Buffer,
     pub segment_count: u32,
-    /// Depths of the body, four samples a pixel.
+    /// Depths of the body, four samples per pixel.
     pub depth: &'a wgpu::TextureView,
     /// Half of the widest strand, pixels.
     pub reach: f32,
-    /// Whether a strand may be so wide that it is streaked.
+    /// Whether a strand may be wide enough to be streaked.
     pub streaked: bool,
-    /// Opacity of a strand where it covers a pixel wholly.
+    /// Opacity of a strand where it covers a pixel completely.
     pub opacity: f32,
     pub drawn: Drawn,
 }
 
-/// Most pixels that one thread walks over: half of what software adapters allow.
+/// The most pixels per thread: half of what software adapters allow.
 const MOST_PIXELS_A_THREAD: f32 = 32_768.0;
-/// Most threads that share a segment.
+/// The most threads per segment.
 const MOST_LANES: u32 = 64;
 
 impl EyeInput<'_> {
-    /// Threads that share a segment, so that none walks over too many pixels: by how long and wide one could be.
+    /// Threads per segment, so that none iterates over too many pixels: from the largest possible length and width.
     fn lanes(&self) -> u32 {
         let (columns, rows) = (self.area.columns as f32, self.area.rows as f32);
         let most = (2.0 * self.reach + 4.0) * (columns.hypot(rows) + 2.0 * self.reach);
@@ -87,7 +86,7 @@ impl EyeInput<'_> {
     }
 }
 
-/// The kernels of all modes that were used, and the memory of the pixels.
+/// The kernels of all modes that were used, and the buffers of the pixels.
 #[derive(Debug)]
 pub(super) struct Eye {
     behind_kernel: Kernel,
@@ -98,14 +97,14 @@ pub(super) struct Eye {
     list: GrowBuffer<u32>,
     total: wgpu::Buffer,
     layer: GrowBuffer<[u32; 2]>,
-    /// Fragments that there is room for, and bands at least, where lists are kept.
+    /// The capacity of the list in fragments, and the least number of bands, for modes with lists.
     room: u64,
     least_bands: u32,
     /// Whether the last frame had lists.
     lists: Option<Lists>,
 }
 
-/// The depths of the body in the samples of each pixel of an area, for areas up to a size.
+/// The depths of the body in the samples of each pixel of an area, for areas up to a certain size.
 #[derive(Debug)]
 struct AreaDepths {
     view: wgpu::TextureView,
@@ -113,7 +112,7 @@ struct AreaDepths {
     rows: u32,
 }
 
-/// How the lists of a frame were cut.
+/// How the lists of a frame were divided into bands.
 #[derive(Clone, Copy, Debug)]
 struct Lists {
     bands: u32,
@@ -182,12 +181,12 @@ impl Eye {
         })
     }
 
-    /// The hair of each pixel of the area, as `layer` in frame.wgsl.
+    /// The hair of each pixel of the area: `layer` in frame.wgsl.
     pub fn layer(&self) -> &wgpu::Buffer {
         self.layer.raw()
     }
 
-    /// Memory that is held, bytes.
+    /// Memory in use, bytes.
     pub fn memory_bytes(&self) -> u64 {
         let buffers = [self.map.raw(), self.list.raw(), self.layer.raw()];
         let depths =
@@ -195,10 +194,10 @@ impl Eye {
         buffers.iter().map(|buffer| buffer.size()).sum::<u64>() + depths
     }
 
-    /// Encodes drawing the hair into [`Eye::layer`].
+    /// Encodes rendering the hair into [`Eye::layer`].
     ///
     /// # Errors
-    /// A shader that does not compile, or a picture whose rows are too long for this device's buffers.
+    /// A shader does not compile, or a row of the picture does not fit a buffer of the device.
     pub fn draw(&mut self, gpu: &Gpu, commands: &mut Commands, input: &EyeInput) -> Result<(), GpuError> {
         let device = &gpu.device;
         let mode = Mode::of(input.drawn);
@@ -241,7 +240,7 @@ impl Eye {
         Ok(())
     }
 
-    /// Draws a part of the picture; `first` is the place of its first pixel in the layer.
+    /// Renders one area of the picture. `first` is the index of its first pixel in the layer.
     fn draw_area(
         &self,
         gpu: &Gpu,
@@ -278,7 +277,7 @@ impl Eye {
         let encoder = commands.encoder();
         encoder.clear_buffer(self.map.raw(), 0, Some((pixels * u64::from(mode.words) * 4).max(4)));
         if mode.lists {
-            // Each band's list begins anew; the frame's total is the largest band's.
+            // Each band reuses the list; the total of the frame is that of the largest band.
             encoder.clear_buffer(&self.total, 0, Some(4));
         }
         let group = self.behind_kernel.bind(gpu, &resources);
@@ -296,18 +295,18 @@ impl Eye {
         }
     }
 
-    /// Call when the device is done with a frame: whether lists were too short and the frame must be drawn anew; there is
-    /// more room then.
+    /// Checks, after the device has finished a frame, whether lists were too short. Then they are enlarged, the result is `true`, and the
+    /// frame must be rendered again.
     ///
     /// # Errors
-    /// One row of the picture needs a longer list than the device gives, or the device is lost.
+    /// One row of the picture needs a longer list than the device supports, or the device is lost.
     pub fn settle(&mut self, gpu: &Gpu) -> Result<bool, GpuError> {
         let Some(Lists { bands, rows }) = self.lists else { return Ok(false) };
         let mut totals = [0_u32; 2];
         read_buffer(gpu, &self.total, &mut totals)?;
         let wanted = u64::from(totals[1]);
         if wanted <= self.room {
-            // After a close view, half as many bands are tried once lists have shrunk.
+            // Once lists have shrunk after a close view, half as many bands are tried.
             if self.least_bands > 1 && wanted < self.room / 4 {
                 self.least_bands /= 2;
             }
@@ -315,14 +314,14 @@ impl Eye {
         }
         let limit = list_limit(gpu);
         if wanted <= limit {
-            // A quarter more: hair that moves does not need another one in the next frame.
+            // A quarter more, so that moving hair does not need a larger list in the next frame.
             self.room = (wanted + wanted / 4).min(limit);
             return Ok(true);
         }
         if bands >= rows {
             return Err(too_large(gpu, wanted * 4 * FRAGMENT_WORDS));
         }
-        // A band of a picture has at least as many more as bands are fewer.
+        // Fewer bands have proportionally more fragments each.
         let more = (u64::from(bands) * wanted / limit + 1).max(2 * u64::from(bands));
         self.room = limit;
         self.least_bands = more.min(u64::from(rows)) as u32;
@@ -330,7 +329,7 @@ impl Eye {
     }
 }
 
-/// Most fragments of a list: what fits a buffer of the device, and 1 GiB.
+/// The most fragments of a list: what fits a buffer of the device, and 1 GiB.
 fn list_limit(gpu: &Gpu) -> u64 {
     gpu.most_storage_bytes().min(1 << 30) / (4 * FRAGMENT_WORDS)
 }
@@ -354,7 +353,7 @@ impl AreaDepths {
     }
 }
 
-/// Says what does not fit.
+/// The error for a picture that does not fit.
 pub(super) fn too_large(gpu: &Gpu, needed: u64) -> GpuError {
     GpuError::Input(format!(
         "a picture of this size needs a buffer of {needed} bytes, and {} takes at most {}: draw a smaller one, or by the \

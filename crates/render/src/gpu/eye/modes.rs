@@ -1,43 +1,43 @@
-//! The passes of each way of transparency.
+//! The passes of each transparency mode.
 
 use lovelock_gpu::ShaderPart;
 
 use super::part;
 use crate::Transparency;
 
-/// What is left of the fragments of a pixel.
+/// The result of the fragments of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::gpu) enum Drawn {
-    /// Their light, put together in this way.
+    /// Their light, blended by this mode.
     Blended(Transparency),
-    /// The depth of the nearest, its bits in the place of red and green.
+    /// The depth of the nearest fragment; its bits are in red and green.
     NearestDepth,
 }
 
-/// What a pass goes over.
+/// What the threads of a pass iterate over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Over {
     /// Every pixel of every segment: the part defines `take`.
     Fragments,
     /// Every pixel of the band: the part defines `pixel_pass`.
     Pixels,
-    /// Every pixel of the band, in groups of 64 that work together, by this entry point of the part.
+    /// Every pixel of the band, by cooperating groups of 64, with this entry point of the part.
     Groups(&'static str),
 }
 
 /// One pass.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pass {
-    /// As statistics name it, `draw/…`.
+    /// Its name in statistics, `draw/…`.
     pub name: &'static str,
     pub over: Over,
     pub parts: &'static [ShaderPart],
 }
 
-/// One way of transparency.
+/// One transparency mode.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Mode {
-    /// Words that it keeps for a pixel.
+    /// Words per pixel.
     pub words: u32,
     /// Whether it lists fragments.
     pub lists: bool,

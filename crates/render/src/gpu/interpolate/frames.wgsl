@@ -1,24 +1,24 @@
-// The moving frame of each wisp, a thread a wisp: carried along the mean of its guides by the smallest rotations.
-// Twin of `WispCurve::place` in lovelock-groom.
+// The moving frame of each wisp, one thread per wisp: transported along the mean of its guides by the smallest rotations. Twin of
+// `WispCurve::place` in lovelock-groom.
 
 // Twin of `Instant` in mod.rs.
 struct Instant {
-    // Columns of the matrix that turns head space into world space.
+    // Columns of the rotation from head space to world space.
     turn_x: vec4f,
     turn_y: vec4f,
     turn_z: vec4f,
-    // Points of all guides, points of one guide, wisps, points of all strands.
+    // Points of all guides, points per guide, wisps, points of all strands.
     counts: vec4u,
 }
 
-// Twin of `Wisp` in mod.rs: its guides, and its frame at the root at rest.
+// Twin of `Wisp` in mod.rs: its guides, and its frame at the root in the rest pose.
 struct Wisp {
     guides: vec3u,
     tangent: vec3f,
     normal: vec3f,
 }
 
-// The three guides of a wisp at one of their points, with the normal in their fourth components, and the tangent.
+// The three guides of a wisp at one point, with the normal in their fourth components, and the tangent.
 struct CurvePoint {
     a: vec4f,
     b: vec4f,
@@ -42,17 +42,17 @@ fn dot3(a: vec3f, b: vec3f) -> f32 {
     return (a.x * b.x + a.y * b.y) + a.z * b.z;
 }
 
-// A unit vector along `v`, or `otherwise` where there is none.
+// The unit vector along `v`, or `otherwise` if `v` has no direction.
 fn normalize_or(v: vec3f, otherwise: vec3f) -> vec3f {
     let squared = dot3(v, v);
-    // False for what is no number.
+    // False for NaN.
     if (squared > 0.0 && squared <= 3.4028234e38) {
         return v * (1.0 / sqrt(squared));
     }
     return otherwise;
 }
 
-// A unit vector square to `along`, made from the axis least along it.
+// A unit vector perpendicular to `along`, from the axis that is least parallel to it.
 fn reference_normal(along: vec3f) -> vec3f {
     let size = abs(along);
     var axis = vec3f(0.0, 0.0, 1.0);
@@ -64,7 +64,7 @@ fn reference_normal(along: vec3f) -> vec3f {
     return normalize_or(axis - along * dot3(axis, along), vec3f(1.0, 0.0, 0.0));
 }
 
-// Carries a normal by the smallest rotation from one unit vector to another.
+// Rotates a normal by the smallest rotation from one unit vector to another.
 fn transport(normal: vec3f, before: vec3f, after: vec3f) -> vec3f {
     let one_plus_cos = 1.0 + dot3(before, after);
     var turned = normal;
@@ -94,7 +94,7 @@ fn carry_frames(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroup
     var before = (a + b + c) / 3.0;
     var here = before;
     for (var p = 0u; p < points; p++) {
-        // The point after this one; at the tip, this one.
+        // The next point; at the tip, this one.
         let after = min(p + 1u, points - 1u);
         let next_a = guide_point(wisp.guides.x, after);
         let next_b = guide_point(wisp.guides.y, after);

@@ -1,7 +1,7 @@
-//! Strands from guides on the device: a frame uploads guides, not strands.
+//! Interpolation of strands from guides on the GPU: a frame uploads guides, not strands.
 //!
-//! In step with [`lovelock_groom::interpolate`]. One kernel carries the moving frame of each wisp along its guides, a thread a
-//! wisp; the other places the strands, a thread a point. What does not change from frame to frame goes up once a hairstyle.
+//! The result agrees with [`lovelock_groom::interpolate`]. One kernel transports the moving frame of each wisp along its guides, one
+//! thread per wisp; the other places the strands, one thread per point. Constant data is uploaded once per hairstyle.
 
 #[cfg(test)]
 mod tests;
@@ -43,7 +43,7 @@ struct Strand {
     wisp: u32,
 }
 
-/// Twin of `CurvePoint` in frames.wgsl; never read on the processor.
+/// Twin of `CurvePoint` in frames.wgsl; never read on the CPU.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 struct CurvePoint([f32; 16]);
@@ -53,7 +53,7 @@ pub(in crate::gpu) fn shaders() -> Vec<(String, ShaderSource)> {
     vec![("interpolate".to_owned(), ShaderSource::new(&[FRAMES, STRANDS]))]
 }
 
-/// The kernels that move strands with their guides, and what they keep of a hairstyle.
+/// The kernels, and the data of the current hairstyle.
 #[derive(Debug)]
 pub(in crate::gpu) struct Interpolation {
     carry_frames: Kernel,
@@ -95,14 +95,14 @@ impl Interpolation {
         })
     }
 
-    /// Encodes writing every strand point of `style`, world space, metres, into `points`: an `array<vec4f>` whose last
-    /// components become 0. Guides are handed to the queue at once, so one frame may be encoded a submission.
+    /// Encodes writing every strand point of `style` (world space, metres) into `points`: an `array<vec4f>` whose last components become
+    /// 0. Guides are written to the queue immediately, so there may be one frame per submission.
     ///
-    /// Nothing is encoded for a hairstyle without strands.
+    /// Encodes nothing for a hairstyle without strands.
     ///
     /// # Errors
-    /// Guides that are not those of the hairstyle; a hairstyle that contradicts itself, or that needs more than the device
-    /// gives to one buffer; `points` too small for it.
+    /// The guides do not match the hairstyle; the hairstyle is inconsistent or needs a larger buffer than the device supports; or
+    /// `points` is too small.
     pub fn run(
         &mut self,
         gpu: &Gpu,
@@ -134,7 +134,7 @@ impl Interpolation {
         let turn = frame.world_from_head.matrix3;
         let instant = Instant {
             turn: [turn.x_axis, turn.y_axis, turn.z_axis].map(|column| column.extend(0.0)),
-            // Each fits, for its buffer fits a binding.
+            // Each fits, because its buffer fits a binding.
             counts: [guides.x.len(), guides.points_per_guide, style.wisps.len(), count].map(|n| n as u32),
         };
         gpu.queue.write_buffer(&self.instant, 0, bytemuck::bytes_of(&instant));
@@ -158,7 +158,7 @@ impl Interpolation {
         Ok(())
     }
 
-    /// Bytes that are held on the device.
+    /// GPU memory in use, bytes.
     pub fn bytes(&self) -> u64 {
         let buffers = [
             self.guides.raw(),
@@ -171,7 +171,7 @@ impl Interpolation {
         self.instant.size() + buffers.iter().map(|buffer| buffer.size()).sum::<u64>()
     }
 
-    /// Sends up what belongs to the hairstyle, where it is another one than before.
+    /// Uploads the data of the hairstyle if it has changed.
     fn follow(&mut self, gpu: &Gpu, style: &Arc<Hairstyle>) -> Result<(), GpuError> {
         if self.style.as_ref().is_some_and(|old| Arc::ptr_eq(old, style)) {
             return Ok(());
@@ -196,7 +196,7 @@ impl Interpolation {
         let links = (style.guides.points_per_guide - 1) as f32;
         let places: Vec<_> = (0..set.points())
             .map(|i| {
-                // Within the guides, and 0 for what is no number: shaders need not agree on that.
+                // Clamped to the guides, and 0 for NaN: shaders may differ on NaN.
                 let along = set.guide_param[i].max(0.0).min(links);
                 Vec4::new(set.offset_normal[i], set.offset_binormal[i], set.offset_tangent[i], along)
             })
@@ -212,14 +212,14 @@ impl Interpolation {
     }
 }
 
-/// A wisp's guides and its frame at the root, at rest.
+/// The guides of a wisp and its frame at the root, in the rest pose.
 fn root_of(style: &Hairstyle, wisp: &lovelock_groom::Wisp) -> Wisp {
     let [normal, _, tangent] = WispCurve::root_frame(&style.guides, wisp);
     let [a, b, c] = wisp.guides;
     Wisp { guides: [a, b, c, 0], tangent: tangent.extend(0.0), normal: normal.extend(0.0) }
 }
 
-/// Refuses guides that the hairstyle does not have.
+/// Returns an error for guides that the hairstyle does not have.
 fn check_guides(style: &Hairstyle, frame: &GuideFrame) -> Result<(), GpuError> {
     let (wanted, found) = (&style.guides, &frame.guides);
     let lengths = [&found.x, &found.y, &found.z].map(Vec::len);
@@ -235,7 +235,7 @@ fn check_guides(style: &Hairstyle, frame: &GuideFrame) -> Result<(), GpuError> {
     )))
 }
 
-/// Refuses what does not fit one binding.
+/// Returns an error for data that does not fit one binding.
 fn fits(gpu: &Gpu, what: &str, count: usize, bytes_each: usize) -> Result<(), GpuError> {
     let (needed, limit) = (count as u64 * bytes_each as u64, gpu.most_storage_bytes());
     if needed > limit || u32::try_from(count).is_err() {

@@ -1,5 +1,5 @@
-// The points of the strands, a thread a point: the wisp's guides blended, and the offset in the wisp's moving frame.
-// Twin of `interpolate` in lovelock-groom; follows frames.wgsl.
+// The points of the strands, one thread per point: the blended guides of the wisp plus an offset in the moving frame of the wisp.
+// Twin of `interpolate` in lovelock-groom; runs after frames.wgsl.
 
 // Twin of `Strand` in mod.rs.
 struct Strand {
@@ -9,7 +9,7 @@ struct Strand {
 
 @group(0) @binding(4) var<storage, read> strands: array<Strand>;
 @group(0) @binding(5) var<storage, read> strand_of: array<u32>;
-// Offsets along normal, binormal and tangent, and the place along the guides in links, which is within them.
+// Offsets along normal, binormal and tangent, and the position along the guides in links, clamped to them.
 @group(0) @binding(6) var<storage, read> places: array<vec4f>;
 @group(0) @binding(7) var<storage, read_write> points: array<vec4f>;
 
@@ -17,14 +17,14 @@ fn blend(at: CurvePoint, w: vec3f) -> vec3f {
     return (at.a.xyz * w.x + at.b.xyz * w.y) + at.c.xyz * w.z;
 }
 
-// Normal, binormal and tangent from what is interpolated between two points of a guide: unit vectors at right angles, even
-// where a guide folds back on itself and these vanish.
+// Orthonormal normal, binormal and tangent from vectors interpolated between two points of a guide, even where these vanish because
+// a guide folds back on itself.
 fn orthonormal(tangent_free: vec3f, normal_free: vec3f) -> mat3x3f {
     let squared = dot3(tangent_free, tangent_free);
     let tangent = tangent_free * (1.0 / sqrt(squared));
     let square_normal = normal_free - dot3(normal_free, tangent) * tangent;
     let across = dot3(square_normal, square_normal);
-    // False for what is no number.
+    // False for NaN.
     if (squared > 1e-12 && across > 1e-12) {
         let normal = square_normal * (1.0 / sqrt(across));
         return mat3x3f(normal, cross3(tangent, normal), tangent);

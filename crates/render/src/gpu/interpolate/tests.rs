@@ -1,4 +1,4 @@
-//! The device's strands against the processor's, guides at rest and moved.
+//! Compares strands of the GPU with those of the CPU, with guides at rest and moved.
 
 use std::sync::{Arc, OnceLock};
 
@@ -17,13 +17,13 @@ fn device() -> Option<&'static Arc<Gpu>> {
     DEVICE.get_or_init(open).as_ref()
 }
 
-/// An interpolation with what it writes to.
+/// An interpolation and its output.
 struct Bench {
     gpu: &'static Arc<Gpu>,
     interpolation: Interpolation,
     timer: PassTimer,
     points: GrowBuffer<[f32; 4]>,
-    /// Milliseconds on the device of the last run; none where it measures none.
+    /// Milliseconds of the last run on the device; `None` if it does not measure.
     ms: Option<f64>,
 }
 
@@ -38,7 +38,7 @@ impl Bench {
         }
     }
 
-    /// The points that the device makes.
+    /// The points from the device.
     fn run(&mut self, style: &Arc<Hairstyle>, frame: &GuideFrame) -> Result<Vec<[f32; 4]>, GpuError> {
         self.points.reserve(&self.gpu.device, style.strands.points());
         let mut commands = self.timer.begin(self.gpu, "test");
@@ -87,7 +87,7 @@ impl Random {
     }
 }
 
-/// The guides at rest on a head that stands in a room, or blown about there.
+/// The guides at rest on a head in a room, or displaced at random.
 fn frame(style: &Hairstyle, random: &mut Random, blown: bool) -> GuideFrame {
     let turn = Quat::from_axis_angle(random.cube().normalize_or(Vec3::Y), 3.0 * random.signed());
     let head = Affine3A::from_rotation_translation(turn, Vec3::new(0.0, 1.5, 0.0) + 0.5 * random.cube());
@@ -107,7 +107,7 @@ fn frame(style: &Hairstyle, random: &mut Random, blown: bool) -> GuideFrame {
     frame
 }
 
-/// The largest distance between the device's points and the processor's. Where one is no number, neither may the other be.
+/// The largest distance between points of the GPU and the CPU. Both must be NaN if one is.
 fn largest_distance(style: &Hairstyle, frame: &GuideFrame, found: &[[f32; 4]]) -> f32 {
     let mut strands = Strands::default();
     interpolate(style, frame, &mut strands);
@@ -121,8 +121,8 @@ fn largest_distance(style: &Hairstyle, frame: &GuideFrame, found: &[[f32; 4]]) -
     found.iter().enumerate().map(distance).fold(0.0, f32::max)
 }
 
-/// Metres. Measured: 4.8e-7 on llvmpipe, for heads that stand 2 m from the origin (2^-23 of that is 2.4e-7). Other devices fuse
-/// products and divide less exactly.
+/// Metres. Measured: 4.8e-7 on llvmpipe, for heads 2 m from the origin (2^-23 of that is 2.4e-7). Other devices fuse products and
+/// divide less exactly.
 const TOLERANCE: f32 = 5e-6;
 
 #[test]
@@ -174,7 +174,7 @@ fn a_guide_that_moved_a_tenth_of_a_millimetre_is_found() {
     assert!(missed > 10.0 * TOLERANCE, "only {missed} m");
 }
 
-/// Three guides in a row, a wisp of them and one without strands, and a strand of points anywhere along and beyond.
+/// Three guides in a row, a wisp of them and one without strands, and a strand with points along the guides and beyond them.
 fn small(guide: &[Vec3]) -> Hairstyle {
     let mut guides = Guides { points_per_guide: guide.len(), ..Guides::default() };
     for g in 0..3 {
@@ -223,7 +223,7 @@ fn guides_that_fold_vanish_or_are_no_numbers_do_as_on_the_processor() {
         let distance = largest_distance(&style, &frame, &found);
         assert!(distance < TOLERANCE, "{shape:?}: {distance} m");
     }
-    // A guide that is no number: its wisp is none either, and the others are as they were.
+    // A NaN guide: its wisp becomes NaN, and the others stay the same.
     let style = preset(Preset::Smooth);
     let mut frame = frame(&style, &mut Random(3), true);
     let points = style.guides.points_per_guide;
@@ -272,11 +272,11 @@ fn what_does_not_fit_is_refused_with_words() {
     broken.wisps[3].guides[1] = u32::MAX;
     assert!(refused(&mut bench, &Arc::new(broken), &rest).contains("wisp 3"));
 
-    // A hairstyle without strands needs nothing, whatever its guides.
+    // A hairstyle without strands needs no guides.
     let bald = Arc::new(Hairstyle::default());
     assert_eq!(bench.run(&bald, &rest).expect("nothing to do"), Vec::<[f32; 4]>::new());
 
-    // More guides than a binding holds: no memory is asked of the device for them.
+    // More guides than a binding holds: nothing is allocated for them.
     assert!(super::fits(gpu, "guides", usize::MAX / 16, 4).is_err());
     let most = gpu.most_storage_bytes() / 64;
     assert!(super::fits(gpu, "wisps", most as usize, 64).is_ok());

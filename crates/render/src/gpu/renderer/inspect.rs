@@ -1,4 +1,4 @@
-//! Looking into what a picture was drawn with.
+//! Transmittance of the last picture.
 
 use glam::Vec3;
 use lovelock_gpu::{GpuError, PassTimer, read_buffer, wgpu};
@@ -50,7 +50,7 @@ impl GpuRenderer {
         let mut commands = timer.begin(gpu, "ask");
         let targets =
             GpuTargets { points: &asked, stride: 1, count: points.len() as u32, out: &out, sum: None };
-        self.shadow.ask(light, gpu, &mut commands, &targets);
+        self.shadow.look_up(light, gpu, &mut commands, &targets);
         commands.submit();
         let mut words = vec![0; points.len()];
         read_buffer(gpu, &out, &mut words)?;
@@ -68,7 +68,7 @@ impl GpuRenderer {
     }
 }
 
-/// The transmittances of one light of words that hold four.
+/// Unpacks the transmittances of one light.
 fn unpack(words: &[u32], light: usize) -> Vec<f32> {
     words.iter().map(|word| (word >> (8 * light) & 0xff) as f32 / 255.0).collect()
 }

@@ -11,11 +11,11 @@ use crate::gpu::layers::LayerBuffers;
 use crate::{FrameInput, FrameStats, Layers, Picture, RenderError};
 
 impl GpuRenderer {
-    /// See [`Renderer::layers`](crate::Renderer::layers). The picture is drawn first, and the layers from what it leaves on the
-    /// device; its statistics are those of both.
+    /// See [`Renderer::layers`](crate::Renderer::layers). Renders the picture first, then the layers from its buffers. Statistics are
+    /// those of both.
     ///
     /// # Errors
-    /// As there; also a picture whose layers are larger than the device's buffers.
+    /// As there, or the layers do not fit a buffer of the device.
     pub fn layers(
         &mut self,
         input: &FrameInput,
@@ -53,7 +53,7 @@ impl GpuRenderer {
         let hair_area = constants(&gpu, "hair area", &area);
         let mut timer = PassTimer::new(&gpu)?;
         let mut commands = timer.begin(&gpu, "layers");
-        // What the eye has drawn is bound anew each time.
+        // The bind group is created each time, because the buffers may have been replaced.
         macro_rules! bound {
             () => {{
                 let (corners, hair) = (self.ground.corners(), self.eye.layer());

@@ -1,16 +1,16 @@
-// The background: a graded backdrop that runs into the ground without a seam, with the shadows on the ground.
+// The background: a gradient that merges into the ground without a seam, with shadows on the ground.
 
-// Difference of two corners' light that is not worth a look between them: half a step of 8 bits.
+// The difference of the light at two corners up to which a cell counts as uniform: half a step of 8 bits.
 const ALIKE: f32 = 1.0 / 512.0;
 
-// The light on the ground of each cell of pixels, packed as that of the corners; the highest bit but one says that it is even.
+// The light on the ground per cell of pixels, packed like that of corners; the second-highest bit marks uniform cells.
 @group(0) @binding(10) var<storage, read_write> cells: array<u32>;
 
 const EVEN_LIGHT: u32 = 0x40000000u;
-// Even, and all of it.
+// Uniform and fully lit.
 const ALL_LIGHT: u32 = 0x7fffffffu;
 
-// The light on the ground of a cell by that at its corners.
+// The light on the ground of a cell, from that at its corners.
 fn light_of_cell(cell: vec2u) -> u32 {
     let columns = corner_columns();
     let first = cell.y * columns + cell.x;
@@ -19,7 +19,7 @@ fn light_of_cell(cell: vec2u) -> u32 {
     let b = unpack_share(corners[first + 1u]);
     let c = unpack_share(corners[first + columns]);
     let d = unpack_share(corners[first + columns + 1u]);
-    // Corners on both sides of the horizon do not speak for what is between them.
+    // Corners on both sides of the horizon do not determine the cell.
     let spread = max(max(abs(a - b), abs(a - c)), abs(a - d));
     let light = (packed & 0x3fffffffu) | select(0u, EVEN_LIGHT, all(spread < vec4f(ALIKE)));
     return select(ALL_LIGHT, light, frame.ambient_up_ground.w > 0.5);

@@ -1,4 +1,4 @@
-// The body seen from a light: depth alone.
+// The depth of the body seen from a light.
 
 struct DepthPass { shadow_from_world: mat4x4f }
 @group(0) @binding(0) var<uniform> pass_uniform: DepthPass;

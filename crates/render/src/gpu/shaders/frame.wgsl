@@ -1,16 +1,15 @@
-// What every pass knows of the picture. Twin of `FrameUniform` and `LightUniform` in uniform.rs.
+// The uniform of all passes. Twin of `FrameUniform` and `LightUniform` in uniform.rs.
 
 const MAX_LIGHTS: u32 = 4u;
 
 struct LightUniform {
-    // The way the light travels; w is how much of it makes highlights.
+    // The direction in which the light travels; w is the fraction that contributes to highlights.
     direction_specular: vec4f,
     // Colour times intensity; w is the blur of the body's shadow in texels of its map.
     radiance_blur: vec4f,
     // To the clip space of the body's depth map, z in 0..1.
     shadow_from_world: mat4x4f,
-    // To the texture of what light the hair lets through, for surfaces behind all hair; z is the part of the texture's edge
-    // that this light's map takes.
+    // To the texture of transmittance behind all hair; z is the fraction of the texture's edge that the map of this light uses.
     columns_from_world: mat4x4f,
 }
 
@@ -42,11 +41,11 @@ struct FrameUniform {
 @group(0) @binding(2) var hair_columns: texture_2d_array<f32>;
 @group(0) @binding(3) var linear_clamp: sampler;
 
-// Lights that shine. What is done for a light is written out once for each of them: where kernels run on the processor, a number
-// that is read where its place is known is read once for all threads of a vector.
+// The number of lights. Code per light is unrolled, because software adapters load a number with a constant index once for all threads
+// of a vector.
 override LIGHTS: u32 = MAX_LIGHTS;
 
-// How a surface with the unit normal `n` leans as light `i` sees it: its normal along u, v and toward the light.
+// The components of the unit normal `n` along u, v and toward light `i`.
 fn lean_of(i: u32, n: vec3f) -> vec3f {
     let light = frame.lights[i];
     let rows = transpose(light.shadow_from_world);
@@ -55,11 +54,11 @@ fn lean_of(i: u32, n: vec3f) -> vec3f {
     return vec3f(u, v, -dot(n, light.direction_specular.xyz));
 }
 
-// Taps of a soft shadow's edge on a surface, where six show their steps as bands.
+// Taps of a soft shadow on a surface. Six taps would show bands.
 const SURFACE_TAPS: u32 = 12u;
 
-// Share of light `i` that the body lets through to `p`, which is moved `bias` metres toward the light first. The taps
-// lie on a disc in the plane of the surface, which leans as `lean` says: a flat surface keeps no light from itself.
+// The fraction of light `i` that the body lets through to `p`, which is moved `bias` metres toward the light first. The taps are on a
+// disc in the plane of the surface, given by `lean`, so that a flat surface does not shadow itself.
 fn body_light(i: u32, p: vec3f, lean: vec3f, bias: f32, taps: u32) -> f32 {
     let light = frame.lights[i];
     let at = light.shadow_from_world * vec4f(p - light.direction_specular.xyz * bias, 1.0);
@@ -67,13 +66,13 @@ fn body_light(i: u32, p: vec3f, lean: vec3f, bias: f32, taps: u32) -> f32 {
     if (any(uv < vec2f(0.0)) || any(uv > vec2f(1.0))) {
         return 1.0;
     }
-    // Texels around a place lie as much nearer as the plane leans over one of them; a place that the light only grazes
-    // would need more than is right elsewhere.
+    // Texels around a position are nearer by the slope of the plane over one texel. The slope is limited, because at grazing angles it
+    // would be too large for other surfaces.
     let texel = 1.0 / frame.ambient_down_texels.w;
     let z = at.z - texel * (abs(lean.x) + abs(lean.y)) / max(lean.z, 0.25);
     let turn = lean.xy / (1.0 + max(lean.z, 0.0));
-    // A golden-angle disc: even at any number of taps, and the same for every pixel, so it never shimmers. The map is
-    // as deep as it is wide, so that its three coordinates turn together.
+    // A golden-angle disc: uniform for any number of taps, and the same for every pixel, so that it does not flicker. The map is as deep
+    // as it is wide, so its three coordinates can be rotated together.
     let radius = max(light.radiance_blur.w, 1.0) * texel;
     var direction = vec2f(1.0, 0.0);
     var sum = 0.0;
@@ -81,9 +80,9 @@ fn body_light(i: u32, p: vec3f, lean: vec3f, bias: f32, taps: u32) -> f32 {
     loop {
         let tap = radius * sqrt((f32(taps - k) - 0.5) / f32(taps)) * direction;
         let deeper = dot(tap, lean.xy);
-        // Behind the far end of the map nothing more keeps the light off.
+        // Nothing behind the far end of the map blocks light.
         sum += textureSampleCompareLevel(body_depth, compare, uv + tap - turn * deeper, i, min(z + deeper, 1.0));
-        // Where five taps from the rim on agree, so do those within.
+        // If the five outermost taps agree, so do the inner ones.
         if (k == 4u && taps > 8u && (sum == 0.0 || sum == 5.0)) {
             return sum / 5.0;
         }
@@ -92,7 +91,7 @@ fn body_light(i: u32, p: vec3f, lean: vec3f, bias: f32, taps: u32) -> f32 {
             direction.x * 0.675490294 + direction.y * -0.737368878,
         );
         k++;
-        // Tested at the end: where kernels run on the processor, a test at the beginning costs a round in which nothing is done.
+        // Tested at the end: on software adapters a test at the beginning costs an empty iteration.
         continuing {
             break if k >= taps;
         }
@@ -100,18 +99,18 @@ fn body_light(i: u32, p: vec3f, lean: vec3f, bias: f32, taps: u32) -> f32 {
     return sum / f32(taps);
 }
 
-// Share of light `i` that all hair on the way lets through, for a point behind all of it.
+// The transmittance of all hair for light `i`, for a point behind it.
 fn columns_light(i: u32, p: vec3f) -> f32 {
     let at = (frame.lights[i].columns_from_world * vec4f(p, 1.0)).xyz;
     if (any(at.xy < vec2f(0.0)) || any(at.xy > vec2f(at.z))) {
         return 1.0;
     }
-    // Nothing beyond the map's corner of the texture is read.
+    // Nothing outside this map's part of the texture is read.
     let last = vec2f(at.z) - 0.5 / vec2f(textureDimensions(hair_columns));
     return textureSampleLevel(hair_columns, linear_clamp, min(at.xy, last), i, 0.0).r;
 }
 
-// Light from everywhere that reaches a surface with normal `n`.
+// Ambient light on a surface with normal `n`.
 fn ambient(n: vec3f) -> vec3f {
     return mix(frame.ambient_down_texels.xyz, frame.ambient_up_ground.xyz, 0.5 + 0.5 * n.y);
 }

@@ -1,19 +1,19 @@
-// The light that reaches the ground, as the picture sees it. Twin of `ground_place` and `ground_light` in cpu/backdrop.rs.
+// The light on the visible ground. Twin of `ground_place` and `ground_light` in cpu/backdrop.rs.
 
 const UP: vec3f = vec3f(0.0, 1.0, 0.0);
 
-// What light `k` sends to the ground where nothing is in its way.
+// The unshadowed light `k` on the ground.
 fn share_of(k: u32) -> vec3f {
     return frame.lights[k].radiance_blur.xyz * max(-frame.lights[k].direction_specular.y, 0.0);
 }
 
-// How much of it comes there.
+// The fraction of it that arrives.
 fn left_on_ground(k: u32, p: vec3f) -> f32 {
     return body_light(k, p, lean_of(k, UP), 0.004, 6u) * columns_light(k, p);
 }
 
-// The share of the light that is left on the ground behind a place of the picture, and whether there is ground: 1 or 0.
-// Where nothing is in the way, and above the horizon, the share is 1.
+// The fraction of the light on the ground behind a position of the picture, and whether there is ground: 1 or 0. Without shadow, and above
+// the horizon, the fraction is 1.
 fn ground_light(ndc: vec2f) -> vec4f {
     let near = frame.world_from_clip * vec4f(ndc, 1.0, 1.0);
     let eye = frame.eye_lights.xyz;
@@ -43,10 +43,10 @@ fn ground_light(ndc: vec2f) -> vec4f {
     return vec4f(lit / max(full, vec3f(1e-4)), 1.0);
 }
 
-// Pixels along each edge of a cell: most of the ground is lit evenly, so it is asked at the corners of cells first.
+// Pixels along each edge of a cell: most of the ground is lit uniformly, so it is evaluated at the corners of cells first.
 const CELL: u32 = 4u;
 
-// A share of the light in three times ten bits; the highest bit says that there is ground.
+// A fraction of the light in three times ten bits; the highest bit is set if there is ground.
 fn pack_share(share: vec4f) -> u32 {
     let parts = vec3u(clamp(share.rgb, vec3f(0.0), vec3f(1.0)) * 1023.0 + 0.5);
     return parts.r | (parts.g << 10u) | (parts.b << 20u) | select(0u, 0x80000000u, share.w > 0.5);
@@ -57,7 +57,7 @@ fn unpack_share(packed: u32) -> vec4f {
     return vec4f(vec3f(parts) / 1023.0, f32(packed >> 31u));
 }
 
-// Corners in a row of them.
+// Corners per row.
 fn corner_columns() -> u32 {
     return (u32(frame.size_scale_exposure.x) + CELL - 1u) / CELL + 1u;
 }

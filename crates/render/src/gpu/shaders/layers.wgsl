@@ -1,8 +1,8 @@
-// A picture as linear light, with depth and the light that reaches the hair. Twin of cpu/layers.rs.
+// A picture as linear light, with depth and transmittance. Twin of cpu/layers.rs.
 
 // Red, green, blue and alpha of each pixel of the picture, exposed.
 @group(0) @binding(16) var<storage, read_write> light_layer: array<vec4f>;
-// The depth of each in metres, and its transmittance.
+// Depth in metres and transmittance of each pixel.
 @group(0) @binding(17) var<storage, read_write> data_layer: array<vec2f>;
 
 // Twin of `Layers::NOTHING_METRES` and `NEAR_METRES`.
@@ -22,7 +22,7 @@ fn samples_of(pixel: vec2u) -> vec4f {
     );
 }
 
-// What no list has: the background where nothing is before it.
+// The plain background, which is in no list.
 @compute @workgroup_size(64)
 fn layer_background(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let i = id.x + id.y * groups.x * 64u;
@@ -34,7 +34,7 @@ fn layer_background(@builtin(global_invocation_id) id: vec3u, @builtin(num_workg
     }
 }
 
-// The pixels of a list, as `picture_lit` draws them.
+// The pixels of a list, like `picture_lit`.
 @compute @workgroup_size(64)
 fn layer_lit(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let size = picture_size();
@@ -49,7 +49,7 @@ fn layer_lit(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) 
     }
 }
 
-// Once the hair layer has transmittance and 1 in the place of colours: their quotient is the mean, whatever multiplies both.
+// Runs when the hair layer has transmittance and 1 in place of colours: their quotient is the mean, whatever multiplies both.
 @compute @workgroup_size(64)
 fn layer_transmittance(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let i = id.x + id.y * groups.x * 64u;
@@ -62,7 +62,7 @@ fn layer_transmittance(@builtin(global_invocation_id) id: vec3u, @builtin(num_wo
     }
 }
 
-// Once the hair layer has the bits of the nearest strand's depth.
+// Runs when the hair layer has the bits of the depth of the nearest strand.
 @compute @workgroup_size(64)
 fn layer_depth(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let i = id.x + id.y * groups.x * 64u;

@@ -1,27 +1,27 @@
-// The finished picture: hair over the body over the background.
+// The final picture: hair over the body over the background.
 
 @group(0) @binding(4) var normals: texture_multisampled_2d<u32>;
 @group(0) @binding(5) var colors: texture_multisampled_2d<f32>;
 // 0 where there is no body.
 @group(0) @binding(6) var depths: texture_depth_multisampled_2d;
 @group(0) @binding(7) var<storage, read> corners: array<u32>;
-// The part of the picture that may have hair: first column and row, columns and rows.
+// The area that may contain hair: first column and row, columns and rows.
 @group(0) @binding(11) var<uniform> hair_area: vec4u;
-// The hair of each pixel of that part: its light times what it covers, and the share of the light behind that comes through, as four
-// half floats.
+// The hair of each pixel of that area: its light, premultiplied by coverage, and the fraction of the light behind it that it lets
+// through, as four half floats.
 @group(0) @binding(8) var<storage, read> hair_layer: array<vec2u>;
 // Red, green, blue and alpha of each pixel.
 @group(0) @binding(9) var<storage, read_write> screen: array<u32>;
-// Pixels that are drawn one by one, in four lists, and how many each has.
+// Pixels that are not plain background, in four lists, and the length of each list.
 @group(0) @binding(12) var<storage, read_write> listed: array<u32>;
 @group(0) @binding(13) var<storage, read_write> list_count: array<atomic<u32>, 4>;
-// The part of the picture that may have hair or body, as `hair_area`; of whole cells.
+// The area that may contain hair or body, like `hair_area`; in whole cells.
 @group(0) @binding(14) var<uniform> figure_area: vec4u;
 
-// Light that comes through hair and is no longer worth lighting what is behind: a fourth of a step of 8 bits.
+// The transmittance of hair below which what is behind it is not shaded: a quarter of a step of 8 bits.
 const UNSEEN: f32 = 1.0 / 1024.0;
 
-// What one sample sees of the body.
+// The body in one sample.
 struct Seen {
     normal: vec3f,
     depth: f32,
@@ -38,13 +38,13 @@ fn sample_at(pixel: vec2u, k: i32, depth: f32) -> Seen {
     return Seen(normal, depth, textureLoad(colors, pixel, k), unpack4x8unorm(words.z | (words.w << 16u)));
 }
 
-// Whether two samples lie on one smooth piece of the body, so that they can be lit as one.
+// Whether two samples lie on the same smooth part of the body, so that they can be shaded as one.
 fn belong_together(a: Seen, b: Seen) -> bool {
     return dot(a.normal, b.normal) > 0.9 && abs(a.depth - b.depth) <= 0.01 * a.depth
         && all(abs(a.color_scalp - b.color_scalp) < vec4f(0.1));
 }
 
-// One of four, without an array: where kernels run on the processor, arrays that are indexed are slow.
+// One of four, without an array: indexed arrays are slow on software adapters.
 fn chosen(a: Seen, b: Seen, c: Seen, d: Seen, k: u32) -> Seen {
     var one = a;
     if (k == 1u) {
@@ -57,7 +57,7 @@ fn chosen(a: Seen, b: Seen, c: Seen, d: Seen, k: u32) -> Seen {
     return one;
 }
 
-// Samples that are lit together, and how many they are.
+// Samples that are shaded together, and their number.
 struct Group {
     sum: Seen,
     count: f32,
@@ -75,19 +75,20 @@ fn join(group: Group, other: Seen, joins: bool) -> Group {
     return joined;
 }
 
-// What a pixel of each list shows, which decides what its kernel does: where kernels run on the processor, all threads of a
-// vector do what one of them must.
+// The content of the pixels of each list, which selects the kernel: on software adapters all threads of a vector execute what one of them
+// needs.
 const BODY: u32 = 0u;
 const GROUND_ONLY: u32 = 1u;
 const BODY_AND_GROUND: u32 = 2u;
-// Hair before an even background.
+// Hair in front of a uniform background.
 const EVEN_GROUND: u32 = 3u;
 override LIST: u32 = BODY;
 
-// Whether there is a background behind hair and body; always but in layers.wgsl.
+// Whether there is a background behind hair and body; only layers.wgsl may change it.
 override OVER_BACKGROUND: bool = true;
 
-// Where an item of a list is. No pixel is in two lists: they grow toward each other, two in the room of a picture.
+// The index of an item of a list. No pixel is in two lists, so two lists share a buffer of the size of the picture and grow toward each
+// other.
 fn place_in_list(list: u32, item: u32, pixels: u32) -> u32 {
     return (list >> 1u) * pixels + select(item, pixels - 1u - item, (list & 1u) == 1u);
 }
@@ -103,7 +104,7 @@ fn backdrop(pixel: vec2u) -> vec3f {
     return graded(pixel) * ground_light(ndc_of(pixel)).rgb;
 }
 
-// The body and what is behind it. Samples of one smooth piece are lit together, at the middle of the pixel.
+// The body and what is behind it. Samples of one smooth part are shaded together, at the centre of the pixel.
 fn behind_hair(pixel: vec2u) -> vec3f {
     if (LIST == GROUND_ONLY || LIST == EVEN_GROUND) {
         return backdrop(pixel);
@@ -112,7 +113,7 @@ fn behind_hair(pixel: vec2u) -> vec3f {
     let b = sample_at(pixel, 1, textureLoad(depths, pixel, 1));
     let c = sample_at(pixel, 2, textureLoad(depths, pixel, 2));
     let d = sample_at(pixel, 3, textureLoad(depths, pixel, 3));
-    // Samples that are not lit yet, a bit each.
+    // Samples that are not shaded yet, one bit each.
     var open = vec4<bool>(a.depth > 0.0, b.depth > 0.0, c.depth > 0.0, d.depth > 0.0);
     let free = dot(select(vec4f(0.25), vec4f(0.0), open), vec4f(1.0));
     let ndc = ((vec2f(pixel) + 0.5) / frame.size_scale_exposure.xy - 0.5) * vec2f(2.0, -2.0);
@@ -120,7 +121,7 @@ fn behind_hair(pixel: vec2u) -> vec3f {
     loop {
         let first = select(select(select(3u, 2u, open.z), 1u, open.y), 0u, open.x);
         let one = chosen(a, b, c, d, first);
-        // Whatever the numbers are, one sample is lit in each round.
+        // Every iteration shades at least one sample.
         open = open & (vec4u(first) != vec4u(0u, 1u, 2u, 3u));
         let together = open & vec4<bool>(
             belong_together(one, a),
@@ -142,7 +143,7 @@ fn behind_hair(pixel: vec2u) -> vec3f {
             group.sum.hair / group.count,
         );
         sum += 0.25 * group.count * shade_surface(surface);
-        // At the end, as in `body_light`.
+        // Tested at the end, as in `body_light`.
         continuing {
             break if !any(open);
         }
@@ -153,10 +154,10 @@ fn behind_hair(pixel: vec2u) -> vec3f {
     return sum;
 }
 
-// The hair of a pixel: its light times what it covers, and the share of the light behind that comes through.
+// The hair of a pixel: its light, premultiplied by coverage, and the fraction of the light behind it that it lets through.
 fn hair_of(pixel: vec2u) -> vec4f {
     let place = pixel - hair_area.xy;
-    // Left of and above the area these are very large.
+    // Left of and above the area these wrap around to large numbers.
     if (place.x < hair_area.z && place.y < hair_area.w) {
         let hair = hair_layer[place.y * hair_area.z + place.x];
         return vec4f(unpack2x16float(hair.x), unpack2x16float(hair.y));
@@ -172,7 +173,7 @@ fn picture_size() -> vec2u {
     return vec2u(frame.size_scale_exposure.xy);
 }
 
-// The picture without anything before the background and without shadow on the ground, which is kept from frame to frame.
+// The plain background: without hair, body and shadows on the ground. Kept from frame to frame.
 @compute @workgroup_size(64)
 fn plain_background(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let i = id.x + id.y * groups.x * 64u;
@@ -183,7 +184,7 @@ fn plain_background(@builtin(global_invocation_id) id: vec3u, @builtin(num_workg
     }
 }
 
-// Finds out how the cells are lit, and lists the pixels of those beside the figure that are not plain.
+// Classifies the light of cells, and lists the pixels outside the area of the figure that are not plain.
 @compute @workgroup_size(64)
 fn list_cells(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let i = id.x + id.y * groups.x * 64u;
@@ -210,7 +211,7 @@ fn list_cells(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups)
     }
 }
 
-// Lists the pixels of the figure's area that are not plain.
+// Lists the pixels in the area of the figure that are not plain.
 @compute @workgroup_size(64)
 fn list_pixels(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let i = id.x + id.y * groups.x * 64u;
@@ -233,7 +234,7 @@ fn list_pixels(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups
     }
 }
 
-// The pixels of a list, shared by the threads.
+// Draws the pixels of a list, which all threads share.
 @compute @workgroup_size(64)
 fn picture_lit(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let size = picture_size();

@@ -3,9 +3,9 @@
 struct ShadedPoint {
     // Pixels from the left and top, depth.
     at: vec3f,
-    // Half of the strand's width in pixels; negative where the point must not be drawn.
+    // Half of the width of the strand in pixels; negative if the point must not be drawn.
     half_width: f32,
-    // Unit vector across the strand on the screen.
+    // Unit vector perpendicular to the strand on the screen.
     across: vec2f,
     // Colour as four half floats; the fourth is a hash of the strand in 0..1.
     color: vec2u,
@@ -26,13 +26,13 @@ fn project(p: vec3f) -> Projected {
     return Projected(pixel, ndc.z, clip.w);
 }
 
-// A point that is lit: its place, the unit tangent, the unit vector toward the eye, and the strand's colours there.
+// A point to shade: its position, the unit tangent, the unit vector toward the eye, and the colours of the strand there.
 struct Point { p: vec3f, t: vec3f, v: vec3f, color: StrandColor }
 
-// As `body_light`, for what has no surface: three taps, one after the other, on a disc that lies across the light.
+// Like `body_light` for points without a surface: three taps on a disc perpendicular to the light.
 fn body_light_on_strand(k: u32, p: vec3f) -> f32 {
     let light = frame.lights[k];
-    // Roots lie on the skin: the bias keeps the skin under a strand from shadowing it.
+    // Roots lie on the skin: the bias prevents the skin under a strand from shadowing it.
     let at = light.shadow_from_world * vec4f(p - light.direction_specular.xyz * 0.006, 1.0);
     let uv = at.xy * vec2f(0.5, -0.5) + 0.5;
     let radius = max(light.radiance_blur.w, 1.0) / frame.ambient_down_texels.w;
@@ -47,7 +47,7 @@ fn body_light_on_strand(k: u32, p: vec3f) -> f32 {
     return select(sum / 3.0, 1.0, outside);
 }
 
-// What light `k` makes a point send toward the eye, where hair leaves so much of it.
+// The light that a point reflects toward the eye from light `k`, given the transmittance of hair.
 fn light_of(k: u32, point: Point, lit: f32) -> vec3f {
     let light = frame.lights[k];
     let body = body_light_on_strand(k, point.p);
@@ -59,7 +59,7 @@ fn light_of(k: u32, point: Point, lit: f32) -> vec3f {
 @compute @workgroup_size(64)
 fn shade_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let thread = id.x + id.y * groups.x * 64u;
-    // Threads beyond the last point go along with it: where kernels run on the processor, what comes after a branch is slow.
+    // Surplus threads repeat the last point: on software adapters code after a branch is slow.
     let i = min(thread, arrayLength(&details) - 1u);
     let detail = details[i];
     let taper = f32(detail & 0xffu) / 255.0;
@@ -108,7 +108,7 @@ fn shade_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroup
         sum += light_of(3u, point, transmittance.w);
         inside += sqrt(transmittance.w);
     }
-    // What comes from everywhere reaches the inside through the same hair; some of it always does.
+    // Ambient light reaches the inside through the same hair; a part of it always does.
     inside /= f32(max(LIGHTS, 1u));
     sum += 0.5 * ambient(vec3f(0.0, 0.3, 0.0)) * color.body * (0.22 + 0.78 * inside);
 

@@ -33,14 +33,14 @@ fn strand_light(t: vec3f, l: vec3f, v: vec3f, color: StrandColor, specular: f32,
     let sin_sum = sin_l * cos_v + cos_l * sin_v;
     let first = pow(max(cos_sum * 0.99281 - sin_sum * 0.11971, 0.0), frame.highlights.z);
     let second = pow(max(cos_sum * 0.97590 + sin_sum * 0.21823, 0.0), frame.highlights.w);
-    // Light that goes on nearly straight: only where the light is behind the strand.
+    // Light that passes nearly straight through: only if the light is behind the strand.
     let across_l = l - t * sin_l;
     let across_v = v - t * sin_v;
     let azimuth = dot(across_l, across_v) / max(cos_l * cos_v, 1e-3);
     let behind = pow(clamp(0.5 - 0.5 * azimuth, 0.0, 1.0), 6.0);
     let front = 0.35 + 0.65 * clamp(0.5 + 0.5 * azimuth, 0.0, 1.0);
 
-    // Light that has passed other hair is the more coloured, the deeper it comes.
+    // Light that has passed through other hair is more coloured with depth.
     let deep = pow(color.body, vec3f(1.0 + 0.45 * (1.0 - lit)));
     let diffuse = 0.32 * cos_l * deep;
     let reflected = 0.13 * frame.highlights.x * first * front * vec3f(1.0)

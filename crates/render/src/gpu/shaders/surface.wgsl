@@ -1,5 +1,4 @@
-// The body as the eye sees it: what is needed to light it, for each sample of a pixel. Lit is only what hair leaves to be
-// seen, in picture.wgsl.
+// The attributes of the body for each sample of a pixel. picture.wgsl shades only what is visible through hair.
 
 struct Vertex {
     @location(0) position: vec4f,
@@ -12,7 +11,7 @@ struct Vertex {
 
 struct Seen {
     @builtin(position) position: vec4f,
-    // Within the triangle, even where it covers no more than a corner of the pixel.
+    // Inside the triangle, even if it covers only a corner of the pixel.
     @location(1) @interpolate(perspective, centroid) normal: vec3f,
     @location(2) @interpolate(perspective, centroid) color_scalp: vec4f,
     @location(3) @interpolate(perspective, centroid) hair: vec4f,
@@ -29,7 +28,7 @@ fn surface(in: Vertex) -> Seen {
 }
 
 struct Sample {
-    // Normal on an octahedron, and four transmittances of 8 bits; all in parts of 16.
+    // Octahedral normal and four 8-bit transmittances, all in 16-bit components.
     @location(0) normal_hair: vec4u,
     @location(1) color_scalp: vec4f,
 }

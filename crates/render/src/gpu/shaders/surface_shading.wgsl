@@ -1,4 +1,4 @@
-// The body, lit, with the shadow of the hair and its own.
+// Shading of the body, with shadows of the hair and of itself.
 
 struct Surface {
     world: vec3f,
@@ -9,19 +9,19 @@ struct Surface {
     hair: vec4f,
 }
 
-// A place that is lit: its unit normal, the unit vector toward the eye, its colour, and how much of it is bare.
+// A position to shade: its unit normal, the unit vector toward the eye, its colour, and its fraction of bare skin.
 struct Place { world: vec3f, n: vec3f, v: vec3f, albedo: vec3f, skin: f32 }
 
-// What light `k` makes a place send toward the eye, where hair leaves so much of it.
+// The light that a position reflects toward the eye from light `k`, given the transmittance of hair.
 fn light_of(k: u32, place: Place, left: f32) -> vec3f {
     let light = frame.lights[k];
     let l = -light.direction_specular.xyz;
     let facing = dot(place.n, l);
-    // Light wraps a little round skin; the shadow map is asked only where light can come.
+    // Light wraps a little around skin; the shadow map is looked up only where light can arrive.
     let wrapped = clamp((facing + 0.12) / 1.12, 0.0, 1.0);
     var sum = vec3f(0.0);
     if (wrapped > 0.0) {
-        // Where light grazes the skin, the flat triangles of a round limb keep it from each other.
+        // At grazing angles the flat triangles of a round limb shadow each other.
         let above = place.world + place.n * (0.002 + 0.004 * (1.0 - clamp(facing, 0.0, 1.0)));
         let lit = body_light(k, above, lean_of(k, place.n), 0.003, SURFACE_TAPS) * left;
         let h = normalize(l + place.v);
@@ -33,11 +33,11 @@ fn light_of(k: u32, place: Place, left: f32) -> vec3f {
     return sum;
 }
 
-// Light that the body sends toward the eye.
+// The light that the body reflects toward the eye.
 fn shade_surface(in: Surface) -> vec3f {
     let v = normalize(frame.eye_lights.xyz - in.world);
     let n = normalize(in.normal);
-    // Under hair the skin is painted with the colour of the roots, so that gaps never read as baldness.
+    // Skin under hair has the colour of the roots, so that gaps do not look bald.
     let root = 0.3 * (exp(-2.8 * pow(max(frame.absorption_variation.xyz, vec3f(0.0)), vec3f(0.7))) + 0.012);
     let albedo = mix(in.color_scalp.rgb, root, 0.88 * smoothstep(0.15, 0.75, in.color_scalp.w));
     let place = Place(in.world, n, v, albedo, 1.0 - in.color_scalp.w);

@@ -1,4 +1,4 @@
-// Linear light to the screen: exposure, AgX, sRGB.
+// Tone mapping: exposure, AgX, sRGB.
 //
 // AgX is Troy Sobotka's; the polynomial for its curve and the matrices are Benjamin Wrensch's fit (2023).
 
@@ -33,10 +33,10 @@ fn srgb(linear: vec3f) -> vec3f {
     return select(high, low, linear <= vec3f(0.0031308));
 }
 
-// The numbers of a pixel of the screen.
+// A pixel as sRGB-encoded numbers.
 fn tone_map(light: vec3f, pixel: vec2u) -> vec3f {
     let color = srgb(agx(max(light, vec3f(0.0)) * frame.size_scale_exposure.w));
-    // Half a step of ordered noise, so that smooth gradients do not band.
+    // Ordered dither of up to half a step, so that smooth gradients do not band.
     let noise = fract(52.9829189 * fract(dot(vec2f(pixel), vec2f(0.06711056, 0.00583715)))) - 0.5;
     return color + noise / 255.0;
 }

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use lovelock_gpu::{Commands, Gpu, GpuError, ShaderPart, ShaderSource, wgpu};
 
-use crate::gpu::{Ask, GpuColumns, GpuShadow, GpuShadowError, GpuShadowInput, GpuTargets, wgsl};
+use crate::gpu::{GpuColumns, GpuShadow, GpuShadowError, GpuShadowInput, GpuTargets, PointLookup, wgsl};
 use crate::method::{MapKind, Method};
 use crate::{ColumnMap, CpuShadow, RayStructure, ShadowError, ShadowInput, ShadowReport, ShadowSettings};
 
@@ -54,17 +54,17 @@ impl CpuShadow for NoShadow {
 
 const QUERY: ShaderPart = wgsl!("methods/none/", "query.wgsl");
 
-/// The same on the GPU.
+/// The method on the GPU.
 #[derive(Debug)]
-pub(crate) struct GpuNoShadow(Ask);
+pub(crate) struct GpuNoShadow(PointLookup);
 
 impl GpuNoShadow {
     pub(crate) fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ask::new(gpu, &[QUERY], false, &[]).map(Self)
+        PointLookup::new(gpu, &[QUERY], false, &[]).map(Self)
     }
 
     pub(crate) fn shaders() -> Vec<(String, ShaderSource)> {
-        Ask::shaders(&[QUERY], false)
+        PointLookup::shaders(&[QUERY], false)
     }
 }
 
@@ -80,7 +80,7 @@ impl GpuShadow for GpuNoShadow {
         Ok(())
     }
 
-    fn ask(&mut self, slot: usize, gpu: &Gpu, commands: &mut Commands, targets: &GpuTargets) {
+    fn look_up(&mut self, slot: usize, gpu: &Gpu, commands: &mut Commands, targets: &GpuTargets) {
         self.0.run(gpu, commands, slot, &[], targets);
     }
 

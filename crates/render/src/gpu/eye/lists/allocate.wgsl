@@ -1,4 +1,4 @@
-// Where each pixel's fragments begin: a workgroup takes room for all of its pixels at once.
+// Allocates the list of each pixel: a workgroup allocates one range for all of its pixels.
 
 var<workgroup> wanted: atomic<u32>;
 var<workgroup> begin: u32;

@@ -1,12 +1,12 @@
 // Blends the fragments of a pixel from near to far. Twin of cpu/transparency/exact.rs.
 //
-// They are made a heap, from which the nearest is taken until nothing comes through any more.
+// Builds a heap and removes the nearest fragment until the pixel is opaque.
 
 fn key_at(at: u32) -> vec3u {
     return vec3u(list[at], list[at + 1u], list[at + 2u]);
 }
 
-// Whether `a` is nearer; of equal keys the other words decide, so that the order of threads does not.
+// Whether `a` is nearer. Ties are broken by the other words, so that the result does not depend on the order of threads.
 fn is_nearer(a: vec3u, b: vec3u) -> bool {
     if (a.x != b.x) {
         return a.x > b.x;
@@ -17,7 +17,7 @@ fn is_nearer(a: vec3u, b: vec3u) -> bool {
     return a.y > b.y;
 }
 
-// Lets `item` sink from place `start` of the heap that begins at word `first`.
+// Sifts `item` down from index `start` of the heap that starts at word `first`.
 fn sink(first: u32, count: u32, start: u32, item: vec3u) {
     var at = start;
     loop {

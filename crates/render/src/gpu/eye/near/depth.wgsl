@@ -1,4 +1,4 @@
-// The nearest strand of each pixel that covers enough of it. Twin of `Nearest` in cpu/layers.rs.
+// The nearest strand in each pixel that covers enough of it. Twin of `Nearest` in cpu/layers.rs.
 
 // Twin of `Layers::LEAST_COVER`.
 const LEAST_COVER: f32 = 1.0 / 255.0;

@@ -2,7 +2,7 @@
 
 fn take(pixel: u32, fragment: Fragment) {
     let record = pixel * RECORD_WORDS;
-    // The farthest place belongs to the last slice.
+    // The farthest distance belongs to the last slice.
     let slice = min(u32(slice_of(record, fragment.depth)), u32(SLICES) - 1u);
     let word = record + BITS_AT + (slice >> 5u);
     let bit = 1u << (slice & 31u);
@@ -10,7 +10,7 @@ fn take(pixel: u32, fragment: Fragment) {
         atomicOr(&map[word], bit);
     }
     let slab = record + SLABS_AT + (slice >> 4u);
-    // Far from where it would begin at 0 again, and darker than anything that can be seen.
+    // Far from overflow, and darker than anything visible.
     if (atomicLoad(&map[slab]) < 0x40000000u) {
         atomicAdd(&map[slab], u32(optical_depth(opacity_of(fragment)) * DEPTH_ONE + 0.5));
     }

@@ -1,4 +1,4 @@
-// Light of the fragments, weighted by what comes past those before them.
+// Sums the light of fragments, weighted by the estimated transmittance in front of them.
 
 fn take(pixel: u32, fragment: Fragment) {
     let record = pixel * RECORD_WORDS;
@@ -16,7 +16,7 @@ fn take(pixel: u32, fragment: Fragment) {
     let depth = (before + share * own_slab) / DEPTH_ONE;
     let weight = exp(-depth) * opacity_of(fragment) * LIGHT_ONE;
     if (before > 8.0 * DEPTH_ONE) {
-        // A three-thousandth comes past.
+        // 1/3000 of the light remains.
         return;
     }
     let light = vec3u(clamp(fragment.color, vec3f(0.0), vec3f(64.0)) * weight + 0.5);

@@ -1,6 +1,6 @@
-// What occupancy order keeps of a pixel, in words: the farthest and the nearest depth, the latter as it is and the former
-// turned round so that 0 is none; a bit for each of 128 slices of the distances between; the optical depth of each of 8 slabs
-// of 16 slices and, once they are summed, of all up to it, in 2^-16; and the weighted light, in 2^-14, with the sum of the weights. Twin of
+// The record of a pixel, in words: the farthest depth, with inverted bits so that 0 means none, and the nearest depth; one bit for
+// each of 128 slices of the distances between; the optical depth in units of 2^-16 of each of 8 slabs of 16 slices, or after the
+// sums pass of all slabs up to it; and the weighted light in units of 2^-14, with the sum of the weights. Twin of
 // cpu/transparency/occupancy.rs.
 
 const RECORD_WORDS: u32 = 18u;
@@ -17,7 +17,7 @@ fn distance_of(depth: f32) -> f32 {
     return 1.0 / max(depth, 1e-9);
 }
 
-// Where a distance lies between the nearest and the farthest: slice as a whole and a broken part.
+// The position of a distance between the nearest and the farthest: slice index and fraction.
 fn slice_of(record: u32, depth: f32) -> f32 {
     let near = distance_of(bitcast<f32>(atomicLoad(&map[record])));
     let far = distance_of(bitcast<f32>(~atomicLoad(&map[record + 1u])));

@@ -1,4 +1,4 @@
-// Sets the sum right, so that all fragments together cover what they must: the estimate dims it.
+// Normalises the sum to the exact total opacity, because the estimate dims it.
 
 fn pixel_pass(pixel: u32) {
     let record = pixel * RECORD_WORDS;

@@ -1,10 +1,10 @@
-// What opaque strands keep of a pixel: for each of its samples the nearest depth, and the colour there with an exponent that
-// the three share. Twin of cpu/transparency/opaque.rs.
+// The record of a pixel: for each of its samples the nearest depth, and its colour with a shared exponent. Twin of
+// cpu/transparency/opaque.rs.
 
 const RECORD_WORDS: u32 = 8u;
 
-// Nine bits a colour and five for the exponent, which come first: of equal depths the brightest wins, so that the picture
-// does not depend on the order of threads.
+// Nine bits per channel, and five for the exponent in the highest bits: at equal depth the brightest wins, so that the picture does
+// not depend on the order of threads.
 fn pack_color(color: vec3f) -> u32 {
     let c = clamp(color, vec3f(0.0), vec3f(65408.0));
     let most = max(c.r, max(c.g, c.b));

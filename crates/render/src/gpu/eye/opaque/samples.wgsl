@@ -1,6 +1,6 @@
-// Samples of a pixel that an opacity takes: as many as its fourths, rounded up or down by a noise of the pixel and the
-// strand, from one on that is the strand's own. Strands of a pixel take different samples, so that many thin ones add up.
-// Twin of `covered_samples` in cpu/hair/list.rs.
+// The samples of a pixel that an opacity covers: their number is four times the opacity, rounded up or down by a hash of the pixel and
+// the strand; the first one depends on the strand. Strands of a pixel cover different samples, so that many thin ones add up. Twin of
+// `covered_samples` in cpu/hair/list.rs.
 fn covered_samples(fragment: Fragment) -> u32 {
     let hash = fragment.hash;
     let pixel = vec2f(fragment.at);

@@ -1,4 +1,4 @@
-// The average of all fragments, as often as there are.
+// The average of all fragments, blended as many times as there are fragments.
 
 fn pixel_pass(pixel: u32) {
     let record = pixel * RECORD_WORDS;

@@ -3,7 +3,7 @@
 use lovelock_gpu::{Constant, Gpu, GpuError, Kernel, ShaderPart};
 
 use super::Pass;
-use crate::gpu::Ask;
+use crate::gpu::PointLookup;
 
 /// The number of cached sets of kernels, so that switching a setting back and forth does not recompile.
 const MOST_KEPT: usize = 8;
@@ -13,7 +13,7 @@ const MOST_KEPT: usize = 8;
 pub(super) struct Kernels {
     constants: Vec<Constant>,
     pub passes: Vec<Kernel>,
-    pub ask: Ask,
+    pub lookup: PointLookup,
 }
 
 /// The cached sets of kernels of a method, at least one. The first one is in use.
@@ -27,9 +27,9 @@ impl Kernels {
         query: &[ShaderPart],
         constants: Vec<Constant>,
     ) -> Result<Self, GpuError> {
-        let ask = Ask::new(gpu, query, true, &constants)?;
+        let lookup = PointLookup::new(gpu, query, true, &constants)?;
         let passes = passes.iter().map(|pass| pass.kernel(gpu, &constants)).collect::<Result<_, _>>()?;
-        Ok(Self { constants, passes, ask })
+        Ok(Self { constants, passes, lookup })
     }
 }
 

@@ -20,7 +20,8 @@ use self::kernels::KernelSets;
 use self::list::{List, Share, Unsettled};
 use super::{TexelFilter, TexelFrame, TexelMethod};
 use crate::gpu::{
-    Ask, Buffer, EXP, GpuColumns, GpuShadow, GpuShadowError, GpuShadowInput, GpuTargets, fits_device, wgsl,
+    Buffer, EXP, GpuColumns, GpuShadow, GpuShadowError, GpuShadowInput, GpuTargets, PointLookup, fits_device,
+    wgsl,
 };
 use crate::methods::texels::map::depth_per_texel;
 use crate::{ShadowError, ShadowReport, ShadowSettings};
@@ -171,7 +172,7 @@ impl<M: GpuTexelMethod> TexelShadow<M> {
     /// Every composed shader with its label.
     pub(crate) fn shaders() -> Vec<(String, ShaderSource)> {
         let passes = M::PASSES.iter().map(|pass| (pass.name.to_owned(), pass.source()));
-        passes.chain(Ask::shaders(&Self::query(), true)).collect()
+        passes.chain(PointLookup::shaders(&Self::query(), true)).collect()
     }
 
     /// The constants of all shaders.
@@ -320,9 +321,9 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
         Ok(())
     }
 
-    fn ask(&mut self, slot: usize, gpu: &Gpu, commands: &mut Commands, targets: &GpuTargets) {
+    fn look_up(&mut self, slot: usize, gpu: &Gpu, commands: &mut Commands, targets: &GpuTargets) {
         let Some(map) = self.maps.get(slot) else { return };
-        self.kernels.chosen().ask.run(gpu, commands, slot, &map.resources(), targets);
+        self.kernels.chosen().lookup.run(gpu, commands, slot, &map.resources(), targets);
     }
 
     fn columns_size(&self, slot: usize) -> u32 {
@@ -338,7 +339,7 @@ impl<M: GpuTexelMethod + Debug> GpuShadow for TexelShadow<M> {
     ) -> Option<GpuColumns> {
         let map = self.maps.get(slot)?;
         let frame = map.frame?;
-        self.kernels.chosen().ask.write_columns(gpu, commands, &map.resources(), frame.resolution, into);
+        self.kernels.chosen().lookup.write_columns(gpu, commands, &map.resources(), frame.resolution, into);
         Some(GpuColumns { size: frame.resolution, uv_from_world: frame.uv_from_world() })
     }
 

@@ -9,7 +9,7 @@ use lovelock_gpu::{Commands, Gpu, GpuError, Kernel, ShaderPart, ShaderSource, re
 use super::cpu::fixed_point_depth;
 use super::{Lattice, VoxelDeposit, VoxelFilter};
 use crate::gpu::{
-    Ask, Buffer, GpuColumns, GpuShadow, GpuShadowError, GpuShadowInput, GpuTargets, fits_device, wgsl,
+    Buffer, GpuColumns, GpuShadow, GpuShadowError, GpuShadowInput, GpuTargets, PointLookup, fits_device, wgsl,
 };
 use crate::{ShadowMethod, ShadowReport, ShadowSettings};
 
@@ -55,7 +55,7 @@ pub(crate) struct GpuVoxelMap {
     segments: Kernel,
     points: Kernel,
     sum: Kernel,
-    ask: Ask,
+    lookup: PointLookup,
     /// One bit per cell, needed during a build. All lights share the buffer.
     full: Buffer,
     maps: Vec<Map>,
@@ -106,7 +106,7 @@ impl GpuVoxelMap {
             segments: Kernel::new(gpu, DENSITY_PASS, &deposit_source(), "deposit_segments")?,
             points: Kernel::new(gpu, DENSITY_PASS, &deposit_source(), "deposit_points")?,
             sum: Kernel::new(gpu, SUM_PASS, &sum_source(), "sum_columns")?,
-            ask: Ask::new(gpu, &QUERY, true, &[])?,
+            lookup: PointLookup::new(gpu, &QUERY, true, &[])?,
             full: Buffer::new(gpu, "full voxels"),
             maps: Vec::new(),
         })
@@ -115,7 +115,7 @@ impl GpuVoxelMap {
     /// Every composed shader with its label.
     pub(crate) fn shaders() -> Vec<(String, ShaderSource)> {
         let passes = [(DENSITY_PASS.to_owned(), deposit_source()), (SUM_PASS.to_owned(), sum_source())];
-        passes.into_iter().chain(Ask::shaders(&QUERY, true)).collect()
+        passes.into_iter().chain(PointLookup::shaders(&QUERY, true)).collect()
     }
 }
 
@@ -178,9 +178,9 @@ impl GpuShadow for GpuVoxelMap {
         Ok(())
     }
 
-    fn ask(&mut self, slot: usize, gpu: &Gpu, commands: &mut Commands, targets: &GpuTargets) {
+    fn look_up(&mut self, slot: usize, gpu: &Gpu, commands: &mut Commands, targets: &GpuTargets) {
         let Some(map) = self.maps.get(slot) else { return };
-        self.ask.run(gpu, commands, slot, &map.resources(), targets);
+        self.lookup.run(gpu, commands, slot, &map.resources(), targets);
     }
 
     fn columns_size(&self, slot: usize) -> u32 {
@@ -196,7 +196,7 @@ impl GpuShadow for GpuVoxelMap {
     ) -> Option<GpuColumns> {
         let map = self.maps.get(slot)?;
         let lattice = map.lattice?;
-        self.ask.write_columns(gpu, commands, &map.resources(), lattice.resolution, into);
+        self.lookup.write_columns(gpu, commands, &map.resources(), lattice.resolution, into);
         Some(GpuColumns { size: lattice.resolution, uv_from_world: lattice.uv_from_world() })
     }
 

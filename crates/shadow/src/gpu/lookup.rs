@@ -1,48 +1,48 @@
-//! Asking a map at many points, whatever its method.
+//! Looking up many points in a map of any method.
 
 use bytemuck::{Pod, Zeroable};
 use lovelock_gpu::{Commands, Constant, Gpu, GpuError, Kernel, ShaderPart, ShaderSource, wgpu};
 
 use super::{EXP, GpuTargets, wgsl};
 
-const ASK: ShaderPart = wgsl!("gpu/", "ask.wgsl");
+const LOOKUP: ShaderPart = wgsl!("gpu/", "lookup.wgsl");
 const COLUMNS: ShaderPart = wgsl!("gpu/", "columns.wgsl");
 
-/// Twin of `Ask` in ask.wgsl.
+/// Twin of `Lookup` in lookup.wgsl.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
-struct AskUniform {
+struct LookupUniform {
     count: u32,
     stride: u32,
     slot: u32,
     sums: u32,
 }
 
-/// The two kernels that read a method's map: at points, and behind the whole hair.
+/// The two kernels that read the map of a method: at points, and behind the whole hair.
 #[derive(Debug)]
-pub(crate) struct Ask {
+pub(crate) struct PointLookup {
     points: Kernel,
     columns: Option<Kernel>,
-    /// Stands in where no sum is wanted.
+    /// Bound where no sum is wanted.
     no_sum: wgpu::Buffer,
 }
 
-/// What composes [`Ask`]'s shaders from the query of a method.
+/// The source of a shader of [`PointLookup`], composed from the query of a method.
 fn source(query: &[ShaderPart], last: ShaderPart) -> ShaderSource {
     let parts: Vec<_> = [EXP].iter().chain(query).copied().chain([last]).collect();
     ShaderSource::new(&parts)
 }
 
-impl Ask {
-    /// `query` defines `hair_transmittance` and, where `columns` is set, `behind_column` and `column_count`; `constants` are
-    /// those of its `override`s.
+impl PointLookup {
+    /// `query` defines `hair_transmittance` and, if `columns` is set, `behind_column` and `column_count`. `constants` are the
+    /// values of its `override`s.
     pub fn new(
         gpu: &Gpu,
         query: &[ShaderPart],
         columns: bool,
         constants: &[Constant],
     ) -> Result<Self, GpuError> {
-        let points = Kernel::specialised(gpu, "ask", &source(query, ASK), "ask_points", constants)?;
+        let points = Kernel::specialised(gpu, "lookup", &source(query, LOOKUP), "look_up_points", constants)?;
         let write =
             || Kernel::specialised(gpu, "columns", &source(query, COLUMNS), "write_columns", constants);
         let columns = columns.then(write).transpose()?;
@@ -57,14 +57,14 @@ impl Ask {
 
     /// The composed shaders with their labels.
     pub fn shaders(query: &[ShaderPart], columns: bool) -> Vec<(String, ShaderSource)> {
-        let mut all = vec![("ask".to_owned(), source(query, ASK))];
+        let mut all = vec![("lookup".to_owned(), source(query, LOOKUP))];
         if columns {
             all.push(("columns".to_owned(), source(query, COLUMNS)));
         }
         all
     }
 
-    /// Asks at the targets; `map` holds what the query binds.
+    /// Encodes looking up the targets. `map` holds the bindings of the query.
     pub fn run(
         &self,
         gpu: &Gpu,
@@ -74,15 +74,15 @@ impl Ask {
         targets: &GpuTargets,
     ) {
         let sum = targets.sum.filter(|_| slot == 0);
-        let uniform = AskUniform {
+        let uniform = LookupUniform {
             count: targets.count,
             stride: targets.stride,
             slot: slot as u32,
             sums: u32::from(sum.is_some()),
         };
         let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("ask"),
-            size: size_of::<AskUniform>() as u64,
+            label: Some("lookup"),
+            size: size_of::<LookupUniform>() as u64,
             usage: wgpu::BufferUsages::UNIFORM,
             mapped_at_creation: true,
         });
@@ -101,7 +101,7 @@ impl Ask {
         commands.compute("shadow/ask", |pass| self.points.run(pass, &group, u64::from(targets.count)));
     }
 
-    /// Writes what lies behind all hair into a texture, of `size` by `size` texels.
+    /// Encodes writing the transmittance behind all hair into `size` by `size` texels of a texture.
     pub fn write_columns(
         &self,
         gpu: &Gpu,
@@ -130,28 +130,28 @@ mod tests {
     #[test]
     fn the_uniform_has_the_layout_of_every_shader() {
         let expected = [
-            offset_of!(AskUniform, count),
-            offset_of!(AskUniform, stride),
-            offset_of!(AskUniform, slot),
-            offset_of!(AskUniform, sums),
-            size_of::<AskUniform>(),
+            offset_of!(LookupUniform, count),
+            offset_of!(LookupUniform, stride),
+            offset_of!(LookupUniform, slot),
+            offset_of!(LookupUniform, sums),
+            size_of::<LookupUniform>(),
         ];
-        for (label, source) in all_shaders().iter().filter(|(label, _)| label.ends_with("ask")) {
-            assert_eq!(layout_in_shader(source, "Ask"), expected, "{label}");
+        for (label, source) in all_shaders().iter().filter(|(label, _)| label.ends_with("lookup")) {
+            assert_eq!(layout_in_shader(source, "Lookup"), expected, "{label}");
         }
     }
 
     #[test]
     fn another_layout_is_found_out() {
         let part = |text| ShaderPart { name: "", text };
-        let right = wgsl!("gpu/", "ask.wgsl").text;
+        let right = wgsl!("gpu/", "lookup.wgsl").text;
         let wrong = right.replacen(
             "    slot: u32,\n    sums: u32,",
             "    sums: u32,\n    more: u32,\n    slot: u32,",
             1,
         );
         let query = part("fn hair_transmittance(p: vec3f) -> f32 { return 1.0; }");
-        let layout = |text| layout_in_shader(&ShaderSource::new(&[query, part(text)]), "Ask");
+        let layout = |text| layout_in_shader(&ShaderSource::new(&[query, part(text)]), "Lookup");
         assert_ne!(layout(Box::leak(wrong.into_boxed_str())), layout(right));
     }
 }
