@@ -1,4 +1,8 @@
-//! Small parts that several crates need and none owns. One thing stands here once; no crate of the workspace is below.
+//! Small parts that several crates need and none owns. Nothing here depends on another crate of the workspace.
 
+pub mod clock;
 pub mod glb;
 pub mod numbers;
+pub mod random;
+pub mod statistics;
+pub mod triangle;

@@ -5,9 +5,16 @@ pub fn within(value: f32, low: f32, high: f32, fallback: f32) -> f32 {
     if value.is_nan() { fallback } else { value.clamp(low, high) }
 }
 
+/// Hermite interpolation from 0 at `low` to 1 at `high`, and constant beyond; `low` may be the larger of the two.
+#[inline]
+pub fn smoothstep(low: f32, high: f32, x: f32) -> f32 {
+    let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
 #[cfg(test)]
 mod tests {
-    use super::within;
+    use super::{smoothstep, within};
 
     #[test]
     fn values_are_clamped_and_nan_is_replaced() {
@@ -15,5 +22,11 @@ mod tests {
         assert_eq!(within(-1.0, 0.0, 1.0, 0.25), 0.0);
         assert_eq!(within(f32::INFINITY, 0.0, 1.0, 0.25), 1.0);
         assert_eq!(within(f32::NAN, 0.0, 1.0, 0.25), 0.25);
+    }
+
+    #[test]
+    fn the_smooth_step_is_constant_outside_and_runs_in_either_direction() {
+        assert_eq!([1.0, 2.0, 3.0, 4.0, 5.0].map(|x| smoothstep(2.0, 4.0, x)), [0.0, 0.0, 0.5, 1.0, 1.0]);
+        assert_eq!([1.0, 2.0, 3.0, 4.0, 5.0].map(|x| smoothstep(4.0, 2.0, x)), [1.0, 1.0, 0.5, 0.0, 0.0]);
     }
 }

@@ -2,7 +2,9 @@
 
 use wgpu_profiler::{GpuProfiler, GpuProfilerQuery, GpuProfilerSettings, GpuTimerQueryResult};
 
-use crate::{Gpu, GpuError, Stopwatch};
+use lovelock_base::clock::Stopwatch;
+
+use crate::{Gpu, GpuError};
 
 /// The duration of one pass on the device. Passes with the same name are added up.
 #[derive(Clone, Debug, PartialEq)]

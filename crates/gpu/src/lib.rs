@@ -6,7 +6,6 @@ mod device;
 mod kernel;
 mod readback;
 mod shader;
-mod timer;
 
 pub use buffer::{GrowBuffer, constants};
 pub use commands::{Commands, PassTime, PassTimer};
@@ -14,5 +13,4 @@ pub use device::{Gpu, GpuError};
 pub use kernel::{Constant, Kernel, THREADS};
 pub use readback::{Readback, read_buffer, read_texture_rgba8};
 pub use shader::{ShaderPart, ShaderSource, check_shader};
-pub use timer::Stopwatch;
 pub use wgpu;

@@ -18,7 +18,6 @@ mod obstacle;
 mod plain_head;
 mod polyline;
 mod presets;
-mod rng;
 mod scalp;
 mod scalp_index;
 mod settings;

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-use crate::settings::within;
+use lovelock_base::numbers::within;
 
 /// What hair is made of and how thick it is: everything about its appearance that no light changes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

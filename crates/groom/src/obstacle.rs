@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::settings::within;
+use lovelock_base::numbers::within;
 
 /// A solid that hair is combed around: the body without its hair, in head space.
 pub trait Obstacle: Sync {

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use thiserror::Error;
 
-use crate::rng::Rng;
+use lovelock_base::random::SplitMix64;
 
 /// A triangle mesh of the head in head space, with a mask that says where hair grows.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -107,7 +107,7 @@ impl Scalp {
                 total
             })
             .collect();
-        let mut rng = Rng::new(seed, 0x5ca1);
+        let mut rng = SplitMix64::of_stream(seed, 0x5ca1);
         let mut points = Vec::with_capacity(if total > 0.0 { count } else { 0 });
         // A triangle across the hairline is refused in part: some tries more than points.
         for _ in 0..count.saturating_mul(64) {

@@ -1,6 +1,7 @@
 //! Closest points of a scalp by a uniform grid.
 
 use glam::{IVec3, Vec3};
+use lovelock_base::triangle::closest_barycentric;
 
 use crate::{Scalp, ScalpPoint};
 
@@ -72,7 +73,7 @@ impl<'a> ScalpIndex<'a> {
             self.each_of_shell(home, shell, |triangle| {
                 let corners =
                     self.scalp.triangles[triangle as usize].map(|v| self.scalp.positions[v as usize]);
-                let b = closest_barycentric(p, corners);
+                let b = closest_barycentric(p, &corners);
                 let d2 = (corners[0] * b[0] + corners[1] * b[1] + corners[2] * b[2]).distance_squared(p);
                 // The lower index wins a tie, so that the answer does not depend on the order of the search.
                 if best.is_none_or(|(d, t, _)| d2 < d || (d2 == d && triangle < t)) {
@@ -124,41 +125,4 @@ impl<'a> ScalpIndex<'a> {
             }
         }
     }
-}
-
-/// Barycentric coordinates of the point of a triangle closest to `p` (Ericson 2005, "Real-time collision
-/// detection", §5.1.5).
-fn closest_barycentric(p: Vec3, [a, b, c]: [Vec3; 3]) -> [f32; 3] {
-    let (ab, ac) = (b - a, c - a);
-    let ratio = |n: f32, d: f32| if d > 0.0 { (n / d).clamp(0.0, 1.0) } else { 0.0 };
-    let (d1, d2) = (ab.dot(p - a), ac.dot(p - a));
-    if d1 <= 0.0 && d2 <= 0.0 {
-        return [1.0, 0.0, 0.0];
-    }
-    let (d3, d4) = (ab.dot(p - b), ac.dot(p - b));
-    if d3 >= 0.0 && d4 <= d3 {
-        return [0.0, 1.0, 0.0];
-    }
-    let vc = d1 * d4 - d3 * d2;
-    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        let t = ratio(d1, d1 - d3);
-        return [1.0 - t, t, 0.0];
-    }
-    let (d5, d6) = (ab.dot(p - c), ac.dot(p - c));
-    if d6 >= 0.0 && d5 <= d6 {
-        return [0.0, 0.0, 1.0];
-    }
-    let vb = d5 * d2 - d1 * d6;
-    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        let t = ratio(d2, d2 - d6);
-        return [1.0 - t, 0.0, t];
-    }
-    let va = d3 * d6 - d5 * d4;
-    if va <= 0.0 && d4 >= d3 && d5 >= d6 {
-        let t = ratio(d4 - d3, (d4 - d3) + (d5 - d6));
-        return [0.0, 1.0 - t, t];
-    }
-    let sum = va + vb + vc;
-    let (v, w) = (ratio(vb, sum), ratio(vc, sum));
-    [1.0 - v - w, v, w]
 }

@@ -1,5 +1,6 @@
 //! Everything that a stylist sets: the controls of growing.
 
+use lovelock_base::numbers::within;
 use serde::{Deserialize, Serialize};
 
 use crate::{HairLook, Preset};
@@ -151,9 +152,4 @@ impl GroomSettings {
     pub fn segment_count(&self) -> usize {
         self.strand_count() * self.segments_per_strand as usize
     }
-}
-
-/// `value` in `low..=high`, and `fallback` for what is not a number.
-pub(crate) fn within(value: f32, low: f32, high: f32, fallback: f32) -> f32 {
-    if value.is_nan() { fallback } else { value.clamp(low, high) }
 }

@@ -1,6 +1,6 @@
 //! How far values lie from the truth.
 
-use crate::spread::percentile;
+use lovelock_base::statistics::percentile;
 use serde::{Deserialize, Serialize};
 
 /// How far values lie from the truth, in the values' own unit.

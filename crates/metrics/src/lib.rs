@@ -26,7 +26,7 @@ pub use flip::{FlipMap, flip};
 pub use image::{Image, ImageError};
 pub use pareto::pareto;
 pub use psnr::psnr_db;
-pub use spread::{Spread, percentile};
+pub use spread::Spread;
 pub use ssim::ssim;
 pub use stability::{Stability, excess, flicker, pop, swim};
 pub use ticks::{Ticks, ticks};

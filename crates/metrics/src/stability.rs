@@ -1,6 +1,6 @@
 //! How calm values are that should not change, or should change only as the truth does.
 
-use crate::spread::percentile;
+use lovelock_base::statistics::percentile;
 use serde::{Deserialize, Serialize};
 
 /// How much values move, over all points and at each.

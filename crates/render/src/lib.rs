@@ -30,7 +30,7 @@ pub use gpu::{GpuRenderer, all_shaders};
 pub use known::KnownTransmittance;
 pub use layers::Layers;
 pub use light::{Light, MAX_LIGHTS};
-pub use lovelock_gpu::{Gpu, GpuError, PassTime, Stopwatch, check_shader};
+pub use lovelock_gpu::{Gpu, GpuError, PassTime, check_shader};
 pub use lovelock_shadow::voxel_map::{MapExtent, VoxelDeposit, VoxelFilter, VoxelMapSettings};
 pub use lovelock_shadow::{
     ClusterDeviation, ClusterSeeds, DeepOpacityMapsSettings, DensityClusteringSettings, ExactSettings,

@@ -1,7 +1,8 @@
 //! The shadow method of one frame on the CPU: one map per light, looked up once per strand point and once per vertex of the body.
 
 use glam::Vec3;
-use lovelock_gpu::{PassTime, Stopwatch};
+use lovelock_base::clock::Stopwatch;
+use lovelock_gpu::PassTime;
 use lovelock_groom::Strands;
 use lovelock_shadow::{ColumnMap, CpuShadow, LightFrame, ShadowError, ShadowInput, ShadowMethod, cpu_shadow};
 use rayon::prelude::*;

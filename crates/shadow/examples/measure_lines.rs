@@ -8,7 +8,7 @@ mod common;
 #[path = "../tests/common/grooms.rs"]
 mod grooms;
 
-use common::Random;
+use common::SplitMix64;
 use glam::Vec3;
 use grooms::Groom;
 use lovelock_groom::Preset;
@@ -24,8 +24,8 @@ fn main() {
         "| hairstyle | filter | lines | converged | swimming | build, fragments |\n|---|---|---|---|---|---|"
     );
     for groom in [Groom::tuft(), Groom::preset(Preset::Smooth), Groom::preset(Preset::Curly)] {
-        let mut random = Random(12);
-        let any = |random: &mut Random| {
+        let mut random = SplitMix64::new(12);
+        let any = |random: &mut SplitMix64| {
             (random.unit() * groom.strands.points() as f32) as usize % groom.strands.points()
         };
         let at: Vec<Vec3> = (0..POINTS).map(|_| groom.strands.point(any(&mut random))).collect();
@@ -70,7 +70,7 @@ fn measure(groom: &Groom, settings: &ShadowSettings, at: &[Vec3], truth: &[f32])
     let report = map.report();
     let squares = light.iter().zip(truth).map(|(a, b)| f64::from(a - b).powi(2));
     let error = (squares.sum::<f64>() / at.len() as f64).sqrt();
-    let mut random = Random(5);
+    let mut random = SplitMix64::new(5);
     let (mut sum, mut square) = (vec![0.0_f64; at.len()], vec![0.0_f64; at.len()]);
     for _ in 0..SHIFTS {
         let across = Vec3::new(0.0, random.unit(), random.unit()) * report.cell_size;

@@ -7,7 +7,7 @@ mod gpu;
 #[path = "common/grooms.rs"]
 mod grooms;
 
-use common::Random;
+use common::SplitMix64;
 use glam::Vec3;
 use gpu::{Built, device};
 use grooms::Groom;
@@ -52,15 +52,15 @@ const EXCESS: f32 = 0.001;
 
 /// Points of the hair, near it and beside it.
 fn points(strands: &Strands, seed: u64) -> Vec<Vec3> {
-    let mut random = Random(seed);
+    let mut random = SplitMix64::new(seed);
     (0..POINTS)
         .map(|i| {
             let at = (random.unit() * strands.points() as f32) as usize;
             let p = strands.point(at.min(strands.points() - 1));
             match i % 4 {
                 0 | 1 => p,
-                2 => p + 0.004 * random.cube(),
-                _ => p + 0.15 * random.cube(),
+                2 => p + 0.004 * random.signed_vec3(),
+                _ => p + 0.15 * random.signed_vec3(),
             }
         })
         .collect()

@@ -6,7 +6,7 @@ mod gpu;
 #[path = "common/grooms.rs"]
 mod grooms;
 
-use common::{HEAD, Random, SMOOTH, Style, grow, strands};
+use common::{HEAD, SMOOTH, SplitMix64, Style, grow, strands};
 use glam::Vec3;
 use gpu::{Built, Uploaded, buffer, device};
 use grooms::Groom;
@@ -27,8 +27,8 @@ fn hair(wisps: usize, seed: u64) -> Strands {
 
 /// Points around the head, on the hair, and what is no point.
 fn points_around(hair: &Strands) -> Vec<Vec3> {
-    let mut random = Random(5);
-    let mut points: Vec<_> = (0..300).map(|_| HEAD + 0.3 * random.cube()).collect();
+    let mut random = SplitMix64::new(5);
+    let mut points: Vec<_> = (0..300).map(|_| HEAD + 0.3 * random.signed_vec3()).collect();
     points.extend((0..hair.points()).step_by(1 + hair.points() / 500).map(|i| hair.point(i)));
     points.extend(NOWHERE);
     points
@@ -100,9 +100,9 @@ fn bad_hair() -> Vec<(&'static str, Strands)> {
     broken[90].truncate(1);
     broken[91].clear();
     // Through the middle of one texel and cell, at every depth and at one.
-    let mut random = Random(4);
+    let mut random = SplitMix64::new(4);
     let mut crowd = |spread: f32| {
-        let line = |random: &mut Random| {
+        let line = |random: &mut SplitMix64| {
             let middle = HEAD + light.x * spread * random.signed();
             vec![middle - 0.001 * light.y, middle + 0.001 * light.y]
         };

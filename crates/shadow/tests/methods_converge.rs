@@ -6,7 +6,7 @@ mod grooms;
 
 use std::sync::OnceLock;
 
-use common::Random;
+use common::SplitMix64;
 use glam::Vec3;
 use grooms::Groom;
 use lovelock_shadow::{Converged, ShadowInput, ShadowMethod, ShadowSettings, converged, cpu_shadow};
@@ -153,7 +153,7 @@ fn errors_are_those_measured_and_swapped_methods_are_found_out() {
 
 /// Some points of the strands, by chance: every n-th would be the same point of every strand.
 fn some(values: &[f32]) -> Vec<f32> {
-    let mut random = Random(12);
+    let mut random = SplitMix64::new(12);
     (0..500).map(|_| values[(random.unit() * values.len() as f32) as usize % values.len()]).collect()
 }
 
@@ -237,7 +237,7 @@ fn strands_thinner_than_they_are_cast_a_wrong_shadow() {
 
 /// Root mean square deviation of the light of points while the lattice is moved by parts of a texel.
 fn swimming(groom: &Groom, settings: &ShadowSettings) -> f64 {
-    let mut random = Random(5);
+    let mut random = SplitMix64::new(5);
     let size = built_size(groom, settings);
     let places: Vec<_> = (0..6)
         .map(|_| {

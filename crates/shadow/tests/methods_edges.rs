@@ -4,7 +4,7 @@ mod common;
 
 use std::sync::Arc;
 
-use common::{HEAD, Random, SMOOTH, Style, grow, strands, texel_methods};
+use common::{HEAD, SMOOTH, SplitMix64, Style, grow, strands, texel_methods};
 use glam::Vec3;
 use lovelock_groom::Strands;
 use lovelock_shadow::{
@@ -33,7 +33,7 @@ fn bad_hair() -> Vec<(&'static str, Strands)> {
     let light = LightFrame::new(LIGHT);
     let along = |i: usize| HEAD + light.x * 0.01 * i as f32;
     // Through the middle of one texel, at every depth.
-    let mut random = Random(4);
+    let mut random = SplitMix64::new(4);
     let crowd = |_| {
         let middle = light.x * 0.1 * random.signed();
         vec![HEAD + middle - 0.001 * light.y, HEAD + middle + 0.001 * light.y]
@@ -80,8 +80,8 @@ fn hostile(of: u32) -> ShadowSettings {
 }
 
 fn points_around(hair: &Strands) -> [Vec<f32>; 3] {
-    let mut random = Random(5);
-    let mut points: Vec<_> = (0..300).map(|_| HEAD + 0.3 * random.cube()).collect();
+    let mut random = SplitMix64::new(5);
+    let mut points: Vec<_> = (0..300).map(|_| HEAD + 0.3 * random.signed_vec3()).collect();
     points.extend((0..hair.points()).step_by(1 + hair.points() / 500).map(|i| hair.point(i)));
     for broken in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX] {
         points.extend([Vec3::splat(broken), Vec3::new(broken, 1.6, 0.0), Vec3::new(0.0, 1.6, broken)]);

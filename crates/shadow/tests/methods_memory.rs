@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{HEAD, Random, SMOOTH, Style, grow, strands, texel_methods};
+use common::{HEAD, SMOOTH, SplitMix64, Style, grow, strands, texel_methods};
 use glam::Vec3;
 use lovelock_groom::Strands;
 use lovelock_shadow::{LightFrame, ShadowError, ShadowInput, ShadowMethod, ShadowSettings, cpu_shadow};
@@ -26,11 +26,11 @@ fn finest() -> ShadowSettings {
 
 /// Strands that wander in a head-sized ball with steps of 5 mm, some 25 texels of the finest map.
 fn wandering(count: usize, segments: usize) -> Strands {
-    let mut random = Random(5);
+    let mut random = SplitMix64::new(5);
     let strand = |_| {
-        let mut p = 0.14 * random.cube();
+        let mut p = 0.14 * random.signed_vec3();
         let mut step = || {
-            p += 0.005 * random.cube().normalize_or(Vec3::X);
+            p += 0.005 * random.signed_vec3().normalize_or(Vec3::X);
             p = p.clamp_length_max(0.15);
             HEAD + p
         };

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::Random;
+use common::SplitMix64;
 use lovelock_shadow::methods::deep_opacity_maps::Layers;
 use lovelock_shadow::methods::density_clustering::Clustering;
 use lovelock_shadow::methods::exact::Sorted;
@@ -37,14 +37,14 @@ fn depths(from: f32, to: f32) -> Vec<f32> {
 }
 
 /// Bell-shaped about 0 with a standard deviation of 1.
-fn bell(random: &mut Random) -> f32 {
+fn bell(random: &mut SplitMix64) -> f32 {
     (0..12).map(|_| random.unit()).sum::<f32>() - 6.0
 }
 
 /// A texel with 100 fragments at depths 0 to 1 of a mixture of bells of random means and variances, as in the experiment
 /// of Mertens and others; all together have the given optical depth.
 fn mixture(bells: usize, optical_depth: f32, most_variance: f32, seed: u64) -> Vec<Fragment> {
-    let mut random = Random(seed);
+    let mut random = SplitMix64::new(seed);
     let of: Vec<_> = (0..bells).map(|_| (random.unit(), (most_variance * random.unit()).sqrt())).collect();
     let mut fragments = Vec::new();
     while fragments.len() < 100 {
@@ -131,7 +131,7 @@ fn seeds_toward_the_light_are_better_where_light_falls_off() {
 
 /// A dense clump, and perhaps one hair before it.
 fn clump(stray: bool, seed: u64) -> Vec<Fragment> {
-    let mut random = Random(seed);
+    let mut random = SplitMix64::new(seed);
     let mut fragments: Vec<_> = (0..60).map(|_| Fragment::new(0.55 + 0.4 * random.unit(), 0.08)).collect();
     if stray {
         fragments.push(Fragment::new(0.02 + 0.1 * random.unit(), 0.08));

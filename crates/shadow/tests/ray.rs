@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{CURLY, Random, Style, grow, strands};
+use common::{CURLY, SplitMix64, Style, grow, strands};
 use glam::Vec3;
 use lovelock_groom::Strands;
 use lovelock_shadow::voxel_map::VoxelMap;
@@ -33,7 +33,7 @@ fn nearest() -> ShadowSettings {
 
 /// Points of the hair, far apart in the list of them.
 fn some_points(hair: &Strands) -> Vec<Vec3> {
-    let mut random = Random(3);
+    let mut random = SplitMix64::new(3);
     (0..60).map(|_| hair.point((random.unit() * (hair.points() - 1) as f32) as usize)).collect()
 }
 

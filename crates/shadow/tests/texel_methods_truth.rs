@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{HEAD, Random, strands, texel_methods};
+use common::{HEAD, SplitMix64, strands, texel_methods};
 use glam::Vec3;
 use lovelock_groom::Strands;
 use lovelock_shadow::methods::exact::ExactMap;
@@ -149,10 +149,10 @@ fn converged_ribbons_cover_what_they_cover() {
 
 /// A box full of short strands across the light, scattered evenly: 0.2 m along it, 0.16 m across.
 fn scattered(light: &LightFrame, count: usize) -> Vec<Vec<Vec3>> {
-    let mut random = Random(3);
+    let mut random = SplitMix64::new(3);
     let mut made = corners(light);
     for i in 0..count {
-        let middle = Vec3::new(0.1, 0.08, 0.08) * random.cube();
+        let middle = Vec3::new(0.1, 0.08, 0.08) * random.signed_vec3();
         let half = 0.004 * if i % 2 == 0 { Vec3::Y } else { Vec3::Z };
         made.push([middle - half, middle + half].map(|p| HEAD + light.world_from_light(p)).to_vec());
     }

@@ -4,7 +4,7 @@ mod common;
 
 use std::num::NonZeroUsize;
 
-use common::{CURLY, HEAD, Random, SMOOTH, Style, grow, strands};
+use common::{CURLY, HEAD, SMOOTH, SplitMix64, Style, grow, strands};
 use glam::Vec3;
 use lovelock_groom::Strands;
 use lovelock_shadow::voxel_map::reference::{Addressing, DenseMap};
@@ -47,8 +47,8 @@ fn small(style: Style) -> Vec<Vec<Vec3>> {
 
 /// Points anywhere around the head: in hair, in the hollow, outside the map.
 fn anywhere(count: usize) -> Vec<Vec3> {
-    let mut random = Random(5);
-    (0..count).map(|_| HEAD + 0.5 * random.cube()).collect()
+    let mut random = SplitMix64::new(5);
+    (0..count).map(|_| HEAD + 0.5 * random.signed_vec3()).collect()
 }
 
 fn worst(map: &VoxelMap, dense: &DenseMap, points: impl Iterator<Item = Vec3>) -> f64 {
@@ -86,12 +86,12 @@ fn quick_and_plain_agree_on_hair_and_everywhere() {
 #[test]
 fn quick_and_plain_agree_on_strands_of_any_number_of_points() {
     // Points go through in blocks of 64: strands that are empty, single, and that end at, before and behind one.
-    let mut random = Random(21);
+    let mut random = SplitMix64::new(21);
     let lengths = [0, 1, 2, 63, 64, 65, 1, 0, 0, 127, 128, 62, 3, 190, 1, 1, 64, 0];
     let walk = |count: usize| {
-        let mut p = HEAD + 0.1 * random.cube();
+        let mut p = HEAD + 0.1 * random.signed_vec3();
         let step = |_| {
-            p += 0.01 * random.cube();
+            p += 0.01 * random.signed_vec3();
             p
         };
         (0..count).map(step).collect::<Vec<_>>()
@@ -275,10 +275,10 @@ fn hair_that_moves_with_the_head_does_not_swim() {
 /// Root of the mean variance of transmittance at the hair's points over random places of the lattice.
 fn swim(hair: &Strands, resolution: u32, filtered: bool) -> f64 {
     let cell = built(&input(hair, LIGHT), &settings(resolution)).lattice().expect("built").cell_size;
-    let mut random = Random(9);
+    let mut random = SplitMix64::new(9);
     let runs: Vec<Vec<f32>> = (0..6)
         .map(|_| {
-            let input = ShadowInput { anchor: HEAD + cell * random.cube(), ..input(hair, LIGHT) };
+            let input = ShadowInput { anchor: HEAD + cell * random.signed_vec3(), ..input(hair, LIGHT) };
             if filtered {
                 return at_points(&built(&input, &settings(resolution)), hair);
             }

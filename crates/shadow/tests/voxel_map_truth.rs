@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{CURLY, HEAD, Random, SMOOTH, Style, grow, resampled, strands};
+use common::{CURLY, HEAD, SMOOTH, SplitMix64, Style, grow, resampled, strands};
 use glam::Vec3;
 use lovelock_groom::Strands;
 use lovelock_shadow::voxel_map::reference::{Addressing, DenseMap};
@@ -45,7 +45,7 @@ fn small(style: Style) -> Strands {
 
 /// A box full of short strands across the light, evenly spread: 0.2 m along the light (down), 0.16 m across.
 fn slab(light: &LightFrame) -> Vec<Vec<Vec3>> {
-    let mut random = Random(3);
+    let mut random = SplitMix64::new(3);
     let count = 40_000;
     let mut made = Vec::new();
     for i in 0..count {

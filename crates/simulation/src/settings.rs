@@ -1,5 +1,6 @@
 //! What the artist can change about how hair moves.
 
+use lovelock_base::numbers::within;
 use lovelock_groom::Preset;
 use serde::{Deserialize, Serialize};
 
@@ -247,10 +248,6 @@ pub enum RepulsionMode {
     Centre,
     /// Down the gradient of the excess density, which has no preferred lattice planes.
     Pressure,
-}
-
-fn within(value: f32, min: f32, max: f32, default: f32) -> f32 {
-    if value.is_nan() { default } else { value.clamp(min, max) }
 }
 
 #[cfg(test)]

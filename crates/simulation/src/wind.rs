@@ -4,6 +4,7 @@
 //! Eddies move the air perpendicular to the direction of their waves, so the flow is solenoidal.
 
 use glam::{DVec3, Vec3};
+use lovelock_base::random::SplitMix64;
 
 use crate::lanes::{LANES, Lane3, ZERO3, at, put};
 use crate::settings::Wind;
@@ -38,7 +39,7 @@ impl WindField {
     pub(crate) fn new(wind: &Wind, elapsed_secs: f64, air_travel: DVec3, origin: Vec3) -> Self {
         let mean = mean_of(wind);
         let Some(along) = mean.try_normalize() else { return Self::default() };
-        let mut random = Random(u64::from(wind.seed));
+        let mut random = SplitMix64::new(u64::from(wind.seed));
         let mut field = Self { mean, waves: [Wave::default(); GUSTS + EDDIES], blows: true };
         for (n, out) in field.waves.iter_mut().enumerate() {
             let start = random.unit();
@@ -50,14 +51,15 @@ impl WindField {
                 amplitude = mean * (wind.gusts * [0.5, 0.3, 0.2][n]);
                 carried = 0.0;
             } else {
-                let direction = random.direction();
+                let direction = random_direction(&mut random);
                 let length = 0.15 * 1.5_f32.powi((n - GUSTS) as i32);
                 wave = direction / length;
                 // Carried by the wind, and slowly changing by themselves.
                 hertz = 0.3 * (random.unit() - 0.5);
                 carried = wave.as_dvec3().dot(air_travel);
-                let across =
-                    direction.cross(random.direction()).normalize_or(direction.any_orthonormal_vector());
+                let across = direction
+                    .cross(random_direction(&mut random))
+                    .normalize_or(direction.any_orthonormal_vector());
                 amplitude = across * (wind.speed * wind.turbulence * (2.0 / EDDIES as f32).sqrt());
             }
             let world = origin.as_dvec3().dot(wave.as_dvec3());
@@ -114,23 +116,11 @@ fn sine_of_turns(t: f32) -> f32 {
     x * (1.0 + s * (-1.0 / 6.0 + s * (1.0 / 120.0 - s * (1.0 / 5040.0))))
 }
 
-/// `SplitMix64` (Steele, Lea, Flood 2014).
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f32 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 40) as f32 / (1_u64 << 24) as f32
-    }
-
-    fn direction(&mut self) -> Vec3 {
-        let (z, turn) = (2.0 * self.unit() - 1.0, self.unit());
-        let r = (1.0 - z * z).max(0.0).sqrt();
-        Vec3::new(r * sine_of_turns(turn + 0.25), r * sine_of_turns(turn), z)
-    }
+/// A unit vector, uniform over the sphere.
+fn random_direction(random: &mut SplitMix64) -> Vec3 {
+    let (z, turn) = (2.0 * random.unit() - 1.0, random.unit());
+    let r = (1.0 - z * z).max(0.0).sqrt();
+    Vec3::new(r * sine_of_turns(turn + 0.25), r * sine_of_turns(turn), z)
 }
 
 #[cfg(test)]

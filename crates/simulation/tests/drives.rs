@@ -2,23 +2,16 @@
 //! same in every run.
 
 use glam::{Affine3A, Vec3};
+use lovelock_base::random::SplitMix64;
 use lovelock_groom::{GuideFrame, Guides};
 
 #[path = "common/drive.rs"]
 mod drive;
 use drive::{Coverage, drive, is_sound};
 
-/// `SplitMix64` (Steele, Lea, Flood 2014).
 fn bytes(seed: u64, count: usize) -> Vec<u8> {
-    let mut state = seed;
-    (0..count)
-        .map(|_| {
-            state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-            let z = (state ^ (state >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-            let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-            (z >> 56) as u8
-        })
-        .collect()
+    let mut random = SplitMix64::new(seed);
+    (0..count).map(|_| (random.bits() >> 56) as u8).collect()
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Other programs, and the clock.
 
 use anyhow::{Context as _, ensure};
+use lovelock_base::clock::Stopwatch;
 use std::io::{BufRead as _, BufReader, Read, Write};
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -83,9 +84,8 @@ pub(crate) fn shown(command: &Command) -> String {
 }
 
 /// How long something took.
-#[expect(clippy::disallowed_methods, reason = "chores tell how long they took; no result depends on it")]
 pub(crate) fn timed<T>(work: impl FnOnce() -> T) -> (T, Duration) {
-    let start = std::time::Instant::now();
+    let watch = Stopwatch::start();
     let result = work();
-    (result, start.elapsed())
+    (result, watch.elapsed())
 }

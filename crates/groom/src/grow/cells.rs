@@ -4,8 +4,8 @@ use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
 use super::comb::Comb;
-use crate::rng::Rng;
 use crate::{GroomSettings, ScalpIndex, ScalpPoint};
+use lovelock_base::random::SplitMix64;
 
 /// Samples of the scalp for each cell while the cells relax.
 const SAMPLES_PER_CELL: usize = 32;
@@ -80,7 +80,7 @@ fn cell(
     members: &[ScalpPoint],
     stream: u64,
 ) -> Cell {
-    let mut rng = Rng::new(settings.seed, 0xce11_0000 + stream);
+    let mut rng = SplitMix64::of_stream(settings.seed, 0xce11_0000 + stream);
     let on_scalp = index.closest(middle).expect("a scalp with samples has triangles");
     let own = [on_scalp];
     let members = if members.is_empty() { &own[..] } else { members };
@@ -106,7 +106,7 @@ fn choose(
     index: &ScalpIndex<'_>,
     members: &[ScalpPoint],
     count: usize,
-    rng: &mut Rng,
+    rng: &mut SplitMix64,
 ) -> Vec<ScalpPoint> {
     let mut chosen = Vec::with_capacity(count);
     if count > 300 {

@@ -2,9 +2,9 @@
 
 use glam::Vec3;
 
-use super::smoothstep;
-use crate::rng::Rng;
 use crate::{GroomSettings, ScalpIndex};
+use lovelock_base::numbers::smoothstep;
+use lovelock_base::random::SplitMix64;
 
 /// Points of the parting's polyline.
 const PART_POINTS: usize = 28;
@@ -60,7 +60,7 @@ impl Comb {
         let centre = 0.5 * (low + high);
         let half = (0.5 * (high - low)).max(Vec3::splat(1e-3));
 
-        let mut rng = Rng::new(settings.seed, 0xc0b);
+        let mut rng = SplitMix64::of_stream(settings.seed, 0xc0b);
         let wobble = [rng.angle(), rng.angle()];
         let mut parting = Vec::with_capacity(PART_POINTS);
         for k in 0..PART_POINTS {

@@ -3,9 +3,9 @@
 use super::cells::Cell;
 use super::comb::Comb;
 use super::path::Path;
-use super::smoothstep;
 use crate::GroomSettings;
-use crate::rng::Rng;
+use lovelock_base::numbers::smoothstep;
+use lovelock_base::random::SplitMix64;
 
 /// The length of each wisp, metres.
 ///
@@ -38,7 +38,7 @@ pub(super) fn lengths(settings: &GroomSettings, comb: &Comb, cells: &[Cell], pat
             if cell.fringe > 0.0 {
                 length = length.min(settings.fringe_length);
             }
-            let chance = Rng::new(settings.seed, 0xc07_0000 + cell.stream).bell();
+            let chance = SplitMix64::of_stream(settings.seed, 0xc07_0000 + cell.stream).bell();
             (length * (1.0 + 0.5 * settings.length_variation * chance)).max(0.012)
         })
         .collect()

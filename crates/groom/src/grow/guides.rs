@@ -2,14 +2,15 @@
 
 use glam::Vec3;
 
+use super::GUIDE_POINTS;
 use super::cells::Cell;
 use super::comb::Comb;
 use super::path::Path;
-use super::{GUIDE_POINTS, smoothstep};
 use crate::frame::{reference_normal, transport};
 use crate::polyline::{Reach, next_at, sample};
-use crate::rng::Rng;
 use crate::{GroomSettings, Obstacle, ScalpIndex};
+use lovelock_base::numbers::smoothstep;
+use lovelock_base::random::SplitMix64;
 
 /// How a guide is looked for along its way, in segments of it.
 const REACH: Reach = Reach { beyond: 8.0, step: 0.25 };
@@ -35,7 +36,7 @@ pub(super) fn around(
     path: &Path,
     length: f32,
 ) -> [[Vec3; GUIDE_POINTS]; 3] {
-    let mut rng = Rng::new(settings.seed, 0x901d_0000 + cell.stream);
+    let mut rng = SplitMix64::of_stream(settings.seed, 0x901d_0000 + cell.stream);
     let start = rng.angle();
     let root = cell.centre;
     let along =

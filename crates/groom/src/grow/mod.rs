@@ -94,9 +94,3 @@ pub fn grow(
         look: settings.look,
     })
 }
-
-/// The smooth step from 0 at `low` to 1 at `high`.
-fn smoothstep(low: f32, high: f32, x: f32) -> f32 {
-    let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
-    t * t * (3.0 - 2.0 * t)
-}

@@ -4,9 +4,9 @@ use glam::Vec3;
 
 use super::cells::Cell;
 use super::comb::Comb;
-use super::smoothstep;
-use crate::rng::Rng;
 use crate::{GroomSettings, Obstacle};
+use lovelock_base::numbers::smoothstep;
+use lovelock_base::random::SplitMix64;
 
 /// Distance between the points of a path, metres.
 const STEP: f32 = 0.004;
@@ -56,7 +56,7 @@ pub(super) fn height(settings: &GroomSettings, comb: &Comb, loft: f32, arc: f32,
 
 /// Traces the way of the wisp of `cell`, as far as the longest hair may reach.
 pub(super) fn trace(settings: &GroomSettings, comb: &Comb, obstacle: &dyn Obstacle, cell: &Cell) -> Path {
-    let mut rng = Rng::new(settings.seed, 0xfa7_0000 + cell.stream);
+    let mut rng = SplitMix64::of_stream(settings.seed, 0xfa7_0000 + cell.stream);
     let rank = comb.rank(cell.centre.position);
     let loft = (0.45 + 0.55 * rank) * (1.0 + 0.12 * rng.bell().clamp(-2.0, 2.0));
     let veer = 0.10 * rng.bell();

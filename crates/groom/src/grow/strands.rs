@@ -2,11 +2,12 @@
 
 use glam::{Vec2, Vec3};
 
+use super::GUIDE_POINTS;
 use super::cells::Cell;
 use super::comb::Comb;
-use super::{GUIDE_POINTS, smoothstep};
-use crate::rng::Rng;
 use crate::{GroomSettings, Guides, Obstacle, ScalpPoint, StrandSet, Wisp, WispCurve};
+use lovelock_base::numbers::smoothstep;
+use lovelock_base::random::SplitMix64;
 
 /// Distance over which a strand's root, which lies on the scalp, joins the curve of its guides; metres.
 const ROOT_JOIN: f32 = 0.03;
@@ -88,7 +89,7 @@ pub(super) fn of_wisp(
     cell: &Cell,
     guides: &[[Vec3; GUIDE_POINTS]; 3],
 ) -> WispStrands {
-    let mut rng = Rng::new(settings.seed, 0x57a_0000 + cell.stream);
+    let mut rng = SplitMix64::of_stream(settings.seed, 0x57a_0000 + cell.stream);
     let mut of_guides = Guides { points_per_guide: GUIDE_POINTS, ..Guides::default() };
     for guide in guides {
         of_guides.push(guide);
@@ -174,7 +175,7 @@ impl Strand {
         root: &ScalpPoint,
         weights: [f32; 3],
         (gathers_to, lock_phase): ([f32; 3], f32),
-        rng: &mut Rng,
+        rng: &mut SplitMix64,
     ) -> Self {
         let from_middle = root.position.distance(cell.centre.position) / (2.0 * cell.spread);
         let shorter = 0.6 * rng.unit() + 0.4 * (from_middle * from_middle).min(1.0);

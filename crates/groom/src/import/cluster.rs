@@ -8,7 +8,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use super::PlacedGroom;
-use crate::rng::Rng;
+use lovelock_base::random::SplitMix64;
 
 /// Where along a strand (fraction of its length), and how much the place counts: wisps part at the tips as
 /// well as at the roots, but a root in the wrong place shows most.
@@ -78,7 +78,7 @@ fn feature(strand: &[Vec3]) -> Feature {
 
 /// Samples to start from, each drawn with a chance that grows with its squared distance from those before.
 fn seeds(samples: &[Feature], wanted: usize, seed: u32) -> Vec<Feature> {
-    let mut rng = Rng::new(seed, 0x3157);
+    let mut rng = SplitMix64::of_stream(seed, 0x3157);
     let first = (rng.unit() * samples.len() as f32) as usize;
     let mut seeds = vec![samples[first.min(samples.len() - 1)]];
     let mut nearest = vec![f32::INFINITY; samples.len()];

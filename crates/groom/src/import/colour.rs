@@ -3,8 +3,8 @@
 use glam::Vec3;
 
 use super::PlacedGroom;
-use crate::rng::Rng;
 use crate::{HairFile, HairLook};
+use lovelock_base::random::SplitMix64;
 
 /// Fraction of a strand's length at which it begins to taper, and its width at the tip.
 const TAPER: [f32; 2] = [0.7, 0.25];
@@ -51,7 +51,7 @@ pub(super) fn shade(file: &HairFile, order: &[u32], seed: u32) -> Vec<f32> {
             let (low, high) = range(&brightness);
             order.iter().map(|&i| ((brightness[i as usize] - low) / (high - low)).clamp(0.0, 1.0)).collect()
         }
-        None => order.iter().map(|&i| Rng::new(seed, u64::from(i)).unit()).collect(),
+        None => order.iter().map(|&i| SplitMix64::of_stream(seed, u64::from(i)).unit()).collect(),
     }
 }
 

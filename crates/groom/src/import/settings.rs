@@ -4,6 +4,7 @@ use std::f32::consts::PI;
 use std::ops::RangeInclusive;
 
 use glam::Vec3;
+use lovelock_base::statistics::upper_median_by;
 use serde::{Deserialize, Serialize};
 
 use super::PlacedGroom;
@@ -115,8 +116,6 @@ impl ImportSettings {
             return self.points_per_guide as usize;
         }
         let mut counts: Vec<u32> = groom.first_point.array_windows().map(|[a, b]| b - a).collect();
-        let middle = counts.len() / 2;
-        let median = *counts.select_nth_unstable(middle).1;
-        median.clamp(8, 40) as usize
+        upper_median_by(&mut counts, Ord::cmp).unwrap_or_default().clamp(8, 40) as usize
     }
 }

@@ -1,6 +1,7 @@
 //! Closest points on a triangle mesh, by a tree of boxes.
 
 use glam::Vec3;
+use lovelock_base::triangle::closest_point_with;
 
 use crate::Scalp;
 
@@ -123,43 +124,19 @@ fn build(triangles: &mut [[Vec3; 3]], start: usize, end: usize, nodes: &mut Vec<
     build(triangles, start + middle, end, nodes);
 }
 
-/// The point of a triangle closest to `p`: Ericson, "Real-Time Collision Detection", 5.1.5.
-fn closest_on_triangle(p: Vec3, &[a, b, c]: &[Vec3; 3]) -> Vec3 {
-    let (ab, ac, ap) = (b - a, c - a, p - a);
-    let (d1, d2) = (ab.dot(ap), ac.dot(ap));
-    if d1 <= 0.0 && d2 <= 0.0 {
-        return a;
-    }
-    let bp = p - b;
-    let (d3, d4) = (ab.dot(bp), ac.dot(bp));
-    if d3 >= 0.0 && d4 <= d3 {
-        return b;
-    }
-    let vc = d1 * d4 - d3 * d2;
-    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        return a + ab * (d1 / (d1 - d3)).clamp(0.0, 1.0);
-    }
-    let cp = p - c;
-    let (d5, d6) = (ab.dot(cp), ac.dot(cp));
-    if d6 >= 0.0 && d5 <= d6 {
-        return c;
-    }
-    let vb = d5 * d2 - d1 * d6;
-    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        return a + ac * (d2 / (d2 - d6)).clamp(0.0, 1.0);
-    }
-    let va = d3 * d6 - d5 * d4;
-    if va <= 0.0 && d4 >= d3 && d5 >= d6 {
-        return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6))).clamp(0.0, 1.0);
-    }
-    let sum = va + vb + vc;
-    a + (ab * vb + ac * vc) / if sum > 0.0 { sum } else { 1.0 }
+/// The point of a triangle closest to `p`; finite for triangles without area.
+fn closest_on_triangle(p: Vec3, triangle: &[Vec3; 3]) -> Vec3 {
+    closest_point_with(p, triangle, |[va, vb, vc]| {
+        let &[a, b, c] = triangle;
+        let sum = va + vb + vc;
+        a + ((b - a) * vb + (c - a) * vc) / if sum > 0.0 { sum } else { 1.0 }
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rng::Rng;
+    use lovelock_base::random::SplitMix64;
 
     #[test]
     fn the_tree_finds_what_a_search_of_all_triangles_finds() {
@@ -181,7 +158,7 @@ mod tests {
         let scalp = Scalp { positions, triangles, ..Scalp::default() };
         let surface = Surface::whole(&scalp).expect("triangles");
         for i in 0..500 {
-            let mut rng = Rng::new(1, i);
+            let mut rng = SplitMix64::of_stream(1, i);
             let p = Vec3::from([(); 3].map(|()| rng.unit() * 30.0 - 5.0)) * Vec3::new(1.0, 0.3, 1.0);
             let best = surface
                 .triangles

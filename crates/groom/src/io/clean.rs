@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use glam::Vec3;
+use lovelock_base::statistics::upper_median_by;
 
 use super::{Bounds, HairFile, HairFileError, HairFormat};
 
@@ -190,7 +191,8 @@ fn drop_by_size(raw: &RawHair, faults: &mut [Option<Fault>]) {
             }
         }
     }
-    let [Some(x), Some(y), Some(z)] = roots.map(|mut values| median(&mut values)) else {
+    let [Some(x), Some(y), Some(z)] = roots.map(|mut values| upper_median_by(&mut values, f32::total_cmp))
+    else {
         return;
     };
     let centre = Vec3::new(x, y, z);
@@ -198,7 +200,7 @@ fn drop_by_size(raw: &RawHair, faults: &mut [Option<Fault>]) {
         |points: &[Vec3]| points.iter().map(|&p| (p - centre).abs().max_element()).fold(0.0_f32, f32::max);
     let kept = || spans().zip(faults.iter()).filter(|(_, fault)| fault.is_none());
     let mut reaches: Vec<f32> = kept().map(|(span, _)| reach(&raw.points[span])).collect();
-    let Some(median_reach) = median(&mut reaches.clone()) else {
+    let Some(median_reach) = upper_median_by(&mut reaches.clone(), f32::total_cmp) else {
         return;
     };
     let shortest = (SMALLEST_LENGTH * median_reach).max(SMALLEST_ABSOLUTE_LENGTH);
@@ -216,12 +218,6 @@ fn drop_by_size(raw: &RawHair, faults: &mut [Option<Fault>]) {
             *fault = Some(Fault::Distant);
         }
     }
-}
-
-/// The middle value (the upper one of two); none of nothing. Reorders `values`, which are finite.
-fn median(values: &mut [f32]) -> Option<f32> {
-    let middle = values.len() / 2;
-    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f32::total_cmp).1)
 }
 
 fn report(file: &mut HairFile, faults: &[Option<Fault>], repeated: u64, non_finite: u64, trailing: u64) {

@@ -3,8 +3,8 @@
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-use crate::settings::within;
 use crate::{Scalp, ScalpIndex};
+use lovelock_base::numbers::within;
 
 /// What becomes of the hair beyond a tie.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

@@ -10,9 +10,9 @@ mod filters;
 
 use crate::blur::blurred;
 use crate::image::{Image, ImageError};
-use crate::spread::nearest_rank;
 use color::{hunt_lab, hyab, ycxcz};
 use filters::Filters;
+use lovelock_base::statistics::nearest_rank;
 use rayon::prelude::*;
 
 /// Pixels a degree of the eye's view: a display 0.7 m wide with 3840 pixels seen from 0.7 m, the authors' default.

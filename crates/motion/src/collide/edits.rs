@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use glam::{Affine3A, Vec3};
+use lovelock_base::numbers::within;
 use serde::{Deserialize, Serialize};
 
 use crate::{BodyField, Collider, ColliderShape};
@@ -128,10 +129,6 @@ impl ColliderEdits {
         let as_fitted = ColliderEdit { enabled: true, ..self.of(&collider.name) } == ColliderEdit::default();
         as_fitted && self.field.enabled && field.is_some_and(|field| field.covers(&collider.shape_at_rest))
     }
-}
-
-fn within(value: f32, min: f32, max: f32, default: f32) -> f32 {
-    if value.is_nan() { default } else { value.clamp(min, max) }
 }
 
 #[cfg(test)]

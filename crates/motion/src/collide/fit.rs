@@ -1,6 +1,7 @@
 //! The shapes that a body gets, and their initial placement.
 
 use glam::{Affine3A, Mat3A, Vec3};
+use lovelock_base::statistics::lower_quantile;
 
 use super::{
     groups::{Kind, Part, parts},
@@ -233,8 +234,7 @@ fn bounds(points: &[Vec3]) -> (Vec3, Vec3) {
 fn percentile(points: &[Vec3], quantile: f32) -> Vec3 {
     let along = |axis: usize| {
         let mut values: Vec<f32> = points.iter().map(|p| p[axis]).collect();
-        values.sort_by(f32::total_cmp);
-        values[((values.len() - 1) as f32 * quantile) as usize]
+        lower_quantile(&mut values, quantile).unwrap_or_default()
     };
     Vec3::new(along(0), along(1), along(2))
 }

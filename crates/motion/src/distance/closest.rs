@@ -1,39 +1,15 @@
 //! The point of a triangle that is closest to another point.
 
 use glam::Vec3;
+use lovelock_base::triangle::closest_point_with;
 
-/// Closest point of a triangle (Ericson 2004, "Real-Time Collision Detection", section 5.1.5). Rounding moves
-/// it within the triangle, never off it.
-pub(super) fn closest_on_triangle([a, b, c]: [Vec3; 3], p: Vec3) -> Vec3 {
-    let (ab, ac, ap) = (b - a, c - a, p - a);
-    let (d1, d2) = (ab.dot(ap), ac.dot(ap));
-    if d1 <= 0.0 && d2 <= 0.0 {
-        return a;
-    }
-    let bp = p - b;
-    let (d3, d4) = (ab.dot(bp), ac.dot(bp));
-    if d3 >= 0.0 && d4 <= d3 {
-        return b;
-    }
-    let vc = d1 * d4 - d3 * d2;
-    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        return a + ab * (d1 / (d1 - d3));
-    }
-    let cp = p - c;
-    let (d5, d6) = (ab.dot(cp), ac.dot(cp));
-    if d6 >= 0.0 && d5 <= d6 {
-        return c;
-    }
-    let vb = d5 * d2 - d1 * d6;
-    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        return a + ac * (d2 / (d2 - d6));
-    }
-    let va = d3 * d6 - d5 * d4;
-    if va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0 {
-        return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
-    }
-    let scale = 1.0 / (va + vb + vc);
-    a + ab * (vb * scale) + ac * (vc * scale)
+/// The point of a triangle closest to `p`. Rounding moves it within the triangle, never off it.
+pub(super) fn closest_on_triangle(triangle: &[Vec3; 3], p: Vec3) -> Vec3 {
+    closest_point_with(p, triangle, |[va, vb, vc]| {
+        let &[a, b, c] = triangle;
+        let scale = 1.0 / (va + vb + vc);
+        a + (b - a) * (vb * scale) + (c - a) * (vc * scale)
+    })
 }
 
 /// Number of triangles that are measured at once.

@@ -1,24 +1,14 @@
 use std::{collections::HashMap, path::Path};
 
 use glam::{Quat, Vec3};
+use lovelock_base::random::SplitMix64;
 
 use super::*;
 use crate::{Character, load_character};
 
-/// Seeded (splitmix64), uniform in 0..1.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f32 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 40) as f32 / (1_u64 << 24) as f32
-    }
-
-    fn within(&mut self, low: Vec3, high: Vec3) -> Vec3 {
-        low + (high - low) * Vec3::new(self.next(), self.next(), self.next())
-    }
+/// Uniform in the box from `low` to `high`.
+fn within(random: &mut SplitMix64, low: Vec3, high: Vec3) -> Vec3 {
+    low + (high - low) * Vec3::new(random.unit(), random.unit(), random.unit())
 }
 
 type Surface = (Vec<Vec3>, Vec<[u32; 3]>);
@@ -73,10 +63,10 @@ fn capsule(half: f32, radius: f32) -> Surface {
 /// Largest errors of distance within `near` of the surface and overall, compared with the formula `truth`.
 fn errors(surface: &Surface, near: f32, truth: impl Fn(Vec3) -> f32) -> (f32, f32) {
     let distance = RestDistance::of_triangles(&surface.0, &surface.1);
-    let mut random = Random(1);
+    let mut random = SplitMix64::new(1);
     let mut worst = (0.0_f32, 0.0_f32);
     for _ in 0..100_000 {
-        let p = random.within(Vec3::splat(-0.3), Vec3::splat(0.3));
+        let p = within(&mut random, Vec3::splat(-0.3), Vec3::splat(0.3));
         let error = (distance.distance(p).0 - truth(p)).abs();
         worst.1 = worst.1.max(error);
         if truth(p).abs() < near {
@@ -145,9 +135,9 @@ fn inside_of_imperfect_surfaces() {
     let surfaces = [(&ball.0, &turned), (&ball.0, &holed), (&positions, &crossed)];
     for (name, (positions, triangles)) in names.into_iter().zip(surfaces) {
         let distance = RestDistance::of_triangles(positions, triangles);
-        let mut random = Random(2);
+        let mut random = SplitMix64::new(2);
         for _ in 0..20_000 {
-            let p = random.within(Vec3::splat(-0.15), Vec3::splat(0.15));
+            let p = within(&mut random, Vec3::splat(-0.15), Vec3::splat(0.15));
             let mut truth = p.length() - 0.1;
             if name == "crossed" {
                 truth = truth.min(p.distance(Vec3::X * 0.09) - 0.05);
@@ -165,9 +155,9 @@ fn inside_of_imperfect_surfaces() {
 fn winding_numbers_are_whole() {
     let (positions, triangles) = sphere(Vec3::ZERO, 0.1);
     let exact = Exact::new(&surface::corners(&positions, &triangles));
-    let mut random = Random(3);
+    let mut random = SplitMix64::new(3);
     for _ in 0..20_000 {
-        let p = random.within(Vec3::splat(-0.2), Vec3::splat(0.2));
+        let p = within(&mut random, Vec3::splat(-0.2), Vec3::splat(0.2));
         let truth = f32::from(p.length() < 0.1);
         if (p.length() - 0.1).abs() > 1e-4 {
             let number = exact.winding.number(&exact.tree, p);
@@ -185,11 +175,11 @@ fn steep_pairs(
     tolerance: f32,
     near: f32,
 ) -> usize {
-    let mut random = Random(4);
+    let mut random = SplitMix64::new(4);
     let pair = |_| {
-        let p = random.within(low, high);
-        let apart = 0.03 * random.next().powi(2);
-        let q = p + apart * random.within(Vec3::NEG_ONE, Vec3::ONE).normalize_or(Vec3::X);
+        let p = within(&mut random, low, high);
+        let apart = 0.03 * random.unit().powi(2);
+        let q = p + apart * within(&mut random, Vec3::NEG_ONE, Vec3::ONE).normalize_or(Vec3::X);
         let q = q.clamp(low, high);
         let [from, to] = [p, q].map(&distance);
         usize::from(from.abs().min(to.abs()) < near && (from - to).abs() > p.distance(q) + tolerance)
@@ -308,9 +298,9 @@ fn degenerate_and_huge_surfaces() {
             assert!(normal.is_finite(), "{scale} {p}");
         }
     }
-    let mut random = Random(5);
+    let mut random = SplitMix64::new(5);
     // A cloud of triangles that fills its volume makes the cells larger, not more numerous.
-    let positions: Vec<Vec3> = (0..30_000).map(|_| random.within(Vec3::NEG_ONE, Vec3::ONE)).collect();
+    let positions: Vec<Vec3> = (0..30_000).map(|_| within(&mut random, Vec3::NEG_ONE, Vec3::ONE)).collect();
     let cloud: Vec<Vec3> =
         positions.chunks(3).flat_map(|c| [c[0], c[0].lerp(c[1], 0.02), c[0].lerp(c[2], 0.02)]).collect();
     let triangles: Vec<[u32; 3]> = (0..10_000).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();

@@ -73,7 +73,7 @@ impl Tree {
     }
 
     fn hit(&self, triangle: u32, p: Vec3) -> Hit {
-        let at = closest_on_triangle(self.corners[triangle as usize], p);
+        let at = closest_on_triangle(&self.corners[triangle as usize], p);
         Hit { triangle, at, distance_squared: (p - at).length_squared() }
     }
 

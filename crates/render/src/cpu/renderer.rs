@@ -3,7 +3,8 @@
 mod inspect;
 
 use glam::Vec4;
-use lovelock_gpu::{PassTime, Stopwatch};
+use lovelock_base::clock::Stopwatch;
+use lovelock_gpu::PassTime;
 use lovelock_groom::Strands;
 use lovelock_groom::simd::Width;
 use rayon::prelude::*;

@@ -6,7 +6,8 @@ mod layers;
 use std::sync::Arc;
 
 use glam::Vec4;
-use lovelock_gpu::{Commands, Gpu, GpuError, PassTimer, Readback, Stopwatch, wgpu};
+use lovelock_base::clock::Stopwatch;
+use lovelock_gpu::{Commands, Gpu, GpuError, PassTimer, Readback, wgpu};
 use lovelock_shadow::SUM_WORDS;
 
 use super::eye::{Area, Drawn, Eye, EyeInput, WIDEST_PLAIN, too_large};

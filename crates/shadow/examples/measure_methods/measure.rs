@@ -1,13 +1,12 @@
 //! Error, time and memory of the methods on one hairstyle.
 
-use std::time::Instant;
-
 use glam::Vec3;
+use lovelock_base::clock::Stopwatch;
 use lovelock_shadow::{
     CpuShadow, ExactMap, MapKind, ShadowMethod, ShadowReport, ShadowSettings, converged, cpu_shadow,
 };
 
-use crate::common::Random;
+use crate::common::SplitMix64;
 use crate::grooms::Groom;
 use crate::on_gpu::{self, OnGpu};
 
@@ -112,7 +111,7 @@ struct Converged {
 impl Converged {
     fn new(groom: &Groom) -> Self {
         let hair = &groom.strands;
-        let mut random = Random(12);
+        let mut random = SplitMix64::new(12);
         let draw = |_| (random.unit() * hair.points() as f32) as usize % hair.points();
         let points: Vec<_> = (0..CONVERGED_POINTS).map(draw).collect();
         let axis = |of: fn(Vec3) -> f32| points.iter().map(|at| of(hair.point(*at))).collect::<Vec<_>>();
@@ -160,12 +159,11 @@ fn look_up(map: &dyn CpuShadow, groom: &Groom) -> Vec<f32> {
     light
 }
 
-#[expect(clippy::disallowed_methods, reason = "time is what is measured; no result depends on it")]
 fn time(mut run: impl FnMut()) -> Time {
     let once = |_| {
-        let start = Instant::now();
+        let watch = Stopwatch::start();
         run();
-        start.elapsed().as_secs_f64() * 1e3
+        watch.ms()
     };
     median((0..RUNS).map(once).collect())
 }

@@ -8,7 +8,7 @@ use lovelock_groom::{
 };
 use lovelock_shadow::{LightFrame, ShadowInput};
 
-use crate::common::{Random, strands};
+use crate::common::{SplitMix64, strands};
 
 /// Strands, and what they are blocked with.
 pub struct Groom {
@@ -51,9 +51,9 @@ impl Groom {
     /// Straight strands across the light, evenly spread in a box: 0.1 m along it, 0.1 m across.
     pub fn slab() -> Self {
         let light = LightFrame::new(LIGHT);
-        let mut random = Random(3);
+        let mut random = SplitMix64::new(3);
         let strand = |i: usize| {
-            let middle = 0.05 * random.cube();
+            let middle = 0.05 * random.signed_vec3();
             let along = if i.is_multiple_of(2) { Vec3::Y } else { Vec3::Z };
             let at = |part: i32| light.world_from_light(middle + 0.004 * part as f32 * along);
             (-2..=2).map(at).collect::<Vec<_>>()
@@ -64,7 +64,7 @@ impl Groom {
 
     /// A bundle that hangs slantwise and opens toward its tips.
     pub fn tuft() -> Self {
-        let mut random = Random(8);
+        let mut random = SplitMix64::new(8);
         let strand = |_| {
             let offset = Vec3::new(random.signed(), 0.0, random.signed()) * random.unit();
             let turn = 6.0 * random.unit();

@@ -7,29 +7,7 @@ use glam::Vec3;
 use lovelock_groom::Strands;
 use lovelock_shadow::{MapKind, ShadowMethod};
 
-/// Random numbers that are the same everywhere (Steele, Lea, Flood 2014, split-mix of 64 bits).
-pub struct Random(pub u64);
-
-impl Random {
-    /// The next number in 0..1.
-    pub fn unit(&mut self) -> f32 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 40) as f32 / (1 << 24) as f32
-    }
-
-    /// The next number in -1..1.
-    pub fn signed(&mut self) -> f32 {
-        2.0 * self.unit() - 1.0
-    }
-
-    /// A vector in the cube -1..1.
-    pub fn cube(&mut self) -> Vec3 {
-        Vec3::new(self.signed(), self.signed(), self.signed())
-    }
-}
+pub use lovelock_base::random::SplitMix64;
 
 /// The methods with a record per texel, which have a limit of memory.
 pub fn texel_methods() -> impl Iterator<Item = ShadowMethod> {
@@ -74,7 +52,7 @@ pub const HEAD: Vec3 = Vec3::new(0.0, 1.6, 0.0);
 
 /// Tufts on the upper part of a head of 9 cm around [`HEAD`], which bend down and curl.
 pub fn grow(style: Style, seed: u64) -> Vec<Vec<Vec3>> {
-    let mut random = Random(seed);
+    let mut random = SplitMix64::new(seed);
     let mut grown = Vec::new();
     for wisp in 0..style.wisps {
         // A spiral over the cap of the sphere.
@@ -83,7 +61,7 @@ pub fn grow(style: Style, seed: u64) -> Vec<Vec<Vec3>> {
         let out = Vec3::new(turn.cos(), 0.0, turn.sin()) * (1.0 - height * height).sqrt() + Vec3::Y * height;
         let phase = std::f32::consts::TAU * random.unit();
         for _ in 0..style.strands_per_wisp {
-            let offset = 0.012 * random.cube();
+            let offset = 0.012 * random.signed_vec3();
             let own = phase + 0.6 * random.signed();
             let (mut p, mut direction) = (HEAD + 0.09 * out + offset, out);
             let step = style.length / style.segments as f32;

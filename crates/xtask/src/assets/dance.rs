@@ -4,12 +4,12 @@
 use std::f32::consts::TAU;
 
 use glam::{Quat, Vec2, Vec3};
+use lovelock_base::numbers::smoothstep;
 
 use super::glb::SampledClip;
 use super::ik::{align, angle_about, reach, twist_about};
 use super::rig::{self, RigJoint, rest};
 use super::score::{ArmPose, Score, Step};
-use super::sdf::smoothstep;
 
 /// Keys a second in the file.
 pub(super) const RATE: f32 = 60.0;

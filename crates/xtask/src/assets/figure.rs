@@ -1,11 +1,12 @@
 //! The whole figure in its rest pose: torso, limbs, hands and feet around the [`Head`], as one signed distance.
 
 use glam::Vec3;
+use lovelock_base::numbers::smoothstep;
 
 use super::head::Head;
 use super::paint;
 use super::rig::rest;
-use super::sdf::{Loft, ball, ellipsoid, round_cone, smax, smin, smoothstep, turn_x, turn_z};
+use super::sdf::{Loft, ball, ellipsoid, round_cone, smax, smin, turn_x, turn_z};
 
 /// How far cloth stands off the skin, metres.
 const CLOTH_THICKNESS: f32 = 0.0013;

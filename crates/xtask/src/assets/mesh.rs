@@ -3,9 +3,8 @@
 use std::collections::BTreeMap;
 
 use glam::Vec3;
+use lovelock_base::numbers::smoothstep;
 use rayon::prelude::*;
-
-use super::sdf::smoothstep;
 
 /// A closed triangle mesh; triangles are counter-clockwise seen from outside.
 #[derive(Clone, Debug, Default)]

@@ -22,6 +22,7 @@ mod weights;
 #[cfg(test)]
 mod tests;
 
+use lovelock_base::numbers::smoothstep;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
@@ -88,5 +89,5 @@ fn scalp(p: Vec3) -> f32 {
     if p.y < head::CHIN_Y {
         return 0.0;
     }
-    sdf::smoothstep(-HAIRLINE_HALF_WIDTH, HAIRLINE_HALF_WIDTH, head::inside_hairline(p))
+    smoothstep(-HAIRLINE_HALF_WIDTH, HAIRLINE_HALF_WIDTH, head::inside_hairline(p))
 }

@@ -1,10 +1,11 @@
 //! What the figure wears and how it is coloured, as functions of the rest pose.
 
 use glam::Vec3;
+use lovelock_base::numbers::smoothstep;
 
 use super::head::{self, BROW_Y};
 use super::rig::rest;
-use super::sdf::{curve, smoothstep};
+use super::sdf::curve;
 
 /// Skin, linear sRGB like every colour here.
 const SKIN: Vec3 = Vec3::new(0.550, 0.360, 0.270);

@@ -16,12 +16,6 @@ pub(super) fn smax(a: f32, b: f32, k: f32) -> f32 {
     -smin(-a, -b, k)
 }
 
-/// 0 below `low`, 1 above `high`, a cubic between.
-pub(super) fn smoothstep(low: f32, high: f32, x: f32) -> f32 {
-    let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
-    t * t * (3.0 - 2.0 * t)
-}
-
 /// A ball.
 pub(super) fn ball(p: Vec3, centre: Vec3, radius: f32) -> f32 {
     p.distance(centre) - radius

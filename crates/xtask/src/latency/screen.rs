@@ -2,10 +2,11 @@
 
 use super::Closed;
 use anyhow::{Context as _, bail, ensure};
+use lovelock_base::clock::Stopwatch;
 use std::io::{BufRead as _, BufReader};
 use std::process::{Command, Stdio};
 use std::thread::sleep;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 use x11rb::connection::Connection as _;
 use x11rb::protocol::xproto::{
     ConfigureWindowAux, ConnectionExt as _, ImageFormat, InputFocus, KEY_PRESS_EVENT, KEY_RELEASE_EVENT,
@@ -111,22 +112,18 @@ impl Screen {
     }
 
     /// Moves the pointer, and waits until `place` looks different.
-    #[expect(
-        clippy::disallowed_methods,
-        reason = "this chore measures time; no result of the product depends on it"
-    )]
     pub(super) fn time_to_change(&self, to: (i16, i16), place: Place) -> anyhow::Result<Duration> {
         let before = self.pixels(place)?;
-        let start = Instant::now();
+        let watch = Stopwatch::start();
         self.point(to)?;
         while self.pixels(place)? == before {
             ensure!(
-                start.elapsed() < Duration::from_secs(5),
+                watch.elapsed() < Duration::from_secs(5),
                 "the pointer moved and nothing changed for 5 s"
             );
             sleep(Duration::from_millis(1));
         }
-        Ok(start.elapsed())
+        Ok(watch.elapsed())
     }
 
     fn pixels(&self, Place { x, y, width, height }: Place) -> anyhow::Result<Vec<u8>> {

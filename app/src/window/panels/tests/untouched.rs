@@ -1,5 +1,6 @@
 //! Showing a panel does not change the project.
 
+use lovelock_base::random::SplitMix64;
 use serde_json::Value;
 
 use super::{Bench, PANELS, projects};
@@ -7,43 +8,28 @@ use crate::window::control::section;
 use crate::window::testing::{screen, unfold};
 use lovelock_studio::{BodySource, HairSource, MotionSource, Project};
 
-/// A small random number generator (Steele, Lea, Flood 2014, "splitmix64").
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    fn unit(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    /// Any number: near the value, far from it, tiny or huge, of either sign.
-    fn number(&mut self, near: f64) -> f64 {
-        match self.next() % 6 {
-            0 => near,
-            1 => near * (0.5 + self.unit()),
-            2 => self.unit(),
-            3 => 20.0 * self.unit() - 10.0,
-            4 => 10_f64.powf(12.0 * self.unit() - 6.0),
-            _ => -(10_f64.powf(6.0 * self.unit() - 3.0)),
-        }
+/// Any number: near `near`, far from it, tiny or huge, of either sign.
+fn number(random: &mut SplitMix64, near: f64) -> f64 {
+    match random.bits() % 6 {
+        0 => near,
+        1 => near * (0.5 + random.unit_f64()),
+        2 => random.unit_f64(),
+        3 => 20.0 * random.unit_f64() - 10.0,
+        4 => 10_f64.powf(12.0 * random.unit_f64() - 6.0),
+        _ => -(10_f64.powf(6.0 * random.unit_f64() - 3.0)),
     }
 }
 
 /// Replaces all numbers and switches in a tree; names, choices and files stay.
-fn shake(value: &mut Value, random: &mut Random) {
+fn shake(value: &mut Value, random: &mut SplitMix64) {
     match value {
-        Value::Bool(on) => *on = random.next().is_multiple_of(2),
+        Value::Bool(on) => *on = random.bits().is_multiple_of(2),
         Value::Number(number) if number.is_u64() => {
-            *value = Value::from(random.number(number.as_f64().unwrap_or(1.0)).abs().min(4e9) as u64);
+            *value = Value::from(self::number(random, number.as_f64().unwrap_or(1.0)).abs().min(4e9) as u64);
         }
-        Value::Number(number) => *value = Value::from(random.number(number.as_f64().unwrap_or(1.0)) as f32),
+        Value::Number(number) => {
+            *value = Value::from(self::number(random, number.as_f64().unwrap_or(1.0)) as f32)
+        }
         Value::Array(items) => items.iter_mut().for_each(|item| shake(item, random)),
         Value::Object(fields) => fields.values_mut().for_each(|field| shake(field, random)),
         Value::Null | Value::String(_) => {}
@@ -51,21 +37,21 @@ fn shake(value: &mut Value, random: &mut Random) {
 }
 
 /// A project that a file may contain: any numbers, clamped to their ranges as loading does.
-fn random_project(base: &Project, random: &mut Random) -> Project {
+fn random_project(base: &Project, random: &mut SplitMix64) -> Project {
     let mut tree = serde_json::to_value(base).expect("a project is plain data");
     shake(&mut tree, random);
     let mut project: Project = serde_json::from_value(tree).expect("the same shape");
-    project.recording.end_frame = random.next().is_multiple_of(2).then(|| random.next() % 100_000);
-    project.hair.source = if random.next().is_multiple_of(2) { HairSource::Grown } else { HairSource::File };
-    project.body.source = if random.next().is_multiple_of(2) { BodySource::Dancer } else { BodySource::File };
+    project.recording.end_frame = random.bits().is_multiple_of(2).then(|| random.bits() % 100_000);
+    project.hair.source = if random.bits().is_multiple_of(2) { HairSource::Grown } else { HairSource::File };
+    project.body.source = if random.bits().is_multiple_of(2) { BodySource::Dancer } else { BodySource::File };
     project.motion.source =
-        [MotionSource::Clip, MotionSource::File, MotionSource::Rest][(random.next() % 3) as usize];
+        [MotionSource::Clip, MotionSource::File, MotionSource::Rest][(random.bits() % 3) as usize];
     project.sanitised().0
 }
 
 #[test]
 fn showing_a_panel_changes_nothing() {
-    let mut random = Random(7);
+    let mut random = SplitMix64::new(7);
     let mut shown = projects();
     let plain = shown.len();
     for i in 0..48 {

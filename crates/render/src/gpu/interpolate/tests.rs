@@ -3,7 +3,8 @@
 use std::sync::{Arc, OnceLock};
 
 use glam::{Affine3A, Quat, Vec3};
-use lovelock_gpu::{Gpu, GpuError, GrowBuffer, PassTimer, Stopwatch, check_shader, read_buffer, wgpu};
+use lovelock_base::clock::Stopwatch;
+use lovelock_gpu::{Gpu, GpuError, GrowBuffer, PassTimer, check_shader, read_buffer, wgpu};
 use lovelock_groom::{
     GroomSettings, GuideFrame, Guides, Hairstyle, ImportSettings, PlainHead, Preset, StrandSet, Strands,
     Wisp, grow, import, interpolate, load_hair,
