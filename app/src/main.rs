@@ -17,6 +17,6 @@ fn main() -> ExitCode {
         .with_ansi(std::io::stderr().is_terminal())
         .with_writer(std::io::stderr)
         .init();
-    lovelock_studio::name_workers();
+    lovelock_session::threads::name_workers();
     cli::run()
 }

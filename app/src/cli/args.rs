@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{Args, Parser, Subcommand};
-use lovelock_studio::RecordingSection;
-use lovelock_studio::groom::{Unit, UpAxis};
-use lovelock_studio::recording::{FilmQuality, SequenceFormat};
-use lovelock_studio::render::{Backend, ShadowMethod, Transparency};
+use lovelock_groom::{Unit, UpAxis};
+use lovelock_project::project::RecordingSection;
+use lovelock_record::{FilmQuality, SequenceFormat};
+use lovelock_render::{Backend, ShadowMethod, Transparency};
 
 /// Hair styled, simulated, shadowed and judged live. Opens the window where no command is given.
 #[derive(Debug, Parser)]
@@ -150,7 +150,7 @@ pub(crate) struct Record {
     /// Which curves a .usdc, .usda or .glb file holds: guides or strands; strands in USD and guides in glTF where none
     /// is given.
     #[arg(long, value_name = "ID")]
-    pub(crate) curves: Option<lovelock_studio::CurveSource>,
+    pub(crate) curves: Option<lovelock_jobs::record::CurveSource>,
     /// Leave the body out of a .usdc, .usda or .glb file.
     #[arg(long)]
     pub(crate) no_body: bool,
@@ -183,12 +183,12 @@ pub(crate) struct Compare {
     pub(crate) backend: Option<Backends>,
     /// A setting that methods run through, such as resolution=64,128,256; may be given several times.
     #[arg(long, value_name = "SETTING=V,V")]
-    pub(crate) sweep: Vec<lovelock_studio::Sweep>,
+    pub(crate) sweep: Vec<lovelock_study::batch::Sweep>,
     /// A pixel whose hair is probed; may be given several times. Some are chosen where none is given.
     #[arg(long, value_name = "X,Y", value_parser = pixel)]
     pub(crate) probe: Vec<[u32; 2]>,
     /// Draws that a time is the median of, 30 to 1000.
-    #[arg(long, default_value_t = lovelock_studio::CompareRequest::LEAST_DRAWS,
+    #[arg(long, default_value_t = lovelock_study::batch::CompareRequest::LEAST_DRAWS,
         value_parser = clap::value_parser!(u32).range(30..=1000))]
     pub(crate) draws: u32,
 }
@@ -205,7 +205,7 @@ pub(crate) struct Backends(pub(crate) Vec<Backend>);
 pub(crate) struct Bench {
     /// The scenes: smooth, curly, smooth-500k, smooth-1m, smooth-2m, woman-300k, dog-2m, and, simulated by each integrator and not
     /// drawn, simulate-402 and simulate-20k; all of them where none is named.
-    pub(crate) scenes: Vec<lovelock_studio::BenchScene>,
+    pub(crate) scenes: Vec<lovelock_jobs::bench::BenchScene>,
     /// A file for the numbers, comma-separated.
     #[arg(short, long, value_name = "FILE.csv")]
     pub(crate) out: Option<PathBuf>,

@@ -3,7 +3,8 @@
 use std::io::IsTerminal;
 
 use indicatif::{ProgressBar, ProgressStyle};
-use lovelock_studio::{Pace, Progress};
+use lovelock_session::clock::Pace;
+use lovelock_session::progress::Progress;
 
 /// Progress on standard error: a bar on a terminal, plain lines elsewhere.
 pub(super) struct Bar {

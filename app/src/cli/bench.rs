@@ -2,7 +2,9 @@
 
 use std::ops::ControlFlow;
 
-use lovelock_studio::{BenchRequest, StudioError, bench, write_whole};
+use lovelock_jobs::bench::{BenchRequest, bench};
+use lovelock_project::error::StudioError;
+use lovelock_project::files::write_whole;
 
 use super::args::Bench;
 use super::output::Output;

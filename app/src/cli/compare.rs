@@ -3,7 +3,9 @@
 use std::fmt::Write;
 use std::ops::Range;
 
-use lovelock_studio::{CompareReport, CompareRequest, MethodReport, StudioError};
+use lovelock_project::error::StudioError;
+use lovelock_study::batch::CompareRequest;
+use lovelock_study::report::{CompareReport, MethodReport};
 
 use super::args::Compare;
 use super::output::Output;
@@ -28,7 +30,8 @@ pub(crate) fn run(task: &Compare, output: Output) -> Result<(), StudioError> {
         access: std::mem::take(&mut scene.access),
         gpu: None,
     };
-    let report = scene.watched(|project, progress| lovelock_studio::compare(project, &request, progress))?;
+    let report =
+        scene.watched(|project, progress| lovelock_study::batch::compare(project, &request, progress))?;
     output.result(&report, || summary(&report, &task.out.join("report.html").display().to_string()))
 }
 

@@ -1,6 +1,7 @@
 //! `lovelock convert`.
 
-use lovelock_studio::{StudioError, convert};
+use lovelock_jobs::convert::convert;
+use lovelock_project::error::StudioError;
 
 use super::args::Convert;
 use super::output::Output;

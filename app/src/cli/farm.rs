@@ -1,6 +1,7 @@
 //! `lovelock farm` and `lovelock assemble`.
 
-use lovelock_studio::{FarmReport, FarmRequest, StudioError, assemble, farm};
+use lovelock_jobs::farm::{FarmReport, FarmRequest, assemble, farm};
+use lovelock_project::error::StudioError;
 
 use super::args::{Assemble, Farm};
 use super::output::Output;

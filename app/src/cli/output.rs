@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use lovelock_studio::StudioError;
+use lovelock_project::error::StudioError;
 use serde::Serialize;
 
 /// How results and errors are told.

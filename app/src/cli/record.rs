@@ -1,9 +1,12 @@
 //! `lovelock record`.
 
-use lovelock_studio::{
-    CurveRecordReport, Gauge, HealthLevel, RecordReport, RecordRequest, Stage, StudioError, TakeRecordReport,
-    is_curves, is_take, record_curves, record_take,
+use lovelock_jobs::record::{
+    CurveRecordReport, RecordReport, RecordRequest, TakeRecordReport, is_curves, is_take, record_curves,
+    record_take,
 };
+use lovelock_project::error::StudioError;
+use lovelock_session::health::{Gauge, HealthLevel};
+use lovelock_session::stats::Stage;
 
 use super::args::Record;
 use super::output::Output;
@@ -52,7 +55,8 @@ pub(crate) fn run(task: &Record, output: Output) -> Result<(), StudioError> {
         let report = scene.watched(|project, progress| record_take(project, &request, progress))?;
         return output.result(&report, || take_summary(&report));
     }
-    let report = scene.watched(|project, progress| lovelock_studio::record(project, &request, progress))?;
+    let report =
+        scene.watched(|project, progress| lovelock_jobs::record::record(project, &request, progress))?;
     output.result(&report, || summary(&report))
 }
 

@@ -3,11 +3,15 @@
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-use lovelock_studio::groom::Preset;
-use lovelock_studio::{
-    Access, CompareSection, Contender, FileKind, FileRef, Place, Problem, Progress, Project, Sheet,
-    StudioError, load_project_with, project_of_take,
-};
+use lovelock_groom::Preset;
+use lovelock_jobs::info::FileKind;
+use lovelock_panes::sheet::Sheet;
+use lovelock_project::Project;
+use lovelock_project::error::{Place, Problem, StudioError};
+use lovelock_project::files::{Access, FileRef};
+use lovelock_project::project::{CompareSection, Contender, load_project_with};
+use lovelock_session::progress::Progress;
+use lovelock_session::take::project_of_take;
 
 use super::args::SourceArguments;
 use super::bar::Bar;

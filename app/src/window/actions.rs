@@ -2,12 +2,17 @@
 
 use std::path::{Path, PathBuf};
 
-use lovelock_studio::groom::Preset;
-use lovelock_studio::{
-    Access, CameraMode, CameraSection, Command, FileKind, Marker, Problem, Project, StudioError,
-    TimelineSection, frame_points, load_project_with, project_of_take, recording,
-};
+use lovelock_groom::Preset;
+use lovelock_jobs::info::FileKind;
+use lovelock_project::Project;
+use lovelock_project::error::{Problem, StudioError};
+use lovelock_project::files::Access;
+use lovelock_project::project::{CameraMode, CameraSection, Marker, TimelineSection, load_project_with};
+use lovelock_record as recording;
+use lovelock_session::scene::frame_points;
+use lovelock_session::take::project_of_take;
 
+use super::command::Command;
 use super::path_dialog::Purpose;
 use super::{Pending, Window, copy, notices};
 
@@ -59,7 +64,7 @@ impl Window {
                 let duration = self.session.frame.as_ref().map_or(0.0, |frame| frame.duration_secs);
                 // The clip's end is its start again; a take ends with its last frame.
                 let takes = self.history.project().take.file.is_some();
-                let last = if takes { duration } else { duration - lovelock_studio::STEP_SECS };
+                let last = if takes { duration } else { duration - lovelock_session::clock::STEP_SECS };
                 self.session.worker().seek(last.max(0.0));
             }
             Command::ToggleLoop => {
@@ -254,7 +259,7 @@ impl Window {
             }
             Pending::New => {
                 self.overdub.let_go();
-                self.history = lovelock_studio::History::new(Project::default());
+                self.history = lovelock_project::history::History::new(Project::default());
                 self.project_path = None;
                 self.session.set_project_path(None);
             }

@@ -3,7 +3,7 @@
 use std::f32::consts::{FRAC_PI_2, PI};
 
 use glam::Vec3;
-use lovelock_studio::groom::HairTie;
+use lovelock_groom::HairTie;
 
 /// A direction that is steeper than this, as the length of its level part, heads nowhere in particular.
 const STEEP: f32 = 0.3;

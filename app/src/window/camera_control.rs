@@ -2,7 +2,7 @@
 
 use egui::{PointerButton, Response};
 use glam::Vec3;
-use lovelock_studio::{CameraMode, CameraSection};
+use lovelock_project::project::{CameraMode, CameraSection};
 
 /// Radians that a drag across the whole viewport turns the camera.
 const TURN: f32 = 3.6;

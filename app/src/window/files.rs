@@ -2,7 +2,10 @@
 
 use std::path::Path;
 
-use lovelock_studio::{Contender, FileKind, FileRef, load_project_with, project_of_take, save_project};
+use lovelock_jobs::info::FileKind;
+use lovelock_project::files::FileRef;
+use lovelock_project::project::{Contender, load_project_with, save_project};
+use lovelock_session::take::project_of_take;
 
 use super::{Pending, Window, notices, remember};
 
@@ -75,7 +78,7 @@ impl Window {
         match load_project_with(path, &mut access) {
             Ok((project, problems)) => {
                 self.overdub.let_go();
-                self.history = lovelock_studio::History::new(project);
+                self.history = lovelock_project::history::History::new(project);
                 self.project_path = Some(path.to_owned());
                 self.session.set_project_path(self.project_path.as_ref());
                 remember(&mut self.layout.recent, path);

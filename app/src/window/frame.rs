@@ -1,7 +1,9 @@
 //! One pass of the window, from top to bottom.
 
 use egui::{Align2, CentralPanel, Frame, Panel, ProgressBar, Rect, RichText, ScrollArea, Ui, vec2};
-use lovelock_studio::{PROJECT_EXTENSION, Place, Project};
+use lovelock_project::Project;
+use lovelock_project::error::Place;
+use lovelock_project::project::PROJECT_EXTENSION;
 
 use super::path_dialog::{Answer, PathDialog, Purpose};
 use super::viewport::{self, Viewport};
@@ -179,7 +181,7 @@ impl Window {
         };
         let zoom = &mut self.layout.timeline;
         let Project { recording, motion, timeline: section, .. } = project;
-        let lovelock_studio::TimelineSection { markers, tracks, .. } = section;
+        let lovelock_project::project::TimelineSection { markers, tracks, .. } = section;
         let height = timeline::height(tracks.len());
         let mut edited = timeline::Edited { recording, markers, tracks, motion };
         Panel::bottom("timeline")

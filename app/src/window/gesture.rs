@@ -1,7 +1,7 @@
 //! Which changes belong together: one drag, one number while it is typed, one turn of the wheel is one step of undo.
 
 use egui::{Id, Pos2, Vec2};
-use lovelock_studio::GestureId;
+use lovelock_project::history::GestureId;
 
 /// Seconds between the two clicks of a double-click, at most.
 const DOUBLE_CLICK_SECS: f64 = 0.3;

@@ -1,7 +1,7 @@
 //! Keys and menus, made from the one table of commands.
 
+use super::command::{COMMANDS, Command, CommandGroup, CommandInfo, Shortcut};
 use egui::{Key, KeyboardShortcut, Modifiers, RichText, Ui};
-use lovelock_studio::{COMMANDS, Command, CommandGroup, CommandInfo, Shortcut};
 
 use super::theme;
 

@@ -3,6 +3,7 @@
 mod actions;
 mod aim;
 mod camera_control;
+mod command;
 mod compare;
 mod control;
 mod files;
@@ -31,17 +32,22 @@ mod viewport;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use lovelock_studio::{Access, Command, Gauge, History, Moment, Overdub, Project, StudioError};
-use serde::{Deserialize, Serialize};
-
+use command::Command;
 use compare::{Compare, CompareLayout};
 use gesture::Gestures;
+use lovelock_project::Project;
+use lovelock_project::animation::{Moment, Overdub};
+use lovelock_project::error::StudioError;
+use lovelock_project::files::Access;
+use lovelock_project::history::History;
+use lovelock_session::health::Gauge;
 use notices::Notices;
 use overlay::scissors::Scissors;
 use palette::Palette;
 use path_dialog::PathDialog;
 use recorder::Recorder;
 use screenshot::Screenshot;
+use serde::{Deserialize, Serialize};
 use session::Session;
 use viewport::Viewport;
 
@@ -308,8 +314,8 @@ impl eframe::App for Window {
 
 /// How panes are put together where no window says: beside each other, with the colours of the window and without times,
 /// so that the same panes are the same pixels.
-pub(crate) fn sheet_of_panes() -> lovelock_studio::Sheet {
-    lovelock_studio::Sheet { figures: false, ..CompareLayout::default().sheet() }
+pub(crate) fn sheet_of_panes() -> lovelock_panes::sheet::Sheet {
+    lovelock_panes::sheet::Sheet { figures: false, ..CompareLayout::default().sheet() }
 }
 
 /// A title that names the project and marks unsaved changes.

@@ -1,7 +1,7 @@
 //! The command palette: finds a command by a part of its name.
 
+use super::command::{COMMANDS, Command, CommandInfo};
 use egui::{Key, Modal, RichText, ScrollArea};
-use lovelock_studio::{COMMANDS, Command, CommandInfo};
 
 use super::theme;
 

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, TryRecvError, sync_channel};
 
 use egui::{Modal, RichText};
-use lovelock_studio::{PROJECT_EXTENSION, Stopwatch};
+use lovelock_project::project::PROJECT_EXTENSION;
+use lovelock_session::clock::Stopwatch;
 
 use super::theme;
 
@@ -211,8 +212,7 @@ impl PathDialog {
             Purpose::Film => Box::pin(dialog.add_filter("Film", &["mp4"]).save_file()),
             Purpose::Preview => Box::pin(dialog.add_filter("Preview", &["apng"]).save_file()),
             Purpose::Curves => {
-                let dialog =
-                    dialog.add_filter("Curves", &lovelock_studio::recording::CurveFormat::EXTENSIONS);
+                let dialog = dialog.add_filter("Curves", &lovelock_record::CurveFormat::EXTENSIONS);
                 Box::pin(dialog.save_file())
             }
             Purpose::Picture => Box::pin(dialog.add_filter("Picture", &["png"]).save_file()),

@@ -3,7 +3,12 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use lovelock_studio::{Access, Pace, Progress, Project, RecordJob, RecordRequest, Sheet};
+use lovelock_jobs::record::{RecordJob, RecordRequest};
+use lovelock_panes::sheet::Sheet;
+use lovelock_project::Project;
+use lovelock_project::files::Access;
+use lovelock_session::clock::Pace;
+use lovelock_session::progress::Progress;
 
 use super::panels::recording::State;
 

@@ -3,10 +3,15 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use lovelock_studio::{
-    Access, Event, FrameSnapshot, Live, PaintRequest, Painted, Painter, PassHistory, Place, Problem, Project,
-    Scene, StageHistory, StudioError, Worker,
-};
+use lovelock_panes::live::Live;
+use lovelock_project::Project;
+use lovelock_project::error::{Place, Problem, StudioError};
+use lovelock_project::files::Access;
+use lovelock_session::render_thread::{PaintRequest, Painted, Painter};
+use lovelock_session::scene::Scene;
+use lovelock_session::snapshot::FrameSnapshot;
+use lovelock_session::stats::{PassHistory, StageHistory};
+use lovelock_session::worker::{Event, Worker};
 
 use super::panels::{body, hair};
 
@@ -160,7 +165,7 @@ impl Session {
         match (&self.frame, &self.simulated.take.file) {
             // Its last frame is shown for its length.
             (Some(frame), Some(_)) => {
-                ((frame.duration_secs + lovelock_studio::STEP_SECS) * fps).floor().max(1.0) as u64
+                ((frame.duration_secs + lovelock_session::clock::STEP_SECS) * fps).floor().max(1.0) as u64
             }
             _ => self.scene.as_ref().map_or(1, |scene| scene.frames(fps)),
         }
@@ -265,7 +270,7 @@ impl Session {
             size_m: std::array::from_fn(|axis| (high[axis] - low[axis]).max(0.0)),
             notes: notes(&[Place::Hair]),
         };
-        let joints = lovelock_studio::motion::joint_paths(&scene.body.skeleton);
+        let joints = lovelock_motion::joint_paths(&scene.body.skeleton);
         self.body = body::Loaded {
             clips: scene.clips.iter().map(|clip| clip.name.clone()).collect(),
             head: joints.get(scene.body.head_joint).cloned().unwrap_or_default(),

@@ -1,7 +1,8 @@
 //! The panels at the left and at the right of the picture.
 
 use egui::{Panel, ScrollArea, Ui};
-use lovelock_studio::{Place, Project};
+use lovelock_project::Project;
+use lovelock_project::error::Place;
 
 use super::control::section;
 use super::path_dialog::Purpose;
@@ -100,7 +101,7 @@ impl Window {
             Some(panels::recording::Ask::Preview) => self.ask(Purpose::Preview),
             Some(panels::recording::Ask::Resume) => self.ask(Purpose::Resume),
             Some(panels::recording::Ask::Curves) => self.ask(Purpose::Curves),
-            Some(panels::recording::Ask::Cancel) => self.run(lovelock_studio::Command::Record, ctx),
+            Some(panels::recording::Ask::Cancel) => self.run(crate::window::Command::Record, ctx),
             None => {}
         }
     }

@@ -1,7 +1,11 @@
 //! How the hair is, beside the picture and over it.
 
 use egui::Ui;
-use lovelock_studio::{Gauge, Painted, Project, STEP_SECS, frame_points};
+use lovelock_project::Project;
+use lovelock_session::clock::STEP_SECS;
+use lovelock_session::health::Gauge;
+use lovelock_session::render_thread::Painted;
+use lovelock_session::scene::frame_points;
 
 use super::overlay::{self, View};
 use super::{Window, panels};

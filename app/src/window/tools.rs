@@ -1,10 +1,10 @@
 //! What the pointer does in the picture beside moving the camera: it moves ties, cuts hair, and chooses and changes colliders.
 
 use egui::{PointerButton, Response, Ui};
-use lovelock_studio::motion::{
-    Collider, ColliderEdits, FieldPose, PlacedCollider, collider_lines, place_colliders,
-};
-use lovelock_studio::{FrameSnapshot, Painted, Project};
+use lovelock_motion::{Collider, ColliderEdits, FieldPose, PlacedCollider, collider_lines, place_colliders};
+use lovelock_project::Project;
+use lovelock_session::render_thread::Painted;
+use lovelock_session::snapshot::FrameSnapshot;
 
 use super::overlay::colliders::Wires;
 use super::overlay::{self, View};

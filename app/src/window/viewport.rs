@@ -3,8 +3,8 @@
 use egui::{
     Align2, Color32, ColorImage, FontId, Rect, Response, Sense, TextureHandle, TextureOptions, Ui, Vec2, pos2,
 };
-use lovelock_studio::render::Backend;
-use lovelock_studio::{Adapter, Painted};
+use lovelock_render::Backend;
+use lovelock_session::render_thread::{Adapter, Painted};
 
 use super::theme;
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use lovelock_studio::render::ShadowMethod;
+use lovelock_render::ShadowMethod;
 use serde_json::Value;
 
 use crate::tool::{names, run, saved, small_project};

@@ -3,8 +3,8 @@
 use std::path::Path;
 use std::sync::OnceLock;
 
-use lovelock_studio::recording::read_film;
-use lovelock_studio::{HairSource, MotionSource};
+use lovelock_project::project::{HairSource, MotionSource};
+use lovelock_record::read_film;
 use serde_json::Value;
 use tempfile::TempDir;
 

@@ -2,7 +2,9 @@
 
 use egui::{DragValue, RichText, Ui, Vec2};
 use egui_material_icons::{MaterialIcon, icons};
-use lovelock_studio::{CompareSection, LiveShows, Project};
+use lovelock_panes::view::LiveShows;
+use lovelock_project::Project;
+use lovelock_project::project::CompareSection;
 
 use super::layout::CompareLayout;
 use super::legend::LARGEST;

@@ -4,7 +4,9 @@ use egui::{Align, Layout, RichText, Ui, vec2};
 use egui_plot::{
     GridMark, HoverPosition, Line, LineStyle, MarkerShape, Plot, PlotPoint, PlotPoints, Points, Text,
 };
-use lovelock_studio::{LiveError, LiveTimes, Project, bytes_label};
+use lovelock_panes::label::bytes_label;
+use lovelock_panes::request::{LiveError, LiveTimes};
+use lovelock_project::Project;
 
 use super::costs::{Costs, PLOTTED_SECS, Way};
 use super::layout::CostPlot;

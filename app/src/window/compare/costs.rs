@@ -3,8 +3,13 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use lovelock_studio::render::{Backend, ShadowMethod, Transparency};
-use lovelock_studio::{Adapter, Contender, LiveError, LivePane, LiveTimes, Project, Stopwatch, median};
+use lovelock_panes::request::{LiveError, LivePane, LiveTimes};
+use lovelock_project::Project;
+use lovelock_project::project::Contender;
+use lovelock_render::{Backend, ShadowMethod, Transparency};
+use lovelock_session::clock::Stopwatch;
+use lovelock_session::render_thread::Adapter;
+use lovelock_session::stats::median;
 
 /// Seconds that are plotted.
 pub(super) const PLOTTED_SECS: f64 = 12.0;
@@ -137,8 +142,8 @@ fn is_same_but_for_panes(a: &Arc<Project>, b: &Arc<Project>) -> bool {
 
 #[cfg(test)]
 pub(super) mod tests {
-    use lovelock_studio::LiveShows;
-    use lovelock_studio::render::{Camera, Picture};
+    use lovelock_panes::view::LiveShows;
+    use lovelock_render::{Camera, Picture};
 
     use super::*;
 

@@ -1,7 +1,7 @@
 //! Where panes are.
 
 use egui::{Rect, Vec2, pos2};
-use lovelock_studio::pane_columns;
+use lovelock_panes::sheet::pane_columns;
 
 /// Room between panes, points.
 pub(super) const GAP: f32 = 3.0;

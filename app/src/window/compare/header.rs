@@ -3,8 +3,9 @@
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{PopupCloseBehavior, Rect, RichText, Ui, UiBuilder, pos2, vec2};
 use egui_material_icons::{MaterialIcon, icons};
-use lovelock_studio::render::{Backend, PictureSettings, ShadowMethod, ShadowSettings, Transparency};
-use lovelock_studio::{Contender, LivePane};
+use lovelock_panes::request::LivePane;
+use lovelock_project::project::Contender;
+use lovelock_render::{Backend, PictureSettings, ShadowMethod, ShadowSettings, Transparency};
 
 use crate::window::control::{Number, choice, note};
 use crate::window::{panels, theme};

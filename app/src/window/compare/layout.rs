@@ -1,6 +1,7 @@
 //! How the comparison is laid out: kept between runs, not part of the project.
 
-use lovelock_studio::{LiveShows, LiveView, Sheet};
+use lovelock_panes::sheet::Sheet;
+use lovelock_panes::view::{LiveShows, LiveView};
 use serde::{Deserialize, Serialize};
 
 use crate::window::theme;

@@ -1,8 +1,8 @@
 //! The scale of the colours that panes show errors in.
 
 use egui::{Align2, FontId, Rect, Sense, Stroke, Ui, pos2, vec2};
-use lovelock_studio::LiveShows;
-use lovelock_studio::metrics::ticks;
+use lovelock_metrics::ticks;
+use lovelock_panes::view::LiveShows;
 
 use crate::window::theme;
 

@@ -13,20 +13,25 @@ mod save;
 mod texture;
 mod zoom;
 
+pub(crate) use layout::CompareLayout;
+
 use std::sync::Arc;
 
-use egui::{CentralPanel, Frame, Key, Panel, Popup, Rect, Ui};
-use lovelock_studio::{
-    Access, Command, CompareSection, Contender, FrameSnapshot, Live, LivePane, LiveProbe, LiveRequest,
-    ProbePlace, Project,
-};
-
-use super::Window;
 use costs::Costs;
-pub(crate) use layout::CompareLayout;
+use egui::{CentralPanel, Frame, Key, Panel, Popup, Rect, Ui};
+use lovelock_panes::live::Live;
+use lovelock_panes::probe::{LiveProbe, ProbePlace};
+use lovelock_panes::request::{LivePane, LiveRequest};
+use lovelock_project::Project;
+use lovelock_project::files::Access;
+use lovelock_project::project::{CompareSection, Contender};
+use lovelock_session::snapshot::FrameSnapshot;
 use save::Saving;
 use texture::PaneTextures;
 use zoom::Zoom;
+
+use super::Window;
+use super::command::Command;
 
 /// What the comparison shows, and what it asked for last.
 #[derive(Default)]
@@ -105,7 +110,7 @@ impl Compare {
 
     /// The hair whose light is plotted.
     #[cfg(test)]
-    pub(crate) fn probed_hair(&self) -> Option<&lovelock_studio::ProbedHair> {
+    pub(crate) fn probed_hair(&self) -> Option<&lovelock_panes::probe::ProbedHair> {
         self.probed.as_ref()?.hair.as_ref()
     }
 
@@ -144,7 +149,7 @@ fn is_same(a: &LiveRequest, b: &LiveRequest) -> bool {
 /// A pane for the next method that no pane shows, else another of the project's own way.
 fn next_pane(project: &Project) -> Contender {
     let panes = &project.compare.panes;
-    let methods = lovelock_studio::render::ShadowMethod::ALL;
+    let methods = lovelock_render::ShadowMethod::ALL;
     let shown = |method| panes.iter().any(|pane| pane.shadow.method == method);
     let mut next = Contender::of(project);
     if let Some(&method) = methods.iter().find(|&&method| !shown(method)) {
@@ -267,7 +272,7 @@ impl Window {
 
 #[cfg(test)]
 mod tests {
-    use lovelock_studio::render::ShadowMethod;
+    use lovelock_render::ShadowMethod;
 
     use super::*;
 

@@ -4,7 +4,8 @@ use egui::{
     Align2, Color32, CursorIcon, FontId, Id, Pos2, Rect, Response, Sense, Stroke, StrokeKind, Ui, UiBuilder,
     Vec2, pos2, vec2,
 };
-use lovelock_studio::{LivePane, Project};
+use lovelock_panes::request::LivePane;
+use lovelock_project::Project;
 
 use super::costs::Way;
 use super::{Window, grid, header};

@@ -2,7 +2,8 @@
 
 use egui::{RichText, Ui};
 use egui_plot::{GridMark, HoverPosition, Line, LineStyle, MarkerShape, Plot, PlotPoints, Points, VLine};
-use lovelock_studio::{LiveProbe, ProbedHair, Project};
+use lovelock_panes::probe::{LiveProbe, ProbedHair};
+use lovelock_project::Project;
 
 use crate::window::control::note;
 use crate::window::theme;

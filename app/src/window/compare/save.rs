@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, sync_channel};
 
-use lovelock_studio::{LivePane, Sheet, recording};
+use lovelock_panes::request::LivePane;
+use lovelock_panes::sheet::Sheet;
+use lovelock_record as recording;
 
 use super::costs::Way;
 use super::{Compare, grid, header};

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use egui::{Color32, ColorImage, Painter, Rect, TextureHandle, TextureOptions, Vec2};
-use lovelock_studio::{CompareSection, LivePane};
+use lovelock_panes::request::LivePane;
+use lovelock_project::project::CompareSection;
 
 /// Pixels of the screen a pixel of the picture from which on pixels are shown as such.
 const SHARP: f32 = 3.0;

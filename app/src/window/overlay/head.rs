@@ -2,7 +2,7 @@
 
 use egui::Pos2;
 use glam::{Affine3A, Vec3};
-use lovelock_studio::groom::Scalp;
+use lovelock_groom::Scalp;
 
 use super::View;
 
@@ -155,8 +155,9 @@ fn meets([a, b, c]: [Vec3; 3], eye: Vec3, along: Vec3) -> Option<[f32; 3]> {
 
 #[cfg(test)]
 mod tests {
+    use lovelock_groom::PlainHead;
+
     use super::*;
-    use lovelock_studio::groom::PlainHead;
 
     fn middle_of(scalp: &Scalp) -> Vec3 {
         let low = scalp.positions.iter().copied().reduce(Vec3::min).expect("a head");

@@ -8,7 +8,7 @@ pub(crate) mod ties;
 
 use egui::{CursorIcon, Id, Painter, Pos2, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo, pos2};
 use glam::{Mat4, Vec3};
-use lovelock_studio::Painted;
+use lovelock_session::render_thread::Painted;
 
 use super::theme;
 
@@ -103,9 +103,10 @@ impl View {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use egui::vec2;
-    use lovelock_studio::render::Camera;
+    use lovelock_render::Camera;
+
+    use super::*;
 
     fn view() -> View {
         let camera = Camera { eye: Vec3::new(0.4, 1.6, 2.0), target: Vec3::new(0.0, 1.5, 0.0), fov_y: 0.5 };

@@ -2,8 +2,8 @@
 
 use egui::{CursorIcon, PointerButton, Pos2, Response, Stroke, Ui};
 use glam::Vec3;
-use lovelock_studio::FrameSnapshot;
-use lovelock_studio::groom::{Blade, Haircut};
+use lovelock_groom::{Blade, Haircut};
+use lovelock_session::snapshot::FrameSnapshot;
 
 use super::View;
 use crate::window::theme;

@@ -3,7 +3,7 @@
 
 use egui::{CursorIcon, Id, Painter, Pos2, Shape, Stroke, Ui};
 use glam::Vec3;
-use lovelock_studio::groom::{HairTie, TieReach};
+use lovelock_groom::{HairTie, TieReach};
 
 use super::head::{Head, Hold};
 use super::{HANDLE, View, dot, dragged_to, handle};

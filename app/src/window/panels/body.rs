@@ -1,8 +1,9 @@
 //! The body and its motion.
 
 use egui::Ui;
-use lovelock_studio::motion::{LengthUnit, MotionSettings, RootPosition, UpAxis};
-use lovelock_studio::{BodySource, MotionSection, MotionSource, Project};
+use lovelock_motion::{LengthUnit, MotionSettings, RootPosition, UpAxis};
+use lovelock_project::Project;
+use lovelock_project::project::{BodySource, MotionSection, MotionSource};
 
 use crate::window::control::{Number, choice, note, section, toggle};
 
@@ -58,7 +59,7 @@ pub(crate) fn ui(ui: &mut Ui, project: &mut Project, loaded: &Loaded) -> Option<
         if let Some(file) = &project.body.file {
             note(ui, file.path.display().to_string());
         }
-        let d = lovelock_studio::motion::BodySettings::default();
+        let d = lovelock_motion::BodySettings::default();
         units(ui, &mut project.body.settings.unit, d.unit);
         axes(ui, &mut project.body.settings.up, d.up);
     }

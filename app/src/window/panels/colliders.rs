@@ -1,7 +1,7 @@
 //! What hair collides with.
 
 use egui::Ui;
-use lovelock_studio::motion::{ColliderEdit, ColliderEdits, FieldEdit};
+use lovelock_motion::{ColliderEdit, ColliderEdits, FieldEdit};
 
 use crate::window::control::{Number, choice, note, row, section, toggle, unless};
 

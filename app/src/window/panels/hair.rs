@@ -1,8 +1,9 @@
 //! The hairstyle: a shipped style and its controls, or a file and how it is placed.
 
 use egui::Ui;
-use lovelock_studio::groom::{Facing, GroomSettings, ImportSettings, Placement, Preset, Unit, UpAxis};
-use lovelock_studio::{HairSection, HairSource, Project};
+use lovelock_groom::{Facing, GroomSettings, ImportSettings, Placement, Preset, Unit, UpAxis};
+use lovelock_project::Project;
+use lovelock_project::project::{HairSection, HairSource};
 
 use crate::window::control::{Number, choice, count, note, row, section, toggle};
 

@@ -2,7 +2,7 @@
 
 use egui::{Align, Color32, Layout, Rect, RichText, Sense, Ui, Vec2, WidgetInfo};
 use egui_material_icons::icons;
-use lovelock_studio::{Gauge, GaugeKind, HealthLevel};
+use lovelock_session::health::{Gauge, GaugeKind, HealthLevel};
 
 use crate::window::control::note;
 use crate::window::theme;

@@ -2,7 +2,7 @@
 
 use egui::Ui;
 use glam::Vec3;
-use lovelock_studio::render::{Light, MAX_LIGHTS};
+use lovelock_render::{Light, MAX_LIGHTS};
 
 use crate::window::control::{Number, color, note, toggle};
 use crate::window::light_sphere::light_sphere;

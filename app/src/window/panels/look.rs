@@ -2,8 +2,8 @@
 
 use egui::{Color32, Ui};
 use glam::Vec3;
-use lovelock_studio::groom::HairLook;
-use lovelock_studio::render::{Backend, PictureSettings, Transparency};
+use lovelock_groom::HairLook;
+use lovelock_render::{Backend, PictureSettings, Transparency};
 
 use crate::window::control::{Number, choice, color, row, section, toggle};
 use crate::window::theme;

@@ -1,8 +1,9 @@
 //! What a recording is, and the one that runs.
 
 use egui::{ProgressBar, RichText, Ui};
-use lovelock_studio::recording::{FilmQuality, SequenceFormat};
-use lovelock_studio::{Pace, RecordingSection};
+use lovelock_project::project::RecordingSection;
+use lovelock_record::{FilmQuality, SequenceFormat};
+use lovelock_session::clock::Pace;
 
 use crate::window::control::{Number, choice, count, is_left, note, row, toggle, typed};
 use crate::window::theme;

@@ -2,8 +2,8 @@
 
 use egui::Ui;
 use glam::Vec3;
-use lovelock_studio::TimelineSection;
-use lovelock_studio::simulation::{Integrator, MAX_SWEEPS, RepulsionMode, SimulationSettings, Wind};
+use lovelock_project::project::TimelineSection;
+use lovelock_simulation::{Integrator, MAX_SWEEPS, RepulsionMode, SimulationSettings, Wind};
 
 use crate::window::control::{Number, choice, count, row, section, unless};
 use crate::window::light_sphere::{Sphere, sphere};

@@ -2,8 +2,8 @@
 
 use egui::{RichText, Ui};
 use egui_plot::{GridMark, Line, Plot, PlotPoints};
-use lovelock_studio::render::PassTime;
-use lovelock_studio::{PassHistory, Stage, StageHistory};
+use lovelock_render::PassTime;
+use lovelock_session::stats::{PassHistory, Stage, StageHistory};
 
 use crate::window::control::note;
 use crate::window::theme;

@@ -2,8 +2,8 @@
 
 use egui::Ui;
 use glam::Vec3;
-use lovelock_studio::HairSection;
-use lovelock_studio::groom::{HairTie, Haircut, Scalp, TieKind, TieReach};
+use lovelock_groom::{HairTie, Haircut, Scalp, TieKind, TieReach};
+use lovelock_project::project::HairSection;
 
 use crate::window::aim::Aim;
 use crate::window::control::{Number, choice, note, toggle};

@@ -4,8 +4,10 @@ use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use lovelock_studio::render::ShadowMethod;
-use lovelock_studio::{CompareSection, LiveError, LiveShows};
+use lovelock_panes::request::LiveError;
+use lovelock_panes::view::LiveShows;
+use lovelock_project::project::CompareSection;
+use lovelock_render::ShadowMethod;
 
 use super::whole::{CTRL, go, key, of, press_button, project, wait, window};
 use super::{Shown, control, drag};
@@ -45,7 +47,7 @@ fn panes_are_drawn_with_their_cost_and_error() {
         assert_eq!(pane.contender.shadow.method, *method);
         assert!(pane.times.whole > 0.0 && !pane.picture.rgba.is_empty());
         // On the GPU the exact method has an error too.
-        let by_processor = pane.adapter.backend == lovelock_studio::render::Backend::Cpu;
+        let by_processor = pane.adapter.backend == lovelock_render::Backend::Cpu;
         match &pane.error {
             LiveError::Reference => assert!(*method == ShadowMethod::Exact && by_processor),
             LiveError::Measured { rmse, .. } => {

@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use super::super::command::{COMMANDS, Command};
 use egui::{Event, Key, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use lovelock_studio::{COMMANDS, Command};
 
 use super::{Shown, screen_of};
 use crate::window::palette::Palette;
@@ -106,15 +106,19 @@ fn the_button_confirms_the_suggested_path() {
     harness.run();
     harness.get_by_label("Save file").click();
     harness.run();
-    let wanted = PathBuf::from(format!("/somewhere/my hair.{}", lovelock_studio::PROJECT_EXTENSION));
+    let wanted =
+        PathBuf::from(format!("/somewhere/my hair.{}", lovelock_project::project::PROJECT_EXTENSION));
     assert_eq!(harness.state().state.1, Some(Answer::Path(Purpose::SaveProject, wanted)));
 }
 
 #[test]
 fn a_saved_project_can_be_opened_again() {
     // The extension that the dialog adds is the one that marks a project.
-    let path = Path::new("x").with_extension(lovelock_studio::PROJECT_EXTENSION);
-    assert_eq!(lovelock_studio::FileKind::by_extension(&path), Some(lovelock_studio::FileKind::Project));
+    let path = Path::new("x").with_extension(lovelock_project::project::PROJECT_EXTENSION);
+    assert_eq!(
+        lovelock_jobs::info::FileKind::by_extension(&path),
+        Some(lovelock_jobs::info::FileKind::Project)
+    );
 }
 
 #[test]

@@ -2,8 +2,12 @@
 
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable;
-use lovelock_studio::simulation::{BodyPart, InsidePoint, SimulationSettings};
-use lovelock_studio::{Access, Gauge, GaugeKind, HealthLevel, Project, SceneLoader, Totals, health};
+use lovelock_project::Project;
+use lovelock_project::files::Access;
+use lovelock_session::health::{Gauge, GaugeKind, HealthLevel, health};
+use lovelock_session::scene::SceneLoader;
+use lovelock_session::totals::Totals;
+use lovelock_simulation::{BodyPart, InsidePoint, SimulationSettings};
 
 use super::whole::{go, of, press_button, project, wait, window};
 use super::{control, screen, texts, tooltip_at};

@@ -1,10 +1,10 @@
 //! Keyboard shortcuts, menus and the list of keys.
 
+use super::super::command::{COMMANDS, Command, CommandGroup, CommandInfo};
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
-use lovelock_studio::{COMMANDS, Command, CommandGroup, CommandInfo};
 
 use super::{Shown, screen_of};
 use crate::window::keys;

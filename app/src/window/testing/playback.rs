@@ -3,8 +3,10 @@
 use egui::accesskit::Role;
 use egui::{Event, Modifiers, MouseWheelUnit, PointerButton, Rect, TouchPhase, pos2, vec2};
 use egui_kittest::Harness;
-use lovelock_studio::{Command, Marker, MotionSection, MotionSource, RecordingSection, Track};
+use lovelock_project::project::{Marker, MotionSection, MotionSource, RecordingSection};
+use lovelock_project::tracks::Track;
 
+use super::super::command::Command;
 use super::{Shown, click, control, drag, screen_of, tooltip_at};
 use crate::window::timeline::{self, Ask, Edited, Take, View, Writing, Zoom};
 
@@ -192,7 +194,7 @@ fn clips_of_zero_length_and_of_days_are_shown() {
 
 /// A timeline with a track of the camera and one of the light.
 fn tracked() -> Harness<'static, Shown<State>> {
-    let key = |secs, value: &[f64]| lovelock_studio::Key { secs, value: value.to_vec() };
+    let key = |secs, value: &[f64]| lovelock_project::tracks::Key { secs, value: value.to_vec() };
     let mut state = state(view());
     state.tracks = vec![
         Track {

@@ -6,7 +6,7 @@ use egui::accesskit::Role;
 use egui::{Key, Modifiers, Pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use lovelock_studio::groom::{HairTie, TieKind, TieReach};
+use lovelock_groom::{HairTie, TieKind, TieReach};
 
 use super::whole::{CTRL, go, key, of, press_button, project, wait, window};
 use super::{Shown, click_at, control, press};

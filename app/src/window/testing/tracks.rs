@@ -88,7 +88,7 @@ fn turning_the_wheel_during_playback_is_one_recording_pass() {
     key(&mut harness, Modifiers::NONE, Key::W);
     for _ in 0..3 {
         let now = position(of(&harness));
-        let watch = lovelock_studio::Stopwatch::start();
+        let watch = lovelock_session::clock::Stopwatch::start();
         // The end of the gesture is timed in passes and playback in real time, so the wheel turns until playback has advanced.
         while (position(of(&harness)) - now).abs() < 0.04 {
             for points in [40.0, -40.0] {
@@ -122,10 +122,10 @@ fn commands_that_move_the_camera_are_edits_like_any_other() {
     wait(&mut harness, "a frame", |window| window.session.frame.is_some());
     let mut tracked = (*project(&harness)).clone();
     tracked.camera.distance = 9.0;
-    let keys = [0.0, 60.0].map(|secs| lovelock_studio::Key { secs, value: vec![8.0] });
-    tracked.timeline.tracks = vec![lovelock_studio::Track {
+    let keys = [0.0, 60.0].map(|secs| lovelock_project::tracks::Key { secs, value: vec![8.0] });
+    tracked.timeline.tracks = vec![lovelock_project::tracks::Track {
         keys: keys.to_vec(),
-        ..lovelock_studio::Track::new("camera/distance")
+        ..lovelock_project::tracks::Track::new("camera/distance")
     }];
     let window = harness.state_mut().state.as_mut().expect("a window");
     window.edit("camera", tracked.clone());

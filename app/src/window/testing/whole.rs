@@ -9,9 +9,13 @@ use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, ViewportCommand, ViewportEvent, ViewportId, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use lovelock_studio::groom::Preset;
-use lovelock_studio::{Command, PROJECT_EXTENSION, Place, Project, Stopwatch, load_project};
+use lovelock_groom::Preset;
+use lovelock_project::Project;
+use lovelock_project::error::Place;
+use lovelock_project::project::{PROJECT_EXTENSION, load_project};
+use lovelock_session::clock::Stopwatch;
 
+use super::super::command::Command;
 use super::keyboard::entry;
 use super::{Shown, control, controls, drag, screen_of};
 use crate::window::actions::Opened;

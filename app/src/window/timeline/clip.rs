@@ -2,7 +2,7 @@
 
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{PopupCloseBehavior, Rect, RichText, Ui, UiBuilder};
-use lovelock_studio::{MotionSection, MotionSource};
+use lovelock_project::project::{MotionSection, MotionSource};
 
 use super::{Ask, Edited, View};
 use crate::window::control::{Number, toggle};

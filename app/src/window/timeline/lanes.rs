@@ -1,11 +1,10 @@
 //! The ruler with its lanes: a click or a drag goes to a time, the wheel magnifies, brackets and flags can be moved.
 
 use egui::{Align2, FontId, Id, PointerButton, Pos2, Rect, Response, Sense, Stroke, Ui, Vec2, pos2, vec2};
-use lovelock_studio::Marker;
+use lovelock_project::project::Marker;
 
-use super::thumbnails;
 use super::zoom::tick_secs;
-use super::{Ask, Edited, View, Zoom};
+use super::{Ask, Edited, View, Zoom, thumbnails};
 use crate::window::theme;
 
 const RULER: f32 = 22.0;

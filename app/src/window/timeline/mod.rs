@@ -7,14 +7,17 @@ mod tracks;
 mod transport;
 mod zoom;
 
-use egui::Ui;
-use lovelock_studio::{Command, Marker, MotionSection, RecordingSection, Track};
-
 pub(crate) use thumbnails::Thumbnails;
 pub(crate) use zoom::Zoom;
 
+use egui::Ui;
+use lovelock_project::project::{Marker, MotionSection, RecordingSection};
+use lovelock_project::tracks::Track;
+
+use super::command::Command;
+
 /// Frames a second that times are counted in: the steps of the simulation.
-const FRAMES_PER_SEC: f64 = 1.0 / lovelock_studio::STEP_SECS;
+const FRAMES_PER_SEC: f64 = 1.0 / lovelock_session::clock::STEP_SECS;
 
 /// Height of the panel without tracks, points.
 pub(crate) const HEIGHT: f32 = 92.0 + thumbnails::HEIGHT;

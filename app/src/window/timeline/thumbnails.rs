@@ -3,8 +3,13 @@
 use std::sync::Arc;
 
 use egui::{Color32, ColorImage, Context, Rect, TextureHandle, TextureId, TextureOptions, Ui, pos2, vec2};
-use lovelock_studio::render::Picture;
-use lovelock_studio::{Access, Filmstrip, FilmstripRequest, Painted, Project, Stopwatch, StudioError};
+use lovelock_project::Project;
+use lovelock_project::error::StudioError;
+use lovelock_project::files::Access;
+use lovelock_render::Picture;
+use lovelock_session::clock::Stopwatch;
+use lovelock_session::filmstrip::{Filmstrip, FilmstripRequest};
+use lovelock_session::render_thread::Painted;
 
 use super::Zoom;
 use super::lanes::Scale;

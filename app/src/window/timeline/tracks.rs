@@ -2,7 +2,7 @@
 
 use egui::{Id, PointerButton, Pos2, Rect, Response, RichText, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
 use egui_material_icons::icons;
-use lovelock_studio::Track;
+use lovelock_project::tracks::Track;
 
 use super::View;
 use super::lanes::Scale;
@@ -142,7 +142,7 @@ fn lane_ui(ui: &Ui, lane: Rect, scale: Scale, index: usize, track: &mut Track, w
     let near_to = |at: Option<Pos2>| {
         let at = at?;
         let distance =
-            |key: &lovelock_studio::Key, value: f64| pos2(scale.x(key.secs), y(value)).distance(at);
+            |key: &lovelock_project::tracks::Key, value: f64| pos2(scale.x(key.secs), y(value)).distance(at);
         let keys = track.keys.iter().enumerate();
         keys.flat_map(|(i, key)| key.value.iter().enumerate().map(move |(n, &v)| (i, n, distance(key, v))))
             .filter(|(.., distance)| *distance <= REACH)

@@ -1,8 +1,8 @@
 //! The row of buttons: play, step, rate, record.
 
+use super::super::command::{Command, CommandInfo};
 use egui::{RichText, Ui, Vec2};
 use egui_material_icons::icons;
-use lovelock_studio::{Command, CommandInfo};
 
 use super::{Ask, FRAMES_PER_SEC, View};
 use crate::window::theme;

@@ -4,9 +4,43 @@ use super::graph::Graph;
 use super::modules::Circle;
 
 /// Who may use whom, each crate by its name without `lovelock-`.
-const ARROWS: [(&str, &[&str]); 13] = [
-    ("app", &["studio", "base"]),
-    ("studio", &["render", "shadow", "simulation", "motion", "groom", "record", "metrics", "base"]),
+const ARROWS: [(&str, &[&str]); 17] = [
+    (
+        "app",
+        &[
+            "jobs",
+            "study",
+            "panes",
+            "session",
+            "project",
+            "render",
+            "simulation",
+            "motion",
+            "groom",
+            "record",
+            "metrics",
+            "base",
+        ],
+    ),
+    (
+        "jobs",
+        &[
+            "panes",
+            "session",
+            "project",
+            "render",
+            "simulation",
+            "motion",
+            "groom",
+            "record",
+            "metrics",
+            "base",
+        ],
+    ),
+    ("study", &["panes", "session", "project", "render", "shadow", "groom", "record", "metrics", "base"]),
+    ("panes", &["session", "project", "render", "shadow", "groom", "metrics", "base"]),
+    ("session", &["project", "render", "simulation", "motion", "groom", "record", "base"]),
+    ("project", &["render", "simulation", "motion", "groom", "record", "base"]),
     ("render", &["shadow", "gpu", "groom", "motion", "base"]),
     ("shadow", &["gpu", "groom", "base"]),
     ("simulation", &["groom", "motion", "base"]),
@@ -31,7 +65,7 @@ const WITHOUT_WGPU: [&str; 8] =
 const LIBRARIES: [(&[&str], &[&str]); 3] = [
     (&["egui", "eframe", "epaint", "emath"], &["app"]),
     (&["clap"], &["app", "xtask"]),
-    (&["wgpu", "naga"], &["gpu", "shadow", "render", "studio", "app"]),
+    (&["wgpu", "naga"], &["gpu", "shadow", "render", "app"]),
 ];
 
 /// One sentence for every arrow that may not be.
@@ -116,13 +150,16 @@ mod tests {
         graph
     }
 
-    const GOOD: [&str; 15] = [
-        "lovelock → lovelock-studio",
+    const GOOD: [&str; 18] = [
+        "lovelock → lovelock-jobs",
+        "lovelock → lovelock-render",
         "lovelock → egui",
         "lovelock → clap",
         "lovelock-xtask → clap",
-        "lovelock-studio → lovelock-render",
-        "lovelock-studio → lovelock-simulation",
+        "lovelock-jobs → lovelock-panes",
+        "lovelock-panes → lovelock-session",
+        "lovelock-session → lovelock-project",
+        "lovelock-session → lovelock-simulation",
         "lovelock-render → lovelock-gpu",
         "lovelock-shadow → lovelock-groom",
         "lovelock-simulation → lovelock-motion",
@@ -131,7 +168,7 @@ mod tests {
         "lovelock-groom → glam",
         "lovelock-groom ⇢ lovelock-testkit",
         "lovelock-testkit → lovelock-metrics",
-        "lovelock-studio → lovelock-metrics",
+        "lovelock-study → lovelock-metrics",
     ];
 
     #[test]
@@ -146,17 +183,19 @@ mod tests {
     #[test]
     fn every_wrong_arrow_is_named() {
         for (wrong, word) in [
-            ("lovelock → lovelock-render", "app may use studio, base"),
+            ("lovelock → lovelock-gpu", "app may use jobs, study"),
+            ("lovelock-project → lovelock-session", "project may use render"),
+            ("lovelock-session → lovelock-jobs", "session may use project"),
             ("lovelock-groom → lovelock-motion", "groom may use base"),
-            ("lovelock-record → lovelock-studio", "record may use groom, base"),
+            ("lovelock-record → lovelock-session", "record may use groom, base"),
             ("lovelock-shadow → lovelock-motion", "shadow may use gpu, groom, base"),
             ("lovelock-groom → lovelock-testkit", "groom may use"),
             ("lovelock-render ⇢ lovelock-metrics", "render may use"),
             ("lovelock-base → lovelock-groom", "none of the others"),
             ("lovelock-groom ⇢ lovelock-simulation", "groom may use"),
-            ("lovelock-studio → egui_plot", "only app"),
+            ("lovelock-panes → egui_plot", "only app"),
             ("lovelock-render ⇢ eframe", "only app"),
-            ("lovelock-studio → clap_builder", "only app, xtask"),
+            ("lovelock-jobs → clap_builder", "only app, xtask"),
             ("lovelock-simulation → wgpu-types", "only gpu"),
             ("lovelock-new → glam", "no row"),
         ] {

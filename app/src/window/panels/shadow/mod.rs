@@ -4,7 +4,7 @@ mod texels;
 mod voxel_map;
 
 use egui::Ui;
-use lovelock_studio::render::{ShadowMethod, ShadowSettings};
+use lovelock_render::{ShadowMethod, ShadowSettings};
 
 use crate::window::control::{Number, choice, note};
 

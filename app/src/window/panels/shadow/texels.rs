@@ -1,7 +1,7 @@
 //! The controls of the methods that keep a record for each texel of a map across the light.
 
 use egui::Ui;
-use lovelock_studio::render::{
+use lovelock_render::{
     ClusterDeviation, ClusterSeeds, DeepOpacityMapsSettings, DensityClusteringSettings, ExactSettings,
     LayerGrowth, OccupancyMapsSettings, OpacityMapsSettings, TexelFilter,
 };

@@ -1,7 +1,7 @@
 //! The controls of the voxel map.
 
 use egui::Ui;
-use lovelock_studio::render::{MapExtent, VoxelDeposit, VoxelFilter, VoxelMapSettings};
+use lovelock_render::{MapExtent, VoxelDeposit, VoxelFilter, VoxelMapSettings};
 
 use super::count;
 use crate::window::control::{Number, choice, section};

@@ -173,7 +173,7 @@ fn changed_values_are_marked_and_a_double_click_restores_them() {
 #[test]
 fn the_default_project_has_no_marked_controls() {
     let project = projects()[0].1.clone();
-    assert!(project == lovelock_studio::Project::default());
+    assert!(project == lovelock_project::Project::default());
     for (title, _) in PANELS {
         let harness = panel(title, project.clone());
         let sliders = controls(&harness, Role::Slider);

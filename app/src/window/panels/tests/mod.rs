@@ -9,10 +9,12 @@ mod untouched;
 use egui::Ui;
 use egui_kittest::Harness;
 use glam::Vec3;
-use lovelock_studio::groom::{HairTie, Preset, TieKind, TieReach};
-use lovelock_studio::motion::ColliderEdit;
-use lovelock_studio::render::{PassTime, VoxelDeposit};
-use lovelock_studio::{HairSource, PassHistory, Project, StageHistory, StageTimes};
+use lovelock_groom::{HairTie, Preset, TieKind, TieReach};
+use lovelock_motion::ColliderEdit;
+use lovelock_project::Project;
+use lovelock_project::project::HairSource;
+use lovelock_render::{PassTime, VoxelDeposit};
+use lovelock_session::stats::{PassHistory, StageHistory, StageTimes};
 
 use super::recording::State;
 use crate::window::control::section;

@@ -3,10 +3,12 @@
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable;
 use glam::Vec3;
-use lovelock_studio::groom::{GroomSettings, HairTie, Preset, TieKind, Unit};
-use lovelock_studio::render::{MAX_LIGHTS, ShadowMethod, VoxelDeposit};
-use lovelock_studio::simulation::SimulationSettings;
-use lovelock_studio::{BodySource, HairSource, MotionSource, Project, Stage};
+use lovelock_groom::{GroomSettings, HairTie, Preset, TieKind, Unit};
+use lovelock_project::Project;
+use lovelock_project::project::{BodySource, HairSource, MotionSource};
+use lovelock_render::{MAX_LIGHTS, ShadowMethod, VoxelDeposit};
+use lovelock_session::stats::Stage;
+use lovelock_simulation::SimulationSettings;
 
 use super::{Bench, panel};
 use crate::window::panels::{body, hair};

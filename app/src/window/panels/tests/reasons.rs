@@ -3,8 +3,8 @@
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::NodeT;
-use lovelock_studio::Project;
-use lovelock_studio::simulation::{Integrator, RepulsionMode};
+use lovelock_project::Project;
+use lovelock_simulation::{Integrator, RepulsionMode};
 
 use super::one_by_one::choose;
 use super::{Bench, panel};

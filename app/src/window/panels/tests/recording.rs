@@ -2,8 +2,9 @@
 
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable;
-use lovelock_studio::recording::SequenceFormat;
-use lovelock_studio::{Project, RecordingSection};
+use lovelock_project::Project;
+use lovelock_project::project::RecordingSection;
+use lovelock_record::SequenceFormat;
 
 use super::one_by_one::choose;
 use super::panel;

@@ -4,8 +4,8 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use glam::Vec3;
-use lovelock_studio::Project;
-use lovelock_studio::groom::{HairTie, TieReach};
+use lovelock_groom::{HairTie, TieReach};
+use lovelock_project::Project;
 
 use super::one_by_one::choose;
 use super::{Bench, panel};

@@ -4,7 +4,8 @@ use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, MouseWheelUnit, TouchPhase, vec2};
 use egui_kittest::Harness;
 use glam::Vec3;
-use lovelock_studio::{History, Project};
+use lovelock_project::Project;
+use lovelock_project::history::History;
 
 use crate::window::camera_control;
 use crate::window::gesture::Gestures;

@@ -1,12 +1,13 @@
 //! Showing a panel does not change the project.
 
 use lovelock_base::random::SplitMix64;
+use lovelock_project::Project;
+use lovelock_project::project::{BodySource, HairSource, MotionSource};
 use serde_json::Value;
 
 use super::{Bench, PANELS, projects};
 use crate::window::control::section;
 use crate::window::testing::{screen, unfold};
-use lovelock_studio::{BodySource, HairSource, MotionSource, Project};
 
 /// Any number: near `near`, far from it, tiny or huge, of either sign.
 fn number(random: &mut SplitMix64, near: f64) -> f64 {

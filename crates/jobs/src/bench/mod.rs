@@ -1,0 +1,149 @@
+//! Measures whole frames of known scenes, stage by stage, beside what was published of them.
+
+mod memory;
+mod report;
+mod scenes;
+mod simulation;
+
+pub use report::{BenchReport, SceneReport, StageReport};
+pub use scenes::BenchScene;
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use lovelock_project::Project;
+use lovelock_project::error::StudioError;
+use lovelock_project::files::Access;
+use lovelock_render::{Backend, Picture, RenderError, Renderer, ShadowMethod, Transparency};
+use lovelock_session::clock::{FrameClock, Stopwatch};
+use lovelock_session::engine::Engine;
+use lovelock_session::health::health;
+use lovelock_session::machine::machine;
+use lovelock_session::scene::{LoadControl, Scene, SceneLoader};
+
+/// What to measure. What is simulated alone ([`BenchScene::is_simulated_alone`]) heeds the frames alone.
+#[derive(Clone, Debug)]
+pub struct BenchRequest {
+    /// The scenes, in order.
+    pub scenes: Vec<BenchScene>,
+    /// The backends, in order; one that this machine has not is left out with a note.
+    pub backends: Vec<Backend>,
+    /// Frames to measure, after one that is not counted.
+    pub frames: u32,
+    /// Width and height, pixels; the scene's own where none is given.
+    pub size: Option<(u32, u32)>,
+    /// The shadow method; the scene's own where none is given.
+    pub shadow: Option<ShadowMethod>,
+    /// The transparency; the scene's own where none is given.
+    pub transparency: Option<Transparency>,
+}
+
+impl Default for BenchRequest {
+    fn default() -> Self {
+        Self {
+            scenes: BenchScene::ALL.to_vec(),
+            backends: vec![Backend::Cpu, Backend::Gpu],
+            frames: 15,
+            size: None,
+            shadow: None,
+            transparency: None,
+        }
+    }
+}
+
+/// The frame of the dance at which measuring begins: the hair is in full swing.
+const FIRST_FRAME: u64 = 40;
+
+/// Measures; `progress` is told each scene and backend before it begins, and may stop it.
+///
+/// # Errors
+/// A size out of range, hair that cannot be grown, or [`StudioError::Cancelled`].
+pub fn bench(
+    request: &BenchRequest,
+    progress: &mut dyn FnMut(&str) -> ControlFlow<()>,
+) -> Result<BenchReport, StudioError> {
+    if let Some((width, height)) = request.size {
+        lovelock_render::check_size(width, height)?;
+    }
+    let mut notes = Vec::new();
+    let mut renderers = Vec::new();
+    let drawn = request.scenes.iter().any(|scene| !scene.is_simulated_alone());
+    for &backend in request.backends.iter().filter(|_| drawn) {
+        match Renderer::open(backend) {
+            Ok(renderer) => renderers.push(renderer),
+            // What this machine has not costs its own numbers alone.
+            Err(error @ RenderError::Gpu(_)) => {
+                notes.push(format!("{backend}: {error}"));
+            }
+            Err(error) => return Err(error.into()),
+        }
+    }
+    let mut scenes = Vec::new();
+    for &scene in &request.scenes {
+        let mut project = scene.project();
+        project.shadow.method = request.shadow.unwrap_or(project.shadow.method);
+        project.picture.transparency = request.transparency.unwrap_or(project.picture.transparency);
+        let loaded = load(&project)?;
+        if scene.is_simulated_alone() {
+            if progress(scene.id()).is_break() {
+                return Err(StudioError::Cancelled);
+            }
+            let (report, note) = simulation::measure(scene, &project, &loaded, request);
+            scenes.push(report);
+            notes.push(note);
+            continue;
+        }
+        for renderer in &mut renderers {
+            let what = format!("{} on {}", scene.id(), renderer.adapter());
+            if progress(&what).is_break() {
+                return Err(StudioError::Cancelled);
+            }
+            scenes.push(measure(scene, &project, &loaded, renderer, request)?);
+        }
+    }
+    Ok(BenchReport { machine: machine(), scenes, notes })
+}
+
+fn load(project: &Project) -> Result<Arc<Scene>, StudioError> {
+    let cancelled = AtomicBool::new(false);
+    let mut silent = |_: &str, _: f32| {};
+    let mut control = LoadControl { cancelled: &cancelled, progress: &mut silent };
+    let (scene, problems) = SceneLoader::new().load(project, &Access::default(), &mut control)?;
+    match problems.first() {
+        Some(problem) => Err(StudioError::work(problem)),
+        None => Ok(scene),
+    }
+}
+
+fn measure(
+    scene: BenchScene,
+    project: &Project,
+    loaded: &Arc<Scene>,
+    renderer: &mut Renderer,
+    request: &BenchRequest,
+) -> Result<SceneReport, StudioError> {
+    let (width, height) = request.size.unwrap_or(scene.size());
+    memory::reset_peak_memory();
+    let clock = FrameClock::new(30.0);
+    let mut engine = Engine::with_step(Arc::clone(loaded), project.simulation, clock.step_secs);
+    engine.advance_to_step(clock.step_of_frame(FIRST_FRAME));
+    let mut picture = Picture::default();
+    let mut frames = Vec::new();
+    for frame in 0..=u64::from(request.frames.max(1)) {
+        let watch = Stopwatch::start();
+        engine.advance_to_step(clock.step_of_frame(FIRST_FRAME + 1 + frame));
+        let snapshot = engine.snapshot();
+        let camera = snapshot.camera(&project.camera);
+        let input = snapshot.frame_input(project, &camera);
+        let stats = renderer.picture(&input, width, height, &mut picture)?;
+        let mut times = snapshot.times;
+        times.take_picture(&stats);
+        // The first one makes buffers.
+        if frame > 0 {
+            frames.push((watch.ms(), times, stats));
+        }
+    }
+    let gauges = health(&engine.totals(), engine.rest_inside(), loaded, &project.simulation);
+    Ok(SceneReport::new(scene, project, renderer, [width, height], &loaded.style.strands, gauges, &frames))
+}

@@ -1,0 +1,232 @@
+//! The simulation by itself, by every method that keeps links at their length.
+
+use std::sync::Arc;
+
+use glam::Affine3A;
+use lovelock_groom::{GuideFrame, Guides, Hairstyle, StrandSet, Strands, Wisp, interpolate};
+use lovelock_project::Project;
+use lovelock_render::Backend;
+use lovelock_session::clock::STEP_SECS;
+use lovelock_session::engine::Engine;
+use lovelock_session::health::{Gauge, health};
+use lovelock_session::scene::Scene;
+use lovelock_simulation::{Integrator, SimulationSettings};
+
+use super::BenchRequest;
+use super::report::{SceneReport, StageReport};
+use super::scenes::BenchScene;
+
+/// The step after which measuring begins: the hair is in full swing.
+const FIRST_STEP: u64 = 320;
+
+/// Steps that each method lives through first, uncounted.
+const WARM_UP: u64 = 10;
+
+/// What one method did.
+struct Measured {
+    method: Integrator,
+    /// What each step took, milliseconds.
+    times: Vec<f64>,
+    /// The largest stretch of a link.
+    stretch: f32,
+    /// The least and the most substeps of a step.
+    substeps: [u32; 2],
+}
+
+/// The stable name of a method.
+const fn id(method: Integrator) -> &'static str {
+    match method {
+        Integrator::Direct => "direct",
+        Integrator::Relaxation => "relaxation",
+        Integrator::FollowTheLeader => "follow-the-leader",
+    }
+}
+
+/// Measures the same steps of the dance by each method, from the same hair, which has lived there by the usual one. A step is 1/60 s.
+/// Also returns what the methods did to the hair, in a sentence.
+pub(super) fn measure(
+    scene: BenchScene,
+    project: &Project,
+    loaded: &Arc<Scene>,
+    request: &BenchRequest,
+) -> (SceneReport, String) {
+    super::memory::reset_peak_memory();
+    let loaded = if scene.simulates_strands() {
+        let style = Arc::new(strands_as_guides(&loaded.style));
+        Arc::new(Scene { style, ..Scene::clone(loaded) })
+    } else {
+        Arc::clone(loaded)
+    };
+    let mut start = Engine::at_rest(Arc::clone(&loaded), project.simulation, STEP_SECS);
+    start.follow(project);
+    start.seek(FIRST_STEP as f64 * STEP_SECS);
+    start.settle();
+    let mut gauges = Vec::new();
+    let measured: Vec<_> = Integrator::ALL
+        .into_iter()
+        .map(|method| {
+            let mut engine = start.beside();
+            engine.set_settings(&SimulationSettings { integrator: method, ..project.simulation });
+            engine.advance_to_step(FIRST_STEP + WARM_UP);
+            engine.clear_totals();
+            engine.take_simulate_ms();
+            let (mut times, mut substeps) = (Vec::new(), [u32::MAX, 0]);
+            for _ in 0..request.frames.max(1) {
+                engine.step();
+                let (simulate_ms, taken) = engine.take_simulate_ms();
+                times.push(simulate_ms);
+                substeps = [substeps[0].min(taken), substeps[1].max(taken)];
+            }
+            if method == Integrator::Direct {
+                gauges = health(&engine.totals(), engine.rest_inside(), &loaded, &project.simulation);
+            }
+            Measured { method, times, stretch: engine.totals().max_stretch, substeps }
+        })
+        .collect();
+    let stretch = |of: &Measured| format!("{:.2e} ({})", of.stretch, id(of.method));
+    let [least, most] = measured
+        .iter()
+        .fold([u32::MAX, 0], |[least, most], of| [least.min(of.substeps[0]), most.max(of.substeps[1])]);
+    let note = format!(
+        "{scene}: a step is {:.1} ms of {least} to {most} substeps; the largest stretch of a link is {}",
+        STEP_SECS * 1e3,
+        measured.iter().map(stretch).collect::<Vec<_>>().join(", ")
+    );
+    (SceneReport::of_simulation(scene, &loaded.style.guides, gauges, &measured), note)
+}
+
+impl SceneReport {
+    /// Of a scene that is simulated and not drawn.
+    fn of_simulation(scene: BenchScene, guides: &Guides, health: Vec<Gauge>, measured: &[Measured]) -> Self {
+        let row = |of: &Measured| {
+            let name = format!("simulate/{}", id(of.method));
+            StageReport::new(&name, scene.published_ms(&name), &of.times)
+        };
+        Self {
+            scene: scene.id().to_owned(),
+            backend: Backend::Cpu.to_string(),
+            adapter: "simulation".to_owned(),
+            shadow: String::new(),
+            transparency: String::new(),
+            width: 0,
+            height: 0,
+            strands: guides.count() as u64,
+            points: guides.x.len() as u64,
+            segments: (guides.x.len() - guides.count()) as u64,
+            frames: measured.first().map_or(0, |of| of.times.len()) as u64,
+            stages: measured.iter().map(row).collect(),
+            pictures_per_second: 0.0,
+            frames_per_second: 0.0,
+            published_note: scene.published_note(),
+            health,
+            shadow_bytes: 0,
+            draw_bytes: 0,
+            peak_memory_bytes: super::memory::peak_memory_bytes(),
+        }
+    }
+
+    /// Whether nothing is drawn of it.
+    pub(super) fn is_simulated_alone(&self) -> bool {
+        self.width == 0
+    }
+
+    /// What was measured, in a line.
+    pub(super) fn heading(&self) -> String {
+        let Self { scene, strands, segments, width, height, shadow, transparency, frames, .. } = self;
+        if self.is_simulated_alone() {
+            return format!(
+                "{scene}: {strands} guides, {segments} links; medians of {frames} steps, milliseconds"
+            );
+        }
+        format!(
+            "{scene}: {strands} strands, {segments} segments, {width}x{height}, {shadow}, {transparency}; medians of {frames} \
+             frames, milliseconds"
+        )
+    }
+}
+
+/// The hairstyle with a guide for each of its strands, along which that strand runs.
+fn strands_as_guides(style: &Hairstyle) -> Hairstyle {
+    let at_rest =
+        GuideFrame { time_secs: 0.0, world_from_head: Affine3A::IDENTITY, guides: style.guides.clone() };
+    let mut strands = Strands::default();
+    interpolate(style, &at_rest, &mut strands);
+    let points = style.guides.points_per_guide;
+    let whole = |g: usize| strands.first_point[g + 1] as usize - strands.first_point[g] as usize == points;
+    let mut guides = Guides { points_per_guide: points, ..Guides::default() };
+    for g in (0..strands.count()).filter(|&g| whole(g)) {
+        let run: Vec<_> = (0..points).map(|p| strands.point(strands.first_point[g] as usize + p)).collect();
+        guides.push(&run);
+    }
+    // Three by three; one or two at the end would have no wisp.
+    let wisps = guides.count() / 3;
+    for axis in [&mut guides.x, &mut guides.y, &mut guides.z] {
+        axis.truncate(3 * wisps * points);
+    }
+    let first = |w: usize| 3 * w as u32;
+    let of = 3 * wisps;
+    Hairstyle {
+        wisps: (0..wisps)
+            .map(|w| Wisp {
+                guides: [first(w), first(w) + 1, first(w) + 2],
+                first_strand: first(w),
+                strand_count: 3,
+            })
+            .collect(),
+        strands: StrandSet {
+            wisp: (0..of as u32).map(|g| g / 3).collect(),
+            weights: (0..of).map(|g| std::array::from_fn(|k| if k == g % 3 { 1.0 } else { 0.0 })).collect(),
+            first_point: (0..=of).map(|g| (g * points) as u32).collect(),
+            guide_param: (0..of).flat_map(|_| (0..points).map(|p| p as f32)).collect(),
+            offset_normal: vec![0.0; of * points],
+            offset_binormal: vec![0.0; of * points],
+            offset_tangent: vec![0.0; of * points],
+            taper: vec![1.0; of * points],
+            shade: vec![0.5; of],
+        },
+        guides,
+        held: Vec::new(),
+        ..style.clone()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_strand_becomes_a_guide_that_runs_as_it_did() {
+        let mut project = BenchScene::Simulate20k.project();
+        (project.hair.groom.wisps, project.hair.groom.strands_per_wisp) = (12, 7);
+        let style = super::super::load(&project).expect("a scene").style.clone();
+        let own = strands_as_guides(&style);
+        own.check().expect("whole");
+        assert_eq!((own.guides.count(), own.strands.count(), own.wisps.len()), (84, 84, 28));
+        let strands = |style: &Hairstyle| {
+            let guides = style.guides.clone();
+            let frame = GuideFrame { time_secs: 0.0, world_from_head: Affine3A::IDENTITY, guides };
+            let mut strands = Strands::default();
+            interpolate(style, &frame, &mut strands);
+            strands
+        };
+        let (before, after) = (strands(&style), strands(&own));
+        let apart =
+            (0..before.points()).map(|i| before.point(i).distance(after.point(i))).fold(0.0, f32::max);
+        assert!(before.points() == after.points() && apart < 1e-6, "{apart} m");
+    }
+
+    #[test]
+    fn every_method_is_measured_on_the_same_steps() {
+        let mut project = BenchScene::Simulate402.project();
+        project.hair.groom.wisps = 12;
+        let loaded = super::super::load(&project).expect("a scene");
+        let request = BenchRequest { frames: 3, ..BenchRequest::default() };
+        let (report, note) = measure(BenchScene::Simulate402, &project, &loaded, &request);
+        let names: Vec<_> = report.stages.iter().map(|stage| stage.name.as_str()).collect();
+        assert_eq!(names, ["simulate/direct", "simulate/relaxation", "simulate/follow-the-leader"]);
+        assert!(report.stages.iter().all(|stage| stage.min_ms > 0.0 && stage.max_ms >= stage.median_ms));
+        assert_eq!((report.strands, report.segments, report.frames), (36, 36 * 30, 3));
+        assert_eq!(report.stages[1].published_ms, Some(70.0));
+        assert!(!report.health.is_empty() && note.contains("(relaxation)"), "{note}");
+    }
+}

@@ -1,0 +1,135 @@
+//! `lovelock convert`: between the formats of hair.
+
+use std::path::Path;
+
+use glam::Vec3;
+use lovelock_groom::{HairFile, ImportSettings, Unit, UpAxis, load_hair};
+use lovelock_project::error::StudioError;
+use lovelock_project::files::write_whole;
+use lovelock_record::{CurveFormat, CurveFrame, CurveScene, CurveWriter, FrameRate, RecordError};
+use serde::Serialize;
+
+/// Width of hair whose file says none, metres.
+const WIDTH_M: f32 = 1e-4;
+
+/// What was converted, as `convert --json` prints it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ConvertReport {
+    /// The new file.
+    pub out: String,
+    /// Strands in it.
+    pub strands: u64,
+    /// Points in it.
+    pub points: u64,
+    /// Bytes of it.
+    pub bytes: u64,
+    /// What the file that was read had to say, in sentences.
+    pub notes: Vec<String>,
+}
+
+/// Writes the hair of a file in another format: `.hair`, `.tfx`, `.usda`, `.usdc`, `.usd` or `.glb`, by the name of `out`.
+///
+/// # Errors
+/// A file that cannot be read, a name of no such format, hair that the format cannot hold, and a full disk.
+pub fn convert(input: &Path, out: &Path, unit: Unit, up: UpAxis) -> Result<ConvertReport, StudioError> {
+    let ending = out.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+    let (is_hair, is_tressfx) = (ending.as_deref() == Some("hair"), ending.as_deref() == Some("tfx"));
+    if !is_hair && !is_tressfx && CurveFormat::of(out).is_none() {
+        return Err(StudioError::option(format!(
+            "{}: no format of hair: wanted a name ending in .hair, .tfx, .usda, .usdc, .usd or .glb",
+            out.display()
+        )));
+    }
+    let read = load_hair(input).map_err(|error| StudioError::input(input, error))?;
+    let settings = ImportSettings { unit, up, ..ImportSettings::default() };
+    let hair = read.in_metres(&settings);
+    let bytes = if is_hair || is_tressfx {
+        let bytes = if is_hair { hair.to_yuksel() } else { hair.to_tressfx() };
+        let bytes = bytes.map_err(|why| StudioError::input(input, format!("{}: {why}", input.display())))?;
+        write_whole(out, &bytes)?;
+        bytes.len() as u64
+    } else {
+        write_curves(&hair, out).map_err(|error| {
+            let (file, message) = (Some(out.to_owned()), error.to_string());
+            if error.is_request() {
+                StudioError::Request { file, message }
+            } else {
+                StudioError::Work { file, message }
+            }
+        })?
+    };
+    Ok(ConvertReport {
+        out: out.display().to_string(),
+        strands: hair.strands() as u64,
+        points: hair.points.len() as u64,
+        bytes,
+        notes: hair.notes,
+    })
+}
+
+fn write_curves(hair: &HairFile, out: &Path) -> Result<u64, RecordError> {
+    let points = hair.points.len();
+    let linear = |colour: &[f32; 3]| Vec3::from(colour.map(linear_of));
+    let usual = hair.default_colour.unwrap_or([0.35, 0.25, 0.18]);
+    let scene = CurveScene {
+        rate: FrameRate { num: 24, den: 1 },
+        first_frame: 0,
+        frames: 1,
+        first_point: hair.first_point.clone(),
+        widths: hair
+            .thickness
+            .clone()
+            .unwrap_or_else(|| vec![hair.default_thickness.filter(|w| *w > 0.0).unwrap_or(WIDTH_M); points]),
+        colors: hair
+            .colours
+            .as_ref()
+            .map_or_else(|| vec![linear(&usual); points], |colours| colours.iter().map(linear).collect()),
+        body: None,
+    };
+    let axis = |k: usize| hair.points.iter().map(|point| point[k]).collect::<Vec<_>>();
+    let [x, y, z] = [0, 1, 2].map(axis);
+    let mut writer = CurveWriter::create(out, scene)?;
+    writer.push(&CurveFrame { points: [&x, &y, &z], body: None })?;
+    Ok(writer.finish()?.bytes)
+}
+
+/// From a display value to linear sRGB.
+fn linear_of(v: f32) -> f32 {
+    let v = v.clamp(0.0, 1.0);
+    if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hair_goes_through_every_format_and_comes_back() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let at = |name: &str| dir.path().join(name);
+        let text = "#usda 1.0\n(\n metersPerUnit = 1\n upAxis = \"Y\"\n)\ndef BasisCurves \"a\"\n{\n\
+            uniform token type = \"linear\"\nint[] curveVertexCounts = [2, 2]\n\
+            point3f[] points = [(0.1, 0.2, 0), (0, 0.5, 0.3), (0, 0.1, 0), (0.3, 0, 0.2)]\n\
+            color3f[] primvars:displayColor = [(0.2, 0.1, 0.05)]\n}\n";
+        std::fs::write(at("a.usda"), text).expect("a file");
+        let first = load_hair(&at("a.usda")).expect("hair").in_metres(&ImportSettings::default());
+        let mut from = at("a.usda");
+        for (name, unit, up) in [
+            ("b.hair", Unit::Auto, UpAxis::Auto),
+            ("c.usdc", Unit::Metre, UpAxis::Z),
+            ("d.tfx", Unit::Auto, UpAxis::Auto),
+            ("e.usda", Unit::Centimetre, UpAxis::Y),
+        ] {
+            let report = convert(&from, &at(name), unit, up).expect(name);
+            assert_eq!((report.strands, report.points), (2, 4), "{name}");
+            from = at(name);
+        }
+        let last = load_hair(&from).expect("hair");
+        // The face is guessed on the way: the heights and lengths are what has to come back.
+        for (a, b) in last.points.iter().zip(&first.points) {
+            assert!((a.y - b.y).abs() < 1e-4 && (a.length() - b.length()).abs() < 1e-4, "{a} for {b}");
+        }
+        let error = convert(&from, &at("f.obj"), Unit::Auto, UpAxis::Auto).expect_err("no such format");
+        assert!(error.to_string().contains(".hair, .tfx, .usda") && error.exit_code() == 2, "{error}");
+    }
+}

@@ -1,0 +1,132 @@
+//! What a file holds: `lovelock info`.
+
+mod kind;
+mod take;
+mod text;
+
+pub use kind::FileKind;
+pub use take::{RegrownInfo, TakeInfo};
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use lovelock_groom::{HairInfo, ImportSettings, hair_info, load_hair};
+use lovelock_motion::{CharacterInfo, MotionInfo, load_character, load_motion};
+use lovelock_project::error::StudioError;
+use lovelock_project::project::{BodySource, HairSource, MotionSource, PROJECT_VERSION, load_project};
+use serde::Serialize;
+
+/// What a file holds, as `info --json` prints it; displays as lines for people.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Info {
+    /// The file as it was named.
+    pub file: String,
+    /// What it is, with its numbers.
+    #[serde(flatten)]
+    pub content: Content,
+}
+
+/// What a file is, with its numbers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum Content {
+    /// A hairstyle.
+    Hair(HairInfo),
+    /// A body, with or without clips.
+    Character(CharacterInfo),
+    /// A motion.
+    Motion(MotionInfo),
+    /// A project.
+    Project(ProjectInfo),
+    /// A recorded simulation.
+    Take(TakeInfo),
+}
+
+/// A project file in words.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ProjectInfo {
+    /// Its format.
+    pub format: String,
+    /// Fields that are not known to this version, with counts.
+    pub dropped: BTreeMap<String, u64>,
+    /// What is missing, out of range or not known.
+    pub notes: Vec<String>,
+    /// The body: `dancer`, or a file.
+    pub body: String,
+    /// The motion: a clip's name, a file, or `rest`.
+    pub motion: String,
+    /// The hairstyle: a preset's id, or a file.
+    pub hair: String,
+    /// Id of the shadow method.
+    pub shadow: String,
+    /// Number of lights.
+    pub lights: usize,
+    /// Width of a recording, pixels.
+    pub width: u32,
+    /// Height of a recording, pixels.
+    pub height: u32,
+    /// Frames a second of a recording.
+    pub fps: f64,
+    /// Files that it names and uses.
+    pub files: Vec<String>,
+}
+
+/// Says what a hair, character, motion, project or take file holds.
+///
+/// # Errors
+/// Exit status 2 with one line where the file is missing, broken, or of no kind that is read.
+pub fn info(path: &Path) -> Result<Info, StudioError> {
+    let refuse = |error: &dyn std::fmt::Display| StudioError::input(path, error);
+    let content = match FileKind::of(path)? {
+        FileKind::Hair => {
+            let file = load_hair(path).map_err(|error| refuse(&error))?;
+            Content::Hair(hair_info(&file, &ImportSettings::default()))
+        }
+        FileKind::Character => {
+            Content::Character(load_character(path).map_err(|error| refuse(&error))?.info())
+        }
+        FileKind::Motion => Content::Motion(load_motion(path).map_err(|error| refuse(&error))?.info()),
+        FileKind::Project => Content::Project(project_info(path)?),
+        FileKind::Take => Content::Take(TakeInfo::of(path)?),
+    };
+    Ok(Info { file: path.display().to_string(), content })
+}
+
+fn project_info(path: &Path) -> Result<ProjectInfo, StudioError> {
+    let (project, problems) = load_project(path)?;
+    let name = |file: &Option<lovelock_project::files::FileRef>| {
+        file.as_ref()
+            .map_or_else(|| "a file that is not set".to_owned(), |file| file.path.display().to_string())
+    };
+    let ignored =
+        problems.iter().filter(|p| p.kind == lovelock_project::error::ProblemKind::Ignored).count() as u64;
+    let dropped =
+        if ignored > 0 { BTreeMap::from([("unknown_fields".to_owned(), ignored)]) } else { BTreeMap::new() };
+    Ok(ProjectInfo {
+        format: format!("Lovelock project {PROJECT_VERSION}"),
+        dropped,
+        notes: problems.iter().map(ToString::to_string).collect(),
+        body: match project.body.source {
+            BodySource::Dancer => "dancer".to_owned(),
+            BodySource::File => name(&project.body.file),
+        },
+        motion: match project.motion.source {
+            MotionSource::Clip => project.motion.clip.clone(),
+            MotionSource::File => name(&project.motion.file),
+            MotionSource::Rest => "rest".to_owned(),
+        },
+        hair: match project.hair.source {
+            HairSource::Grown => project.hair.preset.id().to_owned(),
+            HairSource::File => name(&project.hair.file),
+        },
+        shadow: project.shadow.method.to_string(),
+        lights: project.lights.len(),
+        width: project.recording.width,
+        height: project.recording.height,
+        fps: project.recording.fps,
+        files: project.files().iter().map(|(_, file)| file.path.display().to_string()).collect(),
+    })
+}
+
+#[cfg(test)]
+mod tests;

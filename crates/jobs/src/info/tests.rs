@@ -1,0 +1,93 @@
+use super::*;
+
+fn kind_of(info: &Info) -> &'static str {
+    match info.content {
+        Content::Hair(_) => "hair",
+        Content::Character(_) => "character",
+        Content::Motion(_) => "motion",
+        Content::Project(_) => "project",
+        Content::Take(_) => "take",
+    }
+}
+
+#[test]
+fn real_files_are_told_apart_and_described() {
+    let Some(data) = lovelock_testkit::data_dir() else { return };
+    for (file, kind) in [
+        ("hair/yuksel/straight.hair", "hair"),
+        ("hair/tressfx/sintel_vk.tfx", "hair"),
+        ("hair/tressfx/back.tfx", "hair"),
+        ("characters/CesiumMan.glb", "character"),
+        ("characters/SimpleSkin.gltf", "character"),
+        ("motion/cmu1_jumping_jacks.bvh", "motion"),
+    ] {
+        let info = info(&data.join(file)).expect(file);
+        assert_eq!(kind_of(&info), kind, "{file}");
+        let json = serde_json::to_value(&info).expect("JSON");
+        assert_eq!(json["kind"], kind);
+        for key in ["file", "format", "dropped", "notes"] {
+            assert!(!json[key].is_null(), "{file} lacks `{key}`: {json}");
+        }
+        assert!(info.to_string().lines().count() > 3);
+    }
+    let json =
+        serde_json::to_value(info(&data.join("hair/yuksel/straight.hair")).expect("hair")).expect("JSON");
+    assert_eq!((&json["strands"], &json["points"]), (&10_000.into(), &160_000.into()));
+    assert!(json["bounds_m"]["min"].is_array() && json["unit_guessed"].is_boolean());
+}
+
+#[test]
+fn broken_files_are_counted_or_refused_in_one_line_with_exit_2() {
+    let Some(data) = lovelock_testkit::data_dir() else { return };
+    for folder in ["hair/broken", "characters/broken"] {
+        for entry in std::fs::read_dir(data.join(folder)).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            if let Err(error) = info(&path) {
+                let text = error.to_string();
+                assert_eq!(error.exit_code(), 2, "{text}");
+                assert_eq!(error.file(), Some(path.as_path()));
+                assert_eq!(text.lines().count(), 1, "{text}");
+                let name = path.file_name().expect("a name").to_string_lossy();
+                assert!(text.contains(&*name), "{text} does not name {name}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_project_tells_what_it_names_and_what_is_missing() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = dir.path().join("p.lovelock");
+    let mut project = lovelock_project::Project::default();
+    project.set_motion_file(dir.path().join("gone.bvh"));
+    lovelock_project::project::save_project(&path, &project).expect("saved");
+    let json = serde_json::to_value(info(&path).expect("a project")).expect("JSON");
+    assert_eq!((&json["kind"], &json["hair"]), (&"project".into(), &"smooth".into()));
+    assert!(json["notes"].to_string().contains("gone.bvh"));
+}
+
+#[test]
+fn content_speaks_before_the_ending() {
+    let dir = tempfile::tempdir().expect("a folder");
+    for (name, content, kind) in [
+        ("a.txt", &b"HIERARCHY\nROOT"[..], Some(FileKind::Motion)),
+        ("b.bvh", b"HAIR....", Some(FileKind::Hair)),
+        ("c", b"  {\"scene\":0,\"asset\":{\"version\":\"2.0\"}}", Some(FileKind::Character)),
+        ("d.dat", b"\xef\xbb\xbf(\n version: 1)", Some(FileKind::Project)),
+        ("e.HAIR", b"nonsense", Some(FileKind::Hair)),
+        ("f.txt", b"nonsense", None),
+        ("g", b"", None),
+    ] {
+        let path = dir.path().join(name);
+        std::fs::write(&path, content).expect("a file");
+        match (FileKind::of(&path), kind) {
+            (Ok(found), Some(kind)) => assert_eq!(found, kind, "{name}"),
+            (Err(error), None) => {
+                assert!(error.to_string().contains(".tfx") && error.exit_code() == 2, "{error}");
+            }
+            (other, _) => panic!("{name}: {other:?}"),
+        }
+    }
+    assert!(FileKind::of(dir.path()).is_err(), "a folder");
+    assert!(FileKind::of(&dir.path().join("gone.hair")).is_err(), "a missing file");
+}

@@ -1,0 +1,13 @@
+//! The work of the command line: recording, measuring, converting and describing files.
+//!
+//! - [`record`]: films, sequences of images, takes and curves.
+//! - [`bench`]: times of known scenes.
+//! - [`farm`]: a recording as a job for many machines.
+//! - [`convert`]: hair files from one format to another.
+//! - [`info`]: what a file holds.
+
+pub mod bench;
+pub mod convert;
+pub mod farm;
+pub mod info;
+pub mod record;

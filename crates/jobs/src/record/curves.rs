@@ -1,0 +1,338 @@
+//! Handing the hair and the body on to other programs, as curves that move: USD and glTF.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::str::FromStr;
+use std::sync::Arc;
+
+use glam::{Affine3A, Vec3};
+use lovelock_groom::{HairLook, Hairstyle, Strands};
+use lovelock_motion::Body;
+use lovelock_project::Project;
+use lovelock_project::error::StudioError;
+use lovelock_record::{
+    BodyFrame, CurveBody, CurveFormat, CurveFrame, CurveScene, CurveWriter, FrameRate, RecordError,
+};
+use lovelock_session::clock::Stopwatch;
+use lovelock_session::dance::Dance;
+use lovelock_session::new_folders::NewFolders;
+use lovelock_session::prepare::check_frames;
+use lovelock_session::progress::{Progress, tell};
+use lovelock_session::snapshot::FrameSnapshot;
+use serde::Serialize;
+
+use super::request::RecordRequest;
+
+/// Which curves are handed on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CurveSource {
+    /// The strands that are simulated: some hundreds.
+    Guides,
+    /// All strands that are drawn.
+    Strands,
+}
+
+impl CurveSource {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Guides, Self::Strands];
+
+    /// Stable name for command lines and reports.
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::Guides => "guides",
+            Self::Strands => "strands",
+        }
+    }
+}
+
+impl FromStr for CurveSource {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let known = Self::ALL.into_iter().find(|source| source.id() == text);
+        known.ok_or_else(|| format!("unknown curves `{text}`: expected guides or strands"))
+    }
+}
+
+/// What was handed on, as `record --json` prints it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CurveRecordReport {
+    /// The file.
+    pub out: String,
+    /// `usda`, `usdc` or `glb`.
+    pub format: String,
+    /// `guides` or `strands`.
+    pub curves: String,
+    /// How many of them.
+    pub strands: u64,
+    /// Points of all of them.
+    pub points: u64,
+    /// Vertices of the body; 0 without.
+    pub vertices: u64,
+    /// Frames written.
+    pub frames: u64,
+    /// Number of the first one.
+    pub first_frame: u64,
+    /// Frames a second.
+    pub fps: f64,
+    /// Bytes written.
+    pub bytes: u64,
+    /// Time for it all without loading, milliseconds.
+    pub ms: f64,
+    /// Fingerprint of the last simulated state: 16 hexadecimal digits; empty where a take was played.
+    pub state_hash: String,
+    /// What could not be loaded and other things to know, in sentences.
+    pub notes: Vec<String>,
+}
+
+/// Whether an output's name asks for curves.
+pub fn is_curves(path: &Path) -> bool {
+    CurveFormat::of(path).is_some()
+}
+
+/// Simulates a project, or plays its take, and writes the curves of its hair and its body frame by frame.
+///
+/// # Errors
+/// As [`super::record`]; also where the hair gets other strands on the way, and where the file would be too large.
+pub fn record_curves(
+    project: &Project,
+    request: &RecordRequest,
+    progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+) -> Result<CurveRecordReport, StudioError> {
+    let (project, _) = project.sanitised();
+    let out = &request.out;
+    let format = CurveFormat::of(out).ok_or_else(|| {
+        StudioError::option(format!("{}: wanted a name ending in .usdc, .usd, .usda or .glb", out.display()))
+    })?;
+    refuse_options_of_pictures(request)?;
+    let fps = request.fps.unwrap_or(project.recording.fps);
+    let rate = FrameRate::from_fps(fps).map_err(StudioError::option)?;
+    if let Some(frames) = &request.frames {
+        check_frames(frames)?;
+    }
+    // Lines of a whole head for every frame are more than viewers of glTF take.
+    let usual = if format == CurveFormat::Glb { CurveSource::Guides } else { CurveSource::Strands };
+    let source = request.curves.unwrap_or(usual);
+
+    let (mut dance, mut problems) = Dance::open(&project, &request.access, fps, progress)?;
+    tell(progress, Progress::Loaded { problems: problems.clone() })?;
+    let recording = &project.recording;
+    let frames = request.frames.clone().unwrap_or_else(|| {
+        let first = recording.first_frame;
+        first..recording.end_frame.unwrap_or_else(|| dance.frames().max(first + 1))
+    });
+    check_frames(&frames)?;
+    dance.check(&frames)?;
+    if request.seamless || project.recording.seamless {
+        dance.close(&frames)?;
+    }
+    dance.begin(frames.start, dance.secs_of(frames.start), progress)?;
+
+    let watch = Stopwatch::start();
+    let first = dance.snapshot(frames.start)?;
+    let body = (!request.no_body).then(|| body_of(&first));
+    let mut scene = curves_of(source, &first.scene.style, &project.look);
+    (scene.rate, scene.first_frame, scene.frames) = (rate, frames.start, frames.end - frames.start);
+    scene.body = body;
+    let (strands, points) = (scene.curves() as u64, scene.points() as u64);
+    let vertices = scene.body.as_ref().map_or(0, |body| body.bind_positions.len() as u64);
+    // Before the writer, to be dropped after it.
+    let _new_folders = NewFolders::missing_on(out);
+    let refused = |error: RecordError| refused(out, &error);
+    let mut writer = CurveWriter::create(out, scene).map_err(refused)?;
+    let mut moved = Moved::default();
+    for frame in frames.clone() {
+        let snapshot = if frame == frames.start { Arc::clone(&first) } else { dance.snapshot(frame)? };
+        check_same(&first, &snapshot, source, frame)?;
+        writer.push(&moved.frame(source, &snapshot, vertices > 0)).map_err(refused)?;
+        let (done, total) = (frame + 1 - frames.start, frames.end - frames.start);
+        tell(progress, Progress::Frame { done, total })?;
+    }
+    tell(progress, Progress::Finishing)?;
+    let written = writer.finish().map_err(refused)?;
+    problems.extend(dance.notices());
+    let mut notes: Vec<String> = problems.iter().map(ToString::to_string).collect();
+    if format == CurveFormat::Glb && vertices > 0 && !first.scene.body.skin.morphs.is_empty() {
+        notes.push(format!(
+            "{}: the body's joints move; its blended shapes stay as they are in frame {}",
+            out.display(),
+            frames.start
+        ));
+    }
+    Ok(CurveRecordReport {
+        out: out.display().to_string(),
+        format: format.id().to_owned(),
+        curves: source.id().to_owned(),
+        strands,
+        points,
+        vertices,
+        frames: written.frames,
+        first_frame: frames.start,
+        fps,
+        bytes: written.bytes,
+        ms: watch.ms(),
+        state_hash: dance.state_hash().map_or_else(String::new, |hash| format!("{hash:016x}")),
+        notes,
+    })
+}
+
+fn refuse_options_of_pictures(request: &RecordRequest) -> Result<(), StudioError> {
+    match request.option_of_pictures() {
+        Some(option) => Err(StudioError::option(format!(
+            "{option}: {} holds curves and no pictures",
+            request.out.display()
+        ))),
+        None => Ok(()),
+    }
+}
+
+fn refused(out: &Path, error: &RecordError) -> StudioError {
+    let file = Some(error.path().unwrap_or(out).to_owned());
+    let message = error.to_string();
+    if error.is_request() {
+        StudioError::Request { file, message }
+    } else {
+        StudioError::Work { file, message }
+    }
+}
+
+/// Refuses hair or a body that is made of other parts than that of the first frame.
+fn check_same(
+    first: &FrameSnapshot,
+    now: &FrameSnapshot,
+    source: CurveSource,
+    frame: u64,
+) -> Result<(), StudioError> {
+    if Arc::ptr_eq(&first.scene, &now.scene) {
+        return Ok(());
+    }
+    let (old, new) = (&first.scene.style, &now.scene.style);
+    let same_hair = match source {
+        CurveSource::Guides => {
+            (old.guides.points_per_guide, old.guides.x.len())
+                == (new.guides.points_per_guide, new.guides.x.len())
+        }
+        CurveSource::Strands => old.strands.first_point == new.strands.first_point,
+    };
+    let (old_body, new_body) = (&first.scene.body, &now.scene.body);
+    let same_body = Arc::ptr_eq(old_body, new_body)
+        || old_body.mesh.triangles == new_body.mesh.triangles
+            && old_body.skin.palette == new_body.skin.palette;
+    if same_hair && same_body {
+        return Ok(());
+    }
+    let what = if same_hair { "the body" } else { "the hair" };
+    Err(StudioError::option(format!(
+        "frame {frame}: {what} is made of other parts from here on, and one file holds one: write the frames before it \
+         and those from it on apart, with --frames"
+    )))
+}
+
+/// The curves with their widths and colours, as they are drawn.
+fn curves_of(source: CurveSource, style: &Hairstyle, look: &HairLook) -> CurveScene {
+    let mut scene = CurveScene {
+        rate: FrameRate { num: 30, den: 1 },
+        first_frame: 0,
+        frames: 1,
+        first_point: Vec::new(),
+        widths: Vec::new(),
+        colors: Vec::new(),
+        body: None,
+    };
+    let look = look.clamped();
+    match source {
+        CurveSource::Guides => {
+            let (count, per) = (style.guides.count(), style.guides.points_per_guide);
+            // As wide as a strand: wide enough for all the hair they would hide its way.
+            let width = look.shadow_width(style.strands.count()) * look.width_scale;
+            scene.first_point = (0..=count as u32).map(|guide| guide * per as u32).collect();
+            scene.widths = vec![width; count * per];
+            for _ in 0..count {
+                scene.colors.extend((0..per).map(|p| color(&look, 0.5, p as f32 / (per - 1) as f32)));
+            }
+        }
+        CurveSource::Strands => {
+            let set = &style.strands;
+            let width = look.shadow_width(set.count()) * look.width_scale;
+            scene.first_point.clone_from(&set.first_point);
+            scene.widths = set.taper.iter().map(|taper| taper * width).collect();
+            for (&[start, end], &shade) in set.first_point.array_windows().zip(&set.shade) {
+                let last = (end - start - 1).max(1) as f32;
+                scene.colors.extend((0..end - start).map(|p| color(&look, shade, p as f32 / last)));
+            }
+        }
+    }
+    scene
+}
+
+/// Colour of a point that lies `along` a strand of that shade, linear sRGB, as it is drawn in even light.
+fn color(look: &HairLook, shade: f32, along: f32) -> Vec3 {
+    let t = ((along - 0.2) / 0.8).clamp(0.0, 1.0);
+    let lightened = 1.0 - look.tip_lightening * t * t * (3.0 - 2.0 * t);
+    let varied = 1.0 + look.variation * (2.0 * shade - 1.0);
+    HairLook::body_color(look.absorption() * (varied * lightened).max(0.0))
+}
+
+fn body_of(snapshot: &FrameSnapshot) -> CurveBody {
+    let body: &Body = &snapshot.scene.body;
+    let (mut positions, mut normals) = (body.skin.positions.clone(), body.skin.normals.clone());
+    for (morph, &weight) in body.skin.morphs.iter().zip(&snapshot.pose.morph_weights) {
+        for ((&vertex, &p), &n) in morph.vertices.iter().zip(&morph.positions).zip(&morph.normals) {
+            positions[vertex as usize] += weight * p;
+            normals[vertex as usize] += weight * n;
+        }
+    }
+    CurveBody {
+        triangles: body.mesh.triangles.clone(),
+        colors: body.mesh.colors.clone(),
+        bind_positions: positions,
+        bind_normals: normals,
+        joints: body.skin.binds.clone(),
+        weights: body.mesh.weights.clone(),
+        joint_from_bind: body.skin.palette.iter().map(|bind| bind.joint_from_bind).collect(),
+    }
+}
+
+/// What is made anew for each frame.
+#[derive(Default)]
+struct Moved {
+    strands: Strands,
+    joints: Vec<Affine3A>,
+}
+
+impl Moved {
+    fn frame<'a>(
+        &'a mut self,
+        source: CurveSource,
+        snapshot: &'a FrameSnapshot,
+        with_body: bool,
+    ) -> CurveFrame<'a> {
+        let points = match source {
+            CurveSource::Guides => {
+                let guides = &snapshot.guides.guides;
+                [&guides.x[..], &guides.y, &guides.z]
+            }
+            CurveSource::Strands => {
+                snapshot.interpolate(&mut self.strands);
+                [&self.strands.x[..], &self.strands.y, &self.strands.z]
+            }
+        };
+        let world = &snapshot.pose.world_from_joint;
+        self.joints.clear();
+        self.joints.extend(
+            snapshot
+                .scene
+                .body
+                .skin
+                .palette
+                .iter()
+                .map(|bind| world.get(usize::from(bind.joint)).copied().unwrap_or(Affine3A::IDENTITY)),
+        );
+        let body = with_body.then(|| BodyFrame {
+            positions: &snapshot.skin.positions,
+            normals: &snapshot.skin.normals,
+            joints: &self.joints,
+        });
+        CurveFrame { points, body }
+    }
+}

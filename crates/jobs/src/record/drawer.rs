@@ -1,0 +1,112 @@
+//! What draws the frames of a recording: the project's picture, or panes beside each other.
+
+use std::sync::Arc;
+
+use lovelock_panes::live::FilmOfPanes;
+use lovelock_project::Project;
+use lovelock_project::error::StudioError;
+use lovelock_render::{FrameStats, Layers, Picture, Renderer};
+use lovelock_session::clock::Stopwatch;
+use lovelock_session::prepare::open_renderer;
+use lovelock_session::snapshot::FrameSnapshot;
+
+use super::request::RecordRequest;
+
+/// What panes cannot be.
+pub(super) const PANES_ALONE: &str = "panes beside each other are recorded as a film or PNG files, without a transparent \
+    background and motion blur: switch those off, or record the one picture";
+
+/// What draws the frames of a recording.
+pub(super) enum Drawer {
+    /// The project's picture.
+    One(Box<Renderer>),
+    /// Panes, and the names of what drew them last.
+    Panes(Box<FilmOfPanes>, String),
+}
+
+impl Drawer {
+    /// Opens what draws `project`.
+    ///
+    /// # Errors
+    /// No adapter for the backend that was asked for, or one that cannot be used.
+    pub(super) fn open(project: &Project, request: &RecordRequest) -> Result<Self, StudioError> {
+        if let Some(sheet) = &request.panes {
+            let panes = Box::new(FilmOfPanes::new(project, sheet.clone(), request.access.clone()));
+            return Ok(Self::Panes(panes, String::new()));
+        }
+        let choice = request.backend.unwrap_or(project.picture.backend);
+        Ok(Self::One(Box::new(open_renderer(choice, request.gpu.as_ref())?)))
+    }
+
+    /// Draws a frame.
+    ///
+    /// # Errors
+    /// A size out of range, a shadow that needs too much memory, or a device that is lost.
+    pub(super) fn picture(
+        &mut self,
+        project: &Project,
+        snapshot: &Arc<FrameSnapshot>,
+        [width, height]: [u32; 2],
+        picture: &mut Picture,
+    ) -> Result<FrameStats, StudioError> {
+        match self {
+            Self::One(renderer) => {
+                let camera = snapshot.camera(&project.camera);
+                let input = snapshot.frame_input(project, &camera);
+                Ok(renderer.picture(&input, width, height, picture)?)
+            }
+            Self::Panes(panes, adapters) => {
+                let watch = Stopwatch::start();
+                *adapters = panes.frame(project, snapshot, [width, height], picture)?.join(", ");
+                Ok(FrameStats { draw_ms: watch.ms(), ..FrameStats::default() })
+            }
+        }
+    }
+
+    /// Draws the layers of a frame, over the background or nothing.
+    ///
+    /// # Errors
+    /// As [`Drawer::picture`]; panes have none.
+    pub(super) fn layers(
+        &mut self,
+        project: &Project,
+        snapshot: &Arc<FrameSnapshot>,
+        [width, height]: [u32; 2],
+        over_background: bool,
+        layers: &mut Layers,
+    ) -> Result<FrameStats, StudioError> {
+        match self {
+            Self::One(renderer) => {
+                let camera = snapshot.camera(&project.camera);
+                let input = snapshot.frame_input(project, &camera);
+                Ok(renderer.layers(&input, width, height, over_background, layers)?)
+            }
+            Self::Panes(..) => Err(StudioError::option(PANES_ALONE)),
+        }
+    }
+
+    /// What draws, as far as its pixels depend on it: the processor gives the same on any machine.
+    pub(super) fn kind(&self) -> String {
+        match self {
+            Self::One(renderer) if renderer.gpu().is_none() => "cpu".to_owned(),
+            Self::One(renderer) => renderer.adapter().to_owned(),
+            Self::Panes(..) => "panes".to_owned(),
+        }
+    }
+
+    /// `gpu` or `cpu`; `panes` where each pane has its own.
+    pub(super) fn backend(&self) -> String {
+        match self {
+            Self::One(renderer) => renderer.backend().to_string(),
+            Self::Panes(..) => "panes".to_owned(),
+        }
+    }
+
+    /// The names of what draws.
+    pub(super) fn adapter(&self) -> &str {
+        match self {
+            Self::One(renderer) => renderer.adapter(),
+            Self::Panes(_, adapters) => adapters,
+        }
+    }
+}

@@ -1,0 +1,354 @@
+//! The loop of a recording: the window's engine with a fixed clock.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use lovelock_project::Project;
+use lovelock_project::error::StudioError;
+use lovelock_record::{
+    FrameLayers, FrameRate, OutputKind, PictureSink, RecordError, SequenceFormat, SinkSettings,
+};
+use lovelock_render::{FrameStats, Layers, Picture};
+use lovelock_session::clock::Stopwatch;
+use lovelock_session::dance::Dance;
+use lovelock_session::new_folders::NewFolders;
+use lovelock_session::prepare::check_frames;
+use lovelock_session::progress::{Progress, tell};
+use lovelock_session::stats::{PassHistory, StageHistory, StageTimes};
+
+use super::burn_in::{burn_in, burn_in_light};
+use super::drawer::{Drawer, PANES_ALONE};
+use super::fingerprint;
+use super::options::Options;
+use super::report::RecordReport;
+use super::request::RecordRequest;
+
+/// The most frames of which times are kept for the medians.
+const MOST_TIMES: usize = 1 << 20;
+
+/// Records a project: gives the hair its life before the first frame, draws the frames asked for, and writes them.
+///
+/// `progress` is told each stage and frame, and may stop the recording. The simulation's bytes depend on the
+/// project and the frame rate alone.
+///
+/// # Errors
+/// [`StudioError::exit_code`] 2 for a wrong request, 1 where the work fails (no adapter, a full disk). Nothing is
+/// left under the final name of a film then; of a sequence the frames that are whole are. Folders that were made
+/// for it and hold nothing go.
+pub fn record(
+    project: &Project,
+    request: &RecordRequest,
+    progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+) -> Result<RecordReport, StudioError> {
+    let job = Job::new(project, request)?;
+    let (mut dance, mut problems) = Dance::open(&job.project, &request.access, job.fps, progress)?;
+    tell(progress, Progress::Loaded { problems: problems.clone() })?;
+    if request.dance_time {
+        dance.count_on_dance();
+    }
+
+    let frames = job.frames(&dance)?;
+    // After what the request may get wrong: drivers speak on standard error while they are tried.
+    let mut drawer = Drawer::open(&job.project, request)?;
+    if job.project.recording.seamless {
+        dance.close(&frames)?;
+    }
+
+    let refused = |error: RecordError| job.refused(&error);
+    // Before the sink, to be dropped after it.
+    let _new_folders = NewFolders::missing_on(&request.out);
+    let settings = job.sink_settings(&frames, &dance, &drawer)?;
+    let mut sink = PictureSink::for_path(&request.out, settings).map_err(refused)?;
+    let mut begun = false;
+    let mut drawn = Drawn::default();
+    let most_times = ((frames.end - frames.start) as usize).min(MOST_TIMES);
+    let (mut history, mut passes) = (StageHistory::new(most_times), PassHistory::new(most_times));
+    let (mut shadow_bytes, mut draw_bytes) = (0, 0);
+    let mut whole = Vec::new();
+    for frame in frames.clone() {
+        let (done, total) = (frame + 1 - frames.start, frames.end - frames.start);
+        if sink.next_is_kept() {
+            sink.keep_next();
+            tell(progress, Progress::Kept { done, total })?;
+            continue;
+        }
+        if !std::mem::replace(&mut begun, true) {
+            // Through all of the recording before, whatever of it is kept.
+            dance.begin(frames.start, job.options.instants(frame, job.fps)[0], progress)?;
+        }
+        let watch = Stopwatch::start();
+        let (mut times, stats) = job.draw(frame, &mut dance, &mut drawer, &mut drawn)?;
+        let encoding = Stopwatch::start();
+        job.push(&drawn, &mut sink).map_err(refused)?;
+        times.encode = encoding.ms();
+        history.push(times);
+        passes.push(&stats.passes);
+        (shadow_bytes, draw_bytes) = (stats.shadow_bytes.max(shadow_bytes), stats.draw_bytes.max(draw_bytes));
+        whole.push(watch.ms());
+        tell(progress, Progress::Frame { done, total })?;
+    }
+    tell(progress, Progress::Finishing)?;
+    let written = sink.finish().map_err(refused)?;
+
+    problems.extend(dance.notices());
+    let totals = dance.totals();
+    let strands = &dance.scene().style.strands;
+    Ok(RecordReport {
+        out: request.out.clone(),
+        frames: written.frames(),
+        frames_kept: written.kept(),
+        first_frame: frames.start,
+        fps: job.fps,
+        width: job.width,
+        height: job.height,
+        backend: drawer.backend(),
+        adapter: drawer.adapter().to_owned(),
+        shadow: job.project.shadow.method.to_string(),
+        transparency: job.project.picture.transparency.to_string(),
+        format: job.format().to_owned(),
+        transparent: job.options.transparent,
+        motion_blur: job.options.subframes,
+        shutter_degrees: job.options.shutter_degrees,
+        strands: strands.count() as u64,
+        segments: strands.segments() as u64,
+        frame_ms: lovelock_session::stats::median(whole.into_iter()),
+        stage_ms: history.medians(),
+        passes_ms: passes.medians().into_iter().map(|pass| (pass.name, pass.ms)).collect(),
+        shadow_bytes,
+        draw_bytes,
+        max_stretch: totals.max_stretch,
+        max_penetration_m: totals.max_penetration_m,
+        recovered_guides: totals.recovered_guides,
+        health: dance.health(),
+        state_hash: dance.state_hash().map_or_else(String::new, |hash| format!("{hash:016x}")),
+        bytes: written.bytes(),
+        steps_per_frame: dance.steps_per_frame(),
+        notes: problems.iter().map(ToString::to_string).collect(),
+    })
+}
+
+/// A request together with the project, checked.
+struct Job<'a> {
+    project: Project,
+    request: &'a RecordRequest,
+    options: Options,
+    kind: OutputKind,
+    fps: f64,
+    width: u32,
+    height: u32,
+}
+
+impl<'a> Job<'a> {
+    /// Checks the request before anything is loaded.
+    fn new(project: &Project, request: &'a RecordRequest) -> Result<Self, StudioError> {
+        let (mut project, _) = project.sanitised();
+        if let Some(shadow) = request.shadow {
+            project.shadow.method = shadow;
+        }
+        project.recording.seamless |= request.seamless;
+        if let Some(transparency) = request.transparency {
+            project.picture.transparency = transparency;
+        }
+        let fps = request.fps.unwrap_or(project.recording.fps);
+        let (width, height) = request.size.unwrap_or((project.recording.width, project.recording.height));
+        let refused = |error: &RecordError| refused(request, error);
+        let kind = OutputKind::of(&request.out).map_err(|error| refused(&error))?;
+        let options = Options::new(&project, request)?;
+        if request.dance_time && project.recording.seamless {
+            return Err(StudioError::option(
+                "--dance-time: the film goes round, and a round of a take is counted from the take's own start",
+            ));
+        }
+        let job = Self { project, request, options, kind, fps, width, height };
+        lovelock_render::check_size(width, height)?;
+        FrameRate::from_fps(fps).map_err(|error| job.refused(&error))?;
+        if let Some(frames) = &request.frames {
+            check_frames(frames)?;
+        }
+        let mut asked = job.sink_basics(1);
+        // That a project prefers EXR is no reason to refuse a film of it.
+        asked.format = request.format.unwrap_or_default();
+        asked.check_kind(kind).map_err(|error| job.refused(&error))?;
+        let layered = job.options.transparent
+            || job.options.subframes > 1
+            || (kind == OutputKind::Sequence && job.options.format == SequenceFormat::Exr);
+        if request.panes.is_some() && layered {
+            return Err(StudioError::option(PANES_ALONE));
+        }
+        if kind == OutputKind::Preview {
+            // Their number is known when the dance is.
+            let frames = request.frames.as_ref().map_or(1, |frames| frames.end - frames.start);
+            lovelock_record::PreviewSettings { width, height, fps, frames, alpha: job.options.transparent }
+                .check()
+                .map_err(|error| job.refused(&error))?;
+        }
+        if kind == OutputKind::Film {
+            let quality = job.options.quality;
+            lovelock_record::FilmSettings { width, height, fps, quality }
+                .check()
+                .map_err(|error| job.refused(&error))?;
+        }
+        Ok(job)
+    }
+
+    /// The frames to draw: as asked for, else as the project says, else the whole clip.
+    fn frames(&self, dance: &Dance) -> Result<std::ops::Range<u64>, StudioError> {
+        let recording = &self.project.recording;
+        let frames = self.request.frames.clone().unwrap_or_else(|| {
+            let first = recording.first_frame.max(dance.first_frame());
+            let end = dance.first_frame() + dance.frames();
+            first..recording.end_frame.unwrap_or_else(|| end.max(first + 1))
+        });
+        check_frames(&frames)?;
+        dance.check(&frames)?;
+        Ok(frames)
+    }
+
+    /// What the output is, but for what drew it.
+    fn sink_basics(&self, frames: u64) -> SinkSettings {
+        let mut settings = SinkSettings::new(self.width, self.height, self.fps);
+        settings.frames = frames;
+        settings.quality = self.options.quality;
+        settings.format =
+            if self.kind == OutputKind::Sequence { self.options.format } else { SequenceFormat::Png };
+        settings.alpha = self.options.transparent;
+        settings.resume = self.request.resume;
+        settings
+    }
+
+    /// The same with all that its pixels depend on.
+    fn sink_settings(
+        &self,
+        frames: &std::ops::Range<u64>,
+        dance: &Dance,
+        drawer: &Drawer,
+    ) -> Result<SinkSettings, StudioError> {
+        let mut settings = self.sink_basics(frames.end - frames.start);
+        settings.first_frame = frames.start;
+        if self.kind != OutputKind::Sequence {
+            return Ok(settings);
+        }
+        let with_panes = self.request.panes.is_some();
+        let mut told = serde_json::json!({
+            "program": concat!("lovelock ", env!("CARGO_PKG_VERSION")),
+            "backend": drawer.kind(),
+            "shadow": self.project.shadow.method.id(),
+            "transparency": self.project.picture.transparency.id(),
+            "format": self.options.format.id(),
+            "background": if self.options.transparent { "transparent" } else { "drawn" },
+            "motion blur": self.options.subframes,
+            "shutter": self.options.shutter_degrees,
+            "label": self.options.label,
+            "project": fingerprint::of_project(&self.project, with_panes)?,
+            "files": fingerprint::of_files(&self.project, &self.request.access, dance.take_assets(), with_panes),
+        });
+        if self.request.dance_time {
+            told["frames"] = "of the dance".into();
+        }
+        settings.settings = told;
+        Ok(settings)
+    }
+
+    /// Whether frames are drawn as layers: for the light before the view's curve, or to see what is clear.
+    fn is_layered(&self) -> bool {
+        self.options.subframes > 1 || self.options.transparent || self.format() == SequenceFormat::Exr.id()
+    }
+
+    /// What is written, by its ending.
+    fn format(&self) -> &'static str {
+        match self.kind {
+            OutputKind::Film => "mp4",
+            OutputKind::Preview => "apng",
+            OutputKind::Sequence => self.options.format.id(),
+        }
+    }
+
+    /// Draws a frame: one picture, or the mean of those for which the shutter is open.
+    fn draw(
+        &self,
+        frame: u64,
+        dance: &mut Dance,
+        drawer: &mut Drawer,
+        drawn: &mut Drawn,
+    ) -> Result<(StageTimes, FrameStats), StudioError> {
+        let size = [self.width, self.height];
+        if !self.is_layered() {
+            let snapshot = dance.snapshot(frame)?;
+            let at = self.project.seen_at(snapshot.position_secs);
+            let stats = drawer.picture(&at, &snapshot, size, &mut drawn.picture)?;
+            if self.options.label {
+                burn_in(&mut drawn.picture, &self.label(frame));
+            }
+            let mut times = snapshot.times;
+            times.take_picture(&stats);
+            return Ok((times, stats));
+        }
+        let over_background = !self.options.transparent;
+        let instants = self.options.instants(frame, self.fps);
+        let (mut times, mut last) = (StageTimes::default(), FrameStats::default());
+        drawn.mean.clear_to(self.width, self.height);
+        for &secs in &instants {
+            // A frame that is not blurred is the picture's, to the bit.
+            let snapshot =
+                if instants.len() == 1 { dance.snapshot(frame)? } else { dance.snapshot_at(secs)? };
+            let layers = if instants.len() == 1 { &mut drawn.mean } else { &mut drawn.one };
+            let at = self.project.seen_at(snapshot.position_secs);
+            last = drawer.layers(&at, &snapshot, size, over_background, layers)?;
+            times.motion += snapshot.times.motion;
+            times.simulate += snapshot.times.simulate;
+            times.add_picture(&last);
+            if instants.len() > 1 {
+                drawn.mean.add(&drawn.one, 1.0 / instants.len() as f32);
+            }
+        }
+        if self.format() == SequenceFormat::Exr.id() {
+            if self.options.label {
+                burn_in_light(&mut drawn.mean, &self.label(frame));
+            }
+        } else {
+            drawn.mean.tone_map(&mut drawn.picture);
+            if self.options.label {
+                burn_in(&mut drawn.picture, &self.label(frame));
+            }
+        }
+        Ok((times, last))
+    }
+
+    /// Hands the frame that was drawn last over.
+    fn push(&self, drawn: &Drawn, sink: &mut PictureSink) -> Result<(), RecordError> {
+        if self.format() != SequenceFormat::Exr.id() {
+            return sink.push(&drawn.picture.rgba);
+        }
+        let Layers { light, depth, transmittance, .. } = &drawn.mean;
+        sink.push_layers(&FrameLayers { light, depth, transmittance })
+    }
+
+    /// What is written into a frame.
+    fn label(&self, frame: u64) -> String {
+        let (shadow, transparency) =
+            (self.project.shadow.method.label(), self.project.picture.transparency.label());
+        format!("{shadow} · {transparency} · frame {frame} · {:.2} s", frame as f64 / self.fps)
+    }
+
+    fn refused(&self, error: &RecordError) -> StudioError {
+        refused(self.request, error)
+    }
+}
+
+fn refused(request: &RecordRequest, error: &RecordError) -> StudioError {
+    let file = error.path().map(Path::to_owned);
+    if error.is_request() {
+        let file = file.or_else(|| Some(request.out.clone()));
+        StudioError::Request { file, message: error.to_string() }
+    } else {
+        StudioError::Work { file, message: error.to_string() }
+    }
+}
+
+/// A frame as it is drawn: its bytes, or its numbers and those of the picture that is added to them.
+#[derive(Default)]
+struct Drawn {
+    picture: Picture,
+    mean: Layers,
+    one: Layers,
+}

@@ -1,0 +1,133 @@
+//! Recording the simulation alone, as fast as the machine can.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::Arc;
+
+use lovelock_project::Project;
+use lovelock_project::error::StudioError;
+use lovelock_record::{FrameRate, TAKE_EXTENSION, TakeReport};
+use lovelock_session::clock::{FrameClock, Stopwatch};
+use lovelock_session::health::{Gauge, health};
+use lovelock_session::prepare::{check_frames, load, settled_at};
+use lovelock_session::progress::{Progress, tell};
+use lovelock_session::take::TakeRecording;
+use serde::Serialize;
+
+use super::request::RecordRequest;
+
+/// What was recorded as a take, as `record --json` prints it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TakeRecordReport {
+    /// The take.
+    pub out: String,
+    /// Frames recorded.
+    pub frames: u64,
+    /// Frames a second of the take: one for each step of the simulation.
+    pub fps: f64,
+    /// Its length, seconds.
+    pub duration_secs: f64,
+    /// Bytes written.
+    pub bytes: u64,
+    /// Guides recorded.
+    pub guides: u64,
+    /// Points of a guide.
+    pub points_per_guide: u64,
+    /// Time for it all without loading, milliseconds.
+    pub ms: f64,
+    /// Largest relative change of a link's length.
+    pub max_stretch: f32,
+    /// Deepest point inside the body, metres.
+    pub max_penetration_m: f32,
+    /// Guides that were not finite and were put back.
+    pub recovered_guides: u64,
+    /// The gauges of the simulation, with what to change where one is over its limits.
+    pub health: Vec<Gauge>,
+    /// Fingerprint of the last simulated state: 16 hexadecimal digits.
+    pub state_hash: String,
+    /// What could not be loaded and other things to know, in sentences.
+    pub notes: Vec<String>,
+}
+
+/// Whether an output's name asks for a take.
+pub fn is_take(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(TAKE_EXTENSION))
+}
+
+/// Records the simulation of a project as a take: every step from the first frame asked for to the last one.
+///
+/// # Errors
+/// As [`super::record`]; a project that plays a take itself is refused. What was written before a disk failed stays.
+pub fn record_take(
+    project: &Project,
+    request: &RecordRequest,
+    progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+) -> Result<TakeRecordReport, StudioError> {
+    let (project, _) = project.sanitised();
+    if let Some(file) = &project.take.file {
+        return Err(StudioError::option(format!(
+            "{}: the project plays a take already: {}",
+            request.out.display(),
+            file.path.display()
+        )));
+    }
+    let of_films = request.seamless.then_some("--loop");
+    if let Some(option) = request.option_of_pictures().or(of_films) {
+        return Err(StudioError::option(format!(
+            "{option}: {} is a take, which holds the simulation alone and no pictures",
+            request.out.display()
+        )));
+    }
+    let fps = request.fps.unwrap_or(project.recording.fps);
+    FrameRate::from_fps(fps).map_err(StudioError::option)?;
+    if let Some(frames) = &request.frames {
+        check_frames(frames)?;
+    }
+    let (scene, problems) = load(&project, &request.access, progress)?;
+    tell(progress, Progress::Loaded { problems: problems.clone() })?;
+    let recording = &project.recording;
+    let frames = request.frames.clone().unwrap_or_else(|| {
+        recording.first_frame
+            ..recording.end_frame.unwrap_or_else(|| scene.frames(fps).max(recording.first_frame + 1))
+    });
+    check_frames(&frames)?;
+    let clock = FrameClock::new(fps);
+    let first = clock.step_of_frame(frames.start);
+    let mut engine = settled_at(&scene, &project, &clock, [first, first], progress)?;
+    let watch = Stopwatch::start();
+    let project = Arc::new(project);
+    let mut take = TakeRecording::start(&request.out, &project, &engine)?;
+    let last = clock.step_of_frame(frames.end) - 1;
+    for step in clock.step_of_frame(frames.start) + 1..=last {
+        engine.advance_to_step(step);
+        take.push(&engine)?;
+        if step % u64::from(clock.steps_per_frame) == 0 {
+            let done = step / u64::from(clock.steps_per_frame) - frames.start;
+            let told = tell(progress, Progress::Frame { done, total: frames.end - frames.start });
+            if let Err(cancelled) = told {
+                take.discard()?;
+                return Err(cancelled);
+            }
+        }
+    }
+    tell(progress, Progress::Finishing)?;
+    let TakeReport { frames, bytes, duration_secs, .. } = take.finish()?;
+    let totals = engine.totals();
+    let guides = &scene.style.guides;
+    Ok(TakeRecordReport {
+        out: request.out.display().to_string(),
+        frames,
+        fps: 1.0 / clock.step_secs,
+        duration_secs,
+        bytes,
+        guides: guides.count() as u64,
+        points_per_guide: guides.points_per_guide as u64,
+        ms: watch.ms(),
+        max_stretch: totals.max_stretch,
+        max_penetration_m: totals.max_penetration_m,
+        recovered_guides: totals.recovered_guides,
+        health: health(&totals, engine.rest_inside(), &scene, &project.simulation),
+        state_hash: format!("{:016x}", engine.state_hash()),
+        notes: problems.iter().map(ToString::to_string).collect(),
+    })
+}

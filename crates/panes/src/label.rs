@@ -1,0 +1,57 @@
+//! What is said of a pane in a line.
+
+use lovelock_project::project::Contender;
+
+use crate::request::{LiveError, LivePane};
+
+impl LivePane {
+    /// [`Contender::settings_label`] with the backend that drew it in place of the one that was chosen.
+    pub fn settings_label(&self) -> String {
+        Contender { backend: self.adapter.backend, ..self.contender.clone() }.settings_label()
+    }
+
+    /// [`Contender::label`] with the backend that drew it in place of the one that was chosen.
+    pub fn label(&self) -> String {
+        Contender { backend: self.adapter.backend, ..self.contender.clone() }.label()
+    }
+
+    /// What it costs and how right it is, such as `12.3 ms CPU · 4.0 MiB · error 0.0210`. `ms` is the time to show.
+    pub fn figures_label(&self, ms: f64) -> String {
+        let backend = self.adapter.backend_label();
+        let mut parts = vec![format!("{ms:.1} ms {backend}"), bytes_label(self.shadow_bytes)];
+        match &self.error {
+            LiveError::NotMeasured => {}
+            LiveError::Reference => parts.push("the reference".to_owned()),
+            LiveError::Measured { rmse, .. } => parts.push(format!("error {rmse:.4}")),
+            LiveError::Refused(_) => parts.push("no reference".to_owned()),
+        }
+        parts.extend(self.flip.map(|flip| format!("FLIP {flip:.4}")));
+        parts.join(" · ")
+    }
+}
+
+/// Bytes as people read them.
+pub fn bytes_label(bytes: u64) -> String {
+    let kib = bytes as f64 / 1024.0;
+    if kib < 1000.0 { format!("{kib:.0} KiB") } else { format!("{:.1} MiB", kib / 1024.0) }
+}
+
+#[cfg(test)]
+mod tests {
+    use lovelock_render::ShadowMethod;
+
+    use super::*;
+
+    #[test]
+    fn every_method_says_its_size_and_numbers_are_short() {
+        let mut contender = Contender::default();
+        for &method in ShadowMethod::ALL {
+            contender.shadow.method = method;
+            assert_eq!(contender.size_label().is_empty(), method == ShadowMethod::None, "{method}");
+        }
+        contender.scale = 0.5;
+        assert_eq!(contender.label(), "Exact · 512² · sorted · auto · 50 % size");
+        let said = [0, 512 * 1024, 10 << 20].map(bytes_label);
+        assert_eq!(said, ["0 KiB", "512 KiB", "10.0 MiB"]);
+    }
+}

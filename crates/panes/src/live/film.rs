@@ -1,0 +1,79 @@
+//! Frames of a film of panes.
+
+use std::sync::Arc;
+
+use lovelock_project::Project;
+use lovelock_project::error::StudioError;
+use lovelock_project::files::Access;
+use lovelock_render::{Picture, Renderer};
+use lovelock_session::snapshot::FrameSnapshot;
+
+use super::renderers::Renderers;
+use super::round::Rounds;
+use crate::request::LiveRequest;
+use crate::sheet::Sheet;
+
+/// Draws all panes of a frame and puts them together.
+pub struct FilmOfPanes {
+    rounds: Rounds,
+    sheet: Sheet,
+    project: Arc<Project>,
+    access: Access,
+}
+
+impl FilmOfPanes {
+    /// The panes of `project`, put together as `sheet` says, with takes that `access` allows.
+    pub fn new(project: &Project, sheet: Sheet, access: Access) -> Self {
+        let rounds = Rounds::new(Renderers::new(Box::new(Renderer::open)));
+        Self { rounds, sheet, project: Arc::new(project.clone()), access }
+    }
+
+    /// One frame of `project`, whose tracks have moved it. Returns what drew it.
+    ///
+    /// # Errors
+    /// No pane can be drawn; a pane that cannot be drawn beside others says so in its place.
+    pub fn frame(
+        &mut self,
+        project: &Project,
+        snapshot: &Arc<FrameSnapshot>,
+        whole: [u32; 2],
+        picture: &mut Picture,
+    ) -> Result<Vec<String>, StudioError> {
+        if *self.project != *project {
+            self.project = Arc::new(project.clone());
+        }
+        let panes = self.sheet.panes(self.project.compare.panes.len());
+        let [width, height] = self.sheet.pane_size(panes.len(), whole);
+        let request = LiveRequest {
+            project: Arc::clone(&self.project),
+            access: self.access.clone(),
+            snapshot: Arc::clone(snapshot),
+            panes,
+            width,
+            height,
+            together: true,
+            view: self.sheet.view,
+            probe: None,
+        };
+        self.rounds.begin(&request);
+        let mut drawn = Vec::new();
+        for &index in &request.panes {
+            // A lost device is opened again, as often as the thread of the window does.
+            let mut pane = self.rounds.pane(&request, index);
+            while pane.1.as_ref().is_some_and(|broken| broken.try_again) {
+                pane = self.rounds.pane(&request, index);
+            }
+            drawn.push((index, pane.0));
+        }
+        if let Some((_, first)) = drawn.first()
+            && drawn.iter().all(|(_, pane)| pane.problem.is_some())
+        {
+            return Err(StudioError::work(first.problem.clone().unwrap_or_default()));
+        }
+        let shown: Vec<_> = drawn.iter().map(|(index, pane)| (*index, pane, pane.times.whole)).collect();
+        *picture = self.sheet.compose(&shown, whole);
+        let mut adapters: Vec<String> = drawn.into_iter().map(|(_, pane)| pane.adapter.name).collect();
+        adapters.dedup();
+        Ok(adapters)
+    }
+}

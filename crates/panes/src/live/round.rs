@@ -1,0 +1,292 @@
+//! Panes on one instant.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+
+use glam::Vec3;
+use lovelock_groom::Strands;
+use lovelock_metrics::errors;
+use lovelock_project::Project;
+use lovelock_project::project::Contender;
+use lovelock_render::{
+    Camera, FrameInput, HairPose, Light, Picture, RayStructure, RenderError, Transparency, ValueRenderer,
+};
+use lovelock_session::render_thread::Adapter;
+use lovelock_session::snapshot::FrameSnapshot;
+use lovelock_shadow::{LightFrame, ShadowInput, cpu_shadow};
+
+use super::probes::{Probes, curve, direction};
+use super::reference::ExactReference;
+use super::renderers::{Broken, Renderers, device_is_gone};
+use super::takes::PaneTakes;
+use crate::heat;
+use crate::probe::LiveProbe;
+use crate::request::{LiveError, LivePane, LiveRequest, LiveTimes};
+use crate::view::LiveShows;
+
+/// Draws panes, and keeps what the next instant needs.
+pub(super) struct Rounds {
+    pub(super) renderers: Renderers,
+    strands: Strands,
+    /// The instant that `strands` are of.
+    strands_of: Option<Arc<FrameSnapshot>>,
+    /// What was drawn last, which is what the user saw when choosing a hair.
+    shown: Option<LiveRequest>,
+    values: ValueRenderer,
+    reference: ExactReference,
+    probes: Probes,
+    takes: PaneTakes,
+}
+
+impl Rounds {
+    /// Draws with `renderers`.
+    pub(super) fn new(renderers: Renderers) -> Self {
+        Self {
+            renderers,
+            strands: Strands::default(),
+            strands_of: None,
+            shown: None,
+            values: ValueRenderer::default(),
+            reference: ExactReference::default(),
+            probes: Probes::default(),
+            takes: PaneTakes::default(),
+        }
+    }
+
+    /// Goes to the instant of `request`: its strands are made, once for all panes.
+    pub(super) fn begin(&mut self, request: &LiveRequest) {
+        if let (Some(place), Some(shown)) = (request.probe, &self.shown) {
+            self.probes.choose(&mut self.values, place, shown, &self.strands);
+        }
+        let same = |held: &Arc<FrameSnapshot>| Arc::ptr_eq(held, &request.snapshot);
+        if !self.strands_of.as_ref().is_some_and(same) {
+            self.strands_of = None;
+            request.snapshot.interpolate(&mut self.strands);
+            self.strands_of = Some(Arc::clone(&request.snapshot));
+        }
+        self.takes.begin(request);
+        self.renderers.keep(request.project.compare.panes.len());
+        self.shown = Some(request.clone());
+    }
+
+    /// Draws one pane of the instant that was begun.
+    pub(super) fn pane(&mut self, request: &LiveRequest, index: usize) -> (LivePane, Option<Broken>) {
+        let project = &request.project;
+        let contender = project.compare.panes.get(index).cloned().unwrap_or_default();
+        // Of a pane's own take, whose head may be elsewhere.
+        let own = self.takes.instant(index);
+        let (snapshot, unplayable) = match own {
+            Some(Ok((snapshot, _))) => (snapshot, None),
+            Some(Err(why)) => (&request.snapshot, Some(why.to_owned())),
+            None => (&request.snapshot, None),
+        };
+        let camera = snapshot.camera(&project.camera);
+        let mut pane = LivePane {
+            contender: contender.clone(),
+            project: Arc::clone(project),
+            asked_size: [request.width, request.height],
+            picture: Picture::default(),
+            problem: None,
+            colors_problem: None,
+            camera,
+            step: snapshot.step,
+            time_secs: snapshot.time_secs,
+            times: LiveTimes::default(),
+            shadow_bytes: 0,
+            draw_bytes: 0,
+            adapter: Adapter { name: String::new(), backend: contender.backend, software: true },
+            error: LiveError::NotMeasured,
+            flip: None,
+            shows: request.view.shows,
+        };
+        if unplayable.is_some() {
+            pane.problem = unplayable;
+            return (pane, None);
+        }
+        // A panic while drawing costs the device and one picture, not the window.
+        let drawn = catch_unwind(AssertUnwindSafe(|| self.draw(request, index, &contender, &mut pane)));
+        let broken = match drawn {
+            Ok(Ok(())) => {
+                self.renderers.worked(index);
+                None
+            }
+            Ok(Err(error)) => {
+                pane.problem = Some(error.to_string());
+                device_is_gone(&error).then(|| self.renderers.broke(index))
+            }
+            Err(_) => {
+                pane.problem = Some("drawing stopped unexpectedly; what draws is opened again".to_owned());
+                Some(self.renderers.broke(index))
+            }
+        };
+        if pane.problem.is_some() {
+            pane.picture = Picture::default();
+        }
+        (pane, broken)
+    }
+
+    fn draw(
+        &mut self,
+        request: &LiveRequest,
+        index: usize,
+        contender: &Contender,
+        pane: &mut LivePane,
+    ) -> Result<(), RenderError> {
+        let renderer = self.renderers.of_pane(index, contender)?;
+        let (name, backend) = (renderer.adapter().to_owned(), renderer.backend());
+        pane.adapter = Adapter { name, backend, software: renderer.is_software() };
+        let project = drawn_as(&request.project, contender);
+        let shared = (&request.snapshot, &self.strands);
+        let (snapshot, strands) = self.takes.instant(index).and_then(Result::ok).unwrap_or(shared);
+        let input = input_of(snapshot, &project, strands, &pane.camera);
+        let [width, height] = pixels(request, contender);
+        let stats = renderer.picture(&input, width, height, &mut pane.picture)?;
+        pane.times = LiveTimes::of(&stats);
+        (pane.shadow_bytes, pane.draw_bytes) = (stats.shadow_bytes, stats.draw_bytes);
+        if !request.view.measures {
+            return Ok(());
+        }
+        // A light that is not there has no transmittance, and the picture is as good without.
+        let found = renderer.transmittance(request.view.light).map_err(|error| error.to_string());
+        let measured = found.and_then(|found| self.measure(request, index, (&project, &found), pane));
+        // The picture itself under a scale of colours would be taken for an error.
+        if let Err(why) = measured
+            && request.view.shows.colors().is_some()
+        {
+            pane.colors_problem = Some(why);
+            pane.picture = Picture::default();
+        }
+        Ok(())
+    }
+
+    /// Holds the transmittance of a pane against the exact one, and shows the difference where that is asked for.
+    ///
+    /// # Errors
+    /// A sentence: what the pane is held against could not be had, or not be put into colours.
+    fn measure(
+        &mut self,
+        request: &LiveRequest,
+        index: usize,
+        (drawn, found): (&Project, &[f32]),
+        pane: &mut LivePane,
+    ) -> Result<(), String> {
+        let shared = &request.project;
+        let own = self.takes.instant(index).and_then(Result::ok);
+        let (snapshot, strands) = own.unwrap_or((&request.snapshot, &self.strands));
+        let exact = self.reference.transmittance(shared, snapshot, strands, request.view.light);
+        let exact = match exact {
+            Ok(exact) => exact,
+            Err(why) => {
+                pane.error = LiveError::Refused(why.clone());
+                return Err(why);
+            }
+        };
+        let drawn_by = (&pane.contender, pane.adapter.backend);
+        pane.error = if ExactReference::is(shared, drawn_by, (found, &exact)) {
+            LiveError::Reference
+        } else {
+            let of = errors(found, &exact);
+            LiveError::Measured { rmse: of.rmse, bias: of.bias, p99: of.p99 }
+        };
+        let Some(colors) = request.view.shows.colors() else { return Ok(()) };
+        let largest = if request.view.largest > 0.0 { request.view.largest } else { 1.0 };
+        if request.view.shows == LiveShows::PictureError {
+            let size = [request.width, request.height];
+            let exact = self.reference.picture(shared, snapshot, strands, size)?;
+            let is_itself = pane.error == LiveError::Reference
+                && pane.contender.transparency == Transparency::Exact
+                && pane.picture == *exact;
+            let mean = heat::of_pictures(&exact, largest, &mut pane.picture)?;
+            pane.flip = (!is_itself).then_some(mean);
+            return Ok(());
+        }
+        let signed = request.view.shows == LiveShows::TransmittanceBias;
+        let difference =
+            |(&found, &exact): (&f32, &f32)| if signed { found - exact } else { (found - exact).abs() };
+        let values: Vec<f32> = found.iter().zip(exact.iter()).map(difference).collect();
+        // A pixel shows the foremost hairs in every pane alike, whatever puts the strands of the pane together.
+        let mut shown = drawn.clone();
+        shown.picture.transparency = Transparency::Sorted;
+        let input = input_of(snapshot, &shown, strands, &pane.camera);
+        let colored = heat::on_hair(&mut self.values, &input, &values, (colors, largest), &mut pane.picture);
+        colored.map_err(|error| error.to_string())
+    }
+
+    /// The light along the ray through the chosen hair, as the panes of the round have it.
+    pub(super) fn probe(&mut self, request: &LiveRequest) -> Option<LiveProbe> {
+        request.probe?;
+        let light = enabled(&request.project).nth(request.view.light)?;
+        let mut probe = self.probes.follow(&request.snapshot, &self.strands, light)?;
+        if let Some(hair) = &mut probe.hair {
+            let (project, snapshot) = (&request.project, &request.snapshot);
+            let exact = self.reference.transmittance(project, snapshot, &self.strands, request.view.light);
+            if exact.is_ok() {
+                hair.steps = self.reference.steps(hair.position);
+            }
+            for &pane in &request.panes {
+                // The hair of another take is not the one that was chosen.
+                if self.takes.instant(pane).is_some() {
+                    continue;
+                }
+                let Some(renderer) = self.renderers.last(pane) else { continue };
+                // A pane that could not be drawn has no maps, and says so itself.
+                let strands = &self.strands;
+                let definition = || kept(project, snapshot, strands, pane, light, hair.position);
+                if let Ok(curve) = curve(renderer, (request.view.light, direction(light)), hair, definition) {
+                    hair.curves.push((pane, curve));
+                }
+            }
+        }
+        Some(probe)
+    }
+}
+
+/// What a pane's method keeps along the light through `p`, by its definition.
+fn kept(
+    project: &Project,
+    snapshot: &FrameSnapshot,
+    strands: &Strands,
+    pane: usize,
+    light: &Light,
+    p: Vec3,
+) -> Result<RayStructure, RenderError> {
+    let drawn = drawn_as(project, &project.compare.panes.get(pane).cloned().unwrap_or_default());
+    let input = ShadowInput {
+        strands,
+        strand_width: project.look.shadow_width(strands.count()),
+        light: LightFrame::new(direction(light)),
+        anchor: snapshot.guides.world_from_head.translation.into(),
+        maps: enabled(project).count() as u32,
+    };
+    let mut map = cpu_shadow(drawn.shadow.method);
+    map.build(&input, &drawn.shadow)?;
+    Ok(map.along_ray(p))
+}
+
+/// The lights that are on.
+fn enabled(project: &Project) -> impl Iterator<Item = &Light> {
+    project.lights.iter().filter(|light| light.enabled)
+}
+
+/// The project as a contender draws it. How much light hair blocks is a property of the hair and not of a way to draw it.
+fn drawn_as(project: &Project, contender: &Contender) -> Project {
+    let mut drawn = contender.applied_to(project);
+    drawn.shadow.extinction_scale = project.shadow.extinction_scale;
+    drawn
+}
+
+/// An instant with strands that are made already.
+pub(super) fn input_of<'a>(
+    snapshot: &'a FrameSnapshot,
+    project: &'a Project,
+    strands: &'a Strands,
+    camera: &'a Camera,
+) -> FrameInput<'a> {
+    FrameInput { hair: HairPose::Strands(strands), ..snapshot.frame_input(project, camera) }
+}
+
+/// The size at which a pane is drawn.
+fn pixels(request: &LiveRequest, contender: &Contender) -> [u32; 2] {
+    let scale = if contender.scale.is_finite() { contender.scale.clamp(0.1, 1.0) } else { 1.0 };
+    [request.width, request.height].map(|side| ((side as f32 * scale).round() as u32).max(16))
+}

@@ -1,0 +1,95 @@
+//! Takes of panes that play one of their own: each stands where the window's time stands.
+
+use std::sync::Arc;
+use std::time::SystemTime;
+
+use lovelock_groom::Strands;
+use lovelock_project::error::{Place, StudioError};
+use lovelock_project::files::{Access, FileRef};
+use lovelock_session::snapshot::FrameSnapshot;
+use lovelock_session::take::TakePlayer;
+
+use crate::request::LiveRequest;
+
+/// The takes that panes play, open.
+#[derive(Default)]
+pub(super) struct PaneTakes {
+    held: Vec<Held>,
+}
+
+/// What an open take was opened from.
+#[derive(PartialEq)]
+struct Source {
+    file: FileRef,
+    access: Access,
+    /// What tells a file from one that was put in its place.
+    version: Option<(u64, SystemTime)>,
+}
+
+struct Held {
+    pane: usize,
+    source: Source,
+    /// Or a sentence that says why it cannot be played.
+    player: Result<Box<TakePlayer>, String>,
+    instant: Option<(f64, Arc<FrameSnapshot>)>,
+    strands: Strands,
+}
+
+impl PaneTakes {
+    /// Opens what the panes of a request play, and goes to its time.
+    pub(super) fn begin(&mut self, request: &LiveRequest) {
+        let panes = &request.project.compare.panes;
+        let wanted = |pane: usize| {
+            let file = panes.get(pane)?.take.clone()?;
+            let data = std::fs::metadata(&file.path).ok();
+            let version = data.and_then(|data| Some((data.len(), data.modified().ok()?)));
+            Some(Source { file, access: request.access.clone(), version })
+        };
+        self.held.retain(|held| wanted(held.pane).is_some_and(|source| source == held.source));
+        for &pane in &request.panes {
+            let Some(source) = wanted(pane) else { continue };
+            if !self.held.iter().any(|held| held.pane == pane) {
+                let player = open(&source).map(Box::new).map_err(|error| error.to_string());
+                self.held.push(Held { pane, source, player, instant: None, strands: Strands::default() });
+            }
+        }
+        for held in &mut self.held {
+            held.go_to(request.snapshot.position_secs);
+        }
+    }
+
+    /// The instant of a pane's own take with its strands; none where the pane shows what the window shows.
+    ///
+    /// # Errors
+    /// A sentence: the take cannot be played.
+    pub(super) fn instant(&self, pane: usize) -> Option<Result<(&Arc<FrameSnapshot>, &Strands), &str>> {
+        let held = self.held.iter().find(|held| held.pane == pane)?;
+        Some(match (&held.player, &held.instant) {
+            (Err(why), _) => Err(why),
+            (Ok(_), Some((_, snapshot))) => Ok((snapshot, &held.strands)),
+            (Ok(_), None) => Err("the take has no frame here"),
+        })
+    }
+}
+
+impl Held {
+    fn go_to(&mut self, secs: f64) {
+        let Ok(player) = &mut self.player else { return };
+        if self.instant.as_ref().is_some_and(|(at, _)| at.to_bits() == secs.to_bits()) {
+            return;
+        }
+        match player.snapshot(secs) {
+            Ok(snapshot) => {
+                snapshot.interpolate(&mut self.strands);
+                self.instant = Some((secs, snapshot));
+            }
+            Err(error) => self.player = Err(error.to_string()),
+        }
+    }
+}
+
+fn open(source: &Source) -> Result<TakePlayer, StudioError> {
+    let Source { file, access, .. } = source;
+    let path = access.read(Place::Take, file).map_err(|problem| StudioError::input(&file.path, problem))?;
+    Ok(TakePlayer::open(&path, access)?.0)
+}

@@ -1,0 +1,333 @@
+//! Panes on a small scene, on the processor; a lost device on an adapter.
+
+mod against_exact;
+mod takes;
+
+use std::sync::Mutex;
+use std::sync::atomic::Ordering;
+use std::sync::mpsc::{Receiver, sync_channel};
+use std::time::Duration;
+
+use lovelock_project::Project;
+use lovelock_project::files::Access;
+use lovelock_project::project::Contender;
+use lovelock_render::{Backend, CpuRenderer, Gpu, GpuError, Picture, RenderError, ShadowMethod};
+use lovelock_session::engine::Engine;
+use lovelock_session::scene::SceneLoader;
+use lovelock_session::snapshot::FrameSnapshot;
+use lovelock_session::testing::small_project;
+
+use super::*;
+use crate::probe::{ProbePlace, ProbedHair};
+use crate::request::LiveError;
+use crate::view::{LiveShows, LiveView};
+
+/// The thread on what a test opens, and one instant.
+struct Rig {
+    live: Live,
+    project: Project,
+    snapshot: Arc<FrameSnapshot>,
+    finished: Receiver<()>,
+}
+
+impl Rig {
+    fn new(open: Open, backend: Backend, methods: &[ShadowMethod]) -> Self {
+        let mut project = small_project();
+        let pane = |&method: &ShadowMethod| {
+            let mut pane = Contender { backend, ..Contender::of(&project) };
+            pane.shadow.method = method;
+            pane
+        };
+        project.compare.panes = methods.iter().map(pane).collect();
+        let (scene, _) = SceneLoader::new().load_now(&project, &Access::new()).expect("a scene");
+        let snapshot = Engine::new(scene, project.simulation).snapshot();
+        let (sender, finished) = sync_channel(64);
+        let wake = move || {
+            let _ = sender.try_send(());
+        };
+        let live = Live::start_with(open, wake).expect("a thread");
+        Self { live, project, snapshot, finished }
+    }
+
+    fn request(&self, panes: &[usize]) -> LiveRequest {
+        LiveRequest {
+            access: Access::new(),
+            project: Arc::new(self.project.clone()),
+            snapshot: Arc::clone(&self.snapshot),
+            panes: panes.to_vec(),
+            width: 64,
+            height: 48,
+            together: false,
+            view: LiveView::default(),
+            probe: None,
+        }
+    }
+
+    /// Asks for panes, and waits until nothing is drawn any more.
+    fn draw(&self, request: LiveRequest) {
+        self.live.request(request);
+        while self.live.busy().load(Ordering::Relaxed) {
+            // A guard against waiting for ever.
+            self.finished.recv_timeout(Duration::from_secs(100)).expect("an end");
+        }
+    }
+
+    fn pane(&self, index: usize) -> Arc<LivePane> {
+        self.live.pane(index).expect("a slot").latest().expect("a pane")
+    }
+}
+
+fn on_processor(methods: &[ShadowMethod]) -> Rig {
+    Rig::new(Box::new(Renderer::open), Backend::Cpu, methods)
+}
+
+/// What the window's single picture would be.
+fn alone(rig: &Rig, index: usize, width: u32, height: u32) -> Picture {
+    let project = rig.project.compare.panes[index].applied_to(&rig.project);
+    let camera = rig.snapshot.camera(&project.camera);
+    let mut picture = Picture::default();
+    let input = rig.snapshot.frame_input(&project, &camera);
+    CpuRenderer::default().picture(&input, width, height, &mut picture).expect("a picture");
+    picture
+}
+
+#[test]
+fn each_pane_is_the_picture_that_its_settings_draw_alone() {
+    let rig = on_processor(&[ShadowMethod::VoxelMap, ShadowMethod::None, ShadowMethod::OccupancyMaps]);
+    rig.draw(rig.request(&[0, 1, 2]));
+    for index in 0..3 {
+        let pane = rig.pane(index);
+        assert_eq!(pane.problem, None);
+        assert_eq!(pane.contender, rig.project.compare.panes[index]);
+        assert_eq!((pane.step, pane.adapter.backend), (rig.snapshot.step, Backend::Cpu));
+        assert!(pane.times.whole > 0.0);
+        assert!(pane.picture == alone(&rig, index, 64, 48), "pane {index}");
+    }
+    assert!(rig.pane(0).picture != rig.pane(1).picture, "shadows are seen");
+    assert!(rig.pane(0).shadow_bytes > 0 && rig.pane(1).shadow_bytes == 0);
+}
+
+#[test]
+fn a_smaller_pane_is_drawn_smaller_and_others_are_left_alone() {
+    let mut rig = on_processor(&[ShadowMethod::VoxelMap, ShadowMethod::None]);
+    rig.project.compare.panes[1].scale = 0.5;
+    rig.draw(rig.request(&[1, 7]));
+    assert!(rig.live.pane(0).expect("a slot").latest().is_none(), "nobody asked for it");
+    assert!(rig.live.pane(7).is_none());
+    let picture = &rig.pane(1).picture;
+    assert_eq!((picture.width, picture.height), (32, 24));
+    assert!(*picture == alone(&rig, 1, 32, 24));
+}
+
+#[test]
+fn how_much_light_hair_blocks_is_the_projects() {
+    let mut rig = on_processor(&[ShadowMethod::VoxelMap]);
+    rig.project.compare.panes[0].shadow.extinction_scale = 4.0;
+    rig.draw(rig.request(&[0]));
+    assert!(rig.pane(0).picture != alone(&rig, 0, 64, 48), "a pane of its own scale would look so");
+    rig.project.compare.panes[0].shadow.extinction_scale = rig.project.shadow.extinction_scale;
+    assert!(rig.pane(0).picture == alone(&rig, 0, 64, 48));
+}
+
+#[test]
+fn a_pane_that_cannot_be_drawn_says_why_and_the_others_come() {
+    let mut rig = on_processor(&[ShadowMethod::None, ShadowMethod::VoxelMap]);
+    rig.project.compare.panes[1].scale = 0.1;
+    let wide = LiveRequest { width: lovelock_render::MOST_SIDE + 8, ..rig.request(&[0, 1]) };
+    rig.draw(wide);
+    let problem = rig.pane(0).problem.clone().expect("a sentence");
+    assert!(problem.contains("8192") && !problem.contains('\n'), "{problem}");
+    assert!(rig.pane(0).picture.rgba.is_empty());
+    assert_eq!(rig.pane(1).problem, None);
+    rig.draw(rig.request(&[0, 1]));
+    assert_eq!(rig.pane(0).problem, None, "it comes as soon as it can");
+}
+
+#[test]
+fn panes_of_a_round_can_come_together() {
+    let rig = on_processor(&[ShadowMethod::None; 6]);
+    let seen = |rig: &Rig| (0..6).map(|i| rig.live.pane(i).expect("a slot").number()).collect::<Vec<_>>();
+    // What is not busy any more may not have called yet: calls are waited for, not looked for.
+    let call = |rig: &Rig| rig.finished.recv_timeout(Duration::from_secs(100)).expect("a call");
+    for round in 1..=3 {
+        rig.live.request(LiveRequest { together: true, ..rig.request(&[0, 1, 2, 3, 4, 5]) });
+        call(&rig);
+        // One call a round, when all is there: nobody is told of a part of it.
+        assert_eq!(seen(&rig), [round; 6]);
+        assert!(!rig.live.busy().load(Ordering::Relaxed));
+    }
+    rig.live.request(rig.request(&[0, 1]));
+    for _ in 0..3 {
+        call(&rig);
+    }
+    assert_eq!(seen(&rig), [4, 4, 3, 3, 3, 3]);
+    // A call a pane otherwise, and one at the end; the thread has ended when all are counted.
+    let Rig { live, finished, .. } = rig;
+    drop(live);
+    assert_eq!(finished.try_iter().count(), 0);
+}
+
+#[test]
+fn a_lost_device_is_opened_again_for_all_panes_on_it() {
+    let devices = Arc::new(Mutex::new(Vec::<Arc<Gpu>>::new()));
+    let noted = Arc::clone(&devices);
+    let open = move |choice| {
+        let renderer = Renderer::open(choice)?;
+        noted.lock().expect("a list").extend(renderer.gpu().cloned());
+        Ok(renderer)
+    };
+    let rig = Rig::new(Box::new(open), Backend::Gpu, &[ShadowMethod::None, ShadowMethod::OpacityMaps]);
+    rig.draw(rig.request(&[0, 1]));
+    if devices.lock().expect("a list").is_empty() {
+        return lovelock_testkit::skip_without_adapter(&rig.pane(0).problem.clone().unwrap_or_default());
+    }
+    let before = [rig.pane(0), rig.pane(1)];
+    assert!(before.iter().all(|pane| pane.problem.is_none() && pane.adapter.backend == Backend::Gpu));
+    assert_eq!(devices.lock().expect("a list").len(), 1, "all panes share a device");
+    devices.lock().expect("a list")[0].device.destroy();
+    rig.draw(rig.request(&[0, 1]));
+    assert_eq!(devices.lock().expect("a list").len(), 2);
+    for (index, before) in before.iter().enumerate() {
+        let pane = rig.pane(index);
+        assert_eq!(pane.problem, None, "drawn again although nobody asked");
+        assert!(pane.picture == before.picture, "pane {index}");
+    }
+}
+
+#[test]
+fn a_card_that_always_fails_leaves_its_panes_to_the_processor_or_says_so() {
+    for (backend, drawn) in [(Backend::Auto, true), (Backend::Gpu, false)] {
+        let open = |choice| match choice {
+            Backend::Cpu => Renderer::open(choice),
+            _ => Err::<_, RenderError>(GpuError::Lost("for this test".to_owned()).into()),
+        };
+        let rig = Rig::new(Box::new(open), backend, &[ShadowMethod::None]);
+        rig.draw(rig.request(&[0]));
+        assert_eq!(rig.pane(0).problem.is_none(), drawn, "{backend}: {:?}", rig.pane(0).problem);
+        assert_eq!(rig.live.notices().latest().is_some(), drawn || backend == Backend::Gpu);
+    }
+}
+
+#[test]
+fn a_pane_that_always_loses_the_device_stops_trying_beside_one_that_works() {
+    let opened = Arc::new(std::sync::atomic::AtomicUsize::new(0));
+    let counted = Arc::clone(&opened);
+    let open: Open = Box::new(move |choice| {
+        counted.fetch_add(1, Ordering::Relaxed);
+        Renderer::open(choice)
+    });
+    let mut renderers = super::Renderers::new(open);
+    let [healthy, broken] = [ShadowMethod::None, ShadowMethod::Exact].map(|method| {
+        let mut pane = Contender { backend: Backend::Gpu, ..Contender::default() };
+        pane.shadow.method = method;
+        pane
+    });
+    let mut tries = 0;
+    loop {
+        if let Err(error) = renderers.of_pane(0, &healthy) {
+            return lovelock_testkit::skip_without_adapter(&error.to_string());
+        }
+        renderers.worked(0);
+        if renderers.of_pane(1, &broken).is_err() {
+            break;
+        }
+        tries += 1;
+        assert!(tries < 10, "it tries for ever");
+        let after = renderers.broke(1);
+        assert!(after.try_again, "the other pane lost its device too");
+        assert_eq!(after.notice.is_some(), tries == 3);
+    }
+    assert_eq!(tries, 3);
+    assert!(renderers.of_pane(0, &healthy).is_ok(), "the other one is drawn as before");
+    // Other settings are another try.
+    let other = Contender { scale: 0.5, ..broken };
+    assert!(renderers.of_pane(1, &other).is_ok());
+    assert_eq!(opened.load(Ordering::Relaxed), 4);
+}
+
+#[test]
+fn a_probe_follows_a_hair_and_reads_what_each_pane_says_there() {
+    let mut rig = on_processor(&[ShadowMethod::None, ShadowMethod::Exact, ShadowMethod::OpacityMaps]);
+    rig.project.compare.panes[1].shadow.exact.filter = lovelock_render::TexelFilter::Nearest;
+    let shown = LiveRequest { width: 160, height: 120, ..rig.request(&[0, 1, 2]) };
+    rig.draw(shown.clone());
+    assert!(rig.live.probe().latest().is_none());
+    // The busiest ray of many, and slices that are centimetres long: a method that is not exact shows it over much of the ray.
+    rig.project.compare.panes[2].shadow.opacity_maps.slices = 16;
+    let shown = LiveRequest { project: Arc::new(rig.project.clone()), ..shown };
+    let mut found: Option<(u64, (f32, f32), ProbedHair)> = None;
+    for number in 1..480_u64 {
+        let (x, y) = ((number * 37 % 160) as f32 / 160.0, (number * 61 % 120) as f32 / 120.0);
+        rig.draw(LiveRequest { probe: Some(ProbePlace { number, x, y }), ..shown.clone() });
+        let probe = rig.live.probe().latest().expect("an answer");
+        assert_eq!(probe.number, number);
+        if let Some(hair) = &probe.hair
+            && hair.steps.len() > found.as_ref().map_or(3, |(.., busiest)| busiest.steps.len())
+        {
+            found = Some((number, (x, y), hair.clone()));
+        }
+    }
+    let (number, (x, y), hair) = found.expect("hair with hair before or behind it");
+    assert_eq!(hair.curves.iter().map(|(pane, _)| *pane).collect::<Vec<_>>(), [0, 1, 2]);
+    let curve = |pane: usize| &hair.curves[pane].1;
+    assert!(curve(0).curve.iter().all(|point| point.1 == 1.0) && curve(0).marks.is_empty());
+    assert!(curve(1).marks.len() == hair.steps.len(), "a mark for each fragment");
+    assert!(curve(2).marks.iter().all(|mark| mark.kind == "slice"));
+    // With the nearest texel alone, what the exact method answers is its step function.
+    let step =
+        |depth: f32| hair.steps.iter().take_while(|step| step.0 < depth).last().map_or(1.0, |step| step.1);
+    let wrong = curve(1).curve.iter().filter(|point| (point.1 - step(point.0)).abs() > 1e-3).count();
+    // At an edge of a texel the ray leaves the column of the point by rounding.
+    assert!(wrong < curve(1).curve.len() / 10, "{wrong} of {}", curve(1).curve.len());
+    let opacity = curve(2).curve.iter().filter(|point| (point.1 - step(point.0)).abs() > 1e-3).count();
+    assert!(opacity > curve(2).curve.len() / 10, "another method is not: {opacity}");
+    println!("{} steps, {wrong} and {opacity} of {}", hair.steps.len(), curve(2).curve.len());
+
+    // The same asking on a later instant means the same hair.
+    rig.snapshot = {
+        let mut engine = Engine::new(Arc::clone(&rig.snapshot.scene), rig.project.simulation);
+        engine.advance_to_step(40);
+        engine.snapshot()
+    };
+    let later = LiveRequest { snapshot: Arc::clone(&rig.snapshot), ..shown };
+    rig.draw(LiveRequest { probe: Some(ProbePlace { number, x, y }), ..later });
+    let probe = rig.live.probe().latest().expect("an answer");
+    let moved = probe.hair.as_ref().expect("the hair");
+    assert_eq!((moved.strand, moved.point), (hair.strand, hair.point));
+    assert_ne!(moved.position, hair.position);
+}
+
+/// The window's threads go first: those that draw panes are nicer, and the one that asked for them is not.
+#[cfg(target_os = "linux")]
+#[test]
+fn threads_that_draw_panes_lower_priority() {
+    let rig = on_processor(&[ShadowMethod::VoxelMap]);
+    rig.draw(rig.request(&[0]));
+    // A thread has its name before it gives way: those that only start are waited for. A guard against waiting for ever.
+    for _ in 0..2000 {
+        let (least, mine) = niceness();
+        // Whoever runs the tests at the lowest priority has none to give.
+        if least.is_some_and(|least| least > mine || mine >= 9) {
+            return;
+        }
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    panic!("the threads that draw panes and this one: {:?}", niceness());
+}
+
+/// The least niceness of the threads that draw panes, and that of the one that asks.
+#[cfg(target_os = "linux")]
+fn niceness() -> (Option<i32>, i32) {
+    // The name may hold anything, so fields are counted from its closing bracket: niceness is the 17th after it.
+    let of = |task: &std::path::Path| {
+        let read = |name: &str| std::fs::read_to_string(task.join(name)).unwrap_or_default();
+        let stat = read("stat");
+        let nice = stat.rsplit_once(')').and_then(|(_, rest)| rest.split_whitespace().nth(16)?.parse().ok());
+        (read("comm").trim().to_owned(), nice)
+    };
+    let tasks = std::fs::read_dir("/proc/self/task").expect("threads").flatten();
+    let seen = tasks.map(|task| of(&task.path()));
+    let own = seen.filter(|(name, _)| name == "compare" || name.starts_with("pane worker"));
+    let mine = of(std::path::Path::new("/proc/thread-self")).1;
+    (own.filter_map(|(_, nice)| nice).min(), mine.expect("this thread"))
+}

@@ -1,0 +1,16 @@
+//! The project at a time of its timeline, and how moving a control writes keys.
+//!
+//! [`Project::at`](crate::Project::at) is the project at a time of the timeline; [`Overdub`] turns what is moved while the dance
+//! plays into keys.
+
+mod animate;
+mod leaf;
+mod overdub;
+
+pub use animate::Animation;
+pub use overdub::{Moment, Overdub};
+
+#[cfg(test)]
+mod ride_tests;
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,223 @@
+//! Errors that stop a request, and problems that do not.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use lovelock_record::TakeError;
+use lovelock_render::RenderError;
+use serde::{Deserialize, Serialize};
+
+/// Why a request failed. Displays as one line that names the file or the option.
+#[derive(Debug, thiserror::Error)]
+pub enum StudioError {
+    /// The request or an input file is wrong.
+    #[error("{message}")]
+    Request {
+        /// The file that is wrong, if it is a file.
+        file: Option<PathBuf>,
+        /// What was found and what is valid.
+        message: String,
+    },
+    /// The request was valid but the work failed, for example because the disk is full or there is no graphics device.
+    #[error("{message}")]
+    Work {
+        /// The file that was being written or read, if there is one.
+        file: Option<PathBuf>,
+        /// What happened.
+        message: String,
+    },
+    /// The work was cancelled.
+    #[error("cancelled: nothing was left under the final name")]
+    Cancelled,
+}
+
+impl StudioError {
+    /// An invalid input file; `message` names the file.
+    pub fn input(file: &Path, message: impl fmt::Display) -> Self {
+        Self::Request { file: Some(file.to_owned()), message: message.to_string() }
+    }
+
+    /// An invalid option.
+    pub fn option(message: impl fmt::Display) -> Self {
+        Self::Request { file: None, message: message.to_string() }
+    }
+
+    /// Work that failed on a file; `message` names the file.
+    pub fn output(file: &Path, message: impl fmt::Display) -> Self {
+        Self::Work { file: Some(file.to_owned()), message: message.to_string() }
+    }
+
+    /// Work that failed.
+    pub fn work(message: impl fmt::Display) -> Self {
+        Self::Work { file: None, message: message.to_string() }
+    }
+
+    /// The exit status of the command line: 2 for a wrong request or input file, 1 for work that failed.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Request { .. } => 2,
+            Self::Work { .. } | Self::Cancelled => 1,
+        }
+    }
+
+    /// The file that caused the error.
+    pub fn file(&self) -> Option<&Path> {
+        match self {
+            Self::Request { file, .. } | Self::Work { file, .. } => file.as_deref(),
+            Self::Cancelled => None,
+        }
+    }
+
+    /// What `--json` prints: `{"error": {"message": …, "file": … or null}}`.
+    pub fn to_json(&self) -> serde_json::Value {
+        let file = self.file().map(|f| f.display().to_string());
+        serde_json::json!({ "error": { "message": self.to_string(), "file": file } })
+    }
+}
+
+impl From<RenderError> for StudioError {
+    fn from(error: RenderError) -> Self {
+        match error {
+            RenderError::Size { .. } => Self::option(error),
+            error => Self::work(error),
+        }
+    }
+}
+
+impl From<TakeError> for StudioError {
+    fn from(error: TakeError) -> Self {
+        let file = Some(error.path().to_owned());
+        let message = error.to_string();
+        match error {
+            TakeError::Io { .. } | TakeError::Write { .. } | TakeError::Stopped { .. } => {
+                Self::Work { file, message }
+            }
+            TakeError::Request { .. }
+            | TakeError::Busy { .. }
+            | TakeError::NotATake { .. }
+            | TakeError::Newer { .. }
+            | TakeError::Empty { .. }
+            | TakeError::Malformed { .. }
+            | TakeError::Lost { .. }
+            | TakeError::NoSuchFrame { .. } => Self::Request { file, message },
+        }
+    }
+}
+
+/// The part of a project that a problem belongs to. The interface shows the problem there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Place {
+    /// The project file as a whole.
+    Project,
+    /// The body.
+    Body,
+    /// The motion.
+    Motion,
+    /// The hairstyle.
+    Hair,
+    /// Colour and width of the hair.
+    Look,
+    /// The simulation.
+    Simulation,
+    /// The shadow.
+    Shadow,
+    /// The lights.
+    Lights,
+    /// The camera.
+    Camera,
+    /// Settings of the picture.
+    Picture,
+    /// The recording.
+    Recording,
+    /// The comparison.
+    Compare,
+    /// The take that is played.
+    Take,
+    /// The timeline: markers and tracks.
+    Timeline,
+}
+
+impl Place {
+    /// The name in sentences.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Project => "project",
+            Self::Body => "body",
+            Self::Motion => "motion",
+            Self::Hair => "hair",
+            Self::Look => "look",
+            Self::Simulation => "simulation",
+            Self::Shadow => "shadow",
+            Self::Lights => "lights",
+            Self::Camera => "camera",
+            Self::Picture => "picture",
+            Self::Recording => "recording",
+            Self::Compare => "comparison",
+            Self::Take => "take",
+            Self::Timeline => "timeline",
+        }
+    }
+}
+
+/// The kind of problem, which decides what the interface offers to do about it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ProblemKind {
+    /// A value was out of range and has been clamped.
+    Adjusted,
+    /// Something in the file is unknown and was ignored.
+    Ignored,
+    /// A file could not be loaded; the previous state is kept.
+    NotLoaded,
+    /// The project names a file outside its folder that the user has not picked: picking it lets it load.
+    NeedsPermission(PathBuf),
+    /// Loaded; the message is for information.
+    Note,
+}
+
+/// Something that could not be done as requested. The scene stays usable.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Problem {
+    /// The part of the project.
+    pub place: Place,
+    /// What kind of problem.
+    pub kind: ProblemKind,
+    /// What happened, in one sentence.
+    pub cause: String,
+    /// The cause, and what was done instead.
+    pub message: String,
+}
+
+impl Problem {
+    /// A problem.
+    pub fn new(place: Place, kind: ProblemKind, message: impl fmt::Display) -> Self {
+        let cause = message.to_string();
+        Self { place, kind, message: cause.clone(), cause }
+    }
+
+    /// A file that could not be loaded.
+    pub fn not_loaded(place: Place, message: impl fmt::Display) -> Self {
+        Self::new(place, ProblemKind::NotLoaded, message)
+    }
+
+    /// The problem with the fallback that was used, if a part of the scene could not be loaded.
+    pub fn with_fallback(mut self, instead: &str) -> Self {
+        if matches!(self.kind, ProblemKind::NotLoaded | ProblemKind::NeedsPermission(_))
+            && self.place != Place::Project
+        {
+            self.message = format!("{}; {instead}", self.message);
+        }
+        self
+    }
+
+    /// Whether a part of the scene is missing because of this problem.
+    pub fn is_failure(&self) -> bool {
+        matches!(self.kind, ProblemKind::NotLoaded | ProblemKind::NeedsPermission(_))
+    }
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.place.label(), self.message)
+    }
+}

@@ -1,0 +1,238 @@
+//! Undo and redo.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use crate::project::Project;
+
+/// Identifies one gesture, such as one drag of a slider or one edit of a text field. Its changes are one undo step.
+pub type GestureId = u64;
+
+/// A project with its undo and redo steps.
+#[derive(Clone, Debug)]
+pub struct History {
+    past: VecDeque<Step>,
+    present: Arc<Project>,
+    future: Vec<Step>,
+    /// The gesture that made the newest step, as long as it may continue.
+    gesture: Option<GestureId>,
+    /// The project on disk, for the mark of unsaved changes.
+    saved: Arc<Project>,
+    limit: usize,
+}
+
+/// A change: its label, and the project on the other side of it.
+#[derive(Clone, Debug)]
+struct Step {
+    label: String,
+    project: Arc<Project>,
+}
+
+impl History {
+    /// Number of steps kept by default. A project is a few kilobytes.
+    pub const LIMIT: usize = 256;
+
+    /// A project without undo steps.
+    pub fn new(project: Project) -> Self {
+        Self::with_limit(project, Self::LIMIT)
+    }
+
+    /// A project that keeps at most `limit` steps (at least one).
+    pub fn with_limit(project: Project, limit: usize) -> Self {
+        let present = Arc::new(project);
+        Self {
+            past: VecDeque::new(),
+            saved: Arc::clone(&present),
+            present,
+            future: Vec::new(),
+            gesture: None,
+            limit: limit.max(1),
+        }
+    }
+
+    /// The current project.
+    pub fn project(&self) -> &Arc<Project> {
+        &self.present
+    }
+
+    /// Replaces the project. Consecutive changes with the same `gesture` are one step; a gesture that ends at its start value
+    /// is no step. Returns whether anything changed.
+    pub fn edit(&mut self, label: &str, gesture: Option<GestureId>, project: Project) -> bool {
+        if project == *self.present {
+            return false;
+        }
+        let project = Arc::new(project);
+        if gesture.is_some() && gesture == self.gesture {
+            self.present = project;
+            if self.past.back().is_some_and(|step| step.project == self.present) {
+                if let Some(step) = self.past.pop_back() {
+                    self.present = step.project;
+                }
+                self.gesture = None;
+            }
+        } else {
+            let before = std::mem::replace(&mut self.present, project);
+            self.past.push_back(Step { label: label.to_owned(), project: before });
+            if self.past.len() > self.limit {
+                self.past.pop_front();
+            }
+            self.gesture = gesture;
+        }
+        self.future.clear();
+        true
+    }
+
+    /// As [`History::edit`], for a change made in place.
+    pub fn change(
+        &mut self,
+        label: &str,
+        gesture: Option<GestureId>,
+        change: impl FnOnce(&mut Project),
+    ) -> bool {
+        let mut project = (*self.present).clone();
+        change(&mut project);
+        self.edit(label, gesture, project)
+    }
+
+    /// Ends the gesture: the next change starts a new step.
+    pub fn end_gesture(&mut self) {
+        self.gesture = None;
+    }
+
+    /// Undoes the newest step.
+    pub fn undo(&mut self) -> Option<&Arc<Project>> {
+        let step = self.past.pop_back()?;
+        let after = std::mem::replace(&mut self.present, step.project);
+        self.future.push(Step { label: step.label, project: after });
+        self.gesture = None;
+        Some(&self.present)
+    }
+
+    /// Redoes the step that was undone last.
+    pub fn redo(&mut self) -> Option<&Arc<Project>> {
+        let step = self.future.pop()?;
+        let before = std::mem::replace(&mut self.present, step.project);
+        self.past.push_back(Step { label: step.label, project: before });
+        self.gesture = None;
+        Some(&self.present)
+    }
+
+    /// Label of the step that [`History::undo`] would undo.
+    pub fn undo_label(&self) -> Option<&str> {
+        self.past.back().map(|step| step.label.as_str())
+    }
+
+    /// Label of the step that [`History::redo`] would redo.
+    pub fn redo_label(&self) -> Option<&str> {
+        self.future.last().map(|step| step.label.as_str())
+    }
+
+    /// Number of steps that can be undone.
+    pub fn undo_len(&self) -> usize {
+        self.past.len()
+    }
+
+    /// Number of steps that can be redone.
+    pub fn redo_len(&self) -> usize {
+        self.future.len()
+    }
+
+    /// Records that the current project has been saved.
+    pub fn mark_saved(&mut self) {
+        self.saved = Arc::clone(&self.present);
+        self.gesture = None;
+    }
+
+    /// Whether the project differs from what was saved or opened.
+    pub fn is_modified(&self) -> bool {
+        !Arc::ptr_eq(&self.saved, &self.present) && self.saved != self.present
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn at(distance: f32) -> Project {
+        let mut project = Project::default();
+        project.camera.distance = distance;
+        project
+    }
+
+    #[test]
+    fn a_drag_is_one_step() {
+        let mut history = History::new(at(1.0));
+        for i in 2..20 {
+            assert!(history.edit("Distance", Some(7), at(i as f32)));
+        }
+        history.end_gesture();
+        history.edit("Distance", Some(7), at(30.0));
+        assert_eq!(history.undo_len(), 2, "a second drag with the same id, after the first has ended");
+        assert_eq!(history.undo().map(|p| p.camera.distance), Some(19.0));
+        assert_eq!(history.undo().map(|p| p.camera.distance), Some(1.0));
+        assert!(history.undo().is_none());
+        assert_eq!(history.redo().map(|p| p.camera.distance), Some(19.0));
+    }
+
+    #[test]
+    fn a_drag_that_returns_is_no_step() {
+        let mut history = History::new(at(1.0));
+        history.edit("Distance", Some(1), at(2.0));
+        history.edit("Distance", Some(1), at(1.0));
+        assert_eq!(history.undo_len(), 0);
+        history.edit("Distance", Some(1), at(3.0));
+        assert_eq!(history.undo_len(), 1, "the gesture may continue");
+        assert_eq!(history.undo().map(|p| p.camera.distance), Some(1.0));
+    }
+
+    #[test]
+    fn no_change_is_no_step_and_keeps_the_future() {
+        let mut history = History::new(at(1.0));
+        history.edit("Distance", None, at(2.0));
+        history.undo();
+        assert!(!history.edit("Distance", None, at(1.0)));
+        assert_eq!(history.redo_label(), Some("Distance"));
+        assert!(history.edit("Distance", None, at(5.0)));
+        assert!(history.redo().is_none(), "a new change discards the redo steps");
+    }
+
+    #[test]
+    fn the_mark_of_an_unsaved_change_follows_undo() {
+        let mut history = History::new(at(1.0));
+        assert!(!history.is_modified());
+        history.edit("Distance", None, at(2.0));
+        assert!(history.is_modified());
+        history.mark_saved();
+        assert!(!history.is_modified());
+        history.undo();
+        assert!(history.is_modified());
+        history.redo();
+        assert!(!history.is_modified());
+    }
+
+    proptest! {
+        /// Undoing everything and redoing everything returns every state in order, up to the limit.
+        #[test]
+        fn undo_and_redo_are_inverse(values in prop::collection::vec(1_u8..=4, 1..40), limit in 1_usize..12) {
+            let mut history = History::with_limit(at(0.5), limit);
+            let mut states = vec![0.5];
+            for v in values {
+                if history.edit("Distance", None, at(f32::from(v))) {
+                    states.push(f32::from(v));
+                }
+            }
+            let kept = states.len().min(limit + 1);
+            let states = &states[states.len() - kept..];
+            for expected in states.iter().rev().skip(1) {
+                prop_assert_eq!(history.undo().map(|p| p.camera.distance), Some(*expected));
+            }
+            prop_assert!(history.undo().is_none());
+            for expected in states.iter().skip(1) {
+                prop_assert_eq!(history.redo().map(|p| p.camera.distance), Some(*expected));
+            }
+            prop_assert!(history.redo().is_none());
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! One way to render hair among those that are compared.
+
+use lovelock_render::{Backend, PictureSettings, ShadowMethod, ShadowSettings, Transparency};
+use serde::{Deserialize, Serialize};
+
+use super::super::Project;
+use crate::files::FileRef;
+
+/// One way to render hair, or another take, among those that are compared. All other settings of the image are shared.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Contender {
+    /// How hair shadows itself, with the values of every method.
+    pub shadow: ShadowSettings,
+    /// How overlapping strands are blended.
+    pub transparency: Transparency,
+    /// What renders: CPU or GPU.
+    pub backend: Backend,
+    /// Rendered pixels per pixel of the pane along each edge, 0.1 to 1.
+    pub scale: f32,
+    /// A take that this pane shows, at the common time, instead of what the others show.
+    pub take: Option<FileRef>,
+}
+
+impl Default for Contender {
+    fn default() -> Self {
+        Self::of(&Project::default())
+    }
+}
+
+impl Contender {
+    /// The smallest and the largest [`Contender::scale`].
+    pub const SCALES: std::ops::RangeInclusive<f32> = 0.1..=1.0;
+
+    /// The settings of `project` itself.
+    pub fn of(project: &Project) -> Self {
+        let PictureSettings { transparency, backend, .. } = project.picture;
+        Self { shadow: project.shadow, transparency, backend, scale: 1.0, take: None }
+    }
+
+    /// The project with these settings.
+    pub fn applied_to(&self, project: &Project) -> Project {
+        let mut project = project.clone();
+        project.shadow = self.shadow;
+        project.picture.transparency = self.transparency;
+        project.picture.backend = self.backend;
+        project
+    }
+
+    /// The main settings of the method: the size of its map, and the number of samples along the light.
+    pub fn size_label(&self) -> String {
+        let shadow = &self.shadow;
+        match shadow.method {
+            ShadowMethod::None => String::new(),
+            ShadowMethod::VoxelMap => format!("{}³", shadow.voxel_map.resolution),
+            ShadowMethod::OpacityMaps => {
+                format!("{}² × {}", shadow.opacity_maps.resolution, shadow.opacity_maps.slices)
+            }
+            ShadowMethod::DeepOpacityMaps => {
+                format!("{}² × {}", shadow.deep_opacity_maps.resolution, shadow.deep_opacity_maps.layers)
+            }
+            ShadowMethod::DensityClustering => {
+                format!("{}² × {}", shadow.density_clustering.resolution, shadow.density_clustering.clusters)
+            }
+            ShadowMethod::OccupancyMaps => {
+                format!("{}² × {}", shadow.occupancy_maps.resolution, shadow.occupancy_maps.slices)
+            }
+            ShadowMethod::Exact => format!("{}²", shadow.exact.resolution),
+        }
+    }
+
+    /// The settings besides the method, such as `128³ · sorted · CPU`.
+    pub fn settings_label(&self) -> String {
+        let mut parts = vec![
+            self.take_name().unwrap_or_default(),
+            self.size_label(),
+            self.transparency.id().to_owned(),
+            backend_label(self.backend).to_owned(),
+        ];
+        if self.scale < 1.0 {
+            parts.push(format!("{:.0} % size", 100.0 * self.scale));
+        }
+        parts.retain(|part| !part.is_empty());
+        parts.join(" · ")
+    }
+
+    /// The name of the take that is shown.
+    pub fn take_name(&self) -> Option<String> {
+        let file = self.take.as_ref()?;
+        Some(format!("take {}", file.path.file_stem().unwrap_or_default().to_string_lossy()))
+    }
+
+    /// Method and settings, such as `Voxel map · 128³ · sorted · CPU`.
+    pub fn label(&self) -> String {
+        format!("{} · {}", self.shadow.method.label(), self.settings_label())
+    }
+}
+
+/// The short name of a backend beside a time.
+pub const fn backend_label(backend: Backend) -> &'static str {
+    match backend {
+        Backend::Auto => "auto",
+        Backend::Gpu => "GPU",
+        Backend::Cpu => "CPU",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn applying_a_projects_own_settings_changes_nothing() {
+        let project = Project::default();
+        assert_eq!(Contender::of(&project).applied_to(&project), project);
+        let mut other = Contender::of(&project);
+        other.shadow.method = ShadowMethod::OccupancyMaps;
+        let changed = other.applied_to(&project);
+        assert_ne!(changed, project);
+        assert_eq!(Contender::of(&changed), other);
+    }
+}

@@ -1,0 +1,151 @@
+//! Reading and writing project files (RON, versioned).
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use serde::Deserialize;
+
+use super::generic::unknown_fields;
+use super::{PROJECT_VERSION, Project};
+use crate::error::{Place, Problem, ProblemKind, StudioError};
+use crate::files::{Access, folder_of, write_whole};
+
+/// The extension of project files, without the dot.
+pub const PROJECT_EXTENSION: &str = "lovelock";
+
+/// Largest size of a project file. A project is a few kilobytes of text; a larger file is something else.
+const LARGEST_BYTES: u64 = 4 << 20;
+
+/// The deepest nesting that is read. Projects use four levels.
+const DEEPEST: usize = 32;
+
+/// Opens the project at `path`. Only files in its folder and below may be read.
+///
+/// A project with missing files, values out of range or unknown fields opens with the rest; the problems say what is wrong.
+/// Loading the scene reports missing files again, together with their replacements, so a caller that does both should show
+/// problems with [`Problem::is_failure`] once.
+///
+/// # Errors
+/// As [`parse_project`], and if the file cannot be read.
+pub fn load_project(path: &Path) -> Result<(Project, Vec<Problem>), StudioError> {
+    let mut access = Access::for_project(path);
+    load_project_with(path, &mut access)
+}
+
+/// As [`load_project`], but also allows files that the user has picked. `access` becomes that of the project.
+///
+/// # Errors
+/// As [`load_project`].
+pub fn load_project_with(path: &Path, access: &mut Access) -> Result<(Project, Vec<Problem>), StudioError> {
+    let name = path.display();
+    let cannot_read =
+        |error: std::io::Error| StudioError::input(path, format!("{name}: cannot be read: {error}"));
+    let file = File::open(path).map_err(cannot_read)?;
+    let data = file.metadata().map_err(cannot_read)?;
+    if data.is_dir() {
+        return Err(StudioError::input(path, format!("{name}: is a folder; must be a project file")));
+    }
+    let mut bytes = Vec::new();
+    file.take(LARGEST_BYTES + 1).read_to_end(&mut bytes).map_err(cannot_read)?;
+    if bytes.len() as u64 > LARGEST_BYTES {
+        let message = format!("{name}: larger than {LARGEST_BYTES} bytes, the largest size of a project");
+        return Err(StudioError::input(path, message));
+    }
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        StudioError::input(path, format!("{name}: byte {at}: not valid UTF-8; must be a project (text)"))
+    })?;
+    let (project, mut problems) = project_of_text(path, &text)?;
+    access.set_project(Some(path));
+    for (place, file) in project.files() {
+        problems.extend(access.read(place, file).err());
+    }
+    Ok((project, problems))
+}
+
+/// As [`parse_project`], for a file at `path`: relative paths are resolved against its folder.
+///
+/// # Errors
+/// As [`parse_project`].
+pub fn project_of_text(path: &Path, text: &str) -> Result<(Project, Vec<Problem>), StudioError> {
+    let (mut project, problems) = parse_project(path, text)?;
+    let folder = folder_of(path);
+    for file in project.file_refs_mut() {
+        *file = file.in_memory(&folder);
+    }
+    Ok((project, problems))
+}
+
+/// Reads the text of a project. `path` is used for messages only. Paths stay as they are written.
+///
+/// # Errors
+/// Text that is not a project, with line and column, or a project of a newer version.
+pub fn parse_project(path: &Path, text: &str) -> Result<(Project, Vec<Problem>), StudioError> {
+    #[derive(Deserialize)]
+    struct Header {
+        version: u32,
+    }
+    let name = path.display();
+    let refuse = |error: ron::error::SpannedError| {
+        StudioError::input(
+            path,
+            format!("{name}: line {}: {}; wanted a project", error.span.start, error.code),
+        )
+    };
+    let options = ron::Options::default()
+        .with_recursion_limit(DEEPEST)
+        .with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
+    // The version first, because the contents of a newer one may not be readable.
+    let header: Header = options.from_str(text).map_err(refuse)?;
+    if header.version > PROJECT_VERSION {
+        return Err(StudioError::input(
+            path,
+            format!(
+                "{name}: made by a newer Lovelock (project version {}); this one reads up to version {PROJECT_VERSION}",
+                header.version
+            ),
+        ));
+    }
+    let project: Project = options.from_str(text).map_err(refuse)?;
+    let mut problems = Vec::new();
+    let known = options
+        .to_string(&project)
+        .and_then(|text| options.from_str::<ron::Value>(&text).map_err(|error| error.code));
+    if let (Ok(found), Ok(known)) = (options.from_str::<ron::Value>(text), known) {
+        problems.extend(unknown_fields(&found, &known).into_iter().map(|field| {
+            let message = format!("the field `{field}` is not known to this version and was left out");
+            Problem::new(Place::Project, ProblemKind::Ignored, message)
+        }));
+    }
+    let (project, adjusted) = project.sanitised();
+    problems.extend(adjusted);
+    Ok((project, problems))
+}
+
+/// Saves a project: writes beside `path`, flushes to disk, then renames, so that a full disk or a crash leaves the old file
+/// intact. Paths inside the project's folder become relative to it.
+///
+/// # Errors
+/// If the folder cannot be written, the disk is full, or a path is not Unicode.
+pub fn save_project(path: &Path, project: &Project) -> Result<(), StudioError> {
+    let name = path.display();
+    let text = text_of_project(path, project).map_err(|error| {
+        StudioError::output(path, format!("{name}: could not be written as text: {error}"))
+    })?;
+    write_whole(path, format!("{text}\n").as_bytes())
+}
+
+/// The text of a project file at `path`.
+///
+/// # Errors
+/// If a path is not Unicode.
+pub fn text_of_project(path: &Path, project: &Project) -> Result<String, ron::Error> {
+    let folder = folder_of(path);
+    let mut project = project.clone();
+    project.version = PROJECT_VERSION;
+    for file in project.file_refs_mut() {
+        *file = file.for_disk(&folder);
+    }
+    ron::ser::to_string_pretty(&project, ron::ser::PrettyConfig::new().struct_names(false).depth_limit(4))
+}

@@ -1,0 +1,171 @@
+//! The project's sections, and reading and writing project files.
+//!
+//! One plain struct per section. A section keeps the values of all its alternatives, so that switching between them loses
+//! nothing. File paths are absolute in memory; on disk they are relative to the project's folder if they lie in it (see
+//! [`load_project`] and [`save_project`]).
+
+mod contender;
+mod file;
+mod generic;
+mod sanitise;
+mod sections;
+mod trim;
+
+pub use contender::{Contender, backend_label};
+pub use file::{
+    PROJECT_EXTENSION, load_project, load_project_with, parse_project, project_of_text, save_project,
+    text_of_project,
+};
+pub use sections::{
+    BodySection, BodySource, CameraMode, CameraSection, CompareSection, HairSection, HairSource, Marker,
+    MotionSection, MotionSource, RecordingSection, TakeSection, TimelineSection,
+};
+
+use lovelock_groom::{GroomSettings, HairLook, Haircut, Preset};
+use lovelock_render::{Light, PictureSettings, ShadowSettings};
+use lovelock_simulation::SimulationSettings;
+use serde::{Deserialize, Serialize};
+
+use crate::files::FileRef;
+
+/// Version of the project file that this program writes, and the newest version that it reads.
+pub const PROJECT_VERSION: u32 = 1;
+
+/// Everything that is saved and undone.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Project {
+    /// Version of the file, [`PROJECT_VERSION`].
+    pub version: u32,
+    /// The body.
+    pub body: BodySection,
+    /// The motion of the body.
+    pub motion: MotionSection,
+    /// The hairstyle.
+    pub hair: HairSection,
+    /// Colour and width of the hair.
+    pub look: HairLook,
+    /// How the hair moves.
+    pub simulation: SimulationSettings,
+    /// How the hair shadows itself.
+    pub shadow: ShadowSettings,
+    /// The lights, at most [`lovelock_render::MAX_LIGHTS`].
+    pub lights: Vec<Light>,
+    /// The camera.
+    pub camera: CameraSection,
+    /// Settings of the whole image.
+    pub picture: PictureSettings,
+    /// Settings of recordings.
+    pub recording: RecordingSection,
+    /// The panes of a comparison.
+    pub compare: CompareSection,
+    /// The take that is played, if any.
+    pub take: TakeSection,
+    /// Markers, tracks and pre-roll.
+    pub timeline: TimelineSection,
+}
+
+impl Default for Project {
+    fn default() -> Self {
+        Self {
+            version: PROJECT_VERSION,
+            body: BodySection::default(),
+            motion: MotionSection::default(),
+            hair: HairSection::default(),
+            look: GroomSettings::preset(Preset::Smooth).look,
+            simulation: SimulationSettings::default(),
+            shadow: ShadowSettings::default(),
+            lights: Light::default_rig(),
+            camera: CameraSection::default(),
+            picture: PictureSettings::default(),
+            recording: RecordingSection::default(),
+            compare: CompareSection::default(),
+            take: TakeSection::default(),
+            timeline: TimelineSection::default(),
+        }
+    }
+}
+
+impl Project {
+    /// Switches to a shipped hairstyle with its colours and ties, and with its stiffness unless the user has changed that.
+    pub fn set_preset(&mut self, preset: Preset) {
+        self.change_hair(HairSource::Grown, preset);
+        self.hair.groom = GroomSettings::preset(preset);
+        self.look = self.hair.groom.look;
+        self.hair.ties = preset.ties().to_vec();
+        // A cut belongs to the hair that it was made on.
+        self.hair.cut = Haircut::default();
+    }
+
+    /// Switches between the grown hairstyle and the hair file that was picked before.
+    pub fn set_hair_source(&mut self, source: HairSource) {
+        self.change_hair(source, self.hair.preset);
+    }
+
+    /// Changes the hair. Simulation settings that still have the defaults of the old hair get those of the new hair.
+    fn change_hair(&mut self, source: HairSource, preset: Preset) {
+        let before = self.hair.simulation();
+        (self.hair.source, self.hair.preset) = (source, preset);
+        self.simulation = self.simulation.restyled(&before, &self.hair.simulation());
+    }
+
+    /// Switches to a hair file that the user picked.
+    pub fn set_hair_file(&mut self, path: impl Into<std::path::PathBuf>) {
+        self.set_hair_source(HairSource::File);
+        self.hair.file = Some(FileRef::new(path));
+    }
+
+    /// Switches to a character file that the user picked, with its first clip.
+    pub fn set_body_file(&mut self, path: impl Into<std::path::PathBuf>) {
+        self.body.source = BodySource::File;
+        self.body.file = Some(FileRef::new(path));
+        self.body.head_joint = None;
+        if self.motion.source == MotionSource::Clip {
+            self.motion.clip.clear();
+        }
+    }
+
+    /// Switches to a motion file that the user picked.
+    pub fn set_motion_file(&mut self, path: impl Into<std::path::PathBuf>) {
+        self.motion.source = MotionSource::File;
+        self.motion.file = Some(FileRef::new(path));
+    }
+
+    /// Plays a take that the user picked.
+    pub fn set_take(&mut self, path: impl Into<std::path::PathBuf>) {
+        self.take.file = Some(FileRef::new(path));
+    }
+
+    /// Every file that the project refers to and uses, with the part that uses it.
+    pub fn files(&self) -> Vec<(crate::error::Place, &FileRef)> {
+        let body = (self.body.source == BodySource::File).then_some(self.body.file.as_ref()).flatten();
+        let motion =
+            (self.motion.source == MotionSource::File).then_some(self.motion.file.as_ref()).flatten();
+        let hair = (self.hair.source == HairSource::File).then_some(self.hair.file.as_ref()).flatten();
+        let take = self.take.file.as_ref();
+        if take.is_some() {
+            // The take itself names the files that it was made from.
+            return take.into_iter().map(|file| (crate::error::Place::Take, file)).collect();
+        }
+        [
+            (crate::error::Place::Body, body),
+            (crate::error::Place::Motion, motion),
+            (crate::error::Place::Hair, hair),
+        ]
+        .into_iter()
+        .filter_map(|(place, file)| Some((place, file?)))
+        .collect()
+    }
+
+    /// Every file that the project refers to, used or not.
+    pub fn file_refs_mut(&mut self) -> impl Iterator<Item = &mut FileRef> {
+        let Self { body, motion, hair, recording, take, compare, .. } = self;
+        [&mut body.file, &mut motion.file, &mut hair.file, &mut recording.output, &mut take.file]
+            .into_iter()
+            .chain(compare.panes.iter_mut().map(|pane| &mut pane.take))
+            .flatten()
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,329 @@
+//! The sections of a project that belong to no other crate.
+
+use glam::Vec3;
+use lovelock_groom::{GroomSettings, HairTie, Haircut, ImportSettings, Preset};
+use lovelock_motion::{BodySettings, ColliderEdits, MotionSettings};
+use lovelock_record::{FilmQuality, SequenceFormat};
+use lovelock_render::{Backend, ShadowMethod, ShadowSettings, Transparency};
+use lovelock_simulation::SimulationSettings;
+use serde::{Deserialize, Serialize};
+
+use super::contender::Contender;
+use crate::files::FileRef;
+use crate::tracks::Track;
+
+/// Where the body comes from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum BodySource {
+    /// The dancer that is part of the program.
+    #[default]
+    Dancer,
+    /// [`BodySection::file`].
+    File,
+}
+
+/// The body that dances.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct BodySection {
+    /// Where it comes from.
+    pub source: BodySource,
+    /// A character file: glTF, binary or text.
+    pub file: Option<FileRef>,
+    /// Unit and up axis of that file.
+    pub settings: BodySettings,
+    /// The joint that carries the hair, by its name or its path (`hips/spine/neck/head`); the guess where none.
+    pub head_joint: Option<String>,
+    /// What is changed about the shapes that hair collides with.
+    pub colliders: ColliderEdits,
+}
+
+/// Where the motion comes from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum MotionSource {
+    /// The body's own clip named [`MotionSection::clip`].
+    #[default]
+    Clip,
+    /// [`MotionSection::file`].
+    File,
+    /// None: the body stays in its rest pose.
+    Rest,
+}
+
+/// How the body dances.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct MotionSection {
+    /// Where the motion comes from.
+    pub source: MotionSource,
+    /// Name of one of the body's clips; its first one where empty.
+    pub clip: String,
+    /// A motion file (BVH), retargeted to the body.
+    pub file: Option<FileRef>,
+    /// Unit, axis and root position of that file.
+    pub settings: MotionSettings,
+    /// Tempo: how many seconds of the clip pass in a second, 0.1 to 4.
+    pub speed: f32,
+    /// Second of the clip at which it begins.
+    pub start_secs: f32,
+    /// Second of the clip at which it ends; that of its last key where none.
+    pub end_secs: Option<f32>,
+    /// Whether the clip starts again at its end; it holds its last pose otherwise.
+    pub looping: bool,
+    /// How long the end of a clip that does not loop by itself is faded into its beginning, seconds, 0 to 2.
+    pub loop_blend_secs: f32,
+}
+
+impl Default for MotionSection {
+    fn default() -> Self {
+        Self {
+            source: MotionSource::Clip,
+            clip: "dance".to_owned(),
+            file: None,
+            settings: MotionSettings::default(),
+            speed: 1.0,
+            start_secs: 0.0,
+            end_secs: None,
+            looping: true,
+            loop_blend_secs: 0.5,
+        }
+    }
+}
+
+/// Where the hairstyle comes from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum HairSource {
+    /// Grown on the body's scalp from [`HairSection::groom`].
+    #[default]
+    Grown,
+    /// [`HairSection::file`].
+    File,
+}
+
+/// The hairstyle.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct HairSection {
+    /// Where it comes from.
+    pub source: HairSource,
+    /// The shipped style that `groom` began as: where its controls return to.
+    pub preset: Preset,
+    /// How hair grows. Its `look` is not used: [`super::Project::look`] is.
+    pub groom: GroomSettings,
+    /// A hair file: Yuksel `.hair` or TressFX `.tfx`.
+    pub file: Option<FileRef>,
+    /// How that file becomes a hairstyle.
+    pub import: ImportSettings,
+    /// What gathers the hair, at most [`HairTie::MOST`].
+    pub ties: Vec<HairTie>,
+    /// What was cut off while it moved; made by [`Haircut::of`] from an instant, and added up by [`Haircut::and`].
+    pub cut: Haircut,
+}
+
+impl Default for HairSection {
+    fn default() -> Self {
+        Self {
+            source: HairSource::Grown,
+            preset: Preset::Smooth,
+            groom: GroomSettings::preset(Preset::Smooth),
+            file: None,
+            import: ImportSettings::default(),
+            ties: Vec::new(),
+            cut: Haircut::default(),
+        }
+    }
+}
+
+impl HairSection {
+    /// How this hair moves unless it is changed: where the controls of the simulation return to.
+    pub fn simulation(&self) -> SimulationSettings {
+        match self.source {
+            HairSource::Grown => SimulationSettings::preset(self.preset),
+            HairSource::File => SimulationSettings::default(),
+        }
+    }
+}
+
+/// What the camera looks at.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum CameraMode {
+    /// The head, followed smoothly.
+    #[default]
+    Follow,
+    /// A place in the world.
+    Fixed,
+}
+
+/// A camera on a sphere around its target.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct CameraSection {
+    /// What it looks at.
+    pub mode: CameraMode,
+    /// The target where it follows: offset from the smoothed head joint, world axes, metres, each -3 to 3.
+    pub follow_offset: Vec3,
+    /// How slowly it follows: the width of the window over which the head's path is smoothed, seconds, 0 to 4.
+    pub follow_secs: f32,
+    /// The target where it is fixed, world space, metres, each -20 to 20.
+    pub fixed_target: Vec3,
+    /// Angle about the vertical from the front (+Z) toward the dancer's left (+X), radians, -π to π.
+    pub azimuth: f32,
+    /// Angle above the horizon, radians, -1.5 to 1.5.
+    pub elevation: f32,
+    /// Distance from the target, metres, 0.1 to 30.
+    pub distance: f32,
+    /// Vertical field of view, radians, 0.05 to 2.
+    pub fov_y: f32,
+}
+
+impl Default for CameraSection {
+    /// Head height, the look of a 65 mm lens on a frame 24 mm high, head and shoulders in the picture.
+    fn default() -> Self {
+        Self {
+            mode: CameraMode::Follow,
+            follow_offset: Vec3::new(0.0, -0.02, 0.0),
+            follow_secs: 1.2,
+            fixed_target: Vec3::new(0.0, 1.45, 0.0),
+            azimuth: 0.45,
+            elevation: 0.03,
+            distance: 2.0,
+            fov_y: 2.0 * (12.0_f32 / 65.0).atan(),
+        }
+    }
+}
+
+/// What a recording is.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct RecordingSection {
+    /// Width, pixels, 16 to 8192.
+    pub width: u32,
+    /// Height, pixels, 16 to 8192.
+    pub height: u32,
+    /// Frames a second, 1 to 240.
+    pub fps: f64,
+    /// Number of the first frame.
+    pub first_frame: u64,
+    /// One past the number of the last frame; all of the clip's where none.
+    pub end_frame: Option<u64>,
+    /// Whether the hair at the end of a film of one whole round of a looping dance is faded into the hair at its start.
+    pub seamless: bool,
+    /// How finely a film is coded.
+    pub quality: FilmQuality,
+    /// What the files of a folder are.
+    pub format: SequenceFormat,
+    /// Whether there is nothing behind hair and body: neither background nor ground.
+    pub transparent: bool,
+    /// Pictures that a frame is the mean of, for motion blur: 1 (none) to [`RecordingSection::MOST_SUBFRAMES`].
+    pub subframes: u32,
+    /// How long the shutter is open, degrees of 360 a frame, 0 to 360.
+    pub shutter_degrees: f32,
+    /// Whether the shadow method, the transparency and the frame's number are written into each picture.
+    pub label: bool,
+    /// Where it goes: a name ending in `.mp4`, or a folder.
+    pub output: Option<FileRef>,
+}
+
+impl Default for RecordingSection {
+    fn default() -> Self {
+        Self {
+            width: 1280,
+            height: 720,
+            fps: 30.0,
+            first_frame: 0,
+            end_frame: None,
+            seamless: false,
+            quality: FilmQuality::default(),
+            format: SequenceFormat::default(),
+            transparent: false,
+            subframes: 1,
+            shutter_degrees: 180.0,
+            label: false,
+            output: None,
+        }
+    }
+}
+
+impl RecordingSection {
+    /// The most pictures that a frame is the mean of.
+    pub const MOST_SUBFRAMES: u32 = 64;
+}
+
+/// A recorded simulation that plays in place of one that runs.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct TakeSection {
+    /// The take; where there is one, body, motion, hairstyle and their movement are as they were recorded.
+    pub file: Option<FileRef>,
+}
+
+/// A named time of the dance.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Marker {
+    /// Seconds from the start of the timeline.
+    pub secs: f64,
+    /// What it is called.
+    pub name: String,
+}
+
+/// What stands on the timeline.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct TimelineSection {
+    /// Named times, at most [`TimelineSection::MOST_MARKERS`].
+    pub markers: Vec<Marker>,
+    /// Numbers of the project that follow the timeline, at most [`Track::MOST`].
+    pub tracks: Vec<Track>,
+    /// How long hair lives, at least, before an instant that is gone to or recorded from, seconds, 0 to
+    /// [`TimelineSection::MOST_PREROLL_SECS`]: it comes from rest, and is settled after that. 0 shows the style at rest.
+    pub preroll_secs: f32,
+}
+
+impl Default for TimelineSection {
+    fn default() -> Self {
+        Self { markers: Vec::new(), tracks: Vec::new(), preroll_secs: 2.0 }
+    }
+}
+
+impl TimelineSection {
+    /// The longest life before an instant, seconds.
+    pub const MOST_PREROLL_SECS: f32 = 30.0;
+    /// The most markers.
+    pub const MOST_MARKERS: usize = 200;
+    /// The longest name of a marker, characters.
+    pub const LONGEST_NAME: usize = 80;
+}
+
+/// What is compared beside each other.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct CompareSection {
+    /// The panes, from the left and the top: 1 to [`CompareSection::MOST_PANES`].
+    pub panes: Vec<Contender>,
+}
+
+impl CompareSection {
+    /// The most panes.
+    pub const MOST_PANES: usize = 6;
+}
+
+impl Default for CompareSection {
+    /// A method of each kind: a grid, layers, bits, and the truth.
+    fn default() -> Self {
+        let pane = |method| Contender {
+            shadow: ShadowSettings { method, ..ShadowSettings::default() },
+            transparency: Transparency::default(),
+            backend: Backend::default(),
+            scale: 1.0,
+            take: None,
+        };
+        let methods = [
+            ShadowMethod::VoxelMap,
+            ShadowMethod::DeepOpacityMaps,
+            ShadowMethod::OccupancyMaps,
+            ShadowMethod::Exact,
+        ];
+        Self { panes: methods.map(pane).to_vec() }
+    }
+}

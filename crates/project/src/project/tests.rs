@@ -1,0 +1,321 @@
+use std::path::Path;
+
+use glam::Vec3;
+use proptest::prelude::*;
+
+use super::*;
+use crate::error::{Place, ProblemKind};
+use crate::files::{Access, FileRef};
+
+fn round_trip(project: &Project) -> (Project, Vec<crate::error::Problem>) {
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = dir.path().join("a project ü.lovelock");
+    save_project(&path, project).expect("saved");
+    let left: Vec<_> = std::fs::read_dir(dir.path()).expect("a folder").collect();
+    assert_eq!(left.len(), 1, "only the project is left");
+    load_project(&path).expect("opened")
+}
+
+#[test]
+fn the_default_project_comes_back_without_problems() {
+    let project = Project::default();
+    assert_eq!(project.sanitised(), (project.clone(), Vec::new()), "the defaults lie in their ranges");
+    assert_eq!(round_trip(&project), (project, Vec::new()));
+}
+
+#[test]
+fn simulation_settings_follow_the_style_unless_changed() {
+    let mut project = Project::default();
+    assert_eq!(project.simulation, project.hair.simulation());
+    project.simulation.gravity = 3.0;
+    project.set_preset(Preset::Curly);
+    let curls = SimulationSettings { gravity: 3.0, ..SimulationSettings::preset(Preset::Curly) };
+    assert_eq!(project.simulation, curls, "settings that belong to no style stay");
+    project.set_hair_file("/x.hair");
+    assert_eq!(project.simulation.stiffness_tip, SimulationSettings::default().stiffness_tip);
+    project.set_hair_source(HairSource::Grown);
+    assert_eq!(project.simulation, curls, "the same hair again");
+    project.simulation.stiffness_root = 40.0;
+    project.set_preset(Preset::Long);
+    assert_eq!(project.simulation, SimulationSettings { stiffness_root: 40.0, ..curls });
+    assert_eq!(round_trip(&project).0.simulation, project.simulation);
+}
+
+#[test]
+fn missing_fields_take_their_defaults() {
+    let (project, problems) =
+        parse_project(Path::new("p"), "(version: 1, hair: (preset: curly), motion: (speed: 0.5))")
+            .expect("reads");
+    assert_eq!(problems, []);
+    assert_eq!(project.motion.speed, 0.5);
+    assert_eq!(project.lights, Project::default().lights);
+}
+
+#[test]
+fn unknown_fields_are_named_and_left_out() {
+    let text = "(version: 1, sparkle: 3, hair: (glitter: (a: [1, 2])), camera: (distance: 3.0))";
+    let (project, problems) = parse_project(Path::new("p"), text).expect("reads");
+    assert_eq!(project.camera.distance, 3.0);
+    let messages: Vec<_> = problems.iter().map(|p| p.message.as_str()).collect();
+    assert!(messages.iter().any(|m| m.contains("`sparkle`")), "{messages:?}");
+    assert!(messages.iter().any(|m| m.contains("`hair.glitter`")), "{messages:?}");
+    assert_eq!(problems.len(), 2);
+    assert!(problems.iter().all(|p| p.kind == ProblemKind::Ignored));
+}
+
+#[test]
+fn a_newer_version_is_refused_even_if_unreadable() {
+    let error = parse_project(Path::new("p.lovelock"), "(version: 7, hair: Wig(3))").expect_err("too new");
+    assert_eq!(error.exit_code(), 2);
+    assert!(error.to_string().contains("version 7"), "{error}");
+    assert_eq!(error.file(), Some(Path::new("p.lovelock")));
+}
+
+#[test]
+fn nonsense_is_refused_with_a_line() {
+    for text in
+        ["", "hello", "(version: 1, motion: (speed: fast))", "[1, 2", "(version: 1", "{\"version\": 1"]
+    {
+        let error = parse_project(Path::new("p"), text).expect_err(text);
+        assert!(error.to_string().contains("line"), "{error}");
+    }
+    let deep = format!("(version: 1, x: {}{})", "[".repeat(100_000), "]".repeat(100_000));
+    parse_project(Path::new("p"), &deep).expect_err("too deep");
+}
+
+#[test]
+fn values_out_of_range_are_clamped_and_reported() {
+    let text = "(version: 1, motion: (speed: NaN), camera: (distance: inf, fov_y: -1.0), \
+                simulation: (gravity: -inf), recording: (width: 0, fps: 1e9))";
+    let (project, problems) = parse_project(Path::new("p"), text).expect("reads");
+    assert_eq!((project.motion.speed, project.camera.distance, project.simulation.gravity), (1.0, 30.0, 0.0));
+    assert_eq!((project.camera.fov_y, project.recording.width, project.recording.fps), (0.05, 16, 240.0));
+    assert_eq!(problems.len(), 6, "{problems:?}");
+    assert!(problems.iter().all(|p| p.kind == ProblemKind::Adjusted));
+    assert_eq!(project.sanitised().1, [], "once is enough");
+}
+
+#[test]
+fn a_light_without_a_direction_shines_down_and_a_fifth_light_is_removed() {
+    let mut project = Project::default();
+    project.lights.resize(6, Light::default());
+    project.lights[0].direction = Vec3::ZERO;
+    let (clean, problems) = project.sanitised();
+    assert_eq!(clean.lights.len(), lovelock_render::MAX_LIGHTS);
+    assert_eq!(clean.lights[0].direction, Vec3::NEG_Y);
+    assert!(problems.len() >= 2, "{problems:?}");
+}
+
+#[test]
+fn missing_files_are_named_and_the_rest_opens() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = dir.path().join("p.lovelock");
+    let mut project = Project::default();
+    project.set_hair_file(dir.path().join("wigs/gone.hair"));
+    project.camera.distance = 4.0;
+    save_project(&path, &project).expect("saved");
+    let text = std::fs::read_to_string(&path).expect("text");
+    assert!(text.contains("wigs/gone.hair") && !text.contains(&dir.path().display().to_string()), "{text}");
+    let (opened, problems) = load_project(&path).expect("opened");
+    assert_eq!(opened, project);
+    assert_eq!(problems.len(), 1);
+    assert!(problems[0].is_failure() && problems[0].message.contains("gone.hair"), "{problems:?}");
+}
+
+#[test]
+fn a_moved_project_finds_its_files() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let (old, new) = (dir.path().join("old"), dir.path().join("new"));
+    std::fs::create_dir(&old).expect("a folder");
+    std::fs::write(old.join("x.hair"), b"HAIR").expect("a file");
+    let mut project = Project::default();
+    project.set_hair_file(old.join("x.hair"));
+    save_project(&old.join("p.lovelock"), &project).expect("saved");
+    std::fs::rename(&old, &new).expect("moved");
+    let (opened, problems) = load_project(&new.join("p.lovelock")).expect("opened");
+    assert_eq!(problems, []);
+    assert_eq!(opened.hair.file.expect("a file").path, FileRef::new(new.join("x.hair")).path);
+}
+
+#[test]
+fn a_file_outside_is_not_loaded_until_it_is_picked() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let folder = dir.path().join("project");
+    std::fs::create_dir(&folder).expect("a folder");
+    let hair = dir.path().join("x.hair");
+    std::fs::write(&hair, b"HAIR").expect("a file");
+    let path = folder.join("p.lovelock");
+    let mut project = Project::default();
+    project.set_hair_file(&hair);
+    save_project(&path, &project).expect("saved");
+    assert!(std::fs::read_to_string(&path).expect("text").contains("outside: true"));
+    let (_, problems) = load_project(&path).expect("opened");
+    assert!(
+        matches!(&problems[..], [p] if matches!(p.kind, ProblemKind::NeedsPermission(_))),
+        "{problems:?}"
+    );
+    let mut access = Access::new();
+    access.pick(&hair);
+    let (_, problems) = load_project_with(&path, &mut access).expect("opened");
+    assert_eq!(problems, []);
+    // Written by hand without `outside`: the same result.
+    std::fs::write(&path, "(version: 1, hair: (source: File, file: (path: \"../x.hair\")))")
+        .expect("written");
+    let (_, problems) = load_project(&path).expect("opened");
+    assert!(
+        matches!(&problems[..], [p] if matches!(p.kind, ProblemKind::NeedsPermission(_))),
+        "{problems:?}"
+    );
+}
+
+#[test]
+fn a_failed_save_keeps_what_was_there() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = dir.path().join("folder.lovelock");
+    std::fs::create_dir_all(path.join("x")).expect("a folder in the way");
+    let error = save_project(&path, &Project::default()).expect_err("in the way");
+    assert_eq!(error.exit_code(), 1);
+    assert!(path.join("x").is_dir());
+    assert!(!dir.path().join("folder.lovelock.partial").exists());
+}
+
+#[test]
+fn the_values_of_every_shadow_method_are_clamped_and_reported() {
+    let text = "(version: 1, shadow: (extinction_scale: 0.0, voxel_map: (resolution: 0), \
+                opacity_maps: (resolution: 3, slices: 4000000000), \
+                deep_opacity_maps: (layers: 0, depth_share: NaN), density_clustering: (clusters: 99, steps: 0), \
+                occupancy_maps: (slices: 4000000000, slabs: 0), exact: (memory_limit_bytes: 1)))";
+    let (project, problems) = parse_project(Path::new("p"), text).expect("reads");
+    let s = project.shadow;
+    assert_eq!((s.extinction_scale, s.voxel_map.resolution), (0.01, 32));
+    assert_eq!((s.opacity_maps.resolution, s.opacity_maps.slices), (64, 256));
+    assert_eq!((s.deep_opacity_maps.layers, s.deep_opacity_maps.depth_share), (3, 0.5));
+    assert_eq!((s.density_clustering.clusters, s.density_clustering.steps), (8, 1));
+    assert_eq!((s.occupancy_maps.slices, s.occupancy_maps.slabs), (512, 4));
+    assert_eq!(s.exact.memory_limit_bytes, 16 << 20);
+    assert_eq!(problems.len(), 11, "{problems:?}");
+    assert!(problems.iter().all(|p| p.kind == ProblemKind::Adjusted && p.place == Place::Shadow));
+    assert!(problems.iter().any(|p| p.message.contains("deep_opacity_maps.depth_share")), "{problems:?}");
+    assert_eq!(project.sanitised(), (project.clone(), Vec::new()), "once is enough");
+}
+
+#[test]
+fn panes_are_limited_in_number_and_range() {
+    let text = "(version: 1, compare: (panes: [(scale: 9.0), (scale: NaN, shadow: (method: \"exact\", \
+                exact: (resolution: 3))), (), (), (), (), (), ()]))";
+    let (project, problems) = parse_project(Path::new("p"), text).expect("reads");
+    let panes = &project.compare.panes;
+    assert_eq!(panes.len(), CompareSection::MOST_PANES);
+    assert_eq!((panes[0].scale, panes[1].scale), (1.0, 1.0));
+    assert_eq!(panes[1].shadow.method, lovelock_render::ShadowMethod::Exact);
+    assert_eq!(panes[1].shadow.exact.resolution, 64);
+    assert_eq!(problems.len(), 4, "{problems:?}");
+    assert!(problems.iter().all(|p| p.place == Place::Compare));
+    assert_eq!(round_trip(&project), (project.clone(), Vec::new()), "once is enough");
+    // No panes: the defaults are used.
+    let (project, problems) =
+        parse_project(Path::new("p"), "(version: 1, compare: (panes: []))").expect("reads");
+    assert_eq!((project.compare, problems.len()), (CompareSection::default(), 1));
+}
+
+#[test]
+fn a_recording_has_a_renderable_size() {
+    for (size, kept) in [
+        ((8192, 8192), (8192, 4320)),
+        ((u32::MAX, u32::MAX), (8192, 4320)),
+        ((6000, 8000), (6000, 5898)),
+        ((4320, 8192), (4320, 8192)),
+        ((1920, 1080), (1920, 1080)),
+    ] {
+        let mut project = Project::default();
+        (project.recording.width, project.recording.height) = size;
+        let (clean, problems) = project.sanitised();
+        assert_eq!((clean.recording.width, clean.recording.height), kept);
+        lovelock_render::check_size(kept.0, kept.1).expect("a size that is drawn");
+        assert_eq!(problems.is_empty(), size == kept, "{problems:?}");
+    }
+}
+
+/// Shadow settings with arbitrary numbers.
+fn any_shadow() -> impl Strategy<Value = ShadowSettings> {
+    (prop::array::uniform4(prop::num::f32::ANY), prop::array::uniform16(any::<u32>()), any::<u64>()).prop_map(
+        |(floats, counts, bytes)| {
+            let mut s = ShadowSettings { extinction_scale: floats[0], ..ShadowSettings::default() };
+            s.voxel_map.head_size = floats[1];
+            s.voxel_map.point_extinction = floats[2];
+            s.deep_opacity_maps.depth_share = floats[3];
+            let fields = [
+                &mut s.voxel_map.resolution,
+                &mut s.opacity_maps.resolution,
+                &mut s.opacity_maps.slices,
+                &mut s.deep_opacity_maps.resolution,
+                &mut s.deep_opacity_maps.layers,
+                &mut s.density_clustering.resolution,
+                &mut s.density_clustering.clusters,
+                &mut s.density_clustering.steps,
+                &mut s.occupancy_maps.resolution,
+                &mut s.occupancy_maps.slices,
+                &mut s.occupancy_maps.slabs,
+                &mut s.exact.resolution,
+            ];
+            for (field, count) in fields.into_iter().zip(counts) {
+                *field = count;
+            }
+            s.exact.memory_limit_bytes = bytes;
+            s
+        },
+    )
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    /// With any numbers, finite or not, a clamped project is saved and loaded bit for bit.
+    #[test]
+    fn clamped_projects_come_back_equal(
+        speed in prop::num::f32::ANY,
+        gravity in prop::num::f32::ANY,
+        distance in prop::num::f32::ANY,
+        azimuth in prop::num::f32::ANY,
+        length in prop::num::f32::ANY,
+        melanin in prop::num::f32::ANY,
+        exposure in prop::num::f32::ANY,
+        shadow in any_shadow(),
+        direction in prop::array::uniform3(prop::num::f32::ANY),
+        fps in prop::num::f64::ANY,
+        first in any::<u64>(),
+        end in prop::option::of(any::<u64>()),
+        (width, height) in any::<(u32, u32)>(),
+        clip in "\\PC{0,12}",
+        preset in prop::sample::select(Preset::ALL.to_vec()),
+    ) {
+        let mut project = Project::default();
+        project.set_preset(preset);
+        project.motion.speed = speed;
+        project.motion.clip = clip;
+        project.simulation.gravity = gravity;
+        project.camera.distance = distance;
+        project.camera.azimuth = azimuth;
+        project.hair.groom.length = length;
+        project.look.eumelanin = melanin;
+        project.picture.exposure_stops = exposure;
+        project.shadow = shadow;
+        project.lights[0].direction = Vec3::from_array(direction);
+        project.recording.fps = fps;
+        project.recording.first_frame = first;
+        project.recording.end_frame = end;
+        project.recording.width = width;
+        project.recording.height = height;
+        project.compare.panes[1].shadow = shadow;
+        project.compare.panes[0].scale = gravity;
+        let (clean, _) = project.sanitised();
+        prop_assert!(lovelock_render::check_size(clean.recording.width, clean.recording.height).is_ok());
+        prop_assert_eq!(round_trip(&clean), (clean.clone(), Vec::new()));
+    }
+
+    /// No text makes the reader panic or hang.
+    #[test]
+    fn any_text_is_read_or_refused(text in "[(){}\\[\\]:,.a-z0-9\"' \\\\n-]{0,80}") {
+        let _ = parse_project(Path::new("p"), &text);
+    }
+}

@@ -1,0 +1,314 @@
+//! The source of a recording's frames: a running simulation, or a take.
+
+mod seam;
+
+use std::ops::{ControlFlow, Range};
+use std::sync::Arc;
+
+use lovelock_project::Project;
+use lovelock_project::error::{Place, Problem, ProblemKind, StudioError};
+use lovelock_project::files::Access;
+use lovelock_record::TakeAsset;
+use seam::{Seam, SeamOfTake};
+
+use crate::clock::FrameClock;
+use crate::engine::{Engine, LastSteps};
+use crate::health::{Gauge, health};
+use crate::prepare::{load, settled_at, simulate_to};
+use crate::progress::{Progress, tell};
+use crate::scene::Scene;
+use crate::snapshot::FrameSnapshot;
+use crate::take::TakePlayer;
+use crate::totals::Totals;
+
+/// The moving hair of a project, frame by frame, simulated or from a take.
+pub struct Dance(Source);
+
+/// The source of the frames.
+enum Source {
+    /// An engine with a fixed clock, created for the first frame.
+    Simulated {
+        scene: Arc<Scene>,
+        project: Box<Project>,
+        clock: FrameClock,
+        engine: Option<Box<Engine>>,
+        /// For seamless loops: how the end blends into the start.
+        seam: Option<Seam>,
+        /// The last two steps, for snapshots between them.
+        steps: Box<LastSteps>,
+    },
+    /// A take, which needs no simulation.
+    Take { player: Box<TakePlayer>, fps: f64, seam: Option<SeamOfTake> },
+}
+
+impl Dance {
+    /// Loads the project's scene, or opens its take. Also returns problems.
+    ///
+    /// # Errors
+    /// If no hair can be grown, the take cannot be played, or [`StudioError::Cancelled`].
+    pub fn open(
+        project: &Project,
+        access: &Access,
+        fps: f64,
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<(Self, Vec<Problem>), StudioError> {
+        let Some(file) = &project.take.file else {
+            let (scene, problems) = load(project, access, progress)?;
+            let dance = Source::Simulated {
+                scene,
+                project: Box::new(project.clone()),
+                clock: FrameClock::new(fps),
+                engine: None,
+                seam: None,
+                steps: Box::default(),
+            };
+            return Ok((Self(dance), problems));
+        };
+        tell(progress, Progress::Loading { what: "opening the take".to_owned() })?;
+        let path =
+            access.read(Place::Take, file).map_err(|problem| StudioError::input(&file.path, problem))?;
+        let (player, problems) = TakePlayer::open(&path, access)?;
+        Ok((Self(Source::Take { player: Box::new(player), fps, seam: None }), problems))
+    }
+
+    /// The scene of the last frame.
+    pub fn scene(&self) -> &Arc<Scene> {
+        match &self.0 {
+            Source::Simulated { scene, .. } => scene,
+            Source::Take { player, .. } => player.scene(),
+        }
+    }
+
+    /// Number of frames, at least one.
+    pub fn frames(&self) -> u64 {
+        match &self.0 {
+            Source::Simulated { scene, clock, .. } => {
+                scene.frames(1.0 / (clock.step_secs * f64::from(clock.steps_per_frame)))
+            }
+            // The last recorded frame also lasts for one frame.
+            Source::Take { player, fps, .. } => {
+                ((player.frames() as f64 * player.frame_secs() * fps) + 1e-6).floor().max(1.0) as u64
+            }
+        }
+    }
+
+    /// Number of the first available frame.
+    pub fn first_frame(&self) -> u64 {
+        match &self.0 {
+            Source::Simulated { .. } => 0,
+            Source::Take { player, fps, .. } => (player.origin_secs() * fps - 1e-6).ceil().max(0.0) as u64,
+        }
+    }
+
+    /// Counts the frames of a take from the start of the original motion, as frames of a simulation are.
+    pub fn count_on_dance(&mut self) {
+        if let Source::Take { player, .. } = &mut self.0 {
+            player.count_on_dance();
+        }
+    }
+
+    /// Time of a frame, seconds.
+    pub fn secs_of(&self, frame: u64) -> f64 {
+        match &self.0 {
+            Source::Simulated { clock, .. } => clock.time_of_frame(frame),
+            Source::Take { fps, .. } => frame as f64 / fps,
+        }
+    }
+
+    /// Rejects frames outside the take. A simulation has no last frame.
+    ///
+    /// # Errors
+    /// A range that extends beyond the take.
+    pub fn check(&self, frames: &Range<u64>) -> Result<(), StudioError> {
+        match &self.0 {
+            Source::Take { player, fps, .. } => {
+                let first = self.first_frame();
+                let held = first..first + self.frames();
+                if frames.start >= held.start && frames.end <= held.end {
+                    return Ok(());
+                }
+                Err(StudioError::option(format!(
+                    "frames {}..{}: {} holds {:.2} s, which at {fps} frames per second are frames {}..{}",
+                    frames.start,
+                    frames.end,
+                    player.path().display(),
+                    player.frames() as f64 * player.frame_secs(),
+                    held.start,
+                    held.end
+                )))
+            }
+            Source::Simulated { .. } => Ok(()),
+        }
+    }
+
+    /// Blends the hair at the end of `frames` into the hair at their start, so that a film of them loops without a jump.
+    ///
+    /// # Errors
+    /// If the body is not in the same pose before and after the frames, or a take has not enough time before them to take the
+    /// hair from.
+    pub fn close(&mut self, frames: &Range<u64>) -> Result<(), StudioError> {
+        let count = frames.end - frames.start;
+        match &mut self.0 {
+            Source::Simulated { scene, clock, seam, .. } => {
+                let frame_secs = clock.step_secs * f64::from(clock.steps_per_frame);
+                *seam = Some(Seam::of(scene, frames, frame_secs)?);
+            }
+            Source::Take { player, fps, seam } => {
+                *seam = Some(SeamOfTake::of(player, frames.start as f64 / *fps, count as f64 / *fps)?);
+            }
+        }
+        Ok(())
+    }
+
+    /// Simulates the pre-roll of the frame `start` and continues to `first_secs`. A frame is therefore the same no matter which
+    /// frames of a recording exist already.
+    ///
+    /// # Errors
+    /// [`StudioError::Cancelled`].
+    pub fn begin(
+        &mut self,
+        start: u64,
+        first_secs: f64,
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<(), StudioError> {
+        if let Source::Simulated { scene, project, clock, engine, steps, seam } = &mut self.0 {
+            let first = step_before(first_secs, clock).0;
+            let mut made =
+                Box::new(settled_at(scene, project, clock, [clock.step_of_frame(start), first], progress)?);
+            match seam {
+                Some(seam) => seam.live_round(&mut made, clock, first_secs, progress)?,
+                None => simulate_to(&mut made, first, progress)?,
+            }
+            made.clear_totals();
+            steps.forget();
+            *engine = Some(made);
+        }
+        Ok(())
+    }
+
+    /// The snapshot of a frame. For a simulation: after [`Dance::begin`] and in ascending order.
+    ///
+    /// # Errors
+    /// If the frames of a take are damaged there.
+    pub fn snapshot(&mut self, frame: u64) -> Result<Arc<FrameSnapshot>, StudioError> {
+        match &mut self.0 {
+            Source::Simulated { scene, project, clock, engine, seam, .. } => {
+                let engine = engine.get_or_insert_with(|| engine_at(scene, project, clock, frame));
+                let Some(seam) = seam else {
+                    engine.advance_to_step(clock.step_of_frame(frame));
+                    return Ok(engine.snapshot());
+                };
+                engine.advance_to_step(clock.step_of_frame(frame + seam.frames()));
+                Ok(seam.faded(seam.secs_of(frame), &engine.snapshot()))
+            }
+            Source::Take { player, fps, seam } => {
+                let secs = frame as f64 / *fps;
+                match seam {
+                    Some(seam) => seam.snapshot(player, secs),
+                    None => player.snapshot(secs),
+                }
+            }
+        }
+    }
+
+    /// The snapshot at a time, seconds. For a simulation: after [`Dance::begin`] and in ascending order. Hair between two steps is
+    /// interpolated, as between two frames of a take.
+    ///
+    /// # Errors
+    /// As [`Dance::snapshot`].
+    pub fn snapshot_at(&mut self, secs: f64) -> Result<Arc<FrameSnapshot>, StudioError> {
+        match &mut self.0 {
+            Source::Simulated { scene, project, clock, engine, steps, seam } => {
+                let first = || engine_at(scene, project, clock, 0);
+                let engine = engine.get_or_insert_with(first);
+                let round = seam.as_ref().map_or(0.0, Seam::round_secs);
+                let (step, t) = step_before(secs + round, clock);
+                // Take the last step separately, so that the state before it is known.
+                let to = step + u64::from(t > 0.0);
+                engine.advance_to_step(to.saturating_sub(1));
+                if engine.at_step() < to as i64 {
+                    steps.step(engine);
+                }
+                let snapshot = if engine.at_step() == step as i64 {
+                    engine.snapshot()
+                } else {
+                    engine.snapshot_between(steps, t)
+                };
+                Ok(match seam {
+                    Some(seam) => seam.faded(secs, &snapshot),
+                    None => snapshot,
+                })
+            }
+            Source::Take { player, seam, .. } => match seam {
+                Some(seam) => seam.snapshot(player, secs),
+                None => player.snapshot(secs),
+            },
+        }
+    }
+
+    /// The files that a take was made from.
+    pub fn take_assets(&self) -> &[TakeAsset] {
+        match &self.0 {
+            Source::Simulated { .. } => &[],
+            Source::Take { player, .. } => &player.header().assets,
+        }
+    }
+
+    /// Notices about lost frames of a take and their replacements.
+    pub fn notices(&mut self) -> Vec<Problem> {
+        let Source::Take { player, .. } = &mut self.0 else { return Vec::new() };
+        let told = player.notices().into_iter();
+        told.map(|notice| Problem::new(Place::Take, ProblemKind::Note, notice)).collect()
+    }
+
+    /// The worst values of the steps since [`Dance::begin`]; empty for a take.
+    pub fn totals(&self) -> Totals {
+        match &self.0 {
+            Source::Simulated { engine: Some(engine), .. } => engine.totals(),
+            _ => Totals::default(),
+        }
+    }
+
+    /// The gauges of the steps since [`Dance::begin`]; none for a take.
+    pub fn health(&self) -> Vec<Gauge> {
+        match &self.0 {
+            Source::Simulated { scene, project, engine: Some(engine), .. } => {
+                health(&engine.totals(), engine.rest_inside(), scene, &project.simulation)
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// A hash of the simulated state; `None` for a take.
+    pub fn state_hash(&self) -> Option<u64> {
+        match &self.0 {
+            Source::Simulated { engine: Some(engine), .. } => Some(engine.state_hash()),
+            _ => None,
+        }
+    }
+
+    /// Simulation steps per frame; 0 for a take.
+    pub fn steps_per_frame(&self) -> u32 {
+        match &self.0 {
+            Source::Simulated { clock, .. } => clock.steps_per_frame,
+            Source::Take { .. } => 0,
+        }
+    }
+}
+
+/// An engine with hair that is settled at a frame.
+fn engine_at(scene: &Arc<Scene>, project: &Project, clock: &FrameClock, frame: u64) -> Box<Engine> {
+    let mut made = Engine::at_rest(Arc::clone(scene), project.simulation, clock.step_secs);
+    made.follow(project);
+    made.seek(clock.time_of_frame(frame));
+    made.settle();
+    Box::new(made)
+}
+
+/// The step at or before a time, and the fraction from there to the next step, 0 to 1.
+pub(super) fn step_before(secs: f64, clock: &FrameClock) -> (u64, f64) {
+    let steps = (secs / clock.step_secs).max(0.0);
+    // With a tolerance for rounding.
+    let (step, t) = ((steps + 1e-6).floor(), steps - (steps + 1e-6).floor());
+    (step as u64, if t < 1e-6 { 0.0 } else { t })
+}

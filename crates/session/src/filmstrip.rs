@@ -1,0 +1,206 @@
+//! Thumbnails of a take along its timeline, rendered on a background thread of low priority.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
+
+use lovelock_project::Project;
+use lovelock_project::error::{Place, StudioError};
+use lovelock_project::files::Access;
+use lovelock_render::{CpuRenderer, Picture};
+
+use crate::latest::Desk;
+use crate::take::TakePlayer;
+use crate::threads::lower_priority;
+
+/// Which thumbnails to render.
+#[derive(Clone, Debug)]
+pub struct FilmstripRequest {
+    /// A project that plays a take, with the camera and look.
+    pub project: Arc<Project>,
+    /// The files that it may read.
+    pub access: Access,
+    /// Times from the start of the take, seconds, in rendering order.
+    pub secs: Vec<f64>,
+    /// Width and height, pixels.
+    pub size: [u32; 2],
+}
+
+/// A thumbnail.
+#[derive(Clone, Debug)]
+pub struct FilmstripPicture {
+    /// Its time, seconds.
+    pub secs: f64,
+    /// The image.
+    pub picture: Picture,
+    /// The project that it shows.
+    pub project: Arc<Project>,
+}
+
+/// Renders thumbnails on a thread of its own. A request replaces the previous one, even if that is not finished.
+#[derive(Debug)]
+pub struct Filmstrip {
+    desk: Desk<FilmstripRequest>,
+    left: Arc<Mutex<Vec<FilmstripPicture>>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Filmstrip {
+    /// Starts the thread, which calls `on_drawn` after each thumbnail.
+    ///
+    /// # Errors
+    /// If the system cannot create a thread.
+    pub fn start(on_drawn: impl Fn() + Send + 'static) -> std::io::Result<Self> {
+        let desk = Desk::default();
+        let left = Arc::new(Mutex::new(Vec::new()));
+        let worker =
+            Worker { desk: desk.clone(), left: Arc::clone(&left), on_drawn: Box::new(on_drawn), open: None };
+        let thread = std::thread::Builder::new().name("filmstrip".to_owned()).spawn(move || worker.run())?;
+        Ok(Self { desk, left, thread: Some(thread) })
+    }
+
+    /// Requests thumbnails. Those of an earlier request that are not rendered yet are dropped.
+    pub fn request(&self, request: FilmstripRequest) {
+        self.desk.put(request);
+    }
+
+    /// The thumbnails rendered since the last call.
+    pub fn pictures(&self) -> Vec<FilmstripPicture> {
+        std::mem::take(&mut self.left.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+impl Drop for Filmstrip {
+    fn drop(&mut self) {
+        self.desk.close();
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+/// The thread's own state.
+struct Worker {
+    desk: Desk<FilmstripRequest>,
+    left: Arc<Mutex<Vec<FilmstripPicture>>>,
+    on_drawn: Box<dyn Fn() + Send>,
+    open: Option<(PathBuf, Access, Box<TakePlayer>)>,
+}
+
+impl Worker {
+    fn run(mut self) {
+        lower_priority();
+        // One thread only, because the window is more important than thumbnails.
+        let alone = rayon::ThreadPoolBuilder::new()
+            .num_threads(1)
+            .thread_name(|_| "filmstrip worker".to_owned())
+            .start_handler(|_| lower_priority())
+            .build();
+        let mut renderer = CpuRenderer::default();
+        while let Some(request) = self.desk.next() {
+            let mut draw = || {
+                // After a panic these thumbnails are missing, which is acceptable.
+                catch_unwind(AssertUnwindSafe(|| self.draw(&request, &mut renderer)))
+            };
+            let drawn = match &alone {
+                Ok(alone) => alone.install(draw),
+                Err(_) => draw(),
+            };
+            match drawn {
+                Ok(Ok(())) => {}
+                // The window reports problems of the take itself.
+                Ok(Err(error)) => {
+                    self.open = None;
+                    tracing::debug!(%error, "no thumbnails of the take");
+                }
+                Err(_) => {
+                    self.open = None;
+                    renderer = CpuRenderer::default();
+                }
+            }
+            self.desk.done(None);
+        }
+    }
+
+    fn draw(&mut self, request: &FilmstripRequest, renderer: &mut CpuRenderer) -> Result<(), StudioError> {
+        let Some(file) = &request.project.take.file else { return Ok(()) };
+        let same =
+            |open: &(PathBuf, Access, Box<TakePlayer>)| open.0 == file.path && open.1 == request.access;
+        if !self.open.as_ref().is_some_and(same) {
+            let path = request.access.read(Place::Take, file);
+            let path = path.map_err(|problem| StudioError::input(&file.path, problem))?;
+            let (player, _) = TakePlayer::open(&path, &request.access)?;
+            self.open = Some((file.path.clone(), request.access.clone(), Box::new(player)));
+        }
+        let Some((.., player)) = &mut self.open else { return Ok(()) };
+        for &secs in &request.secs {
+            if self.desk.is_closed() || self.desk.has_newer() {
+                return Ok(());
+            }
+            let snapshot = player.snapshot(secs)?;
+            let seen = request.project.seen_at(snapshot.position_secs);
+            let camera = snapshot.camera(&seen.camera);
+            let mut picture = Picture::default();
+            renderer.picture(
+                &snapshot.frame_input(&seen, &camera),
+                request.size[0],
+                request.size[1],
+                &mut picture,
+            )?;
+            let drawn = FilmstripPicture { secs, picture, project: Arc::clone(&request.project) };
+            self.left.lock().unwrap_or_else(PoisonError::into_inner).push(drawn);
+            (self.on_drawn)();
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::clock::Stopwatch;
+    use crate::testing::{recorded, small_project};
+
+    #[test]
+    fn thumbnails_of_a_take_show_its_frames() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.take");
+        let mut project = small_project();
+        recorded(&path, &project, 120, |_, _| {});
+        project.set_take(&path);
+        let mut access = Access::new();
+        access.pick(&path);
+        let strip = Filmstrip::start(|| {}).expect("a thread");
+        let wanted = [1.5, 0.0, 0.5];
+        let project = Arc::new(project);
+        let request = FilmstripRequest {
+            project: Arc::clone(&project),
+            access: access.clone(),
+            secs: wanted.to_vec(),
+            size: [64, 36],
+        };
+        // A missing take does not end the thread.
+        let mut gone = (*project).clone();
+        gone.set_take(folder.path().join("gone.take"));
+        strip.request(FilmstripRequest { project: Arc::new(gone), ..request.clone() });
+        strip.request(request);
+        let (mut pictures, watch) = (Vec::new(), Stopwatch::start());
+        while pictures.len() < wanted.len() {
+            // Do not wait forever.
+            assert!(watch.secs() < 60.0, "{} pictures", pictures.len());
+            pictures.extend(strip.pictures());
+            std::thread::sleep(std::time::Duration::from_millis(5));
+        }
+        let (mut player, _) = TakePlayer::open(&path, &access).expect("a take");
+        for (drawn, secs) in pictures.iter().zip(wanted) {
+            let snapshot = player.snapshot(secs).expect("a frame");
+            let camera = snapshot.camera(&project.camera);
+            let mut picture = Picture::default();
+            let input = snapshot.frame_input(&project, &camera);
+            CpuRenderer::default().picture(&input, 64, 36, &mut picture).expect("a picture");
+            assert!(drawn.secs == secs && drawn.picture == picture, "{secs}");
+        }
+        assert!(pictures[0].picture != pictures[1].picture, "the dance goes on");
+    }
+}

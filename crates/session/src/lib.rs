@@ -1,0 +1,38 @@
+//! What runs: scenes, the simulation, takes and the threads that simulate and render.
+//!
+//! - [`scene`]: what is simulated and rendered, and its loader.
+//! - [`engine`]: the simulation of a scene, step by step, without a clock.
+//! - [`worker`]: the same on a thread of its own, in real time.
+//! - [`take`]: recorded simulations, and playing them.
+//! - [`dance`]: frames of a simulation or a take for work without a window; [`prepare`] and [`progress`] belong to it.
+//! - [`render_thread`] and [`filmstrip`]: threads that render.
+//! - [`snapshot`] and [`totals`]: one instant, and what was measured up to it; [`health`] judges it.
+//! - [`clock`], [`stats`], [`latest`], [`threads`], [`machine`] and [`new_folders`]: parts that the others need.
+//!
+//! Nothing here depends on a window or a command line.
+
+pub mod clock;
+pub mod dance;
+pub mod engine;
+pub mod filmstrip;
+pub mod health;
+pub mod latest;
+pub mod machine;
+pub mod new_folders;
+pub mod prepare;
+pub mod progress;
+pub mod render_thread;
+pub mod scene;
+pub mod snapshot;
+pub mod stats;
+pub mod take;
+#[cfg(any(test, feature = "testing"))]
+pub mod testing;
+pub mod threads;
+pub mod totals;
+pub mod worker;
+
+#[cfg(test)]
+mod preroll_tests;
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,163 @@
+//! Lost devices and devices that never work. Tests of lost devices need an adapter, which may be software.
+
+use std::sync::Mutex;
+use std::sync::atomic::Ordering;
+use std::sync::mpsc::{Receiver, sync_channel};
+use std::time::Duration;
+
+use lovelock_project::files::Access;
+use lovelock_render::Gpu;
+
+use super::*;
+use crate::engine::Engine;
+use crate::scene::SceneLoader;
+use crate::testing::small_project;
+
+/// A render thread with the renderers of a test, one instant, and the backends that were requested.
+struct Rig {
+    painter: Painter,
+    snapshot: Arc<FrameSnapshot>,
+    finished: Receiver<()>,
+    opened: Arc<Mutex<Vec<Backend>>>,
+}
+
+impl Rig {
+    fn new(mut open: impl FnMut(Backend) -> Result<Renderer, RenderError> + Send + 'static) -> Self {
+        let (scene, _) = SceneLoader::new().load_now(&small_project(), &Access::new()).expect("a scene");
+        let snapshot = Engine::new(scene, small_project().simulation).snapshot();
+        let opened = Arc::new(Mutex::new(Vec::new()));
+        let noted = Arc::clone(&opened);
+        let open = move |choice| {
+            noted.lock().expect("a list").push(choice);
+            open(choice)
+        };
+        let (sender, finished) = sync_channel(64);
+        let wake = move || {
+            let _ = sender.try_send(());
+        };
+        let painter = Painter::start_with(Box::new(open), wake).expect("a thread");
+        Self { painter, snapshot, finished, opened }
+    }
+
+    /// Requests one image and waits until the thread is idle.
+    fn draw(&self, backend: Backend) {
+        let mut project = small_project();
+        project.picture.backend = backend;
+        let (project, snapshot) = (Arc::new(project), Arc::clone(&self.snapshot));
+        self.painter.request(PaintRequest { project, snapshot, width: 64, height: 48 });
+        while self.painter.busy().load(Ordering::Relaxed) {
+            // Do not wait forever.
+            self.finished.recv_timeout(Duration::from_secs(100)).expect("an end");
+        }
+    }
+
+    fn opened(&self) -> Vec<Backend> {
+        self.opened.lock().expect("a list").clone()
+    }
+
+    fn pixels(&self) -> Vec<u8> {
+        self.painter.painted().latest().expect("a picture").picture.rgba.clone()
+    }
+
+    /// Numbers of images, failures and notices so far.
+    fn counts(&self) -> [u64; 3] {
+        let painter = &self.painter;
+        [painter.painted.number(), painter.failures.number(), painter.notices.number()]
+    }
+}
+
+fn lost(_: Backend) -> Result<Renderer, RenderError> {
+    Err(GpuError::Lost("for this test".to_owned()).into())
+}
+
+#[test]
+fn a_lost_device_is_opened_again_and_draws_the_same() {
+    let devices = Arc::new(Mutex::new(Vec::<Arc<Gpu>>::new()));
+    let noted = Arc::clone(&devices);
+    let rig = Rig::new(move |choice| {
+        let renderer = Renderer::open(choice)?;
+        noted.lock().expect("a list").extend(renderer.gpu().cloned());
+        Ok(renderer)
+    });
+    rig.draw(Backend::Gpu);
+    if devices.lock().expect("a list").is_empty() {
+        return lovelock_testkit::skip_without_adapter(&rig.painter.error().unwrap_or_default());
+    }
+    let before = rig.pixels();
+    rig.draw(Backend::Gpu);
+    assert_eq!((rig.counts(), rig.opened().len()), ([2, 0, 0], 1), "a working device is kept");
+
+    devices.lock().expect("a list")[0].device.destroy();
+    rig.draw(Backend::Gpu);
+    let said = rig.painter.failures.latest().expect("a sentence").message.clone();
+    assert!(said.contains("graphics device") && said.contains("lost") && !said.contains('\n'), "{said}");
+    assert_eq!(rig.counts(), [3, 1, 0], "one error, and a new image without another request");
+    assert_eq!(rig.opened(), [Backend::Gpu; 2]);
+    assert_eq!(rig.painter.error(), None, "the error is gone");
+    assert!(rig.pixels() == before, "the same bytes");
+}
+
+#[test]
+fn a_gpu_that_always_fails_is_replaced_by_the_cpu() {
+    let rig = Rig::new(|choice| if choice == Backend::Cpu { Renderer::open(choice) } else { lost(choice) });
+    rig.draw(Backend::Auto);
+    assert_eq!(rig.counts(), [1, 3, 1], "an image after three failures, and a notice");
+    let notice = rig.painter.notices().latest().expect("a notice");
+    assert!(notice.contains("processor renders from now on"), "{notice}");
+    assert_eq!(rig.painter.adapter().expect("it draws").backend, Backend::Cpu);
+    rig.draw(Backend::Auto);
+    assert_eq!((rig.counts(), rig.opened().len()), ([2, 3, 1], 4), "the CPU stays in use");
+    let by_fallback = rig.pixels();
+    rig.draw(Backend::Cpu);
+    assert!(rig.pixels() == by_fallback, "the image of the CPU");
+
+    // An explicit request tries the GPU again and keeps the last image.
+    rig.draw(Backend::Gpu);
+    assert_eq!((rig.counts()[0], rig.opened().pop()), (3, Some(Backend::Gpu)));
+    assert!(rig.painter.error().is_some_and(|said| said.contains("for this test")));
+    assert!(rig.pixels() == by_fallback);
+}
+
+#[test]
+fn a_device_that_always_fails_is_not_retried_forever() {
+    let rig = Rig::new(lost);
+    rig.draw(Backend::Gpu);
+    assert_eq!((rig.counts(), rig.opened().len()), ([0, 3, 0], 3));
+    rig.draw(Backend::Gpu);
+    assert_eq!(rig.counts(), [0, 4, 0], "once per requested image");
+    assert!(rig.painter.error().is_some());
+    let never = Rig::new(lost);
+    never.draw(Backend::Auto);
+    assert_eq!(never.counts(), [0, 4, 1], "neither is a failing CPU");
+}
+
+#[test]
+fn a_shader_that_does_not_compile_is_reported_and_the_last_image_stays() {
+    const TOLD: &str = "crates/render/src/gpu/shaders/x.wgsl, line 3: no definition in scope for `y`";
+    let rig = Rig::new(|choice| match choice {
+        Backend::Cpu => Renderer::open(choice),
+        _ => Err(GpuError::Shader(TOLD.to_owned()).into()),
+    });
+    rig.draw(Backend::Cpu);
+    let good = rig.pixels();
+    rig.draw(Backend::Gpu);
+    assert_eq!((rig.counts(), rig.opened().len()), ([1, 1, 0], 2), "it is not compiled again automatically");
+    assert_eq!(rig.painter.error().as_deref(), Some(TOLD));
+    assert!(rig.pixels() == good);
+    rig.draw(Backend::Cpu);
+    assert_eq!(rig.painter.error(), None);
+    assert_eq!(rig.counts(), [2, 1, 0]);
+}
+
+#[test]
+fn a_panic_while_rendering_is_reported_and_rendering_continues() {
+    let mut times = 0;
+    let rig = Rig::new(move |choice| {
+        times += 1;
+        assert!(times != 1, "on purpose, once");
+        Renderer::open(choice)
+    });
+    rig.draw(Backend::Cpu);
+    assert_eq!(rig.counts(), [1, 1, 0]);
+    assert_eq!(rig.painter.error(), None);
+}

@@ -1,0 +1,58 @@
+//! What hair collides with, as a project changes it.
+
+use std::sync::Arc;
+
+use lovelock_motion::ColliderEdit;
+use lovelock_project::files::Access;
+
+use super::*;
+use crate::engine::Engine;
+use crate::testing::small_project;
+
+#[test]
+fn changed_colliders_are_met_and_the_hair_goes_on() {
+    let (access, mut loader) = (Access::new(), SceneLoader::new());
+    let mut project = small_project();
+    let first = loader.load_now(&project, &access).expect("a scene").0;
+    assert!(first.field.is_some() && first.colliders.len() < first.fitted.len());
+    let mut engine = Engine::new(Arc::clone(&first), project.simulation);
+    engine.advance_to_step(60);
+    let mut kept = Engine::new(Arc::clone(&first), project.simulation);
+    kept.advance_to_step(60);
+
+    // Without the skin all shapes are met that stand for it.
+    project.body.colliders.field.enabled = false;
+    let round = loader.load_now(&project, &access).expect("a scene").0;
+    assert!(round.field.is_none() && round.colliders.len() == round.fitted.len());
+    assert!(Arc::ptr_eq(&first.style, &round.style) && Arc::ptr_eq(&first.body, &round.body));
+    assert!(!engine.set_scene(Arc::clone(&round)), "the hair goes on");
+    // As many shapes, and one of them far too large.
+    let name = round.fitted[0].name.clone();
+    project.body.colliders.shapes.insert(name, ColliderEdit { scale: 1.5, ..ColliderEdit::default() });
+    let large = loader.load_now(&project, &access).expect("a scene").0;
+    assert_eq!(large.colliders.len(), round.colliders.len());
+    assert_ne!(large.colliders[0], round.colliders[0]);
+    assert!(!engine.set_scene(large));
+    for _ in 0..20 {
+        engine.step();
+        kept.step();
+        let report = engine.snapshot().report;
+        assert!(report.max_stretch < 1e-3 && report.max_speed < 30.0, "{report:?}");
+    }
+    assert_ne!(engine.state_hash(), kept.state_hash(), "the control: other shapes, other hair");
+}
+
+#[test]
+fn wild_changes_are_brought_into_their_ranges() {
+    let mut project = small_project();
+    let wild =
+        ColliderEdit { scale: f32::NAN, offset: [9.0, -0.1, f32::INFINITY], ..ColliderEdit::default() };
+    project.body.colliders.shapes.insert("neck".to_owned(), wild);
+    project.body.colliders.shapes.insert("x".repeat(10_000), wild);
+    project.body.colliders.field.lift = -3.0;
+    let (sane, _) = project.sanitised();
+    let edits = &sane.body.colliders;
+    assert_eq!(edits.shapes.len(), 1);
+    assert_eq!(edits.shapes["neck"], ColliderEdit { offset: [0.5, -0.1, 0.5], ..ColliderEdit::default() });
+    assert_eq!(edits.field.lift, -0.02);
+}

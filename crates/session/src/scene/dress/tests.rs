@@ -1,0 +1,164 @@
+use std::path::Path;
+use std::sync::Arc;
+
+use glam::Vec3;
+use lovelock_groom::{Blade, HairTie, Haircut, Strands, TieKind};
+use lovelock_project::Project;
+use lovelock_project::error::{Place, ProblemKind};
+use lovelock_project::files::Access;
+use lovelock_project::project::{project_of_text, text_of_project};
+
+use super::super::Scene;
+use super::super::loader::SceneLoader;
+use crate::engine::Engine;
+use crate::snapshot::FrameSnapshot;
+use crate::testing::small_project;
+
+fn load(loader: &mut SceneLoader, project: &Project) -> Arc<Scene> {
+    let (scene, problems) = loader.load_now(project, &Access::new()).expect("a scene");
+    assert_eq!(problems, []);
+    scene
+}
+
+fn saved_and_read(project: &Project) -> Project {
+    let path = Path::new("hair.lovelock");
+    let text = text_of_project(path, project).expect("it is written");
+    let (project, problems) = project_of_text(path, &text).expect("it is read");
+    assert_eq!(problems, []);
+    project
+}
+
+#[test]
+fn a_tied_project_is_saved_loaded_and_untied() {
+    let mut loader = SceneLoader::new();
+    let mut project = small_project();
+    project.hair.groom.length = 0.5;
+    let loose = load(&mut loader, &project);
+    project.hair.ties = vec![HairTie { kind: TieKind::Bun, ..HairTie::default() }];
+    let tied = load(&mut loader, &project);
+    assert!(loose.style.held.is_empty() && tied.style.held.iter().any(|h| *h > 0.0));
+    assert_ne!(loose.style.guides, tied.style.guides);
+
+    let again = saved_and_read(&project);
+    assert_eq!(again.hair.ties, project.hair.ties);
+    assert_eq!(load(&mut SceneLoader::new(), &again).style.guides, tied.style.guides);
+    project.motion.speed = 0.5;
+    assert!(Arc::ptr_eq(&load(&mut loader, &project).style, &tied.style), "another tempo ties nothing anew");
+    project.hair.ties.clear();
+    assert!(Arc::ptr_eq(&load(&mut loader, &project).style, &loose.style));
+
+    project.hair.ties = vec![HairTie { radius: -1.0, ..HairTie::default() }; 20];
+    let (sane, problems) = project.sanitised();
+    assert_eq!((sane.hair.ties.len(), sane.hair.ties[0].radius), (HairTie::MOST, 0.004));
+    assert!(!problems.is_empty());
+}
+
+#[test]
+fn a_cut_in_motion_is_kept_by_the_project_and_undone_with_it() {
+    let mut loader = SceneLoader::new();
+    let mut project = small_project();
+    let mut engine = Engine::new(load(&mut loader, &project), project.simulation);
+    engine.advance_to_step(40);
+    let before = engine.snapshot();
+    let chin = Blade::Plane { point: Vec3::new(0.0, -0.02, 0.0), normal: Vec3::NEG_Y };
+    let world = chin.moved(&before.guides.world_from_head);
+    let cut = Haircut::of(&before.scene.style, &before.guides, &world).expect("it meets hair");
+    let uncut = project.clone();
+    project.hair.cut = project.hair.cut.and(&cut);
+
+    let project = saved_and_read(&project);
+    let short = load(&mut loader, &project);
+    assert!(short.style.strands.points() < before.scene.style.strands.points());
+    engine.set_scene(Arc::clone(&short));
+    let after = engine.snapshot();
+    let (a, b, rest) = (&before.guides.guides, &after.guides.guides, &short.style.guides);
+    for g in 0..rest.count() {
+        for i in 1..rest.points_per_guide {
+            if rest.point(g, i) != rest.point(g, i - 1) {
+                // A chain of 31 links laid anew in f32.
+                assert!(a.point(g, i).distance(b.point(g, i)) < 2e-5, "guide {g} jumps at {i}");
+            }
+        }
+    }
+    engine.advance_to_step(80);
+    assert_eq!(engine.totals().recovered_guides, 0);
+    assert!(engine.totals().max_stretch < 1e-5);
+
+    let whole = load(&mut loader, &uncut);
+    assert_eq!(whole.style.strands.points(), before.scene.style.strands.points());
+
+    let mut other = project.clone();
+    other.hair.groom.wisps = 20;
+    let (_, problems) = loader.load_now(&other, &Access::new()).expect("a scene");
+    assert!(
+        problems.iter().any(|p| p.place == Place::Hair && p.kind == ProblemKind::Ignored),
+        "{problems:?}"
+    );
+}
+
+#[test]
+fn light_and_shadow_do_not_change_the_motion() {
+    let scene = load(&mut SceneLoader::new(), &small_project());
+    let moved = |change: &dyn Fn(&mut Project)| {
+        let mut project = small_project();
+        change(&mut project);
+        let mut engine = Engine::new(Arc::clone(&scene), project.simulation);
+        engine.follow(&project);
+        engine.advance_to_step(60);
+        engine.state_hash()
+    };
+    let as_it_is = moved(&|_| {});
+    let other_light = moved(&|project| {
+        project.lights.truncate(1);
+        project.lights[0].direction = Vec3::new(-1.0, -0.2, 0.4);
+        project.shadow.method = lovelock_render::ShadowMethod::VoxelMap;
+        project.shadow.voxel_map.resolution = 16;
+        project.camera.azimuth = 2.0;
+        project.look.diameter *= 2.0;
+    });
+    assert_eq!(as_it_is, other_light, "what is seen must not change what moves");
+    assert_ne!(
+        as_it_is,
+        moved(&|project| project.simulation.repulsion.strength = 1.0),
+        "the hash sees the motion"
+    );
+}
+
+/// Where all strands are, and how far the furthest point is from where it was.
+fn furthest_of(a: &FrameSnapshot, b: &FrameSnapshot) -> f32 {
+    let of = |frame: &FrameSnapshot| {
+        let mut strands = Strands::default();
+        frame.interpolate(&mut strands);
+        strands
+    };
+    let (a, b) = (of(a), of(b));
+    (0..a.x.len()).map(|i| a.point(i).distance(b.point(i))).fold(0.0, f32::max)
+}
+
+#[test]
+fn strands_that_are_tied_in_motion_do_not_jump() {
+    let mut loader = SceneLoader::new();
+    let mut project = small_project();
+    project.hair.groom.length = 0.5;
+    let loose = load(&mut loader, &project);
+    project.hair.ties = vec![HairTie::default()];
+    let tied = load(&mut loader, &project);
+    for [from, to] in [[&loose, &tied], [&tied, &loose]] {
+        let mut engine = Engine::new(Arc::clone(from), project.simulation);
+        engine.advance_to_step(40);
+        let before = engine.snapshot();
+        assert!(!engine.set_scene(Arc::clone(to)), "it lives on");
+        let after = engine.snapshot();
+        let jump = furthest_of(&before, &after);
+        // Guides laid anew in f32, and the frames along them.
+        assert!(jump < 5e-4, "{jump} m at once");
+        // The control: strands that are combed at once.
+        let mut combed = FrameSnapshot::clone(&after);
+        combed.scene = Arc::clone(to);
+        assert!(furthest_of(&before, &combed) > 3e-3, "{}", furthest_of(&before, &combed));
+        engine.advance_to_step(40 + 60);
+        let there = engine.snapshot();
+        assert!(Arc::ptr_eq(&there.scene, to), "a second later it is the style itself");
+        assert!(engine.totals().max_stretch < 1e-5);
+    }
+}

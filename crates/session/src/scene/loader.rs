@@ -1,0 +1,254 @@
+//! From a project to a scene, each part kept until what it is made from changes.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use lovelock_motion::{Collider, ColliderEdits};
+use lovelock_project::Project;
+use lovelock_project::error::{Problem, StudioError};
+use lovelock_project::files::Access;
+
+use super::Scene;
+use super::dress::Dressed;
+use super::head_path::HeadPath;
+use super::parts::{BodyKey, BodyPart, HairFileCache, HairKey, HairPart, MotionKey, MotionPart};
+
+/// How a load tells how far it is, and learns that nobody wants it any more.
+pub struct LoadControl<'a> {
+    /// Set by anybody to stop the load at the next opportunity.
+    pub cancelled: &'a AtomicBool,
+    /// Told what is being done, such as `growing the hair`, and the fraction that is done.
+    pub progress: &'a mut dyn FnMut(&str, f32),
+}
+
+impl LoadControl<'_> {
+    fn at(&mut self, what: &str, fraction: f32) -> Result<(), StudioError> {
+        if self.cancelled.load(Ordering::Relaxed) {
+            return Err(StudioError::Cancelled);
+        }
+        (self.progress)(what, fraction);
+        Ok(())
+    }
+}
+
+/// A part and what it was made from.
+#[derive(Debug)]
+struct Kept<K, T> {
+    key: K,
+    /// The body that a motion or a hairstyle was made for.
+    body: Option<Arc<BodyPart>>,
+    part: Arc<T>,
+}
+
+/// The shapes that hair meets, and those that only the wind does.
+type Met = [Arc<[Collider]>; 2];
+
+/// Makes scenes of projects. Parts whose sources have not changed are shared with the scene before.
+#[derive(Debug, Default)]
+pub struct SceneLoader {
+    body: Option<Kept<BodyKey, BodyPart>>,
+    motion: Option<Kept<MotionKey, MotionPart>>,
+    hair: Option<Kept<HairKey, HairPart>>,
+    hair_file: HairFileCache,
+    dressed: Option<Dressed>,
+    head_path: Option<(Arc<MotionPart>, bool, Arc<HeadPath>)>,
+    colliders: Option<(Arc<BodyPart>, ColliderEdits, Met)>,
+}
+
+impl SceneLoader {
+    /// A loader that has loaded nothing.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// As [`SceneLoader::load`], to the end and in silence.
+    ///
+    /// # Errors
+    /// As [`SceneLoader::load`].
+    pub fn load_now(
+        &mut self,
+        project: &Project,
+        access: &Access,
+    ) -> Result<(Arc<Scene>, Vec<Problem>), StudioError> {
+        let cancelled = AtomicBool::new(false);
+        self.load(project, access, &mut LoadControl { cancelled: &cancelled, progress: &mut |_, _| {} })
+    }
+
+    /// Makes the scene of a project.
+    ///
+    /// Each part may fail by itself: the part of the scene before stays, or the nearest thing that can be shown
+    /// takes its place (the dancer, the body's own clip, the grown hairstyle), and a problem says so.
+    ///
+    /// # Errors
+    /// Where it is cancelled, and where not even the dancer can be shown.
+    pub fn load(
+        &mut self,
+        project: &Project,
+        access: &Access,
+        control: &mut LoadControl<'_>,
+    ) -> Result<(Arc<Scene>, Vec<Problem>), StudioError> {
+        let (project, mut problems) = project.sanitised();
+        control.at("loading the body", 0.0)?;
+        let body = self.body(&project, access, &mut problems)?;
+        control.at("loading the motion", 0.3)?;
+        let motion = self.motion(&project, access, &body, &mut problems)?;
+        control.at("making the hair", 0.5)?;
+        let hair = self.hair(&project, access, &body, &mut problems);
+        let style = Dressed::style(&mut self.dressed, &hair, &project.hair, &body, &mut problems);
+        control.at("following the head", 0.9)?;
+        let looping = project.motion.looping;
+        let head_path = self.head_path(&body, &motion, looping);
+        control.at("done", 1.0)?;
+
+        let notes: Vec<Problem> =
+            [&body.notes, &motion.notes, &hair.notes].into_iter().flatten().cloned().collect();
+        let [colliders, sheltering] = self.colliders(&body, &project.body.colliders);
+        let scene = Scene {
+            body: Arc::clone(&body.body),
+            clips: Arc::clone(&body.clips),
+            clip: motion.clip.clone(),
+            speed: f64::from(project.motion.speed),
+            looping,
+            colliders,
+            sheltering,
+            fitted: Arc::clone(&body.colliders),
+            field: body.field.clone().filter(|_| project.body.colliders.field.enabled),
+            field_lift_m: project.body.colliders.field.lift_m(),
+            style,
+            head_path,
+            notes: notes.into(),
+        };
+        Ok((Arc::new(scene), problems))
+    }
+
+    fn body(
+        &mut self,
+        project: &Project,
+        access: &Access,
+        problems: &mut Vec<Problem>,
+    ) -> Result<Arc<BodyPart>, StudioError> {
+        let wanted = BodyKey::of(&project.body, access);
+        if let (Ok(key), Some(kept)) = (&wanted, &self.body)
+            && kept.key == *key
+        {
+            return Ok(Arc::clone(&kept.part));
+        }
+        let loaded = wanted.and_then(|key| key.load().map(|part| (key, part)));
+        let (key, part) = match (loaded, &self.body) {
+            (Ok(loaded), _) => loaded,
+            (Err(problem), Some(kept)) => {
+                problems.push(problem.with_fallback("the body before stays"));
+                return Ok(Arc::clone(&kept.part));
+            }
+            (Err(problem), None) => {
+                problems.push(problem.with_fallback("the shipped dancer is shown instead"));
+                let key = BodyKey::dancer();
+                let part = key.load().map_err(StudioError::work)?;
+                (key, part)
+            }
+        };
+        let part = Arc::new(part);
+        self.body = Some(Kept { key, body: None, part: Arc::clone(&part) });
+        Ok(part)
+    }
+
+    fn motion(
+        &mut self,
+        project: &Project,
+        access: &Access,
+        body: &Arc<BodyPart>,
+        problems: &mut Vec<Problem>,
+    ) -> Result<Arc<MotionPart>, StudioError> {
+        // A clip moves the joints of one body: that of another one is of no use.
+        let kept = self.motion.take_if(|kept| kept.body.as_ref().is_some_and(|of| Arc::ptr_eq(of, body)));
+        let wanted = MotionKey::of(&project.motion, access);
+        if let (Ok(key), Some(kept)) = (&wanted, &kept)
+            && kept.key == *key
+        {
+            let part = Arc::clone(&kept.part);
+            self.motion =
+                Some(Kept { key: key.clone(), body: Some(Arc::clone(body)), part: Arc::clone(&part) });
+            return Ok(part);
+        }
+        let loaded = wanted.and_then(|key| key.load(body).map(|part| (key, Arc::new(part))));
+        let (key, part) = match (loaded, kept) {
+            (Ok(loaded), _) => loaded,
+            (Err(problem), Some(kept)) => {
+                problems.push(problem.with_fallback("the motion before stays"));
+                (kept.key, kept.part)
+            }
+            (Err(problem), None) => {
+                problems.push(problem.with_fallback("the body's first clip plays instead"));
+                let key = MotionKey::first_clip();
+                let part = key.load(body).map_err(StudioError::work)?;
+                (key, Arc::new(part))
+            }
+        };
+        self.motion = Some(Kept { key, body: Some(Arc::clone(body)), part: Arc::clone(&part) });
+        Ok(part)
+    }
+
+    fn hair(
+        &mut self,
+        project: &Project,
+        access: &Access,
+        body: &Arc<BodyPart>,
+        problems: &mut Vec<Problem>,
+    ) -> Arc<HairPart> {
+        let wanted = HairKey::of(&project.hair, access);
+        if let (Ok(key), Some(kept)) = (&wanted, &self.hair)
+            && kept.key == *key
+            && kept.body.as_ref().is_some_and(|of| Arc::ptr_eq(of, body))
+        {
+            return Arc::clone(&kept.part);
+        }
+        let mut cache = self.hair_file.take();
+        let loaded = wanted.and_then(|key| key.load(body, &mut cache).map(|part| (key, part)));
+        self.hair_file = cache;
+        let (key, part) = match (loaded, &self.hair) {
+            (Ok(loaded), _) => loaded,
+            (Err(problem), Some(kept)) => {
+                problems.push(problem.with_fallback("the hair before stays"));
+                return Arc::clone(&kept.part);
+            }
+            (Err(problem), None) => {
+                let key = HairKey::grown(&project.hair);
+                let grown = key.load(body, &mut None);
+                let instead =
+                    if grown.is_ok() { "the grown hairstyle is shown instead" } else { "no hair is shown" };
+                problems.push(problem.with_fallback(instead));
+                (key, grown.unwrap_or_else(|_| HairPart::bald(body)))
+            }
+        };
+        let part = Arc::new(part);
+        self.hair = Some(Kept { key, body: Some(Arc::clone(body)), part: Arc::clone(&part) });
+        part
+    }
+
+    /// The shapes that hair meets, as the project changes them, and those that only the wind does.
+    fn colliders(&mut self, body: &Arc<BodyPart>, edits: &ColliderEdits) -> Met {
+        if let Some((of, kept, met)) = &self.colliders
+            && Arc::ptr_eq(of, body)
+            && kept == edits
+        {
+            return met.clone();
+        }
+        let field = body.field.as_deref();
+        let met =
+            [edits.apply(&body.colliders, field).into(), edits.stood_for(&body.colliders, field).into()];
+        self.colliders = Some((Arc::clone(body), edits.clone(), met.clone()));
+        met
+    }
+
+    fn head_path(&mut self, body: &BodyPart, motion: &Arc<MotionPart>, looping: bool) -> Arc<HeadPath> {
+        if let Some((of, was_looping, path)) = &self.head_path
+            && Arc::ptr_eq(of, motion)
+            && *was_looping == looping
+        {
+            return Arc::clone(path);
+        }
+        let path = Arc::new(HeadPath::new(&body.body, motion.clip.as_deref(), looping));
+        self.head_path = Some((Arc::clone(motion), looping, Arc::clone(&path)));
+        path
+    }
+}

@@ -1,0 +1,364 @@
+//! The parts of a scene, each loaded by itself.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::SystemTime;
+
+use lovelock_groom::{
+    GroomSettings, Guides, HairFile, HairLook, Hairstyle, ImportSettings, Scalp, StrandSet, grow,
+    import_around, load_hair,
+};
+use lovelock_motion::{
+    Body, BodyField, BodySettings, Character, Clip, Collider, MotionSettings, RestDistance, Skeleton,
+    fit_colliders, head_mesh, joint_paths, load_character_with, load_motion_with, retarget,
+};
+use lovelock_project::error::{Place, Problem, ProblemKind};
+use lovelock_project::files::Access;
+use lovelock_project::project::{
+    BodySection, BodySource, HairSection, HairSource, MotionSection, MotionSource,
+};
+
+use super::{BodyObstacle, dancer};
+
+/// A file as it was when it was read: read again where it has changed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Stamp {
+    path: PathBuf,
+    bytes: u64,
+    modified: Option<SystemTime>,
+}
+
+impl Stamp {
+    fn of(path: &Path) -> Self {
+        let data = std::fs::metadata(path).ok();
+        Self {
+            path: path.to_owned(),
+            bytes: data.as_ref().map_or(0, std::fs::Metadata::len),
+            modified: data.and_then(|data| data.modified().ok()),
+        }
+    }
+}
+
+/// What a body is loaded from.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct BodyKey {
+    file: Option<(Stamp, BodySettings)>,
+    head_joint: Option<String>,
+}
+
+/// A body with all that follows from it alone.
+#[derive(Debug)]
+pub(super) struct BodyPart {
+    pub(super) body: Arc<Body>,
+    pub(super) clips: Arc<[Arc<Clip>]>,
+    pub(super) colliders: Arc<[Collider]>,
+    pub(super) scalp: Arc<Scalp>,
+    pub(super) obstacle: Arc<BodyObstacle>,
+    /// Head and shoulders, where the body has them.
+    pub(super) field: Option<Arc<BodyField>>,
+    pub(super) notes: Vec<Problem>,
+}
+
+impl BodyKey {
+    /// What `section` asks for; a problem where it may not be read.
+    pub(super) fn of(section: &BodySection, access: &Access) -> Result<Self, Problem> {
+        let file = match (section.source, &section.file) {
+            (BodySource::Dancer, _) => None,
+            (BodySource::File, Some(file)) => {
+                Some((Stamp::of(&access.read(Place::Body, file)?), section.settings))
+            }
+            (BodySource::File, None) => {
+                return Err(Problem::not_loaded(Place::Body, "no character file is set; pick one"));
+            }
+        };
+        Ok(Self { file, head_joint: section.head_joint.clone() })
+    }
+
+    /// The dancer, whatever a project says.
+    pub(super) fn dancer() -> Self {
+        Self { file: None, head_joint: None }
+    }
+
+    pub(super) fn load(&self) -> Result<BodyPart, Problem> {
+        let character = match &self.file {
+            None => dancer(),
+            Some((stamp, settings)) => load_character_with(&stamp.path, *settings),
+        };
+        let character = character.map_err(|error| Problem::not_loaded(Place::Body, error))?;
+        let mut notes = file_notes(Place::Body, &character.dropped, &character.notes);
+        let Character { mut body, clips, .. } = character;
+        if let Some(name) = &self.head_joint {
+            match find_joint(&body.skeleton, name) {
+                Some(joint) if joint == body.head_joint => {}
+                Some(joint) => body = Arc::new(Body { head_joint: joint, ..(*body).clone() }),
+                None => notes.push(Problem::new(
+                    Place::Body,
+                    ProblemKind::Ignored,
+                    format!(
+                        "{} has no joint called `{name}`; the hair is on the joint that was guessed",
+                        body.name
+                    ),
+                )),
+            }
+        }
+        let head = head_mesh(&body);
+        if head.scalp_is_guessed && !head.triangles.is_empty() {
+            let message =
+                "the file says nothing about the hairline; it is a guess from the shape of the head";
+            notes.push(Problem::new(Place::Body, ProblemKind::Note, message));
+        }
+        let scalp = Scalp {
+            positions: head.positions,
+            normals: head.normals,
+            triangles: head.triangles,
+            mask: head.scalp,
+        };
+        let rest = RestDistance::new(&body);
+        Ok(BodyPart {
+            colliders: fit_colliders(&body).into(),
+            field: BodyField::new(&body, &rest).map(Arc::new),
+            obstacle: Arc::new(BodyObstacle(rest)),
+            scalp: Arc::new(scalp),
+            clips: clips.into(),
+            body,
+            notes,
+        })
+    }
+}
+
+/// A joint by its path (`hips/spine/head`) or its name; of several with one name the first.
+fn find_joint(skeleton: &Skeleton, name: &str) -> Option<usize> {
+    joint_paths(skeleton)
+        .iter()
+        .position(|path| path == name)
+        .or_else(|| skeleton.joints.iter().position(|joint| joint.name == name))
+}
+
+/// What was dropped from a file and what it had to say.
+fn file_notes(place: Place, dropped: &BTreeMap<String, u64>, notes: &[String]) -> Vec<Problem> {
+    let dropped = dropped.iter().map(|(what, count)| {
+        Problem::new(
+            place,
+            ProblemKind::Note,
+            format!("left out of the file: {count} {}", what.replace('_', " ")),
+        )
+    });
+    let notes = notes.iter().map(|note| Problem::new(place, ProblemKind::Note, note));
+    dropped.chain(notes).collect()
+}
+
+/// What a motion is loaded from, besides the body.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum MotionKey {
+    Rest,
+    Clip { name: String, shape: Shape },
+    File { stamp: Stamp, settings: MotionSettings, shape: Shape },
+}
+
+/// Which part of a clip plays, and how its end meets its start.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Shape {
+    /// First second, and last one where it is not the clip's own.
+    part: (f32, Option<f32>),
+    blend_secs: f32,
+}
+
+impl Shape {
+    fn of(section: &MotionSection) -> Self {
+        let blend_secs = if section.looping { section.loop_blend_secs } else { 0.0 };
+        Self { part: (section.start_secs, section.end_secs), blend_secs }
+    }
+
+    /// The clip trimmed, and with its end faded into its beginning where it does not loop by itself.
+    fn applied(self, clip: &Arc<Clip>, body: &Body) -> Arc<Clip> {
+        let mut clip = Arc::clone(clip);
+        let (start, end) = self.part;
+        if start > 0.0 || end.is_some() {
+            let mut part = (*clip).clone().trimmed(f64::from(start), end.map(f64::from));
+            part.detect_loop(body);
+            clip = Arc::new(part);
+        }
+        if clip.loops || self.blend_secs <= 0.0 || clip.duration_secs <= 0.0 {
+            return clip;
+        }
+        Arc::new((*clip).clone().with_loop_blend(f64::from(self.blend_secs)))
+    }
+}
+
+/// A motion of one body.
+#[derive(Debug)]
+pub(super) struct MotionPart {
+    pub(super) clip: Option<Arc<Clip>>,
+    pub(super) notes: Vec<Problem>,
+}
+
+impl MotionKey {
+    pub(super) fn of(section: &MotionSection, access: &Access) -> Result<Self, Problem> {
+        let shape = Shape::of(section);
+        match (section.source, &section.file) {
+            (MotionSource::Rest, _) => Ok(Self::Rest),
+            (MotionSource::Clip, _) => Ok(Self::Clip { name: section.clip.clone(), shape }),
+            (MotionSource::File, Some(file)) => {
+                let stamp = Stamp::of(&access.read(Place::Motion, file)?);
+                Ok(Self::File { stamp, settings: section.settings, shape })
+            }
+            (MotionSource::File, None) => {
+                Err(Problem::not_loaded(Place::Motion, "no motion file is set; pick one"))
+            }
+        }
+    }
+
+    /// The body's first clip, or rest where it has none.
+    pub(super) fn first_clip() -> Self {
+        Self::Clip { name: String::new(), shape: Shape::default() }
+    }
+
+    pub(super) fn load(&self, part: &BodyPart) -> Result<MotionPart, Problem> {
+        match self {
+            Self::Rest => Ok(MotionPart { clip: None, notes: Vec::new() }),
+            Self::Clip { name, shape } => {
+                let clip = if name.is_empty() {
+                    part.clips.first()
+                } else {
+                    part.clips.iter().find(|clip| clip.name == *name)
+                };
+                match clip {
+                    None if !name.is_empty() => {
+                        let names: Vec<_> =
+                            part.clips.iter().map(|clip| format!("`{}`", clip.name)).collect();
+                        let has = if names.is_empty() { "no clips".to_owned() } else { names.join(", ") };
+                        Err(Problem::not_loaded(
+                            Place::Motion,
+                            format!("{} has no clip called `{name}`; it has {has}", part.body.name),
+                        ))
+                    }
+                    clip => Ok(MotionPart {
+                        clip: clip.map(|clip| shape.applied(clip, &part.body)),
+                        notes: Vec::new(),
+                    }),
+                }
+            }
+            Self::File { stamp, settings, shape } => {
+                let refuse = |error| Problem::not_loaded(Place::Motion, error);
+                let file = load_motion_with(&stamp.path, *settings).map_err(refuse)?;
+                let clip = retarget(&file, &part.body).map_err(refuse)?;
+                Ok(MotionPart {
+                    clip: Some(shape.applied(&Arc::new(clip), &part.body)),
+                    notes: file_notes(Place::Motion, &file.dropped, &file.notes),
+                })
+            }
+        }
+    }
+}
+
+/// What a hairstyle is made from, besides the body.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum HairKey {
+    Grown(Box<GroomSettings>),
+    File { stamp: Stamp, import: ImportSettings },
+}
+
+/// A hairstyle on one head.
+#[derive(Debug)]
+pub(super) struct HairPart {
+    pub(super) style: Arc<Hairstyle>,
+    pub(super) notes: Vec<Problem>,
+}
+
+impl HairPart {
+    /// No hair at all, where none can grow.
+    pub(super) fn bald(part: &BodyPart) -> Self {
+        let style = Hairstyle {
+            name: "none".to_owned(),
+            scalp: (*part.scalp).clone(),
+            guides: Guides { points_per_guide: 2, ..Guides::default() },
+            strands: StrandSet { first_point: vec![0], ..StrandSet::default() },
+            ..Hairstyle::default()
+        };
+        Self { style: Arc::new(style), notes: Vec::new() }
+    }
+}
+
+/// The hair file that was read last: other settings of import need not read it again.
+pub(super) type HairFileCache = Option<(Stamp, Arc<HairFile>)>;
+
+impl HairKey {
+    pub(super) fn of(section: &HairSection, access: &Access) -> Result<Self, Problem> {
+        match (section.source, &section.file) {
+            (HairSource::Grown, _) => Ok(Self::grown(section)),
+            (HairSource::File, Some(file)) => {
+                Ok(Self::File { stamp: Stamp::of(&access.read(Place::Hair, file)?), import: section.import })
+            }
+            (HairSource::File, None) => {
+                Err(Problem::not_loaded(Place::Hair, "no hair file is set; pick one"))
+            }
+        }
+    }
+
+    /// The grown style of a project, whatever its source says. Its look is the project's own and grows nothing.
+    pub(super) fn grown(section: &HairSection) -> Self {
+        Self::Grown(Box::new(GroomSettings { look: HairLook::default(), ..section.groom }))
+    }
+
+    pub(super) fn load(&self, part: &BodyPart, cache: &mut HairFileCache) -> Result<HairPart, Problem> {
+        let refuse = |error: &dyn std::fmt::Display| Problem::not_loaded(Place::Hair, error);
+        if part.scalp.triangles.is_empty() {
+            let body = &part.body;
+            let joint = body.skeleton.joints.get(body.head_joint).map_or("none", |joint| &joint.name);
+            let message = format!(
+                "the joint of the head (`{joint}`) moves no surface of {}, so no hair can grow there; pick another joint",
+                body.name
+            );
+            return Err(refuse(&message));
+        }
+        let (style, notes) = match self {
+            Self::Grown(settings) => {
+                let style = grow(settings, &part.scalp, &*part.obstacle)
+                    .map_err(|error| refuse(&format!("{}: {error}", part.body.name)))?;
+                (style, Vec::new())
+            }
+            Self::File { stamp, import } => {
+                let file = match cache {
+                    Some((kept, file)) if kept == stamp => Arc::clone(file),
+                    _ => Arc::new(load_hair(&stamp.path).map_err(|error| refuse(&error))?),
+                };
+                *cache = Some((stamp.clone(), Arc::clone(&file)));
+                let style = import_around(&file, import, &part.scalp, Some(&*part.obstacle))
+                    .map_err(|error| refuse(&error))?;
+                // The file's own notes say in words what was dropped.
+                (style, file_notes(Place::Hair, &BTreeMap::new(), &file.notes))
+            }
+        };
+        // Everything after this relies on its indices.
+        style.check().map_err(|error| refuse(&error))?;
+        Ok(HairPart { style: Arc::new(style), notes })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use lovelock_simulation::SimulationSettings;
+
+    use super::*;
+    use crate::engine::Engine;
+    use crate::scene::Scene;
+    use crate::testing::{scene, small_project};
+
+    #[test]
+    fn a_head_without_a_surface_stays_bald_and_says_why() {
+        let mut part = BodyKey::dancer().load().expect("the dancer");
+        part.scalp = Arc::default();
+        let key = HairKey::grown(&small_project().hair);
+        let problem = key.load(&part, &mut None).expect_err("nothing to grow on");
+        assert!(problem.message.contains("moves no surface"), "{problem}");
+        let style = HairPart::bald(&part).style;
+        style.check().expect("whole");
+        let scene = Arc::new(Scene { style, ..(*scene()).clone() });
+        let mut engine = Engine::new(scene, SimulationSettings::default());
+        engine.advance_to_step(3);
+        let mut strands = lovelock_groom::Strands::default();
+        engine.snapshot().interpolate(&mut strands);
+        assert_eq!((strands.count(), strands.points()), (0, 0));
+    }
+}

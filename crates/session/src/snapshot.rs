@@ -1,0 +1,103 @@
+//! One instant of the scene, ready for rendering.
+
+use std::sync::Arc;
+
+use lovelock_groom::{GuideFrame, Strands, interpolate};
+use lovelock_motion::{Pose, Skin};
+use lovelock_project::Project;
+use lovelock_project::project::CameraSection;
+use lovelock_render::{Camera, FrameInput, HairPose};
+use lovelock_simulation::{InsidePoint, StepReport};
+
+use crate::scene::{Scene, camera_at};
+use crate::stats::StageTimes;
+use crate::totals::Totals;
+
+/// One instant of the scene: everything that rendering needs, and measurements of the simulation.
+#[derive(Clone, Debug)]
+pub struct FrameSnapshot {
+    /// The scene.
+    pub scene: Arc<Scene>,
+    /// Steps since the engine started; increases from snapshot to snapshot during playback.
+    pub step: u64,
+    /// Time of the scene, seconds; keeps increasing when the clip loops.
+    pub time_secs: f64,
+    /// Position on the timeline, seconds from the start of the clip or of the played take.
+    pub position_secs: f64,
+    /// Length of the timeline, seconds; 0 if the body is at rest.
+    pub duration_secs: f64,
+    /// The pose of the joints.
+    pub pose: Pose,
+    /// The surface of the body.
+    pub skin: Skin,
+    /// The guides, world space.
+    pub guides: GuideFrame,
+    /// Measurements of the last step.
+    pub report: StepReport,
+    /// The deepest point of the style at rest inside the body, if any.
+    pub rest_inside: Option<InsidePoint>,
+    /// Measurements since the hair was last settled.
+    pub totals: Totals,
+    /// Times of `motion` and `simulate` for this instant; the renderer measures the other stages.
+    pub times: StageTimes,
+}
+
+impl FrameSnapshot {
+    /// Interpolates the strands on the CPU. Rendering does not need this.
+    pub fn interpolate(&self, strands: &mut Strands) {
+        interpolate(&self.scene.style, &self.guides, strands);
+    }
+
+    /// The camera at this instant.
+    pub fn camera(&self, section: &CameraSection) -> Camera {
+        camera_at(section, &self.scene, self.time_secs)
+    }
+
+    /// The input of a renderer for this instant, with the settings of `project`.
+    pub fn frame_input<'a>(&'a self, project: &'a Project, camera: &'a Camera) -> FrameInput<'a> {
+        FrameInput {
+            style: &self.scene.style,
+            hair: HairPose::Guides(&self.guides),
+            look: &project.look,
+            body: Some((&self.scene.body, &self.skin)),
+            world_from_head: self.guides.world_from_head,
+            lights: &project.lights,
+            shadow: &project.shadow,
+            camera,
+            picture: &project.picture,
+            known: None,
+        }
+    }
+}
+
+/// Snapshots for reuse once they are no longer shared, so that frames do not allocate.
+#[derive(Debug, Default)]
+pub(crate) struct SnapshotPool {
+    given_out: Vec<Arc<FrameSnapshot>>,
+}
+
+impl SnapshotPool {
+    /// Number of snapshots in use at a time: one that is published, and one or two that are being rendered.
+    const MOST: usize = 6;
+
+    /// Fills an unused snapshot, or a new one, and returns it.
+    pub(crate) fn make(
+        &mut self,
+        new: impl FnOnce() -> FrameSnapshot,
+        fill: impl FnOnce(&mut FrameSnapshot),
+    ) -> Arc<FrameSnapshot> {
+        let free = self.given_out.iter_mut().position(|held| Arc::get_mut(held).is_some());
+        let mut snapshot = match free {
+            Some(i) => self.given_out.swap_remove(i),
+            None => Arc::new(new()),
+        };
+        match Arc::get_mut(&mut snapshot) {
+            Some(inner) => fill(inner),
+            None => unreachable!("the snapshot is new or not shared"),
+        }
+        if self.given_out.len() < Self::MOST {
+            self.given_out.push(Arc::clone(&snapshot));
+        }
+        snapshot
+    }
+}

@@ -1,0 +1,345 @@
+//! The simulation thread's own state: an engine or a take, and what is asked of it.
+
+mod inputs;
+mod playing;
+mod recording;
+mod settling;
+#[cfg(test)]
+mod tests;
+
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use inputs::SceneInputs;
+use lovelock_project::Project;
+use lovelock_project::files::Access;
+use lovelock_simulation::SimulationSettings;
+use settling::{Aside, lives_otherwise};
+
+use super::Outbox;
+use super::load_thread::{LoadThread, Loaded};
+use super::mailbox::{Mailbox, TakeWish, Wishes};
+use crate::clock::{Playback, STEP_SECS, Stopwatch};
+use crate::engine::{Engine, LastSteps, PrerollProgress};
+use crate::latest::Slot;
+use crate::scene::Scene;
+use crate::snapshot::FrameSnapshot;
+use crate::take::{TakeProgress, TakeRecording, TakeTransport};
+
+/// Panics in a row after which the simulation rests until something changes.
+const MOST_PANICS: u32 = 3;
+
+/// The simulation thread's own state.
+pub(super) struct Inside {
+    mailbox: Mailbox,
+    frames: Slot<FrameSnapshot>,
+    loader: Arc<LoadThread>,
+    outbox: Outbox,
+    recorded: Arc<Mutex<Option<TakeProgress>>>,
+    settling: Arc<Mutex<Option<PrerollProgress>>>,
+    engine: Option<Engine>,
+    /// The life of the hair before the instant where the engine stands; time waits for it.
+    preroll: Option<Aside>,
+    /// Whether hair that was loaded has still to settle, and waits for a newer one that is on its way.
+    owes_settling: bool,
+    /// Since hair that stands still was last given other settings: it settles anew once they are left alone.
+    unsettled: Option<Stopwatch>,
+    /// The take that plays in place of the engine.
+    take: Option<TakeTransport>,
+    recording: Option<TakeRecording>,
+    project: Option<Arc<Project>>,
+    /// What the engine's scene was made of: what is loaded comes later than what is asked for.
+    scene_of: Option<Arc<Project>>,
+    settings: SimulationSettings,
+    inputs: Option<SceneInputs>,
+    playback: Playback,
+    /// Where pictures lie between steps.
+    last_steps: LastSteps,
+    backwards: bool,
+    panics: u32,
+}
+
+impl Inside {
+    pub(super) fn new(
+        mailbox: Mailbox,
+        frames: Slot<FrameSnapshot>,
+        loader: Arc<LoadThread>,
+        outbox: Outbox,
+        recorded: Arc<Mutex<Option<TakeProgress>>>,
+        settling: Arc<Mutex<Option<PrerollProgress>>>,
+    ) -> Self {
+        Self {
+            mailbox,
+            frames,
+            loader,
+            outbox,
+            recorded,
+            settling,
+            engine: None,
+            preroll: None,
+            owes_settling: false,
+            unsettled: None,
+            take: None,
+            recording: None,
+            project: None,
+            scene_of: None,
+            settings: SimulationSettings::default(),
+            inputs: None,
+            playback: Playback::default(),
+            last_steps: LastSteps::default(),
+            backwards: false,
+            panics: 0,
+        }
+    }
+
+    pub(super) fn run(mut self) {
+        // Threads of its own: a step takes a millisecond, and would wait for the tiles of a picture in the common ones.
+        let threads = rayon::ThreadPoolBuilder::new().thread_name(|i| format!("simulate {i}")).build().ok();
+        let mut watch = Stopwatch::start();
+        loop {
+            let timeout = match (&self.take, &self.engine) {
+                _ if self.preroll.is_some() => Some(Duration::ZERO),
+                // A take is smooth at any rate: an instant for each picture, whatever lies between two recorded ones.
+                (Some(_), _) => {
+                    self.playback.is_playing().then(|| Duration::from_secs_f64(self.playback.picture_secs()))
+                }
+                (None, Some(_)) => self.playback.until_next(),
+                (None, None) => None,
+            };
+            let wishes = self.mailbox.take(self.until_calm(timeout));
+            if wishes.stop {
+                // What was recorded is not to be lost because the window closes.
+                self.end_take(None);
+                return;
+            }
+            let elapsed_secs = watch.secs();
+            watch = Stopwatch::start();
+            let done = catch_unwind(AssertUnwindSafe(|| match &threads {
+                Some(threads) => threads.install(|| self.turn(wishes, elapsed_secs)),
+                None => self.turn(wishes, elapsed_secs),
+            }));
+            match done {
+                Ok(()) => self.panics = 0,
+                Err(panic) => self.recover(&*panic),
+            }
+        }
+    }
+
+    /// Does what is asked for and what time asks for, and shows the result.
+    fn turn(&mut self, wishes: Wishes, elapsed_secs: f64) {
+        let changed = self.obey(wishes);
+        self.settle_when_calm();
+        // Before its frame is: whoever sees hair that was carried knows that it is not settled.
+        self.tell_settling();
+        if self.take.is_some() {
+            (self.preroll, self.owes_settling) = (None, false);
+            self.play(changed, elapsed_secs);
+        } else if self.preroll.is_some() {
+            self.live_aside(changed);
+        } else {
+            self.simulate(changed, elapsed_secs);
+        }
+        self.tell_settling();
+    }
+
+    /// Does what is asked for; returns whether the frame may have changed.
+    fn obey(&mut self, wishes: Wishes) -> bool {
+        let Wishes {
+            project,
+            loaded,
+            playing,
+            rate,
+            display_hz,
+            backwards,
+            seek_secs,
+            look_back,
+            steps,
+            restart,
+            settle,
+            take,
+            stop: _,
+        } = wishes;
+        if let Some((project, access)) = project {
+            self.set_project(project, access);
+        }
+        let mut changed = loaded.is_some();
+        if let Some(loaded) = loaded {
+            self.set_loaded(loaded);
+        }
+        if let Some(rate) = rate {
+            self.playback.set_rate(rate);
+        }
+        if let Some(hz) = display_hz {
+            self.playback.set_display_hz(hz);
+        }
+        if let Some(backwards) = backwards {
+            self.backwards = backwards;
+        }
+        if let Some(playing) = playing {
+            if playing {
+                self.leave_the_end();
+            }
+            self.playback.set_playing(playing);
+            // A pause shows a whole step.
+            changed |= !playing && self.take.is_none() && self.last_steps.are_known();
+        }
+        changed |= match (&mut self.take, &mut self.engine) {
+            (Some(take), _) => {
+                if restart {
+                    take.restart(false);
+                }
+                if let Some(secs) = seek_secs {
+                    take.seek(secs);
+                }
+                take.step(steps);
+                restart || seek_secs.is_some() || steps != 0
+            }
+            (None, Some(engine)) => {
+                let measured = (look_back && seek_secs.is_some()).then(|| engine.totals());
+                if restart {
+                    engine.seek(0.0);
+                }
+                if let Some(secs) = seek_secs {
+                    engine.seek(secs);
+                }
+                if steps < 0 {
+                    engine.step_back(steps.unsigned_abs());
+                }
+                let gone_to = restart || seek_secs.is_some() || steps < 0;
+                if gone_to || settle == Some(true) {
+                    self.begin_preroll();
+                    if let Some(aside) = &mut self.preroll {
+                        aside.measured = measured;
+                    }
+                } else if settle == Some(false) {
+                    let owed = std::mem::take(&mut self.owes_settling);
+                    if self.preroll.take().is_some() || owed {
+                        self.playback.set_playing(self.playback.is_playing());
+                    }
+                }
+                gone_to || steps != 0
+            }
+            (None, None) => false,
+        };
+        if self.take.is_none() {
+            for _ in 0..steps {
+                match &mut self.preroll {
+                    Some(aside) => aside.steps = aside.steps.saturating_add(1),
+                    None => self.step(),
+                }
+            }
+        }
+        match take {
+            Some(TakeWish::Start(path)) => self.start_take(&path),
+            Some(TakeWish::Finish) => self.end_take(None),
+            None => {}
+        }
+        changed
+    }
+
+    fn set_project(&mut self, project: Arc<Project>, access: Access) {
+        self.settings = project.simulation;
+        if let Some(engine) = &mut self.engine {
+            engine.follow(&project);
+        }
+        if self.project.as_ref().is_some_and(|before| lives_otherwise(before, &project)) {
+            self.begin_preroll_anew();
+            self.unsettled = Some(Stopwatch::start());
+        }
+        if let Some(take) = &mut self.take {
+            take.set_looping(project.motion.looping);
+        }
+        self.project = Some(Arc::clone(&project));
+        self.record_change();
+        let inputs = SceneInputs::of(&project, &access);
+        if self.inputs.as_ref() != Some(&inputs) {
+            self.inputs = Some(inputs);
+            self.loader.request(project, access);
+        }
+    }
+
+    fn set_loaded(&mut self, loaded: Loaded) {
+        match loaded {
+            Loaded::Take(player) => {
+                self.end_take(Some("another take was opened"));
+                let mut take = TakeTransport::new(*player);
+                if let Some(project) = &self.project {
+                    take.set_looping(project.motion.looping);
+                }
+                self.take = Some(take);
+            }
+            Loaded::Scene(scene, project) => {
+                self.take = None;
+                self.backwards = false;
+                match self.recording.as_mut().map(|recording| recording.set_scene(&scene)) {
+                    None | Some(Ok(true)) => {}
+                    Some(Ok(false)) => self.end_take(Some("there is no hair any more")),
+                    Some(Err(error)) => self.fail_take(&error),
+                }
+                self.set_scene(scene);
+                self.scene_of = Some(project);
+                self.record_change();
+            }
+        }
+    }
+
+    fn set_scene(&mut self, scene: Arc<Scene>) {
+        if let Some(engine) = &mut self.engine {
+            let before = engine.scene();
+            let other_hair = !Arc::ptr_eq(&before.style, &scene.style)
+                || !Arc::ptr_eq(&before.colliders, &scene.colliders)
+                || before.field.is_some() != scene.field.is_some()
+                || before.field_lift_m.to_bits() != scene.field_lift_m.to_bits();
+            let laid = engine.set_scene(scene);
+            // Locks that are only changed, or meet another body, go on moving while time passes. Where it stands, they are
+            // seen as they settle.
+            let waits = self.preroll.is_some() || self.owes_settling;
+            if laid || waits || (other_hair && !self.playback.is_playing()) {
+                self.settle_loaded();
+            }
+            return;
+        }
+        let mut engine = Engine::at_rest(scene, self.settings, STEP_SECS);
+        if let Some(project) = &self.project {
+            engine.follow(project);
+        }
+        self.engine = Some(engine);
+        self.begin_preroll();
+    }
+
+    /// Before playing: from an end at which nothing can follow, to the other one.
+    fn leave_the_end(&mut self) {
+        if let Some(take) = &mut self.take {
+            if take.is_at_end(self.backwards) {
+                take.restart(self.backwards);
+            }
+        } else if let Some(engine) = &mut self.engine
+            && engine.is_at_end()
+        {
+            engine.seek(0.0);
+            self.begin_preroll();
+        }
+    }
+
+    /// After a panic the engine may be half way through a step: it starts again, in the same scene.
+    fn recover(&mut self, panic: &(dyn Any + Send)) {
+        self.outbox.panicked("simulation", panic);
+        self.panics += 1;
+        let played = self.take.take().is_some();
+        (self.preroll, self.owes_settling) = (None, false);
+        self.last_steps.forget();
+        let scene = self.engine.take().map(|engine| Arc::clone(engine.scene()));
+        if let (Some(scene), true) = (scene, self.panics < MOST_PANICS) {
+            self.engine = catch_unwind(AssertUnwindSafe(|| Engine::new(scene, self.settings))).ok();
+            if let (Some(engine), Some(project)) = (&mut self.engine, &self.project) {
+                engine.follow(project);
+            }
+        }
+        if self.engine.is_none() || played {
+            // The same project may be asked for again.
+            self.inputs = None;
+        }
+    }
+}

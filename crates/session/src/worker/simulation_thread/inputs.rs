@@ -1,0 +1,34 @@
+//! What a scene is loaded from.
+
+use std::time::SystemTime;
+
+use lovelock_project::Project;
+use lovelock_project::files::{Access, FileRef};
+use lovelock_project::project::{BodySection, HairSection, MotionSection};
+
+/// What a scene is made from: other sections of a project need no load.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum SceneInputs {
+    Simulated(Box<(BodySection, MotionSection, HairSection, Access)>),
+    /// With what tells a file from one that was put in its place.
+    Take {
+        file: FileRef,
+        version: Option<(u64, SystemTime)>,
+        access: Access,
+    },
+}
+
+impl SceneInputs {
+    pub(super) fn of(project: &Project, access: &Access) -> Self {
+        let Project { body, motion, hair, take, .. } = project.clone();
+        let access = access.clone();
+        match take.file {
+            Some(file) => {
+                let data = std::fs::metadata(&file.path).ok();
+                let version = data.and_then(|data| Some((data.len(), data.modified().ok()?)));
+                Self::Take { file, version, access }
+            }
+            None => Self::Simulated(Box::new((body, motion, hair, access))),
+        }
+    }
+}

@@ -1,0 +1,92 @@
+//! Time that passes on the simulation thread, and what is seen of it.
+
+use super::super::Event;
+use super::Inside;
+
+impl Inside {
+    pub(super) fn step(&mut self) {
+        if let Some(engine) = &mut self.engine {
+            if self.playback.shows_between() {
+                self.last_steps.step(engine);
+            } else {
+                self.last_steps.forget();
+                engine.step();
+            }
+            self.record_step();
+        }
+    }
+
+    /// Shows the last step as it is. What is seen next follows it.
+    pub(super) fn show(&mut self) {
+        if let Some(engine) = &mut self.engine {
+            self.last_steps.forget();
+            self.playback.begin();
+            self.frames.put(engine.snapshot());
+            self.outbox.wake();
+        }
+    }
+
+    /// Shows what lies between the last two steps.
+    pub(super) fn show_between(&mut self, t: f64) {
+        if let Some(engine) = &mut self.engine {
+            self.frames.put(engine.snapshot_between(&mut self.last_steps, t));
+            self.outbox.wake();
+        }
+    }
+
+    pub(super) fn simulate(&mut self, mut changed: bool, elapsed_secs: f64) {
+        if changed {
+            // What was gone to, or is another style, is not what the step before led to.
+            self.last_steps.forget();
+            self.playback.begin();
+        }
+        let due = self.playback.advance(elapsed_secs);
+        for _ in 0..due.steps {
+            let Some(engine) = &self.engine else { return };
+            if engine.is_at_end() {
+                self.playback.set_playing(false);
+                self.last_steps.forget();
+                self.outbox.send(Event::EndReached);
+                changed = true;
+                break;
+            }
+            self.step();
+            changed |= due.between.is_none();
+        }
+        match due.between {
+            Some(t) if self.last_steps.are_known() => self.show_between(t),
+            _ if changed => self.show(),
+            _ => {}
+        }
+    }
+
+    /// A take goes on by the time that has passed, not by whole frames: it is smooth at any rate.
+    pub(super) fn play(&mut self, mut changed: bool, elapsed_secs: f64) {
+        let Some(take) = &mut self.take else { return };
+        if self.playback.is_playing() && elapsed_secs.is_finite() {
+            let direction = if self.backwards { -1.0 } else { 1.0 };
+            let ended = take.advance(elapsed_secs.clamp(0.0, 0.25) * self.playback.rate() * direction);
+            changed = true;
+            if ended {
+                self.playback.set_playing(false);
+                self.outbox.send(Event::EndReached);
+            }
+        }
+        if changed {
+            match take.snapshot() {
+                Ok(snapshot) => {
+                    self.frames.put(snapshot);
+                    self.outbox.wake();
+                    for message in take.notices() {
+                        self.outbox.send(Event::TakeUnreadable { message });
+                    }
+                }
+                Err(error) => {
+                    // Once, and not for every frame of a damaged second.
+                    self.playback.set_playing(false);
+                    self.outbox.send(Event::TakeUnreadable { message: error.to_string() });
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,313 @@
+//! The simulation thread, driven as the window drives it.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
+
+use lovelock_project::files::Access;
+
+use super::*;
+use crate::engine::Engine;
+use crate::scene::SceneLoader;
+use crate::testing::small_project;
+
+/// Long enough for the slowest machine; a test that passes waits for a fraction of it.
+const PATIENCE_MS: f64 = 60_000.0;
+
+fn start(project: lovelock_project::Project) -> (Worker, Arc<AtomicU64>) {
+    let woken = Arc::new(AtomicU64::new(0));
+    let count = Arc::clone(&woken);
+    let wake: Wake = Arc::new(move || {
+        count.fetch_add(1, Ordering::Relaxed);
+    });
+    (Worker::start(Arc::new(project), Access::new(), wake).expect("threads"), woken)
+}
+
+fn wait<T>(what: &str, mut ready: impl FnMut() -> Option<T>) -> T {
+    let watch = crate::clock::Stopwatch::start();
+    while watch.ms() < PATIENCE_MS {
+        if let Some(value) = ready() {
+            return value;
+        }
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    panic!("waited in vain for {what}");
+}
+
+#[test]
+fn it_plays_pauses_steps_and_seeks() {
+    let (worker, woken) = start(small_project());
+    let first = wait("a frame", || worker.frame());
+    wait("time to pass", || worker.frame().filter(|frame| frame.step > first.step + 2));
+    assert!(woken.load(Ordering::Relaxed) > 2);
+    worker.set_playing(false);
+    worker.seek(3.0);
+    wait("the seek", || worker.frame().filter(|frame| (frame.time_secs - 3.0).abs() < 0.02));
+    worker.step(3);
+    let frame = wait("three steps", || worker.frame().filter(|frame| frame.time_secs > 3.04));
+    std::thread::sleep(Duration::from_millis(60));
+    assert_eq!(worker.frame().expect("a frame").time_secs, frame.time_secs, "it is paused");
+    worker.step(-2);
+    wait("two steps back", || worker.frame().filter(|now| now.time_secs < frame.time_secs));
+    worker.restart();
+    wait("the first frame", || worker.frame().filter(|frame| frame.time_secs == 0.0));
+    assert!(matches!(worker.poll_event(), Some(Event::Loaded { problems, .. }) if problems.is_empty()));
+}
+
+#[test]
+fn other_hair_is_loaded_aside_and_lights_load_nothing() {
+    let mut project = small_project();
+    let (worker, _) = start(project.clone());
+    wait("the first scene", || worker.poll_event());
+    project.lights.clear();
+    project.camera.distance = 1.0;
+    worker.set_project(Arc::new(project.clone()), Access::new());
+    project.hair.groom.wisps = 20;
+    worker.set_project(Arc::new(project), Access::new());
+    let style = wait("the other hair", || match worker.poll_event() {
+        Some(Event::Loaded { scene, .. }) => Some(Arc::clone(&scene.style)),
+        _ => None,
+    });
+    wait("it to dance", || worker.frame().filter(|frame| Arc::ptr_eq(&frame.scene.style, &style)));
+    assert!(worker.poll_event().is_none(), "one load for one change of hair");
+    assert_eq!(worker.load_progress(), None);
+}
+
+#[test]
+fn a_motion_that_ends_says_so_and_plays_again() {
+    let mut project = small_project();
+    project.motion.looping = false;
+    let (worker, _) = start(project);
+    let frame = wait("a frame", || worker.frame());
+    worker.seek(frame.scene.duration_secs() - 0.05);
+    wait("the end", || worker.poll_event().filter(|event| matches!(event, Event::EndReached)));
+    worker.set_playing(true);
+    wait("the start", || worker.frame().filter(|frame| frame.position_secs < 1.0));
+}
+
+#[test]
+fn a_panic_becomes_an_event_and_the_thread_lives() {
+    let (worker, _) = start(small_project());
+    let good = wait("a frame", || worker.frame());
+    // A hairstyle with half of its numbers missing, which no loader lets through.
+    let mut style = (*good.scene.style).clone();
+    style.guides.y.truncate(style.guides.y.len() / 2);
+    let bad = Arc::new(Scene { style: Arc::new(style), ..(*good.scene).clone() });
+    worker.put_scene(bad);
+    wait("the panic", || {
+        worker.poll_event().filter(|event| matches!(event, Event::Panicked { thread: "simulation", .. }))
+    });
+    worker.put_scene(Arc::clone(&good.scene));
+    let step = worker.frame().expect("the last frame stays").step;
+    worker.seek(1.0);
+    wait("frames again", || worker.frame().filter(|frame| frame.step != step || frame.time_secs >= 1.0));
+}
+
+/// Waits until the hair is settled at a time, and returns that frame.
+fn settled_at(worker: &Worker, secs: f64) -> Arc<FrameSnapshot> {
+    wait("settled hair", || {
+        let there = worker.frame().filter(|frame| (frame.time_secs - secs).abs() < 1e-6);
+        // What is told of the hair is told after its frame.
+        there.filter(|_| worker.settling().is_none()).and(worker.frame())
+    })
+}
+
+/// Waits until the hair is settled at a time, and holds it against that of an engine that settles there.
+fn sees_settled_hair(worker: &Worker, project: &lovelock_project::Project, secs: f64) {
+    let shown = settled_at(worker, secs);
+    let mut engine = Engine::new(Arc::clone(&shown.scene), project.simulation);
+    engine.seek(secs);
+    engine.settle();
+    assert_eq!(engine.snapshot().guides, shown.guides);
+}
+
+#[test]
+fn whoever_scrubs_sees_settled_hair_where_he_ends() {
+    let (worker, _) = start(small_project());
+    let first = wait("a frame", || worker.frame());
+    worker.set_playing(false);
+    let end = 250.0 * crate::clock::STEP_SECS;
+    for step in 0..60 {
+        worker.seek(end - f64::from(60 - step) * crate::clock::STEP_SECS);
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    worker.seek(end);
+    let shown = settled_at(&worker, end);
+    let mut engine =
+        Engine::new(Arc::clone(&first.scene), lovelock_simulation::SimulationSettings::default());
+    engine.seek(end);
+    assert_ne!(engine.snapshot().guides, shown.guides, "the control: hair that is only carried");
+    engine.settle();
+    assert_eq!(engine.snapshot().guides, shown.guides);
+    worker.step(-2);
+    engine.step_back(2);
+    engine.settle();
+    assert_eq!(engine.snapshot().guides, settled_at(&worker, 248.0 * crate::clock::STEP_SECS).guides);
+}
+
+#[test]
+fn hair_that_comes_while_time_stands_is_settled() {
+    let mut project = small_project();
+    let (worker, _) = start(project.clone());
+    wait("a frame", || worker.frame());
+    worker.set_playing(false);
+    let secs = 100.0 * crate::clock::STEP_SECS;
+    worker.seek(secs);
+    let before = settled_at(&worker, secs);
+    project.hair.groom.wisps = 20;
+    worker.set_project(Arc::new(project.clone()), Access::new());
+    wait("the other hair", || worker.frame().filter(|frame| !Arc::ptr_eq(&frame.scene, &before.scene)));
+    sees_settled_hair(&worker, &project, secs);
+}
+
+#[test]
+fn settings_that_are_changed_while_time_stands_settle_the_hair_anew() {
+    let mut project = small_project();
+    let (worker, _) = start(project.clone());
+    wait("a frame", || worker.frame());
+    worker.set_playing(false);
+    let secs = 100.0 * crate::clock::STEP_SECS;
+    worker.seek(secs);
+    let before = settled_at(&worker, secs);
+    // Dragged: one change after the other.
+    for gravity in [5.0, 4.0, 3.0, 2.0] {
+        project.simulation.gravity = gravity;
+        project.simulation.style_support = 0.0;
+        worker.set_project(Arc::new(project.clone()), Access::new());
+        std::thread::sleep(Duration::from_millis(3));
+    }
+    let mut engine = Engine::new(Arc::clone(&before.scene), project.simulation);
+    engine.seek(secs);
+    engine.settle();
+    let wanted = engine.snapshot();
+    assert_ne!(wanted.guides, before.guides, "the control: other settings, other hair");
+    wait("hair by the last settings", || worker.frame().filter(|frame| frame.guides == wanted.guides));
+    assert!((wanted.time_secs - secs).abs() < 1e-6, "time stands");
+}
+
+#[test]
+fn settling_can_be_given_up_and_time_goes_on() {
+    let mut project = small_project();
+    // Long enough to be in the middle of it.
+    project.timeline.preroll_secs = 30.0;
+    project.hair.groom.wisps = 200;
+    let (worker, _) = start(project);
+    let progress = wait("a life that is told", || worker.settling());
+    assert!(progress.done < progress.total && progress.total >= 1800, "{progress:?}");
+    assert_eq!(wait("hair in its style meanwhile", || worker.frame()).step, 0);
+    worker.cancel_settle();
+    wait("time to pass", || worker.frame().filter(|frame| frame.step > 2));
+    assert_eq!(worker.settling(), None);
+}
+
+#[test]
+fn who_looks_back_sees_settled_hair_there_and_keeps_what_was_measured() {
+    let (worker, _) = start(small_project());
+    let measured = |secs: f64| {
+        wait("a worst stretch", || {
+            worker
+                .frame()
+                .filter(|frame| frame.time_secs > secs && frame.totals.worst_stretch_found.is_some())
+        })
+    };
+    measured(0.3);
+    worker.set_playing(false);
+    worker.step(1);
+    std::thread::sleep(Duration::from_millis(60));
+    let frame = worker.frame().expect("a frame");
+    let found = frame.totals.worst_stretch_found.expect("found");
+    let secs = found.at_secs.expect("the dance has a timeline");
+    assert!(secs <= frame.position_secs && found.place.is_finite(), "{found:?}");
+    worker.look_back(secs);
+    let back = settled_at(&worker, secs);
+    assert_eq!(back.totals.worst_stretch_found, Some(found));
+    assert_eq!(back.totals.max_stretch, frame.totals.max_stretch);
+    // Whoever only goes there begins to count anew.
+    worker.seek(secs);
+    wait("counting anew", || worker.frame().filter(|frame| frame.totals.steps == 0));
+}
+
+#[test]
+fn a_load_that_another_one_replaces_is_not_told_as_cancelled() {
+    let mut project = small_project();
+    let (worker, _) = start(project.clone());
+    wait("the first scene", || worker.poll_event());
+    for wisps in 20..60 {
+        project.hair.groom.wisps = wisps;
+        // Hair that is grown reads no file; yet each is another project's, and the load before is given up.
+        project.hair.file = Some(lovelock_project::files::FileRef::new(format!("/{wisps}.hair")));
+        worker.set_project(Arc::new(project.clone()), Access::new());
+        std::thread::sleep(Duration::from_millis(3));
+    }
+    let mut told = Vec::new();
+    wait("the last hair", || {
+        told.extend(worker.poll_event());
+        worker.frame().filter(|frame| frame.scene.style.wisps.len() == 59)
+    });
+    told.extend(std::iter::from_fn(|| worker.poll_event()));
+    assert!(told.iter().all(|event| matches!(event, Event::Loaded { .. })), "{told:?}");
+}
+
+#[test]
+fn a_load_that_is_given_up_leaves_the_scene_and_the_next_one_comes() {
+    let mut project = small_project();
+    let (worker, _) = start(project.clone());
+    let before = wait("a frame", || worker.frame());
+    wait("the first scene", || worker.poll_event());
+    project.hair.groom.strands_per_wisp = 200;
+    // A machine that is busy may be done with it first: then another one is given up.
+    wait("a load that was given up", || {
+        project.hair.groom.wisps = if project.hair.groom.wisps == 400 { 300 } else { 400 };
+        worker.set_project(Arc::new(project.clone()), Access::new());
+        wait("a load", || worker.load_progress().map(drop).or_else(|| worker.poll_event().map(drop)));
+        worker.cancel_load();
+        assert_eq!(worker.load_progress(), None, "at once for the user's eyes");
+        let event = wait("what became of it", || worker.poll_event());
+        matches!(event, Event::LoadCancelled).then_some(())
+    });
+    assert!(worker.frame().is_some_and(|frame| frame.step >= before.step), "the scene plays on");
+    project.hair.groom.wisps = 20;
+    worker.set_project(Arc::new(project), Access::new());
+    wait("the next hair", || worker.frame().filter(|frame| frame.scene.style.wisps.len() == 20));
+}
+
+#[test]
+fn hair_that_is_dragged_while_time_stands_settles_once_it_is_let_go() {
+    let mut project = lovelock_project::Project::default();
+    let (worker, _) = start(project.clone());
+    wait("a frame", || worker.frame());
+    worker.set_playing(false);
+    let secs = 100.0 * crate::clock::STEP_SECS;
+    worker.seek(secs);
+    settled_at(&worker, secs);
+    while worker.poll_event().is_some() {}
+    let mut loads = 0;
+    wait("hair while it is dragged", || {
+        project.hair.groom.length += 1e-5;
+        worker.set_project(Arc::new(project.clone()), Access::new());
+        loads += u32::from(worker.poll_event().is_some_and(|event| matches!(event, Event::Loaded { .. })));
+        (loads == 5).then_some(())
+    });
+    let (last, _) = SceneLoader::new().load_now(&project, &Access::new()).expect("a scene");
+    let is_last = |frame: &FrameSnapshot| frame.scene.style.guides == last.style.guides;
+    wait("the last hair", || worker.frame().filter(|frame| is_last(frame)));
+    sees_settled_hair(&worker, &project, secs);
+}
+
+#[test]
+fn a_slider_that_is_dragged_shows_hair_on_the_way() {
+    // Much dearer to grow than the time between two requests.
+    let mut project = lovelock_project::Project::default();
+    let (worker, _) = start(project.clone());
+    wait("the first scene", || worker.poll_event());
+    let mut lengths = Vec::new();
+    wait("hair while it is dragged", || {
+        project.hair.groom.length += 1e-5;
+        worker.set_project(Arc::new(project.clone()), Access::new());
+        if let Some(Event::Loaded { scene, .. }) = worker.poll_event() {
+            lengths.push(scene.style.guides.point(0, 1).distance(scene.style.guides.point(0, 0)));
+        }
+        (lengths.len() == 3).then_some(())
+    });
+    assert!(lengths.is_sorted() && lengths[0] < lengths[2], "each is newer than the one before: {lengths:?}");
+}

@@ -1,0 +1,189 @@
+//! Everything that is compared: each method with each value of the sweeps, each transparency, each backend.
+
+use lovelock_project::Project;
+use lovelock_project::error::StudioError;
+use lovelock_project::project::Contender;
+use lovelock_render::{Backend, ShadowMethod, ShadowSettings, Transparency};
+
+use super::sweep;
+use super::sweep::Sweep;
+use crate::report::MethodReport;
+
+/// The most that one report compares.
+const MOST: usize = 512;
+
+/// One of those that are compared, and its line of the report.
+#[derive(Clone, Debug)]
+pub(super) struct Entrant {
+    pub contender: Contender,
+    pub report: MethodReport,
+}
+
+/// What is compared, in the order of the report. `backends` are those that draw: no [`Backend::Auto`] among them.
+///
+/// # Errors
+/// A setting that no method has, a value that a setting cannot have, or too much at once.
+pub(super) fn entrants(
+    project: &Project,
+    methods: &[ShadowMethod],
+    transparencies: &[Transparency],
+    backends: &[Backend],
+    sweeps: &[Sweep],
+) -> Result<Vec<Entrant>, StudioError> {
+    let methods = without_repetition(methods, ShadowMethod::ALL);
+    let transparencies = without_repetition(transparencies, &[project.picture.transparency]);
+    for sweep in sweeps {
+        let has = |method: &ShadowMethod| method.settings().iter().any(|info| info.name == sweep.setting);
+        if !methods.iter().any(has) {
+            return Err(unknown_setting(sweep, &methods));
+        }
+    }
+    let mut all = Vec::new();
+    for &method in &methods {
+        for (shadow, swept) in runs(&ShadowSettings { method, ..project.shadow }, sweeps)? {
+            for &transparency in &transparencies {
+                for &backend in backends {
+                    let contender = Contender { shadow, transparency, backend, scale: 1.0, take: None };
+                    let changes = swept.iter().map(|(setting, value)| format!("{setting}={value}"));
+                    let mut name: Vec<String> = [method.id().to_owned()].into_iter().chain(changes).collect();
+                    name.extend((transparencies.len() > 1).then(|| transparency.to_string()));
+                    name.extend((backends.len() > 1).then(|| backend.to_string()));
+                    let report = MethodReport {
+                        id: method.id().to_owned(),
+                        label: method.label().to_owned(),
+                        name: name.join(" "),
+                        transparency: transparency.id().to_owned(),
+                        backend: backend.id().to_owned(),
+                        settings: sweep::values(&shadow, method),
+                        sweep: swept.clone(),
+                        ..MethodReport::default()
+                    };
+                    all.push(Entrant { contender, report });
+                }
+            }
+        }
+        if all.len() > MOST {
+            return Err(StudioError::option(format!(
+                "more than {MOST} to compare at once: fewer methods, backends or values of a sweep"
+            )));
+        }
+    }
+    Ok(all)
+}
+
+/// A file's name for one of them: letters, digits, dots and dashes.
+pub(super) fn file_name(name: &str) -> String {
+    let plain = |letter: char| if letter.is_ascii_alphanumeric() || letter == '.' { letter } else { '-' };
+    name.chars().map(plain).collect()
+}
+
+/// Those asked for, each once; `otherwise` where none are.
+fn without_repetition<T: Copy + PartialEq>(asked: &[T], otherwise: &[T]) -> Vec<T> {
+    let mut once = Vec::new();
+    for &one in if asked.is_empty() { otherwise } else { asked } {
+        if !once.contains(&one) {
+            once.push(one);
+        }
+    }
+    once
+}
+
+/// What a run of a method is: its settings, and what sweeps changed of them.
+type Run = (ShadowSettings, Vec<(String, String)>);
+
+/// The runs of one method: every combination of the sweeps' values that it has.
+fn runs(settings: &ShadowSettings, sweeps: &[Sweep]) -> Result<Vec<Run>, StudioError> {
+    let mut runs = vec![(*settings, Vec::new())];
+    for sweep in sweeps {
+        let mut next: Vec<Run> = Vec::new();
+        for (settings, swept) in &runs {
+            for value in &sweep.values {
+                match sweep::with_value(settings, &sweep.setting, value)? {
+                    Some(changed) if next.iter().all(|(known, _)| *known != changed) => {
+                        let change = (sweep.setting.clone(), value.clone());
+                        next.push((changed, swept.iter().cloned().chain([change]).collect()));
+                    }
+                    Some(_) => {}
+                    None => {
+                        next.push((*settings, swept.clone()));
+                        break;
+                    }
+                }
+            }
+            if next.len() > MOST {
+                break;
+            }
+        }
+        runs = next;
+    }
+    Ok(runs)
+}
+
+fn unknown_setting(sweep: &Sweep, methods: &[ShadowMethod]) -> StudioError {
+    let mut known: Vec<&str> =
+        methods.iter().flat_map(|method| method.settings()).map(|info| info.name).collect();
+    known.sort_unstable();
+    known.dedup();
+    let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+    StudioError::option(format!(
+        "--sweep {}: the methods that are compared have no such setting; theirs: {known}",
+        sweep.setting
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(
+        methods: &[ShadowMethod],
+        backends: &[Backend],
+        sweeps: &[&str],
+    ) -> Result<Vec<Entrant>, StudioError> {
+        let sweeps: Vec<Sweep> = sweeps.iter().map(|text| text.parse().expect("a sweep")).collect();
+        entrants(&Project::default(), methods, &[], backends, &sweeps)
+    }
+
+    fn names(entrants: &[Entrant]) -> Vec<&str> {
+        entrants.iter().map(|entrant| entrant.report.name.as_str()).collect()
+    }
+
+    #[test]
+    fn names_say_what_differs() {
+        let all = of(&[], &[Backend::Cpu], &[]).expect("entrants");
+        let ids: Vec<_> = ShadowMethod::ALL.iter().map(|method| method.id()).collect();
+        assert_eq!(names(&all), ids);
+        let (none, maps) = (ShadowMethod::None, ShadowMethod::OccupancyMaps);
+        let both = [Backend::Cpu, Backend::Gpu];
+        let swept = of(&[none, maps, none], &both, &["slabs=4,8", "resolution=64,128"]).expect("entrants");
+        assert_eq!(names(&swept)[..3], ["none cpu", "none gpu", "occupancy-maps slabs=4 resolution=64 cpu"]);
+        assert_eq!(swept.len(), 2 + 8);
+        assert_eq!(swept[9].contender.shadow.occupancy_maps.slabs, 8);
+        assert_eq!(swept[9].contender.shadow.occupancy_maps.resolution, 128);
+        assert_eq!(file_name(names(&swept)[2]), "occupancy-maps-slabs-4-resolution-64-cpu");
+    }
+
+    #[test]
+    fn a_setting_that_nobody_has_is_refused_with_those_that_there_are() {
+        let error =
+            of(&[ShadowMethod::OccupancyMaps], &[Backend::Cpu], &["layers=3"]).expect_err("no layers");
+        assert!(error.to_string().contains("slabs") && error.exit_code() == 2, "{error}");
+        assert!(of(&[ShadowMethod::None], &[Backend::Cpu], &["slabs=4"]).is_err());
+    }
+
+    #[test]
+    fn sweeps_do_not_grow_without_bound() {
+        let many = |name: &str, step: usize| {
+            let values: Vec<String> = (0..60).map(|i| (64 + step * i).to_string()).collect();
+            format!("{name}={}", values.join(","))
+        };
+        let sweeps = [many("resolution", 16), many("slices", 1)];
+        let sweeps: Vec<&str> = sweeps.iter().map(String::as_str).collect();
+        let error = of(&[ShadowMethod::OpacityMaps], &[Backend::Cpu], &sweeps).expect_err("too many");
+        assert!(error.exit_code() == 2 && error.to_string().contains("more than 512"), "{error}");
+        assert_eq!(
+            of(&[ShadowMethod::VoxelMap], &[Backend::Cpu], &["resolution=64,64"]).map(|e| e.len()).ok(),
+            Some(1)
+        );
+    }
+}

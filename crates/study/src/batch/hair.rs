@@ -1,0 +1,58 @@
+//! Hair at one instant, lit: what every shadow is asked about.
+
+use std::sync::Arc;
+
+use glam::{Affine3A, Vec3};
+use lovelock_groom::Strands;
+use lovelock_project::Project;
+use lovelock_render::{Camera, FrameInput, HairPose, Light, MAX_LIGHTS};
+use lovelock_session::snapshot::FrameSnapshot;
+use lovelock_shadow::{LightFrame, ShadowInput};
+
+/// Hair at one instant, interpolated once for all that look at it.
+#[derive(Debug)]
+pub(super) struct Hair {
+    pub snapshot: Arc<FrameSnapshot>,
+    pub strands: Strands,
+    pub camera: Camera,
+}
+
+impl Hair {
+    pub(super) fn new(snapshot: Arc<FrameSnapshot>, project: &Project) -> Self {
+        let mut strands = Strands::default();
+        snapshot.interpolate(&mut strands);
+        let camera = snapshot.camera(&project.camera);
+        Self { snapshot, strands, camera }
+    }
+
+    /// What a picture of it is made of, by the settings of `project`.
+    pub(super) fn frame_input<'a>(&'a self, project: &'a Project) -> FrameInput<'a> {
+        FrameInput {
+            hair: HairPose::Strands(&self.strands),
+            ..self.snapshot.frame_input(project, &self.camera)
+        }
+    }
+
+    /// What a map of `light` is made of, as drawing makes it.
+    pub(super) fn shadow_input(&self, project: &Project, light: &Light) -> ShadowInput<'_> {
+        ShadowInput {
+            strands: &self.strands,
+            strand_width: project.look.shadow_width(self.snapshot.scene.style.strands.count()),
+            light: LightFrame::new(light.direction),
+            anchor: self.snapshot.guides.world_from_head.translation.into(),
+            maps: 1,
+        }
+    }
+
+    /// Where the head is, with the lattice of maps moved by `shift`, metres in world space.
+    pub(super) fn head_moved_by(&self, shift: Vec3) -> Affine3A {
+        let mut head = self.snapshot.guides.world_from_head;
+        head.translation += glam::Vec3A::from(shift);
+        head
+    }
+}
+
+/// The lights that shine, as drawing takes them.
+pub(super) fn lights(project: &Project) -> Vec<Light> {
+    project.lights.iter().filter(|light| light.enabled).take(MAX_LIGHTS).map(Light::clamped).collect()
+}

@@ -1,0 +1,129 @@
+//! How still a method stands from frame to frame of a film.
+
+use std::sync::Arc;
+
+use lovelock_metrics::{Stability, flicker, pop};
+use lovelock_project::Project;
+use lovelock_project::error::StudioError;
+use lovelock_render::{FrameInput, Light, Picture, Renderer};
+use lovelock_session::snapshot::FrameSnapshot;
+
+use super::hair::Hair;
+use super::truth::{Truth, converge};
+use super::work::Tell;
+use crate::report::{FootprintTruth, NamedTruth, Reference};
+
+/// Pictures that nobody looks at are this large.
+pub(super) const SMALL: u32 = 16;
+
+/// What all frames of all truths may take together, bytes.
+const MOST_BYTES: u64 = 4 << 30;
+
+/// Transmittance of the first light at every strand point, as `renderer` draws with it.
+pub(super) fn drawn(renderer: &mut Renderer, input: &FrameInput) -> Result<Vec<f32>, StudioError> {
+    renderer.picture(input, SMALL, SMALL, &mut Picture::default())?;
+    Ok(renderer.transmittance(0)?)
+}
+
+/// Whether the transmittance of so many frames of points fits in memory, for every truth and for a method.
+///
+/// # Errors
+/// What does not fit, with the numbers.
+pub(super) fn fits(what: &str, frames: u64, points: usize, truths: usize) -> Result<(), String> {
+    let bytes = frames.saturating_mul(points as u64).saturating_mul(4 * (truths as u64 + 1));
+    if bytes > MOST_BYTES {
+        return Err(format!(
+            "{what} over {frames} frames of {points} points need {} MiB, more than the limit of {} MiB: ask for less at once",
+            bytes >> 20,
+            MOST_BYTES >> 20
+        ));
+    }
+    Ok(())
+}
+
+/// The frames of a comparison, and what is true in them.
+pub(super) struct Film {
+    snapshots: Vec<Arc<FrameSnapshot>>,
+    /// For each truth its transmittance, frame after frame; none where it is not known.
+    truths: Vec<Option<Vec<Vec<f32>>>>,
+}
+
+impl Film {
+    /// Finds the truth in every frame; `tell` is called before each. `reference` is told how well those of frames after the
+    /// first converged (of each frame that which changed most), and which could not be had.
+    ///
+    /// # Errors
+    /// What `tell` returns.
+    pub(super) fn new(
+        (first_frame, snapshots): (u64, &[Arc<FrameSnapshot>]),
+        project: &Project,
+        light: &Light,
+        known: &[Truth],
+        reference: &mut Reference,
+        mut tell: impl FnMut() -> Result<(), StudioError>,
+    ) -> Result<Self, StudioError> {
+        let mut truths: Vec<_> =
+            known.iter().map(|truth| truth.transmittance.is_ok().then(Vec::new)).collect();
+        for (frame, snapshot) in snapshots.iter().enumerate() {
+            let hair = Hair::new(Arc::clone(snapshot), project);
+            let name = format!("frame {}", first_frame + frame as u64);
+            let mut worst: Option<FootprintTruth> = None;
+            for (of_truth, known) in truths.iter_mut().zip(known) {
+                let Some(frames) = of_truth else { continue };
+                tell()?;
+                let found = if let (0, Ok(found)) = (frame, &known.transmittance) {
+                    Ok(found.clone())
+                } else {
+                    let (found, facts) = converge((&hair, project, light), &known.settings);
+                    if found.is_ok() && worst.as_ref().is_none_or(|worst| worst.change < facts.change) {
+                        worst = Some(facts);
+                    }
+                    found
+                };
+                match found {
+                    Ok(found) => frames.push(found),
+                    Err(error) => {
+                        *of_truth = None;
+                        reference.refused.push(format!("the truth of {name}: {error}"));
+                    }
+                }
+            }
+            reference.others.extend(worst.map(|facts| NamedTruth::new(name, &facts)));
+        }
+        Ok(Self { snapshots: snapshots.to_vec(), truths })
+    }
+
+    /// Pop, and flicker against the truth of this number.
+    ///
+    /// # Errors
+    /// As drawing, or what `tell` returns, which is asked before each frame.
+    pub(super) fn watch(
+        &self,
+        renderer: &mut Renderer,
+        project: &Project,
+        truth: usize,
+        tell: &mut Tell,
+    ) -> Result<(Stability, Option<Stability>), StudioError> {
+        let mut frames = Vec::with_capacity(self.snapshots.len());
+        for snapshot in &self.snapshots {
+            tell()?;
+            let hair = Hair::new(Arc::clone(snapshot), project);
+            frames.push(drawn(renderer, &hair.frame_input(project))?);
+        }
+        let truth = self.truths.get(truth).and_then(Option::as_ref);
+        Ok((pop(&frames), truth.map(|truth| flicker(&frames, truth))))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_film_that_does_not_fit_is_refused_with_the_numbers() {
+        assert_eq!(fits("pop", 30, 100_000, 2), Ok(()));
+        let error = fits("pop", 10_000, 1_000_000, 2).expect_err("110 GiB");
+        assert!(error.contains("10000 frames") && error.contains("4096 MiB"), "{error}");
+        assert!(fits("pop", u64::MAX, usize::MAX, 9).is_err());
+    }
+}

@@ -1,0 +1,192 @@
+//! The truth that methods are held against.
+//!
+//! *Footprint truth* is converged transmittance: the mean of the light over the texel of the method's own map, which is the
+//! best that a method can know. *Point truth* is the exact method on the finest map that the strands allow, read in the texel
+//! that a point lies in: what is there, with all that a texel is too coarse for.
+
+use glam::Vec3;
+use lovelock_metrics::errors;
+use lovelock_project::Project;
+use lovelock_render::{Light, ShadowMethod, ShadowSettings, TEXEL_RESOLUTIONS, TexelFilter};
+use lovelock_shadow::{
+    CONVERGED_CHANGE, CpuShadow, ExactMap, ShadowError, ShadowInput, converged, cpu_shadow,
+};
+
+use super::hair::Hair;
+use crate::report::{FootprintTruth, PointTruth};
+
+/// Points with fewer fragments before them are where light enters.
+const FIRST: u32 = 10;
+
+/// Which mean is asked for: maps with the same footprint are held against the same truth.
+#[derive(Clone, Debug, PartialEq)]
+enum Footprint {
+    /// Edge of a cell, metres, and cells.
+    Cells(f32, u64),
+    /// Edge of a texel, metres, and texels.
+    Texels(f32, u64),
+    /// That of a map that cannot be made: its settings, and why.
+    Unknown(ShadowSettings, String),
+}
+
+/// Converged transmittance of the first light at every strand point, for one footprint.
+#[derive(Debug)]
+pub(super) struct Truth {
+    footprint: Footprint,
+    /// Settings of a method that has this footprint.
+    pub settings: ShadowSettings,
+    /// Transmittance, or why there is none.
+    pub transmittance: Result<Vec<f32>, String>,
+    pub facts: FootprintTruth,
+}
+
+impl Truth {
+    /// Texels or cells of the maps that have this footprint.
+    pub(super) fn cells(&self) -> Option<u64> {
+        match self.footprint {
+            Footprint::Cells(_, cells) | Footprint::Texels(_, cells) => Some(cells),
+            Footprint::Unknown(..) => None,
+        }
+    }
+}
+
+/// The truths of one instant.
+#[derive(Debug, Default)]
+pub(super) struct Truths(pub Vec<Truth>);
+
+impl Truths {
+    /// Which truth the method of `settings` is held against, found now where it is new, and the edge of a texel or a cell of
+    /// its map, metres. `name` is noted there.
+    pub(super) fn find(
+        &mut self,
+        (hair, project, light): (&Hair, &Project, &Light),
+        settings: &ShadowSettings,
+        name: Option<&str>,
+    ) -> (usize, Option<f32>) {
+        let (footprint, cell_size) = footprint((hair, project, light), settings);
+        let known = self.0.iter().position(|truth| truth.footprint == footprint);
+        let at = known.unwrap_or_else(|| {
+            // What is too much for the method is too much for a truth that is finer still.
+            let (transmittance, facts) = match &footprint {
+                Footprint::Unknown(_, why) => (Err(why.clone()), FootprintTruth::default()),
+                _ => converge((hair, project, light), settings),
+            };
+            self.0.push(Truth { footprint, settings: *settings, transmittance, facts });
+            self.0.len() - 1
+        });
+        if let Some(name) = name {
+            self.0[at].facts.methods.push(name.to_owned());
+        }
+        (at, cell_size)
+    }
+}
+
+/// The footprint of the method's map. `none` has that of `exact`.
+fn footprint(
+    (hair, project, light): (&Hair, &Project, &Light),
+    settings: &ShadowSettings,
+) -> (Footprint, Option<f32>) {
+    let has_map = settings.method != ShadowMethod::None;
+    let method = if has_map { settings.method } else { ShadowMethod::Exact };
+    let settings = ShadowSettings { method, ..*settings };
+    let mut map = cpu_shadow(method);
+    if let Err(error) = map.build(&hair.shadow_input(project, light), &settings) {
+        return (Footprint::Unknown(settings, error.to_string()), None);
+    }
+    let report = map.report();
+    let footprint = if method == ShadowMethod::VoxelMap {
+        Footprint::Cells(report.cell_size, report.cells_total)
+    } else {
+        Footprint::Texels(report.cell_size, report.cells_total)
+    };
+    (footprint, has_map.then_some(report.cell_size))
+}
+
+/// Edge of a texel (of a cell) of the method's map, metres; none where it has no map, and where it cannot be made.
+pub(super) fn cell_size(place: (&Hair, &Project, &Light), settings: &ShadowSettings) -> Option<f32> {
+    footprint(place, settings).1
+}
+
+/// Converged transmittance at every strand point, and how well it converged.
+pub(super) fn converge(
+    (hair, project, light): (&Hair, &Project, &Light),
+    settings: &ShadowSettings,
+) -> (Result<Vec<f32>, String>, FootprintTruth) {
+    let strands = &hair.strands;
+    converge_at(&hair.shadow_input(project, light), settings, [&strands.x, &strands.y, &strands.z])
+}
+
+/// The same at any points, world space, metres.
+pub(super) fn converge_at(
+    input: &ShadowInput,
+    settings: &ShadowSettings,
+    points: [&[f32]; 3],
+) -> (Result<Vec<f32>, String>, FootprintTruth) {
+    match converged(input, settings, points) {
+        Ok(found) => {
+            let facts = FootprintTruth {
+                methods: Vec::new(),
+                converged: found.change <= CONVERGED_CHANGE,
+                samples: found.samples,
+                change: found.change,
+                changes: found.changes,
+                points: found.transmittance.len() as u64,
+            };
+            (Ok(found.transmittance), facts)
+        }
+        Err(error) => (Err(error.to_string()), FootprintTruth::default()),
+    }
+}
+
+/// The truth at points.
+#[derive(Debug)]
+pub(super) struct Points {
+    pub map: ExactMap,
+    pub transmittance: Vec<f32>,
+    /// Points with few fragments before them.
+    pub first: Vec<usize>,
+    pub facts: PointTruth,
+}
+
+impl Points {
+    /// # Errors
+    /// Hair that needs more memory than the exact method may use, with the numbers.
+    pub(super) fn new(hair: &Hair, project: &Project, light: &Light) -> Result<Self, ShadowError> {
+        let (map, transmittance, edge) = exact(hair, project, light, *TEXEL_RESOLUTIONS.end())?;
+        // On a small head of few strands there is no coarser map.
+        let (_, coarser, _) = exact(hair, project, light, edge / 2)?;
+        let change = errors(&coarser, &transmittance).rmse as f32;
+        let strands = &hair.strands;
+        let at = |point: usize| Vec3::new(strands.x[point], strands.y[point], strands.z[point]);
+        let all: Vec<Vec3> = (0..strands.points()).map(at).collect();
+        let before = map.fragments_before(&all);
+        let first =
+            before.iter().enumerate().filter(|(_, count)| **count < FIRST).map(|(at, _)| at).collect();
+        let facts = PointTruth { resolution: edge, memory_bytes: map.report().memory_bytes, change };
+        Ok(Self { map, transmittance, first, facts })
+    }
+
+    /// Whether `settings` make the very map that is the truth here: it must not be held against itself.
+    pub(super) fn is_made_by(&self, settings: &ShadowSettings, cell_size: Option<f32>) -> bool {
+        settings.method == ShadowMethod::Exact && cell_size == Some(self.map.report().cell_size)
+    }
+}
+
+/// The exact method with at most so many texels along the edge: its map, what it says at every strand point, and the texels
+/// that there are.
+fn exact(
+    hair: &Hair,
+    project: &Project,
+    light: &Light,
+    resolution: u32,
+) -> Result<(ExactMap, Vec<f32>, u32), ShadowError> {
+    let mut settings = ShadowSettings { method: ShadowMethod::Exact, ..project.shadow };
+    (settings.exact.resolution, settings.exact.filter) = (resolution, TexelFilter::Nearest);
+    let mut map = ExactMap::default();
+    map.build(&hair.shadow_input(project, light), &settings)?;
+    let strands = &hair.strands;
+    let mut transmittance = vec![1.0; strands.points()];
+    map.transmittance_at(&strands.x, &strands.y, &strands.z, &mut transmittance);
+    let edge = (map.report().cells_total as f64).sqrt().round() as u32;
+    Ok((map, transmittance, edge))
+}

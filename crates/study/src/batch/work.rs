@@ -1,0 +1,266 @@
+//! The parts of a comparison, one after the other.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use lovelock_metrics::pareto;
+use lovelock_project::Project;
+use lovelock_project::error::StudioError;
+use lovelock_render::{Light, Picture, Renderer, ShadowMethod, ShadowSettings, ValueRenderer};
+use lovelock_session::progress::{Progress, tell};
+use lovelock_session::snapshot::FrameSnapshot;
+use lovelock_shadow::CONVERGED_CHANGE;
+
+use super::entrants::Entrant;
+use super::folder::Folder;
+use super::hair::Hair;
+use super::light_sweep::LightSweep;
+use super::probe::Probe;
+use super::request::CompareRequest;
+use super::stability::{Film, fits};
+use super::swim::frames_shifted;
+use super::truth::{Points, Truths};
+use super::{maps, probe};
+use crate::report::{CompareReport, MethodReport};
+
+/// Asked now and then whether to go on.
+pub(super) type Tell<'a> = dyn FnMut() -> Result<(), StudioError> + 'a;
+
+/// What all parts of the work need.
+pub(super) struct Work<'a> {
+    pub project: &'a Project,
+    pub request: &'a CompareRequest,
+    pub folder: &'a Folder,
+    pub size: [u32; 2],
+    /// Those that shine; one at least.
+    pub lights: Vec<Light>,
+}
+
+/// What an entrant is measured against.
+pub(super) struct Against<'a> {
+    pub hair: &'a Hair,
+    pub truths: &'a Truths,
+    /// Which of them is the same for all.
+    pub common: usize,
+    pub points: Option<&'a Points>,
+    pub picture: Option<&'a Picture>,
+    pub film: Option<&'a Film>,
+    /// The frames in which maps are shifted.
+    pub shifted: &'a [Arc<FrameSnapshot>],
+    pub light_sweep: Option<&'a LightSweep>,
+    /// A number for each pixel, finite where it shows hair.
+    pub hair_pixels: &'a [f32],
+}
+
+impl Work<'_> {
+    /// Does all of it, part by part; what is finished is in the report and in its folder.
+    ///
+    /// # Errors
+    /// [`StudioError::Cancelled`], or what cannot be written.
+    pub(super) fn run(
+        &self,
+        snapshots: &[Arc<FrameSnapshot>],
+        entrants: Vec<Entrant>,
+        renderers: &mut [Renderer],
+        report: &mut CompareReport,
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<(), StudioError> {
+        let total = entrants.len() as u64 + 2;
+        let mut done = 0;
+        let mut part = |what: String, is_next: bool| {
+            done += u64::from(is_next);
+            tell(progress, Progress::Comparing { what, done: done.min(total), total })
+        };
+        let Some(first) = snapshots.first() else { return Ok(()) };
+        let hair = Hair::new(Arc::clone(first), self.project);
+        let mut truths = Truths::default();
+        let mut found = Vec::new();
+        for entrant in &entrants {
+            part(format!("the truth for {}", entrant.report.name), false)?;
+            let place = (&hair, self.project, &self.lights[0]);
+            found.push(truths.find(place, &entrant.contender.shadow, Some(&entrant.report.name)));
+        }
+        part("the truth at points".to_owned(), true)?;
+        let points = match Points::new(&hair, self.project, &self.lights[0]) {
+            Ok(points) => Some(points),
+            Err(error) => {
+                report.reference.refused.push(format!("the truth at points: {error}"));
+                None
+            }
+        };
+        part("the reference picture".to_owned(), true)?;
+        let shadow = ShadowSettings { method: ShadowMethod::Exact, ..self.project.shadow };
+        let (common, _) = truths.find((&hair, self.project, &self.lights[0]), &shadow, None);
+        let picture = self.reference(&hair, &truths.0[common], report)?;
+        note_truths(report, &truths, points.as_ref());
+        let film = self.film(snapshots, &truths, report, &mut part)?;
+        let shifted = frames_shifted(snapshots.len());
+        report.swim_frames = shifted.iter().map(|at| report.frames[0] + *at as u64).collect();
+        let shifted: Vec<_> = shifted.iter().map(|at| Arc::clone(&snapshots[*at])).collect();
+        let place = (&hair, self.project, &self.lights[0]);
+        let tell = || part("the truth under a light that turns".to_owned(), false);
+        let light_sweep = LightSweep::new(place, &truths.0, &mut report.reference, tell)?;
+        let light_sweep = light_sweep.map_err(|refused| report.notes.push(refused)).ok();
+
+        let mut values = ValueRenderer::default();
+        let input = hair.frame_input(self.project);
+        let known = truths.0.iter().find_map(|truth| truth.transmittance.as_ref().ok());
+        let known = known.or(points.as_ref().map(|points| &points.transmittance));
+        let lit = vec![1.0; hair.strands.points()];
+        let numbers = known.unwrap_or(&lit);
+        let hair_pixels = maps::at_pixels(&mut values, &input, numbers, self.size)?;
+        let mut probes = self.probes(&mut values, &hair, &hair_pixels, points.as_ref(), report);
+        report.reference.settle();
+
+        let against = Against {
+            hair: &hair,
+            truths: &truths,
+            common,
+            points: points.as_ref(),
+            picture: picture.as_ref(),
+            film: film.as_ref(),
+            shifted: &shifted,
+            light_sweep: light_sweep.as_ref(),
+            hair_pixels: &hair_pixels,
+        };
+        report.legends = maps::kinds(film.is_some()).map(|kind| kind.legend()).collect();
+        for (entrant, (truth, cell_size)) in entrants.into_iter().zip(found) {
+            let name = entrant.report.name.clone();
+            part(name.clone(), false)?;
+            let backend = entrant.contender.backend;
+            let Some(renderer) = renderers.iter_mut().find(|open| open.backend() == backend) else {
+                continue;
+            };
+            let mut entrant = entrant;
+            renderer.adapter().clone_into(&mut entrant.report.adapter);
+            entrant.report.cell_size_m = cell_size;
+            entrant.report.cells_total = cell_size.and(truths.0[truth].cells());
+            let tools = (&mut *renderer, &mut values, &mut probes[..]);
+            let result = self.measure(&mut entrant, &against, (truth, cell_size), tools, &mut || {
+                part(name.clone(), false)
+            });
+            match result {
+                Ok(()) => {}
+                // What does not fit costs its own numbers alone; a full disk costs everything.
+                Err(StudioError::Work { file: None, message }) => entrant.report.refused = Some(message),
+                Err(error) => return Err(error),
+            }
+            report.methods.push(entrant.report);
+            mark_fronts(report);
+            report.probes = probes.iter().map(|probe| probe.report.clone()).collect();
+            self.folder.report(report)?;
+            part(format!("{name} is done"), true)?;
+        }
+        Ok(())
+    }
+
+    /// The rays that are looked at. A pixel that shows no hair costs its own ray alone.
+    fn probes(
+        &self,
+        values: &mut ValueRenderer,
+        hair: &Hair,
+        hair_pixels: &[f32],
+        points: Option<&Points>,
+        report: &mut CompareReport,
+    ) -> Vec<Probe> {
+        let usual;
+        let pixels = if self.request.probes.is_empty() {
+            usual = probe::usual_pixels(hair_pixels, self.size[0]);
+            &usual
+        } else {
+            &self.request.probes
+        };
+        let mut probes = Vec::new();
+        for &pixel in pixels {
+            let (input, light) = (hair.frame_input(self.project), &self.lights[0]);
+            let shadow_input = hair.shadow_input(self.project, light);
+            match Probe::new(values, &input, self.size, pixel, shadow_input.light, points) {
+                Some(mut probe) => {
+                    // Where the exact map does not fit, what is finer than it takes minutes.
+                    if points.is_some() {
+                        let reference = &mut report.reference;
+                        match probe.find_reference(&shadow_input, &self.project.shadow) {
+                            Ok(facts) => reference.probes.push(facts),
+                            Err(error) => {
+                                reference.refused.push(format!("the truth of the {}: {error}", probe.name()));
+                            }
+                        }
+                    }
+                    probes.push(probe);
+                }
+                None => report.notes.push(format!("the probe at {},{} meets no hair", pixel[0], pixel[1])),
+            }
+        }
+        probes
+    }
+
+    /// The frames for pop and flicker; none for a single one.
+    fn film(
+        &self,
+        snapshots: &[Arc<FrameSnapshot>],
+        truths: &Truths,
+        report: &mut CompareReport,
+        part: &mut dyn FnMut(String, bool) -> Result<(), StudioError>,
+    ) -> Result<Option<Film>, StudioError> {
+        if snapshots.len() < 2 {
+            return Ok(None);
+        }
+        let points = report.scene.points as usize;
+        if let Err(refused) = fits("pop and flicker", snapshots.len() as u64, points, truths.0.len()) {
+            report.notes.push(refused);
+            return Ok(None);
+        }
+        let tell = || part("the truth frame by frame".to_owned(), false);
+        let frames = (report.frames[0], snapshots);
+        Film::new(frames, self.project, &self.lights[0], &truths.0, &mut report.reference, tell).map(Some)
+    }
+}
+
+/// Puts what is known of the truth into the report.
+fn note_truths(report: &mut CompareReport, truths: &Truths, points: Option<&Points>) {
+    let reference = &mut report.reference;
+    reference.limit = CONVERGED_CHANGE;
+    for truth in &truths.0 {
+        match &truth.transmittance {
+            Ok(_) => reference.footprints.push(truth.facts.clone()),
+            Err(error) => {
+                let of = truth.facts.methods.join(", ");
+                let of = if of.is_empty() { "exact" } else { &of };
+                reference.refused.push(format!("the truth for the texels of {of}: {error}"));
+            }
+        }
+    }
+    reference.settle();
+    reference.points = points.map(|points| points.facts.clone());
+}
+
+/// Marks the methods that none of the same backend and transparency beats in error and cost.
+fn mark_fronts(report: &mut CompareReport) {
+    let methods = &mut report.methods;
+    let error = |method: &MethodReport| method.front_error().unwrap_or(f64::NAN);
+    let time = |method: &MethodReport| {
+        let stages = method.ms.and_then(|ms| Some(ms.build? + ms.query?));
+        stages.unwrap_or(f64::NAN)
+    };
+    let memory = |method: &MethodReport| method.memory_bytes.map_or(f64::NAN, |bytes| bytes as f64);
+    let mut fronts = vec![[false; 2]; methods.len()];
+    for (at, method) in methods.iter().enumerate() {
+        let key = |method: &MethodReport| (method.backend.clone(), method.transparency.clone());
+        let same: Vec<usize> = (0..methods.len()).filter(|&i| key(&methods[i]) == key(method)).collect();
+        // Each group once, by its first.
+        if same.first() != Some(&at) {
+            continue;
+        }
+        let points = |cost: &dyn Fn(&MethodReport) -> f64| -> Vec<(f64, f64)> {
+            same.iter().map(|&i| (cost(&methods[i]), error(&methods[i]))).collect()
+        };
+        let of_time = pareto(&points(&time));
+        let of_memory = pareto(&points(&memory));
+        for (k, &i) in same.iter().enumerate() {
+            fronts[i] = [of_time[k], of_memory[k]];
+        }
+    }
+    for (method, [of_time, of_memory]) in methods.iter_mut().zip(fronts) {
+        (method.front_of_time, method.front_of_memory) = (of_time, of_memory);
+    }
+}

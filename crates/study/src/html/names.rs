@@ -1,0 +1,110 @@
+//! What each method is called on the page, and its colour.
+
+use std::fmt::Write as _;
+
+use lovelock_render::ShadowMethod;
+
+use super::words::escaped;
+use crate::report::{CompareReport, MethodReport};
+
+/// Colours that are told apart on white, also by the colour-blind: one for each method, in the order of the menu.
+const COLORS: [&str; 10] = [
+    "#7d8590", "#0072b2", "#c98500", "#d1490f", "#a8467f", "#00825f", "#202124", "#4b9fd6", "#6b4fa0",
+    "#8a6d1f",
+];
+
+/// The colour of a method, the same in every plot of every report.
+pub(super) fn color(method: &MethodReport) -> &'static str {
+    let index =
+        ShadowMethod::ALL.iter().position(|known| known.id() == method.id).unwrap_or(COLORS.len() - 1);
+    COLORS[index % COLORS.len()]
+}
+
+/// Names of the methods of one report: as short as they can be and still differ.
+pub(super) struct Names {
+    backends: bool,
+    transparencies: bool,
+}
+
+impl Names {
+    pub(super) fn of(report: &CompareReport) -> Self {
+        let differ = |key: fn(&MethodReport) -> &str| {
+            report.methods.windows(2).any(|pair| key(&pair[0]) != key(&pair[1]))
+        };
+        Self {
+            backends: differ(|method| &method.backend),
+            transparencies: differ(|method| &method.transparency),
+        }
+    }
+
+    /// The name, with whatever tells it from the others.
+    pub(super) fn full(&self, method: &MethodReport) -> String {
+        let mut name = self.within_group(method);
+        if self.transparencies {
+            let _ = write!(name, " · {}", method.transparency);
+        }
+        if self.backends {
+            let _ = write!(name, " · {}", backend(&method.backend));
+        }
+        name
+    }
+
+    /// The name among those of one backend and transparency.
+    #[expect(clippy::unused_self, reason = "read beside `full`")]
+    pub(super) fn within_group(&self, method: &MethodReport) -> String {
+        let mut name = if method.label.is_empty() { method.id.clone() } else { method.label.clone() };
+        for (setting, value) in &method.sweep {
+            let _ = write!(name, " · {} {value}", setting.replace('_', " "));
+        }
+        name
+    }
+
+    /// The cell of a table that names a method.
+    pub(super) fn cell(&self, method: &MethodReport) -> String {
+        format!(
+            "<th scope=\"row\"><i class=\"swatch\" style=\"background:{}\"></i>{}</th>",
+            color(method),
+            escaped(&self.within_group(method))
+        )
+    }
+}
+
+/// Methods whose costs can be compared: those of one backend, adapter and transparency, in the order of the report.
+pub(super) struct Group<'a> {
+    /// Where and how they were drawn, for a heading.
+    pub(super) title: String,
+    /// The backend alone: CPU or GPU.
+    pub(super) backend: &'static str,
+    /// Each with its place in the report.
+    pub(super) methods: Vec<(usize, &'a MethodReport)>,
+}
+
+/// The groups of a report, in the order in which they come.
+pub(super) fn groups<'a>(report: &'a CompareReport, names: &Names) -> Vec<Group<'a>> {
+    let key = |method: &'a MethodReport| (&method.backend, &method.adapter, &method.transparency);
+    let mut groups: Vec<Group<'a>> = Vec::new();
+    for (index, method) in report.methods.iter().enumerate() {
+        if let Some(group) = groups.iter_mut().find(|group| key(group.methods[0].1) == key(method)) {
+            group.methods.push((index, method));
+            continue;
+        }
+        let mut title = format!("On the {}", backend(&method.backend));
+        if !method.adapter.is_empty() {
+            let _ = write!(title, ": {}", method.adapter);
+        }
+        if names.transparencies {
+            let _ = write!(title, ", transparency {}", method.transparency);
+        }
+        groups.push(Group { title, backend: backend(&method.backend), methods: vec![(index, method)] });
+    }
+    groups
+}
+
+/// A backend as people write it.
+pub(super) fn backend(id: &str) -> &'static str {
+    match id {
+        "cpu" => "CPU",
+        "gpu" => "GPU",
+        _ => "device",
+    }
+}

@@ -1,0 +1,70 @@
+//! Pictures and maps: the wipe, and all of one kind beside each other.
+
+use super::names::{Names, color};
+use super::words::{address, escaped};
+use crate::report::{CompareReport, MethodFiles};
+use std::fmt::Write as _;
+
+/// The file of one kind among those of a method.
+type File = fn(&MethodFiles) -> &Option<String>;
+
+/// Kinds of pictures: the word in the page, the heading of the button, and the file of a method.
+const KINDS: [(&str, &str, File); 6] = [
+    ("picture", "Picture", |files| &files.picture),
+    ("transmittance-error", "Transmittance error", |files| &files.transmittance_error),
+    ("picture-error", "Picture error (FLIP)", |files| &files.picture_error),
+    ("swim", "Swim", |files| &files.swim),
+    ("pop", "Pop", |files| &files.pop),
+    ("flicker", "Flicker", |files| &files.flicker),
+];
+
+/// The wipe between any two pictures of one kind, and below it all of that kind. Empty where there are no pictures.
+pub(super) fn section(report: &CompareReport, names: &Names) -> String {
+    let mut buttons = String::new();
+    let mut cards = String::new();
+    for (kind, title, file) in KINDS {
+        let mut of_kind = String::new();
+        let reference = (kind == "picture").then_some(report.reference.picture.as_ref()).flatten();
+        if let Some(file) = reference {
+            of_kind += &card(kind, file, "Reference", "#202124");
+        }
+        for method in &report.methods {
+            if let Some(file) = file(&method.files) {
+                of_kind += &card(kind, file, &names.full(method), color(method));
+            }
+        }
+        if !of_kind.is_empty() {
+            let says =
+                report.legends.iter().find(|legend| legend.of == kind).map_or("", |legend| &legend.title);
+            let _ = write!(
+                buttons,
+                "<button type=\"button\" data-kind=\"{kind}\" title=\"{}\">{title}</button>",
+                escaped(says)
+            );
+            cards += &of_kind;
+        }
+    }
+    if cards.is_empty() {
+        return String::new();
+    }
+    let first = if report.reference.picture.is_some() { "the reference" } else { "the first" };
+    format!(
+        "<div class=\"controls\"><div class=\"kinds\" role=\"group\" aria-label=\"Kind of picture\">{buttons}</div>\
+         <label>Left <select id=\"left\"></select></label><label>Right <select id=\"right\"></select></label>\
+         <label>Zoom <select id=\"zoom\"><option>1</option><option>2</option><option>4</option></select></label></div>\
+         <div class=\"box\"><div id=\"wipe\" tabindex=\"0\" role=\"slider\" aria-label=\"Split between left and right\" \
+         aria-valuemin=\"0\" aria-valuemax=\"100\" aria-valuenow=\"50\"><img id=\"under\" alt=\"\" draggable=\"false\">\
+         <img id=\"over\" alt=\"\" draggable=\"false\"><i id=\"split\"></i></div></div>\
+         <p class=\"note\" id=\"hint\">Drag the line, or move it with the arrow keys; hold F to see the left picture alone. At first \
+         {first} is on the left.</p>\
+         <div id=\"cards\" class=\"cards\" data-kind=\"picture\">{cards}</div>"
+    )
+}
+
+fn card(kind: &str, file: &str, name: &str, color: &str) -> String {
+    let (file, name) = (escaped(&address(file)), escaped(name));
+    format!(
+        "<figure data-kind=\"{kind}\" data-name=\"{name}\"><img src=\"{file}\" alt=\"{name}\"><figcaption>\
+         <i class=\"swatch\" style=\"background:{color}\"></i>{name}</figcaption></figure>"
+    )
+}
