@@ -43,7 +43,7 @@ impl Window {
                     let fitted = scene.iter().flat_map(|scene| {
                         scene.fitted.iter().map(|of| panels::colliders::Fitted {
                             name: of.name.as_str(),
-                            spared: edits.is_spared(of, scene.field.as_deref()),
+                            spared: edits.is_replaced(of, scene.field.as_deref()),
                         })
                     });
                     let fitted: Vec<_> = fitted.collect();

@@ -112,7 +112,7 @@ fn wires(snapshot: &FrameSnapshot, edits: &ColliderEdits) -> Vec<Wires> {
         |(i, (fitted, at))| {
             let mut lines = Vec::new();
             collider_lines(&at.shape, &mut lines);
-            let met = edits.of(&fitted.name).enabled && !edits.is_spared(fitted, scene.field.as_deref());
+            let met = edits.of(&fitted.name).enabled && !edits.is_replaced(fitted, scene.field.as_deref());
             Wires { index: Some(i), name: fitted.name.clone(), lines, met }
         },
     ));

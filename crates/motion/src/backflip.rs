@@ -81,7 +81,7 @@ pub fn backflip(body: &Body) -> Option<Clip> {
         track(shin, &|k| k.knee, Quat::IDENTITY);
     }
     for arm in [arm_left, arm_right] {
-        track(arm, &|k| -k.arm, hanging(body, arm));
+        track(arm, &|k| -k.arm, arm_down(body, arm));
     }
     let spine: Vec<usize> = figure.spine.iter().copied().filter(|&j| j != hips).collect();
     for &joint in &spine {
@@ -149,7 +149,7 @@ fn in_parent(body: &Body, joint: usize, turn: Quat) -> Quat {
 }
 
 /// The rotation that makes an arm hang straight down, slightly to the side.
-fn hanging(body: &Body, arm: usize) -> Quat {
+fn arm_down(body: &Body, arm: usize) -> Quat {
     let skeleton = &body.skeleton;
     let child = (0..skeleton.joints.len()).find(|&j| {
         skeleton.joints[j].parent == Some(arm)

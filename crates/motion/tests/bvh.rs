@@ -96,7 +96,7 @@ fn refusals_name_the_line() {
         ("HIERARCHY\nROOT a\n{\n OFFSET 0 0 0\nMOTION\n", "still open"),
         (
             "HIERARCHY\nROOT a\n{ OFFSET 0 0 0 CHANNELS 1 Xrotation }\nMOTION\nFrames: 0\nFrame Time: 1\n",
-            "no frame",
+            "no complete frame",
         ),
         ("HIERARCHY\nROOT a\n{ OFFSET 0 0 0 }\n}\n", "brace too many"),
     ] {

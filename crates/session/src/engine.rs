@@ -223,7 +223,7 @@ impl Engine {
         self.at_step = (self.scene.position_secs(time_secs) / self.step_secs).round() as i64;
         if !Arc::ptr_eq(&before.colliders, &self.scene.colliders) {
             // As many of them may be other ones.
-            self.simulation.forget_colliders();
+            self.simulation.invalidate_colliders();
         }
         if !same_layout || !same_body {
             self.lay_at_rest(self.at_step, f64::NEG_INFINITY);

@@ -163,7 +163,8 @@ impl DensityGrid {
     /// and hair that flies apart gains no more than it would have if it were nowhere denser than that. The
     /// sum is of integers, so the order does not matter.
     pub(crate) fn volume(&self) -> f32 {
-        (self.counts.fullness as f64 / f64::from(self.most()) * f64::from(self.lattice.cell).powi(3)) as f32
+        (self.counts.fullness as f64 / f64::from(self.full_mass()) * f64::from(self.lattice.cell).powi(3))
+            as f32
     }
 
     /// The volume that the hair fills at rest, cubic metres.
@@ -172,12 +173,12 @@ impl DensityGrid {
     }
 
     /// The mass at which a cell is full.
-    fn most(&self) -> i32 {
+    fn full_mass(&self) -> i32 {
         self.full.clamp(1.0, 2e9) as i32
     }
 
     /// Whether the grid affects the hair.
-    fn acts(&self) -> bool {
+    fn has_effect(&self) -> bool {
         (self.repulsion.strength > 0.0 || self.repulsion.cohesion > 0.0) && self.counts.held > 0
     }
 
@@ -198,7 +199,7 @@ impl DensityGrid {
                 add_block(width, &lattice, source, block, cells);
             }
         });
-        let (most, inv_threshold) = (self.most(), 1.0 / self.repulsion.threshold);
+        let (most, inv_threshold) = (self.full_mass(), 1.0 / self.repulsion.threshold);
         let Some((all, others)) = self.parts.split_first_mut() else { return };
         self.counts = all.gather(others, most, inv_threshold);
     }

@@ -133,7 +133,7 @@ impl Simulation {
 
     /// Treats the colliders of the next step as new ones even if their number is unchanged, so that their
     /// arrangement around the hair at rest is found again.
-    pub fn forget_colliders(&mut self) {
+    pub fn invalidate_colliders(&mut self) {
         self.colliders.clear();
     }
 

@@ -97,7 +97,7 @@ impl ColliderEdits {
     pub fn apply(&self, fitted: &[Collider], field: Option<&BodyField>) -> Vec<Collider> {
         let used = fitted.iter().filter_map(|collider| {
             let edit = self.of(&collider.name);
-            (edit.enabled && !self.is_spared(collider, field))
+            (edit.enabled && !self.is_replaced(collider, field))
                 .then(|| Collider { shape_at_rest: edit.apply(&collider.shape_at_rest), ..collider.clone() })
         });
         used.collect()
@@ -105,8 +105,8 @@ impl ColliderEdits {
 
     /// The shapes that the field replaces: hair does not collide with them, but they shelter it from the
     /// wind.
-    pub fn stood_for(&self, fitted: &[Collider], field: Option<&BodyField>) -> Vec<Collider> {
-        fitted.iter().filter(|collider| self.is_spared(collider, field)).cloned().collect()
+    pub fn replaced_by_field(&self, fitted: &[Collider], field: Option<&BodyField>) -> Vec<Collider> {
+        fitted.iter().filter(|collider| self.is_replaced(collider, field)).cloned().collect()
     }
 
     /// The edit of the collider with that name.
@@ -125,7 +125,7 @@ impl ColliderEdits {
 
     /// Whether an enabled field replaces a collider of unedited size and place. Hair then does not collide
     /// with it, whether or not it is enabled.
-    pub fn is_spared(&self, collider: &Collider, field: Option<&BodyField>) -> bool {
+    pub fn is_replaced(&self, collider: &Collider, field: Option<&BodyField>) -> bool {
         let as_fitted = ColliderEdit { enabled: true, ..self.of(&collider.name) } == ColliderEdit::default();
         as_fitted && self.field.enabled && field.is_some_and(|field| field.covers(&collider.shape_at_rest))
     }

@@ -44,7 +44,7 @@ fn guess_facing(body: &Body) -> Facing {
     let thigh = |side: Side| figure.get(Role::Thigh(side)).map(|j| body.skeleton.rest_position(j));
     let forward = match (thigh(Side::Left), thigh(Side::Right)) {
         (Some(left), Some(right)) => (left - right).normalize_or_zero().cross(Vec3::Y),
-        _ => toes(body).unwrap_or(Vec3::Z),
+        _ => sole_direction(body).unwrap_or(Vec3::Z),
     };
     // Only clear quarter turns are undone.
     match (forward.x, forward.z) {
@@ -57,7 +57,7 @@ fn guess_facing(body: &Body) -> Facing {
 }
 
 /// Direction in which the soles extend from the ankles, for an upright figure without names.
-fn toes(body: &Body) -> Option<Vec3> {
+fn sole_direction(body: &Body) -> Option<Vec3> {
     let height = body.height();
     let low = body.mesh.positions.iter().map(|p| p.y).reduce(f32::min)?;
     let mean = |from: f32, to: f32| {

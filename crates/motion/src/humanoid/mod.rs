@@ -134,7 +134,8 @@ impl Humanoid {
             put(Role::Foot(side), best(&[Part::Foot], s));
             put(Role::Toe(side), best(&[Part::Toe], s));
         }
-        let meet = |a: Option<usize>, b: Option<usize>| Some(common(parents, &depth, a?, b?)).flatten();
+        let meet =
+            |a: Option<usize>, b: Option<usize>| Some(common_ancestor(parents, &depth, a?, b?)).flatten();
         let find = |joints: &BTreeMap<Role, usize>, role| joints.get(&role).copied();
         let legs = meet(find(&joints, Role::Thigh(Side::Left)), find(&joints, Role::Thigh(Side::Right)));
         let arms =
@@ -194,7 +195,7 @@ fn depths(parents: &[Option<usize>]) -> Vec<usize> {
 }
 
 /// The lowest common ancestor, which may be one of the two.
-fn common(parents: &[Option<usize>], depth: &[usize], mut a: usize, mut b: usize) -> Option<usize> {
+fn common_ancestor(parents: &[Option<usize>], depth: &[usize], mut a: usize, mut b: usize) -> Option<usize> {
     while a != b {
         if depth[a] >= depth[b] {
             a = parents[a]?;

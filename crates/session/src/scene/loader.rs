@@ -235,7 +235,7 @@ impl SceneLoader {
         }
         let field = body.field.as_deref();
         let met =
-            [edits.apply(&body.colliders, field).into(), edits.stood_for(&body.colliders, field).into()];
+            [edits.apply(&body.colliders, field).into(), edits.replaced_by_field(&body.colliders, field).into()];
         self.colliders = Some((Arc::clone(body), edits.clone(), met.clone()));
         met
     }

@@ -44,13 +44,13 @@ impl Boxes {
 
     /// The indices of the boxes within `reach` of the box from `min` to `max`, in order.
     #[inline(always)]
-    pub(crate) fn near(&self, min: Vec3, max: Vec3, reach: f32) -> Reached<'_> {
-        Reached { groups: &self.groups, next: 0, bits: 0, min, max, reach }
+    pub(crate) fn near(&self, min: Vec3, max: Vec3, reach: f32) -> NearBoxes<'_> {
+        NearBoxes { groups: &self.groups, next: 0, bits: 0, min, max, reach }
     }
 }
 
 /// See [`Boxes::near`].
-pub(crate) struct Reached<'a> {
+pub(crate) struct NearBoxes<'a> {
     groups: &'a [(Lane3, Lane3)],
     /// The next group, and the remaining hits of the previous one, one bit each.
     next: usize,
@@ -60,7 +60,7 @@ pub(crate) struct Reached<'a> {
     reach: f32,
 }
 
-impl Reached<'_> {
+impl NearBoxes<'_> {
     #[inline(always)]
     fn bits_of(&self, (low, high): &(Lane3, Lane3)) -> u32 {
         let mut far = Lane::splat(0.0);
@@ -78,7 +78,7 @@ impl Reached<'_> {
     }
 }
 
-impl Iterator for Reached<'_> {
+impl Iterator for NearBoxes<'_> {
     type Item = usize;
 
     #[inline(always)]

@@ -95,7 +95,7 @@ pub(crate) fn place(
         let world = if on_head {
             transformed(&rest.shapes[i], world_from_head)
         } else {
-            between(&was.shape, &collider.shape, t)
+            interpolated(&was.shape, &collider.shape, t)
         };
         let local = transformed(&world, &Affine3A::from_translation(-origin));
         let shape = Shape::new(&local);
@@ -128,7 +128,7 @@ pub(crate) fn transformed(shape: &ColliderShape, m: &Affine3A) -> ColliderShape 
 }
 
 /// Interpolates the shape of a collider between two times.
-fn between(was: &ColliderShape, now: &ColliderShape, t: f32) -> ColliderShape {
+fn interpolated(was: &ColliderShape, now: &ColliderShape, t: f32) -> ColliderShape {
     match (*was, *now) {
         (
             ColliderShape::Capsule { a, b, radius_a, radius_b },
@@ -142,7 +142,7 @@ fn between(was: &ColliderShape, now: &ColliderShape, t: f32) -> ColliderShape {
         (ColliderShape::Ellipsoid { from_unit: m0 }, ColliderShape::Ellipsoid { from_unit: m1 }) => {
             let (s0, r0, t0) = m0.to_scale_rotation_translation();
             let (s1, r1, t1) = m1.to_scale_rotation_translation();
-            let turn = safe(r0).slerp(safe(r1), t);
+            let turn = normalized_or_identity(r0).slerp(normalized_or_identity(r1), t);
             let from_unit = Affine3A::from_scale_rotation_translation(s0.lerp(s1, t), turn, t0.lerp(t1, t));
             ColliderShape::Ellipsoid { from_unit }
         }
@@ -150,7 +150,7 @@ fn between(was: &ColliderShape, now: &ColliderShape, t: f32) -> ColliderShape {
     }
 }
 
-fn safe(q: Quat) -> Quat {
+fn normalized_or_identity(q: Quat) -> Quat {
     if q.is_finite() && q.length_squared() > 1e-6 { q.normalize() } else { Quat::IDENTITY }
 }
 

@@ -53,7 +53,7 @@ fn between(from: &Lane3, to: &Lane3) -> Lane3 {
 
 /// Takes the even lanes from one row and the odd lanes from another.
 #[inline(always)]
-fn alternate(rows: &[Lane3], even: usize, odd: usize) -> Lane3 {
+fn interleave(rows: &[Lane3], even: usize, odd: usize) -> Lane3 {
     let (even, odd) = (rows[even], rows[odd]);
     let mut out = ZERO3;
     for k in 0..LANES {
@@ -125,13 +125,13 @@ fn add(lattice: &Lattice, source: &Source, block: &Block, cells: &mut Cells) {
     for i in (first..points).step_by(stride) {
         let odd = (i + on).min(points - 1);
         let there = [true, i + on < points];
-        let (mut p, mut v, mut t) = (alternate(&block.rest.position, i, odd), ZERO3, ZERO3);
+        let (mut p, mut v, mut t) = (interleave(&block.rest.position, i, odd), ZERO3, ZERO3);
         if let Source::Now { head_from_last, directed } = source {
-            let here = alternate(&block.position, i, odd);
-            v = alternate(&block.velocity, i, odd);
+            let here = interleave(&block.position, i, odd);
+            v = interleave(&block.velocity, i, odd);
             if *directed {
-                let before = alternate(&block.position, i.saturating_sub(1), odd.saturating_sub(1));
-                let after = alternate(&block.position, (i + 1).min(points - 1), (odd + 1).min(points - 1));
+                let before = interleave(&block.position, i.saturating_sub(1), odd.saturating_sub(1));
+                let after = interleave(&block.position, (i + 1).min(points - 1), (odd + 1).min(points - 1));
                 t = between(&before, &after);
             }
             for k in 0..LANES {

@@ -102,7 +102,7 @@ impl DensityGrid {
         for keep in &mut block.work.keep {
             *keep = Lane::splat(1.0);
         }
-        if !self.acts() {
+        if !self.has_effect() {
             return;
         }
         let count = block.points();
@@ -111,7 +111,7 @@ impl DensityGrid {
         loop {
             let next = self.effect(block, step, to);
             if to > 0 {
-                between(
+                add_interpolated(
                     block,
                     from..if to + 1 == count { count } else { to },
                     to - from,
@@ -182,7 +182,7 @@ struct GridEffect {
 /// Interpolates the effect over `points` from `row`, at the first of them, to `next`, `run` points further
 /// on.
 #[inline(always)]
-fn between(
+fn add_interpolated(
     block: &mut Block,
     points: Range<usize>,
     run: usize,

@@ -164,7 +164,7 @@ impl Simulation {
                 }
             }
             if t < 1.0 {
-                between(from, to, t * t * (3.0 - 2.0 * t), &mut block.rest);
+                interpolate_rest(from, to, t * t * (3.0 - 2.0 * t), &mut block.rest);
             } else {
                 block.rest.clone_from(to);
             }
@@ -193,7 +193,7 @@ fn directions(block: &Block, from_head: &Map) -> Vec<Lane3> {
 
 /// Interpolates the rest shape: its links are rotated by the fraction `t` from the directions `from` to those
 /// of `to`.
-fn between(from: &[Lane3], to: &RestShape, t: f32, out: &mut RestShape) {
+fn interpolate_rest(from: &[Lane3], to: &RestShape, t: f32, out: &mut RestShape) {
     let points = to.position.len();
     for k in 0..LANES {
         for i in 1..points {

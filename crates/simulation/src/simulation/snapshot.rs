@@ -130,7 +130,7 @@ impl Simulation {
         if input.u64()? != fingerprint(&self.style.guides) {
             return Err(RestoreError::Style);
         }
-        let Some((held, check)) = bytes.split_last_chunk::<8>() else { return Err(short()) };
+        let Some((held, check)) = bytes.split_last_chunk::<8>() else { return Err(truncated()) };
         if u64::from_le_bytes(*check) != sum(held) {
             return Err(damaged("the checksum does not match"));
         }
@@ -261,7 +261,7 @@ fn damaged(problem: &str) -> RestoreError {
     RestoreError::Damaged { problem: problem.to_owned() }
 }
 
-fn short() -> RestoreError {
+fn truncated() -> RestoreError {
     damaged("it is truncated")
 }
 
@@ -304,7 +304,7 @@ struct Reader<'a>(&'a [u8]);
 
 impl Reader<'_> {
     fn take<const N: usize>(&mut self) -> Result<[u8; N], RestoreError> {
-        let (head, rest) = self.0.split_first_chunk::<N>().ok_or_else(short)?;
+        let (head, rest) = self.0.split_first_chunk::<N>().ok_or_else(truncated)?;
         self.0 = rest;
         Ok(*head)
     }

@@ -283,7 +283,7 @@ pub fn drive(bytes: &[u8]) -> Coverage {
             18 => {
                 body.edit(&mut input);
                 if input.byte().is_multiple_of(2) {
-                    simulation.forget_colliders();
+                    simulation.invalidate_colliders();
                 }
                 coverage.edited += u32::from(body.figure);
             }

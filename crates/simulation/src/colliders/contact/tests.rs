@@ -24,7 +24,7 @@ fn splat(p: Vec3) -> Lane3 {
 const RULES: ContactRules = ContactRules { margin: 0.0, layering: 0.0, friction: 0.0, h: 1.0 / 240.0 };
 
 /// Places a point at the end of a link from `from` toward `wanted`, over one collider, without friction.
-fn lay(shape: ColliderShape, from: Vec3, wanted: Vec3, length: f32) -> Vec3 {
+fn place(shape: ColliderShape, from: Vec3, wanted: Vec3, length: f32) -> Vec3 {
     let shapes = [still(shape)];
     let near = Near {
         shapes: &shapes,
@@ -46,14 +46,14 @@ fn lay(shape: ColliderShape, from: Vec3, wanted: Vec3, length: f32) -> Vec3 {
         &Lane::splat(length),
         &near,
         &RULES,
-        &mut nowhere(),
+        &mut no_planes(),
     )
     .placed;
     at(&placed, 7)
 }
 
 /// Planes of a row without a field.
-fn nowhere() -> PlaneRow {
+fn no_planes() -> PlaneRow {
     PlaneRow::unknown(PlaneRow::NO_SKIN)
 }
 
@@ -73,7 +73,7 @@ fn push_out_of_a_sphere_is_exact_in_distance_and_length() {
     let mut pushed = 0;
     for (from, wanted, length) in cases() {
         let sphere = ColliderShape::Capsule { a: c, b: c, radius_a: 0.12, radius_b: 0.12 };
-        let x = lay(sphere, from, wanted, length);
+        let x = place(sphere, from, wanted, length);
         let free = from + (wanted - from).normalize_or_zero() * length;
         // Positions of 0.1 m in f32: 1e-8 each, a dozen operations.
         assert!(((x - from).length() - length).abs() < 2e-7, "length {}", (x - from).length());
@@ -109,7 +109,7 @@ fn push_out_of_capsules_and_ellipsoids_ends_on_the_surface() {
                 continue;
             }
             pushed += 1;
-            let x = lay(shape, from, wanted, length);
+            let x = place(shape, from, wanted, length);
             assert!(((x - from).length() - length).abs() < 2e-7);
             // Two iterations with the touching sphere leave at most a tenth of a hair's width.
             assert!(query.distance(x).abs() < exact, "{} m off {shape:?}", query.distance(x));
@@ -142,12 +142,12 @@ fn a_point_inside_at_rest_stays_inside() {
     let rules = ContactRules { margin: 0.003, ..RULES };
     let (from, wanted) = (splat(Vec3::new(0.0, 0.07, 0.0)), splat(Vec3::new(0.0, 0.08, 0.0)));
     let placed =
-        place_point(0, &from, &wanted, &wanted, &from, &Lane::splat(0.01), &near, &rules, &mut nowhere())
+        place_point(0, &from, &wanted, &wanted, &from, &Lane::splat(0.01), &near, &rules, &mut no_planes())
             .placed;
     assert!((at(&placed, 0) - Vec3::new(0.0, 0.08, 0.0)).length() < 1e-7);
     let deeper = splat(Vec3::new(0.0, 0.0, 0.0));
     let placed =
-        place_point(0, &from, &deeper, &deeper, &from, &Lane::splat(0.01), &near, &rules, &mut nowhere())
+        place_point(0, &from, &deeper, &deeper, &from, &Lane::splat(0.01), &near, &rules, &mut no_planes())
             .placed;
     assert!(at(&placed, 0).length() > 0.0799, "it must not go deeper than at rest: {}", at(&placed, 0));
 }
@@ -190,7 +190,7 @@ fn hair_with_an_enclosed_root_leaves_along_a_slope() {
         // Unconstrained, it would continue inside.
         let wanted = splat(at(&before, 0) + Vec3::new(0.01, -0.002, 0.0));
         let placed =
-            place_point(i, &before, &wanted, &wanted, &root, &length, &near, &RULES, &mut nowhere()).placed;
+            place_point(i, &before, &wanted, &wanted, &root, &length, &near, &RULES, &mut no_planes()).placed;
         let least = (0.1 - 0.02 + 0.005 * i as f32).min(0.1);
         assert!(
             at(&placed, 0).length() > least - 2e-4,

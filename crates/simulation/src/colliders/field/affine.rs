@@ -61,7 +61,7 @@ impl From<Lane> for Affine {
 /// Trilinear interpolation of eight values, x fastest, at the fractions `f`, and its derivatives along the
 /// axes.
 #[inline(always)]
-pub(super) fn between(q: &[Vec4; 8], f: Vec3) -> (Vec4, [Vec4; 3]) {
+pub(super) fn trilinear(q: &[Vec4; 8], f: Vec3) -> (Vec4, [Vec4; 3]) {
     let mix = |a: Vec4, b: Vec4, t: f32| a + (b - a) * t;
     let edge: [Vec4; 4] = std::array::from_fn(|i| mix(q[2 * i], q[2 * i + 1], f.x));
     let step: [Vec4; 4] = std::array::from_fn(|i| q[2 * i + 1] - q[2 * i]);

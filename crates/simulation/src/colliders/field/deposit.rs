@@ -44,7 +44,7 @@ impl Probes {
 
 /// An occupied cell, with the probe nearest to its centre.
 #[derive(Clone, Copy, Debug)]
-struct Occupied {
+struct OccupiedCell {
     index: u32,
     at: IVec3,
     place: Vec3,
@@ -58,7 +58,7 @@ const FREE: u32 = u32::MAX;
 /// The occupied cells at the start or at the end of a step.
 #[derive(Clone, Debug)]
 pub(super) struct StepEnd {
-    occupied: Vec<Occupied>,
+    occupied: Vec<OccupiedCell>,
     /// For each cell its index in `occupied`.
     own: Vec<u32>,
     /// Position of each probe; empty if unknown.
@@ -157,7 +157,7 @@ fn place_all(probes: &Probes, grid: &CellGrid, joints: &Joints, end: &mut StepEn
             let index = grid.row(cell.y, cell.z) + cell.x as usize;
             let own = &mut end.own[index];
             let (squared, slot) = (squared[k], slots[k]);
-            let found = Occupied { index: index as u32, at: cell, place: at(&place, k), squared, slot };
+            let found = OccupiedCell { index: index as u32, at: cell, place: at(&place, k), squared, slot };
             match end.occupied.get_mut(*own as usize) {
                 Some(known) if squared < known.squared => *known = found,
                 Some(_) => {}

@@ -3,7 +3,7 @@
 
 use glam::{Mat3, Mat4, Vec3, Vec4};
 
-use super::affine::{Affine, between};
+use super::affine::{Affine, trilinear};
 use super::planes::{NONE, NOWHERE};
 use super::rows::{Places, normal_of};
 use super::{
@@ -200,7 +200,7 @@ impl MovingField {
                 let mapped = |slot: u16| self.mapped(here, slot, t);
                 mixed[k] = slots != [slots[0]; 8];
                 let (mean, along) = if mixed[k] {
-                    between(&slots.map(mapped), at(&places.fraction, k))
+                    trilinear(&slots.map(mapped), at(&places.fraction, k))
                 } else {
                     (mapped(slots[0]), [Vec4::ZERO; 3])
                 };
