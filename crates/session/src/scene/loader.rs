@@ -234,8 +234,10 @@ impl SceneLoader {
             return met.clone();
         }
         let field = body.field.as_deref();
-        let met =
-            [edits.apply(&body.colliders, field).into(), edits.replaced_by_field(&body.colliders, field).into()];
+        let met = [
+            edits.apply(&body.colliders, field).into(),
+            edits.replaced_by_field(&body.colliders, field).into(),
+        ];
         self.colliders = Some((Arc::clone(body), edits.clone(), met.clone()));
         met
     }
