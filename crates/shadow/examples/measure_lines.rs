@@ -1,5 +1,5 @@
-//! What pre-filtered lines change in density clustering: error against the converged shadow, and swimming, which is how much
-//! the light of a point changes while hair and lattice move against each other.
+//! The effect of pre-filtered lines on density clustering: the error against the converged shadow, and the swimming, the change of the
+//! light at a point while hair and lattice move relative to each other.
 //!
 //! `cargo run --release -p lovelock-shadow --example measure_lines` prints a table.
 
@@ -14,9 +14,9 @@ use grooms::Groom;
 use lovelock_groom::Preset;
 use lovelock_shadow::{CpuShadow, ShadowMethod, ShadowSettings, TexelFilter, converged, cpu_shadow};
 
-/// Points that are asked.
+/// The number of points.
 const POINTS: usize = 4000;
-/// Places of the lattice, within a texel.
+/// The number of positions of the lattice, within a texel.
 const SHIFTS: usize = 16;
 
 fn main() {
@@ -54,8 +54,7 @@ fn axes(of: &[Vec3]) -> (Vec<f32>, Vec<f32>, Vec<f32>) {
     (axis(|p| p.x), axis(|p| p.y), axis(|p| p.z))
 }
 
-/// Root mean squares: the difference from the truth at one place, and the deviation over many places from their mean. And
-/// the number of fragments.
+/// The RMSE against the reference at one position, the standard deviation over many positions, and the number of fragments.
 fn measure(groom: &Groom, settings: &ShadowSettings, at: &[Vec3], truth: &[f32]) -> (f64, f64, u64) {
     let (x, y, z) = axes(at);
     let mut map = cpu_shadow(ShadowMethod::DensityClustering);

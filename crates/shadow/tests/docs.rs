@@ -1,4 +1,4 @@
-//! `docs/shadow_methods.md` names every method as the registry does, and has a measured row for each on every hairstyle.
+//! `docs/shadow_methods.md` agrees with the registry and has a measured row per method and hairstyle.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ fn document() -> String {
     std::fs::read_to_string(path).expect("the document is there")
 }
 
-/// What `examples/measure_methods` wrote.
+/// The part that `examples/measure_methods` writes.
 fn measured(document: &str) -> &str {
     let (_, rest) = document.split_once("<!-- measured:begin -->").expect("a begin");
     rest.split_once("<!-- measured:end -->").expect("an end").0
@@ -29,7 +29,7 @@ fn both_backends(section: &str) -> &str {
     &section[at..]
 }
 
-/// The cells of the row of a method in a table; `None` where there is no such row.
+/// The cells of the row of a method in a table; `None` if there is no such row.
 fn row<'a>(text: &'a str, first: &str) -> Option<Vec<&'a str>> {
     let rows = text.lines().map(|line| line.trim_matches('|').split('|').map(str::trim).collect::<Vec<_>>());
     rows.into_iter().find(|cells| cells[0] == first && cells.len() > 1)
@@ -75,7 +75,7 @@ fn every_method_is_measured_on_every_hairstyle() {
                 assert!((0.0..=1.0).contains(&number(head)), "{hairstyle}: {method}: {head}");
             }
             assert!((-1.0..=1.0).contains(&number("bias")));
-            // What this proves about the numbers themselves: `exact` is its own truth, and nothing is as wrong as none.
+            // Checks of the numbers: `exact` is its own reference, and `none` has the largest error.
             assert_eq!(method == ShadowMethod::Exact, number("exact") == 0.0, "{hairstyle}: {method}");
             assert_eq!(method == ShadowMethod::None, number("exact") > 0.2, "{hairstyle}: {method}");
             assert!(number("build, ms") >= 0.0 && number("lookups, ms") >= 0.0 && number("map") >= 0.0);
@@ -102,7 +102,7 @@ fn every_method_is_measured_on_both_backends() {
             let first = row(section, &format!("`{method}`")).expect("a row of every method");
             let exact = alone.iter().position(|head| *head == "exact").expect("a column");
             assert_eq!(cell("exact, CPU"), first[exact], "{hairstyle}: {method}: of the same run");
-            // Rounding to 8 bits, as tests/gpu_agreement.rs has it.
+            // Rounding to 8 bits, as in tests/gpu_agreement.rs.
             assert!(number("difference") <= 0.0021, "{hairstyle}: {method}");
             assert!((number("exact, GPU") - number("exact, CPU")).abs() <= 0.0011, "{hairstyle}: {method}");
             assert_eq!(number("held, GPU") > 0.0, method != ShadowMethod::None, "{hairstyle}: {method}");

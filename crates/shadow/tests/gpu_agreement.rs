@@ -1,5 +1,5 @@
-//! Every method on the GPU against its definition on the processor: transmittance at seeded points with every filter, and
-//! the error against every fragment sorted.
+//! Compares every method on the GPU with its definition on the CPU: transmittance at seeded points with every filter, and the error
+//! against the exact method.
 
 mod common;
 #[path = "common/gpu.rs"]
@@ -15,13 +15,13 @@ use lovelock_groom::{Preset, Strands};
 use lovelock_shadow::voxel_map::{MapExtent, VoxelDeposit, VoxelFilter};
 use lovelock_shadow::{ShadowInput, ShadowMethod, ShadowSettings, TexelFilter, cpu_shadow};
 
-/// Points that are asked.
+/// The number of points.
 const POINTS: usize = 4096;
 
 /// Differences of transmittance between the two, sorted.
 #[derive(Debug)]
 struct Differences {
-    /// 99 of 100 stay below.
+    /// The 99th percentile.
     p99: f32,
     most: f32,
 }
@@ -38,16 +38,16 @@ impl Differences {
     }
 }
 
-/// How near answers of the GPU come to those of the definition. Half a step of their 8 bits is 0.00196. Measured: 0.00196 at
-/// most over 99 of 100 points, and 0.00206 over all, but for one method.
+/// The tolerance of transmittance on the GPU. Half a step of its 8 bits is 0.00196. Measured: at most 0.00196 for the 99th percentile
+/// and 0.00206 for the maximum, except for one method.
 fn tolerance(method: ShadowMethod) -> Differences {
-    // A fragment half way between two centres may go to either. Measured: 0.038.
+    // A fragment half way between two centres may go to either one. Measured: 0.038.
     let most = if method == ShadowMethod::DensityClustering { 0.05 } else { 0.0025 };
     Differences { p99: 0.0021, most }
 }
 
-/// How far the error against `exact` may be from that of the definition. Measured: 0.00074 where that is 0, by rounding to
-/// 8 bits; 0.00050 elsewhere.
+/// The tolerance of the error against `exact`. Measured: 0.00074 if the error of the definition is 0, from rounding to 8 bits; 0.00050
+/// otherwise.
 const EXCESS: f32 = 0.001;
 
 /// Points of the hair, near it and beside it.
@@ -66,7 +66,7 @@ fn points(strands: &Strands, seed: u64) -> Vec<Vec3> {
         .collect()
 }
 
-/// The definition's answers.
+/// Transmittance by the definition.
 fn defined(method: ShadowMethod, input: &ShadowInput, settings: &ShadowSettings, at: &[Vec3]) -> Vec<f32> {
     let mut map = cpu_shadow(method);
     map.build(input, settings).expect("fits");
@@ -88,7 +88,7 @@ fn with_filter(filter: TexelFilter) -> ShadowSettings {
     settings
 }
 
-/// Settings that change how a map is read or, of the voxel map, made.
+/// Settings that change lookups or, for the voxel map, builds.
 fn variants(method: ShadowMethod) -> Vec<ShadowSettings> {
     match method {
         ShadowMethod::None => vec![ShadowSettings::default()],
@@ -128,7 +128,7 @@ fn transmittance_is_that_of_the_definition_with_every_filter() {
                 assert!(found.within(&tolerance(method)), "{}, {method}, {variant}: {found:?}", groom.name);
                 shaded += defined.iter().filter(|t| **t < 0.9).count();
             }
-            // Controls: there is shadow to speak of.
+            // Control: there is a substantial shadow.
             assert_eq!(
                 shaded > POINTS / 100,
                 method != ShadowMethod::None,
@@ -150,7 +150,7 @@ fn the_error_against_every_fragment_sorted_is_that_of_the_definition() {
             let definition = rmse(&defined(method, &groom.input(), &settings, &at), &truth);
             let on_gpu = rmse(&Built::new(gpu, method, &groom.input(), &settings).look_up(&at), &truth);
             println!("{method}, {}: {definition:.5}, excess {:.5}", groom.name, on_gpu - definition);
-            // Both ways: what is wrong can come nearer by chance.
+            // Both signs: a wrong result may be nearer to the reference by chance.
             assert!(
                 (on_gpu - definition).abs() <= EXCESS,
                 "{}, {method}: {on_gpu}, of the definition {definition}",
@@ -160,7 +160,7 @@ fn the_error_against_every_fragment_sorted_is_that_of_the_definition() {
     }
 }
 
-/// A strand's points in the middle fifth of the hair's extent along the light are left out, with the rest of the strand.
+/// Removes the points in the middle fifth of the hair's extent along the light.
 fn without_a_slab(groom: &Groom) -> Strands {
     let light = groom.input().light;
     let along = |p: Vec3| light.light_from_world(p).x;
@@ -171,7 +171,7 @@ fn without_a_slab(groom: &Groom) -> Strands {
     let mut kept: Vec<Vec<Vec3>> = Vec::new();
     for ends in hair.first_point.windows(2) {
         let strand = (ends[0] as usize..ends[1] as usize).map(|i| hair.point(i));
-        // Those before and behind it stay, as strands of their own.
+        // The points before and behind it remain as separate strands.
         for part in strand.collect::<Vec<_>>().split(|p| (first..last).contains(&along(*p))) {
             kept.push(part.to_vec());
         }
@@ -179,7 +179,7 @@ fn without_a_slab(groom: &Groom) -> Strands {
     common::strands(&kept)
 }
 
-/// What each comparison must find out.
+/// Negative controls: each comparison must detect them.
 #[test]
 fn a_moved_light_a_dropped_slab_and_a_swapped_method_are_found_out() {
     let Some(gpu) = device() else { return };

@@ -1,4 +1,4 @@
-//! Maps on the GPU that are made again, of nothing, of broken hair, for several lights, and that do not fit.
+//! Maps on the GPU that are rebuilt, empty, of invalid hair, for several lights, and too large.
 
 mod common;
 #[path = "common/gpu.rs"]
@@ -25,7 +25,7 @@ fn hair(wisps: usize, seed: u64) -> Strands {
     strands(&grow(Style { wisps, ..SMOOTH }, seed))
 }
 
-/// Points around the head, on the hair, and what is no point.
+/// Points around the head, on the hair, and invalid points.
 fn points_around(hair: &Strands) -> Vec<Vec3> {
     let mut random = SplitMix64::new(5);
     let mut points: Vec<_> = (0..300).map(|_| HEAD + 0.3 * random.signed_vec3()).collect();
@@ -41,13 +41,13 @@ const NOWHERE: [Vec3; 4] = [
     Vec3::new(f32::MAX, f32::NEG_INFINITY, 0.0),
 ];
 
-/// Lists of fragments lie in any order: those of each texel are compared, in the order of the texels.
+/// Lists of fragments have no order: sorts them by texel for the comparison.
 fn in_order(method: ShadowMethod, words: Vec<u32>) -> Vec<u32> {
     if method != ShadowMethod::Exact {
         return words;
     }
     let total = words.len() as u64;
-    // Texels are followed by the list, which begins with a head of four words, the first of which is its length.
+    // The list follows the texels and starts with a header of four words, the first of which is its length.
     let texels = (64..=2048_u64)
         .step_by(16)
         .map(|n| 2 * n * n)
@@ -89,7 +89,7 @@ fn the_same_hair_gives_the_same_words_whatever_was_before() {
     }
 }
 
-/// Hair that is none, broken, flat, or all in one place.
+/// Hair that is empty, invalid, flat, or at a single position.
 fn bad_hair() -> Vec<(&'static str, Strands)> {
     let one = Vec3::new(0.1, 1.7, 0.05);
     let light = input(&Strands::default()).light;
@@ -125,10 +125,10 @@ fn bad_hair() -> Vec<(&'static str, Strands)> {
     ]
 }
 
-/// Differences from the definition. Half a step of 8 bits is 0.00196.
+/// The tolerance. Half a step of 8 bits is 0.00196.
 const TOLERANCE: f32 = 0.0025;
 
-/// The same of a point in hair. A fragment half way between two centres of clusters may go to either: 0.0041 was measured.
+/// The tolerance for a point in hair. A fragment half way between two centres of clusters may go to either one: 0.0041 was measured.
 fn tolerance(method: ShadowMethod) -> f32 {
     if method == ShadowMethod::DensityClustering { 0.02 } else { TOLERANCE }
 }
@@ -159,7 +159,7 @@ fn broken_hair_and_broken_points_are_as_in_the_definition() {
                 let shades = method != ShadowMethod::None
                     && extinction_scale > 0.0
                     && ["a crowded texel", "partly broken", "hair"].contains(&what);
-                // Control: hair does cast a shadow where it is no more than crowded.
+                // Control: valid hair casts a shadow.
                 assert!(!shades || least < 0.9, "{method}, {what}: {least}");
                 assert!(extinction_scale > 0.0 || least == 1.0, "{method}, {what}: {least}");
             }
@@ -202,10 +202,10 @@ fn the_sum_of_answers_the_stride_and_what_lies_behind_are_right() {
     let settings = ShadowSettings::default();
     for &method in ShadowMethod::ALL {
         let mut built = Built::new(gpu, method, &groom.input(), &settings);
-        // Every third point of the strands, in the buffer that they are in.
+        // Every third point of the strands, in place.
         let hair = Uploaded::new(gpu, &groom.strands);
         let (count, stride) = (groom.strands.points() as u32 / 3, 3);
-        // Sums are added to what is there.
+        // Sums are added to the content of the buffer.
         let mut before = vec![0_u32; SUM_WORDS as usize];
         before[0] = 7;
         let (out, sum) = (buffer(gpu, &vec![0_u32; count as usize]), buffer(gpu, &before));
@@ -265,7 +265,7 @@ fn the_sum_of_answers_the_stride_and_what_lies_behind_are_right() {
 #[test]
 fn a_list_that_was_too_short_grows_to_what_is_needed() {
     let Some(gpu) = device() else { return };
-    // 900 segments of some 250 texels each.
+    // 900 segments of about 250 texels each.
     let light = input(&Strands::default()).light;
     let at = |i: usize| {
         let side = if (i / 2 + i).is_multiple_of(2) { -1.0 } else { 1.0 };
@@ -280,7 +280,7 @@ fn a_list_that_was_too_short_grows_to_what_is_needed() {
     let report = built.shadow.report(0);
     assert!((200_000..250_000).contains(&report.samples), "{report:?}");
     assert!(report.memory_bytes >= report.needed_bytes && report.needed_bytes > 8 * report.samples);
-    // Little hair in its place needs little.
+    // Replaced by a little hair, the map needs little.
     let few = hair(2, 1);
     built.build(0, &input(&few), &settings).expect("it fits");
     built.build(0, &input(&few), &settings).expect("it fits");
@@ -330,7 +330,7 @@ fn what_does_not_fit_is_refused_with_its_bytes_and_leaves_all_lit() {
         built.build(0, &input(&hair), &ShadowSettings::default()).expect("fits");
         assert!(built.look_up(&at).iter().any(|t| *t < 0.9), "{method}: control");
     }
-    // The exact shadow finds out when it has counted.
+    // The exact method detects it after counting.
     let mut settings = ShadowSettings::default();
     settings.exact.memory_limit_bytes = 16 << 20;
     let one = ShadowInput { strand_width: 5e-4, ..input(&hair) };

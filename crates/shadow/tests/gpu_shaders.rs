@@ -25,7 +25,7 @@ fn every_composed_shader_is_valid_and_keeps_within_the_limits_of_webgpu() {
         let prefix = format!("{method}: ");
         let of: Vec<_> = shaders.iter().filter_map(|(label, _)| label.strip_prefix(&prefix)).collect();
         assert!(of.contains(&"lookup"), "{method}: {of:?}");
-        // What casts a shadow is made by passes and falls on the ground.
+        // Methods with a map have passes and cast a shadow on the ground.
         let passes = of.iter().filter(|label| label.starts_with("shadow/")).count();
         assert_eq!(
             (passes > 0, of.contains(&"columns")),

@@ -1,5 +1,4 @@
-//! What the passes of opacity maps, deep opacity maps and density clustering leave in each texel, against the records of
-//! their definitions.
+//! Compares the texels of opacity maps, deep opacity maps and density clustering on the GPU with the records of their definitions.
 
 mod common;
 #[path = "common/gpu.rs"]
@@ -19,10 +18,10 @@ use lovelock_shadow::{
     ClusterDeviation, ClusterSeeds, CpuShadow, LayerGrowth, ShadowError, ShadowMethod, ShadowSettings,
 };
 
-/// A fragment's weight is a whole number from 1024 on, wrong by at most so much of itself; sums of floats are rounded too.
+/// The relative error of the weight of a fragment, an integer from 1024 on; sums of floats are rounded too.
 const WEIGHT_ROUNDING: f32 = 0.5 / 1024.0 + 1e-5;
 
-/// Where two texels share a fragment, the smaller part is rounded as well: units that a texel's sums may be off by that.
+/// The error of the sums of a texel, in units, where two texels share a fragment: the smaller part is rounded too.
 const SHARE_ROUNDING: f32 = 8.0;
 
 fn one_strand() -> Groom {
@@ -36,7 +35,7 @@ fn all_grooms() -> Vec<Groom> {
     all
 }
 
-/// The map of the definition, and the words of that on the device.
+/// The map of the definition, and the words of the map on the GPU.
 struct Both<M: TexelMethod> {
     cpu: TexelMap<M>,
     words: Vec<u32>,
@@ -49,7 +48,7 @@ impl<M: TexelMethod> Both<M> {
         Self::of_two(groom, settings, settings)
     }
 
-    /// The definition with other settings than the device.
+    /// A definition with other settings than the GPU.
     fn of_two(groom: &Groom, on_cpu: &ShadowSettings, on_gpu: &ShadowSettings) -> Option<Self> {
         let gpu = device()?;
         let mut cpu = TexelMap::<M>::default();
@@ -60,7 +59,7 @@ impl<M: TexelMethod> Both<M> {
         Some(Self { cpu, words, unit })
     }
 
-    /// The words of each texel with the record of the texel `aside` columns on.
+    /// The words of each texel with the record of the texel `aside` columns further.
     fn texels(&self, aside: u32) -> impl Iterator<Item = (&[u32], Option<&[M::Cell]>)> {
         let n = self.cpu.frame().expect("it was built").resolution;
         let each = self.words.len() / (n * n) as usize;
@@ -68,7 +67,7 @@ impl<M: TexelMethod> Both<M> {
         texels.map(move |(words, texel)| (words, self.cpu.record(texel % n + aside, texel / n)))
     }
 
-    /// The largest difference of optical depth, as a part of what it should be, of sums that follow `first` words.
+    /// The largest relative difference of optical depth, for sums that start at word `first`.
     fn worst(&self, first: usize, aside: u32) -> f32
     where
         M: TexelMethod<Cell = f32>,
@@ -96,7 +95,7 @@ fn deep_opacity_maps(layers: u32, growth: LayerGrowth) -> ShadowSettings {
     settings
 }
 
-/// Takes the weight of the sum at `at` away, and of all after it.
+/// Removes the weight of the sum at `at` from it and from all later sums.
 fn drop_sum(words: &mut [u32], each: usize, at: usize) {
     for texel in words.chunks_exact_mut(each) {
         let weight = texel[at] - texel[at - 1];
@@ -150,12 +149,12 @@ fn layers_hold_the_optical_depth_of_the_definition() {
     }
 }
 
-/// How far bins on the device are from those of the definition.
+/// Differences between bins on the GPU and in the definition.
 #[derive(Debug)]
 struct Apart {
-    /// Share of the texels of which a bin has other hair: a fragment lies on the border of two clusters.
+    /// The fraction of texels in which a bin has different hair: a fragment lies on the border of two clusters.
     other_hair: f32,
-    /// Of the other texels, how far 99 of 100 ends of bins are off at most, in widths of the bin.
+    /// The 99th percentile of the error of the ends of bins in the other texels, in widths of the bin.
     ends: f32,
 }
 
@@ -175,7 +174,7 @@ impl Apart {
             for (a, b) in pairs().filter(|(a, _)| a.optical_depth > 0.0) {
                 let (of_a, of_b) = (1.0 / a.per_depth, 1.0 / b.per_depth);
                 let off = (a.start - b.start).abs().max((a.start + of_a - b.start - of_b).abs());
-                // Depths themselves are rounded to 6e-8.
+                // Depths are rounded to 6e-8.
                 ends.push(off / of_a.max(1e-6));
             }
         }
@@ -186,8 +185,8 @@ impl Apart {
         }
     }
 
-    /// Measured on all hairstyles with thin lines: at most 0.0009 of the texels, and 0.0004 widths. With pre-filtered ones the
-    /// smaller parts of fragments weigh a few units, rounded: 0.0016, and 0.0043.
+    /// Measured on all hairstyles with thin lines: at most 0.0009 of the texels, and 0.0004 widths. With pre-filtered lines the smaller
+    /// parts of fragments are a few units, rounded: 0.0016, and 0.0043.
     fn is_in_step(&self, settings: &ShadowSettings) -> bool {
         let (other_hair, ends) =
             if settings.density_clustering.prefiltered { (0.004, 0.01) } else { (0.002, 0.001) };
@@ -264,7 +263,7 @@ fn bins_of_other_settings_are_found_out() {
 
 #[test]
 fn many_fragments_of_one_texel_do_not_wrap() {
-    // Far more than a word of offsets holds: 1024 · 2^20 each.
+    // Far more than a word of offsets can hold: 1024 · 2^20 each.
     const COUNT: usize = 100_000;
     let Some(gpu) = device() else { return };
     let ends =
@@ -293,13 +292,13 @@ fn many_fragments_of_one_texel_do_not_wrap() {
 #[test]
 fn maps_larger_than_the_device_takes_are_refused() {
     let Some(gpu) = device() else { return };
-    // Strands so thin that texels are as fine as asked for.
+    // Strands so thin that texels have the resolution of the setting.
     let groom = Groom { width: 1e-5, ..Groom::tuft() };
     let mut settings = opacity_maps(256);
     let limit = gpu.most_storage_bytes();
     for resolution in [512, 1024] {
         settings.opacity_maps.resolution = resolution;
-        // Sizes of texels are rounded up to a sixteenth of an octave, so that there may be a few less of them.
+        // Sizes of texels are rounded up to a sixteenth of an octave, so there may be a few fewer of them.
         let most = 4 * 256 * u64::from(resolution).pow(2);
         let built = Built::try_new(gpu, ShadowMethod::OpacityMaps, &groom.input(), &settings);
         match built {
@@ -310,7 +309,7 @@ fn maps_larger_than_the_device_takes_are_refused() {
             Err(error) => panic!("{resolution}: {error}"),
         }
     }
-    // As few as always fit.
+    // Few enough to fit every device.
     settings.opacity_maps.resolution = 64;
     Built::new(gpu, ShadowMethod::OpacityMaps, &groom.input(), &settings);
 }
@@ -337,7 +336,7 @@ fn every_pass_is_timed_by_its_name() {
     for groom in [Groom::preset(Preset::Smooth)].into_iter().chain(Groom::straight()) {
         for (method, names) in of {
             let mut built = Built::new(gpu, method, &groom.input(), &ShadowSettings::default());
-            // Once more, with memory that is there.
+            // Once more, with allocated memory.
             built.build(0, &groom.input(), &ShadowSettings::default()).expect("it fits");
             let found: Vec<_> = built.passes.iter().map(|pass| pass.name.as_str()).collect();
             let times: Vec<_> =

@@ -1,4 +1,4 @@
-//! What the passes of occupancy maps, the voxel map and the exact shadow leave in memory, against their definitions.
+//! Compares the memory of occupancy maps, the voxel map and the exact method on the GPU with their definitions.
 
 mod common;
 #[path = "common/gpu.rs"]
@@ -17,7 +17,7 @@ use lovelock_shadow::methods::texels::TexelFrame;
 use lovelock_shadow::voxel_map::{MapExtent, VoxelDeposit, VoxelMap};
 use lovelock_shadow::{CpuShadow, ShadowInput, ShadowMethod, ShadowSettings};
 
-/// Depths are kept to 2^-20 of the range.
+/// Depths have a precision of 2^-20 of the range.
 const DEPTH_STEP: f32 = 1.0 / 1_048_576.0;
 
 /// Lights and strands that comparisons must find out: the second one a texel aside.
@@ -56,7 +56,7 @@ fn occupancy_bits_and_counts_are_the_same() {
             cpu.build(&groom.input(), &settings).expect("it fits");
             built.build(0, &groom.input(), &settings).expect("it fits");
             assert_eq!(wrong_occupancy(&cpu, &built.words(), of), 0, "{}, {of:?}", groom.name);
-            // Control: a texel aside.
+            // Control: moved by a texel.
             let texel_size = cpu.frame().expect("it was built").texel_size;
             built.build(0, &aside(&groom.input(), 0.5 * texel_size), &settings).expect("it fits");
             assert!(wrong_occupancy(&cpu, &built.words(), of) > 0, "{}, {of:?}", groom.name);
@@ -94,7 +94,7 @@ fn faces_of_voxels_are_the_same() {
             cpu.build(&groom.input(), &settings).expect("it fits");
             built.build(0, &groom.input(), &settings).expect("it fits");
             assert_eq!(wrong_faces(&cpu, &built.words()), 0, "{}, {resolution}", groom.name);
-            // Control: a part of a cell aside.
+            // Control: moved by a fraction of a cell.
             let cell_size = cpu.lattice().expect("it was built").cell_size;
             built.build(0, &aside(&groom.input(), 0.5 * cell_size), &settings).expect("it fits");
             assert!(wrong_faces(&cpu, &built.words()) > 0, "{}, {resolution}", groom.name);
@@ -105,7 +105,7 @@ fn faces_of_voxels_are_the_same() {
 /// Depths, as their bits, and running sums of weights of the fragments of each texel.
 type Lists = HashMap<(u32, u32), Vec<(u32, u32)>>;
 
-/// The fragments of strands by a walk from centre to centre of texels, in plain code.
+/// The fragments of strands, by plain code that advances from one texel centre to the next.
 fn walk(frame: &TexelFrame, input: &ShadowInput) -> Lists {
     let highest = (frame.resolution - 1) as f32 * (1.0 - f32::EPSILON);
     let centres_below = |c: f32| (c - 0.5).ceil() as i32;
@@ -144,7 +144,7 @@ fn walk(frame: &TexelFrame, input: &ShadowInput) -> Lists {
     lists
 }
 
-/// The lists that are in the words of a map.
+/// The lists in the words of a map.
 fn lists_of(words: &[u32], resolution: u32) -> Lists {
     let (texels, list) = words.split_at(2 * (resolution * resolution) as usize);
     let items: Vec<_> = list.chunks_exact(2).skip(2).map(|item| (item[0], item[1])).collect();
@@ -172,7 +172,7 @@ fn sorted_fragments_and_their_sums_are_the_same() {
         let found = lists_of(&built.words(), frame.resolution);
         assert!(found == walked, "{}", groom.name);
         assert_eq!(built.shadow.report(0).samples, cpu.report().samples);
-        // The walk is that of the definition, but for weights that are whole numbers: half of 1/1024 each.
+        // The same as the definition, except that weights are integers: half of 1/1024 each.
         let unit = settings.extinction_scale * groom.width / frame.texel_size / 1024.0;
         let mut texels = 0;
         for row in 0..frame.resolution {
@@ -189,7 +189,7 @@ fn sorted_fragments_and_their_sums_are_the_same() {
             }
         }
         assert_eq!(texels, walked.len());
-        // Control: a part of a texel aside.
+        // Control: moved by a fraction of a texel.
         let aside = aside(&groom.input(), 0.5 * frame.texel_size);
         built.build(0, &aside, &settings).expect("it fits");
         assert!(lists_of(&built.words(), frame.resolution) != walked, "{}", groom.name);

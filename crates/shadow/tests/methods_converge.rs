@@ -1,4 +1,4 @@
-//! The error of every method at the strands' points falls as it is given more to work with, and stays below a bound.
+//! The error of every method at the strand points falls with its settings, and stays below a bound.
 
 mod common;
 #[path = "common/grooms.rs"]
@@ -32,7 +32,7 @@ fn rmse(a: &[f32], b: &[f32]) -> f64 {
     (squares / a.len() as f64).sqrt()
 }
 
-/// What `exact` says in the same texels: found once for all tests.
+/// Transmittance by `exact` in the same texels, computed once for all tests.
 fn exact(groom: &Groom) -> &'static [f32] {
     static EXACT: OnceLock<Vec<(&str, Vec<f32>)>> = OnceLock::new();
     let of = |groom: &'static Groom| {
@@ -42,7 +42,7 @@ fn exact(groom: &Groom) -> &'static [f32] {
     all.iter().find(|(name, _)| *name == groom.name).map_or(&[], |(_, light)| light)
 }
 
-/// Usual settings, but for thin lines: those of `exact` are thin.
+/// Default settings, but with thin lines, as in `exact`.
 fn thin_lines() -> ShadowSettings {
     let mut settings = ShadowSettings::default();
     settings.density_clustering.prefiltered = false;
@@ -54,7 +54,7 @@ fn error(method: ShadowMethod, groom: &Groom, settings: &ShadowSettings) -> f64 
     rmse(&at_points(method, groom, settings), exact(groom))
 }
 
-/// A method, from little to much, with what `set` makes of each number.
+/// Checks that the error of a method falls over `steps`, each applied by `set`.
 fn falls(method: ShadowMethod, steps: &[u32], set: impl Fn(&mut ShadowSettings, u32)) {
     for groom in grooms() {
         let errors: Vec<_> = steps
@@ -100,8 +100,8 @@ fn errors_fall_with_occupied_slices_and_with_slabs() {
     falls(ShadowMethod::OccupancyMaps, &[4, 8, 16], |s, n| s.occupancy_maps.slabs = n);
 }
 
-/// Errors measured with usual settings and thin lines: slices of opacity maps 128, layers 4, clusters 4, occupied slices 128 in 8 slabs.
-/// What remains of the slab's is the ramp through a strand's own fragment, which the exact shadow leaves out.
+/// Errors measured with default settings and thin lines: 128 slices of opacity maps, 4 layers, 4 clusters, 128 occupied slices in 8 slabs.
+/// What remains on slab is the ramp of a strand's own fragment, which the exact method leaves out.
 const MEASURED: [(&str, [f64; 4]); 5] = [
     ("slab", [0.0359, 0.0955, 0.0380, 0.0320]),
     ("tuft", [0.0284, 0.0621, 0.0284, 0.0219]),
@@ -118,8 +118,8 @@ const METHODS: [ShadowMethod; 4] = [
     ShadowMethod::OccupancyMaps,
 ];
 
-/// Whether an error is the one in the table: presets may change a little, and no method comes near another's by that
-/// on every hairstyle. Below it there is a bound too, or the best method would pass for all.
+/// Whether an error matches the table. The tolerance allows small changes of presets, and distinguishes methods. There is a lower bound
+/// too, or the best method would match all entries.
 fn as_measured(error: f64, measured: f64) -> bool {
     (0.85 * measured..1.15 * measured).contains(&error)
 }
@@ -144,33 +144,33 @@ fn errors_are_those_measured_and_swapped_methods_are_found_out() {
         let rejects = all.iter().filter(|(_, errors, measured)| !as_measured(errors[instead], measured[at]));
         let rejects: Vec<_> = rejects.map(|(name, ..)| *name).collect();
         println!("{} in the place of {}: rejected by {rejects:?}", METHODS[instead], METHODS[at]);
-        // `curly` alone tells all of them apart.
+        // `curly` alone distinguishes all of them.
         assert!(rejects.contains(&"curly"), "{} hides as {}", METHODS[instead], METHODS[at]);
-        // Nothing passes for deep opacity maps on any hairstyle, nor they for anything.
+        // Deep opacity maps are distinguished from all others on every hairstyle.
         assert!(at != 1 && instead != 1 || rejects.len() == all.len(), "{rejects:?}");
     }
 }
 
-/// Some points of the strands, by chance: every n-th would be the same point of every strand.
+/// Random strand points: every n-th would be the same point of every strand.
 fn some(values: &[f32]) -> Vec<f32> {
     let mut random = SplitMix64::new(12);
     (0..500).map(|_| values[(random.unit() * values.len() as f32) as usize % values.len()]).collect()
 }
 
-/// The shadow as it is at [`some`] points, averaged over the texels that the method in `settings` has.
+/// The converged shadow at [`some`] points, over the texels of the method in `settings`.
 fn truth(groom: &Groom, settings: &ShadowSettings) -> Converged {
     let hair = &groom.strands;
     let points = [&hair.x, &hair.y, &hair.z].map(|axis| some(axis));
     converged(&groom.input(), settings, [&points[0], &points[1], &points[2]]).expect("fits")
 }
 
-/// Hairstyles of few strands, each 2.4 mm wide; those of the others are 0.3 to 0.8 mm wide.
+/// Hairstyles with few strands, each 2.4 mm wide; strands of the others are 0.3 to 0.8 mm wide.
 const WIDE: [&str; 2] = ["smooth", "curly"];
 
 #[test]
 fn errors_against_the_converged_shadow_fall_with_resolution() {
     for groom in grooms() {
-        // The footprint of the finest map, which stands for the shadow as it is.
+        // The footprint of the finest map.
         let mut settings = ShadowSettings { method: ShadowMethod::Exact, ..ShadowSettings::default() };
         let truth = truth(groom, &settings);
         let mut errors = |method: ShadowMethod, steps: [u32; 4]| {
@@ -193,23 +193,23 @@ fn errors_against_the_converged_shadow_fall_with_resolution() {
             ShadowMethod::OccupancyMaps,
         ] {
             let errors = errors(method, [64, 128, 256, 512]);
-            // What is left is a strand one texel wide in the place of one that lies between two.
+            // What remains: a strand between two texels is drawn in one of them.
             assert!(errors[3] < 0.07, "{}: {method}: {errors:?}", groom.name);
             if WIDE.contains(&groom.name) {
-                // Texels are no narrower than strands: of these few, wide ones some 90 across the hair, so that there
-                // is little to gain. Which of 64 and 90 is ahead is the chance of 500 points.
+                // Texels are at least as wide as these strands, about 90 across the hair, so there is little to gain. Which of 64
+                // and 90 is better depends on the random 500 points.
                 assert!(errors[3] < 1.1 * errors[0], "{}: {method}: {errors:?}", groom.name);
             } else {
-                // Where the last two are nearly the same texels, the lattice's place decides by a hundredth.
+                // If the last two have nearly the same texels, the position of the lattice decides by a hundredth.
                 assert!(errors.is_sorted_by(|more, less| 1.02 * more >= *less), "{}: {errors:?}", groom.name);
                 assert!(errors[3] < 0.7 * errors[0], "{}: {method}: {errors:?}", groom.name);
             }
         }
         let errors = errors(ShadowMethod::VoxelMap, [32, 64, 128, 256]);
         if WIDE.contains(&groom.name) {
-            // To where cells, 4 mm at 128, are still wider than strands. Beyond, a strand in a row of cells narrower than
-            // itself is too dark: 0.024 rises to 0.042 (`smooth`) and 0.025 to 0.035 (`curly`), which is back at 64, give or
-            // take a tenth for the chance of 500 points.
+            // Up to the resolution at which cells (4 mm at 128) are wider than strands. Beyond, a strand in narrower cells is too
+            // dark: 0.024 rises to 0.042 (`smooth`) and 0.025 to 0.035 (`curly`), as at 64, with a tolerance of a tenth for the
+            // random 500 points.
             assert!(errors[..3].is_sorted_by(|more, less| 0.75 * more > *less), "{}: {errors:?}", groom.name);
             assert!(errors[2] < 0.03 && errors[3] < 1.1 * errors[1], "{}: {errors:?}", groom.name);
         } else {
@@ -219,13 +219,13 @@ fn errors_against_the_converged_shadow_fall_with_resolution() {
     }
 }
 
-/// Without the rule for wide strands, finer texels would make the shadow worse: this is what it keeps away.
+/// Without the lower bound on the width of texels, finer texels would make the shadow worse.
 #[test]
 fn strands_thinner_than_they_are_cast_a_wrong_shadow() {
     for groom in grooms().iter().filter(|groom| groom.name == "smooth") {
         let mut settings = ShadowSettings { method: ShadowMethod::Exact, ..ShadowSettings::default() };
         let truth = truth(groom, &settings);
-        // As dark strands of a tenth of the width in texels as narrow.
+        // Equally dark strands of a tenth of the width, in texels that narrow.
         let thin = Groom { name: groom.name, strands: groom.strands.clone(), width: groom.width * 0.1 };
         let wide = rmse(&some(&at_points(ShadowMethod::Exact, groom, &settings)), &truth.transmittance);
         settings.extinction_scale *= 10.0;
@@ -235,7 +235,7 @@ fn strands_thinner_than_they_are_cast_a_wrong_shadow() {
     }
 }
 
-/// Root mean square deviation of the light of points while the lattice is moved by parts of a texel.
+/// The standard deviation of the light at points while the lattice is moved by fractions of a texel.
 fn swimming(groom: &Groom, settings: &ShadowSettings) -> f64 {
     let mut random = SplitMix64::new(5);
     let size = built_size(groom, settings);

@@ -1,4 +1,4 @@
-//! Input that is empty, broken or huge, and settings that no slider gives, for every method.
+//! Empty, invalid and huge input, and settings out of range, for every method.
 
 mod common;
 
@@ -18,7 +18,7 @@ fn input(strands: &Strands) -> ShadowInput<'_> {
     ShadowInput { strands, strand_width: 1e-3, light: LightFrame::new(LIGHT), anchor: HEAD, maps: 1 }
 }
 
-/// Hair that is none, broken, flat, or all in one place.
+/// Hair that is empty, invalid, flat, or at a single position.
 fn bad_hair() -> Vec<(&'static str, Strands)> {
     let one = Vec3::new(0.1, 1.7, 0.05);
     let grown = grow(Style { wisps: 10, ..SMOOTH }, 1);
@@ -55,12 +55,12 @@ fn bad_hair() -> Vec<(&'static str, Strands)> {
     ]
 }
 
-/// Settings beyond every slider, and at its ends.
+/// Settings out of range, and at the ends of ranges.
 fn hostile(of: u32) -> ShadowSettings {
     let mut s = ShadowSettings::default();
     let (n, x) =
         [(0, f32::NAN), (1, f32::NEG_INFINITY), (u32::MAX, f32::INFINITY), (100, -1.0)][of as usize % 4];
-    // The largest maps of all kinds would be slow rather than wrong here; `memory` asks for them.
+    // The largest maps would be slow here; `methods_memory.rs` tests them.
     let resolution = if n == u32::MAX { 300 } else { n };
     s.voxel_map.resolution = if n == u32::MAX { 64 } else { n };
     s.voxel_map.head_size = x;
@@ -125,7 +125,7 @@ fn every_answer_is_a_transmittance() {
             for strand_width in [0.0, -1.0, f32::NAN, 1e-40, 1e30, f32::INFINITY] {
                 check(&ShadowInput { strand_width, ..input(&hair) }, &ShadowSettings::default());
             }
-            // Control: hair does cast a shadow where it is no more than crowded.
+            // Control: valid hair casts a shadow.
             assert_eq!(
                 usual < 0.9,
                 method != ShadowMethod::None && ["a crowded texel", "hair", "partly broken"].contains(&what),
@@ -154,7 +154,7 @@ fn the_converged_shadow_takes_anything_too() {
     assert!(nothing.expect("fits").transmittance.is_empty());
 }
 
-/// Strands to and fro over the whole map, each segment across all of it.
+/// Zigzag strands whose segments span the whole map.
 fn zigzag(lines: usize) -> Strands {
     let light = LightFrame::new(LIGHT);
     let at = |i: usize| {
@@ -198,7 +198,7 @@ fn maps_that_do_not_fit_are_refused_with_the_number() {
         assert_eq!(map.transmittance(HEAD + 0.5 * input(&hair).light.x), 1.0, "lit until it fits");
         assert_eq!(map.column_map(), None);
     }
-    // Fragments that fit, and records that do not: 4 million texels of 256 slices.
+    // Fragments fit, but records do not: 4 million texels of 256 slices.
     let hair = zigzag(2000);
     let fine = ShadowInput { strand_width: 1e-5, ..input(&hair) };
     settings.opacity_maps.slices = 256;

@@ -1,4 +1,4 @@
-//! The memory that methods count before they build bounds what they hold, and the limit is shared between maps.
+//! The memory that methods compute before a build is an upper bound, and maps share the limit.
 
 mod common;
 
@@ -24,7 +24,7 @@ fn finest() -> ShadowSettings {
     settings
 }
 
-/// Strands that wander in a head-sized ball with steps of 5 mm, some 25 texels of the finest map.
+/// Random walks in a head-sized ball with steps of 5 mm, about 25 texels of the finest map.
 fn wandering(count: usize, segments: usize) -> Strands {
     let mut random = SplitMix64::new(5);
     let strand = |_| {
@@ -39,7 +39,7 @@ fn wandering(count: usize, segments: usize) -> Strands {
     strands(&(0..count).map(strand).collect::<Vec<_>>())
 }
 
-/// What `exact` counts for `input`, found by giving it the least limit.
+/// The memory that `exact` computes for `input`, from its error with the least limit.
 fn counted_by_exact(input: &ShadowInput) -> u64 {
     let mut settings = finest();
     settings.exact.memory_limit_bytes = 0;
@@ -56,9 +56,9 @@ fn two_million_segments_fit_in_eight_gibibytes() {
     let hair = wandering(40_000, 50);
     let needed = counted_by_exact(&input(&hair));
     println!("2 million segments: {:.2} GiB", needed as f64 / f64::from(1 << 30));
-    // Also one light of four. A fragment in a texel for each 0.17 mm makes some 30 million of 21 bytes.
+    // Also as one of four lights. One fragment per 0.17 mm makes about 30 million of 21 bytes.
     assert!((600 << 20..2 << 30).contains(&needed), "{needed}");
-    // The count is linear: a twentieth of the strands needs no more than that part, and what any map has.
+    // The number is linear: a twentieth of the strands needs a twentieth, plus the fixed size of a map.
     let part = counted_by_exact(&input(&wandering(2000, 50)));
     assert!(part < needed / 20 + (64 << 20), "{part} of {needed}");
 }
@@ -76,8 +76,8 @@ fn what_is_held_is_no_more_than_was_counted() {
                 let held = report.memory_bytes + report.scratch_bytes;
                 println!("{what}, {which}: {method} holds {held} of {}", report.needed_bytes);
                 assert!(held <= report.needed_bytes, "{what}, {which}: {method}: {report:?}");
-                // The rest is begun blocks of fragments, of which there are more than fragments fill where hair is
-                // little: at most 2 pieces a thread, 16 in all, with 128 bands of 3 KiB.
+                // The rest is partly filled blocks of fragments, which dominate for little hair: at most 2 pieces per thread, 16 in
+                // all, with 128 bands of 3 KiB.
                 assert!(
                     report.needed_bytes <= held + held / 5 + (8 << 20),
                     "{what}, {which}: {method}: {report:?}"
@@ -102,7 +102,7 @@ fn what_is_kept_from_build_to_build_stays_within_the_limit() {
             "{report:?}"
         );
     }
-    // With less, what the last build left goes before the next one takes anything.
+    // With a lower limit, memory of the last build is freed before the next one allocates.
     settings.exact.memory_limit_bytes = 48 << 20;
     map.build(&input(&little), &settings).expect("fits");
     let report = map.report();
@@ -115,7 +115,7 @@ fn maps_share_the_limit() {
     let mut settings = finest();
     settings.opacity_maps.resolution = 512;
     settings.opacity_maps.slices = 256;
-    // Alone each fits, by the limit that can be set and by the one that cannot.
+    // Alone each fits, with the limit that is a setting and with the fixed one.
     settings.exact.memory_limit_bytes = 2 * counted_by_exact(&input(&hair)) + 1;
     let mut exact = cpu_shadow(ShadowMethod::Exact);
     for maps in [0, 1, 2] {

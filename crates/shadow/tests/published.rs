@@ -1,4 +1,4 @@
-//! What the papers say about each other's methods must come out of these.
+//! Reproduces comparisons between methods that the papers publish.
 
 mod common;
 
@@ -31,18 +31,18 @@ fn rmse(a: &[f32], b: &[f32]) -> f64 {
     (squares / a.len() as f64).sqrt()
 }
 
-/// Depths spread evenly over a part of the range.
+/// Depths spread uniformly over a part of the range.
 fn depths(from: f32, to: f32) -> Vec<f32> {
     (0..200).map(|i| from + (to - from) * (i as f32 + 0.5) / 200.0).collect()
 }
 
-/// Bell-shaped about 0 with a standard deviation of 1.
+/// Normally distributed around 0 with a standard deviation of 1.
 fn bell(random: &mut SplitMix64) -> f32 {
     (0..12).map(|_| random.unit()).sum::<f32>() - 6.0
 }
 
-/// A texel with 100 fragments at depths 0 to 1 of a mixture of bells of random means and variances, as in the experiment
-/// of Mertens and others; all together have the given optical depth.
+/// A texel with 100 fragments at depths 0 to 1 from a mixture of normal distributions with random means and variances, as in the
+/// experiment of Mertens and others, with the given total optical depth.
 fn mixture(bells: usize, optical_depth: f32, most_variance: f32, seed: u64) -> Vec<Fragment> {
     let mut random = SplitMix64::new(seed);
     let of: Vec<_> = (0..bells).map(|_| (random.unit(), (most_variance * random.unit()).sqrt())).collect();
@@ -82,7 +82,7 @@ fn clusters_and_histogram(seeds: ClusterSeeds) -> ShadowSettings {
 #[test]
 fn four_clusters_beat_eight_bins_on_four_bells_and_not_on_eight() {
     let settings = clusters_and_histogram(ClusterSeeds::Uniform);
-    // The histogram needs the texel's range beside its bins: 40 bytes against 48.
+    // The histogram needs the texel's range in addition to its bins: 40 bytes against 48.
     let fragments = mixture(4, 3.0, 0.01, 0);
     let bytes = (
         visibility::<Clustering>(&settings, &fragments, &[]).1,
@@ -106,12 +106,12 @@ fn four_clusters_beat_eight_bins_on_four_bells_and_not_on_eight() {
         assert!(four < 0.85, "beats: {four}");
         assert!(eight > 0.95, "is beaten or tied: {eight}");
     }
-    // Narrow bells are what clusters are for: they lead on 8 as well, by less than on 4.
+    // Narrow distributions suit clusters: they are better for 8 as well, by less than for 4.
     for most_variance in [3e-4, 1e-3, 3e-3] {
         let (four, eight) = (ratio(4, 3.0, most_variance), ratio(8, 3.0, most_variance));
         assert!(four < 0.65 && eight > 1.2 * four, "σ² ≤ {most_variance}: {four}, {eight}");
     }
-    // Control: the exact shadow in the clusters' place is no tie with anything.
+    // Control: the exact method in place of the clusters has a much smaller error.
     let of = |seed: u64| mixture(8, 3.0, 0.01, seed);
     assert!(error_on::<Sorted>(&settings, &depths(0.0, 1.0), of) < 1e-6);
 }
@@ -129,7 +129,7 @@ fn seeds_toward_the_light_are_better_where_light_falls_off() {
     }
 }
 
-/// A dense clump, and perhaps one hair before it.
+/// A dense clump, optionally with one hair in front of it.
 fn clump(stray: bool, seed: u64) -> Vec<Fragment> {
     let mut random = SplitMix64::new(seed);
     let mut fragments: Vec<_> = (0..60).map(|_| Fragment::new(0.55 + 0.4 * random.unit(), 0.08)).collect();
@@ -139,7 +139,7 @@ fn clump(stray: bool, seed: u64) -> Vec<Fragment> {
     fragments
 }
 
-/// Figure 4 of Sintorn and Assarsson: one hair before a clump moves the layers of deep opacity maps out of it.
+/// Figure 4 of Sintorn and Assarsson: one hair in front of a clump moves the layers of deep opacity maps out of it.
 #[test]
 fn a_stray_hair_breaks_deep_opacity_maps_and_not_occupancy_maps() {
     let settings = ShadowSettings::default();
@@ -154,7 +154,7 @@ fn a_stray_hair_breaks_deep_opacity_maps_and_not_occupancy_maps() {
     println!(
         "deep opacity maps {deep:.4}, {deep_stray:.4}; occupancy maps {occupancy:.4}, {occupancy_stray:.4}"
     );
-    // Measured: 0.033 to 0.298 against 0.014 to 0.021, which is a fragment's own ramp over a longer range.
+    // Measured: 0.033 to 0.298, and 0.014 to 0.021, which is the ramp of a fragment over a longer range.
     assert!(deep_stray > 5.0 * deep && deep_stray > 0.1, "deep opacity maps: {deep}, {deep_stray}");
     assert!(occupancy_stray < 2.0 * occupancy && occupancy_stray < 0.03, "{occupancy}, {occupancy_stray}");
     assert!(occupancy < deep && occupancy_stray < 0.2 * deep_stray);

@@ -1,4 +1,4 @@
-//! What methods keep along a ray is what they answer there.
+//! What methods hold along a ray agrees with their transmittance there.
 
 mod common;
 
@@ -20,7 +20,7 @@ fn input(hair: &Strands) -> ShadowInput<'_> {
     ShadowInput { strands: hair, strand_width: 2e-3, light, anchor: common::HEAD, maps: 1 }
 }
 
-/// Settings with which a point reads one texel alone.
+/// Settings with which a point reads a single texel.
 fn nearest() -> ShadowSettings {
     let mut settings = ShadowSettings::default();
     settings.opacity_maps.filter = TexelFilter::Nearest;
@@ -50,7 +50,7 @@ fn marks_say_what_the_map_answers_behind_them() {
         let (mut worst, mut moved, mut seen) = (0.0_f32, 0.0_f32, 0);
         for mut p in some_points(&hair) {
             if method == ShadowMethod::VoxelMap {
-                // To the middle of the column, where its neighbours count for nothing.
+                // To the middle of the column, where its neighbours have no weight.
                 let at = lattice.window_from_world(p);
                 let to_middle = |c: f32| (0.5 - c.fract()) * lattice.cell_size;
                 p += input.light.y * to_middle(at.y) + input.light.z * to_middle(at.z);

@@ -1,4 +1,4 @@
-//! The exact shadow, the converged one and the methods with a record a texel against answers known on paper.
+//! Compares the exact, the converged and the texel methods with analytic results.
 
 mod common;
 

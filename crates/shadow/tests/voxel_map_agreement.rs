@@ -1,4 +1,4 @@
-//! The quick voxel map against the plain one, and against itself under changes that must not show.
+//! Compares the fast voxel map with the plain one, and with itself under changes that must not matter.
 
 mod common;
 
@@ -45,7 +45,7 @@ fn small(style: Style) -> Vec<Vec<Vec3>> {
     grow(Style { strands_per_wisp: 5, ..style }, 11)
 }
 
-/// Points anywhere around the head: in hair, in the hollow, outside the map.
+/// Random points around the head: in hair, inside the head, outside the map.
 fn anywhere(count: usize) -> Vec<Vec3> {
     let mut random = SplitMix64::new(5);
     (0..count).map(|_| HEAD + 0.5 * random.signed_vec3()).collect()
@@ -74,7 +74,7 @@ fn quick_and_plain_agree_on_hair_and_everywhere() {
                 let around = worst(&map, &dense, anywhere(4000).into_iter());
                 assert!(around < MOST_DIFFERENCE, "{resolution}, {direction}, {filter:?}: around {around}");
             }
-            // Control: a light turned by a degree is told apart.
+            // Control: a light rotated by a degree is distinguished.
             let turned = ShadowInput { light: LightFrame::new(direction + 0.0175 * Vec3::ONE), ..input };
             let dense = DenseMap::build(&turned, &settings, Addressing::Window);
             let map = built(&input, &settings);
@@ -85,7 +85,7 @@ fn quick_and_plain_agree_on_hair_and_everywhere() {
 
 #[test]
 fn quick_and_plain_agree_on_strands_of_any_number_of_points() {
-    // Points go through in blocks of 64: strands that are empty, single, and that end at, before and behind one.
+    // Points are processed in blocks of 64: strands that are empty, single points, and that end at, before and behind a block.
     let mut random = SplitMix64::new(21);
     let lengths = [0, 1, 2, 63, 64, 65, 1, 0, 0, 127, 128, 62, 3, 190, 1, 1, 64, 0];
     let walk = |count: usize| {
@@ -153,7 +153,7 @@ fn sliding_and_fixed_addressing_cast_the_same_shadow() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(512))]
 
-    /// Ψ stores a point of the window where the affine map says, wherever the window lies on the lattice.
+    /// Ψ stores a point of the window at the same index as the affine map, wherever the window lies on the lattice.
     #[test]
     fn psi_and_the_window_name_the_same_cell(
         x in -0.2_f32..0.2, y in -0.2_f32..0.2, z in -0.2_f32..0.2,

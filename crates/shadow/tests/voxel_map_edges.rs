@@ -1,4 +1,4 @@
-//! Input that is empty, flat, broken or huge.
+//! Empty, flat, invalid and huge input.
 
 mod common;
 
@@ -161,7 +161,7 @@ fn the_column_map_says_what_lies_behind() {
             }
         }
         assert!(columns.transmittance.iter().any(|t| *t < 0.1));
-        // The centre of each texel, far behind the hair, is what a lookup there says.
+        // The centre of each texel equals a lookup far behind the hair.
         let light = LightFrame::new(direction);
         let world_from_uv = columns.uv_from_world.inverse();
         for at in (0..n * n).step_by(37) {

@@ -1,4 +1,4 @@
-//! The voxel map against answers known on paper.
+//! Compares the voxel map with analytic results.
 
 mod common;
 
@@ -49,7 +49,7 @@ fn slab(light: &LightFrame) -> Vec<Vec<Vec3>> {
     let count = 40_000;
     let mut made = Vec::new();
     for i in 0..count {
-        // Even along the light, scattered across it.
+        // Uniform along the light, random across it.
         let along = 0.2 * (i as f32 + random.unit()) / count as f32;
         let middle = Vec3::new(along, 0.08 * random.signed(), 0.08 * random.signed());
         let half = 0.004 * if i % 2 == 0 { Vec3::Y } else { Vec3::Z };
@@ -95,7 +95,7 @@ fn a_uniform_slab_dims_exponentially() {
                 "{direction}: T({along}) = {} not {truth}",
                 sum / 400.0
             );
-            // Control: half a slab, or twice the extinction, is told apart.
+            // Control: half a slab, or twice the extinction, is distinguished.
             if step == 10 {
                 assert!((sum / 400.0 - (-kappa * 0.05).exp()).abs() > 0.1);
                 assert!((sum / 400.0 - (-2.0 * kappa * 0.1).exp()).abs() > 0.05);
@@ -139,7 +139,7 @@ fn brightness_does_not_depend_on_the_samples_of_a_strand() {
             |settings: &ShadowSettings| mean(&at_points(&built(&input(&again, LIGHT), settings), &hair));
         let ratio = mean_at(&settings(128)) / expected;
         assert!((ratio - 1.0).abs() < 0.02, "×{factor}: {ratio}");
-        // Control: counting points does depend on them.
+        // Control: counting points depends on them.
         let ratio = mean_at(&printed) / printed_expected;
         assert!((ratio - 1.0).abs() > 0.05, "×{factor} by count: {ratio}");
     }

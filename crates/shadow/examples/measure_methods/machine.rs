@@ -1,15 +1,15 @@
-//! What times depend on.
+//! The machine that times depend on.
 
 use lovelock_groom::simd::Width;
 
-/// The processor, threads and width of vectors, as one line.
+/// The CPU, threads and vector width, as one line.
 pub(crate) fn line() -> String {
     let threads = rayon::current_num_threads();
     let plural = if threads == 1 { "" } else { "s" };
     format!("{}, {threads} thread{plural}, {}", processor(), width(Width::widest()))
 }
 
-/// The processor as the system calls it; its architecture where the system does not say.
+/// The name of the CPU; its architecture if the system does not provide the name.
 fn processor() -> String {
     let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let name = info.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':'));

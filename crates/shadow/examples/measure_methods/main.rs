@@ -1,8 +1,8 @@
-//! Writes the measured part of `docs/shadow_methods.md`: what the registry says of every method, and error, time and
-//! memory of each on five hairstyles, on the processor and on the graphics device.
+//! Writes the measured part of `docs/shadow_methods.md`: the registry, and error, time and memory of every method on five hairstyles, on
+//! the CPU and on the GPU.
 //!
-//! `cargo run --release -p lovelock-shadow --example measure_methods -- docs/shadow_methods.md` replaces what stands
-//! between the markers in the file; without an argument it is printed.
+//! `cargo run --release -p lovelock-shadow --example measure_methods -- docs/shadow_methods.md` replaces the text
+//! between the markers in the file; without an argument it prints it.
 
 #[path = "../../tests/common/mod.rs"]
 mod common;
@@ -52,7 +52,7 @@ fn main() -> ExitCode {
         print!("{}", text());
         return ExitCode::SUCCESS;
     };
-    // The file is read before minutes of measuring and once more after: someone may have written to it.
+    // The file is checked before minutes of measuring, and read again after, because it may have changed.
     let result = splice::check(&path).and_then(|()| splice::replace(&path, &text()));
     if let Err(error) = result {
         eprintln!("{}: {error}", path.display());

@@ -10,24 +10,24 @@ use crate::common::SplitMix64;
 use crate::grooms::Groom;
 use crate::on_gpu::{self, OnGpu};
 
-/// Runs of which the median is taken.
+/// The number of runs per median.
 pub(crate) const RUNS: usize = 15;
-/// Points of the comparison with the converged shadow, drawn by chance.
+/// Random points of the comparison with the converged shadow.
 pub(crate) const CONVERGED_POINTS: usize = 2000;
 /// A point with fewer fragments than this before it belongs to the first ten.
 pub(crate) const FIRST: u32 = 10;
 
 /// Errors are differences of transmittance, 0 to 1.
 pub(crate) struct Errors {
-    /// Root mean square against `exact` in texels of the same number.
+    /// RMSE against `exact` with the same number of texels.
     pub(crate) exact: f64,
     /// The same over points among the first ten fragments.
     pub(crate) first: f64,
-    /// Mean difference from `exact`: above 0 where the method is too bright.
+    /// Mean difference from `exact`: above 0 if the method is too bright.
     pub(crate) bias: f64,
-    /// Which 99 of 100 points stay below, without sign.
+    /// The 99th percentile of the absolute difference.
     pub(crate) percentile: f64,
-    /// Root mean square against the converged shadow.
+    /// RMSE against the converged shadow.
     pub(crate) converged: f64,
 }
 
@@ -52,7 +52,7 @@ pub(crate) struct Measured {
     pub(crate) first_points: usize,
 }
 
-/// Every method with its usual settings.
+/// Every method with its default settings.
 pub(crate) fn all_methods(groom: &Groom) -> Vec<Measured> {
     let truth = Converged::new(groom);
     let mut exact: Vec<Exact> = Vec::new();
@@ -102,7 +102,7 @@ impl Exact {
     }
 }
 
-/// The converged shadow at some of the points, over texels of the usual map of `exact`.
+/// The converged shadow at some of the points, over texels of the default map of `exact`.
 struct Converged {
     points: Vec<usize>,
     light: Vec<f32>,
@@ -126,7 +126,7 @@ impl Converged {
 fn one(method: ShadowMethod, groom: &Groom, exact: &Exact, truth: &Converged) -> Measured {
     let settings = ShadowSettings { method, ..ShadowSettings::default() };
     let mut map = cpu_shadow(method);
-    // Memory is kept from build to build: the first one is no measure of the others.
+    // Not measured: the first build allocates the memory that later ones reuse.
     map.build(&groom.input(), &settings).expect("hair fits");
     let build = time(|| map.build(&groom.input(), &settings).expect("hair fits"));
     let mut light = look_up(&*map, groom);

@@ -1,4 +1,4 @@
-//! The methods on the graphics device.
+//! The methods on the GPU.
 
 use glam::Vec3;
 use lovelock_shadow::{ShadowMethod, ShadowSettings};
@@ -8,22 +8,22 @@ use crate::grooms::Groom;
 use crate::measure::{RUNS, Time, median, percentile, rmse};
 
 pub(crate) struct OnGpu {
-    /// Root mean square against `exact`, as the definition's.
+    /// RMSE against `exact`.
     pub(crate) exact: f64,
-    /// Which 99 of 100 differences from the definition stay below.
+    /// The 99th percentile of the difference from the definition.
     pub(crate) difference: f64,
     pub(crate) build: Time,
     pub(crate) lookup: Time,
-    /// What the map and its builds hold, bytes.
+    /// Memory of the map and its builds, bytes.
     pub(crate) held: u64,
 }
 
-/// The adapter by name; none where there is none.
+/// The name of the adapter; `None` without one.
 pub(crate) fn adapter() -> Option<String> {
     device().map(|gpu| format!("{} ({})", gpu.info.name, gpu.info.backend))
 }
 
-/// A method with its usual settings; `definition` and `exact` are answers at every point.
+/// A method with its default settings; `definition` and `exact` are transmittances at every point.
 pub(crate) fn measure(
     method: ShadowMethod,
     groom: &Groom,
@@ -38,7 +38,7 @@ pub(crate) fn measure(
     let input = uploaded.input(&groom.input());
     let mut light = Vec::new();
     let (mut builds, mut lookups) = (Vec::new(), Vec::new());
-    // Memory is kept from build to build: the first one is no measure of the others.
+    // Not measured: the first build allocates the memory that later ones reuse.
     for _ in 0..=RUNS {
         built.build_from(0, &input, &settings).expect("hair fits");
         builds.push(built.passes.iter().fold(0.0, |sum, pass| sum + pass.ms));

@@ -8,11 +8,11 @@ use crate::grooms::Groom;
 use crate::measure::{CONVERGED_POINTS, FIRST, Measured, RUNS, Time};
 use crate::{machine, on_gpu};
 
-/// The methods, and what can be set about each.
+/// The methods and their settings.
 pub(crate) fn registry() -> String {
     let mut text = String::from("\n| id | label | what | source |\n|---|---|---|---|\n");
     for method in ShadowMethod::ALL {
-        // What is in parentheses is the source once more.
+        // The text in parentheses repeats the source.
         let what = method.description().split(" (").next().unwrap_or_default().trim_end_matches('.');
         let source = method.source().unwrap_or_default();
         let _ = writeln!(text, "| `{}` | {} | {what} | {source} |", method.id(), method.label());
@@ -31,25 +31,25 @@ pub(crate) fn registry() -> String {
     text
 }
 
-/// What the columns are, and where times are from.
+/// The meaning of the columns, and the machine.
 pub(crate) fn how_measured() -> String {
     format!(
         "\n\
          Measured on: {machine}. This part is written by\n\n\
          \x20   cargo run --release -p lovelock-shadow --example measure_methods -- docs/shadow_methods.md\n\n\
-         Every method with its usual settings, at every point of the strands. Errors are differences of transmittance:\n\n\
-         - *edge*: texels or cells along the edge of the map. Texels are no narrower than strands, so that few strands have few.\n\
-         - *exact*: root mean square against `exact` with as many texels along the edge.\n\
-         - *converged*: root mean square against the converged shadow over texels of the usual map of `exact`, at\n\
-         \x20 {CONVERGED_POINTS} points drawn by chance. It changes by less than {CONVERGED_CHANGE} where its samples double.\n\
+         Every method with its default settings, at every point of the strands. Errors are differences of transmittance:\n\n\
+         - *edge*: texels or cells along the edge of the map. Texels are at least as wide as strands, so few strands mean few texels.\n\
+         - *exact*: RMSE against `exact` with the same number of texels along the edge.\n\
+         - *converged*: RMSE against the converged shadow over texels of the default map of `exact`, at\n\
+         \x20 {CONVERGED_POINTS} random points. It changes by less than {CONVERGED_CHANGE} when its samples are doubled.\n\
          - *bias*: mean difference from `exact`, above 0 where a method is too bright.\n\
-         - *99 %*: 99 of 100 points are nearer to `exact`.\n\
-         - *first ten*: root mean square against `exact` over points with fewer than {FIRST} fragments before them.\n\n\
-         Times are medians of {RUNS} runs, with the quartiles, on a machine that may have had other work. *Map* is what a\n\
-         map holds, of the voxel map in address space; *building* is what builds use beside it and keep.\n\n\
-         The second table of a hairstyle has the processor and the graphics device ({adapter}) side by side. *Difference*: 99 of\n\
-         100 points are nearer to each other, of which rounding to 8 bits makes 0.002. Times on the device are sums of its passes,\n\
-         by its timestamps or, where it is the processor itself, by waiting for each. *Held* is *map* and *building* together.\n",
+         - *99 %*: the 99th percentile of the absolute difference from `exact`.\n\
+         - *first ten*: RMSE against `exact` over points with fewer than {FIRST} fragments before them.\n\n\
+         Times are medians of {RUNS} runs, with the quartiles, on a machine that may have been busy. *Map* is the memory of a\n\
+         map (address space for the voxel map); *building* is additional memory that builds use and keep.\n\n\
+         The second table of a hairstyle compares the CPU with the GPU ({adapter}). *Difference*: the 99th percentile of the\n\
+         difference between both, of which rounding to 8 bits contributes 0.002. Times on the GPU are sums over passes, measured with\n\
+         timestamps or, on a software adapter, by waiting for each pass. *Held* is *map* plus *building*.\n",
         machine = machine::line(),
         adapter = on_gpu::adapter().unwrap_or_else(|| String::from("there was none")),
     )
@@ -130,7 +130,7 @@ fn digits(ms: f64) -> String {
     if ms < 10.0 { format!("{ms:.2}") } else { format!("{ms:.1}") }
 }
 
-/// Three digits that mean something, or fewer where time is short.
+/// A time with three significant digits, or fewer if it is short.
 fn milliseconds(time: &Time) -> String {
     let digits = if time.median < 10.0 { 2 } else { 1 };
     format!("{:.digits$} ({:.digits$}–{:.digits$})", time.median, time.low, time.high)

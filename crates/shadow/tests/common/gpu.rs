@@ -11,7 +11,7 @@ use lovelock_shadow::{
     ShadowMethod, ShadowSettings, gpu_shadow, voxel_map::longest_strand,
 };
 
-/// The device that all tests of a process share; none where there is no adapter.
+/// The device that all tests of a process share; `None` without an adapter.
 pub fn device() -> Option<&'static Arc<Gpu>> {
     static DEVICE: OnceLock<Option<Arc<Gpu>>> = OnceLock::new();
     DEVICE
@@ -35,7 +35,7 @@ fn padded(p: Vec3) -> [f32; 4] {
     [p.x, p.y, p.z, 0.0]
 }
 
-/// Strands on the device.
+/// Strands in GPU memory.
 pub struct Uploaded {
     points: GrowBuffer<[f32; 4]>,
     segments: GrowBuffer<u32>,
@@ -49,7 +49,7 @@ impl Uploaded {
         Self { points: buffer(gpu, &points), segments: buffer(gpu, &segments) }
     }
 
-    /// What a build reads.
+    /// The input of a build.
     pub fn input(&self, input: &ShadowInput) -> GpuShadowInput<'_> {
         GpuShadowInput {
             strands: GpuStrands {
@@ -73,7 +73,7 @@ pub struct Built {
     gpu: &'static Arc<Gpu>,
     pub shadow: Box<dyn GpuShadow>,
     timer: PassTimer,
-    /// Of the last build, or of asking after it.
+    /// Times of the last build or lookup.
     pub passes: Vec<PassTime>,
 }
 
@@ -107,7 +107,7 @@ impl Built {
         Self::try_new(gpu, method, input, settings).expect("it fits")
     }
 
-    /// Builds the map of a slot, and says how often it took.
+    /// Builds the map of a slot. Returns the number of attempts.
     pub fn build(
         &mut self,
         slot: usize,
@@ -153,13 +153,13 @@ impl Built {
         self.shadow.map_words(0, self.gpu).expect("read back")
     }
 
-    /// Transmittance at some points by the first map, rounded to 8 bits as pictures have it.
+    /// Transmittance at points from the first map, rounded to 8 bits as in pictures.
     pub fn look_up(&mut self, at: &[Vec3]) -> Vec<f32> {
         let words = self.ask_slots(&[0], at);
         words.into_iter().map(|word| (word & 0xff) as f32 / 255.0).collect()
     }
 
-    /// The words of answers that several maps give in turn.
+    /// The words that lookups of several maps write.
     pub fn ask_slots(&mut self, slots: &[usize], at: &[Vec3]) -> Vec<u32> {
         let points: Vec<_> = at.iter().map(|&p| padded(p)).collect();
         let (points, out) = (buffer(self.gpu, &points), buffer(self.gpu, &vec![0_u32; at.len()]));

@@ -10,14 +10,14 @@ use lovelock_shadow::{LightFrame, ShadowInput};
 
 use crate::common::{SplitMix64, strands};
 
-/// Strands, and what they are blocked with.
+/// Strands, and their width.
 pub struct Groom {
     pub name: &'static str,
     pub strands: Strands,
     pub width: f32,
 }
 
-/// Light from above and before, as the default project has it or nearly so.
+/// Light from above and in front, nearly that of the default project.
 pub const LIGHT: Vec3 = Vec3::new(0.4, -1.0, -0.5);
 
 impl Groom {
@@ -48,7 +48,7 @@ impl Groom {
         Self { width: 2e-3, ..Self::of("one strand", strands(&[line.collect()])) }
     }
 
-    /// Straight strands across the light, evenly spread in a box: 0.1 m along it, 0.1 m across.
+    /// Straight strands across the light, spread uniformly in a box: 0.1 m along it, 0.1 m across.
     pub fn slab() -> Self {
         let light = LightFrame::new(LIGHT);
         let mut random = SplitMix64::new(3);
@@ -62,7 +62,7 @@ impl Groom {
         Self { width: 4e-4, ..Self::of("slab", strands(&made)) }
     }
 
-    /// A bundle that hangs slantwise and opens toward its tips.
+    /// A slanted bundle that widens toward its tips.
     pub fn tuft() -> Self {
         let mut random = SplitMix64::new(8);
         let strand = |_| {
@@ -86,7 +86,7 @@ impl Groom {
         Self::at_rest(preset.id(), &style.expect("a preset grows"))
     }
 
-    /// The groom that is published as a file; `None` where there is none.
+    /// The published hairstyle from a file; `None` if the file is missing.
     pub fn straight() -> Option<Self> {
         let path = lovelock_testkit::data_dir()?.join("hair/yuksel/straight.hair");
         let file = load_hair(&path).expect("straight.hair is read");
@@ -94,7 +94,7 @@ impl Groom {
         Some(Self::at_rest("straight.hair", &style))
     }
 
-    /// Those that the two backends are compared on.
+    /// The grooms for comparisons of the two backends.
     pub fn for_both_backends() -> Vec<Self> {
         let mut all = vec![Self::one_strand(), Self::slab(), Self::tuft(), Self::preset(Preset::Smooth)];
         all.extend(Self::straight());

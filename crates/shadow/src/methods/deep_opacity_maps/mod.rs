@@ -19,7 +19,7 @@ use crate::method::{MapKind, MapSize, Method};
 pub(super) static METHOD: Method = Method {
     id: "deep-opacity-maps",
     label: "Deep opacity maps",
-    description: "A few layers for each light texel that begin at its first hair (Yuksel, Keyser 2008).",
+    description: "A few layers per light texel, starting at its first hair (Yuksel, Keyser 2008).",
     source: Some("Yuksel, Keyser 2008, Deep Opacity Maps"),
     advice: "lower the map's resolution or the number of strands",
     map: MapKind::Texels,

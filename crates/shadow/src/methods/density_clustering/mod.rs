@@ -21,7 +21,7 @@ use crate::method::{MapKind, MapSize, Method};
 pub(super) static METHOD: Method = Method {
     id: "density-clustering",
     label: "Density clustering",
-    description: "A few bins of even density for each light texel, placed where its hair is (Mertens and others 2004).",
+    description: "A few bins of uniform density per light texel, placed where its hair is (Mertens and others 2004).",
     source: Some(
         "Mertens, Kautz, Bekaert, Van Reeth 2004, A Self-Shadow Algorithm for Dynamic Hair using Density \
          Clustering",

@@ -19,7 +19,7 @@ use crate::method::{MapKind, MapSize, Method};
 pub(super) static METHOD: Method = Method {
     id: "exact",
     label: "Exact",
-    description: "Every fragment of each light texel, sorted by depth: what the others are judged by.",
+    description: "Every fragment of each light texel, sorted by depth: the reference for the other methods.",
     source: None,
     advice: "lower the map's resolution or the number of strands, or raise the limit",
     map: MapKind::Texels,

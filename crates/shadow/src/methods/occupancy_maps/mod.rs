@@ -18,7 +18,7 @@ use crate::method::{MapKind, MapSize, Method};
 pub(super) static METHOD: Method = Method {
     id: "occupancy-maps",
     label: "Occupancy maps",
-    description: "Bits for slices with hair and counts for slabs of them, for each light texel (Sintorn, Assarsson 2009).",
+    description: "Bits of slices with hair and counts per slab of slices, for each light texel (Sintorn, Assarsson 2009).",
     source: Some(
         "Sintorn, Assarsson 2009, Hair Self Shadowing and Transparency Depth Ordering Using Occupancy Maps",
     ),

@@ -18,7 +18,7 @@ use crate::method::{MapKind, MapSize, Method};
 pub(super) static METHOD: Method = Method {
     id: "opacity-maps",
     label: "Opacity maps",
-    description: "Optical depth at equal slices along the light, for each light texel (Kim, Neumann 2001).",
+    description: "Optical depth at equal slices along the light, per light texel (Kim, Neumann 2001).",
     source: Some("Kim, Neumann 2001, Opacity Shadow Maps"),
     advice: "lower the map's resolution, the slices or the number of strands",
     map: MapKind::Texels,

@@ -25,7 +25,7 @@ pub struct Lattice {
     pub anchor: Vec3,
     /// The light's axes divided by the size of a cell: dot products with them are in cells.
     pub axes_per_cell: [Vec3; 3],
-    /// Lattice coordinates of the first cell of the window (the paper's i_min, and likewise for j and k).
+    /// Lattice coordinates of the first cell of the window (the paper's *i* min, and likewise for *j* and *k*).
     pub first: IVec3,
 }
 
