@@ -1,10 +1,10 @@
-//! How long one frame of 1280×720 takes in a film and in a sequence.
+//! Time to encode a frame of 1280×720 in a film and in a sequence.
 #![allow(missing_docs, reason = "the macros of criterion make public items without any")]
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use lovelock_record::{FilmQuality, PictureSink, SinkSettings};
 
-/// Strand-like texture that moves: the hard part of what is really recorded.
+/// A moving texture similar to strands, the hardest part of a real recording.
 fn pictures(count: usize) -> Vec<Vec<u8>> {
     let pixel = |frame: usize, x: usize, y: usize| {
         let (dx, dy) = (x as f32 - 640.0, y as f32 - 300.0);

@@ -1,4 +1,4 @@
-//! Takes: how many bytes a second they take, and how long coding, reading and opening last.
+//! Takes: bytes per second, and the times of recording, playback and opening.
 #![allow(missing_docs, reason = "the macros of criterion make public items without any")]
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
@@ -7,13 +7,13 @@ use lovelock_groom::{GuideFrame, Guides};
 use lovelock_record::{TakeFrame, TakeHeader, TakeReader, TakeWriter};
 use std::path::Path;
 
-/// A shipped hairstyle's guides.
+/// Number of guides of a shipped hairstyle.
 const GUIDES: usize = 402;
 const POINTS: usize = 31;
 const LINK_M: f32 = 0.01;
 
-/// Hair that swings about a head that turns, nods and walks, every guide in its own time, and noise of so many metres
-/// either way at each coordinate.
+/// Hair that swings about a turning, nodding and walking head, each guide with its own phase. Each coordinate has noise of up
+/// to `noise_m` metres in both directions.
 fn frames(count: usize, noise_m: f32) -> Vec<TakeFrame> {
     let mut state = 1_u64;
     let mut random = || {
@@ -38,7 +38,7 @@ fn frames(count: usize, noise_m: f32) -> Vec<TakeFrame> {
                 let mut points = Vec::with_capacity(POINTS);
                 for i in 0..POINTS {
                     points.push(p + noise_m * Vec3::new(random(), random(), random()));
-                    // A wave runs down the guide, wider toward the tip, and the root follows the head.
+                    // A wave moves down the guide with an amplitude that grows toward the tip; the root follows the head.
                     let down = i as f32 / POINTS as f32;
                     let phase = t * 9.0 * own + round - 4.0 * down;
                     let swing = Vec3::new(phase.sin(), 0.0, (phase * 0.7).cos()) * 0.8 * down;
@@ -58,7 +58,7 @@ fn header() -> TakeHeader {
     TakeHeader { guides, points_per_guide, project: "(field: 1)\n".repeat(700), ..TakeHeader::default() }
 }
 
-/// Records the frames over and over until there are `count`; says how many bytes they are.
+/// Records the frames repeatedly until there are `count`. Returns their size in bytes.
 fn record(path: &Path, frames: &[TakeFrame], count: usize) -> u64 {
     let mut writer = TakeWriter::create(path, header()).expect("a take");
     for frame in frames.iter().cycle().take(count) {
@@ -75,7 +75,7 @@ fn takes(criterion: &mut Criterion) {
         let frames = frames(120, noise_m);
         let path = folder.path().join(format!("{name}.take"));
         let bytes = record(&path, &frames, 120);
-        println!("{name}: {:.3} MB a second", bytes as f64 / 2.0 / 1e6);
+        println!("{name}: {:.3} MB per second", bytes as f64 / 2.0 / 1e6);
 
         group.throughput(Throughput::Elements(120));
         group.bench_function(BenchmarkId::new("record_120_frames", name), |bencher| {
@@ -90,7 +90,7 @@ fn takes(criterion: &mut Criterion) {
         group.throughput(Throughput::Elements(1));
         let mut n = 0;
         group.bench_function(BenchmarkId::new("any_frame", name), |bencher| {
-            // Never a chunk that is kept: the last is 30 frames away.
+            // Never a cached chunk, because the last one is 30 frames away.
             bencher.iter(|| {
                 n = (n + 31) % 120;
                 take.frame_into(n, &mut out).expect("a frame");

@@ -1,4 +1,4 @@
-//! Films held against other programs and against a real limit of the system, where the machine has them.
+//! Films checked by other programs, if they are installed, and against a limit of the operating system.
 
 use lovelock_record::{FilmQuality, FilmSettings, FilmWriter};
 use std::path::Path;
@@ -7,7 +7,7 @@ use std::process::Command;
 const SETTINGS: FilmSettings =
     FilmSettings { width: 320, height: 180, fps: 30.0, quality: FilmQuality::High };
 
-/// Red left, green right, a white bar that moves.
+/// Red on the left, green on the right, and a moving white bar.
 fn picture(frame: u32) -> Vec<u8> {
     let pixel = |x: u32| match x {
         x if x / 8 == frame % 40 => [255, 255, 255, 255],
@@ -87,19 +87,19 @@ fn ffmpeg_decodes_the_colours_that_went_in() {
     for (frame, decoded) in pixels.chunks_exact(320 * 180 * 3).enumerate() {
         let wanted = picture(frame as u32);
         for (x, (pixel, wanted)) in decoded.chunks_exact(3).zip(wanted.chunks_exact(4)).enumerate() {
-            // Away from edges, where halved chroma and coding smear: the middles of the two fields.
+            // The middles of the two fields, away from edges that are blurred by chroma subsampling and encoding.
             if [40, 280].contains(&(x % 320)) && ![4, 5, 6, 34, 35, 36].contains(&(frame % 40)) {
                 let off = pixel.iter().zip(wanted).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0);
                 worst = worst.max(off);
             }
         }
     }
-    // The quantiser's step at 20 is 6.5 codes, so 3 either way, and twice that in blue from chroma; wrong range or the
-    // matrix of standard definition are off by 15 and more in these colours.
+    // The quantiser's step at 20 is 6.5 codes, so errors are up to 3, and twice that in blue because of chroma. A wrong range
+    // or the matrix of standard definition gives errors of 15 and more in these colours.
     assert!(worst <= 6, "colours off by {worst}");
 }
 
-/// The system itself refuses to let the file grow, by `ulimit -f`, in a run of this test of its own.
+/// The operating system limits the size of the file (`ulimit -f`) in a second process of this test.
 #[cfg(unix)]
 #[test]
 fn a_limit_of_the_system_stops_the_film_and_leaves_nothing() {
@@ -114,7 +114,7 @@ fn a_limit_of_the_system_stops_the_film_and_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let this = std::env::current_exe().unwrap();
     let name = "a_limit_of_the_system_stops_the_film_and_leaves_nothing";
-    // Ignoring the signal turns the limit into an error of `write`.
+    // If the signal is ignored, `write` returns an error at the limit.
     let script = format!("trap '' XFSZ; ulimit -f 64 && exec \"$0\" --exact {name} --nocapture");
     let output = Command::new("bash").arg("-c").arg(script).arg(this).env(FOLDER, folder.path()).output();
     let Ok(output) = output else {

@@ -1,4 +1,4 @@
-//! Programs that are killed while they write a sequence, and what goes on after them.
+//! Processes that are killed while they write a sequence, and the recordings that resume it.
 
 use lovelock_record::{SequenceFormat, SequenceSettings, SequenceWriter, read_manifest};
 use std::io::{BufRead, BufReader, Write};
@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 use std::{env, fs};
 
-/// Where the program that is to be killed writes to.
+/// Environment variable with the folder that the process to be killed writes to.
 const CHILD: &str = "LOVELOCK_TEST_SEQUENCE_CHILD";
 
 const FRAMES: u32 = 400;
@@ -18,7 +18,7 @@ fn picture(frame: u32) -> Vec<u8> {
     (0..SIDE * SIDE * 4).map(noise).collect()
 }
 
-/// Writes the frames that are not there; says each that it hands over.
+/// Writes the missing frames and calls `told` with the number of each.
 fn write(folder: &Path, told: &mut dyn FnMut(u32)) -> u32 {
     let settings = SequenceSettings {
         width: SIDE,
@@ -45,7 +45,7 @@ fn write(folder: &Path, told: &mut dyn FnMut(u32)) -> u32 {
     drawn
 }
 
-/// Not a test of its own: the program that the test below starts and kills.
+/// Not a test of its own: the process that the test below starts and kills.
 #[test]
 fn a_program_that_writes() {
     let Ok(folder) = env::var(CHILD) else { return };
@@ -86,17 +86,17 @@ fn a_sequence_that_was_killed_again_and_again_is_that_of_one_run() {
         std::thread::sleep(Duration::from_millis(more));
         child.kill().unwrap();
         child.wait().unwrap();
-        // What has a name is whole, at any moment.
+        // A frame with its final name is complete at any moment.
         let is_frame = |name: &str| Path::new(name).extension().is_some_and(|ending| ending == "png");
         for (name, bytes) in contents(folder.path()).into_iter().filter(|(name, _)| is_frame(name)) {
             let same =
                 contents(whole.path()).into_iter().any(|(other, there)| other == name && there == bytes);
-            assert!(same, "{name} is not whole");
+            assert!(same, "{name} is incomplete");
         }
-        assert!(read_manifest(folder.path()).is_err(), "nothing says that it is finished");
+        assert!(read_manifest(folder.path()).is_err(), "no manifest of a finished sequence");
     }
     let drawn = write(folder.path(), &mut |_| ());
-    // About 150 were written before; a frame that was under way when its program died is drawn anew.
-    assert!(drawn > 0 && drawn < FRAMES - 80, "{drawn} of {FRAMES} were drawn after all");
+    // About 150 were written before. Frames that were being written when a process was killed are written again.
+    assert!(drawn > 0 && drawn < FRAMES - 80, "{drawn} of {FRAMES} were written at the end");
     assert!(contents(folder.path()) == contents(whole.path()), "byte for byte");
 }

@@ -1,4 +1,4 @@
-//! Takes that were cut, changed or never finished.
+//! Takes that are cut, changed or unfinished.
 
 mod take_scene;
 
@@ -9,20 +9,20 @@ use take_scene::{Random, SMALL, Size, chunks, frame, header, is_frame, play_all,
 
 const FRAMES: u64 = 310;
 
-/// The bytes of a whole take.
+/// The bytes of an intact take.
 fn whole(folder: &Path, size: Size) -> Vec<u8> {
     let path = folder.join("whole.take");
     record(&path, FRAMES, size);
     fs::read(&path).unwrap()
 }
 
-/// Opens `bytes` as a take of that name.
+/// Opens `bytes` as a take at `path`.
 fn open(path: &Path, bytes: &[u8]) -> Result<TakeReader, TakeError> {
     fs::write(path, bytes).unwrap();
     TakeReader::open(path)
 }
 
-/// Cuts a take to `length` bytes: all chunks that are whole play, and the take says where it ends.
+/// Cuts a take to `length` bytes and checks that all complete chunks play and that the take reports where it ends.
 fn cut_to(path: &Path, bytes: &[u8], length: usize, size: Size) {
     let whole_chunks = chunks(bytes);
     let wanted: u64 = whole_chunks.iter().filter(|chunk| chunk.end <= length).map(|chunk| chunk.frames).sum();
@@ -49,7 +49,7 @@ fn cut_to(path: &Path, bytes: &[u8], length: usize, size: Size) {
 }
 
 #[test]
-fn a_take_cut_anywhere_plays_to_its_last_whole_chunk() {
+fn a_take_cut_anywhere_plays_to_its_last_complete_chunk() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("cut.take");
     let size = Size(20, 12);
@@ -61,7 +61,7 @@ fn a_take_cut_anywhere_plays_to_its_last_whole_chunk() {
     cut_to(&path, &bytes, bytes.len(), size);
 }
 
-/// What is left of a take of which one bit was changed: it is told, no frame is wrong, and one chunk is lost at most.
+/// Changes one bit of a take and checks that the damage is reported, no frame is wrong, and at most one chunk is lost.
 fn flip(path: &Path, bytes: &[u8], bit: usize, size: Size) {
     let mut changed = bytes.to_vec();
     changed[bit / 8] ^= 1 << (bit % 8);
@@ -88,7 +88,7 @@ fn flip(path: &Path, bytes: &[u8], bit: usize, size: Size) {
 }
 
 #[test]
-fn a_changed_bit_is_found_and_costs_its_chunk_alone() {
+fn a_changed_bit_is_found_and_affects_only_its_chunk() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("changed.take");
     let size = Size(8, 6);
@@ -97,20 +97,20 @@ fn a_changed_bit_is_found_and_costs_its_chunk_alone() {
     for _ in 0..300 {
         flip(&path, &bytes, random.below(bytes.len() * 8), size);
     }
-    // Every byte of the first headers, of one chunk's header, and of all that follows the frames.
+    // Every byte of the first headers, of one chunk's header, and of everything after the frames.
     let all = chunks(&bytes);
     let (third, last) = (&all[3], &all[all.len() - 2]);
     assert_eq!((third.kind, last.kind), (*b"FRMS", *b"HEAD"));
     for byte in (0..64).chain(third.start..third.start + 64).chain(last.start..bytes.len()) {
         flip(&path, &bytes, byte * 8 + random.below(8), size);
     }
-    // The control.
+    // Negative control: the unchanged take.
     let mut take = open(&path, &bytes).unwrap();
     assert!(take.verify().unwrap().is_whole());
 }
 
 #[test]
-fn damage_in_a_take_without_an_index_costs_its_chunk_alone() {
+fn damage_in_a_take_without_an_index_affects_only_its_chunk() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("changed.take.part");
     let bytes = whole(folder.path(), SMALL);
@@ -137,7 +137,7 @@ fn damage_in_a_take_without_an_index_costs_its_chunk_alone() {
                 Err(error) => assert!(lost && error.to_string().contains("is lost"), "{error}"),
             }
         }
-        // Playing on: the good neighbour stands for an instant beside a lost frame.
+        // Playback continues: an instant beside a lost frame shows its intact neighbour.
         let mut out = TakeFrame::default();
         if hit.first > 0 {
             take.frame_at((hit.first as f64 - 0.5) / 60.0, &mut out).unwrap();
@@ -149,7 +149,7 @@ fn damage_in_a_take_without_an_index_costs_its_chunk_alone() {
 }
 
 #[test]
-fn bytes_put_in_or_taken_out_cost_what_they_touch() {
+fn inserted_or_removed_bytes_affect_only_their_chunks() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("shifted.take");
     let bytes = whole(folder.path(), SMALL);
@@ -164,7 +164,7 @@ fn bytes_put_in_or_taken_out_cost_what_they_touch() {
     let after = [&bytes[..], &[7; 5000]].concat();
     for (name, changed, most_lost) in [
         ("longer", longer, hit.frames),
-        // Its length now runs into the next chunk, which goes with it.
+        // The chunk now overlaps the next one, which is lost too.
         ("shorter", shorter, hit.frames + all[5].frames),
         ("zeros", zeros, hit.frames),
         ("without", without, hit.frames),
@@ -193,7 +193,7 @@ fn other_files_and_other_versions_are_named() {
     for bytes in [&b""[..], b"\x9A", b"(version: 1, body: ())", &vec![0; 100_000]] {
         let error = refused(bytes);
         assert!(matches!(error, TakeError::NotATake { .. }), "{error}");
-        assert!(error.to_string().contains("other.take: is no take: found"), "{error}");
+        assert!(error.to_string().contains("other.take: is not a take: found"), "{error}");
     }
     assert!(TakeReader::open(folder.path()).err().unwrap().is_request());
     let missing = TakeReader::open(&folder.path().join("missing.take")).err().unwrap();
@@ -202,9 +202,9 @@ fn other_files_and_other_versions_are_named() {
     writer.push(&frame(0, SMALL)).unwrap();
     drop(writer);
     let missing = TakeReader::open(&folder.path().join("there.take")).err().unwrap();
-    assert!(missing.to_string().contains("there.take.part is"), "{missing}");
+    assert!(missing.to_string().contains("the unfinished take"), "{missing}");
 
-    // A take of a later version, whole by its own checksums.
+    // A take of a newer version with correct checksums.
     let mut bytes = whole(folder.path(), SMALL);
     for chunk in chunks(&bytes) {
         let header = &mut bytes[chunk.start..chunk.start + 64];
@@ -217,18 +217,18 @@ fn other_files_and_other_versions_are_named() {
     assert_eq!(
         error.to_string(),
         format!(
-            "{}: is a take of version {found}, and this program reads takes up to version {newest}",
+            "{}: is a take of version {found}; this program reads takes up to version {newest}",
             path.display()
         )
     );
 }
 
 #[test]
-fn a_take_of_no_frame_is_no_take() {
+fn a_take_without_frames_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("none.take");
     let error = TakeWriter::create(&path, header(SMALL)).unwrap().finish().unwrap_err();
-    assert!(error.is_request() && error.to_string().contains("one frame or more"), "{error}");
+    assert!(error.is_request() && error.to_string().contains("at least one"), "{error}");
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
     let bytes = whole(folder.path(), SMALL);
     let error = open(&path, &bytes[..chunks(&bytes)[1].end]).err().unwrap();
@@ -236,14 +236,14 @@ fn a_take_of_no_frame_is_no_take() {
 }
 
 #[test]
-fn headers_that_promise_too_much_cost_nothing() {
+fn headers_with_huge_lengths_allocate_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("absurd.take");
     let bytes = whole(folder.path(), SMALL);
     let end = chunks(&bytes).len() - 2;
     let third = chunks(&bytes).swap_remove(3);
     let cut = chunks(&bytes)[end - 1].end;
-    // Where in a chunk's header, and what it then says: frames, lengths before and after packing, the first frame.
+    // Offsets in a chunk's header with new values: frames, lengths before and after compression, the first frame.
     for (at, word) in [
         (24, 61),
         (24, u32::MAX),

@@ -1,4 +1,4 @@
-//! Programs that die while they record: killed at any moment, and writers that meet.
+//! Processes that are killed while they record a take, and two writers of one take.
 
 mod take_scene;
 
@@ -12,14 +12,14 @@ use take_scene::{Random, Size, frame, header, play_all, project, record};
 
 const SIZE: Size = Size(30, 10);
 
-/// Where the program that is to be killed records to, and how many frames.
+/// Environment variable with the path and the number of frames for the process to be killed.
 const CHILD: &str = "LOVELOCK_TEST_TAKE_CHILD";
 
-/// Frames of a recording that is killed before its end, and of one that may come to it.
+/// Frames of a recording that is killed before its end, and of one that may reach it.
 const LONG: u64 = 100_000;
 const SHORT: u64 = 150;
 
-/// Not a test of its own: the program that the test below starts and kills. It says how many frames are kept.
+/// Not a test of its own: the process that the test below starts and kills. It prints how many frames are kept.
 #[test]
 fn a_program_that_records() {
     let Ok(told) = env::var(CHILD) else { return };
@@ -31,7 +31,7 @@ fn a_program_that_records() {
         writer.change(&project(n)).unwrap();
         writer.push(&frame(n, SIZE)).unwrap();
         if n % 30 == 29 {
-            // A recording gives the disk a second; this one waits until it is done.
+            // A real recording takes a second per chunk; this one waits for the disk.
             while writer.kept_frames() <= n {
                 std::thread::yield_now();
             }
@@ -42,7 +42,7 @@ fn a_program_that_records() {
     writer.finish().unwrap();
 }
 
-/// Starts the program, kills it some time after it has begun; says how many frames it knew to be kept.
+/// Starts the process and kills it after `after`. Returns the number of frames that it reported as kept.
 fn killed(path: &Path, frames: u64, after: Duration) -> u64 {
     let mut child = Command::new(env::current_exe().unwrap())
         .args(["a_program_that_records", "--exact", "--nocapture", "--test-threads", "1"])
@@ -57,7 +57,7 @@ fn killed(path: &Path, frames: u64, after: Duration) -> u64 {
     std::thread::sleep(after);
     child.kill().unwrap();
     child.wait().unwrap();
-    // What it had said until then is still in the pipe; a line that was not said whole does not count.
+    // What it printed until then is still in the pipe. An incomplete line does not count.
     lines.filter_map(|line| kept(&line)).last().unwrap_or(first)
 }
 
@@ -72,7 +72,7 @@ fn a_recording_that_is_killed_plays_up_to_its_last_second() {
         let frames = if run % 4 == 0 { SHORT } else { LONG };
         let kept = killed(&path, frames, Duration::from_micros(random.below(30_000) as u64));
         if path.exists() {
-            // It had come to its end.
+            // The process had finished.
             assert!(frames == SHORT && !part.exists());
             let mut take = TakeReader::open(&path).unwrap();
             assert!(take.condition().is_whole());
@@ -82,17 +82,17 @@ fn a_recording_that_is_killed_plays_up_to_its_last_second() {
         }
         let mut take = TakeReader::open(&part).unwrap();
         let condition = take.condition();
-        // Between its last byte and its name it is whole already.
+        // If it was killed between the last byte and the renaming, it is complete.
         let all_but_named = condition.is_whole() && frames == SHORT && take.frames() == SHORT;
         assert!(all_but_named || matches!(condition, TakeCondition::Cut { .. }), "{run}: {condition}");
-        // Nothing that was known to be kept is lost, and no more than the next chunk can have followed, said or not.
+        // No frame that was reported as kept is lost, and at most the next chunks can have followed before the report.
         let played = play_all(&mut take, SIZE);
         assert!(played >= kept && played <= kept + 60, "{run}: {kept} were kept, {played} play");
         longest = longest.max(played);
         fs::remove_file(&part).unwrap();
     }
-    // The control: they were killed in their middle.
-    println!("{finished} of 25 came to their end; the longest was killed after frame {longest}");
+    // Negative control: most were killed before their end.
+    println!("{finished} of 25 finished; the longest of the others was killed after frame {longest}");
     assert!(longest > 120 && finished < 100);
 }
 
@@ -108,17 +108,17 @@ fn two_writers_do_not_share_a_take() {
     for n in 0..100 {
         first.push(&frame(n, SIZE)).unwrap();
     }
-    // The take that was there stays until the new one is whole.
+    // The existing take stays until the new one is complete.
     assert_eq!(TakeReader::open(&path).unwrap().frames(), 70);
     assert_eq!(first.finish().unwrap().frames, 100);
     assert_eq!(TakeReader::open(&path).unwrap().frames(), 100);
-    // The control: a writer that is done does not stand in the way.
+    // Negative control: a finished writer does not block another.
     TakeWriter::create(&path, header(SIZE)).unwrap().discard().unwrap();
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
 }
 
 #[test]
-fn what_a_writer_left_unfinished_is_kept() {
+fn unfinished_takes_are_kept() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("dance.take");
     for frames in [30, 90] {

@@ -1,4 +1,4 @@
-//! The layout of takes as `docs/file_formats.md` has it, read by that page alone.
+//! Reads takes independently of the crate, as described in `docs/file_formats.md`.
 
 mod take_scene;
 
@@ -34,7 +34,8 @@ fn parts(file: &[u8], chunk: &Chunk) -> [Vec<u8>; 2] {
     })
 }
 
-/// The positions of a chunk's data part after its first eight bytes, in steps of 0.05 mm: number `((point * frames + frame) * 3 + axis) * guides + guide`.
+/// The positions in a chunk's data part after its first eight bytes, in steps of 0.05 mm. Their index is
+/// `((point * frames + frame) * 3 + axis) * guides + guide`.
 fn positions(data: &[u8], frames: usize, Size(guides, points): Size) -> Vec<i32> {
     let coefficients = &data[80 * frames..][..12 * points];
     let coefficient = |p: usize, i: usize| {
@@ -86,7 +87,7 @@ fn positions(data: &[u8], frames: usize, Size(guides, points): Size) -> Vec<i32>
 }
 
 #[test]
-fn another_program_reads_a_take_by_the_page_alone() {
+fn the_documented_layout_is_enough_to_read_a_take() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("dance.take");
     record(&path, 130, SIZE);
@@ -107,7 +108,7 @@ fn another_program_reads_a_take_by_the_page_alone() {
     for chunk in &all[2..7] {
         assert_eq!((chunk.first, word(&file, chunk.start + 56)), (seen, take));
         let [text, data] = parts(&file, chunk);
-        assert_eq!((word(&data, 0), word(&data, 4)), (9, 7), "guides and their points");
+        assert_eq!((word(&data, 0), word(&data, 4)), (9, 7), "guides and points per guide");
         let data = &data[8..];
         let length = word(&text, 0) as usize;
         let mut now = text[4..4 + length].to_vec();
@@ -143,7 +144,7 @@ fn another_program_reads_a_take_by_the_page_alone() {
             }
         }
         assert!(changes.is_empty());
-        // The control: what the page says of the coefficients matters.
+        // Negative control: the coefficients matter.
         let mut other = data.to_vec();
         other[80 * frames + 12 * 3] ^= 128;
         assert_ne!(positions(&other, frames, SIZE), steps);
@@ -163,7 +164,7 @@ fn another_program_reads_a_take_by_the_page_alone() {
 }
 
 #[test]
-fn takes_that_older_versions_wrote_still_play() {
+fn takes_of_older_versions_still_play() {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
     for (name, version, frames) in [("version_1.take", 1, 70), ("version_2.take", 2, 100)] {
         let mut take = TakeReader::open(&data.join(name)).unwrap();
@@ -172,13 +173,13 @@ fn takes_that_older_versions_wrote_still_play() {
         let size = |n| if version == 1 { take_scene::SMALL } else { regrown_size(n) };
         for n in 0..frames {
             let played = take.frame(n).unwrap();
-            // Sines differ from system to system in their last place.
+            // Sines differ between systems in the last place.
             assert!(worst(&played.guides.guides, &frame(n, size(n)).guides.guides) < 6e-5, "frame {n}");
             assert_eq!(*take.project_at(n).unwrap(), *project(n));
         }
         assert_eq!(take.layouts().unwrap().len(), if version == 1 { 1 } else { 3 });
     }
-    // The control: what is written now is read by the same test.
+    // Control: a take of the present version passes the same test.
     let folder = tempfile::tempdir().unwrap();
     let new = folder.path().join("new.take");
     record(&new, 70, take_scene::SMALL);

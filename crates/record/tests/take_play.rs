@@ -1,4 +1,4 @@
-//! Takes as their users meet them: recorded, finished and played.
+//! Takes through the public interface: recorded, finished and played.
 
 mod take_scene;
 
@@ -18,7 +18,7 @@ fn a_played_frame_is_the_recorded_one() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("new folder/dance.take");
     record(&path, 150, SIZE);
-    assert_eq!(fs::read_dir(path.parent().unwrap()).unwrap().count(), 1, "the take alone");
+    assert_eq!(fs::read_dir(path.parent().unwrap()).unwrap().count(), 1, "only the take");
     let mut take = TakeReader::open(&path).unwrap();
     assert!(take.condition().is_whole());
     assert_eq!((take.frames(), take.header()), (150, &header(SIZE)));
@@ -31,7 +31,7 @@ fn a_played_frame_is_the_recorded_one() {
     for n in (0..150).map(|n| n * 77 % 150) {
         assert!(is_frame(&take.frame(n).unwrap(), n, SIZE), "anywhere, frame {n}");
     }
-    // The control: another frame is another one.
+    // Negative control: another frame differs.
     assert!(!is_frame(&take.frame(10).unwrap(), 9, SIZE));
     assert!(worst(&take.frame(10).unwrap().guides.guides, &frame(9, SIZE).guides.guides) > MOST_ERROR_M);
     assert!(take.verify().unwrap().is_whole());
@@ -50,7 +50,8 @@ fn no_point_is_off_by_more_than_the_stated_error() {
         let mut one = || (random.below(1 << 24) as f32 / (1 << 23) as f32 - 1.0) * reach;
         Vec3::new(one(), one(), one())
     };
-    // As far from the origin as the error is promised for, and hair of 3 m; the last guide at half steps in head space.
+    // At the largest distance from the origin for which the error is stated, with hair of 3 m. The last guide lies at half
+    // steps in head space.
     let frames: Vec<TakeFrame> = (0..70)
         .map(|_| {
             let turn = Quat::from_scaled_axis(any(3.0));
@@ -79,7 +80,7 @@ fn no_point_is_off_by_more_than_the_stated_error() {
         .map(|n| worst(&take.frame(n as u64).unwrap().guides.guides, &frames[n].guides.guides))
         .fold(0.0, f64::max);
     println!("worst error {:.4} mm", seen * 1e3);
-    // Half a step along each axis is 0.0433 mm: seen up to single precision, never past the promise.
+    // Half a step along each axis is 0.0433 mm. It is reached up to single precision, and the stated error is never exceeded.
     assert!(seen > 0.042e-3 && seen < MOST_ERROR_M, "{seen}");
 }
 
@@ -99,14 +100,14 @@ fn between_two_frames_the_head_turns_evenly() {
         let (there, back) = (turned(&a).angle_between(turned(&out)), turned(&out).angle_between(turned(&b)));
         assert!((there - back).abs() < 1e-3 && there > 0.0, "{there} {back}");
     }
-    // At the frames themselves it is the frame, at either end the first and the last.
+    // At the time of a frame it is that frame; outside the take it is the first or the last one.
     take.frame_at(7.0 / 60.0, &mut out).unwrap();
     assert!(is_frame(&out, 7, SIZE));
     for (secs, n) in [(-1.0, 0), (f64::NAN, 0), (1e9, 119), (f64::INFINITY, 0)] {
         take.frame_at(secs, &mut out).unwrap();
         assert!(is_frame(&out, n, SIZE), "{secs}");
     }
-    // Nothing lies between frame 89 and the jump to frame 90.
+    // Nothing is interpolated between frame 89 and the jump to frame 90.
     take.frame_at(89.4 / 60.0, &mut out).unwrap();
     assert!(is_frame(&out, 89, SIZE));
     take.frame_at(89.6 / 60.0, &mut out).unwrap();
@@ -117,7 +118,7 @@ fn between_two_frames_the_head_turns_evenly() {
 fn between_two_frames_links_keep_their_lengths_and_roots_stay_on_the_head() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("jerky.take");
-    // A sixteenth of the frames, so that much happens between two.
+    // Only every sixteenth frame, so that the motion between two frames is large.
     let mut writer = TakeWriter::create(&path, header(SIZE)).unwrap();
     for n in 0..10 {
         writer.push(&frame(16 * n, SIZE)).unwrap();
@@ -133,7 +134,7 @@ fn between_two_frames_links_keep_their_lengths_and_roots_stay_on_the_head() {
         };
         let mut shortened = 0.0_f32;
         for g in 0..SIZE.0 {
-            // Positions are off by 0.05 mm at most in all three.
+            // The errors of positions are at most 0.05 mm in all three frames.
             assert!(in_head(&out, g).distance(in_head(&a, g)) < 1e-4, "the root of guide {g} left the head");
             for p in 1..SIZE.1 {
                 let link = out.guides.guides.point(g, p).distance(out.guides.guides.point(g, p - 1));
@@ -142,13 +143,13 @@ fn between_two_frames_links_keep_their_lengths_and_roots_stay_on_the_head() {
                 shortened = shortened.max(LINK_M - middle(p).distance(middle(p - 1)));
             }
         }
-        // The control: the plain middle of two frames shortens links by more than that.
+        // Negative control: plain linear interpolation shortens links by more than that.
         assert!(shortened > 2e-4, "{n}: {shortened}");
     }
 }
 
 #[test]
-fn where_the_clip_starts_again_its_time_runs_over_the_end() {
+fn the_time_of_a_looping_clip_wraps_around_its_end() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("loop.take");
     record(&path, 580, SMALL);
@@ -168,14 +169,14 @@ fn the_project_is_the_same_text_while_nothing_changes() {
     let mut take = TakeReader::open(&path).unwrap();
     let first = take.project_at(21).unwrap();
     for n in 22..70 {
-        assert!(Arc::ptr_eq(&first, &take.project_at(n).unwrap()), "frame {n}, past the end of a chunk, too");
+        assert!(Arc::ptr_eq(&first, &take.project_at(n).unwrap()), "frame {n}, also across chunks");
     }
     assert!(!Arc::ptr_eq(&first, &take.project_at(70).unwrap()));
     assert_eq!(&*take.project_at(0).unwrap(), "(look: 0)");
 }
 
 #[test]
-fn a_change_before_the_first_frame_and_two_at_one_frame_count_as_the_last() {
+fn the_last_of_several_changes_at_one_frame_applies() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("dance.take");
     let mut writer = TakeWriter::create(&path, header(SMALL)).unwrap();
@@ -205,11 +206,11 @@ fn frames_that_do_not_fit_are_refused_and_the_take_goes_on() {
     let mut nowhere = frame(1, SMALL);
     nowhere.guides.world_from_head.translation.x = f32::INFINITY;
     for (wrong, words) in [
-        (frame(1, Size(4, 4)), "frame 1: 4 guides of 4 points, wanted 3 of 4"),
+        (frame(1, Size(4, 4)), "frame 1: 4 guides of 4 points; must be 3 of 4"),
         (broken, "guide 1, point 1"),
         (distant, "guide 0, point 0"),
-        (sheared, "wanted a turn and a place"),
-        (nowhere, "wanted a turn and a place"),
+        (sheared, "must be a rotation and a translation"),
+        (nowhere, "must be a rotation and a translation"),
     ] {
         let error = writer.push(&wrong).unwrap_err();
         assert!(error.is_request() && error.to_string().contains(words), "{error}");
@@ -222,7 +223,7 @@ fn frames_that_do_not_fit_are_refused_and_the_take_goes_on() {
 }
 
 #[test]
-fn headers_that_no_take_can_have_are_refused() {
+fn invalid_headers_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("dance.take");
     let good = header(SMALL);
@@ -239,7 +240,7 @@ fn headers_that_no_take_can_have_are_refused() {
     assert!(TakeWriter::create(folder.path(), good.clone()).err().unwrap().is_request());
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
     drop(TakeWriter::create(&path, good).unwrap());
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "no frame, no file");
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "no file without frames");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Takes in which the hair gets other guides on the way.
+//! Takes in which the number of guides changes.
 
 mod take_scene;
 
@@ -47,7 +47,7 @@ fn every_frame_comes_back_with_its_own_guides_in_any_order() {
 }
 
 #[test]
-fn nothing_lies_between_frames_of_other_guides() {
+fn nothing_is_interpolated_between_different_layouts() {
     let (_folder, path, _) = recorded();
     let mut take = TakeReader::open(&path).unwrap();
     let mut out = TakeFrame::default();
@@ -55,25 +55,25 @@ fn nothing_lies_between_frames_of_other_guides() {
         assert_eq!(take.frame_at(place / 60.0, &mut out).unwrap(), shown, "{place}");
         assert!(is_frame(&out, shown, regrown_size(shown)), "{place}");
     }
-    // The control: frames of the same guides are mixed.
+    // Negative control: frames with the same layout are interpolated.
     assert_eq!(take.frame_at(41.4 / 60.0, &mut out).unwrap(), 41);
     assert!(!is_frame(&out, 41, regrown_size(41)) && !is_frame(&out, 42, regrown_size(42)));
 }
 
 #[test]
-fn a_size_that_was_not_said_or_that_no_take_holds_is_refused_and_the_take_goes_on() {
+fn unannounced_or_invalid_layouts_are_refused_and_recording_continues() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("refused.take");
     let mut writer = TakeWriter::create(&path, header(SMALL)).unwrap();
     writer.push(&frame(0, SMALL)).unwrap();
     let error = writer.push(&frame(1, Size(5, 6))).unwrap_err();
-    assert!(error.to_string().contains("frame 1: 5 guides of 6 points, wanted 3 of 4"), "{error}");
+    assert!(error.to_string().contains("frame 1: 5 guides of 6 points; must be 3 of 4"), "{error}");
     for (guides, points) in [(0, 4), (3, 1), (usize::MAX, 2), (MOST_GUIDE_POINTS as usize, 2)] {
         let error = writer.set_layout(guides, points).unwrap_err();
-        assert!(error.is_request() && error.to_string().contains("wanted 1 guide or more"), "{error}");
+        assert!(error.is_request() && error.to_string().contains("must be at least 1 guide"), "{error}");
     }
     writer.push(&frame(1, SMALL)).unwrap();
-    // A size that is said and taken back leaves no trace.
+    // A layout that is set and set back before a frame has no effect.
     writer.set_layout(5, 6).unwrap();
     writer.set_layout(3, 4).unwrap();
     writer.push(&frame(2, SMALL)).unwrap();
@@ -84,7 +84,7 @@ fn a_size_that_was_not_said_or_that_no_take_holds_is_refused_and_the_take_goes_o
 }
 
 #[test]
-fn cut_at_every_length_it_plays_to_its_last_whole_chunk() {
+fn cut_at_every_length_it_plays_to_its_last_complete_chunk() {
     let (_folder, path, bytes) = recorded();
     let all = chunks(&bytes);
     for length in (0..bytes.len()).step_by(7) {
@@ -103,7 +103,7 @@ fn cut_at_every_length_it_plays_to_its_last_whole_chunk() {
 }
 
 #[test]
-fn a_changed_bit_costs_its_chunk_alone() {
+fn a_changed_bit_affects_only_its_chunk() {
     let (_folder, path, bytes) = recorded();
     let all = chunks(&bytes);
     let mut random = Random(2);
@@ -114,7 +114,7 @@ fn a_changed_bit_costs_its_chunk_alone() {
         changed[byte] ^= 1 << random.below(8);
         let hit = all.iter().find(|chunk| (chunk.start..chunk.end).contains(&byte));
         let mut take = open(&path, &changed).unwrap();
-        // Before it is played, and so before the damage is known.
+        // Before playback, and so before the damage is known.
         let _ = take.layouts().unwrap();
         for n in 0..FRAMES {
             let mine = hit.is_some_and(|hit| (hit.first..hit.first + hit.frames).contains(&n));
@@ -134,11 +134,11 @@ fn a_changed_bit_costs_its_chunk_alone() {
         }
         assert!(!take.verify().unwrap().is_whole(), "byte {byte}");
     }
-    assert!(lost_once > 100, "the control: frames were lost");
+    assert!(lost_once > 100, "negative control: frames were lost");
 }
 
 #[test]
-fn a_size_that_is_a_lie_is_told_and_costs_nothing() {
+fn a_false_layout_is_reported_and_allocates_nothing() {
     let (_folder, path, bytes) = recorded();
     let third = &chunks(&bytes)[4];
     assert_eq!((third.first, third.frames), (40, 30));
@@ -156,7 +156,7 @@ fn a_size_that_is_a_lie_is_told_and_costs_nothing() {
         }
         let crc = crc32fast::hash(&chunk[..60]);
         chunk[60..64].copy_from_slice(&crc.to_le_bytes());
-        // Cut after it: the index knows another chunk.
+        // The file is cut after the chunk, because the index contains its original header.
         open(&path, &[&bytes[..third.start], &chunk, &packed].concat()).unwrap()
     };
     for (guides, points) in [(0, 6), (5, 0), (5, 1), (6, 5), (3, 6), (u32::MAX, u32::MAX), (1 << 19, 2)] {

@@ -1,12 +1,12 @@
-//! What the `openusd` library (0.6) leaves wrong in a crate, put right.
+//! Corrects two faults in USD crates that the `openusd` library (0.6) writes.
 //!
-//! It keeps the names of children as arrays of tokens. Pixar's own reader wants vectors of tokens there, which have the
-//! same bytes and another type, and refuses the file otherwise. It also marks files with the newest version that it
-//! knows, 0.12, for the sake of values that are not used here; programs of before 2024 would refuse that.
+//! It stores the names of children as arrays of tokens. Pixar's reader requires vectors of tokens there, which have the same
+//! bytes but another type, and refuses the file otherwise. It also writes the newest version, 0.12, for values that are not
+//! used here; programs from before 2024 would refuse that.
 
 use std::io::{self, Read, Seek, SeekFrom, Write};
 
-/// The version that crates are marked with: that of all crates since 2019 which need nothing newer.
+/// The version that is written: the one of all crates since 2019 that need nothing newer.
 const VERSION: [u8; 3] = [0, 8, 0];
 const VERSION_AT: u64 = 8;
 const TOC_AT: u64 = 16;
@@ -15,15 +15,15 @@ const TOC_AT: u64 = 16;
 const ARRAY_OF_TOKENS: u64 = 0x800b;
 const VECTOR_OF_TOKENS: u64 = 0x0029;
 
-/// The most that the sections behind the values may take; ours take some hundred bytes.
+/// The most bytes of the sections after the values. Ours take some hundred bytes.
 const MOST_TAIL: u64 = 64 << 20;
 
-/// Writes the end of a crate anew: `read` reads the same file as `write` writes.
+/// Rewrites the end of a crate file. `read` and `write` access the same file.
 ///
-/// The sections at the end hold tables alone; every array of tokens in a file of this crate names children.
+/// The sections at the end contain only tables. Every array of tokens in the files of this module contains names of children.
 ///
 /// # Errors
-/// The disk's, and a file that is not as the library writes it.
+/// For errors of the disk and for a file in a form that the library does not write.
 pub(super) fn mend(read: &mut (impl Read + Seek), write: &mut (impl Write + Seek)) -> io::Result<()> {
     let length = read.seek(SeekFrom::End(0))?;
     read.seek(SeekFrom::Start(TOC_AT))?;
@@ -56,7 +56,7 @@ pub(super) fn mend(read: &mut (impl Read + Seek), write: &mut (impl Write + Seek
         (*begin, *size) = (start + out.len() as u64, bytes.len() as u64);
         out.extend(bytes);
     }
-    // A file that gets shorter would keep its old end.
+    // If the new end were shorter, the old end would stay behind it.
     let new_length = start + out.len() as u64 + 8 + 32 * sections.len() as u64;
     out.resize(out.len() + length.saturating_sub(new_length) as usize, 0);
     let toc = start + out.len() as u64;
@@ -72,13 +72,13 @@ pub(super) fn mend(read: &mut (impl Read + Seek), write: &mut (impl Write + Seek
     write.write_all(&VERSION)
 }
 
-/// The section of fields: their number, a block with their names, and one with their values.
+/// Corrects the section of fields: their number, a block with their names, and a block with their values.
 fn mend_fields(section: &[u8]) -> io::Result<Vec<u8>> {
     let count = word(section, 0)? as usize;
     let values = 16 + word(section, 8)? as usize;
     let size = word(section, values)? as usize;
     let block = section.get(values + 8..values + 8 + size).ok_or_else(wrong)?;
-    // The first byte says that it is one block.
+    // A first byte of 0 means that there is a single block.
     let [0, packed @ ..] = block else { return Err(wrong()) };
     let mut reps = lz4_flex::block::decompress(packed, 8 * count).map_err(io::Error::other)?;
     for rep in reps.as_chunks_mut::<8>().0 {
@@ -104,5 +104,5 @@ fn word(bytes: &[u8], at: usize) -> io::Result<u64> {
 }
 
 fn wrong() -> io::Error {
-    io::Error::new(io::ErrorKind::InvalidData, "the USD library has written a crate that is not as expected")
+    io::Error::new(io::ErrorKind::InvalidData, "the USD library has written a crate in an unexpected form")
 }

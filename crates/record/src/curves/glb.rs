@@ -1,8 +1,8 @@
 //! glTF 2 in one file: the curves as lines, the body as a skinned mesh.
 //!
-//! Viewers skin triangles alone, so lines cannot hang on joints. Each frame of the curves is a mesh of its own on a node
-//! of its own, and an animation shows one after the other by scaling its node from nothing to one and back, in
-//! steps. The points are exact at every frame, and any viewer that plays animations of nodes shows them.
+//! Viewers apply skinning to triangles only, so lines cannot be attached to joints. Each frame of the curves is a separate
+//! mesh with its own node, and an animation shows one after another by stepping the scale of its node from 0 to 1 and back. The
+//! points are exact at every frame, and every viewer that plays node animations shows them.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -26,16 +26,16 @@ pub(super) struct GlbWriter {
     file: PartialFile,
     scene: CurveScene,
     spool: Spool,
-    /// Box of the curves in each frame.
+    /// Bounding box of the curves in each frame.
     boxes: Vec<[[f32; 3]; 2]>,
-    /// Transform of each joint to the world, frame after frame.
+    /// Transform from each joint to the world, frame after frame.
     joints: Vec<Affine3A>,
 }
 
 impl GlbWriter {
     pub(super) fn create(path: &Path, scene: CurveScene, opener: &Opener) -> Result<Self, RecordError> {
         let file = PartialFile::create(path, opener)
-            .map_err(|error| RecordError::io(path, "make the file", error))?;
+            .map_err(|error| RecordError::io(path, "create the file", error))?;
         let spool = Spool::create(path, &scene, false)?;
         let target = path.to_owned();
         Ok(Self { target, file, scene, spool, boxes: Vec::new(), joints: Vec::new() })
@@ -46,7 +46,7 @@ impl GlbWriter {
         let joints = frame.body.map_or(&[][..], |body| body.joints);
         if self.scene.body.is_some() && joints.len() != wanted {
             return Err(RecordError::request(format!(
-                "{}: a body of {} joints; wanted {wanted}",
+                "{}: a body of {} joints; must have {wanted}",
                 self.target.display(),
                 joints.len()
             )));
@@ -72,7 +72,7 @@ impl GlbWriter {
         }
         let head = glb::head(asset.json(), asset.buffer.len()).map_err(|whole| {
             RecordError::request(format!(
-                "{}: {whole} bytes, and a binary glTF has {} at most: write fewer frames",
+                "{}: {whole} bytes; a binary glTF has at most {}: write fewer frames",
                 self.target.display(),
                 u32::MAX
             ))
@@ -97,8 +97,8 @@ impl GlbWriter {
     }
 }
 
-/// A glTF asset as it is put together. Its buffer begins with the curves' points, frame after frame, which are not
-/// held here.
+/// A glTF asset that is being built. Its buffer begins with the curves' points, frame after frame, which are not
+/// in memory.
 struct Asset {
     buffer: Buffer,
     meshes: Vec<Value>,
@@ -127,7 +127,7 @@ impl Asset {
         }
     }
 
-    /// Puts an array into the buffer; the index of its accessor.
+    /// Appends an array to the buffer. Returns the index of its accessor.
     fn array<T: bytemuck::NoUninit>(
         &mut self,
         values: &[T],
@@ -141,9 +141,9 @@ impl Asset {
         accessor
     }
 
-    /// Times and values of an animated property of a node.
-    fn animate(&mut self, node: usize, property: &str, way: &str, input: usize, output: usize) {
-        self.samplers.push(json!({ "input": input, "output": output, "interpolation": way }));
+    /// Adds the times and values of an animated property of a node.
+    fn animate(&mut self, node: usize, property: &str, interpolation: &str, input: usize, output: usize) {
+        self.samplers.push(json!({ "input": input, "output": output, "interpolation": interpolation }));
         let target = json!({ "node": node, "path": property });
         self.channels.push(json!({ "sampler": self.samplers.len() - 1, "target": target }));
     }
@@ -156,7 +156,7 @@ impl Asset {
         }
         let segments = self.array(&segments, UNSIGNED_INT, "SCALAR", Some(ELEMENT_ARRAY_BUFFER), Value::Null);
         let colors = self.colors(&scene.colors);
-        // One second of a flip-book: nothing, shown, nothing.
+        // Scales of a node: hidden, shown while its frame lasts, hidden.
         let shown = |keys: &[f32]| keys.iter().map(|&key| [key; 3]).collect::<Vec<_>>();
         let [at_first, at_last, between] = [&[1.0, 0.0][..], &[0.0, 1.0], &[0.0, 1.0, 0.0]]
             .map(|keys| self.array(&shown(keys), FLOAT, "VEC3", None, Value::Null));
@@ -178,7 +178,7 @@ impl Asset {
             }));
             let mut node = json!({ "name": format!("Hair {number}"), "mesh": self.meshes.len() - 1 });
             if frame > 0 {
-                // Viewers that play nothing show the first frame.
+                // Viewers without animation show the first frame.
                 node["scale"] = json!([0, 0, 0]);
             }
             self.nodes.push(node);
@@ -225,7 +225,7 @@ impl Asset {
             let weights: Vec<[f32; 4]> =
                 body.weights.iter().map(|all| [all[at], all[at + 1], all[at + 2], all[at + 3]]).collect();
             let joints = body.joints.iter().zip(&weights).map(|(all, weights)| {
-                // Joints without weight are to be the first one.
+                // glTF requires index 0 for joints without weight.
                 std::array::from_fn::<u16, 4, _>(|k| if weights[k] > 0.0 { all[at + k] } else { 0 })
             });
             let joints: Vec<_> = joints.collect();
@@ -294,7 +294,7 @@ impl Asset {
             "nodes": self.nodes,
             "meshes": self.meshes,
             "materials": [
-                // Lines have no side that light could fall on.
+                // Lines have no normals, so they cannot be lit.
                 { "name": "Hair", "extensions": { "KHR_materials_unlit": {} } },
                 { "name": "Body", "pbrMetallicRoughness": { "metallicFactor": 0.0, "roughnessFactor": 0.8 } },
             ],
@@ -303,7 +303,7 @@ impl Asset {
             "buffers": [{ "byteLength": self.buffer.len() }],
         });
         if self.skins.is_empty() {
-            // What nothing uses is noted by validators.
+            // Validators report unused materials.
             if let Some(materials) = asset["materials"].as_array_mut() {
                 materials.truncate(1);
             }
@@ -318,7 +318,7 @@ impl Asset {
     }
 }
 
-/// Keys of one joint.
+/// Animation keys of one joint.
 #[derive(Default)]
 struct Keys {
     translations: Vec<[f32; 3]>,
@@ -330,19 +330,19 @@ impl Keys {
     fn push(&mut self, transform: &Affine3A) {
         let (scale, rotation, translation) = transform.to_scale_rotation_translation();
         let mut rotation = rotation.normalize();
-        // Of two ways to say a rotation, the one near the key before: between them it is interpolated.
+        // Of the two quaternions of a rotation, the one nearer to the key before, because viewers interpolate between them.
         if self.rotations.last().is_some_and(|&last| Quat::from_array(last).dot(rotation) < 0.0) {
             rotation = -rotation;
         }
         self.translations.push(translation.to_array());
         self.rotations.push(rotation.to_array());
-        // Poses round a scale of one in the last bits, which would be an animation of nothing.
+        // Rounding errors of a scale of 1 would otherwise become an animation.
         let round = |s: f32| if (s - 1.0).abs() < 1e-5 { 1.0 } else { s };
         self.scales.push(scale.to_array().map(round));
     }
 }
 
-/// When a frame is shown, seconds after the first.
+/// Time of a frame in seconds after the first.
 fn secs(scene: &CurveScene, frame: usize) -> f32 {
     (frame as f64 / scene.rate.as_f64()) as f32
 }

@@ -1,4 +1,4 @@
-//! A layer whose arrays over time lie in a spool, for the writers of the `openusd` library.
+//! A USD layer whose animated arrays are in a [`Spool`], for the writers of the `openusd` library.
 
 use std::borrow::Cow;
 use std::cell::RefCell;
@@ -11,25 +11,25 @@ use openusd::tf::Token;
 
 use super::spool::Spool;
 
-/// The field that holds an attribute's values over time.
+/// The field with an attribute's values over time.
 const TIME_SAMPLES: &str = "timeSamples";
 
-/// Triples of each frame in a spool.
+/// A range of vectors in each frame of a spool.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Track {
-    /// Index of the first one in a frame.
+    /// Index of the first vector in a frame.
     pub(super) first: usize,
-    /// How many.
+    /// Number of vectors.
     pub(super) count: usize,
 }
 
-/// Scene description in memory, all but the large arrays, which are read when they are written.
+/// Scene description. It is in memory except for the large arrays, which are read from the spool while they are written.
 pub(super) struct SpooledLayer {
     data: Data,
     tracks: HashMap<Path, Track>,
     spool: RefCell<Spool>,
     first_frame: u64,
-    /// The first reading that failed: the library's text writer takes one for a field that is not there.
+    /// The first error while reading the spool, because the library's text writer treats an error as a missing field.
     failed: RefCell<Option<io::Error>>,
 }
 
@@ -44,7 +44,7 @@ impl SpooledLayer {
         }
     }
 
-    /// The first frame that could not be read back, if one was.
+    /// The first error while reading frames back, if there was one.
     pub(super) fn take_failure(&self) -> Option<io::Error> {
         self.failed.borrow_mut().take()
     }
@@ -55,12 +55,12 @@ impl SpooledLayer {
         (0..self.spool.borrow().frames).map(move |frame| (first + frame) as f64)
     }
 
-    /// A spec of the layer.
+    /// Adds a spec to the layer.
     pub(super) fn spec(&mut self, path: Path, ty: SpecType) -> &mut SpecData {
         self.data.create_spec(path, ty)
     }
 
-    /// Begins a prim.
+    /// Starts a prim.
     pub(super) fn prim(&mut self, path: Path, type_name: &'static str) -> PrimBuilder<'_> {
         let spec = self.data.create_spec(path.clone(), SpecType::Prim);
         spec.add("specifier", Value::Specifier(Specifier::Def));
@@ -80,7 +80,7 @@ impl SpooledLayer {
     }
 }
 
-/// A prim that gets its attributes.
+/// A prim to which attributes are being added.
 pub(super) struct PrimBuilder<'a> {
     layer: &'a mut SpooledLayer,
     path: Path,
@@ -88,7 +88,7 @@ pub(super) struct PrimBuilder<'a> {
 }
 
 impl PrimBuilder<'_> {
-    /// An attribute, to put fields in.
+    /// Adds an attribute, whose fields the caller sets.
     pub(super) fn attribute(&mut self, name: &'static str, type_name: &'static str) -> &mut SpecData {
         self.properties.push(Token::from(name));
         let spec = self.layer.data.create_spec(self.property(name), SpecType::Attribute);
@@ -96,7 +96,7 @@ impl PrimBuilder<'_> {
         spec
     }
 
-    /// An attribute whose values over time are in the spool.
+    /// Adds an attribute whose values over time are in the spool.
     pub(super) fn track(
         &mut self,
         name: &'static str,
@@ -107,7 +107,7 @@ impl PrimBuilder<'_> {
         self.attribute(name, type_name)
     }
 
-    /// Says what part of a scene it is.
+    /// Sets the prim's kind in the model hierarchy.
     pub(super) fn kind(self, kind: &'static str) -> Self {
         if let Some(spec) = self.layer.data.spec_mut(&self.path) {
             spec.add("kind", Value::Token(Token::from(kind)));
@@ -115,7 +115,7 @@ impl PrimBuilder<'_> {
         self
     }
 
-    /// Names the children and ends the prim.
+    /// Sets the names of the children and ends the prim.
     pub(super) fn finish(self, children: Vec<Token>) {
         let Some(spec) = self.layer.data.spec_mut(&self.path) else { return };
         if !self.properties.is_empty() {
@@ -127,7 +127,7 @@ impl PrimBuilder<'_> {
     }
 
     fn property(&self, name: &'static str) -> Path {
-        // The names are those of this crate, all of them good.
+        // All names are from this crate and valid.
         self.path.append_property(name).unwrap_or_else(|_| self.path.clone())
     }
 }

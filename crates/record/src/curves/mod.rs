@@ -1,7 +1,7 @@
-//! Curves that follow the hair from frame to frame, with the body beside them, for other programs: USD and glTF.
+//! Export of the animated hair and body as USD or glTF curves.
 //!
-//! [`CurveWriter`] takes one [`CurveFrame`] after the other. They wait in an unnamed file beside the output, as both
-//! formats want all times of one thing together; memory holds one frame, and at the end one array of the file.
+//! [`CurveWriter`] receives one [`CurveFrame`] after another and stores them in an unnamed file in the output's folder,
+//! because both formats keep all times of an array together. Memory holds one frame and, at the end, one array of the file.
 
 mod crate_tail;
 mod glb;
@@ -18,7 +18,7 @@ use crate::{FrameRate, RecordError};
 use glb::GlbWriter;
 use usd::UsdWriter;
 
-/// A format of curves.
+/// A file format for curves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CurveFormat {
     /// USD as text: `.usda`.
@@ -30,10 +30,10 @@ pub enum CurveFormat {
 }
 
 impl CurveFormat {
-    /// Endings of such files, without the dot.
+    /// File extensions of the formats, without the dot.
     pub const EXTENSIONS: [&str; 4] = ["usdc", "usd", "usda", "glb"];
 
-    /// The format that a name asks for by its ending, in any case; none for other names.
+    /// The format for the extension of a name, in upper or lower case; none for other extensions.
     pub fn of(path: &Path) -> Option<Self> {
         match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
             "usda" => Some(Self::Usda),
@@ -53,50 +53,50 @@ impl CurveFormat {
     }
 }
 
-/// What stays the same from frame to frame. World space is metres, right-handed, Y up.
+/// Everything that does not change from frame to frame. World space is right-handed, in metres, with Y up.
 #[derive(Clone, Debug)]
 pub struct CurveScene {
-    /// Frames a second.
+    /// Frames per second.
     pub rate: FrameRate,
-    /// Number of the first frame: its time code.
+    /// Number of the first frame, which is its time code.
     pub first_frame: u64,
-    /// Frames that will come, 1 or more.
+    /// Number of frames, 1 or more.
     pub frames: u64,
-    /// Index of the first point of each curve, with the number of points at the end (curves + 1).
+    /// Index of the first point of each curve, and at the end the number of points (curves + 1 entries).
     pub first_point: Vec<u32>,
-    /// Full width of each point, metres.
+    /// Diameter at each point, in metres.
     pub widths: Vec<f32>,
     /// Colour of each point, linear sRGB.
     pub colors: Vec<Vec3>,
-    /// The body, where it goes with the hair.
+    /// The body, if it is exported.
     pub body: Option<CurveBody>,
 }
 
-/// The surface of the body, one entry a vertex unless said otherwise.
+/// The surface of the body. Fields have one entry per vertex unless stated otherwise.
 #[derive(Clone, Debug, Default)]
 pub struct CurveBody {
     /// Counter-clockwise triangles.
     pub triangles: Vec<[u32; 3]>,
     /// Colours, linear sRGB.
     pub colors: Vec<Vec3>,
-    /// Positions as they are bound to the joints, metres.
+    /// Positions in the bind pose, in metres.
     pub bind_positions: Vec<Vec3>,
-    /// Unit normals as they are bound to the joints.
+    /// Unit normals in the bind pose.
     pub bind_normals: Vec<Vec3>,
-    /// Entries of `joint_from_bind` that move each vertex, heaviest first.
+    /// Indices into `joint_from_bind` of the joints that move each vertex, largest weight first.
     pub joints: Vec<[u16; 8]>,
-    /// Their weights, which sum to 1.
+    /// Weights of these joints, which sum to 1.
     pub weights: Vec<[f32; 8]>,
-    /// Carries bind space into each joint's space; one entry a joint.
+    /// Transform from bind space to the space of each joint, one entry per joint.
     pub joint_from_bind: Vec<Affine3A>,
 }
 
-/// One frame, world space, metres.
+/// One frame in world space, in metres.
 #[derive(Clone, Copy, Debug)]
 pub struct CurveFrame<'a> {
     /// Coordinates of the curves' points: x, y and z.
     pub points: [&'a [f32]; 3],
-    /// Where the body is; wanted where the scene has one.
+    /// The body; required if the scene has one.
     pub body: Option<BodyFrame<'a>>,
 }
 
@@ -105,23 +105,23 @@ pub struct CurveFrame<'a> {
 pub struct BodyFrame<'a> {
     /// Positions of the vertices.
     pub positions: &'a [Vec3],
-    /// Their unit normals.
+    /// Unit normals of the vertices.
     pub normals: &'a [Vec3],
-    /// Transform of each joint to the world, in the order of `joint_from_bind`.
+    /// Transform from each joint to the world, in the order of `joint_from_bind`.
     pub joints: &'a [Affine3A],
 }
 
 /// What was written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CurveReport {
-    /// Frames.
+    /// Number of frames.
     pub frames: u64,
-    /// Length of the file, bytes.
+    /// Length of the file in bytes.
     pub bytes: u64,
 }
 
 impl CurveScene {
-    /// Points of all curves.
+    /// Total number of points.
     pub fn points(&self) -> usize {
         self.first_point.last().map_or(0, |&end| end as usize)
     }
@@ -131,7 +131,7 @@ impl CurveScene {
         self.first_point.len().saturating_sub(1)
     }
 
-    /// Points of each curve.
+    /// Number of points of each curve.
     pub fn counts(&self) -> impl Iterator<Item = u32> + '_ {
         self.first_point.array_windows().map(|[a, b]| b - a)
     }
@@ -140,7 +140,7 @@ impl CurveScene {
         let refuse = |what: &str| Err(RecordError::request(format!("{}: {what}", path.display())));
         let points = self.points();
         if self.frames == 0 {
-            return refuse("no frame to write; wanted one or more");
+            return refuse("no frames to write; must be at least one");
         }
         let body_fits = self.body.as_ref().is_none_or(|body| {
             let vertices = body.bind_positions.len();
@@ -155,19 +155,19 @@ impl CurveScene {
                     .all(|&joint| usize::from(joint) < body.joint_from_bind.len().max(1))
         });
         if points == 0 || self.first_point.array_windows().any(|[a, b]| a.saturating_add(2) > *b) {
-            return refuse("no curves of two points or more");
+            return refuse("no curves, or a curve with fewer than two points");
         }
         if self.widths.len() != points || self.colors.len() != points || !body_fits {
-            return refuse("curves or a body whose arrays differ in length");
+            return refuse("the arrays of the curves or of the body differ in length");
         }
         self.check_size(path, format)
     }
 
-    /// Refuses what no disk or program would take, before anything is written.
+    /// Checks the size of the file before anything is written.
     fn check_size(&self, path: &Path, format: CurveFormat) -> Result<(), RecordError> {
         let refuse = |bytes: u64, most: u64, instead: &str| {
             Err(RecordError::request(format!(
-                "{}: {} frames of {} points would be about {:.1} GB, and {:.1} GB is the most: {instead}",
+                "{}: {} frames of {} points would take about {:.1} GB; must be at most {:.1} GB: {instead}",
                 path.display(),
                 self.frames,
                 self.points(),
@@ -178,7 +178,7 @@ impl CurveScene {
         let most_frames = if format == CurveFormat::Glb { MOST_GLB_FRAMES } else { MOST_FRAMES };
         if self.frames > most_frames {
             return Err(RecordError::request(format!(
-                "{}: {} frames, and {most_frames} are the most: write them in parts, with --frames",
+                "{}: {} frames; must be at most {most_frames}: write them in parts, with --frames",
                 path.display(),
                 self.frames
             )));
@@ -188,7 +188,7 @@ impl CurveScene {
         let bytes = |size: u64, count: u64| self.frames.saturating_mul(count).saturating_mul(size);
         match format {
             CurveFormat::Usda => {
-                // Measured: 63 to 68 bytes for a point as text.
+                // Measured: a point takes 63 to 68 bytes as text.
                 let bytes = bytes(68, points + 2 * vertices);
                 if bytes > MOST_TEXT {
                     return refuse(
@@ -223,18 +223,18 @@ impl CurveScene {
     }
 }
 
-/// The most frames: their times and boxes are held in memory.
+/// The most frames. Their times and bounding boxes are in memory.
 const MOST_FRAMES: u64 = 1 << 20;
-/// The most frames of a glTF, which has a node and a mesh for each in its description.
+/// The most frames of a glTF, whose document has a node and a mesh for each.
 const MOST_GLB_FRAMES: u64 = 1 << 16;
-/// The most bytes of text: more is no file that a program would open.
+/// The most bytes of a text file. Hardly any program opens larger ones.
 const MOST_TEXT: u64 = 8 << 30;
-/// The most bytes of one array with all its times, which is held in memory while it is written.
+/// The most bytes of one array with all its times, which is in memory while it is written.
 const MOST_ARRAY: u64 = 2 << 30;
 /// The most bytes of a binary glTF, whose lengths have 32 bits.
 const MOST_GLB: u64 = (1 << 32) - (64 << 20);
 
-/// Writes curves frame by frame. Dropping it without [`CurveWriter::finish`] is a cancel, and leaves nothing.
+/// Writes curves frame by frame. If it is dropped without [`CurveWriter::finish`], the export is cancelled and its file removed.
 pub struct CurveWriter(Writer);
 
 enum Writer {
@@ -249,11 +249,11 @@ impl std::fmt::Debug for CurveWriter {
 }
 
 impl CurveWriter {
-    /// Begins a file in the format that its name asks for.
+    /// Starts a file. Its format follows from its extension.
     ///
     /// # Errors
-    /// A name with another ending, a scene whose arrays do not fit together or that would be too large a file, and
-    /// folders or files that cannot be made.
+    /// For an unknown extension, for a scene whose arrays do not match or whose file would be too large, and for folders or
+    /// files that cannot be created.
     pub fn create(path: &Path, scene: CurveScene) -> Result<Self, RecordError> {
         Self::create_with(path, scene, &open_file)
     }
@@ -261,12 +261,12 @@ impl CurveWriter {
     fn create_with(path: &Path, scene: CurveScene, opener: &Opener) -> Result<Self, RecordError> {
         let format = CurveFormat::of(path).ok_or_else(|| {
             RecordError::request(format!(
-                "{}: no format of curves: wanted a name ending in .usda, .usdc, .usd or .glb",
+                "{}: unknown format of curves: the name must end in .usda, .usdc, .usd or .glb",
                 path.display()
             ))
         })?;
         scene.check(path, format)?;
-        create_parent(path).map_err(|error| RecordError::io(path, "make its folder", error))?;
+        create_parent(path).map_err(|error| RecordError::io(path, "create its folder", error))?;
         Ok(Self(match format {
             CurveFormat::Usda | CurveFormat::Usdc => {
                 Writer::Usd(UsdWriter::create(path, scene, format == CurveFormat::Usda, opener)?)
@@ -275,10 +275,10 @@ impl CurveWriter {
         }))
     }
 
-    /// Takes the next frame.
+    /// Writes the next frame.
     ///
     /// # Errors
-    /// A frame of other lengths than the scene's, one too many, or a disk that takes no more.
+    /// For a frame whose arrays do not match the scene, for a frame too many, and for a full disk.
     pub fn push(&mut self, frame: &CurveFrame<'_>) -> Result<(), RecordError> {
         match &mut self.0 {
             Writer::Usd(writer) => writer.push(frame),
@@ -286,10 +286,10 @@ impl CurveWriter {
         }
     }
 
-    /// Writes the file and gives it its name.
+    /// Completes the file and renames it to its final name.
     ///
     /// # Errors
-    /// Fewer frames than were said, or a disk that takes no more; nothing is left of the file then.
+    /// For fewer frames than the scene says, and for a full disk. The unfinished file is then removed.
     pub fn finish(self) -> Result<CurveReport, RecordError> {
         match self.0 {
             Writer::Usd(writer) => writer.finish(),

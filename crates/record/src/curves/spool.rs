@@ -1,4 +1,4 @@
-//! Frames that wait on the disk until all are there.
+//! Temporary storage of frames on the disk until all have arrived.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
@@ -9,13 +9,13 @@ use glam::Vec3;
 use super::{CurveFrame, CurveScene};
 use crate::RecordError;
 
-/// Frames of equal length in an unnamed file, which the system removes whatever ends the program.
+/// Frames of equal length in an unnamed file, which the operating system removes when the program ends.
 #[derive(Debug)]
 pub(super) struct Spool {
     target: PathBuf,
     file: BufWriter<File>,
     points: usize,
-    /// Vertices of the body, as far as they are kept; 0 without.
+    /// Number of vertices of the body; 0 if the body is not stored.
     vertices: usize,
     wanted: u64,
     pub(super) frames: u64,
@@ -23,14 +23,14 @@ pub(super) struct Spool {
 }
 
 impl Spool {
-    /// A file in the folder of `target`. `with_body` keeps the body's positions and normals.
+    /// Creates the file in the folder of `target`. With `with_body` the body's positions and normals are stored too.
     pub(super) fn create(target: &Path, scene: &CurveScene, with_body: bool) -> Result<Self, RecordError> {
         let folder = match target.parent() {
             Some(folder) if !folder.as_os_str().is_empty() => folder,
             _ => Path::new("."),
         };
         let file = tempfile::tempfile_in(folder)
-            .map_err(|error| RecordError::io(target, "make a file for its frames", error))?;
+            .map_err(|error| RecordError::io(target, "create a file for its frames", error))?;
         let body = scene.body.as_ref().filter(|_| with_body);
         Ok(Self {
             target: target.to_owned(),
@@ -46,15 +46,15 @@ impl Spool {
     pub(super) fn push(&mut self, frame: &CurveFrame<'_>) -> Result<(), RecordError> {
         let refuse = |what: String| Err(RecordError::request(format!("{}: {what}", self.target.display())));
         if self.frames == self.wanted {
-            return refuse(format!("a frame more than the {} that were said", self.wanted));
+            return refuse(format!("more frames than the {} of its settings", self.wanted));
         }
         let [x, y, z] = frame.points;
         if [x, y, z].iter().any(|axis| axis.len() != self.points) {
-            return refuse(format!("a frame of {} points; wanted {}", x.len(), self.points));
+            return refuse(format!("a frame of {} points; must have {}", x.len(), self.points));
         }
         let body = frame.body.map_or([&[][..], &[][..]], |body| [body.positions, body.normals]);
         if self.vertices > 0 && body.iter().any(|array| array.len() != self.vertices) {
-            return refuse(format!("a body of {} vertices; wanted {}", body[0].len(), self.vertices));
+            return refuse(format!("a body of {} vertices; must have {}", body[0].len(), self.vertices));
         }
         self.row.clear();
         self.row.extend(x.iter().zip(y).zip(z).map(|((&x, &y), &z)| [x, y, z]));
@@ -72,11 +72,11 @@ impl Spool {
         Ok(())
     }
 
-    /// No more frames come: all that were said are there.
+    /// Ends writing and checks that all frames have arrived.
     pub(super) fn close(&mut self) -> Result<(), RecordError> {
         if self.frames != self.wanted {
             return Err(RecordError::request(format!(
-                "{}: {} frames, and {} were said",
+                "{}: {} frames; must be the {} of its settings",
                 self.target.display(),
                 self.frames,
                 self.wanted
@@ -85,7 +85,7 @@ impl Spool {
         self.file.flush().map_err(|error| RecordError::io(&self.target, "write its frames", error))
     }
 
-    /// Triples of one frame, from the one of index `first` on: the curves' points, then positions, then normals.
+    /// Reads vectors of one frame, starting at index `first`: the points of the curves, then the body's positions, then its normals.
     pub(super) fn read(&mut self, frame: u64, first: usize, into: &mut [[f32; 3]]) -> io::Result<()> {
         let length = self.points + 2 * self.vertices;
         let triple = frame * length as u64 + first as u64;
@@ -94,7 +94,7 @@ impl Spool {
         file.read_exact(bytemuck::cast_slice_mut(into))
     }
 
-    /// Index of the body's first position, and of its first normal.
+    /// Indices of the body's first position and first normal.
     pub(super) fn body_at(&self) -> [usize; 2] {
         [self.points, self.points + self.vertices]
     }
@@ -104,7 +104,7 @@ impl Spool {
     }
 }
 
-/// Smallest box of points: its two corners.
+/// Bounding box of points, by its two corners.
 pub(super) fn bounds(points: impl Iterator<Item = [f32; 3]>) -> [[f32; 3]; 2] {
     points.fold([[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]], |[mut low, mut high], point| {
         for axis in 0..3 {

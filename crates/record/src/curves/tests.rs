@@ -7,7 +7,7 @@ use lovelock_groom::{HairFile, load_hair, load_hair_bytes};
 use super::*;
 use crate::partial::failing::small_disk;
 
-/// The largest distance that a point may be off, metres.
+/// The largest accepted error of a point, in metres.
 const LIMIT_M: f32 = 1e-4;
 
 struct Dance {
@@ -16,7 +16,7 @@ struct Dance {
     joints: Vec<Vec<Affine3A>>,
 }
 
-/// Curves that swing, and a body of one triangle on two joints.
+/// Swinging curves and a body of one triangle on two joints.
 fn dance(frames: u64, curves: u32) -> Dance {
     let counts = (0..curves).map(|curve| 2 + curve % 4);
     let mut first_point = vec![0];
@@ -89,7 +89,7 @@ impl Dance {
     }
 }
 
-/// The farthest that a point of the first frame is off.
+/// The largest error of a point in the first frame.
 fn farthest(file: &HairFile, points: &[Vec3]) -> f32 {
     assert_eq!(file.points.len(), points.len());
     file.points.iter().zip(points).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max)
@@ -107,7 +107,7 @@ fn usd_comes_back_through_our_own_importer() {
         assert_eq!(file.first_point, dance.scene.first_point, "{name}");
         let off = farthest(&file, &dance.frames[0]);
         assert!(off <= LIMIT_M, "{name}: {off} m");
-        // The control: the next frame is farther away than that.
+        // Negative control: the next frame is farther away.
         assert!(farthest(&file, &dance.frames[1]) > 10.0 * LIMIT_M, "{name}");
         let widths = file.thickness.expect("widths");
         assert!(widths.iter().zip(&dance.scene.widths).all(|(a, b)| (a - b).abs() < 1e-9), "{name}");
@@ -115,11 +115,11 @@ fn usd_comes_back_through_our_own_importer() {
         assert!((colours[0][0] - 0.484_53).abs() < 1e-3, "{name}: {:?} is sRGB of 0.2", colours[0]);
     }
     let left = fs::read_dir(folder.path().join("new")).expect("a folder").count();
-    assert_eq!(left, 3, "nothing beside the files");
+    assert_eq!(left, 3, "only the files");
 }
 
 #[test]
-fn a_crate_says_a_version_that_older_programs_read() {
+fn a_crate_has_a_version_that_older_programs_read() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("a.usdc");
     dance(2, 3).write(&path).expect("a file");
@@ -128,7 +128,7 @@ fn a_crate_says_a_version_that_older_programs_read() {
 }
 
 #[test]
-fn broken_files_are_refused_or_read_and_nothing_else() {
+fn broken_files_are_refused_or_read_without_a_panic() {
     let folder = tempfile::tempdir().expect("a folder");
     for name in ["a.usda", "b.usdc"] {
         let path = folder.path().join(name);
@@ -138,7 +138,7 @@ fn broken_files_are_refused_or_read_and_nothing_else() {
         for length in (0..whole.len() - 8).step_by(whole.len().div_ceil(400)) {
             assert!(load_hair_bytes(name, &whole[..length]).is_err(), "{name}: {length} bytes of it");
         }
-        // Every byte in turn, to values that make counts and places large, small and negative.
+        // Sets every byte in turn to values that make counts and offsets large, small and negative.
         let mut broken = whole.clone();
         let mut refused = 0;
         for at in 0..whole.len() {
@@ -166,7 +166,7 @@ fn gltf_is_valid_and_comes_back() {
     let report = dance.write(&path).expect("a file");
     let bytes = fs::read(&path).expect("a file");
     assert_eq!(report, CurveReport { frames: 4, bytes: bytes.len() as u64 });
-    // The library checks indices, required fields and the sizes of the parts.
+    // The library validates indices, required fields and the sizes of the parts.
     let glb = gltf::Gltf::from_slice(&bytes).expect("valid");
     let blob = glb.blob.as_deref().expect("a binary part");
     let clip = glb.animations().next().expect("an animation");
@@ -191,11 +191,11 @@ fn gltf_is_valid_and_comes_back() {
         assert!(off <= LIMIT_M, "frame {frame}: the body is {off} m off");
         let next = dance.skinned((frame + 1) % 4);
         let off = body.iter().zip(next).map(|(a, b)| a.distance(b)).fold(0.0, f32::max);
-        assert!(off > 10.0 * LIMIT_M, "the control: another frame is another body, {off} m off");
+        assert!(off > 10.0 * LIMIT_M, "negative control: another frame differs by {off} m");
     }
 }
 
-/// Scale of a node at a time, by the last key before it.
+/// Scale of a node at a time: the value of the last key before it.
 fn scale_at(clip: &gltf::Animation<'_>, blob: &[u8], node: &gltf::Node<'_>, secs: f32) -> [f32; 3] {
     for channel in clip.channels().filter(|channel| channel.target().node().index() == node.index()) {
         assert_eq!(channel.sampler().interpolation(), gltf::animation::Interpolation::Step);
@@ -261,7 +261,7 @@ fn a_full_disk_leaves_nothing() {
 }
 
 #[test]
-fn wrong_requests_are_refused_in_words() {
+fn invalid_requests_are_refused() {
     let folder = tempfile::tempdir().expect("a folder");
     let at = |name: &str| folder.path().join(name);
     let refused = |dance: &Dance, name: &str, wanted: &str| {
@@ -269,7 +269,7 @@ fn wrong_requests_are_refused_in_words() {
         assert!(error.is_request() && error.to_string().contains(wanted), "{error}");
     };
     let good = || dance(3, 4);
-    refused(&good(), "a.abc", "wanted a name ending in .usda");
+    refused(&good(), "a.abc", "the name must end in .usda");
     let change = |change: &dyn Fn(&mut Dance)| {
         let mut dance = good();
         change(&mut dance);
@@ -278,13 +278,13 @@ fn wrong_requests_are_refused_in_words() {
     refused(&change(&|dance| dance.scene.frames = 0), "a.usdc", "no frame");
     refused(&change(&|dance| dance.scene.first_point = vec![0]), "a.usdc", "no curves");
     refused(&change(&|dance| dance.scene.widths.truncate(3)), "a.glb", "differ in length");
-    refused(&change(&|dance| dance.scene.frames = 4), "a.usdc", "3 frames, and 4 were said");
-    refused(&change(&|dance| dance.scene.frames = 2), "a.usda", "a frame more than the 2");
-    refused(&change(&|dance| dance.frames[1].truncate(13)), "a.glb", "a frame of 13 points; wanted 14");
+    refused(&change(&|dance| dance.scene.frames = 4), "a.usdc", "3 frames; must be the 4 of its settings");
+    refused(&change(&|dance| dance.scene.frames = 2), "a.usda", "more frames than the 2");
+    refused(&change(&|dance| dance.frames[1].truncate(13)), "a.glb", "a frame of 13 points; must have 14");
     for name in ["a.usda", "a.usdc", "a.glb"] {
         refused(&change(&|dance| dance.scene.frames = 1 << 30), name, "--frames");
     }
-    // Many curves, so that few frames are too large.
+    // So many curves that a few frames are too large.
     let large = |frames: u64| {
         let mut dance = good();
         let (points, curves) = (1 << 20, 1 << 19);
@@ -305,5 +305,5 @@ fn wrong_requests_are_refused_in_words() {
         body.joints = vec![[0; 8]; vertices];
     }
     refused(&body, "a.usdc", "--no-body");
-    assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 0, "nothing was begun");
+    assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 0, "nothing was written");
 }

@@ -1,7 +1,6 @@
-//! USD: `BasisCurves` and a `Mesh` with time samples, as text or as a binary crate, by the `openusd` library.
+//! USD: `BasisCurves` and a `Mesh` with time samples, as text or as a binary crate, with the `openusd` library.
 //!
-//! Curves are linear: strands are drawn as straight segments between their points here, and any cubic basis would
-//! bend them between the points.
+//! Curves are linear, because strands are rendered as straight segments; a cubic basis would bend them between their points.
 
 use std::fs::File;
 use std::io::{Seek, SeekFrom, Write};
@@ -21,8 +20,8 @@ use super::{CurveBody, CurveFrame, CurveReport, CurveScene, crate_tail};
 use crate::RecordError;
 use crate::partial::{Opener, PartialFile, partial_path};
 
-/// The most bytes of one array of points with all its times: a groom of more is divided into several prims, so that
-/// memory stays bounded however long the recording is.
+/// The most bytes of one array of points with all its times. A larger groom is divided into several prims, so that
+/// memory stays bounded for recordings of any length.
 const PRIM_BYTES: u64 = 256 << 20;
 
 pub(super) struct UsdWriter {
@@ -32,7 +31,7 @@ pub(super) struct UsdWriter {
     scene: CurveScene,
     prims: Vec<Range<usize>>,
     spool: Spool,
-    /// Box of each prim in each frame: frame after frame, the body last where there is one.
+    /// Bounding box of each prim in each frame, frame after frame; the last one of a frame is the body's, if there is a body.
     extents: Vec<[[f32; 3]; 2]>,
 }
 
@@ -44,7 +43,7 @@ impl UsdWriter {
         opener: &Opener,
     ) -> Result<Self, RecordError> {
         let file = PartialFile::create(path, opener)
-            .map_err(|error| RecordError::io(path, "make the file", error))?;
+            .map_err(|error| RecordError::io(path, "create the file", error))?;
         let spool = Spool::create(path, &scene, true)?;
         let prims = divide(&scene.first_point, (PRIM_BYTES / (12 * scene.frames)) as usize);
         Ok(Self { target: path.to_owned(), file, text, scene, prims, spool, extents: Vec::new() })
@@ -55,7 +54,7 @@ impl UsdWriter {
         let [x, y, z] = frame.points;
         for prim in &self.prims {
             let points = points_of(&self.scene.first_point, prim);
-            // A point reaches half its width to every side.
+            // Half of the width extends to each side of a point.
             let half = self.scene.widths[points.clone()].iter().copied().fold(0.0, f32::max) / 2.0;
             let [low, high] = bounds(points.map(|i| [x[i], y[i], z[i]]));
             self.extents.push([low.map(|v| v - half), high.map(|v| v + half)]);
@@ -96,7 +95,7 @@ impl UsdWriter {
     }
 }
 
-/// Runs of curves whose points are `most` together at most, and one curve at least.
+/// Divides curves into runs of at most `most` points in all, but of at least one curve.
 fn divide(first_point: &[u32], most: usize) -> Vec<Range<usize>> {
     let mut prims = Vec::new();
     let mut start = 0;
@@ -114,7 +113,7 @@ fn points_of(first_point: &[u32], prim: &Range<usize>) -> Range<usize> {
     first_point[prim.start] as usize..first_point[prim.end] as usize
 }
 
-/// Path of a prim of one of this module's own names.
+/// Path of a child prim. Its name is one of this module's, and valid.
 fn child(parent: &sdf::Path, name: &str) -> sdf::Path {
     parent.append_path(name).unwrap_or_else(|_| parent.clone())
 }
@@ -230,7 +229,7 @@ mod tests {
         let first_point = [0, 4, 8, 12, 20, 22];
         assert_eq!(divide(&first_point, 100).first(), Some(&(0..5)));
         assert_eq!(divide(&first_point, 8), [0..2, 2..3, 3..4, 4..5]);
-        // A curve that is too long stands alone.
+        // A curve that is too long is a run of its own.
         assert_eq!(divide(&first_point, 1), [0..1, 1..2, 2..3, 3..4, 4..5]);
     }
 }

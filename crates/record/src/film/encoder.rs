@@ -1,4 +1,4 @@
-//! The H.264 encoder, set up for films rather than for calls over a network.
+//! The H.264 encoder, with settings for films rather than for video calls.
 
 use super::FilmSettings;
 use crate::FrameRate;
@@ -11,10 +11,10 @@ use openh264::encoder::{
     RateControlMode, TransferCharacteristics, VuiConfig,
 };
 
-/// Seconds between key frames: what a player has to decode at most to show any one frame.
+/// Seconds between key frames. A player decodes at most this much to show any one frame.
 const KEY_FRAME_SECS: f64 = 1.0;
 
-/// Turns pictures into samples of an MP4 file.
+/// Encodes images as samples of an MP4 file.
 pub(super) struct FrameEncoder {
     encoder: Encoder,
     planes: Planes,
@@ -34,9 +34,9 @@ impl FrameEncoder {
         let quantiser = quality.quantiser();
         let pixels_per_second = f64::from(width * height) * fps;
         let config = EncoderConfig::new()
-            // This mode raises and lowers the quantiser inside its range and never skips a frame; a range of one pins
-            // it, so every frame is equally fine. The bit rate then only picks the level that the stream names, so it
-            // is about what moving hair takes (measured: 0.48 bits a pixel at 20, doubling every six).
+            // This mode changes the quantiser within its range and never skips a frame. With a range of one value all frames
+            // have the same quality. The bit rate then decides only the level that the stream declares, so it is about what
+            // moving hair needs (measured: 0.48 bits per pixel at quantiser 20, doubling every six).
             .rate_control_mode(RateControlMode::Bufferbased)
             .qp(QpRange::new(quantiser, quantiser))
             .bitrate(BitRate::from_bps(
@@ -46,11 +46,11 @@ impl FrameEncoder {
             .intra_frame_period(IntraFramePeriod::from_num_frames((fps * KEY_FRAME_SECS).round() as u32))
             .complexity(Complexity::Medium)
             .skip_frames(false)
-            // These save bits, by coarser frames at a cut and by ghosts of thin hair where little moves.
+            // These save bits by coarser frames at cuts and leave ghosts of thin hair in areas with little motion.
             .scene_change_detect(false)
             .background_detection(false)
             .adaptive_quantization(false)
-            // One thread: the same pictures give the same bytes on every machine.
+            // One thread, so that the same images give the same bytes on every machine.
             .num_threads(1)
             .vui(VuiConfig::bt709().transfer_characteristics(TransferCharacteristics::Srgb));
         Ok(Self {
@@ -62,7 +62,7 @@ impl FrameEncoder {
         })
     }
 
-    /// Codes one picture. Returns the sample, and whether it is a key frame.
+    /// Encodes one image. Returns the sample and whether it is a key frame.
     pub(super) fn encode(&mut self, rgba: &[u8]) -> Result<(&[u8], bool), openh264::Error> {
         self.planes.read_rgba(rgba);
         self.stream.clear();
@@ -72,7 +72,7 @@ impl FrameEncoder {
         Ok((&self.sample, key))
     }
 
-    /// The parameter sets, once a frame has been coded.
+    /// The parameter sets; available after the first frame.
     pub(super) fn config(&self) -> &AvcConfig {
         &self.config
     }

@@ -11,32 +11,32 @@ use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::thread::JoinHandle;
 use worker::Job;
 
-/// The largest film, longer and shorter side in pixels: what the encoder takes.
+/// The largest longer and shorter side of a film in pixels, as the encoder allows.
 pub const MAX_FILM_SIDES: (u32, u32) = (3840, 2160);
 
-/// The smallest side, one block of the coding.
+/// The smallest side in pixels, one macroblock of H.264.
 const MIN_FILM_SIDE: u32 = 16;
 
-/// Frames that may wait for the encoder. Each is a whole picture, so few.
+/// Frames that may wait for the encoder. Few, because each is a whole image.
 const QUEUE: usize = 2;
 
-/// How finely a film is coded. Every frame has the same fineness, however many bytes that takes.
+/// Quality of a film. All frames have the same quality, whatever their size in bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum FilmQuality {
-    /// Small files to look at once; single hairs blur.
+    /// Small files for a quick look; single hairs blur.
     Draft,
-    /// Good for sending around.
+    /// Good enough to share.
     Good,
-    /// Single hairs stay apart.
+    /// Single hairs stay distinct.
     #[default]
     High,
-    /// Hardly told from the picture, for cutting and coding again.
+    /// Hardly distinguishable from the rendered images, for editing and encoding again.
     Best,
 }
 
 impl FilmQuality {
-    /// All, from coarse to fine.
+    /// All qualities, from low to high.
     pub const ALL: [Self; 4] = [Self::Draft, Self::Good, Self::High, Self::Best];
 
     /// Stable name for files and the command line.
@@ -59,7 +59,7 @@ impl FilmQuality {
         }
     }
 
-    /// The quantiser of H.264, 0 to 51: the step doubles every six.
+    /// The quantiser of H.264, 0 to 51. Its step doubles every six.
     pub(crate) fn quantiser(self) -> u8 {
         match self {
             Self::Draft => 30,
@@ -70,16 +70,16 @@ impl FilmQuality {
     }
 }
 
-/// What a film is.
+/// Settings of a film.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FilmSettings {
-    /// Width in pixels, even: the coding stores colours for blocks of 2×2.
+    /// Width in pixels. It must be even, because H.264 stores colours for blocks of 2×2 pixels.
     pub width: u32,
-    /// Height in pixels, even.
+    /// Height in pixels. It must be even.
     pub height: u32,
     /// Frames per second, 1 to 240; see [`FrameRate::from_fps`].
     pub fps: f64,
-    /// How finely it is coded.
+    /// Quality of the encoding.
     pub quality: FilmQuality,
 }
 
@@ -94,14 +94,14 @@ impl FilmSettings {
         if shorter < MIN_FILM_SIDE || longer > MAX_FILM_SIDES.0 || shorter > MAX_FILM_SIDES.1 {
             let (most, least) = MAX_FILM_SIDES;
             return Err(RecordError::request(format!(
-                "a film of {width}x{height} pixels: wanted {MIN_FILM_SIDE} to {most} on the longer side and at most {least} \
-                 on the shorter; a PNG sequence takes any size"
+                "a film of {width}x{height} pixels: must be {MIN_FILM_SIDE} to {most} on the longer side and at most {least} \
+                 on the shorter; a PNG sequence can have any size"
             )));
         }
         if width % 2 != 0 || height % 2 != 0 {
             return Err(RecordError::request(format!(
                 "a film of {width}x{height} pixels: width and height must be even, such as {}x{}; \
-                 a PNG sequence takes any size",
+                 a PNG sequence can have any size",
                 width & !1,
                 height & !1
             )));
@@ -115,31 +115,31 @@ impl FilmSettings {
 pub struct FilmReport {
     /// The film.
     pub path: PathBuf,
-    /// Frames in it.
+    /// Number of frames.
     pub frames: u64,
-    /// Its length in bytes.
+    /// Length of the file in bytes.
     pub bytes: u64,
-    /// Its length in seconds.
+    /// Duration in seconds.
     pub duration_secs: f64,
 }
 
-/// A film in the making. [`FilmWriter::finish`] makes it whole; dropped before, it leaves nothing.
+/// A film that is being written. [`FilmWriter::finish`] completes it; if it is dropped before, its file is removed.
 pub struct FilmWriter {
     path: PathBuf,
     settings: FilmSettings,
     jobs: Option<SyncSender<Job>>,
-    /// Buffers that the worker is done with.
+    /// Buffers that the worker has returned.
     spent: Receiver<Vec<u8>>,
     worker: Option<JoinHandle<Result<Option<FilmReport>, RecordError>>>,
 }
 
 impl FilmWriter {
-    /// Starts a film at `path`, creating its folder where missing. A film already there stays until the new one is
-    /// whole.
+    /// Starts a film at `path` and creates its folder if it is missing. An existing film stays until the new one is
+    /// complete.
     ///
     /// # Errors
-    /// [`RecordError::Request`] for settings that no film can have (see [`FilmSettings::check`]) or a `path` that is a
-    /// folder; [`RecordError::Io`] where the file cannot be created.
+    /// [`RecordError::Request`] for invalid settings (see [`FilmSettings::check`]) or a `path` that is a folder;
+    /// [`RecordError::Io`] if the file cannot be created.
     pub fn create(path: &Path, settings: FilmSettings) -> Result<Self, RecordError> {
         Self::create_on(path, settings, &partial::open_file)
     }
@@ -152,7 +152,7 @@ impl FilmWriter {
         let rate = settings.check()?;
         if path.is_dir() || path.file_name().is_none() {
             return Err(RecordError::request(format!(
-                "{}: is a folder, a film needs a file name",
+                "{}: is a folder; a film needs a file name",
                 path.display()
             )));
         }
@@ -168,14 +168,15 @@ impl FilmWriter {
         Ok(Self { path: path.to_owned(), settings, jobs: Some(jobs), spent, worker: Some(worker) })
     }
 
-    /// Hands over the next frame: RGBA, 8 bits sRGB, rows from the top, `width × height × 4` bytes. Alpha is ignored.
+    /// Writes the next frame: RGBA, 8-bit sRGB, rows from the top, `width × height × 4` bytes. Alpha is ignored.
     ///
-    /// Returns as soon as the frame waits for the encoder; an error may therefore belong to an earlier frame, and
-    /// names it.
+    /// Returns as soon as the frame is in the encoder's queue. An error may therefore belong to an earlier frame, which it
+    /// names.
     ///
     /// # Errors
-    /// [`RecordError::FrameSize`] for another number of bytes (the film goes on); [`RecordError::Io`] for a full disk and
-    /// the like, [`RecordError::Encoder`], and [`RecordError::Stopped`] after either: the unfinished file is gone.
+    /// [`RecordError::FrameSize`] for a wrong number of bytes, after which recording can continue. [`RecordError::Io`] for
+    /// errors such as a full disk, [`RecordError::Encoder`], and [`RecordError::Stopped`] after either; the unfinished file
+    /// has then been removed.
     pub fn push(&mut self, rgba: &[u8]) -> Result<(), RecordError> {
         check_frame(rgba, self.settings.width, self.settings.height)?;
         let Some(jobs) = &self.jobs else {
@@ -187,22 +188,22 @@ impl FilmWriter {
         if jobs.send(Job::Frame(buffer)).is_ok() { Ok(()) } else { self.join().map(drop) }
     }
 
-    /// Codes what still waits, writes the film's tables, and gives it its name.
+    /// Encodes the frames in the queue, writes the film's tables, and renames the file to its final name.
     ///
     /// # Errors
     /// As [`FilmWriter::push`]; also [`RecordError::Request`] for a film of no frames.
     pub fn finish(mut self) -> Result<FilmReport, RecordError> {
         if let Some(jobs) = &self.jobs {
-            // Refused only if the worker has stopped, and then joining tells why.
+            // This fails only if the worker has stopped; `join` then returns its error.
             let _ = jobs.send(Job::Finish);
         }
         self.join()
     }
 
-    /// Gives up: the same as dropping, for the reader's sake.
+    /// Cancels the recording. This is the same as dropping the writer.
     pub fn cancel(self) {}
 
-    /// Ends the worker and says how it ended.
+    /// Ends the worker and returns its result.
     fn join(&mut self) -> Result<FilmReport, RecordError> {
         self.jobs = None;
         let ended = self.worker.take().map(JoinHandle::join);
@@ -216,7 +217,7 @@ impl FilmWriter {
 
 impl Drop for FilmWriter {
     fn drop(&mut self) {
-        // The worker sees the channel close, and takes its unfinished file with it.
+        // The worker sees the channel close and removes its unfinished file.
         let _ = self.join();
     }
 }
@@ -230,7 +231,7 @@ impl std::fmt::Debug for FilmWriter {
     }
 }
 
-/// Refuses a picture that is not `width × height` pixels of RGBA.
+/// Checks that an image has `width × height` pixels of RGBA.
 pub(crate) fn check_frame(rgba: &[u8], width: u32, height: u32) -> Result<(), RecordError> {
     let wanted = width as usize * height as usize * 4;
     if rgba.len() == wanted {
@@ -239,7 +240,7 @@ pub(crate) fn check_frame(rgba: &[u8], width: u32, height: u32) -> Result<(), Re
     Err(RecordError::FrameSize { found: rgba.len(), wanted, width, height })
 }
 
-/// Gives a spent buffer back, unless enough of them lie about.
+/// Returns a used buffer to the writer, unless enough buffers are waiting there already.
 pub(crate) fn give_back(done: &SyncSender<Vec<u8>>, buffer: Vec<u8>) {
     match done.try_send(buffer) {
         Ok(()) | Err(TrySendError::Full(_) | TrySendError::Disconnected(_)) => {}

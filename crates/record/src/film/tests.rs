@@ -6,7 +6,7 @@ use std::path::Path;
 
 const SMALL: FilmSettings = FilmSettings { width: 96, height: 64, fps: 25.0, quality: FilmQuality::High };
 
-/// A warm gradient with a lighter disc that moves two pixels a frame, and stripes of a few pixels that move with it.
+/// A warm gradient with a lighter disc that moves two pixels per frame, and narrow stripes that move with it.
 fn picture(settings: FilmSettings, frame: u64) -> Vec<u8> {
     let (width, height) = (settings.width as i32, settings.height as i32);
     let shift = frame as i32 * 2;
@@ -57,7 +57,7 @@ fn psnr_db(a: &[u8], b: &[u8]) -> f64 {
 fn a_film_comes_back() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("new folder/ein Tänzchen.mp4");
-    // More frames than a chunk holds, and than lie between two key frames.
+    // More frames than in a chunk and than between two key frames.
     write(&path, SMALL, 40);
     let info = read_film(&path).unwrap();
     assert_eq!((info.width, info.height, info.frames, info.codec.as_str()), (96, 64, 40, "avc1"));
@@ -66,13 +66,13 @@ fn a_film_comes_back() {
     assert_eq!(frames.len(), 40);
     for (index, frame) in frames.iter().enumerate() {
         let quality = psnr_db(frame, &picture(SMALL, index as u64));
-        // Over 35 dB is called good; the halved chroma resolution alone costs the stripes' edges some.
+        // More than 35 dB is regarded as good. The halved chroma resolution lowers it at the edges of the stripes.
         assert!(quality > 35.0, "frame {index}: {quality:.1} dB");
-        // Negative control: the picture of three frames later is another one.
+        // Negative control: the image three frames later differs.
         let other = psnr_db(frame, &picture(SMALL, index as u64 + 3));
         assert!(other < 30.0, "frame {index} looks like {}: {other:.1} dB", index + 3);
     }
-    assert_eq!(fs::read_dir(path.parent().unwrap()).unwrap().count(), 1, "only the film is left");
+    assert_eq!(fs::read_dir(path.parent().unwrap()).unwrap().count(), 1, "only the film remains");
 }
 
 #[test]
@@ -110,7 +110,7 @@ fn broadcast_rates_have_exact_lengths() {
 }
 
 #[test]
-fn requests_that_no_film_meets_are_refused_before_anything_is_written() {
+fn invalid_requests_are_refused_before_anything_is_written() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("missing/a.mp4");
     for (width, height, fps, word) in [
@@ -173,7 +173,7 @@ fn a_full_disk_stops_the_film_and_leaves_nothing() {
     let whole = folder.path().join("whole.mp4");
     write(&whole, SMALL, 30);
     let length = fs::metadata(&whole).unwrap().len();
-    // From no room for the first bytes, over some frames, to one byte too little for the tables at the end.
+    // From no room for the first bytes to one byte too few for the tables at the end.
     for room in [0, 20, 100, length / 2, length - 1] {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.mp4");
@@ -197,7 +197,7 @@ fn after_an_error_the_film_stays_stopped() {
     let folder = tempfile::tempdir().unwrap();
     let mut film = FilmWriter::create_on(&folder.path().join("a.mp4"), SMALL, &small_disk(2_000)).unwrap();
     while film.push(&picture(SMALL, 0)).is_ok() {
-        // A still picture takes few bytes a frame; the buffer in front of the disk takes some hundred frames.
+        // A still image takes few bytes per frame, so the buffer in front of the disk holds some hundred frames.
     }
     assert!(matches!(film.push(&picture(SMALL, 1)), Err(RecordError::Stopped { .. })));
     assert!(matches!(film.finish(), Err(RecordError::Stopped { .. })));

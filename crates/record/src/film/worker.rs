@@ -1,4 +1,4 @@
-//! The thread that codes frames and writes them.
+//! The thread that encodes frames and writes them.
 
 use super::encoder::FrameEncoder;
 use super::{FilmReport, FilmSettings, give_back};
@@ -10,15 +10,15 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender};
 
-/// What the worker is told.
+/// A message to the worker.
 pub(super) enum Job {
-    /// The next picture.
+    /// The next image.
     Frame(Vec<u8>),
-    /// That was all. A channel that closes without it is a cancel.
+    /// There are no more frames. If the channel closes without this message, the recording has been cancelled.
     Finish,
 }
 
-/// The unfinished film. Dropped, it takes its file with it.
+/// The unfinished film. Its file is removed when it is dropped.
 pub(super) struct Film {
     path: PathBuf,
     settings: FilmSettings,
@@ -45,7 +45,7 @@ impl Film {
         Ok(Self { path: path.to_owned(), settings, rate, writer, frames: 0 })
     }
 
-    /// Takes jobs until told to finish (the report), until the channel closes (nothing), or until something fails.
+    /// Works until [`Job::Finish`] (returns the report), until the channel closes (returns `None`), or until an error.
     pub(super) fn run(
         mut self,
         todo: &Receiver<Job>,
@@ -81,7 +81,7 @@ impl Film {
     fn finish(self, encoder: &FrameEncoder) -> Result<FilmReport, RecordError> {
         let Self { path, rate, writer, frames, .. } = self;
         if frames == 0 {
-            return Err(RecordError::request(format!("{}: a film needs one frame or more", path.display())));
+            return Err(RecordError::request(format!("{}: a film needs at least one frame", path.display())));
         }
         let (file, bytes) = writer
             .finish(encoder.config())

@@ -1,4 +1,4 @@
-//! The MP4 file around the coded frames (ISO/IEC 14496-12 and -15), as little of it as one picture track needs.
+//! MP4 files (ISO/IEC 14496-12 and -15), as far as one video track needs them.
 
 mod nal;
 mod parse;

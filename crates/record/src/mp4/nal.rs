@@ -1,33 +1,33 @@
-//! NAL units of H.264: the byte stream of an encoder (Annex B) and the samples of MP4 (length before each unit).
+//! NAL units of H.264: the byte stream of an encoder (Annex B) and the samples of MP4 (a length before each unit).
 
-/// The parameter sets of a stream, which MP4 keeps apart from the frames.
+/// The parameter sets of a stream, which MP4 stores separately from the frames.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(crate) struct AvcConfig {
-    /// Sequence parameter set, one NAL unit without start code.
+    /// Sequence parameter set: one NAL unit without its start code.
     pub(crate) sps: Vec<u8>,
-    /// Picture parameter set, likewise.
+    /// Picture parameter set, in the same form.
     pub(crate) pps: Vec<u8>,
 }
 
 impl AvcConfig {
-    /// The `avcC` record (ISO/IEC 14496-15, 5.3.3.1): four-byte lengths, one set of each kind.
+    /// The `avcC` record (ISO/IEC 14496-15, 5.3.3.1) with four-byte lengths and one set of each kind.
     pub(crate) fn record(&self) -> Vec<u8> {
         let byte = |index: usize| self.sps.get(index).copied().unwrap_or(0);
-        // Version, then profile, compatibility and level as in the SPS, lengths of 3 + 1 bytes, one SPS.
+        // Version; profile, compatibility and level of the SPS; lengths of 3 + 1 bytes; one SPS.
         let mut record = vec![1, byte(1), byte(2), byte(3), 0b1111_1100 | 3, 0b1110_0000 | 1];
         record.extend((self.sps.len() as u16).to_be_bytes());
         record.extend(&self.sps);
         record.push(1);
         record.extend((self.pps.len() as u16).to_be_bytes());
         record.extend(&self.pps);
-        // The High profiles append the chroma format and bit depths: 4:2:0, 8 bits, no extension sets.
+        // The High profiles add the chroma format and the bit depths: 4:2:0, 8 bits, no extension sets.
         if matches!(byte(1), 100 | 110 | 122 | 144) {
             record.extend([0b1111_1100 | 1, 0b1111_1000, 0b1111_1000, 0]);
         }
         record
     }
 
-    /// Reads an `avcC` record with one set of each kind or more, and four-byte lengths; the first sets count.
+    /// Reads an `avcC` record with four-byte lengths. Uses the first set of each kind.
     pub(crate) fn from_record(record: &[u8]) -> Option<Self> {
         if *record.first()? != 1 || record.get(4)? & 3 != 3 {
             return None;
@@ -39,7 +39,7 @@ impl AvcConfig {
     }
 }
 
-/// The first of `count` parameter sets, each after its two-byte length, and what follows the last.
+/// The first of `count` parameter sets, each preceded by a two-byte length, and the bytes after the last one.
 fn first_set(count: usize, mut bytes: &[u8]) -> Option<(Vec<u8>, &[u8])> {
     let mut first = None;
     for _ in 0..count {
@@ -51,12 +51,12 @@ fn first_set(count: usize, mut bytes: &[u8]) -> Option<(Vec<u8>, &[u8])> {
     Some((first?, bytes))
 }
 
-/// The kind of a NAL unit (H.264 table 7-1): 5 is a slice of a key frame, 7 an SPS, 8 a PPS.
+/// The type of a NAL unit (H.264 table 7-1): 5 is a slice of a key frame, 7 an SPS, 8 a PPS.
 pub(crate) fn nal_kind(unit: &[u8]) -> u8 {
     unit.first().map_or(0, |byte| byte & 31)
 }
 
-/// The NAL units of an Annex B byte stream, without start codes and the zeros around them.
+/// The NAL units of an Annex B byte stream, without start codes and padding zeros.
 pub(crate) fn split_annex_b(stream: &[u8]) -> Vec<&[u8]> {
     let mut starts = Vec::new();
     let mut at = 0;
@@ -72,7 +72,7 @@ pub(crate) fn split_annex_b(stream: &[u8]) -> Vec<&[u8]> {
     for (index, &start) in starts.iter().enumerate() {
         let end = starts.get(index + 1).copied().unwrap_or(stream.len());
         let mut unit = &stream[start + 3..end];
-        // A unit never ends in a zero byte (7.4.1), so these belong to the next start code.
+        // A unit never ends in a zero byte (7.4.1); zeros at the end belong to the next start code.
         while let [rest @ .., 0] = unit {
             unit = rest;
         }
@@ -83,7 +83,7 @@ pub(crate) fn split_annex_b(stream: &[u8]) -> Vec<&[u8]> {
     units
 }
 
-/// Appends the frame of an Annex B stream to `sample` as MP4 stores it, and keeps its parameter sets in `config`.
+/// Appends the frame of an Annex B stream to `sample` in the form of MP4, and stores its parameter sets in `config`.
 /// Returns whether it is a key frame.
 pub(crate) fn append_sample(stream: &[u8], sample: &mut Vec<u8>, config: &mut AvcConfig) -> bool {
     let mut key = false;
@@ -131,7 +131,7 @@ mod tests {
             let config = AvcConfig { sps: vec![0x67, profile, 0xC0, 31, 5], pps: vec![0x68, 1, 2] };
             let record = config.record();
             assert_eq!(AvcConfig::from_record(&record), Some(config));
-            // Negative control: any cut inside the sets is noticed.
+            // Negative control: a record that ends inside the sets is rejected.
             for length in 0..16 {
                 assert_eq!(AvcConfig::from_record(&record[..length]), None, "{length}");
             }

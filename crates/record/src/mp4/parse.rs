@@ -1,4 +1,4 @@
-//! Reading: the tables of the first picture track, every count and offset held against the file's length.
+//! Reads the tables of the first video track. Every count and offset is checked against the file's length.
 
 use super::AvcConfig;
 use crate::RecordError;
@@ -6,25 +6,25 @@ use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
-/// Tables larger than this are not a film's: a day at 60 frames a second needs 40 MB.
+/// Largest accepted size of the tables in bytes. A day at 60 frames per second needs 40 MB.
 const LARGEST_TABLES: u64 = 256 << 20;
 
-/// What the tables of a film say.
+/// The tables of a film.
 #[derive(Debug)]
 pub(crate) struct Movie {
     pub(crate) width: u32,
     pub(crate) height: u32,
     pub(crate) ticks_per_second: u32,
     pub(crate) duration_ticks: u64,
-    /// The four letters of the coding, such as `avc1`.
+    /// Four-letter code of the codec, such as `avc1`.
     pub(crate) codec: [u8; 4],
-    /// Parameter sets, for H.264.
+    /// Parameter sets, if the codec is H.264.
     pub(crate) config: Option<AvcConfig>,
-    /// Start and length in bytes of every frame, in order.
+    /// Offset and length in bytes of every frame, in order.
     pub(crate) frames: Vec<(u64, u32)>,
 }
 
-/// A stretch of the file in memory, with its place in it, for messages.
+/// A part of the file in memory, with its offset for error messages.
 #[derive(Clone, Copy)]
 struct Span<'a> {
     path: &'a Path,
@@ -32,7 +32,7 @@ struct Span<'a> {
     bytes: &'a [u8],
 }
 
-/// Reads the tables of an MP4 or QuickTime file. The frames themselves are not read.
+/// Reads the tables of an MP4 or QuickTime file, without the frames.
 pub(crate) fn parse(path: &Path, file: &mut File) -> Result<Movie, RecordError> {
     let read = |error| RecordError::io(path, "read the film", error);
     let length = file.metadata().map_err(read)?.len();
@@ -62,7 +62,7 @@ pub(crate) fn parse(path: &Path, file: &mut File) -> Result<Movie, RecordError> 
                     format!("at most {LARGEST_TABLES}"),
                 ));
             }
-            // No more than the file holds, which `box_head` has checked.
+            // `box_head` has checked that the box fits into the file.
             let mut bytes = vec![0; (size - header) as usize];
             file.seek(SeekFrom::Start(at + header)).map_err(read)?;
             file.read_exact(&mut bytes).map_err(read)?;
@@ -73,7 +73,7 @@ pub(crate) fn parse(path: &Path, file: &mut File) -> Result<Movie, RecordError> 
     Err(malformed(path, length, "the end of the file", "the film's tables (a box `moov`)"))
 }
 
-/// Kind, length of the head, and whole size of the box that starts here, if it fits into `room` bytes.
+/// Type, header length and total size of the box at the start of `bytes`, if it fits into `room` bytes.
 fn box_head(bytes: &[u8], room: u64) -> Option<([u8; 4], u64, u64)> {
     let short = u32::from_be_bytes(*bytes.first_chunk()?);
     let kind = *bytes.get(4..)?.first_chunk()?;
@@ -94,14 +94,15 @@ impl<'a> Span<'a> {
         malformed(self.path, self.start + offset as u64, found, wanted)
     }
 
-    /// The boxes inside.
+    /// The boxes inside this one.
     fn boxes(self) -> Result<Vec<([u8; 4], Self)>, RecordError> {
         let mut boxes = Vec::new();
         let mut at = 0;
         while at < self.bytes.len() {
             let rest = &self.bytes[at..];
-            let (kind, header, size) = box_head(rest, rest.len() as u64)
-                .ok_or_else(|| self.error(at, "a box that reaches past the one around it", "one inside"))?;
+            let (kind, header, size) = box_head(rest, rest.len() as u64).ok_or_else(|| {
+                self.error(at, "a box that is longer than the box around it", "a shorter one")
+            })?;
             let body = Self {
                 path: self.path,
                 start: self.start + at as u64 + header,
@@ -138,7 +139,7 @@ impl<'a> Span<'a> {
         Ok(u64::from(self.u32(at)?) << 32 | u64::from(self.u32(at + 4)?))
     }
 
-    /// The entries of a table: its count stands at `at`, and `size` bytes an entry follow.
+    /// The entries of a table. Their count is at `at`, and the entries of `size` bytes follow.
     fn table(self, at: usize, size: usize) -> Result<std::slice::ChunksExact<'a, u8>, RecordError> {
         let count = u64::from(self.u32(at)?);
         let bytes = &self.bytes[at + 4..];
@@ -164,7 +165,7 @@ fn movie(moov: Span, file_length: u64) -> Result<Movie, RecordError> {
             return track(mdia, file_length);
         }
     }
-    Err(moov.error(0, "no picture track", "one (a handler `vide`)"))
+    Err(moov.error(0, "no video track", "one (a handler `vide`)"))
 }
 
 fn track(mdia: Span, file_length: u64) -> Result<Movie, RecordError> {
@@ -180,7 +181,7 @@ fn track(mdia: Span, file_length: u64) -> Result<Movie, RecordError> {
     let stsd = stbl.find(*b"stsd")?;
     let entries = Span { start: stsd.start + 8, bytes: stsd.bytes.get(8..).unwrap_or_default(), ..stsd };
     let (codec, entry) =
-        entries.boxes()?.into_iter().next().ok_or_else(|| stsd.error(4, "no coding", "one"))?;
+        entries.boxes()?.into_iter().next().ok_or_else(|| stsd.error(4, "no codec", "one"))?;
     let (width, height) = (u32::from(entry.u16(24)?), u32::from(entry.u16(26)?));
     let parts = Span { start: entry.start + 78, bytes: entry.bytes.get(78..).unwrap_or_default(), ..entry };
     let config =
@@ -197,7 +198,7 @@ fn track(mdia: Span, file_length: u64) -> Result<Movie, RecordError> {
     Ok(Movie { width, height, ticks_per_second, duration_ticks, codec, config, frames })
 }
 
-/// Start and length of every frame, by the three tables that say so together.
+/// Offset and length of every frame, from the tables of sizes, chunks and frames per chunk.
 fn frames(stbl: Span, file_length: u64) -> Result<Vec<(u64, u32)>, RecordError> {
     let word = |entry: &[u8], at: usize| entry[at..].first_chunk().map_or(0, |b| u32::from_be_bytes(*b));
     let stsz = stbl.find(*b"stsz")?;
@@ -206,7 +207,7 @@ fn frames(stbl: Span, file_length: u64) -> Result<Vec<(u64, u32)>, RecordError> 
         return Err(stsz.error(
             8,
             format!("{count} frames of {uniform} bytes"),
-            "no more than the file holds",
+            "no more than fit into the file",
         ));
     }
     let sizes: Vec<u32> = if uniform == 0 {
@@ -239,14 +240,14 @@ fn frames(stbl: Span, file_length: u64) -> Result<Vec<(u64, u32)>, RecordError> 
         for &size in &sizes[first..first.saturating_add(in_chunk).min(sizes.len())] {
             if at.checked_add(u64::from(size)).is_none_or(|end| end > file_length) {
                 let found = format!("frame {} at byte {at}, {size} bytes long", frames.len());
-                return Err(stsz.error(0, found, format!("one inside the file of {file_length} bytes")));
+                return Err(stsz.error(0, found, format!("a frame inside the file of {file_length} bytes")));
             }
             frames.push((at, size));
             at += u64::from(size);
         }
     }
     if frames.len() != sizes.len() {
-        let found = format!("{} frames with a place", frames.len());
+        let found = format!("{} frames with an offset", frames.len());
         return Err(stsc.error(0, found, format!("all {} that have a length", sizes.len())));
     }
     Ok(frames)

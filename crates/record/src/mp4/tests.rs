@@ -29,7 +29,7 @@ fn parse_bytes(bytes: &[u8]) -> Result<super::Movie, RecordError> {
 
 #[test]
 fn every_frame_is_found_again() {
-    // None, one, one chunk, one more, two chunks, and some more.
+    // No frame, one frame, one chunk, one frame more, two chunks, and more.
     for count in [0, 1, 16, 17, 32, 50] {
         let bytes = film(count);
         let movie = parse_bytes(&bytes).unwrap();
@@ -51,9 +51,9 @@ fn a_cut_film_is_refused_at_every_length() {
     }
 }
 
-/// Any one byte of the tables set to the extremes: an answer or an error, never a panic or a large allocation.
+/// Sets each byte of the tables to extreme values. The result is a movie or an error, never a panic or a large allocation.
 #[test]
-fn broken_tables_are_survived() {
+fn broken_tables_never_panic() {
     let bytes = film(20);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("film.mp4");
@@ -66,7 +66,7 @@ fn broken_tables_are_survived() {
             refused += usize::from(parse(&path, &mut File::open(&path).unwrap()).is_err());
         }
     }
-    // Most of a file's bytes are in the names and counts that are checked.
+    // Most bytes of the tables belong to names and counts that are checked.
     assert!(refused > 500, "{refused}");
 }
 
@@ -79,7 +79,7 @@ fn other_files_are_refused_by_their_first_bytes() {
     assert!(matches!(crate::read_film(missing), Err(RecordError::Io { .. })));
 }
 
-/// A file that skips over large writes instead of filling the disk.
+/// A file in which large writes only move the position, so that the test does not fill the disk.
 #[cfg(unix)]
 struct Sparse(File);
 

@@ -1,34 +1,34 @@
-//! Writing: frames go out as they come, the tables that find them at the end.
+//! Writes MP4 files: frames as they arrive, and at the end the tables that locate them.
 
 use super::AvcConfig;
 use std::io::{self, Seek, SeekFrom, Write};
 
-/// Frames that lie together as one chunk. Players read a chunk at a time.
+/// Frames per chunk. Players read one chunk at a time.
 const FRAMES_PER_CHUNK: u32 = 16;
 
-/// What the one track of the film is.
+/// The video track of a film.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Track {
     /// Width in pixels, at most 65,535.
     pub(crate) width: u16,
     /// Height in pixels.
     pub(crate) height: u16,
-    /// Ticks of the clock per second.
+    /// Clock ticks per second.
     pub(crate) ticks_per_second: u32,
-    /// Ticks that one frame lasts.
+    /// Clock ticks per frame.
     pub(crate) ticks_per_frame: u32,
 }
 
-/// An MP4 file in the making: `ftyp`, then `mdat` frame by frame, then `moov`.
+/// An MP4 file that is being written: `ftyp`, then `mdat` frame by frame, then `moov`.
 pub(crate) struct Mp4Writer<W> {
     out: W,
     track: Track,
-    /// Where `mdat` starts, and where the next byte goes.
+    /// Offset of `mdat`, and of the next byte.
     mdat_start: u64,
     position: u64,
     sizes: Vec<u32>,
     chunks: Vec<u64>,
-    /// Key frames, counted from 1 as the table wants them.
+    /// Key frames, counted from 1 as in the table.
     keys: Vec<u32>,
 }
 
@@ -41,7 +41,7 @@ impl<W: Write + Seek> Mp4Writer<W> {
         });
         out.write_all(&ftyp)?;
         let mdat_start = ftyp.len() as u64;
-        // Size 1 says that a 64-bit size follows: it is written in the end, when it is known.
+        // Size 1 means that a 64-bit size follows. It is written at the end, when it is known.
         out.write_all(&1_u32.to_be_bytes())?;
         out.write_all(b"mdat")?;
         out.write_all(&16_u64.to_be_bytes())?;
@@ -49,10 +49,10 @@ impl<W: Write + Seek> Mp4Writer<W> {
         Ok(Self { out, track, mdat_start, position, sizes: Vec::new(), chunks: Vec::new(), keys: Vec::new() })
     }
 
-    /// Appends one coded frame.
+    /// Appends one encoded frame.
     pub(crate) fn write_frame(&mut self, sample: &[u8], key: bool) -> io::Result<()> {
-        let size =
-            u32::try_from(sample.len()).map_err(|_| io::Error::other("a coded frame of over 4 GiB"))?;
+        let size = u32::try_from(sample.len())
+            .map_err(|_| io::Error::other("an encoded frame of more than 4 GiB"))?;
         self.out.write_all(sample)?;
         if (self.sizes.len() as u32).is_multiple_of(FRAMES_PER_CHUNK) {
             self.chunks.push(self.position);
@@ -65,7 +65,7 @@ impl<W: Write + Seek> Mp4Writer<W> {
         Ok(())
     }
 
-    /// Writes the tables and the size of `mdat`; returns the medium and the file's length in bytes.
+    /// Writes the tables and the size of `mdat`. Returns the medium and the length of the file in bytes.
     pub(crate) fn finish(mut self, config: &AvcConfig) -> io::Result<(W, u64)> {
         let moov = self.moov(config);
         self.out.write_all(&moov)?;
@@ -79,17 +79,17 @@ impl<W: Write + Seek> Mp4Writer<W> {
         let Track { width, height, ticks_per_second, ticks_per_frame } = self.track;
         let duration = self.sizes.len() as u64 * u64::from(ticks_per_frame);
         let mvhd = full(*b"mvhd", 1, 0, |b| {
-            b.extend([0; 16]); // No times of creation: the same pictures give the same file.
+            b.extend([0; 16]); // No times of creation, so that the same images give the same file.
             b.extend(ticks_per_second.to_be_bytes());
             b.extend(duration.to_be_bytes());
-            b.extend(0x0001_0000_u32.to_be_bytes()); // Normal speed,
-            b.extend(0x0100_u16.to_be_bytes()); // full volume,
+            b.extend(0x0001_0000_u32.to_be_bytes()); // Normal rate.
+            b.extend(0x0100_u16.to_be_bytes()); // Full volume.
             b.extend([0; 10]);
             b.extend(identity_matrix());
             b.extend([0; 24]);
-            b.extend(2_u32.to_be_bytes()); // and the next track's number.
+            b.extend(2_u32.to_be_bytes()); // Number of the next track.
         });
-        // Flags: enabled, in the movie, in the preview.
+        // Flags: enabled, in the movie and in the preview.
         let tkhd = full(*b"tkhd", 1, 7, |b| {
             b.extend([0; 16]);
             b.extend(1_u32.to_be_bytes());
@@ -113,7 +113,7 @@ impl<W: Write + Seek> Mp4Writer<W> {
             b.extend(b"Lovelock\0");
         });
         let vmhd = full(*b"vmhd", 0, 1, |b| b.extend([0; 8]));
-        // One data reference, flag 1: the frames are in this same file.
+        // One data reference with flag 1: the frames are in the same file.
         let dref = full(*b"dref", 0, 0, |b| {
             b.extend(1_u32.to_be_bytes());
             b.extend(full(*b"url ", 0, 1, |_| ()));
@@ -132,7 +132,7 @@ impl<W: Write + Seek> Mp4Writer<W> {
             b.extend([0; 16]);
             b.extend(width.to_be_bytes());
             b.extend(height.to_be_bytes());
-            b.extend(0x0048_0000_u32.to_be_bytes()); // 72 dots an inch, each way.
+            b.extend(0x0048_0000_u32.to_be_bytes()); // 72 dots per inch, horizontally and vertically.
             b.extend(0x0048_0000_u32.to_be_bytes());
             b.extend([0; 4]);
             b.extend(1_u16.to_be_bytes());
@@ -140,7 +140,7 @@ impl<W: Write + Seek> Mp4Writer<W> {
             b.extend(24_u16.to_be_bytes());
             b.extend([0xFF, 0xFF]);
             b.extend(leaf(*b"avcC", |b| b.extend(config.record())));
-            // Colours: BT.709 primaries, sRGB transfer, BT.709 matrix, limited range; as in the stream itself.
+            // BT.709 primaries, sRGB transfer, BT.709 matrix, limited range; the same as in the stream.
             b.extend(leaf(*b"colr", |b| b.extend(b"nclx\0\x01\0\x0D\0\x01\0")));
             b.extend(leaf(*b"pasp", |b| b.extend([0, 0, 0, 1, 0, 0, 0, 1])));
         });
@@ -176,7 +176,7 @@ impl<W: Write + Seek> Mp4Writer<W> {
     }
 }
 
-/// A box of anything.
+/// A box with any contents.
 fn leaf(kind: [u8; 4], fill: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
     let mut bytes = vec![0; 4];
     bytes.extend(kind);
@@ -194,18 +194,18 @@ fn full(kind: [u8; 4], version: u8, flags: u32, fill: impl FnOnce(&mut Vec<u8>))
     })
 }
 
-/// A box of boxes.
+/// A box that contains boxes.
 fn nest(kind: [u8; 4], parts: &[Vec<u8>]) -> Vec<u8> {
     leaf(kind, |bytes| parts.iter().for_each(|part| bytes.extend(part)))
 }
 
-/// A table: how many entries, then the numbers.
+/// A table: the number of entries, then the numbers.
 fn numbers(bytes: &mut Vec<u8>, count: usize, values: impl IntoIterator<Item = u32>) {
     bytes.extend((count as u32).to_be_bytes());
     values.into_iter().for_each(|value| bytes.extend(value.to_be_bytes()));
 }
 
-/// Neither turned nor scaled: 1, 1 as 16.16 and 1 as 2.30 on the diagonal.
+/// The identity: 1 and 1 as 16.16 and 1 as 2.30 on the diagonal.
 fn identity_matrix() -> [u8; 36] {
     let mut matrix = [0; 36];
     matrix[1] = 1;

@@ -1,4 +1,4 @@
-//! Frames as `OpenEXR` files: linear light in half floats with depth and transmittance beside it.
+//! `OpenEXR` files: linear light as half floats, with depth and transmittance.
 
 use std::io::Cursor;
 
@@ -10,18 +10,18 @@ use exr::prelude::{
 
 use crate::FrameRate;
 
-/// A picture as numbers, rows from the top, one item a pixel in each list.
+/// A rendered image before tone mapping, rows from the top. Each slice has one item per pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct FrameLayers<'a> {
-    /// Red, green and blue of linear light in the primaries of sRGB, multiplied by alpha; and alpha.
+    /// Linear red, green and blue in the primaries of sRGB, premultiplied by alpha, and alpha.
     pub light: &'a [[f32; 4]],
-    /// Distance of the nearest surface along the camera's axis, metres.
+    /// Distance of the nearest surface along the camera's axis, in metres.
     pub depth: &'a [f32],
-    /// How much of the key light reaches the hair, 0 to 1.
+    /// Transmittance of the key light to the hair, 0 to 1.
     pub transmittance: &'a [f32],
 }
 
-/// The same as the file holds it, in the order of the channels.
+/// The channels of the file.
 #[derive(Debug, Default)]
 pub(super) struct Planes {
     halves: [Vec<f16>; 4],
@@ -29,7 +29,7 @@ pub(super) struct Planes {
     transmittance: Vec<f16>,
 }
 
-/// The largest half float; what is brighter is as bright.
+/// The largest half float. Brighter light is clamped to it.
 const MOST: f32 = 65_504.0;
 
 impl Planes {
@@ -44,20 +44,20 @@ impl Planes {
     }
 }
 
-/// What the file says of itself beside its pixels.
+/// The metadata of the file.
 #[derive(Clone, Debug)]
 pub(super) struct Head {
     pub rate: FrameRate,
     pub number: u64,
-    /// What drew it, in words.
+    /// How the frame was rendered.
     pub comments: String,
 }
 
-/// Codes a frame: lossless, in rows from the top, the same bytes each time.
+/// Encodes a frame losslessly, in rows from the top. The same frame gives the same bytes.
 ///
 /// # Errors
-/// What the coder says, such as a size that it does not take.
-pub(super) fn code(
+/// Errors of the encoder, such as an unsupported size.
+pub(super) fn encode(
     planes: Planes,
     [width, height]: [u32; 2],
     head: &Head,
@@ -87,19 +87,19 @@ pub(super) fn code(
     let size = Vec2(width as usize, height as usize);
     let layer = Layer::new(size, attributes, encoding, AnyChannels::sort(channels));
     let mut image = Image::from_layer(layer);
-    // Those of sRGB and Rec. 709.
+    // The primaries of sRGB and Rec. 709.
     image.attributes.chromaticities = Some(Chromaticities {
         red: Vec2(0.64, 0.33),
         green: Vec2(0.30, 0.60),
         blue: Vec2(0.15, 0.06),
         white: Vec2(0.3127, 0.3290),
     });
-    // One alone: several of one's own are written in an order that changes from run to run.
+    // Only one custom attribute: the library writes several in an order that differs from run to run.
     let number = i32::try_from(head.number).unwrap_or(i32::MAX);
     image.attributes.other.insert(Text::from("frame"), AttributeValue::I32(number));
     let mut file = Cursor::new(std::mem::take(out));
     file.get_mut().clear();
-    // Frames are coded beside each other already.
+    // Frames are already encoded in parallel.
     let written = image.write().non_parallel().to_buffered(&mut file);
     *out = file.into_inner();
     written

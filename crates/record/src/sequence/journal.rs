@@ -1,7 +1,7 @@
-//! The record of a sequence that is not finished: what it is, and which of its frames are whole.
+//! The journal of an unfinished sequence: its settings and its complete frames.
 //!
-//! It lies in the folder as long as frames are written, and is kept by what ends the program before they are. A line of JSON each: a
-//! manifest without frames first, then a frame as soon as it has its name.
+//! It stays in the folder while frames are written, and also after a crash. Each line is JSON: first a manifest without
+//! frames, then one line per frame as soon as the frame has its final name.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
@@ -14,25 +14,25 @@ use crate::RecordError;
 use crate::claim::claim;
 use crate::manifest::{Manifest, ManifestFrame, read_manifest};
 
-/// Its name inside the folder.
+/// Name of the journal in the folder.
 pub(super) const JOURNAL_NAME: &str = "manifest.partial";
 
-/// The longest that is read: a few million frames.
+/// Largest journal that is read, in bytes: a few million frames.
 const MOST_BYTES: u64 = 1 << 29;
 
-/// The record, held open so that no other recording writes to the folder.
+/// The journal. It is open and locked, so that no other recording writes to the folder.
 pub(super) struct Journal {
     path: PathBuf,
     file: File,
-    /// Whether nothing was in it.
+    /// Whether the file was empty.
     is_new: bool,
 }
 
 impl Journal {
-    /// Takes the folder for this recording.
+    /// Locks the folder for this recording.
     ///
     /// # Errors
-    /// Another one has it, or it cannot be written.
+    /// If another recording has locked the folder, or if it cannot be written.
     pub fn claim(folder: &Path) -> Result<Self, RecordError> {
         let path = folder.join(JOURNAL_NAME);
         let file =
@@ -41,18 +41,18 @@ impl Journal {
         Ok(Self { path, file, is_new })
     }
 
-    /// What an earlier recording has left in the folder, in the record or, where it could say so itself, in the manifest.
-    pub fn left(&mut self, folder: &Path) -> Option<Manifest> {
+    /// What an earlier recording left in the folder: its journal or, if it ended regularly, its manifest.
+    pub fn earlier(&mut self, folder: &Path) -> Option<Manifest> {
         let mut text = Vec::new();
         let read = self.file.rewind().and_then(|()| (&self.file).take(MOST_BYTES).read_to_end(&mut text));
         let recorded = read.ok().and_then(|_| parse(&text));
         recorded.or_else(|| read_manifest(folder).ok())
     }
 
-    /// Begins anew with what is kept.
+    /// Starts a new journal with the frames that are kept.
     ///
     /// # Errors
-    /// The disk is full, and the like.
+    /// Errors such as a full disk.
     pub fn begin(&mut self, head: &Manifest, kept: &BTreeMap<u64, ManifestFrame>) -> io::Result<()> {
         let mut text = serde_json::to_vec(head)?;
         text.push(b'\n');
@@ -66,7 +66,7 @@ impl Journal {
         self.file.sync_all()
     }
 
-    /// Notes a frame that has its name.
+    /// Adds a frame that has its final name.
     ///
     /// # Errors
     /// As [`Journal::begin`].
@@ -76,21 +76,21 @@ impl Journal {
         self.file.write_all(&line)
     }
 
-    /// Gives the folder back as it was.
-    pub fn give_back(self) {
+    /// Removes the journal if it did not exist before, so that the folder is as it was.
+    pub fn release(self) {
         if self.is_new {
             self.remove();
         }
     }
 
-    /// Removes it: the manifest says all there is.
+    /// Removes the journal, because the manifest now lists all frames.
     pub fn remove(self) {
-        // Before it is closed, so that no other recording has begun with it.
+        // Removed before it is closed and unlocked, so that no other recording can have started to use it.
         let _ = fs::remove_file(&self.path);
     }
 }
 
-/// The manifest of a record; a last line that was cut is left out.
+/// The manifest in a journal. An incomplete last line is ignored.
 fn parse(text: &[u8]) -> Option<Manifest> {
     let mut lines = text.split_inclusive(|&byte| byte == b'\n').filter(|line| line.ends_with(b"\n"));
     let mut manifest: Manifest = serde_json::from_slice(lines.next()?).ok()?;
@@ -98,7 +98,7 @@ fn parse(text: &[u8]) -> Option<Manifest> {
     Some(manifest)
 }
 
-/// The frames of a manifest that are in the folder as it says, byte for byte.
+/// The frames of a manifest whose files match their length and checksum.
 pub(super) fn whole_frames(folder: &Path, frames: Vec<ManifestFrame>) -> BTreeMap<u64, ManifestFrame> {
     let is_whole = |frame: &ManifestFrame| {
         let path = folder.join(&frame.file);
@@ -109,7 +109,7 @@ pub(super) fn whole_frames(folder: &Path, frames: Vec<ManifestFrame>) -> BTreeMa
     frames.into_iter().filter(is_whole).map(|frame| (frame.number, frame)).collect()
 }
 
-/// In what a sequence that is there differs from the one that is to go on; none where it is the same.
+/// How the settings of an existing sequence differ from those of the one that should continue it; empty if they are the same.
 pub(super) fn differences(there: &Manifest, wanted: &Manifest) -> Vec<String> {
     let size = |of: &Manifest| format!("{}x{}", of.width, of.height);
     let mut found = Vec::new();
@@ -121,7 +121,7 @@ pub(super) fn differences(there: &Manifest, wanted: &Manifest) -> Vec<String> {
     for key in keys {
         let (there, wanted) = (&there.settings[&key], &wanted.settings[&key]);
         if let (Some(parts), Some(others)) = (keys_of(there), keys_of(wanted)) {
-            // Fingerprints say nothing to anyone: that they differ does.
+            // Fingerprints are meaningless to the user; only the names of those that differ are shown.
             let parts: BTreeSet<String> = parts.into_iter().chain(others).collect();
             let changed = parts.into_iter().filter(|part| there[part] != wanted[part]);
             found.extend(changed.map(|part| format!("{part} changed")));

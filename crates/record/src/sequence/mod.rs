@@ -1,4 +1,4 @@
-//! Picture sequences: a folder of PNG or EXR files and a manifest.
+//! Image sequences: a folder of PNG or EXR files with a manifest.
 
 mod exr;
 mod journal;
@@ -22,56 +22,58 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use worker::{Job, Pixels, Worker};
 
-/// Threads that code frames: PNG takes some milliseconds each, and drawing needs the other cores.
+/// Most threads that encode frames. A PNG takes some milliseconds, and rendering needs the other cores.
 const MOST_THREADS: usize = 4;
 
-/// The largest side in pixels, a guard against slips of the finger.
+/// The largest side in pixels, to catch typing errors.
 const LARGEST_SIDE: u32 = 16_384;
 
-/// Pixels of a picture of layers from which on two threads code it: each holds 14 bytes a pixel and more.
+/// Number of pixels of an EXR file above which only two threads encode, because each needs 14 bytes per pixel and more.
 const LARGE: u64 = 4_000_000;
 
-/// A sequence in the making.
+/// A sequence that is being written.
 ///
-/// Each frame gets its name when its file is whole, so frames can be used while later ones are drawn. The manifest comes
-/// last; `manifest.partial` takes its place until then, and keeps a second recording out of the folder. A cancel (dropping
-/// without [`SequenceWriter::finish`]) or an error keeps the frames that are whole, and the manifest says `"complete": false`.
+/// Each frame gets its final name when its file is complete, so frames can be used while later ones are rendered. The manifest
+/// is written last. Until then `manifest.partial` lists the frames and keeps a second recording out of the folder. After a
+/// cancel (dropping without [`SequenceWriter::finish`]) or an error, complete frames are kept, and the manifest has
+/// `"complete": false`.
 pub struct SequenceWriter {
     folder: PathBuf,
     settings: SequenceSettings,
     rate: FrameRate,
-    /// Frames handed over or kept.
+    /// Frames written or kept so far.
     at: u64,
-    /// Frames that are there and whole.
+    /// Complete frames of an earlier recording.
     kept: BTreeMap<u64, ManifestFrame>,
     jobs: Option<SyncSender<Job>>,
     spent: Receiver<Vec<u8>>,
     threads: Vec<JoinHandle<()>>,
     shared: Arc<Mutex<Progress>>,
-    /// Files of the sequence that lay in the folder before.
+    /// Files of the sequence that was in the folder before.
     old_files: Vec<String>,
     ended: bool,
 }
 
-/// What the threads have done so far.
+/// What the threads have written so far.
 #[derive(Default)]
 struct Progress {
     frames: BTreeMap<u64, ManifestFrame>,
     error: Option<RecordError>,
-    /// Until the end.
+    /// Present until the end.
     journal: Option<Journal>,
 }
 
 impl SequenceWriter {
-    /// Starts a sequence in `folder`, which is created where missing.
+    /// Starts a sequence in `folder`, which is created if it is missing.
     ///
-    /// Frames of the same numbers are replaced as the new ones come, and the manifest of a sequence already there goes
-    /// at once. The frames that it lists and the new sequence lacks go at the end, so that the folder holds one sequence. With
-    /// [`SequenceSettings::resume`] frames that are there and whole stay instead: see [`SequenceWriter::next_is_kept`].
+    /// The manifest of an existing sequence is removed at once, and its frames are replaced by new frames with the same
+    /// numbers. Frames of the old sequence that the new one lacks are removed at the end, so that the folder contains one
+    /// sequence. With [`SequenceSettings::resume`] complete frames are kept instead: see [`SequenceWriter::next_is_kept`].
     ///
     /// # Errors
-    /// [`RecordError::Request`] for a size, a rate or a `folder` that cannot be (it is a file), and for another sequence than
-    /// the one to go on with; [`RecordError::Io`] where the folder cannot be written or another recording writes to it.
+    /// [`RecordError::Request`] for an invalid size or rate, for a `folder` that is a file, and for an existing sequence with
+    /// other settings if it should be resumed; [`RecordError::Io`] if the folder cannot be written or another recording
+    /// writes to it.
     pub fn create(folder: &Path, settings: SequenceSettings) -> Result<Self, RecordError> {
         Self::create_on(folder, settings, &(Arc::new(open_file) as Arc<Opener>))
     }
@@ -84,13 +86,13 @@ impl SequenceWriter {
         let SequenceSettings { width, height, fps, format, .. } = settings;
         if width.min(height) == 0 || width.max(height) > LARGEST_SIDE {
             return Err(RecordError::request(format!(
-                "a sequence of {width}x{height} pixels: wanted sides of 1 to {LARGEST_SIDE}"
+                "a sequence of {width}x{height} pixels: each side must be 1 to {LARGEST_SIDE}"
             )));
         }
         let rate = FrameRate::from_fps(fps)?;
         if folder.is_file() {
             return Err(RecordError::request(format!(
-                "{}: is a file, a sequence needs a folder",
+                "{}: is a file; a sequence needs a folder",
                 folder.display()
             )));
         }
@@ -115,15 +117,15 @@ impl SequenceWriter {
         Ok(writer)
     }
 
-    /// Takes the folder, finds out what is kept of what it holds, and forgets the rest.
+    /// Locks the folder and determines which of its frames are kept.
     fn begin(&mut self) -> Result<Journal, RecordError> {
         let folder = self.folder.clone();
         let mut journal = Journal::claim(&folder)?;
-        let there = journal.left(&folder);
+        let there = journal.earlier(&folder);
         let head = self.manifest(false, Vec::new());
         if let Some(there) = there {
             let listed = there.frames.iter();
-            // A name of one's own making is never removed, nor taken for a frame.
+            // A file whose name is not that of a frame is never removed or kept as a frame.
             let ours = |f: &&ManifestFrame| {
                 SequenceFormat::ALL.iter().any(|&format| f.file == frame_name(f.number, format))
             };
@@ -132,7 +134,7 @@ impl SequenceWriter {
                 match self.kept_of(there, &head) {
                     Ok(kept) => self.kept = kept,
                     Err(error) => {
-                        journal.give_back();
+                        journal.release();
                         return Err(error);
                     }
                 }
@@ -150,7 +152,7 @@ impl SequenceWriter {
         Ok(journal)
     }
 
-    /// The frames to go on with, of a sequence that is there.
+    /// The frames of an existing sequence that are kept when it is resumed.
     fn kept_of(
         &self,
         there: Manifest,
@@ -158,7 +160,7 @@ impl SequenceWriter {
     ) -> Result<BTreeMap<u64, ManifestFrame>, RecordError> {
         let refuse = |what: String| {
             Err(RecordError::request(format!(
-                "{}: cannot go on with the sequence that is there: {what}; record without resuming to replace it, or to \
+                "{}: cannot resume the sequence in this folder: {what}; record without resuming to replace it, or to \
                  another folder",
                 self.folder.display()
             )))
@@ -172,7 +174,7 @@ impl SequenceWriter {
         let frames: Vec<_> = there.frames.into_iter().filter(own).collect();
         if let Some(early) = frames.iter().find(|frame| frame.number < self.settings.first_frame) {
             return refuse(format!(
-                "it holds frame {}, before the first one that is wanted, {}",
+                "it contains frame {}, which is before the first requested frame {}",
                 early.number, self.settings.first_frame
             ));
         }
@@ -210,30 +212,30 @@ impl SequenceWriter {
         Ok(())
     }
 
-    /// What drew the frames, in a line of ASCII for files that keep one.
+    /// How the frames were rendered, in one line of ASCII for the files' comments.
     fn comments(&self) -> String {
         let texts = self.settings.settings.as_object().into_iter().flatten();
         let said = texts.filter_map(|(key, value)| Some(format!("{key} {}", value.as_str()?)));
         said.collect::<Vec<_>>().join(", ").replace(|c: char| !c.is_ascii(), "?")
     }
 
-    /// Whether the frame that comes next is there and whole: it need not be drawn, [`SequenceWriter::keep_next`] it is.
+    /// Whether the next frame already exists and is complete, so that it can be skipped with [`SequenceWriter::keep_next`].
     pub fn next_is_kept(&self) -> bool {
         self.kept.contains_key(&(self.settings.first_frame + self.at))
     }
 
-    /// Goes on to the frame after the next, which is kept; does nothing where it is not.
+    /// Skips the next frame if it is kept; otherwise does nothing.
     pub fn keep_next(&mut self) {
         self.at += u64::from(self.next_is_kept());
     }
 
-    /// Hands over the next frame: RGBA, 8 bits sRGB, rows from the top, `width × height × 4` bytes.
+    /// Writes the next frame: RGBA, 8-bit sRGB, rows from the top, `width × height × 4` bytes.
     ///
-    /// Returns as soon as the frame waits to be coded; an error may therefore belong to an earlier frame, and names it.
+    /// Returns as soon as the frame is in the queue. An error may therefore belong to an earlier frame, which it names.
     ///
     /// # Errors
-    /// [`RecordError::FrameSize`] for another number of bytes (the sequence goes on); [`RecordError::Request`] where the files
-    /// are EXR; [`RecordError::Io`] for a full disk and the like, and [`RecordError::Stopped`] after that.
+    /// [`RecordError::FrameSize`] for a wrong number of bytes, after which recording can continue; [`RecordError::Request`] if
+    /// the files are EXR; [`RecordError::Io`] for errors such as a full disk, and [`RecordError::Stopped`] after that.
     pub fn push(&mut self, rgba: &[u8]) -> Result<(), RecordError> {
         check_frame(rgba, self.settings.width, self.settings.height)?;
         self.check_format(SequenceFormat::Png)?;
@@ -243,10 +245,10 @@ impl SequenceWriter {
         self.hand_over(Pixels::Rgba(buffer))
     }
 
-    /// As [`SequenceWriter::push`] for EXR files: `width × height` items of each layer.
+    /// Writes the next frame of a sequence of EXR files: `width × height` items of each layer.
     ///
     /// # Errors
-    /// As there.
+    /// As [`SequenceWriter::push`].
     pub fn push_layers(&mut self, layers: &FrameLayers) -> Result<(), RecordError> {
         self.check_format(SequenceFormat::Exr)?;
         let SequenceSettings { width, height, .. } = self.settings;
@@ -266,7 +268,7 @@ impl SequenceWriter {
         }
         let wanted = self.settings.format.label();
         Err(RecordError::request(format!(
-            "frames for {} were handed to a sequence of {wanted}",
+            "a frame for {} cannot be written to a sequence of {wanted}",
             given.label()
         )))
     }
@@ -283,19 +285,19 @@ impl SequenceWriter {
         self.end(false).map(drop)
     }
 
-    /// Codes what still waits, writes the manifest, and removes frames of an older sequence that this one lacks.
+    /// Encodes the frames in the queue, writes the manifest, and removes frames of the old sequence that this one lacks.
     ///
     /// # Errors
     /// As [`SequenceWriter::push`]; also [`RecordError::Request`] for a sequence of no frames.
     pub fn finish(mut self) -> Result<SequenceReport, RecordError> {
         if self.at == 0 && self.jobs.is_some() {
-            let what = format!("{}: a sequence needs one frame or more", self.folder.display());
+            let what = format!("{}: a sequence needs at least one frame", self.folder.display());
             return Err(RecordError::request(what));
         }
         self.end(true)
     }
 
-    /// Gives up: the same as dropping, for the reader's sake.
+    /// Cancels the recording. This is the same as dropping the writer.
     pub fn cancel(self) {}
 
     /// Ends the threads and writes the manifest.
@@ -310,10 +312,10 @@ impl SequenceWriter {
         let all = (first..first + self.at).all(|number| frames.contains_key(&number));
         let whole = finished && error.is_none() && !panicked && all;
         let manifest = self.manifest(whole, frames.into_values().collect());
-        // A folder without a single frame needs no manifest, and after an error there may be no room for one: the error
-        // that came first is the one to tell.
+        // A folder without frames needs no manifest. After an error there may be no room for one; the first error is then
+        // returned.
         let written = if manifest.frames.is_empty() { Ok(()) } else { self.write_manifest(&manifest) };
-        // Where the manifest could not be written, the record of the frames stays.
+        // If the manifest could not be written, the journal stays.
         if let Some(journal) = journal.filter(|_| written.is_ok()) {
             journal.remove();
         }
@@ -360,7 +362,7 @@ impl SequenceWriter {
     fn remove_old_frames(&self, manifest: &Manifest) {
         for file in &self.old_files {
             if manifest.frames.iter().all(|frame| frame.file != *file) {
-                // One that is gone already, or cannot go, does no harm: the manifest is what counts.
+                // Errors do no harm, because the manifest does not list the file.
                 let _ = fs::remove_file(self.folder.join(file));
             }
         }
@@ -379,7 +381,7 @@ impl std::fmt::Debug for SequenceWriter {
     }
 }
 
-/// The progress, also after a thread has died holding it: every change to it is a single step.
+/// Locks the progress, also after a thread has panicked with the lock: every change is a single step.
 fn lock(shared: &Mutex<Progress>) -> std::sync::MutexGuard<'_, Progress> {
     shared.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -1,14 +1,14 @@
-//! What a sequence is, and what was written.
+//! Settings and report of a sequence.
 
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-/// What the files of a sequence are.
+/// File format of a sequence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SequenceFormat {
-    /// PNG: as the screen shows it, 8 bits, sRGB.
+    /// PNG: tone-mapped, 8 bits, sRGB.
     #[default]
     Png,
     /// `OpenEXR`: linear half floats with depth and transmittance ([`FrameLayers`](crate::FrameLayers)).
@@ -16,10 +16,10 @@ pub enum SequenceFormat {
 }
 
 impl SequenceFormat {
-    /// All, in the order of menus.
+    /// All formats, in the order of menus.
     pub const ALL: [Self; 2] = [Self::Png, Self::Exr];
 
-    /// Stable name for files and the command line; the ending of the files.
+    /// Stable name for files and the command line; also the extension of the files.
     pub fn id(self) -> &'static str {
         match self {
             Self::Png => "png",
@@ -36,24 +36,24 @@ impl SequenceFormat {
     }
 }
 
-/// What a sequence is.
+/// Settings of a sequence.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SequenceSettings {
     /// Width in pixels, 1 to 16,384.
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
-    /// Frames per second, 1 to 240; for the manifest.
+    /// Frames per second, 1 to 240. Stored in the manifest.
     pub fps: f64,
     /// Number of the first frame, which names its file.
     pub first_frame: u64,
-    /// What the files are.
+    /// Format of the files.
     pub format: SequenceFormat,
-    /// Whether PNG files keep the alpha channel (not premultiplied). Without, they are smaller.
+    /// Whether PNG files have an alpha channel (not premultiplied). Files without one are smaller.
     pub alpha: bool,
-    /// Whether to go on with a sequence of the same settings that is there, of which whole frames are kept.
+    /// Whether to resume an existing sequence with the same settings. Its complete frames are kept.
     pub resume: bool,
-    /// What drew the frames, for the manifest: an object whose keys say in what another sequence differs.
+    /// How the frames are rendered, for the manifest: an object. Error messages name the keys in which two sequences differ.
     pub settings: serde_json::Value,
 }
 
@@ -62,11 +62,11 @@ pub struct SequenceSettings {
 pub struct SequenceReport {
     /// The folder.
     pub folder: PathBuf,
-    /// Frames in it.
+    /// Number of frames.
     pub frames: u64,
-    /// Those of them that an earlier recording had left whole.
+    /// Number of frames that were kept from an earlier recording.
     pub kept: u64,
-    /// Length of all frames together, in bytes.
+    /// Total length of all frames in bytes.
     pub bytes: u64,
 }
 

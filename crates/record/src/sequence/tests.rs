@@ -34,7 +34,7 @@ fn files(folder: &Path) -> Vec<String> {
     names
 }
 
-/// Every file that the manifest lists is there, of the length and the checksum it says.
+/// Checks that every file in the manifest exists and has the listed length and checksum.
 fn check_files(folder: &Path, manifest: &Manifest) {
     for frame in &manifest.frames {
         let bytes = fs::read(folder.join(&frame.file)).unwrap();
@@ -74,12 +74,12 @@ fn frames_come_back_exactly() {
                 assert_eq!(image.into_rgb8().into_raw(), opaque);
             }
         }
-        assert_eq!(files(&folder).len(), 13, "frames and manifest alone");
+        assert_eq!(files(&folder).len(), 13, "only frames and manifest");
     }
 }
 
 #[test]
-fn a_cancel_keeps_whole_frames_and_says_incomplete() {
+fn a_cancel_keeps_complete_frames_and_marks_the_manifest_incomplete() {
     let folder = tempfile::tempdir().unwrap();
     let mut writer = SequenceWriter::create(folder.path(), settings()).unwrap();
     (0..3).for_each(|frame| writer.push(&picture(frame)).unwrap());
@@ -198,7 +198,7 @@ fn write_exr(folder: &Path, frames: u32) -> Manifest {
 }
 
 #[test]
-fn exr_files_hold_every_channel_and_say_what_they_are() {
+fn exr_files_contain_every_channel_and_their_metadata() {
     use exr::prelude::{FlatSamples, ReadChannels as _, ReadLayers as _, Text, read};
     let folder = tempfile::tempdir().unwrap();
     let manifest = write_exr(folder.path(), 3);
@@ -239,7 +239,7 @@ fn exr_files_hold_every_channel_and_say_what_they_are() {
 }
 
 #[test]
-fn exr_files_are_the_same_bytes_each_time_and_other_light_others() {
+fn the_same_light_gives_the_same_exr_file_and_other_light_another() {
     let (a, b) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     let (first, second) = (write_exr(a.path(), 2), write_exr(b.path(), 2));
     assert_eq!(first.frames, second.frames);
@@ -247,7 +247,7 @@ fn exr_files_are_the_same_bytes_each_time_and_other_light_others() {
 }
 
 #[test]
-fn light_beyond_half_floats_is_held_and_frames_of_the_wrong_kind_are_refused() {
+fn light_beyond_half_floats_is_clamped_and_frames_of_the_wrong_kind_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let settings = SequenceSettings { width: 2, height: 1, ..exr() };
     let mut writer = SequenceWriter::create(folder.path(), settings.clone()).unwrap();
@@ -270,7 +270,7 @@ fn light_beyond_half_floats_is_held_and_frames_of_the_wrong_kind_are_refused() {
     assert!(png.push_layers(&good).unwrap_err().is_request());
 }
 
-/// Writes frames until the writer is dropped; returns those that were drawn.
+/// Writes frames until the writer is dropped. Returns the numbers of the frames that were not kept.
 fn go_on(folder: &Path, settings: SequenceSettings, frames: u8) -> Result<Vec<u8>, RecordError> {
     let mut writer = SequenceWriter::create(folder, settings)?;
     let mut drawn = Vec::new();
@@ -285,35 +285,35 @@ fn go_on(folder: &Path, settings: SequenceSettings, frames: u8) -> Result<Vec<u8
     writer.finish().map(|_| drawn)
 }
 
-/// All files of a folder with their bytes.
+/// All files of a folder with their contents.
 fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
     files(folder).into_iter().map(|name| (name.clone(), fs::read(folder.join(name)).unwrap())).collect()
 }
 
 #[test]
-fn what_was_begun_is_gone_on_with_and_damaged_frames_are_drawn_anew() {
+fn a_sequence_is_resumed_and_damaged_frames_are_written_again() {
     let (whole, folder) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     let resume = SequenceSettings { resume: true, ..settings() };
-    assert_eq!(go_on(whole.path(), resume.clone(), 8).unwrap(), [0, 1, 2, 3, 4, 5, 6, 7], "nothing is there");
+    assert_eq!(go_on(whole.path(), resume.clone(), 8).unwrap(), [0, 1, 2, 3, 4, 5, 6, 7], "nothing to keep");
     let mut writer = SequenceWriter::create(folder.path(), settings()).unwrap();
     (0..5).for_each(|frame| writer.push(&picture(frame)).unwrap());
     writer.cancel();
-    // One is cut, one changed, one gone.
+    // One frame is truncated, one changed, one missing.
     let at = |n: u64| folder.path().join(frame_name(n, SequenceFormat::Png));
     let bytes = fs::read(at(1)).unwrap();
     fs::write(at(1), &bytes[..bytes.len() - 5]).unwrap();
     fs::write(at(2), fs::read(at(3)).unwrap()).unwrap();
     fs::remove_file(at(4)).unwrap();
     assert_eq!(go_on(folder.path(), resume.clone(), 8).unwrap(), [1, 2, 4, 5, 6, 7]);
-    assert!(contents(folder.path()) == contents(whole.path()), "as if it had never stopped");
-    // Once more there is nothing to do, and a longer one goes on.
+    assert!(contents(folder.path()) == contents(whole.path()), "the same as without the interruption");
+    // Resuming again has nothing to do, and a longer sequence continues.
     assert_eq!(go_on(folder.path(), resume.clone(), 8).unwrap(), [0_u8; 0]);
     assert_eq!(go_on(folder.path(), resume, 9).unwrap(), [8]);
-    assert_eq!(go_on(folder.path(), settings(), 2).unwrap(), [0, 1], "the control: not asked to go on");
+    assert_eq!(go_on(folder.path(), settings(), 2).unwrap(), [0, 1], "negative control: without resuming");
 }
 
 #[test]
-fn another_sequence_is_not_gone_on_with_and_stays_as_it_is() {
+fn a_different_sequence_is_not_resumed_and_stays_as_it_is() {
     let folder = tempfile::tempdir().unwrap();
     go_on(folder.path(), settings(), 3).unwrap();
     let before = contents(folder.path());
@@ -322,7 +322,7 @@ fn another_sequence_is_not_gone_on_with_and_stays_as_it_is() {
     for (wanted, said) in [
         (SequenceSettings { width: 31, ..resume.clone() }, "size was 33x7 and is 31x7 now"),
         (SequenceSettings { fps: 25.0, ..resume.clone() }, "rate was 24 and is 25 now"),
-        (SequenceSettings { first_frame: 1, ..resume.clone() }, "it holds frame 0"),
+        (SequenceSettings { first_frame: 1, ..resume.clone() }, "it contains frame 0"),
         (
             with(serde_json::json!({ "shadow": "exact", "resolution": 128 })),
             "shadow was voxel-map and is exact now",
@@ -333,7 +333,7 @@ fn another_sequence_is_not_gone_on_with_and_stays_as_it_is() {
         assert!(error.is_request() && error.to_string().contains(said), "{error}");
         assert!(contents(folder.path()) == before, "{said}");
     }
-    // Parts are named, not their fingerprints.
+    // The message names the parts, not their fingerprints.
     let parts = |lights: &str| serde_json::json!({ "project": { "lights": lights, "camera": "aa" } });
     go_on(folder.path(), SequenceSettings { settings: parts("12"), ..settings() }, 1).unwrap();
     let error = go_on(folder.path(), with(parts("34")), 1).unwrap_err().to_string();

@@ -1,4 +1,4 @@
-//! The threads that code frames and write them.
+//! The threads that encode frames and write them.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -17,19 +17,19 @@ use crate::{FrameRate, RecordError};
 
 use super::Progress;
 
-/// A frame that waits.
+/// A frame in the queue.
 pub(super) struct Job {
     pub number: u64,
     pub pixels: Pixels,
 }
 
-/// Its pixels.
+/// The pixels of a frame.
 pub(super) enum Pixels {
     Rgba(Vec<u8>),
     Layers(Box<Planes>),
 }
 
-/// One thread that codes frames.
+/// One thread that encodes frames.
 pub(super) struct Worker {
     pub folder: PathBuf,
     pub width: u32,
@@ -51,14 +51,14 @@ impl Worker {
             let spent = match pixels {
                 _ if lock(&self.shared).error.is_some() => None,
                 Pixels::Rgba(rgba) => {
-                    let coded = self.code_png(&rgba, &mut opaque, &mut file);
-                    self.keep(number, coded, &file);
+                    let coded = self.encode_png(&rgba, &mut opaque, &mut file);
+                    self.write(number, coded, &file);
                     Some(rgba)
                 }
                 Pixels::Layers(planes) => {
                     let head = Head { rate: self.rate, number, comments: self.comments.clone() };
-                    let coded = exr::code(*planes, [self.width, self.height], &head, &mut file);
-                    self.keep(number, coded.map_err(std::io::Error::other), &file);
+                    let coded = exr::encode(*planes, [self.width, self.height], &head, &mut file);
+                    self.write(number, coded.map_err(std::io::Error::other), &file);
                     None
                 }
             };
@@ -68,7 +68,7 @@ impl Worker {
         }
     }
 
-    fn code_png(&self, rgba: &[u8], opaque: &mut Vec<u8>, file: &mut Vec<u8>) -> std::io::Result<()> {
+    fn encode_png(&self, rgba: &[u8], opaque: &mut Vec<u8>, file: &mut Vec<u8>) -> std::io::Result<()> {
         let (pixels, kind) = if self.alpha {
             (rgba, ExtendedColorType::Rgba8)
         } else {
@@ -82,8 +82,8 @@ impl Worker {
             .map_err(std::io::Error::other)
     }
 
-    /// Gives a coded frame its name and notes it.
-    fn keep(&self, number: u64, coded: std::io::Result<()>, file: &[u8]) {
+    /// Writes an encoded frame under its final name and adds it to the journal.
+    fn write(&self, number: u64, coded: std::io::Result<()>, file: &[u8]) {
         let name = frame_name(number, self.format);
         let path = self.folder.join(&name);
         let write = || {

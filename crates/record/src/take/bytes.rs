@@ -1,6 +1,6 @@
-//! Reading numbers from bytes that may end anywhere.
+//! Reads numbers from bytes that may end anywhere.
 
-/// What is left of some bytes.
+/// The bytes that have not been read yet.
 pub(super) struct Bytes<'a>(&'a [u8]);
 
 impl<'a> Bytes<'a> {
@@ -8,7 +8,7 @@ impl<'a> Bytes<'a> {
         Self(bytes)
     }
 
-    /// How many are left.
+    /// Number of bytes left.
     pub(super) fn left(&self) -> usize {
         self.0.len()
     }

@@ -1,10 +1,10 @@
-//! The chunks that were decoded last.
+//! A cache of decoded chunks.
 
 use std::sync::Arc;
 
 use super::codec::Decoded;
 
-/// Decoded chunks up to a bound of bytes, the one used last at the end.
+/// Decoded chunks up to a bound in bytes. The most recently used one is last.
 pub(super) struct Cache {
     chunks: Vec<(usize, Arc<Decoded>)>,
     bound: usize,

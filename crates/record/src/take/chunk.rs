@@ -1,29 +1,30 @@
-//! The pieces of a take's file: a header of 64 bytes and two compressed parts, each with its checksum.
+//! The chunks of a take's file: a header of 64 bytes and two compressed parts, each with its checksum.
 
 use std::io::{self, Read};
 
 use super::TAKE_VERSION;
 
-/// How every chunk, and so every take, starts. No text file holds the first byte or survives the line ending.
+/// The first bytes of every chunk, and so of every take. The first byte is not in text files, and a conversion of line endings
+/// changes the last two.
 pub(super) const MAGIC: [u8; 8] = *b"\x9ALTAKE\r\n";
 
 /// Bytes of a chunk's header.
 pub(super) const HEADER_BYTES: usize = 64;
 
-/// The largest part of a chunk, bytes before compression. A writer makes smaller chunks.
+/// The largest part of a chunk in bytes before compression. Writers make smaller chunks.
 pub(super) const MOST_RAW_BYTES: u32 = 128 << 20;
 
-/// How much smaller zstd can make anything; a header that promises more is not believed.
+/// The highest compression ratio of zstd. A header with a higher one is rejected.
 const MOST_RATIO: u64 = 1 << 16;
 
-/// What a chunk holds.
+/// The contents of a chunk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     /// Text: the take's header as JSON. Written twice at the start and once at the end.
     Head,
     /// Text: the project and its changes. Data: frames.
     Frames,
-    /// Data: the headers of all chunks of frames and where they are.
+    /// Data: the headers and offsets of all chunks of frames.
     Index,
 }
 
@@ -54,19 +55,19 @@ pub(super) struct Part {
 pub(super) struct ChunkHeader {
     pub(super) kind: Kind,
     pub(super) version: u32,
-    /// First frame, where there are frames.
+    /// First frame, if there are frames.
     pub(super) first: u64,
     pub(super) frames: u32,
-    /// Changes of the project in it.
+    /// Number of changes of the project in the chunk.
     pub(super) changes: u32,
     pub(super) text: Part,
     pub(super) data: Part,
-    /// CRC-32 of the take's header text: tells the chunks of one take from those of another.
+    /// CRC-32 of the take's header text, which distinguishes the chunks of different takes.
     pub(super) take: u32,
 }
 
 impl ChunkHeader {
-    /// Bytes that follow the header.
+    /// Bytes after the header.
     pub(super) fn body_bytes(&self) -> u64 {
         u64::from(self.text.packed) + u64::from(self.data.packed)
     }
@@ -136,20 +137,20 @@ impl ChunkHeader {
     }
 }
 
-/// Why 64 bytes are no header of a chunk.
+/// Why 64 bytes are not the header of a chunk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum HeaderError {
-    /// They do not start as one.
+    /// They do not start with [`MAGIC`].
     Magic,
-    /// They were changed after they were written.
+    /// Their checksum does not match.
     Checksum,
-    /// A later version wrote them.
+    /// A newer version wrote them.
     Newer(u32),
-    /// They are whole, and no writer makes such a chunk.
+    /// Their checksum matches, but no writer makes such a chunk.
     Absurd,
 }
 
-/// Packs `raw` at the end of `out`.
+/// Compresses `raw` and appends it to `out`.
 pub(super) fn pack(
     compressor: &mut zstd::bulk::Compressor<'_>,
     level: i32,
@@ -157,7 +158,10 @@ pub(super) fn pack(
     out: &mut Vec<u8>,
 ) -> io::Result<Part> {
     if raw.len() > MOST_RAW_BYTES as usize {
-        return Err(io::Error::other(format!("a part of {} bytes; {MOST_RAW_BYTES} is the most", raw.len())));
+        return Err(io::Error::other(format!(
+            "a part of {} bytes; must be at most {MOST_RAW_BYTES}",
+            raw.len()
+        )));
     }
     if raw.is_empty() {
         return Ok(Part::default());
@@ -168,34 +172,34 @@ pub(super) fn pack(
     Ok(Part { packed: packed.len() as u32, raw: raw.len() as u32, crc: crc32fast::hash(&packed) })
 }
 
-/// Unpacks what [`pack`] made; says what is wrong where it is not that.
+/// Decompresses the output of [`pack`]. Returns what is wrong if it is damaged.
 pub(super) fn unpack(packed: &[u8], part: &Part) -> Result<Vec<u8>, String> {
     let crc = crc32fast::hash(packed);
     if packed.len() != part.packed as usize || crc != part.crc {
-        return Err(format!("{} bytes of checksum {crc:08x}, wanted {:08x}", packed.len(), part.crc));
+        return Err(format!("{} bytes with checksum {crc:08x}, expected {:08x}", packed.len(), part.crc));
     }
     if part.raw == 0 {
         return Ok(Vec::new());
     }
     let raw = zstd::bulk::decompress(packed, part.raw as usize).map_err(|error| error.to_string())?;
     if raw.len() != part.raw as usize {
-        return Err(format!("{} bytes unpacked, wanted {}", raw.len(), part.raw));
+        return Err(format!("{} bytes after decompression, expected {}", raw.len(), part.raw));
     }
     Ok(raw)
 }
 
-/// Packed bytes that hold the start of any part: zstd unpacks blocks of 128 KiB, and keeps those as they are that it cannot
-/// make smaller.
+/// Compressed bytes that are enough for the start of any part. zstd compresses blocks of 128 KiB and stores those that do not get
+/// smaller as they are.
 pub(super) const MOST_START_BYTES: u32 = 160 << 10;
 
-/// The first bytes of a part of which `packed` is the start; nothing where they cannot be told.
+/// The first bytes of a part, from the start of its compressed bytes; `None` if they cannot be decompressed.
 pub(super) fn unpack_start<const N: usize>(packed: &[u8]) -> Option<[u8; N]> {
     let mut start = [0; N];
     zstd::stream::read::Decoder::with_buffer(packed).ok()?.read_exact(&mut start).ok()?;
     Some(start)
 }
 
-/// A compressor whose output carries zstd's own checksum of the raw bytes.
+/// A compressor whose output contains zstd's own checksum of the raw bytes.
 pub(super) fn compressor() -> io::Result<zstd::bulk::Compressor<'static>> {
     let mut compressor = zstd::bulk::Compressor::new(0)?;
     compressor.include_checksum(true)?;

@@ -1,39 +1,39 @@
-//! Whether a take is whole.
+//! The condition of a take: whole, cut or damaged.
 
 use std::fmt;
 use std::ops::Range;
 
-/// Whether all that was recorded can be played.
+/// Whether everything that was recorded can be played.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum TakeCondition {
-    /// Finished, and nothing is known to be wrong with it.
+    /// The take is finished, and no damage is known.
     Whole,
-    /// Not finished: the recording was killed, the machine stopped, the disk was full, or the file was cut. All frames
-    /// before `frames` are there.
+    /// The take was not finished, because the program was killed, the machine stopped or the disk was full, or its file was cut
+    /// later. All frames before `frames` can be played.
     Cut {
-        /// Frames that can be played, from frame 0.
+        /// Number of frames that can be played, from frame 0.
         frames: u64,
-        /// How that is seen.
+        /// How this was detected.
         why: String,
     },
     /// Parts of the file were changed after they were written.
     Damaged {
-        /// The frames that are lost, in order; none where only parts that can be spared are damaged.
+        /// The lost frames, in order. Empty if only redundant parts are damaged.
         lost: Vec<Range<u64>>,
-        /// Whether the take was not finished either.
+        /// Whether the take is also unfinished.
         cut: bool,
-        /// What was found first.
+        /// The damage that was found first.
         why: String,
     },
 }
 
 impl TakeCondition {
-    /// Whether it is finished and nothing is known to be wrong with it.
+    /// Whether the take is finished and no damage is known.
     pub fn is_whole(&self) -> bool {
         *self == Self::Whole
     }
 
-    /// Frames that are lost though later ones are there.
+    /// Number of lost frames between frames that can be played.
     pub fn lost_frames(&self) -> u64 {
         match self {
             Self::Damaged { lost, .. } => lost.iter().map(|range| range.end - range.start).sum(),
@@ -58,7 +58,7 @@ impl fmt::Display for TakeCondition {
                             write!(f, "{comma}{} to {}", range.start, range.end - 1)?;
                         }
                         if lost.len() > 4 {
-                            write!(f, " and {} runs more", lost.len() - 4)?;
+                            write!(f, " and {} more ranges", lost.len() - 4)?;
                         }
                     }
                 }

@@ -1,4 +1,4 @@
-//! The unfinished file of a take: its name, its lock, its disk.
+//! The unfinished file of a take: its name, its lock and the disk below it.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Write};
@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 use super::TakeError;
 use crate::claim::is_still;
 
-/// What a take is written to. A file, except in tests of full disks.
+/// What a take is written to: a file, except in tests of full disks.
 pub(super) trait Disk: Write + Send {
-    /// Waits until what was written is on the disk.
+    /// Waits until everything written is on the disk.
     fn sync(&mut self) -> io::Result<()>;
 }
 
@@ -19,7 +19,7 @@ impl Disk for File {
     }
 }
 
-/// Makes the disk from the locked file.
+/// Creates the disk from the locked file.
 pub(super) type Mount = dyn Fn(File) -> Box<dyn Disk> + Send + Sync;
 
 /// The disk of every real take: the file itself.
@@ -34,11 +34,11 @@ pub(super) fn part_path(target: &Path) -> PathBuf {
     target.with_file_name(name)
 }
 
-/// Most takes of one name that were cut short and kept.
+/// Most unfinished takes of one name that are kept.
 const MOST_KEPT: u32 = 10_000;
 
-/// Creates the unfinished file, empty and locked. One that an earlier recording left behind is kept under another name:
-/// `NAME-cut1.take.part` for `NAME.take.part`.
+/// Creates the unfinished file, empty and locked. One that an earlier recording left is renamed and kept:
+/// `NAME.take.part` becomes `NAME-cut1.take.part`.
 pub(super) fn claim(target: &Path) -> Result<File, TakeError> {
     let part = part_path(target);
     if let Some(folder) = target.parent().filter(|folder| !folder.as_os_str().is_empty()) {
@@ -48,7 +48,7 @@ pub(super) fn claim(target: &Path) -> Result<File, TakeError> {
         Ok(old) => {
             lock(&old, &part)?;
             if !is_still(&old, &part) {
-                // Its writer has given it its name meanwhile, and perhaps another has begun.
+                // Its writer has finished and renamed it meanwhile, and another recording may have started.
                 return Err(TakeError::Busy { path: part });
             }
             set_aside(&old, target, &part)?;
@@ -58,7 +58,7 @@ pub(super) fn claim(target: &Path) -> Result<File, TakeError> {
     }
     let file = match OpenOptions::new().append(true).create_new(true).open(&part) {
         Ok(file) => file,
-        // Another writer was quicker between the two.
+        // Another writer created it since the check above.
         Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
             return Err(TakeError::Busy { path: part });
         }
@@ -72,13 +72,13 @@ fn lock(file: &File, part: &Path) -> Result<(), TakeError> {
     match file.try_lock() {
         Ok(()) => Ok(()),
         Err(TryLockError::WouldBlock) => Err(TakeError::Busy { path: part.to_owned() }),
-        // Some network disks know no locks; then nothing keeps two writers apart but the name.
+        // Some network file systems support no locks; only the name then keeps two writers apart.
         Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => Ok(()),
         Err(TryLockError::Error(error)) => Err(TakeError::io(part, "lock", error)),
     }
 }
 
-/// Gives the file of an earlier recording a name of its own; an empty one goes.
+/// Renames the file of an earlier recording, or removes it if it is empty.
 fn set_aside(old: &File, target: &Path, part: &Path) -> Result<(), TakeError> {
     let length = old.metadata().map_err(|error| TakeError::io(part, "read", error))?.len();
     if length == 0 {
@@ -99,17 +99,17 @@ fn set_aside(old: &File, target: &Path, part: &Path) -> Result<(), TakeError> {
                 .map_err(|error| TakeError::io(part, format!("keep it as {}", kept.display()), error));
         }
     }
-    Err(TakeError::request(part, format!("{MOST_KEPT} unfinished takes of this name are kept already")))
+    Err(TakeError::request(part, format!("there are already {MOST_KEPT} unfinished takes of this name")))
 }
 
-/// Gives the finished file its name, over a take that was there.
+/// Renames the finished file to its final name and replaces an existing take.
 pub(super) fn publish(part: &Path, target: &Path) -> io::Result<()> {
     fs::rename(part, target)?;
     sync_folder(target);
     Ok(())
 }
 
-/// Names live in the folder. Not every system lets a folder be opened; the bytes are safe anyway.
+/// Writes the folder to the disk, which contains the names. Not every system can open a folder; the data is safe without it.
 pub(super) fn sync_folder(path: &Path) {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let _ = File::open(folder).and_then(|folder| folder.sync_all());

@@ -1,4 +1,4 @@
-//! What can go wrong with a take.
+//! Errors of takes.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -6,16 +6,16 @@ use std::path::{Path, PathBuf};
 /// Why a take could not be written, opened or played.
 #[derive(Debug, thiserror::Error)]
 pub enum TakeError {
-    /// What was handed over cannot be kept in a take, whatever the disk does.
+    /// The request is invalid, such as a frame that a take cannot store.
     #[error("{}: {what}", path.display())]
     Request {
         /// The take as the user named it.
         path: PathBuf,
-        /// What was handed over, and what would be right.
+        /// What was found and what is valid.
         what: String,
     },
-    /// Another writer is working on this take.
-    #[error("{}: is being recorded already; wanted a take that no one is writing", path.display())]
+    /// Another recording is writing this take.
+    #[error("{}: another recording is writing this take", path.display())]
     Busy {
         /// The unfinished file that is locked.
         path: PathBuf,
@@ -25,44 +25,44 @@ pub enum TakeError {
     Io {
         /// The file.
         path: PathBuf,
-        /// What was being done.
+        /// The action that failed.
         action: String,
-        /// The system's reason.
+        /// The operating system's reason.
         source: io::Error,
     },
-    /// The disk refused frames: it is full, or gone. What was written before is kept.
-    #[error("{}: could not {action}: {source}; {}", path.display(), kept_words(*kept))]
+    /// Frames could not be written, because the disk is full or missing. Frames written before are kept.
+    #[error("{}: could not {action}: {source}; {}", path.display(), kept_frames(*kept))]
     Write {
         /// The unfinished file, which stays.
         path: PathBuf,
-        /// What was being done, such as `write frames 120 to 179`.
+        /// The action that failed, such as `write frames 120 to 179`.
         action: String,
-        /// Frames that are in the file and can be played, from frame 0.
+        /// Number of frames in the file that can be played, from frame 0.
         kept: u64,
-        /// The system's reason.
+        /// The operating system's reason.
         source: io::Error,
     },
-    /// The recording had already ended by an earlier error.
-    #[error("{}: the take has stopped after an earlier error; {}", path.display(), kept_words(*kept))]
+    /// An earlier error has already ended the recording.
+    #[error("{}: the take has stopped after an earlier error; {}", path.display(), kept_frames(*kept))]
     Stopped {
         /// The unfinished file, which stays.
         path: PathBuf,
-        /// Frames that are in the file, from frame 0.
+        /// Number of frames in the file, from frame 0.
         kept: u64,
     },
-    /// The file is something else.
-    #[error("{}: is no take: found {found}, wanted {wanted}", path.display())]
+    /// The file is not a take.
+    #[error("{}: is not a take: found {found}, expected {wanted}", path.display())]
     NotATake {
         /// The file.
         path: PathBuf,
-        /// What it starts with.
+        /// The first bytes of the file.
         found: String,
-        /// What a take starts with.
+        /// The first bytes of a take.
         wanted: String,
     },
-    /// The take was written by a later version of this program.
+    /// The take was written by a newer version of this program.
     #[error(
-        "{}: is a take of version {found}, and this program reads takes up to version {newest}",
+        "{}: is a take of version {found}; this program reads takes up to version {newest}",
         path.display()
     )]
     Newer {
@@ -73,48 +73,48 @@ pub enum TakeError {
         /// The newest version that can be read.
         newest: u32,
     },
-    /// The take has a start and nothing after it: the recording ended before its first second was written.
-    #[error("{}: holds no frame ({why}); wanted one frame or more", path.display())]
+    /// The take has a header but no frames: the recording ended before its first second was written.
+    #[error("{}: contains no frames ({why})", path.display())]
     Empty {
         /// The file.
         path: PathBuf,
-        /// Why it holds none.
+        /// Why it contains none.
         why: String,
     },
-    /// A place in the file is not what it should be.
-    #[error("{}: at byte {offset}: found {found}, wanted {wanted}", path.display())]
+    /// A part of the file is invalid.
+    #[error("{}: at byte {offset}: found {found}, expected {wanted}", path.display())]
     Malformed {
         /// The file.
         path: PathBuf,
-        /// Where, in bytes from the start of the file.
+        /// Position in bytes from the start of the file.
         offset: u64,
-        /// What is there.
+        /// What the file contains there.
         found: String,
-        /// What should be there.
+        /// What was expected.
         wanted: String,
     },
-    /// The frame was recorded, but its part of the file is damaged.
+    /// The frame was recorded, but the part of the file with it is damaged.
     #[error("{}: frame {frame} is lost: frames {first} to {last} are damaged: {why}", path.display())]
     Lost {
         /// The file.
         path: PathBuf,
-        /// The frame asked for.
+        /// The requested frame.
         frame: u64,
         /// First frame that is lost with it.
         first: u64,
         /// Last frame that is lost with it.
         last: u64,
-        /// What was found.
+        /// The damage that was found.
         why: String,
     },
-    /// No such frame was recorded.
+    /// The frame was not recorded.
     #[error("{}: has no frame {frame}; it has frames 0 to {}", path.display(), frames.saturating_sub(1))]
     NoSuchFrame {
         /// The file.
         path: PathBuf,
-        /// The frame asked for.
+        /// The requested frame.
         frame: u64,
-        /// Frames in the take.
+        /// Number of frames in the take.
         frames: u64,
     },
 }
@@ -151,10 +151,10 @@ impl TakeError {
     }
 }
 
-fn kept_words(kept: u64) -> String {
+fn kept_frames(kept: u64) -> String {
     match kept {
-        0 => "no frame is kept".to_owned(),
-        1 => "frame 0 is kept in it".to_owned(),
-        _ => format!("frames 0 to {} are kept in it", kept - 1),
+        0 => "no frames were kept".to_owned(),
+        1 => "frame 0 was kept".to_owned(),
+        _ => format!("frames 0 to {} were kept", kept - 1),
     }
 }

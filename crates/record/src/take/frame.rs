@@ -5,23 +5,23 @@ use lovelock_groom::{GuideFrame, Guides};
 
 use super::interpolate::mix_guides;
 
-/// One instant of a recorded simulation: all that a picture needs of it.
+/// One instant of a recorded simulation.
 ///
-/// The pose of the body follows from the clip at `clip_secs`; lights, camera, look and methods from the project at
+/// The pose of the body follows from the clip at `clip_secs`. Lights, camera, look and methods follow from the project at
 /// that frame ([`super::TakeReader::project_at`]).
 #[derive(Clone, Debug, PartialEq)]
 pub struct TakeFrame {
-    /// The guides in world space, with the time of the scene (`guides.time_secs`, which goes on rising where the clip
-    /// loops) and `guides.world_from_head`. Times and transform come back bit by bit, positions to within
+    /// The guides in world space, with the time of the scene (`guides.time_secs`, which keeps increasing when the clip
+    /// loops) and `guides.world_from_head`. Times and the transform are stored exactly, positions to within
     /// [`super::MOST_ERROR_M`].
     pub guides: GuideFrame,
-    /// The time of the clip that the body's pose was taken at, seconds.
+    /// The time of the clip for the body's pose, in seconds.
     pub clip_secs: f64,
-    /// Steps since the engine started: which step of the simulation this was.
+    /// Number of simulation steps since the engine started.
     pub wall_frame: u64,
-    /// Substeps that the simulator took for it; 0 where it only moved the hair along.
+    /// Substeps of the simulator for this frame; 0 if the hair was only moved rigidly.
     pub substeps: u32,
-    /// The motion jumped to this frame from the one before: nothing lies between the two.
+    /// Whether the motion jumped to this frame, so that nothing is interpolated between it and the frame before.
     pub jumped: bool,
 }
 
@@ -42,7 +42,7 @@ impl TakeFrame {
     }
 }
 
-/// The time of a clip between two frames; past its end it starts again.
+/// The time of a clip between two frames. After its end the clip starts again.
 fn mix_clip(a: f64, b: f64, t: f64, clip_secs: f64) -> f64 {
     if b >= a || clip_secs <= 0.0 {
         return a + (b - a) * t;

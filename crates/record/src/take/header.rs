@@ -1,4 +1,4 @@
-//! What a take says about itself: the scene that it was recorded from.
+//! The header of a take: the scene that it was recorded from.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -12,12 +12,12 @@ use super::TAKE_VERSION;
 use super::layout::Layout;
 use crate::FrameRate;
 
-/// The longest project text, bytes; a project has some kilobytes.
+/// The longest project text in bytes. A project has some kilobytes.
 pub const MOST_PROJECT_BYTES: usize = 4 << 20;
 
-/// What a take says about itself, written once at its start.
+/// The header of a take.
 ///
-/// [`TakeHeader::default`] is a start to fill in: `..TakeHeader::default()` keeps callers whole when a field is added.
+/// Use `..TakeHeader::default()` for the fields that you do not set, so that new fields do not break your code.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct TakeHeader {
@@ -25,29 +25,29 @@ pub struct TakeHeader {
     pub version: u32,
     /// The program that recorded it and its version, such as `lovelock 0.1.0`.
     pub program: String,
-    /// Frames a second of the take: frame `n` stands `n / rate` seconds after its start.
+    /// Frames per second: frame `n` is `n / rate` seconds after the start of the take.
     #[serde(with = "Rate")]
     pub frames_per_second: FrameRate,
-    /// Guide strands, 1 or more. As many as the take begins with: later frames may have others
+    /// Number of guide strands at the start of the take, 1 or more. Later frames may have another number
     /// ([`super::TakeWriter::set_layout`]).
     pub guides: u32,
-    /// Points of one guide, 2 or more, as the take begins.
+    /// Points per guide at the start of the take, 2 or more.
     pub points_per_guide: u32,
-    /// Rendered strands of the hairstyle that it begins with.
+    /// Number of rendered strands of the hairstyle at the start.
     pub strands: u32,
     /// [`hairstyle_fingerprint`] of that hairstyle.
     pub hairstyle: u64,
-    /// The project as it was at frame 0, as text; opaque here. Later states are [`super::TakeWriter::change`]'s.
+    /// The text of the project at frame 0, which this crate does not interpret. [`super::TakeWriter::change`] records later states.
     pub project: String,
     /// The files that the scene was made from.
     pub assets: Vec<TakeAsset>,
     /// The seed that the hairstyle was grown from.
     pub seed: u64,
-    /// Name of the clip that was danced; empty where the body rested.
+    /// Name of the clip; empty if the body was at rest.
     pub clip: String,
-    /// Length of that clip, seconds; 0 where the body rested.
+    /// Duration of the clip in seconds; 0 if the body was at rest.
     pub clip_secs: f64,
-    /// Time of the scene at frame 0, seconds.
+    /// Time of the scene at frame 0, in seconds.
     pub start_secs: f64,
 }
 
@@ -72,7 +72,7 @@ impl Default for TakeHeader {
 }
 
 impl TakeHeader {
-    /// The size of the frames that it begins with.
+    /// The layout of the first frames.
     pub(super) fn layout(&self) -> Result<Layout, (String, String)> {
         Layout::new(self.guides, self.points_per_guide)
     }
@@ -82,7 +82,7 @@ impl TakeHeader {
         frame as f64 * f64::from(self.frames_per_second.den) / f64::from(self.frames_per_second.num)
     }
 
-    /// What is wrong with it, as `found …, wanted …` would say it; nothing where a take can have it.
+    /// Checks the values. An error is what was found and what is valid.
     pub(super) fn check(&self) -> Result<(), (String, String)> {
         let wrong = |found: String, wanted: &str| Err((found, wanted.to_owned()));
         let FrameRate { num, den } = self.frames_per_second;
@@ -93,7 +93,7 @@ impl TakeHeader {
         if self.project.len() > MOST_PROJECT_BYTES {
             return wrong(
                 format!("a project of {} bytes", self.project.len()),
-                &format!("{MOST_PROJECT_BYTES} at most"),
+                &format!("at most {MOST_PROJECT_BYTES} bytes"),
             );
         }
         if !(self.clip_secs.is_finite() && self.clip_secs >= 0.0 && self.start_secs.is_finite()) {
@@ -106,7 +106,7 @@ impl TakeHeader {
     }
 }
 
-/// The fields of [`FrameRate`] as they are stored.
+/// The fields of [`FrameRate`] in the file.
 #[derive(Serialize, Deserialize)]
 #[serde(remote = "FrameRate")]
 struct Rate {
@@ -117,9 +117,9 @@ struct Rate {
 /// A file that a take was recorded from.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TakeAsset {
-    /// What it is to the scene: `hair`, `body` or `motion`.
+    /// Its role in the scene: `hair`, `body` or `motion`.
     pub role: String,
-    /// The file. A name that is no UTF-8 is stored as near as UTF-8 comes, and is then missing.
+    /// The file. A name that is not UTF-8 is stored with replacement characters, so that the file is not found later.
     #[serde(serialize_with = "as_text")]
     pub path: PathBuf,
     /// XXH3-64 of its bytes, seed 0.
@@ -132,34 +132,34 @@ fn as_text<S: Serializer>(path: &Path, serializer: S) -> Result<S::Ok, S::Error>
     serializer.serialize_str(&path.to_string_lossy())
 }
 
-/// How the file of a [`TakeAsset`] is found.
+/// The state of the file of a [`TakeAsset`].
 #[derive(Debug)]
 pub enum AssetState {
-    /// Byte for byte what was recorded from.
+    /// The file is the same as when the take was recorded.
     Same,
-    /// There, but another file now: its length and checksum.
+    /// The file has changed.
     Changed {
         /// Its length in bytes.
         bytes: u64,
         /// XXH3-64 of its bytes.
         checksum: u64,
     },
-    /// It cannot be read.
+    /// The file cannot be read.
     Missing(io::Error),
 }
 
 impl TakeAsset {
-    /// The file as it is now. Reads all of it, in pieces.
+    /// The asset for a file with its present contents. Reads the whole file.
     ///
     /// # Errors
-    /// Where the file cannot be read.
+    /// If the file cannot be read.
     pub fn of_file(role: impl Into<String>, path: impl Into<PathBuf>) -> io::Result<Self> {
         let path = path.into();
         let (checksum, bytes) = checksum_of(&path)?;
         Ok(Self { role: role.into(), path, checksum, bytes })
     }
 
-    /// Whether the file is still what it was.
+    /// Compares the file with its recorded length and checksum.
     pub fn state(&self) -> AssetState {
         match checksum_of(&self.path) {
             Ok((checksum, bytes)) if (checksum, bytes) == (self.checksum, self.bytes) => AssetState::Same,
@@ -187,8 +187,8 @@ fn checksum_of(path: &Path) -> io::Result<(u64, u64)> {
     }
 }
 
-/// XXH3-64 over what the guides of a take belong to: guides at rest, wisps and the number of strands. Another value
-/// says that a recorded frame cannot carry this hairstyle's strands.
+/// XXH3-64 of the guides at rest, the wisps and the number of strands of a hairstyle. If the value differs, the strands of the
+/// hairstyle cannot follow recorded guides.
 pub fn hairstyle_fingerprint(style: &Hairstyle) -> u64 {
     let mut hash = Xxh3::new();
     let mut add = |value: u64| hash.update(&value.to_le_bytes());

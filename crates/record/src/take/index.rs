@@ -1,15 +1,15 @@
-//! Where the chunks of a take are: the index at its end, and the trailer that says where the index is.
+//! The index at the end of a take, which lists its chunks, and the trailer, which locates the index.
 
 use super::bytes::Bytes;
 use super::chunk::{ChunkHeader, HEADER_BYTES};
 
-/// How a trailer starts.
+/// The first bytes of a trailer.
 pub(super) const TRAILER_MAGIC: [u8; 8] = *b"\x9ALTEND\r\n";
 
-/// Bytes of a trailer, the last of a finished take.
+/// Length of the trailer at the end of a finished take, in bytes.
 pub(super) const TRAILER_BYTES: usize = 40;
 
-/// A chunk and where it starts.
+/// A chunk with its offset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Entry {
     pub(super) offset: u64,
@@ -17,7 +17,7 @@ pub(super) struct Entry {
 }
 
 impl Entry {
-    /// First byte after the chunk, unless there is no such byte.
+    /// Offset of the first byte after the chunk; `None` on overflow.
     pub(super) fn end(&self) -> Option<u64> {
         self.offset.checked_add(HEADER_BYTES as u64)?.checked_add(self.header.body_bytes())
     }
@@ -33,7 +33,7 @@ pub(super) fn to_bytes(entries: &[Entry]) -> Vec<u8> {
     out
 }
 
-/// The entries of an index, or nothing where it contradicts itself.
+/// The entries of an index; `None` if it is invalid.
 pub(super) fn parse(raw: &[u8]) -> Option<Vec<Entry>> {
     let mut bytes = Bytes::new(raw);
     let mut entries = Vec::with_capacity(raw.len() / (8 + HEADER_BYTES));
@@ -48,9 +48,9 @@ pub(super) fn parse(raw: &[u8]) -> Option<Vec<Entry>> {
 /// The last bytes of a finished take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Trailer {
-    /// Where the last copy of the take's header starts.
+    /// Offset of the last copy of the take's header.
     pub(super) head: u64,
-    /// Where the chunk of the index starts.
+    /// Offset of the index chunk.
     pub(super) index: u64,
     pub(super) frames: u64,
     pub(super) take: u32,

@@ -11,15 +11,15 @@ use super::{MOST_CHUNK_FRAMES, TAKE_VERSION, TakeError, TakeHeader};
 #[derive(Debug)]
 pub(super) struct Map {
     pub(super) header: TakeHeader,
-    /// Bytes of the file.
+    /// Length of the file in bytes.
     pub(super) length: u64,
-    /// The chunks of frames, in order. Frames between two are lost.
+    /// The chunks of frames, in order. Frames missing between two chunks are lost.
     pub(super) entries: Vec<Entry>,
-    /// Frames of the take, with lost ones.
+    /// Number of frames of the take, including lost ones.
     pub(super) frames: u64,
-    /// Why the take counts as cut.
+    /// Why the take is regarded as cut, if it is.
     pub(super) cut: Option<String>,
-    /// Damage of the file that was found first.
+    /// The damage that was found first, if there is any.
     pub(super) damage: Option<String>,
 }
 
@@ -33,7 +33,7 @@ pub(super) enum MapError {
 }
 
 impl MapError {
-    /// As the error of the file at `path`.
+    /// Converts to an error about the file at `path`.
     pub(super) fn at(self, path: &Path) -> TakeError {
         let path = path.to_owned();
         match self {
@@ -53,7 +53,7 @@ impl From<io::Error> for MapError {
     }
 }
 
-/// Whether a chunk of frames can belong to the take.
+/// Whether a chunk can be a chunk of frames of the take.
 pub(super) fn fits(entry: &Entry, take: u32) -> bool {
     let ChunkHeader { kind, frames, changes, .. } = entry.header;
     kind == Kind::Frames

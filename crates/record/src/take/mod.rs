@@ -1,15 +1,15 @@
-//! Takes: files that hold a recorded simulation, from which pictures are made later as often as wanted.
+//! Takes: files with a recorded simulation, which can be rendered later any number of times.
 //!
-//! A take holds the guides of every frame, the project as it was and as it changed, and which files the scene was made
-//! from. [`TakeWriter`] records one while the simulation runs, [`TakeReader`] plays it. `docs/file_formats.md` has the
-//! layout byte by byte.
+//! A take contains the guides of every frame, the project and its changes, and the names of the files that the scene was made
+//! from. [`TakeWriter`] records a take while the simulation runs, and [`TakeReader`] plays it. `docs/file_formats.md` describes
+//! the layout byte by byte.
 //!
-//! - Chunks of a second or less, each readable by itself, are on the disk as soon as they are full: whatever happens to
-//!   the program or the machine, all but the last second can be played.
-//! - Positions are whole numbers of 0.05 mm about the head: no point is off by more than [`MOST_ERROR_M`].
-//! - Hair may get other guides on the way: every chunk says how many its frames have, and nothing lies between two frames
-//!   that differ in that.
-//! - Every byte is under a checksum. Damage costs its own chunk and is told.
+//! - Frames are stored in chunks of a second or less. Each chunk is written to the disk as soon as it is full and can be read
+//!   independently, so a crash costs at most the last second.
+//! - Positions are stored in head space as multiples of 0.05 mm. The error of a point is at most [`MOST_ERROR_M`].
+//! - The number of guides may change during a take. Every chunk contains the layout of its frames, and nothing is
+//!   interpolated between frames with different layouts.
+//! - Every byte is covered by a checksum. Damage is reported and affects only its own chunk.
 
 mod bytes;
 mod cache;
@@ -44,14 +44,14 @@ pub use layout::{MOST_GUIDE_POINTS, TakeLayout};
 pub use reader::TakeReader;
 pub use writer::{TakeReport, TakeWriter};
 
-/// The ending of takes, without the dot.
+/// The file extension of takes, without the dot.
 pub const TAKE_EXTENSION: &str = "take";
 
-/// Version of the format that this program writes, and the newest that it reads.
+/// Version of the format that this program writes. It is also the newest that it reads.
 pub const TAKE_VERSION: u32 = 2;
 
-/// The most that a point of a played frame is off, metres, within 50 m of the world's origin: half a step of 0.05 mm
-/// along each axis makes 0.0433 mm, and single precision adds less than 0.004 mm there.
+/// The largest error of a point of a played frame, in metres, within 50 m of the world's origin. Half a step of 0.05 mm along
+/// each axis gives 0.0433 mm, and single precision adds less than 0.004 mm there.
 pub const MOST_ERROR_M: f64 = 5e-5;
 
 /// The most frames in one chunk.

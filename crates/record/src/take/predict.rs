@@ -1,34 +1,34 @@
-//! Guessing the numbers of a chunk from those before them, so that little is left to store.
+//! Prediction of the numbers of a chunk from the numbers before them, so that only small residuals are stored.
 //!
-//! What is guessed are links: each point less the one before it on its guide; the first point is its own. A link is
-//! guessed from itself in the three frames before and from how the two links above it move in this frame and the last.
-//! How much of each is fitted to every row of points by least squares and stored; whole-number arithmetic makes reading
-//! exact on every machine.
+//! The predicted numbers are links: the difference of each point and the one before it on its guide; the first point is a link
+//! itself. A link is predicted from its values in the three frames before and from the motion of the two links above it in
+//! this frame and the last. The coefficients are fitted for every row of points by least squares and stored. Integer
+//! arithmetic makes decoding exact on every machine.
 
 use super::layout::Layout;
 
-/// What a guess is made of.
+/// Number of values that a prediction combines.
 pub(super) const TAPS: usize = 6;
 
-/// How much of each tap, in 1/4096.
+/// Weights of the taps in units of 1/4096.
 pub(super) type Coefficients = [i16; TAPS];
 
-/// Binary places of a coefficient.
+/// Fraction bits of a coefficient.
 const PLACES: u32 = 12;
 
-/// The taps before there are three frames: the link above; the link as it was, moving as the one above; and then the
-/// same going on evenly.
+/// Coefficients for the first three frames of a chunk: only the motion of the link above; the link's last value plus that
+/// motion; then the same with the link's velocity.
 const EARLY: [Coefficients; 3] =
     [[0, 0, 4096, 0, 0, 0], [4096, 0, 4096, 0, 0, 0], [8192, -4096, 4096, -4096, 0, 0]];
 
-/// Guides that the coefficients are fitted to, at least: neighbours tell the same.
+/// The least number of guides that the coefficients are fitted to. Not all are needed, because neighbours move alike.
 const FITTED: usize = 96;
 
-/// Numbers of a chunk, point after point, then frame after frame, axis after axis, guide after guide.
+/// The numbers of a chunk, ordered by point, then by frame, by axis and by guide.
 #[derive(Debug)]
 pub(super) struct Rows {
     numbers: Vec<i32>,
-    /// As many as a row is long: what stands before the first frame and above the root.
+    /// A row of zeros, used before the first frame and above the root.
     zeros: Vec<i32>,
     frames: usize,
     guides: usize,
@@ -44,7 +44,7 @@ impl Rows {
         }
     }
 
-    /// The links of frames that lie one after the other, each as [`Layout::numbers`] says.
+    /// The links of consecutive frames, each in the order of [`Layout::numbers`].
     pub(super) fn links_of(numbers: &[i32], frames: usize, layout: Layout) -> Self {
         let Layout { guides, points } = layout;
         let mut rows = Self::new(frames, layout);
@@ -63,7 +63,7 @@ impl Rows {
         rows
     }
 
-    /// Turns links back into points.
+    /// Converts links back to points.
     pub(super) fn add_up(&mut self) {
         let point = self.frames * 3 * self.guides;
         for at in point..self.numbers.len() {
@@ -71,7 +71,7 @@ impl Rows {
         }
     }
 
-    /// Bytes that they take in memory.
+    /// Bytes that the numbers take in memory.
     pub(super) fn bytes(&self) -> usize {
         (self.numbers.len() + self.zeros.len()) * size_of::<i32>()
     }
@@ -80,7 +80,7 @@ impl Rows {
         ((point * self.frames + frame) * 3 + axis) * self.guides
     }
 
-    /// One number a guide.
+    /// One number per guide.
     pub(super) fn row(&self, point: usize, frame: usize, axis: usize) -> &[i32] {
         &self.numbers[self.start(point, frame, axis)..][..self.guides]
     }
@@ -90,7 +90,7 @@ impl Rows {
         &mut self.numbers[start..][..self.guides]
     }
 
-    /// The row `up` points above and `back` frames before; zeros where there is none.
+    /// The row `up` points above and `back` frames before; zeros if there is none.
     fn near(&self, [point, frame, axis]: [usize; 3], up: usize, back: usize) -> &[i32] {
         match (point.checked_sub(up), frame.checked_sub(back)) {
             (Some(point), Some(frame)) => self.row(point, frame, axis),
@@ -98,13 +98,13 @@ impl Rows {
         }
     }
 
-    /// The rows that the taps of a row come from.
+    /// The rows from which the taps of a row are computed.
     fn taps(&self, at: [usize; 3]) -> [&[i32]; 8] {
         [(0, 1), (0, 2), (0, 3), (1, 0), (1, 1), (1, 2), (2, 0), (2, 1)]
             .map(|(up, back)| self.near(at, up, back))
     }
 
-    /// Guesses a row from rows before it: `own` are the coefficients of its point.
+    /// Predicts a row from rows before it. `own` are the coefficients of its point.
     pub(super) fn predict(
         &self,
         point: usize,
@@ -114,7 +114,7 @@ impl Rows {
         out: &mut [i32],
     ) {
         let weights = EARLY.get(frame).unwrap_or(own).map(i32::from);
-        // Slices of one length, so that the loop is one of vectors.
+        // Slices of equal length, so that the compiler vectorises the loop.
         let out = &mut out[..self.guides];
         let [a, b, c, d, e, f, g, h] = self.taps([point, frame, axis]).map(|row| &row[..out.len()]);
         for (k, guess) in out.iter_mut().enumerate() {
@@ -128,7 +128,7 @@ impl Rows {
     }
 }
 
-/// The taps, from the numbers of [`Rows::taps`].
+/// The taps, computed from the numbers of [`Rows::taps`].
 #[inline]
 fn tap_values([back1, back2, back3, up, up_back1, up_back2, upper, upper_back1]: [i32; 8]) -> [i32; TAPS] {
     [
@@ -141,7 +141,7 @@ fn tap_values([back1, back2, back3, up, up_back1, up_back2, upper, upper_back1]:
     ]
 }
 
-/// The coefficients that guess the rows of `point` best, by least squares.
+/// The coefficients that predict the rows of `point` best, by least squares.
 pub(super) fn fit(links: &Rows, point: usize) -> Coefficients {
     let mut normal = [[0.0; TAPS]; TAPS];
     let mut right = [0.0; TAPS];
@@ -168,10 +168,10 @@ pub(super) fn fit(links: &Rows, point: usize) -> Coefficients {
     })
 }
 
-/// Solves a symmetric system given by its lower half, by Cholesky's way. What no equation tells is 0.
+/// Solves a symmetric system, given by its lower half, by Cholesky decomposition. Undetermined unknowns become 0.
 fn solve(mut normal: [[f64; TAPS]; TAPS], mut right: [f64; TAPS]) -> [f64; TAPS] {
     for i in 0..TAPS {
-        // Rows at rest leave taps that are all zero, or that tell the same.
+        // Regularisation: rows at rest have taps that are all zero or linearly dependent.
         normal[i][i] += normal[i][i] * 1e-6 + 1.0;
         for j in 0..i {
             let known: f64 = (0..j).map(|k| normal[i][k] * normal[j][k]).sum();

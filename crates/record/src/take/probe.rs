@@ -1,4 +1,4 @@
-//! Reading the pieces of a take that may not be what they should be.
+//! Reads parts of a take that may be damaged.
 
 use std::io;
 
@@ -8,7 +8,7 @@ use super::index::{Entry, TRAILER_BYTES, Trailer};
 use super::map::MapError;
 use super::source::Source;
 
-/// The longest text of a header, bytes: a project of which every character is escaped, and room.
+/// The longest text of a header in bytes: a project in which every character is escaped, with some reserve.
 const MOST_HEAD_BYTES: u32 = 32 << 20;
 
 /// The header of the chunk at `offset`.
@@ -25,7 +25,7 @@ pub(super) fn header_at(
     Ok(ChunkHeader::parse(&bytes))
 }
 
-/// The header of the take in the chunk at `offset`, and the take's number; nothing where there is no sound one.
+/// The header of the take in the chunk at `offset` and the checksum that identifies the take; `None` if the chunk is damaged.
 pub(super) fn head_of(
     source: &mut dyn Source,
     offset: u64,
@@ -46,17 +46,17 @@ pub(super) fn head_of(
     let malformed =
         |found: String, wanted: &str| MapError::Malformed { offset, found, wanted: wanted.to_owned() };
     let header: TakeHeader = serde_json::from_slice(&text)
-        .map_err(|error| malformed(format!("a header that is none: {error}"), "the header of a take"))?;
+        .map_err(|error| malformed(format!("an invalid header: {error}"), "the header of a take"))?;
     header.check().map_err(|(found, wanted)| malformed(found, &wanted))?;
     Ok(Some((header, take)))
 }
 
-/// What there is instead of the header of a take.
+/// The error for a file without a valid header of a take.
 pub(super) fn no_head(source: &mut dyn Source, length: u64) -> io::Result<MapError> {
     let mut start = vec![0; length.min(MAGIC.len() as u64) as usize];
     source.read_at(0, &mut start)?;
     if start == MAGIC {
-        let found = "a header that is damaged or cut, and no whole copy of it".to_owned();
+        let found = "a damaged or incomplete header and no intact copy of it".to_owned();
         return Ok(MapError::Malformed { offset: 0, found, wanted: "the header of a take".to_owned() });
     }
     Ok(MapError::NotATake { found: start.escape_ascii().to_string() })
@@ -70,7 +70,7 @@ pub(super) fn trailer(source: &mut dyn Source, length: u64) -> io::Result<Option
     Ok(Trailer::parse(&bytes))
 }
 
-/// The data part of a chunk that lies in the file; nothing where it is damaged.
+/// The data part of a chunk; `None` if it is damaged.
 pub(super) fn data_of(source: &mut dyn Source, entry: &Entry) -> io::Result<Option<Vec<u8>>> {
     let mut packed = vec![0; entry.header.data.packed as usize];
     let offset = entry.offset + HEADER_BYTES as u64 + u64::from(entry.header.text.packed);
@@ -78,7 +78,7 @@ pub(super) fn data_of(source: &mut dyn Source, entry: &Entry) -> io::Result<Opti
     Ok(unpack(&packed, &entry.header.data).ok())
 }
 
-/// Whether both parts of a chunk that lies in the file are as they were written.
+/// Whether both parts of a chunk match their checksums.
 pub(super) fn is_sound(source: &mut dyn Source, entry: &Entry) -> io::Result<bool> {
     let mut at = entry.offset + HEADER_BYTES as u64;
     for part in [&entry.header.text, &entry.header.data] {
@@ -92,7 +92,7 @@ pub(super) fn is_sound(source: &mut dyn Source, entry: &Entry) -> io::Result<boo
     Ok(true)
 }
 
-/// Where the next chunk may start, from `from` on and before `limit`.
+/// Offset of the next possible start of a chunk between `from` and `limit`.
 pub(super) fn next_magic(source: &mut dyn Source, from: u64, limit: u64) -> io::Result<Option<u64>> {
     const PIECE: u64 = 1 << 20;
     let mut buffer = Vec::new();
@@ -107,7 +107,7 @@ pub(super) fn next_magic(source: &mut dyn Source, from: u64, limit: u64) -> io::
         if piece < PIECE {
             break;
         }
-        // Pieces overlap by a magic less one byte.
+        // Pieces overlap by one byte less than the magic, so that a magic across their border is found.
         at += piece - (MAGIC.len() as u64 - 1);
     }
     Ok(None)

@@ -1,24 +1,24 @@
-//! Guides as whole numbers of a fixed step about the head, and back.
+//! Conversion of guides to multiples of a fixed step in head space, and back.
 
 use glam::{Affine3A, DMat3, DVec3};
 use lovelock_groom::GuideFrame;
 
 use super::layout::Layout;
 
-/// Length of one step, metres. Rounding moves a point by half a step along each axis at most, 0.0433 mm in all.
+/// Length of one step in metres. Rounding moves a point by at most half a step along each axis, 0.0433 mm in all.
 pub(super) const STEP_M: f64 = 5e-5;
 
-/// The furthest that a point may be from the head, in steps: 6.7 km.
+/// The largest distance of a point from the head, in steps: 6.7 km.
 const MOST_STEPS: f64 = (1_u32 << 27) as f64;
 
-/// Writes the guides of `frame` into `out`, which holds [`Layout::numbers`].
+/// Writes the guides of `frame` into `out`, in the order of [`Layout::numbers`].
 pub(super) fn quantise(frame: &GuideFrame, layout: Layout, out: &mut [i32]) -> Result<(), String> {
     let Layout { guides, points } = layout;
     let from = &frame.guides;
     let total = guides * points;
     if from.points_per_guide != points || [&from.x, &from.y, &from.z].iter().any(|a| a.len() != total) {
         return Err(format!(
-            "{} guides of {} points, wanted {guides} of {points}",
+            "{} guides of {} points; must be {guides} of {points}",
             from.count(),
             from.points_per_guide
         ));
@@ -32,7 +32,7 @@ pub(super) fn quantise(frame: &GuideFrame, layout: Layout, out: &mut [i32]) -> R
             let world = DVec3::new(from.x[i].into(), from.y[i].into(), from.z[i].into());
             let steps = back * (world - place);
             let reach = steps.abs().element_sum();
-            // Also where it is not a number.
+            // NaN counts as the furthest.
             if reach > furthest || reach.is_nan() {
                 (furthest, at) = (reach, i);
             }
@@ -45,7 +45,7 @@ pub(super) fn quantise(frame: &GuideFrame, layout: Layout, out: &mut [i32]) -> R
     if furthest.is_nan() || furthest > MOST_STEPS {
         let (x, y, z) = (from.x[at], from.y[at], from.z[at]);
         return Err(format!(
-            "guide {}, point {} at [{x}, {y}, {z}] m; wanted a place within {:.0} m of the head",
+            "guide {}, point {} at [{x}, {y}, {z}] m; must be within {:.0} m of the head",
             at / points,
             at % points,
             MOST_STEPS * STEP_M
@@ -54,15 +54,15 @@ pub(super) fn quantise(frame: &GuideFrame, layout: Layout, out: &mut [i32]) -> R
     Ok(())
 }
 
-/// The nearest whole number, of halves the even one.
+/// The nearest integer; halves are rounded to even.
 fn nearest(value: f64) -> i32 {
-    // Doubles of this size are whole numbers, so the sum is rounded; a call of the system's library for each number
-    // would take as long as all the rest.
+    // Doubles of this size are integers, so the addition rounds. A call of the system's library for each number
+    // would take as long as everything else.
     const WHOLE: f64 = 6_755_399_441_055_744.0;
     ((value + WHOLE) - WHOLE) as i32
 }
 
-/// Puts the guides back into the world.
+/// Converts the numbers back to guides in world space.
 pub(super) fn restore(numbers: &[i32], layout: Layout, frame: &mut GuideFrame) {
     let Layout { guides, points } = layout;
     let total = guides * points;
@@ -88,17 +88,17 @@ pub(super) fn restore(numbers: &[i32], layout: Layout, frame: &mut GuideFrame) {
     }
 }
 
-/// The turn and the place of a transform that turns and moves only.
+/// Rotation and translation of a rigid transform.
 fn rigid(transform: &Affine3A) -> Result<(DMat3, DVec3), String> {
     let turn = DMat3::from_cols_array(&transform.matrix3.to_cols_array().map(f64::from));
     let place = transform.translation.as_dvec3();
     let off = turn.transpose() * turn - DMat3::IDENTITY;
     let worst = off.to_cols_array().iter().fold(0.0_f64, |worst, v| worst.max(v.abs()));
-    // A product of a few rotations in single precision is off by 1e-6.
+    // The error of a product of a few rotations in single precision is 1e-6.
     let straight = off.is_finite() && worst < 1e-3 && turn.determinant() > 0.0;
     if straight && place.is_finite() {
         Ok((turn, place))
     } else {
-        Err(format!("a head that is placed by {transform}; wanted a turn and a place"))
+        Err(format!("the transform of the head is {transform}; must be a rotation and a translation"))
     }
 }

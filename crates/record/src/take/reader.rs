@@ -1,4 +1,4 @@
-//! Playing a take.
+//! Playback of takes.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -22,51 +22,51 @@ use super::settings::Settings;
 use super::source::Source;
 use super::{TakeCondition, TakeError, TakeFrame, TakeHeader};
 
-/// Bytes of decoded chunks that are kept, unless asked for otherwise: seven seconds of a shipped hairstyle.
+/// Default bound of decoded chunks in memory, in bytes: seven seconds of a shipped hairstyle.
 const CACHE_BYTES: usize = 64 << 20;
 
-/// A take that is open for playing: finished, cut or damaged.
+/// A take that is open for playback. It may be finished, cut or damaged.
 pub struct TakeReader {
     path: PathBuf,
     source: Box<dyn Source>,
     map: Map,
     cache: Cache,
     project: Option<Playing>,
-    /// Chunks that turned out to be damaged, by their place in the map.
+    /// Chunks that were found to be damaged, by their index in the map.
     bad: BTreeMap<usize, String>,
-    /// Buffers: the numbers of a frame, and the frames that interpolation works with.
+    /// Buffers for the numbers of a frame and for the two frames of an interpolation.
     numbers: Vec<i32>,
     ends: (TakeFrame, TakeFrame),
 }
 
-/// The project as it was handed out last.
+/// The project text that was returned last.
 struct Playing {
     chunk: usize,
     settings: Settings,
     text: Arc<str>,
-    /// The frames of the chunk that it holds for.
+    /// The frames of the chunk for which it is valid.
     frames: Range<u32>,
 }
 
 impl TakeReader {
-    /// Opens the take at `path`, finished or not (`NAME.take.part`). Reads its ends alone where it is whole; looks
-    /// through it where it is not.
+    /// Opens the take at `path`, finished or not (`NAME.take.part`). Reads only the start and the end of a finished take,
+    /// and scans an unfinished one.
     ///
     /// # Errors
-    /// [`TakeError::NotATake`], [`TakeError::Newer`], [`TakeError::Empty`] and [`TakeError::Malformed`] by what the file
-    /// holds; [`TakeError::Io`] where it cannot be read.
+    /// [`TakeError::NotATake`], [`TakeError::Newer`], [`TakeError::Empty`] and [`TakeError::Malformed`], depending on the
+    /// contents; [`TakeError::Io`] if the file cannot be read.
     pub fn open(path: &Path) -> Result<Self, TakeError> {
         let file = File::open(path).map_err(|error| {
             let part = part_path(path);
             if error.kind() == io::ErrorKind::NotFound && part.exists() {
-                let what = format!("is not there, but {} is, which was not finished", part.display());
+                let what = format!("does not exist, but the unfinished take {} does", part.display());
                 return TakeError::request(path, what);
             }
             TakeError::io(path, "open", error)
         })?;
         let data = file.metadata().map_err(|error| TakeError::io(path, "read", error))?;
         if data.is_dir() {
-            return Err(TakeError::request(path, "is a folder; wanted a take"));
+            return Err(TakeError::request(path, "is a folder; must be a take"));
         }
         Self::open_source(path, Box::new(file), data.len())
     }
@@ -93,40 +93,39 @@ impl TakeReader {
         })
     }
 
-    /// The file.
+    /// Path of the file.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// What the take says about itself.
+    /// Header of the take.
     pub fn header(&self) -> &TakeHeader {
         &self.map.header
     }
 
-    /// Frames in the take, with those that are lost; at least 1.
+    /// Number of frames, including lost ones; at least 1.
     pub fn frames(&self) -> u64 {
         self.map.frames
     }
 
-    /// Its length: frames by frames a second, seconds.
+    /// Duration in seconds: the number of frames divided by the frame rate.
     pub fn duration_secs(&self) -> f64 {
         self.header().secs_of(self.frames())
     }
 
-    /// Bounds the memory for decoded frames, bytes (64 MiB at first). The chunk that is played is kept whatever it
-    /// takes.
+    /// Bounds the memory for decoded frames in bytes (default 64 MiB). The chunk that is being played is always kept.
     pub fn set_cache_bytes(&mut self, bytes: usize) {
         self.cache.set_bound(bytes);
     }
 
-    /// Bytes of decoded frames that are kept now.
+    /// Bytes of decoded frames in memory.
     #[cfg(test)]
     pub(super) fn cached_bytes(&self) -> usize {
         self.cache.bytes()
     }
 
-    /// What is known to be wrong with the take: what opening saw, and what frames that were played since have shown.
-    /// [`TakeReader::verify`] looks at all of it.
+    /// The damage that is known so far, from opening the take and from the frames played since.
+    /// [`TakeReader::verify`] checks the whole file.
     pub fn condition(&self) -> TakeCondition {
         let lost = self.lost();
         let why = self.map.damage.as_ref().or_else(|| self.bad.values().next());
@@ -146,7 +145,7 @@ impl TakeReader {
     /// Reads the whole file and checks every checksum.
     ///
     /// # Errors
-    /// [`TakeError::Io`] where the disk cannot read it.
+    /// [`TakeError::Io`] if the file cannot be read.
     pub fn verify(&mut self) -> Result<TakeCondition, TakeError> {
         for chunk in 0..self.map.entries.len() {
             let entry = self.map.entries[chunk];
@@ -154,7 +153,7 @@ impl TakeReader {
                 Ok(true) => continue,
                 Ok(false) => format!("the chunk at byte {} was changed", entry.offset),
                 Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => {
-                    format!("the file no longer reaches the chunk at byte {}", entry.offset)
+                    format!("the file now ends before the end of the chunk at byte {}", entry.offset)
                 }
                 Err(error) => return Err(TakeError::io(&self.path, "read", error)),
             };
@@ -170,15 +169,15 @@ impl TakeReader {
     /// Frame `frame`, counted from 0.
     ///
     /// # Errors
-    /// [`TakeError::NoSuchFrame`] past the end; [`TakeError::Lost`] where it is damaged, with the frames that are lost
-    /// with it; [`TakeError::Io`] where the disk cannot read it.
+    /// [`TakeError::NoSuchFrame`] after the end; [`TakeError::Lost`] if it is damaged, with the range of lost frames;
+    /// [`TakeError::Io`] if the file cannot be read.
     pub fn frame(&mut self, frame: u64) -> Result<TakeFrame, TakeError> {
         let mut out = TakeFrame::default();
         self.frame_into(frame, &mut out)?;
         Ok(out)
     }
 
-    /// As [`TakeReader::frame`], without allocating where `out` already fits. After an error `out` is as before.
+    /// As [`TakeReader::frame`], but reuses the memory of `out`. After an error `out` is unchanged.
     ///
     /// # Errors
     /// As [`TakeReader::frame`].
@@ -197,20 +196,19 @@ impl TakeReader {
         Ok(())
     }
 
-    /// The instant `secs` after the start of the take, clamped to it, between the two frames beside it: the head turns
-    /// and moves evenly, points move evenly about the head, and links keep their lengths. Where the motion jumped, or
-    /// the guides are others, it is the nearer of the two; where one of the two is lost, it is the other. Returns the frame
-    /// whose project and whose guides it has.
+    /// The instant `secs` after the start of the take, clamped to its duration and interpolated between the two frames beside it
+    /// by [`TakeFrame::set_between`]. If one of the two is lost, it is the other one. Returns the number of the frame whose
+    /// project and guides apply.
     ///
     /// # Errors
-    /// As [`TakeReader::frame`] where both are lost.
+    /// As [`TakeReader::frame`] if both frames are lost.
     pub fn frame_at(&mut self, secs: f64, out: &mut TakeFrame) -> Result<u64, TakeError> {
         let rate = self.header().frames_per_second.as_f64();
         let last = self.frames() - 1;
         let place = if secs.is_finite() { (secs * rate).clamp(0.0, last as f64) } else { 0.0 };
         let (before, t) = (place.floor(), place - place.floor());
         let before = before as u64;
-        // A thousandth of a frame is less than what a position is stored to.
+        // The motion in a thousandth of a frame is below the precision of stored positions.
         if t < 1e-3 || before >= last {
             return self.frame_into(before, out).map(|()| before);
         }
@@ -237,14 +235,14 @@ impl TakeReader {
         result
     }
 
-    /// The nearest frame that is not known to be lost, for playing over damage; the earlier of two.
+    /// The nearest frame that is not known to be lost; the earlier one of two at equal distance.
     pub fn nearest(&self, frame: u64) -> Option<u64> {
         let good = self.map.entries.iter().enumerate().filter(|(chunk, _)| !self.bad.contains_key(chunk));
         good.map(|(_, entry)| frame.clamp(entry.header.first, entry.header.end() - 1))
             .min_by_key(|&near| (near.abs_diff(frame), near))
     }
 
-    /// The project's text at frame `frame`. While it stays the same, so does the `Arc`.
+    /// The project's text at frame `frame`. The same `Arc` is returned while the text does not change.
     ///
     /// # Errors
     /// As [`TakeReader::frame`].
@@ -271,7 +269,7 @@ impl TakeReader {
         Ok(text)
     }
 
-    /// The chunk that holds a frame, and which of its frames it is.
+    /// The chunk that contains a frame, and the frame's index in it.
     fn find(&self, frame: u64) -> Result<(usize, u32), TakeError> {
         if frame >= self.frames() {
             return Err(TakeError::NoSuchFrame { path: self.path.clone(), frame, frames: self.frames() });
@@ -295,7 +293,7 @@ impl TakeReader {
         TakeError::Lost { path: self.path.clone(), frame, first: lost.start, last: lost.end - 1, why }
     }
 
-    /// Remembers that a chunk is damaged.
+    /// Marks a chunk as damaged and returns the error for a frame in it.
     fn damaged(&mut self, chunk: usize, frame: u64, why: &str) -> TakeError {
         let Entry { offset, header } = self.map.entries[chunk];
         let why = format!("the chunk at byte {offset} was changed: {why}");
@@ -303,7 +301,7 @@ impl TakeReader {
         self.lost_error(frame, header.first..header.end(), why)
     }
 
-    /// Every run of lost frames.
+    /// All ranges of lost frames.
     fn lost(&self) -> Vec<Range<u64>> {
         let mut lost: Vec<Range<u64>> = Vec::new();
         let mut add = |range: Range<u64>| match lost.last_mut() {
@@ -323,7 +321,7 @@ impl TakeReader {
         lost
     }
 
-    /// The frames of a chunk, from the cache or the file. `frame` is the one that is asked for.
+    /// The frames of a chunk, from the cache or the file. `frame` is the requested one, for error messages.
     fn decoded(&mut self, chunk: usize, frame: u64) -> Result<Arc<Decoded>, TakeError> {
         if let Some(decoded) = self.cache.get(chunk) {
             return Ok(decoded);
@@ -338,14 +336,14 @@ impl TakeReader {
         Ok(decoded)
     }
 
-    /// The layout of the frames of a chunk that does not say it itself.
+    /// The layout of a chunk of version 1, which does not contain its layout.
     fn known_layout(&self, chunk: usize) -> Option<Layout> {
         let version = self.map.entries[chunk].header.version;
         if version == 1 { self.map.header.layout().ok() } else { None }
     }
 
-    /// The layout that a chunk says, whose parts start at `offset`; nothing where it is damaged.
-    fn said_layout(&mut self, offset: u64, header: &ChunkHeader) -> Result<Option<Layout>, TakeError> {
+    /// The layout in a chunk whose parts start at `offset`; `None` if it is damaged.
+    fn stored_layout(&mut self, offset: u64, header: &ChunkHeader) -> Result<Option<Layout>, TakeError> {
         let mut packed = vec![0; header.data.packed.min(MOST_START_BYTES) as usize];
         match self.source.read_at(offset + u64::from(header.text.packed), &mut packed) {
             Ok(()) => {}
@@ -356,18 +354,17 @@ impl TakeReader {
         Ok(start.and_then(|start| Layout::read(&mut Bytes::new(&start)).ok()))
     }
 
-    /// How many guides of how many points the frames have, in order: an entry wherever they change. What is lost is passed
-    /// over. Reads the start of every chunk.
+    /// The layouts of the frames, in order, with one entry per change. Lost chunks are skipped. Reads the start of every chunk.
     ///
     /// # Errors
-    /// [`TakeError::Io`] where the disk cannot read it.
+    /// [`TakeError::Io`] if the file cannot be read.
     pub fn layouts(&mut self) -> Result<Vec<TakeLayout>, TakeError> {
         let mut layouts: Vec<TakeLayout> = Vec::new();
         for chunk in 0..self.map.entries.len() {
             let Entry { offset, header } = self.map.entries[chunk];
             let layout = match self.known_layout(chunk) {
                 Some(layout) => Some(layout),
-                None => self.said_layout(offset + HEADER_BYTES as u64, &header)?,
+                None => self.stored_layout(offset + HEADER_BYTES as u64, &header)?,
             };
             let Some(layout) = layout else { continue };
             let [guides, points_per_guide] = [layout.guides, layout.points].map(|n| n as u32);
@@ -379,13 +376,13 @@ impl TakeReader {
         Ok(layouts)
     }
 
-    /// A part of a chunk, unpacked.
+    /// A part of a chunk, decompressed.
     fn part(&mut self, chunk: usize, frame: u64, offset: u64, part: &Part) -> Result<Vec<u8>, TakeError> {
         let mut packed = vec![0; part.packed as usize];
         match self.source.read_at(offset, &mut packed) {
             Ok(()) => {}
             Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => {
-                return Err(self.damaged(chunk, frame, "the file no longer reaches it"));
+                return Err(self.damaged(chunk, frame, "the file now ends before it"));
             }
             Err(error) => return Err(TakeError::io(&self.path, format!("read frame {frame}"), error)),
         }

@@ -1,5 +1,5 @@
-//! Finding the chunks of a take that was not finished, or whose index is damaged: from its start, past damage to the
-//! next chunk that is sound.
+//! Finds the chunks of a take that was not finished or whose index is damaged, by scanning it from the start. After damage
+//! it continues at the next intact chunk.
 
 use super::chunk::{HEADER_BYTES, HeaderError, Kind};
 use super::index::{Entry, TRAILER_BYTES, Trailer};
@@ -8,12 +8,12 @@ use super::probe::{head_of, header_at, is_sound, next_magic, no_head, trailer};
 use super::source::Source;
 use super::{MOST_CHUNK_FRAMES, TakeHeader};
 
-/// The header of a take that was not finished lies within so many bytes of its start, even where its first copy is
-/// damaged; other files need not be looked through to their ends.
+/// Bytes from the start of an unfinished take within which there is a copy of its header, even if the first copy is
+/// damaged. Other files are not scanned any further.
 const HEAD_WITHIN: u64 = 16 << 20;
 
-/// Chunks at the end of a take that was not finished whose bytes are checked at once: each was waited for before the
-/// next was written, so only the last can have been under way.
+/// Number of chunks at the end of an unfinished take that are checked on opening. A chunk is on the disk before the next one
+/// is written, so only the last can be incomplete.
 const LAST_CHUNKS: usize = 2;
 
 pub(super) fn by_scan(source: &mut dyn Source, length: u64) -> Result<Map, MapError> {
@@ -40,7 +40,7 @@ pub(super) fn by_scan(source: &mut dyn Source, length: u64) -> Result<Map, MapEr
     scan.into_map(source, header, take, trailer.filter(|trailer| trailer.take == take), length)
 }
 
-/// What was found so far.
+/// The result of the scan so far.
 struct Scan {
     head: Option<(TakeHeader, u32)>,
     entries: Vec<Entry>,
@@ -49,7 +49,7 @@ struct Scan {
 }
 
 impl Scan {
-    /// Takes a chunk; says where the next one starts.
+    /// Adds a chunk. Returns the offset of the next one.
     fn add(&mut self, source: &mut dyn Source, entry: Entry, end: u64) -> Result<u64, MapError> {
         let Entry { offset, header } = entry;
         let Some(after) = entry.end().filter(|&after| after <= end) else {
@@ -82,12 +82,12 @@ impl Scan {
         let what = match error {
             HeaderError::Checksum => "a chunk whose header is damaged",
             HeaderError::Newer(_) | HeaderError::Absurd => "a chunk that no writer makes",
-            HeaderError::Magic => "bytes that are no chunk",
+            HeaderError::Magic => "bytes that are not a chunk",
         };
         if next.is_some() {
             self.damage.get_or_insert(format!("{what} at byte {at}"));
         } else {
-            self.cut.get_or_insert(format!("the last {} bytes are no whole chunk", end - at));
+            self.cut.get_or_insert(format!("the last {} bytes are not a complete chunk", end - at));
         }
     }
 
@@ -107,7 +107,7 @@ impl Scan {
             if fits(&entry, take) && gap.is_some_and(|gap| gap <= frames_in(length)) {
                 entries.push(entry);
             } else {
-                damage.get_or_insert(format!("a chunk that is not this take's at byte {}", entry.offset));
+                damage.get_or_insert(format!("a chunk of another take at byte {}", entry.offset));
             }
         }
         let mut frames = entries.last().map_or(0, |last| last.header.end());
@@ -125,7 +125,7 @@ impl Scan {
                     break;
                 }
                 let (first, last) = (last.header.first, last_frame(last));
-                cut = Some(format!("frames {first} to {last} were not written whole"));
+                cut = Some(format!("frames {first} to {last} were not written completely"));
                 entries.pop();
             }
             frames = entries.last().map_or(0, |last| last.header.end());
@@ -134,7 +134,7 @@ impl Scan {
     }
 }
 
-/// The most frames that so many bytes can have held: no more are believed to be lost.
+/// The most frames that fit into `bytes` bytes. No more are regarded as lost.
 fn frames_in(bytes: u64) -> u64 {
     (bytes / HEADER_BYTES as u64).saturating_mul(u64::from(MOST_CHUNK_FRAMES))
 }

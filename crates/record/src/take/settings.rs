@@ -1,14 +1,14 @@
-//! The project's text at the start of a chunk and how it changes in it.
+//! The project's text at the start of a chunk and its changes within the chunk.
 //!
-//! A change is the run of bytes between what it has in common with the text before it, at its start and its end: a
-//! slider that is dragged costs some bytes a frame.
+//! A change stores only the bytes between the common start and the common end of the old and the new text, so dragging a
+//! slider takes some bytes per frame.
 
 use std::ops::Range;
 
 use super::MOST_PROJECT_BYTES;
 use super::bytes::Bytes;
 
-/// A change: from `frame` of the chunk on, all but `prefix` bytes at the start and `suffix` at the end is `middle`.
+/// A change. From `frame` of the chunk on, `middle` replaces everything between the first `prefix` and the last `suffix` bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Edit {
     frame: u32,
@@ -17,7 +17,7 @@ struct Edit {
     middle: Vec<u8>,
 }
 
-/// The texts of one chunk, as they are written.
+/// The texts of a chunk that is being written.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SettingsLog {
     start: String,
@@ -32,7 +32,7 @@ impl SettingsLog {
         Self { now: project.clone(), bytes: project.len(), start: project, edits: Vec::new() }
     }
 
-    /// The project is `project` from `frame` of the chunk on.
+    /// Records that the text is `project` from `frame` of the chunk on.
     pub(super) fn change(&mut self, frame: u32, project: &str) {
         if project == self.now {
             return;
@@ -41,7 +41,7 @@ impl SettingsLog {
             *self = Self::new(project.to_owned());
             return;
         }
-        // A second change at one frame takes the place of the first.
+        // A second change at the same frame replaces the first.
         if self.edits.last().is_some_and(|edit| edit.frame == frame) {
             let last = self.edits.pop().map_or(0, |edit| edit.middle.len());
             self.bytes -= last;
@@ -58,17 +58,17 @@ impl SettingsLog {
         project.clone_into(&mut self.now);
     }
 
-    /// The project now.
+    /// The present text.
     pub(super) fn now(&self) -> &str {
         &self.now
     }
 
-    /// Changes so far.
+    /// Number of changes so far.
     pub(super) fn changes(&self) -> u32 {
         self.edits.len() as u32
     }
 
-    /// Length of what [`SettingsLog::to_bytes`] makes, nearly.
+    /// Approximate length of [`SettingsLog::to_bytes`].
     pub(super) fn bytes(&self) -> usize {
         self.bytes
     }
@@ -88,7 +88,7 @@ impl SettingsLog {
     }
 }
 
-/// The texts of one chunk, as they are read.
+/// The texts of a chunk that has been read.
 #[derive(Clone, Debug)]
 pub(super) struct Settings {
     start: String,
@@ -96,7 +96,7 @@ pub(super) struct Settings {
 }
 
 impl Settings {
-    /// The texts in the text part `raw` of a chunk of `changes` changes.
+    /// Reads the text part `raw` of a chunk with `changes` changes.
     pub(super) fn parse(raw: &[u8], changes: u32) -> Result<Self, String> {
         let mut bytes = Bytes::new(raw);
         let short = || "a text part that ends too early".to_owned();
@@ -119,7 +119,7 @@ impl Settings {
         Ok(Self { start, edits })
     }
 
-    /// The project at `frame` of the chunk, and the frames of the chunk for which it stays so.
+    /// The text at `frame` of the chunk, and the range of frames for which it stays the same.
     pub(super) fn at(&self, frame: u32) -> Result<(String, Range<u32>), String> {
         let past = self.edits.partition_point(|edit| edit.frame <= frame);
         let from = past.checked_sub(1).map_or(0, |last| self.edits[last].frame);
@@ -128,14 +128,15 @@ impl Settings {
     }
 }
 
-const NO_UTF8: &str = "a project that is no UTF-8";
+const NO_UTF8: &str = "a project that is not UTF-8";
 
 fn apply_all(start: &str, edits: &[Edit]) -> Result<String, String> {
     let mut text = start.as_bytes().to_vec();
     for edit in edits {
         let (prefix, suffix) = (edit.prefix as usize, edit.suffix as usize);
         let kept = prefix.checked_add(suffix).filter(|&kept| kept <= text.len());
-        let end = kept.map(|_| text.len() - suffix).ok_or("a change that keeps more than there is")?;
+        let end =
+            kept.map(|_| text.len() - suffix).ok_or("a change that keeps more bytes than the text has")?;
         text.splice(prefix..end, edit.middle.iter().copied());
         if text.len() > MOST_PROJECT_BYTES {
             return Err(format!("a project of {} bytes", text.len()));
@@ -172,8 +173,8 @@ mod tests {
         }
 
         #[test]
-        fn bytes_that_are_no_texts_are_refused_or_read(raw in prop::collection::vec(any::<u8>(), 0..200)) {
-            // No panic, whatever they are.
+        fn random_bytes_are_refused_or_read(raw in prop::collection::vec(any::<u8>(), 0..200)) {
+            // No bytes may cause a panic.
             if let Ok(settings) = Settings::parse(&raw, 2) {
                 let _ = settings.at(1);
             }
@@ -181,16 +182,16 @@ mod tests {
     }
 
     #[test]
-    fn a_change_keeps_no_more_than_there_is() {
+    fn a_change_that_keeps_more_than_the_text_is_refused() {
         let mut log = SettingsLog::new("start".to_owned());
         log.change(1, "stare");
         let good = log.to_bytes();
         assert_eq!(Settings::parse(&good, 1).unwrap().at(1).unwrap().0, "stare");
-        // The prefix, after the length, the text and the frame.
+        // The prefix follows the length, the text and the frame.
         let mut bad = good.clone();
         bad[4 + 5 + 4] = 6;
         assert!(Settings::parse(&bad, 1).unwrap().at(1).is_err());
-        assert!(Settings::parse(&good, 0).is_err(), "a change that the header does not know");
+        assert!(Settings::parse(&good, 0).is_err(), "a change that is not in the header");
         assert!(Settings::parse(&good, 2).is_err(), "a change that is missing");
     }
 }

@@ -1,9 +1,9 @@
-//! What a take is read from.
+//! The source that a take is read from.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 
-/// Bytes at any place. A file, except in tests that count.
+/// Random access to bytes. A file, except in tests that count reads.
 pub(super) trait Source: Send {
     /// Fills `buffer` from `offset` on.
     fn read_at(&mut self, offset: u64, buffer: &mut [u8]) -> io::Result<()>;

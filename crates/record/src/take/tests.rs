@@ -1,4 +1,4 @@
-//! Takes on disks that fail, and what opening one reads.
+//! Takes on failing disks, and what is read when a take is opened.
 
 use std::fs::{self, File};
 use std::io::{self, Write};
@@ -32,7 +32,7 @@ fn frame(n: u64) -> TakeFrame {
     }
 }
 
-/// A disk with room for so many bytes, which does not wait.
+/// A disk with room for a given number of bytes, whose `sync` does not wait.
 struct SmallDisk {
     file: File,
     room: u64,
@@ -63,7 +63,7 @@ fn create(path: &Path, room: u64) -> Result<TakeWriter, TakeError> {
     TakeWriter::create_on(path, header(), &move |file| Box::new(SmallDisk { file, room }))
 }
 
-/// Records so many frames; says how many bytes they took.
+/// Records `frames` frames. Returns their size in bytes.
 fn record(path: &Path, frames: u64) -> u64 {
     let mut writer = create(path, u64::MAX).unwrap();
     (0..frames).for_each(|n| writer.push(&frame(n)).unwrap());
@@ -91,7 +91,7 @@ fn a_full_disk_keeps_what_was_written_and_says_so() {
         let text = error.to_string();
         assert!(text.contains("dance.take.part: could not write ") && !error.is_request(), "{text}");
         if kept > 0 {
-            assert!(text.contains(&format!("; frames 0 to {} are kept in it", kept - 1)), "{text}");
+            assert!(text.contains(&format!("; frames 0 to {} were kept", kept - 1)), "{text}");
             let mut take = TakeReader::open(&part).unwrap();
             assert!(
                 matches!(take.condition(), TakeCondition::Cut { frames, .. } if frames == kept),
@@ -104,10 +104,10 @@ fn a_full_disk_keeps_what_was_written_and_says_so() {
             assert!(matches!(TakeReader::open(&part), Err(TakeError::Empty { .. })), "{room}");
             fs::remove_file(&part).unwrap();
         }
-        assert_eq!(TakeReader::open(&path).unwrap().frames(), 7, "the take that was there is as it was");
+        assert_eq!(TakeReader::open(&path).unwrap().frames(), 7, "the existing take is unchanged");
     }
-    assert_eq!(kept_least, 30, "a single chunk is kept, too");
-    // The control: with room for all of it, nothing fails.
+    assert_eq!(kept_least, 30, "a single chunk is kept too");
+    // Negative control: with enough room nothing fails.
     let mut writer = create(&path, bytes).unwrap();
     (0..300).for_each(|n| writer.push(&frame(n)).unwrap());
     assert_eq!(writer.finish().unwrap().frames, 300);
@@ -115,7 +115,7 @@ fn a_full_disk_keeps_what_was_written_and_says_so() {
 }
 
 #[test]
-fn a_take_that_has_stopped_says_so_again() {
+fn a_stopped_take_returns_the_error_again() {
     let folder = tempfile::tempdir().unwrap();
     let mut writer = create(&folder.path().join("dance.take"), 2000).unwrap();
     let failed = (0..100_000).find_map(|n| writer.push(&frame(n)).err()).unwrap();
@@ -138,7 +138,7 @@ fn the_device_that_is_always_full_is_reported() {
     };
     let error = TakeWriter::create_on(&path, header(), &full).err().unwrap();
     assert!(error.to_string().contains("No space left"), "{error}");
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "nothing was recorded, and nothing is left");
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "nothing was recorded, so nothing is left");
 }
 
 /// A file in memory.
@@ -209,7 +209,7 @@ fn every_changed_byte_is_found_and_no_frame_is_wrong() {
     assert!(open(&bytes).unwrap().verify().unwrap().is_whole(), "the control");
 }
 
-/// Counts what is read of a file.
+/// Counts the reads of a file.
 struct Counting {
     file: File,
     reads: Arc<AtomicU64>,
@@ -239,16 +239,16 @@ fn ten_minutes_open_without_reading_a_frame() {
     let (mut take, read) = open(length);
     assert_eq!((take.frames(), take.condition()), (36_000, TakeCondition::Whole));
     println!("opened by {} reads of {} bytes", read().0, read().1);
-    // Start, trailer, header, index: 1200 chunks of 72 bytes before packing.
+    // Start, trailer, header and index, which has 1200 entries of 72 bytes before compression.
     assert!(read().0 <= 8 && read().1 < 1200 * 72, "{:?}", read());
-    // Any frame is one read more.
+    // Each frame takes one more read.
     let before = read().0;
     assert_eq!(take.frame(20_000).unwrap().wall_frame, 20_000);
     assert_eq!(read().0, before + 1);
     assert_eq!(take.frame(19_999).unwrap().wall_frame, 19_999);
     assert_eq!(take.frame(19_990).unwrap().wall_frame, 19_990);
-    assert!(read().0 <= before + 2, "a chunk that is kept is not read again");
-    // The control: without its end every chunk is looked at.
+    assert!(read().0 <= before + 2, "a cached chunk is not read again");
+    // Negative control: without its end every chunk is read.
     let (take, read) = open(length - 1);
     assert!(matches!(take.condition(), TakeCondition::Cut { frames: 36_000, .. }));
     assert!(read().0 > 1200);
@@ -266,14 +266,14 @@ fn a_long_take_does_not_grow_memory_as_it_plays() {
         take.frame(n).unwrap();
         assert!(take.cached_bytes() <= 5 * chunk, "frame {n}");
     }
-    assert!(take.cached_bytes() > 3 * chunk, "the control: it is used");
+    assert!(take.cached_bytes() > 3 * chunk, "negative control: the cache is used");
 }
 
 #[test]
 fn ten_minutes_of_a_dragged_slider_stay_small() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("dragged.take");
-    // As long as a project is, with a value in its middle that changes at every frame.
+    // A text as long as a project, with a value in its middle that changes at every frame.
     let line = |i: u64| format!("    field_{i}: {},\n", i * 37 % 1000);
     let (head, tail): (String, String) = ((0..200).map(line).collect(), (200..400).map(line).collect());
     let text = |n: u64| format!("(\n{head}    dragged: {},\n{tail})", (n as f64 * 0.37).sin());
@@ -292,10 +292,10 @@ fn ten_minutes_of_a_dragged_slider_stay_small() {
         assert_eq!(*take.project_at(n).unwrap(), *text(n), "{n}");
     }
     println!(
-        "{} bytes a project, {} a frame that changes it",
+        "{} bytes per project, {} per frame that changes it",
         text(1).len(),
         (dragged - still) as f64 / 36e3
     );
-    // Measured: 15 bytes a change, of which the digits alone are 8.
+    // Measured: 15 bytes per change, of which the digits take 8.
     assert!(dragged - still < 36_000 * 20, "{still} {dragged}");
 }

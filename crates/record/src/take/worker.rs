@@ -1,4 +1,4 @@
-//! The thread that packs chunks and writes them.
+//! The thread that compresses chunks and writes them.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -14,14 +14,14 @@ use super::layout::Layout;
 use super::settings::SettingsLog;
 use super::{TAKE_VERSION, TakeError};
 
-/// How hard zstd tries with text.
+/// Compression level of zstd for text.
 const TEXT_LEVEL: i32 = 9;
 
-/// How hard zstd tries with frames. Residuals are noise, which higher levels waste matches on: level 3 makes them 5 %
-/// longer.
+/// Compression level of zstd for frames. Residuals are noise, in which higher levels search matches in vain: level 3 makes them
+/// 5 % longer.
 const DATA_LEVEL: i32 = 1;
 
-/// The frames of one chunk, as the recording hands them over.
+/// The frames of one chunk, before they are encoded.
 pub(super) struct Load {
     pub(super) layout: Layout,
     pub(super) metas: Vec<Meta>,
@@ -29,17 +29,17 @@ pub(super) struct Load {
     pub(super) settings: SettingsLog,
 }
 
-/// What the worker is told.
+/// A message to the worker.
 pub(super) enum Job {
     /// The next chunk.
     Chunk(Load),
-    /// That was all. A channel that closes without it leaves the unfinished file.
+    /// There are no more chunks. If the channel closes without this message, the unfinished file stays.
     Finish,
-    /// Nothing of it is wanted.
+    /// Remove the unfinished file.
     Discard,
 }
 
-/// The unfinished file and what was written to it.
+/// The unfinished file and what has been written to it.
 pub(super) struct TakeFile {
     target: PathBuf,
     part: PathBuf,
@@ -49,12 +49,12 @@ pub(super) struct TakeFile {
     take: u32,
     position: u64,
     entries: Vec<Entry>,
-    /// Frames on the disk, for whoever reports what is kept.
+    /// Number of frames on the disk, shared with the writer.
     kept: Arc<AtomicU64>,
 }
 
 impl TakeFile {
-    /// Writes the header, twice, and waits for the disk.
+    /// Writes two copies of the header and waits for the disk.
     pub(super) fn start(
         target: &Path,
         part: &Path,
@@ -82,14 +82,14 @@ impl TakeFile {
         Ok(file)
     }
 
-    /// Takes jobs until told to finish (its length in bytes), until the channel closes (nothing), or until something
-    /// fails.
+    /// Works until [`Job::Finish`] (returns the length of the file in bytes), until the channel closes or [`Job::Discard`]
+    /// (returns `None`), or until an error.
     pub(super) fn run(mut self, jobs: &Receiver<Job>) -> Result<Option<u64>, TakeError> {
         while let Ok(job) = jobs.recv() {
             match job {
                 Job::Chunk(load) => self.add(&load)?,
                 Job::Finish => return self.finish().map(Some),
-                // While the file is locked, so that it is no one else's.
+                // Removed while the file is locked, so that it cannot belong to another recording.
                 Job::Discard => {
                     return fs::remove_file(&self.part)
                         .map(|()| None)
@@ -121,7 +121,7 @@ impl TakeFile {
         Ok(())
     }
 
-    /// Writes the header once more, the index and the trailer, and gives the file its name.
+    /// Writes another copy of the header, the index and the trailer, and renames the file to its final name.
     fn finish(mut self) -> Result<u64, TakeError> {
         let write = |file: &mut Self| {
             let mut bytes = file.head_chunk()?;

@@ -1,4 +1,4 @@
-//! Recording a take.
+//! Recording of takes.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -15,15 +15,15 @@ use super::settings::SettingsLog;
 use super::worker::{Job, Load, TakeFile};
 use super::{MOST_PROJECT_BYTES, TAKE_VERSION, TakeError, TakeFrame, TakeHeader};
 
-/// Frames in a chunk, where they last a second or less: longer chunks are 4 % smaller, and take twice as long to read
-/// where one of their frames is wanted.
+/// Frames per chunk, if they last a second or less. Chunks twice as long are 4 % smaller, but take twice as long to read
+/// for a single frame.
 const CHUNK_FRAMES: usize = 30;
 
-/// Chunks that may wait for the disk, so that it may pause for two seconds before [`TakeWriter::push`] waits.
+/// Chunks in the queue. The disk may pause for two seconds before [`TakeWriter::push`] waits.
 const QUEUE: usize = 4;
 
-/// Bytes of frames and of changes after which a chunk ends early, so that a long project or a very fine hairstyle does
-/// not pile up.
+/// Bytes of frames and of changes after which a chunk ends early, to bound memory for a long project or a very fine
+/// hairstyle.
 const CHUNK_BYTES: usize = 32 << 20;
 const CHUNK_TEXT_BYTES: usize = 16 << 20;
 
@@ -32,18 +32,18 @@ const CHUNK_TEXT_BYTES: usize = 16 << 20;
 pub struct TakeReport {
     /// The take.
     pub path: PathBuf,
-    /// Frames in it.
+    /// Number of frames.
     pub frames: u64,
-    /// Its length in bytes.
+    /// Length of the file in bytes.
     pub bytes: u64,
-    /// Its length in seconds.
+    /// Duration in seconds.
     pub duration_secs: f64,
 }
 
-/// A take in the making.
+/// A take that is being recorded.
 ///
-/// It grows as `NAME.part` beside its name, a second at a time, and [`TakeWriter::finish`] gives it its name. Dropped
-/// before, killed or unplugged, it leaves that file, which [`super::TakeReader`] opens.
+/// It is written as `NAME.part`, one second at a time, and [`TakeWriter::finish`] renames it to its final name. If the writer is
+/// dropped before, or the program or machine stops, that file stays, and [`super::TakeReader`] can open it.
 pub struct TakeWriter {
     path: PathBuf,
     part: PathBuf,
@@ -57,12 +57,12 @@ pub struct TakeWriter {
 }
 
 impl TakeWriter {
-    /// Starts a take at `path`, creating its folder where missing. A take already there stays until the new one is
-    /// whole; an unfinished one that an earlier recording left is kept as `NAME-cut1.take.part`.
+    /// Starts a take at `path` and creates its folder if it is missing. An existing take stays until the new one is
+    /// complete. An unfinished take of an earlier recording is kept as `NAME-cut1.take.part`.
     ///
     /// # Errors
-    /// [`TakeError::Busy`] where another writer is working on it, [`TakeError::Request`] for a header that no take can
-    /// have or a `path` that is a folder, [`TakeError::Io`] and [`TakeError::Write`] where the file cannot be made.
+    /// [`TakeError::Busy`] if another recording is writing it, [`TakeError::Request`] for an invalid header or a `path` that
+    /// is a folder, [`TakeError::Io`] and [`TakeError::Write`] if the file cannot be created.
     pub fn create(path: &Path, header: TakeHeader) -> Result<Self, TakeError> {
         Self::create_on(path, header, &mount_file)
     }
@@ -72,11 +72,11 @@ impl TakeWriter {
         let layout = header
             .check()
             .and_then(|()| header.layout())
-            .map_err(|(found, wanted)| TakeError::request(path, format!("{found}; wanted {wanted}")))?;
+            .map_err(|(found, wanted)| TakeError::request(path, format!("{found}; must be {wanted}")))?;
         if path.file_name().is_none() || path.is_dir() {
             return Err(TakeError::request(
                 path,
-                "is a folder; wanted the name of a file, such as dance.take",
+                "is a folder; must be the name of a file, such as dance.take",
             ));
         }
         let head = serde_json::to_vec(&header)
@@ -87,7 +87,7 @@ impl TakeWriter {
         let file = match TakeFile::start(path, &part, disk, head, Arc::clone(&kept)) {
             Ok(file) => file,
             Err(error) => {
-                // Nothing was recorded yet.
+                // Nothing has been recorded yet.
                 let _ = fs::remove_file(&part);
                 return Err(error);
             }
@@ -112,12 +112,12 @@ impl TakeWriter {
         })
     }
 
-    /// Adds a frame. Waits only where the disk is seconds behind.
+    /// Adds a frame. Waits only if the disk is seconds behind.
     ///
     /// # Errors
-    /// [`TakeError::Request`] for a frame of another size than the header or [`TakeWriter::set_layout`] says or with a place that is not a number:
-    /// nothing is added then, and the take goes on. [`TakeError::Write`] where the disk refused an earlier frame: what
-    /// is kept stays in the file of [`TakeWriter::part_path`], and the take has stopped.
+    /// [`TakeError::Request`] for a frame whose layout differs from the header or [`TakeWriter::set_layout`], or whose positions are
+    /// not finite. Nothing is added then, and recording can continue. [`TakeError::Write`] if an earlier frame could not be
+    /// written. The recording has then stopped, and the frames written before stay in the file [`TakeWriter::part_path`].
     pub fn push(&mut self, frame: &TakeFrame) -> Result<(), TakeError> {
         self.check_worker()?;
         let layout = self.pending.layout;
@@ -143,28 +143,28 @@ impl TakeWriter {
         Ok(())
     }
 
-    /// Says that from the next frame on the project is `project`. A text that is as before costs nothing.
+    /// Records that the project is `project` from the next frame on. An unchanged text takes no space.
     ///
     /// # Errors
     /// [`TakeError::Request`] for a text of more than [`MOST_PROJECT_BYTES`].
     pub fn change(&mut self, project: &str) -> Result<(), TakeError> {
         if project.len() > MOST_PROJECT_BYTES {
-            let what = format!("a project of {} bytes; wanted {MOST_PROJECT_BYTES} at most", project.len());
+            let what = format!("a project of {} bytes; must be at most {MOST_PROJECT_BYTES}", project.len());
             return Err(TakeError::request(&self.path, what));
         }
         self.pending.settings.change(self.pending.metas.len() as u32, project);
         Ok(())
     }
 
-    /// Says that from the next frame on there are so many guides of so many points. Ends the chunk where they are others
-    /// than before.
+    /// Sets the number of guides and points per guide from the next frame on. A change ends the present chunk.
     ///
     /// # Errors
-    /// [`TakeError::Request`] for a size that no take can hold; [`TakeError::Write`] as [`TakeWriter::push`].
+    /// [`TakeError::Request`] for an invalid layout; [`TakeError::Write`] as [`TakeWriter::push`].
     pub fn set_layout(&mut self, guides: usize, points_per_guide: usize) -> Result<(), TakeError> {
         let words = [guides, points_per_guide].map(|n| u32::try_from(n).unwrap_or(u32::MAX));
-        let layout = Layout::new(words[0], words[1])
-            .map_err(|(found, wanted)| TakeError::request(&self.path, format!("{found}; wanted {wanted}")))?;
+        let layout = Layout::new(words[0], words[1]).map_err(|(found, wanted)| {
+            TakeError::request(&self.path, format!("{found}; must be {wanted}"))
+        })?;
         if layout == self.pending.layout {
             return Ok(());
         }
@@ -175,36 +175,36 @@ impl TakeWriter {
         Ok(())
     }
 
-    /// Frames pushed.
+    /// Number of frames that were pushed.
     pub fn frames(&self) -> u64 {
         self.frames
     }
 
-    /// Frames that are on the disk, whatever happens now.
+    /// Number of frames that are safely on the disk.
     pub fn kept_frames(&self) -> u64 {
         self.kept.load(Ordering::Acquire)
     }
 
-    /// The take's name when it is finished.
+    /// The final path of the take.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// The file that it grows in.
+    /// Path of the unfinished file.
     pub fn part_path(&self) -> &Path {
         &self.part
     }
 
-    /// Makes the take whole and gives it its name.
+    /// Completes the take and renames it to its final name.
     ///
     /// # Errors
-    /// [`TakeError::Request`] for a take without frames, which leaves nothing; [`TakeError::Write`] where the disk
-    /// refused, which leaves [`TakeWriter::part_path`].
+    /// [`TakeError::Request`] for a take without frames, whose file is removed; [`TakeError::Write`] if the disk
+    /// fails, which leaves the file [`TakeWriter::part_path`].
     pub fn finish(mut self) -> Result<TakeReport, TakeError> {
         self.check_worker()?;
         if self.frames == 0 {
-            // Dropping removes what there is.
-            return Err(TakeError::request(&self.path, "has no frame; wanted one frame or more"));
+            // Dropping the writer removes the file.
+            return Err(TakeError::request(&self.path, "has no frames; must have at least one"));
         }
         self.flush()?;
         self.send(Job::Finish)?;
@@ -219,17 +219,17 @@ impl TakeWriter {
         }
     }
 
-    /// Stops and removes what was written.
+    /// Stops the recording and removes its file.
     ///
     /// # Errors
-    /// [`TakeError::Io`] where the unfinished file cannot be removed.
+    /// [`TakeError::Io`] if the unfinished file cannot be removed.
     pub fn discard(mut self) -> Result<(), TakeError> {
         self.pending.metas.clear();
         self.send(Job::Discard)?;
         self.join().map(|_| ())
     }
 
-    /// Hands the pending chunk to the worker.
+    /// Sends the pending chunk to the worker.
     fn flush(&mut self) -> Result<(), TakeError> {
         if self.pending.metas.is_empty() {
             return Ok(());
@@ -244,7 +244,7 @@ impl TakeWriter {
         if sent { Ok(()) } else { self.fail() }
     }
 
-    /// Reports what ended the worker, as soon as it has ended.
+    /// Returns the worker's error if it has ended.
     fn check_worker(&mut self) -> Result<(), TakeError> {
         match &self.worker {
             Some(worker) if !worker.is_finished() => Ok(()),
@@ -277,7 +277,7 @@ impl Drop for TakeWriter {
         if self.worker.is_none() {
             return;
         }
-        // There is no one to tell: what reaches the disk is kept.
+        // Errors cannot be reported from here. Frames that reach the disk are kept.
         let _ = if self.frames == 0 { self.send(Job::Discard) } else { self.flush() };
         if self.worker.is_some() {
             let _ = self.join();
@@ -285,7 +285,7 @@ impl Drop for TakeWriter {
     }
 }
 
-/// Frames in a chunk of frames of that size.
+/// Frames per chunk for a layout.
 fn chunk_frames(header: &TakeHeader, layout: Layout) -> usize {
     let frame_bytes = layout.numbers() * size_of::<i32>() + META_BYTES;
     let a_second = (header.frames_per_second.as_f64() as usize).clamp(1, CHUNK_FRAMES);

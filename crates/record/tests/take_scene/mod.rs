@@ -1,5 +1,5 @@
-//! What the tests of takes share: chains that swing below a head that turns and walks.
-#![allow(dead_code, missing_docs, reason = "every user takes its part")]
+//! A scene for the tests of takes: chains that swing below a turning and walking head.
+#![allow(dead_code, missing_docs, reason = "each test uses a part of it")]
 
 use glam::{Affine3A, EulerRot, Quat, Vec3};
 use lovelock_groom::{GuideFrame, Guides};
@@ -8,11 +8,11 @@ use std::path::Path;
 
 pub const LINK_M: f32 = 0.02;
 
-/// How many chains, of how many points.
+/// Number of chains and of points per chain.
 #[derive(Clone, Copy)]
 pub struct Size(pub usize, pub usize);
 
-/// Small enough to be read thousands of times.
+/// A size that is small enough to be read thousands of times.
 pub const SMALL: Size = Size(3, 4);
 
 pub fn header(Size(guides, points): Size) -> TakeHeader {
@@ -57,7 +57,7 @@ pub fn project(n: u64) -> String {
     if n < 20 { "(look: 0)".to_owned() } else { format!("(look: {})", (n - 20) / 50 * 50 + 20) }
 }
 
-/// Records a take of so many frames and finishes it.
+/// Records a take of `frames` frames and finishes it.
 pub fn record(path: &Path, frames: u64, size: Size) {
     let mut writer = TakeWriter::create(path, header(size)).unwrap();
     for n in 0..frames {
@@ -69,7 +69,7 @@ pub fn record(path: &Path, frames: u64, size: Size) {
     assert_eq!(report.bytes, std::fs::metadata(path).unwrap().len());
 }
 
-/// The size of a frame where the hair gets other guides twice on the way.
+/// The size of each frame in a take whose number of guides changes twice.
 pub fn regrown_size(n: u64) -> Size {
     match n {
         40..75 => Size(5, 6),
@@ -78,7 +78,7 @@ pub fn regrown_size(n: u64) -> Size {
     }
 }
 
-/// Records a take of so many frames of [`regrown_size`] and finishes it.
+/// Records a take of `frames` frames of [`regrown_size`] and finishes it.
 pub fn record_regrown(path: &Path, frames: u64) {
     let mut writer = TakeWriter::create(path, header(SMALL)).unwrap();
     for n in 0..frames {
@@ -90,14 +90,14 @@ pub fn record_regrown(path: &Path, frames: u64) {
     assert_eq!(writer.finish().unwrap().frames, frames);
 }
 
-/// The furthest that a point of one is from the same point of the other, metres.
+/// The largest distance between corresponding points, in metres.
 pub fn worst(a: &Guides, b: &Guides) -> f64 {
     assert_eq!((a.points_per_guide, a.x.len()), (b.points_per_guide, b.x.len()));
     let at = |g: &Guides, i: usize| Vec3::new(g.x[i], g.y[i], g.z[i]).as_dvec3();
     (0..a.x.len()).map(|i| at(a, i).distance(at(b, i))).fold(0.0, f64::max)
 }
 
-/// Whether a played frame is frame `n`: positions to within the stated error, all else exactly.
+/// Whether a played frame is frame `n`: positions to within the stated error, everything else exactly.
 pub fn is_frame(played: &TakeFrame, n: u64, size: Size) -> bool {
     let wanted = frame(n, size);
     let but_positions = TakeFrame {
@@ -108,7 +108,7 @@ pub fn is_frame(played: &TakeFrame, n: u64, size: Size) -> bool {
         && worst(&played.guides.guides, &wanted.guides.guides) < lovelock_record::MOST_ERROR_M
 }
 
-/// Plays every frame of a take that lost none; says how many there are.
+/// Plays every frame of a take without lost frames. Returns their number.
 pub fn play_all(take: &mut TakeReader, size: Size) -> u64 {
     for n in 0..take.frames() {
         assert!(is_frame(&take.frame(n).unwrap(), n, size), "frame {n}");
@@ -117,7 +117,7 @@ pub fn play_all(take: &mut TakeReader, size: Size) -> u64 {
     take.frames()
 }
 
-/// A chunk as `docs/file_formats.md` describes it: where it is, how long it is, what it holds.
+/// A chunk as described in `docs/file_formats.md`.
 #[derive(Debug)]
 pub struct Chunk {
     pub start: usize,
@@ -127,7 +127,7 @@ pub struct Chunk {
     pub frames: u64,
 }
 
-/// The chunks of a take that is whole.
+/// The chunks of an intact take.
 pub fn chunks(bytes: &[u8]) -> Vec<Chunk> {
     let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap());
     let mut chunks = Vec::new();

@@ -1,4 +1,4 @@
-//! The frames of a chunk as bytes.
+//! Encoding of the frames of a chunk as bytes.
 
 use glam::{Affine3A, Mat3A, Vec3A};
 
@@ -6,10 +6,10 @@ use super::bytes::Bytes;
 use super::layout::{LAYOUT_BYTES, Layout};
 use super::predict::{Coefficients, Rows, TAPS, fit};
 
-/// Bytes of a frame besides its guides.
+/// Bytes of a frame without its guides.
 pub(super) const META_BYTES: usize = 80;
 
-/// All of a frame but its guides, exactly.
+/// Everything in a frame except its guides, stored exactly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Meta {
     pub(super) time_secs: f64,
@@ -59,12 +59,12 @@ pub(super) struct Decoded {
 }
 
 impl Decoded {
-    /// Bytes that it takes in memory.
+    /// Bytes that the frames take in memory.
     pub(super) fn bytes(&self) -> usize {
         self.metas.len() * size_of::<Meta>() + self.numbers.bytes()
     }
 
-    /// Copies the whole numbers of one frame into `out`, as [`Layout::numbers`] has them.
+    /// Copies the integers of one frame into `out`, in the order of [`Layout::numbers`].
     pub(super) fn numbers(&self, frame: usize, out: &mut Vec<i32>) {
         out.clear();
         for axis in 0..3 {
@@ -75,8 +75,8 @@ impl Decoded {
     }
 }
 
-/// The data part of a chunk: layout, metas, coefficients, residuals of one byte each, then the rest of those that need more.
-/// `numbers` holds the frames one after the other, each as [`Layout::numbers`] says.
+/// The data part of a chunk: layout, metas, coefficients, one byte per residual, then the rest of the residuals that need more.
+/// `numbers` contains one frame after another, each in the order of [`Layout::numbers`].
 pub(super) fn encode(metas: &[Meta], numbers: &[i32], layout: Layout) -> Vec<u8> {
     let frames = metas.len();
     let links = Rows::links_of(numbers, frames, layout);
@@ -112,8 +112,8 @@ pub(super) fn encode(metas: &[Meta], numbers: &[i32], layout: Layout) -> Vec<u8>
     out
 }
 
-/// The frames in the data part `raw` of a chunk of `frames` frames; says what is wrong where it is none. `known` is the layout
-/// of a take of version 1, whose chunks do not say theirs.
+/// Decodes the data part `raw` of a chunk of `frames` frames. Returns what is wrong if it is invalid. `known` is the layout
+/// of a take of version 1, whose chunks do not contain theirs.
 pub(super) fn decode(raw: &[u8], frames: usize, known: Option<Layout>) -> Result<Decoded, String> {
     let mut bytes = Bytes::new(raw);
     let layout = match known {
@@ -132,7 +132,7 @@ pub(super) fn decode(raw: &[u8], frames: usize, known: Option<Layout>) -> Result
         }
         coefficients.push(own);
     }
-    // Before anything of that size is allocated.
+    // Checked before anything of that size is allocated.
     let count = layout.numbers().checked_mul(frames).ok_or_else(short)?;
     let plane = bytes.take(count).ok_or_else(short)?;
     let mut rows = Rows::new(frames, layout);
@@ -161,10 +161,10 @@ pub(super) fn decode(raw: &[u8], frames: usize, known: Option<Layout>) -> Result
     Ok(Decoded { layout, metas, numbers: rows })
 }
 
-/// A residual of this or more goes on after the bytes of all.
+/// The part of a residual above this value is stored after the bytes of all residuals.
 const LONG: u32 = 255;
 
-/// Small numbers of either sign as small numbers.
+/// Maps small positive and negative numbers to small unsigned ones.
 fn zigzag(value: i32) -> u32 {
     ((value << 1) ^ (value >> 31)) as u32
 }
@@ -173,7 +173,7 @@ fn unzigzag(value: u32) -> i32 {
     (value >> 1) as i32 ^ -((value & 1) as i32)
 }
 
-/// Seven bits a byte, the lowest first; all but the last byte have the highest bit set.
+/// Writes seven bits per byte, lowest first. The highest bit is set in all bytes but the last.
 fn write_varint(mut value: u32, out: &mut Vec<u8>) {
     while value >= 128 {
         out.push(value as u8 | 128);

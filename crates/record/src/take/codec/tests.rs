@@ -52,8 +52,8 @@ proptest! {
     }
 
     #[test]
-    fn bytes_that_are_no_frames_are_refused_or_read(raw in prop::collection::vec(any::<u8>(), 0..2000)) {
-        // No panic, whatever they are.
+    fn random_bytes_are_refused_or_read(raw in prop::collection::vec(any::<u8>(), 0..2000)) {
+        // No bytes may cause a panic.
         let layout = Layout { guides: 4, points: 3 };
         let _ = decode(&raw, 3, Some(layout));
         let _ = decode(&raw, 3, None);
@@ -77,15 +77,15 @@ fn the_extremes_come_back_exactly() {
 }
 
 #[test]
-fn even_motion_leaves_one_byte_a_number() {
+fn smooth_motion_needs_one_byte_per_number() {
     let layout = Layout { guides: 50, points: 8 };
     let wave = |f: usize, i: usize| (2000.0 * (f as f64 * 0.2 + i as f64 * 0.7).sin()) as i32;
     let numbers: Vec<i32> =
         (0..60 * layout.numbers()).map(|i| wave(i / layout.numbers(), i % layout.numbers())).collect();
     let least = LAYOUT_BYTES + 60 * (META_BYTES + layout.numbers()) + layout.points * 12;
     let length = round_trip(&numbers, 60, layout);
-    assert!(length < least + 15_000, "{length} bytes, of which {least} must be");
-    // The control: the same numbers in another order follow nothing.
+    assert!(length < least + 15_000, "{length} bytes; the minimum is {least}");
+    // Negative control: the same numbers in random order cannot be predicted.
     let mut mixed = numbers.clone();
     let count = mixed.len();
     (0..count).for_each(|i| mixed.swap(i, i * 7919 % count));
