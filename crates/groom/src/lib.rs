@@ -33,11 +33,13 @@ pub use grow::{GUIDE_POINTS, GrowError, grow};
 pub use guides::{GuideFrame, Guides};
 pub use haircut::{Blade, Haircut, trimmed};
 pub use hairstyle::{Hairstyle, HairstyleError, StrandSet, Wisp};
-pub use import::{ImportError, ImportSettings, PlacedGroom, Placement, import, import_around, place};
+pub use import::{
+    HairInfo, ImportError, ImportSettings, PlacedGroom, Placement, hair_info, import, import_around, place,
+};
 pub use interpolate::interpolate;
 pub use io::{
-    Bounds, Facing, HairFile, HairFileError, HairFormat, HairInfo, Unit, UnitGuess, UpAxis, guess_units,
-    hair_info, load_hair, load_hair_bytes,
+    Bounds, Facing, HAIR_FORMATS, HairFile, HairFileError, HairFormat, Unit, UnitGuess, UpAxis, guess_units,
+    load_hair, load_hair_bytes,
 };
 pub use look::HairLook;
 pub(crate) use obstacle::Bounded;

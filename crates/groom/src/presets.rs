@@ -62,6 +62,12 @@ impl Preset {
     }
 }
 
+impl Default for GroomSettings {
+    fn default() -> Self {
+        Self::preset(Preset::Smooth)
+    }
+}
+
 impl GroomSettings {
     /// The settings of a shipped hairstyle.
     pub const fn preset(preset: Preset) -> Self {

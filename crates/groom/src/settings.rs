@@ -3,7 +3,7 @@
 use lovelock_base::numbers::within;
 use serde::{Deserialize, Serialize};
 
-use crate::{HairLook, Preset};
+use crate::HairLook;
 
 /// The most points that [`GroomSettings::clamped`] lets a hairstyle have: about 300 MB with all that draws it.
 pub const MOST_POINTS: u32 = 6_000_000;
@@ -88,12 +88,6 @@ pub struct GroomSettings {
 
     /// Colour and width that the style suggests.
     pub look: HairLook,
-}
-
-impl Default for GroomSettings {
-    fn default() -> Self {
-        Self::preset(Preset::Smooth)
-    }
 }
 
 impl GroomSettings {

@@ -1,6 +1,6 @@
 //! From a hair file to a hairstyle that can be simulated.
 //!
-//! 1. [`Orientation`]: unit and axes, as set or guessed.
+//! 1. [`orientation`]: unit and axes, as set or guessed.
 //! 2. [`place`](mod@place): the groom is fitted to the scalp, its roots set on the skin.
 //! 3. [`cluster`]: strands are grouped into wisps by root and shape.
 //! 4. [`guides`]: three members of each wisp become its guides.
@@ -11,6 +11,7 @@ mod colour;
 mod express;
 mod fit;
 mod guides;
+mod info;
 mod orientation;
 mod place;
 mod settings;
@@ -22,7 +23,7 @@ use thiserror::Error;
 
 use crate::{HairFile, Hairstyle, Obstacle, Scalp, Wisp};
 
-pub(crate) use orientation::Orientation;
+pub use info::{HairInfo, hair_info};
 pub use place::{PlacedGroom, place};
 pub use settings::{ImportSettings, Placement};
 
@@ -78,7 +79,7 @@ fn hairstyle_of(
 ) -> (Hairstyle, Vec<u32>) {
     let settings = settings.in_range();
     let wisps = cluster::cluster(groom, settings.wisps_for(groom.strands()), settings.seed);
-    let points_per_guide = settings.points_per_guide_for(groom);
+    let points_per_guide = settings.points_per_guide_for(&groom.first_point);
     let guides = guides::choose(groom, &wisps, points_per_guide);
     let order: Vec<u32> = wisps.iter().flatten().copied().collect();
     let mut first_strand = 0;

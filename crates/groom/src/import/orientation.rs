@@ -2,9 +2,8 @@
 
 use glam::{Quat, Vec3};
 
-use super::ImportSettings;
-use crate::io::{guess_facing, rotation_to_head_axes};
-use crate::{Facing, HairFile, HairFormat, UpAxis, guess_units};
+use super::settings::ImportSettings;
+use crate::io::{Bounds, Facing, HairFile, UpAxis, guess_facing, guess_units, rotation_to_head_axes};
 
 /// The unit and axes that a file is read in: as set, else as guessed.
 #[derive(Clone, Copy, Debug)]
@@ -31,7 +30,7 @@ impl Orientation {
         };
         Self {
             metres_per_unit: settings.unit.metres().unwrap_or(guess.metres_per_unit),
-            unit_guessed: settings.unit.metres().is_none() && file.format != HairFormat::Usd,
+            unit_guessed: settings.unit.metres().is_none() && !file.is_in_metres,
             up,
             facing,
             rotation: rotation_to_head_axes(up, facing),
@@ -41,5 +40,23 @@ impl Orientation {
     /// A point of the file in metres, Y up, the face toward +Z, about the file's own origin.
     pub(crate) fn head_axes_from_file(&self, point: Vec3) -> Vec3 {
         self.rotation * (point * self.metres_per_unit)
+    }
+}
+
+impl HairFile {
+    /// The same strands in metres, Y up, the face toward +Z, by the unit and axes of `settings`, about the file's origin.
+    pub fn in_metres(&self, settings: &ImportSettings) -> Self {
+        let orientation = Orientation::resolve(self, settings);
+        let mut file = self.clone();
+        file.bounds = Bounds::EMPTY;
+        for point in &mut file.points {
+            *point = orientation.head_axes_from_file(*point);
+            file.bounds.include(*point);
+        }
+        let scale = orientation.metres_per_unit;
+        file.thickness.iter_mut().flatten().for_each(|width| *width *= scale);
+        file.default_thickness = file.default_thickness.map(|width| width * scale);
+        file.is_in_metres = true;
+        file
     }
 }

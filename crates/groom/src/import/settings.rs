@@ -7,7 +7,6 @@ use glam::Vec3;
 use lovelock_base::statistics::upper_median_by;
 use serde::{Deserialize, Serialize};
 
-use super::PlacedGroom;
 use crate::{Facing, Unit, UpAxis};
 
 /// How a hair file becomes a hairstyle.
@@ -111,11 +110,11 @@ impl ImportSettings {
         }
     }
 
-    pub(super) fn points_per_guide_for(&self, groom: &PlacedGroom) -> usize {
+    pub(super) fn points_per_guide_for(&self, first_point: &[u32]) -> usize {
         if self.points_per_guide > 0 {
             return self.points_per_guide as usize;
         }
-        let mut counts: Vec<u32> = groom.first_point.array_windows().map(|[a, b]| b - a).collect();
+        let mut counts: Vec<u32> = first_point.array_windows().map(|[a, b]| b - a).collect();
         upper_median_by(&mut counts, Ord::cmp).unwrap_or_default().clamp(8, 40) as usize
     }
 }

@@ -1,9 +1,8 @@
 //! Little-endian arrays at checked places of a file in memory.
 
-use super::HairFileError;
+use glam::Vec3;
 
-/// The longest header of the formats here (TressFX 3), bytes.
-pub(super) const LONGEST_HEADER: u64 = 296;
+use super::HairFileError;
 
 /// A file in memory that is only read through checks of place and size.
 #[derive(Clone, Copy)]
@@ -92,4 +91,13 @@ pub(super) fn triples(bytes: &[u8], stride: usize) -> impl ExactSizeIterator<Ite
         f32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]])
     };
     bytes.chunks_exact(stride).map(move |item| [float(item, 0), float(item, 4), float(item, 8)])
+}
+
+/// The little-endian bytes of three floats.
+pub(super) fn triple_bytes(v: Vec3) -> [u8; 12] {
+    let mut bytes = [0; 12];
+    for (to, value) in bytes.as_chunks_mut::<4>().0.iter_mut().zip(v.to_array()) {
+        *to = value.to_le_bytes();
+    }
+    bytes
 }

@@ -5,7 +5,9 @@ use std::collections::BTreeMap;
 use glam::Vec3;
 use lovelock_base::statistics::upper_median_by;
 
-use super::{Bounds, HairFile, HairFileError, HairFormat};
+use super::HairFileError;
+use super::file::{Bounds, HairFile, RawHair};
+use super::format::HairFormat;
 
 /// The largest coordinate that is taken for a place, file units. Squares and sums of squares of such
 /// numbers stay finite in single precision.
@@ -17,43 +19,6 @@ const LARGEST_REACH: f32 = 1000.0;
 const SMALLEST_LENGTH: f32 = 1e-5;
 /// The shortest strand, file units: below it, a scale to metres overflows.
 const SMALLEST_ABSOLUTE_LENGTH: f32 = 1e-12;
-
-/// What a reader found, before anything is dropped. Arrays over points agree in length with the sum of
-/// `point_counts`, which fits `u32`.
-pub(super) struct RawHair {
-    pub(super) format: HairFormat,
-    pub(super) point_counts: Vec<u32>,
-    pub(super) points: Vec<Vec3>,
-    pub(super) thickness: Option<Vec<f32>>,
-    pub(super) transparency: Option<Vec<f32>>,
-    pub(super) colours: Option<Vec<[f32; 3]>>,
-    pub(super) default_thickness: Option<f32>,
-    pub(super) default_transparency: Option<f32>,
-    pub(super) default_colour: Option<[f32; 3]>,
-    pub(super) both_ends_pinned: bool,
-    pub(super) trailing_bytes: u64,
-    pub(super) notes: Vec<String>,
-}
-
-impl RawHair {
-    /// Strands and nothing else.
-    pub(super) fn new(format: HairFormat, point_counts: Vec<u32>, points: Vec<Vec3>) -> Self {
-        Self {
-            format,
-            point_counts,
-            points,
-            thickness: None,
-            transparency: None,
-            colours: None,
-            default_thickness: None,
-            default_transparency: None,
-            default_colour: None,
-            both_ends_pinned: false,
-            trailing_bytes: 0,
-            notes: Vec::new(),
-        }
-    }
-}
 
 /// Why a strand is left out.
 #[derive(Clone, Copy, PartialEq)]
@@ -89,7 +54,7 @@ impl Fault {
 }
 
 /// Keeps the strands that can be drawn.
-pub(super) fn clean(name: &str, raw: RawHair) -> Result<HairFile, HairFileError> {
+pub(super) fn clean(name: &str, format: &HairFormat, raw: RawHair) -> Result<HairFile, HairFileError> {
     let strands = raw.point_counts.len();
     let mut faults: Vec<Option<Fault>> = Vec::with_capacity(strands);
     let mut first = 0;
@@ -110,7 +75,12 @@ pub(super) fn clean(name: &str, raw: RawHair) -> Result<HairFile, HairFileError>
 
     let mut file = HairFile {
         name: name.to_owned(),
-        format: raw.format,
+        format: match raw.version {
+            Some(version) => format!("{} {version:.1}", format.label),
+            None => format.label.to_owned(),
+        },
+        common_up: format.common_up,
+        is_in_metres: format.states_unit,
         first_point: Vec::with_capacity(strands + 1),
         points: Vec::with_capacity(raw.points.len()),
         thickness: raw.thickness.as_ref().map(|values| Vec::with_capacity(values.len())),

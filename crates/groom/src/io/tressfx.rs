@@ -6,18 +6,44 @@
 //! strand nor its multiples of 64 strands belong to the format, so they are not asked for here.
 
 use super::HairFileError;
-use super::HairFormat;
-use super::bytes::{Bytes, triples};
-use super::clean::RawHair;
+use super::bytes::{Bytes, triple_bytes, triples};
+use super::file::{HairFile, RawHair};
+use super::format::HairFormat;
+use super::source::Source;
+use super::units::UpAxis;
+
+pub(super) static FORMAT: HairFormat = HairFormat {
+    label: "TressFX .tfx",
+    extensions: &["tfx"],
+    signature: "a version from 3.0 to 4.9 as a float (TressFX)",
+    states_unit: false,
+    common_up: UpAxis::Y,
+    recognises: |start| version_of(start).is_some(),
+    read,
+    write: Some(write),
+};
 
 const HEADER_3: u64 = 296;
 const HEADER_4: u64 = 160;
 
-pub(super) fn read_v3(name: &str, data: &[u8], version: f32) -> Result<RawHair, HairFileError> {
-    let file = Bytes::new(name, data);
+/// The version, where these bytes are the start of a file of this format.
+fn version_of(start: &[u8]) -> Option<f32> {
+    let version = f32::from_le_bytes(*start.first_chunk()?);
+    (3.0..5.0).contains(&version).then_some(version)
+}
+
+fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
+    let data = source.into_bytes(name)?;
+    let file = Bytes::new(name, &data);
+    let version = version_of(&data).unwrap_or_default();
+    let raw = if version < 4.0 { read_3(&file) } else { read_4(&file) }?;
+    Ok(RawHair { version: Some(version), ..raw })
+}
+
+fn read_3(file: &Bytes<'_>) -> Result<RawHair, HairFileError> {
     file.header(HEADER_3)?;
     let positions = Positions { header: HEADER_3, offset_at: 144, stride: 12 };
-    let mut raw = positions.read(&file, HairFormat::TressFx3(version))?;
+    let mut raw = positions.read(file)?;
     raw.both_ends_pinned = file.u32(16) != 0;
     let follow_hairs = file.u32(12);
     if follow_hairs > 0 {
@@ -32,15 +58,14 @@ pub(super) fn read_v3(name: &str, data: &[u8], version: f32) -> Result<RawHair, 
         (160, "guide indices"),
         (164, "vertex texture coordinates"),
     ];
-    finish(&file, &mut raw, &optional, &[]);
+    finish(file, &mut raw, &optional, &[]);
     Ok(raw)
 }
 
-pub(super) fn read_v4(name: &str, data: &[u8], version: f32) -> Result<RawHair, HairFileError> {
-    let file = Bytes::new(name, data);
+fn read_4(file: &Bytes<'_>) -> Result<RawHair, HairFileError> {
     file.header(HEADER_4)?;
     let positions = Positions { header: HEADER_4, offset_at: 12, stride: 16 };
-    let mut raw = positions.read(&file, HairFormat::TressFx4(version))?;
+    let mut raw = positions.read(file)?;
     // The last point of a strand is free in ordinary files; a zero inverse mass there holds the tip.
     let (strands, per_strand) = (raw.point_counts.len(), file.u32(8) as usize);
     let array = file.array(u64::from(file.u32(12)), raw.points.len() as u64, 16, "positions")?;
@@ -51,7 +76,7 @@ pub(super) fn read_v4(name: &str, data: &[u8], version: f32) -> Result<RawHair, 
         });
     let uv_bytes = 8 * strands as u64;
     let optional = [(20, "vertex texture coordinates"), (24, "thickness"), (28, "vertex colours")];
-    finish(&file, &mut raw, &optional, &[(16, "strand texture coordinates", uv_bytes)]);
+    finish(file, &mut raw, &optional, &[(16, "strand texture coordinates", uv_bytes)]);
     Ok(raw)
 }
 
@@ -63,7 +88,7 @@ struct Positions {
 }
 
 impl Positions {
-    fn read(&self, file: &Bytes<'_>, format: HairFormat) -> Result<RawHair, HairFileError> {
+    fn read(&self, file: &Bytes<'_>) -> Result<RawHair, HairFileError> {
         let (strands, per_strand) = (u64::from(file.u32(4)), u64::from(file.u32(8)));
         let offset = u64::from(file.u32(self.offset_at));
         if offset < self.header {
@@ -95,7 +120,7 @@ impl Positions {
         let point_counts = vec![per_strand as u32; strands as usize];
         let points = triples(array, self.stride as usize).map(Into::into).collect();
         let trailing_bytes = file.len() - offset - array.len() as u64;
-        Ok(RawHair { trailing_bytes, ..RawHair::new(format, point_counts, points) })
+        Ok(RawHair { trailing_bytes, ..RawHair::new(point_counts, points) })
     }
 }
 
@@ -128,4 +153,25 @@ fn finish(file: &Bytes<'_>, raw: &mut RawHair, optional: &[(usize, &str)], sized
     if raw.both_ends_pinned {
         raw.notes.push("The file holds both ends of its strands; only roots are held here.".to_owned());
     }
+}
+
+/// Writes version 4 in centimetres with Y up, like AMD's own files. Fails for strands that differ in their number of points:
+/// the format has one number for all of them.
+fn write(hair: &HairFile) -> Result<Vec<u8>, String> {
+    let counts = || hair.first_point.array_windows().map(|[start, end]| end - start);
+    let (least, most) = (counts().min().unwrap_or(0), counts().max().unwrap_or(0));
+    if least != most {
+        return Err(format!("strands of {least} to {most} points, and .tfx has one number for all"));
+    }
+    let mut out = 4.0_f32.to_le_bytes().to_vec();
+    for word in [hair.strands() as u32, most, HEADER_4 as u32] {
+        out.extend(word.to_le_bytes());
+    }
+    out.resize(HEADER_4 as usize, 0);
+    for (i, &point) in hair.points.iter().enumerate() {
+        // The inverse mass: roots are held.
+        let free = if (i as u32).is_multiple_of(most) { 0.0_f32 } else { 1.0 };
+        out.extend(triple_bytes(point * 100.0).into_iter().chain(free.to_le_bytes()));
+    }
+    Ok(out)
 }

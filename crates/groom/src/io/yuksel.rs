@@ -4,9 +4,24 @@
 //! segments has `s + 1` points.
 
 use super::HairFileError;
-use super::HairFormat;
-use super::bytes::{Bytes, floats, triples};
-use super::clean::RawHair;
+use super::bytes::{Bytes, floats, triple_bytes, triples};
+use super::file::{HairFile, RawHair};
+use super::format::HairFormat;
+use super::source::Source;
+use super::units::{Facing, UpAxis, rotation_to_head_axes};
+
+pub(super) static FORMAT: HairFormat = HairFormat {
+    label: "Yuksel .hair",
+    extensions: &["hair"],
+    signature: "`HAIR` (Yuksel)",
+    states_unit: false,
+    common_up: UpAxis::Z,
+    recognises: |start| start.starts_with(MAGIC),
+    read,
+    write: Some(write),
+};
+
+const MAGIC: &[u8] = b"HAIR";
 
 const HEADER: u64 = 128;
 const SEGMENTS: u32 = 1;
@@ -18,8 +33,9 @@ const COLOURS: u32 = 1 << 4;
 const UVS: u32 = 1 << 5;
 const KNOWN: u32 = SEGMENTS | POINTS | THICKNESS | TRANSPARENCY | COLOURS | UVS;
 
-pub(super) fn read(name: &str, data: &[u8]) -> Result<RawHair, HairFileError> {
-    let file = Bytes::new(name, data);
+fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
+    let data = source.into_bytes(name)?;
+    let file = Bytes::new(name, &data);
     file.header(HEADER)?;
     let (strands, points) = (u64::from(file.u32(4)), u64::from(file.u32(8)));
     let (flags, default_segments) = (file.u32(12), file.u32(16));
@@ -75,7 +91,7 @@ pub(super) fn read(name: &str, data: &[u8]) -> Result<RawHair, HairFileError> {
     };
     let default_colour = [file.f32(28), file.f32(32), file.f32(36)];
     Ok(RawHair {
-        format: HairFormat::Yuksel,
+        version: None,
         point_counts,
         points: triples(positions, 12).map(Into::into).collect(),
         thickness: thickness.map(floats),
@@ -92,4 +108,34 @@ pub(super) fn read(name: &str, data: &[u8]) -> Result<RawHair, HairFileError> {
 
 fn segment_counts(array: &[u8]) -> impl Iterator<Item = u16> + '_ {
     array.as_chunks::<2>().0.iter().map(|&two| u16::from_le_bytes(two))
+}
+
+/// Writes metres, Z up, the face toward +Y, as is common for this format. Fails for a strand of more than 65536 points: the
+/// format counts with 16 bits.
+fn write(hair: &HairFile) -> Result<Vec<u8>, String> {
+    let turn = rotation_to_head_axes(UpAxis::Z, Facing::PlusY).inverse();
+    let flags: u32 = 0b11
+        | u32::from(hair.thickness.is_some()) << 2
+        | u32::from(hair.transparency.is_some()) << 3
+        | u32::from(hair.colours.is_some()) << 4;
+    let mut out = MAGIC.to_vec();
+    for word in [hair.strands() as u32, hair.points.len() as u32, flags, 0] {
+        out.extend(word.to_le_bytes());
+    }
+    let [r, g, b] = hair.default_colour.unwrap_or([0.3, 0.2, 0.1]);
+    let (thickness, transparency) =
+        (hair.default_thickness.unwrap_or(1e-4), hair.default_transparency.unwrap_or(0.0));
+    out.extend([thickness, transparency, r, g, b].into_iter().flat_map(f32::to_le_bytes));
+    out.resize(HEADER as usize, 0);
+    for [start, end] in hair.first_point.array_windows() {
+        let segments = u16::try_from(end - start - 1)
+            .map_err(|_| format!("a strand of {} points, and .hair counts to 65536", end - start))?;
+        out.extend(segments.to_le_bytes());
+    }
+    out.extend(hair.points.iter().flat_map(|&point| triple_bytes(turn * point)));
+    for values in [&hair.thickness, &hair.transparency].into_iter().flatten() {
+        out.extend(values.iter().flat_map(|value| value.to_le_bytes()));
+    }
+    out.extend(hair.colours.iter().flatten().flat_map(|&colour| triple_bytes(colour.into())));
+    Ok(out)
 }

@@ -1,44 +1,30 @@
 //! Places of a crate, each held against the bytes that are there.
 
-use std::fs::File;
-use std::io::{self, Read, Seek, SeekFrom};
-
 use super::HairFileError;
-use super::crate_file::CrateLayer;
+use crate::io::source::Source;
 
 /// Paths, fields or specs of one crate.
 const MOST_ENTRIES: u64 = 1 << 24;
 /// The best that LZ4 can do.
 const BEST_RATIO: u64 = 255;
 
-/// Where the bytes of a crate are.
-pub(in crate::io) enum Input<'a> {
-    /// In memory.
-    Memory(&'a [u8]),
-    /// In a file of that length.
-    File(File, u64),
+/// The bytes of a crate.
+pub(super) struct CrateBytes<'a> {
+    /// The file's name, for messages.
+    name: String,
+    source: Source<'a>,
 }
 
-impl Input<'_> {
-    pub(super) fn of_file(file: File) -> io::Result<Self> {
-        let length = file.metadata()?.len();
-        Ok(Self::File(file, length))
+impl<'a> CrateBytes<'a> {
+    pub(super) fn new(name: &str, source: Source<'a>) -> Self {
+        Self { name: name.to_owned(), source }
     }
 
-    fn len(&self) -> u64 {
-        match self {
-            Self::Memory(data) => data.len() as u64,
-            Self::File(_, length) => *length,
-        }
-    }
-}
-
-impl CrateLayer<'_> {
     /// A count at a place, held against what any file holds, and the place behind it.
     pub(super) fn counted(&mut self, at: u64) -> Result<(u64, u64), HairFileError> {
         let count = self.u64(at)?;
         // Four whole numbers take a byte at least before they are compressed.
-        if count > MOST_ENTRIES || count / 4 > self.input.len().saturating_mul(BEST_RATIO) {
+        if count > MOST_ENTRIES || count / 4 > self.source.len().saturating_mul(BEST_RATIO) {
             return Err(self.at(
                 at,
                 format!("{count} entries"),
@@ -119,19 +105,11 @@ impl CrateLayer<'_> {
 
     /// `count` bytes at `at`, where they are there.
     pub(super) fn bytes(&mut self, at: u64, count: u64, what: &str) -> Result<Vec<u8>, HairFileError> {
-        let length = self.input.len();
+        let length = self.source.len();
         if at.checked_add(count).is_none_or(|end| end > length) {
             return Err(self.at(at, format!("a file of {length} bytes"), &format!("{count} {what}")));
         }
-        match &mut self.input {
-            Input::Memory(data) => Ok(data[at as usize..(at + count) as usize].to_vec()),
-            Input::File(file, _) => {
-                let mut bytes = vec![0; count as usize];
-                let read = file.seek(SeekFrom::Start(at)).and_then(|_| file.read_exact(&mut bytes));
-                read.map_err(|source| HairFileError::Io { name: self.name.clone(), source })?;
-                Ok(bytes)
-            }
-        }
+        self.source.read_at(&self.name, at, count)
     }
 
     pub(super) fn at(&self, offset: u64, found: String, wanted: &str) -> HairFileError {

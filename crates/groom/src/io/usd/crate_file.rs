@@ -6,13 +6,15 @@
 
 use std::collections::HashMap;
 
-use super::crate_bytes::{Input, u64_of};
+use super::crate_bytes::{CrateBytes, u64_of};
+use super::crate_value::CrateValues;
 use super::transform::DEEPEST;
 use super::value::Value;
 use super::{HairFileError, Layer};
+use crate::io::source::Source;
 
 /// What a crate starts with.
-pub(in crate::io) const CRATE_MAGIC: &[u8] = b"PXR-USDC";
+pub(super) const CRATE_MAGIC: &[u8] = b"PXR-USDC";
 
 const NOTHING: u32 = u32::MAX;
 
@@ -31,10 +33,7 @@ struct Node {
 }
 
 pub(super) struct CrateLayer<'a> {
-    pub(super) name: String,
-    pub(super) input: Input<'a>,
-    pub(super) version: [u8; 3],
-    pub(super) tokens: Vec<String>,
+    values: CrateValues<'a>,
     /// Token and value of each field.
     fields: Vec<(u32, u64)>,
     /// Runs of fields, each ended by [`NOTHING`].
@@ -46,85 +45,90 @@ pub(super) struct CrateLayer<'a> {
 }
 
 impl<'a> CrateLayer<'a> {
-    pub(super) fn open(name: &str, input: Input<'a>) -> Result<Self, HairFileError> {
+    pub(super) fn open(name: &str, source: Source<'a>) -> Result<Self, HairFileError> {
         let mut layer = Self {
-            name: name.to_owned(),
-            input,
-            version: [0; 3],
-            tokens: Vec::new(),
+            values: CrateValues { file: CrateBytes::new(name, source), version: [0; 3], tokens: Vec::new() },
             fields: Vec::new(),
             fieldsets: Vec::new(),
             nodes: Vec::new(),
             properties: HashMap::new(),
             root: 0,
         };
-        let head = layer.bytes(0, 24, "bytes of header")?;
-        layer.version = [head[8], head[9], head[10]];
-        if layer.version[0] != 0 || !(4..=13).contains(&layer.version[1]) {
-            let [major, minor, patch] = layer.version;
-            return Err(layer.at(8, format!("a crate of version {major}.{minor}.{patch}"), "0.4 to 0.13"));
+        let head = layer.values.file.bytes(0, 24, "bytes of header")?;
+        layer.values.version = [head[8], head[9], head[10]];
+        if layer.values.version[0] != 0 || !(4..=13).contains(&layer.values.version[1]) {
+            let [major, minor, patch] = layer.values.version;
+            return Err(layer.values.file.at(
+                8,
+                format!("a crate of version {major}.{minor}.{patch}"),
+                "0.4 to 0.13",
+            ));
         }
-        let toc = layer.u64(16)?;
-        let count = layer.u64(toc)?;
+        let toc = layer.values.file.u64(16)?;
+        let count = layer.values.file.u64(toc)?;
         if count > 64 {
-            return Err(layer.at(toc, format!("{count} sections"), "64 at most"));
+            return Err(layer.values.file.at(toc, format!("{count} sections"), "64 at most"));
         }
         let mut sections = HashMap::new();
         for section in 0..count {
-            let entry = layer.bytes(toc + 8 + 32 * section, 32, "bytes of a section's entry")?;
+            let entry = layer.values.file.bytes(toc + 8 + 32 * section, 32, "bytes of a section's entry")?;
             let name = entry[..16].split(|&byte| byte == 0).next().unwrap_or_default().to_vec();
             sections.insert(name, u64_of(&entry[16..]));
         }
         let mut section = |layer: &Self, name: &str| {
-            sections
-                .remove(name.as_bytes())
-                .ok_or_else(|| layer.at(toc, "sections without it".to_owned(), &format!("a section {name}")))
+            sections.remove(name.as_bytes()).ok_or_else(|| {
+                layer.values.file.at(toc, "sections without it".to_owned(), &format!("a section {name}"))
+            })
         };
         let [tokens, fields, fieldsets, paths, specs] =
             ["TOKENS", "FIELDS", "FIELDSETS", "PATHS", "SPECS"].map(|name| section(&layer, name));
         layer.read_tokens(tokens?)?;
         layer.read_fields(fields?)?;
-        let (at, count) = layer.counted(fieldsets?)?;
-        layer.fieldsets = layer.ints(at, count)?.0;
+        let (at, count) = layer.values.file.counted(fieldsets?)?;
+        layer.fieldsets = layer.values.file.ints(at, count)?.0;
         layer.read_paths(paths?)?;
         layer.read_specs(specs?)?;
         Ok(layer)
     }
 
     fn read_tokens(&mut self, at: u64) -> Result<(), HairFileError> {
-        let (count, length) = (self.u64(at)?, self.u64(at + 8)?);
-        let (text, _) = self.unpacked(at + 16, length, length)?;
+        let (count, length) = (self.values.file.u64(at)?, self.values.file.u64(at + 8)?);
+        let (text, _) = self.values.file.unpacked(at + 16, length, length)?;
         if text.len() as u64 != length || text.last().is_some_and(|&byte| byte != 0) {
-            return Err(self.at(
+            return Err(self.values.file.at(
                 at,
                 format!("{} bytes of words", text.len()),
                 "as many as it says, and an end",
             ));
         }
         let words = text.strip_suffix(&[0]).unwrap_or(&text).split(|&byte| byte == 0);
-        self.tokens = words.map(|word| String::from_utf8_lossy(word).into_owned()).collect();
-        if !text.is_empty() && self.tokens.len() as u64 != count {
-            return Err(self.at(at, format!("{} words", self.tokens.len()), &format!("{count}")));
+        self.values.tokens = words.map(|word| String::from_utf8_lossy(word).into_owned()).collect();
+        if !text.is_empty() && self.values.tokens.len() as u64 != count {
+            return Err(self.values.file.at(
+                at,
+                format!("{} words", self.values.tokens.len()),
+                &format!("{count}"),
+            ));
         }
         Ok(())
     }
 
     fn read_fields(&mut self, at: u64) -> Result<(), HairFileError> {
-        let (at, count) = self.counted(at)?;
-        let (tokens, at) = self.ints(at, count)?;
-        let (values, _) = self.unpacked(at, 8 * count, 8 * count)?;
+        let (at, count) = self.values.file.counted(at)?;
+        let (tokens, at) = self.values.file.ints(at, count)?;
+        let (values, _) = self.values.file.unpacked(at, 8 * count, 8 * count)?;
         self.fields = tokens.into_iter().zip(values.chunks_exact(8).map(u64_of)).collect();
         Ok(())
     }
 
     /// The tree of paths: each entry is followed by its children, and says how far its next sibling is.
     fn read_paths(&mut self, at: u64) -> Result<(), HairFileError> {
-        let (start, count) = self.counted(at)?;
-        let (start, encoded) = self.counted(start)?;
-        let (indices, next) = self.ints(start, encoded)?;
-        let (names, next) = self.ints(next, encoded)?;
-        let (jumps, _) = self.ints(next, encoded)?;
-        let wrong = |what: &str| self.at(at, format!("a tree of paths with {what}"), "a tree");
+        let (start, count) = self.values.file.counted(at)?;
+        let (start, encoded) = self.values.file.counted(start)?;
+        let (indices, next) = self.values.file.ints(start, encoded)?;
+        let (names, next) = self.values.file.ints(next, encoded)?;
+        let (jumps, _) = self.values.file.ints(next, encoded)?;
+        let wrong = |what: &str| self.values.file.at(at, format!("a tree of paths with {what}"), "a tree");
         let empty = Node { parent: NOTHING, token: NOTHING, depth: 0, fieldset: NOTHING, spec_type: 0 };
         let mut nodes = vec![empty; count as usize];
         let mut visited = vec![false; indices.len()];
@@ -145,7 +149,7 @@ impl<'a> CrateLayer<'a> {
                 nodes[node as usize] = Node { parent, token, depth, ..empty };
                 if parent == NOTHING {
                     root = node;
-                } else if token as usize >= self.tokens.len() {
+                } else if token as usize >= self.values.tokens.len() {
                     return Err(wrong("a name out of range"));
                 } else if name < 0 {
                     properties.insert((parent, token), node);
@@ -167,16 +171,20 @@ impl<'a> CrateLayer<'a> {
     }
 
     fn read_specs(&mut self, at: u64) -> Result<(), HairFileError> {
-        let (start, count) = self.counted(at)?;
-        let (paths, next) = self.ints(start, count)?;
-        let (fieldsets, next) = self.ints(next, count)?;
-        let (types, _) = self.ints(next, count)?;
+        let (start, count) = self.values.file.counted(at)?;
+        let (paths, next) = self.values.file.ints(start, count)?;
+        let (fieldsets, next) = self.values.file.ints(next, count)?;
+        let (types, _) = self.values.file.ints(next, count)?;
         for ((path, fieldset), spec_type) in paths.into_iter().zip(fieldsets).zip(types) {
             if fieldset as usize >= self.fieldsets.len() {
-                return Err(self.at(at, format!("fields from {fieldset} on"), "fields that there are"));
+                return Err(self.values.file.at(
+                    at,
+                    format!("fields from {fieldset} on"),
+                    "fields that there are",
+                ));
             }
             let Some(node) = self.nodes.get_mut(path as usize) else {
-                return Err(self.at(at, format!("path {path}"), "a path that there is"));
+                return Err(self.values.file.at(at, format!("path {path}"), "a path that there is"));
             };
             (node.fieldset, node.spec_type) = (fieldset, spec_type);
         }
@@ -189,18 +197,18 @@ impl<'a> CrateLayer<'a> {
         let run = self.fieldsets.get(start..)?.iter().take_while(|&&field| field != NOTHING);
         let mut fields = run.filter_map(|&field| self.fields.get(field as usize));
         fields
-            .find(|(token, _)| self.tokens.get(*token as usize).is_some_and(|token| token == name))
+            .find(|(token, _)| self.values.tokens.get(*token as usize).is_some_and(|token| token == name))
             .map(|&(_, value)| value)
     }
 
     fn property(&self, prim: usize, name: &str) -> Option<u32> {
-        let token = self.tokens.iter().position(|token| token == name)?;
+        let token = self.values.tokens.iter().position(|token| token == name)?;
         self.properties.get(&(prim as u32, token as u32)).copied()
     }
 
     fn token_of(&mut self, node: u32, field: &str) -> Result<Option<String>, HairFileError> {
         let Some(value) = self.field(node, field) else { return Ok(None) };
-        Ok(match self.value(value, 1)? {
+        Ok(match self.values.value(value, 1)? {
             Some(Value::Token(token)) => Some(token),
             _ => None,
         })
@@ -211,7 +219,7 @@ impl<'a> CrateLayer<'a> {
         // `def`; `over` and `class` define nothing to draw.
         let defined = self.field(node, "specifier").is_some_and(|value| value as u8 == 0);
         let active = match self.field(node, "active") {
-            Some(value) => self.value(value, 1)? != Some(Value::Bool(false)),
+            Some(value) => self.values.value(value, 1)? != Some(Value::Bool(false)),
             None => true,
         };
         Ok(defined && active)
@@ -249,7 +257,7 @@ impl Layer for CrateLayer<'_> {
         let mut at = prim as u32;
         while at != NOTHING && at != self.root {
             let node = self.nodes[at as usize];
-            names.push(self.tokens.get(node.token as usize).map_or("", String::as_str));
+            names.push(self.values.tokens.get(node.token as usize).map_or("", String::as_str));
             at = node.parent;
         }
         names.iter().rev().fold(String::new(), |path, name| path + "/" + name)
@@ -258,13 +266,13 @@ impl Layer for CrateLayer<'_> {
     fn attribute(&mut self, prim: usize, name: &str, most: usize) -> Result<Option<Value>, HairFileError> {
         let Some(property) = self.property(prim, name) else { return Ok(None) };
         if let Some(samples) = self.field(property, "timeSamples")
-            && let Some(first) = self.first_sample(samples)?
-            && let Some(value) = self.value(first, most)?
+            && let Some(first) = self.values.first_sample(samples)?
+            && let Some(value) = self.values.value(first, most)?
         {
             return Ok(Some(value));
         }
         match self.field(property, "default") {
-            Some(value) => self.value(value, most),
+            Some(value) => self.values.value(value, most),
             None => Ok(None),
         }
     }
@@ -278,7 +286,7 @@ impl Layer for CrateLayer<'_> {
 
     fn metadata(&mut self, name: &str) -> Result<Option<Value>, HairFileError> {
         match self.field(self.root, name) {
-            Some(value) => self.value(value, 1),
+            Some(value) => self.values.value(value, 1),
             None => Ok(None),
         }
     }
@@ -286,11 +294,11 @@ impl Layer for CrateLayer<'_> {
     fn composes(&self) -> bool {
         let refers = ["references", "payload", "subLayers", "variantSetNames"];
         self.fields.iter().any(|(token, _)| {
-            self.tokens.get(*token as usize).is_some_and(|token| refers.contains(&token.as_str()))
+            self.values.tokens.get(*token as usize).is_some_and(|token| refers.contains(&token.as_str()))
         })
     }
 
     fn malformed(&self, found: String, wanted: &str) -> HairFileError {
-        self.at(0, found, wanted)
+        self.values.file.at(0, found, wanted)
     }
 }

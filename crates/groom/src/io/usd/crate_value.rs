@@ -3,8 +3,7 @@
 use glam::Vec3;
 
 use super::HairFileError;
-use super::crate_bytes::u64_of;
-use super::crate_file::CrateLayer;
+use super::crate_bytes::{CrateBytes, u64_of};
 use super::value::{Value, half};
 
 const IS_ARRAY: u64 = 1 << 63;
@@ -58,7 +57,15 @@ impl Number {
     }
 }
 
-impl CrateLayer<'_> {
+/// The values of a crate: where they are, and what they refer to.
+pub(super) struct CrateValues<'a> {
+    pub(super) file: CrateBytes<'a>,
+    /// Version of the crate: major, minor, patch.
+    pub(super) version: [u8; 3],
+    pub(super) tokens: Vec<String>,
+}
+
+impl CrateValues<'_> {
     /// The value of the first time sample; none where there is none.
     pub(super) fn first_sample(&mut self, samples: u64) -> Result<Option<u64>, HairFileError> {
         if samples >> 48 & 0xff != kind::TIME_SAMPLES {
@@ -66,13 +73,13 @@ impl CrateLayer<'_> {
         }
         let at = samples & PAYLOAD;
         // Two relative jumps: to the times, and behind their value to the number of samples and their values.
-        let times = at.wrapping_add(self.u64(at)?);
+        let times = at.wrapping_add(self.file.u64(at)?);
         let at = times.saturating_add(8);
-        let values = at.wrapping_add(self.u64(at)?);
-        if self.u64(values)? == 0 {
+        let values = at.wrapping_add(self.file.u64(at)?);
+        if self.file.u64(values)? == 0 {
             return Ok(None);
         }
-        self.u64(values.saturating_add(8)).map(Some)
+        self.file.u64(values.saturating_add(8)).map(Some)
     }
 
     /// Reads a value; none of a type that curves and transforms do not have. Arrays that are compressed have `most`
@@ -120,7 +127,7 @@ impl CrateLayer<'_> {
     }
 
     fn numbers(&mut self, at: u64, number: Number, count: usize) -> Result<Value, HairFileError> {
-        let bytes = self.bytes(at, (count * number.size()) as u64, "bytes of a value")?;
+        let bytes = self.file.bytes(at, (count * number.size()) as u64, "bytes of a value")?;
         Ok(Value::Numbers(bytes.chunks_exact(number.size()).map(|bytes| number.of(bytes)).collect()))
     }
 
@@ -135,11 +142,11 @@ impl CrateLayer<'_> {
         if at == 0 {
             return Ok(Value::Tokens(Vec::new()));
         }
-        let (count, start) = if is_array { self.length(at)? } else { (self.u64(at)?, at + 8) };
+        let (count, start) = if is_array { self.length(at)? } else { (self.file.u64(at)?, at + 8) };
         if count > most as u64 {
-            return Err(self.at(at, format!("{count} words"), &format!("{most} at most")));
+            return Err(self.file.at(at, format!("{count} words"), &format!("{most} at most")));
         }
-        let indices = self.bytes(start, 4 * count, "bytes of words")?;
+        let indices = self.file.bytes(start, 4 * count, "bytes of words")?;
         let words = indices.as_chunks::<4>().0.iter().map(|&index| u32::from_le_bytes(index));
         Ok(Value::Tokens(
             words.map(|index| self.tokens.get(index as usize).cloned().unwrap_or_default()).collect(),
@@ -151,12 +158,12 @@ impl CrateLayer<'_> {
         let (count, start) = if at == 0 { (0, 0) } else { self.length(at)? };
         let compressed = value & IS_COMPRESSED != 0 && count >= if self.version[1] < 7 { 16 } else { 4 };
         if compressed && count > most as u64 {
-            return Err(self.at(at, format!("{count} values"), &format!("{most} at most")));
+            return Err(self.file.at(at, format!("{count} values"), &format!("{most} at most")));
         }
         if compressed {
             return match kind {
                 kind::INT => {
-                    let ints = self.ints(start, count)?.0;
+                    let ints = self.file.ints(start, count)?.0;
                     Ok(Some(Value::Ints(ints.into_iter().map(|v| v as i32).collect())))
                 }
                 kind::HALF => self.packed_floats(start, count, Number::Half).map(Some),
@@ -176,7 +183,7 @@ impl CrateLayer<'_> {
             _ => return Ok(None),
         };
         let size = per * number.size();
-        let bytes = self.bytes(start, count.saturating_mul(size as u64), "bytes of an array")?;
+        let bytes = self.file.bytes(start, count.saturating_mul(size as u64), "bytes of an array")?;
         let items = bytes.chunks_exact(size);
         Ok(Some(if kind == kind::INT {
             Value::Ints(bytes.as_chunks::<4>().0.iter().map(|&four| i32::from_le_bytes(four)).collect())
@@ -190,24 +197,28 @@ impl CrateLayer<'_> {
 
     /// Numbers that are whole, or of few different values.
     fn packed_floats(&mut self, at: u64, count: u64, number: Number) -> Result<Value, HairFileError> {
-        let code = self.bytes(at, 1, "byte that says how numbers are compressed")?[0];
+        let code = self.file.bytes(at, 1, "byte that says how numbers are compressed")?[0];
         match code {
             b'i' => {
-                let ints = self.ints(at + 1, count)?.0;
+                let ints = self.file.ints(at + 1, count)?.0;
                 Ok(Value::Floats(ints.into_iter().map(|v| v as i32 as f32).collect()))
             }
             b't' => {
-                let size = self.bytes(at + 1, 4, "bytes of a number")?;
+                let size = self.file.bytes(at + 1, 4, "bytes of a number")?;
                 let different = u64::from(u32::from_le_bytes([size[0], size[1], size[2], size[3]]));
                 let length = different * number.size() as u64;
-                let table = self.bytes(at + 5, length, "bytes of a table")?;
-                let indices = self.ints(at + 5 + length, count)?.0;
+                let table = self.file.bytes(at + 5, length, "bytes of a table")?;
+                let indices = self.file.ints(at + 5 + length, count)?.0;
                 let pick = |index: u32| {
                     table.get(index as usize * number.size()..).map_or(f64::NAN, |b| number.of(b))
                 };
                 Ok(Value::Floats(indices.into_iter().map(|index| pick(index) as f32).collect()))
             }
-            _ => Err(self.at(at, format!("numbers compressed by `{}`", code.escape_ascii()), "`i` or `t`")),
+            _ => Err(self.file.at(
+                at,
+                format!("numbers compressed by `{}`", code.escape_ascii()),
+                "`i` or `t`",
+            )),
         }
     }
 
@@ -216,9 +227,9 @@ impl CrateLayer<'_> {
         // Before version 0.5 the number of dimensions came first, which always was one.
         let at = if self.version[1] < 5 { at + 4 } else { at };
         if self.version[1] < 7 {
-            let four = self.bytes(at, 4, "bytes of a length")?;
+            let four = self.file.bytes(at, 4, "bytes of a length")?;
             return Ok((u64::from(u32::from_le_bytes([four[0], four[1], four[2], four[3]])), at + 4));
         }
-        Ok((self.u64(at)?, at + 8))
+        Ok((self.file.u64(at)?, at + 8))
     }
 }

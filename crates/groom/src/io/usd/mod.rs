@@ -12,21 +12,31 @@ mod text;
 mod transform;
 mod value;
 
-use std::fs::File;
-
 use glam::{DMat4, Vec3};
 
-use super::clean::RawHair;
-use super::{HairFileError, HairFormat};
+use super::HairFileError;
+use super::file::RawHair;
+use super::format::HairFormat;
+use super::source::Source;
+use super::units::UpAxis;
 use basis::{Shape, Spread};
-pub(super) use crate_bytes::Input;
-pub(super) use crate_file::CRATE_MAGIC;
-use crate_file::CrateLayer;
+use crate_file::{CRATE_MAGIC, CrateLayer};
 use text::TextLayer;
 use value::Value;
 
+pub(super) static FORMAT: HairFormat = HairFormat {
+    label: "USD BasisCurves",
+    extensions: &["usdc", "usda", "usd"],
+    signature: "`#usda` or `PXR-USDC` (USD)",
+    states_unit: true,
+    common_up: UpAxis::Y,
+    recognises: |start| start.starts_with(CRATE_MAGIC) || start.starts_with(TEXT_MAGIC),
+    read,
+    write: None,
+};
+
 /// What a text file starts with.
-pub(super) const TEXT_MAGIC: &[u8] = b"#usda";
+const TEXT_MAGIC: &[u8] = b"#usda";
 
 /// The most points that curves are tessellated into.
 const MOST_POINTS: usize = 1 << 28;
@@ -58,24 +68,15 @@ trait Layer {
     fn malformed(&self, found: String, wanted: &str) -> HairFileError;
 }
 
-/// Reads a text file that is in memory.
-pub(super) fn read_text(name: &str, data: &[u8]) -> Result<RawHair, HairFileError> {
-    read(&mut TextLayer::parse(name, data)?)
+fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
+    if source.start().starts_with(CRATE_MAGIC) {
+        return read_layer(&mut CrateLayer::open(name, source)?);
+    }
+    read_layer(&mut TextLayer::parse(name, &source.into_bytes(name)?)?)
 }
 
-/// Reads a crate, as far as it is needed.
-pub(super) fn read_crate(name: &str, input: Input<'_>) -> Result<RawHair, HairFileError> {
-    read(&mut CrateLayer::open(name, input)?)
-}
-
-/// Reads a crate in a file.
-pub(super) fn read_crate_file(name: &str, file: File) -> Result<RawHair, HairFileError> {
-    let input = Input::of_file(file).map_err(|source| HairFileError::Io { name: name.to_owned(), source })?;
-    read_crate(name, input)
-}
-
-fn read(layer: &mut impl Layer) -> Result<RawHair, HairFileError> {
-    let mut raw = RawHair::new(HairFormat::Usd, Vec::new(), Vec::new());
+fn read_layer(layer: &mut impl Layer) -> Result<RawHair, HairFileError> {
+    let mut raw = RawHair::new(Vec::new(), Vec::new());
     let metres_from_stage = stage_transform(layer, &mut raw.notes)?;
     let prims = layer.curves()?;
     if prims.is_empty() {

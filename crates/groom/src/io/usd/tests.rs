@@ -2,7 +2,7 @@ use std::io::Cursor;
 
 use openusd::usdc::CrateWriter;
 
-use super::super::{HairFile, HairFileError, HairFormat, load_hair_bytes};
+use super::super::{HairFile, HairFileError, load_hair_bytes};
 use super::*;
 
 /// Two prims below transforms, in centimetres with Z up; the first one moves.
@@ -79,7 +79,7 @@ fn load(text: &str) -> [Result<HairFile, HairFileError>; 2] {
 fn text_and_crate_are_read_alike_with_unit_axis_transforms_and_the_first_time() {
     let [text, binary] = load(STAGE).map(|file| file.expect("hair"));
     assert_eq!(text, binary);
-    assert_eq!(text.format, HairFormat::Usd);
+    assert_eq!(text.format, FORMAT.label);
     assert_eq!(text.strands(), 3);
     // Time 3: (0, 0, 1) twice as large, at (10, 0, 100) cm with Z up: 1.02 m high.
     let near = |a: Vec3, b: [f32; 3]| assert!(a.abs_diff_eq(b.into(), 1e-6), "{a} for {b:?}");

@@ -2,41 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-use super::{HairFile, guess_units};
-use crate::import::{ImportSettings, Orientation};
-
-/// A box along the axes.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Bounds {
-    /// Its smallest corner.
-    pub min: Vec3,
-    /// Its largest corner.
-    pub max: Vec3,
-}
-
-impl Bounds {
-    /// The box of no points.
-    pub const EMPTY: Self = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
-
-    /// Grows to hold `point`.
-    pub fn include(&mut self, point: Vec3) {
-        self.min = self.min.min(point);
-        self.max = self.max.max(point);
-    }
-
-    /// Lengths of the sides; zero for the empty box.
-    pub fn size(&self) -> Vec3 {
-        (self.max - self.min).max(Vec3::ZERO)
-    }
-
-    /// The middle.
-    pub fn centre(&self) -> Vec3 {
-        0.5 * (self.min + self.max)
-    }
-}
+use super::orientation::Orientation;
+use super::settings::ImportSettings;
+use crate::io::{Bounds, HairFile, Unit, guess_units};
 
 /// What a hair file holds, in the unit and axes that settings say.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -81,10 +51,10 @@ pub fn hair_info(file: &HairFile, settings: &ImportSettings) -> HairInfo {
     }
     let unit = match settings.unit.metres() {
         Some(_) => settings.unit.id(),
-        None => guess.unit.map_or("scaled", super::Unit::id),
+        None => guess.unit.map_or("scaled", Unit::id),
     };
     HairInfo {
-        format: file.format.to_string(),
+        format: file.format.clone(),
         strands: file.strands() as u64,
         points: file.points.len() as u64,
         segments: file.segments() as u64,

@@ -1,0 +1,131 @@
+//! All hair formats, and reading a file of any of them.
+
+use std::path::Path;
+
+use super::clean::clean;
+use super::file::HairFile;
+use super::format::HairFormat;
+use super::source::Source;
+use super::{HairFileError, tressfx, usd, yuksel};
+
+/// Every hair format that is read. A new format is a file or folder beside this one, and a line here.
+pub static HAIR_FORMATS: [&HairFormat; 3] = [&yuksel::FORMAT, &tressfx::FORMAT, &usd::FORMAT];
+
+impl HairFormat {
+    /// The format whose files have the extension of `path`, in any case.
+    pub fn of_path(path: &Path) -> Option<&'static Self> {
+        let extension = path.extension()?.to_str()?.to_ascii_lowercase();
+        HAIR_FORMATS.into_iter().find(|format| format.extensions.contains(&extension.as_str()))
+    }
+
+    /// The format of a file that begins with these bytes.
+    pub fn of_start(start: &[u8]) -> Option<&'static Self> {
+        HAIR_FORMATS.into_iter().find(|format| (format.recognises)(start))
+    }
+
+    /// The extensions of all formats, without the dot.
+    pub fn all_extensions() -> impl Iterator<Item = &'static str> {
+        HAIR_FORMATS.into_iter().flat_map(|format| format.extensions).copied()
+    }
+}
+
+/// Reads a hair file. Its content says the format; its name does not matter.
+///
+/// # Errors
+/// The file cannot be read, has no known format, contradicts itself, ends early, or holds no strand that can be
+/// drawn. Memory is allocated only after the counts in the file have been compared with its size.
+pub fn load_hair(path: &Path) -> Result<HairFile, HairFileError> {
+    let name = path.display().to_string();
+    // The start is checked before the rest is read, so that a film dropped by mistake is refused at once.
+    let source = Source::open(&name, path)?;
+    load(&name, source)
+}
+
+/// Reads a hair file that is in memory; `name` is for messages.
+///
+/// # Errors
+/// As [`load_hair`], except for reading.
+pub fn load_hair_bytes(name: &str, data: &[u8]) -> Result<HairFile, HairFileError> {
+    load(name, Source::Memory(data))
+}
+
+fn load(name: &str, source: Source<'_>) -> Result<HairFile, HairFileError> {
+    let Some(format) = HairFormat::of_start(source.start()) else {
+        let found = match source.start().first_chunk::<4>() {
+            Some(start) => format!("`{}`", start.escape_ascii()),
+            None => format!("a file of {} bytes", source.start().len()),
+        };
+        let [first @ .., last] = HAIR_FORMATS.map(|format| format.signature);
+        let wanted = format!("{}, or {last}", first.join(", "));
+        return Err(HairFileError::Malformed { name: name.to_owned(), offset: 0, found, wanted });
+    };
+    clean(name, format, (format.read)(name, source)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::{HAIR_FORMATS, HairFormat};
+    use crate::{Facing, HairFile, ImportSettings, Unit, UpAxis, load_hair_bytes};
+
+    /// Two strands of three points, metres, Y up.
+    fn hair() -> HairFile {
+        let text = "#usda 1.0\n(\n metersPerUnit = 1\n upAxis = \"Y\"\n)\ndef BasisCurves \"a\"\n{\n\
+            uniform token type = \"linear\"\nint[] curveVertexCounts = [3, 3]\n\
+            point3f[] points = [(0, 0.1, 0.01), (0, 0.2, 0), (0, 0.3, 0), (0.1, 0, 0), (0.2, 0, 0.05), (0.3, 0, 0)]\n\
+            float[] widths = [1e-4, 2e-4, 3e-4, 4e-4, 5e-4, 6e-4]\n}\n";
+        load_hair_bytes("a.usda", text.as_bytes()).expect("hair")
+    }
+
+    fn write(extension: &str, hair: &HairFile) -> Result<Vec<u8>, String> {
+        let format = HairFormat::of_path(Path::new("a").with_extension(extension).as_path());
+        let write = format.and_then(|format| format.write).expect("a format that is written");
+        write(hair)
+    }
+
+    #[test]
+    fn written_files_come_back() {
+        let settings = |unit, up, facing| ImportSettings { unit, up, facing, ..ImportSettings::default() };
+        let usual = settings(Unit::Auto, UpAxis::Y, Facing::PlusZ);
+        let hair = hair().in_metres(&usual);
+        for (name, bytes, settings) in [
+            ("a.hair", write("hair", &hair), settings(Unit::Metre, UpAxis::Z, Facing::PlusY)),
+            ("a.tfx", write("tfx", &hair), settings(Unit::Centimetre, UpAxis::Y, Facing::PlusZ)),
+        ] {
+            let back = load_hair_bytes(name, &bytes.expect(name)).expect(name).in_metres(&settings);
+            assert_eq!(back.first_point, hair.first_point, "{name}");
+            let off = back.points.iter().zip(&hair.points).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+            assert!(off < 1e-6, "{name}: {off} m");
+            if name == "a.hair" {
+                assert_eq!(back.thickness, hair.thickness, "{name}");
+            }
+            // The control: read in another unit it is not the same.
+            assert!(back.in_metres(&usual).points[0].distance(hair.points[1]) > 1e-2, "{name}");
+        }
+    }
+
+    #[test]
+    fn strands_that_differ_are_refused_by_tressfx_in_words() {
+        let mut hair = hair();
+        hair.points.pop();
+        hair.first_point[2] = 5;
+        assert!(write("tfx", &hair).is_err_and(|why| why.contains("2 to 3 points")));
+    }
+
+    #[test]
+    fn no_two_formats_share_an_extension() {
+        let mut all: Vec<&str> = HairFormat::all_extensions().collect();
+        all.sort_unstable();
+        let count = all.len();
+        all.dedup();
+        assert_eq!(all.len(), count);
+        for format in HAIR_FORMATS {
+            for extension in format.extensions {
+                let name = format!("a.{}", extension.to_ascii_uppercase());
+                assert_eq!(HairFormat::of_path(Path::new(&name)), Some(format), "{name}");
+            }
+        }
+        assert_eq!(HairFormat::of_path(Path::new("a.obj")), None);
+    }
+}

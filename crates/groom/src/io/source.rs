@@ -1,0 +1,74 @@
+//! The bytes of a hair file, in memory or on disk.
+
+use std::borrow::Cow;
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
+use std::path::Path;
+
+use super::HairFileError;
+
+/// Bytes that are read from a file before its format is recognised.
+const START: u64 = 64;
+
+/// Where the bytes of a hair file are.
+pub(super) enum Source<'a> {
+    /// In memory.
+    Memory(&'a [u8]),
+    /// In a file of `length` bytes. The first ones have been read to `start`.
+    File { file: File, length: u64, start: Vec<u8> },
+}
+
+impl<'a> Source<'a> {
+    /// Opens a file and reads its start.
+    pub(super) fn open(name: &str, path: &Path) -> Result<Self, HairFileError> {
+        let open = || {
+            let mut file = File::open(path)?;
+            let mut start = Vec::new();
+            file.by_ref().take(START).read_to_end(&mut start)?;
+            let length = file.metadata()?.len();
+            Ok(Self::File { file, length, start })
+        };
+        open().map_err(|source| HairFileError::Io { name: name.to_owned(), source })
+    }
+
+    /// The first bytes: 64 of a file, all that are in memory.
+    pub(super) fn start(&self) -> &[u8] {
+        match self {
+            Self::Memory(data) => data,
+            Self::File { start, .. } => start,
+        }
+    }
+
+    /// Length of the file, bytes.
+    pub(super) fn len(&self) -> u64 {
+        match self {
+            Self::Memory(data) => data.len() as u64,
+            Self::File { length, .. } => *length,
+        }
+    }
+
+    /// `count` bytes from `at` on, which lie within [`Self::len`].
+    pub(super) fn read_at(&mut self, name: &str, at: u64, count: u64) -> Result<Vec<u8>, HairFileError> {
+        match self {
+            Self::Memory(data) => Ok(data[at as usize..(at + count) as usize].to_vec()),
+            Self::File { file, .. } => {
+                let mut bytes = vec![0; count as usize];
+                let read = file.seek(SeekFrom::Start(at)).and_then(|_| file.read_exact(&mut bytes));
+                read.map_err(|source| HairFileError::Io { name: name.to_owned(), source })?;
+                Ok(bytes)
+            }
+        }
+    }
+
+    /// All bytes.
+    pub(super) fn into_bytes(self, name: &str) -> Result<Cow<'a, [u8]>, HairFileError> {
+        match self {
+            Self::Memory(data) => Ok(Cow::Borrowed(data)),
+            Self::File { mut file, mut start, .. } => {
+                let read = file.read_to_end(&mut start);
+                read.map_err(|source| HairFileError::Io { name: name.to_owned(), source })?;
+                Ok(Cow::Owned(start))
+            }
+        }
+    }
+}

@@ -1,0 +1,175 @@
+//! Unit and axes of hair files.
+
+use glam::{Mat3, Quat, Vec3};
+use serde::{Deserialize, Serialize};
+
+/// The unit of a file's coordinates.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub enum Unit {
+    /// As [`guess_units`] says.
+    #[default]
+    Auto,
+    /// 1 m.
+    Metre,
+    /// 0.01 m.
+    Centimetre,
+    /// 0.001 m.
+    Millimetre,
+    /// 0.0254 m.
+    Inch,
+    /// Metres a unit, 1e-12 to 1e12.
+    Custom(f32),
+}
+
+impl Unit {
+    /// The units that have a name, in the order in which they are tried.
+    pub const NAMED: [Self; 4] = [Self::Metre, Self::Centimetre, Self::Millimetre, Self::Inch];
+
+    /// Stable name for command lines and reports.
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Metre => "m",
+            Self::Centimetre => "cm",
+            Self::Millimetre => "mm",
+            Self::Inch => "in",
+            Self::Custom(_) => "custom",
+        }
+    }
+
+    /// The word for it in sentences.
+    pub(super) fn word(self) -> &'static str {
+        match self {
+            Self::Metre => "metre",
+            Self::Centimetre => "centimetre",
+            Self::Millimetre => "millimetre",
+            Self::Inch => "inch",
+            Self::Auto | Self::Custom(_) => "unit of its own",
+        }
+    }
+
+    /// The unit of that [`Self::id`], except for custom ones.
+    pub fn from_id(id: &str) -> Option<Self> {
+        Self::NAMED.into_iter().chain([Self::Auto]).find(|unit| unit.id() == id)
+    }
+
+    /// Metres a unit; none for [`Self::Auto`] and for custom units that are no positive number.
+    pub fn metres(self) -> Option<f32> {
+        match self {
+            Self::Auto => None,
+            Self::Metre => Some(1.0),
+            Self::Centimetre => Some(0.01),
+            Self::Millimetre => Some(0.001),
+            Self::Inch => Some(0.0254),
+            Self::Custom(metres) => (1e-12..=1e12).contains(&metres).then_some(metres),
+        }
+    }
+}
+
+/// Which axis of a file points up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum UpAxis {
+    /// As [`guess_units`] says.
+    #[default]
+    Auto,
+    /// +Y, as in TressFX.
+    Y,
+    /// +Z, as in the known `.hair` files.
+    Z,
+}
+
+impl UpAxis {
+    /// Stable name for command lines and reports.
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Y => "y",
+            Self::Z => "z",
+        }
+    }
+
+    /// The axis of that [`Self::id`].
+    pub fn from_id(id: &str) -> Option<Self> {
+        [Self::Auto, Self::Y, Self::Z].into_iter().find(|up| up.id() == id)
+    }
+
+    pub(super) fn direction(self) -> Vec3 {
+        if self == Self::Z { Vec3::Z } else { Vec3::Y }
+    }
+}
+
+/// Toward which axis of a file the face looks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Facing {
+    /// As [`guess_units`] says.
+    #[default]
+    Auto,
+    /// +X.
+    PlusX,
+    /// -X.
+    MinusX,
+    /// +Y, of files with Z up.
+    PlusY,
+    /// -Y, of files with Z up.
+    MinusY,
+    /// +Z, of files with Y up.
+    PlusZ,
+    /// -Z, of files with Y up.
+    MinusZ,
+}
+
+impl Facing {
+    /// Every way to face, after `Auto`.
+    pub const AXES: [Self; 6] =
+        [Self::PlusX, Self::MinusX, Self::PlusY, Self::MinusY, Self::PlusZ, Self::MinusZ];
+
+    /// Stable name for command lines and reports.
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::PlusX => "+x",
+            Self::MinusX => "-x",
+            Self::PlusY => "+y",
+            Self::MinusY => "-y",
+            Self::PlusZ => "+z",
+            Self::MinusZ => "-z",
+        }
+    }
+
+    /// The axis of that [`Self::id`].
+    pub fn from_id(id: &str) -> Option<Self> {
+        Self::AXES.into_iter().chain([Self::Auto]).find(|facing| facing.id() == id)
+    }
+
+    pub(crate) fn is_square_to(self, up: UpAxis) -> bool {
+        self.direction().dot(up.direction()) == 0.0
+    }
+
+    pub(super) fn direction(self) -> Vec3 {
+        match self {
+            Self::PlusX => Vec3::X,
+            Self::MinusX => Vec3::NEG_X,
+            Self::PlusY => Vec3::Y,
+            Self::MinusY => Vec3::NEG_Y,
+            Self::Auto | Self::PlusZ => Vec3::Z,
+            Self::MinusZ => Vec3::NEG_Z,
+        }
+    }
+}
+
+/// The rotation that carries file axes to head axes: `up` to +Y, `facing` to +Z. A facing along `up` counts
+/// as the usual one.
+pub(crate) fn rotation_to_head_axes(up: UpAxis, facing: Facing) -> Quat {
+    let up_direction = up.direction();
+    let mut forward = facing.direction();
+    if facing == Facing::Auto || !facing.is_square_to(up) {
+        forward = usual_facing(up).direction();
+    }
+    let file_from_head = Mat3::from_cols(up_direction.cross(forward), up_direction, forward);
+    Quat::from_mat3(&file_from_head.transpose())
+}
+
+/// +Y where Z is up, +Z where Y is.
+pub(super) fn usual_facing(up: UpAxis) -> Facing {
+    if up == UpAxis::Z { Facing::PlusY } else { Facing::PlusZ }
+}
