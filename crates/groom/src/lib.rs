@@ -15,6 +15,7 @@ mod interpolate;
 mod io;
 mod look;
 mod obstacle;
+mod operation;
 mod plain_head;
 mod polyline;
 mod presets;
@@ -44,6 +45,7 @@ pub use io::{
 pub use look::HairLook;
 pub(crate) use obstacle::Bounded;
 pub use obstacle::{NoObstacle, Obstacle};
+pub use operation::{HairOperation, OperatedHair, OperationCache};
 pub use plain_head::PlainHead;
 pub use presets::Preset;
 pub use scalp::{Scalp, ScalpError, ScalpPoint};

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use glam::Vec3;
-use lovelock_groom::{HairFile, ImportSettings, Unit, UpAxis, load_hair};
+use lovelock_groom::{HAIR_FORMATS, HairFile, HairFormat, ImportSettings, Unit, UpAxis, load_hair};
 use lovelock_project::error::StudioError;
 use lovelock_project::files::write_whole;
 use lovelock_record::{CurveFormat, CurveFrame, CurveScene, CurveWriter, FrameRate, RecordError};
@@ -27,25 +27,25 @@ pub struct ConvertReport {
     pub notes: Vec<String>,
 }
 
-/// Writes the hair of a file in another format: `.hair`, `.tfx`, `.usda`, `.usdc`, `.usd` or `.glb`, by the name of `out`.
+/// Writes the hair of a file in another format, by the extension of `out`: one of [`written_extensions`].
 ///
 /// # Errors
 /// A file that cannot be read, a name of no such format, hair that the format cannot hold, and a full disk.
 pub fn convert(input: &Path, out: &Path, unit: Unit, up: UpAxis) -> Result<ConvertReport, StudioError> {
-    let ending = out.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
-    let (is_hair, is_tressfx) = (ending.as_deref() == Some("hair"), ending.as_deref() == Some("tfx"));
-    if !is_hair && !is_tressfx && CurveFormat::of(out).is_none() {
+    let write = HairFormat::of_path(out).and_then(|format| format.write);
+    if write.is_none() && CurveFormat::of(out).is_none() {
         return Err(StudioError::option(format!(
-            "{}: no format of hair: wanted a name ending in .hair, .tfx, .usda, .usdc, .usd or .glb",
-            out.display()
+            "{}: found no extension of a hair format; wanted .{}",
+            out.display(),
+            written_extensions().join(", .")
         )));
     }
     let read = load_hair(input).map_err(|error| StudioError::input(input, error))?;
     let settings = ImportSettings { unit, up, ..ImportSettings::default() };
     let hair = read.in_metres(&settings);
-    let bytes = if is_hair || is_tressfx {
-        let bytes = if is_hair { hair.to_yuksel() } else { hair.to_tressfx() };
-        let bytes = bytes.map_err(|why| StudioError::input(input, format!("{}: {why}", input.display())))?;
+    let bytes = if let Some(write) = write {
+        let bytes =
+            write(&hair).map_err(|why| StudioError::input(input, format!("{}: {why}", input.display())))?;
         write_whole(out, &bytes)?;
         bytes.len() as u64
     } else {
@@ -65,6 +65,12 @@ pub fn convert(input: &Path, out: &Path, unit: Unit, up: UpAxis) -> Result<Conve
         bytes,
         notes: hair.notes,
     })
+}
+
+/// Extensions of the hair files that can be written, without the dot.
+pub fn written_extensions() -> Vec<&'static str> {
+    let written = HAIR_FORMATS.into_iter().filter(|format| format.write.is_some());
+    written.flat_map(|format| format.extensions).copied().chain(CurveFormat::EXTENSIONS).collect()
 }
 
 fn write_curves(hair: &HairFile, out: &Path) -> Result<u64, RecordError> {
@@ -130,6 +136,6 @@ mod tests {
             assert!((a.y - b.y).abs() < 1e-4 && (a.length() - b.length()).abs() < 1e-4, "{a} for {b}");
         }
         let error = convert(&from, &at("f.obj"), Unit::Auto, UpAxis::Auto).expect_err("no such format");
-        assert!(error.to_string().contains(".hair, .tfx, .usda") && error.exit_code() == 2, "{error}");
+        assert!(error.to_string().contains(".hair, .tfx, .usdc") && error.exit_code() == 2, "{error}");
     }
 }

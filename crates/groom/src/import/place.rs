@@ -4,9 +4,10 @@ use glam::{EulerRot, Quat, Vec3};
 use rayon::prelude::*;
 
 use super::fit::{Fit, fit};
+use super::orientation::Orientation;
 use super::snap::{Skin, shifts};
 use super::surface::Surface;
-use super::{ImportError, ImportSettings, Orientation};
+use super::{ImportError, ImportSettings};
 use crate::io::fit_sphere;
 use crate::{Bounds, HairFile, Obstacle, Scalp};
 

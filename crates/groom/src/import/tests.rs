@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use glam::{Affine3A, Quat, Vec3};
 
+use super::orientation::Orientation;
 use super::*;
 use crate::{GuideFrame, PlainHead, Strands, Unit, UpAxis, interpolate, load_hair, load_hair_bytes};
 

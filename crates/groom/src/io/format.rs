@@ -5,6 +5,9 @@ use super::file::{HairFile, RawHair};
 use super::source::Source;
 use super::units::UpAxis;
 
+/// Makes a file of hair, or says in words why its format cannot hold the hair.
+pub type HairWriter = fn(&HairFile) -> Result<Vec<u8>, String>;
+
 /// A hair file format. [`HAIR_FORMATS`](super::HAIR_FORMATS) lists all of them.
 pub struct HairFormat {
     /// Name in reports: `Yuksel .hair`.
@@ -17,13 +20,14 @@ pub struct HairFormat {
     pub(super) states_unit: bool,
     /// The axis that points up in most of its files.
     pub(super) common_up: UpAxis,
-    /// Whether a file that begins with these bytes has this format.
-    pub(super) recognises: fn(&[u8]) -> bool,
+    /// Bytes that only its files begin with, one of them each.
+    pub(super) magics: &'static [&'static [u8]],
+    /// Whether a file without such a magic may have this format, from its first bytes.
+    pub(super) may_begin: fn(&[u8]) -> bool,
     /// Reads a file; its name is for messages.
     pub(super) read: fn(&str, Source<'_>) -> Result<RawHair, HairFileError>,
-    /// Writes hair that is in metres with Y up ([`HairFile::in_metres`]), or says in words why the format cannot hold it.
-    /// `None` for formats that this crate only reads.
-    pub write: Option<fn(&HairFile) -> Result<Vec<u8>, String>>,
+    /// Writes hair that is in metres with Y up ([`HairFile::in_metres`]); `None` for formats that this crate only reads.
+    pub write: Option<HairWriter>,
 }
 
 impl PartialEq for HairFormat {

@@ -18,14 +18,19 @@ impl HairFormat {
         HAIR_FORMATS.into_iter().find(|format| format.extensions.contains(&extension.as_str()))
     }
 
-    /// The format of a file that begins with these bytes.
-    pub fn of_start(start: &[u8]) -> Option<&'static Self> {
-        HAIR_FORMATS.into_iter().find(|format| (format.recognises)(start))
+    /// The format of a file that begins with `start`, where these bytes leave no doubt: TressFX files have no magic.
+    pub fn of_magic(start: &[u8]) -> Option<&'static Self> {
+        HAIR_FORMATS.into_iter().find(|format| format.magics.iter().any(|magic| start.starts_with(magic)))
+    }
+
+    /// The format of a hair file that begins with `start`.
+    fn of_start(start: &[u8]) -> Option<&'static Self> {
+        Self::of_magic(start).or_else(|| HAIR_FORMATS.into_iter().find(|format| (format.may_begin)(start)))
     }
 
     /// The extensions of all formats, without the dot.
-    pub fn all_extensions() -> impl Iterator<Item = &'static str> {
-        HAIR_FORMATS.into_iter().flat_map(|format| format.extensions).copied()
+    pub fn all_extensions() -> Vec<&'static str> {
+        HAIR_FORMATS.into_iter().flat_map(|format| format.extensions).copied().collect()
     }
 }
 
@@ -115,7 +120,7 @@ mod tests {
 
     #[test]
     fn no_two_formats_share_an_extension() {
-        let mut all: Vec<&str> = HairFormat::all_extensions().collect();
+        let mut all = HairFormat::all_extensions();
         all.sort_unstable();
         let count = all.len();
         all.dedup();

@@ -18,7 +18,8 @@ pub(super) static FORMAT: HairFormat = HairFormat {
     signature: "a version from 3.0 to 4.9 as a float (TressFX)",
     states_unit: false,
     common_up: UpAxis::Y,
-    recognises: |start| version_of(start).is_some(),
+    magics: &[],
+    may_begin: |start| version_of(start).is_some(),
     read,
     write: Some(write),
 };

@@ -16,7 +16,8 @@ pub(super) static FORMAT: HairFormat = HairFormat {
     signature: "`HAIR` (Yuksel)",
     states_unit: false,
     common_up: UpAxis::Z,
-    recognises: |start| start.starts_with(MAGIC),
+    magics: &[MAGIC],
+    may_begin: |_| false,
     read,
     write: Some(write),
 };

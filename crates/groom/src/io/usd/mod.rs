@@ -30,7 +30,8 @@ pub(super) static FORMAT: HairFormat = HairFormat {
     signature: "`#usda` or `PXR-USDC` (USD)",
     states_unit: true,
     common_up: UpAxis::Y,
-    recognises: |start| start.starts_with(CRATE_MAGIC) || start.starts_with(TEXT_MAGIC),
+    magics: &[CRATE_MAGIC, TEXT_MAGIC],
+    may_begin: |_| false,
     read,
     write: None,
 };
