@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{Args, Parser, Subcommand};
-use lovelock_groom::{Unit, UpAxis};
+use lovelock_groom::{HairFormat, Unit, UpAxis};
+use lovelock_jobs::convert::written_extensions;
 use lovelock_project::project::RecordingSection;
 use lovelock_record::{FilmQuality, SequenceFormat};
 use lovelock_render::{Backend, ShadowMethod, Transparency};
@@ -14,7 +15,7 @@ use lovelock_render::{Backend, ShadowMethod, Transparency};
 #[derive(Debug, Parser)]
 #[command(name = "lovelock", version, subcommand_precedence_over_arg = true)]
 pub(crate) struct Arguments {
-    /// A project, take, hairstyle (.hair, .tfx, .usdc), character (.glb, .gltf) or motion (.bvh) to open in the window.
+    /// A project, take, hair, character or motion file to open in the window.
     pub(crate) project: Option<PathBuf>,
     /// Print one JSON object on standard output and nothing else there.
     #[arg(long, global = true)]
@@ -234,10 +235,9 @@ pub(crate) struct Info {
 
 #[derive(Debug, Args)]
 pub(crate) struct Convert {
-    /// The hair file: .hair, .tfx, .usda, .usdc or .usd.
-    #[arg(value_name = "IN")]
+    #[arg(value_name = "IN", help = format!("The hair file: .{}", HairFormat::all_extensions().join(", .")))]
     pub(crate) input: PathBuf,
-    /// The new file; its name says the format: .hair, .tfx, .usda, .usdc, .usd or .glb.
+    #[arg(help = format!("The new file, in the format of its extension: .{}", written_extensions().join(", .")))]
     pub(crate) out: PathBuf,
     /// Unit of IN: auto, m, cm, mm or in.
     #[arg(long, default_value = "auto", value_parser = unit)]

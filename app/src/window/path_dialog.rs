@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, TryRecvError, sync_channel};
 
 use egui::{Modal, RichText};
+use lovelock_jobs::info::FileKind;
 use lovelock_project::project::PROJECT_EXTENSION;
 use lovelock_session::clock::Stopwatch;
 
@@ -32,9 +33,10 @@ pub(crate) enum Purpose {
     Picture,
 }
 
-/// What the program reads, for the system's dialog.
-const READABLE: [&str; 12] =
-    [PROJECT_EXTENSION, "ron", "hair", "tfx", "usdc", "usda", "usd", "glb", "gltf", "bvh", "take", "part"];
+/// Extensions of the files that can be opened, for the system's dialog; `part` is that of an unfinished take.
+fn readable() -> Vec<&'static str> {
+    FileKind::ALL.into_iter().flat_map(FileKind::extensions).chain(["part"]).collect()
+}
 
 /// Nobody leaves a dialog sooner than this after asking for it: one that does so never came up. The system's
 /// answer does not tell the two apart.
@@ -205,7 +207,7 @@ impl PathDialog {
         let purpose = self.purpose;
         // The dialog is made here, on the window's thread, as some systems demand.
         let future: std::pin::Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> = match purpose {
-            Purpose::Open => Box::pin(dialog.add_filter("Lovelock reads", &READABLE).pick_file()),
+            Purpose::Open => Box::pin(dialog.add_filter("Lovelock reads", &readable()).pick_file()),
             Purpose::Beside => Box::pin(dialog.add_filter("Take", &["take", "part"]).pick_file()),
             Purpose::Sequence | Purpose::Resume => Box::pin(dialog.pick_folder()),
             Purpose::SaveProject => Box::pin(dialog.add_filter("Project", &[PROJECT_EXTENSION]).save_file()),

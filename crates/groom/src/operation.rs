@@ -14,6 +14,14 @@ pub enum HairOperation {
 }
 
 impl HairOperation {
+    /// The name in sentences.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Cut(_) => "cut",
+            Self::Tie(_) => "tie",
+        }
+    }
+
     /// Whether the operation would leave every hairstyle as it is.
     fn is_empty(&self) -> bool {
         match self {

@@ -209,7 +209,7 @@ pub const COMMANDS: &[CommandInfo] = {
             C::Open,
             "open",
             "Open…",
-            "Opens a project, take, hair (.hair, .tfx), character (.glb, .gltf) or motion (.bvh) file.",
+            "Opens a project, take, hair, character or motion file.",
             &["Ctrl+O"],
             G::File,
         ),

@@ -1,7 +1,7 @@
 //! The hairstyle: a shipped style and its controls, or a file and how it is placed.
 
 use egui::Ui;
-use lovelock_groom::{Facing, GroomSettings, ImportSettings, Placement, Preset, Unit, UpAxis};
+use lovelock_groom::{Facing, GroomSettings, HAIR_FORMATS, ImportSettings, Placement, Preset, Unit, UpAxis};
 use lovelock_project::Project;
 use lovelock_project::project::{HairSection, HairSource};
 
@@ -38,7 +38,7 @@ pub(crate) fn ui(ui: &mut Ui, project: &mut Project, loaded: &Loaded) -> Option<
         }
         let on = project.hair.source == HairSource::File;
         let response = ui.selectable_label(on, "From file…");
-        if response.on_hover_text("Takes a hair file: Yuksel .hair or TressFX .tfx.").clicked() {
+        if response.on_hover_text(file_tooltip()).clicked() {
             if project.hair.file.is_some() && !on {
                 project.set_hair_source(HairSource::File);
             } else {
@@ -58,6 +58,10 @@ pub(crate) fn ui(ui: &mut Ui, project: &mut Project, loaded: &Loaded) -> Option<
         note(ui, text.as_str());
     }
     ask
+}
+
+fn file_tooltip() -> String {
+    format!("Loads a hair file: {}.", HAIR_FORMATS.map(|format| format.label).join(", "))
 }
 
 fn grown(ui: &mut Ui, hair: &mut HairSection) {

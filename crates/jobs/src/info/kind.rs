@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
+use lovelock_groom::HairFormat;
 use lovelock_project::error::StudioError;
 use lovelock_project::project::PROJECT_EXTENSION;
 use lovelock_record::TAKE_EXTENSION;
@@ -11,7 +12,7 @@ use lovelock_record::TAKE_EXTENSION;
 /// A kind of file that is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum FileKind {
-    /// Yuksel `.hair`, TressFX `.tfx`, curves of USD.
+    /// Hair, in one of [`HAIR_FORMATS`](lovelock_groom::HAIR_FORMATS).
     Hair,
     /// glTF 2: `.glb`, `.gltf`.
     Character,
@@ -23,9 +24,11 @@ pub enum FileKind {
     Take,
 }
 
-/// What is read, for messages.
-const READ: &str = "hair (.hair, .tfx, .usd, .usda, .usdc), characters (.glb, .gltf), motion (.bvh), projects (.lovelock) and takes \
-                    (.take)";
+/// The kinds of files that can be read, with their extensions, for messages.
+fn readable() -> String {
+    let kinds = FileKind::ALL.map(|kind| format!("{} (.{})", kind.label(), kind.extensions().join(", .")));
+    kinds.join(", ")
+}
 
 impl FileKind {
     /// All kinds.
@@ -43,13 +46,13 @@ impl FileKind {
     }
 
     /// Endings of such files, for dialogs, without the dot.
-    pub fn extensions(self) -> &'static [&'static str] {
+    pub fn extensions(self) -> Vec<&'static str> {
         match self {
-            Self::Hair => &["hair", "tfx", "usdc", "usda", "usd"],
-            Self::Character => &["glb", "gltf"],
-            Self::Motion => &["bvh"],
-            Self::Project => &[PROJECT_EXTENSION, "ron"],
-            Self::Take => &[TAKE_EXTENSION],
+            Self::Hair => HairFormat::all_extensions(),
+            Self::Character => vec!["glb", "gltf"],
+            Self::Motion => vec!["bvh"],
+            Self::Project => vec![PROJECT_EXTENSION, "ron"],
+            Self::Take => vec![TAKE_EXTENSION],
         }
     }
 
@@ -63,7 +66,10 @@ impl FileKind {
             |error: std::io::Error| StudioError::input(path, format!("{name}: cannot be read: {error}"));
         let file = File::open(path).map_err(cannot_read)?;
         if file.metadata().map_err(cannot_read)?.is_dir() {
-            return Err(StudioError::input(path, format!("{name}: is a folder; wanted a file: {READ}")));
+            return Err(StudioError::input(
+                path,
+                format!("{name}: is a folder; wanted one of {}", readable()),
+            ));
         }
         let mut start = Vec::new();
         file.take(4096).read_to_end(&mut start).map_err(cannot_read)?;
@@ -75,7 +81,7 @@ impl FileKind {
             );
             StudioError::input(
                 path,
-                format!("{name}: not a file that is known here: {ending}; wanted {READ}"),
+                format!("{name}: not a file that is known here: {ending}; wanted {}", readable()),
             )
         })
     }
@@ -88,11 +94,10 @@ impl FileKind {
 
     /// The kind that the first bytes of a file leave no doubt of.
     fn by_content(start: &[u8]) -> Option<Self> {
+        if HairFormat::of_magic(start).is_some() {
+            return Some(Self::Hair);
+        }
         match start {
-            [b'H', b'A', b'I', b'R', ..] => return Some(Self::Hair),
-            [b'P', b'X', b'R', b'-', b'U', b'S', b'D', b'C', ..] | [b'#', b'u', b's', b'd', b'a', ..] => {
-                return Some(Self::Hair);
-            }
             [b'g', b'l', b'T', b'F', ..] => return Some(Self::Character),
             // As `record::take` begins every chunk.
             [0x9a, b'L', b'T', b'A', b'K', b'E', ..] => return Some(Self::Take),

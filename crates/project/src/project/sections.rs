@@ -1,7 +1,7 @@
 //! The sections of a project that belong to no other crate.
 
 use glam::Vec3;
-use lovelock_groom::{GroomSettings, HairTie, Haircut, ImportSettings, Preset};
+use lovelock_groom::{GroomSettings, HairOperation, HairTie, Haircut, ImportSettings, Preset};
 use lovelock_motion::{BodySettings, ColliderEdits, MotionSettings};
 use lovelock_record::{FilmQuality, SequenceFormat};
 use lovelock_render::{Backend, ShadowMethod, ShadowSettings, Transparency};
@@ -110,7 +110,7 @@ pub struct HairSection {
     pub preset: Preset,
     /// How hair grows. Its `look` is not used: [`super::Project::look`] is.
     pub groom: GroomSettings,
-    /// A hair file: Yuksel `.hair` or TressFX `.tfx`.
+    /// A hair file, in one of [`lovelock_groom::HAIR_FORMATS`].
     pub file: Option<FileRef>,
     /// How that file becomes a hairstyle.
     pub import: ImportSettings,
@@ -135,6 +135,11 @@ impl Default for HairSection {
 }
 
 impl HairSection {
+    /// What is done to the hairstyle after it is grown or imported, in this order.
+    pub fn operations(&self) -> Vec<HairOperation> {
+        vec![HairOperation::Cut(self.cut.clone()), HairOperation::Tie(self.ties.clone())]
+    }
+
     /// How this hair moves unless it is changed: where the controls of the simulation return to.
     pub fn simulation(&self) -> SimulationSettings {
         match self.source {

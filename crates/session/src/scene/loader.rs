@@ -3,13 +3,13 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use lovelock_groom::OperationCache;
 use lovelock_motion::{Collider, ColliderEdits};
 use lovelock_project::Project;
-use lovelock_project::error::{Problem, StudioError};
+use lovelock_project::error::{Place, Problem, ProblemKind, StudioError};
 use lovelock_project::files::Access;
 
 use super::Scene;
-use super::dress::Dressed;
 use super::head_path::HeadPath;
 use super::parts::{BodyKey, BodyPart, HairFileCache, HairKey, HairPart, MotionKey, MotionPart};
 
@@ -50,7 +50,7 @@ pub struct SceneLoader {
     motion: Option<Kept<MotionKey, MotionPart>>,
     hair: Option<Kept<HairKey, HairPart>>,
     hair_file: HairFileCache,
-    dressed: Option<Dressed>,
+    operations: OperationCache,
     head_path: Option<(Arc<MotionPart>, bool, Arc<HeadPath>)>,
     colliders: Option<(Arc<BodyPart>, ColliderEdits, Met)>,
 }
@@ -94,7 +94,15 @@ impl SceneLoader {
         let motion = self.motion(&project, access, &body, &mut problems)?;
         control.at("making the hair", 0.5)?;
         let hair = self.hair(&project, access, &body, &mut problems);
-        let style = Dressed::style(&mut self.dressed, &hair, &project.hair, &body, &mut problems);
+        let obstacle = Arc::clone(&body.obstacle);
+        let operated = self.operations.apply(&hair.style, project.hair.operations(), obstacle);
+        problems.extend(operated.skipped.iter().map(|operation| {
+            let message = format!(
+                "the {} was made for other hair and has no effect here; it returns with its hairstyle",
+                operation.name()
+            );
+            Problem::new(Place::Hair, ProblemKind::Ignored, message)
+        }));
         control.at("following the head", 0.9)?;
         let looping = project.motion.looping;
         let head_path = self.head_path(&body, &motion, looping);
@@ -114,7 +122,7 @@ impl SceneLoader {
             fitted: Arc::clone(&body.colliders),
             field: body.field.clone().filter(|_| project.body.colliders.field.enabled),
             field_lift_m: project.body.colliders.field.lift_m(),
-            style,
+            style: operated.style,
             head_path,
             notes: notes.into(),
         };

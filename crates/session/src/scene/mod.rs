@@ -2,7 +2,6 @@
 
 mod camera;
 mod dancer;
-mod dress;
 mod head_path;
 mod loader;
 mod parts;
@@ -137,6 +136,8 @@ fn frames_in(duration_secs: f64, fps: f64) -> u64 {
 
 #[cfg(test)]
 mod collider_tests;
+#[cfg(test)]
+mod operation_tests;
 #[cfg(test)]
 mod tests {
     use super::frames_in;

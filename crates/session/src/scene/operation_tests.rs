@@ -8,8 +8,8 @@ use lovelock_project::error::{Place, ProblemKind};
 use lovelock_project::files::Access;
 use lovelock_project::project::{project_of_text, text_of_project};
 
-use super::super::Scene;
-use super::super::loader::SceneLoader;
+use super::Scene;
+use super::loader::SceneLoader;
 use crate::engine::Engine;
 use crate::snapshot::FrameSnapshot;
 use crate::testing::small_project;
