@@ -8,7 +8,7 @@ use lovelock_record::read_film;
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::tool::{Ran, lovelock, names, run, run_command, saved, small_project};
+use crate::tool::{Outcome, lovelock, names, run, run_command, saved, small_project};
 
 /// The keys of the JSON output that scripts may rely on.
 const KEYS: [&str; 17] = [
@@ -35,9 +35,9 @@ const KEYS: [&str; 17] = [
 /// several tests.
 struct Recordings {
     dir: TempDir,
-    film: Ran,
+    film: Outcome,
     /// Recorded with 1, 2 and 8 threads.
-    pictures: Vec<Ran>,
+    pictures: Vec<Outcome>,
 }
 
 const FILM: &str = "films of mine/größe & ü.mp4";

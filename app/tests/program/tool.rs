@@ -17,14 +17,14 @@ const TIMEOUT_SECS: f64 = 120.0;
 
 /// The result of one run of the program.
 #[derive(Debug)]
-pub struct Ran {
+pub struct Outcome {
     pub code: Option<i32>,
     pub stdout: String,
     pub stderr: String,
     pub took_secs: f64,
 }
 
-impl Ran {
+impl Outcome {
     /// The JSON object on standard output; fails if there is anything else.
     #[track_caller]
     pub fn json(&self) -> Value {
@@ -62,13 +62,13 @@ pub fn lovelock() -> Command {
 
 /// Runs the program until it exits.
 #[track_caller]
-pub fn run<A: AsRef<OsStr>>(folder: &Path, args: impl IntoIterator<Item = A>) -> Ran {
+pub fn run<A: AsRef<OsStr>>(folder: &Path, args: impl IntoIterator<Item = A>) -> Outcome {
     run_command(lovelock().current_dir(folder).args(args))
 }
 
 /// Runs a command until it exits; kills it and fails if it hangs.
 #[track_caller]
-pub fn run_command(command: &mut Command) -> Ran {
+pub fn run_command(command: &mut Command) -> Outcome {
     // Files instead of pipes, so that the program never blocks on a full pipe.
     let dir = tempfile::tempdir().expect("a folder");
     let (out, err) = (dir.path().join("out"), dir.path().join("err"));
@@ -91,7 +91,7 @@ pub fn run_command(command: &mut Command) -> Ran {
         std::thread::sleep(Duration::from_millis(5));
     };
     let read = |path| String::from_utf8(std::fs::read(path).expect("a file")).expect("UTF-8");
-    Ran { code: status.code(), stdout: read(out), stderr: read(err), took_secs: watch.secs() }
+    Outcome { code: status.code(), stdout: read(out), stderr: read(err), took_secs: watch.secs() }
 }
 
 /// A project with few strands and small maps, of which a frame is drawn quickly.
