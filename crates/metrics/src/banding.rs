@@ -1,34 +1,34 @@
-//! Layers that a method draws into hair of even density.
+//! Banding: layers that a shadow method produces in hair of uniform density.
 
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// How far the transmittance along a ray into an even slab is from smooth.
+/// How far the transmittance along a ray into a uniform slab is from smooth.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Banding {
-    /// Largest difference between the second derivative and that of the exponential, as a multiple of the
-    /// exponential's own at the entry (kappa squared). It is taken between neighbouring samples: compare only where
-    /// the samples lie equally dense.
+    /// Largest difference between the second derivative and that of the exponential, as a multiple of the exponential's
+    /// second derivative at the entry (kappa squared). It is computed from neighbouring samples, so compare only values with
+    /// the same spacing of samples.
     pub curvature: f64,
-    /// The largest amplitude of all waves with a period between two samples and a quarter of the ray.
+    /// Largest amplitude of all waves whose period is between two samples and a quarter of the ray.
     pub amplitude: f64,
-    /// The period of that wave, metres.
+    /// Period of that wave in metres.
     pub period: f64,
-    /// Metres between two samples.
+    /// Distance between two samples in metres.
     pub step: f64,
-    /// Transmittance minus the exponential at each sample. Not part of what is saved.
+    /// Transmittance minus the exponential at each sample. Not serialised.
     #[serde(skip)]
     pub residuals: Vec<f32>,
 }
 
-/// At least and at most this many samples: waves of all periods are looked for by the plain transform.
+/// Valid numbers of samples. The upper bound limits the time of the direct Fourier transform.
 const SAMPLES: std::ops::RangeInclusive<usize> = 16..=8192;
 
-/// Looks for layers in `transmittance` at the depths `z` (metres, rising in equal steps) in a slab of even density
+/// Measures banding in `transmittance` at the depths `z` (metres, increasing in equal steps) in a slab of uniform density
 /// whose transmittance is exp(-`kappa` z), with `kappa` in 1/m.
 ///
-/// `None` where there are fewer than 16 samples or more than 8192, where the steps differ by more than a hundredth,
-/// where a number is not finite, or where `kappa` is not above 0.
+/// `None` if there are fewer than 16 or more than 8192 samples, if the steps differ by more than a hundredth, if a number is
+/// not finite, or if `kappa` is not greater than 0.
 pub fn banding(z: &[f32], transmittance: &[f32], kappa: f32) -> Option<Banding> {
     let kappa = f64::from(kappa);
     let all = || z.iter().chain(transmittance);
@@ -64,8 +64,8 @@ pub fn banding(z: &[f32], transmittance: &[f32], kappa: f32) -> Option<Banding> 
 }
 
 impl Banding {
-    /// The amplitude of the wave with `period` in metres, such as the distance of two slices: the residuals' Fourier
-    /// transform at that very frequency under Hann's window. 0 for a period that is not above 0.
+    /// Amplitude of the wave with `period` in metres, such as the spacing of slices: the Fourier transform of the residuals at
+    /// exactly this frequency with a Hann window. 0 if the period is not greater than 0.
     pub fn amplitude_at(&self, period: f64) -> f64 {
         let turn = TAU * self.step / period;
         if !(turn.is_finite() && turn > 0.0) {
@@ -80,7 +80,7 @@ impl Banding {
             cos += windowed * c;
             sin += windowed * s;
         }
-        // Half of the weight is lost to the window, and half to the wave's mirror image.
+        // The window halves the sum, and the negative frequency takes the other half of the amplitude.
         4.0 / count.max(1.0) * cos.hypot(sin)
     }
 }
@@ -103,7 +103,7 @@ mod tests {
     #[test]
     fn the_exponential_has_no_layers() {
         let found = along(|z| (-KAPPA * z).exp());
-        // Only the rounding of single precision is left: 6e-8 over a squared step of 0.2 mm and kappa squared of 900.
+        // Only the rounding of single precision remains: 6e-8 over a squared step of 0.2 mm and a squared kappa of 900.
         assert!(found.amplitude < 1e-8 && found.curvature < 0.01, "{found:?}");
     }
 
@@ -116,7 +116,7 @@ mod tests {
         // The second derivative of the wave is its amplitude times the square of its frequency.
         let expected = 0.02 * (std::f64::consts::TAU / f64::from(period)).powi(2) / 900.0;
         assert!((found.curvature / expected - 1.0).abs() < 0.02, "{} {expected}", found.curvature);
-        // Negative control: at another period there is nothing.
+        // Negative control: there is no wave with another period.
         assert!(found.amplitude_at(f64::from(period) * 1.5) < 1e-4);
     }
 
@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_ray_is_refused() {
+    fn invalid_samples_are_refused() {
         let z = depths();
         let t = vec![0.5; z.len()];
         assert!(banding(&z, &t, KAPPA).is_some());

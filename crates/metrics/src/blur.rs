@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-/// A plane of rows of `width` filtered across and then down; beyond the rim is what the rim holds.
+/// Filters a plane with rows of `width` values horizontally and then vertically. Values at the border are repeated beyond it.
 pub(crate) fn blurred(plane: &[f32], width: usize, across: &[f32], down: &[f32]) -> Vec<f32> {
     let height = plane.len() / width;
     let mut rows = vec![0.0; plane.len()];
@@ -45,7 +45,7 @@ mod tests {
         let mut point = vec![0.0; 25];
         point[12] = 1.0;
         let out = blurred(&point, 5, &across, &down);
-        // What is to the left of the point sees it through the last weight.
+        // A pixel to the left of the point is multiplied by the last weight.
         assert_eq!(out[11], 4.0 * 20.0);
         assert_eq!(out[7], 2.0 * 40.0);
         assert_eq!(out[18], 1.0 * 10.0);

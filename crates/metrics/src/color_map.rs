@@ -1,20 +1,20 @@
-//! Numbers as colours.
+//! Colour maps for numbers.
 
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
-/// A colour for every number of a range: equal steps look equally large. The colours are those of the crate colorous.
+/// A colour map with perceptually equal steps. The colours are those of the crate colorous.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ColorMap {
-    /// From dark violet over green to yellow; also for the colour-blind.
+    /// From dark violet over green to yellow; suitable for the colour-blind.
     Viridis,
-    /// From black over violet to pale yellow, as FLIP is shown.
+    /// From black over violet to pale yellow, the usual map for FLIP.
     #[default]
     Magma,
-    /// From dark blue to yellow, made for the colour-blind.
+    /// From dark blue to yellow, designed for the colour-blind.
     Cividis,
-    /// From orange (below) over white (the middle) to violet (above), for numbers with a sign.
+    /// From orange (negative) over white (zero) to violet (positive), for signed numbers.
     Diverging,
 }
 
@@ -22,7 +22,7 @@ impl ColorMap {
     /// Every map.
     pub const ALL: [Self; 4] = [Self::Viridis, Self::Magma, Self::Cividis, Self::Diverging];
 
-    /// The colour, sRGB, at `t` of the range: 0 is its start, 1 its end. What lies outside has the end's colour.
+    /// The sRGB colour at `t`, where 0 is the start of the range and 1 its end. Values outside are clamped.
     pub fn at(self, t: f32) -> [u8; 3] {
         let gradient = match self {
             Self::Viridis => colorous::VIRIDIS,
@@ -31,12 +31,12 @@ impl ColorMap {
             Self::Diverging => colorous::PURPLE_ORANGE,
         };
         let t = if t > 0.0 { f64::from(t.min(1.0)) } else { 0.0 };
-        // colorous has violet first.
+        // In colorous the map starts with violet.
         let color = gradient.eval_continuous(if self == Self::Diverging { 1.0 - t } else { t });
         [color.r, color.g, color.b]
     }
 
-    /// A range around 0 of this map's kind that reaches to `largest` on the side, or sides, that it shows.
+    /// A range for values up to `largest`: from 0 for sequential maps, symmetric about 0 for the diverging map.
     pub fn range_to(self, largest: f32) -> RangeInclusive<f32> {
         match self {
             Self::Diverging => -largest..=largest,
@@ -45,11 +45,11 @@ impl ColorMap {
     }
 }
 
-/// The colours of `values`, four bytes each, sRGB: the start of `range` has the map's first colour, its end the last.
-/// NaN is transparent black.
+/// The sRGB colours of `values`, four bytes each. The start of `range` has the map's first colour, its end the last one. NaN
+/// becomes transparent black.
 pub fn paint(values: &[f32], range: RangeInclusive<f32>, map: ColorMap) -> Vec<u8> {
     let (low, high) = range.into_inner();
-    // A thousand steps are finer than what eight bits tell apart.
+    // A thousand steps are finer than 8-bit colours can show.
     let table: Vec<[u8; 3]> = (0..=1000).map(|i| map.at(i as f32 / 1000.0)).collect();
     let color = |&value: &f32| {
         if value.is_nan() {
@@ -81,8 +81,8 @@ mod tests {
             let steps: Vec<f64> = (0..=20).map(|i| lightness(map.at(i as f32 / 20.0))).collect();
             let [first, last] = [steps[0], steps[20]];
             for (i, &value) in steps.iter().enumerate() {
-                // Measured from a straight line: at most 1.7, and 5.9 for magma, whose steps are even in a space that
-                // counts chroma too.
+                // Measured deviation from a straight line: at most 1.7, and 5.9 for magma, whose steps are equal in a space that
+                // includes chroma.
                 let line = first + (last - first) * i as f64 / 20.0;
                 let most = if map == ColorMap::Magma { 7.0 } else { 2.5 };
                 assert!((value - line).abs() < most, "{map:?} {i}: {value} {line}");
@@ -107,7 +107,7 @@ mod tests {
         assert_eq!(pixels[3][..3], last);
         assert_eq!(pixels[3], pixels[4]);
         assert_eq!(pixels[5], [0; 4]);
-        // A range without extent paints something.
+        // An empty range also gives colours.
         assert_eq!(paint(&[1.0, 2.0], 1.0..=1.0, map).len(), 8);
         assert_eq!(map.at(f32::NAN), first);
     }

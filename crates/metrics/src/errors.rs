@@ -1,32 +1,33 @@
-//! How far values lie from the truth.
+//! Errors of values against a reference.
 
 use lovelock_base::statistics::percentile;
 use serde::{Deserialize, Serialize};
 
-/// How far values lie from the truth, in the values' own unit.
+/// Errors of values against a reference, in the unit of the values.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Errors {
-    /// How many values were compared. Where it is 0, so is everything else but `left_out`.
+    /// Number of values compared. If it is 0, all other fields except `left_out` are 0 too.
     pub count: usize,
-    /// Root of the mean square of the differences.
+    /// Root mean square of the differences.
     pub rmse: f64,
-    /// Mean difference, test minus truth: above 0 where the test is too large.
+    /// Mean difference, test minus reference: positive if the test is too large.
     pub bias: f64,
-    /// 99th percentile of the differences without their sign, by nearest rank.
+    /// 99th percentile of the absolute differences, by nearest rank.
     pub p99: f64,
-    /// Largest difference without its sign.
+    /// Largest absolute difference.
     pub max: f64,
-    /// How many could not be compared: one of the two is missing or not finite. Anything above 0 deserves a look.
+    /// Number of values that could not be compared, because one of the two is missing or not finite. Values above 0 should be
+    /// investigated.
     pub left_out: usize,
 }
 
-/// How far `test` lies from `truth`, value by value.
+/// Errors of `test` against `truth`, value by value.
 pub fn errors(test: &[f32], truth: &[f32]) -> Errors {
     let longest = test.len().max(truth.len());
     errors_of(test, truth, 0..longest)
 }
 
-/// As [`errors`], over the values with the indices `chosen` alone.
+/// As [`errors`], for the values with the indices `chosen` only.
 pub fn errors_of(test: &[f32], truth: &[f32], chosen: impl IntoIterator<Item = usize>) -> Errors {
     let mut found = Errors::default();
     let mut sizes = Vec::new();
@@ -59,14 +60,14 @@ mod tests {
 
     #[test]
     fn a_ramp_of_errors_by_hand() {
-        // Differences 0.01, 0.02 … 1.00 of alternating sign.
+        // Differences 0.01, 0.02 … 1.00 with alternating signs.
         let truth = vec![0.5; 100];
         let test: Vec<f32> =
             (1..=100).map(|i| 0.5 + if i % 2 == 0 { 0.01 } else { -0.01 } * i as f32).collect();
         let found = errors(&test, &truth);
         let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-6, "{a} is not {b}");
         assert_eq!((found.count, found.left_out), (100, 0));
-        // Sum of squares 1 to 100 is 338350; the alternating sum is 50.
+        // The sum of squares of 1 to 100 is 338350; the alternating sum is 50.
         near(found.rmse, 33.835_f64.sqrt() / 10.0);
         near(found.bias, 0.5 / 100.0);
         near(found.p99, 0.99);
@@ -86,7 +87,7 @@ mod tests {
             truth.iter().enumerate().map(|(i, t)| t + if i % 2 == 0 { 0.25 } else { -0.25 }).collect();
         let found = errors(&noise, &truth);
         assert!(found.bias.abs() < 1e-6 && (found.rmse - 0.25).abs() < 1e-6, "{found:?}");
-        // Negative control: the truth itself has none.
+        // Negative control: the reference has no error.
         assert_eq!(errors(&truth, &truth), Errors { count: 64, ..Errors::default() });
     }
 

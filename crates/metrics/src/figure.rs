@@ -1,4 +1,4 @@
-//! Pictures with words: labels, and the legend of a false colour.
+//! Images with text: labels and the legend of a colour map.
 
 use crate::color_map::ColorMap;
 use crate::image::Image;
@@ -6,10 +6,10 @@ use crate::ticks::ticks;
 use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
 use std::ops::RangeInclusive;
 
-/// Pixels along an edge that no canvas exceeds.
+/// The largest width and height of a canvas in pixels.
 const LARGEST: usize = 32_768;
 
-/// A picture that is put together: sRGB, four bytes a pixel, rows from the top. What would lie outside is cut off.
+/// An image to draw into: sRGB, four bytes per pixel, rows from the top. Everything outside is clipped.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Canvas {
     width: usize,
@@ -18,10 +18,10 @@ pub struct Canvas {
 }
 
 impl Canvas {
-    /// Height of a line of [`text`](Self::text), pixels.
+    /// Height of a line of [`text`](Self::text) in pixels.
     pub const LINE: usize = 16;
 
-    /// A picture of one opaque colour. An edge is at least 1 and at most 32,768 pixels long.
+    /// A canvas filled with an opaque colour. Width and height are clamped to 1 to 32,768 pixels.
     pub fn new(width: usize, height: usize, color: [u8; 3]) -> Self {
         let [width, height] = [width, height].map(|edge| edge.clamp(1, LARGEST));
         let [r, g, b] = color;
@@ -48,12 +48,12 @@ impl Canvas {
         self.rgba
     }
 
-    /// How wide [`text`](Self::text) draws, pixels.
+    /// Width of [`text`](Self::text) in pixels.
     pub fn text_width(text: &str) -> usize {
         text.chars().count() * get_raster_width(FontWeight::Regular, RasterHeight::Size16)
     }
 
-    /// Puts one colour over a pixel, by the share `alpha` of 255.
+    /// Blends a colour over a pixel with `alpha` of 255.
     fn blend(&mut self, x: i32, y: i32, color: [u8; 3], alpha: u8) {
         let (Ok(x), Ok(y)) = (usize::try_from(x), usize::try_from(y)) else { return };
         if x >= self.width || y >= self.height {
@@ -67,7 +67,7 @@ impl Canvas {
         pixel[3] = 255;
     }
 
-    /// Fills `width` by `height` pixels from `x`, `y` with one colour.
+    /// Fills a rectangle of `width` by `height` pixels at `x`, `y`.
     pub fn fill(&mut self, x: i32, y: i32, width: usize, height: usize, color: [u8; 3]) {
         let inside = |start: i32, length: usize, edge: usize| {
             start.max(0)..start.saturating_add(length.min(LARGEST) as i32).min(edge as i32)
@@ -79,7 +79,7 @@ impl Canvas {
         }
     }
 
-    /// Puts a picture at `x`, `y`. Its transparent pixels let the canvas show.
+    /// Copies an image to `x`, `y`. The canvas shows through transparent pixels.
     pub fn put(&mut self, x: i32, y: i32, picture: &Image<'_>) {
         for (row, pixels) in picture.rgba().chunks_exact(picture.width() * 4).enumerate() {
             for (column, pixel) in pixels.chunks_exact(4).enumerate() {
@@ -89,8 +89,8 @@ impl Canvas {
         }
     }
 
-    /// Writes one line of text with its upper left corner at `x`, `y`, in Noto Sans Mono, [`LINE`](Self::LINE) pixels
-    /// high. A letter beyond Latin 1 becomes a question mark.
+    /// Draws one line of text with its upper left corner at `x`, `y`, in Noto Sans Mono, [`LINE`](Self::LINE) pixels
+    /// high. Characters outside Latin 1 become question marks.
     pub fn text(&mut self, x: i32, y: i32, text: &str, color: [u8; 3]) {
         let mut pen = x;
         for letter in text.chars() {
@@ -109,29 +109,29 @@ impl Canvas {
     }
 }
 
-/// What the colours of a map stand for: a bar with round numbers.
+/// The legend of a colour map: a bar with round numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Legend {
-    /// The colours.
+    /// The colour map.
     pub map: ColorMap,
-    /// What its first and its last colour stand for.
+    /// Values of the first and the last colour.
     pub range: RangeInclusive<f32>,
-    /// What is shown, with its unit: one line above the bar.
+    /// The quantity with its unit, in one line above the bar.
     pub title: String,
 }
 
-/// Ink on paper.
+/// Text colour on a white background.
 const INK: [u8; 3] = [32, 33, 36];
 const PAPER: [u8; 3] = [255, 255, 255];
-/// Where there is nothing to show: no colour of a map.
+/// Colour of missing values, which is in no colour map.
 const NOTHING: [u8; 3] = [222, 225, 230];
 
 impl Legend {
-    /// Pixels across the bar itself.
+    /// Width of the bar in pixels.
     const BAR: usize = 18;
 
-    /// Draws the legend at `x`, `y`, `height` pixels high: the title, and below it an upright bar with its largest
-    /// number on top.
+    /// Draws the legend at `x`, `y`, `height` pixels high: the title, and below it a vertical bar with the largest number at
+    /// the top.
     pub fn draw(&self, canvas: &mut Canvas, x: i32, y: i32, height: usize, ink: [u8; 3]) {
         canvas.text(x, y, &self.title, ink);
         let line = Canvas::LINE as i32;
@@ -151,7 +151,7 @@ impl Legend {
         }
     }
 
-    /// How wide [`draw`](Self::draw) is for a bar of any height, pixels.
+    /// Width of the legend in pixels, for any height.
     pub fn width(&self) -> usize {
         let (low, high) = (f64::from(*self.range.start()), f64::from(*self.range.end()));
         let labels = (2..=8).filter_map(|wanted| {
@@ -161,7 +161,7 @@ impl Legend {
         (Self::BAR + 8 + labels.max().unwrap_or(0)).max(Canvas::text_width(&self.title))
     }
 
-    /// A painted map with its legend to the right, on white. Transparent pixels become a grey that no map has.
+    /// A false-colour image with the legend on its right, on white. Transparent pixels become a grey that is in no colour map.
     pub fn beside(&self, picture: &Image<'_>) -> Canvas {
         let margin = 12;
         let height = picture.height().max(Canvas::LINE * 6);
@@ -184,13 +184,13 @@ mod tests {
     }
 
     #[test]
-    fn text_has_ink_inside_its_width_alone() {
+    fn text_stays_inside_its_width() {
         let mut canvas = Canvas::new(80, 20, [255; 3]);
         canvas.text(4, 2, "Ab·1", [0; 3]);
         let wide = Canvas::text_width("Ab·1");
         let dark = |x: usize| (0..20).any(|y| pixel(&canvas, x, y)[0] < 100);
         assert!((4..4 + wide).any(dark) && !(4 + wide..80).any(dark) && !(0..4).any(dark));
-        // Another text is another picture.
+        // Negative control: a different text gives a different image.
         let mut other = Canvas::new(80, 20, [255; 3]);
         other.text(4, 2, "Ab·2", [0; 3]);
         assert_ne!(canvas, other);
@@ -226,7 +226,7 @@ mod tests {
         }
         let marks = (0..200).filter(|&y| pixel(&canvas, 2 + 12 + Legend::BAR + 2, y) == INK).count();
         assert_eq!(marks, 3, "0.0, 0.1 and 0.2");
-        // A range without extent has a bar and no numbers.
+        // An empty range has a bar without numbers.
         let flat = Legend { range: 0.0..=0.0, ..legend };
         assert_eq!(flat.beside(&Image::new(2, 200, &painted).unwrap()).height(), 200);
     }

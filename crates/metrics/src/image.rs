@@ -1,6 +1,6 @@
-//! Pictures that are compared.
+//! Images to compare.
 
-/// A picture that is compared: sRGB, four bytes a pixel, rows from the top. Alpha is ignored.
+/// An image to compare: sRGB, four bytes per pixel, rows from the top. Alpha is ignored.
 #[derive(Clone, Copy, Debug)]
 pub struct Image<'a> {
     width: usize,
@@ -8,32 +8,32 @@ pub struct Image<'a> {
     rgba: &'a [u8],
 }
 
-/// Why pictures cannot be compared.
+/// Why images cannot be compared.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ImageError {
-    /// The bytes are not four a pixel, or there is no pixel.
-    #[error("{bytes} bytes are no picture of {width} x {height} pixels")]
+    /// There are not four bytes per pixel, or no pixels.
+    #[error("{bytes} bytes are not an image of {width} x {height} pixels")]
     Bytes {
-        /// Pixels in a row.
+        /// Width in pixels.
         width: u32,
-        /// Rows.
+        /// Height in pixels.
         height: u32,
-        /// Bytes there are.
+        /// Number of bytes.
         bytes: usize,
     },
-    /// The pictures differ in size.
-    #[error("a picture of {0} x {1} pixels cannot be compared with one of {2} x {3}")]
+    /// The images differ in size.
+    #[error("an image of {0} x {1} pixels cannot be compared with one of {2} x {3}")]
     Sizes(usize, usize, usize, usize),
-    /// A picture is smaller than what the measure looks at as one piece.
-    #[error("a picture of {0} x {1} pixels is smaller than the window of {2} x {2} pixels")]
+    /// An image is smaller than the window of the metric.
+    #[error("an image of {0} x {1} pixels is smaller than the window of {2} x {2} pixels")]
     TooSmall(usize, usize, usize),
 }
 
 impl<'a> Image<'a> {
-    /// A picture of `width` by `height` pixels, sRGB, four bytes a pixel.
+    /// An image of `width` by `height` pixels, sRGB, four bytes per pixel.
     ///
     /// # Errors
-    /// Where there is no pixel, or the bytes are not four for each.
+    /// If there are no pixels, or not four bytes for each.
     pub fn new(width: u32, height: u32, rgba: &'a [u8]) -> Result<Self, ImageError> {
         let wanted = (width as usize).checked_mul(height as usize).and_then(|pixels| pixels.checked_mul(4));
         if wanted != Some(rgba.len()) || rgba.is_empty() {
@@ -42,17 +42,17 @@ impl<'a> Image<'a> {
         Ok(Self { width: width as usize, height: height as usize, rgba })
     }
 
-    /// Pixels in a row.
+    /// Width in pixels.
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// Rows.
+    /// Height in pixels.
     pub fn height(&self) -> usize {
         self.height
     }
 
-    /// The bytes, four a pixel.
+    /// The bytes, four per pixel.
     pub fn rgba(&self) -> &'a [u8] {
         self.rgba
     }
@@ -62,7 +62,7 @@ impl<'a> Image<'a> {
         self.rgba.chunks_exact(4).map(|pixel| [pixel[0], pixel[1], pixel[2]])
     }
 
-    /// An error unless both have the same size.
+    /// Checks that both have the same size.
     pub(crate) fn same_size(&self, other: &Self) -> Result<(), ImageError> {
         if (self.width, self.height) == (other.width, other.height) {
             return Ok(());
@@ -76,7 +76,7 @@ mod tests {
     use super::{Image, ImageError};
 
     #[test]
-    fn bytes_must_be_four_a_pixel() {
+    fn there_must_be_four_bytes_per_pixel() {
         assert!(Image::new(2, 3, &[0; 24]).is_ok());
         for (width, height, bytes) in [(2, 3, 23), (0, 0, 0), (0, 9, 0), (u32::MAX, u32::MAX, 8)] {
             let error = Image::new(width, height, &vec![0; bytes]).unwrap_err();

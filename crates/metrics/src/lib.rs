@@ -1,8 +1,8 @@
-//! How good a picture or a transmittance is, as numbers and as colours: FLIP, PSNR and SSIM of pictures, errors of
-//! transmittance, stability over time, banding, spreads of times, and false colour with its legend.
+//! Metrics of images and transmittances: FLIP, PSNR and SSIM of images, errors of transmittance, stability over time,
+//! banding, spreads of times, and false colour with a legend.
 //!
-//! Every number here is a pure function of its arguments. No function panics for any input: what cannot be compared
-//! is an error, `None`, or counted as left out.
+//! Every result is a pure function of its arguments. No function panics for any input: values that cannot be compared
+//! give an error or `None`, or are counted as left out.
 
 mod banding;
 mod blur;

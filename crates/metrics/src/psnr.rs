@@ -1,11 +1,11 @@
-//! Peak signal to noise ratio.
+//! Peak signal-to-noise ratio.
 
 use crate::image::{Image, ImageError};
 
-/// Peak signal to noise ratio of two pictures over red, green and blue, decibels; infinite where they are equal.
+/// Peak signal-to-noise ratio of two images over red, green and blue, in decibels; infinite if they are equal.
 ///
 /// # Errors
-/// Where the pictures differ in size.
+/// If the images differ in size.
 pub fn psnr_db(reference: &Image<'_>, test: &Image<'_>) -> Result<f64, ImageError> {
     reference.same_size(test)?;
     let square = |(a, b): ([u8; 3], [u8; 3])| {
@@ -29,7 +29,7 @@ mod tests {
         assert!(of(&a, &a).is_infinite());
         let expected = 10.0 * (3.0 * 255.0_f64.powi(2) / 80.0_f64.powi(2)).log10();
         assert!((of(&a, &b) - expected).abs() < 1e-9);
-        // Alpha does not count, and half the difference is six decibels more.
+        // Alpha is ignored, and half the difference is six decibels more.
         let half = [10, 40, 90, 0].repeat(64);
         assert!((of(&a, &half) - expected - 20.0 * 2.0_f64.log10()).abs() < 1e-9);
         assert!(psnr_db(&Image::new(8, 8, &a).unwrap(), &Image::new(4, 16, &a).unwrap()).is_err());

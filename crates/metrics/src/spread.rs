@@ -3,21 +3,21 @@
 use lovelock_base::statistics::{median_of_sorted, nearest_rank};
 use serde::{Deserialize, Serialize};
 
-/// The middle of many measurements and how far they spread.
+/// Median and spread of measurements.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
-    /// Half of the values lie on either side.
+    /// The median.
     pub median: f64,
     /// The 10th percentile.
     pub low: f64,
     /// The 90th percentile.
     pub high: f64,
-    /// How many values there were.
+    /// Number of values.
     pub count: usize,
 }
 
 impl Spread {
-    /// The spread of all finite values; `None` where there is none.
+    /// The spread of all finite values; `None` if there are none.
     pub fn of(values: &[f64]) -> Option<Self> {
         let mut sorted: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
         sorted.sort_unstable_by(f64::total_cmp);
@@ -36,7 +36,7 @@ mod tests {
         assert_eq!(Spread::of(&values), Some(Spread { median: 15.5, low: 3.0, high: 27.0, count: 30 }));
         assert_eq!(Spread::of(&[7.0, f64::NAN]), Some(Spread { median: 7.0, low: 7.0, high: 7.0, count: 1 }));
         assert_eq!(Spread::of(&[]), None);
-        // A single stray value moves the mean, not the median.
+        // A single outlier changes the mean, but not the median.
         assert_eq!(Spread::of(&[1.0, 1.0, 1e9]).unwrap().median, 1.0);
     }
 }

@@ -3,24 +3,24 @@
 use crate::blur::blurred;
 use crate::image::{Image, ImageError};
 
-/// Pixels along an edge of the window.
+/// Width and height of the window in pixels.
 const WINDOW: usize = 11;
 
-/// Structural similarity of two pictures' luma: 1 is equal, 0 is unlike, below 0 is opposite.
+/// Structural similarity of the luma of two images: 1 is equal, 0 is dissimilar, negative is inverted.
 ///
 /// Wang, Bovik, Sheikh and Simoncelli (2004), "Image Quality Assessment: From Error Visibility to Structural
 /// Similarity": a Gaussian window of 11 x 11 pixels with a deviation of 1.5, K1 = 0.01 and K2 = 0.03, the mean over all
-/// windows that lie in the picture, at the picture's own scale. Luma is that of ITU-R BT.601, not rounded.
+/// windows inside the image, without downsampling. Luma is that of ITU-R BT.601, not rounded.
 ///
 /// # Errors
-/// Where the pictures differ in size or are smaller than the window.
+/// If the images differ in size or are smaller than the window.
 pub fn ssim(reference: &Image<'_>, test: &Image<'_>) -> Result<f64, ImageError> {
     reference.same_size(test)?;
     let (width, height) = (reference.width(), reference.height());
     if width.min(height) < WINDOW {
         return Err(ImageError::TooSmall(width, height, WINDOW));
     }
-    // Around middle grey, so that squares lose fewer digits; variances do not see the shift.
+    // Relative to middle grey, so that squares lose fewer digits; the offset does not change variances.
     let luma = |image: &Image<'_>| -> Vec<f32> {
         image
             .rgb()
@@ -51,7 +51,7 @@ pub fn ssim(reference: &Image<'_>, test: &Image<'_>) -> Result<f64, ImageError> 
 
 const MIDDLE: f32 = 128.0;
 
-/// A Gaussian of deviation 1.5 whose weights add up to 1.
+/// Gaussian weights of standard deviation 1.5 with a sum of 1.
 fn window() -> [f32; WINDOW] {
     let weight = |i: usize| (-0.5 * ((i as f64 - (WINDOW / 2) as f64) / 1.5).powi(2)).exp();
     let total: f64 = (0..WINDOW).map(weight).sum();
@@ -72,7 +72,7 @@ mod tests {
     }
 
     #[test]
-    fn flat_pictures_differ_by_luminance_alone() {
+    fn flat_images_differ_by_luminance_only() {
         let [a, b] = [100_u8, 150].map(|level| grey(20, 16, move |_, _| level));
         let c1 = (0.01_f64 * 255.0).powi(2);
         let expected = (2.0 * 100.0 * 150.0 + c1) / (100.0 * 100.0 + 150.0 * 150.0 + c1);
@@ -81,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn a_negative_is_below_zero_and_noise_costs() {
+    fn a_negative_is_below_zero_and_noise_lowers_the_value() {
         let checks = |x: u32, y: u32| if (x + y).is_multiple_of(2) { 80 } else { 176 };
         let a = grey(24, 24, checks);
         let negative = grey(24, 24, |x, y| 255 - checks(x, y) + 1);
@@ -91,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn scikit_image_has_the_same_numbers() {
+    fn scikit_image_gives_the_same_numbers() {
         // skimage.metrics.structural_similarity 0.26 of the lumas with gaussian_weights, sigma 1.5,
         // use_sample_covariance=False and data_range 255.
         let colors = |seed: u32, more: u32| -> Vec<u8> {
@@ -110,13 +110,13 @@ mod tests {
     }
 
     #[test]
-    fn small_and_unequal_pictures_are_refused() {
+    fn small_and_unequal_images_are_refused() {
         let small = grey(10, 30, |_, _| 0);
         let image = Image::new(10, 30, &small).unwrap();
         let error = ssim(&image, &image).unwrap_err();
         assert_eq!(
             error.to_string(),
-            "a picture of 10 x 30 pixels is smaller than the window of 11 x 11 pixels"
+            "an image of 10 x 30 pixels is smaller than the window of 11 x 11 pixels"
         );
         assert!(ssim(&image, &Image::new(30, 10, &small).unwrap()).is_err());
     }

@@ -1,20 +1,20 @@
-//! How calm values are that should not change, or should change only as the truth does.
+//! Temporal stability of values that should not change, or should change only as the reference does.
 
 use lovelock_base::statistics::percentile;
 use serde::{Deserialize, Serialize};
 
-/// How much values move, over all points and at each.
+/// How much values change over time, over all points and at each point.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Stability {
-    /// Root of the mean square over the points.
+    /// Root mean square over the points.
     pub rms: f64,
     /// Mean over the points.
     pub mean: f64,
     /// 99th percentile over the points, by nearest rank.
     pub p99: f64,
-    /// Largest of all points.
+    /// Largest value of all points.
     pub max: f64,
-    /// The points' own numbers; NaN where a value was not finite. Not part of what is saved.
+    /// The number of each point; NaN if a value was not finite. Not serialised.
     #[serde(skip)]
     pub per_point: Vec<f32>,
 }
@@ -33,13 +33,13 @@ impl Stability {
     }
 }
 
-/// Points that all frames have.
+/// Number of points that all frames have.
 fn points<'a>(frames: impl IntoIterator<Item = &'a Vec<f32>>) -> usize {
     frames.into_iter().map(Vec::len).min().unwrap_or(0)
 }
 
-/// Swim: at each point the standard deviation of its values under shifts of the map by less than a texel, one list of
-/// values a shift. The hair is the same in all of them, so a perfect method has 0. The number to quote is `rms`.
+/// Swim: at each point the standard deviation of its values when the map is shifted by less than a texel; one list of
+/// values per shift. The hair is the same for all shifts, so an ideal method has 0. The number to quote is `rms`.
 pub fn swim(shifts: &[Vec<f32>]) -> Stability {
     let count = shifts.len().max(1) as f64;
     let deviation = |point: usize| {
@@ -51,7 +51,7 @@ pub fn swim(shifts: &[Vec<f32>]) -> Stability {
 }
 
 impl Stability {
-    /// The same over all frames of which `frames` are the numbers: at each point the root of the mean square of its own.
+    /// Combines the results of several frames: at each point the root mean square of its numbers.
     pub fn over_frames(frames: &[Self]) -> Self {
         let count = frames.len().max(1) as f64;
         let squared =
@@ -61,8 +61,8 @@ impl Stability {
     }
 }
 
-/// Pop: at each point the largest change from one frame to the next. The number to quote is `max`, or `p99` where
-/// the hair itself moves.
+/// Pop: at each point the largest change from one frame to the next. The number to quote is `max`, or `p99` if the hair
+/// itself moves.
 pub fn pop(frames: &[Vec<f32>]) -> Stability {
     let largest = |point: usize| {
         let steps = frames.windows(2).map(|pair| (pair[1][point] - pair[0][point]).abs());
@@ -71,8 +71,8 @@ pub fn pop(frames: &[Vec<f32>]) -> Stability {
     Stability::of((0..points(frames)).map(largest).collect())
 }
 
-/// Flicker: at each point the root mean square, over the steps from frame to frame, of the change that is not the
-/// reference's own change. The number to quote is `rms`.
+/// Flicker: at each point the root mean square, over all steps from frame to frame, of the difference between its change and
+/// the reference's change. The number to quote is `rms`.
 pub fn flicker(test: &[Vec<f32>], reference: &[Vec<f32>]) -> Stability {
     let frames = test.len().min(reference.len());
     let (test, reference) = (&test[..frames], &reference[..frames]);
@@ -85,8 +85,8 @@ pub fn flicker(test: &[Vec<f32>], reference: &[Vec<f32>]) -> Stability {
     Stability::of((0..points(test.iter().chain(reference))).map(own).collect())
 }
 
-/// Excess: at each point the largest change from one frame to the next that is not the reference's own, as
-/// [`flicker`]'s of one step. The number to quote is `max`.
+/// Excess: at each point the largest difference, over all steps from frame to frame, between its change and the
+/// reference's change. The number to quote is `max`.
 pub fn excess(test: &[Vec<f32>], reference: &[Vec<f32>]) -> Stability {
     let largest = |point: usize| {
         let both = test.windows(2).zip(reference.windows(2));
@@ -97,7 +97,7 @@ pub fn excess(test: &[Vec<f32>], reference: &[Vec<f32>]) -> Stability {
     Stability::of((0..points(test[..frames].iter().chain(&reference[..frames]))).map(largest).collect())
 }
 
-/// The larger of two, or NaN where either is: `f32::max` would hide it.
+/// The larger of two numbers, or NaN if either is NaN, which `f32::max` would hide.
 fn nan_or_larger(a: f32, b: f32) -> f32 {
     if a.is_nan() || b.is_nan() { f32::NAN } else { a.max(b) }
 }
@@ -108,13 +108,13 @@ mod tests {
 
     #[test]
     fn swim_is_the_deviation_under_shifts() {
-        // Two values at distance d have the deviation d / 2.
+        // Two values at distance d have the standard deviation d / 2.
         let found = swim(&[vec![0.2, 0.5, 0.9], vec![0.6, 0.5, 0.3]]);
         let expected = [0.2, 0.0, 0.3];
         assert!((0..3).all(|i| (found.per_point[i] - expected[i]).abs() < 1e-6), "{found:?}");
         assert!((found.rms - (0.13_f64 / 3.0).sqrt()).abs() < 1e-7, "{found:?}");
         assert!((found.max - 0.3).abs() < 1e-7);
-        // Negative control: nothing moves.
+        // Negative control: nothing changes.
         assert_eq!(swim(&[vec![0.3; 4], vec![0.3; 4]]).max, 0.0);
     }
 
@@ -135,38 +135,38 @@ mod tests {
     }
 
     #[test]
-    fn flicker_is_what_the_reference_does_not_do() {
+    fn flicker_is_the_change_that_the_reference_lacks() {
         let truth: Vec<_> = (0..9).map(|i| vec![(i as f32 * 0.7).sin(); 3]).collect();
-        // An offset that stays is an error and no flicker.
+        // A constant offset is an error, but not flicker.
         let offset: Vec<_> = truth.iter().map(|v| v.iter().map(|t| t + 0.2).collect()).collect();
         assert!(flicker(&offset, &truth).max < 1e-6);
-        // Up and down by 0.1: each step differs by 0.2 from the reference's.
+        // Alternating by 0.1 up and down: each step differs by 0.2 from the reference's.
         let shaken: Vec<Vec<f32>> = (truth.iter().enumerate())
             .map(|(i, v)| v.iter().map(|t| t + if i % 2 == 0 { 0.1 } else { -0.1 }).collect())
             .collect();
         assert!((flicker(&shaken, &truth).rms - 0.2).abs() < 1e-6);
-        // Values that stand still while the truth moves flicker too.
+        // Constant values flicker too if the reference changes.
         let still = vec![vec![0.0; 3]; 9];
         assert!(flicker(&still, &truth).rms > 0.3);
     }
 
     #[test]
-    fn excess_is_the_largest_step_that_the_reference_does_not_make() {
+    fn excess_is_the_largest_step_that_the_reference_lacks() {
         let truth: Vec<_> = (0..9).map(|i| vec![(i as f32 * 0.7).sin(); 2]).collect();
         let mut test = truth.clone();
-        // An error that stays is no step but where it begins; the second point does as the truth does.
+        // A constant error is a step only where it begins; the second point follows the reference.
         test.iter_mut().skip(4).for_each(|values| values[0] += 0.2);
         let found = excess(&test, &truth);
         assert!((found.per_point[0] - 0.2).abs() < 1e-6 && found.per_point[1] < 1e-6, "{found:?}");
-        // Negative control: the largest change by itself tells neither point from the other as clearly.
+        // Negative control: the largest change alone does not separate the two points as clearly.
         assert!(pop(&test).per_point[1] > 0.5);
         assert!(pop(&truth).max > 0.5 && excess(&truth, &truth).max < 1e-9);
     }
 
     #[test]
-    fn many_frames_weigh_alike() {
+    fn frames_have_equal_weight() {
         let frame = |a: f32| swim(&[vec![0.0, 0.3], vec![2.0 * a, 0.3]]);
-        // Deviations of 0.3 and 0.4 at the first point, of none at the second.
+        // Deviations of 0.3 and 0.4 at the first point and none at the second.
         let found = Stability::over_frames(&[frame(0.3), frame(0.4)]);
         let expected = 0.125_f64.sqrt();
         assert!(
@@ -174,7 +174,7 @@ mod tests {
             "{found:?}"
         );
         assert!((found.rms - expected / 2.0_f64.sqrt()).abs() < 1e-6);
-        // One frame is itself; no frame is nothing.
+        // A single frame stays as it is; without frames the result is empty.
         assert_eq!(Stability::over_frames(&[frame(0.3)]), frame(0.3));
         assert_eq!(Stability::over_frames(&[]), Stability::default());
     }

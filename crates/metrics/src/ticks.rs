@@ -1,16 +1,16 @@
-//! Round numbers along an axis.
+//! Tick marks of an axis.
 
-/// Round numbers along an axis, and how to write them.
+/// Round numbers for the ticks of an axis, and their labels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ticks {
-    /// The numbers, rising, all in the range asked for.
+    /// The numbers in increasing order, all inside the range.
     pub values: Vec<f64>,
-    /// Between two of them.
+    /// Distance between two ticks.
     pub step: f64,
 }
 
-/// About `wanted` round numbers (steps of 1, 2 or 5 times a power of ten) in `low..=high`. Empty where the range is,
-/// or where it is not finite.
+/// About `wanted` round numbers (steps of 1, 2 or 5 times a power of ten) in `low..=high`. Empty if the range is empty
+/// or not finite.
 pub fn ticks(low: f64, high: f64, wanted: usize) -> Ticks {
     let span = high - low;
     let wanted = wanted.clamp(1, 50) as f64;
@@ -21,16 +21,16 @@ pub fn ticks(low: f64, high: f64, wanted: usize) -> Ticks {
     let power = 10.0_f64.powf(rough.log10().floor());
     let multiple = [1.0, 2.0, 5.0, 10.0].into_iter().find(|multiple| multiple * power >= rough * 0.999);
     let step = multiple.unwrap_or(10.0) * power;
-    // Indices, so that no error adds up; a little over, so that rounding loses no end.
+    // Multiples of the step, so that errors do not add up; slightly beyond the range, so that rounding loses no end.
     let [first, last] = [(low / step - 1e-6).ceil(), (high / step + 1e-6).floor()];
     let count = if (last - first).is_finite() { (last - first).clamp(-1.0, 200.0) as i64 } else { -1 };
     Ticks { values: (0..=count).map(|i| (first + i as f64) * step).collect(), step }
 }
 
 impl Ticks {
-    /// A value as it is written beside its tick: as many places as the step needs.
+    /// The label of a value, with as many decimals as the step needs.
     pub fn label(&self, value: f64) -> String {
-        // Minus nothing is nothing.
+        // Avoids -0.
         let value = if value.abs() < self.step * 1e-6 { 0.0 } else { value };
         let largest = self.values.iter().fold(self.step, |largest, value| largest.max(value.abs()));
         if !(1e-3..1e6).contains(&largest) {
@@ -41,7 +41,7 @@ impl Ticks {
     }
 }
 
-/// A number with one power of ten and no more places than it needs.
+/// A number in scientific notation, with no more decimals than needed.
 fn scientific(value: f64) -> String {
     let text = format!("{value:.2e}");
     match text.split_once('e') {
@@ -70,11 +70,11 @@ mod tests {
     }
 
     #[test]
-    fn empty_and_endless_ranges_have_none() {
+    fn empty_and_infinite_ranges_have_no_ticks() {
         for (low, high) in [(1.0, 1.0), (2.0, 1.0), (f64::NAN, 1.0), (0.0, f64::INFINITY)] {
             assert_eq!(labels(low, high, 5), Vec::<String>::new());
         }
-        // A range far from zero and below its rounding ends all the same.
+        // A range far from zero and narrower than its rounding terminates too.
         assert!(labels(1e18, 1e18 + 256.0, 5).len() < 300);
         assert!(labels(0.0, f64::MIN_POSITIVE, 5).len() < 300);
         assert!(labels(f64::MIN, f64::MAX, 5).len() < 300);

@@ -8,11 +8,10 @@
 //! moves its energy to coefficients of low frequency, and its amplitude is a third of the step. Images from the renderer are
 //! dithered themselves, so their local mean is finer than 8 bits.
 
+use lovelock_base::random::SplitMix64;
+
 /// Cells along each side of the pattern, which repeats after that.
 const SIDE: usize = 64;
-
-/// Fraction bits of the noise.
-const BITS: u32 = 16;
 
 /// Largest amplitude of luma noise in codes. Draft films would need more, and it would be visible.
 const MOST_CODES: f64 = 4.0;
@@ -43,20 +42,21 @@ impl Dither {
     }
 }
 
-/// A pattern of noise that repeats, in codes with [`BITS`] fraction bits.
+/// A pattern of noise that repeats, in codes with 16 fraction bits.
 pub(crate) struct Tile(Vec<[i32; SIDE]>);
 
 impl Tile {
     /// Noise from `-amplitude` to `amplitude` codes.
-    fn new(seed: u32, amplitude: f64) -> Self {
+    fn new(seed: u64, amplitude: f64) -> Self {
         // Rounded to 1/256 code, so that every machine has the same noise.
         let scale = (amplitude * 256.0).round() as i64;
-        let cell = |x: usize, y: usize| {
-            let bits = hash(hash(hash(seed) ^ x as u32) ^ y as u32);
+        let mut random = SplitMix64::new(seed);
+        let mut noise = || {
+            let bits = random.bits();
             // The difference of two uniform numbers of 16 bits.
-            (i64::from(bits >> BITS) - i64::from(bits & 0xFFFF)) * scale / 256
+            ((bits >> 48) as i64 - (bits & 0xFFFF) as i64) * scale / 256
         };
-        Self((0..SIDE).map(|y| std::array::from_fn(|x| cell(x, y) as i32)).collect())
+        Self((0..SIDE).map(|_| std::array::from_fn(|_| noise() as i32)).collect())
     }
 
     /// Noise of the sample at a column and row of the plane.
@@ -65,19 +65,12 @@ impl Tile {
     }
 }
 
-/// Mixes the bits of a number (Chris Wellons, lowbias32).
-fn hash(mut x: u32) -> u32 {
-    x = (x ^ (x >> 16)).wrapping_mul(0x7FEB_352D);
-    x = (x ^ (x >> 15)).wrapping_mul(0x846C_A68B);
-    x ^ (x >> 16)
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{BITS, Dither, SIDE, Tile};
+    use super::{Dither, SIDE, Tile};
 
     fn codes(tile: &Tile) -> Vec<f64> {
-        tile.0.as_flattened().iter().map(|&noise| f64::from(noise) / f64::from(1 << BITS)).collect()
+        tile.0.as_flattened().iter().map(|&noise| f64::from(noise) / 65_536.0).collect()
     }
 
     #[test]

@@ -65,15 +65,15 @@ pub struct PreviewReport {
 pub struct PreviewWriter {
     path: PathBuf,
     settings: PreviewSettings,
-    writer: Option<Writer<Shared>>,
-    file: Shared,
+    writer: Option<Writer<SharedFile>>,
+    file: SharedFile,
     pushed: u64,
     opaque: Vec<u8>,
 }
 
 /// The file, shared by the encoder, which writes to it, and the [`PreviewWriter`], which commits it.
 #[derive(Clone)]
-struct Shared(std::sync::Arc<std::sync::Mutex<Option<PartialFile>>>);
+struct SharedFile(std::sync::Arc<std::sync::Mutex<Option<PartialFile>>>);
 
 impl std::fmt::Debug for PreviewWriter {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -84,7 +84,7 @@ impl std::fmt::Debug for PreviewWriter {
     }
 }
 
-impl Shared {
+impl SharedFile {
     fn take(&self) -> Option<PartialFile> {
         self.0.lock().unwrap_or_else(std::sync::PoisonError::into_inner).take()
     }
@@ -95,7 +95,7 @@ impl Shared {
     }
 }
 
-impl std::io::Write for Shared {
+impl std::io::Write for SharedFile {
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
         self.with(|file| file.write(bytes))
     }
@@ -116,7 +116,7 @@ impl PreviewWriter {
         let failed = |error| RecordError::io(path, "create the preview", error);
         create_parent(path).map_err(failed)?;
         let file = PartialFile::create(path, &open_file).map_err(failed)?;
-        let file = Shared(std::sync::Arc::new(std::sync::Mutex::new(Some(file))));
+        let file = SharedFile(std::sync::Arc::new(std::sync::Mutex::new(Some(file))));
         let coded = |error: png::EncodingError| failed(std::io::Error::other(error));
         let mut encoder = Encoder::new(file.clone(), settings.width, settings.height);
         encoder.set_color(if settings.alpha { ColorType::Rgba } else { ColorType::Rgb });
@@ -223,7 +223,7 @@ mod tests {
         let path = folder.path().join("new/preview.apng");
         let mut writer = PreviewWriter::create(&path, settings(4)).unwrap();
         for number in 0..4 {
-            assert!(!path.exists(), "nothing unfinished has the name");
+            assert!(!path.exists(), "an unfinished file never has the final name");
             writer.push(&frame(number)).unwrap();
         }
         let report = writer.finish().unwrap();
@@ -243,14 +243,14 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_finished_leaves_nothing_and_a_wrong_number_of_frames_is_refused() {
+    fn unfinished_previews_leave_nothing_and_a_wrong_number_of_frames_is_refused() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("preview.apng");
         let mut writer = PreviewWriter::create(&path, settings(2)).unwrap();
         writer.push(&frame(0)).unwrap();
         assert!(matches!(writer.push(&[0; 3]), Err(RecordError::FrameSize { .. })));
         let error = writer.finish().unwrap_err();
-        assert!(error.is_request() && error.to_string().contains("1 frames of the 2"), "{error}");
+        assert!(error.is_request() && error.to_string().contains("1 frames; must be the 2"), "{error}");
         let mut writer = PreviewWriter::create(&path, settings(1)).unwrap();
         writer.push(&frame(0)).unwrap();
         assert!(writer.push(&frame(1)).unwrap_err().is_request());
@@ -259,7 +259,7 @@ mod tests {
     }
 
     #[test]
-    fn sizes_and_lengths_that_no_browser_holds_are_refused() {
+    fn invalid_sizes_and_lengths_are_refused() {
         for wrong in [
             PreviewSettings { width: 0, ..settings(1) },
             PreviewSettings { height: MOST_PREVIEW_SIDE + 1, ..settings(1) },

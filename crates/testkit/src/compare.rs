@@ -1,27 +1,27 @@
-//! Comparison of pictures.
+//! Comparison of images.
 
 use lovelock_metrics::Image;
 
-/// The perceived difference of two pictures by FLIP (Andersson et al. 2020): 0 is none, 1 is the most.
+/// The perceived difference of two images by FLIP (Andersson et al. 2020): 0 is none, 1 is the maximum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flip {
-    /// Mean over the pixels.
+    /// Mean over all pixels.
     pub mean: f32,
-    /// 99th percentile over the pixels, each weighted by its own difference.
+    /// 99th percentile over all pixels, each weighted by its own difference.
     pub p99: f32,
 }
 
-/// FLIP of two pictures of `width` by `height` pixels, four bytes a pixel, sRGB encoded; alpha is ignored.
+/// FLIP of two images of `width` by `height` pixels, four bytes per pixel, sRGB encoded; alpha is ignored.
 ///
 /// # Panics
-/// Where the bytes are no pictures of this size.
+/// If the bytes are not images of this size.
 pub fn flip(reference: &[u8], test: &[u8], width: u32, height: u32) -> Flip {
-    let image = |rgba| Image::new(width, height, rgba).expect("four bytes a pixel");
-    let map = lovelock_metrics::flip(&image(reference), &image(test)).expect("pictures of one size");
+    let image = |rgba| Image::new(width, height, rgba).expect("four bytes per pixel");
+    let map = lovelock_metrics::flip(&image(reference), &image(test)).expect("images of one size");
     Flip { mean: map.mean() as f32, p99: map.weighted_percentile(0.99) as f32 }
 }
 
-/// Mean of each channel of a picture of four bytes a pixel, 0 to 255.
+/// Mean of each channel of an image with four bytes per pixel, 0 to 255.
 pub fn mean_color(rgba: &[u8]) -> [f64; 4] {
     let mut sum = [0.0; 4];
     for pixel in rgba.chunks_exact(4) {
@@ -41,7 +41,7 @@ mod tests {
     }
 
     #[test]
-    fn equal_pictures_do_not_differ_and_others_do() {
+    fn only_different_images_differ() {
         let same = flip(&gradient(0), &gradient(0), 32, 32);
         assert_eq!((same.mean, same.p99), (0.0, 0.0));
         let other = flip(&gradient(0), &gradient(80), 32, 32);

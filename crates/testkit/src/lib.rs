@@ -1,4 +1,4 @@
-//! For tests alone: comparison of pictures, the folder of real files, and what to do without an adapter.
+//! Helpers for tests: comparison of images, the folder of real data files, and skipping without a graphics adapter.
 
 mod compare;
 mod data;

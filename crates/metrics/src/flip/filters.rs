@@ -1,29 +1,29 @@
-//! The filters of FLIP, each separable, as weights along an axis.
+//! The separable filters of FLIP, as weights along one axis.
 
 use std::f64::consts::PI;
 
-/// Weights along one axis, of odd number, the middle one at the pixel itself.
+/// An odd number of weights along one axis; the middle one is at the pixel itself.
 pub(super) struct Filters {
-    /// The eye's blur of luminance.
+    /// Contrast sensitivity for luminance.
     pub(super) achromatic: Vec<f32>,
-    /// Of red against green.
+    /// For red-green.
     pub(super) red_green: Vec<f32>,
-    /// Of blue against yellow, a sum of two.
+    /// For blue-yellow: the first of two terms.
     pub(super) blue_yellow_narrow: Vec<f32>,
-    /// The other of the two.
+    /// The second of the two terms.
     pub(super) blue_yellow_wide: Vec<f32>,
-    /// The blur across a feature, its first derivative (edges) and its second (points).
+    /// Gaussian of a feature, and its first (edges) and second derivative (points).
     pub(super) gaussian: Vec<f32>,
     pub(super) first: Vec<f32>,
     pub(super) second: Vec<f32>,
 }
 
-/// The width of a feature, degrees.
+/// Width of a feature in degrees.
 const FEATURE_WIDTH: f64 = 0.082;
 
 impl Filters {
     pub(super) fn new(pixels_per_degree: f64) -> Self {
-        // The paper's a and b of each channel's contrast sensitivity.
+        // The paper's a and b for the contrast sensitivity of each channel.
         let widest: f64 = 0.04;
         let radius = (3.0 * (widest / (2.0 * PI * PI)).sqrt() * pixels_per_degree).ceil() as i32;
         let along = |scale: f64, b: f64| -> Vec<f64> {
@@ -36,7 +36,7 @@ impl Filters {
             let total = sum(&weights);
             weights.iter().map(|weight| (weight / total) as f32).collect()
         };
-        // Each of the two is applied across and down, so each axis has the root of its share.
+        // Each of the two is applied horizontally and vertically, so each axis has the square root of its weight.
         let share = |a: f64, b: f64| along((a * (PI / b).sqrt()).sqrt(), b);
         let two = [share(34.1, 0.04), share(13.5, 0.025)];
         let total = (sum(&two[0]).powi(2) + sum(&two[1]).powi(2)).sqrt();
@@ -63,7 +63,7 @@ impl Filters {
     }
 }
 
-/// Scales positive weights to a sum of 1 and negative ones to -1.
+/// Scales positive weights to a sum of 1 and negative weights to a sum of -1.
 fn balanced(weights: &[f64]) -> Vec<f32> {
     let total = |sign: f64| weights.iter().map(|weight| (weight * sign).max(0.0)).sum::<f64>();
     let [positive, negative] = [total(1.0), total(-1.0)];
@@ -76,7 +76,7 @@ mod tests {
     use crate::blur::blurred;
 
     #[test]
-    fn blurs_keep_a_flat_plane_and_derivatives_lose_it() {
+    fn blurs_keep_a_constant_and_derivatives_remove_it() {
         let filters = Filters::new(67.0);
         let flat = vec![3.0; 7 * 5];
         for (across, down, expected) in [

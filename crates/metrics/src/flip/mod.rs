@@ -1,9 +1,9 @@
-//! FLIP: the difference of two pictures as people see it who flip between them.
+//! FLIP: the difference that people perceive when they flip between two images.
 //!
 //! Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström and Fairchild (2020), "FLIP: A Difference Evaluator for
-//! Alternating Images", Proc. ACM Comput. Graph. Interact. Tech. 3(2), for pictures of low dynamic range, with the
-//! separable filters of the authors' own program. A difference of colour (CIELAB after the eye's blur, `HyAB` distance)
-//! is made larger where edges and points differ.
+//! Alternating Images", Proc. ACM Comput. Graph. Interact. Tech. 3(2), for images of low dynamic range, with the
+//! separable filters of the authors' program. The colour difference (`HyAB` distance in CIELAB after contrast sensitivity
+//! filtering) is amplified where edges and points differ.
 
 mod color;
 mod filters;
@@ -15,35 +15,35 @@ use filters::Filters;
 use lovelock_base::statistics::nearest_rank;
 use rayon::prelude::*;
 
-/// Pixels a degree of the eye's view: a display 0.7 m wide with 3840 pixels seen from 0.7 m, the authors' default.
+/// Pixels per degree of visual angle, the authors' default: a display 0.7 m wide with 3840 pixels at a distance of 0.7 m.
 const PIXELS_PER_DEGREE: f64 = 67.0;
 
-/// The perceived difference of two pictures at each pixel.
+/// The perceived difference of two images at each pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlipMap {
-    /// Pixels in a row.
+    /// Width in pixels.
     pub width: usize,
-    /// Rows.
+    /// Height in pixels.
     pub height: usize,
-    /// A difference for each pixel, rows from the top: 0 is none, 1 is the most.
+    /// The difference at each pixel, rows from the top: 0 is none, 1 is the maximum.
     pub values: Vec<f32>,
 }
 
 impl FlipMap {
-    /// The mean over all pixels, none weighted: the single number that the authors recommend.
+    /// The unweighted mean over all pixels, the single number that the authors recommend.
     pub fn mean(&self) -> f64 {
         self.values.iter().map(|&value| f64::from(value)).sum::<f64>() / self.values.len().max(1) as f64
     }
 
-    /// The value that the share `q` of all pixels does not exceed, by nearest rank, none weighted. `q` is in 0..=1.
+    /// The unweighted quantile `q` (0..=1) of all pixels, by nearest rank.
     pub fn percentile(&self, q: f64) -> f64 {
         let mut sorted = self.values.clone();
         sorted.sort_unstable_by(f32::total_cmp);
         nearest_rank(sorted.len(), q).map_or(0.0, |index| f64::from(sorted[index]))
     }
 
-    /// As [`percentile`](Self::percentile) with each pixel weighted by its own difference, as the authors' program
-    /// prints its quartiles: a large empty backdrop does not change it.
+    /// As [`percentile`](Self::percentile), but with each pixel weighted by its own difference, as in the quartiles of the
+    /// authors' program. A large empty backdrop does not change it.
     pub fn weighted_percentile(&self, q: f64) -> f64 {
         let mut sorted = self.values.clone();
         sorted.sort_unstable_by(f32::total_cmp);
@@ -59,10 +59,10 @@ impl FlipMap {
     }
 }
 
-/// FLIP of two pictures at 67 pixels a degree.
+/// FLIP of two images at 67 pixels per degree.
 ///
 /// # Errors
-/// Where the pictures differ in size.
+/// If the images differ in size.
 pub fn flip(reference: &Image<'_>, test: &Image<'_>) -> Result<FlipMap, ImageError> {
     reference.same_size(test)?;
     let filters = Filters::new(PIXELS_PER_DEGREE);
@@ -83,19 +83,19 @@ pub fn flip(reference: &Image<'_>, test: &Image<'_>) -> Result<FlipMap, ImageErr
     Ok(FlipMap { width: reference.width(), height: reference.height(), values })
 }
 
-/// The exponents, and the knee below which nearly the whole range lies, in the paper's section 4.
+/// The exponents and the knee of the colour mapping, from section 4 of the paper.
 const COLOR_EXPONENT: f32 = 0.7;
 const KNEE: f32 = 0.4;
 const KNEE_VALUE: f32 = 0.95;
 const FEATURE_EXPONENT: f32 = 0.5;
 
-/// What the eye sees of one picture.
+/// The filtered signals of one image.
 struct Seen {
-    /// Colour after the eye's blur: CIELAB with Hunt's adjustment.
+    /// Colour after contrast sensitivity filtering: CIELAB with the Hunt adjustment.
     lab: Vec<[f32; 3]>,
     /// Length of the gradient of luminance.
     edges: Vec<f32>,
-    /// Length of its second derivatives.
+    /// Length of the second derivatives of luminance.
     points: Vec<f32>,
 }
 
@@ -120,7 +120,7 @@ impl Seen {
             .with_min_len(4096)
             .map(|i| hunt_lab([y[i], cx[i], cz1[i] + cz2[i]]))
             .collect();
-        // Derivatives do not see the offset between this luminance and one of 0 to 1, only its scale.
+        // This luminance differs from one of 0 to 1 by an offset and a scale; derivatives depend only on the scale.
         let length = |along: &[f32]| {
             let [x, y] = [blur(0, along, &filters.gaussian), blur(0, &filters.gaussian, along)];
             x.iter().zip(&y).map(|(x, y)| (x * x + y * y).sqrt() / 116.0).collect()
@@ -129,7 +129,7 @@ impl Seen {
     }
 }
 
-/// The difference of two colours, 0 to 1; `largest` is what [`largest_color_difference`] gives.
+/// The difference of two colours, 0 to 1; `largest` is the result of [`largest_color_difference`].
 fn color_difference(reference: [f32; 3], test: [f32; 3], largest: f32) -> f32 {
     let difference = hyab(reference, test).powf(COLOR_EXPONENT);
     let knee = KNEE * largest;
@@ -140,7 +140,7 @@ fn color_difference(reference: [f32; 3], test: [f32; 3], largest: f32) -> f32 {
     }
 }
 
-/// Between pure green and pure blue, before it is scaled to 1.
+/// The difference between pure green and pure blue, before it is scaled to 1.
 fn largest_color_difference() -> f32 {
     hyab(hunt_lab(ycxcz([0, 255, 0])), hunt_lab(ycxcz([0, 0, 255]))).powf(COLOR_EXPONENT)
 }

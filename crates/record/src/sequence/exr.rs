@@ -46,7 +46,7 @@ impl Planes {
 
 /// The metadata of the file.
 #[derive(Clone, Debug)]
-pub(super) struct Head {
+pub(super) struct FrameInfo {
     pub rate: FrameRate,
     pub number: u64,
     /// How the frame was rendered.
@@ -60,7 +60,7 @@ pub(super) struct Head {
 pub(super) fn encode(
     planes: Planes,
     [width, height]: [u32; 2],
-    head: &Head,
+    info: &FrameInfo,
     out: &mut Vec<u8>,
 ) -> Result<(), exr::error::Error> {
     let Planes { halves: [r, g, b, a], depth, transmittance } = planes;
@@ -74,11 +74,11 @@ pub(super) fn encode(
         half("transmittance.Y", transmittance),
     ]);
     let mut attributes = LayerAttributes {
-        comments: Text::new_or_none(&head.comments),
+        comments: Text::new_or_none(&info.comments),
         software_name: Text::new_or_none(concat!("Lovelock ", env!("CARGO_PKG_VERSION"))),
         ..LayerAttributes::default()
     };
-    attributes.frames_per_second = i32::try_from(head.rate.num).ok().map(|frames| (frames, head.rate.den));
+    attributes.frames_per_second = i32::try_from(info.rate.num).ok().map(|frames| (frames, info.rate.den));
     let encoding = Encoding {
         compression: Compression::ZIP16,
         blocks: Blocks::ScanLines,
@@ -95,7 +95,7 @@ pub(super) fn encode(
         white: Vec2(0.3127, 0.3290),
     });
     // Only one custom attribute: the library writes several in an order that differs from run to run.
-    let number = i32::try_from(head.number).unwrap_or(i32::MAX);
+    let number = i32::try_from(info.number).unwrap_or(i32::MAX);
     image.attributes.other.insert(Text::from("frame"), AttributeValue::I32(number));
     let mut file = Cursor::new(std::mem::take(out));
     file.get_mut().clear();

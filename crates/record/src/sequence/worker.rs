@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
 
-use super::exr::{self, Head, Planes};
+use super::exr::{self, FrameInfo, Planes};
 use super::{SequenceFormat, frame_name, lock};
 use crate::film::give_back;
 use crate::manifest::ManifestFrame;
@@ -56,8 +56,8 @@ impl Worker {
                     Some(rgba)
                 }
                 Pixels::Layers(planes) => {
-                    let head = Head { rate: self.rate, number, comments: self.comments.clone() };
-                    let coded = exr::encode(*planes, [self.width, self.height], &head, &mut file);
+                    let info = FrameInfo { rate: self.rate, number, comments: self.comments.clone() };
+                    let coded = exr::encode(*planes, [self.width, self.height], &info, &mut file);
                     self.write(number, coded.map_err(std::io::Error::other), &file);
                     None
                 }

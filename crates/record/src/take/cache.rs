@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use super::codec::Decoded;
+use super::codec::DecodedChunk;
 
-/// Decoded chunks up to a bound in bytes. The most recently used one is last.
+/// DecodedChunk chunks up to a bound in bytes. The most recently used one is last.
 pub(super) struct Cache {
-    chunks: Vec<(usize, Arc<Decoded>)>,
+    chunks: Vec<(usize, Arc<DecodedChunk>)>,
     bound: usize,
 }
 
@@ -20,13 +20,13 @@ impl Cache {
         self.trim();
     }
 
-    pub(super) fn get(&mut self, chunk: usize) -> Option<Arc<Decoded>> {
+    pub(super) fn get(&mut self, chunk: usize) -> Option<Arc<DecodedChunk>> {
         let place = self.chunks.iter().position(|(held, _)| *held == chunk)?;
         self.chunks[place..].rotate_left(1);
         self.chunks.last().map(|(_, decoded)| Arc::clone(decoded))
     }
 
-    pub(super) fn put(&mut self, chunk: usize, decoded: &Arc<Decoded>) {
+    pub(super) fn put(&mut self, chunk: usize, decoded: &Arc<DecodedChunk>) {
         self.chunks.push((chunk, Arc::clone(decoded)));
         self.trim();
     }

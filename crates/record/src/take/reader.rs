@@ -10,7 +10,7 @@ use std::sync::Arc;
 use super::bytes::Bytes;
 use super::cache::Cache;
 use super::chunk::{ChunkHeader, HEADER_BYTES, MOST_START_BYTES, Part, unpack, unpack_start};
-use super::codec::{self, Decoded};
+use super::codec::{self, DecodedChunk};
 use super::disk::part_path;
 use super::index::Entry;
 use super::layout::{LAYOUT_BYTES, Layout, TakeLayout};
@@ -31,7 +31,7 @@ pub struct TakeReader {
     source: Box<dyn Source>,
     map: Map,
     cache: Cache,
-    project: Option<Playing>,
+    project: Option<ProjectText>,
     /// Chunks that were found to be damaged, by their index in the map.
     bad: BTreeMap<usize, String>,
     /// Buffers for the numbers of a frame and for the two frames of an interpolation.
@@ -40,7 +40,7 @@ pub struct TakeReader {
 }
 
 /// The project text that was returned last.
-struct Playing {
+struct ProjectText {
     chunk: usize,
     settings: Settings,
     text: Arc<str>,
@@ -248,24 +248,24 @@ impl TakeReader {
     /// As [`TakeReader::frame`].
     pub fn project_at(&mut self, frame: u64) -> Result<Arc<str>, TakeError> {
         let (chunk, within) = self.find(frame)?;
-        let same_chunk = self.project.as_ref().is_some_and(|playing| playing.chunk == chunk);
-        if let Some(playing) = self.project.as_ref().filter(|p| same_chunk && p.frames.contains(&within)) {
-            return Ok(Arc::clone(&playing.text));
+        let same_chunk = self.project.as_ref().is_some_and(|known| known.chunk == chunk);
+        if let Some(known) = self.project.as_ref().filter(|p| same_chunk && p.frames.contains(&within)) {
+            return Ok(Arc::clone(&known.text));
         }
         let before = self.project.take();
         let (settings, old) = match before {
-            Some(playing) if same_chunk => (playing.settings, Some(playing.text)),
+            Some(known) if same_chunk => (known.settings, Some(known.text)),
             before => {
                 let Entry { offset, header } = self.map.entries[chunk];
                 let raw = self.part(chunk, frame, offset + HEADER_BYTES as u64, &header.text)?;
                 let settings =
                     Settings::parse(&raw, header.changes).map_err(|why| self.damaged(chunk, frame, &why))?;
-                (settings, before.map(|playing| playing.text))
+                (settings, before.map(|known| known.text))
             }
         };
         let (text, frames) = settings.at(within).map_err(|why| self.damaged(chunk, frame, &why))?;
         let text = old.filter(|old| **old == *text).unwrap_or_else(|| text.into());
-        self.project = Some(Playing { chunk, settings, text: Arc::clone(&text), frames });
+        self.project = Some(ProjectText { chunk, settings, text: Arc::clone(&text), frames });
         Ok(text)
     }
 
@@ -322,7 +322,7 @@ impl TakeReader {
     }
 
     /// The frames of a chunk, from the cache or the file. `frame` is the requested one, for error messages.
-    fn decoded(&mut self, chunk: usize, frame: u64) -> Result<Arc<Decoded>, TakeError> {
+    fn decoded(&mut self, chunk: usize, frame: u64) -> Result<Arc<DecodedChunk>, TakeError> {
         if let Some(decoded) = self.cache.get(chunk) {
             return Ok(decoded);
         }

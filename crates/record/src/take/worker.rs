@@ -22,7 +22,7 @@ const TEXT_LEVEL: i32 = 9;
 const DATA_LEVEL: i32 = 1;
 
 /// The frames of one chunk, before they are encoded.
-pub(super) struct Load {
+pub(super) struct PendingChunk {
     pub(super) layout: Layout,
     pub(super) metas: Vec<Meta>,
     pub(super) numbers: Vec<i32>,
@@ -32,7 +32,7 @@ pub(super) struct Load {
 /// A message to the worker.
 pub(super) enum Job {
     /// The next chunk.
-    Chunk(Load),
+    Chunk(PendingChunk),
     /// There are no more chunks. If the channel closes without this message, the unfinished file stays.
     Finish,
     /// Remove the unfinished file.
@@ -87,7 +87,7 @@ impl TakeFile {
     pub(super) fn run(mut self, jobs: &Receiver<Job>) -> Result<Option<u64>, TakeError> {
         while let Ok(job) = jobs.recv() {
             match job {
-                Job::Chunk(load) => self.add(&load)?,
+                Job::Chunk(pending) => self.add(&pending)?,
                 Job::Finish => return self.finish().map(Some),
                 // Removed while the file is locked, so that it cannot belong to another recording.
                 Job::Discard => {
@@ -100,21 +100,21 @@ impl TakeFile {
         Ok(None)
     }
 
-    fn add(&mut self, load: &Load) -> Result<(), TakeError> {
+    fn add(&mut self, pending: &PendingChunk) -> Result<(), TakeError> {
         let first = self.entries.last().map_or(0, |entry| entry.header.end());
-        let last = first + load.metas.len() as u64 - 1;
-        self.write_frames(load, first)
+        let last = first + pending.metas.len() as u64 - 1;
+        self.write_frames(pending, first)
             .map_err(|error| self.failed(&format!("write frames {first} to {last}"), error))?;
         self.kept.store(last + 1, Ordering::Release);
         Ok(())
     }
 
-    fn write_frames(&mut self, load: &Load, first: u64) -> std::io::Result<()> {
-        let data = codec::encode(&load.metas, &load.numbers, load.layout);
+    fn write_frames(&mut self, pending: &PendingChunk, first: u64) -> std::io::Result<()> {
+        let data = codec::encode(&pending.metas, &pending.numbers, pending.layout);
         let mut header = self.header(Kind::Frames);
-        (header.first, header.frames) = (first, load.metas.len() as u32);
-        header.changes = load.settings.changes();
-        let (header, bytes) = self.chunk(header, &load.settings.to_bytes(), &data)?;
+        (header.first, header.frames) = (first, pending.metas.len() as u32);
+        header.changes = pending.settings.changes();
+        let (header, bytes) = self.chunk(header, &pending.settings.to_bytes(), &data)?;
         let offset = self.position;
         self.write(&bytes)?;
         self.entries.push(Entry { offset, header });

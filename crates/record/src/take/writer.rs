@@ -12,7 +12,7 @@ use super::disk::{Mount, claim, mount_file, part_path, sync_folder};
 use super::layout::Layout;
 use super::quantise::quantise;
 use super::settings::SettingsLog;
-use super::worker::{Job, Load, TakeFile};
+use super::worker::{Job, PendingChunk, TakeFile};
 use super::{MOST_PROJECT_BYTES, TAKE_VERSION, TakeError, TakeFrame, TakeHeader};
 
 /// Frames per chunk, if they last a second or less. Chunks twice as long are 4 % smaller, but take twice as long to read
@@ -49,7 +49,7 @@ pub struct TakeWriter {
     part: PathBuf,
     header: TakeHeader,
     chunk_frames: usize,
-    pending: Load,
+    pending: PendingChunk,
     frames: u64,
     kept: Arc<AtomicU64>,
     jobs: Option<SyncSender<Job>>,
@@ -103,7 +103,7 @@ impl TakeWriter {
             path: path.to_owned(),
             part,
             chunk_frames,
-            pending: Load::new(header.project.clone(), chunk_frames, layout),
+            pending: PendingChunk::new(header.project.clone(), chunk_frames, layout),
             header,
             frames: 0,
             kept,
@@ -171,7 +171,7 @@ impl TakeWriter {
         self.check_worker()?;
         self.flush()?;
         self.chunk_frames = chunk_frames(&self.header, layout);
-        self.pending = Load::new(self.pending.settings.now().to_owned(), self.chunk_frames, layout);
+        self.pending = PendingChunk::new(self.pending.settings.now().to_owned(), self.chunk_frames, layout);
         Ok(())
     }
 
@@ -234,9 +234,10 @@ impl TakeWriter {
         if self.pending.metas.is_empty() {
             return Ok(());
         }
-        let next = Load::new(self.pending.settings.now().to_owned(), self.chunk_frames, self.pending.layout);
-        let load = std::mem::replace(&mut self.pending, next);
-        self.send(Job::Chunk(load))
+        let next =
+            PendingChunk::new(self.pending.settings.now().to_owned(), self.chunk_frames, self.pending.layout);
+        let pending = std::mem::replace(&mut self.pending, next);
+        self.send(Job::Chunk(pending))
     }
 
     fn send(&mut self, job: Job) -> Result<(), TakeError> {
@@ -292,7 +293,7 @@ fn chunk_frames(header: &TakeHeader, layout: Layout) -> usize {
     (CHUNK_BYTES / frame_bytes).clamp(1, a_second)
 }
 
-impl Load {
+impl PendingChunk {
     fn new(project: String, frames: usize, layout: Layout) -> Self {
         Self {
             layout,

@@ -52,13 +52,13 @@ impl Meta {
 
 /// Frames of a chunk, decoded.
 #[derive(Debug)]
-pub(super) struct Decoded {
+pub(super) struct DecodedChunk {
     pub(super) layout: Layout,
     pub(super) metas: Vec<Meta>,
     numbers: Rows,
 }
 
-impl Decoded {
+impl DecodedChunk {
     /// Bytes that the frames take in memory.
     pub(super) fn bytes(&self) -> usize {
         self.metas.len() * size_of::<Meta>() + self.numbers.bytes()
@@ -114,7 +114,7 @@ pub(super) fn encode(metas: &[Meta], numbers: &[i32], layout: Layout) -> Vec<u8>
 
 /// Decodes the data part `raw` of a chunk of `frames` frames. Returns what is wrong if it is invalid. `known` is the layout
 /// of a take of version 1, whose chunks do not contain theirs.
-pub(super) fn decode(raw: &[u8], frames: usize, known: Option<Layout>) -> Result<Decoded, String> {
+pub(super) fn decode(raw: &[u8], frames: usize, known: Option<Layout>) -> Result<DecodedChunk, String> {
     let mut bytes = Bytes::new(raw);
     let layout = match known {
         Some(layout) => layout,
@@ -158,7 +158,7 @@ pub(super) fn decode(raw: &[u8], frames: usize, known: Option<Layout>) -> Result
         return Err(format!("{} bytes after the last frame", bytes.left()));
     }
     rows.add_up();
-    Ok(Decoded { layout, metas, numbers: rows })
+    Ok(DecodedChunk { layout, metas, numbers: rows })
 }
 
 /// The part of a residual above this value is stored after the bytes of all residuals.
