@@ -1,4 +1,4 @@
-//! Interpolation of the two published hairstyles, and growing them.
+//! Interpolating and growing the two published hairstyles.
 
 use std::hint::black_box;
 use std::sync::Arc;

@@ -1,6 +1,6 @@
 //! From a hair file on disk to a hairstyle: reading, importing, and both.
 //!
-//! Reads the real files where there are any, else says so.
+//! Uses the real files if they exist; otherwise prints a message.
 
 use std::hint::black_box;
 use std::path::PathBuf;
@@ -45,7 +45,7 @@ fn real_files(c: &mut Criterion) {
     }
 }
 
-/// Time must grow no faster than the number of strands.
+/// The time must grow no faster than the number of strands.
 fn many_strands(c: &mut Criterion) {
     let scalp = PlainHead.scalp(48);
     let settings = ImportSettings::default();
@@ -61,7 +61,7 @@ fn many_strands(c: &mut Criterion) {
     group.finish();
 }
 
-/// A `.hair` file of strands of 8 points on half a ball, Z up.
+/// A `.hair` file of strands of 8 points on a hemisphere, Z up.
 fn cap(strands: usize) -> Vec<u8> {
     let mut bytes = b"HAIR".to_vec();
     bytes.extend([strands as u32, 8 * strands as u32, 2, 7].iter().flat_map(|n| n.to_le_bytes()));

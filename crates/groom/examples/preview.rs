@@ -19,13 +19,13 @@ use serde::{Serialize, de::DeserializeOwned};
 const VIEW: [usize; 2] = [460, 600];
 /// Samples along each side of a pixel.
 const FINE: usize = 3;
-/// Height of the picture's lower edge and what a pixel covers, metres.
+/// Height of the image's lower edge, and the size of a pixel, metres.
 const BOTTOM: f32 = -0.38;
 const PIXEL: f32 = 0.68 / VIEW[1] as f32;
 /// Cells of the shadow's grid along each side, and their size in metres.
 const GRID: usize = 150;
 const CELL: f32 = 0.006;
-/// Share of the hair's true extinction, as in the default of the voxel map.
+/// Fraction of the hair's true extinction, as in the default of the voxel map.
 const EXTINCTION: f32 = 0.15;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -50,7 +50,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     draw(&style, &scalp, &PlainHead, &path)
 }
 
-/// `settings` with the fields that `changes` name set to the JSON values that they give.
+/// `settings` with the fields named by `changes` set to the given JSON values.
 fn changed<T: Serialize + DeserializeOwned>(settings: T, changes: &[String]) -> Result<T, Box<dyn Error>> {
     let mut fields = serde_json::to_value(settings)?;
     for change in changes {
@@ -61,11 +61,11 @@ fn changed<T: Serialize + DeserializeOwned>(settings: T, changes: &[String]) -> 
     Ok(serde_json::from_value(fields)?)
 }
 
-/// Draws `style` over `body` and writes the picture.
+/// Draws `style` over `body` and writes the image.
 fn draw(style: &Hairstyle, scalp: &Scalp, body: &dyn Obstacle, path: &str) -> Result<(), Box<dyn Error>> {
     let mut strands = Strands::default();
     interpolate(style, &GuideFrame::at_rest(&style.guides, Affine3A::IDENTITY, 0.0), &mut strands);
-    // Where the camera stands: front, three quarters, side; back, three quarters of the back, top.
+    // Camera positions: front, three-quarter, side; back, three-quarter back, top.
     let views = [
         (Vec3::Z, Vec3::Y),
         (Vec3::new(0.75, 0.12, 0.65), Vec3::Y),
@@ -107,14 +107,14 @@ impl View {
         let back = from.normalize_or(Vec3::Z);
         let right = up.cross(back).normalize_or(Vec3::X);
         let up = back.cross(right);
-        // From above the shoulder of whoever holds the camera.
+        // From above the camera's shoulder.
         let light = (0.8 * back + 0.45 * right + 0.9 * up).normalize_or(up);
         let middle = BOTTOM + 0.5 * VIEW[1] as f32 * PIXEL;
         let centre = if up.y > 0.7 { Vec3::Y * middle } else { Vec3::Y * 0.1 };
         Self { right, up, back, centre, light }
     }
 
-    /// Position in fine pixels, and depth toward the camera in metres.
+    /// Position in subpixels, and depth toward the camera in metres.
     fn project(&self, p: Vec3) -> Vec3 {
         let (q, fine) = (p - self.centre, FINE as f32 / PIXEL);
         let middle = Vec3::new((VIEW[0] * FINE) as f32, (VIEW[1] * FINE) as f32, 0.0) * 0.5;
@@ -141,7 +141,7 @@ impl View {
         canvas.reduced()
     }
 
-    /// The light that a hair at `p` sends to the camera.
+    /// The light from a hair at `p` toward the camera.
     fn shade(&self, style: &Hairstyle, base: Vec3, p: Vec3, tangent: Vec3, shadow: &Shadow) -> Vec3 {
         let lit = shadow.transmittance(p, self.light);
         let sky = shadow.transmittance(p, Vec3::Y).mul_add(0.5, 0.5 * shadow.transmittance(p, self.back));
@@ -157,7 +157,7 @@ impl View {
         (base * (1.6 * diffuse.max(0.0).sqrt()) + first + second) * lit + base * (0.12 + 0.7 * sky)
     }
 
-    /// The skin, by marching along each pixel's ray.
+    /// The skin, by ray marching for each pixel.
     fn body(&self, scalp: &Scalp, body: &dyn Obstacle, hair: Vec3, shadow: &Shadow) -> Canvas {
         let index = ScalpIndex::new(scalp);
         let mut canvas = Canvas::new();
@@ -188,7 +188,7 @@ impl View {
     }
 }
 
-/// A depth buffer and colours at `FINE` samples a pixel side.
+/// A depth buffer and colours with `FINE` samples along each side of a pixel.
 struct Canvas {
     color: Vec<Vec3>,
     depth: Vec<f32>,
@@ -208,7 +208,7 @@ impl Canvas {
         }
     }
 
-    /// Where sample `k` of pixel `i` is.
+    /// The position of sample `k` of pixel `i`.
     fn sample(i: usize, k: usize) -> usize {
         ((i / VIEW[0]) * FINE + k / FINE) * VIEW[0] * FINE + (i % VIEW[0]) * FINE + k % FINE
     }
@@ -218,7 +218,7 @@ impl Canvas {
         let steps = along.truncate().abs().max_element().ceil().max(1.0);
         let mostly_down = along.y.abs() > along.x.abs();
         let length = along.truncate().length().max(1e-6);
-        // Pixels across, along the axis less followed, for this width square to the line.
+        // The pixel width along the minor axis for this width perpendicular to the line.
         let across = radius * length / along.truncate().abs().max_element().max(1e-6);
         for k in 0..=steps as usize {
             let p = a + along * (k as f32 / steps);

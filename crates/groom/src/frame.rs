@@ -1,24 +1,23 @@
-//! The curve and the moving frame of a wisp: the maths that every strand shares.
+//! The curve and the moving frame of a wisp, which all its strands share.
 //!
-//! Guides are uniform Catmull-Rom curves of parameter `u` in links, whose end segments use reflected phantom
-//! points (`2 p0 - p1`), so that the ends are reached with a tangent along the last link. Weights blend control
-//! points, which is the same as blending the curves, since a Catmull-Rom curve is linear in its control points.
+//! Guides are uniform Catmull-Rom curves whose parameter `u` counts links. The end segments use reflected phantom
+//! points (`2 p0 - p1`), so that the curve reaches its ends with a tangent along the last link. Weights blend control
+//! points, which equals blending the curves, because a Catmull-Rom curve is linear in its control points.
 //!
-//! The frame is carried along the mean of the wisp's guides by the smallest rotation from tangent to tangent
-//! (parallel transport). At the root it is the frame of the rest shape turned with the head, whatever the guides
-//! do: roots and their offsets therefore stay on the moving scalp exactly, and the frame cannot flip from one
-//! instant to the next.
+//! The frame is carried along the mean of the wisp's guides by parallel transport: the smallest rotation from tangent
+//! to tangent. At the root it is the frame of the rest shape, rotated with the head, whatever the guides do. Roots and
+//! their offsets therefore stay exactly on the moving scalp, and the frame cannot flip between frames.
 
 use glam::{Affine3A, Mat3, Vec3, Vec3A};
 
 use crate::{Guides, Wisp};
 
-/// The three guides of one wisp at one instant, ready to be evaluated.
+/// The three guides of one wisp at one instant, ready for evaluation.
 ///
-/// Made once and reused: [`WispCurve::place`] keeps its buffers.
+/// Reusable: [`WispCurve::place`] keeps its buffers.
 #[derive(Clone, Debug, Default)]
 pub struct WispCurve {
-    /// Control points of the three guides side by side, one a guide point.
+    /// Control points of the three guides side by side, one entry per guide point.
     controls: Vec<[Vec3A; 3]>,
     /// The frame along each link.
     links: Vec<Link>,
@@ -33,7 +32,7 @@ struct Link {
     normal_change: [f32; 3],
 }
 
-/// One value a lane for each of x, y, z.
+/// One value per lane for each of x, y, z.
 pub(crate) type Lanes<const N: usize> = [[f32; N]; 3];
 
 impl WispCurve {
@@ -44,10 +43,10 @@ impl WispCurve {
         curve
     }
 
-    /// Makes this the curve of `wisp` at one instant.
+    /// Sets this to the curve of `wisp` at one instant.
     ///
-    /// `rest` holds the guides at rest in head space; `moved` the same guides in world space (or in head space,
-    /// with the identity as `world_from_head`). A wisp needs guides of at least 2 points.
+    /// `rest` contains the guides at rest in head space, `moved` the same guides in world space (or in head space, with
+    /// the identity as `world_from_head`). The guides of a wisp need at least 2 points.
     pub fn place(&mut self, rest: &Guides, wisp: &Wisp, moved: &Guides, world_from_head: Affine3A) {
         let points = moved.points_per_guide;
         assert!(points >= 2, "a guide needs at least 2 points");
@@ -100,8 +99,8 @@ impl WispCurve {
         Vec3::new(x, y, z)
     }
 
-    /// The frame at `u`: an orthonormal, right-handed matrix of columns normal, binormal, tangent, whose transpose
-    /// turns a displacement into an offset.
+    /// The frame at `u`: an orthonormal, right-handed matrix with the columns normal, binormal and tangent. Its
+    /// transpose turns a displacement into an offset.
     pub fn frame(&self, u: f32) -> Mat3 {
         let (p, t) = locate(u, self.links.len());
         let axes = self.axes([p], [t]);
@@ -109,12 +108,12 @@ impl WispCurve {
         Mat3::from_cols(column(axes[0]), column(axes[1]), column(axes[2]))
     }
 
-    /// A strand's point: `blend(weights, u) + frame(u) * offset`.
+    /// A point of a strand: `blend(weights, u) + frame(u) * offset`.
     pub fn point(&self, weights: [f32; 3], u: f32, offset: Vec3) -> Vec3 {
         self.blend(weights, u) + self.frame(u) * offset
     }
 
-    /// The offset that carries the blended curve at `u` to `point`: the inverse of [`WispCurve::point`].
+    /// The offset from the blended curve at `u` to `point`: the inverse of [`WispCurve::point`].
     pub fn offset_to(&self, weights: [f32; 3], u: f32, point: Vec3) -> Vec3 {
         self.frame(u).transpose() * (point - self.blend(weights, u))
     }
@@ -202,8 +201,8 @@ fn mix(controls: &[Vec3A; 3], w: [f32; 3]) -> Vec3A {
     controls[0] * w[0] + controls[1] * w[1] + controls[2] * w[2]
 }
 
-/// Gram-Schmidt: unit normals, binormals and tangents. What is interpolated between neighbouring guide points
-/// vanishes only where a guide folds back on itself; the axes are finite and orthonormal even there.
+/// Gram-Schmidt: unit normals, binormals and tangents. The vectors interpolated between neighbouring guide points
+/// vanish only where a guide folds back on itself; the axes are finite and orthonormal even there.
 #[inline]
 fn orthonormal<const N: usize>(mut tangent: Lanes<N>, mut normal: Lanes<N>) -> [Lanes<N>; 3] {
     let mut binormal = [[0.0; N]; 3];
@@ -230,7 +229,7 @@ fn orthonormal<const N: usize>(mut tangent: Lanes<N>, mut normal: Lanes<N>) -> [
         }
         smallest[lane] = squared.min(across);
     }
-    // Also true of a lane that is not a number.
+    // This is also true for a NaN lane.
     if !smallest.iter().all(|&s| s > 1e-12) {
         for lane in (0..N).filter(|&lane| smallest[lane].is_nan() || smallest[lane] <= 1e-12) {
             let given = Vec3A::new(tangent[0][lane], tangent[1][lane], tangent[2][lane]);

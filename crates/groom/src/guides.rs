@@ -1,15 +1,15 @@
-//! Guide strands: at rest, and at one instant of the simulation.
+//! Guide strands at rest and at one instant of the simulation.
 
 use glam::{Affine3A, Vec3};
 
 /// The guide strands of a hairstyle at rest, in head space.
 ///
-/// Structure of arrays, guide after guide, root first: point `p` of guide `g` is at index
-/// `g * points_per_guide + p`. All guides have the same number of points, equally spaced along each guide; the
-/// points beyond the end of a guide that was cut lie on its end (see [`crate::trimmed`]).
+/// Structure of arrays, guide after guide, root first: point `p` of guide `g` is at index `g * points_per_guide + p`.
+/// All guides have the same number of points, equally spaced along each guide. The points beyond the end of a cut guide
+/// lie on its end (see [`crate::trimmed`]).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Guides {
-    /// Points of one guide, at least 2; links are one fewer.
+    /// Points per guide, at least 2. A guide has one link fewer.
     pub points_per_guide: usize,
     /// Positions in head space, metres; each of length `count * points_per_guide`.
     pub x: Vec<f32>,
@@ -44,10 +44,10 @@ impl Guides {
 
 /// The guide strands at one instant, in world space: what the simulator produces and interpolation reads.
 ///
-/// Laid out as [`Guides`].
+/// Has the layout of [`Guides`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct GuideFrame {
-    /// When, on the clip's clock, seconds.
+    /// Time on the clip's clock, seconds.
     pub time_secs: f64,
     /// The rigid transform that carries head space to world space at that time.
     pub world_from_head: Affine3A,
@@ -56,7 +56,7 @@ pub struct GuideFrame {
 }
 
 impl GuideFrame {
-    /// The rest shape carried rigidly by `world_from_head`: what hair looks like before it is simulated.
+    /// The rest shape carried rigidly by `world_from_head`: the hair before simulation.
     pub fn at_rest(guides: &Guides, world_from_head: Affine3A, time_secs: f64) -> Self {
         let mut placed = guides.clone();
         for i in 0..guides.x.len() {

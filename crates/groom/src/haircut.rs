@@ -1,9 +1,9 @@
-//! Hair that is cut while it moves.
+//! Cutting hair while it moves.
 //!
-//! A cut is kept as what is left of each guide, so that it survives saving, undoing and another motion. The guides
-//! of a cut style keep their points up to the link after the cut; the points beyond lie on the last of them, with
-//! links of no length, which the simulator leaves out. So what is left of the hair has the very same control points,
-//! curves and frames as before, at rest and in motion, and cannot jump when it is cut.
+//! A cut is stored as the part that remains of each guide, so that it survives saving, undo and another motion. The
+//! guides of a cut style keep their points up to the link after the cut. The points beyond lie on the last of them,
+//! with links of length zero, which the simulator skips. The remaining hair therefore has the same control points,
+//! curves and frames as before, at rest and in motion, and does not jump when it is cut.
 
 use glam::{Affine3A, Vec3};
 use serde::{Deserialize, Serialize};
@@ -12,20 +12,20 @@ use crate::{GuideFrame, Guides, Hairstyle, StrandSet};
 
 /// The least that a cut leaves of a strand, in links.
 const STUBBLE: f32 = 0.3;
-/// Guides whose first root is further than this from where a cut found it are those of other hair, metres.
+/// A cut does not apply to guides whose first root is farther than this from the recorded one, metres.
 const SAME_ROOT: f32 = 0.002;
 
-/// What hair is cut with, in any space.
+/// The shape that cuts hair, in any space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Blade {
-    /// Hair is cut where it first comes to the side of a plane to which `normal` points.
+    /// Cuts hair where it first crosses to the side of a plane to which `normal` points.
     Plane {
         /// A point of the plane, metres.
         point: Vec3,
-        /// Points to what falls; any length but zero.
+        /// Points to the side that falls off; any length but zero.
         normal: Vec3,
     },
-    /// Hair is cut where it first comes into a sphere.
+    /// Cuts hair where it first enters a sphere.
     Sphere {
         /// Its centre, metres.
         centre: Vec3,
@@ -46,7 +46,7 @@ impl Blade {
         }
     }
 
-    /// Above 0 where hair falls.
+    /// Positive where hair falls off.
     fn depth(&self, p: Vec3) -> f32 {
         match *self {
             Self::Plane { point, normal } => (p - point).dot(normal.normalize_or_zero()),
@@ -54,7 +54,7 @@ impl Blade {
         }
     }
 
-    /// The fraction of the way from `a` to `b` at which the blade is met, where it is met at all.
+    /// The fraction of the way from `a` to `b` at which the blade cuts; `None` where it does not.
     fn crossing(&self, a: Vec3, b: Vec3) -> Option<f32> {
         let (da, db) = (self.depth(a), self.depth(b));
         if da > 0.0 {
@@ -74,19 +74,19 @@ impl Blade {
     }
 }
 
-/// What cuts have left of the guides of a hairstyle.
+/// The part that cuts leave of each guide of a hairstyle.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Haircut {
-    /// The root of the first guide, head space, metres: other hair is not cut by it.
+    /// The root of the first guide, head space, metres. The cut applies only to hair with this root.
     pub first_root: Vec3,
-    /// What is left of each guide, as a fraction of its links, 0 to 1; empty where nothing was cut.
+    /// The part that remains of each guide, as a fraction of its links, 0 to 1. Empty without a cut.
     pub kept: Vec<f32>,
 }
 
 impl Haircut {
-    /// What `blade`, in world space, leaves of the hair of `style` that is at `frame`. `None` where it meets none, and
-    /// where the frame is not one of that style.
+    /// The part of `style` that `blade`, in world space, leaves of the hair at `frame`. `None` if the blade meets no
+    /// hair, or if the frame belongs to another style.
     pub fn of(style: &Hairstyle, frame: &GuideFrame, blade: &Blade) -> Option<Self> {
         let (guides, moved) = (&style.guides, &frame.guides);
         if moved.points_per_guide != guides.points_per_guide || moved.count() != guides.count() {
@@ -104,7 +104,7 @@ impl Haircut {
         kept.iter().any(|k| *k < 1.0).then(|| Self { first_root: guides.point(0, 0), kept })
     }
 
-    /// This cut and a later one of the same hair: what both leave. A cut of other hair takes its place.
+    /// This cut and a later one of the same hair, combined. A later cut of other hair replaces this one.
     #[must_use]
     pub fn and(&self, later: &Self) -> Self {
         if self.kept.len() != later.kept.len() || !self.same_root(later.first_root) {
@@ -119,12 +119,12 @@ impl Haircut {
         self.kept.is_empty()
     }
 
-    /// Whether these are the guides that were cut.
+    /// Whether the cut was made for these guides.
     pub fn fits(&self, guides: &Guides) -> bool {
         self.kept.len() == guides.count() && guides.count() > 0 && self.same_root(guides.point(0, 0))
     }
 
-    /// The cut with every value inside its range; what is not a number leaves its guide whole.
+    /// The cut with every value clamped to its range; NaN leaves its guide whole.
     #[must_use]
     pub fn clamped(&self) -> Self {
         let kept = |k: &f32| if k.is_nan() { 1.0 } else { k.clamp(0.0, 1.0) };
@@ -136,7 +136,8 @@ impl Haircut {
     }
 }
 
-/// `style` cut: as many guides of as many points, shorter. A cut of other hair changes nothing.
+/// `style` with shorter guides and strands: the same number of guides and of points per guide. A cut of other hair
+/// changes nothing.
 #[must_use]
 pub fn trimmed(style: &Hairstyle, cut: &Haircut) -> Hairstyle {
     let mut out = style.clone();
@@ -147,7 +148,7 @@ pub fn trimmed(style: &Hairstyle, cut: &Haircut) -> Hairstyle {
     let kept = cut.clamped().kept;
     let set = &style.strands;
     let mut shorter = StrandSet { first_point: vec![0], ..StrandSet::default() };
-    // The last point of each guide; guides of no wisp carry nothing.
+    // The last point of each guide. Guides without a wisp carry no strands.
     let mut ends = vec![0.0_f32; style.guides.count()];
     for (w, wisp) in style.wisps.iter().enumerate() {
         let ends_of = wisp.guides.map(|g| kept[g as usize] * links);
@@ -176,7 +177,7 @@ pub fn trimmed(style: &Hairstyle, cut: &Haircut) -> Hairstyle {
     out
 }
 
-/// Copies a strand up to the parameter `end`; gives the parameter of its last point.
+/// Copies a strand up to the parameter `end`; returns the parameter of its last point.
 fn copy(set: &StrandSet, strand: usize, end: f32, out: &mut StrandSet) -> f32 {
     let range = set.first_point[strand] as usize..set.first_point[strand + 1] as usize;
     let inside = range.clone().skip(1).take_while(|&i| set.guide_param[i] < end - 1e-4).count() + 1;

@@ -1,33 +1,33 @@
-//! A hairstyle: what is grown from settings or imported from a file.
+//! A hairstyle: grown from settings, or imported from a file.
 
 use thiserror::Error;
 
 use crate::{Guides, HairLook, Scalp};
 
-/// One wisp: three guide strands, and the run of strands that they carry.
+/// One wisp: three guide strands, and the consecutive strands that follow them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wisp {
     /// Indices of its guides in [`Guides`].
     pub guides: [u32; 3],
-    /// Index of its first strand in [`StrandSet`]; a wisp's strands are consecutive.
+    /// Index of its first strand in [`StrandSet`]; the strands of a wisp are consecutive.
     pub first_strand: u32,
-    /// How many strands it carries; may be 0.
+    /// Number of strands; may be 0.
     pub strand_count: u32,
 }
 
-/// How every rendered strand follows the guides of its wisp. Structure of arrays.
+/// How each rendered strand follows the guides of its wisp. Structure of arrays.
 ///
-/// A point of a strand is `sum_g(weight_g * guide_g(u)) + frame(u) * offset`: the guides are Catmull-Rom
-/// curves with parameter `u` in links (0 at the root, `points_per_guide - 1` at the tip), and `frame(u)` is
-/// the rotation-minimising frame along the mean of the wisp's guides. Curl, frizz, clumping, strays and the
-/// exact shape of an imported strand all live in the offsets, which are constants of the hairstyle.
+/// A point of a strand is `sum_g(weight_g * guide_g(u)) + frame(u) * offset`. The guides are Catmull-Rom curves with
+/// the parameter `u` in links (0 at the root, `points_per_guide - 1` at the tip), and `frame(u)` is the
+/// rotation-minimising frame along the mean of the wisp's guides. The offsets hold curl, frizz, clumping, strays and
+/// the exact shape of imported strands; they are constants of the hairstyle.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StrandSet {
     /// The wisp of each strand; strands are sorted by wisp.
     pub wisp: Vec<u32>,
-    /// Barycentric weights of the wisp's three guides, a strand; they sum to 1 and may lie outside 0..=1.
+    /// Barycentric weights of the wisp's three guides for each strand; they sum to 1 and may lie outside 0..=1.
     pub weights: Vec<[f32; 3]>,
-    /// Index of the first point of each strand, with the total number of points at the end (strands + 1).
+    /// Index of the first point of each strand, then the total number of points (strands + 1 entries).
     pub first_point: Vec<u32>,
     /// Curve parameter along the guides of each point, in links.
     pub guide_param: Vec<f32>,
@@ -37,9 +37,9 @@ pub struct StrandSet {
     pub offset_binormal: Vec<f32>,
     /// Offset of each point along the frame's tangent, metres.
     pub offset_tangent: Vec<f32>,
-    /// Width of each point as a fraction of the hair's diameter: 1 along the strand, tapering at the tip.
+    /// Width of each point as a fraction of the hair's diameter: 1 along most of the strand, less toward the tip.
     pub taper: Vec<f32>,
-    /// A shade a strand in 0..=1, from which drawing varies its colour.
+    /// A shade per strand in 0..=1, by which drawing varies the colour.
     pub shade: Vec<f32>,
 }
 
@@ -60,40 +60,40 @@ impl StrandSet {
     }
 }
 
-/// A hairstyle, immutable once made and shared by `Arc`.
+/// A hairstyle, immutable and shared by `Arc`.
 #[derive(Clone, Debug, Default)]
 pub struct Hairstyle {
-    /// What the interface calls it.
+    /// Its name in the interface.
     pub name: String,
-    /// The surface that it grows on, in head space.
+    /// The surface on which it grows, in head space.
     pub scalp: Scalp,
     /// The wisps, in the order of their strands.
     pub wisps: Vec<Wisp>,
     /// The guides at rest, in head space.
     pub guides: Guides,
-    /// How firmly each guide point is held to its place at rest in head space, as an angular frequency, 1/s, where
-    /// ties hold it; a negative value leaves that to the simulation's own settings. Laid out as [`Guides`], or empty
-    /// where there are no ties.
+    /// How firmly ties hold each guide point at its rest position in head space, as an angular frequency, 1/s. A
+    /// negative value leaves the point to the simulation's own settings. Has the layout of [`Guides`], or is empty
+    /// without ties.
     pub held: Vec<f32>,
-    /// The rendered strands, expressed by the guides.
+    /// The rendered strands, expressed relative to the guides.
     pub strands: StrandSet,
     /// Colour and width that the style suggests; a project may override them.
     pub look: HairLook,
 }
 
-/// What is inconsistent in a [`Hairstyle`].
+/// An inconsistency of a [`Hairstyle`].
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum HairstyleError {
     /// Guides of fewer than 2 points, or arrays that are not a whole number of guides.
     #[error("the guides do not hold whole guides of 2 points or more")]
     Guides,
-    /// An array of the strands, or of what ties hold, that has a length of its own.
+    /// An array of the strands or `held` has the wrong length.
     #[error("the hairstyle's array `{0}` has the wrong length")]
     Length(&'static str),
-    /// Strands that do not follow each other, or of fewer than 2 points.
+    /// Strands are out of order, or have fewer than 2 points.
     #[error("strand {0} is out of order or has fewer than 2 points")]
     Strand(usize),
-    /// A wisp that names guides that are missing, or strands that are not the next ones.
+    /// A wisp refers to missing guides, or to strands that do not follow those of the wisp before.
     #[error("wisp {0} names a missing guide or strands out of order")]
     Wisp(usize),
 }

@@ -1,4 +1,4 @@
-//! From guides to strands: the stage of every frame between the simulator and the picture.
+//! Interpolates strands from guides: the stage of each frame between simulation and drawing.
 
 use std::cell::RefCell;
 use std::ops::Range;
@@ -7,16 +7,16 @@ use std::sync::Arc;
 use crate::frame::{Lanes, WispCurve, catmull_rom, locate};
 use crate::{GuideFrame, Hairstyle, StrandSet, Strands, Wisp};
 
-/// Points that are moved side by side, in the lanes of vector instructions.
+/// Points that are computed side by side, in the lanes of vector instructions.
 const LANES: usize = 8;
-/// Points below which a run of wisps is not worth handing to another thread.
+/// A run of wisps with fewer points is not handed to another thread.
 const POINTS_PER_TASK: usize = 4096;
 
-/// Buffers that a thread reuses from wisp to wisp and frame to frame.
+/// Buffers that a thread reuses for all wisps and frames.
 #[derive(Default)]
 struct Scratch {
     curve: WispCurve,
-    /// Blended control points of the strand at hand, phantoms included.
+    /// Blended control points of the current strand, with phantom points.
     controls: Vec<[f32; 3]>,
 }
 
@@ -24,11 +24,11 @@ thread_local! {
     static SCRATCH: RefCell<Scratch> = RefCell::default();
 }
 
-/// Moves every strand of `style` with the guides of `frame`, into `strands`, in world space.
+/// Writes every strand of `style`, moved by the guides of `frame`, to `strands`, in world space.
 ///
-/// Each point is `sum_g(weight_g * guide_g(u)) + frame(u) * offset` as [`StrandSet`](crate::StrandSet) says, by
-/// [`WispCurve`]. Wisps are shared among rayon's threads; the result has the same bytes for any number of them.
-/// Nothing is allocated once `strands` has been used with the style.
+/// Each point is `sum_g(weight_g * guide_g(u)) + frame(u) * offset` as in [`StrandSet`](crate::StrandSet), evaluated by
+/// [`WispCurve`]. Wisps are shared among rayon's threads; the result has the same bytes for any number of them. Later
+/// calls with the same style allocate nothing.
 ///
 /// # Panics
 /// If `frame` has fewer guides than the style, or the style fails [`Hairstyle::check`].
@@ -61,7 +61,7 @@ impl<'a> Slices<'a> {
     }
 }
 
-/// Halves `wisps` until they are few, then moves them; `out` begins at point `start` of the style.
+/// Halves `wisps` until few are left, then computes those; `out` begins at point `start` of the style.
 fn run(style: &Hairstyle, frame: &GuideFrame, wisps: &[Wisp], start: usize, out: Slices<'_>) {
     if wisps.len() < 2 || out.x.len() <= POINTS_PER_TASK {
         return SCRATCH.with_borrow_mut(|scratch| wisps_into(style, frame, wisps, start, out, scratch));
@@ -101,7 +101,7 @@ fn wisps_into(
             let (begin, end) = (set.first_point[strand] as usize, set.first_point[strand + 1] as usize);
             let mut from = begin;
             while from < end {
-                // The last block of a strand begins early enough to be whole, and makes some points again.
+                // The last block of a strand begins early enough to be full, and computes some points twice.
                 let block = if end - begin >= LANES { from.min(end - LANES) } else { from };
                 let range = block..end.min(block + LANES);
                 let points = block_of(&scratch.curve, &scratch.controls, set, range.clone());
@@ -140,7 +140,7 @@ fn block_of(curve: &WispCurve, controls: &[[f32; 3]], set: &StrandSet, range: Ra
     point
 }
 
-/// Up to [`LANES`] values, with zeros after them.
+/// Up to [`LANES`] values, padded with zeros.
 #[inline]
 fn load(values: &[f32]) -> [f32; LANES] {
     <[f32; LANES]>::try_from(values).unwrap_or_else(|_| {
@@ -150,7 +150,7 @@ fn load(values: &[f32]) -> [f32; LANES] {
     })
 }
 
-/// The first of `values`, as many as fit.
+/// Stores as many of `values` as fit.
 #[inline]
 fn store(to: &mut [f32], values: &[f32; LANES]) {
     match <&mut [f32; LANES]>::try_from(&mut *to) {

@@ -1,4 +1,4 @@
-//! What hair must stay outside of.
+//! The solid that hair must stay outside of.
 
 use glam::Vec3;
 
@@ -12,7 +12,7 @@ pub trait Obstacle: Sync {
     fn distance(&self, p: Vec3) -> (f32, Vec3);
 }
 
-/// Nothing to collide with.
+/// An obstacle without a surface.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoObstacle;
 
@@ -22,10 +22,10 @@ impl Obstacle for NoObstacle {
     }
 }
 
-/// How far inside a body hair is believed to be, metres.
+/// The largest depth inside a body that is taken for real, metres.
 const DEEPEST: f32 = 0.02;
 
-/// An obstacle whose answers are finite and never throw hair far, whatever those of the one inside are.
+/// An obstacle whose results are finite and never move hair far, whatever the wrapped obstacle returns.
 ///
 /// Near the open edges of clothes the sign of a mesh's distance may be wrong in places: what claims to lie deep
 /// inside is moved in small steps, and so is back on its way when the place is passed.

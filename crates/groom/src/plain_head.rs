@@ -1,4 +1,4 @@
-//! A head of average size from a few smooth solids, for use where there is no character at hand.
+//! A head of average size made of a few smooth solids, for use without a character.
 
 use glam::Vec3;
 
@@ -26,17 +26,17 @@ const HAIRLINE: [(f32, f32); 11] = [
 ];
 
 impl PlainHead {
-    /// The point from which the whole surface of the head can be seen.
+    /// The point from which the whole surface of the head is visible.
     const CENTRE: Vec3 = Vec3::new(0.0, 0.11, -0.005);
 
-    /// The head's surface with hair where a head has it. `rings` of `2 * rings` vertices: 48 gives triangles of
+    /// The head's surface, with hair where a head has it: `rings` of `2 * rings` vertices. 48 rings give triangles of
     /// about 6 mm.
     pub fn scalp(self, rings: usize) -> Scalp {
         let rings = rings.clamp(6, 512);
         let across = 2 * rings;
         let mut scalp = Scalp::default();
         for ring in 0..=rings {
-            // From the crown down to the neck under the nape; further down is no head.
+            // From the crown down to the neck below the nape, where the head ends.
             let polar = (ring as f32 / rings as f32) * 2.35;
             for i in 0..across {
                 let azimuth = (i as f32 / across as f32) * std::f32::consts::TAU;
@@ -80,7 +80,7 @@ impl PlainHead {
     }
 }
 
-/// 1 above the hairline, 0 below, over 8 mm.
+/// 1 above the hairline, 0 below, with a transition over 8 mm.
 fn hair_mask(p: Vec3) -> f32 {
     let from_centre = p - PlainHead::CENTRE;
     let degrees = from_centre.x.abs().atan2(from_centre.z).to_degrees();
@@ -126,7 +126,7 @@ fn capsule(p: Vec3, a: Vec3, b: Vec3, radius: f32) -> (f32, Vec3) {
     (length - radius, out / length.max(1e-6))
 }
 
-/// Union rounded over `k` metres, with the gradient that belongs to it.
+/// Smooth union over `k` metres, with its gradient.
 fn blend(a: (f32, Vec3), b: (f32, Vec3), k: f32) -> (f32, Vec3) {
     let h = (0.5 + 0.5 * (b.0 - a.0) / k).clamp(0.0, 1.0);
     (b.0 + (a.0 - b.0) * h - k * h * (1.0 - h), b.1 + (a.1 - b.1) * h)

@@ -1,16 +1,16 @@
-//! Links of a chain laid along a polyline.
+//! Lays the links of a chain along a polyline.
 
 use glam::Vec3;
 
-/// How far, in segments of the polyline, the next point is looked for past its end, and how far at a time.
+/// The search range for the next point past the end of the polyline, and the search step, both in segments.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reach {
     pub(crate) beyond: f32,
     pub(crate) step: f32,
 }
 
-/// The first place on the polyline beyond `at`, in segments, that is `link` away from `from`; past its end, along its last
-/// segment.
+/// The first position on the polyline after `at`, in segments, whose distance from `from` is `link`. Past the end, the
+/// last segment is extended.
 pub(crate) fn next_at(target: &[Vec3], at: f32, from: Vec3, link: f32, reach: Reach) -> f32 {
     let last = (target.len() - 1) as f32 + reach.beyond;
     let mut low = at;
@@ -30,7 +30,8 @@ pub(crate) fn next_at(target: &[Vec3], at: f32, from: Vec3, link: f32, reach: Re
     high
 }
 
-/// A point of the polyline, of two points at least, at `at` segments, extended straight past its end.
+/// The point of a polyline (two points or more) at position `at`, in segments; the last segment is extended past its
+/// end.
 pub(crate) fn sample(target: &[Vec3], at: f32) -> Vec3 {
     let i = (at as usize).min(target.len() - 2);
     target[i] + (target[i + 1] - target[i]) * (at - i as f32)

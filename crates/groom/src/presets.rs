@@ -17,7 +17,7 @@ pub enum Preset {
     Long,
     /// Dark brown, combed back into a tie high on the back of the head.
     Ponytail,
-    /// Dark blond, wound up on top of the head.
+    /// Dark blond, wound up in a bun on top of the head.
     Bun,
 }
 
@@ -25,7 +25,7 @@ impl Preset {
     /// Every preset, in the order of menus.
     pub const ALL: [Self; 5] = [Self::Smooth, Self::Curly, Self::Long, Self::Ponytail, Self::Bun];
 
-    /// The stable name in project files and on the command line.
+    /// Stable name in project files and on the command line.
     pub const fn id(self) -> &'static str {
         match self {
             Self::Smooth => "smooth",
@@ -36,7 +36,7 @@ impl Preset {
         }
     }
 
-    /// The name in the interface.
+    /// Name in the interface.
     pub const fn label(self) -> &'static str {
         match self {
             Self::Smooth => "Smooth bob",
@@ -47,12 +47,12 @@ impl Preset {
         }
     }
 
-    /// The preset of that id.
+    /// The preset with this id.
     pub fn from_id(id: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|p| p.id() == id)
     }
 
-    /// What gathers its hair, on the head of an adult; most styles fall free.
+    /// The ties of the style, on the head of an adult; most styles have none.
     pub const fn ties(self) -> &'static [HairTie] {
         match self {
             Self::Smooth | Self::Curly | Self::Long => &[],

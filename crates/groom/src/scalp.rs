@@ -1,20 +1,20 @@
-//! The surface that hair grows on.
+//! The surface on which hair grows.
 
 use glam::Vec3;
 use thiserror::Error;
 
 use lovelock_base::random::SplitMix64;
 
-/// A triangle mesh of the head in head space, with a mask that says where hair grows.
+/// A triangle mesh of the head in head space, with a mask of where hair grows.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scalp {
     /// Vertices of the head (not of the whole body), head space, metres.
     pub positions: Vec<Vec3>,
-    /// Outward unit normals, one a vertex.
+    /// Outward unit normal of each vertex.
     pub normals: Vec<Vec3>,
-    /// Indices of vertices, counter-clockwise seen from outside.
+    /// Vertex indices, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
-    /// One a vertex: 1 where hair grows, 0 where none does (face, ears, neck).
+    /// Mask of each vertex: 1 where hair grows, 0 where none does (face, ears, neck).
     pub mask: Vec<f32>,
 }
 
@@ -23,7 +23,7 @@ pub struct Scalp {
 pub struct ScalpPoint {
     /// Index of its triangle.
     pub triangle: u32,
-    /// Where it is, head space, metres.
+    /// Position, head space, metres.
     pub position: Vec3,
     /// Outward unit normal, interpolated from the vertices.
     pub normal: Vec3,
@@ -31,10 +31,10 @@ pub struct ScalpPoint {
     pub mask: f32,
 }
 
-/// What is wrong with a [`Scalp`].
+/// A fault of a [`Scalp`].
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum ScalpError {
-    /// `normals` or `mask` is not one a vertex.
+    /// `normals` or `mask` does not have one entry per vertex.
     #[error("the scalp has {positions} vertices but {normals} normals and {mask} mask values")]
     Lengths {
         /// Number of vertices.
@@ -44,13 +44,13 @@ pub enum ScalpError {
         /// Number of mask values.
         mask: usize,
     },
-    /// A triangle names a vertex that is not there.
+    /// A triangle refers to a missing vertex.
     #[error("triangle {0} of the scalp names a vertex that does not exist")]
     Index(usize),
     /// A number that is not finite.
     #[error("vertex {0} of the scalp has a number that is not finite")]
     NotFinite(usize),
-    /// No triangle of any area has a mask above the hairline.
+    /// The mask is below the hairline on every triangle that has an area.
     #[error("no part of the scalp may grow hair: its mask is below the hairline everywhere")]
     Bare,
 }
@@ -87,18 +87,18 @@ impl Scalp {
         }
     }
 
-    /// Outward unit normal of a triangle; up for one without area.
+    /// Outward unit normal of a triangle; +Y for one without area.
     pub fn face_normal(&self, triangle: u32) -> Vec3 {
         self.twice_area(triangle).normalize_or(Vec3::Y)
     }
 
-    /// The area whose mask is at least `hairline`, square metres, to the precision of its triangles.
+    /// The area whose mask is at least `hairline`, in square metres. Triangles count as a whole.
     pub fn hairy_area(&self, hairline: f32) -> f32 {
         (0..self.triangles.len() as u32).map(|t| self.hairy_weight(t, hairline)).sum()
     }
 
-    /// `count` independent points, uniform over the area whose mask is at least `hairline`. The same for the same
-    /// `seed`. Empty where no hair may grow.
+    /// `count` independent points, uniform over the area whose mask is at least `hairline`, determined by `seed`. Empty
+    /// where no hair may grow.
     pub fn sample(&self, count: usize, hairline: f32, seed: u32) -> Vec<ScalpPoint> {
         let mut total = 0.0_f64;
         let sums: Vec<f64> = (0..self.triangles.len() as u32)
@@ -109,7 +109,7 @@ impl Scalp {
             .collect();
         let mut rng = SplitMix64::of_stream(seed, 0x5ca1);
         let mut points = Vec::with_capacity(if total > 0.0 { count } else { 0 });
-        // A triangle across the hairline is refused in part: some tries more than points.
+        // Points below the hairline are rejected, so this needs more tries than points.
         for _ in 0..count.saturating_mul(64) {
             if points.len() == count || total <= 0.0 {
                 break;
@@ -128,7 +128,7 @@ impl Scalp {
         points
     }
 
-    /// Area of a triangle that any of its vertices lifts over the hairline, else 0.
+    /// Area of a triangle if the mask of any of its vertices is above the hairline, otherwise 0.
     fn hairy_weight(&self, triangle: u32, hairline: f32) -> f32 {
         let hairy = self.triangles[triangle as usize].iter().any(|&v| self.mask[v as usize] >= hairline);
         if hairy { 0.5 * self.twice_area(triangle).length() } else { 0.0 }

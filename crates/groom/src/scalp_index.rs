@@ -1,4 +1,4 @@
-//! Closest points of a scalp by a uniform grid.
+//! Finds the closest points of a scalp with a uniform grid.
 
 use glam::{IVec3, Vec3};
 use lovelock_base::triangle::closest_barycentric;
@@ -8,14 +8,14 @@ use crate::{Scalp, ScalpPoint};
 /// Cells along the longest side of the scalp's box.
 const CELLS: f32 = 24.0;
 
-/// A scalp with a grid over its triangles, to find the closest point fast.
+/// A scalp with a grid over its triangles, for finding closest points fast.
 #[derive(Clone, Debug)]
 pub struct ScalpIndex<'a> {
     scalp: &'a Scalp,
     low: Vec3,
     cell: f32,
     size: IVec3,
-    /// Where each cell's triangles begin in `items`, with their number at the end.
+    /// Index of each cell's first triangle in `items`, then the length of `items`.
     first: Vec<u32>,
     items: Vec<u32>,
 }
@@ -50,7 +50,7 @@ impl<'a> ScalpIndex<'a> {
         index
     }
 
-    /// The scalp that this searches.
+    /// The scalp that is searched.
     pub fn scalp(&self) -> &'a Scalp {
         self.scalp
     }
@@ -65,7 +65,7 @@ impl<'a> ScalpIndex<'a> {
         let home = self.cell_of(p);
         let mut best: Option<(f32, u32, [f32; 3])> = None;
         for shell in 0..=self.size.max_element() {
-            // Nothing in this shell or beyond is nearer than `shell - 1` cells from where the search began.
+            // Everything in this shell and beyond is at least `shell - 1` cells away from the start.
             let nearest = (shell - 1) as f32 * self.cell;
             if nearest > reach || best.is_some_and(|(d2, ..)| d2.sqrt() <= nearest) {
                 break;
@@ -75,7 +75,7 @@ impl<'a> ScalpIndex<'a> {
                     self.scalp.triangles[triangle as usize].map(|v| self.scalp.positions[v as usize]);
                 let b = closest_barycentric(p, &corners);
                 let d2 = (corners[0] * b[0] + corners[1] * b[1] + corners[2] * b[2]).distance_squared(p);
-                // The lower index wins a tie, so that the answer does not depend on the order of the search.
+                // The lower index wins a tie, so that the answer does not depend on the search order.
                 if best.is_none_or(|(d, t, _)| d2 < d || (d2 == d && triangle < t)) {
                     best = Some((d2, triangle, b));
                 }

@@ -1,16 +1,16 @@
-//! The same source compiled for several widths of vectors, chosen while the program runs.
+//! Compiles the same source for several vector widths and chooses one at run time.
 //!
-//! Inner loops are plain safe code on fixed-size arrays, which the compiler turns into vector instructions.
-//! Nothing in it is reordered or fused, so that all versions give the same bits.
+//! Inner loops are plain safe code on fixed-size arrays, which the compiler turns into vector instructions. Nothing is
+//! reordered or fused, so all versions give the same bits.
 
 pub use crate::whole_part::whole_part;
 
-/// Which version of a function runs.
+/// The version of a function that runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Width {
-    /// What every processor of this architecture has.
+    /// The instructions that every CPU of this architecture has.
     Baseline,
-    /// 256-bit vectors, and the instructions on bits that came with them.
+    /// 256-bit vectors, and the bit instructions that came with them.
     #[cfg(target_arch = "x86_64")]
     Avx2,
     /// 512-bit registers and masks.
@@ -28,7 +28,7 @@ impl Width {
         Self::Avx512,
     ];
 
-    /// Whether this processor has it.
+    /// Whether this CPU has the instructions.
     pub fn is_available(self) -> bool {
         match self {
             Self::Baseline => true,
@@ -50,16 +50,16 @@ impl Width {
         }
     }
 
-    /// The widest that this processor has.
+    /// The widest version that this CPU can run.
     pub fn widest() -> Self {
         Self::ALL.iter().rev().copied().find(|width| width.is_available()).unwrap_or(Self::Baseline)
     }
 }
 
-/// A function in every version of [`Width`]: its first argument says which, and that must be available.
+/// A function in every version of [`Width`]. Its first argument selects the version, which must be available.
 ///
-/// The body should call functions that are always inlined: what is not keeps the baseline's instructions. The
-/// module that uses this must allow `unsafe_code`, for calls of functions that ask for features.
+/// The body should call only functions that are always inlined; others keep the baseline's instructions. The module
+/// that uses this macro must allow `unsafe_code`, because it calls functions that need CPU features.
 #[macro_export]
 macro_rules! simd_versions {
     (
@@ -83,10 +83,10 @@ macro_rules! simd_versions {
             assert!(width.is_available(), "{width:?} on a processor without");
             match width {
                 $crate::simd::Width::Baseline => $body,
-                // SAFETY: the processor has the features, as asserted above.
+                // SAFETY: the CPU has the features, as asserted above.
                 #[cfg(target_arch = "x86_64")]
                 $crate::simd::Width::Avx2 => unsafe { avx2($($argument),*) },
-                // SAFETY: the processor has the features, as asserted above.
+                // SAFETY: the CPU has the features, as asserted above.
                 #[cfg(target_arch = "x86_64")]
                 $crate::simd::Width::Avx512 => unsafe { avx512($($argument),*) },
             }

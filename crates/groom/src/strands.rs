@@ -1,15 +1,15 @@
-//! The strands of one instant, in world space.
+//! The rendered strands at one instant, in world space.
 
 use std::sync::Arc;
 
 use glam::Vec3;
 
-/// Every rendered strand at one instant, in world space: what is shadowed and drawn.
+/// Every rendered strand at one instant, in world space: the input of shadowing and drawing.
 ///
 /// Structure of arrays, strand after strand, root first. Reused from frame to frame without allocation.
 #[derive(Clone, Debug, Default)]
 pub struct Strands {
-    /// Index of the first point of each strand, and the number of points at the end (strands + 1).
+    /// Index of the first point of each strand, then the total number of points (strands + 1 entries).
     pub first_point: Arc<[u32]>,
     /// Positions in world space, metres.
     pub x: Vec<f32>,

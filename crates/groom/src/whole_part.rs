@@ -1,12 +1,12 @@
-//! The whole part of a float in a form that vectorises.
+//! The whole part of a float, in a form that vectorises.
 //!
-//! Unsafe since the conversion of a float to an integer that vectorises is undefined out of range.
+//! Unsafe because the vectorising conversion of a float to an integer is undefined out of range.
 // Compiled within the versions of `simd`.
 #![allow(unsafe_code, clippy::inline_always)]
 
-/// The whole part of `c`, held within 0 and 2^26; 0 for what is no number.
+/// The whole part of `c` clamped to 0..=2^26; 0 for NaN.
 ///
-/// `as` would be compiled to a branch or two for each number, since it must saturate at the integers' ends.
+/// `as` would compile to one or two branches per number, because it saturates at the integers' limits.
 #[inline(always)]
 pub fn whole_part(c: f32) -> i32 {
     const MOST: f32 = (1 << 26) as f32;

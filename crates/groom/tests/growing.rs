@@ -1,4 +1,4 @@
-//! What every grown hairstyle must be.
+//! Properties of every grown hairstyle.
 
 use glam::{Affine3A, Vec3};
 use lovelock_groom::{
@@ -73,7 +73,7 @@ fn no_bald_spots() {
     let scalp = PlainHead.scalp(40);
     for preset in Preset::ALL {
         let mut roots = roots(&grown(&GroomSettings::preset(preset), &scalp));
-        // 3,350 roots on 0.065 m² lie 4.4 mm apart on average; a triangle of them leaves its middle within 6.5 mm
+        // 3,350 roots on 0.065 m² are 4.4 mm apart on average. A triangle of them has its centre within 6.5 mm even
         // where the scatter of blue noise makes the sides half as long again.
         let gap = widest_gap(&scalp, &roots);
         assert!(gap < 0.0065, "{}: {gap} m without a root", preset.id());
@@ -94,7 +94,7 @@ fn guides_are_equal_links_outside_the_body() {
             let link = style.guides.point(g, 0).distance(style.guides.point(g, 1));
             for p in 1..points {
                 let (a, b) = (style.guides.point(g, p - 1), style.guides.point(g, p));
-                // Positions of 0.3 m rounded to 3e-8 m against links of a millimetre or more.
+                // Positions of 0.3 m are rounded to 3e-8 m, and links are a millimetre or longer.
                 assert!((a.distance(b) / link - 1.0).abs() < 1e-4, "link {p} of guide {g}");
                 let (distance, _) = PlainHead.distance(b);
                 assert!(distance > 0.0, "{}: point {p} of guide {g} is {distance} m deep", preset.id());
@@ -142,7 +142,7 @@ fn wisps_keep_to_their_side_of_the_parting() {
     for (strand, &wisp) in style.strands.wisp.iter().enumerate() {
         let (root, middle) =
             (roots[strand], style.guides.point(style.wisps[wisp as usize].guides[0] as usize, 15));
-        // The front half of the parting, beyond its wobble of 2 mm.
+        // The front half of the parting, beyond its deviation of 2 mm.
         if root.z > 0.03 && root.y > 0.17 && root.x.abs() > 0.004 {
             apart += 1;
             crossing += usize::from(root.x * middle.x < 0.0);
@@ -170,7 +170,7 @@ fn unusable_scalps_are_refused() {
     assert_eq!(error(&missing), GrowError::Scalp(ScalpError::NotFinite(9)));
 }
 
-/// A number of any size, or none.
+/// Any number, including NaN and infinities.
 fn anything() -> impl Strategy<Value = f32> {
     prop_oneof![
         4 => -1.0f32..1.0,
@@ -186,7 +186,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 40, ..ProptestConfig::default() })]
 
     #[test]
-    fn no_slider_makes_a_number_that_is_not_one(
+    fn settings_of_any_value_grow_finite_hair(
         values in proptest::collection::vec(anything(), 27),
         counts in proptest::array::uniform4(0u32..40),
     ) {
@@ -239,7 +239,7 @@ fn the_closest_point_is_the_closest_of_all_triangles() {
         let t = k as f32;
         let p = Vec3::new((1.7 * t).sin() * 0.2, 0.1 + (2.3 * t).sin() * 0.2, (3.1 * t).cos() * 0.2);
         let found = index.closest(p).expect("a scalp");
-        // Corners and middles of triangles lie on the scalp: none may be nearer than the answer.
+        // Corners and centres of triangles lie on the scalp, so none may be nearer than the result.
         for t in 0..scalp.triangles.len() as u32 {
             for b in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0 / 3.0; 3], [0.5, 0.5, 0.0]] {
                 let nearer = scalp.point(t, b).position.distance(p);

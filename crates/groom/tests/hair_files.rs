@@ -1,4 +1,4 @@
-//! Reading hair files: by hand, real and broken.
+//! Reading hair files: constructed, real and broken ones.
 
 mod common;
 
@@ -35,7 +35,7 @@ fn every_combination_of_yuksel_arrays_comes_back() {
 
 #[test]
 fn strands_of_different_lengths_and_odd_numbers_come_back() {
-    // Seven strands put the points at byte 142, which no float is aligned to.
+    // With seven strands, the points begin at byte 142, where no float is aligned.
     let counts = [2, 300, 3, 65, 17, 2, 9];
     let written = YukselFile::new(hanging(&counts));
     let file = load_hair_bytes("by hand", &written.bytes()).expect("a sound file");
@@ -54,7 +54,7 @@ fn tressfx_of_both_versions_comes_back() {
         assert_eq!(file.strand(2)[4], Vec3::new(2.0, -4.0, 2.0));
         assert!(file.dropped.is_empty() && file.notes.is_empty() && !file.both_ends_pinned);
     }
-    // Version 3.1 keeps the layout of 3.0.
+    // Version 3.1 has the layout of 3.0.
     assert!(load_hair_bytes("by hand", &tressfx(3.1, 3, 5)).is_ok());
 }
 
@@ -67,7 +67,7 @@ fn tressfx_offsets_are_tested() {
     assert!(refusal(&bytes).contains("wanted a place inside the file"));
     bytes[12..16].copy_from_slice(&161_u32.to_le_bytes());
     assert!(refusal(&bytes).contains("byte 161: found a file of 400 bytes, wanted 401 bytes or more"));
-    // Texture coordinates past the end do no harm: they are not needed.
+    // Texture coordinates past the end are harmless, because they are not needed.
     let mut bytes = tressfx(4.0, 3, 5);
     bytes[16..20].copy_from_slice(&4_000_000_000_u32.to_le_bytes());
     let file = load_hair_bytes("by hand", &bytes).expect("the strands are sound");
@@ -75,7 +75,7 @@ fn tressfx_offsets_are_tested() {
 }
 
 #[test]
-fn held_tips_are_told_apart() {
+fn held_tips_are_recognised() {
     let mut bytes = tressfx(3.0, 2, 4);
     bytes[16] = 1;
     assert!(load_hair_bytes("by hand", &bytes).expect("sound").both_ends_pinned);
@@ -119,7 +119,7 @@ fn other_files_are_refused() {
     ] {
         assert!(refusal(bytes).contains(found), "{}", refusal(bytes));
     }
-    // 5.0 and 2.9 are no versions that are known.
+    // 5.0 and 2.9 are unknown versions.
     assert!(
         refusal(&tressfx(5.0, 1, 4))
             .contains("wanted `HAIR` (Yuksel), a version from 3.0 to 4.9 as a float (TressFX), or `#usda`")
@@ -137,7 +137,7 @@ fn counts(of: &[(&str, u64)]) -> BTreeMap<String, u64> {
     of.iter().map(|&(key, count)| (key.to_owned(), count)).collect()
 }
 
-/// Strands, points and drops, or what the refusal says.
+/// Strands, points and drops, or the error message.
 type Outcome = Result<(usize, usize, &'static [(&'static str, u64)]), &'static str>;
 
 #[test]
@@ -186,7 +186,7 @@ fn broken_files_load_with_counts_or_are_refused_in_one_line() {
 }
 
 #[test]
-fn real_files_hold_what_their_makers_say() {
+fn real_files_contain_the_documented_counts() {
     let Some(data) = data_dir() else { return };
     for (name, strands, points) in [
         ("yuksel/straight.hair", 10_000, 160_000),
@@ -226,8 +226,8 @@ fn units_and_axes_of_real_files_are_guessed() {
         println!("{name}: {guess:?}");
         assert_eq!((guess.unit, guess.up, guess.facing), (unit, up, facing), "{name}: {guess:?}");
         if name.ends_with("straight.hair") {
-            // 43 units of roots across a scalp of 0.15 m: 3.5 mm a unit. The span leaves out strays and is
-            // taken fore and aft, which differs by a few per cent.
+            // 43 units of roots across a scalp of 0.15 m: 3.5 mm per unit. The span ignores outliers and is measured
+            // from front to back, which differs by a few per cent.
             assert!((guess.metres_per_unit / 0.0035 - 1.0).abs() < 0.06, "{guess:?}");
         }
     }
@@ -259,7 +259,7 @@ fn info_turns_the_box_with_the_axes() {
     };
     let info = hair_info(&file, &settings);
     assert_eq!((info.strands, info.points, info.segments), (2, 8, 6));
-    // The strands hang from x = 0 and 1, y = 0.5 down to z = -1: X goes to the left, Z up, Y to the front.
+    // The strands hang from x = 0 and 1, y = 0.5 down to z = -1: X points left, Z up, Y to the front.
     assert!(info.bounds_m.min.distance(Vec3::new(-0.01, -0.01, 0.005)) < 1e-6, "{:?}", info.bounds_m);
     assert!(info.bounds_m.max.distance(Vec3::new(0.0, 0.0, 0.005)) < 1e-6, "{:?}", info.bounds_m);
     assert_eq!((info.unit.as_str(), info.up.as_str(), info.unit_guessed), ("cm", "z", false));
@@ -283,8 +283,8 @@ fn names_of_units_and_axes_come_back() {
     assert_eq!(Unit::Custom(f32::NAN).metres(), None);
 }
 
-/// Whatever the bytes, a file that loads keeps what `HairFile` promises.
-fn holds_its_promises(bytes: &[u8]) {
+/// Checks what `HairFile` guarantees, for any bytes that load.
+fn check_guarantees(bytes: &[u8]) {
     match load_hair_bytes("fuzz", bytes) {
         Ok(file) => {
             assert_eq!(file.first_point.first(), Some(&0));
@@ -333,7 +333,7 @@ proptest::proptest! {
         if cut_it {
             bytes.truncate((cut * bytes.len() as f64) as usize);
         }
-        holds_its_promises(&bytes);
+        check_guarantees(&bytes);
     }
 }
 
@@ -360,7 +360,7 @@ fn damaged_real_files_never_panic() {
             if round % 3 == 0 {
                 bytes.truncate(next(bytes.len()));
             }
-            holds_its_promises(&bytes);
+            check_guarantees(&bytes);
         }
     }
 }

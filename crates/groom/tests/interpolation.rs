@@ -1,4 +1,5 @@
-//! Interpolation against a twin written from the documentation in double precision, and its symmetries.
+//! Compares interpolation with a reference written from the documentation in double precision, and checks its
+//! symmetries.
 
 use glam::{Affine3A, DVec3, Quat, Vec3};
 use lovelock_groom::{
@@ -6,8 +7,8 @@ use lovelock_groom::{
     interpolate,
 };
 
-/// Single precision at head size (0.5 m): 2^-24 * 0.5 m is 3e-8 m; some twenty roundings on the way, and the frame
-/// gathers one at each of 30 links over an offset of some centimetres.
+/// Single precision at head size (0.5 m): 2^-24 * 0.5 m is 3e-8 m. There are about twenty roundings, and the frame adds
+/// one at each of 30 links over an offset of some centimetres.
 const ROUNDING: f32 = 3e-6;
 
 fn preset(preset: Preset) -> Hairstyle {
@@ -20,7 +21,7 @@ fn moved(style: &Hairstyle, frame: &GuideFrame) -> Strands {
     strands
 }
 
-/// The guides blown and bent: any smooth change that keeps the roots on the head.
+/// The guides bent by a smooth change that keeps the roots on the head.
 fn blown(style: &Hairstyle, world_from_head: Affine3A) -> GuideFrame {
     let mut frame = GuideFrame::at_rest(&style.guides, world_from_head, 0.0);
     let points = style.guides.points_per_guide;
@@ -45,7 +46,7 @@ fn twin(style: &Hairstyle, frame: &GuideFrame, wisp: &Wisp, strand: usize, point
         let (a, b) = (of(&frame.guides, g, p), of(&frame.guides, g, p + 1));
         let before = if p == 0 { 2.0 * a - b } else { of(&frame.guides, g, p - 1) };
         let after = if p + 2 < n { of(&frame.guides, g, p + 2) } else { 2.0 * b - a };
-        // Barry and Goldman's pyramid, which is no copy of the polynomial in the code.
+        // Barry and Goldman's pyramid, which is independent of the polynomial in the code.
         let lerp = |x: DVec3, y: DVec3, from: f64, to: f64| ((to - t) * x + (t - from) * y) / (to - from);
         let (a1, a2, a3) = (lerp(before, a, -1.0, 0.0), lerp(a, b, 0.0, 1.0), lerp(b, after, 1.0, 2.0));
         let (b1, b2) = (lerp(a1, a2, -1.0, 1.0), lerp(a2, a3, 0.0, 2.0));
@@ -86,8 +87,8 @@ fn twin(style: &Hairstyle, frame: &GuideFrame, wisp: &Wisp, strand: usize, point
         + along * f64::from(set.offset_tangent[point])
 }
 
-/// Largest distance of the engine's strands from the twin's, over some strands of every wisp.
-fn error_against_twin(style: &Hairstyle, frame: &GuideFrame, strands: &Strands) -> f32 {
+/// Largest distance between the engine's strands and the reference, over some strands of every wisp.
+fn error_against_reference(style: &Hairstyle, frame: &GuideFrame, strands: &Strands) -> f32 {
     let mut worst = 0.0_f32;
     for wisp in &style.wisps {
         for strand in (wisp.first_strand..wisp.first_strand + wisp.strand_count).step_by(9) {
@@ -102,7 +103,7 @@ fn error_against_twin(style: &Hairstyle, frame: &GuideFrame, strands: &Strands) 
 }
 
 #[test]
-fn equals_the_twin_and_the_test_can_fail() {
+fn equals_the_reference_and_the_test_can_fail() {
     for which in [Preset::Smooth, Preset::Curly] {
         let style = preset(which);
         let turned = Affine3A::from_rotation_translation(
@@ -111,13 +112,13 @@ fn equals_the_twin_and_the_test_can_fail() {
         );
         let frame = blown(&style, turned);
         let strands = moved(&style, &frame);
-        let error = error_against_twin(&style, &frame, &strands);
-        // Twice the rounding at the head's size, since this head stands 1.5 m up.
+        let error = error_against_reference(&style, &frame, &strands);
+        // Twice the rounding at head size, because this head is at a height of 1.5 m.
         assert!(error < 2.0 * ROUNDING, "{which:?}: {error} m from the twin");
 
         let mut wrong = style.clone();
         wrong.strands.weights.iter_mut().for_each(|w| w.swap(0, 1));
-        let error = error_against_twin(&style, &frame, &moved(&wrong, &frame));
+        let error = error_against_reference(&style, &frame, &moved(&wrong, &frame));
         assert!(error > 1e-3, "swapped guides must be seen, but differ by {error} m");
     }
 }
@@ -180,7 +181,7 @@ fn same_bytes_for_any_number_of_threads_and_for_used_buffers() {
 
 #[test]
 fn frames_are_orthonormal_and_invert_offsets_even_where_guides_fold() {
-    // Straight, bent, folded back on itself, and all of its points in one place.
+    // Straight, bent, folded back on itself, and with all points in one place.
     let shapes: [fn(f32) -> Vec3; 4] = [
         |t| Vec3::new(0.0, -t, 0.0),
         |t| Vec3::new((3.0 * t).sin(), t, (3.0 * t).cos()),
@@ -213,8 +214,8 @@ fn frames_are_orthonormal_and_invert_offsets_even_where_guides_fold() {
 }
 
 #[test]
-fn guides_that_coincide_are_followed_whatever_the_weights() {
-    // Partition of unity: weights that sum to 1 do not move what all guides agree on.
+fn coinciding_guides_are_followed_for_any_weights() {
+    // Partition of unity: weights that sum to 1 do not move a point that all guides share.
     let mut guides = Guides { points_per_guide: 6, ..Guides::default() };
     let points: Vec<Vec3> = (0..6).map(|p| Vec3::new(0.1 * p as f32, 0.02 * (p * p) as f32, 0.3)).collect();
     (0..3).for_each(|_| guides.push(&points));

@@ -1,4 +1,4 @@
-//! Bounds from the guides against the strands that interpolation makes of them.
+//! Compares bounds from the guides with the strands that interpolation makes of them.
 
 #[allow(dead_code)] // The folder of data is all that is needed of it.
 mod common;
@@ -33,13 +33,13 @@ fn styles() -> Vec<(&'static str, Arc<Hairstyle>)> {
     all
 }
 
-/// Three axes at right angles.
+/// Three perpendicular axes.
 fn axes(random: &mut Random) -> [Vec3; 3] {
     let turn = random.turn();
     [turn * Vec3::X, turn * Vec3::Y, turn * Vec3::Z]
 }
 
-/// The strands' own bounds, of those points that are finite.
+/// The actual bounds of the strands' finite points.
 fn truth(style: &Hairstyle, frame: &GuideFrame, axes: [Vec3; 3], anchor: Vec3) -> Option<(Vec3, Vec3)> {
     let mut strands = Strands::default();
     interpolate(style, frame, &mut strands);
@@ -48,7 +48,7 @@ fn truth(style: &Hairstyle, frame: &GuideFrame, axes: [Vec3; 3], anchor: Vec3) -
     points.map(|p| (p, p)).reduce(|(low, high), (p, _)| (low.min(p), high.max(p)))
 }
 
-/// Bounds and truth, the bounds checked to enclose it. Returns by how much they are longer along each axis, as a part.
+/// Checks that the bounds enclose the actual ones. Returns how much longer they are along each axis, as a fraction.
 fn looseness(
     bounds: &StrandBounds,
     style: &Hairstyle,
@@ -65,8 +65,8 @@ fn looseness(
     (high - low) / (true_high - true_low) - 1.0
 }
 
-/// Extents beyond the strands' own, as a part. Measured: 0.05 on average, 0.063 at most; twice the search's 0.03 an end is
-/// what to expect where guides and strands reach equally far.
+/// How much longer than the strands the bounds may be, as a fraction. Measured: 0.05 on average, 0.063 at most. Twice
+/// the search's 0.03 per end is expected where guides and strands reach equally far.
 const LOOSEST: f32 = 0.1;
 
 #[test]
@@ -106,7 +106,7 @@ fn strands_that_reach_farther_than_the_style_says_are_found_outside() {
 }
 
 #[test]
-fn what_is_no_number_or_far_away_is_left_out() {
+fn points_that_are_not_finite_or_far_away_are_ignored() {
     let style = preset(Preset::Smooth);
     let bounds = StrandBounds::new(&style);
     let rest = GuideFrame::at_rest(&style.guides, Affine3A::IDENTITY, 0.0);
@@ -167,7 +167,7 @@ fn the_longest_strand_is_that_at_rest() {
     assert!((found - longest).abs() < 1e-6 && found > 0.3, "{found} and {longest}");
 }
 
-/// A hairstyle of anything that is allowed, and somewhat more: weights that do not sum to 1, and places beyond the guides.
+/// A random hairstyle, with more variety than is valid: weights that do not sum to 1, and positions beyond the guides.
 fn any_style(seed: u64) -> Arc<Hairstyle> {
     let mut random = Random(seed | 1);
     let points_per_guide = 2 + (5.0 * random.unit()) as usize;

@@ -1,4 +1,4 @@
-//! The scalp divided among the wisps: centroidal Voronoi cells, each filled with roots.
+//! Divides the scalp among the wisps: centroidal Voronoi cells, each filled with roots.
 
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
@@ -7,16 +7,16 @@ use super::comb::Comb;
 use crate::{GroomSettings, ScalpIndex, ScalpPoint};
 use lovelock_base::random::SplitMix64;
 
-/// Samples of the scalp for each cell while the cells relax.
+/// Samples of the scalp per cell while the cells relax.
 const SAMPLES_PER_CELL: usize = 32;
-/// Rounds of Lloyd's relaxation.
+/// Iterations of Lloyd's relaxation.
 const ROUNDS: usize = 8;
-/// Distance that the parting puts between its sides while the cells relax, so that no cell lies across; metres.
+/// Distance that the parting adds between its sides while the cells relax, so that no cell crosses it; metres.
 const PART_GAP: f32 = 0.03;
 
 /// The part of the scalp that one wisp covers.
 pub(super) struct Cell {
-    /// Its middle.
+    /// Its centre.
     pub centre: ScalpPoint,
     /// Root mean square distance of its roots from the centre, metres.
     pub spread: f32,
@@ -26,12 +26,12 @@ pub(super) struct Cell {
     pub fringe: f32,
     /// The roots of its strands.
     pub roots: Vec<ScalpPoint>,
-    /// A number of its own for its random streams.
+    /// A number for its own random streams.
     pub stream: u64,
 }
 
-/// Divides the scalp into the settings' number of cells with their number of roots. Empty on a scalp too small to
-/// be hit by a sample.
+/// Divides the scalp into the number of cells and roots of the settings. Empty if the scalp is too small for any sample
+/// to hit it.
 pub(super) fn divide(settings: &GroomSettings, index: &ScalpIndex<'_>, comb: &Comb) -> Vec<Cell> {
     let wisps = settings.wisps as usize;
     let each = settings.strands_per_wisp as usize;
@@ -44,7 +44,7 @@ pub(super) fn divide(settings: &GroomSettings, index: &ScalpIndex<'_>, comb: &Co
         .par_iter()
         .map(|s| s.position.extend(0.5 * PART_GAP * comb.divided_side(s.position)))
         .collect();
-    // Samples are independent, so the first ones are as good a set as any.
+    // Samples are independent, so the first ones are as good as any.
     let few = &features[..features.len().min(wisps * SAMPLES_PER_CELL)];
     let mut centres = spaced(few, wisps);
     for _ in 0..ROUNDS {
@@ -71,7 +71,7 @@ pub(super) fn divide(settings: &GroomSettings, index: &ScalpIndex<'_>, comb: &Co
         .collect()
 }
 
-/// One cell, from the samples that fell into it.
+/// One cell, from the samples inside it.
 fn cell(
     settings: &GroomSettings,
     index: &ScalpIndex<'_>,
@@ -99,8 +99,8 @@ fn cell(
     }
 }
 
-/// `count` of the samples, each as far as can be from those chosen before (farthest point sampling), which leaves
-/// neither clusters nor rows. Where samples are too few, further ones come from between them.
+/// Chooses `count` samples, each as far as possible from the earlier ones (farthest point sampling), which leaves
+/// neither clusters nor rows. If there are too few samples, more are interpolated between them.
 fn choose(
     settings: &GroomSettings,
     index: &ScalpIndex<'_>,
@@ -135,7 +135,7 @@ fn choose(
     chosen
 }
 
-/// `count` of the features, spaced by farthest point sampling.
+/// Chooses `count` features by farthest point sampling.
 fn spaced(features: &[Vec4], count: usize) -> Vec<Vec4> {
     let mut gaps = vec![f32::INFINITY; features.len()];
     let mut chosen = Vec::with_capacity(count);

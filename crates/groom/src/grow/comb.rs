@@ -1,4 +1,4 @@
-//! Landmarks of the head, the parting, the whorl, and the direction in which hair is combed.
+//! Landmarks of the head, the parting, the whorl, and the direction of combing.
 
 use glam::Vec3;
 
@@ -8,9 +8,9 @@ use lovelock_base::random::SplitMix64;
 
 /// Points of the parting's polyline.
 const PART_POINTS: usize = 28;
-/// How far behind the top of the head the whorl lies, radians.
+/// Angle of the whorl behind the top of the head, radians.
 const WHORL_BACK: f32 = 0.52;
-/// How far before the top of the head the parting's line ends, on the forehead, radians.
+/// Angle before the top of the head at which the parting ends on the forehead, radians.
 const PART_FRONT: f32 = 1.25;
 
 /// A point of the parting.
@@ -20,10 +20,10 @@ struct PartPoint {
     normal: Vec3,
 }
 
-/// Where a point lies relative to the parting.
+/// The position of a point relative to the parting.
 #[derive(Clone, Copy)]
 pub(super) struct OnPart {
-    /// Unit direction of the parting there, toward the forehead.
+    /// Unit direction of the parting at the nearest point, toward the forehead.
     pub along: Vec3,
     /// Outward normal of the scalp at the parting.
     pub normal: Vec3,
@@ -33,13 +33,13 @@ pub(super) struct OnPart {
     pub front: f32,
 }
 
-/// The landmarks of a head, and how its hair is combed.
+/// The landmarks of a head and the combing of its hair.
 pub(super) struct Comb {
     /// Middle of the box of the hairy scalp, head space, metres.
     pub centre: Vec3,
     /// Half of that box.
     pub half: Vec3,
-    /// Where the hair turns, at the crown.
+    /// The whorl at the crown, around which hair turns.
     pub whorl: Vec3,
     parting: Vec<PartPoint>,
     part_strength: f32,
@@ -66,9 +66,9 @@ impl Comb {
         for k in 0..PART_POINTS {
             let t = k as f32 / (PART_POINTS - 1) as f32;
             let angle = -WHORL_BACK + (WHORL_BACK + PART_FRONT) * t;
-            // A comb's line is never quite straight: a millimetre to either side.
+            // A comb's line is never quite straight: it deviates by up to a millimetre.
             let wander = 0.0009 * ((9.0 * t + wobble[0]).sin() + (23.0 * t + wobble[1]).sin());
-            // The whorl of a side parting lies off the middle too, but less.
+            // The whorl of a side parting is off-centre too, but less.
             let aside = settings.part_position * (0.4 + 0.6 * smoothstep(0.0, 0.7, t)) + wander;
             let out = Vec3::new(0.0, angle.cos() * half.y, angle.sin() * half.z) * 1.02;
             let hit = index.closest(centre + out + Vec3::X * aside)?;
@@ -84,7 +84,7 @@ impl Comb {
         })
     }
 
-    /// Where `p` lies relative to the parting.
+    /// The position of `p` relative to the parting.
     pub(super) fn on_part(&self, p: Vec3) -> OnPart {
         let mut best = (f32::INFINITY, 0, 0.0);
         for (k, pair) in self.parting.windows(2).enumerate() {
@@ -109,8 +109,8 @@ impl Comb {
         }
     }
 
-    /// The side of `p` as [`Comb::side`], times how strongly a cell of roots is kept on it: 0 behind the whorl, else
-    /// up to 1.
+    /// The side of `p` as in [`Comb::side`], times how strictly a cell of roots must stay on it: 0 behind the whorl,
+    /// otherwise up to 1.
     pub(super) fn divided_side(&self, p: Vec3) -> f32 {
         let on = self.on_part(p);
         on.front * self.part_strength * if on.aside < 0.0 { -1.0 } else { 1.0 }
@@ -121,8 +121,8 @@ impl Comb {
         if self.on_part(p).aside < 0.0 { -1.0 } else { 1.0 }
     }
 
-    /// The direction in which hair of `side` is combed at `p`, where the surface has the normal `n`: a unit vector
-    /// in the surface. `fringe` in 0..=1 turns it toward the forehead.
+    /// The combing direction of hair of `side` at `p`, where the surface has the normal `n`: a unit vector in the
+    /// surface. `fringe` in 0..=1 turns it toward the forehead.
     pub(super) fn flow(&self, p: Vec3, n: Vec3, side: f32, fringe: f32) -> Vec3 {
         let on = self.on_part(p);
         let away = on.normal.cross(on.along) * side;
@@ -133,12 +133,12 @@ impl Comb {
                     * smoothstep(0.02, 0.09, p.z - self.whorl.z)
                     * smoothstep(-0.1, 0.4, (p.y - self.centre.y) / self.half.y));
         let fringed = combed.lerp(on.along + 0.35 * away, fringe);
-        // Around the whorl hair turns as it leaves: a spiral that straightens within a few centimetres.
+        // Around the whorl, hair leaves in a spiral that straightens within a few centimetres.
         let radial = p - self.whorl;
         let turn = 0.9 * (-radial.length() / 0.025).exp();
         let spiral = radial.normalize_or(-on.along) + turn * on.normal.cross(radial.normalize_or(-on.along));
         let flow = spiral.lerp(fringed, on.front.max(fringe));
-        // Before and behind the ears hair simply grows down, and a little back.
+        // In front of the ears and behind them, hair grows down and slightly back.
         let low = smoothstep(0.1, -0.4, (p.y - self.centre.y) / self.half.y);
         let flow = flow.lerp(Vec3::new(0.0, -1.0, -0.35), low);
         (flow - n * flow.dot(n)).normalize_or((away - n * away.dot(n)).normalize_or(Vec3::X))

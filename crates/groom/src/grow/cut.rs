@@ -1,4 +1,4 @@
-//! The cut: how long each wisp is.
+//! Cuts wisps to length.
 
 use super::cells::Cell;
 use super::comb::Comb;
@@ -9,8 +9,8 @@ use lovelock_base::random::SplitMix64;
 
 /// The length of each wisp, metres.
 ///
-/// The longest hair sets the height of the hem: where hair of the full length from the top of the head ends. Lower
-/// hair is cut at the hem, and layers shorten the higher hair in its turn.
+/// The longest hair sets the height of the hem: the height at which hair of the full length from the top of the head
+/// ends. Lower hair is cut at the hem; layers shorten the higher hair.
 pub(super) fn lengths(settings: &GroomSettings, comb: &Comb, cells: &[Cell], paths: &[Path]) -> Vec<f32> {
     let mut ends: Vec<f32> = cells
         .iter()
@@ -20,7 +20,7 @@ pub(super) fn lengths(settings: &GroomSettings, comb: &Comb, cells: &[Cell], pat
         .collect();
     ends.sort_by(f32::total_cmp);
     let hem = ends.get(ends.len() / 2).copied().unwrap_or(f32::NEG_INFINITY);
-    // Hair too short to hang has no hem: it is cut to one length all over.
+    // Hair that is too short to hang has no hem; it is cut to one length everywhere.
     let hangs = smoothstep(0.08, 0.2, settings.length);
 
     cells

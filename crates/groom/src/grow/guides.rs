@@ -1,4 +1,4 @@
-//! Three guides about a wisp's path.
+//! Lays three guides around a wisp's path.
 
 use glam::Vec3;
 
@@ -12,21 +12,21 @@ use crate::{GroomSettings, Obstacle, ScalpIndex};
 use lovelock_base::numbers::smoothstep;
 use lovelock_base::random::SplitMix64;
 
-/// How a guide is looked for along its way, in segments of it.
+/// The search for the next point of a guide along its path, in segments.
 const REACH: Reach = Reach { beyond: 8.0, step: 0.25 };
 /// Distance from the tips over which hair bends under or out, metres.
 const ENDS: f32 = 0.09;
-/// A turn from one link to the next by which a guide counts as folded, radians: it is laid anew.
+/// The turn between two links above which a guide counts as folded and is laid again, radians.
 const FOLD: f32 = 1.2;
-/// The sharpest turn of a guide that needs no more smoothing, radians.
+/// The sharpest turn of a guide that needs no further smoothing, radians.
 const EASY_TURN: f32 = 0.45;
-/// How often a folded guide is laid anew before it is cut by a tenth, and how often it is cut.
+/// How often a folded guide is laid again before it is cut by a tenth, and how often it is cut.
 const SMOOTHINGS: usize = 6;
 const CUTS: usize = 3;
-/// How far from the body the course of such a guide is kept, metres: as far as links that are laid along it need no push.
+/// Clearance between the body and the path of such a guide, metres: far enough that its links need no push.
 const CLEAR: f32 = 0.005;
 
-/// Three guides of equal links about `path`, `length` metres long, rooted on the scalp and outside `obstacle`.
+/// Three guides of equal links around `path`, `length` metres long, rooted on the scalp and outside `obstacle`.
 pub(super) fn around(
     settings: &GroomSettings,
     index: &ScalpIndex<'_>,
@@ -47,11 +47,11 @@ pub(super) fn around(
     let mut middle = Vec::with_capacity(GUIDE_POINTS);
     for k in 0..GUIDE_POINTS {
         let (mut p, t) = path.at(length * fraction(k));
-        // Ends turn under, or out, over the last centimetres.
+        // The ends turn under or out over the last centimetres.
         let near_end = 1.0 - (length * (1.0 - fraction(k)) / ENDS.min(0.5 * length)).min(1.0);
         let inward = Vec3::new(comb.centre.x - p.x, 0.0, comb.centre.z - p.z).normalize_or_zero();
         if near_end > 0.0 && settings.ends != 0.0 {
-            // Hair that lies on the neck has nowhere to turn.
+            // Hair that lies on the neck has no room to turn.
             let room = smoothstep(0.01, 0.05, obstacle.distance(p).0);
             p += inward * (settings.ends * room * 0.5 * ENDS.min(0.5 * length) * near_end * near_end);
         }
@@ -64,7 +64,7 @@ pub(super) fn around(
         normals.push(normal);
     }
     std::array::from_fn(|g| {
-        // The triangle of the guides is as wide as the disc of the cell's area.
+        // The triangle of the guides is as wide as a disc with the cell's area.
         let angle = start + g as f32 * std::f32::consts::TAU / 3.0;
         let reach = 1.41 * cell.spread;
         let aim = root.position + (along * angle.cos() + across * angle.sin()) * reach;
@@ -78,7 +78,7 @@ pub(super) fn around(
         let own_length = length * (1.0 + 0.15 * settings.length_variation * rng.bell());
         let target: [Vec3; GUIDE_POINTS] = std::array::from_fn(|k| {
             let t = fraction(k);
-            // Hair fans out a little above the roots, where it overlaps its neighbours, then gathers.
+            // Hair fans out slightly above the roots, where it overlaps its neighbours, then gathers.
             let fan = 1.0 + 0.12 * smoothstep(0.0, 0.25, t);
             let gather = 1.0 - settings.clump * smoothstep(0.05, 0.95 - 0.3 * settings.clump, t);
             let binormal: Vec3 = tangents[k].cross(normals[k]).into();
@@ -91,10 +91,11 @@ pub(super) fn around(
     })
 }
 
-/// As [`lay`], but so that the chain does not fold.
+/// As [`lay`], without folds.
 ///
 /// Where the target passes through something thin, such as an ear, a chain that is pushed out of it link by link folds
-/// back on itself: its way is smoothed until it does not. What meets a shoulder head on and still folds is cut shorter.
+/// back on itself. Its path is smoothed until it does not. A guide that meets a shoulder head-on and still folds is cut
+/// shorter.
 fn lay_smoothly(
     target: &[Vec3; GUIDE_POINTS],
     length: f32,
@@ -128,7 +129,7 @@ fn lay_smoothly(
     best
 }
 
-/// Smooths the way of a guide, the more the later the round, and keeps it clear of the body.
+/// Smooths the path of a guide, more strongly in later rounds, and keeps it clear of the body.
 fn smooth(target: &mut [Vec3; GUIDE_POINTS], round: usize, length: f32, obstacle: &dyn Obstacle) {
     for _ in 0..4 + 2 * round {
         let before = *target;
@@ -163,7 +164,7 @@ fn lay(
 ) -> [Vec3; GUIDE_POINTS] {
     let link = length / (GUIDE_POINTS - 1) as f32;
     let mut guide = [target[0]; GUIDE_POINTS];
-    // Where along the target the chain has come, in its segments.
+    // The position of the chain along the target, in segments.
     let mut at = 0.0_f32;
     let mut direction = root_normal;
     for k in 1..GUIDE_POINTS {
@@ -177,7 +178,7 @@ fn lay(
             if distance >= margin {
                 break;
             }
-            // Out by a little more than needed, since laying the link anew brings it back by a part.
+            // Pushes out slightly more than needed, because placing the link again brings it back partly.
             direction = (p + n * (1.3 * (margin - distance) + 1e-5) - from).normalize_or(direction);
             p = from + direction * link;
         }

@@ -1,10 +1,10 @@
 //! Growing a hairstyle: cells of roots, combed paths, guides, strands.
 //!
-//! 1. [`comb`]: the parting and the whorl, and the direction in which hair lies at each point of the head.
+//! 1. [`comb`]: the parting, the whorl, and the direction of the hair at each point of the head.
 //! 2. [`cells`]: the scalp divided among wisps, and the roots of each wisp's strands.
-//! 3. [`path`]: how a wisp leaves the scalp, lies on the head, falls and drapes.
-//! 4. [`cut`]: how long each wisp is.
-//! 5. [`guides`]: three guides about each path, outside of the body, of equal links.
+//! 3. [`path`]: how a wisp leaves the scalp, follows the head, falls and drapes.
+//! 4. [`cut`]: the length of each wisp.
+//! 5. [`guides`]: three guides of equal links around each path, outside the body.
 //! 6. [`strands`]: curl, waves, frizz, locks, strays and tips, as offsets from the guides.
 
 mod cells;
@@ -25,7 +25,7 @@ use crate::{
 /// Points of each grown guide: 30 links, as in Bertails et al. 2005.
 pub const GUIDE_POINTS: usize = 31;
 
-/// Why a hairstyle could not grow.
+/// Why a hairstyle could not be grown.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum GrowError {
     /// The scalp is unusable.
@@ -35,11 +35,11 @@ pub enum GrowError {
 
 /// Grows a hairstyle on `scalp`, around `obstacle` (the body without hair), both in head space.
 ///
-/// `settings` are clamped to their safe ranges first. The result depends on nothing but the arguments: not on the
-/// number of threads.
+/// `settings` are clamped to their ranges first. The result depends only on the arguments, not on the number of
+/// threads.
 ///
 /// # Errors
-/// If the scalp is malformed, or has no area above the hairline.
+/// The scalp is malformed, or has no area above the hairline.
 pub fn grow(
     settings: &GroomSettings,
     scalp: &Scalp,

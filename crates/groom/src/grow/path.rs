@@ -1,4 +1,4 @@
-//! The way of one wisp: off the scalp at an angle, over the head as it is combed, and down.
+//! Traces the path of one wisp: off the scalp at an angle, over the head as it is combed, and down.
 
 use glam::Vec3;
 
@@ -10,10 +10,10 @@ use lovelock_base::random::SplitMix64;
 
 /// Distance between the points of a path, metres.
 const STEP: f32 = 0.004;
-/// Distance over which hair bends from one direction to the next, metres.
+/// Distance over which hair bends from one direction to another, metres.
 const BEND: f32 = 0.022;
 
-/// The middle line of a wisp, from the root, in points `step` metres apart.
+/// The centre line of a wisp from the root, as points `step` metres apart.
 pub(super) struct Path {
     /// Distance between points, metres.
     pub step: f32,
@@ -34,9 +34,9 @@ impl Path {
     }
 }
 
-/// How far from the skin hair lies that has come `arc` metres from its root, at `p` on the head.
+/// The distance from the skin, at `p` on the head, of hair that has come `arc` metres from its root.
 ///
-/// Hair that has come far lies over hair whose roots are here, so thickness grows with the distance from the root.
+/// Hair that has come far lies above hair that is rooted here, so the thickness grows with the distance from the root.
 pub(super) fn height(settings: &GroomSettings, comb: &Comb, loft: f32, arc: f32, p: Vec3, n: Vec3) -> f32 {
     let arc = arc.max(0.0);
     let body = settings.volume * loft;
@@ -54,7 +54,7 @@ pub(super) fn height(settings: &GroomSettings, comb: &Comb, loft: f32, arc: f32,
     near + (far + crown) * on_head + 0.002 * (1.0 - on_head)
 }
 
-/// Traces the way of the wisp of `cell`, as far as the longest hair may reach.
+/// Traces the path of the wisp of `cell`, as far as the longest hair may reach.
 pub(super) fn trace(settings: &GroomSettings, comb: &Comb, obstacle: &dyn Obstacle, cell: &Cell) -> Path {
     let mut rng = SplitMix64::of_stream(settings.seed, 0xfa7_0000 + cell.stream);
     let rank = comb.rank(cell.centre.position);
@@ -66,7 +66,7 @@ pub(super) fn trace(settings: &GroomSettings, comb: &Comb, obstacle: &dyn Obstac
     let swept = settings.sweep * comb.frontness(root.position) * (1.0 - cell.fringe);
     let falls = if root.position.z + 0.015 * rng.bell() > comb.centre.z - 0.01 { 1.0 } else { -1.0 };
     let scatter = 0.45 * rng.signed();
-    // Hair crosses over where it turns, which covers the crown.
+    // Hair crosses where it turns, which covers the crown.
     let veer = veer * (1.0 + 5.0 * (-root.position.distance(comb.whorl) / 0.02).exp());
     let flow = comb.flow(root.position, root.normal, cell.side, cell.fringe);
     let flow = (flow + veer * root.normal.cross(flow)).normalize_or(flow);
@@ -82,14 +82,14 @@ pub(super) fn trace(settings: &GroomSettings, comb: &Comb, obstacle: &dyn Obstac
         let combed = (-arc / settings.hold).exp();
         let flow = comb.flow(p, n, cell.side, cell.fringe);
         let flow = (flow + veer * n.cross(flow)).normalize_or(flow);
-        // Near the hair that lies below, gravity pulls along it; free of it, straight down.
+        // Near the hair below, gravity pulls along its surface; clear of it, straight down.
         let free = smoothstep(0.0, 0.025, above);
         let down = Vec3::NEG_Y;
         let pull = down - n * (down.dot(n) * (1.0 - free)).min(0.0);
         let mut wish = flow * (combed * (1.0 - free)) + pull * (1.05 - combed) + 0.35 * direction;
-        // Front hair that is swept keeps to its way past the temple.
+        // Swept front hair stays on its path past the temple.
         wish += Vec3::NEG_Z * (swept * (-arc / 0.16).exp() * smoothstep(0.02, 0.06, arc));
-        // A hand presses loose hair to the head; on the body, it falls before or behind the shoulder.
+        // Loose hair is pressed to the head; on the body, it falls in front of the shoulder or behind it.
         let q = (p - comb.centre) / comb.half;
         wish -= n * (0.8 * free * smoothstep(-0.9, -0.3, q.y));
         if q.y < -0.8 {
@@ -99,12 +99,12 @@ pub(super) fn trace(settings: &GroomSettings, comb: &Comb, obstacle: &dyn Obstac
             let aside = Vec3::Z * falls + Vec3::X * scatter;
             wish += (aside - slope * aside.dot(slope)) * (0.9 * lands);
         }
-        // What is swept keeps out of the face.
+        // Swept hair stays out of the face.
         let before_face = (q.z - 0.3).max(0.0) * smoothstep(0.6, 0.1, q.y) * smoothstep(-1.4, -0.9, q.y);
         wish += Vec3::NEG_Z * (2.5 * before_face * settings.sweep.max(0.0) * (1.0 - cell.fringe));
         let wish = wish.normalize_or(direction);
         direction = direction.lerp(wish, 1.0 - (-STEP / BEND).exp()).normalize_or(wish);
-        // Keep to the wanted height: rise where too low, and never go further in.
+        // Keeps to the desired height: rises if too low, and never moves farther inward.
         if above < 0.004 {
             let inward = direction.dot(n).min(0.0) * (1.0 - smoothstep(0.0, 0.004, above));
             let rise = (-above / 0.012).clamp(0.0, 0.9);

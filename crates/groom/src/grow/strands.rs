@@ -1,4 +1,4 @@
-//! The strands of a wisp: where each leaves its guides, and how it ends.
+//! The strands of a wisp: their offsets from the guides, and their ends.
 
 use glam::{Vec2, Vec3};
 
@@ -9,12 +9,12 @@ use crate::{GroomSettings, Guides, Obstacle, ScalpPoint, StrandSet, Wisp, WispCu
 use lovelock_base::numbers::smoothstep;
 use lovelock_base::random::SplitMix64;
 
-/// Distance over which a strand's root, which lies on the scalp, joins the curve of its guides; metres.
+/// Distance over which a strand's root, which lies on the scalp, blends into the curve of its guides; metres.
 const ROOT_JOIN: f32 = 0.03;
-/// Estimated distance from the body below which it is asked for exactly, metres: a wisp is a centimetre or two wide,
-/// and over that width a head's surface leaves its tangent plane by 2 mm.
+/// Estimated distance from the body below which the exact distance is computed, metres: a wisp is one or two
+/// centimetres wide, and over that width a head's surface deviates from its tangent plane by 2 mm.
 const NEAR: f32 = 0.008;
-/// Strands of one of the smaller locks of a wisp, about.
+/// Approximate number of strands in each of the smaller locks of a wisp.
 const STRANDS_PER_LOCK: usize = 6;
 
 /// The strands of one wisp, as in [`StrandSet`].
@@ -28,7 +28,7 @@ pub(super) struct WispStrands {
 }
 
 impl WispStrands {
-    /// Adds the strands to a set as those of wisp `wisp`.
+    /// Appends the strands to a set as those of wisp `wisp`.
     pub(super) fn append_to(self, set: &mut StrandSet, wisp: u32) {
         for _ in 0..self.weights.len() {
             set.wisp.push(wisp);
@@ -47,7 +47,7 @@ impl WispStrands {
 
 /// What the strands of a wisp have in common.
 struct Lock {
-    /// Phase of curls at the root, and of their wandering.
+    /// Phase of curls at the root, and of their variation.
     phase: [f32; 3],
     /// Whether curls turn left or right.
     hand: f32,
@@ -58,8 +58,8 @@ struct Lock {
     skin: Skin,
 }
 
-/// The distance to the body along a wisp's middle, from which that of its strands is estimated: asking a mesh is
-/// slow, and strands are many.
+/// The distance to the body along a wisp's centre, from which the distance of its strands is estimated: a query of a
+/// mesh is slow, and there are many strands.
 struct Skin([(Vec3, f32, Vec3); GUIDE_POINTS]);
 
 impl Skin {
@@ -96,7 +96,7 @@ pub(super) fn of_wisp(
     }
     let curve = WispCurve::at_rest(&of_guides, &Wisp { guides: [0, 1, 2], first_strand: 0, strand_count: 0 });
     let root = cell.centre.position;
-    // Waves of neighbours are nearly in step, as they are where a hand or an iron has set them.
+    // Waves of neighbours are nearly in phase, as if set by a hand or an iron.
     let around = (root.x - comb.centre.x).atan2(root.z - comb.centre.z);
     let lock = Lock {
         phase: [rng.angle(), rng.angle(), rng.angle()],
@@ -148,18 +148,18 @@ fn thickness(taper: f32, t: f32) -> f32 {
     1.0 - 0.9 * into * into.sqrt()
 }
 
-/// What chance gave to one strand.
+/// The random properties of one strand.
 struct Strand {
     weights: [f32; 3],
-    /// From the guides' curve to its own root on the scalp.
+    /// From the guides' curve to the strand's own root on the scalp.
     from_guides: Vec3,
-    /// Weights of the smaller lock that it gathers to.
+    /// Weights of the smaller lock toward which it gathers.
     gathers_to: [f32; 3],
-    /// Share of the guides' length that it has.
+    /// Its length as a fraction of the guides' length.
     reach: f32,
-    /// Direction and size of its way out of the wisp, in the frame; zero for most.
+    /// Direction and distance by which it leaves the wisp, in the frame; zero for most strands.
     stray: Vec3,
-    /// How much nearer to the skin than its guides it lies, as a fraction.
+    /// How much closer to the skin than its guides it lies, as a fraction.
     depth: f32,
     frizz: f32,
     phases: [f32; 6],
@@ -197,7 +197,7 @@ impl Strand {
         }
     }
 
-    /// The offset in the frame at `u`, so that the strand at rest has its shape and stays out of the body.
+    /// The offset in the frame at `u` that gives the strand its rest shape and keeps it out of the body.
     fn offset(
         &self,
         settings: &GroomSettings,
@@ -221,7 +221,7 @@ impl Strand {
         displaced +=
             (curve.blend(self.gathers_to, u) - blended) * (settings.locks * smoothstep(0.05, 0.6, t));
 
-        // Curl: a helix about the wisp, whose radius and pitch wander, in step within the wisp.
+        // Curl: a helix around the wisp whose radius and pitch vary in the same way within the wisp.
         if settings.curl_radius > 0.0 {
             let onset = smoothstep(0.0, settings.curl_onset.max(0.005), arc);
             let wander = settings.curl_wander;
@@ -238,7 +238,7 @@ impl Strand {
                 * (1.0 - 0.25 * t * t);
             displaced += (frame.x_axis * phase.cos() + frame.y_axis * phase.sin()) * radius.max(0.0);
         }
-        // Waves swing the wisp to its sides, and a little in and out.
+        // Waves move the wisp sideways, and slightly in and out.
         if settings.wave > 0.0 {
             let onset = smoothstep(0.2, 1.0, arc / (settings.curl_onset + 0.5 * settings.wave_length));
             let out = Vec3::new(blended.x - comb.centre.x, 0.0, blended.z - comb.centre.z);
@@ -248,7 +248,7 @@ impl Strand {
             let swing = settings.wave * onset * (0.8 + 0.2 * self.curl_size);
             displaced += (sideways * phase.sin() + outward * (0.6 * (phase + 0.9).sin())) * swing;
         }
-        // Frizz: two waves of unlike lengths on each axis.
+        // Frizz: two waves of different lengths on each axis.
         let bends = tau * arc / settings.frizz_scale;
         let size = self.frizz * (0.3 + 0.7 * t) * smoothstep(0.0, 0.03, arc);
         if size > 0.0 {
@@ -261,7 +261,7 @@ impl Strand {
         }
 
         let mut point = blended + displaced;
-        // Some strands lie deeper than others, so that hair is a body and not a shell; none lies in the skin.
+        // Some strands lie deeper than others, so that hair fills a volume instead of a shell; none enters the skin.
         let (mut distance, mut n) = lock.skin.estimate(u, point);
         if distance < NEAR {
             (distance, n) = obstacle.distance(point);
@@ -295,8 +295,8 @@ impl Flat {
         Self { origin: roots[0], axes, edges: [flat(roots[1]), flat(roots[2])] }
     }
 
-    /// Weights of the guides for a strand rooted at `p`: barycentric, and bounded so that a cell of odd shape
-    /// cannot throw a strand far from its wisp.
+    /// Weights of the guides for a strand rooted at `p`: barycentric, and limited so that an irregular cell cannot
+    /// throw a strand far from its wisp.
     fn weights(&self, p: Vec3) -> [f32; 3] {
         let q = Vec2::new((p - self.origin).dot(self.axes[0]), (p - self.origin).dot(self.axes[1]));
         let [a, b] = self.edges;

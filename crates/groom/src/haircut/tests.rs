@@ -6,7 +6,7 @@ fn long() -> Hairstyle {
     grow(&settings, &PlainHead.scalp(32), &PlainHead).expect("it grows")
 }
 
-/// The guides of `style` swung to one side, each its own way, as a motion might leave them.
+/// The guides of `style` swung to one side, each differently, as a motion might leave them.
 fn swung(style: &Hairstyle) -> GuideFrame {
     let mut frame = GuideFrame::at_rest(&style.guides, Affine3A::from_rotation_y(0.7), 0.0);
     let n = style.guides.points_per_guide;
@@ -18,7 +18,7 @@ fn swung(style: &Hairstyle) -> GuideFrame {
     frame
 }
 
-/// The frame as the cut style has it: points beyond the last link lie on its end.
+/// The frame for the cut style: points beyond the last link lie on its end.
 fn collapsed(frame: &GuideFrame, style: &Hairstyle) -> GuideFrame {
     let mut frame = frame.clone();
     let n = style.guides.points_per_guide;
@@ -35,7 +35,7 @@ fn collapsed(frame: &GuideFrame, style: &Hairstyle) -> GuideFrame {
 }
 
 #[test]
-fn what_is_left_of_the_strands_does_not_move_when_hair_is_cut() {
+fn the_remaining_strands_do_not_move_when_hair_is_cut() {
     let style = long();
     let frame = swung(&style);
     let blades = [
@@ -54,7 +54,7 @@ fn what_is_left_of_the_strands_does_not_move_when_hair_is_cut() {
         for s in 0..style.strands.count() {
             let (a, b) = (before.first_point[s] as usize, after.first_point[s] as usize);
             let left = (after.first_point[s + 1] as usize) - b;
-            // All but the new end, which lies between two points of before: it may be the last of as many.
+            // All but the new end, which lies between two earlier points, so the count may be the same.
             let param = |style: &Hairstyle, i: usize| style.strands.guide_param[i];
             let is_cut = param(&short, b + left - 1) != param(&style, a + left - 1);
             for i in 0..left - usize::from(is_cut) {
@@ -65,20 +65,20 @@ fn what_is_left_of_the_strands_does_not_move_when_hair_is_cut() {
             if is_cut {
                 let [p, q] = [before.point(a + left - 2), before.point(a + left - 1)];
                 let t = ((end - p).dot(q - p) / (q - p).length_squared()).clamp(0.0, 1.0);
-                // Between two points a drawn strand is straight and its curve is not.
+                // Between two points, a drawn strand is straight but its curve is not.
                 assert!(end.distance(p.lerp(q, t)) < 1e-3, "the end leaves the strand by {}", end - p);
                 fallen = fallen.max(blade.depth(end));
             }
         }
         assert!(same > 1000, "only {same} points to compare");
-        // Strands stand beside their guides, and their ends are mixed from the guides' own.
-        // Measured: 51 mm in the ball of 100 mm, where the guides of a wisp end at different depths.
+        // Strands are offset from their guides, and their ends are blended from those of the guides. Measured: 51 mm in
+        // the ball of 100 mm, where the guides of a wisp end at different depths.
         assert!(fallen < 0.06, "{blade:?}: an end is left {fallen} m beyond the blade");
     }
 }
 
 #[test]
-fn cuts_add_up_and_those_of_other_hair_do_nothing() {
+fn cuts_combine_and_those_of_other_hair_have_no_effect() {
     let style = long();
     let frame = GuideFrame::at_rest(&style.guides, Affine3A::IDENTITY, 0.0);
     let plane = |y: f32| Blade::Plane { point: Vec3::Y * y, normal: Vec3::NEG_Y };
@@ -92,7 +92,7 @@ fn cuts_add_up_and_those_of_other_hair_do_nothing() {
     assert_eq!(trimmed(&style, &Haircut::default()).strands, style.strands);
     let few = Haircut { kept: vec![0.5; 3], ..high.clone() };
     assert_eq!(trimmed(&style, &few).guides, style.guides);
-    // Cut in two goes, it is the same hair as cut in one.
+    // Two cuts in turn give the same hair as both at once.
     let twice = trimmed(&trimmed(&style, &low), &high);
     let n = style.guides.points_per_guide;
     let once = trimmed(&style, &high);
@@ -101,7 +101,7 @@ fn cuts_add_up_and_those_of_other_hair_do_nothing() {
 }
 
 #[test]
-fn nonsense_leaves_hair_that_can_be_drawn() {
+fn invalid_cuts_give_hair_that_can_be_drawn() {
     let style = long();
     let kept = |k: f32| Haircut { first_root: style.guides.point(0, 0), kept: vec![k; style.guides.count()] };
     for k in [0.0, -1.0, f32::NAN, f32::INFINITY, 1e-9, 0.999_999] {

@@ -1,8 +1,8 @@
-//! Groups strands into wisps by where they grow and how they run.
+//! Groups strands into wisps by root position and shape.
 //!
-//! k-means (Lloyd 1982) with the seeding of k-means++ (Arthur and Vassilvitskii 2007) on features that hold a
-//! few places along each strand, weighted less toward the tip. Large grooms are grouped by a sample, and the
-//! rest join the nearest group, so time grows linearly with the number of strands.
+//! k-means (Lloyd 1982) with k-means++ seeding (Arthur and Vassilvitskii 2007), on features that consist of several
+//! points along each strand with weights that fall toward the tip. For large grooms a sample determines the groups and
+//! the other strands join the nearest one, so the time grows linearly with the number of strands.
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -10,26 +10,26 @@ use rayon::prelude::*;
 use super::PlacedGroom;
 use lovelock_base::random::SplitMix64;
 
-/// Where along a strand (fraction of its length), and how much the place counts: wisps part at the tips as
-/// well as at the roots, but a root in the wrong place shows most.
+/// Position along a strand (fraction of its length) and weight. Wisps separate at the tips as well as at the roots, but
+/// a misplaced root is the most visible.
 const PLACES: [(f32, f32); 5] = [(0.0, 1.0), (0.25, 0.6), (0.5, 0.5), (0.75, 0.4), (1.0, 0.35)];
-/// Numbers in a feature: three a place, filled up to a multiple of the lanes of a processor.
+/// Numbers per feature: three per point, padded to a multiple of the CPU's vector lanes.
 const DIMENSIONS: usize = 16;
-/// Centres side by side, for the processor's lanes.
+/// Centres that are compared side by side in vector lanes.
 const LANES: usize = 8;
-/// Strands that the centres are made from.
+/// Strands that determine the centres.
 const SAMPLES: usize = 4096;
 const ITERATIONS: usize = 6;
 
 type Feature = [f32; DIMENSIONS];
 
-/// Groups the strands of `groom` into at most `wisps` groups: indices of strands, in ascending order. No group
-/// is empty, and every strand is in one.
+/// Groups the strands of `groom` into at most `wisps` groups of strand indices in ascending order. No group is empty,
+/// and every strand is in exactly one.
 pub(super) fn cluster(groom: &PlacedGroom, wisps: usize, seed: u32) -> Vec<Vec<u32>> {
     let strands = groom.strands();
     let features: Vec<Feature> =
         (0..strands).into_par_iter().with_min_len(256).map(|i| feature(groom.strand(i))).collect();
-    // At least four samples a centre.
+    // At least four samples per centre.
     let stride = strands.div_ceil(SAMPLES.max(4 * wisps)).max(1);
     let samples: Vec<Feature> = features.iter().step_by(stride).copied().collect();
     let mut centres = Centres::new(&seeds(&samples, wisps, seed));
@@ -42,7 +42,7 @@ pub(super) fn cluster(groom: &PlacedGroom, wisps: usize, seed: u32) -> Vec<Vec<u
             *count += 1;
         }
         for (centre, (sum, count)) in sums.iter().enumerate() {
-            // A centre without samples stays where it was, and may gain some in the next round.
+            // A centre without samples keeps its position, and may gain some in the next iteration.
             if *count > 0 {
                 centres.set(centre, &sum.map(|value| (value / f64::from(*count)) as f32));
             }
@@ -56,7 +56,7 @@ pub(super) fn cluster(groom: &PlacedGroom, wisps: usize, seed: u32) -> Vec<Vec<u
     groups
 }
 
-/// The places of a strand, metres, each times its weight.
+/// The points of a strand, metres, each multiplied by its weight.
 fn feature(strand: &[Vec3]) -> Feature {
     let mut feature = [0.0; DIMENSIONS];
     let length = super::length(strand);
@@ -76,7 +76,7 @@ fn feature(strand: &[Vec3]) -> Feature {
     feature
 }
 
-/// Samples to start from, each drawn with a chance that grows with its squared distance from those before.
+/// Initial centres: samples drawn with a probability proportional to the squared distance from the earlier ones.
 fn seeds(samples: &[Feature], wanted: usize, seed: u32) -> Vec<Feature> {
     let mut rng = SplitMix64::of_stream(seed, 0x3157);
     let first = (rng.unit() * samples.len() as f32) as usize;
@@ -89,7 +89,7 @@ fn seeds(samples: &[Feature], wanted: usize, seed: u32) -> Vec<Feature> {
             *nearest = nearest.min(distance);
         });
         let total: f64 = nearest.iter().map(|&square| f64::from(square)).sum();
-        // Fewer different strands than groups: the rest would be empty.
+        // There are fewer different strands than groups; the remaining groups would be empty.
         if total <= 0.0 {
             break;
         }
@@ -98,7 +98,7 @@ fn seeds(samples: &[Feature], wanted: usize, seed: u32) -> Vec<Feature> {
             left -= f64::from(square);
             left < 0.0
         });
-        // Rounding may leave a crumb at the end: then the furthest sample is the one.
+        // Rounding may leave a small remainder at the end; then the farthest sample is chosen.
         let drawn = drawn.unwrap_or_else(|| {
             (0..nearest.len()).fold(0, |best, i| if nearest[i] > nearest[best] { i } else { best })
         });
@@ -107,7 +107,7 @@ fn seeds(samples: &[Feature], wanted: usize, seed: u32) -> Vec<Feature> {
     seeds
 }
 
-/// Centres of groups, eight side by side a block. The last block is filled with centres at infinity.
+/// Centres of groups in blocks of eight. The last block is padded with centres at infinity.
 struct Centres {
     count: usize,
     blocks: Vec<[[f32; LANES]; DIMENSIONS]>,
@@ -129,13 +129,13 @@ impl Centres {
         }
     }
 
-    /// The centre nearest to each feature; the first of equally near ones.
+    /// The nearest centre of each feature; of equally near ones, the first.
     fn nearest(&self, features: &[Feature]) -> Vec<u32> {
         features.par_iter().with_min_len(64).map(|feature| self.nearest_to(feature)).collect()
     }
 
     fn nearest_to(&self, feature: &Feature) -> u32 {
-        // The best of each lane, then the best of the lanes.
+        // Finds the best of each lane, then the best of the lanes.
         let mut best = [f32::INFINITY; LANES];
         let mut best_block = [0_u32; LANES];
         for (block, index) in self.blocks.iter().zip(0_u32..) {

@@ -6,10 +6,10 @@ use super::PlacedGroom;
 use crate::{HairFile, HairLook};
 use lovelock_base::random::SplitMix64;
 
-/// Fraction of a strand's length at which it begins to taper, and its width at the tip.
+/// Fraction of a strand's length at which it begins to taper, and its relative width at the tip.
 const TAPER: [f32; 2] = [0.7, 0.25];
 
-/// Width of each point as a fraction of the widest: from the file where it varies there, else a tapering tip.
+/// Width of each point relative to the widest: from the file if its widths vary, otherwise tapering to the tip.
 pub(super) fn taper(file: &HairFile, groom: &PlacedGroom, order: &[u32]) -> Vec<f32> {
     let widths = file.thickness.as_deref().filter(|widths| varies(widths));
     let widest = widths.map_or(1.0, |widths| widths.iter().copied().fold(0.0, f32::max));
@@ -34,7 +34,7 @@ pub(super) fn taper(file: &HairFile, groom: &PlacedGroom, order: &[u32]) -> Vec<
     taper
 }
 
-/// A shade in 0..=1 a strand: from the strands' brightness where the file's colours differ, else at random.
+/// A shade in 0..=1 per strand: from the strands' brightness if the file's colours differ, otherwise random.
 pub(super) fn shade(file: &HairFile, order: &[u32], seed: u32) -> Vec<f32> {
     let brightness: Option<Vec<f32>> = file.colours.as_ref().map(|colours| {
         file.first_point
@@ -65,7 +65,7 @@ fn varies(values: &[f32]) -> bool {
     (high - low).is_finite() && high - low > 0.01 * high.abs().max(low.abs())
 }
 
-/// The look that a file suggests: melanin from its colour, where it has one.
+/// The look derived from a file: melanin from its colour, if it has one.
 pub(super) fn look(file: &HairFile) -> HairLook {
     let of_points = file.colours.as_ref().map(|colours| {
         let sum: glam::DVec3 = colours.iter().map(|&colour| Vec3::from(colour).as_dvec3()).sum();
@@ -88,9 +88,9 @@ fn linear_from_srgb(colour: Vec3) -> Vec3 {
     )
 }
 
-/// Concentrations of eumelanin and pheomelanin whose hair has about this colour (linear sRGB).
+/// Concentrations of eumelanin and pheomelanin of hair with about this colour (linear sRGB).
 ///
-/// Absorption by Beer's law, then the two concentrations, not negative, of least squares.
+/// Absorption by the Beer-Lambert law, then non-negative least squares for the two concentrations.
 fn melanin_of(colour: Vec3) -> (f32, f32) {
     let absorption = colour.map(|c| {
         let through = (c - HairLook::SURFACE_SHARE).clamp(1e-4, 1.0);
@@ -124,7 +124,7 @@ mod tests {
     fn melanin_comes_back_from_its_own_colour() {
         for (eumelanin, pheomelanin) in [(0.3, 0.0), (1.0, 0.05), (0.1, 0.4), (0.0, 0.3)] {
             let (e, p) = melanin_of(colour_of(eumelanin, pheomelanin));
-            // Colours of 1e-4 and darker are held there, which none of these is.
+            // Colours of 1e-4 and below are clamped; none of these is.
             assert!((e - eumelanin).abs() < 1e-3 && (p - pheomelanin).abs() < 1e-3, "{e} {p}");
         }
     }

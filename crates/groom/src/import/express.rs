@@ -1,4 +1,4 @@
-//! Writes every strand as a blend of its wisp's guides plus its own offsets in the wisp's frame.
+//! Expresses every strand as a blend of its wisp's guides plus its own offsets in the wisp's frame.
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -6,11 +6,11 @@ use rayon::prelude::*;
 use super::{PlacedGroom, length};
 use crate::{Guides, StrandSet, Wisp, WispCurve};
 
-/// Weights stay in this range, so that guides that part do not throw a strand away from both.
+/// Limits of the weights, so that diverging guides do not throw a strand far from both.
 const WEIGHT: [f32; 2] = [-0.5, 1.5];
-/// Strength with which weights are drawn to one third, against how far the guides stand apart.
+/// Strength of the pull of the weights toward one third, relative to the distance between guides.
 const EVEN: f32 = 0.02;
-/// Points of a strand that its weights are fitted to.
+/// Number of points per strand to which its weights are fitted.
 const FITTED: usize = 24;
 
 /// The strands of `groom` in the order `order`, sorted by wisp; without taper and shade.
@@ -68,8 +68,8 @@ fn of_wisp(groom: &PlacedGroom, members: &[u32], index: u32, wisp: &Wisp, guides
     let mut params = Vec::new();
     for &member in members {
         let strand = groom.strand(member as usize);
-        // A strand shorter than the guides follows their first part, link for link; a longer one is spread
-        // over all of them. Either way a point stays beside the part of the wisp that it moves with.
+        // A strand shorter than the guides follows their first part, link for link; a longer one is distributed over
+        // all of them. In both cases each point stays beside the part of the wisp that it moves with.
         let links_per_metre = links / length(strand).max(guide_length);
         params.clear();
         let mut run = 0.0;
@@ -92,8 +92,8 @@ fn of_wisp(groom: &PlacedGroom, members: &[u32], index: u32, wisp: &Wisp, guides
     set
 }
 
-/// The weights of sum 1 that bring the blended guides closest to the strand, in least squares, drawn toward
-/// one third each where the guides leave them open.
+/// The weights with sum 1 that bring the blended guides closest to the strand by least squares, pulled toward one third
+/// each where the guides do not determine them.
 fn weights(curve: &WispCurve, strand: &[Vec3], params: &[f32]) -> [f32; 3] {
     // With w = 1/3 + d and d0 = -d1 - d2, the blend is the mean plus d1 (g1 - g0) + d2 (g2 - g0).
     let (mut aa, mut ab, mut bb, mut ar, mut br) = (0.0, 0.0, 0.0, 0.0, 0.0);
@@ -112,7 +112,7 @@ fn weights(curve: &WispCurve, strand: &[Vec3], params: &[f32]) -> [f32; 3] {
     let determinant = aa * bb - ab * ab;
     let (d1, d2) = ((ar * bb - br * ab) / determinant, (br * aa - ar * ab) / determinant);
     let away = [-d1 - d2, d1, d2];
-    // Shorten the step from even weights until all are in range: the sum stays 1.
+    // Shorten the step from equal weights until all are in range; the sum stays 1.
     let third = 1.0 / 3.0;
     let step = away.iter().fold(1.0_f32, |step, &d| {
         let room = if d > 0.0 { WEIGHT[1] - third } else { third - WEIGHT[0] };

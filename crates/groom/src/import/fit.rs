@@ -1,8 +1,8 @@
-//! Fits a groom to a scalp: the even scale and the shift that bring its roots to the skin.
+//! Fits a groom to a scalp by a uniform scale and a shift that bring its roots to the skin.
 //!
-//! Iterated closest points (Besl, `McKay` 1992) without rotation, which the file's axes give. It starts from
-//! several scales, leaves out the roots that fit worst (a groom may reach down the neck), and holds on to the
-//! scale that it started from, since a piece of a scalp fits as well at a smaller size.
+//! Iterative closest points (Besl, `McKay` 1992) without rotation, which the file's axes determine. The search starts
+//! from several scales, ignores the roots that fit worst (a groom may reach down the neck), and favours the scale that
+//! it started from, because a part of a scalp also fits at a smaller size.
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -12,17 +12,17 @@ use crate::io::RootShape;
 
 const ROOTS: usize = 400;
 const STEPS: usize = 12;
-/// Fraction of the roots that a step trusts.
+/// Fraction of the roots that an iteration uses.
 const TRUSTED: f32 = 0.8;
 /// Weight of the starting scale against the fitted one.
 const HOLD: f32 = 0.3;
-/// A gap beyond this does not count for more: the root is simply off the scalp, metres.
+/// Larger gaps count as this one, because the root is not on the scalp at all; metres.
 const WORST_GAP: f32 = 0.03;
-/// What a change of size by the factor e costs, in metres of mean gap.
+/// Cost of a change of size by the factor e, in metres of mean gap.
 const COST_OF_SCALE: f32 = 0.015;
-/// A sphere is a fair picture of the roots where they lie within this fraction of its radius.
+/// A sphere describes the roots well if they lie within this fraction of its radius.
 const ROUND: f32 = 0.12;
-/// Roots whose mean is within this fraction of their width from the plane x = 0 lie about it.
+/// Roots are centred about the plane x = 0 if their mean is within this fraction of their width from it.
 const CENTRED: f32 = 0.1;
 
 /// `head = scale * axes + shift`, where `axes` is the groom in metres and head axes.
@@ -37,7 +37,8 @@ pub(super) fn fit(roots: &[Vec3], skin: &Surface, may_scale: bool) -> Fit {
     let roots: Vec<Vec3> = roots.iter().step_by(roots.len().div_ceil(ROOTS).max(1)).copied().collect();
     let of_roots = RootShape::of_points(&roots);
     let of_skin = RootShape::of_points(&skin.corners().collect::<Vec<_>>());
-    // Grooms are made about the plane x = 0: roots that lie about it are fitted with it in the middle of the head.
+    // Grooms are modelled about the plane x = 0. Roots that are centred about it are fitted with it in the middle of
+    // the head.
     let mean_x = roots.iter().map(|root| root.x).sum::<f32>() / roots.len() as f32;
     let held_x = (mean_x.abs() < CENTRED * of_roots.bounds.size().x).then_some(of_skin.bounds.centre().x);
     let starts = starts(&of_roots, &of_skin, may_scale);
@@ -52,13 +53,13 @@ pub(super) fn fit(roots: &[Vec3], skin: &Surface, may_scale: bool) -> Fit {
     best.1
 }
 
-/// Places to start from: the groom's own size, the size of its sphere, the size of its box.
+/// Starting values: the groom's own size, the size from its sphere, the size from its box.
 fn starts(of_roots: &RootShape, of_skin: &RootShape, may_scale: bool) -> Vec<Fit> {
     let spheres = match (of_roots.sphere, of_skin.sphere) {
         (Some(roots), Some(skin)) if roots.residual < ROUND => Some((roots, skin)),
         _ => None,
     };
-    // The crowns on one height, the middles over each other.
+    // Aligns the crowns in height, and the centres in the other axes.
     let by_box = |scale: f32| {
         let (roots, skin) = (of_roots.bounds, of_skin.bounds);
         let mut shift = skin.centre() - scale * roots.centre();
@@ -79,7 +80,7 @@ fn starts(of_roots: &RootShape, of_skin: &RootShape, may_scale: bool) -> Vec<Fit
     starts
 }
 
-/// Iterates from one start; gives the cost with the result.
+/// Iterates from one start; returns the cost and the result.
 fn improve(roots: &[Vec3], skin: &Surface, start: Fit, may_scale: bool, held_x: Option<f32>) -> (f32, Fit) {
     let mut fit = start;
     fit.shift.x = held_x.unwrap_or(fit.shift.x);
@@ -111,7 +112,7 @@ fn improve(roots: &[Vec3], skin: &Surface, start: Fit, may_scale: bool, held_x: 
         }
         if may_scale && square > 0.0 {
             let least_squares = along / square;
-            // Never through zero: a groom that is turned inside out is no fit.
+            // The scale never crosses zero, which would turn the groom inside out.
             fit.scale = ((least_squares + HOLD * start.scale) / (1.0 + HOLD))
                 .clamp(0.5 * start.scale, 2.0 * start.scale);
         }

@@ -6,15 +6,15 @@ use rayon::prelude::*;
 use super::{PlacedGroom, length};
 use crate::Guides;
 
-/// Fraction of a wisp's strands, the most ordinary ones, from which guides are chosen.
+/// Fraction of a wisp's strands, those closest to its mean, from which guides are chosen.
 const ORDINARY: f32 = 0.7;
-/// How far apart guides stand that have no strands of their own, metres.
+/// Distance between guides that have no strands of their own, metres.
 const APART: f32 = 0.0015;
-/// Links of a guide differ by no more than this fraction of their mean, unless so many rounds do not do it.
+/// The links of a guide differ by no more than this fraction of their mean, if [`MOST_ROUNDS`] rounds are enough.
 const UNEVEN: f32 = 1e-4;
 const MOST_ROUNDS: usize = 64;
 
-/// Three guides a wisp, in the order of the wisps.
+/// Three guides per wisp, in the order of the wisps.
 pub(super) fn choose(groom: &PlacedGroom, wisps: &[Vec<u32>], points_per_guide: usize) -> Guides {
     let chosen: Vec<[Vec<Vec3>; 3]> =
         wisps.par_iter().map(|members| guides_of(groom, members, points_per_guide)).collect();
@@ -29,7 +29,7 @@ fn guides_of(groom: &PlacedGroom, members: &[u32], points: usize) -> [Vec<Vec3>;
     let strands: Vec<&[Vec3]> = members.iter().map(|&member| groom.strand(member as usize)).collect();
     let chosen = triangle(&ordinary(&strands));
     let mut guides = chosen.map(|strand| equally_spaced(strand, points));
-    // Guides at one place span nothing: set them beside each other, as if the wisp had a little width.
+    // Guides in one place span no triangle, so they are moved apart, as if the wisp had a small width.
     let along = (guides[0][points - 1] - guides[0][0]).normalize_or(Vec3::Y);
     let (side, other) = along.any_orthonormal_pair();
     for (later, direction) in [(1, side), (2, other)] {
@@ -41,7 +41,7 @@ fn guides_of(groom: &PlacedGroom, members: &[u32], points: usize) -> [Vec<Vec3>;
     guides
 }
 
-/// The strands closest to the wisp's mean, by root, middle and tip.
+/// The strands closest to the wisp's mean by root, middle and tip.
 fn ordinary<'a>(strands: &[&'a [Vec3]]) -> Vec<&'a [Vec3]> {
     let places = |strand: &[Vec3]| [strand[0], strand[strand.len() / 2], strand[strand.len() - 1]];
     let mut mean = [Vec3::ZERO; 3];
@@ -64,10 +64,10 @@ fn ordinary<'a>(strands: &[&'a [Vec3]]) -> Vec<&'a [Vec3]> {
     by_distance.into_iter().take(keep).map(|(_, strand)| strand).collect()
 }
 
-/// Three strands that span a wide triangle: the one furthest from the middle, the one furthest from that, and
-/// the one that makes the largest triangle with both. One or two strands fill the rest with repeats.
+/// Three strands that span a wide triangle: the one farthest from the middle, the one farthest from that, and the one
+/// that makes the largest triangle with both. One or two strands are repeated.
 fn triangle<'a>(strands: &[&'a [Vec3]]) -> [&'a [Vec3]; 3] {
-    // Halfway down counts like the root: wisps of one spot on the scalp may still fan out.
+    // The midpoint counts like the root: wisps that start in one spot on the scalp may still fan out.
     let place = |strand: &[Vec3]| [strand[0], strand[strand.len() / 2]];
     let apart = |a: &[Vec3], b: &[Vec3]| {
         place(a).iter().zip(place(b)).map(|(a, b)| a.distance_squared(b)).sum::<f32>()
@@ -86,18 +86,18 @@ fn triangle<'a>(strands: &[&'a [Vec3]]) -> [&'a [Vec3]; 3] {
         }
         best.1
     };
-    // The strands come sorted: the first is nearest the mean.
+    // The strands are sorted: the first is nearest to the mean.
     let first = most(&|strand| apart(strand, strands[0]));
     let second = most(&|strand| apart(strand, first));
     let third = most(&|strand| area(first, second, strand));
     [first, second, third]
 }
 
-/// `count` points along a polyline, ends included, with equal distances from each to the next.
+/// `count` points along a polyline, including its ends, at equal distances from each other.
 ///
-/// Equal lengths along the line are not enough: where it bends, their chords, which become the simulator's
-/// links, are shorter. Spacing the result again, and again, rounds the bends until the chords are equal. What
-/// a guide loses of its strand's shape by that, the strand keeps in its offsets.
+/// Equal lengths along the line are not enough: where it bends, the chords, which become the simulator's links, are
+/// shorter. Repeated resampling rounds the bends until the chords are equal. The strand keeps in its offsets what the
+/// guide loses of its shape.
 fn equally_spaced(strand: &[Vec3], count: usize) -> Vec<Vec3> {
     let mut points = spaced_along(strand, count);
     for _ in 0..MOST_ROUNDS {
@@ -110,7 +110,7 @@ fn equally_spaced(strand: &[Vec3], count: usize) -> Vec<Vec3> {
     points
 }
 
-/// `count` points at equal lengths along a polyline, ends included.
+/// `count` points at equal lengths along a polyline, including its ends.
 fn spaced_along(line: &[Vec3], count: usize) -> Vec<Vec3> {
     let total = length(line);
     let (mut link, mut before) = (0, 0.0);

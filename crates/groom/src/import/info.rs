@@ -8,7 +8,7 @@ use super::orientation::Orientation;
 use super::settings::ImportSettings;
 use crate::io::{Bounds, HairFile, Unit, guess_units};
 
-/// What a hair file holds, in the unit and axes that settings say.
+/// Summary of a hair file, in the unit and axes of the settings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HairInfo {
     /// The format, with its version where it has one.
@@ -31,13 +31,13 @@ pub struct HairInfo {
     pub facing: String,
     /// Whether the unit was guessed.
     pub unit_guessed: bool,
-    /// What was left out, and how many of it.
+    /// Counts of dropped strands, points and bytes by kind.
     pub dropped: BTreeMap<String, u64>,
-    /// Remarks in sentences, the reason of a guess among them.
+    /// Remarks as sentences, including the reason for a guess.
     pub notes: Vec<String>,
 }
 
-/// Sums up `file` in the unit and axes of `settings`.
+/// Summarises `file` in the unit and axes of `settings`.
 pub fn hair_info(file: &HairFile, settings: &ImportSettings) -> HairInfo {
     let orientation = Orientation::resolve(file, settings);
     let mut bounds_m = Bounds::EMPTY;

@@ -1,4 +1,4 @@
-//! From a hair file to a hairstyle that can be simulated.
+//! Imports a hair file as a hairstyle that can be simulated.
 //!
 //! 1. [`orientation`]: unit and axes, as set or guessed.
 //! 2. [`place`](mod@place): the groom is fitted to the scalp, its roots set on the skin.

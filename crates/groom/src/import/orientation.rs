@@ -1,18 +1,18 @@
-//! Unit and axes of a file, settled.
+//! Resolves the unit and axes of a file.
 
 use glam::{Quat, Vec3};
 
 use super::settings::ImportSettings;
 use crate::io::{Bounds, Facing, HairFile, UpAxis, guess_facing, guess_units, rotation_to_head_axes};
 
-/// The unit and axes that a file is read in: as set, else as guessed.
+/// The unit and axes of a file: as set, otherwise as guessed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Orientation {
     pub(crate) metres_per_unit: f32,
     pub(crate) unit_guessed: bool,
     /// `Y` or `Z`.
     pub(crate) up: UpAxis,
-    /// An axis square to `up`.
+    /// An axis perpendicular to `up`.
     pub(crate) facing: Facing,
     rotation: Quat,
 }

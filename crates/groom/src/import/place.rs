@@ -1,4 +1,4 @@
-//! Places a groom on a head: unit and axes, fit, a person's own changes, roots to the skin, out of the body.
+//! Places a groom on a head: unit and axes, fit, manual placement, roots onto the skin, strands out of the body.
 
 use glam::{EulerRot, Quat, Vec3};
 use rayon::prelude::*;
@@ -11,18 +11,18 @@ use super::{ImportError, ImportSettings};
 use crate::io::fit_sphere;
 use crate::{Bounds, HairFile, Obstacle, Scalp};
 
-/// The strands of a file as they will rest on the head.
+/// The strands of a file at rest on the head.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlacedGroom {
-    /// Index of the first point of each strand, with the number of points at the end (strands + 1).
+    /// Index of the first point of each strand, then the number of points (strands + 1 entries).
     pub first_point: Vec<u32>,
     /// Points of all strands, root first, in the order of the file; head space, metres.
     pub points: Vec<Vec3>,
     /// Length of one unit of the file before the fit, metres.
     pub metres_per_unit: f32,
-    /// By how much the fit changed that size.
+    /// Scale that the fit applied.
     pub fitted_scale: f32,
-    /// Mean distance by which roots were moved to the skin, metres; 0 where they were not.
+    /// Mean distance by which roots were moved onto the skin, metres; 0 if they were not moved.
     pub mean_root_gap_m: f32,
 }
 
@@ -38,10 +38,10 @@ impl PlacedGroom {
     }
 }
 
-/// Places the strands of a file on a scalp, each keeping its shape, except where it would lie in `body` or touch it.
+/// Places the strands of a file on a scalp. Each keeps its shape, except where it would touch or enter `body`.
 ///
 /// # Errors
-/// Where the scalp is empty, or the unit that was set makes the groom absurdly small or large.
+/// The scalp is empty, or the unit makes the groom implausibly small or large.
 pub fn place(
     file: &HairFile,
     settings: &ImportSettings,
@@ -91,7 +91,7 @@ pub fn place(
     Ok(groom)
 }
 
-/// The middle of the ball that a scalp is nearly part of.
+/// The centre of the sphere that approximates a scalp.
 fn middle_of(skin: &Surface) -> Vec3 {
     let corners: Vec<Vec3> = skin.corners().collect();
     fit_sphere(&corners).map_or_else(
@@ -109,7 +109,7 @@ fn middle_of(skin: &Surface) -> Vec3 {
 fn check_size(file: &HairFile, metres_per_unit: f32) -> Result<(), ImportError> {
     let size_m = file.bounds.size().max_element() * metres_per_unit;
     let far_m = file.bounds.min.abs().max(file.bounds.max.abs()).max_element() * metres_per_unit;
-    // Far from the file's origin, single precision holds a groom only coarsely: 1 in 1e5 at 100 sizes away.
+    // Far from the file's origin, single precision is coarse: 1e-5 of the size at a distance of 100 sizes.
     if (1e-5..=100.0).contains(&size_m) && far_m.is_finite() {
         Ok(())
     } else {
@@ -117,15 +117,15 @@ fn check_size(file: &HairFile, metres_per_unit: f32) -> Result<(), ImportError> 
     }
 }
 
-/// How far a strand runs clear of the body, metres; near its root, a fraction of the way from there.
+/// Clearance between a strand and the body, metres; near the root, a fraction of the distance from it.
 const CLEARANCE: f32 = 0.002;
 const RISE: f32 = 0.25;
-/// The fastest that a distance is taken to change along a strand.
+/// The largest assumed rate of change of the distance along a strand.
 const SLOPE: f32 = 1.5;
-/// Deep inside, the distance to a body's surface is approximate: so many pushes do.
+/// Deep inside, the distance to a body's surface is approximate; this many pushes are enough.
 const PUSHES: usize = 4;
 
-/// Moves points that lie in the body, or too close to it, clear of it; roots stay where they are.
+/// Moves points that are inside the body, or too close to it, away from it; roots stay in place.
 fn push_out(groom: &mut PlacedGroom, body: &dyn Obstacle) {
     let distances: Vec<f32> =
         groom.points.par_iter().with_min_len(1024).map(|&point| body.distance(point).0).collect();
@@ -136,8 +136,8 @@ fn push_out(groom: &mut PlacedGroom, body: &dyn Obstacle) {
         let (mut run, mut least) = (0.0, distances[start]);
         for i in start + 1..end {
             run += step(i);
-            // A distance changes no faster than the place, give or take that it is approximate: a point that
-            // is suddenly deep inside is a wrong sign, such as open meshes have, and is left alone.
+            // A distance changes no faster than the position, apart from being approximate. A point that is suddenly
+            // deep inside has a wrong sign, as open meshes can have, and stays in place.
             least -= SLOPE * step(i);
             let after = if i + 1 < end { distances[i + 1] - SLOPE * step(i + 1) } else { least };
             if distances[i] >= least.max(after) - CLEARANCE {

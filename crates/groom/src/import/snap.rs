@@ -1,4 +1,4 @@
-//! Sets roots on the skin without letting neighbouring strands cross.
+//! Moves roots onto the skin without letting neighbouring strands cross.
 
 use glam::{IVec3, Vec3};
 use rayon::prelude::*;
@@ -7,21 +7,21 @@ use super::surface::Surface;
 
 /// Neighbours within about this distance move together, metres.
 const REACH: f32 = 0.008;
-/// Where hair grows, the skin that counts is that part of it; further than the second distance from there it
-/// is the whole head, and between them a mixture. Metres.
+/// Up to the first distance from the part of the skin where hair grows, only that part counts; beyond the second, the
+/// whole head; in between, a blend. Metres.
 const EDGE: [f32; 2] = [0.005, 0.02];
 
-/// The skin of a head: where hair grows, and all of it.
+/// The skin of a head: the part where hair grows, and all of it.
 pub(super) struct Skin {
     pub(super) grows: Surface,
     pub(super) whole: Surface,
 }
 
 impl Skin {
-    /// The point of the skin that belongs to a root. Continuous in `root`, up to the folds of the head.
+    /// The point of the skin for a root. Continuous in `root`, up to the folds of the head.
     fn closest(&self, root: Vec3) -> Vec3 {
         let grows = self.grows.closest(root);
-        // The whole head is no further than this, so its closest point is within the edge as well.
+        // The whole head is at most this far away, so its closest point is within the edge as well.
         if 2.0 * grows.distance(root) < EDGE[0] {
             return grows;
         }
@@ -32,10 +32,10 @@ impl Skin {
     }
 }
 
-/// The shift that carries each root to the skin: the gaps to it, averaged over neighbours, then what is left.
+/// The shift that carries each root to the skin: the gaps averaged over neighbours, then the remaining gap.
 ///
-/// The average keeps the order of neighbours where the skin curves away beneath them; what is left of the
-/// gaps is small and square to the skin.
+/// The average preserves the order of neighbours where the skin curves away beneath them. The remaining gaps are small
+/// and perpendicular to the skin.
 pub(super) fn shifts(roots: &[Vec3], skin: &Skin) -> Vec<Vec3> {
     let gaps: Vec<Vec3> = roots.par_iter().map(|&root| skin.closest(root) - root).collect();
     let cells = Cells::of(roots, &gaps);
@@ -49,7 +49,7 @@ pub(super) fn shifts(roots: &[Vec3], skin: &Skin) -> Vec<Vec3> {
         .collect()
 }
 
-/// Mean gap and place of the roots in each cell of a grid, sorted by cell.
+/// Mean gap and position of the roots in each cell of a grid, sorted by cell.
 struct Cells {
     keys: Vec<IVec3>,
     places: Vec<Vec3>,
@@ -74,13 +74,13 @@ impl Cells {
         cells
     }
 
-    /// The mean gap around `root`, of weights that fall with distance to nothing two cells away.
+    /// The mean gap around `root`, with weights that fall to zero at two cells' distance.
     fn mean_near(&self, root: Vec3) -> Vec3 {
         let middle = cell(root);
         let (mut sum, mut weights) = (Vec3::ZERO, 0.0);
         for x in -1..=1 {
             for y in -1..=1 {
-                // Cells that differ in z alone lie side by side in the order.
+                // Cells that differ only in z are adjacent in the order.
                 let low = (middle + IVec3::new(x, y, -1)).to_array();
                 let high = (middle + IVec3::new(x, y, 1)).to_array();
                 let start = self.keys.partition_point(|key| key.to_array() < low);

@@ -1,4 +1,4 @@
-//! Closest points on a triangle mesh, by a tree of boxes.
+//! Finds the closest points on a triangle mesh with a tree of boxes.
 
 use glam::Vec3;
 use lovelock_base::triangle::closest_point_with;
@@ -8,7 +8,7 @@ use crate::Scalp;
 /// Triangles in a leaf of the tree.
 const LEAF: usize = 4;
 
-/// Some triangles of a scalp, ready to be asked for closest points.
+/// Some triangles of a scalp, prepared for closest-point queries.
 pub(super) struct Surface {
     triangles: Vec<[Vec3; 3]>,
     nodes: Vec<Node>,
@@ -25,8 +25,8 @@ struct Node {
 }
 
 impl Surface {
-    /// The part of `scalp` where hair grows (mean mask of a triangle's corners above one half), or all of it
-    /// where none does. None where the scalp has no triangles of finite corners.
+    /// The part of `scalp` where hair grows (mean mask of a triangle's corners above one half), or all of it if none
+    /// does. `None` if the scalp has no triangles with finite corners.
     pub(super) fn where_hair_grows(scalp: &Scalp) -> Option<Self> {
         let mask = |triangle: &[u32; 3]| {
             triangle.iter().filter_map(|&v| scalp.mask.get(v as usize)).sum::<f32>() > 1.5
@@ -34,7 +34,7 @@ impl Surface {
         Self::of(scalp, mask).or_else(|| Self::whole(scalp))
     }
 
-    /// All of `scalp`, face and neck included.
+    /// All of `scalp`, including face and neck.
     pub(super) fn whole(scalp: &Scalp) -> Option<Self> {
         Self::of(scalp, |_| true)
     }
@@ -56,7 +56,7 @@ impl Surface {
         Some(Self { triangles, nodes })
     }
 
-    /// Corners of the triangles; shared corners come up once a triangle.
+    /// Corners of the triangles; shared corners repeat for each triangle.
     pub(super) fn corners(&self) -> impl Iterator<Item = Vec3> + '_ {
         self.triangles.iter().flatten().copied()
     }
@@ -64,7 +64,7 @@ impl Surface {
     /// The point of the surface closest to `point`.
     pub(super) fn closest(&self, point: Vec3) -> Vec3 {
         let mut best = (f32::INFINITY, point);
-        // The tree halves at every level, so 2^32 triangles need no deeper a stack.
+        // The tree halves at every level, so this depth is enough for 2^32 triangles.
         let mut stack = [0_u32; 40];
         let mut top = 1;
         while top > 0 {
@@ -101,7 +101,7 @@ impl Node {
     }
 }
 
-/// Splits triangles `start..end` at the median of their middles along the longest side of their box.
+/// Splits triangles `start..end` at the median of their centres along the longest side of their box.
 fn build(triangles: &mut [[Vec3; 3]], start: usize, end: usize, nodes: &mut Vec<Node>) {
     let of_range = &mut triangles[start..end];
     let (mut min, mut max) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
@@ -140,7 +140,7 @@ mod tests {
 
     #[test]
     fn the_tree_finds_what_a_search_of_all_triangles_finds() {
-        // A bumpy height field of 800 triangles.
+        // An uneven height field of 800 triangles.
         let side = 21;
         let height = |x: usize, y: usize| ((x * 7 + y * 13) % 11) as f32 * 0.1;
         let positions: Vec<Vec3> = (0..side * side)
@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn degenerate_and_missing_triangles_do_no_harm() {
+    fn degenerate_and_missing_triangles_are_harmless() {
         let scalp = Scalp {
             positions: vec![Vec3::ZERO, Vec3::X, Vec3::new(f32::NAN, 0.0, 0.0)],
             triangles: vec![[0, 0, 0], [0, 1, 1], [0, 1, 2], [0, 1, 9]],

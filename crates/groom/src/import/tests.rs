@@ -1,4 +1,4 @@
-//! Placed as they were, expressed by guides: what an import must keep.
+//! What an import must preserve: placed strands come back, expressed by guides.
 
 use std::f32::consts::{PI, TAU};
 use std::path::PathBuf;
@@ -9,7 +9,7 @@ use super::orientation::Orientation;
 use super::*;
 use crate::{GuideFrame, PlainHead, Strands, Unit, UpAxis, interpolate, load_hair, load_hair_bytes};
 
-/// The folder of real files, or none with a line that says so.
+/// The folder of real files, or `None` after printing a message.
 fn data_dir() -> Option<PathBuf> {
     let folder = std::env::var_os("LOVELOCK_DATA").map_or_else(
         || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data")),
@@ -54,7 +54,7 @@ fn wavy_cap(strands: usize, radius: f32) -> Vec<Vec<Vec3>> {
         .collect()
 }
 
-/// The largest distance of a point from where `groom` has it, as a fraction of its strand's length.
+/// The largest distance of a point from its position in `groom`, as a fraction of its strand's length.
 fn worst_error(style: &Hairstyle, order: &[u32], groom: &PlacedGroom) -> f32 {
     let mut strands = Strands::default();
     interpolate(style, &GuideFrame::at_rest(&style.guides, Affine3A::IDENTITY, 0.0), &mut strands);
@@ -71,7 +71,7 @@ fn worst_error(style: &Hairstyle, order: &[u32], groom: &PlacedGroom) -> f32 {
     worst
 }
 
-/// Imports onto a plain head, checks the result, and gives the worst error of a point at rest.
+/// Imports onto a plain head, checks the result, and returns the largest error of a point at rest.
 fn reconstruct(file: &HairFile, settings: &ImportSettings) -> (Hairstyle, f32) {
     let scalp = PlainHead.scalp(24);
     let groom = place(file, settings, &scalp, None).expect("a place on the head");
@@ -106,7 +106,7 @@ fn strands_come_back_at_rest_whatever_the_groom() {
 
 #[test]
 fn a_changed_offset_is_seen_by_the_error() {
-    // The negative control of the tests around it.
+    // The negative control of the other tests.
     let file = hair(&wavy_cap(60, 20.0));
     let (scalp, settings) = (PlainHead.scalp(24), ImportSettings::default());
     let groom = place(&file, &settings, &scalp, None).expect("a place on the head");
@@ -146,7 +146,7 @@ fn all_strands_follow_a_turn_of_the_head_rigidly() {
         let first = style.strands.first_point[strand] as usize;
         for (k, point) in groom.strand(source as usize).iter().enumerate() {
             let wanted = turn.transform_point3(*point);
-            // A metre or two from the origin, single precision is 1.2e-7 m, and frames add a few of those.
+            // One or two metres from the origin, single precision is 1.2e-7 m, and frames add a few roundings.
             assert!(strands.point(first + k).distance(wanted) < 5e-6);
         }
     }
@@ -163,9 +163,9 @@ fn guides_are_equally_spaced_and_rooted_in_the_skin() {
         let mean = length(&points) / (points.len() - 1) as f32;
         let uneven = points.array_windows().map(|[a, b]| (a.distance(*b) / mean - 1.0).abs());
         let uneven = uneven.fold(0.0, f32::max);
-        // The rounds stop at 1e-4; a strand of three points that bends sharply may use them all up.
+        // The iterations stop at 1e-4; a strand of three points with a sharp bend may use all of them.
         assert!(uneven < 1e-3, "{uneven}");
-        // Twins stand 1.5 mm from the strand that they repeat.
+        // Repeated guides are 1.5 mm from the strand that they repeat.
         assert!(whole.closest(points[0]).distance(points[0]) < 2e-3);
     }
 }
@@ -189,7 +189,7 @@ fn roots_reach_the_skin_and_strands_keep_their_shape() {
 
 #[test]
 fn a_groom_made_on_the_scalp_is_put_back_where_it_was() {
-    // Roots on the skin itself, written in centimetres about another origin and with Z up.
+    // Roots on the skin, written in centimetres about another origin and with Z up.
     let scalp = PlainHead.scalp(24);
     let strands: Vec<Vec<Vec3>> = (0..scalp.positions.len())
         .filter(|&v| scalp.mask[v] > 0.9)
@@ -245,7 +245,7 @@ fn a_body_pushes_strands_out_and_leaves_roots_alone() {
     };
     let free = place(&file, &settings, &scalp, None).expect("a place on the head");
     let pushed = place(&file, &settings, &scalp, Some(&PlainHead)).expect("a place on the head");
-    // A millimetre is what the rounded joints of the head leave after the last push.
+    // The rounded joints of the head leave up to a millimetre after the last push.
     let (free_depth, pushed_depth) = (deepest(&free), deepest(&pushed));
     assert!(free_depth < -0.01 && pushed_depth > -0.001, "{free_depth} {pushed_depth}");
     for strand in 0..free.strands() {
@@ -254,8 +254,8 @@ fn a_body_pushes_strands_out_and_leaves_roots_alone() {
 }
 
 #[test]
-fn a_body_of_wrong_signs_tears_no_strand_away() {
-    // Specks about the head that count as deep inside it.
+fn wrong_signs_of_a_body_do_not_move_strands_far() {
+    // Small spots around the head whose distance wrongly says deep inside.
     struct Faulty;
     impl crate::Obstacle for Faulty {
         fn distance(&self, p: Vec3) -> (f32, Vec3) {
@@ -264,7 +264,7 @@ fn a_body_of_wrong_signs_tears_no_strand_away() {
             if wrong { (-distance, -outward) } else { (distance, outward) }
         }
     }
-    // Hair that stands on end, so that it is well outside wherever it is not on the skin.
+    // Hair that stands on end, so that it is well outside except at the skin.
     let spikes: Vec<Vec<Vec3>> = wavy_cap(400, 20.0)
         .iter()
         .map(|strand| (0..12).map(|k| strand[0] * (1.0 + 0.05 * k as f32)).collect())
@@ -342,9 +342,9 @@ fn colour_and_shade_come_from_the_file() {
 }
 
 #[test]
-fn strands_go_along_with_their_guides() {
-    // A breeze that bends hair to the side, more the further it hangs: strands must move as the space
-    // around them does, though only guides are moved.
+fn strands_follow_their_guides() {
+    // A breeze that bends hair sideways, more the farther it hangs down: strands must move like the space around them,
+    // although only guides are moved.
     let breeze = |p: Vec3| {
         let hang = (0.2 - p.y).max(0.0);
         p + Vec3::new(0.8 * hang * hang, 0.0, 0.3 * hang * hang)
@@ -380,7 +380,7 @@ fn strands_go_along_with_their_guides() {
         }
         let (error, stretched) = (error / way, stretched as f32 / order.len() as f32);
         println!("{name}: {error:.3} of the way off, {stretched:.4} of the strands stretched");
-        // Offsets turn with the wisp instead of shearing with the space, and few wide wisps part a little.
+        // Offsets turn with the wisp instead of shearing with the space, and a few wide wisps spread slightly.
         assert!(error < 0.12 && stretched < 0.02, "{name}: {error} {stretched}");
     }
 }

@@ -1,10 +1,10 @@
-//! Little-endian arrays at checked places of a file in memory.
+//! Reads little-endian arrays from a file in memory, with checked positions.
 
 use glam::Vec3;
 
 use super::HairFileError;
 
-/// A file in memory that is only read through checks of place and size.
+/// A file in memory whose reads are checked for position and size.
 #[derive(Clone, Copy)]
 pub(super) struct Bytes<'a> {
     name: &'a str,
@@ -36,8 +36,8 @@ impl<'a> Bytes<'a> {
         }
     }
 
-    /// `count` elements of `size` bytes at `offset`. Nothing is allocated; an array that does not lie within
-    /// the file is an error that calls it `what`.
+    /// `count` elements of `size` bytes at `offset`, without a copy. An array that does not lie within the file is an
+    /// error that names it `what`.
     pub(super) fn array(
         &self,
         offset: u64,
@@ -45,7 +45,8 @@ impl<'a> Bytes<'a> {
         size: u64,
         what: &str,
     ) -> Result<&'a [u8], HairFileError> {
-        // u64 holds any product of two u32 counts with an element size, so only a hostile sum can overflow.
+        // u64 holds any product of two u32 counts with an element size, so only the sum of a malicious file can
+        // overflow.
         let end = count.checked_mul(size).and_then(|bytes| bytes.checked_add(offset));
         match end {
             Some(end) if end <= self.len() => Ok(&self.data[offset as usize..end as usize]),
@@ -80,12 +81,12 @@ impl<'a> Bytes<'a> {
     }
 }
 
-/// Reads floats out of an array of bytes, which may be unaligned.
+/// Reads floats from an array of bytes, which may be unaligned.
 pub(super) fn floats(bytes: &[u8]) -> Vec<f32> {
     bytes.as_chunks::<4>().0.iter().map(|&four| f32::from_le_bytes(four)).collect()
 }
 
-/// Reads triples of floats out of an array of bytes, skipping to every `stride` bytes (12 or more).
+/// Reads three floats from every `stride` bytes (12 or more) of an array.
 pub(super) fn triples(bytes: &[u8], stride: usize) -> impl ExactSizeIterator<Item = [f32; 3]> + '_ {
     let float = |bytes: &[u8], at: usize| {
         f32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]])

@@ -1,4 +1,4 @@
-//! From what a file says to strands that can be drawn: drops and counts what cannot.
+//! Drops and counts the strands of a file that cannot be drawn.
 
 use std::collections::BTreeMap;
 
@@ -9,18 +9,18 @@ use super::HairFileError;
 use super::file::{Bounds, HairFile, RawHair};
 use super::format::HairFormat;
 
-/// The largest coordinate that is taken for a place, file units. Squares and sums of squares of such
-/// numbers stay finite in single precision.
+/// The largest valid coordinate, file units. Squares of such numbers and sums of squares stay finite in single
+/// precision.
 const LARGEST_COORDINATE: f32 = 1e12;
-/// A strand that reaches further from the middle of the roots than this many times what the median strand
-/// does is no part of the groom.
+/// A strand that reaches farther from the centre of the roots than this multiple of the median reach is not part of the
+/// groom.
 const LARGEST_REACH: f32 = 1000.0;
 /// A strand shorter than this fraction of the median reach has no direction in single precision.
 const SMALLEST_LENGTH: f32 = 1e-5;
-/// The shortest strand, file units: below it, a scale to metres overflows.
+/// The shortest strand, file units. For shorter ones, the scale to metres overflows.
 const SMALLEST_ABSOLUTE_LENGTH: f32 = 1e-12;
 
-/// Why a strand is left out.
+/// Why a strand is dropped.
 #[derive(Clone, Copy, PartialEq)]
 enum Fault {
     OnePoint,
@@ -96,7 +96,7 @@ pub(super) fn clean(name: &str, format: &HairFormat, raw: RawHair) -> Result<Hai
     };
     file.first_point.push(0);
     let (mut repeated, mut non_finite) = (0_u64, 0_u64);
-    // A value that is not a number becomes the default, or what stands for "none".
+    // A value that is not finite becomes the default, or the value that means "none".
     let mut finite = |value: f32, default: f32| {
         if value.is_finite() {
             value
@@ -136,7 +136,7 @@ pub(super) fn clean(name: &str, format: &HairFormat, raw: RawHair) -> Result<Hai
     report(&mut file, &faults, repeated, non_finite, raw.trailing_bytes);
     if file.strands() == 0 {
         let reason = match file.dropped.len() {
-            0 => "it holds none".to_owned(),
+            0 => "it contains none".to_owned(),
             _ => file.dropped.iter().map(|(what, n)| format!("{what}: {n}")).collect::<Vec<_>>().join(", "),
         };
         return Err(HairFileError::NothingToDraw { name: name.to_owned(), reason });
@@ -144,7 +144,7 @@ pub(super) fn clean(name: &str, format: &HairFormat, raw: RawHair) -> Result<Hai
     Ok(file)
 }
 
-/// Marks strands that are far from the groom, or have no length beside it.
+/// Marks strands that are far from the groom, or that have no length compared with it.
 fn drop_by_size(raw: &RawHair, faults: &mut [Option<Fault>]) {
     let spans = || {
         raw.point_counts.iter().scan(0, |first, &count| {

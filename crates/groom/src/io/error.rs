@@ -1,8 +1,8 @@
-//! What can be wrong with a hair file.
+//! Errors of hair files.
 
 use thiserror::Error;
 
-/// Why a hair file was refused. Every message is one line that names the file.
+/// Why a hair file was refused. Each message is one line that names the file.
 #[derive(Debug, Error)]
 pub enum HairFileError {
     /// The file could not be opened or read.
@@ -10,7 +10,7 @@ pub enum HairFileError {
     Io {
         /// The file.
         name: String,
-        /// What the system said.
+        /// The error of the system.
         source: std::io::Error,
     },
     /// The file contradicts itself, its format or its own size.
@@ -18,19 +18,19 @@ pub enum HairFileError {
     Malformed {
         /// The file.
         name: String,
-        /// Where in the file, in bytes from its start.
+        /// The position in the file, in bytes from its start.
         offset: u64,
-        /// What is there.
+        /// What was found there.
         found: String,
-        /// What would be right.
+        /// What would be valid.
         wanted: String,
     },
-    /// The file is sound, but no strand in it can be drawn.
+    /// The file is valid, but none of its strands can be drawn.
     #[error("{name}: no strand left to draw ({reason}), wanted a strand of two points or more")]
     NothingToDraw {
         /// The file.
         name: String,
-        /// What became of the strands.
+        /// Why no strands are left.
         reason: String,
     },
 }

@@ -1,4 +1,4 @@
-//! The strands of a hair file: as they were read, and without what cannot be drawn.
+//! The strands of a hair file, as read and after cleaning.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::units::UpAxis;
 
-/// A box along the axes.
+/// A box aligned with the axes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Bounds {
     /// Its smallest corner.
@@ -17,28 +17,28 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The box of no points.
+    /// The empty box.
     pub const EMPTY: Self = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
 
-    /// Grows to hold `point`.
+    /// Extends the box to contain `point`.
     pub fn include(&mut self, point: Vec3) {
         self.min = self.min.min(point);
         self.max = self.max.max(point);
     }
 
-    /// Lengths of the sides; zero for the empty box.
+    /// Lengths of the sides; zero for an empty box.
     pub fn size(&self) -> Vec3 {
         (self.max - self.min).max(Vec3::ZERO)
     }
 
-    /// The middle.
+    /// The centre.
     pub fn centre(&self) -> Vec3 {
         0.5 * (self.min + self.max)
     }
 }
 
-/// What a reader found, before anything is dropped. Arrays over points agree in length with the sum of
-/// `point_counts`, which fits `u32`.
+/// The content of a file before cleaning. The lengths of arrays over points equal the sum of `point_counts`, which fits
+/// `u32`.
 pub(super) struct RawHair {
     /// Version of the format, where the file states one.
     pub(super) version: Option<f32>,
@@ -56,7 +56,7 @@ pub(super) struct RawHair {
 }
 
 impl RawHair {
-    /// Strands and nothing else.
+    /// Strands without other attributes.
     pub(super) fn new(point_counts: Vec<u32>, points: Vec<Vec3>) -> Self {
         Self {
             version: None,
@@ -75,42 +75,43 @@ impl RawHair {
     }
 }
 
-/// The strands of a hair file, in the file's unit and axes, cleaned of what cannot be drawn.
+/// The strands of a hair file, in the file's unit and axes, without those that cannot be drawn.
 ///
 /// Every strand has at least two points, no two consecutive points coincide, and every number is finite.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HairFile {
-    /// What the file is called, for messages.
+    /// Name of the file, for messages.
     pub name: String,
-    /// The format that it was read from, with its version where it has one: `TressFX .tfx 4.0`.
+    /// The format of the file, with its version if it has one: `TressFX .tfx 4.0`.
     pub format: String,
     /// The axis that points up in most files of this format.
     pub common_up: UpAxis,
-    /// Whether the points are in metres with Y up already: the format states its unit and axes, or the file was converted.
+    /// Whether the points are in metres with Y up, because the format states its unit and axes or the file was
+    /// converted.
     pub is_in_metres: bool,
-    /// Index of the first point of each strand, with the number of points at the end (strands + 1).
+    /// Index of the first point of each strand, then the number of points (strands + 1 entries).
     pub first_point: Vec<u32>,
     /// Points of all strands, root first, file units and axes.
     pub points: Vec<Vec3>,
-    /// Width of the hair at each point, file units, where the file says so for each point.
+    /// Width of the hair at each point, file units, if the file has one per point.
     pub thickness: Option<Vec<f32>>,
-    /// Transparency of each point, 0 opaque to 1, where the file says so for each point.
+    /// Transparency of each point, 0 (opaque) to 1, if the file has one per point.
     pub transparency: Option<Vec<f32>>,
-    /// Colour of each point, as the file has it (display values, usually in 0..=1).
+    /// Colour of each point as stored in the file (display values, usually in 0..=1).
     pub colours: Option<Vec<[f32; 3]>>,
-    /// Width of all hair, file units, where the file says so.
+    /// Width of all hair, file units, if the file states it.
     pub default_thickness: Option<f32>,
-    /// Transparency of all hair, where the file says so.
+    /// Transparency of all hair, if the file states it.
     pub default_transparency: Option<f32>,
-    /// Colour of all hair, where the file says so.
+    /// Colour of all hair, if the file states it.
     pub default_colour: Option<[f32; 3]>,
-    /// The file marks both ends of its strands as held (TressFX); only roots are held here.
+    /// The file marks both ends of its strands as held (TressFX); this program holds only roots.
     pub both_ends_pinned: bool,
-    /// How many of what were left out: strands, points, bytes. Empty where nothing was.
+    /// Counts of dropped strands, points and bytes by kind. Empty if nothing was dropped.
     pub dropped: BTreeMap<String, u64>,
-    /// Remarks in sentences, for people.
+    /// Remarks, as sentences.
     pub notes: Vec<String>,
-    /// Smallest box of the points, file units and axes.
+    /// Bounding box of the points, file units and axes.
     pub bounds: Bounds,
 }
 

@@ -1,7 +1,7 @@
-//! Unit and axes of a hair file, which no hair format states: settings for them, and a guess.
+//! Estimates the unit and axes of a hair file, which few hair formats state.
 //!
-//! The guess rests on what all heads share: a scalp is about 0.15 m across, hair hangs down and back, and
-//! there is none on the face.
+//! The estimate uses what all heads have in common: a scalp is about 0.15 m across, hair hangs down and back, and there
+//! is none on the face.
 
 use glam::{DVec3, Vec3};
 
@@ -9,34 +9,35 @@ use super::file::HairFile;
 use super::root_shape::{RootShape, samples};
 use super::units::{Facing, Unit, UpAxis, usual_facing};
 
-/// What [`guess_units`] makes of a file.
+/// The estimate of [`guess_units`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnitGuess {
     /// Length of one unit of the file, metres.
     pub metres_per_unit: f32,
-    /// The named unit that this is; none where the groom was scaled to the size of a head.
+    /// The named unit of this length; `None` if the groom was scaled to the size of a head.
     pub unit: Option<Unit>,
     /// Which axis points up: `Y` or `Z`.
     pub up: UpAxis,
-    /// Where the face looks, in the axes of the file; never `Auto`.
+    /// The axis of the file along which the face looks; never `Auto`.
     pub facing: Facing,
     /// Size of the groom's box in that unit, file axes, metres.
     pub size_m: Vec3,
-    /// Why, in a sentence for people.
+    /// The reason, as a sentence.
     pub reason: String,
 }
 
-/// Guesses the unit, the up axis and the direction of the face.
+/// Estimates the unit, the up axis and the direction of the face.
 ///
-/// The unit: the first of metre, centimetre, millimetre and inch that makes the roots span 0.09 to 0.30 m;
-/// where none does, the roots are scaled to span 0.15 m, the width of an adult scalp. The span is the
-/// middle one of the root box's three sides, so that neither a mohawk's length nor a fringe's height counts.
+/// Unit: the first of metre, centimetre, millimetre and inch that makes the roots span 0.09 to 0.30 m. If none does,
+/// the roots are scaled to span 0.15 m, the width of an adult scalp. The span is the middle one of the three sides of
+/// the roots' box, so that neither the length of a mohawk nor the height of a fringe counts.
 ///
-/// USD says both, and its points are in metres with Y up already.
+/// USD states both; its points are in metres with Y up already.
 ///
-/// Up: Z for `.hair` and Y for TressFX, unless the strands clearly hang along the other axis.
+/// Up: the common axis of the format (Z for `.hair`, Y for TressFX), unless the strands clearly hang along the other
+/// one.
 ///
-/// The face: hair leans away from it, and grows lower at the back of a head than at its front.
+/// Face: hair leans away from it, and grows lower on the back of a head than on its front.
 pub fn guess_units(file: &HairFile) -> UnitGuess {
     let roots = RootShape::of(file);
     let up = guess_up(file, &roots);
@@ -65,7 +66,7 @@ pub fn guess_units(file: &HairFile) -> UnitGuess {
             ),
         }
     } else {
-        // All roots in one place: the length of the hair is all there is to go by.
+        // All roots are in one place, so only the length of the hair can be used.
         let length = file.bounds.size().max_element();
         let named = Unit::NAMED
             .into_iter()
@@ -82,7 +83,7 @@ pub fn guess_units(file: &HairFile) -> UnitGuess {
     UnitGuess { metres_per_unit, unit, up, facing, size_m: file.bounds.size() * metres_per_unit, reason }
 }
 
-/// Z or Y: the axis that the strands hang along and the roots dome toward, where that is clear.
+/// Z or Y: the axis along which the strands hang and toward which the roots form a dome, if that is clear.
 fn guess_up(file: &HairFile, roots: &RootShape) -> UpAxis {
     if file.is_in_metres {
         return UpAxis::Y;
@@ -93,7 +94,7 @@ fn guess_up(file: &HairFile, roots: &RootShape) -> UpAxis {
         (mean(samples(file).map(|strand| strand[0])) - sphere.centre) / sphere.radius
     });
     let score = dome - hang;
-    // Half a strand's length more is clear; the known grooms that hang at all differ by 0.7 or more.
+    // A difference of half a strand's length is clear; the known grooms that hang differ by 0.7 or more.
     match (usual, score.z - score.y) {
         (UpAxis::Z, margin) if margin < -0.5 => UpAxis::Y,
         (UpAxis::Y, margin) if margin > 0.5 => UpAxis::Z,
@@ -101,7 +102,7 @@ fn guess_up(file: &HairFile, roots: &RootShape) -> UpAxis {
     }
 }
 
-/// The horizontal axis that hair leans away from and that the higher roots lie toward.
+/// The horizontal axis opposite to the lean of the hair, toward the higher roots.
 pub(crate) fn guess_facing(file: &HairFile, up: UpAxis) -> Facing {
     let up = if up == UpAxis::Auto { guess_up(file, &RootShape::of(file)) } else { up };
     let up_direction = up.direction();
@@ -111,17 +112,17 @@ pub(crate) fn guess_facing(file: &HairFile, up: UpAxis) -> Facing {
     let quarter = (strands.len() / 4).max(1);
     let lower = mean(strands[..quarter].iter().map(|strand| strand[0]));
     let upper = mean(strands[strands.len() - quarter..].iter().map(|strand| strand[0]));
-    // The lean counts four times as much: a fringe alone has its lower roots in front, but still leans back.
+    // The lean counts four times as much, because a fringe has its lower roots in front but still leans back.
     let toward_face = (upper - lower) - 4.0 * lean;
     let usual = usual_facing(up);
     let horizontal = Facing::AXES.into_iter().filter(|facing| facing.is_square_to(up));
-    // Sideways only where that is much clearer: asymmetric hair is more common than a head turned in its file.
+    // Sideways must be much clearer, because asymmetric hair is more common than a head that is rotated in its file.
     let score = |facing: Facing| {
         let along = facing.direction().dot(toward_face);
         if facing.direction().dot(usual.direction()) == 0.0 { along / 3.0 } else { along }
     };
     let best = horizontal.fold(usual, |best, facing| if score(facing) > score(best) { facing } else { best });
-    // Hair that leans nowhere tells nothing.
+    // Hair that does not lean says nothing about the direction.
     let clear =
         0.02 * RootShape::of_points(&strands.iter().map(|strand| strand[0]).collect::<Vec<_>>()).span();
     if score(best) > clear { best } else { usual }

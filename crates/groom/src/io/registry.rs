@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn strands_that_differ_are_refused_by_tressfx_in_words() {
+    fn tressfx_refuses_strands_of_different_lengths() {
         let mut hair = hair();
         hair.points.pop();
         hair.first_point[2] = 5;

@@ -1,10 +1,10 @@
-//! The box and the sphere that the roots of a groom lie in.
+//! The box and the sphere of a groom's roots.
 
 use glam::{DMat4, DVec3, DVec4, Vec3};
 
 use super::file::{Bounds, HairFile};
 
-/// The strands to judge a groom by: at most this many, evenly spaced.
+/// The most strands by which a groom is judged, evenly spaced.
 const SAMPLES: usize = 4096;
 
 pub(super) fn samples(file: &HairFile) -> impl Iterator<Item = &[Vec3]> {
@@ -20,10 +20,10 @@ pub(crate) struct Sphere {
     pub(crate) residual: f32,
 }
 
-/// Where the roots of a groom lie, robust to a few strays.
+/// The shape of a groom's roots, robust to a few outliers.
 #[derive(Clone, Debug)]
 pub(crate) struct RootShape {
-    /// Box of the roots without the outermost 1 in 1000 on either side of each axis.
+    /// Box of the roots without the outermost thousandth on either side of each axis.
     pub(crate) bounds: Bounds,
     pub(crate) sphere: Option<Sphere>,
 }
@@ -56,8 +56,8 @@ impl RootShape {
     }
 }
 
-/// The sphere of least algebraic distance: |p|² = 2 c·p + (r² - |c|²) is linear in c and the bracket.
-/// None for fewer than four points, or points in a plane.
+/// The sphere with the least algebraic distance: |p|² = 2 c·p + (r² - |c|²) is linear in c and in the bracket. `None`
+/// for fewer than four points, or points in one plane.
 pub(crate) fn fit_sphere(points: &[Vec3]) -> Option<Sphere> {
     let n = points.len() as f64;
     let middle = points.iter().map(|p| p.as_dvec3()).sum::<DVec3>() / n;
@@ -73,7 +73,7 @@ pub(crate) fn fit_sphere(points: &[Vec3]) -> Option<Sphere> {
         right += row * q.length_squared();
     }
     let (normal, right) = (normal * (1.0 / n), right / n);
-    // Points within a hundredth of a plane leave a determinant of about 1e-5 of a ball's.
+    // Points within a hundredth of a plane give a determinant of about 1e-5 of that of a ball.
     if normal.determinant().abs() < 1e-7 {
         return None;
     }

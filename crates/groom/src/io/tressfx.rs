@@ -1,9 +1,9 @@
 //! AMD TressFX `.tfx`, versions 3.x and 4.x.
 //!
-//! Both hold strands of equal numbers of points, strand after strand, root first. Version 3 has a header of
-//! 296 bytes and positions of three floats; version 4 has a header of 160 bytes and positions of four, the
-//! fourth an inverse mass (0 where the point is held). Neither AMD's limit to 4, 8, 16, 32 or 64 points a
-//! strand nor its multiples of 64 strands belong to the format, so they are not asked for here.
+//! Both store strands with equal numbers of points, strand after strand, root first. Version 3 has a header of 296
+//! bytes and positions of three floats. Version 4 has a header of 160 bytes and positions of four floats, the fourth
+//! being an inverse mass (0 for a held point). AMD's limits (4, 8, 16, 32 or 64 points per strand, multiples of 64
+//! strands) are not part of the format and are not checked.
 
 use super::HairFileError;
 use super::bytes::{Bytes, triple_bytes, triples};
@@ -27,7 +27,7 @@ pub(super) static FORMAT: HairFormat = HairFormat {
 const HEADER_3: u64 = 296;
 const HEADER_4: u64 = 160;
 
-/// The version, where these bytes are the start of a file of this format.
+/// The version, if these bytes are the start of a file of this format.
 fn version_of(start: &[u8]) -> Option<f32> {
     let version = f32::from_le_bytes(*start.first_chunk()?);
     (3.0..5.0).contains(&version).then_some(version)
@@ -67,7 +67,7 @@ fn read_4(file: &Bytes<'_>) -> Result<RawHair, HairFileError> {
     file.header(HEADER_4)?;
     let positions = Positions { header: HEADER_4, offset_at: 12, stride: 16 };
     let mut raw = positions.read(file)?;
-    // The last point of a strand is free in ordinary files; a zero inverse mass there holds the tip.
+    // The last point of a strand is free in most files; an inverse mass of zero there holds the tip.
     let (strands, per_strand) = (raw.point_counts.len(), file.u32(8) as usize);
     let array = file.array(u64::from(file.u32(12)), raw.points.len() as u64, 16, "positions")?;
     raw.both_ends_pinned = strands > 0
@@ -81,7 +81,7 @@ fn read_4(file: &Bytes<'_>) -> Result<RawHair, HairFileError> {
     Ok(raw)
 }
 
-/// Where a version keeps its positions.
+/// The position array of a version.
 struct Positions {
     header: u64,
     offset_at: usize,
@@ -106,7 +106,7 @@ impl Positions {
                 "a place inside the file",
             ));
         }
-        // A product of two u32 counts fits u64; strands of no points would be a count without bytes.
+        // The product of two u32 counts fits u64. Strands without points would be a count without bytes.
         if strands == 0 || per_strand == 0 {
             return Err(file.malformed(
                 4,
@@ -125,8 +125,9 @@ impl Positions {
     }
 }
 
-/// Notes the optional arrays and what follows the known ones. `optional` arrays have a place in the header
-/// alone (AMD documents no size that real files could confirm); `sized` ones also have bytes.
+/// Adds notes on the optional arrays, and corrects the number of trailing bytes. For `optional` arrays only the
+/// header's offset is known (AMD documents no size that real files could confirm); `sized` ones also have a size in
+/// bytes.
 fn finish(file: &Bytes<'_>, raw: &mut RawHair, optional: &[(usize, &str)], sized: &[(usize, &str, u64)]) {
     for &(at, what, bytes) in sized {
         let offset = u64::from(file.u32(at));
@@ -162,7 +163,9 @@ fn write(hair: &HairFile) -> Result<Vec<u8>, String> {
     let counts = || hair.first_point.array_windows().map(|[start, end]| end - start);
     let (least, most) = (counts().min().unwrap_or(0), counts().max().unwrap_or(0));
     if least != most {
-        return Err(format!("strands of {least} to {most} points, and .tfx has one number for all"));
+        return Err(format!(
+            "strands of {least} to {most} points; .tfx needs the same number in all strands"
+        ));
     }
     let mut out = 4.0_f32.to_le_bytes().to_vec();
     for word in [hair.strands() as u32, most, HEADER_4 as u32] {
@@ -170,7 +173,7 @@ fn write(hair: &HairFile) -> Result<Vec<u8>, String> {
     }
     out.resize(HEADER_4 as usize, 0);
     for (i, &point) in hair.points.iter().enumerate() {
-        // The inverse mass: roots are held.
+        // The inverse mass: only roots are held.
         let free = if (i as u32).is_multiple_of(most) { 0.0_f32 } else { 1.0 };
         out.extend(triple_bytes(point * 100.0).into_iter().chain(free.to_le_bytes()));
     }

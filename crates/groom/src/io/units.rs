@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// The unit of a file's coordinates.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum Unit {
-    /// As [`guess_units`] says.
+    /// Guessed by [`guess_units`](super::guess_units).
     #[default]
     Auto,
     /// 1 m.
@@ -17,12 +17,12 @@ pub enum Unit {
     Millimetre,
     /// 0.0254 m.
     Inch,
-    /// Metres a unit, 1e-12 to 1e12.
+    /// Metres per unit, 1e-12 to 1e12.
     Custom(f32),
 }
 
 impl Unit {
-    /// The units that have a name, in the order in which they are tried.
+    /// The named units, in the order in which they are tried.
     pub const NAMED: [Self; 4] = [Self::Metre, Self::Centimetre, Self::Millimetre, Self::Inch];
 
     /// Stable name for command lines and reports.
@@ -37,7 +37,7 @@ impl Unit {
         }
     }
 
-    /// The word for it in sentences.
+    /// Its name in sentences.
     pub(super) fn word(self) -> &'static str {
         match self {
             Self::Metre => "metre",
@@ -48,12 +48,12 @@ impl Unit {
         }
     }
 
-    /// The unit of that [`Self::id`], except for custom ones.
+    /// The unit with this [`Self::id`], except for custom ones.
     pub fn from_id(id: &str) -> Option<Self> {
         Self::NAMED.into_iter().chain([Self::Auto]).find(|unit| unit.id() == id)
     }
 
-    /// Metres a unit; none for [`Self::Auto`] and for custom units that are no positive number.
+    /// Metres per unit; `None` for [`Self::Auto`] and for custom units outside their range.
     pub fn metres(self) -> Option<f32> {
         match self {
             Self::Auto => None,
@@ -69,7 +69,7 @@ impl Unit {
 /// Which axis of a file points up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum UpAxis {
-    /// As [`guess_units`] says.
+    /// Guessed by [`guess_units`](super::guess_units).
     #[default]
     Auto,
     /// +Y, as in TressFX.
@@ -88,7 +88,7 @@ impl UpAxis {
         }
     }
 
-    /// The axis of that [`Self::id`].
+    /// The axis with this [`Self::id`].
     pub fn from_id(id: &str) -> Option<Self> {
         [Self::Auto, Self::Y, Self::Z].into_iter().find(|up| up.id() == id)
     }
@@ -98,28 +98,28 @@ impl UpAxis {
     }
 }
 
-/// Toward which axis of a file the face looks.
+/// The axis of a file along which the face looks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Facing {
-    /// As [`guess_units`] says.
+    /// Guessed by [`guess_units`](super::guess_units).
     #[default]
     Auto,
     /// +X.
     PlusX,
     /// -X.
     MinusX,
-    /// +Y, of files with Z up.
+    /// +Y, in files with Z up.
     PlusY,
-    /// -Y, of files with Z up.
+    /// -Y, in files with Z up.
     MinusY,
-    /// +Z, of files with Y up.
+    /// +Z, in files with Y up.
     PlusZ,
-    /// -Z, of files with Y up.
+    /// -Z, in files with Y up.
     MinusZ,
 }
 
 impl Facing {
-    /// Every way to face, after `Auto`.
+    /// All axes, without `Auto`.
     pub const AXES: [Self; 6] =
         [Self::PlusX, Self::MinusX, Self::PlusY, Self::MinusY, Self::PlusZ, Self::MinusZ];
 
@@ -136,7 +136,7 @@ impl Facing {
         }
     }
 
-    /// The axis of that [`Self::id`].
+    /// The axis with this [`Self::id`].
     pub fn from_id(id: &str) -> Option<Self> {
         Self::AXES.into_iter().chain([Self::Auto]).find(|facing| facing.id() == id)
     }
@@ -157,8 +157,8 @@ impl Facing {
     }
 }
 
-/// The rotation that carries file axes to head axes: `up` to +Y, `facing` to +Z. A facing along `up` counts
-/// as the usual one.
+/// The rotation from file axes to head axes: `up` to +Y, `facing` to +Z. A facing along `up` is replaced by the common
+/// one.
 pub(crate) fn rotation_to_head_axes(up: UpAxis, facing: Facing) -> Quat {
     let up_direction = up.direction();
     let mut forward = facing.direction();

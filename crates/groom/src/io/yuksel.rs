@@ -1,7 +1,7 @@
 //! Cem Yuksel's `.hair` (<http://www.cemyuksel.com/research/hairmodels/>).
 //!
-//! A header of 128 bytes, then the arrays whose bits are set, in the order of the bits. A strand of `s`
-//! segments has `s + 1` points.
+//! A header of 128 bytes, then the arrays whose flags are set, in the order of the bits. A strand of `s` segments has
+//! `s + 1` points.
 
 use super::HairFileError;
 use super::bytes::{Bytes, floats, triple_bytes, triples};
@@ -30,7 +30,7 @@ const POINTS: u32 = 1 << 1;
 const THICKNESS: u32 = 1 << 2;
 const TRANSPARENCY: u32 = 1 << 3;
 const COLOURS: u32 = 1 << 4;
-/// `LuxRender`'s variant: texture coordinates, two floats a point.
+/// `LuxRender`'s variant: texture coordinates, two floats per point.
 const UVS: u32 = 1 << 5;
 const KNOWN: u32 = SEGMENTS | POINTS | THICKNESS | TRANSPARENCY | COLOURS | UVS;
 
@@ -65,7 +65,7 @@ fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
         return Err(file.malformed(
             8,
             format!("{points} points"),
-            format!("{counted}, as {strands} strands have by {by}"),
+            format!("{counted}, from {strands} strands and {by}"),
         ));
     }
 
@@ -85,7 +85,7 @@ fn read(name: &str, source: Source<'_>) -> Result<RawHair, HairFileError> {
         notes.push("Texture coordinates were left out: they have no use here.".to_owned());
     }
 
-    // Every count has been checked against the file's size by now: the allocations below are bounded by it.
+    // Every count has been compared with the file's size by now, so the allocations below are bounded by it.
     let point_counts = match segments {
         Some(array) => segment_counts(array).map(|segments| u32::from(segments) + 1).collect(),
         None => vec![default_segments.saturating_add(1); strands as usize],
@@ -130,7 +130,7 @@ fn write(hair: &HairFile) -> Result<Vec<u8>, String> {
     out.resize(HEADER as usize, 0);
     for [start, end] in hair.first_point.array_windows() {
         let segments = u16::try_from(end - start - 1)
-            .map_err(|_| format!("a strand of {} points, and .hair counts to 65536", end - start))?;
+            .map_err(|_| format!("a strand of {} points; .hair allows at most 65536", end - start))?;
         out.extend(segments.to_le_bytes());
     }
     out.extend(hair.points.iter().flat_map(|&point| triple_bytes(turn * point)));

@@ -1,8 +1,8 @@
-//! Bounds of the strands of one instant, told from the guides.
+//! Bounds of the strands at one instant, derived from the guides.
 //!
-//! Maps are sized on the processor while the strands may live on the device. Along one direction the farthest strand is
-//! searched for best first: what a wisp may reach at most is told from its guides and its longest offset; then what each
-//! link of it may reach, from the hull of its curves; and of the few links that may reach farthest, the points are made.
+//! Maps are sized on the CPU, while the strands may exist only on the GPU. The farthest strand along one direction is
+//! found by a best-first search. An upper bound for each wisp follows from its guides and its longest offset, a tighter
+//! one for each link from the hull of its curves. Points are evaluated only for the few links with the largest bounds.
 
 mod polygon;
 mod search;
@@ -17,19 +17,19 @@ use crate::frame::locate;
 use crate::{GuideFrame, Hairstyle, StrandSet, Strands, Wisp, interpolate};
 use polygon::Polygon;
 
-/// What bounds the strands of a hairstyle at any instant; made once for a hairstyle.
+/// Bounds of the strands of a hairstyle at any instant; made once per hairstyle.
 #[derive(Clone, Debug)]
 pub struct StrandBounds {
     style: Arc<Hairstyle>,
     wisps: Vec<WispReach>,
-    /// Of each of them, each link.
+    /// The links of each of these wisps.
     links: Vec<LinkReach>,
-    /// Points of the strands in the order of wisps and links.
+    /// Indices of the strands' points, sorted by wisp and link.
     points: Vec<u32>,
     longest_strand: f32,
 }
 
-/// What a wisp's strands reach.
+/// Bounds of a wisp's strands.
 #[derive(Clone, Copy, Debug)]
 struct WispReach {
     wisp: Wisp,
@@ -38,20 +38,20 @@ struct WispReach {
     offset: f32,
 }
 
-/// What a wisp's strands reach within one link.
+/// Bounds of a wisp's strands within one link.
 #[derive(Clone, Copy, Debug, Default)]
 struct LinkReach {
-    /// Index of its first point, and how many there are.
+    /// Index of its first point, and the number of points.
     first: u32,
     count: u32,
     /// Longest offset, metres.
     offset: f32,
-    /// Largest fraction of the link.
+    /// Largest position along the link, as a fraction.
     end: f32,
 }
 
 impl StrandBounds {
-    /// Looks through all strands of a hairstyle. One that fails [`Hairstyle::check`] has no bounds.
+    /// Examines all strands of a hairstyle. A hairstyle that fails [`Hairstyle::check`] has no bounds.
     pub fn new(style: &Arc<Hairstyle>) -> Self {
         let mut bounds = Self {
             style: Arc::clone(style),
@@ -63,23 +63,23 @@ impl StrandBounds {
         if style.check().is_ok() {
             bounds.longest_strand = longest_at_rest(style);
             for &wisp in &style.wisps {
-                bounds.look_through(&style.strands, wisp, style.guides.points_per_guide - 1);
+                bounds.add_wisp(&style.strands, wisp, style.guides.points_per_guide - 1);
             }
         }
         bounds
     }
 
-    /// Length of the longest strand at rest, metres; 0 where there is none.
+    /// Length of the longest strand at rest, metres; 0 without strands.
     pub fn longest_strand(&self) -> f32 {
         self.longest_strand
     }
 
-    /// The smallest and the largest coordinates along `axes`, relative to `anchor`, of all points that [`interpolate`]
-    /// makes of the guides; metres, for axes of length 1. At each end they are too large by three hundredths of the guides'
-    /// extent at most, and some millionths of the distance from the origin, unless very many strands end in one plane.
+    /// The smallest and largest coordinates along `axes`, relative to `anchor`, of all points that [`interpolate`]
+    /// makes from the guides; metres, for axes of length 1. Each end is too large by at most three hundredths of the
+    /// guides' extent plus some millionths of the distance from the origin, unless very many strands end in one plane.
     ///
-    /// Points that are not finite, or farther than 10 km away along an axis, are left out. `None` where nothing is left, or
-    /// where the guides are not those of the hairstyle.
+    /// Points that are not finite, or farther than 10 km away along an axis, are ignored. `None` if no points are left,
+    /// or if the guides belong to another hairstyle.
     pub fn along(&self, frame: &GuideFrame, axes: [Vec3; 3], anchor: Vec3) -> Option<(Vec3, Vec3)> {
         let (rest, moved) = (&self.style.guides, &frame.guides);
         let is_ours = moved.points_per_guide == rest.points_per_guide
@@ -97,7 +97,7 @@ impl StrandBounds {
     }
 
     /// Adds one wisp, unless it has no strands.
-    fn look_through(&mut self, set: &StrandSet, wisp: Wisp, links: usize) {
+    fn add_wisp(&mut self, set: &StrandSet, wisp: Wisp, links: usize) {
         let Some(weights) = Polygon::of_wisp(set, &wisp) else { return };
         let strands = strands_of(&wisp);
         let points = set.first_point[strands.start] as usize..set.first_point[strands.end] as usize;
@@ -112,10 +112,10 @@ impl StrandBounds {
             let reach = &mut reaches[p];
             reach.count += 1;
             reach.end = reach.end.max(t);
-            // What is no number makes points that are none, which are left out.
+            // NaN gives points that are not finite, which are ignored.
             reach.offset = reach.offset.max(offset_of(i));
         }
-        // Sorted by counting.
+        // Counting sort.
         let mut next = self.points.len() as u32;
         for reach in reaches.iter_mut() {
             reach.first = next;
@@ -139,7 +139,7 @@ fn strands_of(wisp: &Wisp) -> Range<usize> {
     first..first + wisp.strand_count as usize
 }
 
-/// Length of the longest strand of a hairstyle at rest, metres. Strands that are not finite count for nothing.
+/// Length of the longest strand of a hairstyle at rest, metres. Strands that are not finite are ignored.
 fn longest_at_rest(style: &Hairstyle) -> f32 {
     let mut strands = Strands::default();
     interpolate(style, &GuideFrame::at_rest(&style.guides, Affine3A::IDENTITY, 0.0), &mut strands);

@@ -1,27 +1,28 @@
-//! The weights of a wisp's strands as a polygon in the plane of those that sum to 1.
+//! The weights of a wisp's strands, bounded by a polygon in the plane of weights that sum to 1.
 
 use crate::{StrandSet, Wisp};
 
 use super::strands_of;
 
-/// A rectangle that two parallel lines cut has six corners at most; eight fill vectors.
+/// A rectangle cut by two parallel lines has at most six corners; eight fill a vector.
 pub(super) const CORNERS: usize = 8;
-/// By how much the polygon is larger than what it holds, as a part of the largest weight.
+/// How much the polygon is enlarged, as a fraction of the largest weight.
 const ROUNDING: f32 = 1e-6;
 
-/// Holds the weights of all strands of a wisp: each of the three weights lies between its smallest and its largest value.
+/// Contains the weights of all strands of a wisp: each of the three weights lies between its smallest and largest
+/// value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Polygon {
-    /// Weights that sum to 1; repeated where there are fewer corners.
+    /// Weights that sum to 1; the last corner is repeated if there are fewer.
     pub corners: [[f32; 3]; CORNERS],
     /// Largest sum of the absolute weights of a corner.
     pub sum: f32,
-    /// By how much the weights of a strand miss a sum of 1, at most.
+    /// The largest difference between 1 and the sum of a strand's weights.
     pub off: f32,
 }
 
 impl Polygon {
-    /// The weights of a wisp's strands; `None` where it has none with finite weights.
+    /// Bounds the weights of a wisp's strands; `None` if no strand has finite weights.
     pub fn of_wisp(set: &StrandSet, wisp: &Wisp) -> Option<Self> {
         let all = set.weights[strands_of(wisp)].iter();
         Self::around(all.copied().filter(|weights| weights.iter().sum::<f32>().is_finite()))
@@ -33,7 +34,7 @@ impl Polygon {
         let mut off = 0.0_f32;
         for [a, b, c] in weights {
             off = off.max((a + b + c - 1.0).abs());
-            // The first follows from the others, so that all lie in the plane.
+            // The first weight follows from the others, so that all corners lie in the plane.
             for (k, weight) in [1.0 - b - c, b, c].into_iter().enumerate() {
                 low[k] = low[k].min(weight);
                 high[k] = high[k].max(weight);

@@ -1,4 +1,4 @@
-//! The farthest strand point along one direction.
+//! Finds the farthest strand point along one direction.
 
 use std::collections::BinaryHeap;
 
@@ -8,27 +8,28 @@ use super::polygon::CORNERS;
 use super::{LinkReach, StrandBounds, WispReach, strands_of};
 use crate::{GuideFrame, Guides, WispCurve};
 
-/// Hair farther than this from the anchor along the direction is left out, metres.
+/// Hair farther than this from the anchor along the direction is ignored, metres.
 const FARTHEST: f32 = 1e4;
-/// Rounding of interpolation and of bounds, as a part of the largest numbers on the way: some thirty roundings of 2^-24.
+/// Rounding of interpolation and bounds, as a fraction of the largest intermediate value: about thirty roundings of
+/// 2^-24.
 const ROUNDING: f32 = 2e-6;
-/// The most that absolute values of the basis of a Catmull-Rom curve sum to, half way along a link.
+/// The largest sum of the absolute Catmull-Rom basis functions, reached halfway along a link.
 const OVERSHOOT: f32 = 1.25;
-/// By how much the answer may be larger than what is searched for, as a part of the guides' extent.
+/// How much too large the result may be, as a fraction of the guides' extent.
 const TOLERANCE: f32 = 0.03;
-/// Links whose points are made at most: hair that ends in a plane is not looked through whole.
+/// The most links whose points are evaluated, so that hair that ends in one plane is not searched completely.
 const MOST_LINKS: usize = 256;
-/// Beyond this fraction the whole link is bounded, which is quicker.
+/// Above this fraction, the whole link is bounded, which is faster.
 const NEARLY_WHOLE: f32 = 0.75;
 /// Values that are compared side by side.
 const LANES: usize = 8;
 
-/// A wisp, or a link of one, by what it may reach at most.
+/// A wisp or one of its links, with an upper bound of its reach.
 #[derive(Clone, Copy, Debug)]
 struct Candidate {
     at_most: f32,
     wisp: u32,
-    /// None for the wisp as a whole.
+    /// `None` for the whole wisp.
     link: Option<u32>,
 }
 
@@ -53,7 +54,7 @@ impl PartialEq for Candidate {
 
 impl Eq for Candidate {}
 
-/// What is known of a guide whatever the direction.
+/// Properties of a guide that do not depend on the direction.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Size {
     /// The largest sum of absolute coordinates of its finite points.
@@ -77,8 +78,8 @@ fn most(values: impl Iterator<Item = f32>, at_least: f32) -> f32 {
     values.fold(at_least, |most, value| if value > most { value } else { most })
 }
 
-/// From where to where the strands reach along `way` from the anchor, or a little farther; `None` where nothing is left of
-/// them.
+/// The smallest and largest coordinate of the strands along `way` from the anchor, or slightly beyond; `None` if no
+/// strands are left.
 pub(super) fn span(
     bounds: &StrandBounds,
     frame: &GuideFrame,
@@ -101,19 +102,19 @@ pub(super) fn span(
     Some((-low?, high?))
 }
 
-/// Where values lie, and how far they are apart.
+/// The range of some values, and the largest step between them.
 #[derive(Clone, Copy, Debug)]
 struct Extent {
     min: f32,
     max: f32,
-    /// The largest step from one to the next.
+    /// The largest step from one value to the next.
     step: f32,
 }
 
 impl Extent {
     const NONE: Self = Self { min: f32::INFINITY, max: f32::NEG_INFINITY, step: 0.0 };
 
-    /// Of the points of one guide, of which what is no number is left out.
+    /// The extent of the points of one guide, without NaN.
     fn of_guide(along: &[f32]) -> Self {
         let mut min = [f32::INFINITY; LANES];
         let mut max = [f32::NEG_INFINITY; LANES];
@@ -132,7 +133,7 @@ impl Extent {
         for (values, nexts) in values.iter().zip(nexts) {
             add(values, nexts);
         }
-        // The rest, filled up with the last point.
+        // The rest, padded with the last point.
         let fill = |rest: &[f32]| {
             let mut lanes = [last; LANES];
             lanes[..rest.len()].copy_from_slice(rest);
@@ -144,7 +145,7 @@ impl Extent {
         Self { min: over(min, f32::min), max: over(max, f32::max), step: over(most, f32::max) }
     }
 
-    /// The same the other way round.
+    /// The extent along the opposite direction.
     fn turned(self) -> Self {
         Self { min: -self.max, max: -self.min, step: self.step }
     }
@@ -162,12 +163,12 @@ struct Search<'a> {
     sizes: &'a [Size],
     way: Vec3,
     anchor: Vec3,
-    /// Every guide point along the way.
+    /// Coordinate of every guide point along the direction.
     along: &'a [f32],
 }
 
 impl Search<'_> {
-    /// How far the strands reach.
+    /// The largest coordinate of the strands.
     fn farthest(self, guides: &[Extent]) -> Option<f32> {
         let Self { bounds, frame, .. } = self;
         let whole = guides.iter().fold(Extent::NONE, |whole, guide| whole.join(*guide));
@@ -217,7 +218,7 @@ impl Search<'_> {
         &self.bounds.links[wisp as usize * links..][..links]
     }
 
-    /// What rounding adds to anything that a wisp reaches.
+    /// The rounding error of any coordinate of a wisp.
     fn rounding(&self, wisp: &WispReach) -> f32 {
         let size = self.size(wisp) * (1.0 + wisp.weights.sum) + self.anchor.abs().element_sum() + wisp.offset;
         ROUNDING * self.way.length() * size
@@ -227,13 +228,13 @@ impl Search<'_> {
         wisp.wisp.guides.iter().map(|&g| self.sizes[g as usize].most).fold(0.0, f32::max)
     }
 
-    /// What is added to the reach of the guides' blends: the longest offset; by how much weights that do not quite sum to 1
-    /// move the strand along with its distance from the origin; rounding.
+    /// The margin around the blended guides: the longest offset, the shift caused by weights whose sum is not exactly 1
+    /// (proportional to the distance from the origin), and rounding.
     fn around(&self, wisp: &WispReach, offset: f32) -> f32 {
         (offset + OVERSHOOT * wisp.weights.off * self.size(wisp)) * self.way.length() + self.rounding(wisp)
     }
 
-    /// What a wisp may reach, from what its three guides do.
+    /// Upper bound of a wisp's reach, from its three guides.
     fn reach_of_wisp(&self, wisp: &WispReach, guides: [Extent; 3]) -> f32 {
         let blend = |w: &[f32; 3]| -> f32 {
             w.iter().zip(guides).map(|(&w, guide)| w * if w < 0.0 { guide.min } else { guide.max }).sum()
@@ -244,7 +245,7 @@ impl Search<'_> {
         limited(blends + wisp.weights.sum * step + self.around(wisp, wisp.offset))
     }
 
-    /// What each link of a wisp that has points may reach, from the hull of its curves.
+    /// Upper bound of the reach of each link that has points, from the hull of its curves.
     fn reach_of_links(&self, wisp: &WispReach, links: &[LinkReach], mut tell: impl FnMut(u32, f32)) {
         let n = self.points_per_guide();
         let [a, b, c] = wisp.wisp.guides.map(|g| &self.along[g as usize * n..][..n]);
@@ -262,7 +263,7 @@ impl Search<'_> {
         let mut four = [phantom(at(0), at(1)), at(0), at(1), at(1)];
         for (p, link) in links.iter().enumerate() {
             four[3] = if p + 2 < n { at(p + 2) } else { phantom(four[2], four[1]) };
-            // Controls that are not finite make no finite points.
+            // Controls that are not finite give no finite points.
             if link.count > 0 && (finite || four.iter().flatten().sum::<f32>().is_finite()) {
                 tell(p as u32, limited(hull(&four, link.end) + (around + length * link.offset)));
             }
@@ -270,7 +271,7 @@ impl Search<'_> {
         }
     }
 
-    /// What the points of a link do reach, and rounding.
+    /// The actual reach of the points of a link, plus rounding.
     fn reach_of_points(&self, wisp: &WispReach, link: LinkReach, curve: &WispCurve) -> f32 {
         let set = &self.bounds.style.strands;
         let strands = strands_of(&wisp.wisp);
@@ -286,12 +287,12 @@ impl Search<'_> {
     }
 }
 
-/// Nothing is looked for beyond [`FARTHEST`]; what is no number may be anywhere.
+/// Clamps a bound to [`FARTHEST`]; NaN counts as unbounded.
 fn limited(at_most: f32) -> f32 {
     if at_most < FARTHEST { at_most } else { FARTHEST }
 }
 
-/// The largest of the Bézier points of a link's curves, one for each corner, up to the fraction `end`.
+/// The largest of the Bézier points of a link's curves, one curve per corner, up to the fraction `end`.
 #[inline]
 fn hull(four: &[[f32; CORNERS]; 4], end: f32) -> f32 {
     let [before, a, b, after] = four;
@@ -308,7 +309,7 @@ fn hull(four: &[[f32; CORNERS]; 4], end: f32) -> f32 {
         for k in 0..CORNERS {
             let second = a[k] + (b[k] - before[k]) * (1.0 / 6.0);
             let third = b[k] - (after[k] - a[k]) * (1.0 / 6.0);
-            // De Casteljau: the part of the curve up to there.
+            // De Casteljau: the curve up to `end`.
             let (ab, bc, cd) = (lerp(a[k], second), lerp(second, third), lerp(third, b[k]));
             let (abc, bcd) = (lerp(ab, bc), lerp(bc, cd));
             most[k] = larger(larger(a[k], ab), larger(abc, lerp(abc, bcd)));

@@ -1,4 +1,4 @@
-//! The guides of a wisp along its way through a ring.
+//! Lays the guides of a wisp along its path through a ring.
 
 use glam::Vec3;
 
@@ -8,18 +8,18 @@ use crate::frame::{reference_normal, transport};
 use crate::polyline::{Reach, next_at, sample};
 use crate::{Guides, Hairstyle, Obstacle};
 
-/// How far above the skin the hair nearest to it lies that a tie holds, metres.
+/// Distance of the lowest tied hair above the skin, metres.
 const SKIN: f32 = 0.002;
-/// How far above that hair the last of it lies, metres, at a tightness of 1 and of 0.
+/// Distance between the lowest and the highest tied hair, metres, at a tightness of 1 and of 0.
 const THICKNESS: [f32; 2] = [0.006, 0.014];
-/// How wide a wisp is in the ring, in radii of the ring.
+/// Width of a wisp in the ring, in radii of the ring.
 const WISP: f32 = 0.2;
 
-/// A wisp's guides as a tie lays them.
+/// The guides of a wisp as laid by a tie.
 pub(super) struct Laid {
     /// The points of the three guides, head space.
     pub(super) guides: [Vec<Vec3>; 3],
-    /// The first point of each that is beyond the ring.
+    /// The first point of each guide beyond the ring.
     pub(super) ring_point: [usize; 3],
 }
 
@@ -68,7 +68,7 @@ pub(super) fn wisp(
     for n in 0..3 {
         let target: Vec<Vec3> = (0..way.len())
             .map(|i| {
-                // It gathers on its way to the ring and opens a little beyond it.
+                // The wisp narrows on its way to the ring and opens slightly beyond it.
                 let before = (i as f32 / to_ring as f32).min(1.0);
                 let beyond = i.saturating_sub(to_ring) as f32 * STEP;
                 let opens = in_ring * ring.spread(beyond);
@@ -85,7 +85,7 @@ pub(super) fn wisp(
     Some(laid)
 }
 
-/// Normal, binormal and tangent at each point of a way, carried along it by the smallest turns.
+/// Normal, binormal and tangent at each point of a path, by parallel transport.
 fn frames(way: &[Vec3]) -> Vec<[Vec3; 3]> {
     let mut out: Vec<[Vec3; 3]> = Vec::with_capacity(way.len());
     let mut tangent = (way[1] - way[0]).normalize_or(Vec3::Y);
@@ -99,8 +99,8 @@ fn frames(way: &[Vec3]) -> Vec<[Vec3; 3]> {
     out
 }
 
-/// Lays a chain with the links of `guide` along `target`, outside `obstacle`; and the first of its points that is
-/// beyond point `ring` of the target, if it comes so far.
+/// Lays a chain with the links of `guide` along `target`, outside `obstacle`. Returns it with its first point beyond
+/// point `ring` of the target, if it reaches that far.
 fn along(
     target: &[Vec3],
     ring: usize,
@@ -129,7 +129,7 @@ fn along(
             direction = (p + n * (1.3 * (margin - distance) + 1e-5) - from).normalize_or(direction);
             p = from + direction * link;
         }
-        // The last point has nothing beyond it that could be held.
+        // Nothing beyond the last point could be held.
         if at >= ring as f32 && passed.is_none() && i + 1 < points {
             passed = Some(i);
         }

@@ -1,12 +1,12 @@
-//! Hair ties: a ponytail or a bun as another rest shape of the same guides.
+//! Hair ties: a ponytail or a bun as a second rest shape of the same guides.
 //!
-//! 1. [`HairTie`]: what an artist sets.
-//! 2. [`route`]: the way of each wisp's middle over the head to the ring, pulled tight around the skull, and beyond
-//!    the ring as a tail or wound as a bun.
-//! 3. [`lay`]: the wisp's guides along that way, each link as long as it was, outside of the body.
-//! 4. [`offsets`]: the strands' offsets, combed flat before the ring.
+//! 1. [`HairTie`]: the settings of a tie.
+//! 2. [`route`]: the path of each wisp's middle over the head to the ring, pulled tight around the skull, and beyond
+//!    the ring as a tail or wound up as a bun.
+//! 3. [`lay`]: the wisp's guides along that path, outside the body, with unchanged link lengths.
+//! 4. [`offsets`]: the strands' offsets, flattened before the ring.
 //!
-//! What the tie holds, the simulator reads from [`Hairstyle::held`].
+//! [`Hairstyle::held`] tells the simulator which points the tie holds.
 
 mod lay;
 mod offsets;
@@ -21,26 +21,26 @@ pub use settings::{HairTie, TieKind, TieReach};
 use crate::{Bounded, Hairstyle, Obstacle, Wisp};
 use route::Ring;
 
-/// How firmly a tie holds what passes through it, 1/s: hair accelerated by 300 m/s^2 would move 0.02 mm in it.
+/// How firmly a tie holds the hair inside it, 1/s: an acceleration of 300 m/s^2 moves the hair by 0.02 mm.
 const RING_HOLD: f32 = 4000.0;
-/// How firmly hair lies on the head before the tie, and how firmly a bun is pinned, 1/s, at a tightness of 0 and 1.
+/// How firmly hair is held on the head before the tie, and in a bun, 1/s, at a tightness of 0 and 1.
 const TAUT_HOLD: [f32; 2] = [60.0, 1000.0];
-/// Hair has to reach this far beyond the ring to be caught, metres.
+/// Hair must be this much longer than the distance to the ring to be gathered, metres.
 const CAUGHT: f32 = 0.02;
 
 /// A wisp that a ring gathers.
 struct Gathered {
     wisp: usize,
     ring: usize,
-    /// Where it lies in the ring, whose opening is the unit disc.
+    /// Its position in the ring, whose opening is the unit disc.
     disc: [f32; 2],
-    /// Share of the gathered hair that lies below it, 0 to 1.
+    /// Fraction of the gathered hair that lies below it, 0 to 1.
     layer: f32,
 }
 
-/// `style` with its hair gathered by `ties`: as many guides of as many points and the same lengths, at rest as a
-/// ponytail or a bun. Wisps go to the first tie that wants them and that all their guides can reach; what none
-/// catches stays as it was. The first [`HairTie::MOST`] ties count. `obstacle` is the body without hair.
+/// `style` with its hair gathered by `ties` into ponytails or buns at rest, with the same number of guides and points
+/// and the same lengths. A wisp goes to the first tie that includes it and that all its guides can reach; the other
+/// wisps stay as they are. Only the first [`HairTie::MOST`] ties count. `obstacle` is the body without hair.
 #[must_use]
 pub fn tied(style: &Hairstyle, ties: &[HairTie], obstacle: &dyn Obstacle) -> Hairstyle {
     let mut out = style.clone();
@@ -57,7 +57,7 @@ pub fn tied(style: &Hairstyle, ties: &[HairTie], obstacle: &dyn Obstacle) -> Hai
     let rings: Vec<Ring> =
         ties.iter().take(HairTie::MOST).map(|tie| Ring::new(tie, obstacle, longest)).collect();
     let ears = middle.z - 0.1 * half.z;
-    // From below the middle the shortest way over the head is over its top.
+    // From below the middle, the shortest path over the head crosses its top.
     let middle = middle - Vec3::Y * (0.5 * half.y);
     let gathered = gather(style, &rings, ears);
 
@@ -104,8 +104,8 @@ pub fn tied(style: &Hairstyle, ties: &[HairTie], obstacle: &dyn Obstacle) -> Hai
     out
 }
 
-/// Which wisps go to which ring, and where in it they lie: hair from afar lies around hair from nearby, on the side
-/// from which it comes.
+/// The ring of each wisp and its position in that ring: hair from far away lies around hair from nearby, on the side
+/// that it comes from.
 fn gather(style: &Hairstyle, rings: &[Ring], ears: f32) -> Vec<Gathered> {
     let root_of =
         |wisp: &Wisp| wisp.guides.iter().map(|&g| style.guides.point(g as usize, 0)).sum::<Vec3>() / 3.0;
@@ -115,7 +115,7 @@ fn gather(style: &Hairstyle, rings: &[Ring], ears: f32) -> Vec<Gathered> {
         let mut of_ring: Vec<(f32, usize, Vec3)> = Vec::new();
         for (w, wisp) in style.wisps.iter().enumerate() {
             let root = root_of(wisp);
-            if taken[w] || !root.is_finite() || !ring.tie.wants(root, ears) {
+            if taken[w] || !root.is_finite() || !ring.tie.includes(root, ears) {
                 continue;
             }
             let straight = root.distance(ring.centre);
@@ -131,7 +131,7 @@ fn gather(style: &Hairstyle, rings: &[Ring], ears: f32) -> Vec<Gathered> {
             let layer = (rank as f32 + 0.5) / count;
             let from = root - ring.centre;
             let angle = from.dot(ring.across[1]).atan2(from.dot(ring.across[0]));
-            // A little of the ring is left to the width of the wisps themselves.
+            // Leaves some of the ring to the width of the wisps themselves.
             let out_of_middle = 0.8 * layer.sqrt();
             let disc = [out_of_middle * angle.cos(), out_of_middle * angle.sin()];
             taken[w] = true;

@@ -1,4 +1,4 @@
-//! Where the strands of a gathered wisp leave its guides: combed flat before the ring.
+//! The offsets of a tied wisp's strands: flattened before the ring.
 
 use glam::Vec3;
 
@@ -6,16 +6,16 @@ use super::lay::Laid;
 use super::{HairTie, TieKind};
 use crate::{Hairstyle, Obstacle, WispCurve};
 
-/// Distance over which a strand's root joins the curve of its guides, metres.
+/// Distance over which a strand's root blends into the curve of its guides, metres.
 const ROOT_JOIN: f32 = 0.02;
-/// What is left of offsets in the ring, and before it at a tightness of 1 and of 0.
+/// Fraction of the offsets that remains in the ring, and before it at a tightness of 1 and of 0.
 const RING: f32 = 0.12;
 const TAUT: [f32; 2] = [0.2, 0.5];
-/// Distance beyond the ring after which a tail has its curls and waves again, metres.
+/// Distance beyond the ring after which a tail has its full curls and waves again, metres.
 const OPENS: f32 = 0.08;
-/// Of a bun's curls and waves so much is left.
+/// Fraction of its curls and waves that a bun keeps.
 const WOUND: f32 = 0.3;
-/// Strands stay so far from the skin, metres.
+/// Smallest distance of strands from the skin, metres.
 const SKIN: f32 = 0.001;
 
 /// The offsets of all points of a wisp's strands, in its new frame.
@@ -49,7 +49,7 @@ pub(super) fn of_wisp(
             let mut point = new.blend(weights, u)
                 + from_guides * join
                 + new.frame(u) * (offset(i) * share(tie, taut, u, ring, link));
-            // Beyond the ring hair hangs free of the head; before it, it lies on the skin.
+            // Beyond the ring, hair hangs free of the head; before it, hair lies on the skin.
             if u < ring + 1.0 && i > first {
                 for _ in 0..2 {
                     let (distance, n) = obstacle.distance(point);
@@ -62,10 +62,10 @@ pub(super) fn of_wisp(
     out
 }
 
-/// How much of its offset a point keeps that is `u` links from the root, where the ring is at `ring`.
+/// The fraction of its offset that a point `u` links from the root keeps, with the ring at `ring`.
 fn share(tie: &HairTie, taut: f32, u: f32, ring: f32, link: f32) -> f32 {
     if u < ring {
-        // From nothing at the root, where the root's own offset rules, to the ring.
+        // From zero at the root, where the root's own offset applies, to the ring.
         let leaves = (u * link / ROOT_JOIN).min(1.0);
         let nears = ((ring - u) * link / 0.04).min(1.0);
         leaves * (RING + (taut - RING) * nears)

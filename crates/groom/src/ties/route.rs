@@ -1,44 +1,45 @@
-//! Ways of the middle of a wisp: over the head to the tie, and beyond it.
+//! Paths of a wisp's centre: over the head to the tie, and beyond it.
 
 use glam::{Quat, Vec3};
 
 use super::HairTie;
 use crate::Obstacle;
 
-/// Distance between the points of ways, metres.
+/// Distance between the points of a path, metres.
 pub(super) const STEP: f32 = 0.003;
-/// Points of the way over the head while it is pulled tight.
+/// Points of the path over the head while it is tightened.
 const KNOTS: usize = 28;
-/// Rounds of pulling.
+/// Iterations of tightening.
 const PULLS: usize = 90;
 /// Half the thickness of a bun's rope, in radii of the bun.
 const ROPE: f32 = 0.36;
-/// Angle around the axis in which it climbs from the rim of a bun to its top, and how high that is as a latitude, radians.
+/// Angle around the axis over which the rope climbs from the rim of a bun to its top, and the height of the top as a
+/// latitude; radians.
 const CLIMB: f32 = 9.0;
 const STEEPEST: f32 = 0.9;
-/// The last of a bun's hair, metres, is led toward its core, by this share of the way.
+/// Length at the end of a bun's hair that is drawn toward its core, metres, and how far it is drawn, as a fraction.
 const TUCK: f32 = 0.08;
 const TUCKED: f32 = 0.55;
-/// How much further ways go than the longest of a wisp's guides, metres.
+/// How much longer paths are than the longest of a wisp's guides, metres.
 pub(super) const SPARE: f32 = 0.05;
-/// How soon a tail that leaves its tie gives in to gravity, metres.
+/// Length over which a tail that leaves its tie bends toward gravity, metres.
 const FALL: f32 = 0.04;
 
-/// A tie made ready: what all its hair has in common.
+/// A prepared tie, with what all its hair has in common.
 pub(super) struct Ring {
     pub(super) tie: HairTie,
     pub(super) centre: Vec3,
     pub(super) axis: Vec3,
-    /// Two directions across the axis.
+    /// Two directions perpendicular to the axis.
     pub(super) across: [Vec3; 2],
-    /// The middle of the tail from the ring on, and its direction, every [`STEP`].
+    /// The centre of the tail from the ring on and its direction, every [`STEP`].
     tail: Vec<(Vec3, Vec3)>,
-    /// The directions across at each of its points.
+    /// The perpendicular directions at each of its points.
     tail_across: Vec<[Vec3; 2]>,
 }
 
 impl Ring {
-    /// `longest` is how far the tail may reach, metres.
+    /// `longest` is the length of the tail, metres.
     pub(super) fn new(tie: &HairTie, obstacle: &dyn Obstacle, longest: f32) -> Self {
         let tie = tie.clamped();
         let axis = tie.axis.normalize_or(Vec3::NEG_Z);
@@ -58,7 +59,7 @@ impl Ring {
         ring
     }
 
-    /// The middle of the tail: out along the axis, then down, and around the body.
+    /// Traces the centre of the tail: out along the axis, then down, and around the body.
     fn hang(&mut self, obstacle: &dyn Obstacle, longest: f32) {
         let (mut p, mut direction, mut across) = (self.centre, self.axis, self.across);
         let steps = (longest / STEP).ceil().clamp(2.0, 2000.0) as usize;
@@ -81,7 +82,7 @@ impl Ring {
         }
     }
 
-    /// How wide the tail is, in radii of the ring, `arc` metres beyond it.
+    /// The width of the tail, in radii of the ring, `arc` metres beyond it.
     pub(super) fn spread(&self, arc: f32) -> f32 {
         let t = (arc / 0.07).clamp(0.0, 1.0);
         let end = (self.tail.len().max(1) as f32 * STEP).max(0.05);
@@ -89,8 +90,8 @@ impl Ring {
         (1.0 + 0.9 * t * t * (3.0 - 2.0 * t)) * (1.0 - 0.45 * narrows * narrows)
     }
 
-    /// The point of the tail `arc` metres beyond the ring at the place `disc` of its cross-section, where the
-    /// ring's opening is the unit disc.
+    /// The point of the tail `arc` metres beyond the ring at the position `disc` in its cross-section, where the ring's
+    /// opening is the unit disc.
     fn tail_at(&self, arc: f32, disc: [f32; 2]) -> Vec3 {
         let u = (arc / STEP).max(0.0);
         let i = (u as usize).min(self.tail.len() - 2);
@@ -101,20 +102,20 @@ impl Ring {
         p + (q - p) * t + (across(0) * disc[0] + across(1) * disc[1]) * wide
     }
 
-    /// The point of a bun `angle` radians along the rope that is wound around the axis: up over a dome and down again.
+    /// The point of a bun `angle` radians along the rope that is wound around the axis, up over a dome and down again.
     fn coil_at(&self, angle: f32, disc: [f32; 2]) -> Vec3 {
         let thick = ROPE * self.tie.bun_radius;
         let wide = self.tie.bun_radius - thick;
-        // It leaves the ring and reaches its circle in a third of a turn.
+        // It leaves the ring and reaches its circle within a third of a turn.
         let t = (angle / 2.1).clamp(0.0, 1.0);
         let out = t * t * (3.0 - 2.0 * t);
         let [a, b] = self.across;
         let (around, ahead) = (a * angle.cos() + b * angle.sin(), angle / self.tie.bun_coils);
         let radius = self.tie.radius + (thick - self.tie.radius) * out;
-        // The rope turns about itself as it goes around.
+        // The rope twists as it goes around.
         let (sin, cos) = ahead.sin_cos();
         let turned = [disc[0] * cos - disc[1] * sin, disc[0] * sin + disc[1] * cos];
-        // To and fro between the rim of the dome and its top.
+        // Back and forth between the rim of the dome and its top.
         let way = (angle / CLIMB).rem_euclid(2.0);
         let (up, level) = (STEEPEST * way.min(2.0 - way)).sin_cos();
         let out_of_axis = around * (wide * level * out);
@@ -124,7 +125,7 @@ impl Ring {
         middle + at_ring.lerp(in_rope, out) * radius
     }
 
-    /// The way of hair at the place `disc`, beyond the ring, `length` metres long, in steps of about [`STEP`].
+    /// The path beyond the ring of hair at the position `disc`, `length` metres long, in steps of about [`STEP`].
     pub(super) fn beyond(&self, disc: [f32; 2], length: f32) -> Vec<Vec3> {
         let steps = (length / STEP).ceil().clamp(1.0, 2000.0) as usize;
         match self.tie.kind {
@@ -136,7 +137,7 @@ impl Ring {
                 // Ends are tucked in, where pins would hold them.
                 let core = self.centre + self.axis * (ROPE * self.tie.bun_radius);
                 for step in 0..steps {
-                    // As far in angle as makes a step, from how fast the point moves there.
+                    // The angle that gives one step, from the speed of the point at this angle.
                     let speed = (self.coil_at(angle + 0.02, disc) - p).length() / 0.02;
                     angle += (STEP / speed.max(1e-3)).min(0.3);
                     p = self.coil_at(angle, disc);
@@ -149,10 +150,10 @@ impl Ring {
         }
     }
 
-    /// The way from `root` over the head to `end`, pulled tight: points about [`STEP`] apart, both ends included.
+    /// The tightened path from `root` over the head to `end`: points about [`STEP`] apart, including both ends.
     ///
-    /// `middle` is a point deep in the head, and `height(arc)` how far above the skin hair lies that has come
-    /// `arc` metres.
+    /// `middle` is a point deep in the head; `height(arc)` is the height above the skin of hair that has come `arc`
+    /// metres.
     pub(super) fn over_head(
         obstacle: &dyn Obstacle,
         middle: Vec3,
@@ -160,7 +161,7 @@ impl Ring {
         end: Vec3,
         height: &dyn Fn(f32) -> f32,
     ) -> Vec<Vec3> {
-        // First around the head by way of the top: the string then finds the shortest way from there.
+        // Starts around the head by way of the top; tightening then finds the shortest path from there.
         let (from, to) = ((root - middle).normalize_or(Vec3::Y), (end - middle).normalize_or(Vec3::NEG_Z));
         let via = (from + to + Vec3::Y * 0.5).normalize_or(Vec3::Y);
         let reach = [(root - middle).length(), (end - middle).length()];
@@ -193,12 +194,12 @@ impl Ring {
     }
 }
 
-/// A fraction `t` of the way from the unit vector `a` to the unit vector `b` along the sphere.
+/// The point a fraction `t` of the way from the unit vector `a` to the unit vector `b` along the sphere.
 fn arc(a: Vec3, b: Vec3, t: f32) -> Vec3 {
     Quat::IDENTITY.slerp(Quat::from_rotation_arc(a, b), t) * a
 }
 
-/// A polyline cut into pieces of about [`STEP`].
+/// A polyline resampled into segments of about [`STEP`].
 fn spaced(knots: &[Vec3]) -> Vec<Vec3> {
     let mut out = vec![knots[0]];
     for pair in knots.windows(2) {

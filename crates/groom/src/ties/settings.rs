@@ -147,7 +147,7 @@ impl HairTie {
     }
 
     /// Whether hair rooted at `root` is to be gathered; `ears` is how far forward the ears are.
-    pub(super) fn wants(&self, root: Vec3, ears: f32) -> bool {
+    pub(super) fn includes(&self, root: Vec3, ears: f32) -> bool {
         match self.reach {
             TieReach::All => true,
             TieReach::BehindEars => root.z < ears,

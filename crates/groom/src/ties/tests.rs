@@ -23,7 +23,7 @@ fn crossings(style: &Hairstyle, tie: &HairTie) -> Vec<f32> {
     let mut out = Vec::new();
     for g in 0..style.guides.count() {
         let Some(i) = (1..n).find(|i| style.held[g * n + i] >= RING_HOLD) else { continue };
-        // The ring is passed between the two points that it holds.
+        // The ring is crossed between the two points that it holds.
         let (a, b) = (style.guides.point(g, i), style.guides.point(g, (i + 1).min(n - 1)));
         let nearest = (0..=20).map(|t| {
             let from = a.lerp(b, t as f32 / 20.0) - ring.centre;
@@ -42,7 +42,7 @@ fn a_tied_style_keeps_lengths_and_roots_and_stays_out_of_the_head() {
         let tied = tied(&style, &[tie], &PlainHead);
         tied.check().expect("sound");
         for (a, b) in lengths(&style).iter().zip(lengths(&tied)) {
-            // Positions of half a metre in f32 and links of 1 cm.
+            // Positions of half a metre in f32, and links of 1 cm.
             assert!((a - b).abs() < 1e-6, "{a} became {b}");
         }
         let n = style.guides.points_per_guide;
@@ -55,7 +55,7 @@ fn a_tied_style_keeps_lengths_and_roots_and_stays_out_of_the_head() {
         }
         // The plain head's distance is a first-order estimate; points are pushed out in eight rounds.
         assert!(deepest > -0.002, "{kind:?}: {deepest}");
-        // Strands leave the scalp where they did.
+        // Strands leave the scalp at the same points as before.
         let roots = |style: &Hairstyle| -> Vec<Vec3> {
             style
                 .wisps
@@ -85,13 +85,13 @@ fn hair_passes_through_the_ring() {
     let tied = tied(&style, &[tie], &PlainHead);
     let crossings = crossings(&tied, &tie);
     assert!(crossings.len() > style.guides.count() * 9 / 10, "only {} are gathered", crossings.len());
-    // The discs of the wisps in the ring are 0.2 of it wide.
+    // The discs of the wisps in the ring are 0.2 of its width.
     let outside = crossings.iter().filter(|d| **d > 1.15 * tie.radius).count();
     assert!(outside == 0, "{outside} of {} pass beside it: {crossings:?}", crossings.len());
 }
 
 #[test]
-fn reach_says_what_is_gathered_and_the_rest_stays() {
+fn reach_selects_what_is_gathered_and_the_rest_stays() {
     let style = long();
     let n = style.guides.points_per_guide;
     let all = tied(&style, &[HairTie::default()], &PlainHead);
@@ -109,19 +109,19 @@ fn reach_says_what_is_gathered_and_the_rest_stays() {
         ..HairTie::default()
     };
     assert_eq!(tied(&style, &[none], &PlainHead).guides, style.guides);
-    // Around the ring there is hair, wherever the centre lies that is not asked for.
+    // With a sphere around the ring, the unused centre has no effect.
     let near = HairTie { sphere_at_ring: true, sphere_radius: 0.07, ..none };
     let near = tied(&style, &[near], &PlainHead);
     assert!(count(&near) > 10 && count(&near) < count(&all) - 30, "{} of {}", count(&near), count(&all));
     for g in (0..style.guides.count()).filter(|g| near.held[g * n + 1] >= 0.0) {
         let root = style.guides.point(g, 0);
-        // Wisps are gathered by the middle of their three roots.
+        // Wisps are gathered by the mean of their three roots.
         assert!(root.distance(HairTie::default().at) < 0.07 + 0.03, "{root}");
     }
 }
 
 #[test]
-fn two_ties_share_the_hair_and_short_hair_is_left_out() {
+fn two_ties_share_the_hair_and_short_hair_stays_free() {
     let style = long();
     let plait = |side: f32| HairTie {
         at: Vec3::new(0.07 * side, 0.06, -0.07),
@@ -151,7 +151,7 @@ fn two_ties_share_the_hair_and_short_hair_is_left_out() {
 }
 
 #[test]
-fn a_tie_and_its_mirror_image_part_the_hair_at_the_plane() {
+fn a_tie_and_its_mirror_image_divide_the_hair_at_the_plane() {
     let style = long();
     let left = HairTie {
         at: Vec3::new(0.08, 0.1, -0.03),
@@ -179,7 +179,7 @@ fn a_tie_and_its_mirror_image_part_the_hair_at_the_plane() {
 }
 
 #[test]
-fn what_a_file_does_not_tell_of_a_patch_is_as_it_was_written() {
+fn a_patch_in_an_old_file_is_read_with_defaults() {
     let old: HairTie =
         serde_json::from_str(r#"{"reach":"InSphere","sphere_centre":[0.1,0.2,0.0]}"#).expect("a tie");
     assert_eq!(old.sphere_middle(), Vec3::new(0.1, 0.2, 0.0));
@@ -187,7 +187,7 @@ fn what_a_file_does_not_tell_of_a_patch_is_as_it_was_written() {
 }
 
 #[test]
-fn nonsense_ties_nothing_harmful() {
+fn invalid_ties_give_hair_that_can_be_drawn() {
     let style = long();
     let bad = HairTie {
         at: Vec3::NAN,
@@ -206,7 +206,7 @@ fn nonsense_ties_nothing_harmful() {
 fn a_tie_is_placed_on_any_head() {
     let tie = HairTie::on(&PlainHead.scalp(32), Vec3::new(0.0, 0.5, -1.0), TieKind::Bun);
     let (distance, n) = PlainHead.distance(tie.at);
-    // The estimate of the distance is of first order.
+    // The distance is a first-order estimate.
     assert!((distance - 0.012).abs() < 0.002, "{distance}");
     assert!(tie.axis.dot(n) > 0.9 && tie.at.z < -0.06 && tie.at.y > 0.12, "{tie:?}");
     let nowhere = HairTie::on(&Scalp::default(), Vec3::NEG_Z, TieKind::Bun);

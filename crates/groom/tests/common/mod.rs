@@ -1,8 +1,8 @@
-//! What the tests of hair files share.
+//! Helpers for the tests of hair files.
 
 use std::path::PathBuf;
 
-/// The folder of real files, or none with a line that says so.
+/// The folder of real files, or `None` after printing a message.
 pub(crate) fn data_dir() -> Option<PathBuf> {
     let folder = std::env::var_os("LOVELOCK_DATA").map_or_else(
         || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data")),
@@ -19,25 +19,25 @@ pub(crate) fn data_dir() -> Option<PathBuf> {
 pub(crate) struct YukselFile {
     /// Points of each strand.
     pub(crate) strands: Vec<Vec<[f32; 3]>>,
-    /// Write the segments array, else the first strand's count as the default.
+    /// Whether to write the segments array; otherwise the first strand's count is the default.
     pub(crate) segments: bool,
-    /// Width of point `i`, where there is such an array.
+    /// Width of point `i`, if there is such an array.
     pub(crate) thickness: Option<fn(usize) -> f32>,
     /// Transparency of point `i`.
     pub(crate) transparency: Option<fn(usize) -> f32>,
     /// Colour of point `i`.
     pub(crate) colours: Option<fn(usize) -> [f32; 3]>,
-    /// Texture coordinates, zeros, of the variant that has them.
+    /// Whether to write texture coordinates (zeros), as in the variant that has them.
     pub(crate) uvs: bool,
 }
 
 impl YukselFile {
-    /// Strands with points, and nothing else in the file.
+    /// Strands with points and no other arrays.
     pub(crate) fn new(strands: Vec<Vec<[f32; 3]>>) -> Self {
         Self { strands, segments: true, thickness: None, transparency: None, colours: None, uvs: false }
     }
 
-    /// The bytes of the file, as the format's page lays them out.
+    /// The bytes of the file, as specified by the format's page.
     pub(crate) fn bytes(&self) -> Vec<u8> {
         let points: usize = self.strands.iter().map(Vec::len).sum();
         let flags = u32::from(self.segments)
@@ -68,7 +68,7 @@ impl YukselFile {
     }
 }
 
-/// Strands of some lengths that hang down Z, side by side.
+/// Strands of different lengths that hang down along Z, side by side.
 pub(crate) fn hanging(counts: &[usize]) -> Vec<Vec<[f32; 3]>> {
     counts
         .iter()

@@ -21,7 +21,7 @@ impl Random {
         2.0 * self.unit() - 1.0
     }
 
-    /// In a cube of half side 1.
+    /// In the cube -1..1.
     pub fn cube(&mut self) -> Vec3 {
         Vec3::new(self.signed(), self.signed(), self.signed())
     }
@@ -33,12 +33,12 @@ impl Random {
     }
 }
 
-/// A head somewhere within a room.
+/// A head at a random place in a room.
 pub fn head(random: &mut Random) -> Affine3A {
     Affine3A::from_rotation_translation(random.turn(), Vec3::new(0.0, 1.5, 0.0) + random.cube())
 }
 
-/// Guides that waves bend, and each a little otherwise; roots stay on the head.
+/// Guides bent by waves, each slightly differently; roots stay on the head.
 pub fn moved(style: &Hairstyle, head: Affine3A, random: &mut Random) -> GuideFrame {
     let mut frame = GuideFrame::at_rest(&style.guides, head, 0.0);
     let points = style.guides.points_per_guide;
@@ -57,7 +57,7 @@ pub fn moved(style: &Hairstyle, head: Affine3A, random: &mut Random) -> GuideFra
     frame
 }
 
-/// Guides pressed flat against a plane, with points thrown about: kinks, folds, links of no length.
+/// Guides pressed flat against a plane, with displaced points: kinks, folds, links of length zero.
 pub fn squashed(style: &Hairstyle, head: Affine3A, random: &mut Random) -> GuideFrame {
     let mut frame = moved(style, head, random);
     let (normal, share) = (random.cube().normalize_or(Vec3::X), random.unit());

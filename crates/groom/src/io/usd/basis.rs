@@ -1,10 +1,10 @@
-//! What curves are between their control points.
+//! Evaluates curves between their control points.
 
 use glam::Vec3;
 
 use super::{HairFileError, Layer, Value};
 
-/// Pieces that a span of a cubic curve is cut into: a bezier's span reaches over three control points.
+/// Line segments per span of a cubic curve; a Bézier span covers three control points.
 const PIECES: usize = 4;
 const BEZIER_PIECES: usize = 8;
 
@@ -23,16 +23,16 @@ enum Wrap {
     Pinned,
 }
 
-/// How values lie on the curves of a prim.
+/// How the values of an attribute are distributed over the curves of a prim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Spread {
-    /// One for all.
+    /// One value for all.
     Constant,
-    /// One a curve.
+    /// One value per curve.
     Uniform,
-    /// One at each end of a span, straight between them.
+    /// One value at each end of a span, linear in between.
     Varying,
-    /// One a control point, between them as the points are.
+    /// One value per control point, interpolated like the points.
     Vertex,
 }
 
@@ -73,7 +73,7 @@ impl Shape {
         Ok(Self { basis, wrap })
     }
 
-    /// Spans of a curve of so many control points; those left over at its end belong to none.
+    /// Number of spans of a curve with this many control points; leftover points at its end belong to none.
     fn spans(self, points: usize) -> usize {
         match (self.basis, self.wrap) {
             (Basis::Linear, Wrap::Periodic) => points,
@@ -100,15 +100,15 @@ impl Shape {
         }
     }
 
-    /// Points of the polyline that a curve of so many control points becomes; 0 where it has no span.
-    pub(super) fn made_of(self, points: usize) -> usize {
+    /// Number of polyline points of a curve with this many control points; 0 if it has no span.
+    pub(super) fn polyline_points(self, points: usize) -> usize {
         match self.spans(points) {
             0 => 0,
             spans => spans.saturating_mul(self.pieces()).saturating_add(1),
         }
     }
 
-    /// Values that vary at the ends of the spans of a curve.
+    /// Number of values at the span ends of a curve.
     fn varying(self, points: usize) -> usize {
         match (self.spans(points), self.wrap) {
             (spans, Wrap::Periodic) => spans,
@@ -116,12 +116,12 @@ impl Shape {
         }
     }
 
-    /// A value for each point of the polylines.
+    /// One value for each point of the polylines.
     pub(super) fn spread(self, spread: Spread, values: &[Vec3], counts: &[usize]) -> Vec<Vec3> {
-        let mut out = Vec::with_capacity(counts.iter().map(|&count| self.made_of(count)).sum());
+        let mut out = Vec::with_capacity(counts.iter().map(|&count| self.polyline_points(count)).sum());
         let mut rest = values;
         for (curve, &count) in counts.iter().enumerate() {
-            let made = self.made_of(count);
+            let made = self.polyline_points(count);
             match spread {
                 Spread::Constant => out.extend(std::iter::repeat_n(values[0], made)),
                 Spread::Uniform => out.extend(std::iter::repeat_n(values[curve], made)),
@@ -157,7 +157,7 @@ impl Shape {
             return;
         }
         let stride = if self.basis == Basis::Bezier { 3 } else { 1 };
-        // The first control point of span 0; of a pinned curve it lies before the first one.
+        // The first control point of span 0; for a pinned curve it lies before the first one.
         let before = usize::from(
             self.wrap == Wrap::Pinned && matches!(self.basis, Basis::Bspline | Basis::CatmullRom),
         );
@@ -209,7 +209,7 @@ impl Shape {
 }
 
 impl Spread {
-    /// As the attribute says, where so many values are right for it; else what they are right for.
+    /// The stated interpolation if the number of values matches it, otherwise the one that the number matches.
     pub(super) fn of(said: Option<&str>, values: usize, counts: &[usize], shape: Shape) -> Option<Self> {
         let wanted = |spread: Self| match spread {
             Self::Constant => 1,
@@ -237,7 +237,7 @@ mod tests {
         Shape { basis, wrap }
     }
 
-    /// Control points on the line x = i, so that every basis that is right gives x between its controls.
+    /// Control points on the line x = i: every correct basis gives x between its controls.
     fn line(n: usize) -> Vec<Vec3> {
         (0..n).map(|i| Vec3::new(i as f32, 0.0, 0.0)).collect()
     }
@@ -255,7 +255,7 @@ mod tests {
         ] {
             let shape = shape(basis, wrap);
             let out = shape.spread(Spread::Vertex, &line(n), &[n]);
-            assert_eq!(out.len(), shape.made_of(n), "{basis:?} {wrap:?}");
+            assert_eq!(out.len(), shape.polyline_points(n), "{basis:?} {wrap:?}");
             assert!((out[0].x - ends[0]).abs() < 1e-6 && (out[out.len() - 1].x - ends[1]).abs() < 1e-6);
             let step = (ends[1] - ends[0]) / (out.len() - 1) as f32;
             for (i, point) in out.iter().enumerate() {
@@ -279,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn values_are_spread_as_they_are_counted() {
+    fn values_are_distributed_by_their_count() {
         let shape = shape(Basis::Bspline, Wrap::Nonperiodic);
         let counts = [5, 4];
         for (said, values, wanted) in [
@@ -297,7 +297,7 @@ mod tests {
         let out = shape.spread(Spread::Varying, &varying, &counts);
         let x: Vec<f32> = out.iter().map(|v| v.x).collect();
         assert_eq!(x, [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 100.0, 125.0, 150.0, 175.0, 200.0]);
-        // A curve too short for its basis becomes none.
+        // A curve that is too short for its basis is dropped.
         assert_eq!(shape.spread(Spread::Vertex, &line(3), &[3]), []);
     }
 }

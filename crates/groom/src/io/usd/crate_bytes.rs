@@ -1,11 +1,11 @@
-//! Places of a crate, each held against the bytes that are there.
+//! Reads bytes of a crate at checked positions.
 
 use super::HairFileError;
 use crate::io::source::Source;
 
-/// Paths, fields or specs of one crate.
+/// The most paths, fields or specs of a crate.
 const MOST_ENTRIES: u64 = 1 << 24;
-/// The best that LZ4 can do.
+/// The highest compression ratio of LZ4.
 const BEST_RATIO: u64 = 255;
 
 /// The bytes of a crate.
@@ -20,10 +20,10 @@ impl<'a> CrateBytes<'a> {
         Self { name: name.to_owned(), source }
     }
 
-    /// A count at a place, held against what any file holds, and the place behind it.
+    /// Reads a count, checks it against the size of the file, and returns it with the position after it.
     pub(super) fn counted(&mut self, at: u64) -> Result<(u64, u64), HairFileError> {
         let count = self.u64(at)?;
-        // Four whole numbers take a byte at least before they are compressed.
+        // Four compressed integers take at least one byte.
         if count > MOST_ENTRIES || count / 4 > self.source.len().saturating_mul(BEST_RATIO) {
             return Err(self.at(
                 at,
@@ -34,10 +34,11 @@ impl<'a> CrateBytes<'a> {
         Ok((at + 8, count))
     }
 
-    /// Compressed whole numbers: each is said by its difference from the one before.
+    /// Reads compressed integers, stored as differences from the previous one; returns them with the position after
+    /// them.
     pub(super) fn ints(&mut self, at: u64, count: u64) -> Result<(Vec<u32>, u64), HairFileError> {
         let codes = count.div_ceil(4);
-        // Where all differences are the common one, nothing follows the codes.
+        // If all differences equal the common one, no bytes follow the codes.
         let [least, most] = if count == 0 { [0; 2] } else { [4 + codes, 4 + codes + 4 * count] };
         let (packed, next) = self.unpacked(at, least, most)?;
         let mut out = Vec::with_capacity(count as usize);
@@ -66,7 +67,8 @@ impl<'a> CrateBytes<'a> {
         Ok((out, next))
     }
 
-    /// A compressed block, `least` to `most` bytes long when it is unpacked, and the place behind it.
+    /// Reads a compressed block that unpacks to between `least` and `most` bytes; returns it with the position after
+    /// it.
     pub(super) fn unpacked(
         &mut self,
         at: u64,
@@ -103,7 +105,7 @@ impl<'a> CrateBytes<'a> {
         Ok(u64_of(&self.bytes(at, 8, "bytes of a number")?))
     }
 
-    /// `count` bytes at `at`, where they are there.
+    /// `count` bytes at `at`, if the file contains them.
     pub(super) fn bytes(&mut self, at: u64, count: u64, what: &str) -> Result<Vec<u8>, HairFileError> {
         let length = self.source.len();
         if at.checked_add(count).is_none_or(|end| end > length) {

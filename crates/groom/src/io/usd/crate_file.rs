@@ -1,8 +1,9 @@
-//! A stage as a binary crate (<https://openusd.org/release/api/crate_file_8h_source.html>), read as far as it is needed.
+//! A stage in a binary crate (<https://openusd.org/release/api/crate_file_8h_source.html>), of which only the necessary
+//! parts are read.
 //!
-//! The `openusd` library writes our crates, and is not asked to read those of others: it takes counts and indices of a
-//! file as they are, so that a broken one makes it panic, allocate without bound or walk a tree for ever. Here
-//! every count is held against the bytes that are there, and every place of the tree of paths is visited once.
+//! The `openusd` library writes our crates but does not read those of others: it trusts the counts and indices of a
+//! file, so that a broken one makes it panic, allocate without limit or loop forever. Here every count is compared with
+//! the bytes of the file, and every entry of the path tree is visited once.
 
 use std::collections::HashMap;
 
@@ -13,21 +14,21 @@ use super::value::Value;
 use super::{HairFileError, Layer};
 use crate::io::source::Source;
 
-/// What a crate starts with.
+/// The first bytes of a crate.
 pub(super) const CRATE_MAGIC: &[u8] = b"PXR-USDC";
 
 const NOTHING: u32 = u32::MAX;
 
 const PRIM: u32 = 6;
 
-/// A node of the tree of paths.
+/// A node of the path tree.
 #[derive(Clone, Copy)]
 struct Node {
     parent: u32,
     /// Index of its name.
     token: u32,
     depth: u32,
-    /// Index of its first field among the fieldsets; [`NOTHING`] where it has no spec.
+    /// Index of its first field in the fieldsets; [`NOTHING`] without a spec.
     fieldset: u32,
     spec_type: u32,
 }
@@ -36,7 +37,7 @@ pub(super) struct CrateLayer<'a> {
     values: CrateValues<'a>,
     /// Token and value of each field.
     fields: Vec<(u32, u64)>,
-    /// Runs of fields, each ended by [`NOTHING`].
+    /// Runs of fields, each terminated by [`NOTHING`].
     fieldsets: Vec<u32>,
     nodes: Vec<Node>,
     /// Properties by their prim and name.
@@ -77,7 +78,7 @@ impl<'a> CrateLayer<'a> {
         }
         let mut section = |layer: &Self, name: &str| {
             sections.remove(name.as_bytes()).ok_or_else(|| {
-                layer.values.file.at(toc, "sections without it".to_owned(), &format!("a section {name}"))
+                layer.values.file.at(toc, "no such section".to_owned(), &format!("a section {name}"))
             })
         };
         let [tokens, fields, fieldsets, paths, specs] =
@@ -97,8 +98,8 @@ impl<'a> CrateLayer<'a> {
         if text.len() as u64 != length || text.last().is_some_and(|&byte| byte != 0) {
             return Err(self.values.file.at(
                 at,
-                format!("{} bytes of words", text.len()),
-                "as many as it says, and an end",
+                format!("{} bytes of tokens", text.len()),
+                "as many as stated, ending in a zero",
             ));
         }
         let words = text.strip_suffix(&[0]).unwrap_or(&text).split(|&byte| byte == 0);
@@ -106,7 +107,7 @@ impl<'a> CrateLayer<'a> {
         if !text.is_empty() && self.values.tokens.len() as u64 != count {
             return Err(self.values.file.at(
                 at,
-                format!("{} words", self.values.tokens.len()),
+                format!("{} tokens", self.values.tokens.len()),
                 &format!("{count}"),
             ));
         }
@@ -121,14 +122,14 @@ impl<'a> CrateLayer<'a> {
         Ok(())
     }
 
-    /// The tree of paths: each entry is followed by its children, and says how far its next sibling is.
+    /// Reads the path tree: each entry is followed by its children and states the distance to its next sibling.
     fn read_paths(&mut self, at: u64) -> Result<(), HairFileError> {
         let (start, count) = self.values.file.counted(at)?;
         let (start, encoded) = self.values.file.counted(start)?;
         let (indices, next) = self.values.file.ints(start, encoded)?;
         let (names, next) = self.values.file.ints(next, encoded)?;
         let (jumps, _) = self.values.file.ints(next, encoded)?;
-        let wrong = |what: &str| self.values.file.at(at, format!("a tree of paths with {what}"), "a tree");
+        let wrong = |what: &str| self.values.file.at(at, format!("a path tree with {what}"), "a tree");
         let empty = Node { parent: NOTHING, token: NOTHING, depth: 0, fieldset: NOTHING, spec_type: 0 };
         let mut nodes = vec![empty; count as usize];
         let mut visited = vec![false; indices.len()];
@@ -137,7 +138,7 @@ impl<'a> CrateLayer<'a> {
         while let Some((mut entry, mut parent)) = pending.pop() {
             loop {
                 if visited.get(entry).is_none_or(|&visited| visited) {
-                    return Err(wrong("a jump that leads nowhere new"));
+                    return Err(wrong("a jump to a missing or visited entry"));
                 }
                 visited[entry] = true;
                 let (node, name, jump) = (indices[entry], names[entry] as i32, jumps[entry] as i32);
@@ -179,19 +180,19 @@ impl<'a> CrateLayer<'a> {
             if fieldset as usize >= self.fieldsets.len() {
                 return Err(self.values.file.at(
                     at,
-                    format!("fields from {fieldset} on"),
-                    "fields that there are",
+                    format!("fields from index {fieldset}"),
+                    "an existing index",
                 ));
             }
             let Some(node) = self.nodes.get_mut(path as usize) else {
-                return Err(self.values.file.at(at, format!("path {path}"), "a path that there is"));
+                return Err(self.values.file.at(at, format!("path {path}"), "an existing path"));
             };
             (node.fieldset, node.spec_type) = (fieldset, spec_type);
         }
         Ok(())
     }
 
-    /// The value of a field of a spec, as it is kept.
+    /// The stored value of a field of a spec.
     fn field(&self, node: u32, name: &str) -> Option<u64> {
         let start = self.nodes.get(node as usize)?.fieldset as usize;
         let run = self.fieldsets.get(start..)?.iter().take_while(|&&field| field != NOTHING);
@@ -214,9 +215,9 @@ impl<'a> CrateLayer<'a> {
         })
     }
 
-    /// Whether a prim is defined and not switched off.
+    /// Whether a prim is defined and active.
     fn is_on(&mut self, node: u32) -> Result<bool, HairFileError> {
-        // `def`; `over` and `class` define nothing to draw.
+        // `def`; `over` and `class` define nothing that is drawn.
         let defined = self.field(node, "specifier").is_some_and(|value| value as u8 == 0);
         let active = match self.field(node, "active") {
             Some(value) => self.values.value(value, 1)? != Some(Value::Bool(false)),

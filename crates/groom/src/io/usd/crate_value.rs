@@ -1,4 +1,4 @@
-//! Values of a crate.
+//! Reads values of a crate.
 
 use glam::Vec3;
 
@@ -11,7 +11,7 @@ const IS_INLINED: u64 = 1 << 62;
 const IS_COMPRESSED: u64 = 1 << 61;
 const PAYLOAD: u64 = (1 << 48) - 1;
 
-/// Types of values, by their numbers in a crate.
+/// Value types by their numbers in a crate.
 mod kind {
     pub(super) const BOOL: u64 = 1;
     pub(super) const INT: u64 = 3;
@@ -30,7 +30,7 @@ mod kind {
     pub(super) const TIME_SAMPLES: u64 = 46;
 }
 
-/// A number that vectors and arrays are made of.
+/// The numbers that vectors and arrays consist of.
 #[derive(Clone, Copy)]
 enum Number {
     Half,
@@ -57,7 +57,7 @@ impl Number {
     }
 }
 
-/// The values of a crate: where they are, and what they refer to.
+/// Reads values of a crate, with the tokens that they refer to.
 pub(super) struct CrateValues<'a> {
     pub(super) file: CrateBytes<'a>,
     /// Version of the crate: major, minor, patch.
@@ -66,13 +66,13 @@ pub(super) struct CrateValues<'a> {
 }
 
 impl CrateValues<'_> {
-    /// The value of the first time sample; none where there is none.
+    /// The value of the first time sample; `None` without samples.
     pub(super) fn first_sample(&mut self, samples: u64) -> Result<Option<u64>, HairFileError> {
         if samples >> 48 & 0xff != kind::TIME_SAMPLES {
             return Ok(None);
         }
         let at = samples & PAYLOAD;
-        // Two relative jumps: to the times, and behind their value to the number of samples and their values.
+        // Two relative offsets: one to the times, and one after their value to the number of samples and their values.
         let times = at.wrapping_add(self.file.u64(at)?);
         let at = times.saturating_add(8);
         let values = at.wrapping_add(self.file.u64(at)?);
@@ -82,8 +82,8 @@ impl CrateValues<'_> {
         self.file.u64(values.saturating_add(8)).map(Some)
     }
 
-    /// Reads a value; none of a type that curves and transforms do not have. Arrays that are compressed have `most`
-    /// elements at most.
+    /// Reads a value; `None` for types that curves and transforms do not have. Compressed arrays may have at most
+    /// `most` elements.
     pub(super) fn value(&mut self, value: u64, most: usize) -> Result<Option<Value>, HairFileError> {
         let (is_array, is_inlined) = (value & IS_ARRAY != 0, value & IS_INLINED != 0);
         let (at, kind) = (value & PAYLOAD, value >> 48 & 0xff);
@@ -102,7 +102,7 @@ impl CrateValues<'_> {
             kind::FLOAT | kind::DOUBLE if is_inlined => {
                 Value::Numbers(vec![f64::from(f32::from_bits(inlined))])
             }
-            // Small whole components are inlined, a byte each; of a matrix its diagonal.
+            // Small integer components are inlined, one byte each; for a matrix only its diagonal.
             kind::VEC3D | kind::VEC3F | kind::VEC3H if is_inlined => {
                 Value::Numbers(inlined.to_le_bytes()[..3].iter().map(|&b| f64::from(b as i8)).collect())
             }
@@ -131,7 +131,7 @@ impl CrateValues<'_> {
         Ok(Value::Numbers(bytes.chunks_exact(number.size()).map(|bytes| number.of(bytes)).collect()))
     }
 
-    /// Kept with its real part last.
+    /// Quaternions are stored with the real part last.
     fn quaternion(&mut self, at: u64, number: Number) -> Result<Value, HairFileError> {
         let value = self.numbers(at, number, 4)?;
         let &[x, y, z, w] = value.numbers() else { return Ok(value) };
@@ -144,9 +144,9 @@ impl CrateValues<'_> {
         }
         let (count, start) = if is_array { self.length(at)? } else { (self.file.u64(at)?, at + 8) };
         if count > most as u64 {
-            return Err(self.file.at(at, format!("{count} words"), &format!("{most} at most")));
+            return Err(self.file.at(at, format!("{count} tokens"), &format!("{most} at most")));
         }
-        let indices = self.file.bytes(start, 4 * count, "bytes of words")?;
+        let indices = self.file.bytes(start, 4 * count, "bytes of tokens")?;
         let words = indices.as_chunks::<4>().0.iter().map(|&index| u32::from_le_bytes(index));
         Ok(Value::Tokens(
             words.map(|index| self.tokens.get(index as usize).cloned().unwrap_or_default()).collect(),
@@ -174,7 +174,7 @@ impl CrateValues<'_> {
         }
         let (number, per) = match kind {
             kind::HALF => (Number::Half, 1),
-            // Whole numbers are as long.
+            // Integers have the same size.
             kind::FLOAT | kind::INT => (Number::Float, 1),
             kind::DOUBLE => (Number::Double, 1),
             kind::VEC3H => (Number::Half, 3),
@@ -195,7 +195,7 @@ impl CrateValues<'_> {
         }))
     }
 
-    /// Numbers that are whole, or of few different values.
+    /// Reads compressed numbers: integers, or indices into a table of few values.
     fn packed_floats(&mut self, at: u64, count: u64, number: Number) -> Result<Value, HairFileError> {
         let code = self.file.bytes(at, 1, "byte that says how numbers are compressed")?[0];
         match code {
@@ -222,9 +222,9 @@ impl CrateValues<'_> {
         }
     }
 
-    /// The length of an array, and where its elements begin.
+    /// The length of an array, and the position of its elements.
     fn length(&mut self, at: u64) -> Result<(u64, u64), HairFileError> {
-        // Before version 0.5 the number of dimensions came first, which always was one.
+        // Before version 0.5 the number of dimensions came first; it was always one.
         let at = if self.version[1] < 5 { at + 4 } else { at };
         if self.version[1] < 7 {
             let four = self.file.bytes(at, 4, "bytes of a length")?;

@@ -1,8 +1,8 @@
-//! `BasisCurves` of a USD stage: text (`.usda`) and binary crates (`.usdc`), one file, its first time sample.
+//! `BasisCurves` of a USD stage, from text (`.usda`) and binary crates (`.usdc`): one file, its first time sample.
 //!
-//! A stage says its unit and its up axis, so the points come in metres with Y up, in the space of the stage: the
-//! transforms above each prim are applied. Cubic curves become polylines. References, payloads, sublayers and
-//! variants are not followed; a note says so.
+//! A stage states its unit and its up axis, so its points are read in metres with Y up, in the space of the stage: the
+//! transforms of all ancestors of a prim are applied. Cubic curves become polylines. References, payloads, sublayers
+//! and variants are ignored, and a note says so.
 
 mod basis;
 mod crate_bytes;
@@ -36,33 +36,34 @@ pub(super) static FORMAT: HairFormat = HairFormat {
     write: None,
 };
 
-/// What a text file starts with.
+/// The first bytes of a text file.
 const TEXT_MAGIC: &[u8] = b"#usda";
 
-/// The most points that curves are tessellated into.
+/// The most points of all polylines.
 const MOST_POINTS: usize = 1 << 28;
 
-/// What a stage of one file is asked for. Prims are numbers of the layer's own.
+/// The content of a stage in one file. Prims are numbers that the layer assigns.
 trait Layer {
-    /// The prims of type `BasisCurves`, in the order of their paths, without those that are off.
+    /// The active prims of type `BasisCurves`, in the order of their paths.
     fn curves(&mut self) -> Result<Vec<usize>, HairFileError>;
 
-    /// The prim above a prim.
+    /// The parent of a prim.
     fn parent(&self, prim: usize) -> Option<usize>;
 
     /// Path of a prim, for messages.
     fn path(&self, prim: usize) -> String;
 
-    /// Value of an attribute at its first time sample, else its default. `most` bounds compressed arrays.
+    /// Value of an attribute at its first time sample, otherwise its default. `most` limits the length of compressed
+    /// arrays.
     fn attribute(&mut self, prim: usize, name: &str, most: usize) -> Result<Option<Value>, HairFileError>;
 
-    /// How an attribute is spread over a prim, where it says so.
+    /// The interpolation of an attribute over a prim, if the file states it.
     fn interpolation(&mut self, prim: usize, name: &str) -> Result<Option<String>, HairFileError>;
 
-    /// A field of the stage.
+    /// A metadata field of the stage.
     fn metadata(&mut self, name: &str) -> Result<Option<Value>, HairFileError>;
 
-    /// Whether the file refers to others.
+    /// Whether the file refers to other files or to variants.
     fn composes(&self) -> bool;
 
     /// An error about this file.
@@ -111,7 +112,7 @@ fn read_layer(layer: &mut impl Layer) -> Result<RawHair, HairFileError> {
     Ok(raw)
 }
 
-/// Carries the stage to metres with Y up.
+/// The transform from the stage to metres with Y up.
 fn stage_transform(layer: &mut impl Layer, notes: &mut Vec<String>) -> Result<DMat4, HairFileError> {
     let metres = if let Some(value) = layer.metadata("metersPerUnit")? {
         let found = value.numbers().first().copied().unwrap_or(f64::NAN);
@@ -132,7 +133,7 @@ fn stage_transform(layer: &mut impl Layer, notes: &mut Vec<String>) -> Result<DM
 struct Curves {
     counts: Vec<u32>,
     points: Vec<Vec3>,
-    /// Width of each point, in each component.
+    /// Width of each point, repeated in each component.
     widths: Option<Vec<Vec3>>,
     colours: Option<Vec<Vec3>>,
 }
@@ -151,7 +152,7 @@ impl Curves {
             return Err(layer.malformed(found, "as many points as curveVertexCounts add up to"));
         }
         let counts: Vec<usize> = counts.iter().map(|&count| count as usize).collect();
-        let made: usize = counts.iter().map(|&count| shape.made_of(count)).sum();
+        let made: usize = counts.iter().map(|&count| shape.polyline_points(count)).sum();
         if made > MOST_POINTS {
             return Err(layer.malformed(format!("{path}: curves of {made} points"), "268435456 at most"));
         }
@@ -185,7 +186,7 @@ impl Curves {
         let widths = primvar(["widths", "primvars:widths"])?;
         let colours = primvar(["primvars:displayColor", "displayColor"])?;
         Ok(Self {
-            counts: counts.iter().map(|&count| shape.made_of(count) as u32).collect(),
+            counts: counts.iter().map(|&count| shape.polyline_points(count) as u32).collect(),
             points: shape.spread(Spread::Vertex, &points, &counts),
             widths,
             colours,
@@ -193,7 +194,7 @@ impl Curves {
     }
 }
 
-/// From linear sRGB, which a stage has, to display values, which hair files have.
+/// From linear sRGB, as in USD, to display values, as in hair files.
 fn display(colour: Vec3) -> [f32; 3] {
     colour.to_array().map(|v| {
         let v = v.clamp(0.0, 1.0);

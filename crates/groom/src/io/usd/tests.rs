@@ -5,7 +5,7 @@ use openusd::usdc::CrateWriter;
 use super::super::{HairFile, HairFileError, load_hair_bytes};
 use super::*;
 
-/// Two prims below transforms, in centimetres with Z up; the first one moves.
+/// Two prims with transforms above them, in centimetres with Z up; the first one is animated.
 const STAGE: &str = r#"#usda 1.0
 (
     defaultPrim = "World"
@@ -81,16 +81,16 @@ fn text_and_crate_are_read_alike_with_unit_axis_transforms_and_the_first_time() 
     assert_eq!(text, binary);
     assert_eq!(text.format, FORMAT.label);
     assert_eq!(text.strands(), 3);
-    // Time 3: (0, 0, 1) twice as large, at (10, 0, 100) cm with Z up: 1.02 m high.
+    // Time 3: (0, 0, 1) at twice the size, at (10, 0, 100) cm with Z up: 1.02 m high.
     let near = |a: Vec3, b: [f32; 3]| assert!(a.abs_diff_eq(b.into(), 1e-6), "{a} for {b:?}");
     near(text.strand(0)[0], [0.1, 1.02, 0.0]);
     near(text.strand(0)[1], [0.1, 1.04, 0.0]);
     near(text.strand(1)[2], [0.12, 1.02, -0.02]);
-    // The second prim stands on its own: y turns to z, which is up.
+    // The second prim resets its ancestors' transforms: y turns to z, which is up.
     assert_eq!(text.strand(2).len(), 9);
     near(text.strand(2)[8], [0.0, 0.03, 0.0]);
     let widths = text.thickness.expect("widths");
-    // Half a unit wide, twice as large, a centimetre each; then varying from end to end.
+    // Half a unit wide at twice the size, in centimetres; then varying from end to end.
     assert!((widths[0] - 0.01).abs() < 1e-7 && (widths[2] - 0.005).abs() < 1e-7, "{widths:?}");
     assert!((widths[5] - 0.01).abs() < 1e-7 && (widths[13] - 0.005).abs() < 1e-7, "{widths:?}");
     let colours = text.colours.expect("colours");
@@ -98,7 +98,7 @@ fn text_and_crate_are_read_alike_with_unit_axis_transforms_and_the_first_time() 
 }
 
 #[test]
-fn what_contradicts_itself_is_refused_in_words() {
+fn contradictory_files_are_refused_with_a_reason() {
     for (from, to, wanted) in [
         ("[2, 3]", "[2, 4]", "5 points in 2 curves"),
         ("[2, 3]", "[2, 2147483647]", "5 points in 2 curves"),
@@ -133,7 +133,7 @@ fn odd_values_are_left_out_with_a_note() {
 }
 
 #[test]
-fn text_that_would_end_the_program_is_refused() {
+fn text_that_would_abort_the_program_is_refused() {
     let deep = format!("#usda 1.0\ndef \"a\" ( customData = {} )", "{ dictionary a = ".repeat(100_000));
     let many = format!("#usda 1.0\ndef \"a\" {{\n{}}}", "int a = 1\n".repeat(200_000));
     let hidden = format!("#usda 1.0\n{}", "def \"a\" { # }\n".repeat(100_000));

@@ -1,4 +1,4 @@
-//! A stage as text, parsed by the `openusd` library.
+//! A stage in a text file, parsed by the `openusd` library.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -12,9 +12,9 @@ use super::transform::DEEPEST;
 use super::value::{Value, half};
 use super::{HairFileError, Layer};
 
-/// The longest text: parsed, it takes some times as much memory.
+/// The longest text; parsing needs several times as much memory.
 const LONGEST: usize = 512 << 20;
-/// The most statements. The library looks through all names of a prim for every one that it adds.
+/// The most statements. The library searches all names of a prim for each one that it adds.
 const MOST_STATEMENTS: usize = 100_000;
 
 pub(super) struct TextLayer {
@@ -39,10 +39,11 @@ impl TextLayer {
             ));
         }
         let text = std::str::from_utf8(bytes)
-            .map_err(|error| malformed(error.valid_up_to(), "bytes that are no text".to_owned(), "UTF-8"))?;
+            .map_err(|error| malformed(error.valid_up_to(), "bytes that are not text".to_owned(), "UTF-8"))?;
         check(text).map_err(|(offset, found, wanted)| malformed(offset, found, wanted))?;
         let mut parser = Parser::new(text);
-        // What could end the program was looked for above. A fault of the library that is left becomes an error here.
+        // Input that could abort the program was rejected above. Any remaining panic of the library becomes an error
+        // here.
         let parsed = catch_unwind(AssertUnwindSafe(|| parser.parse()));
         let found = match parsed {
             Ok(Ok(specs)) => {
@@ -56,7 +57,7 @@ impl TextLayer {
                 return Ok(Self { name: name.to_owned(), data, prims });
             }
             Ok(Err(error)) => format!("{error:#}").split_whitespace().collect::<Vec<_>>().join(" "),
-            Err(_) => "text that the reader does not understand".to_owned(),
+            Err(_) => "text that cannot be parsed".to_owned(),
         };
         let line = parser.last_error_highlight().map_or(1, |highlight| highlight.line);
         let offset = text.split_inclusive('\n').take(line - 1).map(str::len).sum();
@@ -73,7 +74,8 @@ impl TextLayer {
     }
 }
 
-/// Looks for what the library's parser has no limit for: nesting, which it follows on the stack, and statements.
+/// Checks what the library's parser does not limit: nesting, which it follows recursively, and the number of
+/// statements.
 fn check(text: &str) -> Result<(), (usize, String, &'static str)> {
     let (mut depth, mut statements) = (0_usize, 0_usize);
     for (token, span) in Token::lexer(text).spanned() {
@@ -84,11 +86,7 @@ fn check(text: &str) -> Result<(), (usize, String, &'static str)> {
             _ => {}
         }
         if depth > DEEPEST {
-            return Err((
-                span.start,
-                format!("brackets in more than {DEEPEST} brackets"),
-                "a stage that is less deep",
-            ));
+            return Err((span.start, format!("more than {DEEPEST} nested brackets"), "less nesting"));
         }
         if statements > MOST_STATEMENTS {
             return Err((
@@ -166,7 +164,7 @@ fn value_of(value: &Sdf) -> Option<Value> {
     let vector = |x: f64, y: f64, z: f64| Vec3::new(x as f32, y as f32, z as f32);
     Some(match value {
         Sdf::Token(token) => Value::Token(token.as_str().to_owned()),
-        // Metadata without a type is read as a string.
+        // Metadata without a type is a string.
         Sdf::String(text) => Value::Token(text.clone()),
         Sdf::TokenVec(tokens) => {
             Value::Tokens(tokens.iter().map(|token| token.as_str().to_owned()).collect())

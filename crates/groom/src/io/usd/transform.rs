@@ -1,16 +1,16 @@
-//! Where a prim stands in its stage.
+//! The transform of a prim in its stage.
 
 use glam::{DMat4, DQuat, DVec3};
 
 use super::{HairFileError, Layer, Value};
 
-/// The most prims above each other.
+/// The deepest nesting of prims.
 pub(super) const DEEPEST: usize = 128;
 
-/// The most operations of one prim.
+/// The most transform operations of one prim.
 const MOST_OPS: usize = 256;
 
-/// Carries a prim's own space to the stage: its operations and those of all prims above it.
+/// The transform from a prim's own space to the stage: its operations and those of all its ancestors.
 pub(super) fn to_stage(layer: &mut impl Layer, prim: usize) -> Result<DMat4, HairFileError> {
     let mut transform = DMat4::IDENTITY;
     let mut at = Some(prim);
@@ -31,7 +31,7 @@ pub(super) fn to_stage(layer: &mut impl Layer, prim: usize) -> Result<DMat4, Hai
     Ok(transform)
 }
 
-/// The operations of one prim, and whether they stand for those above it too.
+/// The transform operations of one prim, and whether they reset the transforms of its ancestors.
 fn own(layer: &mut impl Layer, prim: usize) -> Result<(DMat4, bool), HairFileError> {
     let order = layer.attribute(prim, "xformOpOrder", MOST_OPS)?.map_or_else(Vec::new, Value::into_tokens);
     let (mut transform, mut resets) = (DMat4::IDENTITY, false);
@@ -45,14 +45,14 @@ fn own(layer: &mut impl Layer, prim: usize) -> Result<(DMat4, bool), HairFileErr
         let kind = name.strip_prefix("xformOp:").unwrap_or(name).split(':').next().unwrap_or_default();
         let Some(matrix) = matrix(kind, value.numbers()) else {
             let found = format!("{}: {name} of {} numbers", layer.path(prim), value.numbers().len());
-            return Err(layer.malformed(found, "an operation of USD"));
+            return Err(layer.malformed(found, "a USD transform operation"));
         };
         transform *= if inverted { matrix.inverse() } else { matrix };
     }
     Ok((transform, resets))
 }
 
-/// The matrix of one operation, for columns; none of what is no operation.
+/// The matrix of one operation, for column vectors; `None` for an unknown operation.
 fn matrix(kind: &str, numbers: &[f64]) -> Option<DMat4> {
     Some(match (kind, numbers) {
         ("translate", &[x, y, z]) => DMat4::from_translation(DVec3::new(x, y, z)),
@@ -67,11 +67,11 @@ fn matrix(kind: &str, numbers: &[f64]) -> Option<DMat4> {
         ("rotateY", &[degrees]) => DMat4::from_rotation_y(degrees.to_radians()),
         ("rotateZ", &[degrees]) => DMat4::from_rotation_z(degrees.to_radians()),
         ("orient", &[w, x, y, z]) => DMat4::from_quat(DQuat::from_xyzw(x, y, z, w).normalize()),
-        // USD multiplies rows, so that its rows are the columns here.
+        // USD uses row vectors, so its rows are the columns here.
         ("transform", numbers) => DMat4::from_cols_array(numbers.first_chunk::<16>()?),
         (kind, &[x, y, z]) => {
             let order = kind.strip_prefix("rotate").filter(|order| order.len() == 3)?;
-            // The first one named is the first one done.
+            // The rotation that is named first is applied first.
             order.chars().try_fold(DMat4::IDENTITY, |done, axis| {
                 Some(
                     match axis {
@@ -95,7 +95,7 @@ mod tests {
     fn rotations_are_done_in_the_order_of_their_name() {
         let turned =
             |kind| matrix(kind, &[90.0, 90.0, 0.0]).expect("an operation").transform_point3(DVec3::Y);
-        // X carries y to z, then Y carries z to x; the other way round Y leaves y, and X carries it to z.
+        // X maps y to z, then Y maps z to x. In the opposite order Y leaves y, and X maps it to z.
         assert!(turned("rotateXYZ").abs_diff_eq(DVec3::X, 1e-12));
         assert!(turned("rotateYXZ").abs_diff_eq(DVec3::Z, 1e-12));
         assert_eq!(matrix("rotateXYW", &[0.0; 3]), None);

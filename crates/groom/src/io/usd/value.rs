@@ -1,17 +1,17 @@
-//! Values of attributes, as far as curves and transforms have them.
+//! Values of attributes that curves and transforms have.
 
 use glam::Vec3;
 
-/// A value.
+/// A value of an attribute.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Value {
-    /// A word.
+    /// A token.
     Token(String),
-    /// Words.
+    /// An array of tokens.
     Tokens(Vec<String>),
-    /// Whether.
+    /// A boolean.
     Bool(bool),
-    /// An array of whole numbers.
+    /// An array of integers.
     Ints(Vec<i32>),
     /// One number, or the components of one vector, quaternion (w first) or matrix (row after row).
     Numbers(Vec<f64>),
@@ -50,7 +50,7 @@ impl Value {
         }
     }
 
-    /// Vectors, or numbers in each component of one.
+    /// Vectors, or numbers repeated in each component of a vector.
     pub(super) fn into_vectors(self) -> Vec<Vec3> {
         match self {
             Self::Vectors(vectors) => vectors,
@@ -65,7 +65,7 @@ impl Value {
     }
 }
 
-/// The number that 16 bits stand for (IEEE 754 binary16).
+/// Converts a half-precision number (IEEE 754 binary16).
 pub(super) fn half(bits: u16) -> f32 {
     let sign = if bits & 0x8000 == 0 { 1.0 } else { -1.0 };
     let (exponent, fraction) = (i32::from(bits >> 10 & 0x1f), f32::from(bits & 0x3ff));
@@ -82,7 +82,7 @@ mod tests {
     use super::half;
 
     #[test]
-    fn halves_are_what_their_bits_say() {
+    fn half_precision_numbers_are_converted() {
         for (bits, value) in [
             (0, 0.0),
             (0x3c00, 1.0),
