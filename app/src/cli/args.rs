@@ -188,9 +188,9 @@ pub(crate) struct Compare {
     /// A pixel whose hair is probed; may be given several times. Some are chosen where none is given.
     #[arg(long, value_name = "X,Y", value_parser = pixel)]
     pub(crate) probe: Vec<[u32; 2]>,
-    /// Draws that a time is the median of, 30 to 1000.
-    #[arg(long, default_value_t = lovelock_study::batch::CompareRequest::LEAST_DRAWS,
-        value_parser = clap::value_parser!(u32).range(30..=1000))]
+    /// Number of draws per time measurement, 1 to 1000. Times of fewer than 30 draws are rough.
+    #[arg(long, default_value_t = lovelock_study::batch::CompareRequest::DEFAULT_DRAWS,
+        value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) draws: u32,
 }
 

@@ -6,6 +6,9 @@ use indicatif::{ProgressBar, ProgressStyle};
 use lovelock_session::clock::Pace;
 use lovelock_session::progress::Progress;
 
+/// Steps per frame from which the simulation takes longer than is obvious from the frame count: below 20 frames per second.
+const MANY_STEPS: u32 = 4;
+
 /// Progress on standard error: a bar on a terminal, plain lines elsewhere.
 pub(super) struct Bar {
     drawn: Option<ProgressBar>,
@@ -35,7 +38,7 @@ impl Bar {
                 return;
             }
             Progress::Simulating { done, total } => ("simulating", *done, *total),
-            Progress::Frame { done, total } => ("frame", *done, *total),
+            Progress::Frame { done, total, .. } => ("frame", *done, *total),
             Progress::Kept { done, total } => ("kept", *done, *total),
             Progress::Comparing { what, done, total } => {
                 if self.drawn.is_none() && self.part != *what {
@@ -49,6 +52,7 @@ impl Bar {
         // Told from what was done at the same work: frames that are there already take no time.
         let left = self.pace.left_secs(what, done, total);
         let left = left.map_or_else(String::new, |secs| format!(", {} left", Pace::in_words(secs)));
+        let left = format!("{}{left}", self.steps(progress));
         if let Some(bar) = &self.drawn {
             bar.set_prefix(left);
             bar.set_length(total.max(1));
@@ -61,6 +65,18 @@ impl Bar {
         if matches!(progress, Progress::Frame { .. }) && tenth != self.said {
             self.said = tenth;
             eprintln!("{what} {done} of {total}{left}");
+        }
+    }
+
+    /// For recordings with many simulation steps per frame: their number, and the simulated steps per second.
+    fn steps(&self, progress: &Progress) -> String {
+        match progress {
+            Progress::Frame { done, steps_per_frame, .. } if *steps_per_frame >= MANY_STEPS => {
+                let rate = self.pace.per_sec(*done).map(|frames| frames * f64::from(*steps_per_frame));
+                let rate = rate.map_or_else(String::new, |rate| format!(", {rate:.0} steps per second"));
+                format!(" ({steps_per_frame} simulated steps per frame{rate})")
+            }
+            _ => String::new(),
         }
     }
 

@@ -3,14 +3,14 @@
 use std::ops::ControlFlow;
 
 use lovelock_jobs::bench::{BenchRequest, bench};
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 use lovelock_project::files::write_whole;
 
 use super::args::Bench;
 use super::output::Output;
 
 /// Measures, and tells the numbers.
-pub(crate) fn run(task: &Bench, output: Output) -> Result<(), StudioError> {
+pub(crate) fn run(task: &Bench, output: Output) -> Result<(), ProjectError> {
     let mut request = BenchRequest {
         frames: task.frames,
         size: task.size,
@@ -29,7 +29,7 @@ pub(crate) fn run(task: &Bench, output: Output) -> Result<(), StudioError> {
         let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty());
         if out.is_dir() || folder.is_some_and(|folder| !folder.is_dir()) {
             let message = format!("{}: expected a file in a folder that is there", out.display());
-            return Err(StudioError::input(out, message));
+            return Err(ProjectError::input(out, message));
         }
     }
     let report = bench(&request, &mut |what| {

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::ops::Range;
 
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 use lovelock_study::batch::CompareRequest;
 use lovelock_study::report::{CompareReport, MethodReport};
 
@@ -12,7 +12,7 @@ use super::output::Output;
 use super::source::Source;
 
 /// Compares methods and writes a report.
-pub(crate) fn run(task: &Compare, output: Output) -> Result<(), StudioError> {
+pub(crate) fn run(task: &Compare, output: Output) -> Result<(), ProjectError> {
     let one = task.frame.map(one_frame).transpose()?;
     let mut scene = Source::open(&task.source)?;
     let request = CompareRequest {
@@ -39,10 +39,10 @@ pub(crate) fn run(task: &Compare, output: Output) -> Result<(), StudioError> {
 ///
 /// # Errors
 /// The last number that there is: no range can end behind it, and no clip is so long.
-fn one_frame(frame: u64) -> Result<Range<u64>, StudioError> {
+fn one_frame(frame: u64) -> Result<Range<u64>, ProjectError> {
     let end = frame.checked_add(1);
     let end = end
-        .ok_or_else(|| StudioError::option(format!("frame {frame} is outside the clip: none is so long")))?;
+        .ok_or_else(|| ProjectError::option(format!("frame {frame} is outside the clip: none is so long")))?;
     Ok(frame..end)
 }
 

@@ -1,13 +1,13 @@
 //! `lovelock convert`.
 
 use lovelock_jobs::convert::convert;
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 
 use super::args::Convert;
 use super::output::Output;
 
 /// Writes hair in another format.
-pub(crate) fn run(task: &Convert, output: Output) -> Result<(), StudioError> {
+pub(crate) fn run(task: &Convert, output: Output) -> Result<(), ProjectError> {
     let report = convert(&task.input, &task.out, task.unit, task.up)?;
     output.result(&report, || {
         let lines: Vec<String> = report.notes.iter().map(|note| format!("\n{note}")).collect();

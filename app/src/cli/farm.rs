@@ -1,14 +1,14 @@
 //! `lovelock farm` and `lovelock assemble`.
 
 use lovelock_jobs::farm::{FarmReport, FarmRequest, assemble, farm};
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 
 use super::args::{Assemble, Farm};
 use super::output::Output;
 use super::source::Source;
 
 /// Writes the folder of a job for many machines.
-pub(crate) fn run(task: &Farm, output: Output) -> Result<(), StudioError> {
+pub(crate) fn run(task: &Farm, output: Output) -> Result<(), ProjectError> {
     let mut scene = Source::open(&task.source)?;
     let request = FarmRequest {
         out: task.out.clone(),
@@ -23,7 +23,7 @@ pub(crate) fn run(task: &Farm, output: Output) -> Result<(), StudioError> {
 }
 
 /// Puts drawn parts together.
-pub(crate) fn run_assemble(task: &Assemble, output: Output) -> Result<(), StudioError> {
+pub(crate) fn run_assemble(task: &Assemble, output: Output) -> Result<(), ProjectError> {
     let report = assemble(&task.parts, task.frames.clone(), &task.out)?;
     let json = serde_json::json!({
         "out": report.folder.display().to_string(),

@@ -1,12 +1,12 @@
 //! `lovelock info`.
 
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 
 use super::args::Info;
 use super::output::Output;
 
 /// Says what a file holds.
-pub(crate) fn run(task: &Info, output: Output) -> Result<(), StudioError> {
+pub(crate) fn run(task: &Info, output: Output) -> Result<(), ProjectError> {
     let info = lovelock_jobs::info::info(&task.file)?;
     output.result(&info, || info.to_string())
 }

@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 use serde::Serialize;
 
 /// How results and errors are told.
@@ -18,17 +18,17 @@ impl Output {
         self,
         value: &T,
         text: impl FnOnce() -> String,
-    ) -> Result<(), StudioError> {
+    ) -> Result<(), ProjectError> {
         use std::io::Write;
         let text =
-            if self.json { serde_json::to_string_pretty(value).map_err(StudioError::work)? } else { text() };
+            if self.json { serde_json::to_string_pretty(value).map_err(ProjectError::work)? } else { text() };
         // A reader that closes the pipe early has seen what it wanted.
         let _ = writeln!(std::io::stdout(), "{}", text.trim_end());
         Ok(())
     }
 
     /// Tells an error, and the exit status that belongs to it.
-    pub(crate) fn fail(self, error: &StudioError) -> ExitCode {
+    pub(crate) fn fail(self, error: &ProjectError) -> ExitCode {
         eprintln!("lovelock: {error}");
         if self.json {
             println!("{}", error.to_json());
@@ -38,6 +38,6 @@ impl Output {
 
     /// Tells that the command line is wrong.
     pub(crate) fn refuse(self, message: &str) -> ExitCode {
-        self.fail(&StudioError::option(message))
+        self.fail(&ProjectError::option(message))
     }
 }

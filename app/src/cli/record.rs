@@ -4,7 +4,7 @@ use lovelock_jobs::record::{
     CurveRecordReport, RecordReport, RecordRequest, TakeRecordReport, is_curves, is_take, record_curves,
     record_take,
 };
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 use lovelock_session::health::{Gauge, HealthLevel};
 use lovelock_session::stats::Stage;
 
@@ -13,7 +13,7 @@ use super::output::Output;
 use super::source::Source;
 
 /// Simulates and draws a project's dance.
-pub(crate) fn run(task: &Record, output: Output) -> Result<(), StudioError> {
+pub(crate) fn run(task: &Record, output: Output) -> Result<(), ProjectError> {
     let mut scene = Source::open(&task.source)?;
     let panes = (!task.beside.is_empty()).then(|| scene.beside(&task.beside)).transpose()?;
     let request = RecordRequest {
@@ -46,7 +46,7 @@ pub(crate) fn run(task: &Record, output: Output) -> Result<(), StudioError> {
     for (given, option) in [(request.curves.is_some(), "--curves"), (request.no_body, "--no-body")] {
         if given {
             let out = request.out.display();
-            return Err(StudioError::option(format!(
+            return Err(ProjectError::option(format!(
                 "{option}: {out} holds no curves; wanted a name ending in .usdc, .usd, .usda or .glb"
             )));
         }

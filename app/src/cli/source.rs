@@ -7,7 +7,7 @@ use lovelock_groom::Preset;
 use lovelock_jobs::info::FileKind;
 use lovelock_panes::sheet::Sheet;
 use lovelock_project::Project;
-use lovelock_project::error::{Place, Problem, StudioError};
+use lovelock_project::error::{Place, Problem, ProjectError};
 use lovelock_project::files::{Access, FileRef};
 use lovelock_project::project::{CompareSection, Contender, load_project_with};
 use lovelock_session::progress::Progress;
@@ -28,7 +28,7 @@ pub(super) struct Source {
 
 impl Source {
     /// Reads the project and puts into it what is named beside it.
-    pub(super) fn open(task: &SourceArguments) -> Result<Self, StudioError> {
+    pub(super) fn open(task: &SourceArguments) -> Result<Self, ProjectError> {
         let mut access = Access::new();
         let (mut project, problems) = match &task.project {
             Some(path) if matches!(FileKind::of(path), Ok(FileKind::Take)) => {
@@ -61,7 +61,7 @@ impl Source {
             let Some(path) = path else { continue };
             // A file that is named here is wanted: without it there is nothing to do.
             if !path.is_file() {
-                return Err(StudioError::input(path, format!("{}: there is no such file", path.display())));
+                return Err(ProjectError::input(path, format!("{}: there is no such file", path.display())));
             }
             access.pick(path);
             names.push(file_name(path));
@@ -80,11 +80,11 @@ impl Source {
     }
 
     /// Puts takes beside the project, a pane each; returns how the panes are put together.
-    pub(super) fn beside(&mut self, takes: &[PathBuf]) -> Result<Sheet, StudioError> {
+    pub(super) fn beside(&mut self, takes: &[PathBuf]) -> Result<Sheet, ProjectError> {
         let most = CompareSection::MOST_PANES - 1;
         if takes.len() > most {
             let found = takes.len();
-            return Err(StudioError::option(format!("--beside: {found} takes; at most {most} have room")));
+            return Err(ProjectError::option(format!("--beside: {found} takes; at most {most} have room")));
         }
         let own = Contender::of(&self.project);
         let mut panes = vec![own.clone()];
@@ -97,7 +97,7 @@ impl Source {
                         take.display(),
                         kind.label()
                     );
-                    return Err(StudioError::input(take, message));
+                    return Err(ProjectError::input(take, message));
                 }
             }
             self.access.pick(take);
@@ -110,8 +110,8 @@ impl Source {
     /// Does the work with its progress shown.
     pub(super) fn watched<T>(
         &self,
-        work: impl FnOnce(&Project, &mut dyn FnMut(Progress) -> ControlFlow<()>) -> Result<T, StudioError>,
-    ) -> Result<T, StudioError> {
+        work: impl FnOnce(&Project, &mut dyn FnMut(Progress) -> ControlFlow<()>) -> Result<T, ProjectError>,
+    ) -> Result<T, ProjectError> {
         let mut bar = Bar::new();
         let mut refused = None;
         let result = work(&self.project, &mut |progress| {
@@ -119,7 +119,7 @@ impl Source {
                 // A file that the project names is replaced, and said so; one that is named here is not.
                 for problem in problems.iter().filter(|problem| problem.is_failure()) {
                     if let Some((_, path)) = self.named.iter().find(|(place, _)| *place == problem.place) {
-                        refused = Some(StudioError::input(path, problem.cause.clone()));
+                        refused = Some(ProjectError::input(path, problem.cause.clone()));
                         return ControlFlow::Break(());
                     }
                 }
@@ -138,10 +138,10 @@ fn allow(
     project: &Project,
     take: &Path,
     access: &mut Access,
-) -> Result<(), StudioError> {
+) -> Result<(), ProjectError> {
     let refused = |option: &str| {
         let take = take.display();
-        StudioError::option(format!(
+        ProjectError::option(format!(
             "{option}: {take} plays as it was recorded, and this is not what it was recorded with; leave the option out"
         ))
     };
@@ -163,10 +163,10 @@ fn allow(
     Ok(())
 }
 
-fn preset(id: &str) -> Result<Preset, StudioError> {
+fn preset(id: &str) -> Result<Preset, ProjectError> {
     Preset::from_id(id).ok_or_else(|| {
         let known: Vec<_> = Preset::ALL.iter().map(|preset| preset.id()).collect();
-        StudioError::option(format!(
+        ProjectError::option(format!(
             "--preset: unknown hairstyle `{id}`: expected one of {}",
             known.join(", ")
         ))

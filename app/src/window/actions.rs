@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use lovelock_groom::Preset;
 use lovelock_jobs::info::FileKind;
 use lovelock_project::Project;
-use lovelock_project::error::{Problem, StudioError};
+use lovelock_project::error::{Problem, ProjectError};
 use lovelock_project::files::Access;
 use lovelock_project::project::{CameraMode, CameraSection, Marker, TimelineSection, load_project_with};
 use lovelock_record as recording;
@@ -26,7 +26,7 @@ pub(super) struct Opened {
 }
 
 /// Opens what the command line names.
-pub(super) fn open_for_start(path: &Path) -> Result<Opened, StudioError> {
+pub(super) fn open_for_start(path: &Path) -> Result<Opened, ProjectError> {
     let kind = FileKind::of(path)?;
     let mut opened = Opened {
         project: Project::default(),

@@ -37,7 +37,7 @@ use compare::{Compare, CompareLayout};
 use gesture::Gestures;
 use lovelock_project::Project;
 use lovelock_project::animation::{Moment, Overdub};
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 use lovelock_project::files::Access;
 use lovelock_project::history::History;
 use lovelock_session::health::Gauge;
@@ -120,7 +120,7 @@ pub(crate) fn open(
     path: Option<&Path>,
     panes: bool,
     screenshot: Option<(PathBuf, f64)>,
-) -> Result<(), StudioError> {
+) -> Result<(), ProjectError> {
     // A file that cannot be opened is an error of the command line: no window is needed to say so.
     let opened = path.map(actions::open_for_start).transpose()?;
     let options = eframe::NativeOptions {
@@ -145,7 +145,7 @@ pub(crate) fn open(
         }),
     )
     .map_err(|error| {
-        StudioError::work(format!(
+        ProjectError::work(format!(
             "the window could not be opened: {error}; without a display use `lovelock record`"
         ))
     })
@@ -156,7 +156,7 @@ impl Window {
         creation: &eframe::CreationContext,
         opened: Option<actions::Opened>,
         picture: Option<(PathBuf, f64)>,
-    ) -> Result<Self, StudioError> {
+    ) -> Result<Self, ProjectError> {
         let ctx = &creation.egui_ctx;
         egui_material_icons::initialize(ctx);
         theme::apply(ctx);
@@ -172,7 +172,7 @@ impl Window {
         ctx: &egui::Context,
         layout: Layout,
         opened: Option<actions::Opened>,
-    ) -> Result<Self, StudioError> {
+    ) -> Result<Self, ProjectError> {
         let mut access = Access::new();
         let (project, project_path, problems) = match opened {
             Some(opened) => {

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, TryRecvError, sync_channel};
 
 use egui::{Modal, RichText};
+use lovelock_base::clock::Stopwatch;
 use lovelock_jobs::info::FileKind;
 use lovelock_project::project::PROJECT_EXTENSION;
-use lovelock_session::clock::Stopwatch;
 
 use super::theme;
 

@@ -78,7 +78,7 @@ impl Recorder {
                 Progress::Simulating { done, total } => {
                     ("Simulating up to the first frame".to_owned(), done, total)
                 }
-                Progress::Frame { done, total } => ("Frame".to_owned(), done, total),
+                Progress::Frame { done, total, .. } => ("Frame".to_owned(), done, total),
                 Progress::Kept { done, total } => ("Kept".to_owned(), done, total),
                 Progress::Comparing { what, done, total } => (what, done, total),
                 Progress::Finishing => ("Finishing".to_owned(), 1, 1),

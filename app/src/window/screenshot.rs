@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use egui::ViewportCommand;
+use lovelock_base::clock::Stopwatch;
 use lovelock_record as recording;
-use lovelock_session::clock::Stopwatch;
 
 /// Takes a picture of the window some seconds after the first hair is on the screen, and closes it.
 pub(crate) struct Screenshot {

@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use lovelock_panes::live::Live;
 use lovelock_project::Project;
-use lovelock_project::error::{Place, Problem, StudioError};
+use lovelock_project::error::{Place, Problem, ProjectError};
 use lovelock_project::files::Access;
-use lovelock_session::render_thread::{PaintRequest, Painted, Painter};
+use lovelock_session::render_thread::{RenderRequest, RenderThread, RenderedImage};
 use lovelock_session::scene::Scene;
 use lovelock_session::snapshot::FrameSnapshot;
 use lovelock_session::stats::{PassHistory, StageHistory};
@@ -21,7 +21,7 @@ const PLOTTED_FRAMES: usize = 240;
 /// The engine's threads, and what they left last.
 pub(crate) struct Session {
     worker: Worker,
-    painter: Painter,
+    painter: RenderThread,
     live: Live,
     access: Access,
     /// What was last handed to the simulation.
@@ -32,7 +32,7 @@ pub(crate) struct Session {
     seen_notices: u64,
     pub(crate) scene: Option<Arc<Scene>>,
     pub(crate) frame: Option<Arc<FrameSnapshot>>,
-    pub(crate) painted: Option<Arc<Painted>>,
+    pub(crate) painted: Option<Arc<RenderedImage>>,
     pub(crate) problems: Vec<Problem>,
     pub(crate) hair: hair::Loaded,
     pub(crate) body: body::Loaded,
@@ -60,13 +60,13 @@ impl Session {
         project: &Arc<Project>,
         access: Access,
         ctx: &egui::Context,
-    ) -> Result<Self, StudioError> {
+    ) -> Result<Self, ProjectError> {
         let wake = ctx.clone();
-        let painter = Painter::start(move || wake.request_repaint())
-            .map_err(|error| StudioError::work(format!("no thread to draw on: {error}")))?;
+        let painter = RenderThread::start(move || wake.request_repaint())
+            .map_err(|error| ProjectError::work(format!("no thread to draw on: {error}")))?;
         let wake = ctx.clone();
         let live = Live::start(move || wake.request_repaint())
-            .map_err(|error| StudioError::work(format!("no thread to compare on: {error}")))?;
+            .map_err(|error| ProjectError::work(format!("no thread to compare on: {error}")))?;
         // While a picture is drawn, its end will repaint the window: a repaint for every step of the simulation
         // would take the processor from the drawing.
         let (wake, busy) = (ctx.clone(), [painter.busy(), live.busy()]);
@@ -110,7 +110,7 @@ impl Session {
     }
 
     /// What draws.
-    pub(crate) fn painter(&self) -> &Painter {
+    pub(crate) fn painter(&self) -> &RenderThread {
         &self.painter
     }
 
@@ -206,7 +206,7 @@ impl Session {
         if let Some(frame) = self.worker.frame() {
             self.frame = Some(frame);
         }
-        if let Some(painted) = self.painter.painted().newer_than(&mut self.seen_painted) {
+        if let Some(painted) = self.painter.images().newer_than(&mut self.seen_painted) {
             self.stages.push(painted.times);
             self.passes.push(&painted.stats.passes);
             self.painted = Some(painted);
@@ -233,7 +233,7 @@ impl Session {
             Arc::ptr_eq(drawn, seen) && Arc::ptr_eq(drawn_frame, frame) && *drawn_size == size
         });
         if !fresh && size[0] > 0 && size[1] > 0 {
-            self.painter.request(PaintRequest {
+            self.painter.request(RenderRequest {
                 project: Arc::clone(seen),
                 snapshot: Arc::clone(frame),
                 width: size[0],

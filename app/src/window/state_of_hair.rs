@@ -4,7 +4,7 @@ use egui::Ui;
 use lovelock_project::Project;
 use lovelock_session::clock::STEP_SECS;
 use lovelock_session::health::Gauge;
-use lovelock_session::render_thread::Painted;
+use lovelock_session::render_thread::RenderedImage;
 use lovelock_session::scene::frame_points;
 
 use super::overlay::{self, View};
@@ -56,7 +56,7 @@ impl Window {
     }
 
     /// The ring around the place of the gauge that is pointed at.
-    pub(super) fn paint_pointed(&self, ui: &Ui, view: View, painted: &Painted) {
+    pub(super) fn paint_pointed(&self, ui: &Ui, view: View, painted: &RenderedImage) {
         let Some(asked) = &self.pointed else { return };
         let gauges = self.gauges(self.history.project());
         let Some(now) = gauges.iter().find(|gauge| gauge.kind == asked.kind) else { return };
@@ -76,7 +76,7 @@ impl Window {
     pub(super) fn facts(&self) -> Vec<panels::statistics::Fact> {
         let mut facts = Vec::new();
         let mut fact = |name, tip, value| facts.push(panels::statistics::Fact { name, tip, value });
-        if let Some(Painted { picture, stats, .. }) = self.session.painted.as_deref() {
+        if let Some(RenderedImage { picture, stats, .. }) = self.session.painted.as_deref() {
             let mib = |bytes: u64| format!("{:.1} MiB", bytes as f64 / f64::from(1 << 20));
             let size = format!("{} × {}", picture.width, picture.height);
             fact("Picture", "Size of the picture as it is drawn, pixels.", size);

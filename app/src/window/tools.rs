@@ -3,7 +3,7 @@
 use egui::{PointerButton, Response, Ui};
 use lovelock_motion::{Collider, ColliderEdits, FieldPose, PlacedCollider, collider_lines, place_colliders};
 use lovelock_project::Project;
-use lovelock_session::render_thread::Painted;
+use lovelock_session::render_thread::RenderedImage;
 use lovelock_session::snapshot::FrameSnapshot;
 
 use super::overlay::colliders::Wires;
@@ -43,7 +43,7 @@ impl Window {
     }
 
     /// Cuts the hair beyond a line on the screen, as it is in the picture.
-    fn cut(&mut self, view: View, painted: &Painted, line: [egui::Pos2; 2], project: &mut Project) {
+    fn cut(&mut self, view: View, painted: &RenderedImage, line: [egui::Pos2; 2], project: &mut Project) {
         match overlay::scissors::cut(view, &painted.snapshot, line) {
             Some(cut) => project.hair.cut = project.hair.cut.and(&cut),
             None => self.notices.tell(notices::Kind::Warning, "The line meets no hair.".to_owned()),

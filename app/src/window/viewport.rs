@@ -4,7 +4,7 @@ use egui::{
     Align2, Color32, ColorImage, FontId, Rect, Response, Sense, TextureHandle, TextureOptions, Ui, Vec2, pos2,
 };
 use lovelock_render::Backend;
-use lovelock_session::render_thread::{Adapter, Painted};
+use lovelock_session::render_thread::{Adapter, RenderedImage};
 
 use super::theme;
 
@@ -33,7 +33,7 @@ impl Viewport {
     pub(crate) fn show(
         &mut self,
         ui: &mut Ui,
-        painted: Option<&std::sync::Arc<Painted>>,
+        painted: Option<&std::sync::Arc<RenderedImage>>,
         most_pixels: f32,
         scale: f32,
     ) -> Response {

@@ -91,7 +91,7 @@ fn wrong_requests_are_rejected_in_one_line_without_output() {
         (&["--sweep", "sparkle=1"], "slabs", 2),
         (&["--probe", "5"], "5", 2),
         (&["--probe", "96,0"], "96,0", 2),
-        (&["--draws", "3"], "30", 2),
+        (&["--draws", "0"], "1..=1000", 2),
         (&["--hair", "no such.hair"], "no such.hair", 2),
         (&["-o", "file"], "file", 2),
         (&["-o", "file/in it"], "in it", 1),

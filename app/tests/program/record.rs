@@ -361,6 +361,7 @@ fn a_take_reads_files_outside_its_folder_only_if_they_are_named() {
     run(&["record", "--hair", &file, "--frames", "0..2", "-o", "d.take", "--json"]).done();
     let info = run(&["info", "d.take", "--json"]).done().json();
     assert_eq!((&info["kind"], &info["condition"]), (&Value::from("take"), &Value::from("whole")));
+    assert_eq!(info["complete"], Value::from(true));
     let draw = ["record", "d.take", "--size", "32x32", "--backend", "cpu", "--json", "-o", "film.mp4"];
     let refused = run(&draw);
     assert!(refused.refused(2).contains("tuft.hair"), "{refused:?}");

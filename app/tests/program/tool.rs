@@ -6,10 +6,10 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
+use lovelock_base::clock::Stopwatch;
 use lovelock_groom::Preset;
 use lovelock_project::Project;
 use lovelock_project::project::save_project;
-use lovelock_session::clock::Stopwatch;
 use serde_json::Value;
 
 /// Time after which a run counts as hanging; every run of these tests takes less than a tenth of it.

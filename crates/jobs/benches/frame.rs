@@ -1,4 +1,4 @@
-//! Whole frames of the default project by the CPU backend: from the simulation to the picture.
+//! Whole frames of the default project on the CPU backend: from the simulation to the image.
 #![allow(missing_docs)] // Criterion's macros make public items.
 
 use std::sync::Arc;

@@ -1,29 +1,29 @@
-//! `lovelock convert`: between the formats of hair.
+//! `lovelock convert`: converts between hair formats.
 
 use std::path::Path;
 
 use glam::Vec3;
 use lovelock_groom::{HAIR_FORMATS, HairFile, HairFormat, ImportSettings, Unit, UpAxis, load_hair};
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 use lovelock_project::files::write_whole;
 use lovelock_record::{CurveFormat, CurveFrame, CurveScene, CurveWriter, FrameRate, RecordError};
 use serde::Serialize;
 
-/// Width of hair whose file says none, metres.
+/// Width of hair if the file contains none, metres.
 const WIDTH_M: f32 = 1e-4;
 
-/// What was converted, as `convert --json` prints it.
+/// The result, as `convert --json` prints it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ConvertReport {
     /// The new file.
     pub out: String,
-    /// Strands in it.
+    /// Number of strands.
     pub strands: u64,
-    /// Points in it.
+    /// Number of points.
     pub points: u64,
-    /// Bytes of it.
+    /// Size in bytes.
     pub bytes: u64,
-    /// What the file that was read had to say, in sentences.
+    /// Notes about the input file, as sentences.
     pub notes: Vec<String>,
 }
 
@@ -31,30 +31,30 @@ pub struct ConvertReport {
 ///
 /// # Errors
 /// A file that cannot be read, a name of no such format, hair that the format cannot hold, and a full disk.
-pub fn convert(input: &Path, out: &Path, unit: Unit, up: UpAxis) -> Result<ConvertReport, StudioError> {
+pub fn convert(input: &Path, out: &Path, unit: Unit, up: UpAxis) -> Result<ConvertReport, ProjectError> {
     let write = HairFormat::of_path(out).and_then(|format| format.write);
     if write.is_none() && CurveFormat::of(out).is_none() {
-        return Err(StudioError::option(format!(
+        return Err(ProjectError::option(format!(
             "{}: found no extension of a hair format; wanted .{}",
             out.display(),
             written_extensions().join(", .")
         )));
     }
-    let read = load_hair(input).map_err(|error| StudioError::input(input, error))?;
+    let read = load_hair(input).map_err(|error| ProjectError::input(input, error))?;
     let settings = ImportSettings { unit, up, ..ImportSettings::default() };
     let hair = read.in_metres(&settings);
     let bytes = if let Some(write) = write {
         let bytes =
-            write(&hair).map_err(|why| StudioError::input(input, format!("{}: {why}", input.display())))?;
+            write(&hair).map_err(|why| ProjectError::input(input, format!("{}: {why}", input.display())))?;
         write_whole(out, &bytes)?;
         bytes.len() as u64
     } else {
         write_curves(&hair, out).map_err(|error| {
             let (file, message) = (Some(out.to_owned()), error.to_string());
             if error.is_request() {
-                StudioError::Request { file, message }
+                ProjectError::Request { file, message }
             } else {
-                StudioError::Work { file, message }
+                ProjectError::Work { file, message }
             }
         })?
     };
@@ -131,7 +131,7 @@ mod tests {
             from = at(name);
         }
         let last = load_hair(&from).expect("hair");
-        // The face is guessed on the way: the heights and lengths are what has to come back.
+        // The facing direction is guessed, so only heights and lengths are compared.
         for (a, b) in last.points.iter().zip(&first.points) {
             assert!((a.y - b.y).abs() < 1e-4 && (a.length() - b.length()).abs() < 1e-4, "{a} for {b}");
         }

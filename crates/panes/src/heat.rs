@@ -1,15 +1,15 @@
-//! Pictures of errors.
+//! False-colour images of errors.
 
 use lovelock_metrics::{ColorMap, Image, flip, paint};
 use lovelock_render::{FrameInput, Picture, RenderError, ValueRenderer};
 
-/// Hair that is in its place, and what lies behind it: how bright the picture still is under colours.
+/// Brightness of the image under the colours.
 const BEHIND: f32 = 0.3;
 
-/// `values`, one a strand point, in colour over a picture of the same hair that is made dim and grey.
+/// Renders `values`, one per strand point, in colour over a dimmed grey image of the same hair.
 ///
 /// # Errors
-/// A size out of range, or another number of values than of strand points.
+/// If the size is out of range, or there is not one value per strand point.
 pub(super) fn on_hair(
     renderer: &mut ValueRenderer,
     input: &FrameInput,
@@ -32,8 +32,8 @@ pub(super) fn on_hair(
     Ok(())
 }
 
-/// How different `picture` looks from `reference`, in colour in its place; returns the mean. `picture` is brought to the
-/// size of the reference.
+/// Replaces `picture` by its difference from `reference` (FLIP) in colour, and returns the mean. `picture` is resized to the
+/// reference.
 pub(super) fn of_pictures(reference: &Picture, largest: f32, picture: &mut Picture) -> Result<f64, String> {
     resize(picture, reference.width, reference.height);
     let test = Image::new(picture.width, picture.height, &picture.rgba).map_err(|error| error.to_string())?;
@@ -46,7 +46,7 @@ pub(super) fn of_pictures(reference: &Picture, largest: f32, picture: &mut Pictu
     Ok(mean)
 }
 
-/// Brings a picture to a size, as the screen does: each pixel is the mean of the four around it, by their distance.
+/// Resizes an image with bilinear filtering, as the screen does.
 pub(super) fn resize(picture: &mut Picture, width: u32, height: u32) {
     let whole = u64::from(picture.width) * u64::from(picture.height) * 4;
     if (picture.width, picture.height) == (width, height) || whole == 0 || picture.rgba.len() as u64 != whole
@@ -80,7 +80,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_picture_of_another_size_keeps_its_colours_and_its_slopes() {
+    fn a_resized_image_keeps_its_colours_and_gradients() {
         let ramp: Vec<u8> = (0..4_u8).flat_map(|x| [x * 60, 7, 200, 255]).collect();
         let mut picture = Picture { width: 4, height: 1, rgba: ramp };
         let same = picture.clone();
@@ -91,14 +91,14 @@ mod tests {
         let reds: Vec<u8> = picture.rgba.chunks_exact(4).take(8).map(|pixel| pixel[0]).collect();
         assert_eq!(reds, [0, 15, 45, 75, 105, 135, 165, 180]);
         assert!(picture.rgba.chunks_exact(4).all(|pixel| pixel[1..] == [7, 200, 255]));
-        // Nothing to draw from: it stays as it is.
+        // An empty image stays empty.
         let mut empty = Picture::default();
         resize(&mut empty, 8, 8);
         assert_eq!(empty, Picture::default());
     }
 
     #[test]
-    fn the_same_picture_is_black_and_another_is_not() {
+    fn equal_images_give_black_and_others_do_not() {
         let grey = |v: u8| Picture { width: 8, height: 8, rgba: [v, v, v, 255].repeat(64) };
         let (reference, mut same, mut other) = (grey(90), grey(90), grey(200));
         assert_eq!(of_pictures(&reference, 1.0, &mut same), Ok(0.0));

@@ -1,21 +1,21 @@
-//! What is said of a pane in a line.
+//! Labels of panes.
 
 use lovelock_project::project::Contender;
 
 use crate::request::{LiveError, LivePane};
 
 impl LivePane {
-    /// [`Contender::settings_label`] with the backend that drew it in place of the one that was chosen.
+    /// [`Contender::settings_label`] with the backend that rendered the pane instead of the chosen one.
     pub fn settings_label(&self) -> String {
         Contender { backend: self.adapter.backend, ..self.contender.clone() }.settings_label()
     }
 
-    /// [`Contender::label`] with the backend that drew it in place of the one that was chosen.
+    /// [`Contender::label`] with the backend that rendered the pane instead of the chosen one.
     pub fn label(&self) -> String {
         Contender { backend: self.adapter.backend, ..self.contender.clone() }.label()
     }
 
-    /// What it costs and how right it is, such as `12.3 ms CPU · 4.0 MiB · error 0.0210`. `ms` is the time to show.
+    /// Cost and error, such as `12.3 ms CPU · 4.0 MiB · error 0.0210`. `ms` is the time to show.
     pub fn figures_label(&self, ms: f64) -> String {
         let backend = self.adapter.backend_label();
         let mut parts = vec![format!("{ms:.1} ms {backend}"), bytes_label(self.shadow_bytes)];
@@ -30,7 +30,7 @@ impl LivePane {
     }
 }
 
-/// Bytes as people read them.
+/// Formats bytes for people.
 pub fn bytes_label(bytes: u64) -> String {
     let kib = bytes as f64 / 1024.0;
     if kib < 1000.0 { format!("{kib:.0} KiB") } else { format!("{:.1} MiB", kib / 1024.0) }
@@ -43,7 +43,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_method_says_its_size_and_numbers_are_short() {
+    fn every_method_has_a_size_label_and_numbers_are_short() {
         let mut contender = Contender::default();
         for &method in ShadowMethod::ALL {
             contender.shadow.method = method;

@@ -1,4 +1,4 @@
-//! What a round of panes is asked for, and what comes of it.
+//! Requests for panes, and finished panes.
 
 use std::sync::Arc;
 
@@ -12,44 +12,44 @@ use lovelock_session::snapshot::FrameSnapshot;
 use crate::probe::ProbePlace;
 use crate::view::{LiveShows, LiveView};
 
-/// A round of panes on one instant.
+/// A request for panes at one instant.
 #[derive(Clone, Debug)]
 pub struct LiveRequest {
-    /// The panes, and everything that they share.
+    /// The project with the panes and all shared settings.
     pub project: Arc<Project>,
-    /// What panes with takes of their own may read.
+    /// The files that panes with their own takes may read.
     pub access: Access,
     /// The instant.
     pub snapshot: Arc<FrameSnapshot>,
-    /// Which panes of the project are drawn, in this order.
+    /// Numbers of the panes to render, in this order.
     pub panes: Vec<usize>,
     /// Width of a pane, pixels.
     pub width: u32,
     /// Height of a pane, pixels.
     pub height: u32,
-    /// Whether the panes are left in their slots together, when all are finished.
+    /// Whether the panes are published together when all are finished.
     pub together: bool,
     /// What they show.
     pub view: LiveView,
-    /// The hair whose light is plotted.
+    /// The hair to probe.
     pub probe: Option<ProbePlace>,
 }
 
-/// What a pane took, milliseconds. Strands are made once for all panes and belong to none.
+/// Times of a pane, milliseconds. Strands are interpolated once for all panes and not counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LiveTimes {
-    /// To make the shadow maps; none where the device does not measure its passes.
+    /// Building the shadow maps; `None` if the device does not measure passes.
     pub build: Option<f64>,
-    /// To ask them; none as above.
+    /// Looking them up; `None` as above.
     pub ask: Option<f64>,
-    /// The rest of the picture; none as above.
+    /// The rest of the image; `None` as above.
     pub draw: Option<f64>,
-    /// The whole picture.
+    /// The whole image.
     pub whole: f64,
 }
 
 impl LiveTimes {
-    /// The times of a picture.
+    /// The times of an image.
     pub(super) fn of(stats: &FrameStats) -> Self {
         let whole = stats.shadow_ms + stats.draw_ms;
         if stats.passes.is_empty() {
@@ -61,29 +61,29 @@ impl LiveTimes {
     }
 }
 
-/// How far the transmittance of a pane is from the exact method's, over all strand points.
+/// Error of a pane's transmittance against the exact method, over all strand points.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum LiveError {
-    /// Nobody asked.
+    /// Not requested.
     #[default]
     NotMeasured,
-    /// The pane is the exact method itself, as the others are measured by.
+    /// The pane is the reference itself.
     Reference,
     /// Measured.
     Measured {
         /// Root mean square.
         rmse: f64,
-        /// Mean: above zero where the pane is too bright.
+        /// Mean; positive if the pane is too bright.
         bias: f64,
         /// 99th percentile of the magnitude.
         p99: f64,
     },
-    /// The exact method could not be had, for the reason in the sentence.
+    /// There is no reference, for the given reason.
     Refused(String),
 }
 
 impl LiveError {
-    /// The root mean square, where it was measured.
+    /// The root mean square, if it was measured.
     pub fn rmse(&self) -> Option<f64> {
         match self {
             Self::Measured { rmse, .. } => Some(*rmse),
@@ -95,37 +95,37 @@ impl LiveError {
 /// A finished pane.
 #[derive(Clone, Debug)]
 pub struct LivePane {
-    /// What was drawn.
+    /// The settings of the pane.
     pub contender: Contender,
-    /// The project that it was drawn of.
+    /// The project that it shows.
     pub project: Arc<Project>,
-    /// The size that was asked for, pixels.
+    /// The requested size, pixels.
     pub asked_size: [u32; 2],
-    /// The picture; empty where there is a `problem` or a `colors_problem`.
+    /// The image; empty if there is a `problem` or a `colors_problem`.
     pub picture: Picture,
-    /// Why there is no picture, in a sentence.
+    /// Why there is no image, as a sentence.
     pub problem: Option<String>,
-    /// Why there is nothing in the colours that the view shows, in a sentence, although the pane was drawn.
+    /// Why there are no false colours although the pane was rendered, as a sentence.
     pub colors_problem: Option<String>,
-    /// Where the picture was taken from.
+    /// The camera of the image.
     pub camera: Camera,
     /// [`FrameSnapshot::step`] of the instant.
     pub step: u64,
     /// [`FrameSnapshot::time_secs`] of the instant.
     pub time_secs: f64,
-    /// What it took.
+    /// The times.
     pub times: LiveTimes,
     /// Bytes of the shadow maps.
     pub shadow_bytes: u64,
-    /// Bytes of the drawn strands and of what is kept for the pixels.
+    /// Bytes of the rendered strands and of the pixel buffers.
     pub draw_bytes: u64,
-    /// What drew it.
+    /// The device that rendered it.
     pub adapter: Adapter,
     /// Its error.
     pub error: LiveError,
-    /// Mean difference of the picture (FLIP), where the view shows it and the pane is not the reference itself.
+    /// Mean difference of the image (FLIP), if the view shows it and the pane is not the reference.
     pub flip: Option<f64>,
-    /// What the view showed.
+    /// What the image shows.
     pub shows: LiveShows,
 }
 
@@ -136,7 +136,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_device_that_measures_no_passes_has_no_parts_of_its_time() {
+    fn without_pass_times_only_the_whole_time_is_known() {
         let mut stats = FrameStats { shadow_ms: 0.0, draw_ms: 9.0, ..FrameStats::default() };
         assert_eq!(LiveTimes::of(&stats), LiveTimes { whole: 9.0, ..LiveTimes::default() });
         let pass = |name: &str, ms| PassTime { name: name.to_owned(), ms };

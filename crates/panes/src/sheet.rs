@@ -1,4 +1,4 @@
-//! Panes put together into one picture, with their labels.
+//! Composes panes with their labels into one image.
 
 use lovelock_metrics::{Canvas, Image, Legend};
 use lovelock_project::project::CompareSection;
@@ -8,39 +8,39 @@ use crate::heat::resize;
 use crate::request::LivePane;
 use crate::view::LiveView;
 
-/// Height of the line over a pane, pixels.
+/// Height of the header of a pane, pixels.
 const HEADER: u32 = 26;
 /// Pixels between panes.
 const GAP: u32 = 4;
-/// Pixels about the scale of colours.
+/// Margin around the colour scale, pixels.
 const MARGIN: u32 = 14;
-/// Behind everything, the line over a pane, its text, and text over pictures.
+/// Colours of the page, of headers, their text, and text over images.
 const PAGE: [u8; 3] = [19, 20, 23];
 const LINE: [u8; 3] = [28, 30, 34];
 const QUIET: [u8; 3] = [168, 172, 180];
 const INK: [u8; 3] = [236, 238, 242];
 
-/// How panes are put together into one picture.
+/// How panes are composed into one image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sheet {
-    /// The panes left and right of a line, and where that is, a share of the width; all panes in a grid where none.
+    /// The panes left and right of a dividing line and its position as a fraction of the width; `None` shows all panes in a grid.
     pub wipe: Option<([usize; 2], f32)>,
     /// What they show.
     pub view: LiveView,
-    /// Whether times and errors are written under the panes: times are never the same twice.
+    /// Whether times and errors are written under the panes. Times differ between runs.
     pub figures: bool,
     /// The colour of each pane's mark, sRGB.
     pub colors: [[u8; 3]; CompareSection::MOST_PANES],
 }
 
-/// A pane as it is put there: its number, its picture, and its time, milliseconds.
+/// A pane to compose: its number, the pane, and its time in milliseconds.
 pub type SheetPane<'a> = (usize, &'a LivePane, f64);
 
-/// A place: from the left, from the top, width, height; pixels.
+/// A rectangle: left, top, width, height; pixels.
 type Place = [u32; 4];
 
 impl Sheet {
-    /// Which of `panes` are put there.
+    /// Numbers of the shown panes out of `panes`.
     pub fn panes(&self, panes: usize) -> Vec<usize> {
         let last = panes.saturating_sub(1);
         match self.wipe {
@@ -50,7 +50,7 @@ impl Sheet {
         }
     }
 
-    /// The size of the whole where each of `panes` has the size `pane`, in a grid of `columns`.
+    /// The size of the whole image if each of `panes` has the size `pane`, in a grid of `columns`.
     pub fn size_of(&self, panes: usize, columns: usize, pane: [u32; 2]) -> [u32; 2] {
         let (columns, rows) = if self.wipe.is_some() {
             (1, 1)
@@ -61,13 +61,13 @@ impl Sheet {
         [columns * (pane[0] + GAP) - GAP + self.legend_width(), rows * (pane[1] + HEADER + GAP) - GAP]
     }
 
-    /// The size at which `panes` are drawn for a whole of that size.
+    /// The size of each of `panes` for a whole image of that size.
     pub fn pane_size(&self, panes: usize, whole: [u32; 2]) -> [u32; 2] {
         let [.., width, height] = self.places(panes, whole).first().copied().unwrap_or([0, 0, 16, 16]);
         [width.max(16), height.max(16)]
     }
 
-    /// Where the pictures of panes are.
+    /// The rectangles of the panes' images.
     fn places(&self, panes: usize, [width, height]: [u32; 2]) -> Vec<Place> {
         let width = width.saturating_sub(self.legend_width()).max(16);
         if self.wipe.is_some() {
@@ -94,7 +94,7 @@ impl Sheet {
         self.legend().map_or(0, |legend| legend.width() as u32 + 2 * MARGIN)
     }
 
-    /// Puts the panes together.
+    /// Composes the panes.
     pub fn compose(&self, panes: &[SheetPane<'_>], whole: [u32; 2]) -> Picture {
         let [width, height] = whole;
         let mut canvas = Canvas::new(width as usize, height as usize, PAGE);
@@ -118,14 +118,14 @@ impl Sheet {
         Picture { width, height, rgba: canvas.into_rgba() }
     }
 
-    /// One pane with its line and its figures.
+    /// Draws one pane with its header and figures.
     fn put(&self, canvas: &mut Canvas, pane: &SheetPane<'_>, place: Place) {
         picture(canvas, pane.1, place, 0..place[2]);
         self.header(canvas, pane, [place[0], place[1] - HEADER, place[2]]);
         self.figures(canvas, pane, place, false);
     }
 
-    /// Two panes, divided by a line.
+    /// Draws two panes, divided by a line.
     fn wipe(&self, canvas: &mut Canvas, [left, right]: [&SheetPane<'_>; 2], split: f32, place: Place) {
         let [x, y, width, height] = place;
         let at = (split.clamp(0.0, 1.0) * width as f32).round() as u32;
@@ -139,7 +139,7 @@ impl Sheet {
         self.figures(canvas, right, [x + half, y, width - half, height], true);
     }
 
-    /// What a pane costs, or why it is empty, at the foot of its place.
+    /// Draws the cost of a pane, or why it is empty, at the bottom of its rectangle.
     fn figures(
         &self,
         canvas: &mut Canvas,
@@ -166,7 +166,7 @@ impl Sheet {
         }
     }
 
-    /// The line over a pane.
+    /// Draws the header of a pane.
     fn header(&self, canvas: &mut Canvas, (index, pane, _): &SheetPane<'_>, [x, y, width]: [u32; 3]) {
         let (x, y) = (x as i32, y as i32);
         canvas.fill(x, y, width as usize, HEADER as usize, LINE);
@@ -180,7 +180,7 @@ impl Sheet {
     }
 }
 
-/// Columns `from` of a pane's picture, brought to the size of its place.
+/// Draws the columns `from` of a pane's image, resized to its rectangle.
 fn picture(canvas: &mut Canvas, pane: &LivePane, [x, y, width, height]: Place, from: std::ops::Range<u32>) {
     let mut drawn = pane.picture.clone();
     resize(&mut drawn, width, height);
@@ -199,17 +199,16 @@ fn picture(canvas: &mut Canvas, pane: &LivePane, [x, y, width, height]: Place, f
     }
 }
 
-/// As much of a text as has room.
+/// The start of a text that fits into `room` pixels.
 fn fitted(text: &str, room: usize) -> &str {
     let letter = Canvas::text_width("0").max(1);
     text.char_indices().nth(room / letter).map_or(text, |(end, _)| &text[..end])
 }
 
-/// Width over height that a pane should have, about.
+/// Preferred aspect ratio of a pane.
 const SHAPE: f32 = 1.35;
 
-/// Columns of a grid of `panes` on a page of that size, with a line of height `header` over each: those that make panes
-/// largest.
+/// The number of columns that makes `panes` largest on a page of that size, with a header of height `header` over each.
 pub fn pane_columns(panes: usize, [width, height]: [f32; 2], header: f32) -> usize {
     let larger = |columns: usize| {
         let rows = panes.div_ceil(columns);
@@ -271,7 +270,7 @@ mod tests {
         [[200, 0, 0], [0, 200, 0], [0, 0, 200], [200, 200, 0], [0, 200, 200], [200, 0, 200]];
 
     #[test]
-    fn each_pane_is_in_its_place_whole_with_words_over_it() {
+    fn each_pane_is_shown_whole_with_a_header() {
         let panes = COLORS.map(|color| pane(color, [200, 120]));
         for count in 1..=6 {
             let shown: Vec<SheetPane> = panes[..count].iter().enumerate().map(|(i, p)| (i, p, 1.0)).collect();
@@ -322,13 +321,13 @@ mod tests {
         let found =
             (210..picture.width).any(|x| (0..picture.height).any(|y| near(at(&picture, x, y), brightest)));
         assert!(found && beside(&picture, INK));
-        // Without colours there is no room for it at all.
+        // Without false colours no space is reserved for the scale.
         let plain = sheet(None).compose(&[(0, &drawn, 1.0)], whole);
         assert!(!beside(&plain, ColorMap::Magma.at(0.5)));
     }
 
     #[test]
-    fn any_size_is_put_together() {
+    fn any_size_can_be_composed() {
         let drawn = pane(COLORS[0], [64, 48]);
         let broken = LivePane {
             problem: Some("It needs 9 GiB; the limit is 1 GiB.".to_owned()),

@@ -7,14 +7,14 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum LiveShows {
-    /// The picture itself.
+    /// The rendered image.
     #[default]
     Picture,
-    /// How far the transmittance of the hair is from the exact method's, in colour.
+    /// Absolute error of the transmittance against the exact method, in colour.
     TransmittanceError,
-    /// The same with its sign: where a pane is too dark and where too bright.
+    /// Signed error: where a pane is too dark and where too bright.
     TransmittanceBias,
-    /// How different the picture looks from one with exact shadows and transparency (FLIP), in colour.
+    /// Perceived difference (FLIP) from an image with exact shadows and transparency, in colour.
     PictureError,
 }
 
@@ -33,15 +33,15 @@ impl LiveShows {
         }
     }
 
-    /// One sentence: what it is.
+    /// The tooltip.
     pub const fn description(self) -> &'static str {
         match self {
-            Self::Picture => "The hair as each pane draws it.",
+            Self::Picture => "The hair as each pane renders it.",
             Self::TransmittanceError => {
-                "How far the light that reaches a hair is from the exact method's, without its sign."
+                "The absolute error of the light that reaches the hair, compared with the exact method."
             }
             Self::TransmittanceBias => {
-                "The same with its sign: orange is too dark, violet too bright, white is right."
+                "The signed error: orange is too dark, violet too bright, white is correct."
             }
             Self::PictureError => {
                 "How different the picture looks from the exact one to an observer who flips between them (FLIP)."
@@ -49,7 +49,7 @@ impl LiveShows {
         }
     }
 
-    /// What the numbers of the scale are.
+    /// The quantity of the colour scale.
     pub const fn quantity(self) -> &'static str {
         match self {
             Self::Picture => "",
@@ -59,7 +59,7 @@ impl LiveShows {
         }
     }
 
-    /// Its colours; none for the picture itself.
+    /// The colour map; `None` for the rendered image.
     pub const fn colors(self) -> Option<ColorMap> {
         match self {
             Self::Picture => None,
@@ -70,16 +70,16 @@ impl LiveShows {
     }
 }
 
-/// What all panes show, and what is measured of them.
+/// What all panes show, and what is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LiveView {
     /// What they show.
     pub shows: LiveShows,
-    /// What the last colour of the scale stands for, above 0.
+    /// The value of the last colour of the scale, above 0.
     pub largest: f32,
-    /// Whether errors against the exact method are measured. Colours need it too.
+    /// Whether errors against the exact method are measured, which false colours need too.
     pub measures: bool,
-    /// The light of which transmittance is measured, counted from 0 among those that are on.
+    /// The light whose transmittance is measured, counted from 0 among the enabled lights.
     pub light: usize,
 }
 

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 /// Why a request failed. Displays as one line that names the file or the option.
 #[derive(Debug, thiserror::Error)]
-pub enum StudioError {
+pub enum ProjectError {
     /// The request or an input file is wrong.
     #[error("{message}")]
     Request {
@@ -31,7 +31,7 @@ pub enum StudioError {
     Cancelled,
 }
 
-impl StudioError {
+impl ProjectError {
     /// An invalid input file; `message` names the file.
     pub fn input(file: &Path, message: impl fmt::Display) -> Self {
         Self::Request { file: Some(file.to_owned()), message: message.to_string() }
@@ -75,7 +75,7 @@ impl StudioError {
     }
 }
 
-impl From<RenderError> for StudioError {
+impl From<RenderError> for ProjectError {
     fn from(error: RenderError) -> Self {
         match error {
             RenderError::Size { .. } => Self::option(error),
@@ -84,7 +84,7 @@ impl From<RenderError> for StudioError {
     }
 }
 
-impl From<TakeError> for StudioError {
+impl From<TakeError> for ProjectError {
     fn from(error: TakeError) -> Self {
         let file = Some(error.path().to_owned());
         let message = error.to_string();

@@ -7,7 +7,7 @@ use std::path::{Component, Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::{Place, Problem, ProblemKind, StudioError};
+use crate::error::{Place, Problem, ProblemKind, ProjectError};
 
 /// A file that a project refers to.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -166,7 +166,7 @@ fn normal(path: &Path) -> PathBuf {
 ///
 /// # Errors
 /// If the folder cannot be written or the disk is full.
-pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), StudioError> {
+pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), ProjectError> {
     let partial = partial_name(path);
     let written = File::create(&partial).and_then(|mut file| {
         file.write_all(bytes)?;
@@ -175,7 +175,7 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), StudioError> {
     written.and_then(|()| std::fs::rename(&partial, path)).map_err(|error| {
         // The error that matters is the first one.
         let _ = std::fs::remove_file(&partial);
-        StudioError::output(path, format!("{}: could not be saved: {error}", path.display()))
+        ProjectError::output(path, format!("{}: could not be saved: {error}", path.display()))
     })
 }
 

@@ -1,8 +1,8 @@
 //! Every shadow method with every transparency on every backend that this machine has, on one sheet:
 //! `cargo run --release -p lovelock-session --example contact_sheet -- OUT.png [WIDTHxHEIGHT] [STEP]`.
 //!
-//! A row a method; in it a column for each transparency and backend, as the label above each picture says. Beside the
-//! sheet it prints how far each picture is from `exact` with `exact` of the processor, as FLIP's mean.
+//! One row per method, one column per transparency and backend, as the label above each image says. It also prints the mean FLIP
+//! of each image against method `exact` with transparency `exact` on the CPU.
 
 use std::error::Error;
 use std::path::Path;
@@ -18,12 +18,12 @@ use lovelock_session::scene::{LoadControl, SceneLoader};
 use lovelock_session::snapshot::FrameSnapshot;
 use lovelock_testkit::flip;
 
-/// Pixels a dot of a letter, and of the strip above a picture that holds two lines.
+/// Pixels per dot of a letter; also scales the label strip of two lines above each image.
 const DOT: usize = 2;
 const STRIP: usize = 2 * LINE + 2;
 const LINE: usize = 6 * DOT;
 
-/// Letters of three by five dots, a row a number: `a` to `z`, then the hyphen.
+/// Letters of three by five dots, one number per row: `a` to `z`, then the hyphen.
 const LETTERS: [[u8; 5]; 27] = [
     [2, 5, 7, 5, 5],
     [6, 5, 6, 5, 6],
@@ -54,7 +54,7 @@ const LETTERS: [[u8; 5]; 27] = [
     [0, 0, 7, 0, 0],
 ];
 
-/// Pixels in rows from the top, sRGB with an opacity.
+/// Pixels in rows from the top, sRGB with alpha.
 struct Sheet {
     width: usize,
     height: usize,
@@ -107,7 +107,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let step = args.get(2).map_or(Ok(20), |step| step.parse())?;
 
     let mut project = Project::default();
-    // The head in the middle, whatever it does.
+    // Keep the head in the middle.
     (project.camera.distance, project.camera.follow_secs, project.camera.azimuth) = (0.75, 0.0, 1.7);
     project.camera.follow_offset.y = 0.04;
     let snapshot = frame(&project, step)?;
@@ -122,7 +122,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut renderers = vec![Renderer::open(Backend::Cpu)?];
     match Renderer::open(Backend::Gpu) {
         Ok(renderer) => renderers.push(renderer),
-        Err(error) => eprintln!("the processor alone: {error}"),
+        Err(error) => eprintln!("CPU only: {error}"),
     }
     let truth = draw(&mut renderers[0], ShadowMethod::Exact, Transparency::Exact)?;
     let cell = [width as usize + 4, height as usize + STRIP];

@@ -1,6 +1,8 @@
-//! Clocks and playback. This is the only module that reads the machine's clock.
+//! Playback, the steps of a recording, and estimates of remaining time.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
+
+use lovelock_base::clock::Stopwatch;
 
 /// Length of one step of the simulation, seconds.
 pub const STEP_SECS: f64 = 1.0 / 60.0;
@@ -8,35 +10,6 @@ pub const STEP_SECS: f64 = 1.0 / 60.0;
 /// Maximum number of steps per tick. A machine that is slower than that plays in slow motion instead of falling further and
 /// further behind.
 pub const MAX_STEPS_PER_TICK: u32 = 4;
-
-/// Measures how long work takes. The simulation does not depend on it.
-#[derive(Clone, Copy, Debug)]
-pub struct Stopwatch(Instant);
-
-impl Stopwatch {
-    /// Starts measuring.
-    #[allow(clippy::disallowed_methods, reason = "this is the clock module")]
-    pub fn start() -> Self {
-        Self(Instant::now())
-    }
-
-    /// Milliseconds since the start.
-    pub fn ms(&self) -> f64 {
-        self.0.elapsed().as_secs_f64() * 1e3
-    }
-
-    /// Seconds since the start.
-    pub fn secs(&self) -> f64 {
-        self.0.elapsed().as_secs_f64()
-    }
-
-    /// Milliseconds since the start; then restarts.
-    pub fn lap_ms(&mut self) -> f64 {
-        let ms = self.ms();
-        *self = Self::start();
-        ms
-    }
-}
 
 /// Estimates the remaining time of work from the parts of it that are done.
 #[derive(Clone, Debug, Default)]
@@ -55,6 +28,13 @@ impl Pace {
         }
         let (_, first, since) = self.of.as_ref()?;
         Self::left(done - first, total.saturating_sub(done), since.secs())
+    }
+
+    /// Parts per second so far; `None` while there is no estimate.
+    pub fn per_sec(&self, done: u64) -> Option<f64> {
+        let (_, first, since) = self.of.as_ref()?;
+        let done = done.checked_sub(*first).filter(|&done| done > 0)?;
+        Some(done as f64 / since.secs().max(1e-9))
     }
 
     fn left(done: u64, rest: u64, secs: f64) -> Option<f64> {

@@ -6,7 +6,7 @@ use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
 
 use lovelock_project::Project;
-use lovelock_project::error::{Place, Problem, ProblemKind, StudioError};
+use lovelock_project::error::{Place, Problem, ProblemKind, ProjectError};
 use lovelock_project::files::Access;
 use lovelock_record::TakeAsset;
 use seam::{Seam, SeamOfTake};
@@ -15,7 +15,7 @@ use crate::clock::FrameClock;
 use crate::engine::{Engine, LastSteps};
 use crate::health::{Gauge, health};
 use crate::prepare::{load, settled_at, simulate_to};
-use crate::progress::{Progress, tell};
+use crate::progress::{Progress, report_progress};
 use crate::scene::Scene;
 use crate::snapshot::FrameSnapshot;
 use crate::take::TakePlayer;
@@ -45,13 +45,13 @@ impl Dance {
     /// Loads the project's scene, or opens its take. Also returns problems.
     ///
     /// # Errors
-    /// If no hair can be grown, the take cannot be played, or [`StudioError::Cancelled`].
+    /// If no hair can be grown, the take cannot be played, or [`ProjectError::Cancelled`].
     pub fn open(
         project: &Project,
         access: &Access,
         fps: f64,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-    ) -> Result<(Self, Vec<Problem>), StudioError> {
+    ) -> Result<(Self, Vec<Problem>), ProjectError> {
         let Some(file) = &project.take.file else {
             let (scene, problems) = load(project, access, progress)?;
             let dance = Source::Simulated {
@@ -64,9 +64,9 @@ impl Dance {
             };
             return Ok((Self(dance), problems));
         };
-        tell(progress, Progress::Loading { what: "opening the take".to_owned() })?;
+        report_progress(progress, Progress::Loading { what: "opening the take".to_owned() })?;
         let path =
-            access.read(Place::Take, file).map_err(|problem| StudioError::input(&file.path, problem))?;
+            access.read(Place::Take, file).map_err(|problem| ProjectError::input(&file.path, problem))?;
         let (player, problems) = TakePlayer::open(&path, access)?;
         Ok((Self(Source::Take { player: Box::new(player), fps, seam: None }), problems))
     }
@@ -119,7 +119,7 @@ impl Dance {
     ///
     /// # Errors
     /// A range that extends beyond the take.
-    pub fn check(&self, frames: &Range<u64>) -> Result<(), StudioError> {
+    pub fn check(&self, frames: &Range<u64>) -> Result<(), ProjectError> {
         match &self.0 {
             Source::Take { player, fps, .. } => {
                 let first = self.first_frame();
@@ -127,7 +127,7 @@ impl Dance {
                 if frames.start >= held.start && frames.end <= held.end {
                     return Ok(());
                 }
-                Err(StudioError::option(format!(
+                Err(ProjectError::option(format!(
                     "frames {}..{}: {} holds {:.2} s, which at {fps} frames per second are frames {}..{}",
                     frames.start,
                     frames.end,
@@ -146,7 +146,7 @@ impl Dance {
     /// # Errors
     /// If the body is not in the same pose before and after the frames, or a take has not enough time before them to take the
     /// hair from.
-    pub fn close(&mut self, frames: &Range<u64>) -> Result<(), StudioError> {
+    pub fn close(&mut self, frames: &Range<u64>) -> Result<(), ProjectError> {
         let count = frames.end - frames.start;
         match &mut self.0 {
             Source::Simulated { scene, clock, seam, .. } => {
@@ -164,19 +164,19 @@ impl Dance {
     /// frames of a recording exist already.
     ///
     /// # Errors
-    /// [`StudioError::Cancelled`].
+    /// [`ProjectError::Cancelled`].
     pub fn begin(
         &mut self,
         start: u64,
         first_secs: f64,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-    ) -> Result<(), StudioError> {
+    ) -> Result<(), ProjectError> {
         if let Source::Simulated { scene, project, clock, engine, steps, seam } = &mut self.0 {
             let first = step_before(first_secs, clock).0;
             let mut made =
                 Box::new(settled_at(scene, project, clock, [clock.step_of_frame(start), first], progress)?);
             match seam {
-                Some(seam) => seam.live_round(&mut made, clock, first_secs, progress)?,
+                Some(seam) => seam.simulate_period(&mut made, clock, first_secs, progress)?,
                 None => simulate_to(&mut made, first, progress)?,
             }
             made.clear_totals();
@@ -190,7 +190,7 @@ impl Dance {
     ///
     /// # Errors
     /// If the frames of a take are damaged there.
-    pub fn snapshot(&mut self, frame: u64) -> Result<Arc<FrameSnapshot>, StudioError> {
+    pub fn snapshot(&mut self, frame: u64) -> Result<Arc<FrameSnapshot>, ProjectError> {
         match &mut self.0 {
             Source::Simulated { scene, project, clock, engine, seam, .. } => {
                 let engine = engine.get_or_insert_with(|| engine_at(scene, project, clock, frame));
@@ -199,7 +199,7 @@ impl Dance {
                     return Ok(engine.snapshot());
                 };
                 engine.advance_to_step(clock.step_of_frame(frame + seam.frames()));
-                Ok(seam.faded(seam.secs_of(frame), &engine.snapshot()))
+                Ok(seam.blended(seam.secs_of(frame), &engine.snapshot()))
             }
             Source::Take { player, fps, seam } => {
                 let secs = frame as f64 / *fps;
@@ -216,12 +216,12 @@ impl Dance {
     ///
     /// # Errors
     /// As [`Dance::snapshot`].
-    pub fn snapshot_at(&mut self, secs: f64) -> Result<Arc<FrameSnapshot>, StudioError> {
+    pub fn snapshot_at(&mut self, secs: f64) -> Result<Arc<FrameSnapshot>, ProjectError> {
         match &mut self.0 {
             Source::Simulated { scene, project, clock, engine, steps, seam } => {
                 let first = || engine_at(scene, project, clock, 0);
                 let engine = engine.get_or_insert_with(first);
-                let round = seam.as_ref().map_or(0.0, Seam::round_secs);
+                let round = seam.as_ref().map_or(0.0, Seam::period_secs);
                 let (step, t) = step_before(secs + round, clock);
                 // Take the last step separately, so that the state before it is known.
                 let to = step + u64::from(t > 0.0);
@@ -235,7 +235,7 @@ impl Dance {
                     engine.snapshot_between(steps, t)
                 };
                 Ok(match seam {
-                    Some(seam) => seam.faded(secs, &snapshot),
+                    Some(seam) => seam.blended(secs, &snapshot),
                     None => snapshot,
                 })
             }

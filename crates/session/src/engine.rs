@@ -1,4 +1,4 @@
-//! The simulation and the state of a frame: synchronous, and without a clock.
+//! The simulation of a scene, step by step. It is synchronous and has no clock.
 
 mod combing;
 mod preroll;
@@ -12,6 +12,7 @@ use std::sync::Arc;
 
 use combing::Combing;
 use glam::Affine3A;
+use lovelock_base::clock::Stopwatch;
 use lovelock_groom::{GuideFrame, Guides};
 use lovelock_motion::{FieldPose, PlacedCollider, Pose, place_colliders, pose_at};
 use lovelock_project::Project;
@@ -20,61 +21,61 @@ use lovelock_project::project::TimelineSection;
 use lovelock_record::TakeFrame;
 use lovelock_simulation::{InsidePoint, PlacedField, Simulation, SimulationSettings, StepInput, StepReport};
 
-use crate::clock::{STEP_SECS, Stopwatch};
+use crate::clock::STEP_SECS;
 use crate::scene::Scene;
 use crate::snapshot::SnapshotPool;
 use crate::stats::StageTimes;
 use crate::totals::Totals;
 
-/// What the simulator is told that has passed where the motion jumps, seconds: it then moves hair along with the
-/// head instead of simulating it ([`StepInput::time_secs`]).
+/// Time step that is passed to the simulator when the motion jumps, seconds. The simulator then moves the hair with the head
+/// instead of simulating it ([`StepInput::time_secs`]).
 const JUMP_SECS: f64 = 16.0;
 
 /// A scene in motion.
 ///
-/// Time runs in equal steps from the first frame: the state after a number of steps depends on the scene, the
-/// settings and that number alone, not on the number of threads nor on the clock.
+/// Time advances in equal steps from the first frame. The state after a number of steps depends only on the scene, the settings
+/// and that number, not on the number of threads or the clock.
 ///
-/// Going to another time carries the hair along rigidly, at once; [`Engine::settle`], or [`Engine::preroll`] aside, then gives
-/// it the shape that it has there.
+/// [`Engine::seek`] moves the hair rigidly with the head. [`Engine::settle`], or [`Engine::preroll`] on another thread, then gives
+/// it the shape that it has at that time.
 #[derive(Debug)]
 pub struct Engine {
     scene: Arc<Scene>,
     settings: SimulationSettings,
-    /// What of the settings follows the timeline.
+    /// The tracks of the settings.
     animation: Option<Animation>,
-    /// How long hair lives before an instant that is gone to, seconds.
+    /// Length of the pre-roll before an instant, seconds.
     preroll_secs: f64,
     step_secs: f64,
     simulation: Simulation,
-    /// Strands that go over to other ties.
+    /// The transition of strands to other ties, while it lasts.
     combing: Option<Combing>,
-    /// Steps from the scene's time zero.
+    /// Current step, counted from the scene's time zero.
     at_step: i64,
     /// Steps since the engine started.
     taken: u64,
-    /// The simulator's clock, which jumps where the motion does.
+    /// The simulator's clock, which jumps when the motion does.
     simulated_secs: f64,
     pose: Pose,
     colliders: Vec<PlacedCollider>,
     sheltering: Vec<PlacedCollider>,
     field: FieldPose,
-    /// Where the style at rest lies inside the body.
+    /// The deepest point of the style at rest inside the body.
     rest_inside: Option<InsidePoint>,
-    /// Whether the next step may change that.
+    /// Whether the next step must compute `rest_inside` again.
     rest_is_new: bool,
     report: StepReport,
     totals: Totals,
     times: StageTimes,
-    /// Whether time or the motion jumped since the last step: nothing lies between the instants before and after.
+    /// Whether time or the motion jumped since the last step, so that the instants must not be interpolated.
     jumped_since: bool,
-    /// The same, as the last step found it.
+    /// The same for the last step.
     cut: bool,
     pool: SnapshotPool,
 }
 
 impl Engine {
-    /// A scene at its first frame, its hair settled, in steps of 1/60 s.
+    /// A scene at its first frame with settled hair, in steps of 1/60 s.
     pub fn new(scene: Arc<Scene>, settings: SimulationSettings) -> Self {
         Self::with_step(scene, settings, STEP_SECS)
     }
@@ -86,7 +87,7 @@ impl Engine {
         engine
     }
 
-    /// A scene at its first frame, its hair in its style and not yet settled.
+    /// A scene at its first frame with its hair in the rest style, not settled.
     pub fn at_rest(scene: Arc<Scene>, settings: SimulationSettings, step_secs: f64) -> Self {
         let simulation = Simulation::new(Arc::clone(&scene.style));
         let mut engine = Self {
@@ -113,7 +114,7 @@ impl Engine {
             cut: false,
             pool: SnapshotPool::default(),
         };
-        engine.lay_at_rest(0, f64::NEG_INFINITY);
+        engine.reset_to_rest(0, f64::NEG_INFINITY);
         engine.rest_inside = engine.simulation.rest_inside();
         engine
     }
@@ -128,65 +129,65 @@ impl Engine {
         self.step_secs
     }
 
-    /// Time of the scene, seconds; goes on rising where the clip loops.
+    /// Time of the scene, seconds; keeps increasing when the clip loops.
     pub fn time_secs(&self) -> f64 {
         self.at_step as f64 * self.step_secs
     }
 
-    /// Where the timeline stands, seconds.
+    /// Position on the timeline, seconds.
     pub fn position_secs(&self) -> f64 {
         self.scene.position_secs(self.time_secs())
     }
 
-    /// Whether a motion that does not loop has come to its end.
+    /// Whether a motion without loop has reached its end.
     pub fn is_at_end(&self) -> bool {
         !self.scene.looping && self.time_secs() >= self.scene.duration_secs()
     }
 
-    /// Settings for the steps to come.
+    /// Sets the settings of the next steps.
     pub fn set_settings(&mut self, settings: &SimulationSettings) {
         self.settings = settings.clamped();
     }
 
-    /// Settings for the steps to come, and what of them follows the timeline.
+    /// Sets the settings of the next steps, including their tracks.
     pub fn follow(&mut self, project: &Project) {
         self.set_settings(&project.simulation);
         self.animation = Animation::of(project);
         self.preroll_secs = f64::from(project.timeline.preroll_secs);
     }
 
-    /// The worst of all steps since the hair was last settled.
+    /// The worst values of all steps since the hair was last settled.
     pub fn totals(&self) -> Totals {
         self.totals
     }
 
-    /// Forgets the worst steps, so that [`Engine::totals`] counts from here.
+    /// Resets [`Engine::totals`].
     pub fn clear_totals(&mut self) {
         self.totals = Totals::default();
     }
 
-    /// Goes on counting from totals of before.
+    /// Continues from earlier totals.
     pub(super) fn set_totals(&mut self, totals: &Totals) {
         self.totals = *totals;
     }
 
-    /// Where the style at rest lies deepest inside the body; none where it does not.
+    /// The deepest point of the style at rest inside the body, if any.
     pub fn rest_inside(&self) -> Option<InsidePoint> {
         self.rest_inside
     }
 
-    /// What the simulator took for the steps since they were last taken, milliseconds, with the substeps of the last one. Counts anew.
+    /// Simulation time since the last call, milliseconds, and the substeps of the last step. Resets the time.
     pub fn take_simulate_ms(&mut self) -> (f64, u32) {
         (std::mem::take(&mut self.times).simulate, self.report.substeps)
     }
 
-    /// A fingerprint of the simulated state.
+    /// A hash of the simulated state.
     pub fn state_hash(&self) -> u64 {
         self.simulation.state_hash()
     }
 
-    /// Takes another scene at the same time. Hair of the same layout goes on moving; other hair starts in its style. Returns
-    /// whether the hair is now as it was laid and not as it has lived, so that it wants to be settled.
+    /// Replaces the scene at the same time. Hair of the same layout keeps moving; other hair starts in its rest style. Returns
+    /// whether the hair is now in its rest style and should be settled.
     pub fn set_scene(&mut self, scene: Arc<Scene>) -> bool {
         let before = std::mem::replace(&mut self.scene, scene);
         let same_layout = before.style.guides.points_per_guide == self.scene.style.guides.points_per_guide
@@ -214,7 +215,7 @@ impl Engine {
             _ => false,
         };
         let old_secs = self.at_step as f64 * self.step_secs;
-        // Another tempo goes on from the same pose; another clip from the same place of the timeline.
+        // Another speed continues from the same pose; another clip from the same position on the timeline.
         let time_secs = if same_clip {
             before.clip_secs(old_secs) / self.scene.speed
         } else {
@@ -222,11 +223,11 @@ impl Engine {
         };
         self.at_step = (self.scene.position_secs(time_secs) / self.step_secs).round() as i64;
         if !Arc::ptr_eq(&before.colliders, &self.scene.colliders) {
-            // As many of them may be other ones.
+            // The same number of colliders may still be different ones.
             self.simulation.invalidate_colliders();
         }
         if !same_layout || !same_body {
-            self.lay_at_rest(self.at_step, f64::NEG_INFINITY);
+            self.reset_to_rest(self.at_step, f64::NEG_INFINITY);
         } else if !same_clip {
             self.jump();
         }
@@ -234,26 +235,26 @@ impl Engine {
         !(same_layout && same_body && same_clip)
     }
 
-    /// A step of a life that leads to another instant.
-    pub(super) fn live_step(&mut self, lead_in_secs: f64) {
+    /// One step of a pre-roll.
+    pub(super) fn step_preroll(&mut self, lead_in_secs: f64) {
         self.at_step += 1;
         self.follow_timeline();
         self.place_body(lead_in_secs);
         self.simulate();
     }
 
-    /// What the last step had to say.
+    /// The report of the last step.
     #[cfg(test)]
     pub(super) fn report(&self) -> StepReport {
         self.report
     }
 
-    /// Steps from the scene's time zero.
+    /// Current step, counted from the scene's time zero.
     pub(crate) fn at_step(&self) -> i64 {
         self.at_step
     }
 
-    /// One step on.
+    /// Advances by one step.
     pub fn step(&mut self) {
         self.cut = std::mem::take(&mut self.jumped_since);
         let before = self.scene.repetition(self.time_secs());
@@ -273,28 +274,28 @@ impl Engine {
         self.combing.take_if(|combing| !combing.advance(step_secs));
     }
 
-    /// On to the given step, counted from the scene's time zero; does nothing where time is there already.
+    /// Advances to a step, counted from the scene's time zero. Does nothing if that step is not later.
     pub fn advance_to_step(&mut self, step: u64) {
         while self.at_step < step as i64 {
             self.step();
         }
     }
 
-    /// To a time of the scene: the hair keeps its shape and moves along with the head, until it is settled there.
+    /// Moves to a time of the scene. The hair keeps its shape relative to the head until it is settled.
     pub fn seek(&mut self, time_secs: f64) {
         let time_secs = if time_secs.is_finite() { time_secs.max(0.0) } else { 0.0 };
         self.at_step = (time_secs / self.step_secs).round() as i64;
         self.jump();
     }
 
-    /// Back by a number of steps; from the first frame of a loop on to its last one. The hair moves along.
+    /// Moves back by a number of steps; from the first frame of a loop to its last one. The hair moves with the head.
     pub fn step_back(&mut self, steps: u64) {
         let back = self.time_secs() - steps as f64 * self.step_secs;
         let time_secs = if back < 0.0 && self.scene.looping { self.scene.position_secs(back) } else { back };
         self.seek(time_secs);
     }
 
-    /// The instant as a take holds it.
+    /// The instant as a take stores it.
     pub fn take_frame(&self, out: &mut TakeFrame) {
         self.simulation.frame(&mut out.guides);
         out.guides.time_secs = self.time_secs();
@@ -303,14 +304,14 @@ impl Engine {
         out.jumped = self.report.jumped || self.cut;
     }
 
-    /// The settings of the present step.
+    /// Applies the tracks to the settings of the current step.
     fn follow_timeline(&mut self) {
         if let Some(animation) = &self.animation {
             self.settings = animation.simulation_at(self.position_secs());
         }
     }
 
-    /// Poses the body at the present step, or at `lead_in_secs` where that is later.
+    /// Poses the body at the current step, or at `lead_in_secs` if that is later.
     fn place_body(&mut self, lead_in_secs: f64) {
         let clip_secs = self.scene.clip_secs(self.time_secs().max(lead_in_secs));
         pose_at(&self.scene.body, self.scene.clip.as_deref(), clip_secs, &mut self.pose);
@@ -321,9 +322,9 @@ impl Engine {
         }
     }
 
-    /// One step of the hair to where the body is.
+    /// Simulates one step of the hair with the current pose.
     fn simulate(&mut self) {
-        // The same wind blows at the same time, however the hair came there.
+        // The wind depends only on the time, not on how the engine got there.
         self.simulation.set_wind_secs(self.time_secs() - self.step_secs);
         self.simulated_secs += self.step_secs;
         let placed = [&self.colliders[..], &self.sheltering];
@@ -334,7 +335,7 @@ impl Engine {
         }
     }
 
-    /// The body is elsewhere at once: moves the hair along.
+    /// Moves the hair with the body after a jump.
     fn jump(&mut self) {
         self.jumped_since = true;
         self.simulated_secs += JUMP_SECS;
@@ -351,7 +352,7 @@ impl Engine {
     }
 }
 
-/// The body at a time of the simulator's clock: the shapes that hair meets, and those that only the wind does.
+/// The body at a time of the simulator's clock: the shapes that hair collides with, and those that only block the wind.
 fn body_at<'a>(
     time_secs: f64,
     scene: &'a Scene,

@@ -6,11 +6,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
 use lovelock_project::Project;
-use lovelock_project::error::{Place, StudioError};
+use lovelock_project::error::{Place, ProjectError};
 use lovelock_project::files::Access;
 use lovelock_render::{CpuRenderer, Picture};
 
-use crate::latest::Desk;
+use crate::latest::LatestJob;
 use crate::take::TakePlayer;
 use crate::threads::lower_priority;
 
@@ -41,7 +41,7 @@ pub struct FilmstripPicture {
 /// Renders thumbnails on a thread of its own. A request replaces the previous one, even if that is not finished.
 #[derive(Debug)]
 pub struct Filmstrip {
-    desk: Desk<FilmstripRequest>,
+    jobs: LatestJob<FilmstripRequest>,
     left: Arc<Mutex<Vec<FilmstripPicture>>>,
     thread: Option<JoinHandle<()>>,
 }
@@ -52,17 +52,17 @@ impl Filmstrip {
     /// # Errors
     /// If the system cannot create a thread.
     pub fn start(on_drawn: impl Fn() + Send + 'static) -> std::io::Result<Self> {
-        let desk = Desk::default();
+        let jobs = LatestJob::default();
         let left = Arc::new(Mutex::new(Vec::new()));
         let worker =
-            Worker { desk: desk.clone(), left: Arc::clone(&left), on_drawn: Box::new(on_drawn), open: None };
+            Worker { jobs: jobs.clone(), left: Arc::clone(&left), on_drawn: Box::new(on_drawn), open: None };
         let thread = std::thread::Builder::new().name("filmstrip".to_owned()).spawn(move || worker.run())?;
-        Ok(Self { desk, left, thread: Some(thread) })
+        Ok(Self { jobs, left, thread: Some(thread) })
     }
 
     /// Requests thumbnails. Those of an earlier request that are not rendered yet are dropped.
     pub fn request(&self, request: FilmstripRequest) {
-        self.desk.put(request);
+        self.jobs.put(request);
     }
 
     /// The thumbnails rendered since the last call.
@@ -73,7 +73,7 @@ impl Filmstrip {
 
 impl Drop for Filmstrip {
     fn drop(&mut self) {
-        self.desk.close();
+        self.jobs.close();
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
         }
@@ -82,7 +82,7 @@ impl Drop for Filmstrip {
 
 /// The thread's own state.
 struct Worker {
-    desk: Desk<FilmstripRequest>,
+    jobs: LatestJob<FilmstripRequest>,
     left: Arc<Mutex<Vec<FilmstripPicture>>>,
     on_drawn: Box<dyn Fn() + Send>,
     open: Option<(PathBuf, Access, Box<TakePlayer>)>,
@@ -98,7 +98,7 @@ impl Worker {
             .start_handler(|_| lower_priority())
             .build();
         let mut renderer = CpuRenderer::default();
-        while let Some(request) = self.desk.next() {
+        while let Some(request) = self.jobs.next() {
             let mut draw = || {
                 // After a panic these thumbnails are missing, which is acceptable.
                 catch_unwind(AssertUnwindSafe(|| self.draw(&request, &mut renderer)))
@@ -119,23 +119,23 @@ impl Worker {
                     renderer = CpuRenderer::default();
                 }
             }
-            self.desk.done(None);
+            self.jobs.done(None);
         }
     }
 
-    fn draw(&mut self, request: &FilmstripRequest, renderer: &mut CpuRenderer) -> Result<(), StudioError> {
+    fn draw(&mut self, request: &FilmstripRequest, renderer: &mut CpuRenderer) -> Result<(), ProjectError> {
         let Some(file) = &request.project.take.file else { return Ok(()) };
         let same =
             |open: &(PathBuf, Access, Box<TakePlayer>)| open.0 == file.path && open.1 == request.access;
         if !self.open.as_ref().is_some_and(same) {
             let path = request.access.read(Place::Take, file);
-            let path = path.map_err(|problem| StudioError::input(&file.path, problem))?;
+            let path = path.map_err(|problem| ProjectError::input(&file.path, problem))?;
             let (player, _) = TakePlayer::open(&path, &request.access)?;
             self.open = Some((file.path.clone(), request.access.clone(), Box::new(player)));
         }
         let Some((.., player)) = &mut self.open else { return Ok(()) };
         for &secs in &request.secs {
-            if self.desk.is_closed() || self.desk.has_newer() {
+            if self.jobs.is_closed() || self.jobs.has_newer() {
                 return Ok(());
             }
             let snapshot = player.snapshot(secs)?;
@@ -159,8 +159,8 @@ impl Worker {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::clock::Stopwatch;
     use crate::testing::{recorded, small_project};
+    use lovelock_base::clock::Stopwatch;
 
     #[test]
     fn thumbnails_of_a_take_show_its_frames() {

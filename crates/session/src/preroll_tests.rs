@@ -1,4 +1,4 @@
-//! Hair that is settled wherever one goes, and the same from wherever one came.
+//! Hair is settled after every seek, and does not depend on where the seek came from.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -14,7 +14,7 @@ use crate::scene::Scene;
 use crate::testing::{scene, small_project};
 use crate::tests::{farthest, in_head_space};
 
-/// The small project in a wind, which is not the same at two times.
+/// The small project in a wind that changes over time.
 fn windy() -> Project {
     let mut project = small_project();
     (project.simulation.wind.speed, project.simulation.wind.gusts) = (4.0, 1.0);
@@ -28,7 +28,7 @@ fn engine_of(project: &Project) -> Engine {
 }
 
 #[test]
-fn hair_gone_to_is_that_of_a_recording_that_starts_there() {
+fn hair_after_a_seek_equals_a_recording_that_starts_there() {
     let project = windy();
     let mut go_on = |_| ControlFlow::Continue(());
     let (mut dance, _) = Dance::open(&project, &Access::new(), 30.0, &mut go_on).expect("a dance");
@@ -45,7 +45,7 @@ fn hair_gone_to_is_that_of_a_recording_that_starts_there() {
         assert_eq!(dance.snapshot(frame).expect("a frame").guides, engine.snapshot().guides, "frame {frame}");
     }
     assert_eq!(dance.state_hash(), Some(engine.state_hash()));
-    // The controls: hair that was only carried, and the same hair in no wind.
+    // Controls: hair that was only moved rigidly, and the same hair without wind.
     dance.begin(first, dance.secs_of(first), &mut go_on).expect("begun");
     assert_ne!(dance.state_hash(), Some(carried));
     let mut still = engine_of(&small_project());
@@ -55,7 +55,7 @@ fn hair_gone_to_is_that_of_a_recording_that_starts_there() {
 }
 
 #[test]
-fn a_frame_is_the_same_gone_to_stepped_to_and_recorded_to() {
+fn a_frame_is_the_same_after_a_seek_a_step_and_in_a_recording() {
     let mut gone_to = Engine::new(scene(), SimulationSettings::default());
     let mut stepped = Engine::new(scene(), SimulationSettings::default());
     stepped.seek(130.0 * crate::clock::STEP_SECS);
@@ -68,13 +68,13 @@ fn a_frame_is_the_same_gone_to_stepped_to_and_recorded_to() {
     }
     gone_to.step_back(2);
     gone_to.settle();
-    assert_ne!(gone_to.state_hash(), stepped.state_hash(), "the hash must see two steps");
+    assert_ne!(gone_to.state_hash(), stepped.state_hash(), "control: the hash changes with two steps");
     gone_to.advance_to_step(135);
     assert_eq!(gone_to.state_hash(), stepped.state_hash());
 }
 
 #[test]
-fn settled_hair_is_that_of_one_who_danced_all_along() {
+fn settled_hair_is_close_to_a_continuous_simulation() {
     let mut danced = Engine::new(scene(), SimulationSettings::default());
     let (mut worst, mut unsettled) = (0.0_f32, f32::INFINITY);
     for step in [250, 375, 470] {
@@ -91,13 +91,13 @@ fn settled_hair_is_that_of_one_who_danced_all_along() {
         (worst, unsettled) = (worst.max(off(2.0)), unsettled.min(off(0.0)));
     }
     println!("{worst} m after the pre-roll, {unsettled} m or more without");
-    // Measured: 23 mm at the farthest point of all guides; without it 101 mm at the best of these instants.
+    // Measured: 23 mm at the farthest point of all guides; without pre-roll 101 mm at the best of these instants.
     assert!(worst < 0.03, "{worst} m");
     assert!(unsettled > 3.0 * worst, "the control: {unsettled} m without it");
 }
 
 #[test]
-fn a_life_begins_no_earlier_than_a_cut() {
+fn a_preroll_starts_no_earlier_than_a_cut() {
     let whole = scene();
     let clip = whole.clip.as_ref().expect("a clip");
     let cut_clip = Clip { duration_secs: 3.1, loops: false, ..(**clip).clone() };
@@ -111,7 +111,7 @@ fn a_life_begins_no_earlier_than_a_cut() {
     loop {
         let there = preroll.advance();
         let (done, total) = preroll.steps();
-        // Hair may begin inside the body, and is pushed out at once.
+        // Hair may start inside the body and is pushed out at once.
         if done > 3 {
             fastest = fastest.max(preroll.report().max_speed);
             assert!(!preroll.report().jumped, "step {done} of {total}");
@@ -126,12 +126,12 @@ fn a_life_begins_no_earlier_than_a_cut() {
     let stale = engine.preroll();
     engine.step();
     let before = engine.state_hash();
-    assert!(!engine.take_settled(stale), "it leads to another instant");
+    assert!(!engine.take_settled(stale), "the pre-roll leads to another instant");
     assert_eq!(engine.state_hash(), before);
 }
 
 #[test]
-fn a_life_of_no_length_is_the_style_at_rest() {
+fn an_empty_preroll_is_the_style_at_rest() {
     let mut project = small_project();
     project.timeline.preroll_secs = 0.0;
     let mut engine = engine_of(&project);

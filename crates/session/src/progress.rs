@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use lovelock_project::error::{Problem, StudioError};
+use lovelock_project::error::{Problem, ProjectError};
 
 /// Progress of a recording or a comparison.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,6 +26,8 @@ pub enum Progress {
     },
     /// A frame is done.
     Frame {
+        /// Simulation steps per frame; 0 for a take.
+        steps_per_frame: u32,
         /// Frames done.
         done: u64,
         /// Total number of frames.
@@ -54,13 +56,13 @@ pub enum Progress {
 /// Reports progress to the caller's callback.
 ///
 /// # Errors
-/// [`StudioError::Cancelled`] if the callback cancels the work.
-pub fn tell(
+/// [`ProjectError::Cancelled`] if the callback cancels the work.
+pub fn report_progress(
     progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     what: Progress,
-) -> Result<(), StudioError> {
+) -> Result<(), ProjectError> {
     match progress(what) {
         ControlFlow::Continue(()) => Ok(()),
-        ControlFlow::Break(()) => Err(StudioError::Cancelled),
+        ControlFlow::Break(()) => Err(ProjectError::Cancelled),
     }
 }

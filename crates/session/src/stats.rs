@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 
+use lovelock_base::statistics::median;
 use lovelock_render::{FrameStats, PassTime};
 use serde::Serialize;
 
@@ -142,14 +143,14 @@ impl StageHistory {
     pub fn medians(&self) -> StageTimes {
         let mut medians = StageTimes::default();
         for stage in Stage::ALL {
-            *medians.get_mut(stage) = median(self.series(stage));
+            *medians.get_mut(stage) = median(self.series(stage)).unwrap_or(0.0);
         }
         medians
     }
 
     /// The median of the frames' totals, milliseconds.
     pub fn median_total(&self) -> f64 {
-        median(self.frames.iter().map(StageTimes::total))
+        median(self.frames.iter().map(StageTimes::total)).unwrap_or(0.0)
     }
 }
 
@@ -183,32 +184,14 @@ impl PassHistory {
 
     /// The median of each pass, milliseconds.
     pub fn medians(&self) -> Vec<PassTime> {
-        let median = |times: &VecDeque<f64>| median(times.iter().copied());
+        let median = |times: &VecDeque<f64>| median(times.iter().copied()).unwrap_or(0.0);
         self.passes.iter().map(|(name, times)| PassTime { name: name.clone(), ms: median(times) }).collect()
-    }
-}
-
-/// The median of some numbers: the mean of the middle two where their count is even, 0 where there are none.
-pub fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut sorted: Vec<f64> = values.collect();
-    sorted.sort_by(f64::total_cmp);
-    match sorted.len() {
-        0 => 0.0,
-        n if n % 2 == 1 => sorted[n / 2],
-        n => f64::midpoint(sorted[n / 2 - 1], sorted[n / 2]),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn medians_by_hand() {
-        assert_eq!(median([].into_iter()), 0.0);
-        assert_eq!(median([3.0, 1.0, 2.0].into_iter()), 2.0);
-        assert_eq!(median([4.0, 1.0, 2.0, 3.0].into_iter()), 2.5);
-    }
 
     #[test]
     fn the_oldest_frame_is_forgotten() {

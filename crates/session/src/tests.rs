@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 use glam::Vec3;
 use lovelock_motion::Clip;
 use lovelock_project::Project;
-use lovelock_project::error::{Place, Problem, StudioError};
+use lovelock_project::error::{Place, Problem, ProjectError};
 use lovelock_project::files::Access;
 use lovelock_simulation::SimulationSettings;
 
@@ -15,7 +15,7 @@ use crate::scene::*;
 use crate::snapshot::FrameSnapshot;
 use crate::testing::{load, scene, small_project};
 
-/// A speed that hair of the dance never reaches: its head turns at some metres per second at the most.
+/// A speed that hair never reaches in the dance, where the head turns at a few metres per second.
 const WHIP_METRES_PER_SEC: f32 = 15.0;
 
 /// The guides' points relative to the head.
@@ -60,11 +60,11 @@ fn the_same_bytes_for_any_number_of_threads() {
     assert_eq!(hash_with(8), one);
     let mut engine = Engine::new(Arc::clone(&scene), SimulationSettings::default());
     engine.advance_to_step(41);
-    assert_ne!(engine.state_hash(), one.0, "the hash must see a step");
+    assert_ne!(engine.state_hash(), one.0, "control: the hash changes with a step");
 }
 
 #[test]
-fn a_restart_forgets_everything_that_was_played() {
+fn a_restart_clears_all_state() {
     let scene = scene();
     let mut fresh = Engine::new(Arc::clone(&scene), SimulationSettings::default());
     let mut played = Engine::new(scene, SimulationSettings::default());
@@ -86,12 +86,12 @@ fn hair_is_settled_at_the_first_frame() {
     let before = in_head_space(&engine.snapshot());
     engine.advance_to_step(60);
     let after = in_head_space(&engine.snapshot());
-    // What is left of the fall after a second of it is too little to be seen: a few millimetres at the tips.
+    // The remaining movement after one second is invisible: a few millimetres at the tips.
     assert!(farthest(&before, &after) < 0.02, "hair moved by {} m", farthest(&before, &after));
 }
 
 #[test]
-fn a_seek_moves_the_hair_along_and_does_not_whip_it() {
+fn a_seek_moves_the_hair_rigidly_and_does_not_whip_it() {
     let mut engine = Engine::new(scene(), SimulationSettings::default());
     engine.advance_to_step(30);
     for time_secs in [3.7, 0.2, 6.1, 1.9] {
@@ -129,10 +129,10 @@ fn a_loop_is_seamless_where_the_clip_allows() {
 }
 
 #[test]
-fn a_clip_that_does_not_loop_carries_the_hair_over_its_seam() {
+fn a_clip_without_loop_moves_the_hair_rigidly_over_its_seam() {
     let whole = scene();
     let clip = whole.clip.as_ref().expect("a clip");
-    // Cut where the head is far from where it began.
+    // Trim the clip where the head is far from its start.
     let start = whole.head_path.smoothed(0.0, 0.0);
     let cut = (1..80)
         .map(|i| f64::from(i) * 0.1)
@@ -161,8 +161,8 @@ fn a_clip_that_does_not_loop_carries_the_hair_over_its_seam() {
 }
 
 #[test]
-fn a_head_that_is_torn_away_would_whip_the_hair() {
-    // The negative control of the tests above: below the distance of a jump, the same bound is broken.
+fn a_sudden_move_of_the_head_would_whip_the_hair() {
+    // Negative control of the tests above: a move just below the distance of a jump exceeds the same bound.
     let scene = scene();
     let mut simulation = lovelock_simulation::Simulation::new(Arc::clone(&scene.style));
     let at = |x: f32| glam::Affine3A::from_translation(Vec3::new(x, 1.5, 0.0));
@@ -186,7 +186,7 @@ fn a_motion_without_a_loop_ends_at_its_last_pose() {
 }
 
 #[test]
-fn only_what_changes_is_made_again() {
+fn only_changed_parts_are_loaded_again() {
     let access = Access::new();
     let mut loader = SceneLoader::new();
     let mut project = small_project();
@@ -205,7 +205,7 @@ fn only_what_changes_is_made_again() {
 }
 
 #[test]
-fn a_part_that_fails_leaves_the_old_one() {
+fn a_part_that_fails_keeps_the_old_one() {
     let dir = tempfile::tempdir().expect("a folder");
     let broken = dir.path().join("broken.hair");
     std::fs::write(&broken, b"HAIR and nothing else").expect("a file");
@@ -229,7 +229,7 @@ fn a_part_that_fails_leaves_the_old_one() {
 }
 
 #[test]
-fn a_project_whose_files_are_all_missing_still_dances() {
+fn a_project_with_all_files_missing_still_moves() {
     let dir = tempfile::tempdir().expect("a folder");
     let mut project = small_project();
     project.set_body_file(dir.path().join("gone.glb"));
@@ -245,7 +245,7 @@ fn a_project_whose_files_are_all_missing_still_dances() {
 }
 
 #[test]
-fn a_clip_that_is_not_there_is_named_with_those_that_are() {
+fn a_missing_clip_is_named_with_the_existing_ones() {
     let mut project = small_project();
     project.motion.clip = "polka".to_owned();
     let (scene, problems) = load(&project);
@@ -258,11 +258,11 @@ fn a_load_can_be_cancelled() {
     let cancelled = AtomicBool::new(true);
     let mut control = LoadControl { cancelled: &cancelled, progress: &mut |_, _| {} };
     let result = SceneLoader::new().load(&small_project(), &Access::new(), &mut control);
-    assert!(matches!(result, Err(StudioError::Cancelled)));
+    assert!(matches!(result, Err(ProjectError::Cancelled)));
 }
 
 #[test]
-fn other_hair_comes_in_without_a_whip_and_time_goes_on() {
+fn other_hair_appears_without_a_whip_and_time_continues() {
     let access = Access::new();
     let mut loader = SceneLoader::new();
     let mut project = small_project();
@@ -286,24 +286,24 @@ fn other_hair_comes_in_without_a_whip_and_time_goes_on() {
         for step in 0..20 {
             engine.step();
             let report = engine.snapshot().report;
-            // Locks of another length may begin inside the body, and are pushed out at once.
+            // Hair of another length may start inside the body and is pushed out at once.
             assert!(step < 3 || report.max_speed < 0.5 * WHIP_METRES_PER_SEC, "step {step}: {report:?}");
         }
     }
 }
 
 #[test]
-fn snapshots_are_used_again_once_nobody_looks() {
+fn unshared_snapshots_are_reused() {
     let mut engine = Engine::new(scene(), SimulationSettings::default());
     let first = Arc::as_ptr(&engine.snapshot());
     let held = engine.snapshot();
-    assert_eq!(Arc::as_ptr(&held), first, "the first was free");
+    assert_eq!(Arc::as_ptr(&held), first, "the first one was unused");
     let other = engine.snapshot();
-    assert_ne!(Arc::as_ptr(&other), first, "the first is held");
+    assert_ne!(Arc::as_ptr(&other), first, "the first one is in use");
     let step = held.step;
     engine.step();
     engine.snapshot();
-    assert_eq!(held.step, step, "what is held does not change");
+    assert_eq!(held.step, step, "snapshots in use do not change");
 }
 
 #[test]
@@ -320,7 +320,7 @@ fn the_camera_follows_without_trembling() {
             moved
         })
         .collect();
-    // A brisk walk at most, and no frame that stands out from its neighbours.
+    // At most a brisk walking speed, and no outliers.
     assert!(path.iter().all(|&moved| moved < 1.5 / 60.0), "{:?}", path.iter().copied().fold(0.0, f32::max));
     for pair in path.windows(2) {
         assert!((pair[1] - pair[0]).abs() < 0.003, "{pair:?}");
@@ -337,7 +337,7 @@ fn the_head_stays_in_the_picture_through_the_whole_dance() {
         let clip_from_world =
             camera_at(&lovelock_project::project::CameraSection::default(), &scene, time_secs)
                 .clip_from_world(16.0 / 9.0);
-        // The chin's height, the crown, and the back of the head with its hair.
+        // Chin, crown, and the back of the head with its hair.
         for part in [Vec3::new(0.0, -0.05, 0.08), Vec3::new(0.0, 0.2, 0.0), Vec3::new(0.0, 0.05, -0.15)] {
             let p = clip_from_world * pose.world_from_head.transform_point3(part).extend(1.0);
             let (x, y) = (p.x / p.w, p.y / p.w);

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 /// Time and position of a point of the hair when a value occurred.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Found {
+pub struct Occurrence {
     /// Position on the timeline, seconds; `None` if there is no timeline because the body is at rest.
     pub at_secs: Option<f64>,
     /// Position of the point, world space, metres.
@@ -23,31 +23,31 @@ pub struct Totals {
     /// Guide and end point of that link.
     pub worst_stretch_at: Option<(u32, u32)>,
     /// Time and position of that point.
-    pub worst_stretch_found: Option<Found>,
+    pub worst_stretch_found: Option<Occurrence>,
     /// Deepest point inside a collider, metres.
     pub max_penetration_m: f32,
     /// That point; `None` if no point was inside.
     pub deepest: Option<InsidePoint>,
     /// Time and position of that point.
-    pub deepest_found: Option<Found>,
+    pub deepest_found: Option<Occurrence>,
     /// Largest number of points in folded skin in one step. Their penetration depth is unknown.
     pub unsure_points: u32,
     /// Guide and point number of the first of them.
     pub unsure_at: Option<(u32, u32)>,
     /// Time and position of that point.
-    pub unsure_found: Option<Found>,
+    pub unsure_found: Option<Occurrence>,
     /// Largest mean kinetic energy, joules per kilogram.
     pub max_kinetic_energy: f32,
     /// The fastest guide and its point in that step.
     pub fastest_at: Option<(u32, u32)>,
     /// Time and position of that point.
-    pub fastest_found: Option<Found>,
+    pub fastest_found: Option<Occurrence>,
     /// Number of guides that were reset to the start of a step, summed over all steps.
     pub recovered_guides: u64,
     /// The guide that was reset last.
     pub recovered_at: Option<u32>,
     /// Time of the reset and position of the guide's tip.
-    pub recovered_found: Option<Found>,
+    pub recovered_found: Option<Occurrence>,
     /// Number of steps at which the motion jumped.
     pub jumps: u64,
 }
@@ -61,7 +61,7 @@ impl Totals {
         at_secs: Option<f64>,
         place: impl Fn(u32, u32) -> Option<Vec3>,
     ) {
-        let found = |(guide, point)| place(guide, point).map(|place| Found { at_secs, place });
+        let found = |(guide, point)| place(guide, point).map(|place| Occurrence { at_secs, place });
         self.steps += 1;
         if report.max_stretch > self.max_stretch {
             (self.max_stretch, self.worst_stretch_at) = (report.max_stretch, report.worst_stretch_at);

@@ -1,4 +1,4 @@
-//! The simulation on its own thread, in real time.
+//! The simulation on a thread of its own, in real time, and the loader thread.
 
 mod load_thread;
 mod mailbox;
@@ -14,70 +14,70 @@ use std::thread::JoinHandle;
 
 use load_thread::LoadThread;
 use lovelock_project::Project;
-use lovelock_project::error::{Problem, StudioError};
+use lovelock_project::error::{Problem, ProjectError};
 use lovelock_project::files::Access;
 use lovelock_record::TakeReport;
-use mailbox::{Mailbox, TakeWish};
-use simulation_thread::Inside;
+use mailbox::{Mailbox, TakeRequest};
+use simulation_thread::SimulationThread;
 
 use crate::engine::PrerollProgress;
-use crate::latest::Slot;
+use crate::latest::Latest;
 use crate::scene::Scene;
 use crate::snapshot::FrameSnapshot;
 use crate::take::TakeProgress;
 
-/// Events that may wait for the interface; more are dropped, and logged.
+/// Maximum number of unread events; more are dropped and logged.
 const MOST_EVENTS: usize = 256;
 
-/// Called, from any thread, when there is something new to show: the window repaints.
+/// Called from any thread when there is something new to show, so that the window repaints.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
-/// What happened meanwhile.
+/// An event on one of the threads.
 #[derive(Clone, Debug)]
 pub enum Event {
-    /// A scene is loaded, and dances from the next frame on.
+    /// A scene was loaded and is used from the next frame on.
     Loaded {
-        /// The scene, with the notes of its files.
+        /// The scene, including the notes about its files.
         scene: Arc<Scene>,
         /// What could not be loaded.
         problems: Vec<Problem>,
     },
-    /// A load was given up; the scene stays as it was.
+    /// A load was cancelled; the scene is unchanged.
     LoadCancelled,
-    /// Nothing could be loaded; the scene stays as it was.
+    /// Nothing could be loaded; the scene is unchanged.
     LoadFailed {
-        /// Why.
+        /// The reason.
         message: String,
     },
-    /// A motion that does not loop came to its end, and playing has paused.
+    /// A motion without loop reached its end, and playback has paused.
     EndReached,
-    /// A take is whole and has its name.
+    /// A take is complete and has its final name.
     TakeSaved {
-        /// What was recorded.
+        /// The recorded take.
         report: TakeReport,
-        /// Why it ended by itself, where it did.
+        /// Why recording ended by itself, if it did.
         because: Option<String>,
     },
-    /// A take could not be recorded; what is kept of it, the message says.
+    /// Recording a take failed; the message says which part is kept.
     TakeFailed {
-        /// Why.
+        /// The reason.
         message: String,
     },
-    /// The take that plays has a place that cannot be read; the instant before it stays.
+    /// A part of the played take cannot be read; the previous frame stays visible.
     TakeUnreadable {
-        /// Why.
+        /// The reason.
         message: String,
     },
-    /// A thread met a defect of the program and caught itself. The scene goes on; save the project.
+    /// A thread panicked and recovered. The scene continues; the user should save the project.
     Panicked {
         /// Which thread.
         thread: &'static str,
-        /// What it said.
+        /// The panic message.
         message: String,
     },
 }
 
-/// The way from the threads to the interface.
+/// Sends events from the threads to the interface.
 #[derive(Clone)]
 pub(super) struct Outbox {
     events: SyncSender<Event>,
@@ -85,7 +85,7 @@ pub(super) struct Outbox {
 }
 
 impl Outbox {
-    /// With where its events come out.
+    /// Also returns the receiver of the events.
     pub(super) fn new(wake: Wake) -> (Self, Receiver<Event>) {
         let (events, received) = sync_channel(MOST_EVENTS);
         (Self { events, wake }, received)
@@ -93,7 +93,7 @@ impl Outbox {
 
     pub(super) fn send(&self, event: Event) {
         if let Err(TrySendError::Full(event)) = self.events.try_send(event) {
-            tracing::warn!(?event, "the interface does not read its events: one is dropped");
+            tracing::warn!(?event, "the interface does not read its events; one was dropped");
         }
         self.wake();
     }
@@ -115,11 +115,10 @@ impl Outbox {
 
 /// The simulation thread and the loader thread. Dropping it ends both.
 ///
-/// No call waits: wishes are left in a box where later ones replace earlier ones, and the newest frame lies in a
-/// slot where the latest wins.
+/// No call blocks: later requests replace earlier ones in a mailbox, and only the newest frame is kept.
 pub struct Worker {
     mailbox: Mailbox,
-    frames: Slot<FrameSnapshot>,
+    frames: Latest<FrameSnapshot>,
     events: Mutex<Receiver<Event>>,
     loader: Arc<LoadThread>,
     recorded: Arc<Mutex<Option<TakeProgress>>>,
@@ -128,21 +127,21 @@ pub struct Worker {
 }
 
 impl Worker {
-    /// Starts both threads on a project, playing. The first frame appears when the scene is loaded.
+    /// Starts both threads with a project, in playback. The first frame appears when the scene is loaded.
     ///
     /// # Errors
-    /// Where the system gives no threads.
-    pub fn start(project: Arc<Project>, access: Access, wake: Wake) -> Result<Self, StudioError> {
+    /// If the system cannot create threads.
+    pub fn start(project: Arc<Project>, access: Access, wake: Wake) -> Result<Self, ProjectError> {
         let (outbox, events) = Outbox::new(wake);
         let mailbox = Mailbox::default();
-        let frames = Slot::default();
+        let frames = Latest::default();
         let to_simulation = mailbox.clone();
         let loader = Arc::new(LoadThread::start(outbox.clone(), move |loaded| {
-            to_simulation.ask(|wishes| wishes.loaded = Some(loaded));
+            to_simulation.post(|requests| requests.loaded = Some(loaded));
         })?);
-        mailbox.ask(|wishes| wishes.project = Some((project, access)));
+        mailbox.post(|requests| requests.project = Some((project, access)));
         let (recorded, settling) = (Arc::default(), Arc::default());
-        let inside = Inside::new(
+        let inside = SimulationThread::new(
             mailbox.clone(),
             frames.clone(),
             Arc::clone(&loader),
@@ -153,7 +152,7 @@ impl Worker {
         let thread = std::thread::Builder::new()
             .name("lovelock simulation".to_owned())
             .spawn(move || inside.run())
-            .map_err(|error| StudioError::work(format!("the simulation thread could not start: {error}")))?;
+            .map_err(|error| ProjectError::work(format!("the simulation thread could not start: {error}")))?;
         Ok(Self {
             mailbox,
             frames,
@@ -165,120 +164,120 @@ impl Worker {
         })
     }
 
-    /// The project has changed. What needs loading is loaded aside; the old scene dances on meanwhile.
+    /// Sets a changed project. Parts that need loading are loaded in the background while the old scene continues.
     pub fn set_project(&self, project: Arc<Project>, access: Access) {
-        self.mailbox.ask(|wishes| wishes.project = Some((project, access)));
+        self.mailbox.post(|requests| requests.project = Some((project, access)));
     }
 
     /// Plays or pauses.
     pub fn set_playing(&self, playing: bool) {
-        self.mailbox.ask(|wishes| wishes.playing = Some(playing));
+        self.mailbox.post(|requests| requests.playing = Some(playing));
     }
 
-    /// Seconds of the scene a second, 0.05 to 2: slow motion.
+    /// Sets the scene seconds per second, 0.05 to 2; less than 1 is slow motion.
     pub fn set_rate(&self, rate: f64) {
-        self.mailbox.ask(|wishes| wishes.rate = Some(rate));
+        self.mailbox.post(|requests| requests.rate = Some(rate));
     }
 
-    /// How many pictures the display shows in a second: on one of more than 60, and in slow motion, what is seen lies between two
-    /// steps, so that it moves evenly.
+    /// Sets the refresh rate of the display. Above 60 Hz and in slow motion, images are interpolated between two steps, so that
+    /// the motion is even.
     pub fn set_display_hz(&self, hz: f64) {
-        self.mailbox.ask(|wishes| wishes.display_hz = Some(hz));
+        self.mailbox.post(|requests| requests.display_hz = Some(hz));
     }
 
-    /// Whether a take plays from its end to its start; a simulation only goes on.
+    /// Sets whether a take is played backwards. A simulation can only run forwards.
     pub fn set_backwards(&self, backwards: bool) {
-        self.mailbox.ask(|wishes| wishes.backwards = Some(backwards));
+        self.mailbox.post(|requests| requests.backwards = Some(backwards));
     }
 
-    /// Records every step from now on as a take, until [`Worker::finish_take`]. A disk that fails comes as an event.
+    /// Records every step from now on as a take, until [`Worker::finish_take`]. Failures are reported as events.
     pub fn record_take(&self, path: impl Into<PathBuf>) {
         let path = path.into();
-        self.mailbox.ask(|wishes| wishes.take = Some(TakeWish::Start(path)));
+        self.mailbox.post(|requests| requests.take = Some(TakeRequest::Start(path)));
     }
 
-    /// Makes the take that is recorded whole.
+    /// Completes the take that is being recorded.
     pub fn finish_take(&self) {
-        self.mailbox.ask(|wishes| wishes.take = Some(TakeWish::Finish));
+        self.mailbox.post(|requests| requests.take = Some(TakeRequest::Finish));
     }
 
-    /// How far the take is that is recorded; none where none is.
+    /// Progress of the take that is being recorded, if any.
     pub fn take_progress(&self) -> Option<TakeProgress> {
         self.recorded.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// How far the hair is that settles where one has gone to; none where it is settled.
+    /// Progress of settling; `None` if the hair is settled.
     pub fn settling(&self) -> Option<PrerollProgress> {
         *self.settling.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Goes on with the hair as it is, not settled.
+    /// Cancels settling and continues with the current hair.
     pub fn cancel_settle(&self) {
-        self.mailbox.ask(|wishes| wishes.settle = Some(false));
+        self.mailbox.post(|requests| requests.settle = Some(false));
     }
 
-    /// Goes to a time, seconds; the hair moves along at once, and settles there aside. Time waits for it.
+    /// Seeks to a time, seconds. The hair moves rigidly at once and then settles in the background; playback waits for it.
     pub fn seek(&self, time_secs: f64) {
-        self.mailbox.ask(|wishes| {
-            (wishes.seek_secs, wishes.look_back) = (Some(time_secs), false);
-            (wishes.steps, wishes.restart) = (0, false);
+        self.mailbox.post(|requests| {
+            (requests.seek_secs, requests.look_back) = (Some(time_secs), false);
+            (requests.steps, requests.restart) = (0, false);
         });
     }
 
-    /// As [`Worker::seek`], to look at what was measured there: the totals go on from those of before.
+    /// As [`Worker::seek`], but keeps the totals, to show where a value was measured.
     pub fn look_back(&self, time_secs: f64) {
-        self.mailbox.ask(|wishes| {
-            (wishes.seek_secs, wishes.look_back) = (Some(time_secs), true);
-            (wishes.steps, wishes.restart) = (0, false);
+        self.mailbox.post(|requests| {
+            (requests.seek_secs, requests.look_back) = (Some(time_secs), true);
+            (requests.steps, requests.restart) = (0, false);
         });
     }
 
-    /// Goes on by a number of steps of 1/60 s, or back. On, the hair is simulated; back, it settles as for [`Worker::seek`].
+    /// Steps by a number of steps of 1/60 s. Forward steps are simulated; backward steps settle the hair as [`Worker::seek`] does.
     pub fn step(&self, steps: i64) {
-        self.mailbox.ask(|wishes| wishes.steps = wishes.steps.saturating_add(steps).clamp(-600, 600));
+        self.mailbox.post(|requests| requests.steps = requests.steps.saturating_add(steps).clamp(-600, 600));
     }
 
-    /// To the first frame, the hair settled.
+    /// Moves to the first frame with settled hair.
     pub fn restart(&self) {
-        self.mailbox.ask(|wishes| {
-            wishes.restart = true;
-            (wishes.seek_secs, wishes.steps) = (None, 0);
+        self.mailbox.post(|requests| {
+            requests.restart = true;
+            (requests.seek_secs, requests.steps) = (None, 0);
         });
     }
 
-    /// Lets the hair fall into place where it is.
+    /// Settles the hair at the current time.
     pub fn settle(&self) {
-        self.mailbox.ask(|wishes| wishes.settle = Some(true));
+        self.mailbox.post(|requests| requests.settle = Some(true));
     }
 
-    /// Gives up what is being loaded.
+    /// Cancels the current load.
     pub fn cancel_load(&self) {
         self.loader.cancel();
     }
 
-    /// Dances a scene that no loader has made.
+    /// Uses a scene that does not come from the loader.
     #[cfg(test)]
     pub(crate) fn put_scene(&self, scene: Arc<Scene>) {
         let project = Arc::new(Project::default());
-        self.mailbox.ask(|wishes| wishes.loaded = Some(load_thread::Loaded::Scene(scene, project)));
+        self.mailbox.post(|requests| requests.loaded = Some(load_thread::Loaded::Scene(scene, project)));
     }
 
-    /// How far a load is; none where nothing is loaded.
+    /// Progress of the current load, if any.
     pub fn load_progress(&self) -> Option<LoadProgress> {
         self.loader.progress()
     }
 
-    /// The newest frame; none before the first scene is loaded.
+    /// The newest frame; `None` before the first scene is loaded.
     pub fn frame(&self) -> Option<Arc<FrameSnapshot>> {
         self.frames.latest()
     }
 
-    /// The slot that frames are left in.
-    pub fn frames(&self) -> &Slot<FrameSnapshot> {
+    /// The newest frame as a shared value.
+    pub fn frames(&self) -> &Latest<FrameSnapshot> {
         &self.frames
     }
 
-    /// The next thing that happened, oldest first.
+    /// The oldest unread event.
     pub fn poll_event(&self) -> Option<Event> {
         self.events.lock().unwrap_or_else(PoisonError::into_inner).try_recv().ok()
     }
@@ -286,7 +285,7 @@ impl Worker {
 
 impl Drop for Worker {
     fn drop(&mut self) {
-        self.mailbox.ask(|wishes| wishes.stop = true);
+        self.mailbox.post(|requests| requests.stop = true);
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
         }

@@ -1,4 +1,4 @@
-//! The default project by both backends: a skinned body under hair, in the middle of the dance.
+//! The default project on both backends: a skinned body with hair, in the middle of the dance.
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -10,8 +10,8 @@ use lovelock_session::engine::Engine;
 use lovelock_session::scene::{LoadControl, SceneLoader};
 use lovelock_testkit::flip;
 
-/// FLIP of the two pictures. Measured on a software adapter: mean 0.0057, 99th percentile 0.124 (the edges of the eyes
-/// and of the body); the picture a sixtieth of a second later, the control, has 0.025 and 0.376.
+/// Bound of FLIP between the two images. Measured on a software adapter: mean 0.0057, 99th percentile 0.124 (at the edges of the
+/// eyes and the body). The control, an image 1/60 s later, has 0.025 and 0.376.
 const MEAN: f32 = 0.01;
 const P99: f32 = 0.2;
 

@@ -1,5 +1,5 @@
-//! Every shadow method with every transparency: on every hairstyle by the CPU backend, which needs no adapter, and on the
-//! default project by the GPU backend against it.
+//! Every shadow method with every transparency: all hairstyles on the CPU backend, which needs no adapter, and the default
+//! project on the GPU backend compared with the CPU.
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -15,10 +15,10 @@ use lovelock_testkit::flip;
 
 const SIZE: (u32, u32) = (96, 72);
 
-/// Where tied hair is seen from: behind, to the left.
+/// Camera azimuth for tied hair: from behind, to the left.
 const BEHIND: f32 = 2.6;
 
-/// No bound is above this part of what leaving the shadow out makes of a picture.
+/// No bound exceeds this fraction of the difference between images with and without shadow.
 const BELOW_CONTROL: f32 = 0.7;
 
 /// The project half a second into the dance.
@@ -37,7 +37,7 @@ fn instant(name: &str, project: &Project) -> Arc<FrameSnapshot> {
     engine.snapshot()
 }
 
-/// One of its pictures.
+/// Renders one image of it.
 fn draw(
     renderer: &mut Renderer,
     snapshot: &FrameSnapshot,
@@ -54,13 +54,13 @@ fn draw(
     picture.rgba
 }
 
-/// Draws the project in every combination on the processor.
+/// Renders the project in every combination on the CPU.
 fn draw_all(name: &str, mut project: Project) {
-    // Sparse hair is wide hair: the same mass in less time.
+    // Fewer and wider strands: the same coverage in less time.
     project.hair.groom.strands_per_wisp = 10;
     project.camera.distance = 0.7;
     if !project.hair.ties.is_empty() {
-        // What is tied up is behind the head.
+        // Tied hair is behind the head.
         project.camera.azimuth = BEHIND;
     }
     let snapshot = instant(name, &project);

@@ -1,98 +1,97 @@
-//! What a comparison found: the keys of `compare --json` and of `report.json`, and what the page shows.
+//! The results of a comparison: the keys of `compare --json` and of `report.json`, and the data of the page.
 //!
-//! Numbers that could not be measured are null, each with a sentence in [`MethodReport::refused`] or
-//! [`CompareReport::notes`] that says why. Files are named relative to the report's folder.
+//! Numbers that could not be measured are null; a sentence in [`MethodReport::refused`] or [`CompareReport::notes`] says why. Files are named relative to the report's folder.
 
 use lovelock_panes::probe::ProbeCurve;
 use serde::{Deserialize, Serialize};
 
 use crate::changes::{ChangeReport, StabilityReport};
 
-/// What a comparison found.
+/// The results of a comparison.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CompareReport {
-    /// Whether everything that was asked for has been done. False where the run was cancelled: what is here is whole.
+    /// Whether everything requested was done. False if the run was cancelled; the results present are then still valid.
     pub complete: bool,
     /// Version of the program.
     pub version: String,
-    /// Processor and number of threads.
+    /// CPU and number of threads.
     pub machine: String,
-    /// Frames that were looked at, half open. Errors, pictures and times are of the first one.
+    /// Evaluated frames, half open. Errors, images and times are of the first one.
     pub frames: [u64; 2],
-    /// Those of them in which maps were shifted for [`StabilityReport::swim`]: all, or of many some that lie evenly.
+    /// The frames in which maps were shifted for [`StabilityReport::swim`]: all, or an evenly spaced selection of many.
     #[serde(default)]
     pub swim_frames: Vec<u64>,
-    /// What was drawn.
+    /// Facts about the rendered scene.
     pub scene: SceneFacts,
-    /// The truth, and how far it can be trusted.
+    /// The ground truth and its accuracy.
     pub reference: Reference,
-    /// One entry for each method, backend and value of a sweep, in the order in which they were asked for.
+    /// One entry per method, backend and value of a sweep, in the requested order.
     pub methods: Vec<MethodReport>,
-    /// Rays of light through chosen points of hair.
+    /// Rays of light through chosen strand points.
     pub probes: Vec<ProbeReport>,
     /// The scales of the error maps.
     pub legends: Vec<Legend>,
-    /// What was left out, and other things to know, in sentences.
+    /// Notes on omissions and accuracy, as sentences.
     pub notes: Vec<String>,
 }
 
-/// What was drawn.
+/// Facts about the rendered scene.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SceneFacts {
-    /// The project's file, or `default project`, with what was changed of it.
+    /// The project's file, or `default project`, with the changed settings.
     pub name: String,
-    /// Frames a second of the frames' numbers.
+    /// Frame rate of the frame numbers.
     pub fps: f64,
-    /// Width of the pictures, pixels.
+    /// Width of the images, pixels.
     pub width: u32,
-    /// Height of the pictures, pixels.
+    /// Height of the images, pixels.
     pub height: u32,
-    /// Strands.
+    /// Number of strands.
     pub strands: u64,
-    /// Their points.
+    /// Number of strand points.
     pub points: u64,
-    /// Their segments.
+    /// Number of strand segments.
     pub segments: u64,
     /// Factor on the optical depth of every strand.
     pub extinction_scale: f32,
-    /// Lights that are on. Errors of transmittance are those of the first one.
+    /// Number of enabled lights. Errors of transmittance are those of the first one.
     pub lights: u32,
-    /// Draws that a time is the median of, after a warm-up.
+    /// Number of draws per time measurement, after a warm-up.
     pub draws: u32,
 }
 
-/// The truth that methods are held against.
+/// The ground truth that methods are compared with.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Reference {
-    /// Whether every truth that errors are measured against converged within its limit.
+    /// Whether every ground truth used for errors converged within its limit.
     pub converged: bool,
-    /// Subtexels along the edge of a texel in the last round of the one that needed most.
+    /// Largest number of subtexels along a texel's edge in the last round of any ground truth.
     pub samples: u32,
-    /// The largest change of the last rounds, root mean square of transmittance.
+    /// The largest change in a last round, root mean square of transmittance.
     pub change: f32,
-    /// The change below which a truth counts as converged.
+    /// The change below which a ground truth counts as converged.
     pub limit: f32,
-    /// One truth for each footprint: the means of light over the texels of the methods that are named.
+    /// One ground truth per footprint: the mean of the light over the texels of the named methods.
     pub footprints: Vec<FootprintTruth>,
-    /// The other truths of the same kind: of lights after the first, and of later frames.
+    /// Other ground truths of the same kind: for lights after the first, and for later frames.
     pub others: Vec<NamedTruth>,
-    /// Those along the probes' rays. No error is measured against them, and `converged` leaves them out: over the places of one
-    /// ray less evens out than over all points.
+    /// Ground truths along the probes' rays. They are not used for errors and do not count in `converged`, because the positions on
+    /// one ray average out less than all points.
     pub probes: Vec<NamedTruth>,
-    /// The truth at points: transmittance of the exact method on a fine map.
+    /// Ground truth at points: transmittance of the exact method on a fine map.
     pub points: Option<PointTruth>,
-    /// File of the picture drawn from converged transmittance with exact transparency.
+    /// File of the reference image, rendered from converged transmittance with exact transparency.
     pub picture: Option<String>,
     /// File of that transmittance in colour.
     pub transmittance: Option<String>,
-    /// What could not be had of the truth, with the numbers, in one sentence each.
+    /// Missing parts of the ground truth, with numbers, one sentence each.
     pub refused: Vec<String>,
 }
 
 /// Converged transmittance for one footprint.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FootprintTruth {
-    /// [`MethodReport::name`]s of those that are held against it.
+    /// [`MethodReport::name`]s of the methods that are compared with it.
     pub methods: Vec<String>,
     /// Whether it converged.
     pub converged: bool,
@@ -102,14 +101,14 @@ pub struct FootprintTruth {
     pub change: f32,
     /// Subtexels and change of every round after the first.
     pub changes: Vec<(u32, f32)>,
-    /// Points that it was found at: all of the strands', or every so many of them.
+    /// Number of points where it was computed: all strand points, or a regular selection.
     pub points: u64,
 }
 
-/// Converged transmittance of something else than the first light in the first frame.
+/// Converged transmittance of something other than the first light in the first frame.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct NamedTruth {
-    /// What it is of: `reference picture, light 2`, `frame 41`.
+    /// Its subject, such as `reference picture, light 2` or `frame 41`.
     pub name: String,
     /// Whether it converged.
     pub converged: bool,
@@ -120,7 +119,7 @@ pub struct NamedTruth {
 }
 
 impl NamedTruth {
-    /// The facts of a truth, under a name.
+    /// The facts of a ground truth, with a name.
     pub(crate) fn new(name: String, facts: &FootprintTruth) -> Self {
         let FootprintTruth { converged, samples, change, .. } = *facts;
         Self { name, converged, samples, change }
@@ -128,14 +127,14 @@ impl NamedTruth {
 }
 
 impl Reference {
-    /// The change of the truth at points where it is above the limit of the others: errors at points that are smaller may be
-    /// the truth's own.
+    /// The change of the ground truth at points, if it exceeds the limit of the others. Smaller errors at points may be errors of
+    /// the ground truth.
     pub fn doubt_at_points(&self) -> Option<f32> {
         let change = self.points.as_ref()?.change;
         (change > self.limit).then_some(change)
     }
 
-    /// Sums up all truths that are known by now, those of probes aside.
+    /// Updates the summary from all known ground truths except those of probes.
     pub(crate) fn settle(&mut self) {
         let footprints = self.footprints.iter().map(|of| (of.converged, of.samples, of.change));
         let others = self.others.iter().map(|of| (of.converged, of.samples, of.change));
@@ -154,7 +153,7 @@ impl Reference {
 pub struct PointTruth {
     /// Texels along each edge of its map.
     pub resolution: u32,
-    /// Memory that it took, bytes.
+    /// Its memory, bytes.
     pub memory_bytes: u64,
     /// Root mean square difference to the same on a map of half the resolution.
     pub change: f32,
@@ -165,69 +164,70 @@ pub struct PointTruth {
 pub struct MethodReport {
     /// Id of the shadow method.
     pub id: String,
-    /// What people call the method.
+    /// Label of the method.
     pub label: String,
-    /// Unique among the methods of a report, such as `occupancy-maps resolution=256 cpu`: what differs from the others.
+    /// Name that is unique in a report and contains what differs from the others, such as `occupancy-maps resolution=256 cpu`.
     pub name: String,
     /// Id of the transparency mode.
     pub transparency: String,
     /// `cpu` or `gpu`.
     pub backend: String,
-    /// Name of what drew.
+    /// Name of the device that rendered.
     pub adapter: String,
     /// Settings of the method, name and value.
     pub settings: Vec<(String, String)>,
-    /// Name and value of what a sweep changed; empty outside a sweep.
+    /// Names and values of settings changed by sweeps; empty outside a sweep.
     pub sweep: Vec<(String, String)>,
-    /// Edge of a texel (of a cell) of its map, metres; null where it has no map. Texels are never narrower than strands.
+    /// Edge of a texel (or cell) of its map, metres; null if it has no map. Texels are never narrower than strands.
     pub cell_size_m: Option<f32>,
-    /// Texels (cells) that its map has: fewer than its settings ask for where these would be narrower than strands, or where
-    /// the box around the hair is no cube.
+    /// Number of texels (or cells) of its map. There are fewer than the settings say if texels would be narrower than strands, or if
+    /// the box around the hair is not a cube.
     pub cells_total: Option<u64>,
-    /// Why it, or a part of it, could not be done; one sentence.
+    /// Why it, or a part of it, could not be measured; one sentence.
     pub refused: Option<String>,
-    /// Error of transmittance at strand points against the mean of the light over the method's own texels: what it could
-    /// know best.
+    /// Error of transmittance at strand points against the mean of the light over the method's own texels, the best that the map
+    /// could represent.
     pub transmittance: Option<TransmittanceError>,
-    /// The same against one truth for all methods: the mean of the light over a texel of `exact` by the project's settings,
-    /// from which the reference picture is drawn. Coarse texels count against a method here.
+    /// The same against one ground truth for all methods: the mean of the light over a texel of `exact` with the project's settings,
+    /// which also shades the reference image. This includes the error of coarse texels.
     pub transmittance_common: Option<TransmittanceError>,
-    /// The same against the truth at points. Null for the method that is that truth.
+    /// The same against the ground truth at points. Null for the method that is this ground truth.
     pub transmittance_at_points: Option<TransmittanceError>,
-    /// Difference of the picture to the reference picture, as seen (FLIP, 0 to 1).
+    /// Perceived difference from the reference image (FLIP, 0 to 1).
     pub flip: Option<FlipError>,
-    /// Signal to noise of the picture, decibels; null also where the pictures are the same.
+    /// Peak signal-to-noise ratio of the image, decibels; also null if the images are equal.
     pub psnr_db: Option<f64>,
-    /// Structural similarity of the pictures; 1 where they are the same.
+    /// Structural similarity of the images; 1 if they are equal.
     pub ssim: Option<f64>,
     /// Median times of the stages, milliseconds.
     pub ms: Option<StageMs>,
-    /// The same with their spread, and the passes of the backend.
+    /// The same with percentiles, and the passes of the backend.
     pub times: Vec<TimeSpread>,
     /// Bytes of the shadow maps of all lights.
     pub memory_bytes: Option<u64>,
-    /// Bytes that were held for the pixels and the drawn strands.
+    /// Bytes of pixel buffers and rendered strands.
     pub draw_bytes: Option<u64>,
-    /// How still it stands.
+    /// Temporal stability.
     pub stability: Option<StabilityReport>,
-    /// What changes while the first light turns by 0.1 degrees a frame and nothing else moves.
+    /// Changes while the first light turns by 0.1 degrees per frame and nothing else moves.
     pub light_sweep: Option<ChangeReport>,
-    /// What changes deep in a bundle while a single hair moves into it from the light, by the method's definition on the
-    /// processor. The truth does not change there.
+    /// Changes deep in a bundle while a single hair moves into it from the light, by the method's CPU definition. The ground truth
+    /// does not change there.
     pub stray: Option<ChangeReport>,
-    /// What slices show in even density.
+    /// Banding by slices in uniform density.
     pub banding: Option<BandingReport>,
-    /// Whether no other of the same backend and transparency is both more accurate and quicker, by [`MethodReport::front_error`].
+    /// Whether no other method with the same backend and transparency is both more accurate and faster, by
+    /// [`MethodReport::front_error`].
     pub front_of_time: bool,
-    /// Whether no other of the same backend and transparency is both more accurate and smaller.
+    /// Whether no other method with the same backend and transparency is both more accurate and smaller.
     pub front_of_memory: bool,
-    /// What was written of it.
+    /// Its files.
     pub files: MethodFiles,
 }
 
 impl MethodReport {
-    /// The error by which methods are ranked: against one truth for all. Where that truth could not be had, against the
-    /// method's own texels.
+    /// The error by which methods are ranked: against one ground truth for all, or against the method's own texels if that ground
+    /// truth is missing.
     pub fn front_error(&self) -> Option<f64> {
         self.transmittance_common.or(self.transmittance).map(|error| error.rmse)
     }
@@ -236,26 +236,26 @@ impl MethodReport {
 /// Error of transmittance over points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct TransmittanceError {
-    /// Points compared.
+    /// Number of compared points.
     pub count: u64,
     /// Root mean square.
     pub rmse: f64,
-    /// Mean, signed: above zero where the method is too bright.
+    /// Signed mean; positive if the method is too bright.
     pub bias: f64,
     /// 99th percentile of the magnitude.
     pub p99: f64,
     /// The largest magnitude.
     pub max: f64,
-    /// Root mean square over the points with fewer than ten fragments of hair before them: where light enters.
+    /// Root mean square over points with fewer than ten hair fragments before them, where light enters.
     pub first10_rmse: Option<f64>,
 }
 
-/// FLIP of a picture.
+/// FLIP of an image.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FlipError {
     /// Mean over all pixels.
     pub mean: f64,
-    /// Mean over the pixels that show hair; null where none does. It does not depend on how much of the picture hair fills.
+    /// Mean over pixels that show hair; null if there are none. It does not depend on the area of the hair in the image.
     pub hair_mean: Option<f64>,
     /// 99th percentile over all pixels.
     pub p99: f64,
@@ -264,13 +264,13 @@ pub struct FlipError {
 /// Median times, milliseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StageMs {
-    /// To make the shadow maps; null where the device does not time its passes.
+    /// Building the shadow maps; null if the device does not time its passes.
     pub build: Option<f64>,
-    /// To ask them at every strand point and every vertex of the body; null as above.
+    /// Looking them up at every strand point and body vertex; null as above.
     pub query: Option<f64>,
-    /// To draw what is left of the picture.
+    /// Rendering the rest of the image.
     pub draw: f64,
-    /// The whole picture without interpolation.
+    /// The whole image without interpolation.
     pub whole: f64,
 }
 
@@ -285,11 +285,11 @@ pub struct TimeSpread {
     pub low: f64,
     /// 90th percentile.
     pub high: f64,
-    /// Draws.
+    /// Number of draws.
     pub count: u32,
 }
 
-/// What a method's slices show in a slab of even density, where transmittance is an exponential.
+/// Banding of a method in a slab of uniform density, where transmittance is an exponential.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct BandingReport {
     /// Largest deviation of the second derivative from the exponential's, as a multiple of the exponential's own where
@@ -299,26 +299,26 @@ pub struct BandingReport {
     pub rmse: f64,
     /// The largest amplitude of all waves in the error.
     pub amplitude: f64,
-    /// Period of that wave, a part of the slab.
+    /// Period of that wave, as a fraction of the slab.
     pub period: f64,
-    /// Distance of two slices (layers, cells), a part of the slab; null where the method has none of one depth.
+    /// Distance between slices (layers, cells), as a fraction of the slab; null if the method has no slices of equal depth.
     pub slice: Option<f64>,
     /// Amplitude of the wave with the period of the slices.
     pub slice_amplitude: Option<f64>,
-    /// Depth as a part of the slab, transmittance of the method: a curve to plot beside the exponential.
+    /// Curve for the plot: depth as a fraction of the slab, and transmittance of the method.
     pub curve: Vec<(f32, f32)>,
-    /// Extinction over the whole slab: the truth is `exp(-optical_depth * depth)`.
+    /// Optical depth of the whole slab: the ground truth is `exp(-optical_depth * depth)`.
     pub optical_depth: f64,
 }
 
 /// Files of one method, relative to the report.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MethodFiles {
-    /// The picture.
+    /// The image.
     pub picture: Option<String>,
     /// Error of transmittance (signed) in colour, with its legend.
     pub transmittance_error: Option<String>,
-    /// FLIP of the picture in colour, with its legend.
+    /// FLIP of the image in colour, with its legend.
     pub picture_error: Option<String>,
     /// Swim in colour.
     pub swim: Option<String>,
@@ -328,23 +328,23 @@ pub struct MethodFiles {
     pub flicker: Option<String>,
 }
 
-/// A ray of light through a point of hair, as each method sees it.
+/// The transmittance of each method along a ray of light through a strand point.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ProbeReport {
-    /// The pixel that was asked, from the upper left corner.
+    /// The chosen pixel, from the upper left corner.
     pub pixel: [u32; 2],
-    /// The strand that is in front there.
+    /// The front strand there.
     pub strand: u32,
-    /// Which of its points, from the root.
+    /// Number of the point, from the root.
     pub point: u32,
-    /// Where that point is, world space, metres.
+    /// Position of that point, world space, metres.
     pub position: [f32; 3],
     /// The step function of the exact method: depth along the light relative to the point, metres, and transmittance
     /// from there on.
     pub steps: Vec<(f32, f32)>,
     /// The mean of light over a texel along the ray: depth, transmittance.
     pub reference: Vec<(f32, f32)>,
-    /// What each method says.
+    /// The curve of each method.
     pub methods: Vec<ProbeCurve>,
 }
 
@@ -353,7 +353,7 @@ pub struct ProbeReport {
 pub struct Legend {
     /// `transmittance`, `transmittance-error`, `picture-error`, `swim`, `pop` or `flicker`.
     pub of: String,
-    /// What the numbers are, as a heading.
+    /// The quantity, as a heading.
     pub title: String,
     /// The value of the first colour and of the last one.
     pub range: [f32; 2],

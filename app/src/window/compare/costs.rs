@@ -3,13 +3,13 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
+use lovelock_base::clock::Stopwatch;
+use lovelock_base::statistics::median;
 use lovelock_panes::request::{LiveError, LivePane, LiveTimes};
 use lovelock_project::Project;
 use lovelock_project::project::Contender;
 use lovelock_render::{Backend, ShadowMethod, Transparency};
-use lovelock_session::clock::Stopwatch;
 use lovelock_session::render_thread::Adapter;
-use lovelock_session::stats::median;
 
 /// Seconds that are plotted.
 pub(super) const PLOTTED_SECS: f64 = 12.0;
@@ -52,9 +52,7 @@ impl Way {
 
     /// The median of a stage over its last pictures, milliseconds; none where the device does not measure it.
     pub(super) fn median(&self, stage: impl Fn(&LiveTimes) -> Option<f64>) -> Option<f64> {
-        let mut measured = self.samples.iter().filter_map(|sample| stage(&sample.times)).peekable();
-        measured.peek()?;
-        Some(median(measured))
+        median(self.samples.iter().filter_map(|sample| stage(&sample.times)))
     }
 
     /// The median of the whole pictures, milliseconds.

@@ -8,7 +8,7 @@ pub(crate) mod ties;
 
 use egui::{CursorIcon, Id, Painter, Pos2, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo, pos2};
 use glam::{Mat4, Vec3};
-use lovelock_session::render_thread::Painted;
+use lovelock_session::render_thread::RenderedImage;
 
 use super::theme;
 
@@ -53,7 +53,7 @@ fn dot(painter: &Painter, handle: Response, at: Pos2, words: &str) {
 
 impl View {
     /// Of a picture that is shown at `place`; none where it has no size.
-    pub(crate) fn new(painted: &Painted, place: Rect) -> Option<Self> {
+    pub(crate) fn new(painted: &RenderedImage, place: Rect) -> Option<Self> {
         let aspect = place.width() / place.height();
         if !(aspect.is_finite() && aspect > 0.0) {
             return None;

@@ -88,7 +88,7 @@ fn turning_the_wheel_during_playback_is_one_recording_pass() {
     key(&mut harness, Modifiers::NONE, Key::W);
     for _ in 0..3 {
         let now = position(of(&harness));
-        let watch = lovelock_session::clock::Stopwatch::start();
+        let watch = lovelock_base::clock::Stopwatch::start();
         // The end of the gesture is timed in passes and playback in real time, so the wheel turns until playback has advanced.
         while (position(of(&harness)) - now).abs() < 0.04 {
             for points in [40.0, -40.0] {

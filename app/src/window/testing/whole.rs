@@ -9,11 +9,11 @@ use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, ViewportCommand, ViewportEvent, ViewportId, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use lovelock_base::clock::Stopwatch;
 use lovelock_groom::Preset;
 use lovelock_project::Project;
 use lovelock_project::error::Place;
 use lovelock_project::project::{PROJECT_EXTENSION, load_project};
-use lovelock_session::clock::Stopwatch;
 
 use super::super::command::Command;
 use super::keyboard::entry;

@@ -3,13 +3,13 @@
 use std::sync::Arc;
 
 use egui::{Color32, ColorImage, Context, Rect, TextureHandle, TextureId, TextureOptions, Ui, pos2, vec2};
+use lovelock_base::clock::Stopwatch;
 use lovelock_project::Project;
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 use lovelock_project::files::Access;
 use lovelock_render::Picture;
-use lovelock_session::clock::Stopwatch;
 use lovelock_session::filmstrip::{Filmstrip, FilmstripRequest};
-use lovelock_session::render_thread::Painted;
+use lovelock_session::render_thread::RenderedImage;
 
 use super::Zoom;
 use super::lanes::Scale;
@@ -40,7 +40,7 @@ pub(crate) struct Thumbnails {
     /// What moves as the pictures show it: other hair, another body, another dance, another take.
     of: Option<Arc<Project>>,
     /// The picture that was looked at last.
-    seen: Option<Arc<Painted>>,
+    seen: Option<Arc<RenderedImage>>,
     /// The slot that was filled last by a picture of the window.
     filled: Option<i64>,
     wanted: Option<(Asked, Stopwatch)>,
@@ -52,11 +52,11 @@ impl Thumbnails {
     ///
     /// # Errors
     /// The system makes no thread.
-    pub(crate) fn new(ctx: &Context) -> Result<Self, StudioError> {
+    pub(crate) fn new(ctx: &Context) -> Result<Self, ProjectError> {
         let wake = ctx.clone();
         let strip = Filmstrip::start(move || wake.request_repaint());
         let strip =
-            strip.map_err(|error| StudioError::work(format!("no thread for small pictures: {error}")))?;
+            strip.map_err(|error| ProjectError::work(format!("no thread for small pictures: {error}")))?;
         Ok(Self { strip, thumbs: Vec::new(), of: None, seen: None, filled: None, wanted: None, asked: None })
     }
 
@@ -66,7 +66,7 @@ impl Thumbnails {
         &mut self,
         ctx: &Context,
         (project, access): (&Arc<Project>, &Access),
-        painted: Option<&Arc<Painted>>,
+        painted: Option<&Arc<RenderedImage>>,
         (zoom, duration_secs, width): (Zoom, f64, f32),
     ) {
         let moves = |a: &Project, b: &Project| {

@@ -1,4 +1,4 @@
-//! Measures whole frames of known scenes, stage by stage, beside what was published of them.
+//! Measures whole frames of known scenes, stage by stage, and compares them with published figures.
 
 mod memory;
 mod report;
@@ -12,30 +12,31 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use lovelock_base::clock::Stopwatch;
 use lovelock_project::Project;
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 use lovelock_project::files::Access;
 use lovelock_render::{Backend, Picture, RenderError, Renderer, ShadowMethod, Transparency};
-use lovelock_session::clock::{FrameClock, Stopwatch};
+use lovelock_session::clock::FrameClock;
 use lovelock_session::engine::Engine;
 use lovelock_session::health::health;
 use lovelock_session::machine::machine;
 use lovelock_session::scene::{LoadControl, Scene, SceneLoader};
 
-/// What to measure. What is simulated alone ([`BenchScene::is_simulated_alone`]) heeds the frames alone.
+/// What to measure. Scenes without rendering ([`BenchScene::is_simulated_alone`]) only use `frames`.
 #[derive(Clone, Debug)]
 pub struct BenchRequest {
     /// The scenes, in order.
     pub scenes: Vec<BenchScene>,
-    /// The backends, in order; one that this machine has not is left out with a note.
+    /// The backends, in order; an unavailable one is skipped with a note.
     pub backends: Vec<Backend>,
-    /// Frames to measure, after one that is not counted.
+    /// Number of frames to measure, after one that is not counted.
     pub frames: u32,
-    /// Width and height, pixels; the scene's own where none is given.
+    /// Width and height, pixels; `None` uses the scene's own.
     pub size: Option<(u32, u32)>,
-    /// The shadow method; the scene's own where none is given.
+    /// The shadow method; `None` uses the scene's own.
     pub shadow: Option<ShadowMethod>,
-    /// The transparency; the scene's own where none is given.
+    /// The transparency; `None` uses the scene's own.
     pub transparency: Option<Transparency>,
 }
 
@@ -52,17 +53,17 @@ impl Default for BenchRequest {
     }
 }
 
-/// The frame of the dance at which measuring begins: the hair is in full swing.
+/// The frame at which measuring starts, when the hair is in full motion.
 const FIRST_FRAME: u64 = 40;
 
-/// Measures; `progress` is told each scene and backend before it begins, and may stop it.
+/// Measures. `progress` is called with each scene and backend before it starts, and may cancel.
 ///
 /// # Errors
-/// A size out of range, hair that cannot be grown, or [`StudioError::Cancelled`].
+/// If the size is out of range or hair cannot be grown, or [`ProjectError::Cancelled`].
 pub fn bench(
     request: &BenchRequest,
     progress: &mut dyn FnMut(&str) -> ControlFlow<()>,
-) -> Result<BenchReport, StudioError> {
+) -> Result<BenchReport, ProjectError> {
     if let Some((width, height)) = request.size {
         lovelock_render::check_size(width, height)?;
     }
@@ -72,7 +73,7 @@ pub fn bench(
     for &backend in request.backends.iter().filter(|_| drawn) {
         match Renderer::open(backend) {
             Ok(renderer) => renderers.push(renderer),
-            // What this machine has not costs its own numbers alone.
+            // An unavailable backend is only noted.
             Err(error @ RenderError::Gpu(_)) => {
                 notes.push(format!("{backend}: {error}"));
             }
@@ -87,7 +88,7 @@ pub fn bench(
         let loaded = load(&project)?;
         if scene.is_simulated_alone() {
             if progress(scene.id()).is_break() {
-                return Err(StudioError::Cancelled);
+                return Err(ProjectError::Cancelled);
             }
             let (report, note) = simulation::measure(scene, &project, &loaded, request);
             scenes.push(report);
@@ -97,7 +98,7 @@ pub fn bench(
         for renderer in &mut renderers {
             let what = format!("{} on {}", scene.id(), renderer.adapter());
             if progress(&what).is_break() {
-                return Err(StudioError::Cancelled);
+                return Err(ProjectError::Cancelled);
             }
             scenes.push(measure(scene, &project, &loaded, renderer, request)?);
         }
@@ -105,13 +106,13 @@ pub fn bench(
     Ok(BenchReport { machine: machine(), scenes, notes })
 }
 
-fn load(project: &Project) -> Result<Arc<Scene>, StudioError> {
+fn load(project: &Project) -> Result<Arc<Scene>, ProjectError> {
     let cancelled = AtomicBool::new(false);
     let mut silent = |_: &str, _: f32| {};
     let mut control = LoadControl { cancelled: &cancelled, progress: &mut silent };
     let (scene, problems) = SceneLoader::new().load(project, &Access::default(), &mut control)?;
     match problems.first() {
-        Some(problem) => Err(StudioError::work(problem)),
+        Some(problem) => Err(ProjectError::work(problem)),
         None => Ok(scene),
     }
 }
@@ -122,7 +123,7 @@ fn measure(
     loaded: &Arc<Scene>,
     renderer: &mut Renderer,
     request: &BenchRequest,
-) -> Result<SceneReport, StudioError> {
+) -> Result<SceneReport, ProjectError> {
     let (width, height) = request.size.unwrap_or(scene.size());
     memory::reset_peak_memory();
     let clock = FrameClock::new(30.0);
@@ -139,7 +140,7 @@ fn measure(
         let stats = renderer.picture(&input, width, height, &mut picture)?;
         let mut times = snapshot.times;
         times.take_picture(&stats);
-        // The first one makes buffers.
+        // The first frame creates buffers.
         if frame > 0 {
             frames.push((watch.ms(), times, stats));
         }

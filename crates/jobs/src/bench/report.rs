@@ -1,4 +1,4 @@
-//! What was measured: the keys of `bench --json`, a table, and CSV.
+//! Results of measurements: the keys of `bench --json`, a table, and CSV.
 
 use std::fmt::{self, Write};
 
@@ -12,14 +12,14 @@ use serde::Serialize;
 use super::memory::peak_memory_bytes;
 use super::scenes::BenchScene;
 
-/// What was measured on this machine.
+/// The results on this machine.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BenchReport {
-    /// Processor and number of threads.
+    /// CPU and number of threads.
     pub machine: String,
     /// A report for each scene and backend.
     pub scenes: Vec<SceneReport>,
-    /// What was left out, in sentences.
+    /// Notes, such as skipped backends, as sentences.
     pub notes: Vec<String>,
 }
 
@@ -30,42 +30,41 @@ pub struct SceneReport {
     pub scene: String,
     /// `cpu` or `gpu`.
     pub backend: String,
-    /// Name of what drew.
+    /// Name of the device that rendered.
     pub adapter: String,
-    /// Id of the shadow method; empty where nothing is drawn.
+    /// Id of the shadow method; empty without rendering.
     pub shadow: String,
-    /// Id of the transparency mode; empty where nothing is drawn.
+    /// Id of the transparency mode; empty without rendering.
     pub transparency: String,
-    /// Width, pixels; 0 where nothing is drawn.
+    /// Width, pixels; 0 without rendering.
     pub width: u32,
     /// Height, pixels.
     pub height: u32,
-    /// Strands drawn; of a scene that is simulated alone, its guides.
+    /// Number of rendered strands; of a scene without rendering, its guides.
     pub strands: u64,
     /// Their points.
     pub points: u64,
     /// Their segments, or the guides' links.
     pub segments: u64,
-    /// Frames measured; steps of 1/60 s of a scene that is simulated alone.
+    /// Number of measured frames; steps of 1/60 s for a scene without rendering.
     pub frames: u64,
     /// The stages, the passes of shadow and drawing where the backend measures them (`shadow/…`, `draw/…`), all passes of a
     /// graphics device together (`passes`), interpolation, shadow and drawing (`picture`), and the whole frame with its
     /// simulation (`frame`). Of a scene that is simulated alone, a step by each method (`simulate/…`).
     pub stages: Vec<StageReport>,
-    /// Pictures a second: one over the median of `picture`; 0 where nothing is drawn.
+    /// Images per second: one divided by the median of `picture`; 0 without rendering.
     pub pictures_per_second: f64,
-    /// Frames a second: one over the median of `frame`; 0 where nothing is drawn.
+    /// Frames per second: one divided by the median of `frame`; 0 without rendering.
     pub frames_per_second: f64,
-    /// What to know of the published figures.
+    /// A note about the published figures.
     pub published_note: Option<&'static str>,
-    /// The gauges of the simulation, from where the hair was settled to the last frame.
+    /// The gauges of the simulation, from settling to the last frame.
     pub health: Vec<Gauge>,
-    /// Bytes that the shadow maps held.
+    /// Bytes of the shadow maps.
     pub shadow_bytes: u64,
-    /// Bytes that were held for the pixels, to put strands together in them.
+    /// Bytes of the pixel buffers for blending strands.
     pub draw_bytes: u64,
-    /// The most memory that the process held while this was measured, bytes, with what it kept from before; on
-    /// Linux, null elsewhere.
+    /// Peak memory of the process during the measurement, bytes, including earlier allocations; null except on Linux.
     pub peak_memory_bytes: Option<u64>,
 }
 
@@ -76,11 +75,11 @@ pub struct StageReport {
     pub name: String,
     /// Median over the frames, milliseconds.
     pub median_ms: f64,
-    /// The quickest frame, milliseconds.
+    /// The fastest frame, milliseconds.
     pub min_ms: f64,
     /// The slowest frame, milliseconds.
     pub max_ms: f64,
-    /// What was published for this stage of this scene, milliseconds; null where nothing was.
+    /// The published time of this stage and scene, milliseconds; null if there is none.
     pub published_ms: Option<f64>,
 }
 
@@ -89,7 +88,7 @@ impl StageReport {
         let times = times.iter().copied();
         Self {
             name: name.to_owned(),
-            median_ms: lovelock_session::stats::median(times.clone()),
+            median_ms: lovelock_base::statistics::median(times.clone()).unwrap_or(0.0),
             min_ms: times.clone().fold(f64::INFINITY, f64::min),
             max_ms: times.fold(0.0, f64::max),
             published_ms,
@@ -108,7 +107,7 @@ impl SceneReport {
         frames: &[(f64, StageTimes, FrameStats)],
     ) -> Self {
         let own = scene.project();
-        // What was published was made by the scene's own method.
+        // Published figures apply to the scene's own method only.
         let as_published = own.shadow.method == project.shadow.method
             && own.picture.transparency == project.picture.transparency;
         let published = |name: &str| if as_published { scene.published_ms(name) } else { None };
@@ -121,7 +120,7 @@ impl SceneReport {
                 .into();
         let passes = frames.first().map_or(&[][..], |frame| &frame.2.passes);
         for PassTime { name, .. } in passes {
-            // Interpolation is a stage and a pass.
+            // Interpolation is both a stage and a pass.
             if stages.iter().all(|stage| stage.name != *name) {
                 let of =
                     |stats: &FrameStats| stats.passes.iter().find(|pass| pass.name == *name).map(|p| p.ms);
@@ -165,7 +164,7 @@ impl SceneReport {
 }
 
 impl BenchReport {
-    /// One line a stage, with a heading.
+    /// One line per stage, with a heading.
     pub fn csv(&self) -> String {
         let mut out =
             "scene,backend,adapter,shadow,transparency,width,height,points,segments,stage,median_ms,min_ms,max_ms,published_ms,shadow_bytes,draw_bytes,peak_memory_bytes\n"
@@ -200,10 +199,10 @@ impl BenchReport {
     }
 }
 
-/// Rows that hold others, in their order.
+/// Rows that are sums of others, in order.
 const SUMS: [&str; 3] = ["passes", "picture", "frame"];
 
-/// One number of a report, and what stands behind it.
+/// One number of a report: label, value and unit.
 type Number = (&'static str, fn(&SceneReport) -> f64, &'static str);
 
 const NUMBERS: [Number; 4] = [
@@ -217,7 +216,7 @@ fn mib(bytes: u64) -> f64 {
     bytes as f64 / f64::from(1 << 20)
 }
 
-/// With two decimals at the most, and none where there are none.
+/// A number with at most two decimals.
 fn short(ms: f64) -> String {
     ((100.0 * ms).round() / 100.0).to_string()
 }
@@ -229,7 +228,7 @@ impl fmt::Display for BenchReport {
         for same in self.scenes.chunk_by(|a, b| a.scene == b.scene) {
             let Some(first) = same.first() else { continue };
             writeln!(f, "\n{}", first.heading())?;
-            // Those of all, in the order of the one that has most.
+            // The stages of all backends, in the order of the backend with the most stages.
             let mut by_size: Vec<_> = same.iter().collect();
             by_size.sort_by_key(|scene| std::cmp::Reverse(scene.stages.len()));
             let mut stages: Vec<&StageReport> = Vec::new();
@@ -265,14 +264,14 @@ impl fmt::Display for BenchReport {
                     let number = format!("{:.1}{unit}", of(scene));
                     write!(f, "{number:>12}{:>24}", "")?;
                 }
-                // The picture's rate is what papers print.
+                // Papers print the rate of the image.
                 let published = first.stages.iter().find(|stage| stage.name == "picture");
                 match published.and_then(|stage| stage.published_ms) {
                     Some(ms) if name == "pictures a second" => writeln!(f, "{:>12}", short(1e3 / ms))?,
                     _ => writeln!(f)?,
                 }
             }
-            // The simulation does not know what draws: one column, and what is over its limits in a sentence.
+            // The simulation does not depend on the backend: one column, with advice for gauges over their limits.
             for gauge in &first.health {
                 writeln!(f, "  {:<width$}{:>12}", gauge.kind.label().to_lowercase(), gauge.in_words())?;
             }
@@ -334,7 +333,7 @@ mod tests {
     }
 
     #[test]
-    fn backends_stand_side_by_side_with_the_published_figure() {
+    fn backends_are_listed_side_by_side_with_the_published_figure() {
         let text = report().to_string();
         let line = text.lines().find(|line| line.trim().starts_with("draw")).expect("a line");
         let numbers: Vec<_> = line.split_whitespace().collect();
@@ -345,7 +344,7 @@ mod tests {
     }
 
     #[test]
-    fn gauges_are_told_once_with_what_they_say() {
+    fn gauges_are_printed_once_with_their_advice() {
         let text = report().to_string();
         let rows: Vec<_> = text.lines().filter(|line| line.contains("deepest in the body")).collect();
         assert!(rows.len() == 1 && rows[0].ends_with("2.0 mm in head and shoulders"), "{text}");
@@ -375,7 +374,7 @@ mod tests {
     }
 
     #[test]
-    fn csv_quotes_and_leaves_empty_what_is_not_known() {
+    fn csv_quotes_text_and_leaves_unknown_fields_empty() {
         let csv = report().csv();
         let line = csv.lines().nth(1).expect("a line");
         assert!(

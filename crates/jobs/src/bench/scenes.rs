@@ -1,4 +1,4 @@
-//! The scenes that are measured, and what was published of them.
+//! The measured scenes and their published figures.
 
 use std::fmt;
 use std::str::FromStr;
@@ -7,7 +7,7 @@ use lovelock_groom::{GroomSettings, Preset};
 use lovelock_project::Project;
 use lovelock_render::{ShadowMethod, Transparency};
 
-/// A scene that is measured: the default project with more or other hair.
+/// A measured scene: the default project with more or other hair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BenchScene {
     /// The published smooth hairstyle: 134 wisps of 25 strands of 30 segments.
@@ -24,9 +24,9 @@ pub enum BenchScene {
     Woman300k,
     /// 400,000 strands of 5 segments, as many as the dog of Sintorn and Assarsson 2009 has; short fur on a head.
     Dog2M,
-    /// The guides of the published smooth hairstyle, simulated by each method and not drawn: 402 of 30 links.
+    /// The guides of the published smooth hairstyle, simulated by each method without rendering: 402 of 30 links.
     Simulate402,
-    /// The same with each of 20,100 strands simulated by itself.
+    /// The same with each of 20,100 strands simulated individually.
     Simulate20k,
 }
 
@@ -44,7 +44,7 @@ impl BenchScene {
         Self::Simulate20k,
     ];
 
-    /// The stable name of the command line and of reports.
+    /// The stable name for the command line and reports.
     pub const fn id(self) -> &'static str {
         match self {
             Self::Smooth => "smooth",
@@ -64,12 +64,12 @@ impl BenchScene {
         if self.is_of_occupancy_maps() { (800, 600) } else { (1280, 720) }
     }
 
-    /// Whether it is simulated alone, by every method that keeps links at their length, and not drawn.
+    /// Whether it is only simulated, by every method with rigid links, and not rendered.
     pub const fn is_simulated_alone(self) -> bool {
         matches!(self, Self::Simulate402 | Self::Simulate20k)
     }
 
-    /// Whether each strand is simulated by itself.
+    /// Whether each strand is simulated individually.
     pub(super) const fn simulates_strands(self) -> bool {
         matches!(self, Self::Simulate20k)
     }
@@ -79,9 +79,9 @@ impl BenchScene {
         matches!(self, Self::Woman300k | Self::Dog2M)
     }
 
-    /// The project that is measured: three lights with `voxel-map`, blended; or, as the paper has it, one light with
-    /// `occupancy-maps` of 512 x 512 texels and `occupancy-order`. What is simulated alone dances at a quarter of its speed, where
-    /// four substeps are enough.
+    /// The measured project: three lights with `voxel-map`, blended; or, as in the paper, one light with `occupancy-maps` of
+    /// 512 x 512 texels and `occupancy-order`. Scenes without rendering move at a quarter of the speed, where four substeps are
+    /// enough.
     pub fn project(self) -> Project {
         let mut project = Project::default();
         project.set_preset(if self == Self::Curly { Preset::Curly } else { Preset::Smooth });
@@ -89,7 +89,7 @@ impl BenchScene {
         match self {
             Self::Smooth | Self::Curly | Self::Simulate402 => {}
             Self::Simulate20k => groom.strands_per_wisp = 150,
-            // 134 wisps of 30 segments a strand: 4,020 segments for each strand of a wisp.
+            // 134 wisps of 30 segments per strand: 4,020 segments for each strand of a wisp.
             Self::Smooth500k => groom.strands_per_wisp = 125,
             Self::Smooth1M => groom.strands_per_wisp = 249,
             Self::Smooth2M => groom.strands_per_wisp = 498,
@@ -118,7 +118,7 @@ impl BenchScene {
         }
         if self.is_simulated_alone() {
             project.motion.speed = 0.25;
-            // Long enough to swing; 20,100 strands take their time.
+            // Long enough to swing, and short because 20,100 strands are slow.
             project.timeline.preroll_secs = 0.5;
         }
         if self.is_of_occupancy_maps() {
@@ -126,20 +126,19 @@ impl BenchScene {
             project.shadow.occupancy_maps.resolution = 512;
             project.picture.transparency = Transparency::OccupancyOrder;
             project.lights.truncate(1);
-            // A head and no more, as in the paper's figures.
+            // Only the head, as in the paper's figures.
             project.camera.distance = 1.0;
         }
         project
     }
 
-    /// Milliseconds that were published of a stage, a pass or the whole frame; none where none were.
+    /// Published time of a stage, a pass or the whole frame, milliseconds, if any.
     ///
-    /// Of `smooth` and `curly`: Bertails, Ménier, Cani 2005, table 2 (a Pentium 4 at 3 GHz). Animation and collisions are
-    /// our simulation with the interpolation of strands in it; density and transmittance our shadow; filtering and
-    /// drawing our drawing. `simulate-402` has the same beside the method that the paper used.
+    /// `smooth` and `curly`: Bertails, Ménier, Cani 2005, table 2 (a Pentium 4 at 3 GHz). Animation and collisions correspond to
+    /// our simulation including interpolation of strands, density and transmittance to our shadow, filtering and drawing to our
+    /// rendering. `simulate-402` compares the same with the method of the paper.
     ///
-    /// Of `woman-300k` and `dog-2m`: Sintorn, Assarsson 2009 (a `GeForce` GTX 280). The rates of figure 1 are those of a
-    /// picture. The paper's table has passes of another frame, of 20,000 strands (see [`BenchScene::published_note`]): its
+    /// `woman-300k` and `dog-2m`: Sintorn, Assarsson 2009 (a `GeForce` GTX 280). The rates of figure 1 are those of an image. The paper's table has passes of another frame, of 20,000 strands (see [`BenchScene::published_note`]): its
     /// occupancy and slab-size maps are one pass here, its shadow map of the background the body's depth, its
     /// composition our last pass.
     #[expect(clippy::match_same_arms, reason = "the table's figures, which are equal by chance")]
@@ -165,7 +164,7 @@ impl BenchScene {
         Some(ms)
     }
 
-    /// What to know of the published figures.
+    /// A note about the published figures.
     pub const fn published_note(self) -> Option<&'static str> {
         match self {
             Self::Woman300k | Self::Dog2M => Some(
@@ -235,7 +234,7 @@ mod tests {
         let begins = |start: &str| -> f64 {
             PASSES.iter().filter(|(name, _)| name.starts_with(start)).map(|(_, ms)| ms).sum()
         };
-        // But for 0.01 ms of keyframes.
+        // Except for 0.01 ms of keyframes.
         assert!((of("interpolate") + of("shadow") + of("draw") - 31.6).abs() < 1e-9);
         assert!((begins("shadow/") - of("shadow")).abs() < 1e-9);
         assert!((begins("draw/") - of("draw")).abs() < 1e-9);

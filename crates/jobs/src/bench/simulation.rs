@@ -1,4 +1,4 @@
-//! The simulation by itself, by every method that keeps links at their length.
+//! Measures the simulation alone, by every method with rigid links.
 
 use std::sync::Arc;
 
@@ -16,20 +16,20 @@ use super::BenchRequest;
 use super::report::{SceneReport, StageReport};
 use super::scenes::BenchScene;
 
-/// The step after which measuring begins: the hair is in full swing.
+/// The step after which measuring starts, when the hair is in full motion.
 const FIRST_STEP: u64 = 320;
 
-/// Steps that each method lives through first, uncounted.
+/// Number of uncounted steps of each method before measuring.
 const WARM_UP: u64 = 10;
 
-/// What one method did.
+/// Results of one method.
 struct Measured {
     method: Integrator,
-    /// What each step took, milliseconds.
+    /// Times of the steps, milliseconds.
     times: Vec<f64>,
     /// The largest stretch of a link.
     stretch: f32,
-    /// The least and the most substeps of a step.
+    /// Smallest and largest number of substeps per step.
     substeps: [u32; 2],
 }
 
@@ -42,8 +42,8 @@ const fn id(method: Integrator) -> &'static str {
     }
 }
 
-/// Measures the same steps of the dance by each method, from the same hair, which has lived there by the usual one. A step is 1/60 s.
-/// Also returns what the methods did to the hair, in a sentence.
+/// Measures the same steps of the motion by each method. All start from the same hair, simulated up to there by the default method.
+/// A step is 1/60 s. Also returns a sentence about the results of the methods.
 pub(super) fn measure(
     scene: BenchScene,
     project: &Project,
@@ -65,7 +65,7 @@ pub(super) fn measure(
     let measured: Vec<_> = Integrator::ALL
         .into_iter()
         .map(|method| {
-            let mut engine = start.beside();
+            let mut engine = start.copy();
             engine.set_settings(&SimulationSettings { integrator: method, ..project.simulation });
             engine.advance_to_step(FIRST_STEP + WARM_UP);
             engine.clear_totals();
@@ -96,7 +96,7 @@ pub(super) fn measure(
 }
 
 impl SceneReport {
-    /// Of a scene that is simulated and not drawn.
+    /// The report of a scene without rendering.
     fn of_simulation(scene: BenchScene, guides: &Guides, health: Vec<Gauge>, measured: &[Measured]) -> Self {
         let row = |of: &Measured| {
             let name = format!("simulate/{}", id(of.method));
@@ -125,12 +125,12 @@ impl SceneReport {
         }
     }
 
-    /// Whether nothing is drawn of it.
+    /// Whether the scene is not rendered.
     pub(super) fn is_simulated_alone(&self) -> bool {
         self.width == 0
     }
 
-    /// What was measured, in a line.
+    /// One line about the measurement.
     pub(super) fn heading(&self) -> String {
         let Self { scene, strands, segments, width, height, shadow, transparency, frames, .. } = self;
         if self.is_simulated_alone() {
@@ -145,7 +145,7 @@ impl SceneReport {
     }
 }
 
-/// The hairstyle with a guide for each of its strands, along which that strand runs.
+/// The hairstyle with one guide along each of its strands.
 fn strands_as_guides(style: &Hairstyle) -> Hairstyle {
     let at_rest =
         GuideFrame { time_secs: 0.0, world_from_head: Affine3A::IDENTITY, guides: style.guides.clone() };
@@ -158,7 +158,7 @@ fn strands_as_guides(style: &Hairstyle) -> Hairstyle {
         let run: Vec<_> = (0..points).map(|p| strands.point(strands.first_point[g] as usize + p)).collect();
         guides.push(&run);
     }
-    // Three by three; one or two at the end would have no wisp.
+    // Groups of three; one or two left over would belong to no wisp.
     let wisps = guides.count() / 3;
     for axis in [&mut guides.x, &mut guides.y, &mut guides.z] {
         axis.truncate(3 * wisps * points);

@@ -1,4 +1,4 @@
-//! The files of a project, copied beside it.
+//! Copies the files of a project into the job's folder.
 
 use std::fs;
 use std::ops::ControlFlow;
@@ -6,25 +6,25 @@ use std::path::{Path, PathBuf};
 
 use lovelock_motion::gltf_reference;
 use lovelock_project::Project;
-use lovelock_project::error::{Place, StudioError};
+use lovelock_project::error::{Place, ProjectError};
 use lovelock_project::files::FileRef;
-use lovelock_session::progress::{Progress, tell};
+use lovelock_session::progress::{Progress, report_progress};
 
-/// The longest glTF as text that is looked into for the files that it names.
+/// Maximum size of a text glTF that is searched for referenced files.
 const LONGEST_GLTF: u64 = 256 << 20;
 
-/// Copies every file that the project uses into folders of `folder`, and makes the project name the copies. Returns
-/// their names and bytes.
+/// Copies every file that the project uses into subfolders of `folder`, and makes the project refer to the copies. Returns their
+/// names and sizes.
 pub(super) fn copy(
     project: &mut Project,
     folder: &Path,
     progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-) -> Result<Vec<(String, u64)>, StudioError> {
+) -> Result<Vec<(String, u64)>, ProjectError> {
     let files: Vec<(Place, PathBuf)> =
         project.files().into_iter().map(|(place, file)| (place, file.path.clone())).collect();
     let mut copied = Vec::new();
     for (place, path) in files {
-        tell(progress, Progress::Loading { what: format!("copying {}", path.display()) })?;
+        report_progress(progress, Progress::Loading { what: format!("copying {}", path.display()) })?;
         let role = place.label();
         let name = path.file_name().unwrap_or_default();
         let to = folder.join("assets").join(role).join(name);
@@ -42,7 +42,7 @@ pub(super) fn copy(
             _ => project.hair.file = file,
         }
     }
-    // Those that are named and not used would be asked for on the other machines.
+    // Remove unused references, which other machines could not resolve.
     if !project.files().iter().any(|(place, _)| *place == Place::Body) {
         project.body.file = None;
     }
@@ -55,16 +55,16 @@ pub(super) fn copy(
     Ok(copied)
 }
 
-fn copy_one(from: &Path, to: &Path, folder: &Path) -> Result<(String, u64), StudioError> {
+fn copy_one(from: &Path, to: &Path, folder: &Path) -> Result<(String, u64), ProjectError> {
     let made = to.parent().map_or(Ok(()), fs::create_dir_all).and_then(|()| fs::copy(from, to));
     let bytes = made.map_err(|error| {
-        StudioError::output(from, format!("{}: could not be copied: {error}", from.display()))
+        ProjectError::output(from, format!("{}: could not be copied: {error}", from.display()))
     })?;
     let name = to.strip_prefix(folder).unwrap_or(to);
     Ok((name.to_string_lossy().replace(std::path::MAIN_SEPARATOR, "/"), bytes))
 }
 
-/// Files that a glTF as text names for its buffers, as far as they lie in its folder or below.
+/// Buffer files referenced by a text glTF, if they lie in its folder or below.
 fn files_of_gltf(path: &Path) -> Vec<PathBuf> {
     let is_text = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("gltf"));
     if !is_text || fs::metadata(path).map_or(true, |data| data.len() > LONGEST_GLTF) {

@@ -1,7 +1,7 @@
-//! `lovelock farm`: a folder that any scheduler of the Open Job Description draws on many machines.
+//! `lovelock farm`: writes a job folder for rendering on many machines, by any scheduler for the Open Job Description.
 //!
-//! It holds the project with its files and a job of three steps: simulate once into a take, draw ranges of frames in
-//! parallel, put them together. See docs/farm.md.
+//! It contains the project with its files, and a job of three steps: simulate once into a take, render ranges of frames in
+//! parallel, and assemble them. See docs/farm.md.
 
 mod assets;
 mod template;
@@ -11,75 +11,75 @@ use std::ops::{ControlFlow, Range};
 use std::path::{Path, PathBuf};
 
 use lovelock_project::Project;
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 use lovelock_project::files::{Access, FileRef, write_whole};
 use lovelock_project::project::{PROJECT_EXTENSION, save_project};
 use lovelock_record::{FrameRate, SequenceReport, join_sequences};
 use lovelock_session::dance::Dance;
 use lovelock_session::prepare::check_frames;
-use lovelock_session::progress::{Progress, tell};
+use lovelock_session::progress::{Progress, report_progress};
 use serde::Serialize;
 use template::{Source, Template};
 
-/// The job, in the folder.
+/// File name of the job.
 pub const FARM_TEMPLATE: &str = "template.json";
-/// The take that the job simulates, in the folder.
+/// File name of the take that the job simulates.
 const TAKE: &str = "dance.take";
-/// The most tasks of one step that the Open Job Description allows.
+/// Maximum number of tasks per step in the Open Job Description.
 const MOST_TASKS: u64 = 1024;
 
-/// What is to be drawn on many machines; where a field is none, the project says.
+/// What to render. `None` uses the project's value.
 #[derive(Clone, Debug, Default)]
 pub struct FarmRequest {
-    /// The folder, which is not there yet or empty.
+    /// The folder, which must be new or empty.
     pub out: PathBuf,
     /// Frames, half open.
     pub frames: Option<Range<u64>>,
-    /// Frames a second.
+    /// Frames per second.
     pub fps: Option<f64>,
     /// Width and height, pixels.
     pub size: Option<(u32, u32)>,
-    /// Frames that one task draws; 10, or more where there would be too many tasks.
+    /// Frames per task; by default 10, or more if there would be too many tasks.
     pub chunk: Option<u64>,
-    /// What the project may read.
+    /// The files that the project may read.
     pub access: Access,
 }
 
-/// What was written, as `farm --json` prints it.
+/// The result, as `farm --json` prints it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FarmReport {
     /// The folder.
     pub out: String,
-    /// The job in it.
+    /// Path of the job.
     pub template: String,
     /// Number of the first frame.
     pub first_frame: u64,
-    /// Frames.
+    /// Number of frames.
     pub frames: u64,
-    /// Frames a second.
+    /// Frames per second.
     pub fps: f64,
-    /// Frames that one task draws.
+    /// Frames per task.
     pub chunk: u64,
-    /// Tasks that draw.
+    /// Number of rendering tasks.
     pub tasks: u64,
     /// Names of the steps.
     pub steps: Vec<String>,
-    /// Files that were copied, and their bytes.
+    /// Copied files with their sizes in bytes.
     pub copied: Vec<(String, u64)>,
-    /// What to know, in sentences.
+    /// Notes, as sentences.
     pub notes: Vec<String>,
 }
 
-/// Writes the folder of a job. It appears under its name when it is whole.
+/// Writes the folder of a job. It gets its final name when it is complete.
 ///
 /// # Errors
-/// A folder that holds something, a range outside a take, files of the project that are missing, and a disk that
-/// takes no more; nothing is left then.
+/// If the folder is not empty, the range is outside the take, files of the project are missing, or the disk is full. Nothing is
+/// left behind then.
 pub fn farm(
     project: &Project,
     request: &FarmRequest,
     progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-) -> Result<FarmReport, StudioError> {
+) -> Result<FarmReport, ProjectError> {
     let (mut project, _) = project.sanitised();
     let out = &request.out;
     check_folder(out)?;
@@ -88,27 +88,27 @@ pub fn farm(
         (project.recording.width, project.recording.height) = (width, height);
     }
     let fps = request.fps.unwrap_or(project.recording.fps);
-    FrameRate::from_fps(fps).map_err(StudioError::option)?;
+    FrameRate::from_fps(fps).map_err(ProjectError::option)?;
     if request.chunk == Some(0) {
-        return Err(StudioError::option("--chunk 0: no frames a task; wanted 1 or more"));
+        return Err(ProjectError::option("--chunk: found 0; must be 1 or more"));
     }
     if let Some(frames) = &request.frames {
         check_frames(frames)?;
     }
     if project.recording.seamless {
-        return Err(StudioError::option(
-            "a seamless loop: its end goes over into its start, which parts know nothing of; record it on one machine, or \
+        return Err(ProjectError::option(
+            "a seamless loop: its end is blended into its start, which tasks cannot do separately; record it on one machine, or \
              switch it off in the project",
         ));
     }
     project.recording.fps = fps;
-    // What is missing here is missing on every machine. To ask now is cheaper than to find out there.
+    // A file that is missing here is missing on every machine, so check before the job is submitted.
     for (place, file) in project.files() {
-        request.access.read(place, file).map_err(|problem| StudioError::input(&file.path, problem.cause))?;
+        request.access.read(place, file).map_err(|problem| ProjectError::input(&file.path, problem.cause))?;
     }
     let (dance, problems) = Dance::open(&project, &request.access, fps, progress)?;
     if let Some(problem) = problems.iter().find(|problem| problem.is_failure()) {
-        return Err(StudioError::option(format!("a part of the scene is missing: {}", problem.cause)));
+        return Err(ProjectError::option(format!("a part of the scene is missing: {}", problem.cause)));
     }
     let recording = &project.recording;
     let frames = request.frames.clone().unwrap_or_else(|| {
@@ -121,7 +121,7 @@ pub fn farm(
     let least = count.div_ceil(MOST_TASKS);
     let chunk = request.chunk.unwrap_or(10.max(least)).min(count);
     if chunk < least {
-        return Err(StudioError::option(format!(
+        return Err(ProjectError::option(format!(
             "--chunk {chunk}: {} tasks for {count} frames, and a job has {MOST_TASKS} at most; wanted {least} or more",
             count.div_ceil(chunk)
         )));
@@ -142,9 +142,9 @@ pub fn farm(
     let blurred = project.recording.subframes > 1;
     let simulated_from = frames.start.saturating_sub(u64::from(blurred));
     let template = Template { name, source, frames: frames.clone(), fps, chunk, simulated_from };
-    let text = serde_json::to_string_pretty(&template.json()).map_err(StudioError::work)?;
+    let text = serde_json::to_string_pretty(&template.json()).map_err(ProjectError::work)?;
     write_whole(&building.folder.join(FARM_TEMPLATE), format!("{text}\n").as_bytes())?;
-    tell(progress, Progress::Finishing)?;
+    report_progress(progress, Progress::Finishing)?;
     building.finish()?;
     Ok(FarmReport {
         out: out.display().to_string(),
@@ -160,28 +160,28 @@ pub fn farm(
     })
 }
 
-/// Puts the parts that a job has drawn together; see [`join_sequences`].
+/// Assembles the parts that a job has rendered; see [`join_sequences`].
 ///
 /// # Errors
 /// As [`join_sequences`].
-pub fn assemble(parts: &Path, frames: Range<u64>, out: &Path) -> Result<SequenceReport, StudioError> {
+pub fn assemble(parts: &Path, frames: Range<u64>, out: &Path) -> Result<SequenceReport, ProjectError> {
     join_sequences(parts, frames, out).map_err(|error| {
         let file = Some(error.path().unwrap_or(parts).to_owned());
         let message = error.to_string();
         if error.is_request() {
-            StudioError::Request { file, message }
+            ProjectError::Request { file, message }
         } else {
-            StudioError::Work { file, message }
+            ProjectError::Work { file, message }
         }
     })
 }
 
-/// Refuses a project that shows a take in another way than the take's own project, which is what the machines draw.
-fn as_recorded(project: &Project, take: &Path) -> Result<(), StudioError> {
+/// Rejects a project that renders a take with settings other than those in the take, because the machines render the take.
+fn as_recorded(project: &Project, take: &Path) -> Result<(), ProjectError> {
     let (own, _) = lovelock_session::take::project_of_take(take)?;
     let (own, _) = own.sanitised();
     let drawn = |project: &Project| lovelock_project::project::RecordingSection {
-        // Size and rate go into the job, and the rest of these draws nothing.
+        // Size and rate are part of the job, and the other fields do not affect images.
         width: 0,
         height: 0,
         fps: 0.0,
@@ -201,7 +201,7 @@ fn as_recorded(project: &Project, take: &Path) -> Result<(), StudioError> {
     ];
     match parts.iter().find(|(same, _)| !same) {
         None => Ok(()),
-        Some((_, part)) => Err(StudioError::option(format!(
+        Some((_, part)) => Err(ProjectError::option(format!(
             "the {part} of the project are not those that {} was recorded with, and a job draws a take as it was recorded; \
              leave the take, and the job simulates the project itself",
             take.display()
@@ -209,25 +209,25 @@ fn as_recorded(project: &Project, take: &Path) -> Result<(), StudioError> {
     }
 }
 
-/// Refuses a name that is taken, so that nothing is lost.
-fn check_folder(out: &Path) -> Result<(), StudioError> {
+/// Rejects a folder that is not empty.
+fn check_folder(out: &Path) -> Result<(), ProjectError> {
     if out.file_name().is_none() {
-        return Err(StudioError::option("-o: the folder has no name; wanted a new folder"));
+        return Err(ProjectError::option("-o: the folder has no name; wanted a new folder"));
     }
     match fs::read_dir(out).map(Iterator::count) {
         Ok(0) => Ok(()),
-        Ok(_) => Err(StudioError::input(
+        Ok(_) => Err(ProjectError::input(
             out,
             format!("{}: is not empty; wanted a new or empty folder for the job", out.display()),
         )),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(()),
         Err(error) => {
-            Err(StudioError::input(out, format!("{}: no folder for the job: {error}", out.display())))
+            Err(ProjectError::input(out, format!("{}: no folder for the job: {error}", out.display())))
         }
     }
 }
 
-/// A folder that is filled beside its name. Dropped before [`Building::finish`], it leaves nothing.
+/// A folder that is filled under a temporary name. Dropping it before [`Building::finish`] removes it.
 struct Building {
     folder: PathBuf,
     target: PathBuf,
@@ -235,15 +235,15 @@ struct Building {
 }
 
 impl Building {
-    fn start(target: &Path) -> Result<Self, StudioError> {
+    fn start(target: &Path) -> Result<Self, ProjectError> {
         let mut name = target.file_name().unwrap_or_default().to_owned();
         name.push(".partial");
         let folder = target.with_file_name(name);
         let failed = |error: std::io::Error| {
-            StudioError::output(&folder, format!("{}: could not be made: {error}", folder.display()))
+            ProjectError::output(&folder, format!("{}: could not be made: {error}", folder.display()))
         };
         if folder.exists() {
-            return Err(StudioError::input(
+            return Err(ProjectError::input(
                 &folder,
                 format!(
                     "{}: is there already, from a job that is being written or was cut short; remove it or name another folder",
@@ -255,15 +255,15 @@ impl Building {
         Ok(Self { folder: folder.clone(), target: target.to_owned(), done: false })
     }
 
-    fn finish(mut self) -> Result<(), StudioError> {
+    fn finish(mut self) -> Result<(), ProjectError> {
         let failed = |error: std::io::Error| {
-            StudioError::output(
+            ProjectError::output(
                 &self.target,
                 format!("{}: could not get its name: {error}", self.target.display()),
             )
         };
         if self.target.exists() {
-            // Empty: it was looked at.
+            // It is empty, as checked before.
             fs::remove_dir(&self.target).map_err(failed)?;
         }
         fs::rename(&self.folder, &self.target).map_err(failed)?;

@@ -7,11 +7,11 @@ use serde_json::{Value, json};
 
 use super::TAKE;
 
-/// What the frames are drawn from.
+/// The source of the frames.
 pub(super) enum Source {
-    /// The project in the folder, which is simulated once.
+    /// The project in the folder, simulated once.
     Project,
-    /// A take that is there already.
+    /// An existing take, with the size of its images.
     Take(PathBuf, [u32; 2]),
 }
 
@@ -21,7 +21,7 @@ pub(super) struct Template {
     pub(super) frames: Range<u64>,
     pub(super) fps: f64,
     pub(super) chunk: u64,
-    /// The first frame that is simulated: a shutter may open before the first one that is drawn.
+    /// The first simulated frame, because a shutter may open before the first rendered one.
     pub(super) simulated_from: u64,
 }
 
@@ -33,7 +33,7 @@ impl Template {
         }
     }
 
-    /// Ranges of frames as the command line takes them, one a task.
+    /// Frame ranges in command-line syntax, one per task.
     fn ranges(&self) -> Vec<String> {
         let Range { start, end } = self.frames;
         let starts = (start..end).step_by(self.chunk as usize);
@@ -41,9 +41,9 @@ impl Template {
     }
 
     pub(super) fn json(&self) -> Value {
-        // Names of jobs are 128 characters at most, and none of them is a control.
+        // Job names have at most 128 characters and no control characters.
         let name: String = self.name.chars().filter(|letter| !letter.is_control()).take(100).collect();
-        // Braces would be read as a value to put in.
+        // Double braces would be read as a substitution.
         let name = name.replace("{{", "(").replace("}}", ")");
         let mut parameters = vec![
             json!({
@@ -96,10 +96,10 @@ impl Template {
         let mut drawing = vec!["record", &take, "-o", frames, "--frames", "{{Task.Param.Frames}}"];
         drawing.extend(["--fps", &fps, "--backend", "{{Param.Backend}}"]);
         if matches!(self.source, Source::Project) {
-            // The take begins where the job does.
+            // The take starts at the job's first frame.
             drawing.push("--dance-time");
         }
-        // A project says its size itself.
+        // A project contains its size.
         let size = match &self.source {
             Source::Project => None,
             Source::Take(_, [width, height]) => Some(format!("{width}x{height}")),

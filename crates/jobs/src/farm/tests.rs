@@ -6,7 +6,7 @@ use lovelock_session::testing::small_project;
 
 use super::*;
 
-fn make(project: &Project, request: &FarmRequest) -> Result<FarmReport, StudioError> {
+fn make(project: &Project, request: &FarmRequest) -> Result<FarmReport, ProjectError> {
     farm(project, request, &mut |_| ControlFlow::Continue(()))
 }
 
@@ -31,7 +31,7 @@ fn the_folder_holds_the_project_its_files_and_a_job_of_three_steps() {
     let report = make(&project, &request).expect("a job");
     assert_eq!((report.tasks, report.chunk, report.first_frame), (3, 8, 4));
     assert_eq!(report.copied, [("assets/hair/my hair.usda".to_owned(), HAIR.len() as u64)]);
-    // The project stands on its own: it opens from its folder, and knows the copy.
+    // The project is self-contained: it opens from its folder and refers to the copy.
     let (copy, problems) = load_project(&out.join("project.lovelock")).expect("a project");
     assert_eq!((problems.len(), copy.recording.width), (0, 64), "{problems:?}");
     let named = copy.hair.file.expect("a file").path;
@@ -43,12 +43,12 @@ fn the_folder_holds_the_project_its_files_and_a_job_of_three_steps() {
     let ranges = &draw["parameterSpace"]["taskParameterDefinitions"][0]["range"];
     assert_eq!(*ranges, serde_json::json!(["4..12", "12..20", "20..25"]));
     assert_eq!(draw["dependencies"][0]["dependsOn"], "Simulate");
-    // Simulated from its first frame on, and drawn by the numbers of the dance.
+    // Simulated from its first frame on, and rendered by frame numbers of the original motion.
     let arguments = |step: &serde_json::Value| step["script"]["actions"]["onRun"]["args"].to_string();
     assert!(arguments(&template["steps"][0]).contains("\"4..25\""), "{template}");
     assert!(arguments(draw).contains("--dance-time"), "{template}");
     assert_eq!(fs::read_dir(dir.path()).expect("a folder").count(), 2, "nothing beside the job and the hair");
-    // What is there stays.
+    // Existing contents are kept.
     let error = make(&project, &request).expect_err("not empty").to_string();
     assert!(error.contains("is not empty"), "{error}");
 }
@@ -81,7 +81,7 @@ fn wrong_requests_are_refused_and_leave_nothing() {
     assert_eq!(fs::read_dir(dir.path()).expect("a folder").count(), 0, "nothing is left");
 }
 
-/// Four curves that a hairstyle can be made of.
+/// Four curves for a hairstyle.
 const HAIR: &str = r#"#usda 1.0
 (
     metersPerUnit = 1

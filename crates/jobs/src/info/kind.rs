@@ -1,15 +1,15 @@
-//! What kind of file it is, by content and by name.
+//! Detects the kind of a file by content and name.
 
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
 use lovelock_groom::HairFormat;
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 use lovelock_project::project::PROJECT_EXTENSION;
 use lovelock_record::TAKE_EXTENSION;
 
-/// A kind of file that is read.
+/// A kind of readable file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum FileKind {
     /// Hair, in one of [`HAIR_FORMATS`](lovelock_groom::HAIR_FORMATS).
@@ -56,17 +56,17 @@ impl FileKind {
         }
     }
 
-    /// The kind of a file: by its first bytes where they leave no doubt, else by its ending.
+    /// The kind of a file: by its first bytes if they are unambiguous, otherwise by its extension.
     ///
     /// # Errors
-    /// Where it cannot be read, and for a file of no kind that is read, with what is.
-    pub fn of(path: &Path) -> Result<Self, StudioError> {
+    /// If the file cannot be read or is of an unknown kind; the message lists the readable kinds.
+    pub fn of(path: &Path) -> Result<Self, ProjectError> {
         let name = path.display();
         let cannot_read =
-            |error: std::io::Error| StudioError::input(path, format!("{name}: cannot be read: {error}"));
+            |error: std::io::Error| ProjectError::input(path, format!("{name}: cannot be read: {error}"));
         let file = File::open(path).map_err(cannot_read)?;
         if file.metadata().map_err(cannot_read)?.is_dir() {
-            return Err(StudioError::input(
+            return Err(ProjectError::input(
                 path,
                 format!("{name}: is a folder; wanted one of {}", readable()),
             ));
@@ -79,27 +79,27 @@ impl FileKind {
                 || "it has no ending".to_owned(),
                 |ending| format!("`.{}` is not read", ending.to_string_lossy()),
             );
-            StudioError::input(
+            ProjectError::input(
                 path,
                 format!("{name}: not a file that is known here: {ending}; wanted {}", readable()),
             )
         })
     }
 
-    /// The kind that the ending of a name says.
+    /// The kind by file extension.
     pub fn by_extension(path: &Path) -> Option<Self> {
         let ending = path.extension()?.to_str()?.to_ascii_lowercase();
         Self::ALL.into_iter().find(|kind| kind.extensions().contains(&ending.as_str()))
     }
 
-    /// The kind that the first bytes of a file leave no doubt of.
+    /// The kind by the first bytes of a file, if they are unambiguous.
     fn by_content(start: &[u8]) -> Option<Self> {
         if HairFormat::of_magic(start).is_some() {
             return Some(Self::Hair);
         }
         match start {
             [b'g', b'l', b'T', b'F', ..] => return Some(Self::Character),
-            // As `record::take` begins every chunk.
+            // The start of every chunk in `record::take`.
             [0x9a, b'L', b'T', b'A', b'K', b'E', ..] => return Some(Self::Take),
             _ => {}
         }

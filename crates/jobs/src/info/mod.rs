@@ -1,4 +1,4 @@
-//! What a file holds: `lovelock info`.
+//! `lovelock info`: describes the contents of a file.
 
 mod kind;
 mod take;
@@ -12,21 +12,21 @@ use std::path::Path;
 
 use lovelock_groom::{HairInfo, ImportSettings, hair_info, load_hair};
 use lovelock_motion::{CharacterInfo, MotionInfo, load_character, load_motion};
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 use lovelock_project::project::{BodySource, HairSource, MotionSource, PROJECT_VERSION, load_project};
 use serde::Serialize;
 
-/// What a file holds, as `info --json` prints it; displays as lines for people.
+/// Contents of a file, as `info --json` prints them; displays as text for people.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Info {
-    /// The file as it was named.
+    /// The file name as given.
     pub file: String,
-    /// What it is, with its numbers.
+    /// Its kind and details.
     #[serde(flatten)]
     pub content: Content,
 }
 
-/// What a file is, with its numbers.
+/// Kind and details of a file.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Content {
@@ -42,14 +42,14 @@ pub enum Content {
     Take(TakeInfo),
 }
 
-/// A project file in words.
+/// Description of a project file.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ProjectInfo {
     /// Its format.
     pub format: String,
-    /// Fields that are not known to this version, with counts.
+    /// Unknown fields with counts.
     pub dropped: BTreeMap<String, u64>,
-    /// What is missing, out of range or not known.
+    /// Problems: missing files, values out of range, unknown fields.
     pub notes: Vec<String>,
     /// The body: `dancer`, or a file.
     pub body: String,
@@ -65,18 +65,18 @@ pub struct ProjectInfo {
     pub width: u32,
     /// Height of a recording, pixels.
     pub height: u32,
-    /// Frames a second of a recording.
+    /// Frames per second of a recording.
     pub fps: f64,
-    /// Files that it names and uses.
+    /// Files that it refers to and uses.
     pub files: Vec<String>,
 }
 
-/// Says what a hair, character, motion, project or take file holds.
+/// Describes a hair, character, motion, project or take file.
 ///
 /// # Errors
-/// Exit status 2 with one line where the file is missing, broken, or of no kind that is read.
-pub fn info(path: &Path) -> Result<Info, StudioError> {
-    let refuse = |error: &dyn std::fmt::Display| StudioError::input(path, error);
+/// Exit status 2 with one line if the file is missing, broken, or of an unknown kind.
+pub fn info(path: &Path) -> Result<Info, ProjectError> {
+    let refuse = |error: &dyn std::fmt::Display| ProjectError::input(path, error);
     let content = match FileKind::of(path)? {
         FileKind::Hair => {
             let file = load_hair(path).map_err(|error| refuse(&error))?;
@@ -92,7 +92,7 @@ pub fn info(path: &Path) -> Result<Info, StudioError> {
     Ok(Info { file: path.display().to_string(), content })
 }
 
-fn project_info(path: &Path) -> Result<ProjectInfo, StudioError> {
+fn project_info(path: &Path) -> Result<ProjectInfo, ProjectError> {
     let (project, problems) = load_project(path)?;
     let name = |file: &Option<lovelock_project::files::FileRef>| {
         file.as_ref()

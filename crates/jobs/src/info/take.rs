@@ -1,44 +1,46 @@
-//! What a take holds.
+//! Description of a take.
 
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 use lovelock_record::TakeReader;
 use serde::Serialize;
 
-/// A take in words.
+/// Description of a take.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TakeInfo {
     /// Its format and version.
     pub format: String,
-    /// Frames that are lost, by what befell them.
+    /// Numbers of lost frames by cause.
     pub dropped: BTreeMap<String, u64>,
-    /// What is wrong with it, in sentences.
+    /// Problems, as sentences.
     pub notes: Vec<String>,
-    /// `whole`, or what is wrong with it.
+    /// `whole`, or a description of the damage.
     pub condition: String,
-    /// Frames, with those that are lost.
+    /// Whether the take was finished and no damage is known.
+    pub complete: bool,
+    /// Number of frames, including lost ones.
     pub frames: u64,
-    /// Frames a second.
+    /// Frames per second.
     pub fps: f64,
-    /// Frames by frames a second, seconds.
+    /// Number of frames divided by frames per second, seconds.
     pub duration_secs: f64,
-    /// Guides, as the take begins.
+    /// Number of guides at the start.
     pub guides: u32,
-    /// Points of a guide, as the take begins.
+    /// Points per guide at the start.
     pub points_per_guide: u32,
-    /// Where on the way the hair gets other guides.
+    /// Later changes of the guides.
     pub regrown: Vec<RegrownInfo>,
-    /// Strands of the hairstyle that it was recorded with.
+    /// Number of strands of the recorded hairstyle.
     pub strands: u32,
-    /// The clip that was danced; empty where the body rested.
+    /// The recorded clip; empty if the body was at rest.
     pub clip: String,
-    /// What recorded it.
+    /// The program that recorded it.
     pub program: String,
-    /// Length of the file, bytes.
+    /// File size, bytes.
     pub bytes: u64,
-    /// Files that the scene was made from.
+    /// Files of the scene.
     pub files: Vec<String>,
 }
 
@@ -47,18 +49,18 @@ pub struct TakeInfo {
 pub struct RegrownInfo {
     /// The first frame that has them.
     pub frame: u64,
-    /// Guides.
+    /// Number of guides.
     pub guides: u32,
-    /// Points of a guide.
+    /// Points per guide.
     pub points_per_guide: u32,
 }
 
 impl TakeInfo {
-    /// Reads all of the take and checks it.
+    /// Reads and checks the whole take.
     ///
     /// # Errors
-    /// No take, one of a newer version or without frames, or a disk that cannot read it.
-    pub(super) fn of(path: &Path) -> Result<Self, StudioError> {
+    /// If the file is not a take, is of a newer version, has no frames, or cannot be read.
+    pub(super) fn of(path: &Path) -> Result<Self, ProjectError> {
         let mut reader = TakeReader::open(path)?;
         let condition = reader.verify()?;
         let layouts = reader.layouts()?;
@@ -74,6 +76,7 @@ impl TakeInfo {
             },
             notes: if condition.is_whole() { Vec::new() } else { vec![format!("the take is {condition}")] },
             condition: condition.to_string(),
+            complete: condition.is_whole(),
             frames: reader.frames(),
             fps: header.frames_per_second.as_f64(),
             duration_secs: reader.duration_secs(),
@@ -81,7 +84,7 @@ impl TakeInfo {
             points_per_guide: header.points_per_guide,
             regrown: layouts
                 .iter()
-                // The first is the header's, unless it is lost.
+                // The first layout is that of the header, unless it is lost.
                 .filter(|layout| layout.first_frame > 0)
                 .map(|layout| RegrownInfo {
                     frame: layout.first_frame,

@@ -1,11 +1,11 @@
-//! Information as lines for people.
+//! Descriptions as text for people.
 
 use std::collections::BTreeMap;
 use std::fmt;
 
 use super::{Content, Info};
 
-/// Changes of a take's guides that are told one by one.
+/// Number of changes of a take's guides that are listed individually.
 const MOST_REGROWN: usize = 8;
 
 impl fmt::Display for Info {

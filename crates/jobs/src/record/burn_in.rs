@@ -1,9 +1,9 @@
-//! Words burned into a picture: what it shows, and which frame it is.
+//! Burns a label into an image: settings and frame number.
 
 use lovelock_metrics::Canvas;
 use lovelock_render::{Layers, Picture};
 
-/// Pixels between the words and the edge of their box, and between the box and that of the picture.
+/// Margin between the text and its box, and between the box and the image's edge, pixels.
 const MARGIN: usize = 6;
 const PAPER: [u8; 3] = [19, 20, 23];
 const INK: [u8; 3] = [236, 238, 242];
@@ -21,7 +21,7 @@ pub(super) fn burn_in(picture: &mut Picture, words: &str) {
     }
 }
 
-/// The same into linear light; depth and transmittance stay.
+/// The same for linear light; depth and transmittance stay unchanged.
 pub(super) fn burn_in_light(layers: &mut Layers, words: &str) {
     let (width, height) = (layers.width as usize, layers.height as usize);
     let Some((canvas, box_width)) = written(words, width, height) else { return };
@@ -39,7 +39,7 @@ pub(super) fn burn_in_light(layers: &mut Layers, words: &str) {
 
 const BOX_HEIGHT: usize = Canvas::LINE + 2 * MARGIN;
 
-/// The box with its words and how wide it is; none where the picture has no room for it.
+/// The box with its text, and its width; `None` if it does not fit into the image.
 fn written(words: &str, width: usize, height: usize) -> Option<(Canvas, usize)> {
     let box_width = (Canvas::text_width(words) + 2 * MARGIN).min(width.saturating_sub(2 * MARGIN));
     if box_width <= 2 * MARGIN || height < BOX_HEIGHT + 2 * MARGIN {
@@ -59,7 +59,7 @@ mod tests {
     }
 
     #[test]
-    fn words_stand_in_the_lower_left_corner_and_nowhere_else() {
+    fn the_label_is_in_the_lower_left_corner_and_nowhere_else() {
         let mut picture = grey(300, 80);
         burn_in(&mut picture, "frame 12");
         let changed = |x: usize, y: usize| picture.rgba[(y * 300 + x) * 4..][..4] != [128; 4];
@@ -71,11 +71,11 @@ mod tests {
         }
         let mut other = grey(300, 80);
         burn_in(&mut other, "frame 13");
-        assert_ne!(picture, other, "the control: another number is another picture");
+        assert_ne!(picture, other, "control: another number gives another image");
     }
 
     #[test]
-    fn words_in_light_stand_where_those_in_bytes_do() {
+    fn the_label_in_light_is_where_that_in_bytes_is() {
         let mut picture = grey(300, 80);
         burn_in(&mut picture, "frame 12");
         let mut layers = Layers {
@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_without_room_stays_as_it_is_and_long_words_are_cut() {
+    fn a_small_image_stays_unchanged_and_a_long_label_is_cut() {
         for (width, height) in [(0, 0), (8, 200), (200, 20)] {
             let mut picture = grey(width, height);
             burn_in(&mut picture, "frame 12");

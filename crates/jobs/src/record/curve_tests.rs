@@ -1,4 +1,4 @@
-//! What is handed on is what was simulated: USD through our importer, glTF through our reader of characters.
+//! Exported curves equal the simulation: USD is read by our importer, glTF by our character reader.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -6,17 +6,17 @@ use std::path::Path;
 use glam::Vec3;
 use lovelock_groom::{Strands, load_hair};
 use lovelock_motion::{Pose, Skin, load_character, pose_at, skin};
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 use lovelock_session::take::project_of_take;
 use lovelock_session::testing::{played, recorded, small_project};
 
 use super::take_tests::folder;
 use super::*;
 
-/// The largest distance that a point may be off, metres.
+/// Largest allowed distance of a point, metres.
 const LIMIT_M: f32 = 1e-4;
 
-fn write(take: &Path, name: &str, curves: Option<CurveSource>) -> Result<CurveRecordReport, StudioError> {
+fn write(take: &Path, name: &str, curves: Option<CurveSource>) -> Result<CurveRecordReport, ProjectError> {
     let mut request = RecordRequest {
         out: take.with_file_name(name),
         frames: Some(3..9),
@@ -129,7 +129,7 @@ fn options_of_pictures_frames_outside_and_cancels_are_told() {
         lovelock_session::progress::Progress::Frame { done: 2, .. } => ControlFlow::Break(()),
         _ => ControlFlow::Continue(()),
     });
-    assert!(matches!(cancelled, Err(StudioError::Cancelled)));
+    assert!(matches!(cancelled, Err(ProjectError::Cancelled)));
     let left = std::fs::read_dir(path.parent().expect("a folder")).expect("a folder").count();
     assert_eq!(left, 1, "the take alone");
 }

@@ -1,4 +1,4 @@
-//! Handing the hair and the body on to other programs, as curves that move: USD and glTF.
+//! Exports hair and body as animated curves for other programs: USD and glTF.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -6,29 +6,29 @@ use std::str::FromStr;
 use std::sync::Arc;
 
 use glam::{Affine3A, Vec3};
+use lovelock_base::clock::Stopwatch;
 use lovelock_groom::{HairLook, Hairstyle, Strands};
 use lovelock_motion::Body;
 use lovelock_project::Project;
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 use lovelock_record::{
     BodyFrame, CurveBody, CurveFormat, CurveFrame, CurveScene, CurveWriter, FrameRate, RecordError,
 };
-use lovelock_session::clock::Stopwatch;
 use lovelock_session::dance::Dance;
 use lovelock_session::new_folders::NewFolders;
 use lovelock_session::prepare::check_frames;
-use lovelock_session::progress::{Progress, tell};
+use lovelock_session::progress::{Progress, report_progress};
 use lovelock_session::snapshot::FrameSnapshot;
 use serde::Serialize;
 
 use super::request::RecordRequest;
 
-/// Which curves are handed on.
+/// Which curves are exported.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CurveSource {
-    /// The strands that are simulated: some hundreds.
+    /// The simulated guides, a few hundred.
     Guides,
-    /// All strands that are drawn.
+    /// All rendered strands.
     Strands,
 }
 
@@ -54,7 +54,7 @@ impl FromStr for CurveSource {
     }
 }
 
-/// What was handed on, as `record --json` prints it.
+/// The result, as `record --json` prints it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CurveRecordReport {
     /// The file.
@@ -63,59 +63,59 @@ pub struct CurveRecordReport {
     pub format: String,
     /// `guides` or `strands`.
     pub curves: String,
-    /// How many of them.
+    /// Number of curves.
     pub strands: u64,
-    /// Points of all of them.
+    /// Total number of points.
     pub points: u64,
-    /// Vertices of the body; 0 without.
+    /// Vertices of the body; 0 without a body.
     pub vertices: u64,
-    /// Frames written.
+    /// Number of frames.
     pub frames: u64,
     /// Number of the first one.
     pub first_frame: u64,
-    /// Frames a second.
+    /// Frames per second.
     pub fps: f64,
     /// Bytes written.
     pub bytes: u64,
-    /// Time for it all without loading, milliseconds.
+    /// Total time without loading, milliseconds.
     pub ms: f64,
-    /// Fingerprint of the last simulated state: 16 hexadecimal digits; empty where a take was played.
+    /// Hash of the last simulated state, 16 hexadecimal digits; empty for a take.
     pub state_hash: String,
-    /// What could not be loaded and other things to know, in sentences.
+    /// Notes, such as parts that could not be loaded, as sentences.
     pub notes: Vec<String>,
 }
 
-/// Whether an output's name asks for curves.
+/// Whether an output name has the extension of a curve format.
 pub fn is_curves(path: &Path) -> bool {
     CurveFormat::of(path).is_some()
 }
 
-/// Simulates a project, or plays its take, and writes the curves of its hair and its body frame by frame.
+/// Simulates a project, or plays its take, and writes the curves of its hair and body frame by frame.
 ///
 /// # Errors
-/// As [`super::record`]; also where the hair gets other strands on the way, and where the file would be too large.
+/// As [`super::record`]; also if the strands change during the range, or the file would be too large.
 pub fn record_curves(
     project: &Project,
     request: &RecordRequest,
     progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-) -> Result<CurveRecordReport, StudioError> {
+) -> Result<CurveRecordReport, ProjectError> {
     let (project, _) = project.sanitised();
     let out = &request.out;
     let format = CurveFormat::of(out).ok_or_else(|| {
-        StudioError::option(format!("{}: wanted a name ending in .usdc, .usd, .usda or .glb", out.display()))
+        ProjectError::option(format!("{}: wanted a name ending in .usdc, .usd, .usda or .glb", out.display()))
     })?;
     refuse_options_of_pictures(request)?;
     let fps = request.fps.unwrap_or(project.recording.fps);
-    let rate = FrameRate::from_fps(fps).map_err(StudioError::option)?;
+    let rate = FrameRate::from_fps(fps).map_err(ProjectError::option)?;
     if let Some(frames) = &request.frames {
         check_frames(frames)?;
     }
-    // Lines of a whole head for every frame are more than viewers of glTF take.
+    // All strands in every frame are too much for glTF viewers.
     let usual = if format == CurveFormat::Glb { CurveSource::Guides } else { CurveSource::Strands };
     let source = request.curves.unwrap_or(usual);
 
     let (mut dance, mut problems) = Dance::open(&project, &request.access, fps, progress)?;
-    tell(progress, Progress::Loaded { problems: problems.clone() })?;
+    report_progress(progress, Progress::Loaded { problems: problems.clone() })?;
     let recording = &project.recording;
     let frames = request.frames.clone().unwrap_or_else(|| {
         let first = recording.first_frame;
@@ -136,7 +136,7 @@ pub fn record_curves(
     scene.body = body;
     let (strands, points) = (scene.curves() as u64, scene.points() as u64);
     let vertices = scene.body.as_ref().map_or(0, |body| body.bind_positions.len() as u64);
-    // Before the writer, to be dropped after it.
+    // Created before the writer, so that it is dropped after it.
     let _new_folders = NewFolders::missing_on(out);
     let refused = |error: RecordError| refused(out, &error);
     let mut writer = CurveWriter::create(out, scene).map_err(refused)?;
@@ -146,9 +146,9 @@ pub fn record_curves(
         check_same(&first, &snapshot, source, frame)?;
         writer.push(&moved.frame(source, &snapshot, vertices > 0)).map_err(refused)?;
         let (done, total) = (frame + 1 - frames.start, frames.end - frames.start);
-        tell(progress, Progress::Frame { done, total })?;
+        report_progress(progress, Progress::Frame { done, total, steps_per_frame: dance.steps_per_frame() })?;
     }
-    tell(progress, Progress::Finishing)?;
+    report_progress(progress, Progress::Finishing)?;
     let written = writer.finish().map_err(refused)?;
     problems.extend(dance.notices());
     let mut notes: Vec<String> = problems.iter().map(ToString::to_string).collect();
@@ -176,9 +176,9 @@ pub fn record_curves(
     })
 }
 
-fn refuse_options_of_pictures(request: &RecordRequest) -> Result<(), StudioError> {
+fn refuse_options_of_pictures(request: &RecordRequest) -> Result<(), ProjectError> {
     match request.option_of_pictures() {
-        Some(option) => Err(StudioError::option(format!(
+        Some(option) => Err(ProjectError::option(format!(
             "{option}: {} holds curves and no pictures",
             request.out.display()
         ))),
@@ -186,23 +186,23 @@ fn refuse_options_of_pictures(request: &RecordRequest) -> Result<(), StudioError
     }
 }
 
-fn refused(out: &Path, error: &RecordError) -> StudioError {
+fn refused(out: &Path, error: &RecordError) -> ProjectError {
     let file = Some(error.path().unwrap_or(out).to_owned());
     let message = error.to_string();
     if error.is_request() {
-        StudioError::Request { file, message }
+        ProjectError::Request { file, message }
     } else {
-        StudioError::Work { file, message }
+        ProjectError::Work { file, message }
     }
 }
 
-/// Refuses hair or a body that is made of other parts than that of the first frame.
+/// Rejects hair or a body whose topology differs from the first frame.
 fn check_same(
     first: &FrameSnapshot,
     now: &FrameSnapshot,
     source: CurveSource,
     frame: u64,
-) -> Result<(), StudioError> {
+) -> Result<(), ProjectError> {
     if Arc::ptr_eq(&first.scene, &now.scene) {
         return Ok(());
     }
@@ -222,13 +222,13 @@ fn check_same(
         return Ok(());
     }
     let what = if same_hair { "the body" } else { "the hair" };
-    Err(StudioError::option(format!(
+    Err(ProjectError::option(format!(
         "frame {frame}: {what} is made of other parts from here on, and one file holds one: write the frames before it \
          and those from it on apart, with --frames"
     )))
 }
 
-/// The curves with their widths and colours, as they are drawn.
+/// The curves with their rendered widths and colours.
 fn curves_of(source: CurveSource, style: &Hairstyle, look: &HairLook) -> CurveScene {
     let mut scene = CurveScene {
         rate: FrameRate { num: 30, den: 1 },
@@ -243,7 +243,7 @@ fn curves_of(source: CurveSource, style: &Hairstyle, look: &HairLook) -> CurveSc
     match source {
         CurveSource::Guides => {
             let (count, per) = (style.guides.count(), style.guides.points_per_guide);
-            // As wide as a strand: wide enough for all the hair they would hide its way.
+            // As wide as a strand. If they were as wide as all hair together, they would hide its shape.
             let width = look.shadow_width(style.strands.count()) * look.width_scale;
             scene.first_point = (0..=count as u32).map(|guide| guide * per as u32).collect();
             scene.widths = vec![width; count * per];
@@ -265,7 +265,7 @@ fn curves_of(source: CurveSource, style: &Hairstyle, look: &HairLook) -> CurveSc
     scene
 }
 
-/// Colour of a point that lies `along` a strand of that shade, linear sRGB, as it is drawn in even light.
+/// Colour at the fraction `along` of a strand with that shade, linear sRGB, as rendered in uniform light.
 fn color(look: &HairLook, shade: f32, along: f32) -> Vec3 {
     let t = ((along - 0.2) / 0.8).clamp(0.0, 1.0);
     let lightened = 1.0 - look.tip_lightening * t * t * (3.0 - 2.0 * t);
@@ -293,7 +293,7 @@ fn body_of(snapshot: &FrameSnapshot) -> CurveBody {
     }
 }
 
-/// What is made anew for each frame.
+/// Buffers of one frame.
 #[derive(Default)]
 struct Moved {
     strands: Strands,

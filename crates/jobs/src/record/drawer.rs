@@ -1,35 +1,35 @@
-//! What draws the frames of a recording: the project's picture, or panes beside each other.
+//! Renders the frames of a recording: the project's image, or panes beside each other.
 
 use std::sync::Arc;
 
+use lovelock_base::clock::Stopwatch;
 use lovelock_panes::live::FilmOfPanes;
 use lovelock_project::Project;
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 use lovelock_render::{FrameStats, Layers, Picture, Renderer};
-use lovelock_session::clock::Stopwatch;
 use lovelock_session::prepare::open_renderer;
 use lovelock_session::snapshot::FrameSnapshot;
 
 use super::request::RecordRequest;
 
-/// What panes cannot be.
+/// The error for unsupported settings of panes.
 pub(super) const PANES_ALONE: &str = "panes beside each other are recorded as a film or PNG files, without a transparent \
     background and motion blur: switch those off, or record the one picture";
 
-/// What draws the frames of a recording.
+/// Renders the frames of a recording.
 pub(super) enum Drawer {
-    /// The project's picture.
+    /// The project's image.
     One(Box<Renderer>),
-    /// Panes, and the names of what drew them last.
+    /// Panes, and the names of the devices that rendered them last.
     Panes(Box<FilmOfPanes>, String),
 }
 
 impl Drawer {
-    /// Opens what draws `project`.
+    /// Opens the renderer for `project`.
     ///
     /// # Errors
-    /// No adapter for the backend that was asked for, or one that cannot be used.
-    pub(super) fn open(project: &Project, request: &RecordRequest) -> Result<Self, StudioError> {
+    /// If there is no adapter for the requested backend, or it cannot be used.
+    pub(super) fn open(project: &Project, request: &RecordRequest) -> Result<Self, ProjectError> {
         if let Some(sheet) = &request.panes {
             let panes = Box::new(FilmOfPanes::new(project, sheet.clone(), request.access.clone()));
             return Ok(Self::Panes(panes, String::new()));
@@ -38,17 +38,17 @@ impl Drawer {
         Ok(Self::One(Box::new(open_renderer(choice, request.gpu.as_ref())?)))
     }
 
-    /// Draws a frame.
+    /// Renders a frame.
     ///
     /// # Errors
-    /// A size out of range, a shadow that needs too much memory, or a device that is lost.
+    /// If the size is out of range, the shadow needs too much memory, or the device is lost.
     pub(super) fn picture(
         &mut self,
         project: &Project,
         snapshot: &Arc<FrameSnapshot>,
         [width, height]: [u32; 2],
         picture: &mut Picture,
-    ) -> Result<FrameStats, StudioError> {
+    ) -> Result<FrameStats, ProjectError> {
         match self {
             Self::One(renderer) => {
                 let camera = snapshot.camera(&project.camera);
@@ -63,10 +63,10 @@ impl Drawer {
         }
     }
 
-    /// Draws the layers of a frame, over the background or nothing.
+    /// Renders the layers of a frame, with or without background.
     ///
     /// # Errors
-    /// As [`Drawer::picture`]; panes have none.
+    /// As [`Drawer::picture`]; panes have no layers.
     pub(super) fn layers(
         &mut self,
         project: &Project,
@@ -74,18 +74,18 @@ impl Drawer {
         [width, height]: [u32; 2],
         over_background: bool,
         layers: &mut Layers,
-    ) -> Result<FrameStats, StudioError> {
+    ) -> Result<FrameStats, ProjectError> {
         match self {
             Self::One(renderer) => {
                 let camera = snapshot.camera(&project.camera);
                 let input = snapshot.frame_input(project, &camera);
                 Ok(renderer.layers(&input, width, height, over_background, layers)?)
             }
-            Self::Panes(..) => Err(StudioError::option(PANES_ALONE)),
+            Self::Panes(..) => Err(ProjectError::option(PANES_ALONE)),
         }
     }
 
-    /// What draws, as far as its pixels depend on it: the processor gives the same on any machine.
+    /// The renderer, as far as pixels depend on it: the CPU gives the same result on any machine.
     pub(super) fn kind(&self) -> String {
         match self {
             Self::One(renderer) if renderer.gpu().is_none() => "cpu".to_owned(),
@@ -94,7 +94,7 @@ impl Drawer {
         }
     }
 
-    /// `gpu` or `cpu`; `panes` where each pane has its own.
+    /// `gpu` or `cpu`; `panes` if each pane has its own.
     pub(super) fn backend(&self) -> String {
         match self {
             Self::One(renderer) => renderer.backend().to_string(),
@@ -102,7 +102,7 @@ impl Drawer {
         }
     }
 
-    /// The names of what draws.
+    /// The names of the rendering devices.
     pub(super) fn adapter(&self) -> &str {
         match self {
             Self::One(renderer) => renderer.adapter(),

@@ -1,27 +1,28 @@
-//! What the pixels of a sequence depend on, for its manifest: so that none is gone on with that was drawn from something else.
+//! Hashes of everything that the pixels of a sequence depend on, stored in its manifest, so that a sequence is only resumed with
+//! the same inputs.
 
 use std::path::PathBuf;
 
 use lovelock_project::Project;
-use lovelock_project::error::{Place, StudioError};
+use lovelock_project::error::{Place, ProjectError};
 use lovelock_project::files::Access;
 use lovelock_record::TakeAsset;
 use serde_json::{Map, Value};
 
-/// Parts of a project that no picture shows, or that stand in the manifest by themselves.
+/// Parts of a project that do not affect images, or have their own entries in the manifest.
 const BESIDE: [&str; 4] = ["version", "recording", "compare", "take"];
 
-/// A fingerprint of each part of the project, by its name. `with_panes` says that its panes are drawn.
+/// A hash of each part of the project, by name. `with_panes` includes the panes.
 ///
 /// # Errors
-/// A project that cannot be written.
-pub(super) fn of_project(project: &Project, with_panes: bool) -> Result<Value, StudioError> {
+/// If the project cannot be serialised.
+pub(super) fn of_project(project: &Project, with_panes: bool) -> Result<Value, ProjectError> {
     let mut project = project.clone();
-    // A folder that was moved holds the same project; what files hold is told by them.
+    // Ignore paths, because a moved folder contains the same project; the contents of files have their own hashes.
     project.file_refs_mut().for_each(|file| file.path = PathBuf::new());
-    // Of the timeline the tracks are seen.
+    // Of the timeline, only tracks affect images.
     project.timeline.markers.clear();
-    let all = serde_json::to_value(&project).map_err(StudioError::work)?;
+    let all = serde_json::to_value(&project).map_err(ProjectError::work)?;
     let Value::Object(sections) = all else { return Ok(Value::Null) };
     let told = sections
         .into_iter()
@@ -30,8 +31,7 @@ pub(super) fn of_project(project: &Project, with_panes: bool) -> Result<Value, S
     Ok(Value::Object(marked.collect()))
 }
 
-/// A fingerprint of each file that the project is made of and of each that a take was made from, by what it is; and of the takes of
-/// its panes, where they are drawn.
+/// A hash of each file of the project and of its take, by role, and of the takes of its panes if they are rendered.
 pub(super) fn of_files(project: &Project, access: &Access, assets: &[TakeAsset], with_panes: bool) -> Value {
     let own = project.files().into_iter().filter_map(|(place, file)| {
         let path = access.read(place, file).ok()?;
@@ -65,7 +65,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_seen_counts_part_by_part_and_what_is_not_does_not() {
+    fn only_parts_that_affect_images_count() {
         let project = Project::default();
         let before = of_project(&project, false).expect("JSON");
         assert!(before.get("lights").is_some() && before.get("recording").is_none(), "{before}");
@@ -75,7 +75,7 @@ mod tests {
         other.hair.file = Some(lovelock_project::files::FileRef::new("a.hair"));
         let moved = of_project(&other, false).expect("JSON");
         other.hair.file = Some(lovelock_project::files::FileRef::new("elsewhere/a.hair"));
-        assert_eq!(moved, of_project(&other, false).expect("JSON"), "a file is told by what it holds");
+        assert_eq!(moved, of_project(&other, false).expect("JSON"), "a file is identified by its contents");
         other.hair.file = None;
         assert_eq!(before, of_project(&other, false).expect("JSON"));
         other.lights[0].intensity += 0.1;
@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn files_are_told_by_their_bytes() {
+    fn files_are_identified_by_their_contents() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.take");
         let asset = TakeAsset { role: "hair".to_owned(), path: path.clone(), ..TakeAsset::default() };

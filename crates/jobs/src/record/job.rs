@@ -1,4 +1,4 @@
-//! A recording on its own thread, for a window that goes on.
+//! A recording on a background thread, for the window.
 
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
 use lovelock_project::Project;
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 use lovelock_session::progress::Progress;
 use lovelock_session::worker::Wake;
 
@@ -16,30 +16,31 @@ use super::curves::{is_curves, record_curves};
 use super::pictures::record;
 use super::request::RecordRequest;
 
-/// What a [`RecordJob`] has written.
+/// The result of a [`RecordJob`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Recorded {
     /// The film, the folder or the file of curves.
     pub out: PathBuf,
-    /// Frames in it.
+    /// Number of frames.
     pub frames: u64,
-    /// Those of them that an earlier recording had left whole.
+    /// Number of frames kept from an earlier recording.
     pub frames_kept: u64,
 }
 
-/// A recording that runs on its own thread. Dropping it cancels it and waits until nothing unfinished is left.
+/// A recording on a background thread. Dropping it cancels the recording and waits until unfinished files are removed.
 pub struct RecordJob {
     cancelled: Arc<AtomicBool>,
     progress: Arc<Mutex<Option<Progress>>>,
-    thread: Option<JoinHandle<Result<Recorded, StudioError>>>,
+    thread: Option<JoinHandle<Result<Recorded, ProjectError>>>,
 }
 
 impl RecordJob {
-    /// Starts to record pictures, or curves where the output's name asks for them; `wake` is called with every progress and at the end.
+    /// Starts recording images, or curves if the output name has such an extension. `wake` is called for every progress report and
+    /// at the end.
     ///
     /// # Errors
-    /// Where the system gives no thread.
-    pub fn start(project: Arc<Project>, request: RecordRequest, wake: Wake) -> Result<Self, StudioError> {
+    /// If the system cannot create a thread.
+    pub fn start(project: Arc<Project>, request: RecordRequest, wake: Wake) -> Result<Self, ProjectError> {
         let cancelled = Arc::new(AtomicBool::new(false));
         let progress = Arc::new(Mutex::new(None));
         let (stop, shown) = (Arc::clone(&cancelled), Arc::clone(&progress));
@@ -66,36 +67,36 @@ impl RecordJob {
                 }));
                 wake();
                 done.unwrap_or_else(|_| {
-                    Err(StudioError::work("the recording met a defect of the program and stopped"))
+                    Err(ProjectError::work("the recording stopped because of an internal error"))
                 })
             })
-            .map_err(|error| StudioError::work(format!("the recording thread could not start: {error}")))?;
+            .map_err(|error| ProjectError::work(format!("the recording thread could not start: {error}")))?;
         Ok(Self { cancelled, progress, thread: Some(thread) })
     }
 
-    /// How far it is; none before it has begun.
+    /// Progress; `None` before the start.
     pub fn progress(&self) -> Option<Progress> {
         self.progress.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// Asks it to stop; it ends with [`StudioError::Cancelled`] within a frame.
+    /// Cancels the recording, which ends with [`ProjectError::Cancelled`] within a frame.
     pub fn cancel(&self) {
         self.cancelled.store(true, Ordering::Relaxed);
     }
 
-    /// Whether it has ended: [`RecordJob::finish`] does not wait then.
+    /// Whether it has ended, so that [`RecordJob::finish`] does not wait.
     pub fn is_finished(&self) -> bool {
         self.thread.as_ref().is_none_or(JoinHandle::is_finished)
     }
 
-    /// Waits for its end and says how it went.
+    /// Waits for the end and returns the result.
     ///
     /// # Errors
     /// As [`record`] and [`record_curves`].
-    pub fn finish(mut self) -> Result<Recorded, StudioError> {
+    pub fn finish(mut self) -> Result<Recorded, ProjectError> {
         match self.thread.take().map(JoinHandle::join) {
             Some(Ok(result)) => result,
-            Some(Err(_)) | None => Err(StudioError::work("the recording thread ended without a word")),
+            Some(Err(_)) | None => Err(ProjectError::work("the recording thread ended without a result")),
         }
     }
 }

@@ -1,10 +1,10 @@
-//! Recordings whose frames are more than one picture of the screen: transparent, linear, blurred, gone on with.
+//! Recordings with layers: transparent, linear and blurred frames, and resumed sequences.
 
 use std::ops::ControlFlow;
 use std::path::Path;
 
 use lovelock_project::Project;
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 use lovelock_record::SequenceFormat;
 use lovelock_render::Backend;
 use lovelock_session::dance::Dance;
@@ -58,7 +58,7 @@ fn pixels(path: &Path) -> Vec<u8> {
 }
 
 #[test]
-fn a_transparent_frame_is_clear_beside_the_figure_and_covered_on_it() {
+fn a_transparent_frame_is_clear_beside_the_figure_and_opaque_on_it() {
     let dir = tempfile::tempdir().expect("a folder");
     let at = |name: &str| dir.path().join(name);
     let clear = RecordRequest { transparent: true, ..request(&at("clear")) };
@@ -72,10 +72,10 @@ fn a_transparent_frame_is_clear_beside_the_figure_and_covered_on_it() {
     for (clear, drawn) in
         clear.chunks_exact(4).zip(drawn.chunks_exact(4)).filter(|(clear, _)| clear[3] == 255)
     {
-        // What is covered wholly looks as it did; hair that lets a thousandth through makes a step.
+        // Fully covered pixels look the same, within a step for hair that transmits a thousandth.
         assert!(clear.iter().zip(drawn).all(|(a, b)| a.abs_diff(*b) <= 2), "{clear:?} {drawn:?}");
     }
-    // An animated PNG keeps it as well; a film cannot.
+    // An animated PNG stores alpha as well; a film cannot.
     done(&small_project(), &RecordRequest { transparent: true, ..request(&at("a.apng")) });
     assert!(pixels(&at("a.apng")).chunks_exact(4).any(|pixel| pixel[3] == 0));
     let film = RecordRequest { transparent: true, ..request(&at("a.mp4")) };
@@ -116,8 +116,8 @@ fn a_blurred_frame_is_the_mean_of_its_instants_and_the_same_each_time() {
     blurred("late", 4..6, 4, 360.0);
     let file = |folder: &str| std::fs::read(at(folder).join("frame_000004.exr")).expect("a frame");
     assert!(file("one") == file("late"), "a frame alone is the frame among others");
-    // Two pictures over the half of a frame that is 1/30 s long are those an eighth of it before and after: as many frames of
-    // eight times the rate. The simulation has steps of 1/60 s here and 1/240 s there, so it is near and not the same.
+    // Two samples over half of a frame of 1/30 s lie an eighth of it before and after, which are frames at eight times the rate.
+    // The simulation has steps of 1/60 s here and 1/240 s there, so the results are close but not equal.
     blurred("half", 4..5, 2, 180.0);
     blurred("sharp", 4..5, 1, 180.0);
     let (half, sharp) = (light("half/frame_000004.exr"), light("sharp/frame_000004.exr"));
@@ -126,7 +126,7 @@ fn a_blurred_frame_is_the_mean_of_its_instants_and_the_same_each_time() {
     println!("half a shutter {less}, all of it {more}");
     assert!(less > 1e-4 && more > less, "the longer it is open the more it blurs: {less} {more}");
     assert!(apart(&whole, &half) > 1e-4);
-    // A shutter that is shut does not blur; means of halves round.
+    // A closed shutter does not blur; the mean of equal halves only rounds.
     blurred("shut", 4..5, 4, 0.0);
     assert!(apart(&light("shut/frame_000004.exr"), &sharp) < 1e-4);
 }
@@ -167,7 +167,7 @@ fn instants_between_steps_lie_between_them() {
     }
     assert!((steps[2].time_secs - 6.5 / 60.0).abs() < 1e-9);
     assert!(steps[2].skin.positions != steps[0].skin.positions, "the body moves too");
-    // On a step it is the step itself.
+    // At a step it is the step itself.
     let mut plain = open();
     for (index, frame) in [(0, 3), (5, 4)] {
         let snapshot = plain.snapshot(frame).expect("there");
@@ -176,7 +176,7 @@ fn instants_between_steps_lie_between_them() {
 }
 
 #[test]
-fn a_sequence_that_was_stopped_is_gone_on_with_and_another_is_refused_by_name() {
+fn a_stopped_sequence_is_resumed_and_other_settings_are_refused_by_name() {
     for (format, blur) in [(SequenceFormat::Png, 1), (SequenceFormat::Exr, 3)] {
         let dir = tempfile::tempdir().expect("a folder");
         let at = |name: &str| dir.path().join(name);
@@ -194,7 +194,7 @@ fn a_sequence_that_was_stopped_is_gone_on_with_and_another_is_refused_by_name() 
             _ => ControlFlow::Continue(()),
         };
         let stopped = record(&small_project(), &wanted("parts"), &mut stop);
-        assert!(matches!(stopped, Err(StudioError::Cancelled)));
+        assert!(matches!(stopped, Err(ProjectError::Cancelled)));
         let kept = contents(&at("parts")).len() as u64 - 1;
         assert!((1..=3).contains(&kept), "{kept} and a manifest");
 
@@ -235,7 +235,7 @@ fn a_sequence_that_was_stopped_is_gone_on_with_and_another_is_refused_by_name() 
 }
 
 #[test]
-fn what_cannot_be_is_refused_with_words() {
+fn unsupported_settings_are_refused_with_a_message() {
     let dir = tempfile::tempdir().expect("a folder");
     let at = |name: &str| dir.path().join(name);
     let exr = Some(SequenceFormat::Exr);

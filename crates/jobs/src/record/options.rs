@@ -1,31 +1,31 @@
-//! What a recording is, once the request and the project are put together.
+//! Settings of a recording, from the request and the project.
 
 use lovelock_project::Project;
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 use lovelock_record::{FilmQuality, SequenceFormat};
 
 use super::request::RecordRequest;
 
-/// The part of a recording's settings that its pictures depend on, beside the project and the size.
+/// The settings of a recording that its images depend on, besides the project and the size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Options {
-    /// What the files of a folder are.
+    /// Format of the files in a folder.
     pub format: SequenceFormat,
     pub transparent: bool,
-    /// Pictures that a frame is the mean of, 1 or more.
+    /// Samples per frame, 1 or more.
     pub subframes: u32,
-    /// Part of a frame for which the shutter is open, 0 to 360 degrees.
+    /// Shutter angle, 0 to 360 degrees per frame.
     pub shutter_degrees: f32,
     pub label: bool,
     pub quality: FilmQuality,
 }
 
 impl Options {
-    /// As asked for, else as the project says.
+    /// The settings of the request, or otherwise of the project.
     ///
     /// # Errors
-    /// Numbers out of range, and what a film of panes cannot be.
-    pub fn new(project: &Project, request: &RecordRequest) -> Result<Self, StudioError> {
+    /// If a number is out of range, or a film of panes does not support a setting.
+    pub fn new(project: &Project, request: &RecordRequest) -> Result<Self, ProjectError> {
         let of = &project.recording;
         let options = Self {
             format: request.format.unwrap_or(of.format),
@@ -38,19 +38,19 @@ impl Options {
         let most = lovelock_project::project::RecordingSection::MOST_SUBFRAMES;
         if !(1..=most).contains(&options.subframes) {
             let asked = options.subframes;
-            return Err(StudioError::option(format!(
+            return Err(ProjectError::option(format!(
                 "motion blur of {asked} pictures a frame: wanted 1 (none) to {most}"
             )));
         }
         if !(0.0..=360.0).contains(&options.shutter_degrees) {
             let asked = options.shutter_degrees;
-            return Err(StudioError::option(format!("a shutter of {asked} degrees: wanted 0 to 360")));
+            return Err(ProjectError::option(format!("a shutter of {asked} degrees: wanted 0 to 360")));
         }
         Ok(options)
     }
 
-    /// The times of the pictures that frame `frame` is the mean of, seconds, rising: evenly over the shutter's opening, which is
-    /// centred on the frame. Nothing is before the start.
+    /// The sample times of frame `frame`, seconds, ascending: evenly spaced over the open shutter, which is centred on the frame, and
+    /// not before the start.
     pub fn instants(&self, frame: u64, fps: f64) -> Vec<f64> {
         let open_secs = f64::from(self.shutter_degrees) / 360.0 / fps;
         let count = f64::from(self.subframes);
@@ -78,8 +78,8 @@ mod tests {
     fn a_shutter_opens_round_the_frame_and_frames_do_not_overlap() {
         let near = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-12);
         assert!(near(&options(4, 180.0).instants(10, 25.0), &[0.3925, 0.3975, 0.4025, 0.4075]));
-        assert_eq!(options(1, 180.0).instants(10, 25.0), [0.4], "one picture is the frame itself");
-        assert_eq!(options(4, 0.0).instants(10, 25.0), [0.4; 4], "nor does a shut shutter blur");
+        assert_eq!(options(1, 180.0).instants(10, 25.0), [0.4], "one sample is the frame itself");
+        assert_eq!(options(4, 0.0).instants(10, 25.0), [0.4; 4], "a closed shutter does not blur");
         let all: Vec<f64> = (0..5).flat_map(|frame| options(8, 360.0).instants(frame, 30.0)).collect();
         assert!(all.windows(2).all(|w| w[0] <= w[1]) && all[0] == 0.0, "{all:?}");
         assert!(all.windows(2).skip(4).all(|w| (w[1] - w[0] - 1.0 / 240.0).abs() < 1e-12), "evenly");

@@ -1,19 +1,19 @@
-//! The loop of a recording: the window's engine with a fixed clock.
+//! Records images: the main loop.
 
 use std::ops::ControlFlow;
 use std::path::Path;
 
+use lovelock_base::clock::Stopwatch;
 use lovelock_project::Project;
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 use lovelock_record::{
     FrameLayers, FrameRate, OutputKind, PictureSink, RecordError, SequenceFormat, SinkSettings,
 };
 use lovelock_render::{FrameStats, Layers, Picture};
-use lovelock_session::clock::Stopwatch;
 use lovelock_session::dance::Dance;
 use lovelock_session::new_folders::NewFolders;
 use lovelock_session::prepare::check_frames;
-use lovelock_session::progress::{Progress, tell};
+use lovelock_session::progress::{Progress, report_progress};
 use lovelock_session::stats::{PassHistory, StageHistory, StageTimes};
 
 use super::burn_in::{burn_in, burn_in_light};
@@ -23,39 +23,38 @@ use super::options::Options;
 use super::report::RecordReport;
 use super::request::RecordRequest;
 
-/// The most frames of which times are kept for the medians.
+/// Maximum number of frames whose times are kept for medians.
 const MOST_TIMES: usize = 1 << 20;
 
-/// Records a project: gives the hair its life before the first frame, draws the frames asked for, and writes them.
+/// Records a project: simulates the pre-roll, then renders and writes the requested frames.
 ///
-/// `progress` is told each stage and frame, and may stop the recording. The simulation's bytes depend on the
-/// project and the frame rate alone.
+/// `progress` is called for each stage and frame, and may cancel the recording. The simulation depends only on the project and the
+/// frame rate.
 ///
 /// # Errors
-/// [`StudioError::exit_code`] 2 for a wrong request, 1 where the work fails (no adapter, a full disk). Nothing is
-/// left under the final name of a film then; of a sequence the frames that are whole are. Folders that were made
-/// for it and hold nothing go.
+/// [`ProjectError::exit_code`] 2 for an invalid request, 1 if the work fails (no adapter, a full disk). Then no film is left under
+/// its final name, complete frames of a sequence are kept, and new empty folders are removed.
 pub fn record(
     project: &Project,
     request: &RecordRequest,
     progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-) -> Result<RecordReport, StudioError> {
+) -> Result<RecordReport, ProjectError> {
     let job = Job::new(project, request)?;
     let (mut dance, mut problems) = Dance::open(&job.project, &request.access, job.fps, progress)?;
-    tell(progress, Progress::Loaded { problems: problems.clone() })?;
+    report_progress(progress, Progress::Loaded { problems: problems.clone() })?;
     if request.dance_time {
         dance.count_on_dance();
     }
 
     let frames = job.frames(&dance)?;
-    // After what the request may get wrong: drivers speak on standard error while they are tried.
+    // After the checks of the request, because drivers may print to standard error when they are opened.
     let mut drawer = Drawer::open(&job.project, request)?;
     if job.project.recording.seamless {
         dance.close(&frames)?;
     }
 
     let refused = |error: RecordError| job.refused(&error);
-    // Before the sink, to be dropped after it.
+    // Created before the sink, so that it is dropped after it.
     let _new_folders = NewFolders::missing_on(&request.out);
     let settings = job.sink_settings(&frames, &dance, &drawer)?;
     let mut sink = PictureSink::for_path(&request.out, settings).map_err(refused)?;
@@ -69,11 +68,11 @@ pub fn record(
         let (done, total) = (frame + 1 - frames.start, frames.end - frames.start);
         if sink.next_is_kept() {
             sink.keep_next();
-            tell(progress, Progress::Kept { done, total })?;
+            report_progress(progress, Progress::Kept { done, total })?;
             continue;
         }
         if !std::mem::replace(&mut begun, true) {
-            // Through all of the recording before, whatever of it is kept.
+            // Simulate all earlier frames of the recording, whether they are kept or not.
             dance.begin(frames.start, job.options.instants(frame, job.fps)[0], progress)?;
         }
         let watch = Stopwatch::start();
@@ -85,9 +84,9 @@ pub fn record(
         passes.push(&stats.passes);
         (shadow_bytes, draw_bytes) = (stats.shadow_bytes.max(shadow_bytes), stats.draw_bytes.max(draw_bytes));
         whole.push(watch.ms());
-        tell(progress, Progress::Frame { done, total })?;
+        report_progress(progress, Progress::Frame { done, total, steps_per_frame: dance.steps_per_frame() })?;
     }
-    tell(progress, Progress::Finishing)?;
+    report_progress(progress, Progress::Finishing)?;
     let written = sink.finish().map_err(refused)?;
 
     problems.extend(dance.notices());
@@ -111,7 +110,7 @@ pub fn record(
         shutter_degrees: job.options.shutter_degrees,
         strands: strands.count() as u64,
         segments: strands.segments() as u64,
-        frame_ms: lovelock_session::stats::median(whole.into_iter()),
+        frame_ms: lovelock_base::statistics::median(whole).unwrap_or(0.0),
         stage_ms: history.medians(),
         passes_ms: passes.medians().into_iter().map(|pass| (pass.name, pass.ms)).collect(),
         shadow_bytes,
@@ -140,7 +139,7 @@ struct Job<'a> {
 
 impl<'a> Job<'a> {
     /// Checks the request before anything is loaded.
-    fn new(project: &Project, request: &'a RecordRequest) -> Result<Self, StudioError> {
+    fn new(project: &Project, request: &'a RecordRequest) -> Result<Self, ProjectError> {
         let (mut project, _) = project.sanitised();
         if let Some(shadow) = request.shadow {
             project.shadow.method = shadow;
@@ -155,7 +154,7 @@ impl<'a> Job<'a> {
         let kind = OutputKind::of(&request.out).map_err(|error| refused(&error))?;
         let options = Options::new(&project, request)?;
         if request.dance_time && project.recording.seamless {
-            return Err(StudioError::option(
+            return Err(ProjectError::option(
                 "--dance-time: the film goes round, and a round of a take is counted from the take's own start",
             ));
         }
@@ -166,17 +165,17 @@ impl<'a> Job<'a> {
             check_frames(frames)?;
         }
         let mut asked = job.sink_basics(1);
-        // That a project prefers EXR is no reason to refuse a film of it.
+        // A project that prefers EXR can still be recorded as a film.
         asked.format = request.format.unwrap_or_default();
         asked.check_kind(kind).map_err(|error| job.refused(&error))?;
         let layered = job.options.transparent
             || job.options.subframes > 1
             || (kind == OutputKind::Sequence && job.options.format == SequenceFormat::Exr);
         if request.panes.is_some() && layered {
-            return Err(StudioError::option(PANES_ALONE));
+            return Err(ProjectError::option(PANES_ALONE));
         }
         if kind == OutputKind::Preview {
-            // Their number is known when the dance is.
+            // The number of frames is known after loading.
             let frames = request.frames.as_ref().map_or(1, |frames| frames.end - frames.start);
             lovelock_record::PreviewSettings { width, height, fps, frames, alpha: job.options.transparent }
                 .check()
@@ -191,8 +190,8 @@ impl<'a> Job<'a> {
         Ok(job)
     }
 
-    /// The frames to draw: as asked for, else as the project says, else the whole clip.
-    fn frames(&self, dance: &Dance) -> Result<std::ops::Range<u64>, StudioError> {
+    /// The frames of the request, or of the project, or of the whole clip.
+    fn frames(&self, dance: &Dance) -> Result<std::ops::Range<u64>, ProjectError> {
         let recording = &self.project.recording;
         let frames = self.request.frames.clone().unwrap_or_else(|| {
             let first = recording.first_frame.max(dance.first_frame());
@@ -204,7 +203,7 @@ impl<'a> Job<'a> {
         Ok(frames)
     }
 
-    /// What the output is, but for what drew it.
+    /// Settings of the output except the renderer.
     fn sink_basics(&self, frames: u64) -> SinkSettings {
         let mut settings = SinkSettings::new(self.width, self.height, self.fps);
         settings.frames = frames;
@@ -216,13 +215,13 @@ impl<'a> Job<'a> {
         settings
     }
 
-    /// The same with all that its pixels depend on.
+    /// The same with everything that its pixels depend on.
     fn sink_settings(
         &self,
         frames: &std::ops::Range<u64>,
         dance: &Dance,
         drawer: &Drawer,
-    ) -> Result<SinkSettings, StudioError> {
+    ) -> Result<SinkSettings, ProjectError> {
         let mut settings = self.sink_basics(frames.end - frames.start);
         settings.first_frame = frames.start;
         if self.kind != OutputKind::Sequence {
@@ -249,12 +248,12 @@ impl<'a> Job<'a> {
         Ok(settings)
     }
 
-    /// Whether frames are drawn as layers: for the light before the view's curve, or to see what is clear.
+    /// Whether frames are rendered as layers, which is needed for linear light and transparency.
     fn is_layered(&self) -> bool {
         self.options.subframes > 1 || self.options.transparent || self.format() == SequenceFormat::Exr.id()
     }
 
-    /// What is written, by its ending.
+    /// The format by extension.
     fn format(&self) -> &'static str {
         match self.kind {
             OutputKind::Film => "mp4",
@@ -263,14 +262,14 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// Draws a frame: one picture, or the mean of those for which the shutter is open.
+    /// Renders a frame: one image, or the mean of the samples while the shutter is open.
     fn draw(
         &self,
         frame: u64,
         dance: &mut Dance,
         drawer: &mut Drawer,
         drawn: &mut Drawn,
-    ) -> Result<(StageTimes, FrameStats), StudioError> {
+    ) -> Result<(StageTimes, FrameStats), ProjectError> {
         let size = [self.width, self.height];
         if !self.is_layered() {
             let snapshot = dance.snapshot(frame)?;
@@ -288,7 +287,7 @@ impl<'a> Job<'a> {
         let (mut times, mut last) = (StageTimes::default(), FrameStats::default());
         drawn.mean.clear_to(self.width, self.height);
         for &secs in &instants {
-            // A frame that is not blurred is the picture's, to the bit.
+            // Without blur a frame equals the single image bit for bit.
             let snapshot =
                 if instants.len() == 1 { dance.snapshot(frame)? } else { dance.snapshot_at(secs)? };
             let layers = if instants.len() == 1 { &mut drawn.mean } else { &mut drawn.one };
@@ -314,7 +313,7 @@ impl<'a> Job<'a> {
         Ok((times, last))
     }
 
-    /// Hands the frame that was drawn last over.
+    /// Writes the last rendered frame.
     fn push(&self, drawn: &Drawn, sink: &mut PictureSink) -> Result<(), RecordError> {
         if self.format() != SequenceFormat::Exr.id() {
             return sink.push(&drawn.picture.rgba);
@@ -323,29 +322,29 @@ impl<'a> Job<'a> {
         sink.push_layers(&FrameLayers { light, depth, transmittance })
     }
 
-    /// What is written into a frame.
+    /// The label of a frame.
     fn label(&self, frame: u64) -> String {
         let (shadow, transparency) =
             (self.project.shadow.method.label(), self.project.picture.transparency.label());
         format!("{shadow} · {transparency} · frame {frame} · {:.2} s", frame as f64 / self.fps)
     }
 
-    fn refused(&self, error: &RecordError) -> StudioError {
+    fn refused(&self, error: &RecordError) -> ProjectError {
         refused(self.request, error)
     }
 }
 
-fn refused(request: &RecordRequest, error: &RecordError) -> StudioError {
+fn refused(request: &RecordRequest, error: &RecordError) -> ProjectError {
     let file = error.path().map(Path::to_owned);
     if error.is_request() {
         let file = file.or_else(|| Some(request.out.clone()));
-        StudioError::Request { file, message: error.to_string() }
+        ProjectError::Request { file, message: error.to_string() }
     } else {
-        StudioError::Work { file, message: error.to_string() }
+        ProjectError::Work { file, message: error.to_string() }
     }
 }
 
-/// A frame as it is drawn: its bytes, or its numbers and those of the picture that is added to them.
+/// Buffers of a frame: its bytes, its layers, and the layers of one sample.
 #[derive(Default)]
 struct Drawn {
     picture: Picture,

@@ -1,4 +1,4 @@
-//! What a recording was: the keys of `record --json`.
+//! The result of a recording: the keys of `record --json`.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -10,19 +10,19 @@ use serde::{Serialize, Serializer};
 /// Medians over the frames of a recording, milliseconds.
 pub type StageMedians = StageTimes;
 
-/// What was recorded, as `record --json` prints it.
+/// The result of a recording, as `record --json` prints it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RecordReport {
     /// The film, or the folder.
     #[serde(serialize_with = "as_text")]
     pub out: PathBuf,
-    /// Frames written.
+    /// Number of frames.
     pub frames: u64,
-    /// Those of them that were there already and were kept.
+    /// Number of frames kept from an earlier recording.
     pub frames_kept: u64,
     /// Number of the first one.
     pub first_frame: u64,
-    /// Frames a second.
+    /// Frames per second.
     pub fps: f64,
     /// Width, pixels.
     pub width: u32,
@@ -30,50 +30,50 @@ pub struct RecordReport {
     pub height: u32,
     /// `gpu` or `cpu`; `panes` for a film of panes, which have one each.
     pub backend: String,
-    /// Name of the adapter that drew.
+    /// Name of the device that rendered.
     pub adapter: String,
     /// Id of the shadow method.
     pub shadow: String,
     /// Id of the transparency mode.
     pub transparency: String,
-    /// What was written: `mp4`, `apng`, `png` or `exr`.
+    /// Format: `mp4`, `apng`, `png` or `exr`.
     pub format: String,
-    /// Whether there is nothing behind hair and body.
+    /// Whether the background is transparent.
     pub transparent: bool,
-    /// Pictures that each frame is the mean of.
+    /// Samples per frame.
     pub motion_blur: u32,
-    /// How long the shutter was open for them, degrees of 360 a frame.
+    /// Shutter angle, degrees of 360 per frame.
     pub shutter_degrees: f32,
-    /// Strands drawn.
+    /// Number of rendered strands.
     pub strands: u64,
-    /// Their segments.
+    /// Number of their segments.
     pub segments: u64,
-    /// Median of the frames' whole times, milliseconds.
+    /// Median of the total time per frame, milliseconds.
     pub frame_ms: f64,
     /// Medians of the stages, milliseconds.
     pub stage_ms: StageMedians,
-    /// Medians of the passes of drawing, milliseconds, by their names; as far as what drew measures them. Of one picture, where
-    /// a frame is the mean of several.
+    /// Medians of the rendering passes by name, milliseconds, if the renderer measures them. With several samples per frame, those of
+    /// one sample.
     pub passes_ms: BTreeMap<String, f64>,
-    /// The most bytes that shadow maps held.
+    /// Peak bytes of shadow maps.
     pub shadow_bytes: u64,
-    /// The most bytes that were held for the pixels, to put strands together in them.
+    /// Peak bytes of pixel buffers for blending strands.
     pub draw_bytes: u64,
     /// Largest relative change of a link's length in the frames.
     pub max_stretch: f32,
     /// Deepest point inside the body, metres.
     pub max_penetration_m: f32,
-    /// Guides that were not finite and were put back.
+    /// Number of guides that became non-finite and were reset.
     pub recovered_guides: u64,
-    /// The gauges of the simulation with what to change where one is over its limits; none of a take.
+    /// The gauges of the simulation with advice for those over their limits; none for a take.
     pub health: Vec<Gauge>,
-    /// Fingerprint of the last simulated state: 16 hexadecimal digits; empty where a take was drawn.
+    /// Hash of the last simulated state, 16 hexadecimal digits; empty for a take.
     pub state_hash: String,
     /// Bytes written.
     pub bytes: u64,
-    /// Steps of the simulation a frame; 0 where a take was drawn.
+    /// Simulation steps per frame; 0 for a take.
     pub steps_per_frame: u32,
-    /// What could not be loaded and other things to know, in sentences.
+    /// Notes, such as parts that could not be loaded, as sentences.
     pub notes: Vec<String>,
 }
 

@@ -1,4 +1,4 @@
-//! What to record, and how far it is.
+//! The request for a recording.
 
 use std::ops::Range;
 use std::path::PathBuf;
@@ -9,15 +9,15 @@ use lovelock_project::files::Access;
 use lovelock_record::{FilmQuality, SequenceFormat};
 use lovelock_render::{Backend, Gpu, ShadowMethod, Transparency};
 
-/// What to record; where a field is none, the project says.
+/// What to record. `None` uses the project's value.
 #[derive(Clone, Debug, Default)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line by itself")]
 pub struct RecordRequest {
-    /// Where it goes: a name ending in `.mp4` is a film, a folder a sequence of PNG or EXR files.
+    /// The output: a name ending in `.mp4` is a film, a folder is a sequence of PNG or EXR files.
     pub out: PathBuf,
     /// Frames, half open.
     pub frames: Option<Range<u64>>,
-    /// Frames a second.
+    /// Frames per second.
     pub fps: Option<f64>,
     /// Width and height, pixels.
     pub size: Option<(u32, u32)>,
@@ -25,40 +25,40 @@ pub struct RecordRequest {
     pub shadow: Option<ShadowMethod>,
     /// Transparency mode.
     pub transparency: Option<Transparency>,
-    /// How finely a film is coded.
+    /// Encoding quality of a film.
     pub quality: Option<FilmQuality>,
-    /// Whether the shadow method, the transparency and the frame's number are written into each picture.
+    /// Whether shadow method, transparency and frame number are written into each image.
     pub label: bool,
-    /// Whether the end of the film goes over into its start, hair and all; the project may say so too.
+    /// Whether the end of the film is blended into its start; the project can also enable this.
     pub seamless: bool,
-    /// What the files of a folder are.
+    /// Format of the files in a folder.
     pub format: Option<SequenceFormat>,
-    /// Whether there is nothing behind hair and body, also where the project draws a background.
+    /// Whether the background is transparent even if the project has a background.
     pub transparent: bool,
-    /// Pictures that a frame is the mean of, 1 to [`lovelock_project::project::RecordingSection::MOST_SUBFRAMES`].
+    /// Samples per frame, 1 to [`lovelock_project::project::RecordingSection::MOST_SUBFRAMES`].
     pub motion_blur: Option<u32>,
-    /// How long the shutter is open, degrees of 360 a frame.
+    /// Shutter angle, degrees of 360 per frame.
     pub shutter_degrees: Option<f32>,
-    /// Whether to go on with the sequence that is in the folder.
+    /// Whether to resume the sequence in the folder.
     pub resume: bool,
-    /// Whether frames of a take are counted on the dance that it was recorded from, and not from its own start.
+    /// Whether frames of a take are counted from the start of the original motion instead of the start of the take.
     pub dance_time: bool,
-    /// Which curves an output of curves holds; by its format where none.
+    /// Which curves to export; `None` chooses by format.
     pub curves: Option<super::CurveSource>,
-    /// Whether an output of curves leaves the body out.
+    /// Whether to export curves without the body.
     pub no_body: bool,
-    /// What draws; the project says where none.
+    /// The rendering backend.
     pub backend: Option<Backend>,
-    /// What the project may read.
+    /// The files that the project may read.
     pub access: Access,
-    /// The device to draw on; one is opened where none.
+    /// The device to render on; `None` opens one.
     pub gpu: Option<Arc<Gpu>>,
-    /// The project's panes beside each other in place of its picture.
+    /// Records the project's panes beside each other instead of its image.
     pub panes: Option<Sheet>,
 }
 
 impl RecordRequest {
-    /// The first option given that is of pictures alone: what holds none refuses it.
+    /// The first given option that only applies to images. Outputs without images reject it.
     pub(super) fn option_of_pictures(&self) -> Option<&'static str> {
         let given = [
             (self.size.is_some(), "--size"),

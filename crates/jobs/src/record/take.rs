@@ -1,71 +1,72 @@
-//! Recording the simulation alone, as fast as the machine can.
+//! Records only the simulation, as fast as possible.
 
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
 
+use lovelock_base::clock::Stopwatch;
 use lovelock_project::Project;
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 use lovelock_record::{FrameRate, TAKE_EXTENSION, TakeReport};
-use lovelock_session::clock::{FrameClock, Stopwatch};
+use lovelock_session::clock::FrameClock;
 use lovelock_session::health::{Gauge, health};
 use lovelock_session::prepare::{check_frames, load, settled_at};
-use lovelock_session::progress::{Progress, tell};
+use lovelock_session::progress::{Progress, report_progress};
 use lovelock_session::take::TakeRecording;
 use serde::Serialize;
 
 use super::request::RecordRequest;
 
-/// What was recorded as a take, as `record --json` prints it.
+/// The result of recording a take, as `record --json` prints it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TakeRecordReport {
     /// The take.
     pub out: String,
-    /// Frames recorded.
+    /// Number of frames.
     pub frames: u64,
-    /// Frames a second of the take: one for each step of the simulation.
+    /// Frames per second of the take: one per simulation step.
     pub fps: f64,
     /// Its length, seconds.
     pub duration_secs: f64,
     /// Bytes written.
     pub bytes: u64,
-    /// Guides recorded.
+    /// Number of guides.
     pub guides: u64,
-    /// Points of a guide.
+    /// Points per guide.
     pub points_per_guide: u64,
-    /// Time for it all without loading, milliseconds.
+    /// Total time without loading, milliseconds.
     pub ms: f64,
     /// Largest relative change of a link's length.
     pub max_stretch: f32,
     /// Deepest point inside the body, metres.
     pub max_penetration_m: f32,
-    /// Guides that were not finite and were put back.
+    /// Number of guides that became non-finite and were reset.
     pub recovered_guides: u64,
-    /// The gauges of the simulation, with what to change where one is over its limits.
+    /// The gauges of the simulation, with advice for those over their limits.
     pub health: Vec<Gauge>,
-    /// Fingerprint of the last simulated state: 16 hexadecimal digits.
+    /// Hash of the last simulated state, 16 hexadecimal digits.
     pub state_hash: String,
-    /// What could not be loaded and other things to know, in sentences.
+    /// Notes, such as parts that could not be loaded, as sentences.
     pub notes: Vec<String>,
 }
 
-/// Whether an output's name asks for a take.
+/// Whether an output name has the extension of takes.
 pub fn is_take(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(TAKE_EXTENSION))
 }
 
-/// Records the simulation of a project as a take: every step from the first frame asked for to the last one.
+/// Records the simulation of a project as a take: every step from the first requested frame to the last one.
 ///
 /// # Errors
-/// As [`super::record`]; a project that plays a take itself is refused. What was written before a disk failed stays.
+/// As [`super::record`], or if the project plays a take itself. Frames written before a disk failure are kept.
 pub fn record_take(
     project: &Project,
     request: &RecordRequest,
     progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-) -> Result<TakeRecordReport, StudioError> {
+) -> Result<TakeRecordReport, ProjectError> {
     let (project, _) = project.sanitised();
     if let Some(file) = &project.take.file {
-        return Err(StudioError::option(format!(
+        return Err(ProjectError::option(format!(
             "{}: the project plays a take already: {}",
             request.out.display(),
             file.path.display()
@@ -73,18 +74,18 @@ pub fn record_take(
     }
     let of_films = request.seamless.then_some("--loop");
     if let Some(option) = request.option_of_pictures().or(of_films) {
-        return Err(StudioError::option(format!(
+        return Err(ProjectError::option(format!(
             "{option}: {} is a take, which holds the simulation alone and no pictures",
             request.out.display()
         )));
     }
     let fps = request.fps.unwrap_or(project.recording.fps);
-    FrameRate::from_fps(fps).map_err(StudioError::option)?;
+    FrameRate::from_fps(fps).map_err(ProjectError::option)?;
     if let Some(frames) = &request.frames {
         check_frames(frames)?;
     }
     let (scene, problems) = load(&project, &request.access, progress)?;
-    tell(progress, Progress::Loaded { problems: problems.clone() })?;
+    report_progress(progress, Progress::Loaded { problems: problems.clone() })?;
     let recording = &project.recording;
     let frames = request.frames.clone().unwrap_or_else(|| {
         recording.first_frame
@@ -103,14 +104,21 @@ pub fn record_take(
         take.push(&engine)?;
         if step % u64::from(clock.steps_per_frame) == 0 {
             let done = step / u64::from(clock.steps_per_frame) - frames.start;
-            let told = tell(progress, Progress::Frame { done, total: frames.end - frames.start });
+            let told = report_progress(
+                progress,
+                Progress::Frame {
+                    done,
+                    total: frames.end - frames.start,
+                    steps_per_frame: clock.steps_per_frame,
+                },
+            );
             if let Err(cancelled) = told {
                 take.discard()?;
                 return Err(cancelled);
             }
         }
     }
-    tell(progress, Progress::Finishing)?;
+    report_progress(progress, Progress::Finishing)?;
     let TakeReport { frames, bytes, duration_secs, .. } = take.finish()?;
     let totals = engine.totals();
     let guides = &scene.style.guides;

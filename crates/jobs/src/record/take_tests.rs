@@ -1,9 +1,9 @@
-//! Takes that are recorded without a window, and takes in which the hair gets other guides on the way.
+//! Takes recorded without a window, and takes in which the number of guides changes.
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 use lovelock_record::{SequenceFormat, frame_name};
 use lovelock_render::{Backend, CpuRenderer, Picture};
 use lovelock_session::progress::Progress;
@@ -37,13 +37,13 @@ fn without_a_window_every_step_is_recorded_and_a_cancelled_take_leaves_nothing()
         Progress::Frame { .. } => ControlFlow::Break(()),
         _ => ControlFlow::Continue(()),
     });
-    assert!(matches!(stopped, Err(StudioError::Cancelled)));
+    assert!(matches!(stopped, Err(ProjectError::Cancelled)));
     let left: Vec<_> =
         std::fs::read_dir(folder.path()).expect("a folder").flatten().map(|e| e.file_name()).collect();
     assert_eq!(left, ["dance.take"]);
 }
 
-/// The step at which more wisps are asked for, and the one at which there are as many as before.
+/// The step at which the number of wisps increases, and the one at which it returns to the old number.
 const MORE: u64 = 40;
 const AGAIN: u64 = 70;
 
@@ -89,7 +89,7 @@ fn films_show_it_and_curves_name_the_frame() {
     request.access.pick(&path);
     let report = record(&project, &request, &mut |_| ControlFlow::Continue(())).expect("a film");
     assert_eq!(report.frames, 4);
-    // Without blur a frame is the picture of its snapshot.
+    // Without blur a frame is the image of its snapshot.
     let frames = path.with_file_name("sharp");
     let sharp = RecordRequest { out: frames.clone(), motion_blur: None, ..request.clone() };
     record(&project, &sharp, &mut |_| ControlFlow::Continue(())).expect("a film");

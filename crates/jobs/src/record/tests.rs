@@ -1,7 +1,7 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 use lovelock_render::{Backend, ShadowMethod};
 use lovelock_session::progress::Progress;
 use lovelock_session::testing::small_project;
@@ -17,11 +17,11 @@ fn request(out: &Path) -> RecordRequest {
     }
 }
 
-/// Records, or skips where there is no adapter.
+/// Records, or skips the test if there is no adapter.
 fn try_record(
     request: &RecordRequest,
     progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-) -> Option<Result<RecordReport, StudioError>> {
+) -> Option<Result<RecordReport, ProjectError>> {
     let gpu = match lovelock_render::Gpu::open() {
         Ok(gpu) => gpu,
         Err(error) => {
@@ -64,7 +64,7 @@ fn wrong_requests_are_refused_before_any_work() {
 fn a_shadow_that_is_refused_leaves_no_folder() {
     let dir = tempfile::tempdir().expect("a folder");
     let mut project = small_project();
-    // The smallest limit that can be set is 16 MiB for all lights; this hair needs more.
+    // The smallest possible limit is 16 MiB for all lights; this hair needs more.
     (project.hair.groom.wisps, project.hair.groom.strands_per_wisp) = (300, 40);
     project.shadow.exact.memory_limit_bytes = 0;
     let request = RecordRequest {
@@ -85,7 +85,7 @@ fn a_sequence_and_a_film_have_the_same_simulation() {
     let dir = tempfile::tempdir().expect("a folder");
     let mut frames = Vec::new();
     let mut progress = |what| {
-        if let Progress::Frame { done, total } = what {
+        if let Progress::Frame { done, total, .. } = what {
             frames.push((done, total));
         }
         ControlFlow::Continue(())
@@ -119,7 +119,7 @@ fn a_cancelled_film_leaves_nothing() {
         _ => ControlFlow::Continue(()),
     };
     let Some(result) = try_record(&request(&dir.path().join("a.mp4")), &mut progress) else { return };
-    assert!(matches!(result, Err(StudioError::Cancelled)));
+    assert!(matches!(result, Err(ProjectError::Cancelled)));
     assert_eq!(std::fs::read_dir(dir.path()).expect("a folder").count(), 0);
 }
 
@@ -199,7 +199,7 @@ fn a_take_from_the_middle_is_drawn_by_the_frames_of_the_dance() {
     let (mut plain, _) = lovelock_session::take::project_of_take(&at("d.take")).expect("its project");
     plain.set_take(at("d.take"));
     plain.look.eumelanin = 8.0;
-    // What follows the timeline follows the dance's: black long before frame 40.
+    // Tracks follow the timeline of the original motion: black long before frame 40.
     let mut tracked = plain.clone();
     let keys = [(0.0, 0.1), (1.0, 8.0)]
         .map(|(secs, value)| lovelock_project::tracks::Key { secs, value: vec![value] });
@@ -232,7 +232,7 @@ fn a_take_from_the_middle_is_drawn_by_the_frames_of_the_dance() {
             std::fs::read(at(folder).join(format!("frame_{frame:06}.png"))).expect("a picture")
         };
         assert!(read("dance", dance) == read("plain", own), "frame {dance}");
-        assert!(read("dance", dance) != read("own", own), "the control: another place of the timeline");
+        assert!(read("dance", dance) != read("own", own), "control: another position on the timeline");
     }
     let mut looped = plain.clone();
     looped.recording.seamless = true;

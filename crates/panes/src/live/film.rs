@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use lovelock_project::Project;
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 use lovelock_project::files::Access;
 use lovelock_render::{Picture, Renderer};
 use lovelock_session::snapshot::FrameSnapshot;
@@ -13,7 +13,7 @@ use super::round::Rounds;
 use crate::request::LiveRequest;
 use crate::sheet::Sheet;
 
-/// Draws all panes of a frame and puts them together.
+/// Renders all panes of a frame and composes them.
 pub struct FilmOfPanes {
     rounds: Rounds,
     sheet: Sheet,
@@ -22,23 +22,23 @@ pub struct FilmOfPanes {
 }
 
 impl FilmOfPanes {
-    /// The panes of `project`, put together as `sheet` says, with takes that `access` allows.
+    /// For the panes of `project`, composed by `sheet`, with takes that `access` allows.
     pub fn new(project: &Project, sheet: Sheet, access: Access) -> Self {
         let rounds = Rounds::new(Renderers::new(Box::new(Renderer::open)));
         Self { rounds, sheet, project: Arc::new(project.clone()), access }
     }
 
-    /// One frame of `project`, whose tracks have moved it. Returns what drew it.
+    /// Renders one frame of `project`, in which tracks are already applied. Returns the names of the devices.
     ///
     /// # Errors
-    /// No pane can be drawn; a pane that cannot be drawn beside others says so in its place.
+    /// If no pane can be rendered. A single pane that fails shows the reason in its rectangle.
     pub fn frame(
         &mut self,
         project: &Project,
         snapshot: &Arc<FrameSnapshot>,
         whole: [u32; 2],
         picture: &mut Picture,
-    ) -> Result<Vec<String>, StudioError> {
+    ) -> Result<Vec<String>, ProjectError> {
         if *self.project != *project {
             self.project = Arc::new(project.clone());
         }
@@ -58,7 +58,7 @@ impl FilmOfPanes {
         self.rounds.begin(&request);
         let mut drawn = Vec::new();
         for &index in &request.panes {
-            // A lost device is opened again, as often as the thread of the window does.
+            // Reopen a lost device, as often as the thread for the window does.
             let mut pane = self.rounds.pane(&request, index);
             while pane.1.as_ref().is_some_and(|broken| broken.try_again) {
                 pane = self.rounds.pane(&request, index);
@@ -68,7 +68,7 @@ impl FilmOfPanes {
         if let Some((_, first)) = drawn.first()
             && drawn.iter().all(|(_, pane)| pane.problem.is_some())
         {
-            return Err(StudioError::work(first.problem.clone().unwrap_or_default()));
+            return Err(ProjectError::work(first.problem.clone().unwrap_or_default()));
         }
         let shown: Vec<_> = drawn.iter().map(|(index, pane)| (*index, pane, pane.times.whole)).collect();
         *picture = self.sheet.compose(&shown, whole);

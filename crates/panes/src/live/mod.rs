@@ -1,7 +1,7 @@
-//! Panes beside each other, live: a thread that draws each of them in turn on the newest instant.
+//! Live panes: a thread that renders each pane in turn at the newest instant.
 //!
-//! A round draws every pane that is asked for on one instant, whose strands are interpolated once. Panes are left in
-//! their slots as they are finished, or together at the end of the round.
+//! A round renders all requested panes at one instant, whose strands are interpolated once. Panes are published when each is
+//! finished, or together at the end of the round.
 
 mod film;
 mod probes;
@@ -18,70 +18,69 @@ use std::sync::atomic::AtomicBool;
 use std::thread::JoinHandle;
 
 use lovelock_render::Renderer;
-use lovelock_session::latest::{Desk, Slot};
+use lovelock_session::latest::{Latest, LatestJob};
 use renderers::{Open, Renderers};
-use thread::Left;
+use thread::Outputs;
 
 use crate::probe::LiveProbe;
 use crate::request::{LivePane, LiveRequest};
 
-/// Draws panes on a thread of its own. A request that comes while a round is drawn waits for its end; a later one
-/// replaces it.
+/// Renders panes on a thread of its own. A request that arrives during a round waits for its end; a later request replaces it.
 #[derive(Debug)]
 pub struct Live {
-    desk: Desk<LiveRequest>,
-    left: Left,
+    jobs: LatestJob<LiveRequest>,
+    outputs: Outputs,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Live {
-    /// Starts the thread. `on_drawn` is called there after each pane and at the end of a round.
+    /// Starts the thread, which calls `on_drawn` after each pane and at the end of a round.
     ///
     /// # Errors
-    /// The system makes no thread.
+    /// If the system cannot create a thread.
     pub fn start(on_drawn: impl Fn() + Send + 'static) -> std::io::Result<Self> {
         Self::start_with(Box::new(Renderer::open), on_drawn)
     }
 
-    /// As [`Live::start`], on what `open` opens.
+    /// As [`Live::start`], with renderers from `open`.
     fn start_with(open: Open, on_drawn: impl Fn() + Send + 'static) -> std::io::Result<Self> {
-        let desk = Desk::default();
-        let left = Left::default();
+        let jobs = LatestJob::default();
+        let outputs = Outputs::default();
         let renderers = Renderers::new(open);
-        let worker = thread::Worker::new(desk.clone(), left.clone(), Box::new(on_drawn), renderers);
+        let worker = thread::Worker::new(jobs.clone(), outputs.clone(), Box::new(on_drawn), renderers);
         let thread = std::thread::Builder::new().name("compare".to_owned()).spawn(move || worker.run())?;
-        Ok(Self { desk, left, thread: Some(thread) })
+        Ok(Self { jobs, outputs, thread: Some(thread) })
     }
 
-    /// Asks for a round; a request that still waits is forgotten.
+    /// Requests a round and replaces a request that still waits.
     pub fn request(&self, request: LiveRequest) {
-        self.desk.put(request);
+        self.jobs.put(request);
     }
 
-    /// Where pane `index` is left; none past [`CompareSection::MOST_PANES`].
-    pub fn pane(&self, index: usize) -> Option<&Slot<LivePane>> {
-        self.left.panes.get(index)
+    /// The latest image of pane `index`; `None` past [`CompareSection::MOST_PANES`].
+    pub fn pane(&self, index: usize) -> Option<&Latest<LivePane>> {
+        self.outputs.panes.get(index)
     }
 
-    /// Where the light along the ray through the chosen hair is left.
-    pub fn probe(&self) -> &Slot<LiveProbe> {
-        &self.left.probe
+    /// The latest light along the ray through the chosen hair.
+    pub fn probe(&self) -> &Latest<LiveProbe> {
+        &self.outputs.probe
     }
 
-    /// Where sentences are left that stay true while panes come: that another backend draws from now on.
-    pub fn notices(&self) -> &Slot<String> {
-        &self.left.notices
+    /// Notices that stay valid while panes follow, such as a switch to another backend.
+    pub fn notices(&self) -> &Latest<String> {
+        &self.outputs.notices
     }
 
-    /// Whether a round is being drawn or waits: its end will call `on_drawn`.
+    /// Whether a round is being rendered or waits; `on_drawn` is called when it is done.
     pub fn busy(&self) -> Arc<AtomicBool> {
-        Arc::clone(self.desk.busy())
+        Arc::clone(self.jobs.busy())
     }
 }
 
 impl Drop for Live {
     fn drop(&mut self) {
-        self.desk.close();
+        self.jobs.close();
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
         }

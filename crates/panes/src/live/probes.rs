@@ -1,4 +1,4 @@
-//! The light along a ray through a chosen hair, as each pane's method sees it.
+//! The transmittance of each pane's method along a ray through a chosen strand point.
 
 use glam::Vec3;
 use lovelock_groom::Strands;
@@ -9,16 +9,16 @@ use super::round::input_of;
 use crate::probe::{LiveProbe, ProbeCurve, ProbeMark, ProbePlace, ProbedHair};
 use crate::request::LiveRequest;
 
-/// Points of a curve.
+/// Number of points of a curve.
 const SAMPLES: usize = 257;
 
-/// Hair this near to the ray is what the plot must reach from end to end, metres.
+/// The plot covers all hair within this distance of the ray, metres.
 const NEAR: f32 = 0.006;
 
-/// Room before the first hair and behind the last one, metres.
+/// Margin before the first hair and behind the last one, metres.
 const MARGIN: f32 = 0.008;
 
-/// The farthest from the point that is plotted, metres.
+/// Largest plotted distance from the point, metres.
 const FARTHEST: f32 = 0.6;
 
 /// The hair that is followed.
@@ -27,15 +27,15 @@ pub(super) struct Probes {
     followed: Option<Followed>,
 }
 
-/// A point of hair that somebody chose.
+/// A strand point that the user chose.
 struct Followed {
     number: u64,
-    /// The strand, and the point among those of all strands; none where no hair was at the place.
+    /// The strand, and the point among those of all strands; `None` if there was no hair at the position.
     hair: Option<(usize, usize)>,
 }
 
 impl Probes {
-    /// Finds the hair that `place` means in the pane as it was shown.
+    /// Finds the hair at `place` in the pane as it was shown.
     pub(super) fn choose(
         &mut self,
         values: &mut ValueRenderer,
@@ -53,7 +53,7 @@ impl Probes {
         self.followed = Some(Followed { number: place.number, hair: hit.map(|hit| (hit.strand, hit.point)) });
     }
 
-    /// The chosen hair on this instant, without curves.
+    /// The chosen hair at this instant, without curves.
     pub(super) fn follow(
         &self,
         snapshot: &FrameSnapshot,
@@ -79,17 +79,17 @@ impl Probes {
     }
 }
 
-/// Where a point is.
+/// Position of a point.
 fn point_of(strands: &Strands, point: usize) -> Option<Vec3> {
     Some(Vec3::new(*strands.x.get(point)?, *strands.y.get(point)?, *strands.z.get(point)?))
 }
 
-/// The way the light travels.
+/// The direction in which the light travels.
 pub(super) fn direction(light: &Light) -> Vec3 {
     light.direction.normalize_or(Vec3::NEG_Y)
 }
 
-/// From the first hair near the ray to the last one, with some room, metres along the light.
+/// Range from the first hair near the ray to the last one, with a margin, metres along the light.
 fn reach(strands: &Strands, at: Vec3, along: Vec3) -> [f32; 2] {
     let (mut low, mut high) = (0.0_f32, 0.0_f32);
     for ((&x, &y), &z) in strands.x.iter().zip(&strands.y).zip(&strands.z) {
@@ -102,8 +102,8 @@ fn reach(strands: &Strands, at: Vec3, along: Vec3) -> [f32; 2] {
     [(low - MARGIN).max(-FARTHEST), (high + MARGIN).min(FARTHEST)]
 }
 
-/// What the maps of a pane's last picture say along the ray, and what they keep there: on a graphics card, where they
-/// cannot be looked into, what `definition` finds.
+/// The transmittance of a pane's last maps along the ray, and what they store there. On the GPU, where the maps cannot be read,
+/// the marks come from `definition`.
 pub(super) fn curve(
     renderer: &mut Renderer,
     (light, along): (usize, Vec3),

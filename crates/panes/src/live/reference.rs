@@ -1,4 +1,4 @@
-//! The exact method on the instant that panes are drawn on: what they are measured by.
+//! The exact method at the instant of the panes: the reference for their errors.
 
 use std::sync::Arc;
 
@@ -13,23 +13,23 @@ use lovelock_session::snapshot::FrameSnapshot;
 
 use super::round::input_of;
 
-/// Pixels along each edge of a picture that nobody looks at: it is drawn for its transmittance.
+/// Side length of an image that is rendered only for its transmittance, pixels.
 const UNSEEN: u32 = 16;
 
-/// The exact method's transmittance and picture. Each is made when it is first asked for, once an instant.
+/// The exact method's transmittance and image, each computed on first use, once per instant.
 #[derive(Default)]
 pub(super) struct ExactReference {
-    /// Draws what nobody looks at, for its transmittance and its maps.
+    /// Renders the image that is only used for its transmittance and maps.
     unseen: CpuRenderer,
     seen: CpuRenderer,
-    transmittance: Option<(TransmittanceKey, Found<Vec<f32>>)>,
-    picture: Option<(PictureKey, Found<Picture>)>,
+    transmittance: Option<(TransmittanceKey, OrReason<Vec<f32>>)>,
+    picture: Option<(PictureKey, OrReason<Picture>)>,
 }
 
-/// Something that was made, or a sentence that says why not.
-type Found<T> = Result<Arc<T>, String>;
+/// A result, or a sentence that says why there is none.
+type OrReason<T> = Result<Arc<T>, String>;
 
-/// Everything that transmittance depends on.
+/// The inputs of the transmittance.
 #[derive(PartialEq)]
 struct TransmittanceKey {
     instant: Instant,
@@ -38,7 +38,7 @@ struct TransmittanceKey {
     light: Light,
 }
 
-/// Everything that the picture depends on.
+/// The inputs of the image.
 #[derive(PartialEq)]
 struct PictureKey {
     instant: Instant,
@@ -47,7 +47,7 @@ struct PictureKey {
     size: [u32; 2],
 }
 
-/// A snapshot, which is itself alone.
+/// A snapshot that is compared by identity.
 struct Instant(Arc<FrameSnapshot>);
 
 impl PartialEq for Instant {
@@ -57,10 +57,10 @@ impl PartialEq for Instant {
 }
 
 impl ExactReference {
-    /// Whether a contender is the reference itself: it reads as the reference does the very map that the reference reads.
+    /// Whether a contender is the reference itself, because it reads the same map in the same way.
     ///
-    /// Settings do not tell: texels are never narrower than strands are wide, so that several resolutions make one map,
-    /// and a limit of memory changes none. One map gives one transmittance, `found` and `exact`, to the last bit.
+    /// Settings cannot decide this: texels are never narrower than strands, so several resolutions give the same map, and a memory
+    /// limit changes no map. Equal maps give equal transmittance, `found` and `exact`, bit for bit.
     pub(super) fn is(
         project: &Project,
         (contender, backend): (&Contender, Backend),
@@ -76,14 +76,14 @@ impl ExactReference {
     /// The exact transmittance of light `light` at every strand point.
     ///
     /// # Errors
-    /// A sentence: no such light, or a map that needs too much memory.
+    /// A sentence if there is no such light, or the map needs too much memory.
     pub(super) fn transmittance(
         &mut self,
         project: &Project,
         snapshot: &Arc<FrameSnapshot>,
         strands: &Strands,
         light: usize,
-    ) -> Found<Vec<f32>> {
+    ) -> OrReason<Vec<f32>> {
         let Some(light) = project.lights.iter().filter(|light| light.enabled).nth(light) else {
             return Err("no light is on".to_owned());
         };
@@ -107,21 +107,21 @@ impl ExactReference {
         found
     }
 
-    /// The picture with exact shadows and transparency.
+    /// The image with exact shadows and transparency.
     ///
     /// # Errors
-    /// A sentence: a size that is not drawn, or a map that needs too much memory.
+    /// A sentence if the size is out of range, or the map needs too much memory.
     pub(super) fn picture(
         &mut self,
         project: &Project,
         snapshot: &Arc<FrameSnapshot>,
         strands: &Strands,
         size: [u32; 2],
-    ) -> Found<Picture> {
+    ) -> OrReason<Picture> {
         let mut exact = project.clone();
         exact.shadow.method = ShadowMethod::Exact;
         exact.picture.transparency = Transparency::Exact;
-        // The panes themselves do not matter to it.
+        // The panes do not affect the reference.
         exact.compare = lovelock_project::project::CompareSection { panes: Vec::new() };
         let camera = snapshot.camera(&exact.camera);
         let key = PictureKey { instant: Instant(Arc::clone(snapshot)), project: exact, camera, size };
@@ -137,8 +137,8 @@ impl ExactReference {
         found
     }
 
-    /// The steps of transmittance along the light through `p`, of the light and the instant that
-    /// [`ExactReference::transmittance`] was last asked for: depth from `p`, metres, and transmittance from there on.
+    /// The steps of transmittance along the light through `p`, for the light and the instant of the last call of
+    /// [`ExactReference::transmittance`]: depth from `p`, metres, and transmittance from there on.
     pub(super) fn steps(&mut self, p: Vec3) -> Vec<(f32, f32)> {
         let found = self.unseen.along_ray(0, p).unwrap_or_default();
         let steps = found.marks.iter().filter(|mark| mark.kind == RayMarkKind::FRAGMENT);

@@ -1,46 +1,46 @@
-//! What draws the panes: a renderer each, on one device for all that use it.
+//! The renderers of panes: one per pane, sharing one GPU device.
 
 use std::sync::Arc;
 
 use lovelock_project::project::Contender;
 use lovelock_render::{Backend, Gpu, GpuError, RenderError, Renderer};
 
-/// How often in a row a pane may break the graphics device before it is no more drawn there.
+/// Number of consecutive device failures by a pane after which it is no longer rendered on the GPU.
 const MOST_FAILURES: u32 = 3;
 
-/// Opens what draws on the backend that was chosen.
+/// Opens a renderer on the chosen backend.
 pub(super) type Open = Box<dyn FnMut(Backend) -> Result<Renderer, RenderError> + Send>;
 
-/// What becomes of the panes when what draws one broke.
+/// The consequences of a renderer's failure.
 pub(super) struct Broken {
-    /// Whether to draw again by itself.
+    /// Whether to render again without a new request.
     pub(super) try_again: bool,
-    /// What the user should know: what is not drawn on the graphics card from now on.
+    /// A notice for the user about panes that are no longer rendered on the GPU.
     pub(super) notice: Option<String>,
 }
 
-/// A renderer a pane, so that none forgets its maps while another draws.
+/// One renderer per pane, so that each keeps its maps while another one renders.
 pub(super) struct Renderers {
     open: Open,
     panes: Vec<Option<Renderer>>,
-    /// The device that all panes on the graphics card draw on.
+    /// The device that all panes on the GPU share.
     gpu: Option<Arc<Gpu>>,
-    /// What [`Backend::Auto`] turned out to be.
+    /// The backend that [`Backend::Auto`] selected.
     auto: Option<Backend>,
-    /// What each pane is, with its own failures of the device in a row: a pane that works says nothing of another.
+    /// The settings of each pane with its number of consecutive device failures, which is counted per pane.
     failed: Vec<(Contender, u32)>,
 }
 
 impl Renderers {
-    /// Renderers that `open` opens.
+    /// Renderers from `open`.
     pub(super) fn new(open: Open) -> Self {
         Self { open, panes: Vec::new(), gpu: None, auto: None, failed: Vec::new() }
     }
 
-    /// The renderer of a pane, opened where there is none for that choice.
+    /// The renderer of a pane; opened if there is none for its backend.
     ///
     /// # Errors
-    /// No adapter for [`Backend::Gpu`], one that cannot be used, or one that failed again and again with this pane.
+    /// If there is no adapter for [`Backend::Gpu`], it cannot be used, or it failed repeatedly with this pane.
     pub(super) fn of_pane(
         &mut self,
         pane: usize,
@@ -55,7 +55,7 @@ impl Renderers {
         }
         if choice == Backend::Gpu && self.failed[pane].1 >= MOST_FAILURES {
             let sentence =
-                "this pane broke the graphics device again and again: change its settings to try again";
+                "this pane made the graphics device fail repeatedly: change its settings to try again";
             return Err(GpuError::Input(sentence.to_owned()).into());
         }
         let wanted = match choice {
@@ -70,7 +70,7 @@ impl Renderers {
             wanted => renderer.backend() == wanted,
         };
         if !self.panes[pane].as_ref().is_some_and(fits) {
-            // The old one first: two do not fit where one does.
+            // Drop the old one first, because two may not fit into memory.
             self.panes[pane] = None;
             let opened = match (&self.gpu, wanted) {
                 (Some(gpu), Backend::Gpu) => Renderer::on_device(Arc::clone(gpu))?,
@@ -86,16 +86,16 @@ impl Renderers {
         }
         match &mut self.panes[pane] {
             Some(renderer) => Ok(renderer),
-            None => unreachable!("a renderer that was just put there"),
+            None => unreachable!("the renderer was just stored"),
         }
     }
 
-    /// The renderer of a pane as it was left by its last picture.
+    /// The renderer of a pane in the state after its last image.
     pub(super) fn last(&mut self, pane: usize) -> Option<&mut Renderer> {
         self.panes.get_mut(pane)?.as_mut()
     }
 
-    /// A pane was drawn.
+    /// Records that a pane was rendered.
     pub(super) fn worked(&mut self, pane: usize) {
         if self.last(pane).is_some_and(|renderer| renderer.backend() == Backend::Gpu)
             && let Some(failed) = self.failed.get_mut(pane)
@@ -104,7 +104,7 @@ impl Renderers {
         }
     }
 
-    /// What drew a pane broke: everything on its device is closed.
+    /// Handles a failure of a pane's renderer: closes all renderers on its device.
     pub(super) fn broke(&mut self, pane: usize) -> Broken {
         let by_card = self.last(pane).is_none_or(|renderer| renderer.backend() == Backend::Gpu);
         if let Some(slot) = self.panes.get_mut(pane) {
@@ -128,25 +128,25 @@ impl Renderers {
         *failed = failed.saturating_add(1);
         let notice = (*failed == MOST_FAILURES).then(|| {
             let what = if contender.backend == Backend::Gpu {
-                format!("pane {} is not drawn there any more", pane + 1)
+                format!("pane {} is no longer rendered there", pane + 1)
             } else {
                 self.auto = Some(Backend::Cpu);
-                "the processor draws what it may from now on".to_owned()
+                "the processor renders these panes from now on if their settings allow it".to_owned()
             };
             format!("The graphics card failed {MOST_FAILURES} times in a row: {what}.")
         });
-        // After the last failure once more, for the panes that lost their device with this one.
+        // Once more after the last failure, for the panes that lost the device because of this one.
         Broken { try_again: *failed <= MOST_FAILURES, notice }
     }
 
-    /// Forgets the renderers of panes that are no more.
+    /// Drops the renderers of removed panes.
     pub(super) fn keep(&mut self, panes: usize) {
         self.panes.truncate(panes);
         self.failed.truncate(panes);
     }
 }
 
-/// Whether what draws must be opened again: see the drawing thread of the window's single picture.
+/// Whether the renderer must be opened again; see the render thread of the session crate.
 pub(super) fn device_is_gone(error: &RenderError) -> bool {
     match error {
         RenderError::Gpu(error) => {

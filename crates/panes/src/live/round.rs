@@ -1,4 +1,4 @@
-//! Panes on one instant.
+//! Renders the panes of one instant.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -24,13 +24,13 @@ use crate::probe::LiveProbe;
 use crate::request::{LiveError, LivePane, LiveRequest, LiveTimes};
 use crate::view::LiveShows;
 
-/// Draws panes, and keeps what the next instant needs.
+/// Renders panes and keeps the state that the next instant needs.
 pub(super) struct Rounds {
     pub(super) renderers: Renderers,
     strands: Strands,
-    /// The instant that `strands` are of.
+    /// The instant of `strands`.
     strands_of: Option<Arc<FrameSnapshot>>,
-    /// What was drawn last, which is what the user saw when choosing a hair.
+    /// The last request, whose images the user saw when choosing hair.
     shown: Option<LiveRequest>,
     values: ValueRenderer,
     reference: ExactReference,
@@ -39,7 +39,7 @@ pub(super) struct Rounds {
 }
 
 impl Rounds {
-    /// Draws with `renderers`.
+    /// Renders with `renderers`.
     pub(super) fn new(renderers: Renderers) -> Self {
         Self {
             renderers,
@@ -53,7 +53,7 @@ impl Rounds {
         }
     }
 
-    /// Goes to the instant of `request`: its strands are made, once for all panes.
+    /// Starts a round: interpolates the strands of its instant once for all panes.
     pub(super) fn begin(&mut self, request: &LiveRequest) {
         if let (Some(place), Some(shown)) = (request.probe, &self.shown) {
             self.probes.choose(&mut self.values, place, shown, &self.strands);
@@ -69,11 +69,11 @@ impl Rounds {
         self.shown = Some(request.clone());
     }
 
-    /// Draws one pane of the instant that was begun.
+    /// Renders one pane of the round.
     pub(super) fn pane(&mut self, request: &LiveRequest, index: usize) -> (LivePane, Option<Broken>) {
         let project = &request.project;
         let contender = project.compare.panes.get(index).cloned().unwrap_or_default();
-        // Of a pane's own take, whose head may be elsewhere.
+        // The snapshot of the pane's own take, whose head may be elsewhere.
         let own = self.takes.instant(index);
         let (snapshot, unplayable) = match own {
             Some(Ok((snapshot, _))) => (snapshot, None),
@@ -103,7 +103,7 @@ impl Rounds {
             pane.problem = unplayable;
             return (pane, None);
         }
-        // A panic while drawing costs the device and one picture, not the window.
+        // A panic while rendering costs the device and one image, but not the window.
         let drawn = catch_unwind(AssertUnwindSafe(|| self.draw(request, index, &contender, &mut pane)));
         let broken = match drawn {
             Ok(Ok(())) => {
@@ -115,7 +115,8 @@ impl Rounds {
                 device_is_gone(&error).then(|| self.renderers.broke(index))
             }
             Err(_) => {
-                pane.problem = Some("drawing stopped unexpectedly; what draws is opened again".to_owned());
+                pane.problem =
+                    Some("rendering stopped unexpectedly; the renderer is opened again".to_owned());
                 Some(self.renderers.broke(index))
             }
         };
@@ -146,10 +147,10 @@ impl Rounds {
         if !request.view.measures {
             return Ok(());
         }
-        // A light that is not there has no transmittance, and the picture is as good without.
+        // A missing light has no transmittance, and the image does not need it.
         let found = renderer.transmittance(request.view.light).map_err(|error| error.to_string());
         let measured = found.and_then(|found| self.measure(request, index, (&project, &found), pane));
-        // The picture itself under a scale of colours would be taken for an error.
+        // The plain image beside a colour scale would be mistaken for errors.
         if let Err(why) = measured
             && request.view.shows.colors().is_some()
         {
@@ -159,10 +160,10 @@ impl Rounds {
         Ok(())
     }
 
-    /// Holds the transmittance of a pane against the exact one, and shows the difference where that is asked for.
+    /// Compares the transmittance of a pane with the exact one, and shows the difference if requested.
     ///
     /// # Errors
-    /// A sentence: what the pane is held against could not be had, or not be put into colours.
+    /// A sentence if there is no reference, or the false-colour image cannot be rendered.
     fn measure(
         &mut self,
         request: &LiveRequest,
@@ -204,7 +205,7 @@ impl Rounds {
         let difference =
             |(&found, &exact): (&f32, &f32)| if signed { found - exact } else { (found - exact).abs() };
         let values: Vec<f32> = found.iter().zip(exact.iter()).map(difference).collect();
-        // A pixel shows the foremost hairs in every pane alike, whatever puts the strands of the pane together.
+        // False colours show the front strands in every pane, whatever its transparency mode.
         let mut shown = drawn.clone();
         shown.picture.transparency = Transparency::Sorted;
         let input = input_of(snapshot, &shown, strands, &pane.camera);
@@ -212,7 +213,7 @@ impl Rounds {
         colored.map_err(|error| error.to_string())
     }
 
-    /// The light along the ray through the chosen hair, as the panes of the round have it.
+    /// The light along the ray through the chosen hair in the panes of the round.
     pub(super) fn probe(&mut self, request: &LiveRequest) -> Option<LiveProbe> {
         request.probe?;
         let light = enabled(&request.project).nth(request.view.light)?;
@@ -224,12 +225,12 @@ impl Rounds {
                 hair.steps = self.reference.steps(hair.position);
             }
             for &pane in &request.panes {
-                // The hair of another take is not the one that was chosen.
+                // The hair of another take is not the chosen one.
                 if self.takes.instant(pane).is_some() {
                     continue;
                 }
                 let Some(renderer) = self.renderers.last(pane) else { continue };
-                // A pane that could not be drawn has no maps, and says so itself.
+                // A pane that could not be rendered has no maps; the pane itself reports why.
                 let strands = &self.strands;
                 let definition = || kept(project, snapshot, strands, pane, light, hair.position);
                 if let Ok(curve) = curve(renderer, (request.view.light, direction(light)), hair, definition) {
@@ -241,7 +242,7 @@ impl Rounds {
     }
 }
 
-/// What a pane's method keeps along the light through `p`, by its definition.
+/// What a pane's method stores along the light through `p`, by its CPU definition.
 fn kept(
     project: &Project,
     snapshot: &FrameSnapshot,
@@ -268,14 +269,14 @@ fn enabled(project: &Project) -> impl Iterator<Item = &Light> {
     project.lights.iter().filter(|light| light.enabled)
 }
 
-/// The project as a contender draws it. How much light hair blocks is a property of the hair and not of a way to draw it.
+/// The project with the settings of a contender, except the extinction scale, which is a property of the hair.
 fn drawn_as(project: &Project, contender: &Contender) -> Project {
     let mut drawn = contender.applied_to(project);
     drawn.shadow.extinction_scale = project.shadow.extinction_scale;
     drawn
 }
 
-/// An instant with strands that are made already.
+/// The render input of an instant with interpolated strands.
 pub(super) fn input_of<'a>(
     snapshot: &'a FrameSnapshot,
     project: &'a Project,
@@ -285,7 +286,7 @@ pub(super) fn input_of<'a>(
     FrameInput { hair: HairPose::Strands(strands), ..snapshot.frame_input(project, camera) }
 }
 
-/// The size at which a pane is drawn.
+/// The size at which a pane is rendered.
 fn pixels(request: &LiveRequest, contender: &Contender) -> [u32; 2] {
     let scale = if contender.scale.is_finite() { contender.scale.clamp(0.1, 1.0) } else { 1.0 };
     [request.width, request.height].map(|side| ((side as f32 * scale).round() as u32).max(16))

@@ -1,42 +1,42 @@
-//! Takes of panes that play one of their own: each stands where the window's time stands.
+//! Panes that play takes of their own, at the time of the window.
 
 use std::sync::Arc;
 use std::time::SystemTime;
 
 use lovelock_groom::Strands;
-use lovelock_project::error::{Place, StudioError};
+use lovelock_project::error::{Place, ProjectError};
 use lovelock_project::files::{Access, FileRef};
 use lovelock_session::snapshot::FrameSnapshot;
 use lovelock_session::take::TakePlayer;
 
 use crate::request::LiveRequest;
 
-/// The takes that panes play, open.
+/// The open takes of panes.
 #[derive(Default)]
 pub(super) struct PaneTakes {
     held: Vec<Held>,
 }
 
-/// What an open take was opened from.
+/// The source of an open take.
 #[derive(PartialEq)]
 struct Source {
     file: FileRef,
     access: Access,
-    /// What tells a file from one that was put in its place.
+    /// Size and modification time, to detect a replaced file.
     version: Option<(u64, SystemTime)>,
 }
 
 struct Held {
     pane: usize,
     source: Source,
-    /// Or a sentence that says why it cannot be played.
+    /// The player, or a sentence that says why the take cannot be played.
     player: Result<Box<TakePlayer>, String>,
     instant: Option<(f64, Arc<FrameSnapshot>)>,
     strands: Strands,
 }
 
 impl PaneTakes {
-    /// Opens what the panes of a request play, and goes to its time.
+    /// Opens the takes of a request's panes and seeks to its time.
     pub(super) fn begin(&mut self, request: &LiveRequest) {
         let panes = &request.project.compare.panes;
         let wanted = |pane: usize| {
@@ -58,16 +58,16 @@ impl PaneTakes {
         }
     }
 
-    /// The instant of a pane's own take with its strands; none where the pane shows what the window shows.
+    /// The instant of a pane's own take with its strands; `None` if the pane shows the same hair as the window.
     ///
     /// # Errors
-    /// A sentence: the take cannot be played.
+    /// A sentence if the take cannot be played.
     pub(super) fn instant(&self, pane: usize) -> Option<Result<(&Arc<FrameSnapshot>, &Strands), &str>> {
         let held = self.held.iter().find(|held| held.pane == pane)?;
         Some(match (&held.player, &held.instant) {
             (Err(why), _) => Err(why),
             (Ok(_), Some((_, snapshot))) => Ok((snapshot, &held.strands)),
-            (Ok(_), None) => Err("the take has no frame here"),
+            (Ok(_), None) => Err("the take has no frame at this time"),
         })
     }
 }
@@ -88,8 +88,8 @@ impl Held {
     }
 }
 
-fn open(source: &Source) -> Result<TakePlayer, StudioError> {
+fn open(source: &Source) -> Result<TakePlayer, ProjectError> {
     let Source { file, access, .. } = source;
-    let path = access.read(Place::Take, file).map_err(|problem| StudioError::input(&file.path, problem))?;
+    let path = access.read(Place::Take, file).map_err(|problem| ProjectError::input(&file.path, problem))?;
     Ok(TakePlayer::open(&path, access)?.0)
 }

@@ -1,4 +1,4 @@
-//! Panes on a small scene, on the processor; a lost device on an adapter.
+//! Panes of a small scene on the CPU; lost devices need an adapter.
 
 mod against_exact;
 mod takes;
@@ -22,7 +22,7 @@ use crate::probe::{ProbePlace, ProbedHair};
 use crate::request::LiveError;
 use crate::view::{LiveShows, LiveView};
 
-/// The thread on what a test opens, and one instant.
+/// The thread with the renderers of a test, and one instant.
 struct Rig {
     live: Live,
     project: Project,
@@ -63,11 +63,11 @@ impl Rig {
         }
     }
 
-    /// Asks for panes, and waits until nothing is drawn any more.
+    /// Requests panes and waits until the thread is idle.
     fn draw(&self, request: LiveRequest) {
         self.live.request(request);
         while self.live.busy().load(Ordering::Relaxed) {
-            // A guard against waiting for ever.
+            // Do not wait forever.
             self.finished.recv_timeout(Duration::from_secs(100)).expect("an end");
         }
     }
@@ -81,7 +81,7 @@ fn on_processor(methods: &[ShadowMethod]) -> Rig {
     Rig::new(Box::new(Renderer::open), Backend::Cpu, methods)
 }
 
-/// What the window's single picture would be.
+/// The image that the window would show without panes.
 fn alone(rig: &Rig, index: usize, width: u32, height: u32) -> Picture {
     let project = rig.project.compare.panes[index].applied_to(&rig.project);
     let camera = rig.snapshot.camera(&project.camera);
@@ -92,7 +92,7 @@ fn alone(rig: &Rig, index: usize, width: u32, height: u32) -> Picture {
 }
 
 #[test]
-fn each_pane_is_the_picture_that_its_settings_draw_alone() {
+fn each_pane_equals_the_single_image_with_its_settings() {
     let rig = on_processor(&[ShadowMethod::VoxelMap, ShadowMethod::None, ShadowMethod::OccupancyMaps]);
     rig.draw(rig.request(&[0, 1, 2]));
     for index in 0..3 {
@@ -103,16 +103,16 @@ fn each_pane_is_the_picture_that_its_settings_draw_alone() {
         assert!(pane.times.whole > 0.0);
         assert!(pane.picture == alone(&rig, index, 64, 48), "pane {index}");
     }
-    assert!(rig.pane(0).picture != rig.pane(1).picture, "shadows are seen");
+    assert!(rig.pane(0).picture != rig.pane(1).picture, "shadows are visible");
     assert!(rig.pane(0).shadow_bytes > 0 && rig.pane(1).shadow_bytes == 0);
 }
 
 #[test]
-fn a_smaller_pane_is_drawn_smaller_and_others_are_left_alone() {
+fn a_pane_of_lower_scale_is_rendered_smaller_and_others_are_unchanged() {
     let mut rig = on_processor(&[ShadowMethod::VoxelMap, ShadowMethod::None]);
     rig.project.compare.panes[1].scale = 0.5;
     rig.draw(rig.request(&[1, 7]));
-    assert!(rig.live.pane(0).expect("a slot").latest().is_none(), "nobody asked for it");
+    assert!(rig.live.pane(0).expect("a slot").latest().is_none(), "it was not requested");
     assert!(rig.live.pane(7).is_none());
     let picture = &rig.pane(1).picture;
     assert_eq!((picture.width, picture.height), (32, 24));
@@ -120,17 +120,17 @@ fn a_smaller_pane_is_drawn_smaller_and_others_are_left_alone() {
 }
 
 #[test]
-fn how_much_light_hair_blocks_is_the_projects() {
+fn the_extinction_scale_is_that_of_the_project() {
     let mut rig = on_processor(&[ShadowMethod::VoxelMap]);
     rig.project.compare.panes[0].shadow.extinction_scale = 4.0;
     rig.draw(rig.request(&[0]));
-    assert!(rig.pane(0).picture != alone(&rig, 0, 64, 48), "a pane of its own scale would look so");
+    assert!(rig.pane(0).picture != alone(&rig, 0, 64, 48), "a pane with its own scale would differ");
     rig.project.compare.panes[0].shadow.extinction_scale = rig.project.shadow.extinction_scale;
     assert!(rig.pane(0).picture == alone(&rig, 0, 64, 48));
 }
 
 #[test]
-fn a_pane_that_cannot_be_drawn_says_why_and_the_others_come() {
+fn a_failing_pane_says_why_and_the_others_are_rendered() {
     let mut rig = on_processor(&[ShadowMethod::None, ShadowMethod::VoxelMap]);
     rig.project.compare.panes[1].scale = 0.1;
     let wide = LiveRequest { width: lovelock_render::MOST_SIDE + 8, ..rig.request(&[0, 1]) };
@@ -140,19 +140,19 @@ fn a_pane_that_cannot_be_drawn_says_why_and_the_others_come() {
     assert!(rig.pane(0).picture.rgba.is_empty());
     assert_eq!(rig.pane(1).problem, None);
     rig.draw(rig.request(&[0, 1]));
-    assert_eq!(rig.pane(0).problem, None, "it comes as soon as it can");
+    assert_eq!(rig.pane(0).problem, None, "it is rendered as soon as possible");
 }
 
 #[test]
-fn panes_of_a_round_can_come_together() {
+fn panes_of_a_round_can_be_published_together() {
     let rig = on_processor(&[ShadowMethod::None; 6]);
     let seen = |rig: &Rig| (0..6).map(|i| rig.live.pane(i).expect("a slot").number()).collect::<Vec<_>>();
-    // What is not busy any more may not have called yet: calls are waited for, not looked for.
+    // The thread may be idle before it has made its call, so wait for the calls.
     let call = |rig: &Rig| rig.finished.recv_timeout(Duration::from_secs(100)).expect("a call");
     for round in 1..=3 {
         rig.live.request(LiveRequest { together: true, ..rig.request(&[0, 1, 2, 3, 4, 5]) });
         call(&rig);
-        // One call a round, when all is there: nobody is told of a part of it.
+        // One call per round, when all panes are finished.
         assert_eq!(seen(&rig), [round; 6]);
         assert!(!rig.live.busy().load(Ordering::Relaxed));
     }
@@ -161,7 +161,7 @@ fn panes_of_a_round_can_come_together() {
         call(&rig);
     }
     assert_eq!(seen(&rig), [4, 4, 3, 3, 3, 3]);
-    // A call a pane otherwise, and one at the end; the thread has ended when all are counted.
+    // Otherwise one call per pane and one at the end; the thread has ended when all are counted.
     let Rig { live, finished, .. } = rig;
     drop(live);
     assert_eq!(finished.try_iter().count(), 0);
@@ -189,13 +189,13 @@ fn a_lost_device_is_opened_again_for_all_panes_on_it() {
     assert_eq!(devices.lock().expect("a list").len(), 2);
     for (index, before) in before.iter().enumerate() {
         let pane = rig.pane(index);
-        assert_eq!(pane.problem, None, "drawn again although nobody asked");
+        assert_eq!(pane.problem, None, "rendered again without another request");
         assert!(pane.picture == before.picture, "pane {index}");
     }
 }
 
 #[test]
-fn a_card_that_always_fails_leaves_its_panes_to_the_processor_or_says_so() {
+fn a_gpu_that_always_fails_leaves_its_panes_to_the_cpu_or_says_so() {
     for (backend, drawn) in [(Backend::Auto, true), (Backend::Gpu, false)] {
         let open = |choice| match choice {
             Backend::Cpu => Renderer::open(choice),
@@ -209,7 +209,7 @@ fn a_card_that_always_fails_leaves_its_panes_to_the_processor_or_says_so() {
 }
 
 #[test]
-fn a_pane_that_always_loses_the_device_stops_trying_beside_one_that_works() {
+fn a_pane_that_always_loses_the_device_stops_retrying_beside_one_that_works() {
     let opened = Arc::new(std::sync::atomic::AtomicUsize::new(0));
     let counted = Arc::clone(&opened);
     let open: Open = Box::new(move |choice| {
@@ -232,27 +232,27 @@ fn a_pane_that_always_loses_the_device_stops_trying_beside_one_that_works() {
             break;
         }
         tries += 1;
-        assert!(tries < 10, "it tries for ever");
+        assert!(tries < 10, "it retries forever");
         let after = renderers.broke(1);
-        assert!(after.try_again, "the other pane lost its device too");
+        assert!(after.try_again, "the other pane lost its device as well");
         assert_eq!(after.notice.is_some(), tries == 3);
     }
     assert_eq!(tries, 3);
-    assert!(renderers.of_pane(0, &healthy).is_ok(), "the other one is drawn as before");
-    // Other settings are another try.
+    assert!(renderers.of_pane(0, &healthy).is_ok(), "the other one is still rendered");
+    // Changed settings allow another attempt.
     let other = Contender { scale: 0.5, ..broken };
     assert!(renderers.of_pane(1, &other).is_ok());
     assert_eq!(opened.load(Ordering::Relaxed), 4);
 }
 
 #[test]
-fn a_probe_follows_a_hair_and_reads_what_each_pane_says_there() {
+fn a_probe_follows_a_strand_and_reads_each_pane_there() {
     let mut rig = on_processor(&[ShadowMethod::None, ShadowMethod::Exact, ShadowMethod::OpacityMaps]);
     rig.project.compare.panes[1].shadow.exact.filter = lovelock_render::TexelFilter::Nearest;
     let shown = LiveRequest { width: 160, height: 120, ..rig.request(&[0, 1, 2]) };
     rig.draw(shown.clone());
     assert!(rig.live.probe().latest().is_none());
-    // The busiest ray of many, and slices that are centimetres long: a method that is not exact shows it over much of the ray.
+    // The densest of many rays, and slices of centimetres, so that an inexact method differs along much of the ray.
     rig.project.compare.panes[2].shadow.opacity_maps.slices = 16;
     let shown = LiveRequest { project: Arc::new(rig.project.clone()), ..shown };
     let mut found: Option<(u64, (f32, f32), ProbedHair)> = None;
@@ -273,17 +273,17 @@ fn a_probe_follows_a_hair_and_reads_what_each_pane_says_there() {
     assert!(curve(0).curve.iter().all(|point| point.1 == 1.0) && curve(0).marks.is_empty());
     assert!(curve(1).marks.len() == hair.steps.len(), "a mark for each fragment");
     assert!(curve(2).marks.iter().all(|mark| mark.kind == "slice"));
-    // With the nearest texel alone, what the exact method answers is its step function.
+    // With nearest-texel lookup the exact method returns its step function.
     let step =
         |depth: f32| hair.steps.iter().take_while(|step| step.0 < depth).last().map_or(1.0, |step| step.1);
     let wrong = curve(1).curve.iter().filter(|point| (point.1 - step(point.0)).abs() > 1e-3).count();
-    // At an edge of a texel the ray leaves the column of the point by rounding.
+    // At the edge of a texel the ray may leave the point's column by rounding.
     assert!(wrong < curve(1).curve.len() / 10, "{wrong} of {}", curve(1).curve.len());
     let opacity = curve(2).curve.iter().filter(|point| (point.1 - step(point.0)).abs() > 1e-3).count();
     assert!(opacity > curve(2).curve.len() / 10, "another method is not: {opacity}");
     println!("{} steps, {wrong} and {opacity} of {}", hair.steps.len(), curve(2).curve.len());
 
-    // The same asking on a later instant means the same hair.
+    // The same pick at a later instant refers to the same hair.
     rig.snapshot = {
         let mut engine = Engine::new(Arc::clone(&rig.snapshot.scene), rig.project.simulation);
         engine.advance_to_step(40);
@@ -297,28 +297,28 @@ fn a_probe_follows_a_hair_and_reads_what_each_pane_says_there() {
     assert_ne!(moved.position, hair.position);
 }
 
-/// The window's threads go first: those that draw panes are nicer, and the one that asked for them is not.
+/// Threads that render panes have a lower priority than the requesting thread.
 #[cfg(target_os = "linux")]
 #[test]
 fn threads_that_draw_panes_lower_priority() {
     let rig = on_processor(&[ShadowMethod::VoxelMap]);
     rig.draw(rig.request(&[0]));
-    // A thread has its name before it gives way: those that only start are waited for. A guard against waiting for ever.
+    // A thread gets its name before it lowers its priority, so wait for starting threads, but not forever.
     for _ in 0..2000 {
         let (least, mine) = niceness();
-        // Whoever runs the tests at the lowest priority has none to give.
+        // If the tests run at the lowest priority, it cannot be lowered further.
         if least.is_some_and(|least| least > mine || mine >= 9) {
             return;
         }
         std::thread::sleep(Duration::from_millis(50));
     }
-    panic!("the threads that draw panes and this one: {:?}", niceness());
+    panic!("the threads that render panes and this one: {:?}", niceness());
 }
 
-/// The least niceness of the threads that draw panes, and that of the one that asks.
+/// The lowest niceness of the threads that render panes, and that of the requesting thread.
 #[cfg(target_os = "linux")]
 fn niceness() -> (Option<i32>, i32) {
-    // The name may hold anything, so fields are counted from its closing bracket: niceness is the 17th after it.
+    // The name may contain anything, so count fields from its closing bracket: niceness is the 17th after it.
     let of = |task: &std::path::Path| {
         let read = |name: &str| std::fs::read_to_string(task.join(name)).unwrap_or_default();
         let stat = read("stat");

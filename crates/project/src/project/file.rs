@@ -8,7 +8,7 @@ use serde::Deserialize;
 
 use super::generic::unknown_fields;
 use super::{PROJECT_VERSION, Project};
-use crate::error::{Place, Problem, ProblemKind, StudioError};
+use crate::error::{Place, Problem, ProblemKind, ProjectError};
 use crate::files::{Access, folder_of, write_whole};
 
 /// The extension of project files, without the dot.
@@ -28,7 +28,7 @@ const DEEPEST: usize = 32;
 ///
 /// # Errors
 /// As [`parse_project`], and if the file cannot be read.
-pub fn load_project(path: &Path) -> Result<(Project, Vec<Problem>), StudioError> {
+pub fn load_project(path: &Path) -> Result<(Project, Vec<Problem>), ProjectError> {
     let mut access = Access::for_project(path);
     load_project_with(path, &mut access)
 }
@@ -37,24 +37,24 @@ pub fn load_project(path: &Path) -> Result<(Project, Vec<Problem>), StudioError>
 ///
 /// # Errors
 /// As [`load_project`].
-pub fn load_project_with(path: &Path, access: &mut Access) -> Result<(Project, Vec<Problem>), StudioError> {
+pub fn load_project_with(path: &Path, access: &mut Access) -> Result<(Project, Vec<Problem>), ProjectError> {
     let name = path.display();
     let cannot_read =
-        |error: std::io::Error| StudioError::input(path, format!("{name}: cannot be read: {error}"));
+        |error: std::io::Error| ProjectError::input(path, format!("{name}: cannot be read: {error}"));
     let file = File::open(path).map_err(cannot_read)?;
     let data = file.metadata().map_err(cannot_read)?;
     if data.is_dir() {
-        return Err(StudioError::input(path, format!("{name}: is a folder; must be a project file")));
+        return Err(ProjectError::input(path, format!("{name}: is a folder; must be a project file")));
     }
     let mut bytes = Vec::new();
     file.take(LARGEST_BYTES + 1).read_to_end(&mut bytes).map_err(cannot_read)?;
     if bytes.len() as u64 > LARGEST_BYTES {
         let message = format!("{name}: larger than {LARGEST_BYTES} bytes, the largest size of a project");
-        return Err(StudioError::input(path, message));
+        return Err(ProjectError::input(path, message));
     }
     let text = String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
-        StudioError::input(path, format!("{name}: byte {at}: not valid UTF-8; must be a project (text)"))
+        ProjectError::input(path, format!("{name}: byte {at}: not valid UTF-8; must be a project (text)"))
     })?;
     let (project, mut problems) = project_of_text(path, &text)?;
     access.set_project(Some(path));
@@ -68,7 +68,7 @@ pub fn load_project_with(path: &Path, access: &mut Access) -> Result<(Project, V
 ///
 /// # Errors
 /// As [`parse_project`].
-pub fn project_of_text(path: &Path, text: &str) -> Result<(Project, Vec<Problem>), StudioError> {
+pub fn project_of_text(path: &Path, text: &str) -> Result<(Project, Vec<Problem>), ProjectError> {
     let (mut project, problems) = parse_project(path, text)?;
     let folder = folder_of(path);
     for file in project.file_refs_mut() {
@@ -81,14 +81,14 @@ pub fn project_of_text(path: &Path, text: &str) -> Result<(Project, Vec<Problem>
 ///
 /// # Errors
 /// Text that is not a project, with line and column, or a project of a newer version.
-pub fn parse_project(path: &Path, text: &str) -> Result<(Project, Vec<Problem>), StudioError> {
+pub fn parse_project(path: &Path, text: &str) -> Result<(Project, Vec<Problem>), ProjectError> {
     #[derive(Deserialize)]
     struct Header {
         version: u32,
     }
     let name = path.display();
     let refuse = |error: ron::error::SpannedError| {
-        StudioError::input(
+        ProjectError::input(
             path,
             format!("{name}: line {}: {}; wanted a project", error.span.start, error.code),
         )
@@ -99,7 +99,7 @@ pub fn parse_project(path: &Path, text: &str) -> Result<(Project, Vec<Problem>),
     // The version first, because the contents of a newer one may not be readable.
     let header: Header = options.from_str(text).map_err(refuse)?;
     if header.version > PROJECT_VERSION {
-        return Err(StudioError::input(
+        return Err(ProjectError::input(
             path,
             format!(
                 "{name}: made by a newer Lovelock (project version {}); this one reads up to version {PROJECT_VERSION}",
@@ -128,10 +128,10 @@ pub fn parse_project(path: &Path, text: &str) -> Result<(Project, Vec<Problem>),
 ///
 /// # Errors
 /// If the folder cannot be written, the disk is full, or a path is not Unicode.
-pub fn save_project(path: &Path, project: &Project) -> Result<(), StudioError> {
+pub fn save_project(path: &Path, project: &Project) -> Result<(), ProjectError> {
     let name = path.display();
     let text = text_of_project(path, project).map_err(|error| {
-        StudioError::output(path, format!("{name}: could not be written as text: {error}"))
+        ProjectError::output(path, format!("{name}: could not be written as text: {error}"))
     })?;
     write_whole(path, format!("{text}\n").as_bytes())
 }

@@ -3,6 +3,7 @@
 use std::f32::consts::PI;
 
 use glam::Vec3;
+use lovelock_base::numbers::within;
 use lovelock_groom::HairTie;
 use lovelock_motion::{ColliderEdits, FieldEdit};
 use lovelock_render::{Light, MAX_LIGHTS, MOST_PIXELS, MOST_SIDE, ShadowSettings};
@@ -129,10 +130,6 @@ fn timeline(timeline: &TimelineSection) -> TimelineSection {
         tracks: tracks.collect(),
         preroll_secs: within(timeline.preroll_secs, 0.0, TimelineSection::MOST_PREROLL_SECS, default),
     }
-}
-
-fn within(value: f32, low: f32, high: f32, default: f32) -> f32 {
-    if value.is_nan() { default } else { value.clamp(low, high) }
 }
 
 fn within_cube(value: Vec3, half: f32, default: Vec3) -> Vec3 {

@@ -70,7 +70,7 @@ pub struct MotionSection {
     pub end_secs: Option<f32>,
     /// Whether the clip starts again at its end; it holds its last pose otherwise.
     pub looping: bool,
-    /// How long the end of a clip that does not loop by itself is faded into its beginning, seconds, 0 to 2.
+    /// How long the end of a clip that does not loop by itself is blended into its beginning, seconds, 0 to 2.
     pub loop_blend_secs: f32,
 }
 
@@ -211,7 +211,7 @@ pub struct RecordingSection {
     pub first_frame: u64,
     /// One past the number of the last frame; all of the clip's where none.
     pub end_frame: Option<u64>,
-    /// Whether the hair at the end of a film of one whole round of a looping dance is faded into the hair at its start.
+    /// Whether the hair at the end of a film of one whole round of a looping dance is blended into the hair at its start.
     pub seamless: bool,
     /// How finely a film is coded.
     pub quality: FilmQuality,

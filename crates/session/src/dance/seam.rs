@@ -5,14 +5,14 @@ use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
 
 use lovelock_groom::GuideFrame;
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 use lovelock_record::mix_guides;
 
 use super::step_before;
 use crate::clock::FrameClock;
 use crate::engine::Engine;
 use crate::prepare::{STEPS_PER_REPORT, simulate_to};
-use crate::progress::{Progress, tell};
+use crate::progress::{Progress, report_progress};
 use crate::scene::Scene;
 use crate::snapshot::FrameSnapshot;
 use crate::take::TakePlayer;
@@ -30,8 +30,8 @@ fn share(left_secs: f64, fade_secs: f64) -> f64 {
     u * u * (3.0 - 2.0 * u)
 }
 
-fn fade_secs(round_secs: f64) -> f64 {
-    FADE_SECS.min(MOST_OF_ROUND * round_secs)
+fn fade_secs(period_secs: f64) -> f64 {
+    FADE_SECS.min(MOST_OF_ROUND * period_secs)
 }
 
 /// The snapshot with its hair blended into `before` by the weight `share`.
@@ -57,9 +57,9 @@ impl Seam {
     ///
     /// # Errors
     /// If the motion does not loop, or the frames do not cover whole periods.
-    pub(super) fn of(scene: &Scene, frames: &Range<u64>, frame_secs: f64) -> Result<Self, StudioError> {
+    pub(super) fn of(scene: &Scene, frames: &Range<u64>, frame_secs: f64) -> Result<Self, ProjectError> {
         if !scene.loops_smoothly() {
-            return Err(StudioError::option(
+            return Err(ProjectError::option(
                 "a seamless loop: the motion does not loop without a jump; turn on looping with a loop blend",
             ));
         }
@@ -69,7 +69,7 @@ impl Seam {
         // A period is seldom a whole number of frames; the film may differ by half a frame at most.
         if round > 0.0 && (rounds < 1.0 || (length - rounds * round).abs() > 0.5001 * frame_secs) {
             let whole = (round / frame_secs).round();
-            return Err(StudioError::option(format!(
+            return Err(ProjectError::option(format!(
                 "a seamless loop: frames {}..{} are {length:.2} s, and the motion repeats every {round:.2} s, which are {whole} frames",
                 frames.start, frames.end
             )));
@@ -84,7 +84,7 @@ impl Seam {
     }
 
     /// Length of a period, seconds.
-    pub(super) fn round_secs(&self) -> f64 {
+    pub(super) fn period_secs(&self) -> f64 {
         self.frames() as f64 * self.frame_secs
     }
 
@@ -100,15 +100,15 @@ impl Seam {
     /// Simulates the first period, up to film time `first_secs` in the second one, and stores the hair around its end.
     ///
     /// # Errors
-    /// [`StudioError::Cancelled`].
-    pub(super) fn live_round(
+    /// [`ProjectError::Cancelled`].
+    pub(super) fn simulate_period(
         &mut self,
         engine: &mut Engine,
         clock: &FrameClock,
         first_secs: f64,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-    ) -> Result<(), StudioError> {
-        let last = step_before(first_secs + self.round_secs(), clock).0;
+    ) -> Result<(), ProjectError> {
+        let last = step_before(first_secs + self.period_secs(), clock).0;
         let kept = step_before(self.end_secs() - self.fade_secs, clock).0.min(last);
         self.before.clear();
         simulate_to(engine, kept, progress)?;
@@ -116,7 +116,7 @@ impl Seam {
             engine.advance_to_step(step);
             self.keep(step as f64 * clock.step_secs, engine.snapshot().as_ref());
             if step % STEPS_PER_REPORT == 0 {
-                tell(progress, Progress::Simulating { done: step, total: last })?;
+                report_progress(progress, Progress::Simulating { done: step, total: last })?;
             }
         }
         Ok(())
@@ -131,9 +131,9 @@ impl Seam {
     }
 
     /// A snapshot of the second period, at film time `secs`, with its hair blended.
-    pub(super) fn faded(&mut self, secs: f64, now: &Arc<FrameSnapshot>) -> Arc<FrameSnapshot> {
+    pub(super) fn blended(&mut self, secs: f64, now: &Arc<FrameSnapshot>) -> Arc<FrameSnapshot> {
         // The end of the first period is followed by the start of the film, which the last open shutter may reach.
-        self.keep(secs + self.round_secs(), now);
+        self.keep(secs + self.period_secs(), now);
         let share = share(self.end_secs() - secs, self.fade_secs);
         if share <= 0.0 {
             return Arc::clone(now);
@@ -163,19 +163,23 @@ pub(crate) struct SeamOfTake {
 }
 
 impl SeamOfTake {
-    /// The part from `start_secs` with a length of `round_secs`.
+    /// The part from `start_secs` with a length of `period_secs`.
     ///
     /// # Errors
     /// If the take does not start early enough before the part, or the body is elsewhere at its ends.
-    pub(super) fn of(player: &mut TakePlayer, start_secs: f64, round_secs: f64) -> Result<Self, StudioError> {
-        let fade = fade_secs(round_secs);
+    pub(super) fn of(
+        player: &mut TakePlayer,
+        start_secs: f64,
+        period_secs: f64,
+    ) -> Result<Self, ProjectError> {
+        let fade = fade_secs(period_secs);
         let name = player.path().display().to_string();
         if start_secs < fade {
-            return Err(StudioError::option(format!(
+            return Err(ProjectError::option(format!(
                 "a seamless loop: {name} has {start_secs:.2} s before the first frame, but the blend needs {fade:.2} s before it"
             )));
         }
-        let end_secs = start_secs + round_secs;
+        let end_secs = start_secs + period_secs;
         for secs in [end_secs - fade, end_secs - 0.5 * fade, end_secs] {
             // The last frame of a take also lasts for one frame.
             let secs = secs.min(player.duration_secs());
@@ -184,23 +188,23 @@ impl SeamOfTake {
                 (world_from_head.translation, (guides.count(), guides.points_per_guide))
             };
             let now = at(player.snapshot(secs)?.as_ref());
-            let before = at(player.snapshot(secs - round_secs)?.as_ref());
+            let before = at(player.snapshot(secs - period_secs)?.as_ref());
             if now.1 != before.1 {
-                return Err(StudioError::option(format!(
-                    "a seamless loop: at {secs:.2} s of {name} the hair has other guides than {round_secs:.2} s before; \
+                return Err(ProjectError::option(format!(
+                    "a seamless loop: at {secs:.2} s of {name} the hair has other guides than {period_secs:.2} s before; \
                      take frames between which it stays the same"
                 )));
             }
             let off = now.0.distance(before.0);
             if off > SAME_PLACE_M {
-                return Err(StudioError::option(format!(
-                    "a seamless loop: at {secs:.2} s of {name} the head is {:.0} mm from where it was {round_secs:.2} s before; \
+                return Err(ProjectError::option(format!(
+                    "a seamless loop: at {secs:.2} s of {name} the head is {:.0} mm from where it was {period_secs:.2} s before; \
                      the frames have to be one round of the dance",
                     1e3 * off
                 )));
             }
         }
-        Ok(Self { end: end_secs, round: round_secs, fade })
+        Ok(Self { end: end_secs, round: period_secs, fade })
     }
 
     /// The snapshot `secs` after the take's start.
@@ -211,7 +215,7 @@ impl SeamOfTake {
         &self,
         player: &mut TakePlayer,
         secs: f64,
-    ) -> Result<Arc<FrameSnapshot>, StudioError> {
+    ) -> Result<Arc<FrameSnapshot>, ProjectError> {
         let left = self.end - secs;
         if left >= self.fade {
             return player.snapshot(secs);

@@ -1,7 +1,7 @@
-//! Strands that go over from one way of being gathered to another, while their guides are simulated there.
+//! The transition of strands between ties, while their guides are simulated.
 //!
-//! A tie combs the strands of a wisp flat, and lets them open again beyond its ring. Guides that are tied in motion go
-//! over by being simulated; where strands leave their guides follows in the same time, so that nothing jumps.
+//! A tie flattens the strands of a wisp, and lets them spread again beyond its ring. When hair is tied in motion, the simulation
+//! moves the guides. The offsets of strands from their guides are blended over the same time, so that nothing jumps.
 
 use std::sync::Arc;
 
@@ -11,27 +11,27 @@ use rayon::prelude::*;
 
 use crate::scene::Scene;
 
-/// How long it takes, seconds: as long as ties take to hold the guides.
+/// Duration of the transition, seconds, the same as that of the guides.
 const COMB_SECS: f64 = 0.7;
 
-/// Strands on their way.
+/// Strands in transition.
 #[derive(Clone, Debug)]
 pub(super) struct Combing {
-    /// Where strands were at the start, as offsets in the frames that wisps have now.
+    /// Offsets of strands at the start, in the frames of the new wisps.
     from: Vec<Vec3>,
     secs: f64,
 }
 
 impl Combing {
-    /// From the strands of `from` to those of `to`, whose guides are at `now`; none where they are not the same strands,
-    /// gathered by other ties.
+    /// The transition from the strands of `from` to those of `to`, whose guides are at `now`. `None` unless both are the same strands
+    /// with different ties.
     pub(super) fn between(from: &Hairstyle, to: &Hairstyle, now: &GuideFrame) -> Option<Self> {
         let (a, b) = (&from.strands, &to.strands);
         let same = a.first_point == b.first_point && a.guide_param == b.guide_param && from.wisps == to.wisps;
         if !same || from.held == to.held || now.guides.points_per_guide < 2 {
             return None;
         }
-        // The frame of a wisp begins as that of its shape at rest, which is another one now.
+        // The frame of a wisp is derived from its rest shape, which has changed.
         let of_wisp = |wisp: &lovelock_groom::Wisp| {
             let [old, new] = [from, to].map(|style| {
                 let mut curve = WispCurve::default();
@@ -54,18 +54,18 @@ impl Combing {
         Some(Self { from: all, secs: 0.0 })
     }
 
-    /// Time passes; returns whether they are still on their way.
+    /// Advances the time. Returns whether the transition continues.
     pub(super) fn advance(&mut self, secs: f64) -> bool {
         self.secs += secs;
         self.secs < COMB_SECS
     }
 
-    /// The style as its strands are now, on their way to `to`.
+    /// The style with the current strands, on the way to `to`.
     pub(super) fn style(&self, to: &Hairstyle) -> Arc<Hairstyle> {
         self.style_at(self.secs, to)
     }
 
-    /// The style as its strands are `secs` after they set out.
+    /// The style with its strands `secs` after the start.
     fn style_at(&self, secs: f64, to: &Hairstyle) -> Arc<Hairstyle> {
         let t = (secs / COMB_SECS).clamp(0.0, 1.0) as f32;
         let t = t * t * (3.0 - 2.0 * t);

@@ -1,4 +1,4 @@
-//! Hair that is given the shape that it has at an instant.
+//! Settling the hair at an instant.
 
 use std::sync::Arc;
 
@@ -12,33 +12,32 @@ use crate::stats::StageTimes;
 use crate::totals::Totals;
 
 impl Engine {
-    /// Back to the first frame, the hair settled.
+    /// Moves to the first frame with settled hair.
     pub fn restart(&mut self) {
         self.at_step = 0;
         self.settle();
     }
 
-    /// Gives the hair the shape that it has at this time: see [`Engine::preroll`].
+    /// Settles the hair at the current time by a pre-roll; see [`Engine::preroll`].
     pub fn settle(&mut self) {
         let mut preroll = self.preroll();
         while !preroll.advance() {}
         self.take_settled(preroll);
     }
 
-    /// A copy that lives through the seconds before this instant, from the style at rest. A motion that cannot be reached
-    /// from before (the start of a clip that does not loop, or whose end does not go over into its start) is waited for in
-    /// its first pose.
+    /// A pre-roll that simulates the seconds before this instant, from the style at rest. Before the start of a clip that does not
+    /// loop smoothly, the body stays in its first pose.
     pub fn preroll(&self) -> Preroll {
         self.preroll_of(self.at_step)
     }
 
-    /// The life of the hair of a later step, as far as this instant.
+    /// The pre-roll of a later step, up to this instant.
     pub(crate) fn preroll_of(&self, step: i64) -> Preroll {
-        Preroll::new(self.beside(), step, self.preroll_secs)
+        Preroll::new(self.copy(), step, self.preroll_secs)
     }
 
-    /// A copy that lives on by itself.
-    pub fn beside(&self) -> Self {
+    /// An independent copy.
+    pub fn copy(&self) -> Self {
         Self {
             scene: Arc::clone(&self.scene),
             animation: self.animation.clone(),
@@ -53,7 +52,7 @@ impl Engine {
         }
     }
 
-    /// Takes the hair of a copy that has arrived where this engine still is; returns whether it was taken.
+    /// Takes the hair of a finished pre-roll if it leads to the current instant. Returns whether it was taken.
     pub fn take_settled(&mut self, preroll: Preroll) -> bool {
         let aside = preroll.into_engine();
         if !Arc::ptr_eq(&aside.scene, &self.scene) || aside.at_step != self.at_step {
@@ -71,13 +70,13 @@ impl Engine {
         true
     }
 
-    /// What is recorded begins here: the next step follows this instant without a jump.
+    /// Marks the start of a recording: the next step follows this instant without a jump.
     pub(crate) fn begin_here(&mut self) {
         self.jumped_since = false;
     }
 
-    /// Puts the hair into its style at a step. Before `lead_in_secs` the body stands as it does then.
-    pub(crate) fn lay_at_rest(&mut self, step: i64, lead_in_secs: f64) {
+    /// Resets the hair to its rest style at a step. Before `lead_in_secs` the body has the pose of that time.
+    pub(crate) fn reset_to_rest(&mut self, step: i64, lead_in_secs: f64) {
         self.jumped_since = true;
         self.combing = None;
         self.at_step = step;

@@ -1,4 +1,4 @@
-//! Instants for drawing: steps as they are, and what lies between the last two.
+//! Snapshots for rendering: of a step, or interpolated between the last two steps.
 
 use std::sync::Arc;
 
@@ -8,12 +8,11 @@ use lovelock_motion::{Pose, Skin, pose_at, skin};
 use lovelock_record::TakeFrame;
 
 use super::Engine;
-use crate::clock::Stopwatch;
 use crate::snapshot::FrameSnapshot;
 use crate::stats::StageTimes;
+use lovelock_base::clock::Stopwatch;
 
-/// The last two steps of a simulation, and what lies between them. It reads the simulation alone: its states are the same whether
-/// this is asked for or not.
+/// The last two steps of a simulation, for interpolation. It only reads the simulation, so it does not affect its state.
 #[derive(Debug, Default)]
 pub(crate) struct LastSteps {
     before: TakeFrame,
@@ -23,36 +22,36 @@ pub(crate) struct LastSteps {
 }
 
 impl LastSteps {
-    /// Whether there are two.
+    /// Whether two steps are stored.
     pub(crate) fn are_known(&self) -> bool {
         self.known
     }
 
-    /// Nothing lies before the present instant: time or the hair has jumped to it, or it has been seen.
+    /// Drops the stored steps, because time or the hair has jumped, or the current instant has been shown.
     pub(crate) fn forget(&mut self) {
         self.known = false;
     }
 
     /// One step on.
     pub(crate) fn step(&mut self, engine: &mut Engine) {
-        // Not what was kept of the step before: the hair may have settled, or be another style, since.
+        // Read the state again, because the hair may have been settled or replaced since the last step.
         engine.take_frame(&mut self.before);
         engine.step();
         engine.take_frame(&mut self.now);
-        // A jump that led to the instant before does not lie between the two.
+        // A jump before the first of the two steps does not matter between them.
         self.now.jumped = engine.report.jumped;
         self.known = true;
     }
 }
 
 impl Engine {
-    /// The instant as it is, for drawing. Resets the times that it carries.
+    /// The current instant for rendering. Resets the measured times.
     pub fn snapshot(&mut self) -> Arc<FrameSnapshot> {
         self.snapshot_of(None)
     }
 
-    /// The instant at the fraction `t` (0 to 1) of the way from the step before the last one to the last one, for drawing: mixed as
-    /// between two frames of a take. What was measured is that of the last step. Where only one step is known, it is that one.
+    /// The instant at the fraction `t` (0 to 1) between the last two steps, interpolated like frames of a take. Measurements are those
+    /// of the last step. If only one step is known, returns that step.
     pub(crate) fn snapshot_between(&mut self, steps: &mut LastSteps, t: f64) -> Arc<FrameSnapshot> {
         if !steps.known {
             return self.snapshot();
@@ -62,7 +61,7 @@ impl Engine {
         self.snapshot_of(Some((&steps.mixed, t)))
     }
 
-    /// The instant as it is, or one that lies so far on the way to it.
+    /// The current instant, or one between the given frame and it.
     fn snapshot_of(&mut self, between: Option<(&TakeFrame, f64)>) -> Arc<FrameSnapshot> {
         let watch = Stopwatch::start();
         let ago_secs = between.map_or(0.0, |(_, t)| (1.0 - t) * self.step_secs);
@@ -105,7 +104,7 @@ impl Engine {
                 simulation.frame(&mut frame.guides);
             }
             skin(&scene.body, &frame.pose, &mut frame.skin);
-            // The simulator's clock has jumps in it; the frame's is the scene's.
+            // The simulator's clock contains jumps; frames use the time of the scene.
             frame.guides.time_secs = time_secs;
             (frame.report, frame.totals, frame.rest_inside) = (report, totals, rest_inside);
             times.motion += watch.ms();

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::scene::Scene;
 use crate::snapshot::FrameSnapshot;
-use crate::totals::{Found, Totals};
+use crate::totals::{Occurrence, Totals};
 
 /// The quantity that a gauge measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
@@ -122,7 +122,7 @@ pub struct Gauge {
     /// The guide and its point with this value, if there is one.
     pub at: Option<(u32, u32)>,
     /// Time and position of that point when the value occurred; `None` for a value of this instant or of the style at rest.
-    pub found: Option<Found>,
+    pub found: Option<Occurrence>,
     /// The part of the body that the point penetrates: `head and shoulders`, or the name of a joint.
     pub within: Option<String>,
     /// What it means and what to change; empty if the rating is good.

@@ -33,7 +33,7 @@ fn good_hair_gets_no_advice_and_every_limit_has_advice() {
         assert!(!gauge.kind.in_words(gauge.value).is_empty());
     }
     let inside = InsidePoint { depth_m: 2e-3, guide: 0, point: 9, within: BodyPart::Field };
-    let found = Some(Found { at_secs: Some(3.84), place: Vec3::new(0.1, 1.5, 0.2) });
+    let found = Some(Occurrence { at_secs: Some(3.84), place: Vec3::new(0.1, 1.5, 0.2) });
     let some = Totals { max_penetration_m: 2e-3, deepest: Some(inside), ..Totals::default() };
     let watched = health(&some, None, &scene, &settings);
     assert_eq!(watched[1].level, HealthLevel::Watch);
@@ -93,7 +93,7 @@ fn the_worst_value_is_kept_with_its_time_and_position() {
         let frame = engine.snapshot();
         let here = |at| {
             let place = frame.guide_point(at).expect("a point");
-            Found { at_secs: Some(frame.position_secs), place }
+            Occurrence { at_secs: Some(frame.position_secs), place }
         };
         if frame.report.max_stretch > stretch.0 {
             stretch = (frame.report.max_stretch, frame.report.worst_stretch_at.map(here));

@@ -1,7 +1,7 @@
-//! Where threads leave values for each other; the latest one replaces those before.
+//! Values and requests passed between threads, where a later one replaces an earlier one.
 
-mod desk;
-mod slot;
+mod job;
+mod value;
 
-pub use desk::Desk;
-pub use slot::Slot;
+pub use job::LatestJob;
+pub use value::Latest;

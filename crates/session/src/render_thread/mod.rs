@@ -9,13 +9,13 @@ use lovelock_project::Project;
 use lovelock_project::project::backend_label;
 use lovelock_render::{Backend, Camera, FrameStats, GpuError, Picture, RenderError, Renderer};
 
-use crate::latest::{Desk, Slot};
+use crate::latest::{Latest, LatestJob};
 use crate::snapshot::FrameSnapshot;
 use crate::stats::StageTimes;
 
 /// What to render.
 #[derive(Clone, Debug)]
-pub struct PaintRequest {
+pub struct RenderRequest {
     /// Settings of the image, lights, look and camera.
     pub project: Arc<Project>,
     /// The instant.
@@ -28,7 +28,7 @@ pub struct PaintRequest {
 
 /// A finished image with its cost.
 #[derive(Clone, Debug)]
-pub struct Painted {
+pub struct RenderedImage {
     /// The image.
     pub picture: Picture,
     /// The camera that it was rendered with.
@@ -79,16 +79,16 @@ const MOST_FAILURES: u32 = 3;
 
 /// Renders on a thread of its own. Requests that arrive while it renders replace each other.
 #[derive(Debug)]
-pub struct Painter {
-    desk: Desk<PaintRequest>,
-    painted: Slot<Painted>,
-    failures: Slot<Failure>,
-    notices: Slot<String>,
-    adapter: Slot<Adapter>,
+pub struct RenderThread {
+    jobs: LatestJob<RenderRequest>,
+    images: Latest<RenderedImage>,
+    failures: Latest<Failure>,
+    notices: Latest<String>,
+    adapter: Latest<Adapter>,
     thread: Option<JoinHandle<()>>,
 }
 
-impl Painter {
+impl RenderThread {
     /// Starts the thread, which calls `on_rendered` after each image and each error.
     ///
     /// # Errors
@@ -97,14 +97,14 @@ impl Painter {
         Self::start_with(Box::new(Renderer::open), on_rendered)
     }
 
-    /// As [`Painter::start`], with renderers from `open`.
+    /// As [`RenderThread::start`], with renderers from `open`.
     fn start_with(open: Open, on_rendered: impl Fn() + Send + 'static) -> std::io::Result<Self> {
-        let desk = Desk::default();
-        let (painted, failures, notices) = (Slot::default(), Slot::default(), Slot::default());
-        let adapter = Slot::default();
+        let jobs = LatestJob::default();
+        let (images, failures, notices) = (Latest::default(), Latest::default(), Latest::default());
+        let adapter = Latest::default();
         let worker = Worker {
-            desk: desk.clone(),
-            painted: painted.clone(),
+            jobs: jobs.clone(),
+            images: images.clone(),
             failures: failures.clone(),
             notices: notices.clone(),
             adapter: adapter.clone(),
@@ -115,27 +115,27 @@ impl Painter {
             card_given_up: false,
         };
         let thread = std::thread::Builder::new().name("draw".to_owned()).spawn(move || worker.run())?;
-        Ok(Self { desk, painted, failures, notices, adapter, thread: Some(thread) })
+        Ok(Self { jobs, images, failures, notices, adapter, thread: Some(thread) })
     }
 
     /// Requests an image; a request that still waits is replaced.
-    pub fn request(&self, request: PaintRequest) {
-        self.desk.put(request);
+    pub fn request(&self, request: RenderRequest) {
+        self.jobs.put(request);
     }
 
     /// The latest finished image.
-    pub fn painted(&self) -> &Slot<Painted> {
-        &self.painted
+    pub fn images(&self) -> &Latest<RenderedImage> {
+        &self.images
     }
 
     /// Why the last request failed, as a sentence; `None` once a later one succeeded. The last good image stays available.
     pub fn error(&self) -> Option<String> {
         let failure = self.failures.latest()?;
-        (failure.pictures == self.painted.number()).then(|| failure.message.clone())
+        (failure.pictures == self.images.number()).then(|| failure.message.clone())
     }
 
     /// Notices that stay valid while images follow, such as a switch to another backend.
-    pub fn notices(&self) -> &Slot<String> {
+    pub fn notices(&self) -> &Latest<String> {
         &self.notices
     }
 
@@ -146,13 +146,13 @@ impl Painter {
 
     /// Whether an image is being rendered or waits; `on_rendered` is called when it is done.
     pub fn busy(&self) -> Arc<AtomicBool> {
-        Arc::clone(self.desk.busy())
+        Arc::clone(self.jobs.busy())
     }
 }
 
-impl Drop for Painter {
+impl Drop for RenderThread {
     fn drop(&mut self) {
-        self.desk.close();
+        self.jobs.close();
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
         }
@@ -160,11 +160,11 @@ impl Drop for Painter {
 }
 
 struct Worker {
-    desk: Desk<PaintRequest>,
-    painted: Slot<Painted>,
-    failures: Slot<Failure>,
-    notices: Slot<String>,
-    adapter: Slot<Adapter>,
+    jobs: LatestJob<RenderRequest>,
+    images: Latest<RenderedImage>,
+    failures: Latest<Failure>,
+    notices: Latest<String>,
+    adapter: Latest<Adapter>,
     on_rendered: Box<dyn Fn() + Send>,
     open: Open,
     /// The renderer, and the backend that it was opened for.
@@ -177,13 +177,13 @@ struct Worker {
 
 impl Worker {
     fn run(mut self) {
-        while let Some(request) = self.desk.next() {
+        while let Some(request) = self.jobs.next() {
             // A panic while rendering costs the device and one image, but not the window.
-            let result = catch_unwind(AssertUnwindSafe(|| self.paint(&request)));
+            let result = catch_unwind(AssertUnwindSafe(|| self.render(&request)));
             let again = match result {
-                Ok(Ok(painted)) => {
+                Ok(Ok(images)) => {
                     self.failed = 0;
-                    self.painted.put(Arc::new(painted));
+                    self.images.put(Arc::new(images));
                     false
                 }
                 Ok(Err(error)) => {
@@ -197,13 +197,13 @@ impl Worker {
                     again
                 }
             };
-            self.desk.done(again.then_some(request));
+            self.jobs.done(again.then_some(request));
             (self.on_rendered)();
         }
     }
 
     fn fail(&self, message: String) {
-        self.failures.put(Arc::new(Failure { message, pictures: self.painted.number() }));
+        self.failures.put(Arc::new(Failure { message, pictures: self.images.number() }));
     }
 
     /// Closes the renderer after a failure. Returns whether to render the same request again.
@@ -225,7 +225,7 @@ impl Worker {
         true
     }
 
-    fn paint(&mut self, request: &PaintRequest) -> Result<Painted, RenderError> {
+    fn render(&mut self, request: &RenderRequest) -> Result<RenderedImage, RenderError> {
         let choice = request.project.picture.backend;
         // An explicit choice of the GPU asks for another attempt.
         self.card_given_up &= choice != Backend::Gpu;
@@ -242,7 +242,7 @@ impl Worker {
                 &mut none.insert((wanted, renderer)).1
             }
         };
-        let PaintRequest { project, snapshot, width, height } = request;
+        let RenderRequest { project, snapshot, width, height } = request;
         let mut times = snapshot.times;
         let camera = snapshot.camera(&project.camera);
         let mut picture = Picture::default();
@@ -251,7 +251,7 @@ impl Worker {
         times.take_picture(&stats);
         let (step, position_secs) = (snapshot.step, snapshot.position_secs);
         let snapshot = Arc::clone(snapshot);
-        Ok(Painted { picture, camera, stats, times, snapshot, step, position_secs })
+        Ok(RenderedImage { picture, camera, stats, times, snapshot, step, position_secs })
     }
 }
 

@@ -15,7 +15,7 @@ use crate::testing::small_project;
 
 /// A render thread with the renderers of a test, one instant, and the backends that were requested.
 struct Rig {
-    painter: Painter,
+    thread: RenderThread,
     snapshot: Arc<FrameSnapshot>,
     finished: Receiver<()>,
     opened: Arc<Mutex<Vec<Backend>>>,
@@ -35,8 +35,8 @@ impl Rig {
         let wake = move || {
             let _ = sender.try_send(());
         };
-        let painter = Painter::start_with(Box::new(open), wake).expect("a thread");
-        Self { painter, snapshot, finished, opened }
+        let thread = RenderThread::start_with(Box::new(open), wake).expect("a thread");
+        Self { thread, snapshot, finished, opened }
     }
 
     /// Requests one image and waits until the thread is idle.
@@ -44,8 +44,8 @@ impl Rig {
         let mut project = small_project();
         project.picture.backend = backend;
         let (project, snapshot) = (Arc::new(project), Arc::clone(&self.snapshot));
-        self.painter.request(PaintRequest { project, snapshot, width: 64, height: 48 });
-        while self.painter.busy().load(Ordering::Relaxed) {
+        self.thread.request(RenderRequest { project, snapshot, width: 64, height: 48 });
+        while self.thread.busy().load(Ordering::Relaxed) {
             // Do not wait forever.
             self.finished.recv_timeout(Duration::from_secs(100)).expect("an end");
         }
@@ -56,13 +56,13 @@ impl Rig {
     }
 
     fn pixels(&self) -> Vec<u8> {
-        self.painter.painted().latest().expect("a picture").picture.rgba.clone()
+        self.thread.images().latest().expect("a picture").picture.rgba.clone()
     }
 
     /// Numbers of images, failures and notices so far.
     fn counts(&self) -> [u64; 3] {
-        let painter = &self.painter;
-        [painter.painted.number(), painter.failures.number(), painter.notices.number()]
+        let thread = &self.thread;
+        [thread.images.number(), thread.failures.number(), thread.notices.number()]
     }
 }
 
@@ -81,7 +81,7 @@ fn a_lost_device_is_opened_again_and_draws_the_same() {
     });
     rig.draw(Backend::Gpu);
     if devices.lock().expect("a list").is_empty() {
-        return lovelock_testkit::skip_without_adapter(&rig.painter.error().unwrap_or_default());
+        return lovelock_testkit::skip_without_adapter(&rig.thread.error().unwrap_or_default());
     }
     let before = rig.pixels();
     rig.draw(Backend::Gpu);
@@ -89,11 +89,11 @@ fn a_lost_device_is_opened_again_and_draws_the_same() {
 
     devices.lock().expect("a list")[0].device.destroy();
     rig.draw(Backend::Gpu);
-    let said = rig.painter.failures.latest().expect("a sentence").message.clone();
+    let said = rig.thread.failures.latest().expect("a sentence").message.clone();
     assert!(said.contains("graphics device") && said.contains("lost") && !said.contains('\n'), "{said}");
     assert_eq!(rig.counts(), [3, 1, 0], "one error, and a new image without another request");
     assert_eq!(rig.opened(), [Backend::Gpu; 2]);
-    assert_eq!(rig.painter.error(), None, "the error is gone");
+    assert_eq!(rig.thread.error(), None, "the error is gone");
     assert!(rig.pixels() == before, "the same bytes");
 }
 
@@ -102,9 +102,9 @@ fn a_gpu_that_always_fails_is_replaced_by_the_cpu() {
     let rig = Rig::new(|choice| if choice == Backend::Cpu { Renderer::open(choice) } else { lost(choice) });
     rig.draw(Backend::Auto);
     assert_eq!(rig.counts(), [1, 3, 1], "an image after three failures, and a notice");
-    let notice = rig.painter.notices().latest().expect("a notice");
+    let notice = rig.thread.notices().latest().expect("a notice");
     assert!(notice.contains("processor renders from now on"), "{notice}");
-    assert_eq!(rig.painter.adapter().expect("it draws").backend, Backend::Cpu);
+    assert_eq!(rig.thread.adapter().expect("it draws").backend, Backend::Cpu);
     rig.draw(Backend::Auto);
     assert_eq!((rig.counts(), rig.opened().len()), ([2, 3, 1], 4), "the CPU stays in use");
     let by_fallback = rig.pixels();
@@ -114,7 +114,7 @@ fn a_gpu_that_always_fails_is_replaced_by_the_cpu() {
     // An explicit request tries the GPU again and keeps the last image.
     rig.draw(Backend::Gpu);
     assert_eq!((rig.counts()[0], rig.opened().pop()), (3, Some(Backend::Gpu)));
-    assert!(rig.painter.error().is_some_and(|said| said.contains("for this test")));
+    assert!(rig.thread.error().is_some_and(|said| said.contains("for this test")));
     assert!(rig.pixels() == by_fallback);
 }
 
@@ -125,7 +125,7 @@ fn a_device_that_always_fails_is_not_retried_forever() {
     assert_eq!((rig.counts(), rig.opened().len()), ([0, 3, 0], 3));
     rig.draw(Backend::Gpu);
     assert_eq!(rig.counts(), [0, 4, 0], "once per requested image");
-    assert!(rig.painter.error().is_some());
+    assert!(rig.thread.error().is_some());
     let never = Rig::new(lost);
     never.draw(Backend::Auto);
     assert_eq!(never.counts(), [0, 4, 1], "neither is a failing CPU");
@@ -142,10 +142,10 @@ fn a_shader_that_does_not_compile_is_reported_and_the_last_image_stays() {
     let good = rig.pixels();
     rig.draw(Backend::Gpu);
     assert_eq!((rig.counts(), rig.opened().len()), ([1, 1, 0], 2), "it is not compiled again automatically");
-    assert_eq!(rig.painter.error().as_deref(), Some(TOLD));
+    assert_eq!(rig.thread.error().as_deref(), Some(TOLD));
     assert!(rig.pixels() == good);
     rig.draw(Backend::Cpu);
-    assert_eq!(rig.painter.error(), None);
+    assert_eq!(rig.thread.error(), None);
     assert_eq!(rig.counts(), [2, 1, 0]);
 }
 
@@ -159,5 +159,5 @@ fn a_panic_while_rendering_is_reported_and_rendering_continues() {
     });
     rig.draw(Backend::Cpu);
     assert_eq!(rig.counts(), [1, 1, 0]);
-    assert_eq!(rig.painter.error(), None);
+    assert_eq!(rig.thread.error(), None);
 }

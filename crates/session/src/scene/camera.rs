@@ -1,4 +1,4 @@
-//! Where the picture is taken from.
+//! The camera at a time of the scene, and framing.
 
 use glam::Vec3;
 use lovelock_project::project::{CameraMode, CameraSection};
@@ -6,7 +6,7 @@ use lovelock_render::Camera;
 
 use super::Scene;
 
-/// The camera of a project at a time of the scene. It depends on nothing but its arguments.
+/// The camera of a project at a time of the scene. It depends only on its arguments.
 pub fn camera_at(section: &CameraSection, scene: &Scene, time_secs: f64) -> Camera {
     let target = target(section, scene, time_secs);
     Camera { eye: target + from_target(section) * section.distance, target, fov_y: section.fov_y }
@@ -22,16 +22,16 @@ fn target(section: &CameraSection, scene: &Scene, time_secs: f64) -> Vec3 {
     }
 }
 
-/// Unit vector from the target to the eye.
+/// Unit vector from the target to the camera.
 fn from_target(section: &CameraSection) -> Vec3 {
     let (sin_a, cos_a) = section.azimuth.sin_cos();
     let (sin_e, cos_e) = section.elevation.sin_cos();
     Vec3::new(sin_a * cos_e, sin_e, cos_a * cos_e)
 }
 
-/// The same view, moved so that `points` (world space, at a time of the scene) fill the picture.
+/// Changes target and distance so that `points` (world space, at a time of the scene) fill the image.
 ///
-/// Direction and field of view stay; target and distance change. `aspect` is width over height.
+/// Direction and field of view stay. `aspect` is width divided by height.
 pub fn frame_points(
     section: &CameraSection,
     scene: &Scene,
@@ -49,7 +49,7 @@ pub fn frame_points(
     let radius = (0.5 * (high - low).length()).max(0.02);
     let half_angle = 0.5 * section.fov_y * aspect.clamp(0.1, 1.0);
     let mut framed = *section;
-    // A sphere touches the edges of the picture at this distance; a little air around it.
+    // The distance at which the bounding sphere touches the edges of the image, plus a small margin.
     framed.distance = (1.05 * radius / half_angle.sin().max(0.01)).clamp(0.1, 30.0);
     match section.mode {
         CameraMode::Follow => {

@@ -1,4 +1,4 @@
-//! What hair collides with, as a project changes it.
+//! Colliders as edited by a project.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use crate::engine::Engine;
 use crate::testing::small_project;
 
 #[test]
-fn changed_colliders_are_met_and_the_hair_goes_on() {
+fn edited_colliders_take_effect_and_the_hair_keeps_moving() {
     let (access, mut loader) = (Access::new(), SceneLoader::new());
     let mut project = small_project();
     let first = loader.load_now(&project, &access).expect("a scene").0;
@@ -20,13 +20,13 @@ fn changed_colliders_are_met_and_the_hair_goes_on() {
     let mut kept = Engine::new(Arc::clone(&first), project.simulation);
     kept.advance_to_step(60);
 
-    // Without the skin all shapes are met that stand for it.
+    // Without the skin field, hair collides with all shapes that it replaces.
     project.body.colliders.field.enabled = false;
     let round = loader.load_now(&project, &access).expect("a scene").0;
     assert!(round.field.is_none() && round.colliders.len() == round.fitted.len());
     assert!(Arc::ptr_eq(&first.style, &round.style) && Arc::ptr_eq(&first.body, &round.body));
-    assert!(!engine.set_scene(Arc::clone(&round)), "the hair goes on");
-    // As many shapes, and one of them far too large.
+    assert!(!engine.set_scene(Arc::clone(&round)), "the hair keeps moving");
+    // The same number of shapes, one of them far too large.
     let name = round.fitted[0].name.clone();
     project.body.colliders.shapes.insert(name, ColliderEdit { scale: 1.5, ..ColliderEdit::default() });
     let large = loader.load_now(&project, &access).expect("a scene").0;
@@ -43,7 +43,7 @@ fn changed_colliders_are_met_and_the_hair_goes_on() {
 }
 
 #[test]
-fn wild_changes_are_brought_into_their_ranges() {
+fn edits_out_of_range_are_clamped() {
     let mut project = small_project();
     let wild =
         ColliderEdit { scale: f32::NAN, offset: [9.0, -0.1, f32::INFINITY], ..ColliderEdit::default() };

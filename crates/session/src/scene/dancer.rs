@@ -1,4 +1,4 @@
-//! The dancer that is part of the program.
+//! The dancer that is built into the program.
 
 use lovelock_motion::{Character, MotionError, load_character_bytes};
 
@@ -8,7 +8,7 @@ const DANCER: &[u8] = include_bytes!("../../../../assets/dancer.glb");
 /// Loads the dancer.
 ///
 /// # Errors
-/// None, as long as the file in `assets` is sound, which a test checks.
+/// Never, because a test checks the file in `assets`.
 pub fn dancer() -> Result<Character, MotionError> {
     load_character_bytes("dancer.glb", DANCER, None)
 }

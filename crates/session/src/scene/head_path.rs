@@ -1,4 +1,4 @@
-//! Where the head goes, for a camera that follows it.
+//! The path of the head, for a camera that follows it.
 
 use glam::Vec3;
 use lovelock_motion::{Body, Clip, Pose, pose_at};
@@ -6,7 +6,7 @@ use lovelock_motion::{Body, Clip, Pose, pose_at};
 /// Spacing of the samples, seconds.
 const SPACING_SECS: f64 = 1.0 / 30.0;
 
-/// The most samples that are taken: over half an hour at full rate.
+/// Maximum number of samples: over half an hour at full rate.
 const MOST_SAMPLES: usize = 65_536;
 
 /// Positions of the head joint over a clip, world space.
@@ -18,7 +18,7 @@ pub struct HeadPath {
 }
 
 impl HeadPath {
-    /// Samples the head of `body` over `clip`, or its place at rest.
+    /// Samples the head of `body` over `clip`, or its position at rest.
     pub fn new(body: &Body, clip: Option<&Clip>, looping: bool) -> Self {
         let duration = clip.map_or(0.0, |clip| clip.duration_secs.max(0.0));
         let count = ((duration / SPACING_SECS).ceil() as usize).clamp(1, MOST_SAMPLES);
@@ -33,13 +33,12 @@ impl HeadPath {
         Self { positions, spacing_secs, looping }
     }
 
-    /// Position of the head joint at `clip_secs`, averaged under a raised cosine that is `window_secs` wide.
+    /// Position of the head joint at `clip_secs`, averaged with a raised-cosine window of width `window_secs`.
     ///
-    /// The window reaches as far ahead as back, so the camera does not lag: it knows the dance. The result
-    /// depends on the clip's time alone and is continuous in it.
+    /// The window is centred, so the camera does not lag. The result depends only on the clip's time and is continuous.
     pub fn smoothed(&self, clip_secs: f64, window_secs: f64) -> Vec3 {
         let count = self.positions.len() as i64;
-        // At least two samples wide, so that the path is continuous between samples.
+        // At least two samples wide, so that the path is continuous.
         let half =
             (window_secs.max(0.0) * 0.5).min(self.spacing_secs * count as f64 * 0.5).max(self.spacing_secs);
         let first = ((clip_secs - half) / self.spacing_secs).ceil() as i64;
@@ -65,7 +64,7 @@ mod tests {
     }
 
     #[test]
-    fn a_head_that_stands_is_where_it_stands() {
+    fn a_still_head_gives_its_position() {
         let path = path(vec![Vec3::new(1.0, 2.0, 3.0); 40], true);
         for t in [0.0, 0.05, 1.234, 3.99, 100.0, -3.0] {
             assert!((path.smoothed(t, 1.5) - Vec3::new(1.0, 2.0, 3.0)).length() < 1e-5);
@@ -81,20 +80,20 @@ mod tests {
     }
 
     #[test]
-    fn the_path_is_continuous_also_over_the_loop() {
+    fn the_path_is_continuous_across_the_loop() {
         let circle = |i: usize| (i as f32 / 60.0 * std::f32::consts::TAU).sin_cos();
         let path = path((0..60).map(|i| Vec3::new(circle(i).0, 0.0, circle(i).1)).collect(), true);
         let mut before = path.smoothed(5.9, 0.8);
         for k in 1..400 {
             let now = path.smoothed(5.9 + f64::from(k) * 1e-3, 0.8);
-            // The circle is run through at about 1 m/s.
+            // The speed along the circle is about 1 m/s.
             assert!((now - before).length() < 2e-3, "a jump of {} at {k}", (now - before).length());
             before = now;
         }
     }
 
     #[test]
-    fn a_tremble_is_smoothed_away() {
+    fn a_tremor_is_smoothed_away() {
         let path = path((0..100).map(|i| Vec3::Y * if i % 2 == 0 { 0.01 } else { -0.01 }).collect(), true);
         assert!(path.smoothed(5.0, 1.2).y.abs() < 1e-4);
     }

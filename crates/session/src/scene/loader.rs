@@ -1,4 +1,4 @@
-//! From a project to a scene, each part kept until what it is made from changes.
+//! Loads the scene of a project. Each part is reused until its sources change.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -6,32 +6,32 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use lovelock_groom::OperationCache;
 use lovelock_motion::{Collider, ColliderEdits};
 use lovelock_project::Project;
-use lovelock_project::error::{Place, Problem, ProblemKind, StudioError};
+use lovelock_project::error::{Place, Problem, ProblemKind, ProjectError};
 use lovelock_project::files::Access;
 
 use super::Scene;
 use super::head_path::HeadPath;
 use super::parts::{BodyKey, BodyPart, HairFileCache, HairKey, HairPart, MotionKey, MotionPart};
 
-/// How a load tells how far it is, and learns that nobody wants it any more.
+/// Progress and cancellation of a load.
 pub struct LoadControl<'a> {
-    /// Set by anybody to stop the load at the next opportunity.
+    /// Set by any thread to stop the load at the next opportunity.
     pub cancelled: &'a AtomicBool,
-    /// Told what is being done, such as `growing the hair`, and the fraction that is done.
+    /// Called with the current work, such as `growing the hair`, and the fraction that is done.
     pub progress: &'a mut dyn FnMut(&str, f32),
 }
 
 impl LoadControl<'_> {
-    fn at(&mut self, what: &str, fraction: f32) -> Result<(), StudioError> {
+    fn at(&mut self, what: &str, fraction: f32) -> Result<(), ProjectError> {
         if self.cancelled.load(Ordering::Relaxed) {
-            return Err(StudioError::Cancelled);
+            return Err(ProjectError::Cancelled);
         }
         (self.progress)(what, fraction);
         Ok(())
     }
 }
 
-/// A part and what it was made from.
+/// A part and its sources.
 #[derive(Debug)]
 struct Kept<K, T> {
     key: K,
@@ -40,10 +40,10 @@ struct Kept<K, T> {
     part: Arc<T>,
 }
 
-/// The shapes that hair meets, and those that only the wind does.
-type Met = [Arc<[Collider]>; 2];
+/// The shapes that hair collides with, and those that only block the wind.
+type ColliderLists = [Arc<[Collider]>; 2];
 
-/// Makes scenes of projects. Parts whose sources have not changed are shared with the scene before.
+/// Loads scenes of projects. Parts whose sources have not changed are shared with the previous scene.
 #[derive(Debug, Default)]
 pub struct SceneLoader {
     body: Option<Kept<BodyKey, BodyPart>>,
@@ -52,16 +52,16 @@ pub struct SceneLoader {
     hair_file: HairFileCache,
     operations: OperationCache,
     head_path: Option<(Arc<MotionPart>, bool, Arc<HeadPath>)>,
-    colliders: Option<(Arc<BodyPart>, ColliderEdits, Met)>,
+    colliders: Option<(Arc<BodyPart>, ColliderEdits, ColliderLists)>,
 }
 
 impl SceneLoader {
-    /// A loader that has loaded nothing.
+    /// A loader without cached parts.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// As [`SceneLoader::load`], to the end and in silence.
+    /// As [`SceneLoader::load`], without progress and cancellation.
     ///
     /// # Errors
     /// As [`SceneLoader::load`].
@@ -69,30 +69,30 @@ impl SceneLoader {
         &mut self,
         project: &Project,
         access: &Access,
-    ) -> Result<(Arc<Scene>, Vec<Problem>), StudioError> {
+    ) -> Result<(Arc<Scene>, Vec<Problem>), ProjectError> {
         let cancelled = AtomicBool::new(false);
         self.load(project, access, &mut LoadControl { cancelled: &cancelled, progress: &mut |_, _| {} })
     }
 
-    /// Makes the scene of a project.
+    /// Loads the scene of a project.
     ///
-    /// Each part may fail by itself: the part of the scene before stays, or the nearest thing that can be shown
-    /// takes its place (the dancer, the body's own clip, the grown hairstyle), and a problem says so.
+    /// Each part may fail on its own. The previous part is then kept, or a fallback is used (the dancer, the body's own clip, the
+    /// grown hairstyle), and a problem says so.
     ///
     /// # Errors
-    /// Where it is cancelled, and where not even the dancer can be shown.
+    /// If the load is cancelled, or not even the dancer can be loaded.
     pub fn load(
         &mut self,
         project: &Project,
         access: &Access,
         control: &mut LoadControl<'_>,
-    ) -> Result<(Arc<Scene>, Vec<Problem>), StudioError> {
+    ) -> Result<(Arc<Scene>, Vec<Problem>), ProjectError> {
         let (project, mut problems) = project.sanitised();
         control.at("loading the body", 0.0)?;
         let body = self.body(&project, access, &mut problems)?;
         control.at("loading the motion", 0.3)?;
         let motion = self.motion(&project, access, &body, &mut problems)?;
-        control.at("making the hair", 0.5)?;
+        control.at("creating the hair", 0.5)?;
         let hair = self.hair(&project, access, &body, &mut problems);
         let obstacle = Arc::clone(&body.obstacle);
         let operated = self.operations.apply(&hair.style, project.hair.operations(), obstacle);
@@ -103,7 +103,7 @@ impl SceneLoader {
             );
             Problem::new(Place::Hair, ProblemKind::Ignored, message)
         }));
-        control.at("following the head", 0.9)?;
+        control.at("computing the path of the head", 0.9)?;
         let looping = project.motion.looping;
         let head_path = self.head_path(&body, &motion, looping);
         control.at("done", 1.0)?;
@@ -134,7 +134,7 @@ impl SceneLoader {
         project: &Project,
         access: &Access,
         problems: &mut Vec<Problem>,
-    ) -> Result<Arc<BodyPart>, StudioError> {
+    ) -> Result<Arc<BodyPart>, ProjectError> {
         let wanted = BodyKey::of(&project.body, access);
         if let (Ok(key), Some(kept)) = (&wanted, &self.body)
             && kept.key == *key
@@ -145,13 +145,13 @@ impl SceneLoader {
         let (key, part) = match (loaded, &self.body) {
             (Ok(loaded), _) => loaded,
             (Err(problem), Some(kept)) => {
-                problems.push(problem.with_fallback("the body before stays"));
+                problems.push(problem.with_fallback("the previous body is kept"));
                 return Ok(Arc::clone(&kept.part));
             }
             (Err(problem), None) => {
                 problems.push(problem.with_fallback("the shipped dancer is shown instead"));
                 let key = BodyKey::dancer();
-                let part = key.load().map_err(StudioError::work)?;
+                let part = key.load().map_err(ProjectError::work)?;
                 (key, part)
             }
         };
@@ -166,8 +166,8 @@ impl SceneLoader {
         access: &Access,
         body: &Arc<BodyPart>,
         problems: &mut Vec<Problem>,
-    ) -> Result<Arc<MotionPart>, StudioError> {
-        // A clip moves the joints of one body: that of another one is of no use.
+    ) -> Result<Arc<MotionPart>, ProjectError> {
+        // A clip belongs to the joints of one body, so a clip of another body cannot be reused.
         let kept = self.motion.take_if(|kept| kept.body.as_ref().is_some_and(|of| Arc::ptr_eq(of, body)));
         let wanted = MotionKey::of(&project.motion, access);
         if let (Ok(key), Some(kept)) = (&wanted, &kept)
@@ -182,13 +182,13 @@ impl SceneLoader {
         let (key, part) = match (loaded, kept) {
             (Ok(loaded), _) => loaded,
             (Err(problem), Some(kept)) => {
-                problems.push(problem.with_fallback("the motion before stays"));
+                problems.push(problem.with_fallback("the previous motion is kept"));
                 (kept.key, kept.part)
             }
             (Err(problem), None) => {
-                problems.push(problem.with_fallback("the body's first clip plays instead"));
+                problems.push(problem.with_fallback("the body's first clip is played instead"));
                 let key = MotionKey::first_clip();
-                let part = key.load(body).map_err(StudioError::work)?;
+                let part = key.load(body).map_err(ProjectError::work)?;
                 (key, Arc::new(part))
             }
         };
@@ -216,7 +216,7 @@ impl SceneLoader {
         let (key, part) = match (loaded, &self.hair) {
             (Ok(loaded), _) => loaded,
             (Err(problem), Some(kept)) => {
-                problems.push(problem.with_fallback("the hair before stays"));
+                problems.push(problem.with_fallback("the previous hair is kept"));
                 return Arc::clone(&kept.part);
             }
             (Err(problem), None) => {
@@ -233,8 +233,8 @@ impl SceneLoader {
         part
     }
 
-    /// The shapes that hair meets, as the project changes them, and those that only the wind does.
-    fn colliders(&mut self, body: &Arc<BodyPart>, edits: &ColliderEdits) -> Met {
+    /// The shapes that hair collides with, as edited by the project, and those that only block the wind.
+    fn colliders(&mut self, body: &Arc<BodyPart>, edits: &ColliderEdits) -> ColliderLists {
         if let Some((of, kept, met)) = &self.colliders
             && Arc::ptr_eq(of, body)
             && kept == edits

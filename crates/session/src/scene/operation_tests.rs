@@ -43,7 +43,7 @@ fn a_tied_project_is_saved_loaded_and_untied() {
     assert_eq!(again.hair.ties, project.hair.ties);
     assert_eq!(load(&mut SceneLoader::new(), &again).style.guides, tied.style.guides);
     project.motion.speed = 0.5;
-    assert!(Arc::ptr_eq(&load(&mut loader, &project).style, &tied.style), "another tempo ties nothing anew");
+    assert!(Arc::ptr_eq(&load(&mut loader, &project).style, &tied.style), "another speed does not tie again");
     project.hair.ties.clear();
     assert!(Arc::ptr_eq(&load(&mut loader, &project).style, &loose.style));
 
@@ -75,7 +75,7 @@ fn a_cut_in_motion_is_kept_by_the_project_and_undone_with_it() {
     for g in 0..rest.count() {
         for i in 1..rest.points_per_guide {
             if rest.point(g, i) != rest.point(g, i - 1) {
-                // A chain of 31 links laid anew in f32.
+                // A chain of 31 links is rebuilt in f32.
                 assert!(a.point(g, i).distance(b.point(g, i)) < 2e-5, "guide {g} jumps at {i}");
             }
         }
@@ -116,15 +116,15 @@ fn light_and_shadow_do_not_change_the_motion() {
         project.camera.azimuth = 2.0;
         project.look.diameter *= 2.0;
     });
-    assert_eq!(as_it_is, other_light, "what is seen must not change what moves");
+    assert_eq!(as_it_is, other_light, "appearance must not change the motion");
     assert_ne!(
         as_it_is,
         moved(&|project| project.simulation.repulsion.strength = 1.0),
-        "the hash sees the motion"
+        "control: the hash depends on the motion"
     );
 }
 
-/// Where all strands are, and how far the furthest point is from where it was.
+/// The largest distance of a strand point between two snapshots, metres.
 fn furthest_of(a: &FrameSnapshot, b: &FrameSnapshot) -> f32 {
     let of = |frame: &FrameSnapshot| {
         let mut strands = Strands::default();
@@ -147,12 +147,12 @@ fn strands_that_are_tied_in_motion_do_not_jump() {
         let mut engine = Engine::new(Arc::clone(from), project.simulation);
         engine.advance_to_step(40);
         let before = engine.snapshot();
-        assert!(!engine.set_scene(Arc::clone(to)), "it lives on");
+        assert!(!engine.set_scene(Arc::clone(to)), "the hair keeps moving");
         let after = engine.snapshot();
         let jump = furthest_of(&before, &after);
-        // Guides laid anew in f32, and the frames along them.
+        // Guides and the frames along them are rebuilt in f32.
         assert!(jump < 5e-4, "{jump} m at once");
-        // The control: strands that are combed at once.
+        // Control: strands that change at once.
         let mut combed = FrameSnapshot::clone(&after);
         combed.scene = Arc::clone(to);
         assert!(furthest_of(&before, &combed) > 3e-3, "{}", furthest_of(&before, &combed));

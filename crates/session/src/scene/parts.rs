@@ -1,4 +1,4 @@
-//! The parts of a scene, each loaded by itself.
+//! The parts of a scene, each loaded on its own.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -21,7 +21,7 @@ use lovelock_project::project::{
 
 use super::{BodyObstacle, dancer};
 
-/// A file as it was when it was read: read again where it has changed.
+/// Identity of a file's contents when it was read. The file is read again if this changes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Stamp {
     path: PathBuf,
@@ -40,14 +40,14 @@ impl Stamp {
     }
 }
 
-/// What a body is loaded from.
+/// The sources of a body.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct BodyKey {
     file: Option<(Stamp, BodySettings)>,
     head_joint: Option<String>,
 }
 
-/// A body with all that follows from it alone.
+/// A body, and everything that is derived from it alone.
 #[derive(Debug)]
 pub(super) struct BodyPart {
     pub(super) body: Arc<Body>,
@@ -55,13 +55,13 @@ pub(super) struct BodyPart {
     pub(super) colliders: Arc<[Collider]>,
     pub(super) scalp: Arc<Scalp>,
     pub(super) obstacle: Arc<BodyObstacle>,
-    /// Head and shoulders, where the body has them.
+    /// The distance field of head and shoulders, if the body has them.
     pub(super) field: Option<Arc<BodyField>>,
     pub(super) notes: Vec<Problem>,
 }
 
 impl BodyKey {
-    /// What `section` asks for; a problem where it may not be read.
+    /// The sources in `section`, or a problem if they may not be read.
     pub(super) fn of(section: &BodySection, access: &Access) -> Result<Self, Problem> {
         let file = match (section.source, &section.file) {
             (BodySource::Dancer, _) => None,
@@ -75,7 +75,7 @@ impl BodyKey {
         Ok(Self { file, head_joint: section.head_joint.clone() })
     }
 
-    /// The dancer, whatever a project says.
+    /// The dancer, whatever the project says.
     pub(super) fn dancer() -> Self {
         Self { file: None, head_joint: None }
     }
@@ -104,8 +104,7 @@ impl BodyKey {
         }
         let head = head_mesh(&body);
         if head.scalp_is_guessed && !head.triangles.is_empty() {
-            let message =
-                "the file says nothing about the hairline; it is a guess from the shape of the head";
+            let message = "the file contains no hairline; it was guessed from the shape of the head";
             notes.push(Problem::new(Place::Body, ProblemKind::Note, message));
         }
         let scalp = Scalp {
@@ -127,7 +126,7 @@ impl BodyKey {
     }
 }
 
-/// A joint by its path (`hips/spine/head`) or its name; of several with one name the first.
+/// A joint by its path (`hips/spine/head`) or its name; the first of several with the same name.
 fn find_joint(skeleton: &Skeleton, name: &str) -> Option<usize> {
     joint_paths(skeleton)
         .iter()
@@ -135,20 +134,20 @@ fn find_joint(skeleton: &Skeleton, name: &str) -> Option<usize> {
         .or_else(|| skeleton.joints.iter().position(|joint| joint.name == name))
 }
 
-/// What was dropped from a file and what it had to say.
+/// Problems for ignored contents of a file and for its notes.
 fn file_notes(place: Place, dropped: &BTreeMap<String, u64>, notes: &[String]) -> Vec<Problem> {
     let dropped = dropped.iter().map(|(what, count)| {
         Problem::new(
             place,
             ProblemKind::Note,
-            format!("left out of the file: {count} {}", what.replace('_', " ")),
+            format!("ignored in the file: {count} {}", what.replace('_', " ")),
         )
     });
     let notes = notes.iter().map(|note| Problem::new(place, ProblemKind::Note, note));
     dropped.chain(notes).collect()
 }
 
-/// What a motion is loaded from, besides the body.
+/// The sources of a motion, besides the body.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum MotionKey {
     Rest,
@@ -156,10 +155,10 @@ pub(super) enum MotionKey {
     File { stamp: Stamp, settings: MotionSettings, shape: Shape },
 }
 
-/// Which part of a clip plays, and how its end meets its start.
+/// The part of a clip that is played, and the blend at its end.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Shape {
-    /// First second, and last one where it is not the clip's own.
+    /// Start, and end if it is not the clip's own, seconds.
     part: (f32, Option<f32>),
     blend_secs: f32,
 }
@@ -170,7 +169,7 @@ impl Shape {
         Self { part: (section.start_secs, section.end_secs), blend_secs }
     }
 
-    /// The clip trimmed, and with its end faded into its beginning where it does not loop by itself.
+    /// The trimmed clip, with its end blended into its start if it does not loop by itself.
     fn applied(self, clip: &Arc<Clip>, body: &Body) -> Arc<Clip> {
         let mut clip = Arc::clone(clip);
         let (start, end) = self.part;
@@ -209,7 +208,7 @@ impl MotionKey {
         }
     }
 
-    /// The body's first clip, or rest where it has none.
+    /// The body's first clip, or the rest pose if it has none.
     pub(super) fn first_clip() -> Self {
         Self::Clip { name: String::new(), shape: Shape::default() }
     }
@@ -252,7 +251,7 @@ impl MotionKey {
     }
 }
 
-/// What a hairstyle is made from, besides the body.
+/// The sources of a hairstyle, besides the body.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum HairKey {
     Grown(Box<GroomSettings>),
@@ -267,7 +266,7 @@ pub(super) struct HairPart {
 }
 
 impl HairPart {
-    /// No hair at all, where none can grow.
+    /// No hair, for heads on which none can grow.
     pub(super) fn bald(part: &BodyPart) -> Self {
         let style = Hairstyle {
             name: "none".to_owned(),
@@ -280,7 +279,7 @@ impl HairPart {
     }
 }
 
-/// The hair file that was read last: other settings of import need not read it again.
+/// The hair file that was read last, so that changes of the import settings do not read it again.
 pub(super) type HairFileCache = Option<(Stamp, Arc<HairFile>)>;
 
 impl HairKey {
@@ -296,7 +295,7 @@ impl HairKey {
         }
     }
 
-    /// The grown style of a project, whatever its source says. Its look is the project's own and grows nothing.
+    /// The grown style of a project, whatever its hair source is. The look does not affect growing.
     pub(super) fn grown(section: &HairSection) -> Self {
         Self::Grown(Box::new(GroomSettings { look: HairLook::default(), ..section.groom }))
     }
@@ -307,7 +306,7 @@ impl HairKey {
             let body = &part.body;
             let joint = body.skeleton.joints.get(body.head_joint).map_or("none", |joint| &joint.name);
             let message = format!(
-                "the joint of the head (`{joint}`) moves no surface of {}, so no hair can grow there; pick another joint",
+                "the head joint (`{joint}`) moves no surface of {}, so no hair can grow there; pick another joint",
                 body.name
             );
             return Err(refuse(&message));
@@ -326,11 +325,11 @@ impl HairKey {
                 *cache = Some((stamp.clone(), Arc::clone(&file)));
                 let style = import_around(&file, import, &part.scalp, Some(&*part.obstacle))
                     .map_err(|error| refuse(&error))?;
-                // The file's own notes say in words what was dropped.
+                // The file's notes describe what was ignored.
                 (style, file_notes(Place::Hair, &BTreeMap::new(), &file.notes))
             }
         };
-        // Everything after this relies on its indices.
+        // All later code relies on valid indices.
         style.check().map_err(|error| refuse(&error))?;
         Ok(HairPart { style: Arc::new(style), notes })
     }

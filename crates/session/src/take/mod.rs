@@ -14,7 +14,7 @@ pub(crate) use transport::TakeTransport;
 use std::path::Path;
 
 use lovelock_project::Project;
-use lovelock_project::error::{Problem, StudioError};
+use lovelock_project::error::{Problem, ProjectError};
 use lovelock_project::project::project_of_text;
 use lovelock_record::{TakeHeader, TakeReader};
 
@@ -22,7 +22,7 @@ use lovelock_record::{TakeHeader, TakeReader};
 ///
 /// # Errors
 /// If the file is not a take, is of a newer version, or has no frames.
-pub fn project_of_take(path: &Path) -> Result<(Project, Vec<Problem>), StudioError> {
+pub fn project_of_take(path: &Path) -> Result<(Project, Vec<Problem>), ProjectError> {
     let mut reader = TakeReader::open(path)?;
     let start = reader.nearest(0).unwrap_or(0);
     let text = match reader.project_at(start) {

@@ -3,10 +3,11 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use lovelock_base::clock::Stopwatch;
 use lovelock_groom::{GuideFrame, Hairstyle};
 use lovelock_motion::{Pose, Skin, pose_at, skin};
 use lovelock_project::Project;
-use lovelock_project::error::{Place, Problem, ProblemKind, StudioError};
+use lovelock_project::error::{Place, Problem, ProblemKind, ProjectError};
 use lovelock_project::files::Access;
 use lovelock_project::project::project_of_text;
 use lovelock_record::{
@@ -14,7 +15,6 @@ use lovelock_record::{
 };
 use lovelock_simulation::StepReport;
 
-use crate::clock::Stopwatch;
 use crate::scene::{Scene, SceneLoader};
 use crate::snapshot::{FrameSnapshot, SnapshotPool};
 use crate::stats::StageTimes;
@@ -51,7 +51,7 @@ impl TakePlayer {
     ///
     /// # Errors
     /// If the file is not a take, is of a newer version, has no frames, or its guides no longer fit the hair.
-    pub fn open(path: &Path, access: &Access) -> Result<(Self, Vec<Problem>), StudioError> {
+    pub fn open(path: &Path, access: &Access) -> Result<(Self, Vec<Problem>), ProjectError> {
         let mut reader = TakeReader::open(path)?;
         let start = reader.nearest(0).unwrap_or(0);
         let text = reader.project_at(start).unwrap_or_else(|_| Arc::from(reader.header().project.as_str()));
@@ -147,7 +147,7 @@ impl TakePlayer {
     ///
     /// # Errors
     /// If the frames around it are damaged or cannot be read.
-    pub fn snapshot(&mut self, secs: f64) -> Result<Arc<FrameSnapshot>, StudioError> {
+    pub fn snapshot(&mut self, secs: f64) -> Result<Arc<FrameSnapshot>, ProjectError> {
         let watch = Stopwatch::start();
         let secs = secs - self.origin_secs;
         let secs = if secs.is_finite() { secs.clamp(0.0, self.duration_secs()) } else { 0.0 };
@@ -199,7 +199,7 @@ impl TakePlayer {
     }
 
     /// Returns the nearest readable frame in place of a lost one, and reports each run of lost frames once.
-    fn play_over(&mut self, frame: u64, error: TakeError) -> Result<u64, StudioError> {
+    fn play_over(&mut self, frame: u64, error: TakeError) -> Result<u64, ProjectError> {
         let TakeError::Lost { first, .. } = error else { return Err(error.into()) };
         let near = loop {
             let Some(near) = self.reader.nearest(frame) else { return Err(error.into()) };
@@ -223,7 +223,7 @@ impl TakePlayer {
     }
 
     /// Switches to the scene of the project `text`, which the current frame belongs to.
-    fn follow(&mut self, text: Arc<str>) -> Result<(), StudioError> {
+    fn follow(&mut self, text: Arc<str>) -> Result<(), ProjectError> {
         if Arc::ptr_eq(&text, &self.text) || text == self.text {
             return self.check_guides();
         }
@@ -247,7 +247,7 @@ impl TakePlayer {
     }
 
     /// Rejects guides that do not fit the scene, for example because a file differed during a part of the take.
-    fn check_guides(&self) -> Result<(), StudioError> {
+    fn check_guides(&self) -> Result<(), ProjectError> {
         fits(self.reader.path(), guides_of(&self.frame), &self.scene.style, &[])
     }
 }
@@ -270,7 +270,7 @@ fn fits(
     recorded: (usize, usize),
     style: &Hairstyle,
     problems: &[Problem],
-) -> Result<(), StudioError> {
+) -> Result<(), ProjectError> {
     let (guides, points) = (style.guides.count(), style.guides.points_per_guide);
     let fits = (guides, points) == recorded;
     if fits && !problems.iter().any(Problem::is_failure) {
@@ -281,12 +281,12 @@ fn fits(
     let why = if why.is_empty() { String::new() } else { format!(" ({})", why.join("; ")) };
     if fits {
         // Recorded hair on another body or motion would show something that never happened.
-        return Err(StudioError::input(
+        return Err(ProjectError::input(
             path,
             format!("{}: a part of its scene is missing{why}", path.display()),
         ));
     }
-    Err(StudioError::input(
+    Err(ProjectError::input(
         path,
         format!(
             "{}: its hairstyle is another one now: {guides} guides of {points} points, and the take has {} of {}{why}",

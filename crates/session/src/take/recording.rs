@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use lovelock_project::Project;
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 use lovelock_project::project::text_of_project;
 use lovelock_record::{
     FrameRate, TakeAsset, TakeFrame, TakeHeader, TakeReport, TakeWriter, hairstyle_fingerprint,
@@ -39,11 +39,11 @@ impl TakeRecording {
     ///
     /// # Errors
     /// If another recording writes the file, it cannot be created, or the scene has no hair.
-    pub fn start(path: &Path, project: &Arc<Project>, engine: &Engine) -> Result<Self, StudioError> {
+    pub fn start(path: &Path, project: &Arc<Project>, engine: &Engine) -> Result<Self, ProjectError> {
         let scene = engine.scene();
         let guides = &scene.style.guides;
         if guides.count() == 0 {
-            return Err(StudioError::work(format!("{}: there is no hair to record", path.display())));
+            return Err(ProjectError::work(format!("{}: there is no hair to record", path.display())));
         }
         // Files that cannot be read are not part of the scene; the loader has reported them.
         let assets = project
@@ -53,7 +53,7 @@ impl TakeRecording {
         let rate = 1.0 / engine.step_secs();
         let header = TakeHeader {
             program: concat!("lovelock ", env!("CARGO_PKG_VERSION")).to_owned(),
-            frames_per_second: FrameRate::from_fps(rate).map_err(StudioError::option)?,
+            frames_per_second: FrameRate::from_fps(rate).map_err(ProjectError::option)?,
             guides: guides.count() as u32,
             points_per_guide: guides.points_per_guide as u32,
             strands: scene.style.strands.count() as u32,
@@ -80,7 +80,7 @@ impl TakeRecording {
     ///
     /// # Errors
     /// If there are more guides than a take can hold, or an earlier frame could not be written.
-    pub fn set_scene(&mut self, scene: &Scene) -> Result<bool, StudioError> {
+    pub fn set_scene(&mut self, scene: &Scene) -> Result<bool, ProjectError> {
         let guides = &scene.style.guides;
         if guides.count() > 0 {
             self.writer.set_layout(guides.count(), guides.points_per_guide)?;
@@ -92,7 +92,7 @@ impl TakeRecording {
     ///
     /// # Errors
     /// If an earlier frame could not be written; the written frames stay.
-    pub fn push(&mut self, engine: &Engine) -> Result<(), StudioError> {
+    pub fn push(&mut self, engine: &Engine) -> Result<(), ProjectError> {
         engine.take_frame(&mut self.frame);
         Ok(self.writer.push(&self.frame)?)
     }
@@ -101,7 +101,7 @@ impl TakeRecording {
     ///
     /// # Errors
     /// If a take cannot hold the project.
-    pub fn change(&mut self, project: &Arc<Project>) -> Result<(), StudioError> {
+    pub fn change(&mut self, project: &Arc<Project>) -> Result<(), ProjectError> {
         if !same_but_tracks(project, &self.project) {
             self.project = Arc::clone(project);
             self.writer.change(&text_of(self.writer.path(), project)?)?;
@@ -124,7 +124,7 @@ impl TakeRecording {
     ///
     /// # Errors
     /// If writing fails; the written frames stay in the unfinished file, which can be played as well.
-    pub fn finish(self) -> Result<TakeReport, StudioError> {
+    pub fn finish(self) -> Result<TakeReport, ProjectError> {
         Ok(self.writer.finish()?)
     }
 
@@ -132,7 +132,7 @@ impl TakeRecording {
     ///
     /// # Errors
     /// If it cannot be removed.
-    pub fn discard(self) -> Result<(), StudioError> {
+    pub fn discard(self) -> Result<(), ProjectError> {
         Ok(self.writer.discard()?)
     }
 }
@@ -152,11 +152,11 @@ fn same_but_tracks(a: &Project, b: &Project) -> bool {
 }
 
 /// The text of a project in a take at `path`. The project itself plays no take.
-fn text_of(path: &Path, project: &Project) -> Result<String, StudioError> {
+fn text_of(path: &Path, project: &Project) -> Result<String, ProjectError> {
     let mut project = project.clone();
     project.take.file = None;
     text_of_project(path, &project).map_err(|error| {
-        StudioError::output(
+        ProjectError::output(
             path,
             format!("{}: the project cannot be written as text: {error}", path.display()),
         )

@@ -107,7 +107,7 @@ fn the_thread_records_other_guides_and_stops_without_hair() {
     let mut project = small_project();
     let worker = Worker::start(Arc::new(project.clone()), Access::new(), Arc::new(|| {})).expect("threads");
     let wait = |what: &str, ready: &mut dyn FnMut() -> bool| {
-        let watch = crate::clock::Stopwatch::start();
+        let watch = lovelock_base::clock::Stopwatch::start();
         while !ready() {
             // Do not wait forever.
             assert!(watch.secs() < 60.0, "timed out waiting for {what}");

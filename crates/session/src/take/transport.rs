@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 
 use super::playing::TakePlayer;
 use crate::snapshot::FrameSnapshot;
@@ -76,7 +76,7 @@ impl TakeTransport {
     ///
     /// # Errors
     /// As [`TakePlayer::snapshot`].
-    pub(crate) fn snapshot(&mut self) -> Result<Arc<FrameSnapshot>, StudioError> {
+    pub(crate) fn snapshot(&mut self) -> Result<Arc<FrameSnapshot>, ProjectError> {
         self.player.snapshot(self.secs)
     }
 }

@@ -1,22 +1,22 @@
-//! The thread that loads, grows and imports, so that the dance goes on meanwhile.
+//! The loader thread: loads, grows and imports in the background.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
+use lovelock_base::clock::Stopwatch;
 use lovelock_project::Project;
-use lovelock_project::error::{Place, Problem, StudioError};
+use lovelock_project::error::{Place, Problem, ProjectError};
 use lovelock_project::files::Access;
 
 use super::{Event, Outbox};
-use crate::clock::Stopwatch;
 use crate::scene::{LoadControl, Scene, SceneLoader};
 use crate::take::TakePlayer;
 
-/// What a load has made.
+/// The result of a load.
 pub(super) enum Loaded {
-    /// A scene to simulate, and the project that it was made of.
+    /// A scene to simulate, and the project that it was loaded from.
     Scene(Arc<Scene>, Arc<Project>),
     /// A take to play.
     Take(Box<TakePlayer>),
@@ -31,56 +31,56 @@ impl Loaded {
     }
 }
 
-/// How far a load is.
+/// Progress of a load.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoadProgress {
-    /// What is being done, such as `making the hair`.
+    /// The current work, such as `creating the hair`.
     pub what: String,
     /// The fraction that is done, 0 to 1.
     pub fraction: f32,
-    /// How long it has taken until now, seconds.
+    /// Elapsed time, seconds.
     pub taken_secs: f64,
 }
 
-/// What is being done, the fraction that is done, and since when.
+/// The current work, the fraction that is done, and the start time.
 type Progress = Mutex<Option<(String, f32, Stopwatch)>>;
 
-/// What the thread does, and what it is to do next: the latest request wins.
+/// The current and the next request of the thread. A later request replaces the next one.
 #[derive(Debug, Default)]
-struct Desk {
+struct Requests {
     request: Option<(Arc<Project>, Access)>,
     begun: Option<(Arc<Project>, Access)>,
     stop: bool,
 }
 
-/// The thread, and the way to it.
+/// Handle of the loader thread.
 #[derive(Debug)]
 pub(super) struct LoadThread {
-    desk: Arc<(Mutex<Desk>, Condvar)>,
+    requests: Arc<(Mutex<Requests>, Condvar)>,
     cancelled: Arc<AtomicBool>,
     progress: Arc<Progress>,
     thread: Option<JoinHandle<()>>,
 }
 
-/// What the thread shares with the rest.
-struct Inside {
-    desk: Arc<(Mutex<Desk>, Condvar)>,
+/// The state on the thread.
+struct LoadState {
+    requests: Arc<(Mutex<Requests>, Condvar)>,
     cancelled: Arc<AtomicBool>,
     progress: Arc<Progress>,
     outbox: Outbox,
 }
 
 impl LoadThread {
-    /// Starts the thread; `deliver` is called on it with every scene and take.
+    /// Starts the thread, which passes every scene and take to `deliver`.
     pub(super) fn start(
         outbox: Outbox,
         deliver: impl Fn(Loaded) + Send + 'static,
-    ) -> Result<Self, StudioError> {
-        let desk = Arc::<(Mutex<Desk>, Condvar)>::default();
+    ) -> Result<Self, ProjectError> {
+        let requests = Arc::<(Mutex<Requests>, Condvar)>::default();
         let cancelled = Arc::new(AtomicBool::new(false));
         let progress = Arc::new(Mutex::new(None));
-        let inside = Inside {
-            desk: Arc::clone(&desk),
+        let inside = LoadState {
+            requests: Arc::clone(&requests),
             cancelled: Arc::clone(&cancelled),
             progress: Arc::clone(&progress),
             outbox,
@@ -88,40 +88,40 @@ impl LoadThread {
         let thread = std::thread::Builder::new()
             .name("lovelock loader".to_owned())
             .spawn(move || inside.run(&deliver))
-            .map_err(|error| StudioError::work(format!("the loader thread could not start: {error}")))?;
-        Ok(Self { desk, cancelled, progress, thread: Some(thread) })
+            .map_err(|error| ProjectError::work(format!("the loader thread could not start: {error}")))?;
+        Ok(Self { requests, cancelled, progress, thread: Some(thread) })
     }
 
-    /// Asks for the scene of a project. A request that has not begun is replaced. One that has is given up where it reads other
-    /// files; otherwise it is seen on the way to this one, since a slider that is dragged asks at every frame.
+    /// Requests the scene of a project. A request that has not started is replaced. A running one is cancelled if it reads other
+    /// files; otherwise it is completed and shown, because a dragged slider sends a request at every frame.
     pub(super) fn request(&self, project: Arc<Project>, access: Access) {
-        let (desk, changed) = &*self.desk;
-        let mut desk = desk.lock().unwrap_or_else(PoisonError::into_inner);
-        if desk.begun.as_ref().is_some_and(|(begun, by)| *by != access || !same_files(begun, &project)) {
+        let (requests, changed) = &*self.requests;
+        let mut requests = requests.lock().unwrap_or_else(PoisonError::into_inner);
+        if requests.begun.as_ref().is_some_and(|(begun, by)| *by != access || !same_files(begun, &project)) {
             self.cancelled.store(true, Ordering::Relaxed);
         }
-        desk.request = Some((project, access));
+        requests.request = Some((project, access));
         changed.notify_one();
     }
 
-    /// Gives up what is being loaded; the scene stays as it is.
+    /// Cancels the current load; the scene is unchanged.
     pub(super) fn cancel(&self) {
         {
-            let mut desk = self.desk.0.lock().unwrap_or_else(PoisonError::into_inner);
-            desk.request = None;
+            let mut requests = self.requests.0.lock().unwrap_or_else(PoisonError::into_inner);
+            requests.request = None;
             self.cancelled.store(true, Ordering::Relaxed);
         }
-        // At once for the user's eyes, though the thread may need a moment to notice.
+        // Clear the progress at once, although the thread may need a moment to stop.
         *self.progress.lock().unwrap_or_else(PoisonError::into_inner) = None;
     }
 
-    /// Whether something is being loaded, or is to be.
+    /// Whether a load is running or waiting.
     pub(super) fn is_busy(&self) -> bool {
-        let desk = self.desk.0.lock().unwrap_or_else(PoisonError::into_inner);
-        desk.request.is_some() || desk.begun.is_some()
+        let requests = self.requests.0.lock().unwrap_or_else(PoisonError::into_inner);
+        requests.request.is_some() || requests.begun.is_some()
     }
 
-    /// How far the load is; none where nothing is loaded.
+    /// Progress of the current load, if any.
     pub(super) fn progress(&self) -> Option<LoadProgress> {
         let progress = self.progress.lock().unwrap_or_else(PoisonError::into_inner);
         let (what, fraction, since) = progress.as_ref()?;
@@ -129,7 +129,7 @@ impl LoadThread {
     }
 }
 
-/// Whether both projects show what the same files hold.
+/// Whether both projects use the same files.
 fn same_files(a: &Project, b: &Project) -> bool {
     let sources = |p: &Project| (p.hair.source, p.body.source, p.motion.source);
     let files = [
@@ -143,8 +143,8 @@ fn same_files(a: &Project, b: &Project) -> bool {
 
 impl Drop for LoadThread {
     fn drop(&mut self) {
-        let (desk, changed) = &*self.desk;
-        desk.lock().unwrap_or_else(PoisonError::into_inner).stop = true;
+        let (requests, changed) = &*self.requests;
+        requests.lock().unwrap_or_else(PoisonError::into_inner).stop = true;
         self.cancelled.store(true, Ordering::Relaxed);
         changed.notify_one();
         if let Some(thread) = self.thread.take() {
@@ -153,17 +153,17 @@ impl Drop for LoadThread {
     }
 }
 
-impl Inside {
+impl LoadState {
     fn run(&self, deliver: &dyn Fn(Loaded)) {
         let mut loader = SceneLoader::new();
         while let Some((project, access)) = self.next() {
             let loaded = catch_unwind(AssertUnwindSafe(|| self.load(&mut loader, &project, &access)));
             let replaced = {
-                let mut desk = self.desk.0.lock().unwrap_or_else(PoisonError::into_inner);
-                desk.begun = None;
-                desk.request.is_some()
+                let mut requests = self.requests.0.lock().unwrap_or_else(PoisonError::into_inner);
+                requests.begun = None;
+                requests.request.is_some()
             };
-            // One load after the other is seen as one.
+            // Successive loads are shown as one.
             if !replaced {
                 self.show(None);
             }
@@ -173,15 +173,15 @@ impl Inside {
                     deliver(loaded);
                     self.outbox.send(Event::Loaded { scene, problems });
                 }
-                Ok(Err(StudioError::Cancelled)) => {
-                    // Otherwise it was given up for a later one.
+                Ok(Err(ProjectError::Cancelled)) => {
+                    // Otherwise a later request replaced it.
                     if !replaced {
                         self.outbox.send(Event::LoadCancelled);
                     }
                 }
                 Ok(Err(error)) => self.outbox.send(Event::LoadFailed { message: error.to_string() }),
                 Err(panic) => {
-                    // What it was in the middle of may be half made.
+                    // Its cached parts may be incomplete.
                     loader = SceneLoader::new();
                     self.outbox.panicked("loader", &*panic);
                 }
@@ -189,21 +189,21 @@ impl Inside {
         }
     }
 
-    /// Waits for a request; none where the thread shall end.
+    /// Waits for a request; `None` when the thread must end.
     fn next(&self) -> Option<(Arc<Project>, Access)> {
-        let (desk, changed) = &*self.desk;
-        let mut desk = desk.lock().unwrap_or_else(PoisonError::into_inner);
+        let (requests, changed) = &*self.requests;
+        let mut requests = requests.lock().unwrap_or_else(PoisonError::into_inner);
         loop {
-            if desk.stop {
+            if requests.stop {
                 return None;
             }
-            if let Some(request) = desk.request.take() {
-                // Under the lock: a cancel after this is meant for this request.
+            if let Some(request) = requests.request.take() {
+                // Under the lock, so that a later cancel applies to this request.
                 self.cancelled.store(false, Ordering::Relaxed);
-                desk.begun = Some(request.clone());
+                requests.begun = Some(request.clone());
                 return Some(request);
             }
-            desk = changed.wait(desk).unwrap_or_else(PoisonError::into_inner);
+            requests = changed.wait(requests).unwrap_or_else(PoisonError::into_inner);
         }
     }
 
@@ -212,14 +212,14 @@ impl Inside {
         loader: &mut SceneLoader,
         project: &Arc<Project>,
         access: &Access,
-    ) -> Result<(Loaded, Vec<Problem>), StudioError> {
+    ) -> Result<(Loaded, Vec<Problem>), ProjectError> {
         let since = Stopwatch::start();
         let mut progress = |what: &str, fraction: f32| self.show(Some((what.to_owned(), fraction, since)));
         let mut untaken = None;
         if let Some(file) = &project.take.file {
             progress("opening the take", 0.0);
             match access.read(Place::Take, file).map(|path| TakePlayer::open(&path, access)) {
-                Ok(Ok(_)) if self.cancelled.load(Ordering::Relaxed) => return Err(StudioError::Cancelled),
+                Ok(Ok(_)) if self.cancelled.load(Ordering::Relaxed) => return Err(ProjectError::Cancelled),
                 Ok(Ok((player, problems))) => return Ok((Loaded::Take(Box::new(player)), problems)),
                 Ok(Err(error)) => untaken = Some(Problem::not_loaded(Place::Take, error)),
                 Err(problem) => untaken = Some(problem),
@@ -232,7 +232,7 @@ impl Inside {
         )?;
         problems.extend(untaken.map(|problem| problem.with_fallback("the project is simulated instead")));
         if self.cancelled.load(Ordering::Relaxed) {
-            return Err(StudioError::Cancelled);
+            return Err(ProjectError::Cancelled);
         }
         Ok((Loaded::Scene(scene, Arc::clone(project)), problems))
     }
@@ -251,7 +251,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_reads_other_files_is_given_up_and_what_only_changes_is_not() {
+    fn loads_of_other_files_are_cancelled_and_loads_of_changes_are_not() {
         let project = Project::default();
         let mut changed = project.clone();
         changed.hair.groom.length *= 0.5;

@@ -1,7 +1,6 @@
-//! What the simulation thread is asked to do: a box in which later wishes replace earlier ones.
+//! The mailbox of the simulation thread, in which later requests replace earlier ones.
 //!
-//! It holds at most one wish of each kind, so it can neither overflow nor make anybody wait, however fast a
-//! slider is dragged.
+//! It holds at most one request of each kind, so it cannot overflow and nobody waits, however fast a slider is dragged.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
@@ -12,47 +11,47 @@ use lovelock_project::files::Access;
 
 use super::load_thread::Loaded;
 
-/// What to do with the recording of a take.
+/// A request about recording a take.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) enum TakeWish {
-    /// Begin one.
+pub(super) enum TakeRequest {
+    /// Start recording.
     Start(PathBuf),
-    /// Make it whole.
+    /// Complete the take.
     Finish,
 }
 
-/// Everything that is asked for and not yet done.
+/// All pending requests.
 #[derive(Default)]
-pub(super) struct Wishes {
-    /// The project as it is now, and what it may reach.
+pub(super) struct Requests {
+    /// The current project, and the files that it may read.
     pub(super) project: Option<(Arc<Project>, Access)>,
-    /// What the loader has made.
+    /// The result of the loader.
     pub(super) loaded: Option<Loaded>,
-    /// Whether time passes.
+    /// Play or pause.
     pub(super) playing: Option<bool>,
-    /// Seconds of the scene a second.
+    /// Scene seconds per second.
     pub(super) rate: Option<f64>,
-    /// Pictures a second that the display shows.
+    /// Refresh rate of the display, Hz.
     pub(super) display_hz: Option<f64>,
-    /// Whether a take plays from its end to its start.
+    /// Whether a take is played backwards.
     pub(super) backwards: Option<bool>,
-    /// A time to go to.
+    /// A time to seek to, seconds.
     pub(super) seek_secs: Option<f64>,
-    /// Whether what was measured before is kept there.
+    /// Whether the totals are kept after the seek.
     pub(super) look_back: bool,
-    /// Steps to go on (positive) or back, after `seek_secs`.
+    /// Steps forward (positive) or backward, after `seek_secs`.
     pub(super) steps: i64,
-    /// Back to the first frame, the hair settled.
+    /// Move to the first frame and settle the hair.
     pub(super) restart: bool,
-    /// The hair settled where it is; or as it is, where that is under way.
+    /// Settle the hair at the current time (true), or cancel settling (false).
     pub(super) settle: Option<bool>,
-    /// A take is to be recorded, or enough of it is.
-    pub(super) take: Option<TakeWish>,
-    /// The thread shall end.
+    /// Start or complete the recording of a take.
+    pub(super) take: Option<TakeRequest>,
+    /// End the thread.
     pub(super) stop: bool,
 }
 
-impl Wishes {
+impl Requests {
     fn is_empty(&self) -> bool {
         let Self {
             project,
@@ -62,7 +61,7 @@ impl Wishes {
             display_hz,
             backwards,
             seek_secs,
-            // It says how to go there.
+            // Only modifies the seek.
             look_back: _,
             steps,
             restart,
@@ -85,34 +84,34 @@ impl Wishes {
     }
 }
 
-/// The box, shared by both threads.
+/// The mailbox, shared between threads.
 #[derive(Clone, Default)]
 pub(super) struct Mailbox {
-    shared: Arc<(Mutex<Wishes>, Condvar)>,
+    shared: Arc<(Mutex<Requests>, Condvar)>,
 }
 
 impl Mailbox {
-    /// Adds a wish and wakes the reader.
-    pub(super) fn ask(&self, wish: impl FnOnce(&mut Wishes)) {
-        let (wishes, changed) = &*self.shared;
-        wish(&mut wishes.lock().unwrap_or_else(PoisonError::into_inner));
+    /// Adds a request and wakes the reader.
+    pub(super) fn post(&self, request: impl FnOnce(&mut Requests)) {
+        let (requests, changed) = &*self.shared;
+        request(&mut requests.lock().unwrap_or_else(PoisonError::into_inner));
         changed.notify_one();
     }
 
-    /// Takes all wishes; waits for one for at most `timeout`, or for ever.
-    pub(super) fn take(&self, timeout: Option<Duration>) -> Wishes {
-        let (wishes, changed) = &*self.shared;
-        let guard = wishes.lock().unwrap_or_else(PoisonError::into_inner);
+    /// Takes all requests. Waits for one for at most `timeout`, or without limit if there is none.
+    pub(super) fn take(&self, timeout: Option<Duration>) -> Requests {
+        let (requests, changed) = &*self.shared;
+        let guard = requests.lock().unwrap_or_else(PoisonError::into_inner);
         let mut guard = match timeout {
             Some(timeout) => {
                 changed
-                    .wait_timeout_while(guard, timeout, |wishes| wishes.is_empty())
+                    .wait_timeout_while(guard, timeout, |requests| requests.is_empty())
                     .unwrap_or_else(PoisonError::into_inner)
                     .0
             }
-            None => {
-                changed.wait_while(guard, |wishes| wishes.is_empty()).unwrap_or_else(PoisonError::into_inner)
-            }
+            None => changed
+                .wait_while(guard, |requests| requests.is_empty())
+                .unwrap_or_else(PoisonError::into_inner),
         };
         std::mem::take(&mut *guard)
     }
@@ -123,14 +122,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn later_wishes_replace_earlier_ones_and_steps_add_up() {
+    fn later_requests_replace_earlier_ones_and_steps_add_up() {
         let mailbox = Mailbox::default();
         for i in 0..1000 {
-            mailbox.ask(|wishes| wishes.seek_secs = Some(f64::from(i)));
-            mailbox.ask(|wishes| wishes.steps += 1);
+            mailbox.post(|requests| requests.seek_secs = Some(f64::from(i)));
+            mailbox.post(|requests| requests.steps += 1);
         }
-        let wishes = mailbox.take(None);
-        assert_eq!((wishes.seek_secs, wishes.steps), (Some(999.0), 1000));
+        let requests = mailbox.take(None);
+        assert_eq!((requests.seek_secs, requests.steps), (Some(999.0), 1000));
         assert!(mailbox.take(Some(Duration::ZERO)).is_empty());
     }
 }

@@ -1,4 +1,4 @@
-//! The simulation thread's own state: an engine or a take, and what is asked of it.
+//! The state of the simulation thread: an engine or a take, and the handling of requests.
 
 mod inputs;
 mod playing;
@@ -13,58 +13,59 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use inputs::SceneInputs;
+use lovelock_base::clock::Stopwatch;
 use lovelock_project::Project;
 use lovelock_project::files::Access;
 use lovelock_simulation::SimulationSettings;
-use settling::{Aside, lives_otherwise};
+use settling::{PendingPreroll, preroll_differs};
 
 use super::Outbox;
 use super::load_thread::{LoadThread, Loaded};
-use super::mailbox::{Mailbox, TakeWish, Wishes};
-use crate::clock::{Playback, STEP_SECS, Stopwatch};
+use super::mailbox::{Mailbox, Requests, TakeRequest};
+use crate::clock::{Playback, STEP_SECS};
 use crate::engine::{Engine, LastSteps, PrerollProgress};
-use crate::latest::Slot;
+use crate::latest::Latest;
 use crate::scene::Scene;
 use crate::snapshot::FrameSnapshot;
 use crate::take::{TakeProgress, TakeRecording, TakeTransport};
 
-/// Panics in a row after which the simulation rests until something changes.
+/// Number of consecutive panics after which the simulation stops until something changes.
 const MOST_PANICS: u32 = 3;
 
-/// The simulation thread's own state.
-pub(super) struct Inside {
+/// The state of the simulation thread.
+pub(super) struct SimulationThread {
     mailbox: Mailbox,
-    frames: Slot<FrameSnapshot>,
+    frames: Latest<FrameSnapshot>,
     loader: Arc<LoadThread>,
     outbox: Outbox,
     recorded: Arc<Mutex<Option<TakeProgress>>>,
     settling: Arc<Mutex<Option<PrerollProgress>>>,
     engine: Option<Engine>,
-    /// The life of the hair before the instant where the engine stands; time waits for it.
-    preroll: Option<Aside>,
-    /// Whether hair that was loaded has still to settle, and waits for a newer one that is on its way.
-    owes_settling: bool,
-    /// Since hair that stands still was last given other settings: it settles anew once they are left alone.
-    unsettled: Option<Stopwatch>,
-    /// The take that plays in place of the engine.
+    /// The pre-roll that leads to the engine's instant. Playback waits for it.
+    preroll: Option<PendingPreroll>,
+    /// Whether loaded hair still has to settle, which waits while newer hair is being loaded.
+    settling_pending: bool,
+    /// Time since the last change of settings while playback is paused. The hair settles again when changes stop.
+    settings_changed: Option<Stopwatch>,
+    /// The take that is played instead of the engine.
     take: Option<TakeTransport>,
     recording: Option<TakeRecording>,
     project: Option<Arc<Project>>,
-    /// What the engine's scene was made of: what is loaded comes later than what is asked for.
+    /// The project that the engine's scene was loaded from, which may be older than `project`.
     scene_of: Option<Arc<Project>>,
     settings: SimulationSettings,
     inputs: Option<SceneInputs>,
     playback: Playback,
-    /// Where pictures lie between steps.
+    /// The last two steps, for images between them.
     last_steps: LastSteps,
     backwards: bool,
     panics: u32,
 }
 
-impl Inside {
+impl SimulationThread {
     pub(super) fn new(
         mailbox: Mailbox,
-        frames: Slot<FrameSnapshot>,
+        frames: Latest<FrameSnapshot>,
         loader: Arc<LoadThread>,
         outbox: Outbox,
         recorded: Arc<Mutex<Option<TakeProgress>>>,
@@ -79,8 +80,8 @@ impl Inside {
             settling,
             engine: None,
             preroll: None,
-            owes_settling: false,
-            unsettled: None,
+            settling_pending: false,
+            settings_changed: None,
             take: None,
             recording: None,
             project: None,
@@ -95,30 +96,30 @@ impl Inside {
     }
 
     pub(super) fn run(mut self) {
-        // Threads of its own: a step takes a millisecond, and would wait for the tiles of a picture in the common ones.
+        // A pool of its own: a step takes a millisecond, and in the common pool it would wait for the tiles of an image.
         let threads = rayon::ThreadPoolBuilder::new().thread_name(|i| format!("simulate {i}")).build().ok();
         let mut watch = Stopwatch::start();
         loop {
             let timeout = match (&self.take, &self.engine) {
                 _ if self.preroll.is_some() => Some(Duration::ZERO),
-                // A take is smooth at any rate: an instant for each picture, whatever lies between two recorded ones.
+                // A take is interpolated at any rate: one snapshot per image.
                 (Some(_), _) => {
                     self.playback.is_playing().then(|| Duration::from_secs_f64(self.playback.picture_secs()))
                 }
                 (None, Some(_)) => self.playback.until_next(),
                 (None, None) => None,
             };
-            let wishes = self.mailbox.take(self.until_calm(timeout));
-            if wishes.stop {
-                // What was recorded is not to be lost because the window closes.
+            let requests = self.mailbox.take(self.until_calm(timeout));
+            if requests.stop {
+                // Closing the window must not lose the recording.
                 self.end_take(None);
                 return;
             }
             let elapsed_secs = watch.secs();
             watch = Stopwatch::start();
             let done = catch_unwind(AssertUnwindSafe(|| match &threads {
-                Some(threads) => threads.install(|| self.turn(wishes, elapsed_secs)),
-                None => self.turn(wishes, elapsed_secs),
+                Some(threads) => threads.install(|| self.turn(requests, elapsed_secs)),
+                None => self.turn(requests, elapsed_secs),
             }));
             match done {
                 Ok(()) => self.panics = 0,
@@ -127,26 +128,26 @@ impl Inside {
         }
     }
 
-    /// Does what is asked for and what time asks for, and shows the result.
-    fn turn(&mut self, wishes: Wishes, elapsed_secs: f64) {
-        let changed = self.obey(wishes);
+    /// Handles requests and elapsed time, and publishes the result.
+    fn turn(&mut self, requests: Requests, elapsed_secs: f64) {
+        let changed = self.handle(requests);
         self.settle_when_calm();
-        // Before its frame is: whoever sees hair that was carried knows that it is not settled.
-        self.tell_settling();
+        // Publish the progress before the frame, so that readers of the frame know that its hair is not settled.
+        self.publish_settling();
         if self.take.is_some() {
-            (self.preroll, self.owes_settling) = (None, false);
+            (self.preroll, self.settling_pending) = (None, false);
             self.play(changed, elapsed_secs);
         } else if self.preroll.is_some() {
-            self.live_aside(changed);
+            self.advance_preroll(changed);
         } else {
             self.simulate(changed, elapsed_secs);
         }
-        self.tell_settling();
+        self.publish_settling();
     }
 
-    /// Does what is asked for; returns whether the frame may have changed.
-    fn obey(&mut self, wishes: Wishes) -> bool {
-        let Wishes {
+    /// Handles requests. Returns whether the frame may have changed.
+    fn handle(&mut self, requests: Requests) -> bool {
+        let Requests {
             project,
             loaded,
             playing,
@@ -160,7 +161,7 @@ impl Inside {
             settle,
             take,
             stop: _,
-        } = wishes;
+        } = requests;
         if let Some((project, access)) = project {
             self.set_project(project, access);
         }
@@ -182,7 +183,7 @@ impl Inside {
                 self.leave_the_end();
             }
             self.playback.set_playing(playing);
-            // A pause shows a whole step.
+            // A paused frame shows a whole step.
             changed |= !playing && self.take.is_none() && self.last_steps.are_known();
         }
         changed |= match (&mut self.take, &mut self.engine) {
@@ -214,7 +215,7 @@ impl Inside {
                         aside.measured = measured;
                     }
                 } else if settle == Some(false) {
-                    let owed = std::mem::take(&mut self.owes_settling);
+                    let owed = std::mem::take(&mut self.settling_pending);
                     if self.preroll.take().is_some() || owed {
                         self.playback.set_playing(self.playback.is_playing());
                     }
@@ -232,8 +233,8 @@ impl Inside {
             }
         }
         match take {
-            Some(TakeWish::Start(path)) => self.start_take(&path),
-            Some(TakeWish::Finish) => self.end_take(None),
+            Some(TakeRequest::Start(path)) => self.start_take(&path),
+            Some(TakeRequest::Finish) => self.end_take(None),
             None => {}
         }
         changed
@@ -244,9 +245,9 @@ impl Inside {
         if let Some(engine) = &mut self.engine {
             engine.follow(&project);
         }
-        if self.project.as_ref().is_some_and(|before| lives_otherwise(before, &project)) {
-            self.begin_preroll_anew();
-            self.unsettled = Some(Stopwatch::start());
+        if self.project.as_ref().is_some_and(|before| preroll_differs(before, &project)) {
+            self.restart_preroll();
+            self.settings_changed = Some(Stopwatch::start());
         }
         if let Some(take) = &mut self.take {
             take.set_looping(project.motion.looping);
@@ -293,9 +294,8 @@ impl Inside {
                 || before.field.is_some() != scene.field.is_some()
                 || before.field_lift_m.to_bits() != scene.field_lift_m.to_bits();
             let laid = engine.set_scene(scene);
-            // Locks that are only changed, or meet another body, go on moving while time passes. Where it stands, they are
-            // seen as they settle.
-            let waits = self.preroll.is_some() || self.owes_settling;
+            // During playback, hair that only changes or gets other colliders keeps moving. While paused, it settles visibly.
+            let waits = self.preroll.is_some() || self.settling_pending;
             if laid || waits || (other_hair && !self.playback.is_playing()) {
                 self.settle_loaded();
             }
@@ -309,7 +309,7 @@ impl Inside {
         self.begin_preroll();
     }
 
-    /// Before playing: from an end at which nothing can follow, to the other one.
+    /// Moves from the end to the start before playback starts.
     fn leave_the_end(&mut self) {
         if let Some(take) = &mut self.take {
             if take.is_at_end(self.backwards) {
@@ -323,12 +323,12 @@ impl Inside {
         }
     }
 
-    /// After a panic the engine may be half way through a step: it starts again, in the same scene.
+    /// After a panic the engine may be in the middle of a step, so it restarts with the same scene.
     fn recover(&mut self, panic: &(dyn Any + Send)) {
         self.outbox.panicked("simulation", panic);
         self.panics += 1;
         let played = self.take.take().is_some();
-        (self.preroll, self.owes_settling) = (None, false);
+        (self.preroll, self.settling_pending) = (None, false);
         self.last_steps.forget();
         let scene = self.engine.take().map(|engine| Arc::clone(engine.scene()));
         if let (Some(scene), true) = (scene, self.panics < MOST_PANICS) {
@@ -338,7 +338,7 @@ impl Inside {
             }
         }
         if self.engine.is_none() || played {
-            // The same project may be asked for again.
+            // Allow loading the same project again.
             self.inputs = None;
         }
     }

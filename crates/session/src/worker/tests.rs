@@ -1,4 +1,4 @@
-//! The simulation thread, driven as the window drives it.
+//! The simulation thread, used as the window uses it.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -11,7 +11,7 @@ use crate::engine::Engine;
 use crate::scene::SceneLoader;
 use crate::testing::small_project;
 
-/// Long enough for the slowest machine; a test that passes waits for a fraction of it.
+/// Long enough for the slowest machine. A passing test waits for a fraction of it.
 const PATIENCE_MS: f64 = 60_000.0;
 
 fn start(project: lovelock_project::Project) -> (Worker, Arc<AtomicU64>) {
@@ -24,14 +24,14 @@ fn start(project: lovelock_project::Project) -> (Worker, Arc<AtomicU64>) {
 }
 
 fn wait<T>(what: &str, mut ready: impl FnMut() -> Option<T>) -> T {
-    let watch = crate::clock::Stopwatch::start();
+    let watch = lovelock_base::clock::Stopwatch::start();
     while watch.ms() < PATIENCE_MS {
         if let Some(value) = ready() {
             return value;
         }
         std::thread::sleep(Duration::from_millis(2));
     }
-    panic!("waited in vain for {what}");
+    panic!("timed out waiting for {what}");
 }
 
 #[test]
@@ -46,7 +46,7 @@ fn it_plays_pauses_steps_and_seeks() {
     worker.step(3);
     let frame = wait("three steps", || worker.frame().filter(|frame| frame.time_secs > 3.04));
     std::thread::sleep(Duration::from_millis(60));
-    assert_eq!(worker.frame().expect("a frame").time_secs, frame.time_secs, "it is paused");
+    assert_eq!(worker.frame().expect("a frame").time_secs, frame.time_secs, "playback is paused");
     worker.step(-2);
     wait("two steps back", || worker.frame().filter(|now| now.time_secs < frame.time_secs));
     worker.restart();
@@ -55,7 +55,7 @@ fn it_plays_pauses_steps_and_seeks() {
 }
 
 #[test]
-fn other_hair_is_loaded_aside_and_lights_load_nothing() {
+fn other_hair_is_loaded_in_the_background_and_lights_load_nothing() {
     let mut project = small_project();
     let (worker, _) = start(project.clone());
     wait("the first scene", || worker.poll_event());
@@ -74,7 +74,7 @@ fn other_hair_is_loaded_aside_and_lights_load_nothing() {
 }
 
 #[test]
-fn a_motion_that_ends_says_so_and_plays_again() {
+fn the_end_of_a_motion_is_reported_and_it_plays_again() {
     let mut project = small_project();
     project.motion.looping = false;
     let (worker, _) = start(project);
@@ -86,10 +86,10 @@ fn a_motion_that_ends_says_so_and_plays_again() {
 }
 
 #[test]
-fn a_panic_becomes_an_event_and_the_thread_lives() {
+fn a_panic_becomes_an_event_and_the_thread_continues() {
     let (worker, _) = start(small_project());
     let good = wait("a frame", || worker.frame());
-    // A hairstyle with half of its numbers missing, which no loader lets through.
+    // A hairstyle with half of its numbers missing, which the loader would reject.
     let mut style = (*good.scene.style).clone();
     style.guides.y.truncate(style.guides.y.len() / 2);
     let bad = Arc::new(Scene { style: Arc::new(style), ..(*good.scene).clone() });
@@ -107,12 +107,12 @@ fn a_panic_becomes_an_event_and_the_thread_lives() {
 fn settled_at(worker: &Worker, secs: f64) -> Arc<FrameSnapshot> {
     wait("settled hair", || {
         let there = worker.frame().filter(|frame| (frame.time_secs - secs).abs() < 1e-6);
-        // What is told of the hair is told after its frame.
+        // The end of settling is published after its frame.
         there.filter(|_| worker.settling().is_none()).and(worker.frame())
     })
 }
 
-/// Waits until the hair is settled at a time, and holds it against that of an engine that settles there.
+/// Waits until the hair is settled at a time, and compares it with an engine that settles there.
 fn sees_settled_hair(worker: &Worker, project: &lovelock_project::Project, secs: f64) {
     let shown = settled_at(worker, secs);
     let mut engine = Engine::new(Arc::clone(&shown.scene), project.simulation);
@@ -122,7 +122,7 @@ fn sees_settled_hair(worker: &Worker, project: &lovelock_project::Project, secs:
 }
 
 #[test]
-fn whoever_scrubs_sees_settled_hair_where_he_ends() {
+fn hair_is_settled_where_scrubbing_ends() {
     let (worker, _) = start(small_project());
     let first = wait("a frame", || worker.frame());
     worker.set_playing(false);
@@ -136,7 +136,7 @@ fn whoever_scrubs_sees_settled_hair_where_he_ends() {
     let mut engine =
         Engine::new(Arc::clone(&first.scene), lovelock_simulation::SimulationSettings::default());
     engine.seek(end);
-    assert_ne!(engine.snapshot().guides, shown.guides, "the control: hair that is only carried");
+    assert_ne!(engine.snapshot().guides, shown.guides, "control: hair that was only moved rigidly");
     engine.settle();
     assert_eq!(engine.snapshot().guides, shown.guides);
     worker.step(-2);
@@ -146,7 +146,7 @@ fn whoever_scrubs_sees_settled_hair_where_he_ends() {
 }
 
 #[test]
-fn hair_that_comes_while_time_stands_is_settled() {
+fn hair_loaded_while_paused_is_settled() {
     let mut project = small_project();
     let (worker, _) = start(project.clone());
     wait("a frame", || worker.frame());
@@ -161,7 +161,7 @@ fn hair_that_comes_while_time_stands_is_settled() {
 }
 
 #[test]
-fn settings_that_are_changed_while_time_stands_settle_the_hair_anew() {
+fn settings_changed_while_paused_settle_the_hair_again() {
     let mut project = small_project();
     let (worker, _) = start(project.clone());
     wait("a frame", || worker.frame());
@@ -169,7 +169,7 @@ fn settings_that_are_changed_while_time_stands_settle_the_hair_anew() {
     let secs = 100.0 * crate::clock::STEP_SECS;
     worker.seek(secs);
     let before = settled_at(&worker, secs);
-    // Dragged: one change after the other.
+    // As if dragged: several changes in a row.
     for gravity in [5.0, 4.0, 3.0, 2.0] {
         project.simulation.gravity = gravity;
         project.simulation.style_support = 0.0;
@@ -186,22 +186,22 @@ fn settings_that_are_changed_while_time_stands_settle_the_hair_anew() {
 }
 
 #[test]
-fn settling_can_be_given_up_and_time_goes_on() {
+fn settling_can_be_cancelled_and_playback_continues() {
     let mut project = small_project();
-    // Long enough to be in the middle of it.
+    // Long enough to be observed in progress.
     project.timeline.preroll_secs = 30.0;
     project.hair.groom.wisps = 200;
     let (worker, _) = start(project);
-    let progress = wait("a life that is told", || worker.settling());
+    let progress = wait("progress of a pre-roll", || worker.settling());
     assert!(progress.done < progress.total && progress.total >= 1800, "{progress:?}");
-    assert_eq!(wait("hair in its style meanwhile", || worker.frame()).step, 0);
+    assert_eq!(wait("hair at rest meanwhile", || worker.frame()).step, 0);
     worker.cancel_settle();
     wait("time to pass", || worker.frame().filter(|frame| frame.step > 2));
     assert_eq!(worker.settling(), None);
 }
 
 #[test]
-fn who_looks_back_sees_settled_hair_there_and_keeps_what_was_measured() {
+fn looking_back_shows_settled_hair_and_keeps_the_totals() {
     let (worker, _) = start(small_project());
     let measured = |secs: f64| {
         wait("a worst stretch", || {
@@ -222,19 +222,19 @@ fn who_looks_back_sees_settled_hair_there_and_keeps_what_was_measured() {
     let back = settled_at(&worker, secs);
     assert_eq!(back.totals.worst_stretch_found, Some(found));
     assert_eq!(back.totals.max_stretch, frame.totals.max_stretch);
-    // Whoever only goes there begins to count anew.
+    // An ordinary seek resets the totals.
     worker.seek(secs);
     wait("counting anew", || worker.frame().filter(|frame| frame.totals.steps == 0));
 }
 
 #[test]
-fn a_load_that_another_one_replaces_is_not_told_as_cancelled() {
+fn a_replaced_load_is_not_reported_as_cancelled() {
     let mut project = small_project();
     let (worker, _) = start(project.clone());
     wait("the first scene", || worker.poll_event());
     for wisps in 20..60 {
         project.hair.groom.wisps = wisps;
-        // Hair that is grown reads no file; yet each is another project's, and the load before is given up.
+        // Grown hair reads no file, but the files differ, so the previous load is cancelled.
         project.hair.file = Some(lovelock_project::files::FileRef::new(format!("/{wisps}.hair")));
         worker.set_project(Arc::new(project.clone()), Access::new());
         std::thread::sleep(Duration::from_millis(3));
@@ -249,20 +249,20 @@ fn a_load_that_another_one_replaces_is_not_told_as_cancelled() {
 }
 
 #[test]
-fn a_load_that_is_given_up_leaves_the_scene_and_the_next_one_comes() {
+fn a_cancelled_load_keeps_the_scene_and_the_next_one_loads() {
     let mut project = small_project();
     let (worker, _) = start(project.clone());
     let before = wait("a frame", || worker.frame());
     wait("the first scene", || worker.poll_event());
     project.hair.groom.strands_per_wisp = 200;
-    // A machine that is busy may be done with it first: then another one is given up.
+    // On a busy machine the load may be done first; then another one is cancelled.
     wait("a load that was given up", || {
         project.hair.groom.wisps = if project.hair.groom.wisps == 400 { 300 } else { 400 };
         worker.set_project(Arc::new(project.clone()), Access::new());
         wait("a load", || worker.load_progress().map(drop).or_else(|| worker.poll_event().map(drop)));
         worker.cancel_load();
-        assert_eq!(worker.load_progress(), None, "at once for the user's eyes");
-        let event = wait("what became of it", || worker.poll_event());
+        assert_eq!(worker.load_progress(), None, "the progress is cleared at once");
+        let event = wait("the result", || worker.poll_event());
         matches!(event, Event::LoadCancelled).then_some(())
     });
     assert!(worker.frame().is_some_and(|frame| frame.step >= before.step), "the scene plays on");
@@ -272,7 +272,7 @@ fn a_load_that_is_given_up_leaves_the_scene_and_the_next_one_comes() {
 }
 
 #[test]
-fn hair_that_is_dragged_while_time_stands_settles_once_it_is_let_go() {
+fn hair_dragged_while_paused_settles_after_release() {
     let mut project = lovelock_project::Project::default();
     let (worker, _) = start(project.clone());
     wait("a frame", || worker.frame());
@@ -295,8 +295,8 @@ fn hair_that_is_dragged_while_time_stands_settles_once_it_is_let_go() {
 }
 
 #[test]
-fn a_slider_that_is_dragged_shows_hair_on_the_way() {
-    // Much dearer to grow than the time between two requests.
+fn a_dragged_slider_shows_intermediate_hair() {
+    // Growing takes much longer than the time between two requests.
     let mut project = lovelock_project::Project::default();
     let (worker, _) = start(project.clone());
     wait("the first scene", || worker.poll_event());

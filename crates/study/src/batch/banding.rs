@@ -1,4 +1,4 @@
-//! What a method's slices show where there is nothing to show: a slab of even density.
+//! Banding: errors of a method's slices in a slab of uniform density.
 
 use std::sync::Arc;
 
@@ -14,21 +14,20 @@ use crate::report::BandingReport;
 const SIZE: f32 = 0.1;
 /// Extent on the shorter axis: a strip is enough.
 const STRIP: f32 = SIZE / 8.0;
-/// Layers of strands, and strands in each.
+/// Number of layers of strands, and of strands in each.
 const LAYERS: usize = 1024;
 const STRANDS: usize = 4;
-/// Depth between the ends of a strand, in layers: as far as two strands of one row of texels are apart, so that the means
-/// over rays see strands everywhere.
+/// Depth between the ends of a strand, in layers. It equals the distance of two strands in a row of texels, so that means over rays
+/// contain strands at all depths.
 const SLOPE: f32 = 16.0;
 /// Optical depth of the slab.
 const OPTICAL_DEPTH: f32 = 3.0;
-/// Samples along the light, and rays whose mean is looked at.
+/// Number of samples along the light, and of rays that are averaged.
 const SAMPLES: usize = 256;
 const RAYS: usize = 1024;
 
-/// What the slices of the method show. The definition of the method on the processor is asked; the other backend agrees with
-/// it. None where the slab cannot be built, where there is no shadow, and where strands count by their points, which no slab
-/// has.
+/// The banding of a method, by its CPU definition; the GPU backend agrees with it. `None` if the slab cannot be built, there is no
+/// shadow, or strands are counted by points.
 pub(super) fn slab(settings: &ShadowSettings) -> Option<BandingReport> {
     let by_points = settings.voxel_map.deposit == VoxelDeposit::PointCount;
     if settings.method == ShadowMethod::None || settings.method == ShadowMethod::VoxelMap && by_points {
@@ -75,7 +74,7 @@ pub(super) fn slab(settings: &ShadowSettings) -> Option<BandingReport> {
     })
 }
 
-/// The depth of a slice, metres, where a method has some of one depth.
+/// The depth of a slice, metres, if the method has slices of equal depth.
 fn slice(ray: &RayStructure) -> Option<f32> {
     let slices = ray.marks.iter().filter(|mark| mark.kind.resolves_depth);
     let depths = slices.map(|mark| mark.end - mark.start);
@@ -84,20 +83,20 @@ fn slice(ray: &RayStructure) -> Option<f32> {
     (low > 0.0 && high < 1.02 * low).then_some(0.5 * (low + high))
 }
 
-/// The middle of a sample, a part of the slab. Its ends, where strands begin and end, are left out.
+/// The middle of a sample, as a fraction of the slab without its ends, where strands begin and end.
 fn depth(sample: usize) -> f32 {
     0.03 + 0.94 * (sample as f32 + 0.5) / SAMPLES as f32
 }
 
-/// Where a ray passes, metres on the axes across the light: evenly over the inner half of the strip, whole cycles of the
-/// strands' slope along it (the sequence of Roberts 2018, "R2").
+/// Position of a ray, metres on the axes across the light: evenly distributed over the inner half of the strip, which contains
+/// whole cycles of the strands' slope (the sequence of Roberts 2018, "R2").
 fn across(ray: usize) -> [f32; 2] {
     let (i, g) = (ray as f64, 1.324_717_957_244_746);
     let [u, v] = [(0.5 + i / g).fract(), (0.5 + i / (g * g)).fract()];
     [SIZE * u as f32, STRIP * (0.25 + 0.5 * v as f32)]
 }
 
-/// Strands along the first axis across the light, layer behind layer, each layer moved on by the golden section.
+/// Strands along the first axis across the light, layer behind layer, each layer offset by the golden ratio.
 fn strands(light: &LightFrame) -> Strands {
     let mut made = Strands::default();
     let mut first_point = vec![0];
@@ -131,15 +130,15 @@ mod tests {
     }
 
     #[test]
-    fn the_slab_is_even_and_layers_show_in_it() {
+    fn the_slab_is_uniform_and_layers_show_in_it() {
         let exact = of(ShadowMethod::Exact, |_| ());
-        // 3.5e-4 and 6.5e-5 measured: what the slab's own strands leave. A method is not seen below that.
+        // Measured 3.5e-4 and 6.5e-5, from the discrete strands of the slab. Smaller errors of a method cannot be detected.
         assert!(exact.rmse < 6e-4 && exact.amplitude < 1.2e-4, "{} {}", exact.rmse, exact.amplitude);
         // 0.079 and 9.2e-3 measured.
         let layers = of(ShadowMethod::DeepOpacityMaps, |_| ());
         assert!(layers.rmse > 100.0 * exact.rmse, "{}", layers.rmse);
         assert!(layers.amplitude > 50.0 * exact.amplitude, "{}", layers.amplitude);
-        // Optical depth is interpolated between slices, which is the truth in an even slab: 6.2e-5 measured.
+        // Optical depth is interpolated between slices, which is exact in a uniform slab: measured 6.2e-5.
         let slices = of(ShadowMethod::OpacityMaps, |_| ());
         assert!(slices.amplitude < 2.0 * exact.amplitude, "{}", slices.amplitude);
     }

@@ -2,11 +2,11 @@
 
 use crate::report::{CompareReport, MethodReport};
 
-/// One line a method, with a heading. What was not measured is empty. Rows of the CPU and of the GPU tell themselves apart by
-/// their backend and adapter.
+/// One line per method, with a heading. Fields that were not measured are empty. Backend and adapter distinguish rows of the CPU
+/// and the GPU.
 pub(super) fn csv(report: &CompareReport) -> String {
     let line = |fields: &mut dyn Iterator<Item = &str>| fields.collect::<Vec<_>>().join(",") + "\n";
-    // The heading is that of any row.
+    // Any row gives the heading.
     let heading = row(report, &MethodReport::default());
     let mut out = line(&mut heading.iter().map(|(name, _)| *name));
     for method in &report.methods {
@@ -90,14 +90,14 @@ fn row(report: &CompareReport, method: &MethodReport) -> Vec<(&'static str, Stri
     row
 }
 
-/// Six digits that mean something, however small the number; nothing for what is no number.
+/// A number with six significant digits; empty if there is none.
 fn number(value: Option<f64>) -> String {
     let Some(value) = value.filter(|value| value.is_finite()) else { return String::new() };
-    // Rounded in the notation that counts digits, then written as programs write numbers.
+    // Round in exponential notation, then print as a plain number.
     format!("{value:.5e}").parse::<f64>().map(|value| value.to_string()).unwrap_or_default()
 }
 
-/// A text field as RFC 4180 has it.
+/// A text field, quoted by RFC 4180.
 fn quoted(text: &str) -> String {
     if text.is_empty() { String::new() } else { format!("\"{}\"", text.replace('"', "\"\"")) }
 }

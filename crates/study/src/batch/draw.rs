@@ -1,39 +1,40 @@
-//! One of those that are compared: its picture, its times, its errors.
+//! The image, times and errors of one entrant.
 
 use lovelock_metrics::{Errors, Image, Spread, errors, errors_of, flip, psnr_db, ssim};
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 use lovelock_render::{FrameInput, FrameStats, Picture, Renderer};
 
 use super::truth::Points;
-use super::work::Tell;
+use super::work::CheckCancel;
 use crate::report::{FlipError, MethodReport, StageMs, TimeSpread, TransmittanceError};
 
-/// Draws before those that are timed: buffers are made and caches filled.
+/// Number of untimed draws that create buffers and fill caches.
 const WARM_UP: u32 = 3;
 
-/// What drawing gave.
+/// The result of rendering.
 pub(super) struct Drawn {
     pub picture: Picture,
     /// Transmittance of the first light at every strand point.
     pub transmittance: Vec<f32>,
 }
 
-/// Draws `draws` times after a warm-up, and notes times and memory. `tell` is asked before each, outside of what is timed.
+/// Renders `draws` times after a warm-up and records times and memory. `check_cancel` is called before each draw, outside the
+/// measured time.
 ///
 /// # Errors
-/// A shadow that needs too much memory, a device that is lost, or what `tell` returns.
+/// If the shadow needs too much memory or the device is lost, or the error of `check_cancel`.
 pub(super) fn draw(
     renderer: &mut Renderer,
     input: &FrameInput,
     [width, height]: [u32; 2],
     draws: u32,
     report: &mut MethodReport,
-    tell: &mut Tell,
-) -> Result<Drawn, StudioError> {
+    check_cancel: &mut CheckCancel,
+) -> Result<Drawn, ProjectError> {
     let mut picture = Picture::default();
     let mut stats = Vec::new();
     for draw in 0..WARM_UP + draws.max(1) {
-        tell()?;
+        check_cancel()?;
         let one = renderer.picture(input, width, height, &mut picture)?;
         if draw >= WARM_UP {
             stats.push(one);
@@ -66,7 +67,7 @@ fn times(stats: &[FrameStats]) -> Vec<TimeSpread> {
         })
     };
     let passes = stats.first().map_or(&[][..], |stats| &stats.passes);
-    // A device without timers gives whole pictures alone.
+    // A device without timers only gives the time of whole images.
     let mut times = Vec::new();
     if !passes.is_empty() {
         times.extend(spread("build", &FrameStats::build_ms));
@@ -86,7 +87,7 @@ fn times(stats: &[FrameStats]) -> Vec<TimeSpread> {
     times
 }
 
-/// Errors of transmittance against `truth`. Where the truth at points is known, also over the points where light enters.
+/// Errors of transmittance against `truth`; if the ground truth at points is known, also for points where light enters.
 pub(super) fn transmittance_error(
     test: &[f32],
     truth: &[f32],
@@ -98,11 +99,10 @@ pub(super) fn transmittance_error(
     TransmittanceError { count: count as u64, rmse, bias, p99, max, first10_rmse }
 }
 
-/// Notes the difference of a picture to the reference, and returns that of each pixel. `hair` is finite where a pixel shows
-/// hair.
+/// Records the difference of an image from the reference, and returns it per pixel. `hair` is finite where a pixel shows hair.
 ///
 /// # Errors
-/// Pictures of different sizes.
+/// If the images have different sizes.
 pub(super) fn picture_error(
     picture: &Picture,
     reference: &Picture,
@@ -118,7 +118,7 @@ pub(super) fn picture_error(
     let hair_mean = (count > 0).then(|| sum / count as f64);
     report.flip = Some(FlipError { mean: seen.mean(), hair_mean, p99: seen.percentile(0.99) });
     report.psnr_db = Some(psnr_db(&reference, &test)?).filter(|db| db.is_finite());
-    // A picture smaller than its window has none.
+    // An image smaller than the SSIM window has no SSIM.
     report.ssim = ssim(&reference, &test).ok();
     Ok(seen.values)
 }

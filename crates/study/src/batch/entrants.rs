@@ -1,7 +1,7 @@
-//! Everything that is compared: each method with each value of the sweeps, each transparency, each backend.
+//! The entrants of a comparison: each method with each value of the sweeps, transparency and backend.
 
 use lovelock_project::Project;
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 use lovelock_project::project::Contender;
 use lovelock_render::{Backend, ShadowMethod, ShadowSettings, Transparency};
 
@@ -9,27 +9,27 @@ use super::sweep;
 use super::sweep::Sweep;
 use crate::report::MethodReport;
 
-/// The most that one report compares.
+/// Maximum number of entrants.
 const MOST: usize = 512;
 
-/// One of those that are compared, and its line of the report.
+/// One entrant and its entry in the report.
 #[derive(Clone, Debug)]
 pub(super) struct Entrant {
     pub contender: Contender,
     pub report: MethodReport,
 }
 
-/// What is compared, in the order of the report. `backends` are those that draw: no [`Backend::Auto`] among them.
+/// The entrants, in the order of the report. `backends` contains no [`Backend::Auto`].
 ///
 /// # Errors
-/// A setting that no method has, a value that a setting cannot have, or too much at once.
+/// If no method has a setting, a value is invalid, or there are too many entrants.
 pub(super) fn entrants(
     project: &Project,
     methods: &[ShadowMethod],
     transparencies: &[Transparency],
     backends: &[Backend],
     sweeps: &[Sweep],
-) -> Result<Vec<Entrant>, StudioError> {
+) -> Result<Vec<Entrant>, ProjectError> {
     let methods = without_repetition(methods, ShadowMethod::ALL);
     let transparencies = without_repetition(transparencies, &[project.picture.transparency]);
     for sweep in sweeps {
@@ -63,7 +63,7 @@ pub(super) fn entrants(
             }
         }
         if all.len() > MOST {
-            return Err(StudioError::option(format!(
+            return Err(ProjectError::option(format!(
                 "more than {MOST} to compare at once: fewer methods, backends or values of a sweep"
             )));
         }
@@ -71,13 +71,13 @@ pub(super) fn entrants(
     Ok(all)
 }
 
-/// A file's name for one of them: letters, digits, dots and dashes.
+/// A file name for an entrant: letters, digits, dots and dashes.
 pub(super) fn file_name(name: &str) -> String {
     let plain = |letter: char| if letter.is_ascii_alphanumeric() || letter == '.' { letter } else { '-' };
     name.chars().map(plain).collect()
 }
 
-/// Those asked for, each once; `otherwise` where none are.
+/// The requested values without repetition, or `otherwise` if there are none.
 fn without_repetition<T: Copy + PartialEq>(asked: &[T], otherwise: &[T]) -> Vec<T> {
     let mut once = Vec::new();
     for &one in if asked.is_empty() { otherwise } else { asked } {
@@ -88,11 +88,11 @@ fn without_repetition<T: Copy + PartialEq>(asked: &[T], otherwise: &[T]) -> Vec<
     once
 }
 
-/// What a run of a method is: its settings, and what sweeps changed of them.
+/// Settings of a method, and the names and values changed by sweeps.
 type Run = (ShadowSettings, Vec<(String, String)>);
 
-/// The runs of one method: every combination of the sweeps' values that it has.
-fn runs(settings: &ShadowSettings, sweeps: &[Sweep]) -> Result<Vec<Run>, StudioError> {
+/// The runs of one method: every combination of the values of sweeps that apply to it.
+fn runs(settings: &ShadowSettings, sweeps: &[Sweep]) -> Result<Vec<Run>, ProjectError> {
     let mut runs = vec![(*settings, Vec::new())];
     for sweep in sweeps {
         let mut next: Vec<Run> = Vec::new();
@@ -119,13 +119,13 @@ fn runs(settings: &ShadowSettings, sweeps: &[Sweep]) -> Result<Vec<Run>, StudioE
     Ok(runs)
 }
 
-fn unknown_setting(sweep: &Sweep, methods: &[ShadowMethod]) -> StudioError {
+fn unknown_setting(sweep: &Sweep, methods: &[ShadowMethod]) -> ProjectError {
     let mut known: Vec<&str> =
         methods.iter().flat_map(|method| method.settings()).map(|info| info.name).collect();
     known.sort_unstable();
     known.dedup();
     let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
-    StudioError::option(format!(
+    ProjectError::option(format!(
         "--sweep {}: the methods that are compared have no such setting; theirs: {known}",
         sweep.setting
     ))
@@ -139,7 +139,7 @@ mod tests {
         methods: &[ShadowMethod],
         backends: &[Backend],
         sweeps: &[&str],
-    ) -> Result<Vec<Entrant>, StudioError> {
+    ) -> Result<Vec<Entrant>, ProjectError> {
         let sweeps: Vec<Sweep> = sweeps.iter().map(|text| text.parse().expect("a sweep")).collect();
         entrants(&Project::default(), methods, &[], backends, &sweeps)
     }

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 use lovelock_project::files::write_whole;
 use lovelock_session::new_folders::NewFolders;
 use serde_json::Value;
@@ -13,59 +13,59 @@ use super::csv;
 use crate::html;
 use crate::report::CompareReport;
 
-/// Where pictures lie, relative to the report.
+/// Folder of the images, relative to the report.
 const PICTURES: &str = "pictures";
 
-/// The folder that a report is written to: each file beside its name first, then renamed.
+/// The folder of a report. Each file is written under a temporary name and then renamed.
 pub(super) struct Folder {
     path: PathBuf,
-    /// Pictures that were written, and those that a report of before names.
+    /// Written images, and images named by an earlier report.
     pictures: RefCell<BTreeSet<String>>,
-    /// Gone again where nothing was written.
+    /// Removes new folders if nothing was written.
     _new: NewFolders,
 }
 
 impl Folder {
-    /// Makes the folder.
+    /// Creates the folder.
     ///
     /// # Errors
-    /// Something else has its name, or it cannot be made.
-    pub(super) fn new(path: &Path) -> Result<Self, StudioError> {
+    /// If a file has its name, or it cannot be created.
+    pub(super) fn new(path: &Path) -> Result<Self, ProjectError> {
         if path.as_os_str().is_empty() {
-            return Err(StudioError::option("-o: no name for the report's folder"));
+            return Err(ProjectError::option("-o: no name for the report's folder"));
         }
         if path.exists() && !path.is_dir() {
             let message =
                 format!("{}: a file of this name is in the way of the report's folder", path.display());
-            return Err(StudioError::input(path, message));
+            return Err(ProjectError::input(path, message));
         }
         let new = NewFolders::missing_on(&path.join(PICTURES));
         std::fs::create_dir_all(path.join(PICTURES)).map_err(|error| {
-            StudioError::output(path, format!("{}: the folder cannot be made: {error}", path.display()))
+            ProjectError::output(path, format!("{}: the folder cannot be made: {error}", path.display()))
         })?;
         let pictures = RefCell::new(named_before(&path.join("report.json")));
         Ok(Self { path: path.to_owned(), pictures, _new: new })
     }
 
-    /// Writes a picture and returns its name, relative to the report.
+    /// Writes an image and returns its name relative to the report.
     ///
     /// # Errors
-    /// The disk is full, or the folder may not be written.
+    /// If the disk is full or the folder is not writable.
     pub(super) fn picture(
         &self,
         name: &str,
         (width, height, rgba): (u32, u32, &[u8]),
-    ) -> Result<String, StudioError> {
+    ) -> Result<String, ProjectError> {
         let file = format!("{PICTURES}/{name}.png");
         let path = self.path.join(&file);
         lovelock_record::write_png(&path, width, height, rgba)
-            .map_err(|error| StudioError::output(&path, error))?;
+            .map_err(|error| ProjectError::output(&path, error))?;
         self.pictures.borrow_mut().insert(file.clone());
         Ok(file)
     }
 
-    /// Takes away pictures of this run and of the one before that the report does not name. What else lies in the folder stays,
-    /// and so does what cannot be taken away: it harms nobody.
+    /// Removes images of this and the previous run that the report does not name. All other files stay, and failures are ignored
+    /// because leftover images are harmless.
     pub(super) fn tidy(&self, report: &CompareReport) {
         let mut named = BTreeSet::new();
         collect(&serde_json::to_value(report).unwrap_or_default(), &mut named);
@@ -74,33 +74,33 @@ impl Folder {
         }
     }
 
-    /// Writes the report as it is now.
+    /// Writes the current report.
     ///
     /// # Errors
     /// As [`Folder::picture`].
-    pub(super) fn report(&self, report: &CompareReport) -> Result<(), StudioError> {
-        let json = serde_json::to_string_pretty(report).map_err(StudioError::work)?;
+    pub(super) fn report(&self, report: &CompareReport) -> Result<(), ProjectError> {
+        let json = serde_json::to_string_pretty(report).map_err(ProjectError::work)?;
         write_whole(&self.path.join("report.json"), format!("{json}\n").as_bytes())?;
         write_whole(&self.path.join("report.csv"), csv::csv(report).as_bytes())?;
         write_whole(&self.path.join("report.html"), html::page(report).as_bytes())
     }
 }
 
-/// A report of before that is larger is none of ours.
+/// A larger file is not a report of this program.
 const LARGEST_REPORT: u64 = 256 << 20;
 
-/// Pictures that a report of before names; none where there is no such report.
+/// Images named by an earlier report, if there is one.
 fn named_before(report: &Path) -> BTreeSet<String> {
     let mut named = BTreeSet::new();
     let fits = std::fs::metadata(report).is_ok_and(|file| file.is_file() && file.len() <= LARGEST_REPORT);
     let text = if fits { std::fs::read(report).ok() } else { None };
-    // Only what is a report: another program's file gives no leave to delete.
+    // Only for valid reports: files of other programs must not cause deletions.
     let read = text.and_then(|text| serde_json::from_slice::<CompareReport>(&text).ok());
     collect(&serde_json::to_value(read).unwrap_or_default(), &mut named);
     named
 }
 
-/// Collects what names a picture of a report: a plain file in the folder of pictures, never one elsewhere.
+/// Collects names of images in a report: plain files in the image folder, never files elsewhere.
 fn collect(value: &Value, named: &mut BTreeSet<String>) {
     match value {
         Value::String(text) => {
@@ -124,7 +124,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pictures_of_before_go_and_nothing_else_does() {
+    fn only_earlier_images_are_removed() {
         let dir = tempfile::tempdir().expect("a folder");
         let at = |name: &str| dir.path().join(name);
         std::fs::create_dir(at("pictures")).expect("a folder");

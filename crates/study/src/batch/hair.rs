@@ -1,4 +1,4 @@
-//! Hair at one instant, lit: what every shadow is asked about.
+//! Hair at one instant with lights: the input of every shadow method.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use lovelock_render::{Camera, FrameInput, HairPose, Light, MAX_LIGHTS};
 use lovelock_session::snapshot::FrameSnapshot;
 use lovelock_shadow::{LightFrame, ShadowInput};
 
-/// Hair at one instant, interpolated once for all that look at it.
+/// Hair at one instant, interpolated once for all uses.
 #[derive(Debug)]
 pub(super) struct Hair {
     pub snapshot: Arc<FrameSnapshot>,
@@ -25,7 +25,7 @@ impl Hair {
         Self { snapshot, strands, camera }
     }
 
-    /// What a picture of it is made of, by the settings of `project`.
+    /// The render input with the settings of `project`.
     pub(super) fn frame_input<'a>(&'a self, project: &'a Project) -> FrameInput<'a> {
         FrameInput {
             hair: HairPose::Strands(&self.strands),
@@ -33,7 +33,7 @@ impl Hair {
         }
     }
 
-    /// What a map of `light` is made of, as drawing makes it.
+    /// The input of a shadow map for `light`, as in rendering.
     pub(super) fn shadow_input(&self, project: &Project, light: &Light) -> ShadowInput<'_> {
         ShadowInput {
             strands: &self.strands,
@@ -44,7 +44,7 @@ impl Hair {
         }
     }
 
-    /// Where the head is, with the lattice of maps moved by `shift`, metres in world space.
+    /// The head's transform, with the grid of maps moved by `shift`, metres in world space.
     pub(super) fn head_moved_by(&self, shift: Vec3) -> Affine3A {
         let mut head = self.snapshot.guides.world_from_head;
         head.translation += glam::Vec3A::from(shift);
@@ -52,7 +52,7 @@ impl Hair {
     }
 }
 
-/// The lights that shine, as drawing takes them.
+/// The enabled lights, as in rendering.
 pub(super) fn lights(project: &Project) -> Vec<Light> {
     project.lights.iter().filter(|light| light.enabled).take(MAX_LIGHTS).map(Light::clamped).collect()
 }

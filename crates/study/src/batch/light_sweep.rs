@@ -1,56 +1,56 @@
-//! Light that turns a little from frame to frame while nothing else moves: what changes that should not.
+//! A light that turns slightly from frame to frame while nothing else moves, to measure unwanted changes.
 
 use glam::{Quat, Vec3};
 use lovelock_groom::Strands;
 use lovelock_project::Project;
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 use lovelock_render::{Light, Picture, Renderer};
 use lovelock_shadow::{LightFrame, ShadowInput};
 
 use super::hair::Hair;
 use super::stability::{SMALL, drawn, fits};
 use super::truth::{Truth, converge_at};
-use super::work::Tell;
+use super::work::CheckCancel;
 use crate::changes::ChangeReport;
 use crate::report::{FootprintTruth, NamedTruth, Reference};
 
-/// Steps of the light.
+/// Number of steps of the light.
 const STEPS: usize = 8;
 
-/// By how much it turns in each, degrees.
+/// Angle per step, degrees.
 const DEGREES: f32 = 0.1;
 
-/// Hair of fewer points is looked at as a whole. Of more hair every fourth tile of a grid over it is, on both axes: the truth
-/// takes time by the area that it is asked for.
+/// Hair with fewer points is evaluated completely; otherwise every fourth tile of a grid on both axes, because the cost of the
+/// ground truth grows with the evaluated area.
 const FEW_POINTS: usize = 4096;
 
-/// Tiles of that grid on an axis.
+/// Number of tiles of that grid per axis.
 const TILES: f32 = 16.0;
 
-/// Which tile of four is looked at, on each axis.
+/// The evaluated tile of four, on each axis.
 const TILE: [u32; 2] = [1, 2];
 
-/// The directions of the light, and what is true under each.
+/// The directions of the light, and the ground truth for each.
 pub(super) struct LightSweep {
     directions: Vec<Vec3>,
-    /// The strand points that are looked at.
+    /// The evaluated strand points.
     points: Vec<usize>,
-    /// For each truth its transmittance, direction after direction; none where it is not known.
+    /// Transmittance per ground truth and direction; `None` if unknown.
     truths: Vec<Option<Vec<Vec<f32>>>>,
 }
 
 impl LightSweep {
-    /// Finds the truth under every direction; `tell` is called before each. `reference` is told how well they converged (of
-    /// all that which changed most), and which could not be had.
+    /// Computes the ground truth for every direction; `check_cancel` is called before each. `reference` receives the convergence (of
+    /// the one that changed most) and the missing ones.
     ///
     /// # Errors
-    /// What `tell` returns. The inner one: what does not fit in memory, with the numbers.
+    /// The error of `check_cancel`. The inner error says what does not fit in memory, with numbers.
     pub(super) fn new(
         (hair, project, light): (&Hair, &Project, &Light),
         known: &[Truth],
         reference: &mut Reference,
-        mut tell: impl FnMut() -> Result<(), StudioError>,
-    ) -> Result<Result<Self, String>, StudioError> {
+        mut check_cancel: impl FnMut() -> Result<(), ProjectError>,
+    ) -> Result<Result<Self, String>, ProjectError> {
         let first = LightFrame::new(light.direction);
         let strands = &hair.strands;
         let points = patches(strands, &first);
@@ -64,9 +64,9 @@ impl LightSweep {
         let mut truths = Vec::with_capacity(known.len());
         for known in known {
             let mut frames = Vec::with_capacity(directions.len());
-            // What is too much without turning is told elsewhere.
+            // If it fails without turning, another note says so.
             for &direction in directions.iter().filter(|_| known.transmittance.is_ok()) {
-                tell()?;
+                check_cancel()?;
                 match converge_at(&turned(&input, direction), &known.settings, [&x, &y, &z]) {
                     (Ok(found), facts) => {
                         frames.push(found);
@@ -86,46 +86,45 @@ impl LightSweep {
         Ok(Ok(Self { directions, points, truths }))
     }
 
-    /// What changes by the settings of `project`, beside the truth of this number.
+    /// Changes with the settings of `project`, compared with the ground truth of this number.
     ///
     /// # Errors
-    /// As drawing, or what `tell` returns, which is asked before each draw.
+    /// As rendering, or the error of `check_cancel`, which is called before each draw.
     pub(super) fn watch(
         &self,
         renderer: &mut Renderer,
         (hair, project): (&Hair, &Project),
         truth: usize,
-        tell: &mut Tell,
-    ) -> Result<ChangeReport, StudioError> {
+        check_cancel: &mut CheckCancel,
+    ) -> Result<ChangeReport, ProjectError> {
         let mut lit = project.clone();
         let first = lit.lights.iter().position(|light| light.enabled);
         lit.lights = first.map(|at| lit.lights[at].clone()).into_iter().collect();
         let mut frames = Vec::with_capacity(self.directions.len());
         for &direction in &self.directions {
-            tell()?;
+            check_cancel()?;
             lit.lights.iter_mut().for_each(|light| light.direction = direction);
             frames.push(picked(&drawn(renderer, &hair.frame_input(&lit))?, &self.points));
         }
-        // Without a light the axes of its map are forgotten: whoever draws next begins as if this had not been.
+        // Rendering without lights clears the axes of the map, so that the next render is not affected.
         lit.lights.clear();
         renderer.picture(&hair.frame_input(&lit), SMALL, SMALL, &mut Picture::default())?;
         Ok(ChangeReport::new(&frames, self.truths.get(truth).and_then(Option::as_ref)))
     }
 }
 
-/// The same under light of another direction, with axes as drawing turns them.
+/// The input with another light direction, with axes as in rendering.
 fn turned<'a>(input: &ShadowInput<'a>, direction: Vec3) -> ShadowInput<'a> {
     ShadowInput { light: input.light.transported(direction), ..*input }
 }
 
-/// The directions of light that begins along `first` (unit length) and turns sideways: about the axis across it that is
-/// nearest to the vertical.
+/// Directions that start at `first` (unit length) and turn sideways about the perpendicular axis nearest to the vertical.
 fn directions(first: Vec3) -> Vec<Vec3> {
     let axis = Vec3::Y.reject_from_normalized(first).try_normalize().unwrap_or(Vec3::X);
     (0..=STEPS).map(|step| Quat::from_axis_angle(axis, DEGREES.to_radians() * step as f32) * first).collect()
 }
 
-/// The points that are looked at: all of little hair, of more those within tiles that lie evenly over it across the light.
+/// The evaluated points: all of them if there are few, otherwise those in evenly spaced tiles across the light.
 fn patches(strands: &Strands, light: &LightFrame) -> Vec<usize> {
     let count = strands.points();
     let across = |point: usize| {
@@ -150,7 +149,7 @@ fn patches(strands: &Strands, light: &LightFrame) -> Vec<usize> {
         (0..2).all(|axis| ((at[axis] - low[axis]) / size) as u32 % 4 == TILE[axis])
     };
     let chosen: Vec<usize> = all().filter(within).collect();
-    // Hair that misses every tile is a line or two.
+    // Hair outside all tiles is just a few strands.
     if chosen.is_empty() { all().take(FEW_POINTS).collect() } else { chosen }
 }
 
@@ -173,7 +172,7 @@ mod tests {
             assert_eq!(directions.len(), STEPS + 1);
             assert_eq!(directions[0], first);
             for pair in directions.windows(2) {
-                // The angle by its sine, which single precision knows well.
+                // The angle from its sine, which is accurate in single precision.
                 let degrees = pair[0].cross(pair[1]).length().asin().to_degrees();
                 assert!((degrees - 0.1).abs() < 1e-4, "{degrees}");
             }
@@ -182,7 +181,7 @@ mod tests {
         }
     }
 
-    /// Sheets of `layers` layers, 0.1 mm apart from the height 0 down, each of strands along z that touch each other.
+    /// `layers` sheets, 0.1 mm apart from height 0 down, each of touching strands along z.
     fn sheets(layers: u32, width: f32) -> Strands {
         let mut made = Strands::default();
         let mut first_point = vec![0];
@@ -200,9 +199,9 @@ mod tests {
         made
     }
 
-    /// The truth below even sheets is known: of light at an angle each takes 1 / cosine as much of the logarithm.
+    /// The ground truth below uniform sheets is known: at an angle, each sheet absorbs 1 / cosine times as much optical depth.
     #[test]
-    fn the_truth_of_sheets_turns_as_the_cosine_says() {
+    fn the_ground_truth_of_sheets_follows_the_cosine() {
         let width = 2e-4;
         let strands = sheets(40, width);
         let first = Vec3::new(1.0, -1.0, 0.0).normalize_or_zero();
@@ -222,13 +221,13 @@ mod tests {
             found.iter().map(|t| -f64::from(*t).ln()).sum::<f64>() / found.len() as f64
         };
         let cosine = |degrees: f64| (45.0 + degrees).to_radians().cos();
-        // 40 sheets; 1.1312 of 1.1314 measured.
+        // 40 sheets; measured 1.1312 of 1.1314.
         let before = logarithm(0.0);
         assert!((before * cosine(0.0) - 0.8).abs() < 1e-3, "{before}");
         // 1.01434 of 1.01431 measured.
         let flatter = logarithm(0.8) / before;
         assert!((flatter - cosine(0.0) / cosine(0.8)).abs() < 2e-4, "{flatter}");
-        // Negative control: the other way it becomes less.
+        // Negative control: the other way it decreases.
         let steeper = logarithm(-0.8) / before;
         assert!((steeper - cosine(0.0) / cosine(-0.8)).abs() < 2e-4 && steeper < 1.0, "{steeper}");
     }
@@ -252,7 +251,7 @@ mod tests {
         assert!((part - 1.0 / 16.0).abs() < 0.005, "{part}");
         let mean = chosen.iter().map(|point| many.x[*point]).sum::<f32>() / chosen.len() as f32;
         assert!((mean - 0.5).abs() < 0.1, "{mean}");
-        // All of little hair but what is no number.
+        // All points of little hair, except NaN.
         let mut few = grid(20);
         few.x[7] = f32::NAN;
         assert_eq!(patches(&few, &light).len(), 399);

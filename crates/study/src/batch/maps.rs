@@ -1,16 +1,16 @@
-//! Numbers as pictures: false colour with the legend beside it.
+//! False-colour images with legends.
 
 use lovelock_metrics::{ColorMap, Image, paint};
 use lovelock_render::{FrameInput, RenderError, ValueRenderer};
 
 use crate::report::Legend;
 
-/// One kind of map: every method's has the same scale, in every report, so that colours can be compared.
+/// One kind of map. Its scale is the same for all methods and reports, so that colours can be compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Kind {
     pub id: &'static str,
     title: &'static str,
-    /// What stands above the scale in a picture, where there is little room.
+    /// Short title above the scale in an image.
     short: &'static str,
     map: ColorMap,
     largest: f32,
@@ -19,7 +19,7 @@ pub(super) struct Kind {
 /// Transmittance itself.
 pub(super) const TRANSMITTANCE: Kind =
     Kind { id: "transmittance", title: "Transmittance", short: "T", map: ColorMap::Viridis, largest: 1.0 };
-/// Its error, with its sign.
+/// Its signed error.
 pub(super) const TRANSMITTANCE_ERROR: Kind = Kind {
     id: "transmittance-error",
     title: "Error of transmittance: above zero too bright",
@@ -51,7 +51,7 @@ pub(super) const POP: Kind = Kind {
     map: ColorMap::Magma,
     largest: 0.5,
 };
-/// Change from frame to frame that is not the reference's own.
+/// Change from frame to frame that differs from the reference.
 pub(super) const FLICKER: Kind = Kind {
     id: "flicker",
     title: "Change of transmittance from frame to frame that is not the reference's own",
@@ -60,7 +60,7 @@ pub(super) const FLICKER: Kind = Kind {
     largest: 0.1,
 };
 
-/// Those of a report, in the order of its legends; pop and flicker only of several frames.
+/// The kinds of a report, in the order of its legends; pop and flicker only for several frames.
 pub(super) fn kinds(of_several_frames: bool) -> impl Iterator<Item = Kind> {
     let all = [TRANSMITTANCE, TRANSMITTANCE_ERROR, PICTURE_ERROR, SWIM, POP, FLICKER];
     all.into_iter().take(if of_several_frames { 6 } else { 4 })
@@ -79,7 +79,7 @@ impl Kind {
         }
     }
 
-    /// A value for each pixel as colours with the legend beside them: width, height and bytes.
+    /// Values per pixel as colours with the legend beside them: width, height and bytes.
     pub(super) fn painted(&self, width: u32, height: u32, values: &[f32]) -> Option<(u32, u32, Vec<u8>)> {
         let range = self.map.range_to(self.largest);
         let rgba = paint(values, range.clone(), self.map);
@@ -90,7 +90,7 @@ impl Kind {
     }
 }
 
-/// A value for each pixel of a value for each strand point; NaN where no hair is seen.
+/// Values per pixel from values per strand point; NaN where no hair is visible.
 ///
 /// # Errors
 /// As [`ValueRenderer::picture`].
@@ -102,7 +102,7 @@ pub(super) fn at_pixels(
 ) -> Result<Vec<f32>, RenderError> {
     let mut picture = renderer.picture(input, values, width, height)?;
     for (value, weight) in picture.value.iter_mut().zip(&picture.weight) {
-        // A hair that hardly covers a pixel is not seen in a picture either.
+        // Hair that hardly covers a pixel is not visible in an image either.
         if *weight < 0.05 {
             *value = f32::NAN;
         }

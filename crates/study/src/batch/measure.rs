@@ -1,34 +1,35 @@
-//! Everything about one of those that are compared.
+//! All measurements of one entrant.
 
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 use lovelock_render::{FrameInput, Renderer, ValueRenderer};
 
 use super::entrants::{Entrant, file_name};
 use super::maps::{Kind, at_pixels};
 use super::probe::Probe;
 use super::swim::swimming;
-use super::work::{Against, Tell, Work};
+use super::work::{Against, CheckCancel, Work};
 use super::{banding, draw, maps, stray};
 use crate::changes::StabilityReport;
 
 impl Work<'_> {
-    /// Everything about one of those that are compared. `tell` is asked before each draw.
+    /// Measures one entrant. `check_cancel` is called before each draw.
     ///
     /// # Errors
-    /// What `tell` returns; what does not fit in memory, or cannot be written; numbers that are known by then are in the entrant's report.
+    /// The error of `check_cancel`, or if something does not fit in memory or cannot be written. The entrant's report contains the
+    /// numbers measured by then.
     pub(super) fn measure(
         &self,
         entrant: &mut Entrant,
         against: &Against,
         (truth, cell_size): (usize, Option<f32>),
         (renderer, values, probes): (&mut Renderer, &mut ValueRenderer, &mut [Probe]),
-        tell: &mut Tell,
-    ) -> Result<(), StudioError> {
+        check_cancel: &mut CheckCancel,
+    ) -> Result<(), ProjectError> {
         let project = entrant.contender.applied_to(self.project);
         let input = against.hair.frame_input(&project);
         let name = file_name(&entrant.report.name);
         let report = &mut entrant.report;
-        let drawn = draw::draw(renderer, &input, self.size, self.request.draws, report, tell)?;
+        let drawn = draw::draw(renderer, &input, self.size, self.request.draws, report, check_cancel)?;
         let shadow_input = against.hair.shadow_input(&project, &self.lights[0]);
         for probe in probes {
             probe.ask(renderer, &shadow_input, &project.shadow, &report.name)?;
@@ -56,19 +57,19 @@ impl Work<'_> {
         }
         if let Some(reference) = against.picture {
             let seen = draw::picture_error(&drawn.picture, reference, against.hair_pixels, report)
-                .map_err(StudioError::work)?;
+                .map_err(ProjectError::work)?;
             report.files.picture_error = self.pixel_map(&name, maps::PICTURE_ERROR, &seen)?;
         }
         report.banding = banding::slab(&entrant.contender.shadow);
 
         report.stray = stray::stray(&entrant.contender.shadow);
 
-        let swim = swimming(renderer, against.shifted, (&project, &self.lights[0]), tell)?;
+        let swim = swimming(renderer, against.shifted, (&project, &self.lights[0]), check_cancel)?;
         report.files.swim = self.point_map(&name, maps::SWIM, &swim.per_point, (values, &input))?;
         let mut stability =
             StabilityReport { swim: swim.rms, swim_p99: swim.p99, ..StabilityReport::default() };
         if let Some(film) = against.film {
-            let (pop, flicker) = film.watch(renderer, &project, truth, tell)?;
+            let (pop, flicker) = film.watch(renderer, &project, truth, check_cancel)?;
             (stability.pop, stability.pop_p99) = (Some(pop.max), Some(pop.p99));
             report.files.pop = self.point_map(&name, maps::POP, &pop.per_point, (values, &input))?;
             if let Some(flicker) = flicker {
@@ -79,30 +80,31 @@ impl Work<'_> {
         }
         report.stability = Some(stability);
         if let Some(sweep) = against.light_sweep {
-            report.light_sweep = Some(sweep.watch(renderer, (against.hair, &project), truth, tell)?);
+            report.light_sweep =
+                Some(sweep.watch(renderer, (against.hair, &project), truth, check_cancel)?);
         }
         Ok(())
     }
 
-    /// Draws a number for each strand point as a map, and writes it.
+    /// Renders values per strand point as a map and writes it.
     fn point_map(
         &self,
         name: &str,
         kind: Kind,
         numbers: &[f32],
         (values, input): (&mut ValueRenderer, &FrameInput),
-    ) -> Result<Option<String>, StudioError> {
+    ) -> Result<Option<String>, ProjectError> {
         let pixels = at_pixels(values, input, numbers, self.size)?;
         self.pixel_map(name, kind, &pixels)
     }
 
-    /// Writes a number for each pixel as a map.
+    /// Writes values per pixel as a map.
     pub(super) fn pixel_map(
         &self,
         name: &str,
         kind: Kind,
         numbers: &[f32],
-    ) -> Result<Option<String>, StudioError> {
+    ) -> Result<Option<String>, ProjectError> {
         let Some((width, height, rgba)) = kind.painted(self.size[0], self.size[1], numbers) else {
             return Ok(None);
         };

@@ -1,4 +1,4 @@
-//! Methods compared without a window: a folder with pictures, maps of errors, tables and a page.
+//! Comparison without a window: a folder with images, error maps, tables and a page.
 
 mod banding;
 mod csv;

@@ -1,4 +1,4 @@
-//! Rays of light through chosen points of hair, as each method sees them.
+//! Transmittance of each method along rays of light through chosen strand points.
 
 use glam::Vec3;
 use lovelock_panes::probe::{ProbeCurve, ProbeMark};
@@ -10,31 +10,31 @@ use lovelock_shadow::{
 use super::truth::Points;
 use crate::report::{NamedTruth, ProbeReport};
 
-/// Places on a ray that are asked.
+/// Number of sampled positions on a ray.
 const PLACES: usize = 241;
 
-/// How far a ray is looked at where no hair says so, metres to both sides.
-const USUAL_REACH: f32 = 0.05;
+/// Half of the range of a ray if there is no hair to determine it, metres.
+const DEFAULT_REACH: f32 = 0.05;
 
-/// Transmittance that is looked for where nobody says where to probe: in the light, in between, in the shade.
+/// Transmittance of the default probes: in the light, in between, in the shade.
 const WANTED: [f32; 3] = [0.85, 0.5, 0.15];
 
 /// One ray.
 #[derive(Debug)]
 pub(super) struct Probe {
     position: Vec3,
-    /// Depths that are asked, metres along the light from the point, and where they are.
+    /// Sampled depths, metres along the light from the point, and their positions.
     depths: Vec<f32>,
     places: Vec<Vec3>,
     pub report: ProbeReport,
 }
 
-/// Pixels between hair on all sides.
+/// Required margin of hair around a probe, pixels.
 const RIM: usize = 4;
 
-/// Pixels that show hair in the light, in between, and in the shade, by transmittance of the picture's pixels, row after row:
-/// within the hair where there is enough of it. None where there is no hair.
-pub(super) fn usual_pixels(transmittance: &[f32], width: u32) -> Vec<[u32; 2]> {
+/// Default probe pixels: hair in the light, in between and in the shade, chosen by the transmittance of the image's pixels in row
+/// order, inside the hair if there is enough. Empty if there is no hair.
+pub(super) fn default_pixels(transmittance: &[f32], width: u32) -> Vec<[u32; 2]> {
     let columns = width.max(1) as usize;
     let is_hair = |at: usize| transmittance.get(at).is_some_and(|light| light.is_finite());
     let within = |at: &usize| {
@@ -60,7 +60,7 @@ pub(super) fn usual_pixels(transmittance: &[f32], width: u32) -> Vec<[u32; 2]> {
 }
 
 impl Probe {
-    /// The ray through the hair that a pixel shows; none where it shows none.
+    /// The ray through the hair at a pixel; `None` if there is no hair.
     pub(super) fn new(
         values: &mut ValueRenderer,
         input: &FrameInput,
@@ -78,8 +78,8 @@ impl Probe {
             .map(|mark| (mark.start, mark.transmittance))
             .collect();
         let reach = |of: Option<&(f32, f32)>, usual: f32| of.map_or(usual, |step| step.0);
-        let low = reach(steps.first(), -USUAL_REACH).min(0.0);
-        let high = reach(steps.last(), USUAL_REACH).max(0.0);
+        let low = reach(steps.first(), -DEFAULT_REACH).min(0.0);
+        let high = reach(steps.last(), DEFAULT_REACH).max(0.0);
         let margin = 0.05 * (high - low) + 1e-3;
         let depth = |i: usize| low - margin + (high - low + 2.0 * margin) * i as f32 / (PLACES - 1) as f32;
         let depths: Vec<f32> = (0..PLACES).map(depth).collect();
@@ -96,10 +96,10 @@ impl Probe {
         Some(Self { position: hit.position, depths, places, report })
     }
 
-    /// Finds the mean of the light over a texel of the exact map along the ray, and tells how well it converged.
+    /// Computes the mean of the light over a texel of the exact map along the ray, and returns its convergence.
     ///
     /// # Errors
-    /// What does not fit in memory, with the numbers.
+    /// If it does not fit in memory, with the numbers.
     pub(super) fn find_reference(
         &mut self,
         input: &ShadowInput,
@@ -117,15 +117,15 @@ impl Probe {
         })
     }
 
-    /// What reports call it.
+    /// Its name in reports.
     pub(super) fn name(&self) -> String {
         format!("probe at {},{}", self.report.pixel[0], self.report.pixel[1])
     }
 
-    /// Asks the map of the last picture along the ray.
+    /// Looks up the map of the last image along the ray.
     ///
     /// # Errors
-    /// A device that is lost.
+    /// If the device is lost.
     pub(super) fn ask(
         &mut self,
         renderer: &mut Renderer,
@@ -137,7 +137,7 @@ impl Probe {
         asked.push(self.position);
         let mut light = renderer.transmittance_at(0, &asked)?;
         let value = light.pop().unwrap_or(1.0);
-        // What a map keeps is that of the definition on the processor.
+        // The marks come from the CPU definition.
         let mut map = cpu_shadow(settings.method);
         let marks = match map.build(input, settings) {
             Ok(()) => map.along_ray(self.position).marks,
@@ -166,15 +166,15 @@ mod tests {
     #[test]
     fn pixels_lie_within_the_hair_and_have_the_light_that_is_wanted() {
         let n = f32::NAN;
-        assert_eq!(usual_pixels(&[n; 12], 4), [[0; 2]; 0]);
-        assert_eq!(usual_pixels(&[], 0), [[0; 2]; 0]);
-        // Too little hair to have an inside.
-        assert_eq!(usual_pixels(&[n, 0.1, 0.9, n], 4), [[2, 0], [1, 0]]);
-        // Hair from column 5 on, the brighter the farther; its rim is left out.
+        assert_eq!(default_pixels(&[n; 12], 4), [[0; 2]; 0]);
+        assert_eq!(default_pixels(&[], 0), [[0; 2]; 0]);
+        // Too little hair to be inside of.
+        assert_eq!(default_pixels(&[n, 0.1, 0.9, n], 4), [[2, 0], [1, 0]]);
+        // Hair from column 5 on, brighter to the right; its margin is excluded.
         let (width, height) = (40, 20);
         let light = |at: usize| if at % width < 5 { n } else { (at % width) as f32 / width as f32 };
         let picture: Vec<f32> = (0..width * height).map(light).collect();
-        let chosen = usual_pixels(&picture, width as u32);
+        let chosen = default_pixels(&picture, width as u32);
         assert_eq!(chosen.iter().map(|pixel| pixel[0]).collect::<Vec<_>>(), [34, 20, 9]);
         assert!(chosen.iter().all(|pixel| (4..16).contains(&pixel[1])), "{chosen:?}");
     }

@@ -1,6 +1,6 @@
-//! The picture that others are held against.
+//! The reference image.
 
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 use lovelock_render::{
     Backend, KnownTransmittance, Picture, RenderError, Renderer, ShadowMethod, Transparency, ValueRenderer,
 };
@@ -13,17 +13,17 @@ use super::work::Work;
 use crate::report::{CompareReport, NamedTruth};
 
 impl Work<'_> {
-    /// Draws the picture that others are held against: exact transparency, shaded with converged transmittance, which is known
-    /// of the first light. None where the truth does not fit in memory; the report says so.
+    /// Renders the reference image: exact transparency, shaded with converged transmittance, which is known for the first light.
+    /// `None` if the ground truth does not fit in memory; the report says so.
     ///
     /// # Errors
-    /// A size out of range, or a file that cannot be written.
+    /// If the size is out of range, or a file cannot be written.
     pub(super) fn reference(
         &self,
         hair: &Hair,
         of_first_light: &Truth,
         report: &mut CompareReport,
-    ) -> Result<Option<Picture>, StudioError> {
+    ) -> Result<Option<Picture>, ProjectError> {
         let mut project = self.project.clone();
         project.shadow.method = ShadowMethod::Exact;
         project.picture.transparency = Transparency::Exact;

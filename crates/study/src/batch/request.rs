@@ -1,4 +1,4 @@
-//! What to compare.
+//! The request for a comparison.
 
 use std::ops::Range;
 use std::path::PathBuf;
@@ -9,35 +9,34 @@ use lovelock_render::{Backend, Gpu, ShadowMethod, Transparency};
 
 use super::sweep::Sweep;
 
-/// What to compare; where a field is empty, the project says.
+/// What to compare. Empty fields use the project's values.
 #[derive(Clone, Debug)]
 pub struct CompareRequest {
     /// The folder for the report.
     pub out: PathBuf,
-    /// What the report calls the project.
+    /// Name of the project in the report.
     pub name: String,
-    /// Frames, half open: pictures, errors and times are of the first one, swim, pop and flicker of all.
+    /// Frames, half open. Images, errors and times are of the first one; swim, pop and flicker of all.
     pub frames: Option<Range<u64>>,
-    /// Frames a second.
+    /// Frames per second.
     pub fps: Option<f64>,
     /// Width and height, pixels.
     pub size: Option<(u32, u32)>,
-    /// Shadow methods, in the order of the report; all where there are none.
+    /// Shadow methods in the order of the report; all if empty.
     pub methods: Vec<ShadowMethod>,
-    /// Transparency modes, each with every method.
+    /// Transparency modes, combined with every method.
     pub transparencies: Vec<Transparency>,
-    /// What draws, each with every method. One that this machine has not is left out with a note, unless it is the only
-    /// one.
+    /// Backends, combined with every method. An unavailable one is skipped with a note, unless it is the only one.
     pub backends: Vec<Backend>,
-    /// Settings that methods run through; a method without a setting of that name runs once.
+    /// Sweeps of settings; a method without a setting runs once.
     pub sweeps: Vec<Sweep>,
-    /// Pixels whose hair is probed, from the upper left corner; some are chosen where there are none.
+    /// Pixels to probe, from the upper left corner; chosen automatically if empty.
     pub probes: Vec<[u32; 2]>,
-    /// Draws that a time is the median of, after a warm-up; at least one.
+    /// Number of draws per time measurement, after a warm-up; at least one.
     pub draws: u32,
-    /// What the project may read.
+    /// The files that the project may read.
     pub access: Access,
-    /// The device to draw on in place of what `backends` opens.
+    /// The device to render on instead of opening one for `backends`.
     pub gpu: Option<Arc<Gpu>>,
 }
 
@@ -54,7 +53,7 @@ impl Default for CompareRequest {
             backends: Vec::new(),
             sweeps: Vec::new(),
             probes: Vec::new(),
-            draws: Self::LEAST_DRAWS,
+            draws: Self::DEFAULT_DRAWS,
             access: Access::default(),
             gpu: None,
         }
@@ -62,6 +61,6 @@ impl Default for CompareRequest {
 }
 
 impl CompareRequest {
-    /// Fewer draws than this are no basis for a median with a spread.
-    pub const LEAST_DRAWS: u32 = 30;
+    /// Default number of draws. Medians and percentiles of fewer draws are rough, and the report says so.
+    pub const DEFAULT_DRAWS: u32 = 30;
 }

@@ -1,15 +1,15 @@
-//! The comparison from beginning to end.
+//! Runs a comparison.
 
 use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
 
 use lovelock_project::Project;
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 use lovelock_render::{Backend, Renderer};
 use lovelock_session::dance::Dance;
 use lovelock_session::machine::machine;
 use lovelock_session::prepare::open_renderer;
-use lovelock_session::progress::{Progress, tell};
+use lovelock_session::progress::{Progress, report_progress};
 use lovelock_session::scene::Scene;
 use lovelock_session::snapshot::FrameSnapshot;
 
@@ -20,20 +20,20 @@ use super::request::CompareRequest;
 use super::work::Work;
 use crate::report::{CompareReport, SceneFacts};
 
-/// Compares methods on one instant of a project's dance, and over the frames after it where there are several. The report
-/// grows in `request.out` while it runs; each file is written beside its name and renamed.
+/// Compares methods at one instant of a project, and over the following frames if there are several. The report in `request.out`
+/// grows during the run; each file is written under a temporary name and renamed.
 ///
-/// `progress` is told each part of the work, and may stop it: what is finished stays, and the report that is returned says
-/// that it is not complete.
+/// `progress` is called for each part of the work and may cancel it. Finished parts are then kept, and the returned report is
+/// marked as incomplete.
 ///
 /// # Errors
-/// [`StudioError::exit_code`] 2 for a wrong request, 1 where the work fails (no adapter, a full disk). A method or a reference
-/// that needs too much memory is no error: the report says so, with the numbers.
+/// [`ProjectError::exit_code`] 2 for an invalid request, 1 if the work fails (no adapter, a full disk). A method or reference that
+/// needs too much memory is not an error: the report says so, with numbers.
 pub fn compare(
     project: &Project,
     request: &CompareRequest,
     progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-) -> Result<CompareReport, StudioError> {
+) -> Result<CompareReport, ProjectError> {
     let (project, _) = project.sanitised();
     let fps = request.fps.unwrap_or(project.recording.fps);
     let size = request.size.unwrap_or((project.recording.width, project.recording.height));
@@ -44,7 +44,7 @@ pub fn compare(
     let folder = Folder::new(&request.out)?;
 
     let (mut dance, problems) = Dance::open(&project, &request.access, fps, progress)?;
-    tell(progress, Progress::Loaded { problems: problems.clone() })?;
+    report_progress(progress, Progress::Loaded { problems: problems.clone() })?;
     notes.extend(problems.iter().map(ToString::to_string));
     let frames = frames(&project, request, &dance, fps)?;
     let mut report = CompareReport {
@@ -55,14 +55,17 @@ pub fn compare(
         notes,
         ..CompareReport::default()
     };
-    // A report of before does not stand beside pictures of now.
+    // Replace an earlier report before new images are written.
     folder.report(&report)?;
     let snapshots = instants(&mut dance, &frames, progress)?;
     let animated = project.is_animated();
-    // Frames of one film are drawn alike: what differs between them is then the method's and not a track's.
+    // Render all frames with the same settings, so that differences come from the method and not from a track.
     let project = snapshots
         .first()
         .map_or_else(|| project.clone(), |first| project.seen_at(first.position_secs).into_owned());
+    if request.draws < CompareRequest::DEFAULT_DRAWS {
+        report.notes.push(few_draws(request.draws.max(1)));
+    }
     if animated && snapshots.len() > 1 {
         report.notes.push("Tracks stand still at their values of the first frame.".to_owned());
     }
@@ -75,7 +78,7 @@ pub fn compare(
     };
     match work.run(&snapshots, entrants, &mut renderers, &mut report, progress) {
         Ok(()) => report.complete = true,
-        Err(StudioError::Cancelled) => {
+        Err(ProjectError::Cancelled) => {
             report
                 .notes
                 .push("Stopped before its end: what is here is whole, and more was asked for.".to_owned());
@@ -87,44 +90,54 @@ pub fn compare(
     Ok(report)
 }
 
-/// What can be told to be wrong before anything is loaded.
+/// The note on times of fewer draws than [`CompareRequest::DEFAULT_DRAWS`].
+fn few_draws(draws: u32) -> String {
+    let draws = if draws == 1 { "1 draw".to_owned() } else { format!("{draws} draws") };
+    format!(
+        "Each time was measured over only {draws}. Medians and the 10th to 90th percentiles of so few draws are rough; use {} or \
+         more to compare times.",
+        CompareRequest::DEFAULT_DRAWS
+    )
+}
+
+/// Rejects what is wrong before anything is loaded.
 fn check(
     project: &Project,
     request: &CompareRequest,
     fps: f64,
     (width, height): (u32, u32),
-) -> Result<(), StudioError> {
+) -> Result<(), ProjectError> {
     lovelock_render::check_size(width, height)?;
-    lovelock_record::FrameRate::from_fps(fps).map_err(StudioError::option)?;
+    lovelock_record::FrameRate::from_fps(fps).map_err(ProjectError::option)?;
     if let Some(frames) = &request.frames
         && frames.is_empty()
     {
-        return Err(StudioError::option(format!(
+        return Err(ProjectError::option(format!(
             "frames {}..{}: an empty range; the second number is one past the last frame",
             frames.start, frames.end
         )));
     }
     if let Some([x, y]) = request.probes.iter().find(|[x, y]| *x >= width || *y >= height) {
-        return Err(StudioError::option(format!(
-            "--probe {x},{y}: outside the picture of {width}x{height} pixels"
+        return Err(ProjectError::option(format!(
+            "--probe {x},{y}: outside the image of {width}x{height} pixels"
         )));
     }
     if lights(project).is_empty() {
-        return Err(StudioError::option(
+        return Err(ProjectError::option(
             "no light of the project is switched on: there is no shadow to compare",
         ));
     }
     Ok(())
 }
 
-/// Opens what draws, each backend once. One that this machine has not costs its own numbers alone, unless it is the only one.
-fn open(project: &Project, request: &CompareRequest) -> Result<(Vec<Renderer>, Vec<String>), StudioError> {
+/// Opens a renderer per backend. An unavailable backend is skipped with a note, unless it is the only one.
+fn open(project: &Project, request: &CompareRequest) -> Result<(Vec<Renderer>, Vec<String>), ProjectError> {
     let own = [project.picture.backend];
     let asked = if request.backends.is_empty() { &own[..] } else { &request.backends };
     let mut renderers: Vec<Renderer> = Vec::new();
     let (mut notes, mut failed) = (Vec::new(), None);
     for &backend in asked {
-        // A device that is given stands for the graphics card alone.
+        // A given device is only used for the GPU.
         let gpu = request.gpu.as_ref().filter(|_| backend == Backend::Gpu);
         match open_renderer(backend, gpu) {
             Ok(renderer) if renderers.iter().all(|open| open.backend() != renderer.backend()) => {
@@ -143,18 +156,18 @@ fn open(project: &Project, request: &CompareRequest) -> Result<(Vec<Renderer>, V
     }
 }
 
-/// The frames to look at: as asked for, else the project's first one.
+/// The requested frames, or the project's first one.
 fn frames(
     project: &Project,
     request: &CompareRequest,
     dance: &Dance,
     fps: f64,
-) -> Result<Range<u64>, StudioError> {
+) -> Result<Range<u64>, ProjectError> {
     let in_clip = dance.frames();
     let first = project.recording.first_frame.min(in_clip - 1);
     let frames = request.frames.clone().unwrap_or(first..first + 1);
     if frames.end > in_clip {
-        return Err(StudioError::option(format!(
+        return Err(ProjectError::option(format!(
             "frame {} is outside the clip, which has frames 0 to {} at {fps} a second",
             frames.end - 1,
             in_clip - 1
@@ -185,17 +198,24 @@ fn facts(
     }
 }
 
-/// Lives through the dance up to the last frame, and keeps those that are asked for.
+/// Simulates up to the last frame, and returns the snapshots of the requested ones.
 fn instants(
     dance: &mut Dance,
     frames: &Range<u64>,
     progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-) -> Result<Vec<Arc<FrameSnapshot>>, StudioError> {
+) -> Result<Vec<Arc<FrameSnapshot>>, ProjectError> {
     dance.begin(frames.start, dance.secs_of(frames.start), progress)?;
     let mut snapshots = Vec::new();
     for frame in frames.clone() {
         snapshots.push(dance.snapshot(frame)?);
-        tell(progress, Progress::Frame { done: frame + 1 - frames.start, total: frames.end - frames.start })?;
+        report_progress(
+            progress,
+            Progress::Frame {
+                done: frame + 1 - frames.start,
+                total: frames.end - frames.start,
+                steps_per_frame: dance.steps_per_frame(),
+            },
+        )?;
     }
     Ok(snapshots)
 }

@@ -1,34 +1,34 @@
-//! How still a method stands from frame to frame of a film.
+//! Temporal stability of a method over the frames of a film.
 
 use std::sync::Arc;
 
 use lovelock_metrics::{Stability, flicker, pop};
 use lovelock_project::Project;
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 use lovelock_render::{FrameInput, Light, Picture, Renderer};
 use lovelock_session::snapshot::FrameSnapshot;
 
 use super::hair::Hair;
 use super::truth::{Truth, converge};
-use super::work::Tell;
+use super::work::CheckCancel;
 use crate::report::{FootprintTruth, NamedTruth, Reference};
 
-/// Pictures that nobody looks at are this large.
+/// Size of images that are rendered only for their transmittance, pixels.
 pub(super) const SMALL: u32 = 16;
 
-/// What all frames of all truths may take together, bytes.
+/// Memory limit of all frames of all ground truths together, bytes.
 const MOST_BYTES: u64 = 4 << 30;
 
-/// Transmittance of the first light at every strand point, as `renderer` draws with it.
-pub(super) fn drawn(renderer: &mut Renderer, input: &FrameInput) -> Result<Vec<f32>, StudioError> {
+/// Transmittance of the first light at every strand point, as used by `renderer`.
+pub(super) fn drawn(renderer: &mut Renderer, input: &FrameInput) -> Result<Vec<f32>, ProjectError> {
     renderer.picture(input, SMALL, SMALL, &mut Picture::default())?;
     Ok(renderer.transmittance(0)?)
 }
 
-/// Whether the transmittance of so many frames of points fits in memory, for every truth and for a method.
+/// Checks whether the transmittance of that many frames and points fits in memory, for every ground truth and one method.
 ///
 /// # Errors
-/// What does not fit, with the numbers.
+/// What does not fit, with numbers.
 pub(super) fn fits(what: &str, frames: u64, points: usize, truths: usize) -> Result<(), String> {
     let bytes = frames.saturating_mul(points as u64).saturating_mul(4 * (truths as u64 + 1));
     if bytes > MOST_BYTES {
@@ -41,27 +41,27 @@ pub(super) fn fits(what: &str, frames: u64, points: usize, truths: usize) -> Res
     Ok(())
 }
 
-/// The frames of a comparison, and what is true in them.
+/// The frames of a comparison and their ground truth.
 pub(super) struct Film {
     snapshots: Vec<Arc<FrameSnapshot>>,
-    /// For each truth its transmittance, frame after frame; none where it is not known.
+    /// Transmittance per ground truth and frame; `None` if unknown.
     truths: Vec<Option<Vec<Vec<f32>>>>,
 }
 
 impl Film {
-    /// Finds the truth in every frame; `tell` is called before each. `reference` is told how well those of frames after the
-    /// first converged (of each frame that which changed most), and which could not be had.
+    /// Computes the ground truth of every frame; `check_cancel` is called before each. `reference` receives the convergence of the
+    /// frames after the first (of the ground truth that changed most), and the missing ones.
     ///
     /// # Errors
-    /// What `tell` returns.
+    /// The error of `check_cancel`.
     pub(super) fn new(
         (first_frame, snapshots): (u64, &[Arc<FrameSnapshot>]),
         project: &Project,
         light: &Light,
         known: &[Truth],
         reference: &mut Reference,
-        mut tell: impl FnMut() -> Result<(), StudioError>,
-    ) -> Result<Self, StudioError> {
+        mut check_cancel: impl FnMut() -> Result<(), ProjectError>,
+    ) -> Result<Self, ProjectError> {
         let mut truths: Vec<_> =
             known.iter().map(|truth| truth.transmittance.is_ok().then(Vec::new)).collect();
         for (frame, snapshot) in snapshots.iter().enumerate() {
@@ -70,7 +70,7 @@ impl Film {
             let mut worst: Option<FootprintTruth> = None;
             for (of_truth, known) in truths.iter_mut().zip(known) {
                 let Some(frames) = of_truth else { continue };
-                tell()?;
+                check_cancel()?;
                 let found = if let (0, Ok(found)) = (frame, &known.transmittance) {
                     Ok(found.clone())
                 } else {
@@ -93,20 +93,20 @@ impl Film {
         Ok(Self { snapshots: snapshots.to_vec(), truths })
     }
 
-    /// Pop, and flicker against the truth of this number.
+    /// Pop, and flicker against the ground truth of this number.
     ///
     /// # Errors
-    /// As drawing, or what `tell` returns, which is asked before each frame.
+    /// As rendering, or the error of `check_cancel`, which is called before each frame.
     pub(super) fn watch(
         &self,
         renderer: &mut Renderer,
         project: &Project,
         truth: usize,
-        tell: &mut Tell,
-    ) -> Result<(Stability, Option<Stability>), StudioError> {
+        check_cancel: &mut CheckCancel,
+    ) -> Result<(Stability, Option<Stability>), ProjectError> {
         let mut frames = Vec::with_capacity(self.snapshots.len());
         for snapshot in &self.snapshots {
-            tell()?;
+            check_cancel()?;
             let hair = Hair::new(Arc::clone(snapshot), project);
             frames.push(drawn(renderer, &hair.frame_input(project))?);
         }

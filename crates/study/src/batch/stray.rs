@@ -1,4 +1,4 @@
-//! What a single hair does to the shadow of a bundle that it moves into: figure 4 of Sintorn and Assarsson 2009, in motion.
+//! The effect of a single hair that moves into a bundle on the bundle's shadow: figure 4 of Sintorn and Assarsson 2009, in motion.
 
 use std::sync::Arc;
 
@@ -13,30 +13,30 @@ use crate::changes::ChangeReport;
 const RADIUS: f32 = 0.01;
 const LENGTH: f32 = 0.01;
 
-/// Its strands, each as wide as what it stands for, metres.
+/// Number of its strands.
 const STRANDS: usize = 1775;
 const WIDTH: f32 = 1.77e-4;
 
-/// Light that a strand takes where it lies is e to the minus this: some twenty strands lie behind each other in the middle,
-/// and of the light a twentieth comes through.
+/// Optical depth of a strand. About twenty strands lie behind each other in the middle of the bundle, which transmits about a
+/// twentieth of the light.
 const EXTINCTION: f32 = 0.15;
 
-/// Depth of the stray hair when it begins, 2 cm before the bundle, and how far it moves in a step, metres. It ends within the
-/// bundle, before all points that are looked at.
+/// Start depth of the stray hair, 2 cm before the bundle, and its distance per step, metres. It ends inside the bundle, before all
+/// evaluated points.
 const START: f32 = -0.03;
 const STEP: f32 = 0.001;
 const STEPS: usize = 26;
 
-/// Half of what the stray hair spans on both axes across the light, metres.
+/// Half of the stray hair's extent on both axes across the light, metres.
 const REACH: f32 = 0.0045;
 
-/// Places along the stray hair behind which points are looked at, and points behind each, from the middle of the bundle on.
+/// Number of positions along the stray hair behind which points are evaluated, and of points behind each, from the middle of the
+/// bundle on.
 const PLACES: usize = 64;
 const DEPTHS: usize = 16;
 
-/// What changes behind the stray hair, by the definition of the method on the processor. The hair is before every point in
-/// every frame and takes the same light always, so that the truth does not change. None where the bundle cannot be built,
-/// and where strands count by their points.
+/// Changes behind the stray hair, by the method's CPU definition. The hair is before every point in every frame and always absorbs
+/// the same light, so the ground truth does not change. `None` if the bundle cannot be built, or strands are counted by points.
 pub(super) fn stray(settings: &ShadowSettings) -> Option<ChangeReport> {
     let by_points = settings.voxel_map.deposit == VoxelDeposit::PointCount;
     if settings.method == ShadowMethod::VoxelMap && by_points {
@@ -69,12 +69,12 @@ fn behind(settings: &ShadowSettings, depths: &[f32]) -> Option<Vec<Vec<f32>>> {
     Some(frames)
 }
 
-/// Where the stray hair is, as a part of its length: across the light.
+/// Position across the light at a fraction of the stray hair's length.
 fn along_stray(part: f32) -> [f32; 2] {
     [part, part].map(|part| REACH * (2.0 * part - 1.0))
 }
 
-/// The points that are looked at, in the axes of the light.
+/// The evaluated points, in the axes of the light.
 fn points() -> impl Iterator<Item = Vec3> + Clone {
     (0..PLACES * DEPTHS).map(|i| {
         let [y, z] = along_stray(((i / DEPTHS) as f32 + 0.5) / PLACES as f32);
@@ -82,7 +82,7 @@ fn points() -> impl Iterator<Item = Vec3> + Clone {
     })
 }
 
-/// The bundle, of strands that run along the first axis across the light, a little askew, and the stray hair at `depth`.
+/// The bundle, of slightly tilted strands along the first axis across the light, and the stray hair at `depth`.
 fn bundle(light: &LightFrame, depth: f32) -> Strands {
     let mut made = Strands::default();
     let mut first_point = vec![0];
@@ -94,7 +94,7 @@ fn bundle(light: &LightFrame, depth: f32) -> Strands {
         }
         first_point.push(made.x.len() as u32);
     };
-    // Even over the round cross-section and over slopes (the sequence of Roberts 2018 in four dimensions).
+    // Evenly distributed over the round cross-section and over slopes (the sequence of Roberts 2018 in four dimensions).
     let g = 1.167_303_978_261_418_7_f64;
     for i in 0..STRANDS {
         let [u, v, s, t] = [1, 2, 3, 4].map(|power| (0.5 + i as f64 / g.powi(power)).fract() as f32);
@@ -124,21 +124,21 @@ mod tests {
 
     #[test]
     fn nothing_changes_behind_the_stray_hair_but_what_a_method_does() {
-        // The truth is known: a hair that takes the same light from every place takes the same light.
+        // The ground truth is known, because the hair always absorbs the same light.
         let exact = of(ShadowMethod::Exact);
         assert_eq!((exact.pop, exact.jitter), (0.0, Some(0.0)));
         assert_eq!((exact.truth_pop, exact.points, exact.steps), (Some(0.0), 1024, 26));
-        // Negative control, the papers' own: layers that begin at the stray hair. 0.059 and 0.0037 measured; occupancy maps
-        // 0.030 and 0.0024.
+        // Negative control, as in the papers: layers that start at the stray hair. Measured 0.059 and 0.0037; occupancy maps 0.030
+        // and 0.0024.
         let deep = of(ShadowMethod::DeepOpacityMaps);
         assert!(deep.pop > 0.04 && deep.excess == Some(deep.pop), "{deep:?}");
         let occupancy = of(ShadowMethod::OccupancyMaps);
         assert!(occupancy.pop < 0.7 * deep.pop && occupancy.jitter < deep.jitter, "{occupancy:?}");
     }
 
-    /// The mean over a texel behind the hair, which no change was looked for in above, stands still too.
+    /// The mean over a texel behind the hair, which the test above does not evaluate, is constant too.
     #[test]
-    fn the_truth_stands_still_by_any_measure() {
+    fn the_mean_over_a_texel_is_constant_too() {
         let light = LightFrame::default();
         let mut settings = ShadowSettings { extinction_scale: EXTINCTION, ..ShadowSettings::default() };
         settings.method = ShadowMethod::Exact;
@@ -153,15 +153,15 @@ mod tests {
         let largest = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
         let (first, last) = (truth(START).transmittance, truth(START + STEP * STEPS as f32).transmittance);
         assert_eq!(largest(&first, &last), 0.0);
-        // Negative control: from behind the points the hair takes no light of theirs.
+        // Negative control: behind the points the hair absorbs none of their light.
         let behind = truth(RADIUS).transmittance;
         assert!(largest(&first, &behind) > 0.03, "0.044 measured");
     }
 
-    /// A point that the hair passes gains what it took: e to the extinction times its area in a texel that it crosses from
-    /// corner to corner, over the texel's own.
+    /// A point that the hair passes regains the absorbed light: e to the extinction times the hair's area in a texel that it crosses
+    /// diagonally, divided by the texel's area.
     #[test]
-    fn a_point_that_the_hair_passes_gains_what_it_took() {
+    fn a_point_that_the_hair_passes_regains_its_light() {
         let mut settings = ShadowSettings { method: ShadowMethod::Exact, ..ShadowSettings::default() };
         settings.exact.filter = TexelFilter::Nearest;
         let strands = bundle(&LightFrame::default(), START);
@@ -174,7 +174,7 @@ mod tests {
         let frames = behind(&settings, &[-0.004, 0.0095]).expect("a bundle");
         let gains = || frames[1].iter().zip(&frames[0]).map(|(after, before)| after / before);
         assert!(gains().all(|gain| (gain / expected - 1.0).abs() < 1e-5), "{expected}: {:?}", gains().next());
-        // Negative control: before the hair has passed there is no gain.
+        // Negative control: no gain before the hair has passed.
         let frames = behind(&settings, &[-0.004, -0.001]).expect("a bundle");
         assert_eq!(frames[0], frames[1]);
     }

@@ -1,12 +1,12 @@
-//! Settings that methods run through.
+//! Sweeps of settings.
 
 use std::str::FromStr;
 
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 use lovelock_render::{ShadowMethod, ShadowSettings};
 use serde_json::Value;
 
-/// A setting of shadow methods, and the values that it takes one after the other.
+/// A setting of shadow methods, and its values.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sweep {
     /// The setting's name in projects.
@@ -58,11 +58,11 @@ pub(super) fn with_value(
     settings: &ShadowSettings,
     setting: &str,
     text: &str,
-) -> Result<Option<ShadowSettings>, StudioError> {
+) -> Result<Option<ShadowSettings>, ProjectError> {
     let known = settings.method.settings();
     let Some(info) = known.iter().find(|info| info.name == setting) else { return Ok(None) };
     let wrong = || {
-        StudioError::option(format!(
+        ProjectError::option(format!(
             "--sweep {setting}={text}: {} takes {} (usually {})",
             settings.method, info.values, info.usual
         ))
@@ -72,12 +72,12 @@ pub(super) fn with_value(
         return Err(wrong());
     }
     if let Some((below, above)) = off_step(&info.values, &value) {
-        return Err(StudioError::option(format!(
+        return Err(ProjectError::option(format!(
             "--sweep {setting}={text}: {} takes {}; the nearest are {below} and {above}",
             settings.method, info.values
         )));
     }
-    let mut all = serde_json::to_value(settings).map_err(StudioError::work)?;
+    let mut all = serde_json::to_value(settings).map_err(ProjectError::work)?;
     let place = all.get_mut(section(settings.method)).and_then(|of_method| of_method.get_mut(setting));
     *place.ok_or_else(wrong)? = value;
     serde_json::from_value(all).map(Some).map_err(|_| wrong())

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use lovelock_project::Project;
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 use lovelock_render::{Backend, ShadowMethod};
 use lovelock_session::progress::Progress;
 use lovelock_session::testing::small_project;
@@ -32,7 +32,7 @@ fn little_hair() -> Project {
     project
 }
 
-fn run(project: &Project, request: &CompareRequest) -> Result<CompareReport, StudioError> {
+fn run(project: &Project, request: &CompareRequest) -> Result<CompareReport, ProjectError> {
     compare(project, request, &mut |_| ControlFlow::Continue(()))
 }
 

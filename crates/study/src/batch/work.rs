@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use lovelock_metrics::pareto;
 use lovelock_project::Project;
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 use lovelock_render::{Light, Picture, Renderer, ShadowMethod, ShadowSettings, ValueRenderer};
-use lovelock_session::progress::{Progress, tell};
+use lovelock_session::progress::{Progress, report_progress};
 use lovelock_session::snapshot::FrameSnapshot;
 use lovelock_shadow::CONVERGED_CHANGE;
 
@@ -24,7 +24,7 @@ use super::{maps, probe};
 use crate::report::{CompareReport, MethodReport};
 
 /// Asked now and then whether to go on.
-pub(super) type Tell<'a> = dyn FnMut() -> Result<(), StudioError> + 'a;
+pub(super) type CheckCancel<'a> = dyn FnMut() -> Result<(), ProjectError> + 'a;
 
 /// What all parts of the work need.
 pub(super) struct Work<'a> {
@@ -56,7 +56,7 @@ impl Work<'_> {
     /// Does all of it, part by part; what is finished is in the report and in its folder.
     ///
     /// # Errors
-    /// [`StudioError::Cancelled`], or what cannot be written.
+    /// [`ProjectError::Cancelled`], or what cannot be written.
     pub(super) fn run(
         &self,
         snapshots: &[Arc<FrameSnapshot>],
@@ -64,12 +64,12 @@ impl Work<'_> {
         renderers: &mut [Renderer],
         report: &mut CompareReport,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-    ) -> Result<(), StudioError> {
+    ) -> Result<(), ProjectError> {
         let total = entrants.len() as u64 + 2;
         let mut done = 0;
         let mut part = |what: String, is_next: bool| {
             done += u64::from(is_next);
-            tell(progress, Progress::Comparing { what, done: done.min(total), total })
+            report_progress(progress, Progress::Comparing { what, done: done.min(total), total })
         };
         let Some(first) = snapshots.first() else { return Ok(()) };
         let hair = Hair::new(Arc::clone(first), self.project);
@@ -98,8 +98,8 @@ impl Work<'_> {
         report.swim_frames = shifted.iter().map(|at| report.frames[0] + *at as u64).collect();
         let shifted: Vec<_> = shifted.iter().map(|at| Arc::clone(&snapshots[*at])).collect();
         let place = (&hair, self.project, &self.lights[0]);
-        let tell = || part("the truth under a light that turns".to_owned(), false);
-        let light_sweep = LightSweep::new(place, &truths.0, &mut report.reference, tell)?;
+        let check_cancel = || part("the truth under a light that turns".to_owned(), false);
+        let light_sweep = LightSweep::new(place, &truths.0, &mut report.reference, check_cancel)?;
         let light_sweep = light_sweep.map_err(|refused| report.notes.push(refused)).ok();
 
         let mut values = ValueRenderer::default();
@@ -142,7 +142,7 @@ impl Work<'_> {
             match result {
                 Ok(()) => {}
                 // What does not fit costs its own numbers alone; a full disk costs everything.
-                Err(StudioError::Work { file: None, message }) => entrant.report.refused = Some(message),
+                Err(ProjectError::Work { file: None, message }) => entrant.report.refused = Some(message),
                 Err(error) => return Err(error),
             }
             report.methods.push(entrant.report);
@@ -165,7 +165,7 @@ impl Work<'_> {
     ) -> Vec<Probe> {
         let usual;
         let pixels = if self.request.probes.is_empty() {
-            usual = probe::usual_pixels(hair_pixels, self.size[0]);
+            usual = probe::default_pixels(hair_pixels, self.size[0]);
             &usual
         } else {
             &self.request.probes
@@ -200,8 +200,8 @@ impl Work<'_> {
         snapshots: &[Arc<FrameSnapshot>],
         truths: &Truths,
         report: &mut CompareReport,
-        part: &mut dyn FnMut(String, bool) -> Result<(), StudioError>,
-    ) -> Result<Option<Film>, StudioError> {
+        part: &mut dyn FnMut(String, bool) -> Result<(), ProjectError>,
+    ) -> Result<Option<Film>, ProjectError> {
         if snapshots.len() < 2 {
             return Ok(None);
         }
@@ -210,9 +210,10 @@ impl Work<'_> {
             report.notes.push(refused);
             return Ok(None);
         }
-        let tell = || part("the truth frame by frame".to_owned(), false);
+        let check_cancel = || part("the truth frame by frame".to_owned(), false);
         let frames = (report.frames[0], snapshots);
-        Film::new(frames, self.project, &self.lights[0], &truths.0, &mut report.reference, tell).map(Some)
+        Film::new(frames, self.project, &self.lights[0], &truths.0, &mut report.reference, check_cancel)
+            .map(Some)
     }
 }
 

@@ -1,4 +1,4 @@
-//! The plots of the page.
+//! The figures of the page.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use super::plot::{Axis, Dot, Label, Plot, Stroke};
 use super::words::{bytes, fixed, ms};
 use crate::report::{CompareReport, FootprintTruth, MethodReport, ProbeReport};
 
-/// What is drawn in black: the truth.
+/// The colour of the ground truth.
 const TRUTH: &str = "#202124";
 
 fn thin(color: &str) -> Stroke<'_> {
@@ -20,10 +20,10 @@ fn widened(points: &[(f32, f32)]) -> Vec<(f64, f64)> {
     points.iter().map(|&(x, y)| (f64::from(x), f64::from(y))).collect()
 }
 
-/// What a method costs.
+/// The kind of cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Cost {
-    /// Milliseconds to build and to ask.
+    /// Milliseconds to build and look up the maps.
     Time,
     /// Bytes of the maps.
     Memory,
@@ -45,8 +45,8 @@ impl Cost {
     }
 }
 
-/// Error of transmittance against cost: a dot a method, filled on the front, the settings of a sweep joined by a line.
-/// Nothing where fewer than two methods have both numbers.
+/// Error of transmittance against cost: one dot per method, filled on the front, with a line through the settings of a sweep.
+/// `None` if fewer than two methods have both numbers.
 pub(super) fn cost(group: &Group<'_>, names: &Names, cost: Cost) -> Option<String> {
     let points: Vec<(f64, f64, &MethodReport)> = (group.methods.iter())
         .filter_map(|(_, method)| Some((cost.of(method)?, method.front_error()?, *method)))
@@ -58,7 +58,7 @@ pub(super) fn cost(group: &Group<'_>, names: &Names, cost: Cost) -> Option<Strin
         Cost::Time => format!("build and ask, ms on the {}", group.backend),
         Cost::Memory => "shadow maps, MiB".into(),
     };
-    // A method that does nothing costs nothing and is far off: it lies on the rim, so that the others are told apart.
+    // A method without cost has a large error; it is drawn on the edge, so that the others can be distinguished.
     let usual: Vec<f64> = points.iter().map(|point| point.0).filter(|cost| *cost > 0.0).collect();
     let usual = Spread::of(&usual).map_or(0.0, |spread| spread.median);
     let least = points.iter().map(|point| point.1).filter(|error| *error > 0.0).fold(f64::MAX, f64::min);
@@ -89,7 +89,7 @@ pub(super) fn cost(group: &Group<'_>, names: &Names, cost: Cost) -> Option<Strin
         };
         let title = format!("{name}: {price}, RMSE {}", fixed(Some(y), 4));
         let dot = if cost.front(method) { Dot::Full } else { Dot::Hollow };
-        // Of a sweep the first has the name and all have their values: the colour says the rest.
+        // In a sweep, only the first dot has the name, and all have their values; the colour identifies the method.
         let values: Vec<&str> = method.sweep.iter().map(|(_, value)| value.as_str()).collect();
         let values = values.join(", ");
         let first = points.iter().find(|(.., other)| other.id == method.id).map(|(.., other)| &other.name);
@@ -106,7 +106,7 @@ pub(super) fn cost(group: &Group<'_>, names: &Names, cost: Cost) -> Option<Strin
     Some(plot.svg(&says, 0.0))
 }
 
-/// Transmittance along the light's ray through a point, and below it what each method keeps there.
+/// Transmittance along the ray of light through a point, and below it what each method stores there.
 pub(super) fn probe(report: &CompareReport, names: &Names, probe: &ProbeReport) -> String {
     let mm = |points: &[(f32, f32)]| -> Vec<(f64, f64)> {
         widened(points).into_iter().map(|(x, y)| (x * 1000.0, y)).collect()
@@ -128,7 +128,7 @@ pub(super) fn probe(report: &CompareReport, names: &Names, probe: &ProbeReport) 
     let mut plot = Plot::new(820.0, 330.0, x, Axis::even("transmittance", 0.0, 1.0));
     plot.upright(0.0, "the point");
     let mut steps = mm(&probe.steps);
-    // Before the first fragment all light arrives, and the step at the rim holds to the rim.
+    // Before the first fragment all light arrives; the last step extends to the edge.
     let before = steps.iter().rev().find(|(depth, _)| *depth <= low).map_or(1.0, |step| step.1);
     steps.retain(|(depth, _)| *depth > low);
     steps.insert(0, (low, before));
@@ -151,8 +151,8 @@ pub(super) fn probe(report: &CompareReport, names: &Names, probe: &ProbeReport) 
     plot.svg(&says, (widest as f64 * 6.6 - 40.0).clamp(0.0, 260.0))
 }
 
-/// The error of a method's transmittance in a slab of even density. The scale is the least round number that holds all of
-/// it, and not below a hundredth: what is less is flat.
+/// The error of a method's transmittance in a slab of uniform density. The scale is the smallest round number that contains it, at
+/// least 0.01, so that negligible errors look flat.
 pub(super) fn banding(method: &MethodReport) -> Option<String> {
     let found = method.banding.as_ref().filter(|found| found.curve.len() > 1)?;
     let truth = |depth: f64| (-found.optical_depth * depth).exp();
@@ -169,12 +169,12 @@ pub(super) fn banding(method: &MethodReport) -> Option<String> {
     Some(plot.svg(&format!("Error of {} in a slab of even density", method.label), 0.0))
 }
 
-/// The colour of a truth: that of the first method that is held against it.
+/// The colour of a ground truth: that of the first method compared with it.
 pub(super) fn of_truth(report: &CompareReport, truth: &FootprintTruth) -> &'static str {
     report.methods.iter().find(|method| truth.methods.contains(&method.name)).map_or(TRUTH, color)
 }
 
-/// How each truth came to rest: the change of every round against its subtexels.
+/// Convergence of each ground truth: the change of every round against its subtexels.
 pub(super) fn convergence(report: &CompareReport) -> Option<String> {
     let reference = &report.reference;
     let rounds = || reference.footprints.iter().flat_map(|truth| &truth.changes);
@@ -197,7 +197,7 @@ pub(super) fn convergence(report: &CompareReport) -> Option<String> {
             let dot = if change <= limit { Dot::Full } else { Dot::Hollow };
             let title = format!("{}: {samples} subtexels, {change:.5}", truth.methods.join(", "));
             let last = index + 1 == points.len();
-            // Of those that came to rest the table tells.
+            // The table lists the converged ones.
             let label = of.filter(|_| last && !truth.converged).map(|method| method.label.clone());
             plot.dot((samples, change), dot, color, Label::Always(label.unwrap_or_default()), &title);
         }

@@ -1,5 +1,5 @@
-//! The report as one page that opens from the disk: styles and script are in it, pictures lie beside it, and a policy
-//! in its head keeps it from the network.
+//! The report as one page for local use: it contains styles and script, images are files beside it, and a content security policy
+//! prevents network access.
 
 mod figures;
 mod names;
@@ -15,7 +15,7 @@ use names::{Group, Names, groups};
 use std::fmt::Write as _;
 use words::{address, escaped, fixed, grouped, signed};
 
-/// The whole page. Pictures are named as the report names them, relative to the page.
+/// The whole page. Image names are those of the report, relative to the page.
 pub(super) fn page(report: &CompareReport) -> String {
     let names = Names::of(report);
     let groups = groups(report, &names);
@@ -57,7 +57,7 @@ fn title(report: &CompareReport) -> String {
     format!("Shadow methods compared: {}", report.scene.name)
 }
 
-/// What was compared, and what a reader must know before anything else.
+/// The header: what was compared, and warnings.
 fn header(report: &CompareReport) -> String {
     let scene = &report.scene;
     let [first, end] = report.frames;
@@ -87,7 +87,7 @@ fn header(report: &CompareReport) -> String {
     out + "</header>"
 }
 
-/// Why the reference cannot be trusted wholly; nothing where it can.
+/// Reasons why the reference is inaccurate; empty if there are none.
 fn doubts(report: &CompareReport) -> String {
     let reference = &report.reference;
     let of_points = coarse_points(report);
@@ -128,7 +128,7 @@ fn doubts(report: &CompareReport) -> String {
     format!("<div class=\"banner\"><b>{head}</b><ul>{list}</ul></div>{of_points}")
 }
 
-/// How far the truth at points can be trusted, where its map is not fine enough for its own limit.
+/// A warning if the map of the ground truth at points is not fine enough for its limit.
 fn coarse_points(report: &CompareReport) -> String {
     let Some(change) = report.reference.doubt_at_points() else { return String::new() };
     format!(
@@ -230,11 +230,11 @@ fn probes(report: &CompareReport, names: &Names) -> String {
     )
 }
 
-/// The surroundings of a probe in the reference picture, with its pixel marked.
+/// The part of the reference image around a probe, with its pixel marked.
 fn place(report: &CompareReport, probe: &ProbeReport) -> String {
     let Some(file) = &report.reference.picture else { return String::new() };
     let (width, height) = (report.scene.width.max(1), report.scene.height.max(1));
-    // The crop is 168 by 126 CSS pixels at twice the picture's scale.
+    // The crop is 168 by 126 CSS pixels at twice the scale of the image.
     let (left, top) =
         (84.0 - 2.0 * (f64::from(probe.pixel[0]) + 0.5), 63.0 - 2.0 * (f64::from(probe.pixel[1]) + 0.5));
     format!(
@@ -246,7 +246,7 @@ fn place(report: &CompareReport, probe: &ProbeReport) -> String {
     )
 }
 
-/// What every method says at the point itself.
+/// The transmittance of every method at the point.
 fn values(report: &CompareReport, names: &Names, probe: &ProbeReport) -> String {
     let truth = at(&probe.reference, 0.0);
     let mut rows = String::new();
@@ -275,7 +275,7 @@ fn values(report: &CompareReport, names: &Names, probe: &ProbeReport) -> String 
     )
 }
 
-/// The value of a curve at `x`, between its points; none outside.
+/// The interpolated value of a curve at `x`; `None` outside.
 fn at(curve: &[(f32, f32)], x: f32) -> Option<f64> {
     let pair = curve.windows(2).find(|pair| pair[0].0 <= x && x <= pair[1].0)?;
     let [(x0, y0), (x1, y1)] = [pair[0], pair[1]].map(|(x, y)| (f64::from(x), f64::from(y)));
@@ -307,7 +307,7 @@ fn reference(report: &CompareReport, names: &Names) -> String {
     for truth in &reference.footprints {
         let held = report.methods.iter().filter(|method| truth.methods.contains(&method.name));
         let held: Vec<String> = held.map(|method| names.full(method)).collect();
-        // Where `exact` is not among the methods.
+        // If `exact` is not among the methods.
         let held = if held.is_empty() { "One truth for all".to_owned() } else { held.join(", ") };
         let swatch = figures::of_truth(report, truth);
         let _ = write!(

@@ -1,4 +1,4 @@
-//! What each method is called on the page, and its colour.
+//! Names and colours of methods on the page.
 
 use std::fmt::Write as _;
 
@@ -7,7 +7,7 @@ use lovelock_render::ShadowMethod;
 use super::words::escaped;
 use crate::report::{CompareReport, MethodReport};
 
-/// Colours that are told apart on white, also by the colour-blind: one for each method, in the order of the menu.
+/// Colours that can be distinguished on white, also by colour-blind readers: one per method, in the order of the menu.
 const COLORS: [&str; 10] = [
     "#7d8590", "#0072b2", "#c98500", "#d1490f", "#a8467f", "#00825f", "#202124", "#4b9fd6", "#6b4fa0",
     "#8a6d1f",
@@ -20,7 +20,7 @@ pub(super) fn color(method: &MethodReport) -> &'static str {
     COLORS[index % COLORS.len()]
 }
 
-/// Names of the methods of one report: as short as they can be and still differ.
+/// Names of the methods of one report, as short as possible while still unique.
 pub(super) struct Names {
     backends: bool,
     transparencies: bool,
@@ -37,7 +37,7 @@ impl Names {
         }
     }
 
-    /// The name, with whatever tells it from the others.
+    /// The name, with everything that distinguishes it from the others.
     pub(super) fn full(&self, method: &MethodReport) -> String {
         let mut name = self.within_group(method);
         if self.transparencies {
@@ -59,7 +59,7 @@ impl Names {
         name
     }
 
-    /// The cell of a table that names a method.
+    /// The table cell with the name of a method.
     pub(super) fn cell(&self, method: &MethodReport) -> String {
         format!(
             "<th scope=\"row\"><i class=\"swatch\" style=\"background:{}\"></i>{}</th>",
@@ -69,17 +69,17 @@ impl Names {
     }
 }
 
-/// Methods whose costs can be compared: those of one backend, adapter and transparency, in the order of the report.
+/// Methods with comparable costs: those with the same backend, adapter and transparency, in the order of the report.
 pub(super) struct Group<'a> {
-    /// Where and how they were drawn, for a heading.
+    /// Backend, adapter and transparency, for a heading.
     pub(super) title: String,
-    /// The backend alone: CPU or GPU.
+    /// The backend: CPU or GPU.
     pub(super) backend: &'static str,
-    /// Each with its place in the report.
+    /// The methods with their positions in the report.
     pub(super) methods: Vec<(usize, &'a MethodReport)>,
 }
 
-/// The groups of a report, in the order in which they come.
+/// The groups of a report, in order of appearance.
 pub(super) fn groups<'a>(report: &'a CompareReport, names: &Names) -> Vec<Group<'a>> {
     let key = |method: &'a MethodReport| (&method.backend, &method.adapter, &method.transparency);
     let mut groups: Vec<Group<'a>> = Vec::new();
@@ -100,7 +100,7 @@ pub(super) fn groups<'a>(report: &'a CompareReport, names: &Names) -> Vec<Group<
     groups
 }
 
-/// A backend as people write it.
+/// The label of a backend.
 pub(super) fn backend(id: &str) -> &'static str {
     match id {
         "cpu" => "CPU",

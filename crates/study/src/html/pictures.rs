@@ -1,14 +1,14 @@
-//! Pictures and maps: the wipe, and all of one kind beside each other.
+//! Images and maps: a wipe between two, and all of one kind beside each other.
 
 use super::names::{Names, color};
 use super::words::{address, escaped};
 use crate::report::{CompareReport, MethodFiles};
 use std::fmt::Write as _;
 
-/// The file of one kind among those of a method.
+/// Selects the file of one kind from those of a method.
 type File = fn(&MethodFiles) -> &Option<String>;
 
-/// Kinds of pictures: the word in the page, the heading of the button, and the file of a method.
+/// Kinds of images: identifier in the page, label of the button, and file of a method.
 const KINDS: [(&str, &str, File); 6] = [
     ("picture", "Picture", |files| &files.picture),
     ("transmittance-error", "Transmittance error", |files| &files.transmittance_error),
@@ -18,7 +18,7 @@ const KINDS: [(&str, &str, File); 6] = [
     ("flicker", "Flicker", |files| &files.flicker),
 ];
 
-/// The wipe between any two pictures of one kind, and below it all of that kind. Empty where there are no pictures.
+/// The wipe between any two images of one kind, and below it all images of that kind. Empty if there are no images.
 pub(super) fn section(report: &CompareReport, names: &Names) -> String {
     let mut buttons = String::new();
     let mut cards = String::new();

@@ -1,4 +1,4 @@
-//! How still methods stand.
+//! Temporal stability of methods.
 
 use super::names::{Group, Names};
 use super::tables;
@@ -6,7 +6,7 @@ use super::words::grouped;
 use crate::changes::ChangeReport;
 use crate::report::{CompareReport, MethodReport};
 
-/// How still every method stands, with what each test does. Empty where none was done.
+/// Temporal stability of every method, with a description of each test. Empty if no test was done.
 pub(super) fn section(report: &CompareReport, groups: &[Group<'_>], names: &Names) -> String {
     let tables: String = groups.iter().map(|group| tables::stability(group, names)).collect();
     if tables.is_empty() {
@@ -51,7 +51,7 @@ pub(super) fn section(report: &CompareReport, groups: &[Group<'_>], names: &Name
     )
 }
 
-/// In which frames maps were shifted, to end a sentence.
+/// The frames in which maps were shifted, as the end of a sentence.
 fn shifted(report: &CompareReport) -> String {
     let [first, end] = report.frames;
     let shifted = &report.swim_frames;

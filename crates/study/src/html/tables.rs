@@ -5,10 +5,10 @@ use super::words::{bytes, escaped, fixed, grouped, ms, signed, small};
 use crate::report::{CompareReport, MethodReport, TimeSpread};
 use std::fmt::Write as _;
 
-/// A heading of a column: what it says, and what the pointer shows.
+/// A column heading and its tooltip.
 struct Column(&'static str, &'static str);
 
-/// A number in a cell, with what it is sorted by.
+/// A table cell with a number, and its sort key.
 fn cell(text: &str, value: Option<f64>, class: &str) -> String {
     let value = value
         .filter(|value| value.is_finite())
@@ -44,11 +44,11 @@ fn table(caption: &str, spans: &[(&str, usize)], columns: &[Column], rows: &str)
     )
 }
 
-/// What the column of errors at points says.
+/// Tooltip of the column of errors at points.
 const AT_POINTS: &str =
     "Root mean square error against the truth at the points themselves, which no map can reach";
 
-/// What the columns of swim say.
+/// Tooltip of the columns of swim.
 const SWIM: &str = "Deviation of transmittance while the map is shifted by less than a texel, root mean square over points and frames";
 
 /// Errors, pictures, costs and stability of the methods of one group.
@@ -143,7 +143,7 @@ pub(super) fn overview(group: &Group<'_>, names: &Names, report: &CompareReport)
     }
 }
 
-/// How still the methods of one group stand.
+/// Temporal stability of the methods of one group.
 pub(super) fn stability(group: &Group<'_>, names: &Names) -> String {
     const COLUMNS: [Column; 11] = [
         Column("Swim", SWIM),
@@ -197,7 +197,7 @@ pub(super) fn stability(group: &Group<'_>, names: &Names) -> String {
     table(&group.title, &SPANS, &COLUMNS, &rows)
 }
 
-/// What the slices of the methods of one group show in even density.
+/// Banding of the methods of one group in uniform density.
 pub(super) fn banding(group: &Group<'_>, names: &Names) -> String {
     const COLUMNS: [Column; 6] = [
         Column("RMSE", "Root mean square error of transmittance in the slab"),
@@ -234,7 +234,7 @@ pub(super) fn banding(group: &Group<'_>, names: &Names) -> String {
     table(&group.title, &[], &COLUMNS, &rows)
 }
 
-/// Every time of the methods of one group with its spread.
+/// All times of the methods of one group with percentiles.
 pub(super) fn times(group: &Group<'_>, names: &Names) -> String {
     let mut passes: Vec<&str> = Vec::new();
     for time in group.methods.iter().flat_map(|(_, method)| &method.times) {
@@ -247,7 +247,7 @@ pub(super) fn times(group: &Group<'_>, names: &Names) -> String {
     if measured.is_empty() {
         return String::new();
     }
-    // A pass in a row and a method in a column: there are more passes than methods.
+    // One row per pass and one column per method, because there are more passes than methods.
     let mut head = String::from("<tr><th scope=\"col\">Stage or pass</th>");
     for method in &measured {
         let _ = write!(head, "<th scope=\"col\">{}</th>", escaped(&names.within_group(method)));
@@ -286,17 +286,16 @@ fn spread(time: &TimeSpread) -> String {
     )
 }
 
-/// A number with no more digits than it means; anything else as it is.
+/// A number without meaningless digits; other text is unchanged.
 fn shortened(value: &str) -> String {
     match value.parse::<f32>() {
-        // The shortest number of single precision that reads the same.
+        // The shortest text that reads as the same single-precision number.
         Ok(number) if value.contains('.') && value.len() > 8 => format!("{number}"),
         _ => value.to_owned(),
     }
 }
 
-/// The map that was made, where it is not the one that the settings say: texels are never narrower than strands, and cells
-/// lie only where hair is.
+/// The actual size of the map if it differs from the settings: texels are never narrower than strands, and cells only cover hair.
 fn effective(method: &MethodReport) -> Option<String> {
     let cells = method.cells_total?;
     let edge = (cells as f64).sqrt().round() as u64;

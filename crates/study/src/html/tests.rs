@@ -4,7 +4,7 @@ use super::page;
 use crate::changes::{ChangeReport, StabilityReport};
 use crate::report::*;
 
-/// A report with something of everything, as if two methods had been measured on two backends.
+/// A report with all parts, as if two methods had been measured on two backends.
 fn report() -> CompareReport {
     let mut report = CompareReport {
         complete: true,
@@ -126,7 +126,7 @@ fn report() -> CompareReport {
     report
 }
 
-/// Fails where an element is left open or is closed that was not open.
+/// Fails if an element is not closed, or a closing tag has no opening tag.
 fn balanced(html: &str) {
     let mut open = Vec::new();
     let body =
@@ -200,7 +200,7 @@ fn a_reference_that_did_not_converge_is_said_at_the_top() {
     let (head, rest) = text.split_once("<nav").unwrap();
     assert!(head.contains("did not converge within its limit") && head.contains("needs 9 GiB"), "{head}");
     assert!(!rest.contains("It converged"));
-    // The truth of another light or of a later frame counts as well.
+    // The ground truth of another light or a later frame counts as well.
     for name in ["reference picture, light 2", "frame 13"] {
         let mut doubtful = report();
         let other = NamedTruth { name: name.into(), converged: false, samples: 32, change: 0.07 };
@@ -214,7 +214,7 @@ fn a_reference_that_did_not_converge_is_said_at_the_top() {
     let mut trusted = report();
     trusted.reference.others.push(NamedTruth { converged: true, ..NamedTruth::default() });
     trusted.reference.settle();
-    // A ray of a probe is said beside the probe.
+    // The convergence of a probe's ray is mentioned beside the probe.
     let ray = NamedTruth { name: "probe at 100,80".into(), change: 0.007, ..NamedTruth::default() };
     trusted.reference.probes.push(ray);
     trusted.reference.settle();
@@ -233,7 +233,7 @@ fn a_map_that_is_not_what_was_asked_for_is_said_with_the_settings() {
     assert!(
         text.contains("drawn with <b>112 × 112 texels</b>") && text.contains("<b>37\u{202f}632 cells</b>")
     );
-    // Negative control: the map that was asked for.
+    // Negative control: the requested map.
     clipped.methods[0].cells_total = Some(128 * 128);
     clipped.methods[1].cells_total = Some(128 * 128 * 128);
     assert!(!page(&clipped).contains("drawn with"));

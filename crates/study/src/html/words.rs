@@ -1,11 +1,11 @@
-//! Text and numbers as the page writes them.
+//! Formats text and numbers for the page.
 
 use std::fmt::Write as _;
 
-/// What stands where nothing was measured.
+/// Shown if nothing was measured.
 pub(super) const NOTHING: &str = "–";
 
-/// Text inside an element or an attribute in double quotes.
+/// Escapes text for an element or a double-quoted attribute.
 pub(super) fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for letter in text.chars() {
@@ -21,7 +21,7 @@ pub(super) fn escaped(text: &str) -> String {
     out
 }
 
-/// A file's name, relative to the page, as the address of a picture: whatever is not plain becomes its bytes.
+/// The URL of an image by its file name relative to the page, with special characters percent-encoded.
 pub(super) fn address(file: &str) -> String {
     let mut out = String::with_capacity(file.len());
     for byte in file.bytes() {
@@ -31,11 +31,11 @@ pub(super) fn address(file: &str) -> String {
             let _ = write!(out, "%{byte:02X}");
         }
     }
-    // Without this a name such as `a:b` would be an address of its own, and `//a` another machine.
+    // Without `./`, a name such as `a:b` would be a URL with a scheme, and `//a` another host.
     format!("./{}", out.trim_start_matches('/'))
 }
 
-/// A number with `places` digits after the point and a true minus; a dash for none and for what is not finite.
+/// A number with `places` decimals and a true minus sign; a dash if there is none or it is not finite.
 pub(super) fn fixed(value: Option<f64>, places: usize) -> String {
     match value.filter(|value| value.is_finite()) {
         Some(value) => {
@@ -47,8 +47,7 @@ pub(super) fn fixed(value: Option<f64>, places: usize) -> String {
     }
 }
 
-/// A number of which nobody knows how small it is, with two digits that mean something at least: four places after the point,
-/// and a power of ten below a thousandth.
+/// A possibly small number with at least two significant digits: four decimals, or a power of ten below 0.001.
 pub(super) fn small(value: Option<f64>) -> String {
     match value.filter(|value| value.is_finite()) {
         Some(0.0) => "0".into(),
@@ -57,14 +56,14 @@ pub(super) fn small(value: Option<f64>) -> String {
     }
 }
 
-/// As [`fixed`], with a plus where it is above zero.
+/// As [`fixed`], with a plus sign if positive.
 pub(super) fn signed(value: Option<f64>, places: usize) -> String {
     let text = fixed(value, places);
     let digits = text.contains(|letter: char| ('1'..='9').contains(&letter));
     if digits && !text.starts_with('−') { format!("+{text}") } else { text }
 }
 
-/// Milliseconds with three digits that mean something.
+/// Milliseconds with three significant digits.
 pub(super) fn ms(value: Option<f64>) -> String {
     let places = match value.map_or(0.0, f64::abs) {
         size if size < 10.0 => 2,
@@ -74,7 +73,7 @@ pub(super) fn ms(value: Option<f64>) -> String {
     fixed(value, places)
 }
 
-/// Bytes in the largest binary unit that leaves a number above one.
+/// Bytes in the largest binary unit with a number above one.
 pub(super) fn bytes(value: Option<u64>) -> String {
     let Some(bytes) = value else { return NOTHING.into() };
     let units = [("GiB", 30), ("MiB", 20), ("KiB", 10)];

@@ -27,8 +27,9 @@ fn a_pane_shows_its_own_take_at_the_time_of_all() {
     let mut at = |secs: f64| {
         rig.snapshot = Arc::new(FrameSnapshot { position_secs: secs, ..FrameSnapshot::clone(&rig.snapshot) });
         rig.draw(LiveRequest { access: access.clone(), ..rig.request(&[0, 1]) });
-        [0, 1]
-            .map(|pane| rig.live.pane(pane).and_then(lovelock_session::latest::Slot::latest).expect("a pane"))
+        [0, 1].map(|pane| {
+            rig.live.pane(pane).and_then(lovelock_session::latest::Latest::latest).expect("a pane")
+        })
     };
     let [own, start] = at(0.0);
     assert_eq!((&own.problem, &start.problem), (&None, &None));
@@ -65,7 +66,7 @@ fn a_take_that_is_not_allowed_or_not_there_is_said_in_its_pane_and_costs_no_othe
         }
         rig.draw(LiveRequest { access, ..rig.request(&[0, 1]) });
         let [own, other] = [0, 1].map(|pane| {
-            rig.live.pane(pane).and_then(lovelock_session::latest::Slot::latest).expect("a pane")
+            rig.live.pane(pane).and_then(lovelock_session::latest::Latest::latest).expect("a pane")
         });
         assert!(own.problem.is_none() && !own.picture.rgba.is_empty());
         assert!(other.problem.as_ref().is_some_and(|why| why.contains("gone.take")), "{:?}", other.problem);

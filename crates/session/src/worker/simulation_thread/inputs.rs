@@ -1,4 +1,4 @@
-//! What a scene is loaded from.
+//! The inputs that a scene is loaded from.
 
 use std::time::SystemTime;
 
@@ -6,11 +6,11 @@ use lovelock_project::Project;
 use lovelock_project::files::{Access, FileRef};
 use lovelock_project::project::{BodySection, HairSection, MotionSection};
 
-/// What a scene is made from: other sections of a project need no load.
+/// The inputs of a scene. Changes of other sections of a project need no load.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum SceneInputs {
     Simulated(Box<(BodySection, MotionSection, HairSection, Access)>),
-    /// With what tells a file from one that was put in its place.
+    /// The take, with data that identifies the file's contents.
     Take {
         file: FileRef,
         version: Option<(u64, SystemTime)>,

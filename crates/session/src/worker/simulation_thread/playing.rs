@@ -1,9 +1,9 @@
-//! Time that passes on the simulation thread, and what is seen of it.
+//! Playback on the simulation thread.
 
 use super::super::Event;
-use super::Inside;
+use super::SimulationThread;
 
-impl Inside {
+impl SimulationThread {
     pub(super) fn step(&mut self) {
         if let Some(engine) = &mut self.engine {
             if self.playback.shows_between() {
@@ -16,7 +16,7 @@ impl Inside {
         }
     }
 
-    /// Shows the last step as it is. What is seen next follows it.
+    /// Shows the last step. The next image continues from it.
     pub(super) fn show(&mut self) {
         if let Some(engine) = &mut self.engine {
             self.last_steps.forget();
@@ -26,7 +26,7 @@ impl Inside {
         }
     }
 
-    /// Shows what lies between the last two steps.
+    /// Shows an instant between the last two steps.
     pub(super) fn show_between(&mut self, t: f64) {
         if let Some(engine) = &mut self.engine {
             self.frames.put(engine.snapshot_between(&mut self.last_steps, t));
@@ -36,7 +36,7 @@ impl Inside {
 
     pub(super) fn simulate(&mut self, mut changed: bool, elapsed_secs: f64) {
         if changed {
-            // What was gone to, or is another style, is not what the step before led to.
+            // After a seek or a change of style, the previous step does not lead to the current one.
             self.last_steps.forget();
             self.playback.begin();
         }
@@ -60,7 +60,7 @@ impl Inside {
         }
     }
 
-    /// A take goes on by the time that has passed, not by whole frames: it is smooth at any rate.
+    /// Advances a take by the elapsed time, not by whole frames, so that it is smooth at any rate.
     pub(super) fn play(&mut self, mut changed: bool, elapsed_secs: f64) {
         let Some(take) = &mut self.take else { return };
         if self.playback.is_playing() && elapsed_secs.is_finite() {
@@ -82,7 +82,7 @@ impl Inside {
                     }
                 }
                 Err(error) => {
-                    // Once, and not for every frame of a damaged second.
+                    // Report it once, not for every damaged frame.
                     self.playback.set_playing(false);
                     self.outbox.send(Event::TakeUnreadable { message: error.to_string() });
                 }

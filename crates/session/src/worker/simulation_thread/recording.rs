@@ -1,18 +1,18 @@
-//! What is written down of the simulation while it runs.
+//! Recording a take on the simulation thread.
 
 use std::sync::{Arc, PoisonError};
 
 use lovelock_project::Project;
-use lovelock_project::error::StudioError;
+use lovelock_project::error::ProjectError;
 
 use super::super::Event;
-use super::Inside;
+use super::SimulationThread;
 use crate::take::TakeRecording;
 
-impl Inside {
+impl SimulationThread {
     pub(super) fn start_take(&mut self, path: &std::path::Path) {
         if self.take.is_some() {
-            let message = format!("{}: a take plays; leave it to record another", path.display());
+            let message = format!("{}: a take is being played; leave it to record another", path.display());
             return self.outbox.send(Event::TakeFailed { message });
         }
         self.end_take(None);
@@ -25,17 +25,17 @@ impl Inside {
             Ok(recording) => self.recording = Some(recording),
             Err(error) => self.outbox.send(Event::TakeFailed { message: error.to_string() }),
         }
-        self.tell_progress();
+        self.publish_progress();
     }
 
-    /// Makes the take whole that is recorded, if one is.
+    /// Completes the take that is being recorded, if any.
     pub(super) fn end_take(&mut self, because: Option<&str>) {
         let Some(recording) = self.recording.take() else { return };
         match recording.finish() {
             Ok(report) => self.outbox.send(Event::TakeSaved { report, because: because.map(str::to_owned) }),
             Err(error) => self.outbox.send(Event::TakeFailed { message: error.to_string() }),
         }
-        self.tell_progress();
+        self.publish_progress();
     }
 
     pub(super) fn record_step(&mut self) {
@@ -43,18 +43,18 @@ impl Inside {
         if let Err(error) = recording.push(engine) {
             self.fail_take(&error);
         }
-        self.tell_progress();
+        self.publish_progress();
     }
 
-    /// Ends the take that could not go on.
-    pub(super) fn fail_take(&mut self, error: &StudioError) {
+    /// Ends a take whose recording failed.
+    pub(super) fn fail_take(&mut self, error: &ProjectError) {
         self.outbox.send(Event::TakeFailed { message: error.to_string() });
-        // What is there is worth having; where the disk refused it, the message said what is kept.
+        // Keep what was written; if writing failed, the message said which part is kept.
         let ended = self.recording.take().map(TakeRecording::finish);
         if let Some(Ok(report)) = ended {
             self.outbox.send(Event::TakeSaved { report, because: Some(error.to_string()) });
         }
-        self.tell_progress();
+        self.publish_progress();
     }
 
     pub(super) fn record_change(&mut self) {
@@ -65,7 +65,7 @@ impl Inside {
         }
     }
 
-    /// The project as it is seen: the scene is still that of the last load.
+    /// The project of the recorded frames: the current one, but with the scene of the last load.
     pub(super) fn recorded_project(&self) -> Option<Arc<Project>> {
         let project = self.project.as_ref()?;
         let Some(of) = &self.scene_of else { return Some(Arc::clone(project)) };
@@ -76,7 +76,7 @@ impl Inside {
         Some(Arc::new(Project { body, motion, hair, ..Project::clone(project) }))
     }
 
-    pub(super) fn tell_progress(&self) {
+    pub(super) fn publish_progress(&self) {
         let progress = self.recording.as_ref().map(TakeRecording::progress);
         *self.recorded.lock().unwrap_or_else(PoisonError::into_inner) = progress;
     }

@@ -1,45 +1,44 @@
-//! Hair that settles aside on the simulation thread, a slice at a time, while time waits for it.
+//! Settling on the simulation thread: pre-rolls in time slices, while playback waits.
 
 use std::sync::PoisonError;
 use std::time::Duration;
 
+use lovelock_base::clock::Stopwatch;
 use lovelock_project::Project;
 use lovelock_project::animation::Animation;
 
-use super::Inside;
-use crate::clock::Stopwatch;
+use super::SimulationThread;
 use crate::engine::{Preroll, PrerollProgress};
 use crate::totals::Totals;
 
-/// How long the life before an instant goes on before wishes are looked at again, milliseconds.
+/// Length of a time slice of a pre-roll between two checks for requests, milliseconds.
 const SLICE_MS: f64 = 8.0;
 
-/// How long settings are to be left alone before hair that stands still settles by them, seconds: a slider that is dragged
-/// changes them at every frame.
+/// Time without changes of settings after which paused hair settles, seconds. A dragged slider changes them at every frame.
 const CALM_SECS: f64 = 0.15;
 
-/// Whether hair has another life by the settings of `b` than by those of `a`.
-pub(super) fn lives_otherwise(a: &Project, b: &Project) -> bool {
+/// Whether a pre-roll with the settings of `b` differs from one with those of `a`.
+pub(super) fn preroll_differs(a: &Project, b: &Project) -> bool {
     a.simulation != b.simulation
         || a.timeline.preroll_secs.to_bits() != b.timeline.preroll_secs.to_bits()
         || Animation::of(a) != Animation::of(b)
 }
 
-/// A life on its way.
-pub(super) struct Aside {
+/// A pre-roll in progress.
+pub(super) struct PendingPreroll {
     preroll: Box<Preroll>,
     since: Stopwatch,
-    /// Steps to go on once it has arrived.
+    /// Steps to simulate after the pre-roll.
     pub(super) steps: u32,
-    /// What was measured before, where it is kept.
+    /// Earlier totals, if they are kept.
     pub(super) measured: Option<Totals>,
 }
 
-impl Inside {
-    /// Begins the life before the instant where the engine stands, in place of another that is under way.
+impl SimulationThread {
+    /// Starts a pre-roll that leads to the engine's instant, and replaces a running one.
     pub(super) fn begin_preroll(&mut self) {
-        self.owes_settling = false;
-        self.preroll = self.engine.as_ref().map(|engine| Aside {
+        self.settling_pending = false;
+        self.preroll = self.engine.as_ref().map(|engine| PendingPreroll {
             preroll: Box::new(engine.preroll()),
             since: Stopwatch::start(),
             steps: 0,
@@ -47,8 +46,8 @@ impl Inside {
         });
     }
 
-    /// A slice of the life aside. Before it is over the hair is seen as it was carried here.
-    pub(super) fn live_aside(&mut self, changed: bool) {
+    /// Simulates one time slice of the pre-roll. Until it is done, the hair is shown as it was moved rigidly.
+    pub(super) fn advance_preroll(&mut self, changed: bool) {
         if changed {
             self.show();
         }
@@ -63,23 +62,23 @@ impl Inside {
         }
     }
 
-    /// Takes over the hair that has arrived, and goes on as was asked for meanwhile.
+    /// Takes the hair of the finished pre-roll and the steps requested meanwhile.
     pub(super) fn arrive(&mut self) {
         let (Some(aside), Some(engine)) = (self.preroll.take(), &mut self.engine) else { return };
         engine.take_settled(*aside.preroll);
         if let Some(measured) = aside.measured {
             engine.set_totals(&measured);
         }
-        // The time that it took is not to be caught up with.
+        // Do not catch up with the time that the pre-roll took.
         self.playback.set_playing(self.playback.is_playing());
         for _ in 0..aside.steps {
             self.step();
         }
     }
 
-    /// Lives through what is left of it at once: where hair is about to be written down.
+    /// Completes the pre-roll at once, because the hair is about to be recorded.
     pub(super) fn finish_preroll(&mut self) {
-        if self.owes_settling {
+        if self.settling_pending {
             self.begin_preroll();
         }
         while self.preroll.as_mut().is_some_and(|aside| !aside.preroll.advance()) {}
@@ -89,39 +88,40 @@ impl Inside {
         }
     }
 
-    /// Hair that has been loaded settles once no newer one is on its way: what is dragged asks for another one at every frame.
+    /// Starts settling of loaded hair when no newer hair is being loaded. A dragged control requests new hair at every frame.
     pub(super) fn settle_loaded(&mut self) {
         self.preroll = None;
-        self.owes_settling = true;
+        self.settling_pending = true;
     }
 
-    /// Hair that stands still settles by other settings once they are left alone; hair that moves lives on by them.
+    /// Restarts the hair settling after settings have changed while playback is paused. During playback the simulation continues
+    /// with the new settings.
     pub(super) fn settle_when_calm(&mut self) {
-        if self.owes_settling && !self.loader.is_busy() {
+        if self.settling_pending && !self.loader.is_busy() {
             self.begin_preroll();
         }
         if self.playback.is_playing() || self.take.is_some() || self.preroll.is_some() {
-            self.unsettled = None;
-        } else if self.unsettled.as_ref().is_some_and(|since| since.secs() >= CALM_SECS) {
-            self.unsettled = None;
+            self.settings_changed = None;
+        } else if self.settings_changed.as_ref().is_some_and(|since| since.secs() >= CALM_SECS) {
+            self.settings_changed = None;
             self.begin_preroll();
         }
     }
 
-    /// `timeout`, or how long it is until then, where that is less.
+    /// `timeout`, or the time until settling starts if that is less.
     pub(super) fn until_calm(&self, timeout: Option<Duration>) -> Option<Duration> {
-        let left = match &self.unsettled {
+        let left = match &self.settings_changed {
             Some(since) => Duration::from_secs_f64((CALM_SECS - since.secs()).max(0.0)),
-            // A load that fails or is given up sends nothing.
-            None if self.owes_settling => Duration::from_secs_f64(CALM_SECS),
+            // A failed or cancelled load sends nothing, so check again soon.
+            None if self.settling_pending => Duration::from_secs_f64(CALM_SECS),
             None => return timeout,
         };
         Some(timeout.map_or(left, |timeout| timeout.min(left)))
     }
 
-    /// The same anew, where one is under way: it is a life of the settings as they are now.
-    pub(super) fn begin_preroll_anew(&mut self) {
-        if let Some(Aside { steps, .. }) = self.preroll.take() {
+    /// Restarts a running pre-roll with the current settings.
+    pub(super) fn restart_preroll(&mut self) {
+        if let Some(PendingPreroll { steps, .. }) = self.preroll.take() {
             self.begin_preroll();
             if let Some(aside) = &mut self.preroll {
                 aside.steps = steps;
@@ -129,13 +129,13 @@ impl Inside {
         }
     }
 
-    pub(super) fn tell_settling(&mut self) {
+    pub(super) fn publish_settling(&mut self) {
         let progress = self.preroll.as_ref().map(|aside| {
             let (done, total) = aside.preroll.steps();
             let (to_secs, taken_secs) = (aside.preroll.to_secs(), aside.since.secs());
             PrerollProgress { done, total, to_secs, taken_secs }
         });
-        let to_come = self.engine.as_ref().filter(|_| self.owes_settling).map(|engine| {
+        let to_come = self.engine.as_ref().filter(|_| self.settling_pending).map(|engine| {
             let to_secs = engine.position_secs();
             PrerollProgress { done: 0, total: 1, to_secs, taken_secs: 0.0 }
         });

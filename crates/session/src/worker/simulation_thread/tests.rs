@@ -1,4 +1,4 @@
-//! What is seen while time passes, without a clock: the thread's own turns, each told how much time has passed.
+//! Frames shown during playback, without a clock: the tests call the thread's turns with given elapsed times.
 
 use std::sync::Arc;
 
@@ -9,56 +9,62 @@ use lovelock_project::files::Access;
 
 use super::super::Outbox;
 use super::super::load_thread::{LoadThread, Loaded};
-use super::super::mailbox::{Mailbox, Wishes};
-use super::{Inside, Scene};
+use super::super::mailbox::{Mailbox, Requests};
+use super::{Scene, SimulationThread};
 use crate::clock::STEP_SECS;
 use crate::engine::Engine;
-use crate::latest::Slot;
+use crate::latest::Latest;
 use crate::scene::SceneLoader;
 use crate::snapshot::FrameSnapshot;
 use crate::testing::{load, small_project};
 
-/// The thread's state and where it leaves its frames.
+/// The thread's state and its published frames.
 struct Driven {
-    inside: Inside,
-    frames: Slot<FrameSnapshot>,
+    inside: SimulationThread,
+    frames: Latest<FrameSnapshot>,
     seen: u64,
 }
 
 impl Driven {
-    /// A scene, its hair settled at the first frame, which is shown.
+    /// A scene with settled hair at the first frame, which is shown.
     fn new(project: &Project, scene: &Arc<Scene>) -> Self {
         let (outbox, _) = Outbox::new(Arc::new(|| ()));
         let loader = Arc::new(LoadThread::start(outbox.clone(), |_| ()).expect("a thread"));
-        let frames = Slot::default();
-        let inside =
-            Inside::new(Mailbox::default(), frames.clone(), loader, outbox, Arc::default(), Arc::default());
+        let frames = Latest::default();
+        let inside = SimulationThread::new(
+            Mailbox::default(),
+            frames.clone(),
+            loader,
+            outbox,
+            Arc::default(),
+            Arc::default(),
+        );
         let mut driven = Self { inside, frames, seen: 0 };
         driven.put(project, scene);
         driven
     }
 
-    /// Another scene; its hair lives to where time stands, where it does.
+    /// Sets another scene and completes its pre-roll, if there is one.
     fn put(&mut self, project: &Project, scene: &Arc<Scene>) {
         let loaded = Loaded::Scene(Arc::clone(scene), Arc::new(project.clone()));
-        self.turn(Wishes { loaded: Some(loaded), ..Wishes::default() }, 0.0);
+        self.turn(Requests { loaded: Some(loaded), ..Requests::default() }, 0.0);
         self.arrive();
     }
 
     fn arrive(&mut self) {
         while self.inside.preroll.is_some() {
-            self.turn(Wishes::default(), 0.0);
+            self.turn(Requests::default(), 0.0);
         }
     }
 
-    fn turn(&mut self, wishes: Wishes, elapsed_secs: f64) {
-        self.inside.turn(wishes, elapsed_secs);
+    fn turn(&mut self, requests: Requests, elapsed_secs: f64) {
+        self.inside.turn(requests, elapsed_secs);
     }
 
-    /// What is shown next after so much time; none where nothing new is.
+    /// The frame shown after an elapsed time; `None` if there is no new one.
     fn after(&mut self, elapsed_secs: f64) -> Option<Arc<FrameSnapshot>> {
         self.frames.newer_than(&mut self.seen);
-        self.turn(Wishes::default(), elapsed_secs);
+        self.turn(Requests::default(), elapsed_secs);
         self.frames.newer_than(&mut self.seen)
     }
 
@@ -73,11 +79,11 @@ impl Driven {
 }
 
 #[test]
-fn hair_that_a_newer_one_follows_does_not_settle_before_it() {
+fn hair_does_not_settle_while_newer_hair_is_loading() {
     let mut project = small_project();
     let mut driven = Driven::new(&project, &load(&project).0);
-    driven.turn(Wishes { playing: Some(false), ..Wishes::default() }, 0.0);
-    // A loader that stands still as it hands over what it has made.
+    driven.turn(Requests { playing: Some(false), ..Requests::default() }, 0.0);
+    // A loader that blocks while it delivers its result.
     let (outbox, _) = Outbox::new(Arc::new(|| ()));
     let (go_on, gate) = std::sync::mpsc::sync_channel(2);
     let loader =
@@ -96,27 +102,30 @@ fn hair_that_a_newer_one_follows_does_not_settle_before_it() {
     assert!(loader.is_busy());
     project.hair.groom.length *= 0.9;
     let other = Loaded::Scene(load(&project).0, Arc::new(project.clone()));
-    driven.turn(Wishes { loaded: Some(other), ..Wishes::default() }, 0.0);
+    driven.turn(Requests { loaded: Some(other), ..Requests::default() }, 0.0);
     let told = |driven: &Driven| driven.inside.settling.lock().expect("no panic").map(|told| told.done);
     for _ in 0..5 {
-        assert!(driven.inside.preroll.is_none() && told(&driven) == Some(0), "it waits, and that is told");
-        driven.turn(Wishes::default(), 0.1);
+        assert!(
+            driven.inside.preroll.is_none() && told(&driven) == Some(0),
+            "settling waits, and is reported"
+        );
+        driven.turn(Requests::default(), 0.1);
     }
     for _ in 0..2 {
         go_on.send(()).expect("a thread");
     }
     rest();
-    driven.turn(Wishes::default(), 0.0);
+    driven.turn(Requests::default(), 0.0);
     assert!(driven.inside.preroll.is_some(), "it settles");
     driven.arrive();
     assert_eq!(told(&driven), None);
 }
 
-fn slow(rate: f64) -> Wishes {
-    Wishes { rate: Some(rate), ..Wishes::default() }
+fn slow(rate: f64) -> Requests {
+    Requests { rate: Some(rate), ..Requests::default() }
 }
 
-/// Points of the guides as the head sees them.
+/// Points of the guides in head space.
 fn of_head(frame: &FrameSnapshot) -> Vec<Vec3> {
     let head_from_world = frame.guides.world_from_head.inverse();
     let guides = &frame.guides.guides;
@@ -130,7 +139,7 @@ fn farthest(a: &[Vec3], b: &[Vec3]) -> f32 {
     a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max)
 }
 
-/// How far the head of a picture is from where the dance has it at the picture's time, metres.
+/// Distance of the head in a frame from its position in the motion at that time, metres.
 fn head_error(frame: &FrameSnapshot) -> f32 {
     let mut pose = Pose::default();
     let scene = &frame.scene;
@@ -139,7 +148,7 @@ fn head_error(frame: &FrameSnapshot) -> f32 {
 }
 
 #[test]
-fn slow_motion_moves_evenly_from_step_to_step_and_leaves_the_simulation_alone() {
+fn slow_motion_is_even_and_does_not_change_the_simulation() {
     let project = small_project();
     let scene = load(&project).0;
     let mut twin = Engine::new(Arc::clone(&scene), project.simulation);
@@ -149,7 +158,7 @@ fn slow_motion_moves_evenly_from_step_to_step_and_leaves_the_simulation_alone() 
     for _ in 0..96 {
         driven.after(STEP_SECS);
     }
-    assert_eq!(driven.hash(), twin.state_hash(), "the control: at full speed each picture is a step");
+    assert_eq!(driven.hash(), twin.state_hash(), "control: at full speed each image is a step");
     let mut last = twin.snapshot();
     driven.turn(slow(0.125), 0.0);
     for step in 100..106 {
@@ -172,38 +181,38 @@ fn slow_motion_moves_evenly_from_step_to_step_and_leaves_the_simulation_alone() 
         }
         assert!(moved > 1e-4, "the control: hair moves");
         let off = farthest(&before, &of_head(&next));
-        assert!(off < 2e-6, "the last part is the step: {off}");
+        assert!(off < 2e-6, "the last fraction is the step itself: {off}");
         last = next;
     }
-    // It is one step ahead of what is seen, or at it.
+    // The simulation is at most one step ahead of the shown frame.
     let ahead = driven.hash();
     let same = ahead == twin.state_hash() || {
         twin.step();
         ahead == twin.state_hash()
     };
-    assert!(same, "what is seen changes nothing");
+    assert!(same, "showing frames does not change the simulation");
 }
 
 #[test]
-fn a_quicker_display_gets_pictures_between_steps() {
+fn a_faster_display_gets_images_between_steps() {
     let project = small_project();
     let scene = load(&project).0;
     let mut driven = Driven::new(&project, &scene);
-    driven.turn(Wishes { display_hz: Some(240.0), ..Wishes::default() }, 0.0);
+    driven.turn(Requests { display_hz: Some(240.0), ..Requests::default() }, 0.0);
     let times: Vec<f64> = (0..41).map(|_| driven.picture().time_secs).collect();
     for pair in times.windows(2) {
         assert!((pair[1] - pair[0] - 1.0 / 240.0).abs() < 1e-6, "{pair:?}");
     }
-    driven.turn(Wishes { display_hz: Some(60.0), ..Wishes::default() }, 0.0);
+    driven.turn(Requests { display_hz: Some(60.0), ..Requests::default() }, 0.0);
     driven.picture();
     for _ in 0..10 {
         let steps = driven.picture().time_secs / STEP_SECS;
-        assert!((steps - steps.round()).abs() < 1e-9, "whole steps where the display shows sixty: {steps}");
+        assert!((steps - steps.round()).abs() < 1e-9, "whole steps at 60 Hz: {steps}");
     }
 }
 
 #[test]
-fn a_pause_shows_a_whole_step_and_time_goes_on_from_it() {
+fn a_pause_shows_a_whole_step_and_playback_continues_from_it() {
     let project = small_project();
     let scene = load(&project).0;
     let mut driven = Driven::new(&project, &scene);
@@ -215,22 +224,22 @@ fn a_pause_shows_a_whole_step_and_time_goes_on_from_it() {
     let steps = moving.time_secs / STEP_SECS;
     assert!((steps - 1.4).abs() < 1e-6, "between two steps: {steps}");
     driven.frames.newer_than(&mut driven.seen);
-    driven.turn(Wishes { playing: Some(false), ..Wishes::default() }, 0.0);
+    driven.turn(Requests { playing: Some(false), ..Requests::default() }, 0.0);
     let paused = driven.frames.newer_than(&mut driven.seen).expect("a picture");
     let mut twin = Engine::new(Arc::clone(&scene), project.simulation);
     twin.advance_to_step(2);
     assert_eq!((paused.guides.clone(), driven.hash()), (twin.snapshot().guides.clone(), twin.state_hash()));
     assert!(driven.after(1.0).is_none(), "time stands");
-    driven.turn(Wishes { steps: 1, ..Wishes::default() }, 0.0);
+    driven.turn(Requests { steps: 1, ..Requests::default() }, 0.0);
     twin.step();
     assert_eq!(driven.frames.latest().expect("a picture").guides, twin.snapshot().guides, "one step on");
-    driven.turn(Wishes { playing: Some(true), ..Wishes::default() }, 0.0);
+    driven.turn(Requests { playing: Some(true), ..Requests::default() }, 0.0);
     let steps = driven.picture().time_secs / STEP_SECS;
-    assert!((steps - 3.1).abs() < 1e-6, "it goes on at once, and not back: {steps}");
+    assert!((steps - 3.1).abs() < 1e-6, "it continues at once and does not go back: {steps}");
 }
 
 #[test]
-fn nothing_lies_between_an_instant_and_one_that_is_gone_to() {
+fn frames_are_not_interpolated_across_a_seek() {
     let project = small_project();
     let scene = load(&project).0;
     let mut driven = Driven::new(&project, &scene);
@@ -239,13 +248,13 @@ fn nothing_lies_between_an_instant_and_one_that_is_gone_to() {
         for _ in 0..7 {
             driven.picture();
         }
-        driven.turn(Wishes { seek_secs: Some(seek_secs), ..Wishes::default() }, STEP_SECS);
+        driven.turn(Requests { seek_secs: Some(seek_secs), ..Requests::default() }, STEP_SECS);
         driven.arrive();
         let mut twin = Engine::new(Arc::clone(&scene), project.simulation);
         twin.seek(seek_secs);
         twin.settle();
         let there = driven.frames.latest().expect("a picture");
-        assert_eq!(there.guides, twin.snapshot().guides, "settled hair, as it is");
+        assert_eq!(there.guides, twin.snapshot().guides, "settled hair, not interpolated");
         for part in 1..=9 {
             let shown = driven.picture();
             let after = shown.time_secs - there.time_secs - f64::from(part) * 0.25 * STEP_SECS;
@@ -256,9 +265,9 @@ fn nothing_lies_between_an_instant_and_one_that_is_gone_to() {
 }
 
 #[test]
-fn nothing_lies_between_two_styles() {
+fn frames_are_not_interpolated_between_styles() {
     let mut project = small_project();
-    // The same body and dance each time, so that the hair goes on moving.
+    // The same body and motion each time, so that the hair keeps moving.
     let mut loader = SceneLoader::new();
     let mut load = |project: &Project| loader.load_now(project, &Access::new()).expect("a scene").0;
     let scene = load(&project);
@@ -274,10 +283,10 @@ fn nothing_lies_between_two_styles() {
         driven.put(&project, &other);
         let shown = driven.frames.latest().expect("a picture");
         let step = driven.inside.engine.as_mut().expect("an engine").snapshot();
-        assert!(Arc::ptr_eq(&shown.scene.style, &other.style), "it is seen at once");
-        assert_eq!((shown.time_secs, &shown.guides), (step.time_secs, &step.guides), "a step as it is");
+        assert!(Arc::ptr_eq(&shown.scene.style, &other.style), "it is shown at once");
+        assert_eq!((shown.time_secs, &shown.guides), (step.time_secs, &step.guides), "a whole step");
         let on = (shown.time_secs - time_secs) / STEP_SECS;
-        assert!((0.0..1.0 + 1e-9).contains(&on), "and time does not go back: {on} steps");
+        assert!((0.0..1.0 + 1e-9).contains(&on), "and time does not run back: {on} steps");
         time_secs = shown.time_secs;
         for _ in 0..6 {
             let next = driven.picture();
@@ -289,11 +298,11 @@ fn nothing_lies_between_two_styles() {
 }
 
 #[test]
-fn where_the_motion_jumps_the_nearer_step_is_shown() {
+fn the_nearer_step_is_shown_across_a_jump() {
     let project = small_project();
     let whole = load(&project).0;
     let clip = whole.clip.as_ref().expect("a clip");
-    // Cut in the middle of a move: its end does not lead to its start.
+    // Trim in the middle of a move, so that the end does not lead to the start.
     let cut = 151.0 * STEP_SECS;
     let cut_clip = lovelock_motion::Clip { duration_secs: cut, loops: false, ..(**clip).clone() };
     let scene = Arc::new(Scene { clip: Some(Arc::new(cut_clip)), ..(*whole).clone() });
@@ -303,7 +312,7 @@ fn where_the_motion_jumps_the_nearer_step_is_shown() {
     twin.step();
     let first = twin.snapshot();
     let apart = (last.guides.world_from_head.translation - first.guides.world_from_head.translation).length();
-    assert!(first.report.jumped && apart > 0.02, "the control: the head jumps by {apart} m");
+    assert!(first.report.jumped && apart > 0.02, "control: the head jumps by {apart} m");
     let mut driven = Driven::new(&project, &scene);
     for _ in 0..150 {
         driven.after(STEP_SECS);

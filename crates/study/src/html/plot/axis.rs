@@ -1,33 +1,32 @@
-//! One axis of a plot: from numbers to places.
+//! One axis of a plot: maps numbers to positions.
 
 use lovelock_metrics::ticks;
 
-/// The largest factor between the ends of a logarithmic axis: what is next to nothing lies on its low end, so that the
-/// others are told apart.
+/// Largest ratio between the ends of a logarithmic axis. Smaller values are drawn at its low end, so that the others can be
+/// distinguished.
 const WIDEST: f64 = 1e5;
 
 /// One axis of a plot.
 #[derive(Clone, Debug, PartialEq)]
 pub(in super::super) struct Axis {
-    /// What it counts, with the unit.
+    /// Quantity with unit.
     pub(in super::super) label: String,
-    /// The numbers at its two ends, the first below the second.
+    /// Numbers at the two ends, in ascending order.
     low: f64,
     high: f64,
-    /// Whether equal steps are equal factors.
+    /// Whether the axis is logarithmic.
     logarithmic: bool,
 }
 
 impl Axis {
-    /// An axis with equal steps from `low` to `high`; a range that is none becomes one.
+    /// A linear axis from `low` to `high`; an empty range is extended.
     pub(in super::super) fn even(label: &str, low: f64, high: f64) -> Self {
         let (low, high) = if low.is_finite() && high.is_finite() { (low, high) } else { (0.0, 1.0) };
         let high = if high - low > f64::EPSILON * low.abs().max(1e-30) { high } else { low + 1.0 };
         Self { label: label.into(), low, high, logarithmic: false }
     }
 
-    /// An axis with equal factors that holds those of `values` that are above zero, with room around them, down to one
-    /// in a hundred thousand of the largest.
+    /// A logarithmic axis for the positive `values`, with a margin, down to 1/100,000 of the largest.
     pub(in super::super) fn logarithmic(label: &str, values: impl IntoIterator<Item = f64>) -> Self {
         let positive = values.into_iter().filter(|value| value.is_finite() && *value > 0.0);
         let (low, high) = positive.fold((f64::MAX, 0.0_f64), |(low, high), v| (low.min(v), high.max(v)));
@@ -38,14 +37,14 @@ impl Axis {
         Self { label: label.into(), low: low / short, high: high * short, logarithmic: true }
     }
 
-    /// The place of a number: 0 at the low end and 1 at the high end. What lies outside is put on the nearer end.
+    /// Position of a number, 0 at the low end and 1 at the high end, clamped.
     pub(super) fn place(&self, value: f64) -> f64 {
         let place = if self.logarithmic {
             (value.max(self.low) / self.low).ln() / (self.high / self.low).ln()
         } else {
             (value - self.low) / (self.high - self.low)
         };
-        // Also for what is not finite.
+        // Handles non-finite numbers as well.
         if place > 0.0 { place.min(1.0) } else { 0.0 }
     }
 
@@ -59,7 +58,7 @@ impl Axis {
         start <= self.high && end >= self.low && start <= end
     }
 
-    /// Round numbers along it and how they are written.
+    /// Round numbers along the axis, with their text.
     pub(super) fn marks(&self, wanted: usize) -> Vec<(f64, String)> {
         if !self.logarithmic {
             let ticks = ticks(self.low, self.high, wanted);
@@ -79,7 +78,7 @@ impl Axis {
     }
 }
 
-/// A round number in few letters.
+/// Short text of a round number.
 fn short(value: f64) -> String {
     if (1e-4..1e6).contains(&value) {
         let places = (-value.log10().floor()).max(0.0) as usize;
@@ -112,7 +111,7 @@ mod tests {
         assert_eq!(words(&Axis::even("", -0.1, 0.1)), "−0.10 −0.05 0.00 0.05 0.10");
         assert_eq!(words(&Axis::logarithmic("", [0.012, 0.2])), "0.01 0.02 0.03 0.05 0.1 0.2");
         assert_eq!(words(&Axis::logarithmic("", [1.0, 900.0])), "1 3 10 30 100 300 1000");
-        // Next to nothing is on the rim.
+        // Tiny values are at the edge.
         let wide = Axis::logarithmic("", [1e-300, 1e300]);
         assert!((2..9).contains(&wide.marks(5).len()) && wide.place(1e-300) == 0.0, "{wide:?}");
     }

@@ -1,34 +1,34 @@
-//! Words beside dots, where they cover least.
+//! Places labels beside dots where they overlap least.
 
 use super::escaped;
 use std::fmt::Write as _;
 
-/// Pixels that a letter takes, on average, and the height of a line.
+/// Average width of a letter, and height of a line, pixels.
 const LETTER: (f64, f64) = (6.7, 13.0);
 
 /// A rectangle: left, top, right, bottom.
 type Box4 = [f64; 4];
 
-/// The word beside a dot.
+/// The label of a dot.
 #[derive(Clone, Debug, PartialEq)]
 pub(in super::super) enum Label {
-    /// It is there, whatever it covers. An empty one is not.
+    /// Always drawn unless empty.
     Always(String),
-    /// It is left out where it would cover too much.
+    /// Left out if it would overlap too much.
     WhereFree(String),
 }
 
-/// The part of a word that may be covered before it is left out.
+/// Fraction of a label that may overlap before it is left out.
 const COVERED: f64 = 0.2;
 
-/// Pixels of a piece of line that words keep off.
+/// Length of the line pieces that labels avoid, pixels.
 const PIECE: f64 = 6.0;
 
-/// Words beside dots. All dots are known before a word is placed, so that none covers a dot.
+/// Labels beside dots. They are placed after all dots are known, so that none covers a dot.
 pub(super) struct Labels {
     field: (f64, f64),
     dots: Vec<(f64, f64, Label)>,
-    /// Pieces of lines that are better not covered.
+    /// Pieces of lines to avoid.
     lines: Vec<Box4>,
 }
 
@@ -38,12 +38,12 @@ impl Labels {
         Self { field: (width, height), dots: Vec::new(), lines: Vec::new() }
     }
 
-    /// A dot and its word.
+    /// Adds a dot and its label.
     pub(super) fn add(&mut self, x: f64, y: f64, label: Label) {
         self.dots.push((x, y, label));
     }
 
-    /// Keeps words off a line, where they can be.
+    /// Makes labels avoid a line if possible.
     pub(super) fn keep_free(&mut self, from: (f64, f64), to: (f64, f64)) {
         let [across, down] = [to.0 - from.0, to.1 - from.1];
         // No line is longer than the diagonal of its field.

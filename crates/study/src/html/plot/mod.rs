@@ -39,12 +39,12 @@ pub(super) struct Stroke<'a> {
     pub(super) dashed: bool,
 }
 
-/// What stands for a point.
+/// The style of a dot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Dot {
-    /// It is on the front.
+    /// On the front.
     Full,
-    /// It is not.
+    /// Not on the front.
     Hollow,
 }
 
@@ -87,12 +87,12 @@ impl Plot {
         (1.0 - self.y.place(value)) * self.height
     }
 
-    /// Whether a point lies in the field and not beyond its rim.
+    /// Whether a point lies inside the field.
     pub(super) fn holds(&self, x: f64, y: f64) -> bool {
         self.x.holds(x) && self.y.holds(y)
     }
 
-    /// The places of those points whose x lies in the field and whose numbers are finite.
+    /// Positions of the finite points whose x lies inside the field.
     fn places(&self, points: &[(f64, f64)]) -> Vec<(f64, f64)> {
         let every = points.len().div_ceil(CORNERS).max(1);
         let last = points.len().saturating_sub(1);
@@ -122,7 +122,7 @@ impl Plot {
         }
     }
 
-    /// Keeps words off a line through points, where they can be.
+    /// Makes labels avoid a line through points if possible.
     pub(super) fn keep_free(&mut self, points: &[(f64, f64)]) {
         let places = self.places(points);
         places.windows(2).for_each(|pair| self.labels.keep_free(pair[0], pair[1]));
@@ -140,7 +140,7 @@ impl Plot {
         }
     }
 
-    /// A level line from side to side with a word above its right end.
+    /// A horizontal line with a label above its right end.
     pub(super) fn level(&mut self, y: f64, word: &str) {
         let (at, width) = (self.top(y), self.width);
         let _ = write!(
@@ -153,7 +153,7 @@ impl Plot {
         );
     }
 
-    /// An upright line with a word at its foot.
+    /// A vertical line with a label at its bottom.
     pub(super) fn upright(&mut self, x: f64, word: &str) {
         let (at, height) = (self.left(x), self.height);
         let _ = write!(
@@ -165,7 +165,7 @@ impl Plot {
         );
     }
 
-    /// A dot; none where its numbers are not finite. `title` is shown by the pointer; the label stands beside it once all dots are there.
+    /// A dot, if its numbers are finite. `title` is its tooltip; the label is placed when all dots are known.
     pub(super) fn dot(&mut self, (x, y): (f64, f64), dot: Dot, color: &str, label: Label, title: &str) {
         if !(x.is_finite() && y.is_finite()) {
             return;
@@ -216,7 +216,7 @@ impl Plot {
         self.body += "</g>";
     }
 
-    /// The whole drawing. `says` is what it shows, for those who cannot see it; `wide` is more room on the left.
+    /// The whole figure. `says` is its description for screen readers; `wide` is additional width on the left.
     pub(super) fn svg(mut self, says: &str, wide: f64) -> String {
         self.body += &self.labels.svg();
         let [left, top, right, bottom] = MARGINS;

@@ -29,7 +29,7 @@ fn a_dot_has_its_words_and_no_number_breaks_the_drawing() {
     assert!(svg.contains("&lt;name&gt;") && svg.contains("<title>more</title>") && svg.contains("red&quot;"));
     assert!(!svg.contains("nowhere") && !svg.contains("blue"));
     assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
-    // The spans outside and without a start are left out, the one across the whole field is cut to it.
+    // Spans outside the field or without a start are left out; the span across the whole field is clipped.
     assert_eq!(svg.matches("height=\"14\" fill").count(), 1, "{svg}");
     assert!(svg.contains("width=\"100.0\" height=\"14\""), "{svg}");
 }

@@ -1,51 +1,51 @@
-//! A slot where the latest value wins.
+//! The latest value from another thread.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// A slot where the latest value wins: the writer never waits for a reader, and a reader never for the writer.
+/// A cell that keeps only the latest value. Writer and readers do not wait for each other.
 ///
-/// Clones share the slot. Values are numbered from 1 in the order in which they were put.
+/// Clones share the cell. Values are numbered from 1 in the order in which they were put.
 #[derive(Debug)]
-pub struct Slot<T> {
-    shared: Arc<Mutex<Held<T>>>,
+pub struct Latest<T> {
+    shared: Arc<Mutex<Numbered<T>>>,
 }
 
 #[derive(Debug)]
-struct Held<T> {
+struct Numbered<T> {
     number: u64,
     value: Option<Arc<T>>,
 }
 
-impl<T> Default for Slot<T> {
+impl<T> Default for Latest<T> {
     fn default() -> Self {
-        Self { shared: Arc::new(Mutex::new(Held { number: 0, value: None })) }
+        Self { shared: Arc::new(Mutex::new(Numbered { number: 0, value: None })) }
     }
 }
 
-impl<T> Clone for Slot<T> {
+impl<T> Clone for Latest<T> {
     fn clone(&self) -> Self {
         Self { shared: Arc::clone(&self.shared) }
     }
 }
 
-impl<T> Slot<T> {
-    /// Puts a value, replacing the one that is there.
+impl<T> Latest<T> {
+    /// Stores a value and replaces the previous one.
     pub fn put(&self, value: Arc<T>) {
         let replaced = {
             let mut held = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
             held.number += 1;
             held.value.replace(value)
         };
-        // Dropped outside the lock: a reader must not wait while large buffers are freed.
+        // Drop outside the lock, so that readers do not wait while large buffers are freed.
         drop(replaced);
     }
 
-    /// The latest value, which stays in the slot.
+    /// The latest value, which stays in the cell.
     pub fn latest(&self) -> Option<Arc<T>> {
         self.shared.lock().unwrap_or_else(PoisonError::into_inner).value.clone()
     }
 
-    /// The latest value if it is newer than number `seen`, which is then moved on.
+    /// The latest value if it is newer than number `seen`, which is then updated.
     pub fn newer_than(&self, seen: &mut u64) -> Option<Arc<T>> {
         let held = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
         (held.number > *seen).then(|| {
@@ -54,7 +54,7 @@ impl<T> Slot<T> {
         })?
     }
 
-    /// How many values have been put.
+    /// Number of values stored so far.
     pub fn number(&self) -> u64 {
         self.shared.lock().unwrap_or_else(PoisonError::into_inner).number
     }
@@ -65,41 +65,41 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_latest_wins_and_stays() {
-        let slot = Slot::default();
-        assert!(slot.latest().is_none());
+    fn the_latest_value_wins_and_stays() {
+        let latest = Latest::default();
+        assert!(latest.latest().is_none());
         for i in 0..5 {
-            slot.put(Arc::new(i));
+            latest.put(Arc::new(i));
         }
-        assert_eq!(slot.latest().as_deref(), Some(&4));
-        assert_eq!(slot.latest().as_deref(), Some(&4));
-        assert_eq!(slot.number(), 5);
+        assert_eq!(latest.latest().as_deref(), Some(&4));
+        assert_eq!(latest.latest().as_deref(), Some(&4));
+        assert_eq!(latest.number(), 5);
     }
 
     #[test]
     fn a_reader_sees_each_value_at_most_once() {
-        let slot = Slot::default();
+        let latest = Latest::default();
         let mut seen = 0;
-        assert!(slot.newer_than(&mut seen).is_none());
-        slot.put(Arc::new('a'));
-        slot.put(Arc::new('b'));
-        assert_eq!(slot.newer_than(&mut seen).as_deref(), Some(&'b'));
-        assert!(slot.newer_than(&mut seen).is_none(), "nothing new");
-        slot.put(Arc::new('c'));
-        assert_eq!(slot.newer_than(&mut seen).as_deref(), Some(&'c'));
+        assert!(latest.newer_than(&mut seen).is_none());
+        latest.put(Arc::new('a'));
+        latest.put(Arc::new('b'));
+        assert_eq!(latest.newer_than(&mut seen).as_deref(), Some(&'b'));
+        assert!(latest.newer_than(&mut seen).is_none(), "nothing new");
+        latest.put(Arc::new('c'));
+        assert_eq!(latest.newer_than(&mut seen).as_deref(), Some(&'c'));
     }
 
     #[test]
     fn numbers_only_rise_across_threads() {
-        let slot = Slot::default();
-        let writer = slot.clone();
+        let latest = Latest::default();
+        let writer = latest.clone();
         let handle = std::thread::Builder::new()
-            .name("slot writer".to_owned())
+            .name("latest writer".to_owned())
             .spawn(move || (0..2000_u32).for_each(|i| writer.put(Arc::new(i))))
             .expect("a thread");
         let (mut seen, mut last) = (0, None);
         while last != Some(1999) {
-            if let Some(value) = slot.newer_than(&mut seen) {
+            if let Some(value) = latest.newer_than(&mut seen) {
                 assert!(last < Some(*value), "values come in order");
                 last = Some(*value);
             }
@@ -109,10 +109,10 @@ mod tests {
 
     #[test]
     fn replaced_values_are_freed() {
-        let slot = Slot::default();
+        let latest = Latest::default();
         let first = Arc::new(1);
-        slot.put(Arc::clone(&first));
-        slot.put(Arc::new(2));
+        latest.put(Arc::clone(&first));
+        latest.put(Arc::new(2));
         assert_eq!(Arc::strong_count(&first), 1);
     }
 }

@@ -1,0 +1,123 @@
+//! The newest request for a background thread.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+
+/// The request that waits.
+#[derive(Debug)]
+struct Pending<T> {
+    request: Option<T>,
+    closed: bool,
+}
+
+/// A queue that holds only the newest request, shared by the requesting threads and the one worker. A later request replaces one
+/// that still waits.
+#[derive(Debug)]
+pub struct LatestJob<T> {
+    pending: Arc<(Mutex<Pending<T>>, Condvar)>,
+    busy: Arc<AtomicBool>,
+}
+
+impl<T> Clone for LatestJob<T> {
+    fn clone(&self) -> Self {
+        Self { pending: Arc::clone(&self.pending), busy: Arc::clone(&self.busy) }
+    }
+}
+
+impl<T> Default for LatestJob<T> {
+    fn default() -> Self {
+        let pending = Pending { request: None, closed: false };
+        Self { pending: Arc::new((Mutex::new(pending), Condvar::new())), busy: Arc::default() }
+    }
+}
+
+impl<T> LatestJob<T> {
+    /// Adds a request and replaces one that still waits.
+    pub fn put(&self, request: T) {
+        let mut pending = self.lock();
+        pending.request = Some(request);
+        // Under the lock, because `done` clears it under the lock.
+        self.busy.store(true, Ordering::Relaxed);
+        self.pending.1.notify_one();
+    }
+
+    /// Makes the worker end when it finishes the current request.
+    pub fn close(&self) {
+        self.lock().closed = true;
+        self.pending.1.notify_one();
+    }
+
+    /// Whether a request waits that is newer than the current one.
+    pub fn has_newer(&self) -> bool {
+        self.lock().request.is_some()
+    }
+
+    /// Whether the worker must end.
+    pub fn is_closed(&self) -> bool {
+        self.lock().closed
+    }
+
+    /// Whether a request is being processed or waits.
+    pub fn busy(&self) -> &Arc<AtomicBool> {
+        &self.busy
+    }
+
+    /// Waits for a request; `None` once the queue is closed.
+    pub fn next(&self) -> Option<T> {
+        let mut pending = self.lock();
+        loop {
+            if pending.closed {
+                return None;
+            }
+            if let Some(request) = pending.request.take() {
+                return Some(request);
+            }
+            pending = self.pending.1.wait(pending).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+
+    /// Ends the current request. `again` is queued again unless a newer request waits.
+    pub fn done(&self, again: Option<T>) {
+        let mut pending = self.lock();
+        pending.request = pending.request.take().or(again);
+        self.busy.store(pending.request.is_some(), Ordering::Relaxed);
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Pending<T>> {
+        self.pending.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_newest_request_is_processed_and_an_old_one_is_repeated_only_if_none_is_newer() {
+        let jobs = LatestJob::default();
+        let busy = |jobs: &LatestJob<u32>| jobs.busy().load(Ordering::Relaxed);
+        assert!(!busy(&jobs));
+        (1..=3).for_each(|request| jobs.put(request));
+        assert_eq!(jobs.next(), Some(3));
+        assert!(busy(&jobs), "it is being processed");
+        jobs.done(Some(3));
+        assert!(busy(&jobs), "it waits again");
+        assert_eq!(jobs.next(), Some(3));
+        jobs.put(4);
+        jobs.done(Some(3));
+        assert_eq!(jobs.next(), Some(4));
+        jobs.done(None);
+        assert!(!busy(&jobs));
+    }
+
+    #[test]
+    fn closing_ends_a_waiting_thread() {
+        let jobs = LatestJob::<u32>::default();
+        let waits = jobs.clone();
+        let thread = std::thread::Builder::new().spawn(move || waits.next()).expect("a thread");
+        jobs.close();
+        assert_eq!(thread.join().expect("no panic"), None);
+        jobs.put(1);
+        assert_eq!((jobs.next(), jobs.is_closed()), (None, true), "nothing starts after closing");
+    }
+}
