@@ -38,12 +38,12 @@ impl Canvas {
         self.height
     }
 
-    /// The bytes, four a pixel.
+    /// The bytes, four per pixel.
     pub fn rgba(&self) -> &[u8] {
         &self.rgba
     }
 
-    /// The bytes, four a pixel.
+    /// The bytes, four per pixel.
     pub fn into_rgba(self) -> Vec<u8> {
         self.rgba
     }

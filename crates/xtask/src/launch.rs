@@ -1,9 +1,9 @@
-//! `cargo xtask run`: the window, or where there is no display, the default dance as a film.
+//! `cargo xtask run`: opens the window, or records the default dance if there is no display.
 
 use crate::{system, tool};
 use std::ffi::{OsStr, OsString};
 
-/// Where the film goes that is made for lack of a display.
+/// The film that is recorded if there is no display.
 const FILM: &str = "out/dance.mp4";
 
 /// Builds Lovelock optimised and starts it.
@@ -23,12 +23,13 @@ pub(crate) fn run(arguments: &[OsString]) -> anyhow::Result<()> {
         println!("The dance is in {}.", tool::root().join(FILM).display());
         return Ok(());
     }
-    // Paths among the arguments are meant from where the user is; cargo finds the workspace by the manifest's path.
+    // Paths in the arguments are relative to the user's folder, so the folder is not changed; cargo finds the workspace by the
+    // manifest's path.
     lovelock.current_dir(std::env::current_dir()?);
     tool::run(lovelock.args(arguments))
 }
 
-/// Whether a window can open. macOS and Windows always have a display here.
+/// Whether a window can be opened. On macOS and Windows this is assumed.
 fn has_display(by_environment: bool, variable: impl Fn(&str) -> Option<OsString>) -> bool {
     let set = |name| variable(name).is_some_and(|value| value.as_os_str() != OsStr::new(""));
     !by_environment || ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"].into_iter().any(set)
@@ -45,6 +46,6 @@ mod tests {
         };
         assert!(only("DISPLAY", ":0") && only("WAYLAND_DISPLAY", "wayland-0") && only("WAYLAND_SOCKET", "5"));
         assert!(!only("DISPLAY", "") && !only("TERM", "xterm"));
-        assert!(has_display(false, |_| None), "other systems are not asked");
+        assert!(has_display(false, |_| None), "other systems always have a display");
     }
 }

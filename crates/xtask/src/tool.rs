@@ -1,4 +1,4 @@
-//! Other programs, and the clock.
+//! Running other programs, and measuring time.
 
 use anyhow::{Context as _, ensure};
 use lovelock_base::clock::Stopwatch;
@@ -7,20 +7,20 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-/// The workspace's root folder.
+/// The root folder of the workspace.
 pub(crate) fn root() -> &'static Path {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     here.parent().and_then(Path::parent).unwrap_or(here)
 }
 
-/// The cargo that runs this, set up to work on this workspace.
+/// The cargo that runs this program, in the folder of the workspace.
 pub(crate) fn cargo(arguments: &[&str]) -> Command {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     command.args(arguments).current_dir(root());
     command
 }
 
-/// Runs a program to its end; an error if it cannot start or does not succeed.
+/// Runs a program. Fails if it cannot be started or does not succeed.
 pub(crate) fn run(command: &mut Command) -> anyhow::Result<()> {
     let shown = shown(command);
     let status = command.status().with_context(|| format!("could not start `{shown}`"))?;
@@ -28,7 +28,7 @@ pub(crate) fn run(command: &mut Command) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Which of a program's outputs is looked at line by line.
+/// The output of a program that is read line by line.
 #[derive(Clone, Copy)]
 pub(crate) enum Stream {
     Out,
@@ -69,21 +69,21 @@ fn copy_lines(from: impl Read, to: &mut impl Write, see: &mut impl FnMut(&str)) 
     Ok(())
 }
 
-/// A program's whole standard output, if it can be started and succeeds.
+/// The standard output of a program, if it can be started and succeeds.
 pub(crate) fn output_of(program: &str, arguments: &[&str]) -> Option<String> {
     let output =
         Command::new(program).args(arguments).stdin(Stdio::null()).stderr(Stdio::null()).output().ok()?;
     output.status.success().then(|| String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
-/// A command as one would type it.
+/// A command as it would be typed in a shell.
 pub(crate) fn shown(command: &Command) -> String {
     let program = Path::new(command.get_program()).file_name().unwrap_or_default();
     let words = std::iter::once(program).chain(command.get_args());
     words.map(std::ffi::OsStr::to_string_lossy).collect::<Vec<_>>().join(" ")
 }
 
-/// How long something took.
+/// Measures the time that something takes.
 pub(crate) fn timed<T>(work: impl FnOnce() -> T) -> (T, Duration) {
     let watch = Stopwatch::start();
     let result = work();

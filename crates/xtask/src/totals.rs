@@ -1,9 +1,9 @@
-//! How many tests passed, failed and were skipped, read from what the test programs print.
+//! Numbers of passed, failed and skipped tests, parsed from the output of the test programs.
 
 use std::fmt;
 use std::ops::AddAssign;
 
-/// Counts of tests. Prints as the one line that ends every run: `12 passed, 0 failed, 1 skipped`.
+/// Numbers of tests. Displayed as the last line of every run: `12 passed, 0 failed, 1 skipped`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) struct Totals {
     pub(crate) passed: u64,
@@ -12,10 +12,10 @@ pub(crate) struct Totals {
 }
 
 impl Totals {
-    /// Reads one line of `cargo test` or `cargo nextest run`, if it is one that sums up.
+    /// Adds the numbers of a line of `cargo test` or `cargo nextest run`, if it is a summary.
     pub(crate) fn of_line(line: &str) -> Option<Self> {
         let line = without_colours(line);
-        // What nextest repeats of a test that failed is indented, and has been counted.
+        // nextest repeats the output of failed tests with indentation; it has been counted already.
         if let Some(counts) = line.strip_prefix("test result: ") {
             // test result: ok. 39 passed; 0 failed; 2 ignored; 0 measured; 0 filtered out; finished in 0.69s
             return Some(Self::of_counts(counts.split_once(". ")?.1.split(';')));
@@ -63,7 +63,7 @@ impl fmt::Display for Totals {
     }
 }
 
-/// The line without the escape sequences that colour it on a terminal.
+/// Removes the escape sequences for colours from a line.
 fn without_colours(line: &str) -> String {
     let mut plain = String::with_capacity(line.len());
     let mut letters = line.chars();

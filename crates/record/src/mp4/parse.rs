@@ -148,7 +148,7 @@ impl<'a> Span<'a> {
             return Err(self.error(
                 at,
                 format!("{count} entries"),
-                format!("at most the {room} that the box holds"),
+                format!("at most the {room} that fit into the box"),
             ));
         }
         Ok(bytes[..count as usize * size].chunks_exact(size))

@@ -1,5 +1,5 @@
-//! Motion from a score: smooth curves through the key poses, steps that leave planted feet in place, and limbs that
-//! reach by inverse kinematics.
+//! Generates motion from a score: smooth curves through the key poses, steps that keep planted feet in place, and inverse
+//! kinematics for the limbs.
 
 use std::f32::consts::TAU;
 
@@ -11,20 +11,20 @@ use super::ik::{align, angle_about, reach, twist_about};
 use super::rig::{self, RigJoint, rest};
 use super::score::{ArmPose, Score, Step};
 
-/// Keys a second in the file.
+/// Keys per second in the file.
 pub(super) const RATE: f32 = 60.0;
-/// Width of the bell that rounds every curve, seconds: key poses are passed through, not stopped at.
+/// Width in seconds of the bell filter that smooths every curve, so that the motion passes through key poses without stopping.
 const ROUNDING_SECS: f32 = 0.055;
-/// How far the arms and the head trail the trunk, seconds.
+/// Delay of the arms and the head behind the trunk, in seconds.
 const ARM_LAG_SECS: f32 = 0.05;
 const HEAD_LAG_SECS: f32 = 0.07;
-/// Largest stretch of a leg that a planted heel allows before it rises, as a part of the leg's length.
+/// Largest extension of a leg, as a fraction of its length, before its heel rises.
 const LEG_STRETCH: f32 = 0.988;
 
-/// From the ball of the foot to the end of the slipper, metres.
+/// Distance from the ball of the foot to the end of the slipper in metres.
 const TOE_LENGTH: f32 = 0.10;
 
-/// One pose: rotations of the joints relative to their parents, and the place of the hips.
+/// One pose: rotations of the joints relative to their parents, and the position of the hips.
 #[derive(Clone)]
 pub(super) struct LocalPose {
     /// By joint.
@@ -52,7 +52,7 @@ fn spline<const N: usize>(keys: &[(f32, [f32; N])], period: f32, beat: f32) -> [
     let (tt, ttt) = (t * t, t * t * t);
     std::array::from_fn(|c| {
         let (a, b, d) = ((p1[c] - p0[c]) / (t1 - t0), (p2[c] - p1[c]) / h, (p3[c] - p2[c]) / (t3 - t2));
-        // The slope at a key weighs the nearer neighbour more.
+        // The nearer neighbour has more weight in the slope at a key.
         let m1 = (a * h + b * (t1 - t0)) / (h + t1 - t0) * h;
         let m2 = (b * (t3 - t2) + d * h) / (h + t3 - t2) * h;
         (2.0 * ttt - 3.0 * tt + 1.0) * p1[c]
@@ -63,7 +63,7 @@ fn spline<const N: usize>(keys: &[(f32, [f32; N])], period: f32, beat: f32) -> [
 }
 
 impl Score {
-    /// A curve rounded by a bell of [`ROUNDING_SECS`].
+    /// A curve smoothed by a bell filter of width [`ROUNDING_SECS`].
     fn curve<const N: usize>(&self, keys: &[(f32, [f32; N])], secs: f32) -> [f32; N] {
         let mut out = [0.0; N];
         let mut total = 0.0;
@@ -79,13 +79,13 @@ impl Score {
         out.map(|v| v / total)
     }
 
-    /// How far the body has turned about the vertical, radians.
+    /// Rotation of the body about the vertical in radians.
     fn heading(&self, secs: f32) -> f32 {
         let beat = secs / self.beat_secs;
         self.turns.iter().map(|turn| turn.turns * TAU * ease(turn.beats, beat)).sum()
     }
 
-    /// Where the ball of a foot is: the ground, or a held place while it is up; the second value is how far it is up.
+    /// Position of the ball of a foot, on the ground or held in the air, and how far it is raised.
     fn ball(&self, side: usize, secs: f32, under_hips: Vec2) -> (Vec3, f32) {
         let beat = secs / self.beat_secs;
         let mut from = self.stance[side];
@@ -117,13 +117,13 @@ impl Score {
         let turned = Quat::from_rotation_y(self.heading(secs)) * held;
         let place = Vec3::new(under_hips.x, 0.0, under_hips.y) + turned;
         let ground = if t < 0.5 { from } else { step.to };
-        // A foot brushes along the floor before it rises: height follows the square of the way.
+        // A foot brushes along the floor before it rises: the height is proportional to the square of the distance.
         let mut at = on_ground(ground).lerp(place, in_air);
         at.y = rest::TOE.y + (place.y - rest::TOE.y) * in_air.powf(1.4);
         (at, in_air)
     }
 
-    /// The pose of an arm and the speed of its wrist, in lengths of the arm a second.
+    /// The pose of an arm and the speed of its wrist, in arm lengths per second.
     fn arm_at(&self, side: usize, secs: f32) -> (ArmPose, Vec3) {
         let keys: Vec<(f32, [f32; 10])> = self.arms[side]
             .iter()
@@ -137,7 +137,7 @@ impl Score {
             })
             .collect();
         let part = |row: [f32; 10], at: usize| Vec3::new(row[at], row[at + 1], row[at + 2]);
-        // The wrist travels on arcs about the shoulder: its distance is a curve of its own.
+        // The wrist moves on arcs about the shoulder, so its distance is interpolated separately.
         let wrist = |row: [f32; 10]| part(row, 0).normalize_or(-Vec3::Y) * row[9];
         let now = self.curve(&keys, secs - ARM_LAG_SECS);
         let (before, after) = (self.curve(&keys, secs - 0.13), self.curve(&keys, secs - 0.07));
@@ -195,7 +195,7 @@ impl Score {
             at_rest(rig::FOREARM).distance(at_rest(rig::HAND)),
         ];
         let span = lengths[0] + lengths[1];
-        // The collar bone goes along with a raised arm, and forward with one that reaches across.
+        // The collar bone rises with a raised arm, and moves forward with an arm that reaches across.
         let raise = 0.40 * smoothstep(-0.15, 1.0, wrist.y) - 0.03;
         let forward = 0.22 * smoothstep(0.3, 1.0, wrist.z) - 0.18 * smoothstep(0.1, -0.5, wrist.z);
         let collar = Quat::from_rotation_z(sign * raise) * Quat::from_rotation_y(-sign * forward);
@@ -216,7 +216,7 @@ impl Score {
         world[joint(rig::UPPER_ARM)] = upper;
         world[joint(rig::UPPER_ARM_TWIST)] = upper * Quat::from_axis_angle(upper_rest, -0.6 * roll);
         world[joint(rig::FOREARM)] = fore;
-        // The palm turns as asked, within what a forearm can.
+        // The palm turns as requested, within the range of a forearm.
         let palm_rest = Vec3::new(fore_rest.y * sign, -fore_rest.x * sign, 0.0).normalize_or(-Vec3::Y);
         let wanted = chest * mirrored(pose.palm);
         let turn = 1.4 * (angle_about(bent.second, fore * palm_rest, wanted) / 1.4).tanh();
@@ -279,7 +279,7 @@ impl Score {
         (foot, toes, ball + foot * ankle_from_ball)
     }
 
-    /// How far the heel must rise for the leg to reach, radians.
+    /// How far the heel must rise so that the leg can reach, in radians.
     fn needed_heel(&self, joints: &[RigJoint], secs: f32, side: usize) -> f32 {
         let first = rig::THIGH + side * rig::LEG_JOINTS;
         let rest_of = |offset: usize| joints[first + offset].rest;
@@ -304,7 +304,7 @@ impl Score {
         high
     }
 
-    /// Every pose of the clip at [`RATE`] keys a second, the first one again at the end.
+    /// Every pose of the clip at [`RATE`] keys per second, with the first one repeated at the end.
     pub(super) fn sample(&self, joints: &[RigJoint]) -> SampledClip {
         let frames = (self.beats * self.beat_secs * RATE).round() as usize;
         let secs = |frame: usize| frame as f32 / RATE;
@@ -324,7 +324,7 @@ impl Score {
     }
 }
 
-/// A smooth closed curve nowhere below `values`: the largest value within `reach` frames, then averaged twice.
+/// A smooth closed curve that is never below `values`: the largest value within `reach` frames, averaged twice.
 fn smooth_above(values: &[f32], reach: usize) -> Vec<f32> {
     let n = values.len();
     let window = |of: &[f32], i: usize, reach: usize| -> Vec<f32> {
@@ -361,7 +361,7 @@ impl Horizontal for Vec3 {
     }
 }
 
-/// Positions of the vertices and the transforms of the joints in one pose: what a reader of the file will compute.
+/// Positions of the vertices and transforms of the joints in one pose, as a reader of the file computes them.
 pub(super) fn world_of(joints: &[RigJoint], pose: &LocalPose) -> Vec<(Quat, Vec3)> {
     let mut out: Vec<(Quat, Vec3)> = Vec::with_capacity(joints.len());
     for (joint, rotation) in joints.iter().zip(&pose.rotations) {

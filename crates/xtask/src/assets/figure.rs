@@ -8,10 +8,10 @@ use super::paint;
 use super::rig::rest;
 use super::sdf::{Loft, ball, ellipsoid, round_cone, smax, smin, turn_x, turn_z};
 
-/// How far cloth stands off the skin, metres.
+/// Distance of cloth from the skin in metres.
 const CLOTH_THICKNESS: f32 = 0.0013;
 
-/// The figure's parts, made once. World space of the rest pose, metres, left is +X.
+/// The parts of the figure. World space of the rest pose, in metres; left is +X.
 pub(super) struct Figure {
     head: Head,
     torso: Loft,
@@ -304,12 +304,12 @@ impl Figure {
     }
 }
 
-/// How long the edges of the mesh should be at a place of the surface, metres: fine where the form or the paint is.
+/// Desired length of the mesh's edges at a point of the surface in metres, short where the shape or the colouring is fine.
 pub(super) fn edge_length(p: Vec3) -> f32 {
     let q = Vec3::new(p.x.abs(), p.y, p.z);
     let v = Vec3::new;
     let mut size = 0.0146_f32;
-    // Each place: how far its fine region reaches, how fine, and how fast the edges grow away from it.
+    // For each place: radius of the fine region, length of its edges, and growth of the length outside.
     let mut near = |distance: f32, reach: f32, fine: f32, growth: f32| {
         size = size.min(fine + growth * (distance - reach).max(0.0));
     };

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use super::rig::RigJoint;
 use super::weights::Influences;
 
-/// A clip: poses at equal steps of time, the last one equal to the first.
+/// A clip: poses at equal time steps, with the last one equal to the first.
 pub(super) struct SampledClip {
     /// Its name in the file.
     pub(super) name: &'static str,
@@ -17,11 +17,11 @@ pub(super) struct SampledClip {
     pub(super) times: Vec<f32>,
     /// Rotation of each joint relative to its parent, by joint, then by key.
     pub(super) rotations: Vec<Vec<Quat>>,
-    /// Place of the hips, metres, by key.
+    /// Position of the hips in metres, by key.
     pub(super) hips: Vec<Vec3>,
 }
 
-/// Everything that goes into the file.
+/// The contents of the file.
 pub(super) struct Dancer {
     /// Rest positions, metres.
     pub(super) positions: Vec<Vec3>,
@@ -113,7 +113,7 @@ pub(super) fn write(dancer: &Dancer) -> anyhow::Result<Vec<u8>> {
         "accessors": buffer.accessors,
     });
     let head = glb::head(serde_json::to_vec(&document)?, buffer.len())
-        .map_err(|whole| anyhow::anyhow!("a binary glTF file of {whole} bytes: wanted less than 4 GiB"))?;
+        .map_err(|whole| anyhow::anyhow!("a binary glTF file of {whole} bytes; must be less than 4 GiB"))?;
     Ok([head, buffer.into_bytes()].concat())
 }
 
@@ -172,7 +172,7 @@ fn animation(clip: &SampledClip, buffer: &mut Buffer) -> Value {
     let places = floats(buffer, &places, "VEC3", None);
     channel(places, 1, "translation");
     for (joint, rotations) in clip.rotations.iter().enumerate() {
-        // Neighbouring keys keep to the same half of the sphere, so that any reader takes the short way.
+        // Neighbouring keys are in the same hemisphere, so that every reader interpolates the short way.
         let mut last = Quat::IDENTITY;
         let keys: Vec<[f32; 4]> = rotations
             .iter()

@@ -1,4 +1,4 @@
-//! The head: cranium, face, eyes and ears, as one signed distance.
+//! The head: cranium, face, eyes and ears, as one signed distance function.
 //!
 //! World space of the rest pose, metres; the head is 0.23 m from chin (y = 1.47) to crown (y = 1.70), and the
 //! face looks toward +Z. Brow, nose base and chin divide the face below the hairline in thirds.
@@ -68,7 +68,7 @@ impl Head {
     }
 }
 
-/// Everything of the face that is finer than the loft.
+/// Details of the face that are finer than the loft.
 fn features(p: Vec3, skull: f32) -> f32 {
     let v = Vec3::new;
     let mut d = skull;
@@ -165,7 +165,7 @@ fn eye(p: Vec3, face: f32) -> f32 {
     let crease_y = p.y - EYE.y - 0.0085 + 22.0 * (p.x - EYE.x).powi(2);
     let crease = Vec3::new(crease_y, near - EYE_RADIUS - 0.0035, 0.0).length() - 0.0012;
     d = smax(d, -crease, 0.004);
-    // Within the opening nothing lies outside of the ball.
+    // Within the opening nothing is outside the eyeball.
     let cut = opening.max(EYE_RADIUS - near);
     smax(d, -cut, 0.0010)
 }
@@ -190,8 +190,8 @@ pub(super) fn ear(p: Vec3) -> f32 {
     smin(d, tragus, 0.003)
 }
 
-/// How far inside the hair's region a point of the surface lies, metres, negative outside. The line runs 65 mm
-/// above the brow, before the ears at the temples, behind them, and to the nape.
+/// Distance of a point of the surface from the edge of the hair's region in metres, negative outside. The hairline runs 65 mm
+/// above the brow, in front of the ears at the temples, behind the ears, and to the nape.
 pub(super) fn inside_hairline(p: Vec3) -> f32 {
     // Azimuth about the skull's axis in degrees, 0 at the face; height of the line.
     const LINE: [[f32; 2]; 16] = [

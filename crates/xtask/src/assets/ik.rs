@@ -1,8 +1,8 @@
-//! Limbs of two bones that reach for a point, and rotations from directions.
+//! Inverse kinematics of limbs with two bones, and rotations from directions.
 
 use glam::{Mat3, Quat, Vec3};
 
-/// Where a limb bends and ends.
+/// The solution for a limb.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reach {
     /// Unit direction of the first bone.
@@ -14,7 +14,7 @@ pub(super) struct Reach {
 }
 
 /// Bends a limb with bones of `lengths` so that it ends `offset` from its root; the middle joint lies on the side
-/// of `pole`. A target beyond 99.9 % of the limb's length is reached for in its direction.
+/// of `pole`. If the target is farther than 99.9 % of the limb's length, the limb points in its direction.
 pub(super) fn reach(offset: Vec3, lengths: [f32; 2], pole: Vec3) -> Reach {
     let [a, b] = lengths;
     let direction = offset.normalize_or(-Vec3::Y);

@@ -1,8 +1,8 @@
 //! `cargo xtask assets`: makes the dancer, `assets/dancer.glb`.
 //!
-//! The figure is one signed distance ([`figure`], [`head`]), meshed by surface nets ([`mesh`]), given even triangles
-//! ([`remesh`]), coloured ([`paint`]), bound to a skeleton ([`rig`], [`weights`]) and moved by a score of key poses
-//! ([`score`], [`dance`]). The same source gives the same bytes.
+//! The figure is one signed distance function ([`figure`], [`head`]), meshed by surface nets ([`mesh`]), remeshed with regular
+//! triangles ([`remesh`]), coloured ([`paint`]), bound to a skeleton ([`rig`], [`weights`]) and animated by a score of key
+//! poses ([`score`], [`dance`]). The same source gives the same bytes.
 
 mod dance;
 mod figure;
@@ -29,15 +29,15 @@ use anyhow::Context;
 use glam::Vec3;
 use rayon::prelude::*;
 
-/// Half of the width over which the scalp's mask goes from 0 to 1, metres.
+/// Half of the width over which the scalp mask goes from 0 to 1, in metres.
 const HAIRLINE_HALF_WIDTH: f32 = 0.004;
 
-/// Makes every shipped asset anew; with a preview folder, also writes pictures of the figure there.
+/// Generates all shipped assets; with a preview folder, also writes images of the figure there.
 pub(crate) fn run(preview: Option<&Path>) -> anyhow::Result<()> {
     let dancer = make();
     let bytes = glb::write(&dancer)?;
     let path = path();
-    // Beside it first, so that a full disk leaves the old file.
+    // Written under a temporary name first, so that a full disk does not destroy the old file.
     let beside = path.with_extension("glb.new");
     std::fs::write(&beside, &bytes).with_context(|| format!("cannot write {}", beside.display()))?;
     std::fs::rename(&beside, &path).with_context(|| format!("cannot replace {}", path.display()))?;
@@ -56,12 +56,12 @@ pub(crate) fn run(preview: Option<&Path>) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Where the dancer is kept.
+/// Path of the dancer.
 fn path() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/dancer.glb")
 }
 
-/// The dancer from her parts.
+/// Builds the dancer from its parts.
 fn make() -> glb::Dancer {
     let figure = figure::Figure::new();
     let distance = |p: Vec3| figure.distance(p);

@@ -1,4 +1,4 @@
-//! What the figure wears and how it is coloured, as functions of the rest pose.
+//! Clothes and colours of the figure, as functions of positions in the rest pose.
 
 use glam::Vec3;
 use lovelock_base::numbers::smoothstep;
@@ -21,10 +21,10 @@ const TOP: Vec3 = Vec3::new(0.052, 0.108, 0.118);
 const LEGGINGS: Vec3 = Vec3::new(0.046, 0.056, 0.070);
 const SLIPPERS: Vec3 = Vec3::new(0.185, 0.125, 0.115);
 
-/// Above this height there is no cloth.
+/// Height in metres above which there is no cloth.
 pub(super) const STRAPS_Y: f32 = 1.475;
 
-/// How far inside the edge of the top, along the surface, a point lies; negative on bare skin. Metres.
+/// Distance of a point from the edge of the top along the surface in metres; negative on bare skin.
 fn inside_top(p: Vec3) -> f32 {
     let x = p.x.abs();
     let [_, edge] = curve(
@@ -66,7 +66,7 @@ fn leg_line(p: Vec3) -> f32 {
     0.795 + (0.125 - 0.030 * back) * smoothstep(0.0, 0.155, x - 0.01)
 }
 
-/// How far inside any cloth a point of the surface lies, metres; negative on bare skin.
+/// Distance of a point of the surface from the edge of any cloth in metres; negative on bare skin.
 pub(super) fn inside_cloth(p: Vec3) -> f32 {
     if p.y < 0.14 {
         return (p.y - 0.118).max(inside_slipper(p));
@@ -74,7 +74,7 @@ pub(super) fn inside_cloth(p: Vec3) -> f32 {
     inside_top(p)
 }
 
-/// Distance along the surface to the nearest edge between two colours of the clothes, metres; its sign tells the side.
+/// Signed distance along the surface to the nearest edge between two colours of the clothes, in metres.
 pub(super) fn seam(p: Vec3) -> f32 {
     if p.y > STRAPS_Y || (p.x.abs() > 0.22 && p.y > 0.2) {
         return 1.0;

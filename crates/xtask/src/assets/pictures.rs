@@ -1,4 +1,4 @@
-//! The pictures that `cargo xtask assets --preview DIR` writes: body, head, details and the dance as a contact sheet.
+//! The images that `cargo xtask assets --preview DIR` writes: body, head, details and the dance as a contact sheet.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use super::dance::{LocalPose, world_of};
 use super::glb::{Dancer, SampledClip};
 use super::preview::{Camera, Canvas, View};
 
-/// Pictures on one contact sheet, in rows of eight.
+/// Images on one contact sheet, in rows of eight.
 const SHEET_FRAMES: usize = 24;
 
 /// A camera that looks at `centre` from `distance` metres at an angle from the front, `up` metres above it.
@@ -33,7 +33,7 @@ fn grid(
     canvas.save(path)
 }
 
-/// Writes all of them into `folder`.
+/// Writes all images into `folder`.
 pub(super) fn write(dancer: &Dancer, folder: &Path) -> anyhow::Result<()> {
     let view = View {
         positions: &dancer.positions,
@@ -68,7 +68,7 @@ pub(super) fn write(dancer: &Dancer, folder: &Path) -> anyhow::Result<()> {
         [(20.0, 0.05), (80.0, 0.0), (165.0, 0.1)].map(|(angle, up)| around(head, angle, 1.1, up, 0.25));
     grid(&painted, &scalp, 3, [600, 675], &folder.join("scalp.png"))?;
 
-    // Where skin folds or stretches most.
+    // Poses in which the skin folds or stretches most.
     let mut canvas = Canvas::new(2000, 1400);
     for (i, (key, angle)) in [
         (150, 0.0),
@@ -95,7 +95,7 @@ pub(super) fn write(dancer: &Dancer, folder: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The clip as equally spaced pictures.
+/// The clip as images at equal intervals.
 fn sheet(dancer: &Dancer, view: &View, clip: &SampledClip, folder: &Path) -> anyhow::Result<()> {
     let size = [250, 420];
     let mut canvas = Canvas::new(8 * size[0], SHEET_FRAMES.div_ceil(8) * size[1]);

@@ -1,4 +1,4 @@
-//! A small software rasteriser, to look at the figure without any other part of the project.
+//! A small software rasteriser for previews of the figure, independent of the rest of the project.
 
 use std::path::Path;
 
@@ -17,10 +17,10 @@ pub(super) struct View<'a> {
     pub(super) triangles: &'a [[u32; 3]],
 }
 
-/// Where the camera stands, what it looks at, metres, and its vertical angle of view in radians.
+/// Position and target of the camera in metres, and its vertical field of view in radians.
 pub(super) type Camera = (Vec3, Vec3, f32);
 
-/// A picture in linear sRGB with a depth, rows from the top.
+/// An image in linear sRGB with depth, rows from the top.
 pub(super) struct Canvas {
     width: usize,
     height: usize,
@@ -29,7 +29,7 @@ pub(super) struct Canvas {
 }
 
 impl Canvas {
-    /// An empty picture with a soft background.
+    /// An empty image with a soft background.
     pub(super) fn new(width: usize, height: usize) -> Self {
         let colour = (0..width * height)
             .map(|i| Vec3::new(0.16, 0.17, 0.19) * (1.1 - 0.5 * (i / width) as f32 / height as f32))
@@ -104,7 +104,7 @@ impl Canvas {
         }
     }
 
-    /// Writes the picture as PNG.
+    /// Writes the image as PNG.
     pub(super) fn save(&self, path: &Path) -> anyhow::Result<()> {
         let mut image = image::RgbImage::new(self.width as u32, self.height as u32);
         for (pixel, c) in image.pixels_mut().zip(&self.colour) {
@@ -120,7 +120,7 @@ impl Canvas {
     }
 }
 
-/// A warm key from the upper left, a cool fill and a rim, all diffuse, with a weak sheen.
+/// A warm key light from the upper left, a cool fill light and a rim light, all diffuse, with a weak sheen.
 fn light(normal: Vec3, to_eye: Vec3) -> Vec3 {
     let key_dir = Vec3::new(-0.55, 0.65, 0.60).normalize_or(Vec3::Y);
     let key = normal.dot(key_dir).max(0.0);

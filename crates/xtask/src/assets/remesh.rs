@@ -1,8 +1,8 @@
-//! Even triangles whose size follows a field: split long edges, collapse short ones, flip for valence six, relax along
-//! the surface, and return to it (Botsch and Kobbelt 2004).
+//! Isotropic remeshing with edge lengths from a function of position: split long edges, collapse short ones, flip edges toward
+//! valence six, relax vertices along the surface, and project them back (Botsch and Kobbelt 2004).
 //!
-//! A pass never touches the neighbourhood of a change that it made, so the lists that it walks stay true, and the
-//! order of edges alone decides what happens: equal input gives equal output.
+//! A pass never touches the neighbourhood of a change that it made, so its lists stay valid. The result depends only on the
+//! order of edges: equal input gives equal output.
 
 use std::collections::BTreeMap;
 
@@ -11,10 +11,10 @@ use rayon::prelude::*;
 
 use super::mesh::{TriMesh, gradient, project};
 
-/// A function of place.
+/// A function of position.
 type Field<'a, T> = &'a (dyn Fn(Vec3) -> T + Sync);
 
-/// Makes the edges of `mesh` as long as `edge_length` says, metres, on the zero set of `distance`.
+/// Remeshes the zero set of `distance` so that edges have the lengths of `edge_length`, in metres.
 pub(super) fn remesh(mesh: &mut TriMesh, distance: Field<f32>, edge_length: Field<f32>, rounds: usize) {
     for round in 0..rounds {
         if round < rounds - 1 {
@@ -53,7 +53,7 @@ fn edges(mesh: &TriMesh) -> Vec<([u32; 2], [u32; 2])> {
         .collect()
 }
 
-/// Halves every edge longer than 4/3 of its length; triangles are cut by how many of their edges are.
+/// Splits every edge longer than 4/3 of its desired length. Triangles are divided depending on how many of their edges are split.
 fn split(mesh: &mut TriMesh, edge_length: Field<f32>) -> usize {
     let mut middle_of: BTreeMap<[u32; 2], u32> = BTreeMap::new();
     for (edge, _) in edges(mesh) {
@@ -71,7 +71,7 @@ fn split(mesh: &mut TriMesh, edge_length: Field<f32>) -> usize {
             let (a, b) = (triangle[i], triangle[(i + 1) % 3]);
             middle_of.get(&[a.min(b), a.max(b)]).copied()
         });
-        // Turned so that the first edge is cut, and the last one is not where two are.
+        // Rotated so that the first edge is split, and the last one is not if only two are.
         let first = match cut {
             [Some(_), _, None] | [Some(_), Some(_), Some(_)] => 0,
             [None, Some(_), _] => 1,
@@ -129,8 +129,8 @@ fn face_normal(corners: [Vec3; 3]) -> Vec3 {
     (corners[1] - corners[0]).cross(corners[2] - corners[0])
 }
 
-/// Draws the ends of every edge shorter than 4/5 of its length together, the shortest first, where that keeps the
-/// mesh a manifold, makes no edge too long and turns no triangle over.
+/// Collapses every edge shorter than 4/5 of its desired length, shortest first, if the mesh stays a manifold, no edge becomes
+/// too long and no triangle is flipped over.
 fn collapse(mesh: &mut TriMesh, edge_length: Field<f32>) -> usize {
     let fans = fans(mesh);
     let mut short: Vec<(f32, [u32; 2])> = edges(mesh)
@@ -189,7 +189,7 @@ fn collapse(mesh: &mut TriMesh, edge_length: Field<f32>) -> usize {
     count
 }
 
-/// Drops vertices that no triangle uses.
+/// Removes unused vertices.
 fn compact(mesh: &mut TriMesh) {
     let mut new_of = vec![u32::MAX; mesh.positions.len()];
     for v in mesh.triangles.iter().flatten() {
@@ -209,7 +209,7 @@ fn compact(mesh: &mut TriMesh) {
     }
 }
 
-/// Turns edges where that brings the four vertices around nearer to six neighbours each.
+/// Flips edges if that brings the four vertices around them nearer to six neighbours each.
 fn flip(mesh: &mut TriMesh) -> usize {
     let fans = fans(mesh);
     let mut locked = vec![false; mesh.positions.len()];
@@ -254,8 +254,8 @@ fn flip(mesh: &mut TriMesh) -> usize {
     count
 }
 
-/// Moves each vertex along the surface toward the middle of its neighbours, weighed by how large triangles should be
-/// there, and back onto the surface.
+/// Moves each vertex along the surface toward the mean of its neighbours, weighted by the desired size of triangles there, and
+/// back onto the surface.
 fn relax(mesh: &mut TriMesh, distance: Field<f32>, edge_length: Field<f32>) {
     let fans = fans(mesh);
     let old = mesh.positions.clone();
@@ -284,8 +284,7 @@ fn relax(mesh: &mut TriMesh, distance: Field<f32>, edge_length: Field<f32>) {
     mesh.positions = moved;
 }
 
-/// Draws the vertices near the zero set of `line` along the surface onto it, so that a change of colour there runs
-/// along edges.
+/// Moves the vertices near the zero set of `line` along the surface onto it, so that changes of colour there follow edges.
 pub(super) fn snap(mesh: &mut TriMesh, distance: Field<f32>, line: Field<f32>, edge_length: Field<f32>) {
     mesh.positions.par_iter_mut().for_each(|p| {
         let start = *p;

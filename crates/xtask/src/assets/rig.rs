@@ -1,6 +1,6 @@
 //! The skeleton: names, parents and rest positions of the joints.
 //!
-//! At rest every joint's axes are the world's axes, so a joint's rotation is a turn relative to the rest pose.
+//! At rest the axes of every joint are the world's axes, so the rotation of a joint is relative to the rest pose.
 
 use glam::Vec3;
 
@@ -46,7 +46,7 @@ pub(super) struct RigJoint {
     pub(super) name: String,
     /// Index of its parent, smaller than its own.
     pub(super) parent: Option<usize>,
-    /// Its place at rest, world space, metres.
+    /// Its position at rest, in world space, in metres.
     pub(super) rest: Vec3,
 }
 

@@ -11,11 +11,11 @@ pub(super) type Keys<const N: usize> = Vec<(f32, [f32; N])>;
 /// A pose of one arm.
 #[derive(Clone, Copy)]
 pub(super) struct ArmPose {
-    /// Where the wrist is.
+    /// Position of the wrist.
     pub(super) wrist: [f32; 3],
-    /// Toward which side the elbow points.
+    /// Direction of the elbow.
     pub(super) pole: [f32; 3],
-    /// Where the palm looks.
+    /// Direction of the palm.
     pub(super) palm: [f32; 3],
 }
 
@@ -46,19 +46,19 @@ const OPEN: ArmPose = arm([0.48, -0.20, 0.78], [0.70, -0.55, -0.30], [-0.60, -0.
 /// Across the body to the other side.
 const ACROSS: ArmPose = arm([-0.42, -0.24, 0.62], [0.80, -0.45, 0.20], [-0.60, 0.20, -0.75]);
 
-/// A step of one foot, from where it stood to where it will stand; between steps the ball of the foot stays.
+/// A step of one foot to a new position. Between steps the ball of the foot does not move.
 #[derive(Clone, Copy)]
 pub(super) struct Step {
-    /// When the foot leaves the ground, beats.
+    /// Time when the foot leaves the ground, in beats.
     pub(super) lift: f32,
-    /// When it is down again, beats.
+    /// Time when it is on the ground again, in beats.
     pub(super) land: f32,
-    /// Where the ball of the foot comes down: x and z, metres.
+    /// New position of the ball of the foot: x and z in metres.
     pub(super) to: [f32; 2],
-    /// How high it rises on the way.
+    /// How high the foot rises.
     pub(super) height: f32,
-    /// Where the ball is kept while the foot is up for long, in the frame of the turning body relative to the place
-    /// under the hips; `None` for a plain step.
+    /// Position of the ball while the foot is held in the air, in the frame of the turning body relative to the point below the
+    /// hips; `None` for a plain step.
     pub(super) held: Option<Vec3>,
 }
 
@@ -71,13 +71,13 @@ pub(super) struct Turn {
     pub(super) turns: f32,
 }
 
-/// A clip as it is composed.
+/// The composition of a clip.
 pub(super) struct Score {
     /// Its name in the file.
     pub(super) name: &'static str,
-    /// Its length; the end flows into the beginning.
+    /// Its length in beats. The end leads into the beginning.
     pub(super) beats: f32,
-    /// How long a beat is.
+    /// Duration of a beat.
     pub(super) beat_secs: f32,
     /// Hips: x, height above the rest pose, z.
     pub(super) hips: Keys<3>,
@@ -89,9 +89,9 @@ pub(super) struct Score {
     pub(super) head: Keys<3>,
     /// Left and right arm.
     pub(super) arms: [Vec<(f32, ArmPose)>; 2],
-    /// How far the heels are off the ground, left and right, as an angle of the foot.
+    /// How far the heels are raised, left and right, as an angle of the foot.
     pub(super) heels: Keys<2>,
-    /// Where the balls of the feet stand at beat 0: x and z, left and right.
+    /// Positions of the balls of the feet at beat 0: x and z, left and right.
     pub(super) stance: [[f32; 2]; 2],
     /// How far the feet are turned out, beyond the rest pose.
     pub(super) turnout: f32,
@@ -131,7 +131,7 @@ pub(super) fn idle() -> Score {
     }
 }
 
-/// The dance: sixteen beats at 100 a minute, 9.6 seconds. It opens with a breath and a sway, turns once to the right
+/// The dance: sixteen beats at 100 per minute, 9.6 seconds. It opens with a breath and a sway, turns once to the right
 /// on the left leg, lands low, folds to the floor, throws the head back, and turns to the left into the beginning.
 pub(super) fn dance() -> Score {
     let retire = Vec3::new(-0.020, 0.430, 0.105);

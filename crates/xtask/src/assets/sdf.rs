@@ -1,7 +1,7 @@
 //! Signed distance primitives and their smooth unions (Quilez 2013 to 2020), and lofts along an axis.
 //!
-//! Distances are in metres and negative inside. Most are only first-order exact near the surface, which is all
-//! that [`super::mesh`] asks of them: it finds the zero set by Newton steps along the numeric gradient.
+//! Distances are in metres and negative inside. Most are only exact to first order near the surface, which is enough for
+//! [`super::mesh`]: it finds the zero set by Newton steps along the numeric gradient.
 
 use glam::{Vec2, Vec3};
 
@@ -111,7 +111,7 @@ pub(super) fn curve<const N: usize>(keys: &[[f32; N]], x: f32) -> [f32; N] {
 
 /// A body part as sections along an axis: each section is a superellipse with its own radius on either side.
 pub(super) struct Loft {
-    /// Where the abscissa of the keys is 0.
+    /// The point on the axis at which the abscissa of the keys is 0.
     pub(super) origin: Vec3,
     /// Unit direction of the axis.
     pub(super) axis: Vec3,

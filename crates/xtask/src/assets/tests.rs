@@ -1,4 +1,4 @@
-//! Checks of the shipped file, read back by the `gltf` crate, and of the parts that made it.
+//! Tests of the shipped file, read back by the `gltf` crate, and of the code that generates it.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use super::rig::rest;
 use super::score::Score;
 use super::{dance, head, ik, mesh, path, remesh, rig, score};
 
-/// The file as a reader sees it.
+/// The contents of the file.
 struct File {
     document: gltf::Document,
     binary: Vec<u8>,
@@ -64,7 +64,7 @@ fn extent(points: &[Vec3], axis: Vec3, keep: impl Fn(&Vec3) -> bool) -> (f32, f3
         .fold((f32::MAX, f32::MIN), |(low, high), x| (low.min(x), high.max(x)))
 }
 
-/// Directed edges that lack their opposite or come twice: none in a closed, consistently wound surface.
+/// Directed edges without an opposite edge, or that occur twice. A closed, consistently wound surface has none.
 fn open_edges(triangles: &[[u32; 3]]) -> usize {
     let mut count: BTreeMap<(u32, u32), i32> = BTreeMap::new();
     for t in triangles {
@@ -94,10 +94,10 @@ fn file_is_small_and_complete() {
 fn surface_is_closed() {
     let vertices = file().vertices();
     assert_eq!(open_edges(&vertices.triangles), 0);
-    // One body: Euler's number of a sphere. A tunnel, as between nose and face, would lower it.
+    // A single body: the Euler characteristic of a sphere. A tunnel, such as between nose and face, would lower it.
     let (v, t) = (vertices.positions.len() as i64, vertices.triangles.len() as i64);
     assert_eq!(v - t * 3 / 2 + t, 2);
-    // The negative control: one triangle less leaves three open edges.
+    // Negative control: without one triangle there are three open edges.
     assert_eq!(open_edges(&vertices.triangles[1..]), 3);
 }
 
@@ -172,7 +172,7 @@ fn worlds(score: &Score) -> Vec<Vec<(Quat, Vec3)>> {
         .collect()
 }
 
-/// Angular speed between two rotations a key apart, radians a second.
+/// Angular speed between the rotations of two neighbouring keys, in radians per second.
 fn angular_speed(a: Quat, b: Quat) -> f32 {
     let turn = a.inverse() * b;
     2.0 * turn.xyz().length().atan2(turn.w.abs()) * dance::RATE
@@ -194,7 +194,7 @@ fn clips_close_in_place_and_speed() {
                 at(0),
                 at(last)
             );
-            // The speed over the seam differs no more than between neighbouring keys anywhere else.
+            // The change of speed across the loop's seam is no larger than between neighbouring keys elsewhere.
             let jump = |a: usize, b: usize, c: usize| ((at(c).1 - at(b).1) - (at(b).1 - at(a).1)).length();
             let worst = (1..last).map(|k| jump(k - 1, k, k + 1)).fold(0.0_f32, f32::max);
             let seam = ((at(1).1 - at(0).1) - (at(last).1 - at(last - 1).1)).length();
@@ -219,7 +219,7 @@ fn nothing_pops_and_the_head_turns_at_a_human_speed() {
                     (fastest, frame) = (speed, k);
                 }
             }
-            // A trained dancer's pirouette and head toss reach some 12 rad/s; limbs swing faster.
+            // The pirouette and head toss of a trained dancer reach about 12 rad/s; limbs swing faster.
             let limit = if joint == rig::HEAD { 12.0 } else { 22.0 };
             let name = &rig_joint.name;
             assert!(fastest < limit, "{}: {name} at key {frame}: {fastest} rad/s", score.name);
@@ -306,7 +306,7 @@ fn a_limb_reaches_where_it_is_told() {
         let turn = ik::align((Vec3::X, Vec3::Z), (bent.first, bent.hinge));
         assert!((turn * Vec3::X).distance(bent.first) < 1e-4 && (turn * Vec3::Z).distance(bent.hinge) < 1e-4);
     }
-    // Out of reach: stretched toward the target.
+    // Out of reach: the limb is stretched toward the target.
     let far = ik::reach(Vec3::new(0.0, -2.0, 0.0), lengths, Vec3::Z);
     assert!((far.first * lengths[0] + far.second * lengths[1]).distance(Vec3::new(0.0, -0.81, 0.0)) < 0.002);
     let axis = Vec3::new(0.6, 0.8, 0.0);
@@ -328,7 +328,7 @@ fn a_ball_is_meshed_closed_even_and_the_same_twice() {
     assert!(ball.positions.iter().all(|p| distance(*p).abs() < 1e-5));
     for t in &ball.triangles {
         let [a, b, c] = t.map(|i| ball.positions[i as usize]);
-        assert!((b - a).cross(c - a).dot(a - centre) > 0.0, "a triangle looks inward");
+        assert!((b - a).cross(c - a).dot(a - centre) > 0.0, "a triangle faces inward");
         // Splitting above 4/3 and collapsing below 4/5 leaves edges between these, before the last relaxation.
         assert!((0.45..1.7).contains(&(a.distance(b) / 0.012)));
     }

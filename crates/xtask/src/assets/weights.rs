@@ -1,5 +1,5 @@
-//! Skin weights: each vertex starts with the joint whose part it lies in, and the parts then diffuse over the
-//! surface (implicit Euler steps of the heat equation), so that weights flow around an armpit and not across it.
+//! Skin weights. Each vertex starts with the joint whose part contains it, and the parts then diffuse over the surface
+//! (implicit Euler steps of the heat equation), so that weights spread around an armpit and not across it.
 
 use glam::Vec3;
 
@@ -12,7 +12,7 @@ pub(super) type Influences = [(u8, u16); 4];
 
 /// Steps of the heat equation; two make the blend bell-shaped where one leaves a cusp.
 const STEPS: usize = 2;
-/// Gauss-Seidel sweeps a step: the largest diffusion number is about 30, which converges to 0.1 % in fewer.
+/// Gauss-Seidel sweeps per step. The largest diffusion number is about 30, which converges to 0.1 % in fewer sweeps.
 const SWEEPS: usize = 120;
 
 /// Whether a vertex belongs to the head and moves with it rigidly: the scalp, the face and the jaw.
@@ -21,7 +21,7 @@ fn rigid_head(p: Vec3) -> bool {
     p.y > plane || (p.y > 1.44 && head::inside_hairline(p) > -0.012)
 }
 
-/// The joint whose part holds `p`, and how far the blend at its edge reaches, metres.
+/// The joint whose part contains `p`, and the width of the blend at its edge in metres.
 fn part(p: Vec3) -> (usize, f32) {
     let q = Vec3::new(p.x.abs(), p.y, p.z);
     let right = usize::from(p.x < 0.0);
@@ -32,7 +32,7 @@ fn part(p: Vec3) -> (usize, f32) {
     }
     let from_shoulder = q - rest::SHOULDER;
     let (upper, fore) = (rest::upper_arm_direction(), rest::forearm_direction());
-    // The cut of the shoulder leans outward below, so that the ribs under the armpit stay with the chest.
+    // The border of the shoulder slopes outward below, so that the ribs under the armpit belong to the chest.
     let past_shoulder = from_shoulder.dot(Vec3::new(0.93, 0.30, 0.0));
     if past_shoulder > 0.004 && q.x > if q.y > 1.2 { 0.14 } else { 0.22 } {
         let along = from_shoulder.dot(upper);
@@ -81,7 +81,7 @@ pub(super) fn influences(mesh: &TriMesh, joint_count: usize) -> Vec<Influences> 
     let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); count];
     for triangle in &mesh.triangles {
         for i in 0..3 {
-            // Each edge is met once in this direction, since the mesh is closed.
+            // Each edge occurs once in this direction, because the mesh is closed.
             neighbours[triangle[i] as usize].push(triangle[(i + 1) % 3]);
         }
     }
@@ -128,7 +128,7 @@ fn diffuse(joint: usize, parts: &[(usize, f32)], number: &[f32], neighbours: &[V
 fn strongest(row: &[f32]) -> Influences {
     let mut order: Vec<usize> = (0..row.len()).collect();
     order.sort_by(|a, b| row[*b].total_cmp(&row[*a]).then(a.cmp(b)));
-    // What the fifth joint would get is taken from all, so that a joint fades in and never jumps in.
+    // The weight of the fifth joint is subtracted from all, so that a joint fades in without a jump.
     let floor = row[order[4]];
     let kept: [f32; 4] = std::array::from_fn(|i| (row[order[i]] - floor).max(0.0));
     let total: f32 = kept.iter().sum();

@@ -1,4 +1,4 @@
-//! Chromium without a window.
+//! Headless Chromium.
 
 use super::facts::Facts;
 use crate::tool;
@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-/// How the browser runs: without a window, a graphics card or anything of its own to ask the network for. Names lead
-/// nowhere, so what it asks for all the same stays on this machine.
+/// Options of the browser: no window, no GPU and no background requests. No host names are resolved, so that other requests
+/// stay on this machine.
 const FLAGS: [&str; 11] = [
     "--headless",
     "--no-sandbox",
@@ -20,32 +20,32 @@ const FLAGS: [&str; 11] = [
     "--no-first-run",
     "--hide-scrollbars",
     "--host-resolver-rules=MAP * ~NOTFOUND",
-    // Time in the page runs ahead until nothing is left to do.
+    // Time in the page advances until there is nothing left to do.
     "--virtual-time-budget=10000",
     "--disable-dev-shm-usage",
 ];
 
-/// Pixels across the window that a page is laid out for.
+/// Width of the window in pixels.
 const WIDTH: u32 = 1280;
 
-/// No page that is looked at is taller: beyond it the picture ends.
+/// Largest height of a page in pixels. The screenshot ends there.
 const TALLEST: u32 = 16_000;
 
-/// How often and how many times to look whether the browser has ended: two minutes.
+/// Interval and number of the checks whether the browser has ended: two minutes in all.
 const LOOKS: (Duration, u32) = (Duration::from_millis(50), 2400);
 
-/// A browser that forgets.
+/// A browser without stored data.
 pub(crate) struct Browser {
     profile: PathBuf,
 }
 
 impl Browser {
-    /// One that keeps its files in `profile`, which is emptied for each page.
+    /// A browser with its files in `profile`, which is emptied for each page.
     pub(crate) fn new(profile: PathBuf) -> Self {
         Self { profile }
     }
 
-    /// Loads a page, runs its script and reads what became of it.
+    /// Loads a page, runs its script and returns the result.
     pub(crate) fn open(&self, page: &Path) -> anyhow::Result<Facts> {
         let [dom, log] = ["dom.html", "network.json"].map(|name| self.profile.with_extension(name));
         let mut chromium = self.command(800)?;
@@ -54,16 +54,16 @@ impl Browser {
         Facts::read(&fs::read_to_string(&dom)?, &fs::read(&log)?)
     }
 
-    /// Draws a whole page of `height` CSS pixels into a PNG file.
+    /// Saves a screenshot of a whole page of `height` CSS pixels as a PNG file.
     pub(crate) fn screenshot(&self, page: &Path, picture: &Path, height: u32) -> anyhow::Result<()> {
         let mut chromium = self.command(height.clamp(1, TALLEST))?;
         chromium.arg(format!("--screenshot={}", picture.display())).arg(page);
         self.finish(chromium.stdout(Stdio::null()))?;
-        ensure!(picture.is_file(), "the browser left no picture of the page");
+        ensure!(picture.is_file(), "the browser saved no screenshot of the page");
         Ok(())
     }
 
-    /// The browser with an empty profile and a window of `height` pixels.
+    /// The command of the browser, with an empty profile and a window of `height` pixels.
     fn command(&self, height: u32) -> anyhow::Result<Command> {
         if self.profile.exists() {
             fs::remove_dir_all(&self.profile)?;
@@ -75,7 +75,7 @@ impl Browser {
         Ok(chromium)
     }
 
-    /// Waits for the end of the browser, and ends it where it does not end by itself.
+    /// Waits for the browser to end, and kills it after two minutes.
     fn finish(&self, chromium: &mut Command) -> anyhow::Result<()> {
         let words = self.profile.with_extension("log");
         chromium.stdin(Stdio::null()).stderr(File::create(&words)?);

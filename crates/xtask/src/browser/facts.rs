@@ -1,27 +1,27 @@
-//! What a page says of itself once it has loaded, and what it asked the network for.
+//! The state of a page after loading, and its network requests.
 
 use anyhow::{Context as _, ensure};
 use serde::Deserialize;
 
-/// What became of a page.
+/// The state of a page after loading.
 #[derive(Debug, Default, PartialEq)]
 pub(crate) struct Facts {
-    /// Whether its script came to its end.
+    /// Whether its script finished.
     pub(crate) ran: bool,
-    /// Pictures in the page.
+    /// Number of images in the page.
     pub(crate) pictures: u32,
-    /// Those of them that did not load.
+    /// Number of images that did not load.
     pub(crate) broken: u32,
-    /// Height of the page, CSS pixels.
+    /// Height of the page in CSS pixels.
     pub(crate) height: u32,
-    /// Addresses beyond this machine's files that the page asked for.
+    /// Addresses that the page requested, without local files.
     pub(crate) asked: Vec<String>,
 }
 
 impl Facts {
-    /// Reads the page as it was after loading, and the browser's log of the network.
+    /// Reads the page after loading, and the browser's network log.
     ///
-    /// The page's script leaves what it saw in attributes of its root: `data-state`, `data-pictures`, `data-broken`
+    /// The page's script stores its findings in attributes of the root element: `data-state`, `data-pictures`, `data-broken`
     /// and `data-height`.
     pub(crate) fn read(dom: &str, log: &[u8]) -> anyhow::Result<Self> {
         let root =
@@ -40,12 +40,12 @@ impl Facts {
         })
     }
 
-    /// An error unless the page is whole.
+    /// Checks that the page loaded completely and without network requests.
     pub(crate) fn check(&self) -> anyhow::Result<()> {
-        ensure!(self.asked.is_empty(), "the page asked the network for {}", self.asked.join(", "));
-        ensure!(self.ran, "the script of the page did not come to its end");
-        ensure!(self.pictures > 0, "the page has no pictures");
-        ensure!(self.broken == 0, "{} of {} pictures did not load", self.broken, self.pictures);
+        ensure!(self.asked.is_empty(), "the page requested {}", self.asked.join(", "));
+        ensure!(self.ran, "the script of the page did not finish");
+        ensure!(self.pictures > 0, "the page has no images");
+        ensure!(self.broken == 0, "{} of {} images did not load", self.broken, self.pictures);
         ensure!(self.height > 0, "the page has no height");
         Ok(())
     }
@@ -67,9 +67,9 @@ struct Parameters {
     initiator: Option<String>,
 }
 
-/// What the page asked for. What the browser asks for of its own accord has no origin.
+/// Addresses that the page requested. Requests of the browser itself have no origin.
 fn asked(log: &[u8]) -> anyhow::Result<Vec<String>> {
-    let log: Log = serde_json::from_slice(log).context("could not read the browser's log of the network")?;
+    let log: Log = serde_json::from_slice(log).context("could not read the browser's network log")?;
     let mut found = Vec::new();
     for parameters in log.events.into_iter().filter_map(|event| event.params) {
         let (Some(url), Some(initiator)) = (parameters.url, parameters.initiator) else { continue };
@@ -111,10 +111,10 @@ mod tests {
             |from: &str, to: &str| check(&PAGE.replace('\n', " ").replace(from, to), LOG).unwrap_err();
         assert!(fault("ready", "half").contains("script"));
         assert!(fault("pictures=\"12\"", "").contains("no pictures"));
-        assert_eq!(fault("broken=\"0\"", "broken=\"3\""), "3 of 12 pictures did not load");
+        assert_eq!(fault("broken=\"0\"", "broken=\"3\""), "3 of 12 images did not load");
         assert!(fault("3400", "tall").contains("height"));
         let log = LOG.replace("file:///report/a.png", "http://example.org/a.png");
-        assert!(check(PAGE, &log).unwrap_err().contains("network for http://example.org/a.png"));
+        assert!(check(PAGE, &log).unwrap_err().contains("requested http://example.org/a.png"));
         assert!(check(PAGE, "no log").is_err());
         assert!(check("", LOG).is_err());
     }

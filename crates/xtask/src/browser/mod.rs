@@ -1,4 +1,4 @@
-//! `cargo xtask test --browser`: the page of a comparison as Chromium sees it.
+//! `cargo xtask test --browser`: checks the page of a comparison in Chromium.
 
 mod chromium;
 mod facts;
@@ -10,8 +10,7 @@ use facts::Facts;
 use std::fs;
 use std::path::Path;
 
-/// Compares methods on a small scene, opens the page and looks at what became of it. The picture of the page is kept
-/// below `target`.
+/// Compares methods on a small scene, opens the page and checks the result. A screenshot of the page is saved in `target`.
 pub(crate) fn run() -> anyhow::Result<()> {
     system::prepare_browser()?;
     let folder = tool::root().join("target/browser");
@@ -28,7 +27,11 @@ pub(crate) fn run() -> anyhow::Result<()> {
     controls(&browser, &page, &folder)?;
     let picture = folder.join("report.png");
     browser.screenshot(&page, &picture, facts.height)?;
-    println!("browser: the page runs, {} pictures, no network; see {}", facts.pictures, picture.display());
+    println!(
+        "browser: the page runs, {} images, no network requests; see {}",
+        facts.pictures,
+        picture.display()
+    );
     Ok(())
 }
 
@@ -42,29 +45,29 @@ fn compare(folder: &Path, report: &Path) -> anyhow::Result<()> {
     tool::run(&mut lovelock)
 }
 
-/// Pages that must not pass: each is the good one with one thing broken.
+/// Negative controls: pages that must fail, each with one fault.
 fn controls(browser: &Browser, page: &Path, folder: &Path) -> anyhow::Result<()> {
     let good = fs::read_to_string(page)?;
     let asks = r#"<img src="http://localhost:9/picture.png">"#;
     let (policy, free) = ("http-equiv=\"Content-Security-Policy\"", "name=\"ignored\"");
     ensure!(good.contains(policy) && good.contains("<script>"), "the page has no policy or no script");
     for (name, broken) in [
-        // Apart from its folder it has none of its pictures.
+        // Outside its folder the page has no images.
         ("pictures", good.clone()),
         ("script", good.replacen("<script>", "<script>throw new Error('control');", 1)),
         ("network", good.replacen(policy, free, 1).replacen("</body>", &format!("{asks}</body>"), 1)),
     ] {
-        // Beside the good page its pictures are there.
+        // In the folder of the good page its images exist.
         let beside = if name == "pictures" { folder } else { page.parent().unwrap_or(folder) };
         let path = beside.join(format!("control_{name}.html"));
         fs::write(&path, broken)?;
         let outcome = browser.open(&path).and_then(|facts: Facts| facts.check());
         fs::remove_file(&path)?;
         match outcome {
-            Ok(()) => bail!("a page with broken {name} was found good"),
+            Ok(()) => bail!("a page with broken {name} passed"),
             Err(error) => ensure!(
                 error.to_string().contains(name),
-                "a page with broken {name} was found broken for another reason: {error:#}"
+                "a page with broken {name} failed for another reason: {error:#}"
             ),
         }
     }

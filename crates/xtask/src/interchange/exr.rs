@@ -1,4 +1,4 @@
-//! EXR files of the program, read by `OpenEXR`'s own Python package.
+//! EXR files of the program, read by the Python package of `OpenEXR`.
 
 use crate::tool;
 use anyhow::{Context as _, ensure};
@@ -7,10 +7,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// The library of the format's authors, as the Python Package Index has it.
+/// The library of the format's authors in the Python Package Index.
 const PACKAGES: [&str; 2] = ["OpenEXR==3.4.4", "numpy<3"];
 
-/// Records a frame and holds what that reader finds against what it should.
+/// Records a frame and compares what that reader finds with the expected values.
 pub(super) fn run(folder: &Path) -> anyhow::Result<()> {
     let frames = folder.join("exr");
     let record = ["run", "--quiet", "-p", "lovelock", "--", "record", "--format", "exr", "--transparent"];
@@ -30,7 +30,7 @@ pub(super) fn run(folder: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Fails where a fact is not what it should be.
+/// Fails if a value differs from the expected one.
 fn check(found: &Value) -> anyhow::Result<()> {
     let half = "float16";
     let same = [
@@ -47,11 +47,11 @@ fn check(found: &Value) -> anyhow::Result<()> {
         ("light_where_clear", json!(0.0)),
     ];
     for (name, wanted) in same {
-        ensure!(found[name] == wanted, "{name}: found {}, wanted {wanted}", found[name]);
+        ensure!(found[name] == wanted, "{name}: found {}, expected {wanted}", found[name]);
     }
     ensure!(found["comments"].as_str().is_some_and(|text| text.contains("voxel-map")), "comments: {found}");
     let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
-    // The camera stands 2 m before the head, in a picture of which the figure fills a third.
+    // The camera is 2 m in front of the head, and the figure covers a third of the image.
     for (name, value, low, high) in [
         ("covered", number(&found["covered"]), 0.1, 0.7),
         ("clear", number(&found["clear"]), 0.2, 0.9),
@@ -61,15 +61,15 @@ fn check(found: &Value) -> anyhow::Result<()> {
         ("least transmittance", number(&found["transmittance"][0]), 0.0, 0.5),
         ("most transmittance", number(&found["transmittance"][1]), 1.0, 1.0),
     ] {
-        ensure!((low..=high).contains(&value), "{name}: found {value}, wanted {low} to {high}");
+        ensure!((low..=high).contains(&value), "{name}: found {value}, expected {low} to {high}");
     }
     Ok(())
 }
 
-/// A virtual environment with the packages, made where there is none; the path of its Python.
+/// Creates a virtual environment with the packages if there is none. Returns the path of its Python.
 fn environment(folder: &Path) -> anyhow::Result<PathBuf> {
     let python = folder.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
-    // Written last, so that an environment that was left half made is made anew.
+    // Written last, so that an incomplete environment is created again.
     let made = folder.join("made");
     if fs::read_to_string(&made).is_ok_and(|packages| packages == PACKAGES.join(" ")) {
         return Ok(python);
@@ -77,7 +77,7 @@ fn environment(folder: &Path) -> anyhow::Result<PathBuf> {
     if folder.exists() {
         fs::remove_dir_all(folder).with_context(|| format!("could not remove {}", folder.display()))?;
     }
-    println!("Making a Python environment with {}.", PACKAGES[0]);
+    println!("Creating a Python environment with {}.", PACKAGES[0]);
     tool::run(Command::new("python3").args(["-m", "venv"]).arg(folder))?;
     let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
     tool::run(Command::new(&python).args(pip).args(PACKAGES))?;

@@ -1,4 +1,4 @@
-//! A job for many machines, run here by the command line of the Open Job Description.
+//! A job for many machines, run by the command line of the Open Job Description.
 
 use super::program::{lovelock, run_json};
 use crate::tool;
@@ -22,7 +22,7 @@ pub(super) fn check(python: &Path, folder: &Path, program: &Path) -> anyhow::Res
     farm.arg(&project).arg("-o").arg(&job);
     let report = run_json(farm.args(["--frames", FRAMES, "--size", SIZE, "--fps", "24", "--chunk", "3"]))?;
     ensure!(report["tasks"] == 3, "{} tasks", report["tasks"]);
-    // Somewhere else, as on another machine.
+    // In another folder, as on another machine.
     let moved = folder.join("moved job");
     fs::rename(&job, &moved)?;
     let template = moved.join("template.json");
@@ -32,7 +32,7 @@ pub(super) fn check(python: &Path, folder: &Path, program: &Path) -> anyhow::Res
     fs::write(&broken, fs::read_to_string(&template)?.replace("\"Simulate\"", "\"Draw\""))?;
     ensure!(
         openjd(python, &["check"], &broken, &[]).is_err(),
-        "control: a job with two steps of one name was found good"
+        "negative control: a job with two steps of the same name passed"
     );
 
     let parameter = format!("Lovelock={}", program.display());
@@ -41,14 +41,14 @@ pub(super) fn check(python: &Path, folder: &Path, program: &Path) -> anyhow::Res
         openjd(python, &["run"], &template, &arguments)
     };
     step("Simulate", &[])?;
-    // The last task first: their order is the scheduler's.
+    // The last task first, because a scheduler may choose any order.
     for frames in ["8..9", "2..5", "5..8"] {
         step("Draw", &["--task-param", &format!("Frames={frames}")])?;
     }
     step("Assemble", &[])?;
 
-    // A single machine that simulates and draws by itself makes the same pictures, and one that draws the job's take the same
-    // folder: its manifest names the take by what the file holds.
+    // A single machine that simulates and renders gives the same images. One that renders the job's take gives the same folder
+    // with its manifest, which contains the checksum of the take.
     let take = folder.join("single.take");
     let mut record = lovelock(program, "record");
     run_json(record.arg(&project).arg("-o").arg(&take).args(["--frames", FRAMES, "--fps", "24"]))?;
@@ -62,7 +62,7 @@ pub(super) fn check(python: &Path, folder: &Path, program: &Path) -> anyhow::Res
     };
     let (own, ours) = (draw(&take, "single")?, draw(&moved.join("dance.take"), "same take")?);
     let theirs = files(&moved.join("frames"))?;
-    ensure!(ours.len() == 8, "{} files of a single machine; wanted 7 frames and a manifest", ours.len());
+    ensure!(ours.len() == 8, "{} files of a single machine; expected 7 frames and a manifest", ours.len());
     compare(&theirs, &ours)?;
     compare(&pictures(&theirs), &pictures(&own))?;
     let mut altered = theirs.clone();
@@ -70,12 +70,12 @@ pub(super) fn check(python: &Path, folder: &Path, program: &Path) -> anyhow::Res
         let middle = bytes.len() / 2;
         bytes[middle] ^= 1;
     }
-    ensure!(compare(&altered, &ours).is_err(), "control: an altered frame was found the same");
-    println!("interchange: openjd draws the same {} files as a single machine", ours.len());
+    ensure!(compare(&altered, &ours).is_err(), "negative control: an altered frame passed");
+    println!("interchange: openjd renders the same {} files as a single machine", ours.len());
     Ok(())
 }
 
-/// The files but the manifest.
+/// The files without the manifest.
 fn pictures(files: &BTreeMap<PathBuf, Vec<u8>>) -> BTreeMap<PathBuf, Vec<u8>> {
     let is_picture = |name: &Path| name.extension().is_some_and(|ending| ending == "png");
     files
@@ -86,9 +86,9 @@ fn pictures(files: &BTreeMap<PathBuf, Vec<u8>>) -> BTreeMap<PathBuf, Vec<u8>> {
 }
 
 fn compare(theirs: &BTreeMap<PathBuf, Vec<u8>>, ours: &BTreeMap<PathBuf, Vec<u8>>) -> anyhow::Result<()> {
-    ensure!(theirs.keys().eq(ours.keys()), "other files: {:?} and {:?}", theirs.keys(), ours.keys());
+    ensure!(theirs.keys().eq(ours.keys()), "different files: {:?} and {:?}", theirs.keys(), ours.keys());
     for (name, bytes) in ours {
-        ensure!(theirs[name] == *bytes, "{} is another file than that of a single machine", name.display());
+        ensure!(theirs[name] == *bytes, "{} differs from the file of a single machine", name.display());
     }
     Ok(())
 }

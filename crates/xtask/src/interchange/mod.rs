@@ -1,5 +1,5 @@
-//! `cargo xtask test --interchange`: numbers held against other people's programs, which come from their package
-//! registry into a virtual environment below `target`.
+//! `cargo xtask test --interchange`: compares results with those of other programs, which are installed from the Python
+//! Package Index into a virtual environment in `target`.
 
 mod exr;
 mod farm;
@@ -15,16 +15,16 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// The program of FLIP's authors, as the Python Package Index has it.
+/// The program of FLIP's authors in the Python Package Index.
 const PACKAGE: &str = "flip-evaluator==1.7";
-/// What FLIP wants and does not say so, Pixar's reader of USD with its validators, and the command line of the Open Job
-/// Description. Which release fits depends on the Python.
+/// An undeclared dependency of FLIP, Pixar's USD library with its validators, and the command line of the Open Job
+/// Description. The release depends on the version of Python.
 const BESIDE: [&str; 3] = ["numpy<3", "usd-core>=25.5", "openjd-cli>=0.7"];
 
-/// The largest difference between two means of FLIP. Measured: 8e-5, as theirs looks with 67.02 pixels a degree.
+/// The largest accepted difference between two means of FLIP. Measured: 8e-5, because theirs uses 67.02 pixels per degree.
 const LIMIT: f64 = 1e-3;
 
-/// Holds FLIP, USD and the job for many machines against the programs of others, and fails where one is off.
+/// Compares FLIP, USD and the job for many machines with other programs, and fails if one differs.
 pub(crate) fn run() -> anyhow::Result<()> {
     system::prepare_interchange()?;
     let folder = tool::root().join("target/interchange");
@@ -36,15 +36,15 @@ pub(crate) fn run() -> anyhow::Result<()> {
     farm::check(&python, &folder, &lovelock)
 }
 
-/// A folder with nothing in it.
+/// Creates an empty folder.
 fn empty(folder: &Path) -> anyhow::Result<()> {
     if folder.exists() {
         fs::remove_dir_all(folder).with_context(|| format!("could not remove {}", folder.display()))?;
     }
-    fs::create_dir_all(folder).with_context(|| format!("could not make {}", folder.display()))
+    fs::create_dir_all(folder).with_context(|| format!("could not create {}", folder.display()))
 }
 
-/// Compares the means of FLIP of pairs of pictures.
+/// Compares the means of FLIP for pairs of images.
 fn check_flip(python: &Path, folder: &Path) -> anyhow::Result<()> {
     let pictures = Picture::all();
     for picture in &pictures {
@@ -59,11 +59,11 @@ fn check_flip(python: &Path, folder: &Path) -> anyhow::Result<()> {
     let means =
         pairs(&pictures).map(|(reference, test)| mean(reference, test)).collect::<Result<Vec<_>, _>>()?;
     compare(&means, &theirs)?;
-    println!("interchange: {} means of FLIP as {PACKAGE} has them, to {LIMIT}", means.len());
+    println!("interchange: {} means of FLIP agree with {PACKAGE} to {LIMIT}", means.len());
     Ok(())
 }
 
-/// Every picture as the reference of every other, in the order of the script.
+/// Every pair of images in both orders, in the order of the script.
 fn pairs(pictures: &[Picture]) -> impl Iterator<Item = (&Picture, &Picture)> {
     let size = |picture: &Picture| (picture.width, picture.height);
     pictures.iter().flat_map(move |reference| {
@@ -78,7 +78,7 @@ fn mean(reference: &Picture, test: &Picture) -> anyhow::Result<f64> {
     Ok(flip(&reference, &test)?.mean())
 }
 
-/// Fails where two means differ by more than the limit.
+/// Fails if two means differ by more than the limit.
 fn compare(ours: &[f64], theirs: &[f64]) -> anyhow::Result<()> {
     ensure!(ours.len() == theirs.len(), "{} means, and {} of theirs", ours.len(), theirs.len());
     for (index, (ours, theirs)) in ours.iter().zip(theirs).enumerate() {
@@ -89,10 +89,10 @@ fn compare(ours: &[f64], theirs: &[f64]) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// A virtual environment with the package, made where there is none; the path of its Python.
+/// Creates a virtual environment with the packages if there is none. Returns the path of its Python.
 fn environment(folder: &Path) -> anyhow::Result<PathBuf> {
     let python = folder.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
-    // Written last, so that an environment that was left half made is made anew.
+    // Written last, so that an incomplete environment is created again.
     let made = folder.join("made");
     let wanted = [&[PACKAGE][..], &BESIDE].concat();
     if fs::read_to_string(&made).is_ok_and(|packages| packages == wanted.join(" ")) {
@@ -101,7 +101,7 @@ fn environment(folder: &Path) -> anyhow::Result<PathBuf> {
     if folder.exists() {
         fs::remove_dir_all(folder).with_context(|| format!("could not remove {}", folder.display()))?;
     }
-    println!("Making a Python environment with {}.", wanted.join(", "));
+    println!("Creating a Python environment with {}.", wanted.join(", "));
     tool::run(Command::new("python3").args(["-m", "venv"]).arg(folder))?;
     let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
     tool::run(Command::new(&python).args(pip).args(&wanted))?;

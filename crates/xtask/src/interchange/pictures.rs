@@ -1,10 +1,10 @@
-//! Pictures that are made for comparison: what FLIP looks at, one kind each.
+//! Test images for FLIP, one for each kind of difference.
 
 use anyhow::Context as _;
 use std::fs;
 use std::path::Path;
 
-/// A picture, sRGB, four bytes a pixel.
+/// An image, sRGB, four bytes per pixel.
 pub(super) struct Picture {
     name: &'static str,
     pub(super) width: u32,
@@ -21,9 +21,9 @@ impl Picture {
         Self { name, width, height, rgba: (0..width * height).flat_map(bytes).collect() }
     }
 
-    /// Thin strands, the same moved by a pixel and in another colour, slow colour, noise, and a narrow strip.
+    /// Thin strands, the same strands moved by a pixel and in another colour, a colour gradient, noise, and a narrow strip.
     pub(super) fn all() -> Vec<Self> {
-        // Curves as thin as hair: a pixel is on a strand where its distance to a wave is small.
+        // Curves as thin as hair: a pixel is on a strand if its distance to a wave is small.
         let strands = |x: u32, y: u32| {
             let wave = (f64::from(y) / 23.0).sin() * 9.0 + f64::from(x);
             if wave.rem_euclid(7.0) < 1.4 { [168, 117, 72] } else { [34, 24, 20] }
@@ -49,11 +49,11 @@ impl Picture {
         format!("{}.png", self.name)
     }
 
-    /// Writes it as a PNG file into `folder`.
+    /// Writes the image as a PNG file into `folder`.
     pub(super) fn save(&self, folder: &Path) -> anyhow::Result<()> {
         fs::create_dir_all(folder)?;
         let path = folder.join(self.file());
-        // Without alpha, as the other program wants it.
+        // The other program requires images without alpha.
         let rgb: Vec<u8> = self.rgba.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
         image::save_buffer(&path, &rgb, self.width, self.height, image::ColorType::Rgb8)
             .with_context(|| format!("could not write {}", path.display()))

@@ -1,4 +1,4 @@
-//! Lovelock itself, as another program would run it.
+//! Building and running Lovelock.
 
 use crate::tool;
 use anyhow::{Context as _, ensure};
@@ -6,7 +6,7 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// Builds Lovelock; the path of its program.
+/// Builds Lovelock and returns the path of its program.
 pub(super) fn build() -> anyhow::Result<PathBuf> {
     let mut cargo = tool::cargo(&["build", "--quiet", "--package", "lovelock", "--message-format", "json"]);
     let output = cargo.stderr(Stdio::inherit()).output().context("could not start cargo")?;
@@ -20,14 +20,14 @@ pub(super) fn build() -> anyhow::Result<PathBuf> {
     programs.next_back().context("cargo named no program")
 }
 
-/// A command of Lovelock that answers in JSON.
+/// A command of Lovelock that prints JSON.
 pub(super) fn lovelock(program: &Path, command: &str) -> Command {
     let mut lovelock = Command::new(program);
     lovelock.args([command, "--json"]).stdin(Stdio::null());
     lovelock
 }
 
-/// Runs it, and returns what it says.
+/// Runs it and returns its JSON.
 pub(super) fn run_json(command: &mut Command) -> anyhow::Result<Value> {
     let shown = tool::shown(command);
     let output = command.output().with_context(|| format!("could not start `{shown}`"))?;

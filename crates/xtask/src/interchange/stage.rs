@@ -1,4 +1,4 @@
-//! USD as Pixar's own reader and its validators see it.
+//! USD stages, read by Pixar's library and its validators.
 
 use super::program::{lovelock, run_json};
 use anyhow::{Context as _, ensure};
@@ -6,11 +6,11 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-/// Frames that are written, and how many a second.
+/// Frames that are written, and frames per second.
 const FRAMES: [u64; 2] = [3, 7];
 const FPS: f64 = 24.0;
 
-/// Writes stages of the small scene and has them read.
+/// Writes stages of the small scene and reads them with Pixar's library.
 pub(super) fn check(python: &Path, folder: &Path, program: &Path) -> anyhow::Result<()> {
     let folder = folder.join("stage");
     super::empty(&folder)?;

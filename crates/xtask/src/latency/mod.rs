@@ -1,4 +1,4 @@
-//! `cargo xtask latency`: how long the window takes from an input to the screen, on a screen of its own.
+//! `cargo xtask latency`: measures the time from an input to the screen, on a virtual screen.
 
 mod screen;
 
@@ -11,28 +11,28 @@ use std::process::{Child, Command};
 use std::thread::sleep;
 use std::time::Duration;
 
-/// The window: six panes in two columns then have 640 × 360 pixels each and more.
+/// Size of the window. With six panes in two columns each pane has at least 640 × 360 pixels.
 const WINDOW: (u16, u16) = (1960, 1240);
-/// "File" of the menu, and a place of the menu bar with nothing in it.
+/// The menu "File", and an empty part of the menu bar.
 const MENU: Place = Place { x: 6, y: 2, width: 30, height: 14 };
 const BESIDE: (i16, i16) = (1000, 9);
 
-/// Opens the window three times (one picture while the dance plays, six panes while it plays, six panes while it is
-/// paused), moves the pointer on and off a menu at uneven times, and prints how long the menu took to change.
+/// Opens the window three times (one view while the dance plays, six panes while it plays, six panes while it is paused),
+/// moves the pointer on and off a menu at irregular times, and prints the time until the menu changes.
 pub(crate) fn run(inputs: usize) -> anyhow::Result<()> {
-    ensure!(inputs > 0, "--inputs is 0, wanted at least 1");
+    ensure!(inputs > 0, "--inputs: found 0; must be at least 1");
     system::prepare()?;
     system::prepare_screen()?;
     tool::run(&mut tool::cargo(&["build", "--release", "--package", "lovelock"]))?;
     let folder = tool::root().join("target/latency");
     for (what, panes, paused) in [
-        ("one picture, playing", false, false),
+        ("one view, playing", false, false),
         ("six panes, playing", true, false),
         ("six panes, paused", true, true),
     ] {
         let mut times = window(panes, paused, inputs, &folder).with_context(|| what.to_owned())?;
         times.sort_unstable_by(f64::total_cmp);
-        let spread = Spread::of(&times).context("nothing was measured")?;
+        let spread = Spread::of(&times).context("no inputs were measured")?;
         println!(
             "{what}: {:.0} ms median, {:.0} to {:.0} for the middle 80 %, {:.0} at most, {} inputs",
             spread.median,
@@ -45,13 +45,13 @@ pub(crate) fn run(inputs: usize) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Milliseconds from each input to the screen.
+/// Time from each input to the screen, in milliseconds.
 fn window(panes: bool, paused: bool, inputs: usize, folder: &std::path::Path) -> anyhow::Result<Vec<f64>> {
-    // An empty home: the layout is that of a first start, and the user's own is left alone.
+    // An empty home folder: the window has the layout of a first start, and the user's own settings are not touched.
     if folder.exists() {
         fs::remove_dir_all(folder).with_context(|| format!("could not empty {}", folder.display()))?;
     }
-    fs::create_dir_all(folder).with_context(|| format!("could not make {}", folder.display()))?;
+    fs::create_dir_all(folder).with_context(|| format!("could not create {}", folder.display()))?;
     let project = folder.join("six.lovelock");
     fs::write(&project, include_str!("six.lovelock"))?;
     let screen = Screen::start(WINDOW.0 + 40, WINDOW.1 + 40)?;
@@ -83,18 +83,18 @@ fn window(panes: bool, paused: bool, inputs: usize, folder: &std::path::Path) ->
     for input in 0..inputs {
         let to = if input % 2 == 0 { MENU.middle() } else { BESIDE };
         times.push(screen.time_to_change(to, MENU)?.as_secs_f64() * 1e3);
-        // Uneven, so that no beat with the window's own is met.
+        // Irregular, so that inputs do not synchronise with the window's frames.
         sleep(Duration::from_millis(250 + (input as u64 * 97) % 300));
     }
     Ok(times)
 }
 
-/// A program that ends with the measurement.
+/// A process that is ended when the measurement ends.
 struct Closed(Child);
 
 impl Drop for Closed {
     fn drop(&mut self) {
-        // It may have ended by itself.
+        // It may have ended already.
         let _ = self.0.kill();
         let _ = self.0.wait();
     }

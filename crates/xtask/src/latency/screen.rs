@@ -1,4 +1,4 @@
-//! A screen without a monitor, and a hand on its pointer.
+//! A virtual screen whose pointer and keyboard are controlled by this program.
 
 use super::Closed;
 use anyhow::{Context as _, bail, ensure};
@@ -15,7 +15,7 @@ use x11rb::protocol::xproto::{
 use x11rb::protocol::xtest::ConnectionExt as _;
 use x11rb::rust_connection::RustConnection;
 
-/// Keys as the screen numbers them.
+/// Key codes of the screen.
 pub(super) const KEY_C: u8 = 54;
 pub(super) const KEY_SPACE: u8 = 65;
 
@@ -29,13 +29,13 @@ pub(super) struct Place {
 }
 
 impl Place {
-    /// Its middle.
+    /// The centre.
     pub(super) fn middle(self) -> (i16, i16) {
         (self.x + self.width as i16 / 2, self.y + self.height as i16 / 2)
     }
 }
 
-/// A screen without a monitor (Xvfb).
+/// A virtual screen (Xvfb).
 pub(super) struct Screen {
     connection: RustConnection,
     root: Window,
@@ -44,7 +44,7 @@ pub(super) struct Screen {
 }
 
 impl Screen {
-    /// Starts one of this size, on a number that is free.
+    /// Starts a screen of this size with a free display number.
     pub(super) fn start(width: u16, height: u16) -> anyhow::Result<Self> {
         let mut server = Command::new("Xvfb")
             .args(["-displayfd", "1", "-nolisten", "tcp", "-screen", "0", &format!("{width}x{height}x24")])
@@ -63,12 +63,12 @@ impl Screen {
         Ok(Self { connection, root, name, _server: server })
     }
 
-    /// What programs call it: `:1`.
+    /// The name of the display, such as `:1`.
     pub(super) fn name(&self) -> &str {
         &self.name
     }
 
-    /// The first window that is shown.
+    /// Waits for the first window that is shown.
     pub(super) fn wait_for_window(&self, limit: Duration) -> anyhow::Result<Window> {
         let rounds = limit.as_millis() / 100;
         for _ in 0..rounds {
@@ -92,7 +92,7 @@ impl Screen {
         Ok(())
     }
 
-    /// Presses a key for a window and lets it go.
+    /// Presses and releases a key with a window focused.
     pub(super) fn key(&self, window: Window, code: u8) -> anyhow::Result<()> {
         self.connection.set_input_focus(InputFocus::PARENT, window, x11rb::CURRENT_TIME)?.check()?;
         sleep(Duration::from_millis(300));
@@ -111,7 +111,7 @@ impl Screen {
         Ok(())
     }
 
-    /// Moves the pointer, and waits until `place` looks different.
+    /// Moves the pointer, and waits until the image in `place` changes.
     pub(super) fn time_to_change(&self, to: (i16, i16), place: Place) -> anyhow::Result<Duration> {
         let before = self.pixels(place)?;
         let watch = Stopwatch::start();

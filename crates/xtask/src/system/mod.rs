@@ -1,4 +1,4 @@
-//! What the system lacks, and getting it.
+//! Installs missing system packages.
 
 mod needs;
 mod plan;
@@ -10,26 +10,26 @@ use plan::{Plan, Rights, Step, plan};
 use probe::Here;
 use std::process::Command;
 
-/// Sees to what building, testing and the window need of the system.
+/// Installs the system packages for building, testing and the window.
 ///
-/// On Debian and its kin, what is missing is installed; elsewhere the command is said. Only a missing compiler is an
-/// error: without the rest, the window or the GPU pictures are missing, and a warning says so. macOS and Windows need
-/// nothing.
+/// On Debian and related distributions missing packages are installed; elsewhere the command for installing them is printed.
+/// Only a missing compiler is an error. Without the other packages the window or GPU rendering does not work, and a warning
+/// says so. macOS and Windows need no packages.
 pub(crate) fn prepare() -> anyhow::Result<()> {
     get(&NEEDS)
 }
 
-/// Sees to what `cargo xtask test --interchange` needs of the system.
+/// Installs the system packages for `cargo xtask test --interchange`.
 pub(crate) fn prepare_interchange() -> anyhow::Result<()> {
     get(&INTERCHANGE)
 }
 
-/// Sees to what `cargo xtask test --browser` needs of the system.
+/// Installs the system packages for `cargo xtask test --browser`.
 pub(crate) fn prepare_browser() -> anyhow::Result<()> {
     get(&BROWSER)
 }
 
-/// Sees to what `cargo xtask latency` needs of the system.
+/// Installs the system packages for `cargo xtask latency`.
 pub(crate) fn prepare_screen() -> anyhow::Result<()> {
     get(&SCREEN)
 }
@@ -54,12 +54,12 @@ fn get(needs: &[Need]) -> anyhow::Result<()> {
     if left.stops_the_build() {
         bail!("missing: {}. {advice}", what.join(", "));
     }
-    eprintln!("Still missing: {}. {advice} Going on without.", what.join(", "));
+    eprintln!("Still missing: {}. {advice} Continuing without.", what.join(", "));
     Ok(())
 }
 
 fn name(plan: &Plan) {
-    println!("This system lacks:");
+    println!("Missing on this system:");
     for need in &plan.missing {
         match need.test {
             needs::Test::Library(library) => println!("  {} ({library})", need.what),
@@ -68,7 +68,7 @@ fn name(plan: &Plan) {
     }
 }
 
-/// What the user can do.
+/// Advice for the user.
 fn advice(plan: &Plan) -> String {
     match &plan.step {
         Step::Install { packages, .. } => {
@@ -79,7 +79,7 @@ fn advice(plan: &Plan) -> String {
     }
 }
 
-/// Installs, and once more with fresh lists if that fails: the old ones may name packages that are gone.
+/// Installs packages. If this fails, updates the package lists and tries again, because old lists may contain removed packages.
 fn install(rights: Rights, update_first: bool, packages: &[&str]) {
     let update = || apt_get(rights, &["update"]);
     let install = || apt_get(rights, &[&["install", "-y", "--no-install-recommends"], packages].concat());
@@ -92,7 +92,7 @@ fn install(rights: Rights, update_first: bool, packages: &[&str]) {
     }
 }
 
-/// Runs apt-get without questions; whether it succeeded.
+/// Runs apt-get without questions. Returns whether it succeeded.
 fn apt_get(rights: Rights, arguments: &[&str]) -> bool {
     let before: &[&str] = match rights {
         Rights::Root => &["env"],

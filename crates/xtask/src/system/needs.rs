@@ -1,39 +1,39 @@
-//! What Lovelock needs of the system, and what each distribution calls it.
+//! The system packages that Lovelock needs, with their names in each distribution.
 
-/// One thing that may be missing.
+/// A requirement that may be missing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Need {
-    /// What it is, for people.
+    /// Description for the user.
     pub(crate) what: &'static str,
-    /// How to see whether it is there.
+    /// How to test whether it is installed.
     pub(crate) test: Test,
-    /// Whether nothing can be built without it. The rest can be missing: the window or the GPU pictures then are.
+    /// Whether building needs it. Without the other requirements only the window or GPU rendering does not work.
     pub(crate) to_build: bool,
     /// The package's name, by [`Family`](super::plan::Family): Debian, Fedora, Arch, openSUSE, Alpine.
     pub(crate) packages: [&'static str; 5],
 }
 
-/// How to see whether something is there.
+/// How to test whether a requirement is installed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Test {
-    /// A C++ compiler that answers.
+    /// A working C++ compiler.
     CxxCompiler,
-    /// A shared library that the dynamic loader knows by this name.
+    /// A shared library that the dynamic loader finds by this name.
     Library(&'static str),
-    /// A Vulkan driver: a software one, or one for a device that is there.
+    /// A Vulkan driver: a software driver, or one whose device exists.
     VulkanDriver,
-    /// A Python 3 that can make virtual environments.
+    /// Python 3 with virtual environments.
     Python,
     /// A program in one of the folders of `PATH`.
     Program(&'static str),
 }
 
-/// A library that is opened at run time, when the window opens.
+/// A library that is loaded at run time, when the window opens.
 const fn library(what: &'static str, name: &'static str, packages: [&'static str; 5]) -> Need {
     Need { what, test: Test::Library(name), to_build: false, packages }
 }
 
-/// What `cargo xtask test --interchange` needs beyond [`NEEDS`].
+/// The additional requirement of `cargo xtask test --interchange`.
 pub(crate) const INTERCHANGE: [Need; 1] = [Need {
     what: "Python 3 with virtual environments",
     test: Test::Python,
@@ -41,7 +41,7 @@ pub(crate) const INTERCHANGE: [Need; 1] = [Need {
     packages: ["python3-venv", "python3", "python", "python3", "python3"],
 }];
 
-/// What `cargo xtask test --browser` needs beyond [`NEEDS`].
+/// The additional requirement of `cargo xtask test --browser`.
 pub(crate) const BROWSER: [Need; 1] = [Need {
     what: "the browser Chromium",
     test: Test::Program("chromium"),
@@ -49,16 +49,17 @@ pub(crate) const BROWSER: [Need; 1] = [Need {
     packages: ["chromium", "chromium", "chromium", "chromium", "chromium"],
 }];
 
-/// What `cargo xtask latency` needs beyond [`NEEDS`].
+/// The additional requirement of `cargo xtask latency`.
 pub(crate) const SCREEN: [Need; 1] = [Need {
-    what: "a screen without a monitor (Xvfb)",
+    what: "a virtual screen (Xvfb)",
     test: Test::Program("Xvfb"),
     to_build: true,
     packages: ["xvfb", "xorg-x11-server-Xvfb", "xorg-server-xvfb", "xorg-x11-server-Xvfb", "xvfb"],
 }];
 
-/// What building, testing and the window need. The names of the libraries are those that the crates open: winit by x11-dl (Xlib, Xcursor, Xlib-xcb,
-/// Xinput2), xkbcommon-dl and wayland-sys, rfd for its dialogs (D-Bus), wgpu by ash (Vulkan).
+/// The requirements of building, testing and the window. The names of the libraries are those that these crates load: winit
+/// through x11-dl (Xlib, Xcursor, Xlib-xcb, Xinput2), xkbcommon-dl and wayland-sys, rfd for its dialogs (D-Bus), wgpu through
+/// ash (Vulkan).
 pub(crate) const NEEDS: [Need; 11] = [
     Need {
         what: "a C++ compiler (for the H.264 encoder)",

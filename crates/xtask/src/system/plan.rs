@@ -1,14 +1,14 @@
-//! What to do about what is missing: decided here, from what a [`Probe`] sees, without touching anything.
+//! Decides how to install what is missing, from the results of a [`Probe`]. Nothing is changed here.
 
 use super::needs::{Need, Test};
 
-/// What the machine is asked.
+/// Tests of the machine.
 pub(crate) trait Probe {
-    /// Whether a C++ compiler answers.
+    /// Whether a C++ compiler works.
     fn has_cxx_compiler(&self) -> bool;
-    /// Whether the dynamic loader knows a library.
+    /// Whether the dynamic loader finds a library.
     fn has_library(&self, name: &str) -> bool;
-    /// Whether there is a Vulkan driver that can work: a software one, or one with its device.
+    /// Whether there is a usable Vulkan driver: a software driver, or one whose device exists.
     fn has_vulkan_driver(&self) -> bool;
     /// Whether Python 3 can make virtual environments.
     fn has_python(&self) -> bool;
@@ -16,17 +16,17 @@ pub(crate) trait Probe {
     fn has_program(&self, name: &str) -> bool;
     /// `ID` and `ID_LIKE` of os-release, in that order.
     fn distribution(&self) -> Vec<String>;
-    /// Whether this is the superuser.
+    /// Whether the user is the superuser.
     fn is_root(&self) -> bool;
-    /// Whether sudo works without a question.
+    /// Whether sudo works without a password.
     fn has_free_sudo(&self) -> bool;
-    /// Whether sudo is there and someone can answer its question.
+    /// Whether sudo is installed and a user can enter the password.
     fn can_ask_for_sudo(&self) -> bool;
-    /// Whether apt-get has its lists of packages.
+    /// Whether apt-get has lists of packages.
     fn has_package_lists(&self) -> bool;
 }
 
-/// Distributions that share their packages' names, in the order of [`Need::packages`].
+/// Distributions that share names of packages, in the order of [`Need::packages`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Family {
     Debian,
@@ -48,7 +48,7 @@ impl Family {
         })
     }
 
-    /// The command that installs, without the packages.
+    /// The command for installing, without the packages.
     fn install(self) -> &'static [&'static str] {
         match self {
             Self::Debian => &["apt-get", "install", "-y", "--no-install-recommends"],
@@ -63,22 +63,22 @@ impl Family {
 /// How to become the superuser.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Rights {
-    /// It is one already.
+    /// The user is the superuser already.
     Root,
-    /// `sudo -n`: no question.
+    /// `sudo -n`, without a password.
     FreeSudo,
-    /// `sudo`: it will ask for a password.
+    /// `sudo`, which prompts for a password.
     AskingSudo,
 }
 
 /// What to do.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Step {
-    /// Install these, on Debian and its kin.
+    /// Install these packages, on Debian and related distributions.
     Install { rights: Rights, update_first: bool, packages: Vec<&'static str> },
-    /// Say this command; the user runs it.
+    /// Print this command for the user.
     Say { command: String },
-    /// Say that these are missing; what their packages are called here is not known.
+    /// Print what is missing, because the names of the packages are not known for this distribution.
     Name,
 }
 
@@ -90,13 +90,13 @@ pub(crate) struct Plan {
 }
 
 impl Plan {
-    /// Whether nothing can be built before something is done.
+    /// Whether building is not possible without the missing packages.
     pub(crate) fn stops_the_build(&self) -> bool {
         self.missing.iter().any(|need| need.to_build)
     }
 }
 
-/// Asks for everything on the list; nothing where nothing is missing.
+/// Tests everything on the list. `None` if nothing is missing.
 pub(crate) fn plan(probe: &dyn Probe, needs: &[Need]) -> Option<Plan> {
     let there = |need: &Need| match need.test {
         Test::CxxCompiler => probe.has_cxx_compiler(),
@@ -149,8 +149,8 @@ mod tests {
     use super::super::needs::{BROWSER, INTERCHANGE, NEEDS};
     use super::{Family, Plan, Probe, Rights, Step, Test};
 
-    /// A machine made up.
-    #[expect(clippy::struct_excessive_bools, reason = "each answers one question of the probe")]
+    /// A simulated machine.
+    #[expect(clippy::struct_excessive_bools, reason = "each is the result of one test of the probe")]
     struct Machine {
         compiler: bool,
         driver: bool,
@@ -239,7 +239,7 @@ mod tests {
         assert_eq!(with(false, true).step, install(Rights::AskingSudo));
         let command = "sudo apt-get install -y --no-install-recommends libxcursor1".to_owned();
         assert_eq!(with(false, false).step, Step::Say { command });
-        assert!(!with(false, false).stops_the_build(), "a window's library does not stop a build");
+        assert!(!with(false, false).stops_the_build(), "a library of the window does not prevent building");
     }
 
     #[test]
@@ -255,7 +255,7 @@ mod tests {
         assert!(fedora.starts_with("sudo dnf install -y gcc-c++ vulkan-loader libX11 "), "{fedora}");
         let arch = say(&["arch"], true);
         assert!(arch.starts_with("pacman -S --needed gcc vulkan-icd-loader libx11 libxcursor "), "{arch}");
-        assert_eq!(arch.matches(" libx11").count(), 1, "a package is named once");
+        assert_eq!(arch.matches(" libx11").count(), 1, "each package is listed once");
         assert!(
             say(&["opensuse-leap", "suse", "opensuse"], false)
                 .starts_with("sudo zypper install gcc-c++ libvulkan1 ")

@@ -1,4 +1,4 @@
-//! What this machine really has.
+//! Tests of the real machine.
 
 use super::plan::Probe;
 use crate::tool::output_of;
@@ -13,9 +13,9 @@ pub(crate) struct Here {
 }
 
 impl Here {
-    /// Asks the dynamic loader for its libraries, once.
+    /// Lists the libraries of the dynamic loader once.
     pub(crate) fn new() -> Self {
-        // Users often have no /sbin in their path.
+        // /sbin is often not in the path of users.
         let cache = ["ldconfig", "/sbin/ldconfig", "/usr/sbin/ldconfig"]
             .into_iter()
             .find_map(|program| output_of(program, &["-p"]))
@@ -24,7 +24,7 @@ impl Here {
     }
 }
 
-/// The names in what `ldconfig -p` prints, of this processor's kind alone.
+/// The names of libraries for this CPU architecture in the output of `ldconfig -p`.
 fn libraries_in_cache(cache: &str, arch: &str) -> BTreeSet<String> {
     let mark = match arch {
         "x86_64" => "x86-64",
@@ -35,7 +35,7 @@ fn libraries_in_cache(cache: &str, arch: &str) -> BTreeSet<String> {
     lines.filter(|(_, rest)| rest.contains(mark)).map(|(name, _)| name.to_owned()).collect()
 }
 
-/// Folders where libraries lie on systems whose loader keeps no cache, and those that the user adds.
+/// Folders with libraries on systems whose loader has no cache, and folders added by the user.
 fn library_folders() -> Vec<PathBuf> {
     let added = std::env::var_os("LD_LIBRARY_PATH").unwrap_or_default();
     let mut folders: Vec<PathBuf> = std::env::split_paths(&added).filter(|path| path.is_absolute()).collect();
@@ -48,7 +48,7 @@ fn library_folders() -> Vec<PathBuf> {
 
 impl Probe for Here {
     fn has_cxx_compiler(&self) -> bool {
-        // As the build of the encoder chooses it; `CXX` may hold arguments behind the name.
+        // Chosen in the same way as by the build of the encoder. `CXX` may contain arguments after the name.
         let chosen = std::env::var("CXX").unwrap_or_default();
         let compiler = chosen.split_whitespace().next().unwrap_or("c++");
         output_of(compiler, &["--version"]).is_some()
@@ -77,7 +77,7 @@ impl Probe for Here {
     }
 
     fn has_python(&self) -> bool {
-        // Debian leaves out the module by which a virtual environment gets its pip.
+        // Debian omits the module that installs pip in a virtual environment.
         output_of("python3", &["-c", "import venv, ensurepip"]).is_some()
     }
 
@@ -113,7 +113,7 @@ impl Probe for Here {
     }
 }
 
-/// A software driver always works; any other needs its device.
+/// Whether a driver can work: a software driver always can, any other needs its device.
 fn has_working_driver(names: &[String], has_device: bool) -> bool {
     let json = |name: &&String| Path::new(name).extension().is_some_and(|extension| extension == "json");
     names.iter().filter(json).any(|name| name.starts_with("lvp_") || has_device)
