@@ -1,8 +1,8 @@
 //! Hairstyles: scalp, wisps, guides, strands; growing, styling, interpolation and hair files.
 //!
-//! A [`Hairstyle`] is immutable and shared by `Arc`. It lives in *head space*: metres, the axes of the
+//! A [`Hairstyle`] is immutable and shared by `Arc`. Its coordinates are in *head space*: metres, the axes of the
 //! world in the body's rest pose (right-handed, Y up, the face toward +Z), the origin at the head joint.
-//! The simulator moves its [`Guides`] and leaves a [`GuideFrame`] in world space; `interpolate` makes the
+//! The simulator moves its [`Guides`] to a [`GuideFrame`] in world space, from which [`interpolate()`] makes the
 //! [`Strands`] that are shadowed and drawn.
 
 mod frame;
@@ -45,7 +45,7 @@ pub use io::{
 pub use look::HairLook;
 pub(crate) use obstacle::Bounded;
 pub use obstacle::{NoObstacle, Obstacle};
-pub use operation::{HairOperation, OperatedHair, OperationCache};
+pub use operation::{HairOperation, OperationCache, OperationResult};
 pub use plain_head::PlainHead;
 pub use presets::Preset;
 pub use scalp::{Scalp, ScalpError, ScalpPoint};

@@ -27,8 +27,8 @@ const DEEPEST: f32 = 0.02;
 
 /// An obstacle whose results are finite and never move hair far, whatever the wrapped obstacle returns.
 ///
-/// Near the open edges of clothes the sign of a mesh's distance may be wrong in places: what claims to lie deep
-/// inside is moved in small steps, and so is back on its way when the place is passed.
+/// Near the open edges of clothes, the distance of a mesh may have the wrong sign. A point that seems to be deep inside is
+/// therefore moved only in small steps, and returns to its path beyond such a place.
 pub(crate) struct Bounded<'a>(pub(crate) &'a dyn Obstacle);
 
 impl Obstacle for Bounded<'_> {

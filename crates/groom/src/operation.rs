@@ -1,10 +1,10 @@
-//! Operations that change a hairstyle after it was grown or imported, applied one after another.
+//! Operations on a hairstyle after it is grown or imported, applied one after another.
 
 use std::sync::Arc;
 
 use crate::{HairTie, Haircut, Hairstyle, Obstacle, tied, trimmed};
 
-/// A change of a whole hairstyle. A new operation is a variant here and an arm in each match below.
+/// A change of a hairstyle. A new operation is a variant here, and an arm in each match below.
 #[derive(Clone, Debug, PartialEq)]
 pub enum HairOperation {
     /// Shortens guides and strands ([`trimmed`]).
@@ -14,7 +14,7 @@ pub enum HairOperation {
 }
 
 impl HairOperation {
-    /// The name in sentences.
+    /// Name in sentences.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Cut(_) => "cut",
@@ -62,10 +62,10 @@ struct Step {
     fits: bool,
 }
 
-/// What a list of operations made.
+/// The result of a list of operations.
 #[derive(Debug)]
-pub struct OperatedHair {
-    /// The hairstyle after all operations: the base itself where none has an effect.
+pub struct OperationResult {
+    /// The hairstyle after all operations; the base itself if none has an effect.
     pub style: Arc<Hairstyle>,
     /// The operations that were skipped because they were made for another hairstyle.
     pub skipped: Vec<HairOperation>,
@@ -79,7 +79,7 @@ impl OperationCache {
         base: &Arc<Hairstyle>,
         operations: Vec<HairOperation>,
         obstacle: Arc<dyn Obstacle + Send>,
-    ) -> OperatedHair {
+    ) -> OperationResult {
         let body = Arc::clone(&obstacle);
         self.fold(base, operations, obstacle, |operation, style| operation.apply(style, &*body))
     }
@@ -90,7 +90,7 @@ impl OperationCache {
         operations: Vec<HairOperation>,
         obstacle: Arc<dyn Obstacle + Send>,
         mut compute: impl FnMut(&HairOperation, &Hairstyle) -> Hairstyle,
-    ) -> OperatedHair {
+    ) -> OperationResult {
         let same_start = self.start.as_ref().is_some_and(|(style, body)| {
             Arc::ptr_eq(style, base) && std::ptr::addr_eq(Arc::as_ptr(body), Arc::as_ptr(&obstacle))
         });
@@ -115,7 +115,7 @@ impl OperationCache {
             };
             self.steps.push(Step { operation, style, fits });
         }
-        OperatedHair {
+        OperationResult {
             style: Arc::clone(self.steps.last().map_or(base, |step| &step.style)),
             skipped: self.steps.iter().filter(|step| !step.fits).map(|step| step.operation.clone()).collect(),
         }
@@ -155,13 +155,13 @@ mod tests {
         HairOperation::Tie(vec![HairTie { kind, ..HairTie::default() }])
     }
 
-    /// Applies operations; says how many were computed.
+    /// Applies operations and returns how many were computed.
     fn counted(
         cache: &mut OperationCache,
         base: &Arc<Hairstyle>,
         operations: &[HairOperation],
         head: &Arc<dyn Obstacle + Send>,
-    ) -> (OperatedHair, usize) {
+    ) -> (OperationResult, usize) {
         let mut count = 0;
         let made = cache.fold(base, operations.to_vec(), Arc::clone(head), |operation, style| {
             count += 1;

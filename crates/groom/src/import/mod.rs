@@ -1,10 +1,10 @@
 //! Imports a hair file as a hairstyle that can be simulated.
 //!
 //! 1. [`orientation`]: unit and axes, as set or guessed.
-//! 2. [`place`](mod@place): the groom is fitted to the scalp, its roots set on the skin.
+//! 2. [`place`](mod@place): the groom is fitted to the scalp, and its roots are moved onto the skin.
 //! 3. [`cluster`]: strands are grouped into wisps by root and shape.
 //! 4. [`guides`]: three members of each wisp become its guides.
-//! 5. [`express`]: every strand is written as a blend of its wisp's guides plus its own offsets, exactly.
+//! 5. [`express`]: every strand becomes a blend of its wisp's guides plus its own offsets, without loss.
 
 mod cluster;
 mod colour;
@@ -36,7 +36,7 @@ pub enum ImportError {
         /// The hair file.
         name: String,
     },
-    /// The groom is too small or too large to be hair in the unit that was set.
+    /// In the chosen unit, the groom is too small or too large to be hair.
     #[error("{name}: the hair would be {size_m:e} m across in this unit, wanted 1e-5 to 100 m")]
     Size {
         /// The hair file.
@@ -48,15 +48,15 @@ pub enum ImportError {
 
 /// Makes a hairstyle of a hair file, on a scalp in head space.
 ///
-/// At rest every strand comes back as [`place`] put it. The result depends on nothing but the arguments.
+/// At rest, every strand has the shape and position given by [`place`]. The result depends only on the arguments.
 ///
 /// # Errors
-/// Where the scalp is empty, or the unit that was set makes the groom absurdly small or large.
+/// The scalp is empty, or the unit makes the groom implausibly small or large.
 pub fn import(file: &HairFile, settings: &ImportSettings, scalp: &Scalp) -> Result<Hairstyle, ImportError> {
     import_around(file, settings, scalp, None)
 }
 
-/// As [`import`], and pushes the parts of strands that would lie in `body`, or touch it, clear of its surface.
+/// As [`import`], and moves parts of strands that would touch or enter `body` away from its surface.
 ///
 /// # Errors
 /// As [`import`].
@@ -70,7 +70,7 @@ pub fn import_around(
     Ok(hairstyle_of(file, settings, scalp, &groom).0)
 }
 
-/// The hairstyle of a placed groom, and the strand of the groom that each of its strands is.
+/// The hairstyle of a placed groom, and the index in the groom of each of its strands.
 fn hairstyle_of(
     file: &HairFile,
     settings: &ImportSettings,

@@ -255,7 +255,7 @@ fn a_body_pushes_strands_out_and_leaves_roots_alone() {
 
 #[test]
 fn wrong_signs_of_a_body_do_not_move_strands_far() {
-    // Small spots around the head whose distance wrongly says deep inside.
+    // Small spots around the head where the distance wrongly indicates the deep inside.
     struct Faulty;
     impl crate::Obstacle for Faulty {
         fn distance(&self, p: Vec3) -> (f32, Vec3) {

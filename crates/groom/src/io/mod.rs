@@ -1,7 +1,7 @@
 //! Hair files: Cem Yuksel's `.hair`, AMD's TressFX `.tfx`, and curves of USD.
 //!
-//! A [`HairFile`] holds what a file says, in the file's own unit and axes, without what cannot be hair (see
-//! [`HairFile::dropped`]). [`guess_units`] estimates its size and orientation, and [`crate::import`] makes a
+//! A [`HairFile`] contains the strands of a file, in the file's own unit and axes, without those that cannot be drawn
+//! (see [`HairFile::dropped`]). [`guess_units`] estimates its size and orientation, and [`crate::import`] makes a
 //! hairstyle of it. Each format is a [`HairFormat`] in the table [`HAIR_FORMATS`].
 
 mod bytes;

@@ -1,4 +1,4 @@
-//! All hair formats, and reading a file of any of them.
+//! The table of hair formats, and reading a file in any of them.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use super::format::HairFormat;
 use super::source::Source;
 use super::{HairFileError, tressfx, usd, yuksel};
 
-/// Every hair format that is read. A new format is a file or folder beside this one, and a line here.
+/// Every hair format that can be read. A new format is a file or folder beside this one, and an entry here.
 pub static HAIR_FORMATS: [&HairFormat; 3] = [&yuksel::FORMAT, &tressfx::FORMAT, &usd::FORMAT];
 
 impl HairFormat {
@@ -18,7 +18,7 @@ impl HairFormat {
         HAIR_FORMATS.into_iter().find(|format| format.extensions.contains(&extension.as_str()))
     }
 
-    /// The format of a file that begins with `start`, where these bytes leave no doubt: TressFX files have no magic.
+    /// The format of a file that begins with `start`, if these bytes are unambiguous. TressFX files have no magic number.
     pub fn of_magic(start: &[u8]) -> Option<&'static Self> {
         HAIR_FORMATS.into_iter().find(|format| format.magics.iter().any(|magic| start.starts_with(magic)))
     }
@@ -34,7 +34,7 @@ impl HairFormat {
     }
 }
 
-/// Reads a hair file. Its content says the format; its name does not matter.
+/// Reads a hair file. The format is recognised by the content, not by the name.
 ///
 /// # Errors
 /// The file cannot be read, has no known format, contradicts itself, ends early, or holds no strand that can be

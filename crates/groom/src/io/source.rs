@@ -14,7 +14,7 @@ const START: u64 = 64;
 pub(super) enum Source<'a> {
     /// In memory.
     Memory(&'a [u8]),
-    /// In a file of `length` bytes. The first ones have been read to `start`.
+    /// In a file of `length` bytes. `start` contains the bytes read so far.
     File { file: File, length: u64, start: Vec<u8> },
 }
 
@@ -31,7 +31,7 @@ impl<'a> Source<'a> {
         open().map_err(|source| HairFileError::Io { name: name.to_owned(), source })
     }
 
-    /// The first bytes: 64 of a file, all that are in memory.
+    /// The first bytes: up to 64 of a file, or all of those in memory.
     pub(super) fn start(&self) -> &[u8] {
         match self {
             Self::Memory(data) => data,

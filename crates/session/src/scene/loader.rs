@@ -95,8 +95,8 @@ impl SceneLoader {
         control.at("creating the hair", 0.5)?;
         let hair = self.hair(&project, access, &body, &mut problems);
         let obstacle = Arc::clone(&body.obstacle);
-        let operated = self.operations.apply(&hair.style, project.hair.operations(), obstacle);
-        problems.extend(operated.skipped.iter().map(|operation| {
+        let result = self.operations.apply(&hair.style, project.hair.operations(), obstacle);
+        problems.extend(result.skipped.iter().map(|operation| {
             let message = format!(
                 "the {} was made for other hair and has no effect here; it returns with its hairstyle",
                 operation.name()
@@ -122,7 +122,7 @@ impl SceneLoader {
             fitted: Arc::clone(&body.colliders),
             field: body.field.clone().filter(|_| project.body.colliders.field.enabled),
             field_lift_m: project.body.colliders.field.lift_m(),
-            style: operated.style,
+            style: result.style,
             head_path,
             notes: notes.into(),
         };
