@@ -32,7 +32,7 @@ impl LastSteps {
         self.known = false;
     }
 
-    /// One step on.
+    /// Advances the engine by one step and stores both states.
     pub(crate) fn step(&mut self, engine: &mut Engine) {
         // Read the state again, because the hair may have been settled or replaced since the last step.
         engine.take_frame(&mut self.before);

@@ -31,12 +31,12 @@ impl FromStr for Sweep {
     }
 }
 
-/// The settings of the methods alone, as projects hold them.
+/// The name of a method's settings in projects.
 fn section(method: ShadowMethod) -> String {
     method.id().replace('-', "_")
 }
 
-/// Name and value of everything that is set about `method` alone.
+/// Names and values of all settings of `method`.
 pub(super) fn values(settings: &ShadowSettings, method: ShadowMethod) -> Vec<(String, String)> {
     let all = serde_json::to_value(settings).unwrap_or_default();
     let of_method = all.get(section(method));
@@ -50,10 +50,10 @@ pub(super) fn values(settings: &ShadowSettings, method: ShadowMethod) -> Vec<(St
         .collect()
 }
 
-/// `settings` with one setting of their method changed; none where the method has no such setting.
+/// `settings` with one setting of their method changed; `None` if the method has no such setting.
 ///
 /// # Errors
-/// A value that the setting cannot have, with those that it can.
+/// If the value is invalid, with the valid ones.
 pub(super) fn with_value(
     settings: &ShadowSettings,
     setting: &str,
@@ -83,8 +83,8 @@ pub(super) fn with_value(
     serde_json::from_value(all).map(Some).map_err(|_| wrong())
 }
 
-/// Whether a number is one of those that `values` describes in words: `64 to 2048 texels`, or `128, 256, 512`. What is
-/// described otherwise is left to the setting's own type.
+/// Whether a number is allowed by the text `values`, such as `64 to 2048 texels` or `128, 256, 512`. Other texts are not checked
+/// here but by the type of the setting.
 fn may_be(values: &str, value: &Value) -> bool {
     let Some(number) = value.as_f64() else { return true };
     let choices: Result<Vec<f64>, _> = values.split(", ").map(str::parse).collect();
@@ -99,8 +99,8 @@ fn may_be(values: &str, value: &Value) -> bool {
     }
 }
 
-/// The multiples on both sides of a number that is none, where `values` ends `in steps of` something: `64 to 2048 texels, in
-/// steps of 16`. None where it is one.
+/// The multiples on both sides of a number that is not a multiple of the step in `values`, such as `64 to 2048 texels, in steps of
+/// 16`. `None` if it is a multiple.
 fn off_step(values: &str, value: &Value) -> Option<(u64, u64)> {
     let (_, step) = values.split_once(", in steps of ")?;
     let (number, step) = (value.as_u64()?, step.parse::<u64>().ok().filter(|step| *step > 0)?);
@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn every_setting_of_every_method_can_be_set_to_what_it_usually_is() {
+    fn every_setting_of_every_method_can_be_set_to_its_default() {
         for &method in ShadowMethod::ALL {
             let settings = ShadowSettings { method, ..ShadowSettings::default() };
             let all = values(&settings, method);
@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn values_that_cannot_be_are_refused_with_those_that_can() {
+    fn invalid_values_are_refused_with_the_valid_ones() {
         let of = |method| ShadowSettings { method, ..ShadowSettings::default() };
         for (method, name, value) in [
             (ShadowMethod::OccupancyMaps, "resolution", "63"),
@@ -160,7 +160,7 @@ mod tests {
             let error = with_value(&of(method), "resolution", value).expect_err(value);
             assert!(error.exit_code() == 2 && error.to_string().contains(nearest), "{error}");
         }
-        // Negative control: what is on the step.
+        // Negative control: multiples of the step.
         for value in ["64", "80", "2032", "2048"] {
             assert!(
                 matches!(with_value(&of(ShadowMethod::Exact), "resolution", value), Ok(Some(_))),

@@ -1,4 +1,4 @@
-//! Whole comparisons of little hair, on the processor: no test here needs a graphics adapter.
+//! Whole comparisons with little hair, on the CPU. No test here needs a graphics adapter.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -24,7 +24,7 @@ fn request(out: &Path, methods: &[ShadowMethod]) -> CompareRequest {
     }
 }
 
-/// Little hair, so that tests are quick, of strands a few millimetres wide to the light: as dense as much hair is.
+/// Few strands, so that tests are fast, but a few millimetres wide for the light: as dense as full hair.
 fn little_hair() -> Project {
     let mut project = small_project();
     project.look.real_hairs *= 0.04;
@@ -86,7 +86,7 @@ fn every_method_is_drawn_measured_and_written() {
             assert!(out.join(file).is_file(), "{file}");
         }
     }
-    // The control: no shadow at all is far too bright, stands still, and looks least like the reference.
+    // Control: without shadow, hair is far too bright, does not change, and differs most from the reference.
     let none = method(&report, "none");
     assert!(none.transmittance.is_some_and(|error| error.bias > 0.05), "{:?}", none.transmittance);
     assert_eq!(none.stability.map(|stability| (stability.swim, stability.pop)), Some((0.0, Some(0.0))));
@@ -95,7 +95,7 @@ fn every_method_is_drawn_measured_and_written() {
         assert!(other.flip.map(|flip| flip.mean) < none.flip.map(|flip| flip.mean), "{}", other.id);
         assert!(other.stability.is_some_and(|stability| stability.swim > 0.0), "{}", other.id);
     }
-    // A light that turns changes the truth a little, and nothing where there is no shadow.
+    // A turning light changes the ground truth slightly, and nothing without shadow.
     let turned = |id: &str| method(&report, id).light_sweep.expect("a light that turns");
     let still = turned("none");
     assert_eq!((still.pop, still.excess, still.jitter), (0.0, still.truth_pop, still.truth_rms));
@@ -107,11 +107,11 @@ fn every_method_is_drawn_measured_and_written() {
     for other in report.methods.iter().filter(|other| other.id != "none") {
         assert!(other.light_sweep.is_some_and(|found| found.pop > 0.0), "{}", other.id);
     }
-    // One truth ranks all, and for the texels that it is of it is no other than their own.
+    // One ground truth ranks all methods, and for methods with its texels it equals their own.
     let common = |id: &str| method(&report, id).transmittance_common;
     assert_eq!(common("exact"), method(&report, "exact").transmittance);
     assert_ne!(common("voxel-map"), method(&report, "voxel-map").transmittance);
-    // The truth at points is not held against itself; the voxel map is.
+    // The ground truth at points is not compared with itself; the voxel map is.
     assert_eq!(method(&report, "exact").transmittance_at_points, None);
     assert!(method(&report, "voxel-map").transmittance_at_points.is_some());
     assert!(report.methods.iter().any(|method| method.front_of_time));
@@ -122,7 +122,7 @@ fn every_method_is_drawn_measured_and_written() {
         assert_eq!(probe.methods.len(), report.methods.len());
         assert!(!probe.reference.is_empty());
     }
-    // A point at the rim of its texel may have no fragment there.
+    // A point at the edge of its texel may have no fragment there.
     assert!(report.probes.iter().any(|probe| !probe.steps.is_empty()));
 
     let written = std::fs::read_to_string(out.join("report.json")).expect("JSON");
@@ -146,7 +146,7 @@ fn the_truth_of_every_light_counts() {
     let of_second = report.reference.others.iter().find(|truth| truth.name == "reference picture, light 2");
     let of_second = of_second.unwrap_or_else(|| panic!("{:?}", report.reference.others));
     assert!(of_second.samples > 1 && of_second.change <= report.reference.change);
-    // The same light has the same truth.
+    // The same light has the same ground truth.
     assert_eq!(of_second.change, report.reference.footprints[0].change);
     // Negative control: one light has no second.
     project.lights.truncate(1);
@@ -160,7 +160,7 @@ fn sweeps_run_a_method_over_its_settings() {
     let sweeps = vec!["slices=8,128".parse().expect("a sweep")];
     let wanted =
         CompareRequest { sweeps, ..request(dir.path(), &[ShadowMethod::OpacityMaps, ShadowMethod::None]) };
-    // Hair that opens: of hair that lies close, and is this sparse, more slices say no more.
+    // Spread hair, because for sparse hair close to the head, more slices make no difference.
     let mut project = little_hair();
     project.simulation.stiffness_root = 14.0;
     let report = run(&project, &wanted).expect("a report");
@@ -169,7 +169,7 @@ fn sweeps_run_a_method_over_its_settings() {
     let [few, many] = [&report.methods[0], &report.methods[1]];
     assert!(rmse(few) > rmse(many), "{} and {}", rmse(few), rmse(many));
     assert!(few.memory_bytes < many.memory_bytes, "{:?} and {:?}", few.memory_bytes, many.memory_bytes);
-    // Both have the same texels, and so the same truth.
+    // All have the same texels and therefore the same ground truth.
     assert_eq!(report.reference.footprints[0].methods.len(), 3);
 }
 
@@ -177,10 +177,10 @@ fn sweeps_run_a_method_over_its_settings() {
 fn a_reference_that_does_not_fit_is_refused_with_the_number_and_the_rest_is_made() {
     let dir = tempfile::tempdir().expect("a folder");
     let mut project = little_hair();
-    // The smallest limit that can be set is 16 MiB; this hair needs more.
+    // The smallest possible limit is 16 MiB; this hair needs more.
     (project.hair.groom.wisps, project.hair.groom.strands_per_wisp) = (300, 40);
     project.shadow.exact.memory_limit_bytes = 0;
-    // Few cells, so that their truth is quick.
+    // Few cells, so that their ground truth is fast.
     project.shadow.voxel_map.resolution = 32;
     let methods = [ShadowMethod::VoxelMap, ShadowMethod::Exact];
     let report = run(&project, &request(dir.path(), &methods)).expect("a report");
@@ -198,7 +198,7 @@ fn a_reference_that_does_not_fit_is_refused_with_the_number_and_the_rest_is_made
 fn what_is_finished_stays_when_it_is_stopped() {
     let dir = tempfile::tempdir().expect("a folder");
     let methods = [ShadowMethod::None, ShadowMethod::VoxelMap, ShadowMethod::OpacityMaps];
-    // Asked once before all, and then before each of its draws: this stops between two of them.
+    // Called once at the start and then before each draw: this stops between two draws.
     let mut asked = 0;
     let mut stop = |progress| match progress {
         Progress::Comparing { what, .. } if what == "opacity-maps" => {
@@ -216,7 +216,7 @@ fn what_is_finished_stays_when_it_is_stopped() {
     assert!(dir.path().join("pictures/voxel-map.png").is_file());
     assert!(!dir.path().join("pictures/opacity-maps.png").exists());
 
-    // Stopped while it shifts the map, after its picture is written: 3 draws of warm-up and 2 that count.
+    // Stopped while the map is shifted, after the image was written: 3 warm-up draws and 2 measured ones.
     let mut asked = 0;
     let mut stop = |progress| match progress {
         Progress::Comparing { what, .. } if what == "voxel-map" => {

@@ -1,8 +1,8 @@
-//! The truth that methods are held against.
+//! The ground truth that methods are compared with.
 //!
-//! *Footprint truth* is converged transmittance: the mean of the light over the texel of the method's own map, which is the
-//! best that a method can know. *Point truth* is the exact method on the finest map that the strands allow, read in the texel
-//! that a point lies in: what is there, with all that a texel is too coarse for.
+//! *Footprint truth* is converged transmittance: the mean of the light over the texel of the method's own map, the best that the
+//! map could represent. *Point truth* is the exact method on the finest map that the strands allow, read in the texel of each point:
+//! it contains the detail that is lost in a texel.
 
 use glam::Vec3;
 use lovelock_metrics::errors;
@@ -15,17 +15,17 @@ use lovelock_shadow::{
 use super::hair::Hair;
 use crate::report::{FootprintTruth, PointTruth};
 
-/// Points with fewer fragments before them are where light enters.
+/// Points with fewer fragments before them count as points where light enters.
 const FIRST: u32 = 10;
 
-/// Which mean is asked for: maps with the same footprint are held against the same truth.
+/// The footprint of a mean. Maps with the same footprint share a ground truth.
 #[derive(Clone, Debug, PartialEq)]
 enum Footprint {
-    /// Edge of a cell, metres, and cells.
+    /// Edge of a cell, metres, and number of cells.
     Cells(f32, u64),
-    /// Edge of a texel, metres, and texels.
+    /// Edge of a texel, metres, and number of texels.
     Texels(f32, u64),
-    /// That of a map that cannot be made: its settings, and why.
+    /// A map that cannot be built: its settings, and why.
     Unknown(ShadowSettings, String),
 }
 
@@ -33,7 +33,7 @@ enum Footprint {
 #[derive(Debug)]
 pub(super) struct Truth {
     footprint: Footprint,
-    /// Settings of a method that has this footprint.
+    /// Settings of a method with this footprint.
     pub settings: ShadowSettings,
     /// Transmittance, or why there is none.
     pub transmittance: Result<Vec<f32>, String>,
@@ -41,7 +41,7 @@ pub(super) struct Truth {
 }
 
 impl Truth {
-    /// Texels or cells of the maps that have this footprint.
+    /// Number of texels or cells of the maps with this footprint.
     pub(super) fn cells(&self) -> Option<u64> {
         match self.footprint {
             Footprint::Cells(_, cells) | Footprint::Texels(_, cells) => Some(cells),
@@ -50,13 +50,13 @@ impl Truth {
     }
 }
 
-/// The truths of one instant.
+/// The ground truths of one instant.
 #[derive(Debug, Default)]
 pub(super) struct Truths(pub Vec<Truth>);
 
 impl Truths {
-    /// Which truth the method of `settings` is held against, found now where it is new, and the edge of a texel or a cell of
-    /// its map, metres. `name` is noted there.
+    /// The index of the ground truth for the method of `settings`, computed if it is new, and the edge of a texel or cell of its map,
+    /// metres. `name` is added to the ground truth.
     pub(super) fn find(
         &mut self,
         (hair, project, light): (&Hair, &Project, &Light),
@@ -66,7 +66,7 @@ impl Truths {
         let (footprint, cell_size) = footprint((hair, project, light), settings);
         let known = self.0.iter().position(|truth| truth.footprint == footprint);
         let at = known.unwrap_or_else(|| {
-            // What is too much for the method is too much for a truth that is finer still.
+            // If the method needs too much memory, the finer ground truth does too.
             let (transmittance, facts) = match &footprint {
                 Footprint::Unknown(_, why) => (Err(why.clone()), FootprintTruth::default()),
                 _ => converge((hair, project, light), settings),
@@ -81,7 +81,7 @@ impl Truths {
     }
 }
 
-/// The footprint of the method's map. `none` has that of `exact`.
+/// The footprint of the method's map. `none` uses that of `exact`.
 fn footprint(
     (hair, project, light): (&Hair, &Project, &Light),
     settings: &ShadowSettings,
@@ -102,12 +102,12 @@ fn footprint(
     (footprint, has_map.then_some(report.cell_size))
 }
 
-/// Edge of a texel (of a cell) of the method's map, metres; none where it has no map, and where it cannot be made.
+/// Edge of a texel (or cell) of the method's map, metres; `None` if it has no map, or the map cannot be built.
 pub(super) fn cell_size(place: (&Hair, &Project, &Light), settings: &ShadowSettings) -> Option<f32> {
     footprint(place, settings).1
 }
 
-/// Converged transmittance at every strand point, and how well it converged.
+/// Converged transmittance at every strand point, and its convergence.
 pub(super) fn converge(
     (hair, project, light): (&Hair, &Project, &Light),
     settings: &ShadowSettings,
@@ -138,7 +138,7 @@ pub(super) fn converge_at(
     }
 }
 
-/// The truth at points.
+/// The ground truth at points.
 #[derive(Debug)]
 pub(super) struct Points {
     pub map: ExactMap,
@@ -150,10 +150,10 @@ pub(super) struct Points {
 
 impl Points {
     /// # Errors
-    /// Hair that needs more memory than the exact method may use, with the numbers.
+    /// If the exact method needs more memory than it may use, with the numbers.
     pub(super) fn new(hair: &Hair, project: &Project, light: &Light) -> Result<Self, ShadowError> {
         let (map, transmittance, edge) = exact(hair, project, light, *TEXEL_RESOLUTIONS.end())?;
-        // On a small head of few strands there is no coarser map.
+        // With few strands on a small head there is no coarser map.
         let (_, coarser, _) = exact(hair, project, light, edge / 2)?;
         let change = errors(&coarser, &transmittance).rmse as f32;
         let strands = &hair.strands;
@@ -166,14 +166,14 @@ impl Points {
         Ok(Self { map, transmittance, first, facts })
     }
 
-    /// Whether `settings` make the very map that is the truth here: it must not be held against itself.
+    /// Whether `settings` give the map of this ground truth, which must not be compared with itself.
     pub(super) fn is_made_by(&self, settings: &ShadowSettings, cell_size: Option<f32>) -> bool {
         settings.method == ShadowMethod::Exact && cell_size == Some(self.map.report().cell_size)
     }
 }
 
-/// The exact method with at most so many texels along the edge: its map, what it says at every strand point, and the texels
-/// that there are.
+/// The exact method with at most that many texels along the edge: its map, the transmittance at every strand point, and the actual
+/// number of texels.
 fn exact(
     hair: &Hair,
     project: &Project,

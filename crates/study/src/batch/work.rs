@@ -1,4 +1,4 @@
-//! The parts of a comparison, one after the other.
+//! The parts of a comparison, in order.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -23,24 +23,24 @@ use super::truth::{Points, Truths};
 use super::{maps, probe};
 use crate::report::{CompareReport, MethodReport};
 
-/// Asked now and then whether to go on.
+/// Called regularly; returns an error if the work is cancelled.
 pub(super) type CheckCancel<'a> = dyn FnMut() -> Result<(), ProjectError> + 'a;
 
-/// What all parts of the work need.
+/// Inputs of all parts of the work.
 pub(super) struct Work<'a> {
     pub project: &'a Project,
     pub request: &'a CompareRequest,
     pub folder: &'a Folder,
     pub size: [u32; 2],
-    /// Those that shine; one at least.
+    /// The enabled lights; at least one.
     pub lights: Vec<Light>,
 }
 
-/// What an entrant is measured against.
+/// The references that an entrant is compared with.
 pub(super) struct Against<'a> {
     pub hair: &'a Hair,
     pub truths: &'a Truths,
-    /// Which of them is the same for all.
+    /// Index of the one that is common to all.
     pub common: usize,
     pub points: Option<&'a Points>,
     pub picture: Option<&'a Picture>,
@@ -48,15 +48,15 @@ pub(super) struct Against<'a> {
     /// The frames in which maps are shifted.
     pub shifted: &'a [Arc<FrameSnapshot>],
     pub light_sweep: Option<&'a LightSweep>,
-    /// A number for each pixel, finite where it shows hair.
+    /// One value per pixel, finite where it shows hair.
     pub hair_pixels: &'a [f32],
 }
 
 impl Work<'_> {
-    /// Does all of it, part by part; what is finished is in the report and in its folder.
+    /// Runs all parts. Finished results are in the report and its folder.
     ///
     /// # Errors
-    /// [`ProjectError::Cancelled`], or what cannot be written.
+    /// [`ProjectError::Cancelled`], or if a file cannot be written.
     pub(super) fn run(
         &self,
         snapshots: &[Arc<FrameSnapshot>],
@@ -141,7 +141,7 @@ impl Work<'_> {
             });
             match result {
                 Ok(()) => {}
-                // What does not fit costs its own numbers alone; a full disk costs everything.
+                // An entrant that does not fit into memory is only noted; a full disk ends the run.
                 Err(ProjectError::Work { file: None, message }) => entrant.report.refused = Some(message),
                 Err(error) => return Err(error),
             }
@@ -154,7 +154,7 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// The rays that are looked at. A pixel that shows no hair costs its own ray alone.
+    /// The probed rays. A pixel without hair is skipped.
     fn probes(
         &self,
         values: &mut ValueRenderer,
@@ -176,7 +176,7 @@ impl Work<'_> {
             let shadow_input = hair.shadow_input(self.project, light);
             match Probe::new(values, &input, self.size, pixel, shadow_input.light, points) {
                 Some(mut probe) => {
-                    // Where the exact map does not fit, what is finer than it takes minutes.
+                    // If the exact map does not fit, the finer one would take minutes.
                     if points.is_some() {
                         let reference = &mut report.reference;
                         match probe.find_reference(&shadow_input, &self.project.shadow) {
@@ -194,7 +194,7 @@ impl Work<'_> {
         probes
     }
 
-    /// The frames for pop and flicker; none for a single one.
+    /// The frames for pop and flicker; `None` for a single frame.
     fn film(
         &self,
         snapshots: &[Arc<FrameSnapshot>],
@@ -217,7 +217,7 @@ impl Work<'_> {
     }
 }
 
-/// Puts what is known of the truth into the report.
+/// Records the facts of the ground truths in the report.
 fn note_truths(report: &mut CompareReport, truths: &Truths, points: Option<&Points>) {
     let reference = &mut report.reference;
     reference.limit = CONVERGED_CHANGE;
@@ -235,7 +235,7 @@ fn note_truths(report: &mut CompareReport, truths: &Truths, points: Option<&Poin
     reference.points = points.map(|points| points.facts.clone());
 }
 
-/// Marks the methods that none of the same backend and transparency beats in error and cost.
+/// Marks the methods on the front of error and cost among those with the same backend and transparency.
 fn mark_fronts(report: &mut CompareReport) {
     let methods = &mut report.methods;
     let error = |method: &MethodReport| method.front_error().unwrap_or(f64::NAN);
@@ -248,7 +248,7 @@ fn mark_fronts(report: &mut CompareReport) {
     for (at, method) in methods.iter().enumerate() {
         let key = |method: &MethodReport| (method.backend.clone(), method.transparency.clone());
         let same: Vec<usize> = (0..methods.len()).filter(|&i| key(&methods[i]) == key(method)).collect();
-        // Each group once, by its first.
+        // Handle each group once, at its first member.
         if same.first() != Some(&at) {
             continue;
         }

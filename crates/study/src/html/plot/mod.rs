@@ -10,28 +10,28 @@ pub(super) use labels::Label;
 use labels::Labels;
 use std::fmt::Write as _;
 
-/// No line has more corners; what has more is thinned.
+/// Maximum number of corners of a line; longer lines are thinned.
 const CORNERS: usize = 2000;
 
-/// Room around the field, pixels: left, top, right, bottom.
+/// Margins around the field, pixels: left, top, right, bottom.
 const MARGINS: [f64; 4] = [70.0, 12.0, 16.0, 46.0];
 
-/// A plot that is being drawn.
+/// A plot under construction.
 pub(super) struct Plot {
     width: f64,
     height: f64,
     x: Axis,
     y: Axis,
-    /// More room below the field, for lanes.
+    /// Additional height below the field, for lanes.
     below: f64,
     body: String,
     labels: Labels,
 }
 
-/// How a line looks.
+/// The style of a line.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stroke<'a> {
-    /// A colour of CSS.
+    /// A CSS colour.
     pub(super) color: &'a str,
     /// Pixels.
     pub(super) width: f64,
