@@ -1,4 +1,4 @@
-//! The two backends against each other, and the CPU backend against itself.
+//! Compares the two backends, and the CPU backend with itself.
 
 mod common;
 
@@ -10,7 +10,7 @@ use lovelock_testkit::{Flip, flip};
 
 const BACKEND: Backend = Backend::Gpu;
 
-/// FLIP of the two backends' pictures. Measured on a software adapter: mean 0.0017 to 0.0025 and 99th percentile 0.008
+/// FLIP between the pictures of the two backends. Measured on a software adapter: mean 0.0017 to 0.0025 and 99th percentile 0.008
 /// to 0.036. The smallest defect below, strands half as wide, has 0.0147 and 0.30.
 const MEAN: f32 = 0.005;
 const P99: f32 = 0.06;
@@ -63,8 +63,8 @@ fn closed_bodies_look_the_same_from_without_from_within_and_inside_out() {
             s.camera.fov_y = 0.9;
             let Some(difference) = compared(&s, &s) else { return };
             println!("outward {outward}, {name}: {difference:?}");
-            // Measured mean 0.003 to 0.008 and 99th percentile up to 0.13: large faces with hard edges, whose shading each
-            // backend continues differently past the last sample. Where the wrong faces are left out it is the whole box.
+            // Measured mean 0.003 to 0.008 and 99th percentile up to 0.13: large faces with hard edges, where the backends
+            // extrapolate shading differently beyond the last sample. Culling the wrong faces would change the whole box.
             assert!(
                 difference.mean < 0.02 && difference.p99 < 0.3,
                 "outward {outward}, {name}: {difference:?}"
@@ -76,7 +76,7 @@ fn closed_bodies_look_the_same_from_without_from_within_and_inside_out() {
 /// A small defect.
 type Spoil = fn(&mut Scene);
 
-/// What the comparison must find: each of these is a small defect of one backend.
+/// Negative controls: the comparison must detect each of these small defects of one backend.
 #[test]
 fn small_differences_of_the_scene_are_found() {
     let scene = tuft_scene(400);
@@ -116,7 +116,7 @@ fn the_processor_gives_the_same_bytes_for_any_threads_and_vectors() {
             let picture = draw(&mut CpuRenderer::with_width(width), &scene);
             assert!(picture == first, "{transparency}, {width:?}");
         }
-        // The control: bytes are compared, and a light that is a little brighter changes some.
+        // Control: a slightly brighter light changes some bytes.
         scene.lights[0].intensity *= 1.01;
         assert!(draw(&mut CpuRenderer::default(), &scene) != first, "{transparency}");
     }
@@ -148,7 +148,7 @@ fn over_ground() -> Scene {
 #[test]
 fn the_shadow_on_the_ground_ends_with_its_map() {
     let mut s = over_ground();
-    // Larger maps first: what they leave must not be seen later. 80 and 112 are no multiples of 64.
+    // Larger maps first: their content must not be visible later. 80 and 112 are not multiples of 64.
     for (method, resolution) in
         [(ShadowMethod::Exact, 512), (ShadowMethod::OpacityMaps, 80), (ShadowMethod::VoxelMap, 112)]
     {
@@ -169,7 +169,7 @@ fn the_shadow_on_the_ground_ends_with_its_map() {
 #[test]
 fn pictures_larger_than_the_devices_buffers_are_drawn_in_bands() {
     let mut s = tuft_scene(60);
-    // Hair all over the picture: 72 bytes a pixel are more than the 128 MiB that software adapters bind.
+    // Hair in the whole picture: 72 bytes per pixel exceed the 128 MiB that software adapters can bind.
     s.camera = Camera { eye: Vec3::new(0.0, 0.0, 0.1), target: Vec3::ZERO, fov_y: 1.2 };
     s.picture.transparency = Transparency::OccupancyOrder;
     let (w, h) = (1700, 1200);
@@ -187,7 +187,7 @@ fn ground_beyond_the_bodys_shadow_map_is_lit() {
         s.body = Some(common::closed_box(true));
         s.strands = common::scene(&[]).strands;
         s.style = common::scene(&[]).style;
-        // Steep light, a ground far below the body, and the place right under it but behind the map's far end.
+        // Steep light, a ground far below the body, and a position right under it but behind the far end of the map.
         s.lights[0].direction = Vec3::new(0.02, -1.0, 0.02);
         s.camera = Camera { eye: Vec3::new(0.0, 3.0, 3.0), target: Vec3::new(0.0, 0.0, 0.0), fov_y: 0.5 };
         if let Some((_, skin)) = &mut s.body {
@@ -199,7 +199,7 @@ fn ground_beyond_the_bodys_shadow_map_is_lit() {
         let both = picture.rgba.chunks_exact(4).zip(free.rgba.chunks_exact(4));
         let dark = both.filter(|(with, without)| with[1].saturating_add(10) < without[1]).count();
         println!("{backend}: {dark} dark pixels");
-        // The box and its shadow have 68. Where the far end of the map keeps light off, 91 even if only the edge is wrong.
+        // The box and its shadow have 68; 91 if the far end of the map blocks light, even if only its edge is wrong.
         assert!(dark > 20 && dark < 80, "{backend}: {dark}");
     }
 }
@@ -207,7 +207,7 @@ fn ground_beyond_the_bodys_shadow_map_is_lit() {
 #[test]
 fn strands_that_fill_the_picture_are_drawn_whole() {
     let mut s = tuft_scene(1);
-    // Wider than the picture: one thread would have 480,000 pixels to walk over.
+    // Wider than the picture: one thread would iterate over 480,000 pixels.
     (s.look.real_hairs, s.look.width_scale) = (10_000.0, 1.0);
     s.shadow.method = ShadowMethod::None;
     let (w, h) = (800, 600);

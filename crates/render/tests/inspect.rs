@@ -1,4 +1,4 @@
-//! What can be asked about a picture after it was drawn, on both backends.
+//! Transmittance of a rendered picture, on both backends.
 
 mod common;
 
@@ -10,7 +10,7 @@ use lovelock_render::{
 
 const BACKEND: Backend = Backend::Cpu;
 
-/// Both backends; the processor alone where there is no adapter.
+/// Both backends; only the CPU without an adapter.
 fn renderers() -> Vec<Renderer> {
     let open = |backend| match Renderer::open(backend) {
         Ok(renderer) => Some(renderer),
@@ -119,7 +119,7 @@ fn a_picture_of_known_transmittance_is_that_of_the_method_that_it_came_from() {
     let positions = scene.body.as_ref().expect("a wall").1.positions.clone();
     let at_vertices: Vec<_> =
         (0..lights).map(|k| renderer.transmittance_at(k, &positions).expect("a picture")).collect();
-    // Whatever the method is, it does not count.
+    // The method does not matter.
     scene.shadow.method = ShadowMethod::VoxelMap;
     let (_, by_method) = draw(&mut renderer, &scene.input());
     assert_ne!(by_method, expected);
@@ -137,7 +137,7 @@ fn a_picture_of_known_transmittance_is_that_of_the_method_that_it_came_from() {
     assert_ne!(with(&lit, &at_vertices), expected);
     let dark: Vec<_> = at_vertices.iter().map(|list| vec![0.0; list.len()]).collect();
     assert_ne!(with(&at_points, &dark), expected);
-    // And after it, the method counts again.
+    // Without given transmittance the method matters again.
     assert_eq!(draw(&mut renderer, &scene.input()).1, by_method);
 }
 

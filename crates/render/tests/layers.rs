@@ -1,4 +1,4 @@
-//! The layers of a picture: what is known of tiny scenes, and the two backends against each other.
+//! The layers of a picture: known results of tiny scenes, and a comparison of the two backends.
 
 mod common;
 
@@ -11,7 +11,7 @@ use lovelock_testkit::{flip, skip_without_adapter};
 
 const BACKEND: Backend = Backend::Cpu;
 
-/// Layers and picture of a scene; none where there is no adapter.
+/// Layers and picture of a scene; `None` without an adapter.
 fn drawn(backend: Backend, s: &Scene, over_background: bool, [w, h]: [u32; 2]) -> Option<(Layers, Picture)> {
     let mut renderer = match Renderer::open(backend) {
         Ok(renderer) => renderer,
@@ -26,7 +26,7 @@ fn drawn(backend: Backend, s: &Scene, over_background: bool, [w, h]: [u32; 2]) -
     Some((layers, picture))
 }
 
-/// How much the tone-mapped layers differ from the picture: the part of the bytes that do, and by how much at most.
+/// The difference between the tone-mapped layers and the picture: the fraction of bytes that differ, and the largest difference.
 fn off(layers: &Layers, picture: &Picture) -> (f64, u8) {
     let mut shown = Picture::default();
     layers.tone_map(&mut shown);
@@ -54,8 +54,8 @@ fn the_linear_layer_with_the_views_curve_is_the_picture() {
             let Some((layers, picture)) = drawn(backend, &s, true, [160, 120]) else { continue };
             let (part, most) = off(&layers, &picture);
             println!("{backend}, {transparency}: {part:.5} of the bytes, by {most}");
-            // The exposure is multiplied in at another place, and the card's curve is the driver's: measured no byte on
-            // the processor and 0.00005 of them on a software adapter, each by one step.
+            // The exposure is applied at a different stage, and the GPU's curve depends on the driver: measured no byte on the
+            // CPU and 0.00005 of them on a software adapter, each by one step.
             assert!(part < 1e-3 && most <= 1, "{backend}, {transparency}: {part}, {most}");
             s.picture.exposure_stops = 0.8;
             let (other, _) = drawn(backend, &s, true, [160, 120]).expect("layers");
@@ -96,13 +96,13 @@ fn a_wall_and_a_strand_have_the_depths_at_which_they_are() {
         let Some((layers, _)) = drawn(backend, &s, false, [65, 65]) else { continue };
         let at = |x: usize, y: usize| (y * 65 + x, layers.depth[y * 65 + x], layers.light[y * 65 + x]);
         let (strand, depth, light) = at(32, 32);
-        // What the projection's numbers hold: a few units in the last place of 24 bits.
+        // The precision of the projection: a few units in the last place of 24 bits.
         assert!((depth - 1.0).abs() < 1e-5 && light[3] > 0.99, "{backend}: {depth} {light:?}");
         let (wall, depth, light) = at(32, 29);
         assert!((depth - 1.25).abs() < 1e-5 && light[3] == 1.0, "{backend}: {depth} {light:?}");
         let (nothing, depth, light) = at(2, 60);
         assert_eq!((depth, light), (Layers::NOTHING_METRES, [0.0; 4]), "{backend}");
-        // No shadow: all of the light comes to the strand, and where there is no hair there is nothing to take any.
+        // No shadow: full transmittance on the strand and where there is no hair.
         for place in [strand, wall, nothing] {
             assert!((layers.transmittance[place] - 1.0).abs() < 2e-3, "{}", layers.transmittance[place]);
         }
@@ -114,7 +114,7 @@ fn a_wall_and_a_strand_have_the_depths_at_which_they_are() {
 
 #[test]
 fn surfaces_seen_from_their_edge_are_no_nearer_than_their_corners() {
-    // Triangles a hair's breadth from edge-on, at every slant, between 0.9 and 1.1 m before the camera.
+    // Nearly edge-on triangles at every slant, 0.9 to 1.1 m in front of the camera.
     let (mut positions, mut triangles) = (Vec::new(), Vec::new());
     for i in 0..20_000_u32 {
         let t = i as f32 * 0.618_034;
@@ -160,7 +160,7 @@ fn half_a_strand_covers_half_and_the_rest_is_clear() {
         assert!((alpha - 0.4).abs() < 2e-3, "{backend}: {alpha}");
         let (over, _) = drawn(backend, &s, true, [65, 65]).expect("layers");
         let [ra, .., whole] = over.light[32 * 65 + 32];
-        // What comes from behind is the background's light times what is left open.
+        // Behind it is the light of the background times the uncovered fraction.
         let [behind, ..] = over.light[35 * 65 + 32];
         assert_eq!(whole, 1.0);
         assert!((ra - r - 0.6 * behind).abs() < 0.02 * behind, "{backend}: {ra} {r} {behind}");
@@ -170,7 +170,7 @@ fn half_a_strand_covers_half_and_the_rest_is_clear() {
 #[test]
 fn transmittance_is_that_of_the_points_where_hair_covers_all() {
     for backend in [Backend::Cpu, Backend::Gpu] {
-        // A thick board: light from the front comes to its face, light from behind hardly.
+        // A thick board: light from the front reaches its face, light from behind hardly does.
         let board = |direction: Vec3| {
             let mut s = scene(&slab(60, 30));
             s.look.real_hairs = 60_000.0;
@@ -204,7 +204,7 @@ fn both_backends_have_the_same_layers() {
             |of: &dyn Fn(usize) -> f64| (0..cpu.depth.len()).map(of).sum::<f64>() / cpu.depth.len() as f64;
         let light = mean(&|i| (0..4).map(|c| f64::from((gpu.light[i][c] - cpu.light[i][c]).abs())).sum());
         let transmittance = mean(&|i| f64::from((gpu.transmittance[i] - cpu.transmittance[i]).abs()));
-        // Where one of them sees nothing, a pixel counts as wholly off.
+        // A pixel that is empty in one of them counts with the maximum difference.
         let depth = mean(&|i| f64::from((gpu.depth[i] - cpu.depth[i]).abs() > 1e-3));
         println!("{transparency}: light {light:.5}, transmittance {transmittance:.5}, depth {depth:.5}");
         // Measured on a software adapter: 0.0009, 0.00001 and 0.00003.

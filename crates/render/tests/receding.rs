@@ -1,4 +1,4 @@
-//! Hair keeps its brightness and its cover as it recedes, on both backends and in every way of transparency.
+//! Hair keeps its brightness and coverage with distance, on both backends and with every transparency.
 
 mod common;
 
@@ -13,13 +13,13 @@ const BACKEND: Backend = Backend::Gpu;
 /// Sizes of the pictures, pixels along each edge.
 const SIZES: [u32; 4] = [512, 128, 64, 32];
 
-/// Relative change of light and cover. Measured at most 0.018.
+/// The tolerance of the relative change of light and coverage. Measured at most 0.018.
 const BOUND: f64 = 0.03;
 
-/// The same where cover is rounded to the samples of a pixel by chance. Measured at most 0.027.
+/// The same for coverage that is randomly rounded to samples. Measured at most 0.027.
 const BY_CHANCE: f64 = 0.05;
 
-/// Linear light of each grey of the screen, found by drawing backgrounds whose light is known.
+/// The linear light of each grey value, found by rendering backgrounds of known light.
 struct Screen(Vec<(f32, u8)>);
 
 impl Screen {
@@ -43,17 +43,17 @@ impl Screen {
         l0 + (l1 - l0) * part.clamp(0.0, 1.0)
     }
 
-    /// The light of the whole picture, a pixel.
+    /// The mean light of the picture.
     fn mean(&self, picture: &Picture) -> f64 {
         let sum: f64 = picture.rgba.chunks_exact(4).map(|p| f64::from(self.light(p[1]))).sum();
         sum / f64::from(picture.width * picture.height)
     }
 }
 
-/// A grey tuft in even light, seen whole in a picture of `size` pixels.
+/// A grey tuft in uniform light, completely visible in a picture of `size` pixels.
 fn grey_tuft(transparency: Transparency) -> Scene {
     let mut s = scene(&tuft(60));
-    // Each strand has a number of its own, by which opaque strands take different samples of a pixel.
+    // Each strand has a hash of its own, with which opaque strands cover different samples of a pixel.
     let shades = &mut Arc::make_mut(&mut s.style).strands.shade;
     shades.iter_mut().enumerate().for_each(|(i, shade)| *shade = (i as f32 * 0.618_034).fract());
     (s.look.eumelanin, s.look.pheomelanin) = (0.05, 0.0);
@@ -76,10 +76,10 @@ fn light_and_cover_stay_as_a_tuft_recedes() {
         for transparency in Transparency::ALL {
             let s = grey_tuft(transparency);
             let mut near = None;
-            // The same view in ever fewer pixels: at 512 a hair is 0.7 pixels wide, at 32 it is 0.04.
+            // The same view at lower and lower resolution: a hair is 0.7 pixels wide at 512, and 0.04 at 32.
             for size in SIZES {
                 let hair = screen.mean(&s.draw_by(backend, size, size).expect("a picture"));
-                // Cover: how much of a light background is hidden, with hair that sends no light.
+                // Coverage: the fraction of a light background that black hair hides.
                 let mut dark = grey_tuft(transparency);
                 dark.picture.ambient = 0.0;
                 (dark.picture.background_top, dark.picture.background_bottom) =
@@ -95,7 +95,7 @@ fn light_and_cover_stay_as_a_tuft_recedes() {
                 let bound = if transparency == Transparency::Opaque { BY_CHANCE } else { BOUND };
                 assert!(light.abs() < bound && cover.abs() < bound, "{backend}, {transparency}, {size}");
             }
-            // The control: hair of nine tenths of the width is found out.
+            // Control: hair with nine tenths of the width is detected.
             let mut thin = grey_tuft(transparency);
             thin.look.diameter *= 0.9;
             let thin = screen.mean(&thin.draw_by(backend, SIZES[1], SIZES[1]).expect("a picture"));

@@ -1,4 +1,4 @@
-//! Numbers drawn as hair is, and the hair under a pixel.
+//! Images of values per strand point, and the hair under a pixel.
 
 mod common;
 
@@ -9,12 +9,12 @@ use lovelock_render::{Backend, FrameInput, HairHit, RenderError, Transparency, V
 const BACKEND: Backend = Backend::Cpu;
 const SIDE: u32 = 64;
 
-/// A vertical strand before the origin at `x` and `z`, of 11 points from 5 cm above to 5 cm below.
+/// A vertical strand at `x` and `z` in front of the origin, with 11 points from 5 cm above to 5 cm below.
 fn upright(x: f32, z: f32) -> Vec<Vec3> {
     (0..11).map(|j| Vec3::new(x, 0.05 - 0.01 * j as f32, z)).collect()
 }
 
-/// Strands so wide that each fills the middle of the picture.
+/// Strands wide enough that each fills the middle of the picture.
 fn wide(lines: &[Vec<Vec3>], opacity: f32) -> Scene {
     let mut s = scene(lines);
     (s.look.diameter, s.look.width_scale) = (0.04, 1.0);
@@ -42,7 +42,7 @@ fn values_vary_along_a_strand_and_are_none_beside_it() {
         assert_eq!((picture.value.len(), picture.weight.len()), (64 * 64, 64 * 64));
         for y in 26..38 {
             let [value, weight] = at(&picture, 32, y);
-            // Where the middle of the pixel lies on the strand, which is a metre away and 10 cm long.
+            // The position of the pixel centre on the strand, which is a metre away and 10 cm long.
             let scale = 64.0 * 0.5 / 0.25_f32.tan();
             let expected = 5.0 + (y as f32 + 0.5 - 32.0) / scale * 100.0 - 20.0;
             assert!((value - expected).abs() < 1e-2, "{mode}: {value} for {expected}");
@@ -51,7 +51,7 @@ fn values_vary_along_a_strand_and_are_none_beside_it() {
         let [value, weight] = at(&picture, 2, 32);
         assert!(value.is_nan() && weight == 0.0, "{mode}");
     }
-    // The control: reversed values are others.
+    // Control: reversed values differ.
     let reversed = draw(&scene, &(0..11).map(|i| -(i as f32)).collect::<Vec<_>>());
     assert!((at(&reversed, 32, 30)[0] + 3.8).abs() < 1e-2);
 }
@@ -59,7 +59,7 @@ fn values_vary_along_a_strand_and_are_none_beside_it() {
 #[test]
 fn layers_weigh_what_they_cover() {
     let values = [vec![1.0; 11], vec![4.0; 11]].concat();
-    // The first strand lies before the second; streaks of wide strands are the same for both but for their phase.
+    // The first strand is in front of the second; streaks of wide strands differ only in phase.
     let value = |opacity, mode| {
         let mut scene = wide(&[upright(0.0, 0.1), upright(0.0, -0.1)], opacity);
         scene.picture.transparency = mode;
@@ -76,7 +76,7 @@ fn layers_weigh_what_they_cover() {
         assert!((low(0.6)..low(0.4)).contains(&both), "{mode}: {both}");
         assert!((0.6..0.9).contains(&weight), "{mode}: {weight}");
     }
-    // The control: without an order both weigh the same.
+    // Control: without an order both have the same weight.
     let [both, _] = value(0.5, Transparency::WeightedAverage);
     assert!((2.2..2.8).contains(&both), "{both}");
 }
@@ -84,7 +84,7 @@ fn layers_weigh_what_they_cover() {
 #[test]
 fn pixels_with_hair_are_those_of_the_picture() {
     let mut scene = tuft_scene(60);
-    // The ground's shadow of hair falls where no hair is.
+    // The shadow of hair on the ground falls where there is no hair.
     scene.picture.ground = false;
     scene.body = None;
     scene.picture.background_top = Vec3::splat(0.8);
@@ -104,7 +104,7 @@ fn pixels_with_hair_are_those_of_the_picture() {
                 assert!(value.is_nan() || (value - 0.5).abs() < 1e-4, "{value}");
                 let (shown, background) = (pixel(&picture, x, y), pixel(&without, x, y));
                 let far = shown.iter().zip(background).any(|(&a, b)| a.abs_diff(b) > 3);
-                // Hair over a thousandth of a pixel is too little to be seen, and over a tenth it is seen.
+                // Hair that covers a thousandth of a pixel is not visible; a tenth is.
                 differing += u32::from((weight > 0.1 && !far) || (weight < 1e-3 && far));
                 covered += u32::from(weight > 0.1);
             }
@@ -139,7 +139,7 @@ fn what_is_no_value_hides_and_counts_for_nothing() {
             scene.picture.transparency = mode;
             let picture = draw(&scene, &[vec![odd; 11], vec![3.0; 11]].concat());
             let [value, weight] = at(&picture, 32, 32);
-            // Opaque strands leave it to a noise which of the two a pixel shows.
+            // With opaque strands a hash decides which of the two a pixel shows.
             assert!((value - 3.0).abs() < 1e-4 || mode == Transparency::Opaque, "{mode}: {value}");
             let all = draw(&scene, &[1.0; 22]);
             assert!((weight - at(&all, 32, 32)[1]).abs() < 1e-5, "{mode}: {weight}");
@@ -158,7 +158,7 @@ fn what_is_no_value_hides_and_counts_for_nothing() {
     assert!(picture.value.iter().all(|value| value.is_nan()) && picture.weight.iter().all(|w| *w == 0.0));
 }
 
-/// Where a place is in a picture of `width` by `height` pixels.
+/// The pixel of a position in a picture of `width` by `height` pixels.
 fn place_of(input: &FrameInput, p: Vec3, [width, height]: [u32; 2]) -> [f32; 2] {
     let clip = input.camera.clip_from_world(width as f32 / height as f32) * p.extend(1.0);
     let at = clip / clip.w;
@@ -188,7 +188,7 @@ fn the_foremost_strand_is_picked() {
     assert_eq!(pick(&scene, behind).map(|hit| hit.strand), Some(1));
     let alone = thin(&[upright(0.0, -0.1)]);
     assert_eq!(pick(&alone, behind).map(|hit| (hit.strand, hit.point)), Some((0, 5)));
-    // A little beside a strand is enough, far beside is not.
+    // A position slightly beside a strand finds it, far beside does not.
     let edge = behind[0] + 0.5 * 0.003 / 1.1 * 150.0 * 0.5 / 0.25_f32.tan();
     assert!(pick(&alone, [edge + 3.5, behind[1]]).is_some());
     for (x, y) in [(edge + 4.5, behind[1]), (5.0, 5.0), (-1.0, 3.0), (3.0, 150.0), (f32::NAN, 3.0)] {

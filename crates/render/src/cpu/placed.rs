@@ -163,43 +163,37 @@ impl Placed {
         scratch: &mut TileScratch,
     ) {
         let opacity = view.uniform.width_opacity_tip_scalp.y;
-        match transparency {
-            Transparency::Sorted => {
-                self.keys.sort(segments, &self.details.segments, &mut scratch.order);
-                let order = std::mem::take(&mut scratch.order);
-                scratch.blend.clear();
-                // In batches: segments behind an opaque tile are not fetched.
-                for order in order.chunks(SEGMENTS_AT_ONCE) {
-                    scratch.segments.clear();
-                    scratch.segments.extend(order.iter().map(|&first| {
-                        let first = first as u32 as usize;
-                        [self.points[first], self.points[first + 1]]
-                    }));
-                    let input =
-                        BlendTile { origin, segments: &scratch.segments, hidden: &scratch.hidden, opacity };
-                    blend_segments_simd(self.width, &input, &mut scratch.blend);
-                    if scratch.blend.is_full() {
-                        break;
-                    }
+        if transparency == Transparency::Sorted {
+            self.keys.sort(segments, &self.details.segments, &mut scratch.order);
+            let order = std::mem::take(&mut scratch.order);
+            scratch.blend.clear();
+            // In batches: segments behind an opaque tile are not fetched.
+            for order in order.chunks(SEGMENTS_AT_ONCE) {
+                scratch.segments.clear();
+                scratch.segments.extend(order.iter().map(|&first| {
+                    let first = first as u32 as usize;
+                    [self.points[first], self.points[first + 1]]
+                }));
+                let input =
+                    BlendTile { origin, segments: &scratch.segments, hidden: &scratch.hidden, opacity };
+                blend_segments_simd(self.width, &input, &mut scratch.blend);
+                if scratch.blend.is_full() {
+                    break;
                 }
-                scratch.order = order;
-                scratch.blend.write(&mut scratch.hair);
             }
-            Transparency::Opaque
-            | Transparency::WeightedAverage
-            | Transparency::OccupancyOrder
-            | Transparency::Exact => {
-                let input = ListTile {
-                    origin,
-                    points: &self.points,
-                    segments,
-                    first_points: &self.details.segments,
-                    samples: &scratch.samples,
-                    opacity,
-                };
-                list_segments_simd(self.width, &input, &mut scratch.fragments);
-                resolve_tile(transparency, &mut scratch.fragments, &mut scratch.hair);
-            }
+            scratch.order = order;
+            scratch.blend.write(&mut scratch.hair);
+        } else {
+            let input = ListTile {
+                origin,
+                points: &self.points,
+                segments,
+                first_points: &self.details.segments,
+                samples: &scratch.samples,
+                opacity,
+            };
+            list_segments_simd(self.width, &input, &mut scratch.fragments);
+            resolve_tile(transparency, &mut scratch.fragments, &mut scratch.hair);
         }
     }
 }

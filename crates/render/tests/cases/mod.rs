@@ -1,4 +1,4 @@
-//! Pictures of tiny scenes whose answer is known, for whichever backend the test is for.
+//! Pictures of tiny scenes with known results, for the backend of the test.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use glam::Vec3;
 use lovelock_render::{Camera, Light, ShadowMethod, ShadowSettings, Transparency};
 use lovelock_testkit::{flip, mean_color};
 
-/// Horizontal strands of 20 cm, `count` of them spread over `height` metres round the origin, at depth `z`.
+/// `count` horizontal strands of 20 cm, spread over `height` metres around the origin, at depth `z`.
 fn curtain(count: usize, height: f32, z: f32) -> Vec<Vec<Vec3>> {
     (0..count)
         .map(|i| {
@@ -50,15 +50,15 @@ fn energy(scene: &Scene, size: u32) -> Option<f64> {
 
 #[test]
 fn a_receding_tuft_keeps_its_brightness() {
-    // The same strands, the camera twice as far with half the field: each strand covers the same share of the
-    // picture, drawn at half the pixels.
+    // The same strands, the camera twice as far with half the field of view: each strand covers the same fraction of the picture,
+    // rendered with half the pixels.
     let mut near = scene(&curtain(40, 0.1, 0.0));
     near.look.diameter = 0.0006;
     near.look.width_scale = 1.0;
     let Some(at_256) = energy(&near, 256) else { return };
     let at_64 = energy(&near, 64).expect("an adapter");
-    // Tone mapping is not linear, so the share of covered pixels matters a little: measured 6 %; the control,
-    // strands of half the width, is off by 40 %.
+    // Tone mapping is not linear, so the number of covered pixels matters a little: measured 6 %; the control, strands of half the
+    // width, differs by 40 %.
     assert!((at_64 / at_256 - 1.0).abs() < 0.12, "{at_64} against {at_256}");
     near.look.diameter *= 0.5;
     let thin = energy(&near, 64).expect("an adapter");
@@ -91,7 +91,7 @@ fn the_body_hides_strands_behind_it_and_not_those_before() {
 
 #[test]
 fn near_strands_cover_far_ones() {
-    // Dense sheets of two colours: black before red gives black, whatever the order in the file.
+    // Dense sheets of two colours: black in front of red gives black, in either order of the strands.
     let both = |front: f32| {
         let mut lines = curtain(100, 0.05, 0.0);
         lines.extend(curtain(100, 0.05, front));
@@ -106,14 +106,14 @@ fn near_strands_cover_far_ones() {
     };
     let Some(light_behind) = both(0.05) else { return };
     let light_before = both(-0.05).expect("an adapter");
-    // Shade 1 has twice the melanin, so the sheet that comes later in the file is the darker one.
+    // Shade 1 has twice the melanin, so the later sheet is the darker one.
     assert!(light_behind + 60 < light_before, "{light_behind} {light_before}");
 }
 
 #[test]
 fn hair_shadows_the_body() {
-    // Light falls at 45 degrees on a wall of many vertices; hair hangs 0.1 m before it, so that its shadow lies
-    // 0.1 m lower than the hair, where the camera looks.
+    // Light falls at 45 degrees on a wall of many vertices; hair hangs 0.1 m in front of it, so its shadow is 0.1 m lower than the
+    // hair, where the camera looks.
     let wall = |hair: bool, method| {
         let lines = if hair { curtain(400, 0.1, 0.1) } else { Vec::new() };
         let mut s = scene(&lines);
@@ -129,7 +129,7 @@ fn hair_shadows_the_body() {
     let Some(free) = wall(false, ShadowMethod::VoxelMap) else { return };
     let unshadowed = wall(true, ShadowMethod::None).expect("an adapter");
     assert!(free > 120, "a lit wall: {free}");
-    // The control: without a shadow method the same hair leaves the wall as it is.
+    // Control: without a shadow method the same hair does not change the wall.
     assert!(unshadowed.abs_diff(free) < 10, "{unshadowed} against {free}");
     for &method in ShadowMethod::ALL.iter().filter(|method| **method != ShadowMethod::None) {
         let shadowed = wall(true, method).expect("an adapter");
@@ -183,7 +183,7 @@ fn the_body_shadows_hair() {
     assert!(dark * 2 < lit, "hair behind a board: {dark} against {lit}");
 }
 
-/// Mean and largest difference from it of the red of a leaning board in a soft light that comes along `toward`.
+/// The mean red of a tilted board in a soft light along `toward`, and the largest difference from the mean.
 fn evenness(toward: Vec3, curl: f32) -> Option<(f32, f32)> {
     let mut s = scene(&curtain(1, 0.1, -1.0));
     let mut board = common::grid(0.0, 0.5, 8, Vec3::splat(0.4));
@@ -205,10 +205,10 @@ fn a_flat_surface_keeps_no_light_from_itself() {
         let Some((mean, worst)) = evenness(toward, 0.0) else { return };
         println!("{toward}: mean {mean}, at most {worst} from it");
         assert!(mean > 60.0, "{toward}: lit, {mean}");
-        // Measured 0.6 to 1.0 of 118 to 156 on either backend: rounding and the ordered noise of the last step.
+        // Measured 0.6 to 1.0 of 118 to 156 on either backend: rounding and dithering.
         assert!(worst < 2.0, "{toward}: {worst} steps from even light");
     }
-    // The control: a board that is bent to a trough shadows itself.
+    // Control: a board bent into a trough shadows itself.
     let (_, worst) = evenness(Vec3::new(1.0, -0.5, -0.7), 1.5).expect("an adapter");
     assert!(worst > 20.0, "a trough: {worst}");
 }
@@ -226,7 +226,7 @@ fn self_shadow_darkens_the_inside() {
         s.lights = vec![Light { direction: Vec3::new(0.0, 0.0, 1.0), ..Light::default() }];
         s.draw(96, 96).map(|p| mean_color(&p.rgba)[0])
     };
-    // The light comes from behind: what the camera sees is the last layer.
+    // The light comes from behind: the camera sees the last layer.
     let Some(none) = mean(ShadowMethod::None, 0.15) else {
         return;
     };
@@ -288,7 +288,7 @@ fn odd_hair_in_every_combination_is_a_picture() {
                     s.shadow = ShadowSettings { method, extinction_scale, ..ShadowSettings::default() };
                     s.picture.transparency = transparency;
                     let Some(picture) = s.draw(24, 16) else { return };
-                    // Nothing that is no number reaches the background, which would be black.
+                    // NaN must not reach the background, which would become black.
                     assert!(sum(pixel(&picture, 1, 1)) > 60, "{name}, {method}, {transparency}");
                 }
             }
@@ -304,6 +304,6 @@ fn flip_tells_two_lights_apart() {
     let Some(a) = s.draw(96, 96) else { return };
     s.lights[0].direction = Vec3::new(0.9, 0.3, 0.2);
     let b = s.draw(96, 96).expect("an adapter");
-    // The negative control of every comparison of pictures here.
+    // The negative control of all comparisons of pictures here.
     assert!(flip(&a.rgba, &b.rgba, 96, 96).mean > 0.02);
 }

@@ -11,7 +11,7 @@ use lovelock_render::{
     ShadowMethod, ShadowSettings,
 };
 
-/// The renderer that all tests of a binary share: making one takes seconds where a software adapter draws.
+/// The renderer that all tests of a binary share: creating one takes seconds with a software adapter.
 fn renderer(backend: Backend) -> Option<&'static Mutex<Renderer>> {
     static RENDERERS: [OnceLock<Option<Mutex<Renderer>>>; 2] = [OnceLock::new(), OnceLock::new()];
     RENDERERS[usize::from(backend == Backend::Cpu)]
@@ -25,7 +25,7 @@ fn renderer(backend: Backend) -> Option<&'static Mutex<Renderer>> {
         .as_ref()
 }
 
-/// A scene of some strands before a camera that looks at the origin from one metre along +Z.
+/// A scene of strands in front of a camera that looks at the origin from one metre along +Z.
 pub struct Scene {
     pub style: Arc<Hairstyle>,
     pub strands: Strands,
@@ -38,17 +38,17 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Draws it by the backend of the test.
+    /// Renders it with the backend of the test.
     pub fn draw(&self, width: u32, height: u32) -> Option<Picture> {
         self.draw_by(crate::BACKEND, width, height)
     }
 
-    /// Draws it by `backend`.
+    /// Renders it with `backend`.
     pub fn draw_by(&self, backend: Backend, width: u32, height: u32) -> Option<Picture> {
         Some(self.attempt(backend, width, height)?.expect("a picture"))
     }
 
-    /// Draws it by the backend of the test, or says why not.
+    /// Renders it with the backend of the test, or returns the error.
     pub fn try_draw(&self, width: u32, height: u32) -> Option<Result<Picture, RenderError>> {
         self.attempt(crate::BACKEND, width, height)
     }
@@ -59,7 +59,7 @@ impl Scene {
         Some(renderer.picture(&self.input(), width, height, &mut picture).map(|_| picture))
     }
 
-    /// What the renderer takes.
+    /// The input of the renderer.
     pub fn input(&self) -> FrameInput<'_> {
         FrameInput {
             style: &self.style,
@@ -76,7 +76,7 @@ impl Scene {
     }
 }
 
-/// Strands given as points; the style says nothing more about them than that they are there.
+/// A hairstyle for strands given as points, with default properties.
 pub fn scene(lines: &[Vec<Vec3>]) -> Scene {
     let mut first_point = vec![0];
     let mut strands = Strands::default();
@@ -137,7 +137,7 @@ pub fn quad(z: f32, half: f32, color: Vec3) -> (Arc<Body>, Skin) {
     (Arc::new(Body { mesh, ..Body::default() }), skin)
 }
 
-/// As [`quad`], cut into `cells` by `cells` squares.
+/// As [`quad`], divided into `cells` by `cells` squares.
 pub fn grid(z: f32, half: f32, cells: u32, color: Vec3) -> (Arc<Body>, Skin) {
     let (mut positions, mut triangles) = (Vec::new(), Vec::new());
     for row in 0..=cells {
@@ -169,7 +169,7 @@ pub fn pixel(picture: &Picture, x: u32, y: u32) -> [u8; 4] {
     picture.rgba[i..i + 4].try_into().expect("four bytes")
 }
 
-/// A tuft that hangs and curls before the origin: `strands` of 40 segments, the same every time.
+/// A hanging, curled tuft in front of the origin: `strands` of 40 segments, always the same.
 pub fn tuft(strands: u32) -> Vec<Vec<Vec3>> {
     (0..strands)
         .map(|i| {
@@ -186,7 +186,7 @@ pub fn tuft(strands: u32) -> Vec<Vec<Vec3>> {
         .collect()
 }
 
-/// One strand that hangs before the origin and bends.
+/// One hanging, bent strand in front of the origin.
 pub fn one_strand() -> Vec<Vec<Vec3>> {
     let at = |j: u32| {
         let t = j as f32 / 20.0;
@@ -195,24 +195,24 @@ pub fn one_strand() -> Vec<Vec<Vec3>> {
     vec![(0..=20).map(at).collect()]
 }
 
-/// A board of strands that hang side by side and behind each other: `across` by `deep` of them.
+/// A board of hanging strands: `across` side by side times `deep` behind each other.
 pub fn slab(across: u32, deep: u32) -> Vec<Vec<Vec3>> {
     (0..across * deep)
         .map(|i| {
             let (x, z) = ((i % across) as f32 / across as f32 - 0.5, (i / across) as f32 / deep as f32 - 0.5);
-            // Between the rows of the ones before.
+            // Between the rows of the layer in front.
             let x = x + 0.618_034 * (i / across) as f32 / across as f32 % (1.0 / across as f32);
             (0..=8).map(|j| Vec3::new(0.2 * x, 0.1 - 0.025 * j as f32, 0.08 * z)).collect()
         })
         .collect()
 }
 
-/// A tuft before a wall on which its shadow falls, under the lights of the default scene.
+/// A tuft in front of a wall that receives its shadow, with the lights of the default scene.
 pub fn tuft_scene(strands: u32) -> Scene {
     before_wall(&tuft(strands))
 }
 
-/// Strands before a wall on which their shadow falls, under the lights of the default scene.
+/// Strands in front of a wall that receives their shadow, with the lights of the default scene.
 pub fn before_wall(lines: &[Vec<Vec3>]) -> Scene {
     let mut s = scene(lines);
     s.body = Some(grid(-0.08, 0.3, 48, Vec3::new(0.35, 0.25, 0.2)));
