@@ -80,7 +80,7 @@ fn slice(ray: &RayStructure) -> Option<f32> {
     let depths = slices.map(|mark| mark.end - mark.start);
     let (low, high) = depths.fold((f32::INFINITY, 0.0_f32), |(low, high), d| (low.min(d), high.max(d)));
     // Depths are rounded differently from slice to slice.
-    (low > 0.0 && high < 1.02 * low).then_some(0.5 * (low + high))
+    (low > 0.0 && low.is_finite() && high < 1.02 * low).then_some(0.5 * (low + high))
 }
 
 /// The middle of a sample, as a fraction of the slab without its ends, where strands begin and end.
