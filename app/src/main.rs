@@ -1,4 +1,4 @@
-//! Lovelock: hair styled, simulated, shadowed and judged live.
+//! Lovelock: interactive hair.
 
 mod cli;
 mod window;
@@ -7,7 +7,7 @@ use std::io::IsTerminal;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    // What graphics drivers say while adapters are tried is no error of this program.
+    // Messages of graphics drivers while adapters are probed are not errors of this program.
     let quiet = "error,wgpu=off,wgpu_core=off,wgpu_hal=off,naga=off";
     tracing_subscriber::fmt()
         .with_env_filter(

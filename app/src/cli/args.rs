@@ -1,4 +1,4 @@
-//! What the command line takes.
+//! The arguments of the command line.
 
 use std::ops::Range;
 use std::path::PathBuf;
@@ -11,7 +11,7 @@ use lovelock_project::project::RecordingSection;
 use lovelock_record::{FilmQuality, SequenceFormat};
 use lovelock_render::{Backend, ShadowMethod, Transparency};
 
-/// Hair styled, simulated, shadowed and judged live. Opens the window where no command is given.
+/// Styles, simulates, shadows and compares hair interactively. Opens the window if no command is given.
 #[derive(Debug, Parser)]
 #[command(name = "lovelock", version, subcommand_precedence_over_arg = true)]
 pub(crate) struct Arguments {
@@ -20,13 +20,13 @@ pub(crate) struct Arguments {
     /// Print one JSON object on standard output and nothing else there.
     #[arg(long, global = true)]
     pub(crate) json: bool,
-    /// Save a picture of the window as a PNG file and leave.
+    /// Save a screenshot of the window as a PNG file and exit.
     #[arg(long, value_name = "FILE")]
     pub(crate) screenshot: Option<PathBuf>,
-    /// Open the window with the project's panes beside each other, as key C does.
+    /// Open the window with the comparison of the project's panes, like key C.
     #[arg(long)]
     pub(crate) panes: bool,
-    /// Seconds between the first hair on the screen and that picture.
+    /// Seconds between the first hair on the screen and the screenshot.
     #[arg(long, value_name = "SECONDS", default_value_t = 6.0, requires = "screenshot")]
     pub(crate) after: f64,
     #[command(subcommand)]
@@ -35,45 +35,45 @@ pub(crate) struct Arguments {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Task {
-    /// Simulates and draws the dance into a film or a folder of pictures.
+    /// Simulates and renders the dance to a film or a folder of images.
     Record(Record),
-    /// Draws one instant by several shadow methods, and writes their pictures, errors and costs as a page and tables.
+    /// Renders one instant by several shadow methods, and writes images, errors and costs as a page and tables.
     Compare(Compare),
-    /// Measures frames of known scenes, stage by stage, on each backend, beside what was published.
+    /// Measures frames of known scenes, stage by stage, on each backend, beside published figures.
     Bench(Bench),
-    /// Says what a hair, character, motion, project or take file holds.
+    /// Describes the contents of a hair, character, motion, project or take file.
     Info(Info),
-    /// Writes hair in another format.
+    /// Converts a hair file to another format.
     Convert(Convert),
-    /// Writes a job that draws the frames on many machines, for any scheduler of the Open Job Description.
+    /// Writes a job that renders the frames on many machines, for any scheduler that supports Open Job Description.
     Farm(Farm),
-    /// Puts the parts that a farm has drawn together into one sequence of pictures.
+    /// Joins the parts that a farm has rendered into one image sequence.
     Assemble(Assemble),
 }
 
-/// What is simulated.
+/// The project, with changes.
 #[derive(Debug, Args)]
 pub(crate) struct SourceArguments {
-    /// The project, or a take; the default project where none is given.
+    /// Project or take; the default project if none is given.
     pub(crate) project: Option<PathBuf>,
-    /// A shipped hairstyle instead of the project's: smooth, curly, long, ponytail or bun.
+    /// Shipped hairstyle to use instead of the project's: smooth, curly, long, ponytail or bun.
     #[arg(long, value_name = "ID", conflicts_with = "hair")]
     pub(crate) preset: Option<String>,
-    /// A hair file instead of the project's hairstyle.
+    /// Hair file to use instead of the project's hairstyle.
     #[arg(long, value_name = "FILE")]
     pub(crate) hair: Option<PathBuf>,
-    /// A character file instead of the project's body.
+    /// Character file to use instead of the project's body.
     #[arg(long, value_name = "FILE")]
     pub(crate) body: Option<PathBuf>,
-    /// A motion file (BVH) instead of the project's motion.
+    /// Motion file (BVH) to use instead of the project's motion.
     #[arg(long, value_name = "FILE")]
     pub(crate) motion: Option<PathBuf>,
 }
 
-/// Pictures of what size at what rate.
+/// Size and rate of images.
 #[derive(Debug, Args)]
 pub(crate) struct PictureArguments {
-    /// Frames a second.
+    /// Frames per second.
     #[arg(long, value_parser = rate)]
     pub(crate) fps: Option<f64>,
     /// Size in pixels, such as 1280x720.
@@ -81,10 +81,10 @@ pub(crate) struct PictureArguments {
     pub(crate) size: Option<(u32, u32)>,
 }
 
-/// Which frames of what size.
+/// Frames, size and rate.
 #[derive(Debug, Args)]
 pub(crate) struct FilmArguments {
-    /// The frames, half open, such as 0..240; the whole clip where none are given.
+    /// Frames, half open, such as 0..240; the whole clip if none are given.
     #[arg(long, value_name = "A..B", value_parser = frames)]
     pub(crate) frames: Option<Range<u64>>,
     #[command(flatten)]
@@ -96,9 +96,9 @@ pub(crate) struct FilmArguments {
 pub(crate) struct Record {
     #[command(flatten)]
     pub(crate) source: SourceArguments,
-    /// Where it goes: a name ending in `.mp4` is a film, in `.apng` a small animated preview, in `.take` the simulation
-    /// alone, in `.usdc`, `.usd`, `.usda` or `.glb` the hair as curves that move with the body, any other a folder of PNG or
-    /// EXR files with a manifest.
+    /// Output. A name that ends in `.mp4` is a film, in `.apng` a small animated preview, in `.take` the simulation alone, in `.usdc`,
+    /// `.usd`, `.usda` or `.glb` the hair as animated curves with the body; any other name is a folder of PNG or EXR files with a
+    /// manifest.
     #[arg(short, long, value_name = "OUT")]
     pub(crate) out: PathBuf,
     #[command(flatten)]
@@ -106,50 +106,48 @@ pub(crate) struct Record {
     /// Shadow method.
     #[arg(long, value_name = "ID")]
     pub(crate) shadow: Option<ShadowMethod>,
-    /// How overlapping strands are put together.
+    /// How overlapping strands are blended.
     #[arg(long, value_name = "ID")]
     pub(crate) transparency: Option<Transparency>,
-    /// What draws: auto (the graphics card where there is a real one), gpu (by wgpu, software or not) or cpu (the
-    /// processor, without any driver); the project's choice where none is given.
+    /// Backend: auto (the graphics card if there is a real one), gpu (any wgpu adapter, also a software one) or cpu (without any
+    /// driver); the project's choice if none is given.
     #[arg(long, value_name = "BACKEND")]
     pub(crate) backend: Option<Backend>,
-    /// How finely a film is coded: draft, good, high or best; the project's choice where none is given.
+    /// Quality of a film: draft, good, high or best; the project's choice if none is given.
     #[arg(long, value_name = "ID", value_parser = quality)]
     pub(crate) quality: Option<FilmQuality>,
-    /// Write the shadow method, the transparency and the frame's number into each picture.
+    /// Write the shadow method, the transparency and the frame number into each image.
     #[arg(long)]
     pub(crate) label: bool,
-    /// Let the hair at the end of the film go over into the hair at its start: a film of one round of a looping dance then
-    /// goes round without a jump.
+    /// Blend the end of the loop into its start, so that a film of one cycle of a looping dance repeats without a jump.
     #[arg(long = "loop")]
     pub(crate) seamless: bool,
-    /// A take to be shown beside the project, at the same time; up to five.
+    /// Take to show beside the project at the same time; may be given up to five times.
     #[arg(long, value_name = "TAKE")]
     pub(crate) beside: Vec<PathBuf>,
-    /// What the files of a folder are: png (as the screen shows it), or exr (linear half floats with depth and the light that
-    /// reaches the hair); the project's choice where none is given.
+    /// File format in a folder: png (as the screen shows it) or exr (linear half floats with depth and the light that reaches the
+    /// hair); the project's choice if none is given.
     #[arg(long, value_name = "ID", value_parser = format)]
     pub(crate) format: Option<SequenceFormat>,
-    /// Leave background and ground out: alpha says what hair and body cover. Not in a film (.mp4), which has no alpha.
+    /// Leave out background and ground; alpha is the coverage of hair and body. Not for a film (.mp4), which has no alpha.
     #[arg(long)]
     pub(crate) transparent: bool,
-    /// Blur what moves: each frame is the mean of N pictures while the shutter is open, 1 (none) to 64.
+    /// Samples per frame for motion blur while the shutter is open, 1 (no blur) to 64.
     #[arg(long, value_name = "N",
         value_parser = clap::value_parser!(u32).range(1..=i64::from(RecordingSection::MOST_SUBFRAMES)))]
     pub(crate) motion_blur: Option<u32>,
-    /// How long the shutter is open, degrees of 360 a frame, centred on the frame; 180 where the project says nothing else.
+    /// Shutter angle for motion blur in degrees, centred on the frame; 360 is the whole frame.
     #[arg(long, value_name = "DEGREES", value_parser = degrees)]
     pub(crate) shutter: Option<f32>,
-    /// Go on with the sequence in the folder: frames of it that are whole are kept, the rest is drawn. Refused where the
-    /// project, its files, the size or another setting has changed since.
+    /// Continue the sequence in the folder: complete frames are kept and the rest is rendered. Refused if the project, its files, the
+    /// size or another setting has changed since.
     #[arg(long)]
     pub(crate) resume: bool,
-    /// Count the frames of a take on the dance that it was recorded from: frame 40 is that of the dance, also where the take
-    /// begins there.
+    /// Count the frames of a take on the timeline of the dance from which it was recorded: frame 40 is that of the dance, also if the
+    /// take begins there.
     #[arg(long, conflicts_with = "seamless")]
     pub(crate) dance_time: bool,
-    /// Which curves a .usdc, .usda or .glb file holds: guides or strands; strands in USD and guides in glTF where none
-    /// is given.
+    /// Curves in a .usdc, .usda or .glb file: guides or strands; strands in USD and guides in glTF if none is given.
     #[arg(long, value_name = "ID")]
     pub(crate) curves: Option<lovelock_jobs::record::CurveSource>,
     /// Leave the body out of a .usdc, .usda or .glb file.
@@ -161,31 +159,30 @@ pub(crate) struct Record {
 pub(crate) struct Compare {
     #[command(flatten)]
     pub(crate) source: SourceArguments,
-    /// The folder for the report: report.html, report.csv, report.json and pictures.
+    /// Folder for the report: report.html, report.csv, report.json and images.
     #[arg(short, long, value_name = "DIR")]
     pub(crate) out: PathBuf,
-    /// The frame to look at; the project's first one where none is given.
+    /// Frame to compare; the project's first frame if none is given.
     #[arg(long, value_name = "N", conflicts_with = "frames")]
     pub(crate) frame: Option<u64>,
-    /// Frames to look at, half open, such as 30..40: pictures, errors and times of the first one, swim, pop and flicker of all.
+    /// Frames to compare, half open, such as 30..40: images, errors and times of the first one; swimming, popping and flicker of all.
     #[arg(long, value_name = "A..B", value_parser = frames)]
     pub(crate) frames: Option<Range<u64>>,
     #[command(flatten)]
     pub(crate) picture: PictureArguments,
-    /// Shadow methods, divided by commas, or `all`.
+    /// Shadow methods, separated by commas, or `all`.
     #[arg(long, value_name = "ID,ID|all", default_value = "all", value_parser = methods)]
     pub(crate) methods: Methods,
-    /// How overlapping strands are put together, divided by commas; the project's choice where none is given.
+    /// How overlapping strands are blended, separated by commas; the project's choice if none is given.
     #[arg(long, value_name = "ID,ID", value_delimiter = ',')]
     pub(crate) transparency: Vec<Transparency>,
-    /// What draws: auto (the graphics card where there is a real one), gpu, cpu, or both; the project's choice where none
-    /// is given.
+    /// Backend: auto (the graphics card if there is a real one), gpu, cpu, or both; the project's choice if none is given.
     #[arg(long, value_name = "BACKEND", value_parser = backends)]
     pub(crate) backend: Option<Backends>,
-    /// A setting that methods run through, such as resolution=64,128,256; may be given several times.
+    /// Setting of shadow methods to vary, such as resolution=64,128,256; may be given several times.
     #[arg(long, value_name = "SETTING=V,V")]
     pub(crate) sweep: Vec<lovelock_study::batch::Sweep>,
-    /// A pixel whose hair is probed; may be given several times. Some are chosen where none is given.
+    /// Pixel whose hair is probed; may be given several times. Some are chosen if none is given.
     #[arg(long, value_name = "X,Y", value_parser = pixel)]
     pub(crate) probe: Vec<[u32; 2]>,
     /// Number of draws per time measurement, 1 to 1000. Times of fewer than 30 draws are rough.
@@ -194,35 +191,35 @@ pub(crate) struct Compare {
     pub(crate) draws: u32,
 }
 
-/// Shadow methods; all where there are none.
+/// Shadow methods; all of them if empty.
 #[derive(Clone, Debug)]
 pub(crate) struct Methods(pub(crate) Vec<ShadowMethod>);
 
-/// What draws, one after the other.
+/// Backends, one after the other.
 #[derive(Clone, Debug)]
 pub(crate) struct Backends(pub(crate) Vec<Backend>);
 
 #[derive(Debug, Args)]
 pub(crate) struct Bench {
-    /// The scenes: smooth, curly, smooth-500k, smooth-1m, smooth-2m, woman-300k, dog-2m, and, simulated by each integrator and not
-    /// drawn, simulate-402 and simulate-20k; all of them where none is named.
+    /// Scenes: smooth, curly, smooth-500k, smooth-1m, smooth-2m, woman-300k, dog-2m, and simulate-402 and simulate-20k, which are
+    /// simulated by each integrator and not rendered; all of them if none is named.
     pub(crate) scenes: Vec<lovelock_jobs::bench::BenchScene>,
-    /// A file for the numbers, comma-separated.
+    /// File for the numbers as comma-separated values.
     #[arg(short, long, value_name = "FILE.csv")]
     pub(crate) out: Option<PathBuf>,
-    /// Frames to measure, 1 to 1000; steps of 1/60 s where nothing is drawn.
+    /// Frames to measure, 1 to 1000; steps of 1/60 s in scenes that are not rendered.
     #[arg(long, default_value_t = 15, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) frames: u32,
-    /// Size in pixels; the scene's own where none is given: 1280x720, and 800x600 for woman-300k and dog-2m.
+    /// Size in pixels; that of the scene if none is given: 1280x720, and 800x600 for woman-300k and dog-2m.
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub(crate) size: Option<(u32, u32)>,
-    /// Shadow method; the scene's own where none is given.
+    /// Shadow method; that of the scene if none is given.
     #[arg(long, value_name = "ID")]
     pub(crate) shadow: Option<ShadowMethod>,
-    /// How overlapping strands are put together; the scene's own where none is given.
+    /// How overlapping strands are blended; the choice of the scene if none is given.
     #[arg(long, value_name = "ID")]
     pub(crate) transparency: Option<Transparency>,
-    /// The backend to measure; both where none is given.
+    /// Backend to measure; both if none is given.
     #[arg(long, value_name = "BACKEND")]
     pub(crate) backend: Option<Backend>,
 }
@@ -251,31 +248,31 @@ pub(crate) struct Convert {
 pub(crate) struct Farm {
     #[command(flatten)]
     pub(crate) source: SourceArguments,
-    /// The folder for the job, new or empty: template.json and the project with its files.
+    /// Folder for the job, new or empty: template.json and the project with its files.
     #[arg(short, long, value_name = "DIR")]
     pub(crate) out: PathBuf,
     #[command(flatten)]
     pub(crate) film: FilmArguments,
-    /// Frames that one task draws; 10, or more where that would be over 1024 tasks.
+    /// Frames per task; 10, or more if that would make more than 1024 tasks.
     #[arg(long, value_name = "N")]
     pub(crate) chunk: Option<u64>,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct Assemble {
-    /// The folder whose folders hold the parts.
+    /// Folder whose subfolders contain the parts.
     pub(crate) parts: PathBuf,
-    /// The folder for the whole sequence.
+    /// Folder for the joined sequence.
     #[arg(short, long, value_name = "DIR")]
     pub(crate) out: PathBuf,
-    /// The frames that are to be there, half open.
+    /// Frames of the whole sequence, half open.
     #[arg(long, value_name = "A..B", value_parser = frames)]
     pub(crate) frames: Range<u64>,
 }
 
 /// `A..B`, half open and not empty.
 fn frames(text: &str) -> Result<Range<u64>, String> {
-    let wanted = || format!("`{text}` is no range of frames: expected A..B with A below B, such as 0..240");
+    let wanted = || format!("found `{text}`; must be A..B with A below B, such as 0..240");
     let (start, end) = text.split_once("..").ok_or_else(wanted)?;
     let number = |text: &str| u64::from_str(text.trim()).map_err(|_| wanted());
     let range = number(start)?..number(end)?;
@@ -284,13 +281,13 @@ fn frames(text: &str) -> Result<Range<u64>, String> {
 
 /// `WxH`, pixels.
 fn size(text: &str) -> Result<(u32, u32), String> {
-    let wanted = || format!("`{text}` is no size: expected WIDTHxHEIGHT in pixels, such as 1280x720");
+    let wanted = || format!("found `{text}`; must be WIDTHxHEIGHT in pixels, such as 1280x720");
     let (width, height) = text.split_once(['x', 'X', '×']).ok_or_else(wanted)?;
     let number = |text: &str| u32::from_str(text.trim()).ok().filter(|n| *n > 0).ok_or_else(wanted);
     Ok((number(width)?, number(height)?))
 }
 
-/// Ids divided by commas, or `all`.
+/// Ids separated by commas, or `all`.
 fn methods(text: &str) -> Result<Methods, String> {
     if text.trim() == "all" {
         return Ok(Methods(Vec::new()));
@@ -309,33 +306,33 @@ fn backends(text: &str) -> Result<Backends, String> {
 
 /// `X,Y`, pixels from the upper left corner.
 fn pixel(text: &str) -> Result<[u32; 2], String> {
-    let wanted = || format!("`{text}` is no pixel: expected X,Y from the upper left corner, such as 640,200");
+    let wanted = || format!("found `{text}`; must be X,Y from the upper left corner, such as 640,200");
     let (x, y) = text.split_once(',').ok_or_else(wanted)?;
     let number = |text: &str| u32::from_str(text.trim()).map_err(|_| wanted());
     Ok([number(x)?, number(y)?])
 }
 
 fn unit(text: &str) -> Result<Unit, String> {
-    Unit::from_id(text).ok_or_else(|| format!("unknown unit `{text}`: expected auto, m, cm, mm or in"))
+    Unit::from_id(text).ok_or_else(|| format!("found `{text}`; must be auto, m, cm, mm or in"))
 }
 
 fn up_axis(text: &str) -> Result<UpAxis, String> {
-    UpAxis::from_id(text).ok_or_else(|| format!("unknown axis `{text}`: expected auto, y or z"))
+    UpAxis::from_id(text).ok_or_else(|| format!("found `{text}`; must be auto, y or z"))
 }
 
-/// A quality of a film, by its id.
+/// The quality of a film with that id.
 fn quality(text: &str) -> Result<FilmQuality, String> {
     FilmQuality::ALL.into_iter().find(|quality| quality.id() == text).ok_or_else(|| {
         let known: Vec<_> = FilmQuality::ALL.iter().map(|quality| quality.id()).collect();
-        format!("expected one of {}", known.join(", "))
+        format!("must be one of {}", known.join(", "))
     })
 }
 
-/// What the files of a folder are, by id.
+/// The file format of that id.
 fn format(text: &str) -> Result<SequenceFormat, String> {
     SequenceFormat::ALL.into_iter().find(|format| format.id() == text).ok_or_else(|| {
         let known: Vec<_> = SequenceFormat::ALL.iter().map(|format| format.id()).collect();
-        format!("expected one of {}", known.join(", "))
+        format!("must be one of {}", known.join(", "))
     })
 }
 
@@ -343,14 +340,14 @@ fn degrees(text: &str) -> Result<f32, String> {
     f32::from_str(text)
         .ok()
         .filter(|degrees| (0.0..=360.0).contains(degrees))
-        .ok_or_else(|| format!("`{text}` is no angle of a shutter: expected degrees from 0 to 360"))
+        .ok_or_else(|| format!("found `{text}`; must be 0 to 360 degrees"))
 }
 
 fn rate(text: &str) -> Result<f64, String> {
     f64::from_str(text)
         .ok()
         .filter(|fps| (1.0..=240.0).contains(fps))
-        .ok_or_else(|| format!("`{text}` is no rate: expected frames a second from 1 to 240"))
+        .ok_or_else(|| format!("found `{text}`; must be 1 to 240 frames per second"))
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! How far a long piece of work is.
+//! Progress of long work.
 
 use std::io::IsTerminal;
 
@@ -14,7 +14,7 @@ pub(super) struct Bar {
     drawn: Option<ProgressBar>,
     said: u64,
     pace: Pace,
-    /// The part of a comparison that was told last.
+    /// The part of a comparison that was printed last.
     part: String,
 }
 
@@ -49,7 +49,7 @@ impl Bar {
             }
             Progress::Finishing => ("finishing", 1, 1),
         };
-        // Told from what was done at the same work: frames that are there already take no time.
+        // Estimated only from rendered frames, because frames that are kept take no time.
         let left = self.pace.left_secs(what, done, total);
         let left = left.map_or_else(String::new, |secs| format!(", {} left", Pace::in_words(secs)));
         let left = format!("{}{left}", self.steps(progress));
@@ -60,7 +60,7 @@ impl Bar {
             bar.set_message(what.to_owned());
             return;
         }
-        // Some twenty lines for a whole recording, however long.
+        // About twenty lines per recording, whatever its length.
         let tenth = (20 * done).checked_div(total).unwrap_or(0);
         if matches!(progress, Progress::Frame { .. }) && tenth != self.said {
             self.said = tenth;

@@ -9,7 +9,7 @@ use lovelock_project::files::write_whole;
 use super::args::Bench;
 use super::output::Output;
 
-/// Measures, and tells the numbers.
+/// Measures the scenes and prints the numbers.
 pub(crate) fn run(task: &Bench, output: Output) -> Result<(), ProjectError> {
     let mut request = BenchRequest {
         frames: task.frames,
@@ -24,11 +24,11 @@ pub(crate) fn run(task: &Bench, output: Output) -> Result<(), ProjectError> {
     if let Some(backend) = task.backend {
         request.backends = vec![backend];
     }
-    // Better told now than after minutes of measuring.
+    // Checked now, before minutes of measuring.
     if let Some(out) = &task.out {
         let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty());
         if out.is_dir() || folder.is_some_and(|folder| !folder.is_dir()) {
-            let message = format!("{}: expected a file in a folder that is there", out.display());
+            let message = format!("{}: must be a file in an existing folder", out.display());
             return Err(ProjectError::input(out, message));
         }
     }

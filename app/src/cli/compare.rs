@@ -35,18 +35,18 @@ pub(crate) fn run(task: &Compare, output: Output) -> Result<(), ProjectError> {
     output.result(&report, || summary(&report, &task.out.join("report.html").display().to_string()))
 }
 
-/// The range of one frame alone.
+/// The range of one frame.
 ///
 /// # Errors
-/// The last number that there is: no range can end behind it, and no clip is so long.
+/// The largest integer: no range can end after it.
 fn one_frame(frame: u64) -> Result<Range<u64>, ProjectError> {
     let end = frame.checked_add(1);
     let end = end
-        .ok_or_else(|| ProjectError::option(format!("frame {frame} is outside the clip: none is so long")))?;
+        .ok_or_else(|| ProjectError::option(format!("--frame: found {frame}; must be inside the clip")))?;
     Ok(frame..end)
 }
 
-/// The page's name, what to know before its numbers are believed, and the most important of them: a table for each backend.
+/// The path of the page, warnings about its numbers, and a table of the most important numbers per backend.
 fn summary(report: &CompareReport, page: &str) -> String {
     let mut text = format!("{page}\n");
     let mut line = |line: std::fmt::Arguments| {
@@ -61,7 +61,7 @@ fn summary(report: &CompareReport, page: &str) -> String {
         ));
     }
     if let Some(change) = reference.doubt_at_points() {
-        line(format_args!("errors at points below {change:.4} may be the truth's own"));
+        line(format_args!("errors at points below {change:.4} may come from the reference"));
     }
     for sentence in reference.refused.iter().chain(&report.notes) {
         line(format_args!("{sentence}"));
@@ -87,7 +87,7 @@ fn summary(report: &CompareReport, page: &str) -> String {
     text
 }
 
-/// Errors, times and memory of a method, or why there are none.
+/// Errors, times and memory of a method, or the reason why there are none.
 fn numbers(method: &MethodReport) -> String {
     if let Some(refused) = &method.refused {
         return refused.clone();

@@ -6,7 +6,7 @@ use lovelock_project::error::ProjectError;
 use super::args::Convert;
 use super::output::Output;
 
-/// Writes hair in another format.
+/// Converts a hair file to another format.
 pub(crate) fn run(task: &Convert, output: Output) -> Result<(), ProjectError> {
     let report = convert(&task.input, &task.out, task.unit, task.up)?;
     output.result(&report, || {

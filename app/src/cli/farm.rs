@@ -7,7 +7,7 @@ use super::args::{Assemble, Farm};
 use super::output::Output;
 use super::source::Source;
 
-/// Writes the folder of a job for many machines.
+/// Writes the folder of a job.
 pub(crate) fn run(task: &Farm, output: Output) -> Result<(), ProjectError> {
     let mut scene = Source::open(&task.source)?;
     let request = FarmRequest {
@@ -22,7 +22,7 @@ pub(crate) fn run(task: &Farm, output: Output) -> Result<(), ProjectError> {
     output.result(&report, || summary(&report))
 }
 
-/// Puts drawn parts together.
+/// Joins rendered parts.
 pub(crate) fn run_assemble(task: &Assemble, output: Output) -> Result<(), ProjectError> {
     let report = assemble(&task.parts, task.frames.clone(), &task.out)?;
     let json = serde_json::json!({

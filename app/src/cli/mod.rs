@@ -18,7 +18,7 @@ use clap::Parser;
 pub(crate) use args::{Arguments, Task};
 use output::Output;
 
-/// Runs what the command line asks for; opens the window where it asks for nothing.
+/// Runs the command, or opens the window if there is none.
 pub(crate) fn run() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
@@ -35,7 +35,7 @@ pub(crate) fn run() -> ExitCode {
     let output = Output { json: arguments.json };
     if let (Some(project), Some(_)) = (&arguments.project, &arguments.task) {
         return output
-            .refuse(&format!("{}: a file before the command; expected it after", project.display()));
+            .refuse(&format!("{}: found before the command; must be after it", project.display()));
     }
     let result = match arguments.task {
         None => {
@@ -56,7 +56,7 @@ pub(crate) fn run() -> ExitCode {
     }
 }
 
-/// What clap says in several lines, in one.
+/// The message of clap in one line.
 fn one_line(error: &clap::Error) -> String {
     let text = error.to_string();
     let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());

@@ -1,11 +1,11 @@
-//! What goes to standard output and standard error.
+//! Results on standard output, errors on standard error.
 
 use std::process::ExitCode;
 
 use lovelock_project::error::ProjectError;
 use serde::Serialize;
 
-/// How results and errors are told.
+/// How results and errors are printed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Output {
     /// One JSON object on standard output, and nothing else there.
@@ -13,7 +13,7 @@ pub(crate) struct Output {
 }
 
 impl Output {
-    /// Prints a result: as JSON, or as `text` says.
+    /// Prints a result, as JSON or as `text`.
     pub(crate) fn result<T: Serialize>(
         self,
         value: &T,
@@ -22,12 +22,12 @@ impl Output {
         use std::io::Write;
         let text =
             if self.json { serde_json::to_string_pretty(value).map_err(ProjectError::work)? } else { text() };
-        // A reader that closes the pipe early has seen what it wanted.
+        // A reader may close the pipe early.
         let _ = writeln!(std::io::stdout(), "{}", text.trim_end());
         Ok(())
     }
 
-    /// Tells an error, and the exit status that belongs to it.
+    /// Prints an error and returns its exit status.
     pub(crate) fn fail(self, error: &ProjectError) -> ExitCode {
         eprintln!("lovelock: {error}");
         if self.json {
@@ -36,7 +36,7 @@ impl Output {
         ExitCode::from(error.exit_code())
     }
 
-    /// Tells that the command line is wrong.
+    /// Prints an error in the command line and returns its exit status.
     pub(crate) fn refuse(self, message: &str) -> ExitCode {
         self.fail(&ProjectError::option(message))
     }

@@ -12,7 +12,7 @@ use super::args::Record;
 use super::output::Output;
 use super::source::Source;
 
-/// Simulates and draws a project's dance.
+/// Simulates and renders the dance of a project.
 pub(crate) fn run(task: &Record, output: Output) -> Result<(), ProjectError> {
     let mut scene = Source::open(&task.source)?;
     let panes = (!task.beside.is_empty()).then(|| scene.beside(&task.beside)).transpose()?;
@@ -47,7 +47,7 @@ pub(crate) fn run(task: &Record, output: Output) -> Result<(), ProjectError> {
         if given {
             let out = request.out.display();
             return Err(ProjectError::option(format!(
-                "{option}: {out} holds no curves; wanted a name ending in .usdc, .usd, .usda or .glb"
+                "{option}: found the output {out}; must end in .usdc, .usd, .usda or .glb"
             )));
         }
     }
@@ -89,7 +89,7 @@ fn summary(report: &RecordReport) -> String {
     ) + &advice(&report.health)
 }
 
-/// What to change, a line for each gauge that is over its limits.
+/// Advice, a line per gauge that is over its limits.
 fn advice(health: &[Gauge]) -> String {
     let over = health.iter().filter(|gauge| gauge.level != HealthLevel::Good);
     let line = |gauge: &Gauge| format!("\n{}, {}: {}", gauge.kind.label(), gauge.in_words(), gauge.advice);

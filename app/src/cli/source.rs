@@ -1,4 +1,4 @@
-//! What is simulated: a project, with what the command line changes of it.
+//! The project of a command, with the changes of the command line.
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -16,18 +16,18 @@ use lovelock_session::take::project_of_take;
 use super::args::SourceArguments;
 use super::bar::Bar;
 
-/// A project as the command line wants it.
+/// A project with the changes of the command line.
 pub(super) struct Source {
     pub(super) project: Project,
     pub(super) access: Access,
-    /// What the command line names, as people say it.
+    /// A name for people, made of what the command line names.
     pub(super) name: String,
     /// Files that are named on the command line.
     named: Vec<(Place, PathBuf)>,
 }
 
 impl Source {
-    /// Reads the project and puts into it what is named beside it.
+    /// Reads the project and applies the other options.
     pub(super) fn open(task: &SourceArguments) -> Result<Self, ProjectError> {
         let mut access = Access::new();
         let (mut project, problems) = match &task.project {
@@ -59,9 +59,9 @@ impl Source {
         let mut named = Vec::new();
         for (place, path) in places {
             let Some(path) = path else { continue };
-            // A file that is named here is wanted: without it there is nothing to do.
+            // A file that is named on the command line is required.
             if !path.is_file() {
-                return Err(ProjectError::input(path, format!("{}: there is no such file", path.display())));
+                return Err(ProjectError::input(path, format!("{}: not found; must be a file", path.display())));
             }
             access.pick(path);
             names.push(file_name(path));
@@ -79,12 +79,12 @@ impl Source {
         Ok(Self { project, access, name: names.join(", "), named })
     }
 
-    /// Puts takes beside the project, a pane each; returns how the panes are put together.
+    /// Adds a pane per take beside the project; returns the layout of the panes.
     pub(super) fn beside(&mut self, takes: &[PathBuf]) -> Result<Sheet, ProjectError> {
         let most = CompareSection::MOST_PANES - 1;
         if takes.len() > most {
             let found = takes.len();
-            return Err(ProjectError::option(format!("--beside: {found} takes; at most {most} have room")));
+            return Err(ProjectError::option(format!("--beside: found {found} takes; must be at most {most}")));
         }
         let own = Contender::of(&self.project);
         let mut panes = vec![own.clone()];
@@ -107,7 +107,7 @@ impl Source {
         Ok(crate::window::sheet_of_panes())
     }
 
-    /// Does the work with its progress shown.
+    /// Runs the work and shows its progress.
     pub(super) fn watched<T>(
         &self,
         work: impl FnOnce(&Project, &mut dyn FnMut(Progress) -> ControlFlow<()>) -> Result<T, ProjectError>,
@@ -116,7 +116,7 @@ impl Source {
         let mut refused = None;
         let result = work(&self.project, &mut |progress| {
             if let Progress::Loaded { problems } = &progress {
-                // A file that the project names is replaced, and said so; one that is named here is not.
+                // A missing file of the project is replaced with a warning. A missing file of the command line is an error.
                 for problem in problems.iter().filter(|problem| problem.is_failure()) {
                     if let Some((_, path)) = self.named.iter().find(|(place, _)| *place == problem.place) {
                         refused = Some(ProjectError::input(path, problem.cause.clone()));
@@ -132,7 +132,7 @@ impl Source {
     }
 }
 
-/// A take plays as it was recorded: files that are named beside it are allowed to be read, and have to be its own.
+/// Grants access to the files that are named beside a take, which plays as recorded, so they must be its own.
 fn allow(
     task: &SourceArguments,
     project: &Project,
@@ -142,7 +142,7 @@ fn allow(
     let refused = |option: &str| {
         let take = take.display();
         ProjectError::option(format!(
-            "{option}: {take} plays as it was recorded, and this is not what it was recorded with; leave the option out"
+            "{option}: {take} was recorded with another one and plays as recorded; leave the option out"
         ))
     };
     if task.preset.is_some() {
@@ -167,13 +167,13 @@ fn preset(id: &str) -> Result<Preset, ProjectError> {
     Preset::from_id(id).ok_or_else(|| {
         let known: Vec<_> = Preset::ALL.iter().map(|preset| preset.id()).collect();
         ProjectError::option(format!(
-            "--preset: unknown hairstyle `{id}`: expected one of {}",
+            "--preset: found `{id}`; must be one of {}",
             known.join(", ")
         ))
     })
 }
 
-/// Tells what the project's text had wrong. Files that are missing are told by the loader, with what takes their place.
+/// Prints the problems in the project's text. The loader reports missing files and their replacements.
 fn tell(problems: &[Problem]) {
     for problem in problems.iter().filter(|problem| !problem.is_failure()) {
         eprintln!("lovelock: {}", problem.message);

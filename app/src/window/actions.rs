@@ -1,4 +1,4 @@
-//! What commands do.
+//! The effects of commands.
 
 use std::path::{Path, PathBuf};
 
@@ -25,7 +25,7 @@ pub(super) struct Opened {
     pub(super) problems: Vec<Problem>,
 }
 
-/// Opens what the command line names.
+/// Opens the file that is named on the command line.
 pub(super) fn open_for_start(path: &Path) -> Result<Opened, ProjectError> {
     let kind = FileKind::of(path)?;
     let mut opened = Opened {
@@ -48,7 +48,7 @@ pub(super) fn open_for_start(path: &Path) -> Result<Opened, ProjectError> {
 }
 
 impl Window {
-    /// Does a command.
+    /// Carries out a command.
     pub(super) fn run(&mut self, command: Command, ctx: &egui::Context) {
         if !self.can(command) {
             return;
@@ -62,7 +62,7 @@ impl Window {
             Command::JumpToStart => self.session.worker().restart(),
             Command::JumpToEnd => {
                 let duration = self.session.frame.as_ref().map_or(0.0, |frame| frame.duration_secs);
-                // The clip's end is its start again; a take ends with its last frame.
+                // A looping clip starts again at its end, whereas a take ends with its last frame.
                 let takes = self.history.project().take.file.is_some();
                 let last = if takes { duration } else { duration - lovelock_session::clock::STEP_SECS };
                 self.session.worker().seek(last.max(0.0));
@@ -138,7 +138,7 @@ impl Window {
         }
     }
 
-    /// A change that is a step of undo by itself.
+    /// Makes a change that is one undo step.
     pub(super) fn change(&mut self, label: &str, change: impl FnOnce(&mut Project)) {
         let mut project = copy(self.history.project());
         change(&mut project);
@@ -147,7 +147,7 @@ impl Window {
         self.gestures.next();
     }
 
-    /// As [`Window::change`], for what a track may move: as if it was done by hand.
+    /// Like [`Window::change`], for values that a track may animate: the change is treated as an edit in a panel.
     fn change_seen(&mut self, ctx: &egui::Context, change: impl FnOnce(&mut Project)) {
         let seen = self.seen();
         let mut project = copy(&seen);
@@ -159,7 +159,7 @@ impl Window {
         }
     }
 
-    /// Begins a take in a file of its own, or ends the one that is being recorded.
+    /// Starts recording a take to a new file, or ends the one that is being recorded.
     fn record_take(&mut self) {
         if self.session.worker().take_progress().is_some() {
             self.session.worker().finish_take();
@@ -174,7 +174,7 @@ impl Window {
         }
     }
 
-    /// Where the dance is, seconds.
+    /// The current time of the timeline, seconds.
     pub(super) fn now_secs(&self) -> f64 {
         self.session.frame.as_ref().map_or(0.0, |frame| frame.position_secs)
     }
@@ -189,7 +189,7 @@ impl Window {
         });
     }
 
-    /// The in or the out point of recordings, where the dance is.
+    /// Sets the in or out point of recordings to the current frame.
     fn mark_end(&mut self, first: bool) {
         let secs = self.now_secs();
         self.change("recording", |project| {
@@ -216,7 +216,7 @@ impl Window {
         self.change_seen(ctx, |project| project.camera = camera);
     }
 
-    /// A path was given.
+    /// Uses the path that the user picked.
     pub(super) fn answer(&mut self, purpose: Purpose, path: &Path, ctx: &egui::Context) {
         match purpose {
             Purpose::Open => self.open_any(path),
@@ -267,14 +267,14 @@ impl Window {
         }
     }
 
-    /// Before changes are lost, asks whether they may be.
+    /// Asks for confirmation before unsaved changes are lost.
     pub(super) fn ask_before_losing(&mut self, ctx: &egui::Context) {
         let Some(pending) = self.pending.clone() else { return };
         let modal = egui::Modal::new(egui::Id::unique("unsaved")).show(ctx, |ui| {
-            ui.heading("The project has changes that are not saved.");
+            ui.heading("The project has unsaved changes.");
             ui.horizontal(|ui| {
                 let save = ui.button("Save").clicked();
-                let lose = ui.button("Go on without saving").clicked();
+                let lose = ui.button("Discard changes").clicked();
                 let stay = ui.button("Stay").clicked();
                 (save, lose, stay)
             })
@@ -300,7 +300,7 @@ impl Window {
         }
     }
 
-    /// The window is to close: asks first where changes would be lost.
+    /// Handles a request to close the window: asks first if changes would be lost.
     pub(super) fn watch_close(&mut self, ctx: &egui::Context) {
         let asked = ctx.input(|input| input.viewport().close_requested());
         if asked && !self.quitting && self.history.is_modified() {
@@ -310,15 +310,14 @@ impl Window {
     }
 }
 
-/// A name for a take that is not there yet: `takes/NAME-1.take` beside the project, or among the user's own data where
-/// the project has no file.
+/// A free name for a take: `takes/NAME-1.take` beside the project, or in the user's data folder if the project has no file.
 fn new_take(project: Option<&Path>) -> Result<PathBuf, String> {
     let (folder, name) = if let Some(path) = project {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         (path.parent().unwrap_or_else(|| Path::new(".")).to_owned(), name)
     } else {
         let folder = eframe::storage_dir("lovelock")
-            .ok_or("there is no folder for takes: save the project first, they then lie beside it")?;
+            .ok_or("there is no folder for takes: save the project first, so that they can be stored beside it")?;
         (folder, "take".to_owned())
     };
     let folder = folder.join("takes");
@@ -326,7 +325,7 @@ fn new_take(project: Option<&Path>) -> Result<PathBuf, String> {
     (1..100_000)
         .map(|number| folder.join(format!("{name}-{number}.take")))
         .find(free)
-        .ok_or_else(|| format!("{}: holds 100,000 takes of this name", folder.display()))
+        .ok_or_else(|| format!("{}: contains 100,000 takes of this name", folder.display()))
 }
 
 #[cfg(test)]

@@ -1,11 +1,11 @@
-//! Where a hair tie aims, as an artist says it: to which side it heads, and how steeply it rises.
+//! The direction of a hair tie as two angles: heading and rise.
 
 use std::f32::consts::{FRAC_PI_2, PI};
 
 use glam::Vec3;
 use lovelock_groom::HairTie;
 
-/// A direction that is steeper than this, as the length of its level part, heads nowhere in particular.
+/// The length of the horizontal part of a unit vector below which its heading is ignored.
 const STEEP: f32 = 0.3;
 
 /// A direction in head space.
@@ -23,20 +23,20 @@ impl Aim {
     pub(crate) fn of(axis: Vec3) -> Self {
         let axis = axis.normalize_or(Vec3::NEG_Z);
         let heading = if level(axis) < 1e-6 { 0.0 } else { axis.x.atan2(-axis.z) };
-        // The same direction is not to be at both ends of the slider.
+        // One direction must not be at both ends of the slider.
         let heading = if heading < 1e-6 - PI { PI } else { heading };
         Self { heading, rise: axis.y.clamp(-1.0, 1.0).asin() }
     }
 
-    /// The unit vector. A little of its heading stays where it is straight up.
+    /// The unit vector. A straight vertical one keeps a small horizontal part, so that its heading is not lost.
     pub(crate) fn axis(self) -> Vec3 {
         let (x, z) = self.heading.sin_cos();
         Vec3::new(x, 0.0, -z) * self.rise.cos().max(1e-4) + Vec3::Y * self.rise.sin()
     }
 }
 
-/// The axis of a tie that is moved over the head, from where the head's normal is `from` to where it is `to`: it aims as far aside
-/// from what a new tie has there, and as far up, as it did.
+/// The axis of a tie that is moved over the head, from a place with the normal `from` to one with the normal `to`. It keeps its
+/// heading and rise relative to those of a new tie at the same place.
 pub(crate) fn moved(axis: Vec3, from: Vec3, to: Vec3) -> Vec3 {
     let (plain, there) = (HairTie::axis_over(from), Aim::of(HairTie::axis_over(to)));
     let (now, usual) = (Aim::of(axis), Aim::of(plain));
@@ -47,7 +47,7 @@ pub(crate) fn moved(axis: Vec3, from: Vec3, to: Vec3) -> Vec3 {
     Aim { heading, rise }.axis()
 }
 
-/// Length of the level part of a unit vector.
+/// Length of the horizontal part of a unit vector.
 fn level(axis: Vec3) -> f32 {
     axis.x.hypot(axis.z)
 }
@@ -77,7 +77,7 @@ mod tests {
     #[test]
     fn a_tie_that_is_moved_aims_off_the_head_as_it_did() {
         let usual = HairTie::axis_over;
-        // As a new tie aims, it goes on to aim, however it gets there.
+        // A tie with the direction of a new one keeps it at every other place.
         for to in [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::Z, Vec3::new(0.5, 0.5, -0.707)] {
             let moved = moved(usual(Vec3::NEG_Z), Vec3::NEG_Z, to);
             assert!(moved.distance(usual(to).normalize_or(Vec3::Y)) < 1e-3, "{moved} over {to}");
@@ -86,11 +86,11 @@ mod tests {
         let down = Vec3::new(0.0, -0.5, -1.0);
         let at_left = moved(down, Vec3::NEG_Z, Vec3::X);
         assert!((Aim::of(at_left).rise - Aim::of(down).rise).abs() < 1e-4 && at_left.x > 0.8, "{at_left}");
-        // What aims aside of the normal aims as far aside.
+        // An angle to the side of the normal stays the same.
         let aside = Aim { heading: 0.5, rise: 0.2 }.axis();
         let at_left = Aim::of(moved(aside, Vec3::NEG_Z, Vec3::X));
         assert!((at_left.heading - (FRAC_PI_2 + 0.5)).abs() < 1e-3, "{at_left:?}");
-        // From the crown, where there is no side, it takes that of the place that it comes to.
+        // From the crown, where there is no heading, it takes that of the new place.
         let from_crown = moved(Vec3::Y, Vec3::Y, Vec3::NEG_X);
         assert!(from_crown.x < -0.8 && from_crown.z.abs() < 1e-3, "{from_crown}");
     }

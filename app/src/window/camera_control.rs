@@ -1,13 +1,13 @@
-//! What the pointer does to the camera.
+//! Camera control by the pointer.
 
 use egui::{PointerButton, Response};
 use glam::Vec3;
 use lovelock_project::project::{CameraMode, CameraSection};
 
-/// Radians that a drag across the whole viewport turns the camera.
+/// Angle by which a drag across the whole viewport turns the camera, radians.
 const TURN: f32 = 3.6;
 
-/// Applies what the pointer did over the viewport. Returns whether the camera changed.
+/// Applies the pointer's input over the viewport. Returns whether the camera changed.
 pub(crate) fn apply(camera: &mut CameraSection, response: &Response) -> bool {
     let before = *camera;
     steer(camera, response);
@@ -17,7 +17,7 @@ pub(crate) fn apply(camera: &mut CameraSection, response: &Response) -> bool {
     *camera != before
 }
 
-/// As [`apply`], without the pinch and Ctrl with the wheel.
+/// Like [`apply`], without pinching and without the wheel with Ctrl.
 pub(crate) fn steer(camera: &mut CameraSection, response: &Response) {
     let size = response.rect.height().max(1.0);
     let drag = response.drag_delta() / size;
@@ -36,14 +36,14 @@ pub(crate) fn steer(camera: &mut CameraSection, response: &Response) {
     }
 }
 
-/// Turns the camera about its target; `dx` and `dy` in heights of the viewport.
+/// Turns the camera about its target; `dx` and `dy` are in heights of the viewport.
 fn orbit(camera: &mut CameraSection, dx: f32, dy: f32) {
     let pi = std::f32::consts::PI;
     camera.azimuth = (camera.azimuth - dx * TURN + pi).rem_euclid(2.0 * pi) - pi;
     camera.elevation = (camera.elevation + dy * TURN).clamp(-1.5, 1.5);
 }
 
-/// Moves the target so that what is under the pointer stays under it.
+/// Moves the target so that the point under the pointer stays under it.
 fn pan(camera: &mut CameraSection, dx: f32, dy: f32) {
     let [right, up, _] = axes(camera);
     let height = 2.0 * camera.distance * (camera.fov_y * 0.5).tan();

@@ -1,4 +1,4 @@
-//! Files that are opened and saved.
+//! Opening and saving files.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use lovelock_session::take::project_of_take;
 use super::{Pending, Window, notices, remember};
 
 impl Window {
-    /// Opens a file of any kind that is read.
+    /// Opens a file of any kind that the program reads.
     pub(super) fn open_any(&mut self, path: &Path) {
         match FileKind::of(path) {
             Ok(FileKind::Project) if self.history.is_modified() => {
@@ -19,7 +19,7 @@ impl Window {
             Ok(FileKind::Project) => self.open_project(path),
             Ok(FileKind::Take) => {
                 self.open_take(path);
-                // Saving is not to put the take's project into the file of the one before.
+                // Saving must not write the take's project to the file of the previous project.
                 self.project_path = None;
                 self.session.set_project_path(None);
             }
@@ -30,7 +30,7 @@ impl Window {
                     FileKind::Character => project.set_body_file(path),
                     FileKind::Motion | FileKind::Project | FileKind::Take => project.set_motion_file(path),
                 });
-                // The file may have been named before without being allowed.
+                // The project may have named the file before without having access to it.
                 let project = self.history.project().clone();
                 self.session.reload(&project);
             }
@@ -38,7 +38,7 @@ impl Window {
         }
     }
 
-    /// Plays a take, with the project that it was recorded from; one step of undo goes back to what was there.
+    /// Plays a take with the project that it was recorded from. One undo step restores the previous project.
     pub(super) fn open_take(&mut self, path: &Path) {
         match project_of_take(path) {
             Ok((take, problems)) => {
@@ -52,7 +52,7 @@ impl Window {
         }
     }
 
-    /// Shows a take beside what is shown, each drawn as the project is.
+    /// Adds a pane that shows a take, rendered with the settings of the project.
     pub(super) fn compare_with(&mut self, path: &Path) {
         match FileKind::of(path) {
             Ok(FileKind::Take) => {
@@ -66,7 +66,7 @@ impl Window {
                 self.layout.compare.shown = true;
             }
             Ok(kind) => {
-                self.tell([format!("{}: a {} file, and a take was wanted", path.display(), kind.label())]);
+                self.tell([format!("{}: found a {} file; must be a take", path.display(), kind.label())]);
             }
             Err(error) => self.tell([error.to_string()]),
         }

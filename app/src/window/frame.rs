@@ -9,9 +9,9 @@ use super::path_dialog::{Answer, PathDialog, Purpose};
 use super::viewport::{self, Viewport};
 use super::{Window, camera_control, copy, keys, notices, panels, theme, timeline, title};
 
-/// Hair that settles sooner is not worth a word.
+/// Shorter pre-rolls show no progress bar, seconds.
 const SHOW_SETTLING_SECS: f64 = 0.15;
-/// Nor is a load that is done sooner: hair that grows as a slider is dragged.
+/// Shorter loads show no progress bar, such as hair that grows while a slider is dragged, seconds.
 const SHOW_LOADING_SECS: f64 = 0.5;
 
 impl Window {
@@ -49,7 +49,7 @@ impl Window {
         }
 
         self.menu_bar(ui);
-        // Copied after the menus, which may have changed it: the panels must not put back what was there before.
+        // Copied after the menus, which may have changed it: the panels must not restore the old values.
         let seen = self.seen();
         let mut project = copy(&seen);
         let playback = self.timeline(ui, &mut project);
@@ -80,7 +80,7 @@ impl Window {
             self.run(command, &ctx);
         }
         self.windows(&ctx);
-        // While panes are shown nobody looks at the one picture.
+        // The single image is not visible while panes are shown.
         let compares = self.layout.compare.shown;
         let seen = self.seen();
         let size = if compares { [0, 0] } else { self.viewport.wanted };
@@ -120,7 +120,7 @@ impl Window {
                         });
                         ui.menu_button("Picture size", |ui| {
                             for (scale, name) in [
-                                (0.0, "Choose by the device"),
+                                (0.0, "Automatic"),
                                 (1.0, "Every pixel"),
                                 (0.5, "Half"),
                                 (0.25, "Quarter"),
@@ -211,12 +211,12 @@ impl Window {
         });
     }
 
-    /// What runs aside, told over the picture too: the panels may be hidden.
+    /// Shows background work over the image as well, because the panels may be hidden.
     pub(super) fn running(&mut self, ui: &mut Ui, rect: Rect) {
         {
             let mut row = 0;
             if let Some((fraction, text)) = self.recorder.state().progress() {
-                let tip = "Stops the recording; an unfinished film is removed.";
+                let tip = "Stops the recording. An unfinished film is removed.";
                 if over_picture(ui, rect, row, fraction, &format!("Recording · {text}"), tip) {
                     self.recorder.cancel();
                 }
@@ -224,13 +224,13 @@ impl Window {
             }
             let loading = self.session.worker().load_progress();
             let left = loading.as_ref().map_or(0.0, |loading| SHOW_LOADING_SECS - loading.taken_secs);
-            // Once it is seen it stays, through the loads that follow.
+            // Once the bar is visible it stays, also through the loads that follow.
             self.session.load_is_seen = loading.is_some() && (self.session.load_is_seen || left <= 0.0);
             if !self.session.load_is_seen && left > 0.0 {
                 ui.request_repaint_after(std::time::Duration::from_secs_f64(left));
             }
             if let Some(progress) = loading.filter(|_| self.session.load_is_seen) {
-                let tip = "Stops loading; the scene stays as it was.";
+                let tip = "Stops loading. The scene stays unchanged.";
                 if over_picture(ui, rect, row, progress.fraction, &progress.what, tip) {
                     self.session.worker().cancel_load();
                 }
@@ -239,7 +239,7 @@ impl Window {
             if let Some(settling) = self.session.worker().settling()
                 && settling.taken_secs > SHOW_SETTLING_SECS
             {
-                let tip = "Time goes on at once, with the hair as it was carried here.";
+                let tip = "Continues immediately, with hair that has not settled.";
                 let fraction = settling.done as f32 / settling.total.max(1) as f32;
                 let text = format!("Settling the hair at {:.2} s", settling.to_secs);
                 if over_picture(ui, rect, row, fraction, &text, tip) {
@@ -249,14 +249,14 @@ impl Window {
         }
     }
 
-    /// Errors of a part of the project, where that part is edited.
+    /// Shows the problems of a part of the project where that part is edited.
     pub(super) fn problems(&self, ui: &mut Ui, places: &[Place]) {
         for problem in self.session.problems.iter().filter(|problem| places.contains(&problem.place)) {
             ui.label(RichText::new(&problem.message).color(theme::WRONG));
         }
     }
 
-    /// Dialogs over everything.
+    /// Shows the dialogs above everything else.
     fn windows(&mut self, ctx: &egui::Context) {
         if let Some(dialog) = &mut self.dialog {
             match dialog.show(ctx) {
@@ -279,7 +279,7 @@ impl Window {
         self.ask_before_losing(ctx);
     }
 
-    /// Asks for a path.
+    /// Opens the dialog for a path.
     pub(super) fn ask(&mut self, purpose: Purpose) {
         let folder = self
             .project_path
@@ -306,14 +306,14 @@ impl Window {
                 dialog.about(self.recording_in_words())
             }
             Purpose::Curves => dialog.about(
-                "All strands in USD, the guides in .glb, with the body; the Recording panel sets the frames."
+                "USD holds all strands, .glb the guide strands, both with the body. The Recording panel sets the frames."
                     .to_owned(),
             ),
             Purpose::Open | Purpose::Beside | Purpose::SaveProject | Purpose::Picture => dialog,
         });
     }
 
-    /// What a recording that starts now would hold.
+    /// Describes the recording that would start now.
     fn recording_in_words(&self) -> String {
         let recording = &self.history.project().recording;
         let clip = self.session.frames(recording.fps);
@@ -321,7 +321,7 @@ impl Window {
         let frames = recording.end_frame.unwrap_or(clip.max(first + 1)).saturating_sub(first);
         let what = if self.layout.compare.shown { "The panes with their labels: " } else { "" };
         format!(
-            "{what}{frames} frames of {} × {}, {} a second: {:.1} s. The Recording panel sets them.",
+            "{what}{frames} frames of {} × {} at {} per second: {:.1} s. The Recording panel sets them.",
             recording.width,
             recording.height,
             recording.fps,
@@ -330,8 +330,8 @@ impl Window {
     }
 }
 
-/// A bar of progress in the corner of the picture, `row` from the top, and a button that stops the work. Returns
-/// whether it was clicked.
+/// Shows a progress bar in the corner of the image, `row` from the top, and a button that stops the work. Returns whether the
+/// button was clicked.
 fn over_picture(ui: &mut Ui, picture: Rect, row: u8, fraction: f32, text: &str, tip: &str) -> bool {
     let button_width = 60.0;
     let width = (picture.width() - button_width - 26.0).clamp(60.0, 300.0);
@@ -342,7 +342,7 @@ fn over_picture(ui: &mut Ui, picture: Rect, row: u8, fraction: f32, text: &str, 
     ui.put(button, egui::Button::new("Cancel")).on_hover_text(tip).clicked()
 }
 
-/// The name of the part that differs, for undo.
+/// The name of the part that differs, for the undo history.
 pub(super) fn changed_part(before: &Project, after: &Project) -> &'static str {
     let parts = [
         (before.camera != after.camera, "camera"),

@@ -1,18 +1,18 @@
-//! Which changes belong together: one drag, one number while it is typed, one turn of the wheel is one step of undo.
+//! Groups changes into undo steps: a drag, a number that is typed, or a turn of the wheel is one step.
 
 use egui::{Id, Pos2, Vec2};
 use lovelock_project::history::GestureId;
 
-/// Seconds between the two clicks of a double-click, at most.
+/// The longest time between the two clicks of a double-click, seconds.
 const DOUBLE_CLICK_SECS: f64 = 0.3;
-/// Points that the pointer may move between them.
+/// The largest distance that the pointer may move between them, points.
 const DOUBLE_CLICK_REACH: f32 = 6.0;
 
 /// Numbers the gestures of the user.
 #[derive(Clone, Debug)]
 pub(crate) struct Gestures {
     id: GestureId,
-    /// What had the keyboard in the last pass.
+    /// The control that had the keyboard focus in the last pass.
     focused: Option<Id>,
     /// Whether the wheel turned in the last pass.
     scrolled: bool,
@@ -27,18 +27,18 @@ impl Default for Gestures {
 }
 
 impl Gestures {
-    /// The gesture that changes belong to now.
+    /// The number of the current gesture.
     pub(crate) fn id(&self) -> GestureId {
         self.id
     }
 
-    /// What comes next belongs to no gesture before it.
+    /// Ends the current gesture: the next change starts a new one.
     pub(crate) fn next(&mut self) {
         self.id += 1;
     }
 
-    /// Call at the start of each pass, before anything changes: goes on to the next gesture unless the one of the
-    /// last pass lasts. `riding`: what was moved is still being written to its track.
+    /// Starts the next gesture unless that of the last pass continues. Must be called at the start of each pass, before anything
+    /// changes. `riding` says that a control is still being written to its track.
     pub(crate) fn begin_pass(&mut self, ctx: &egui::Context, riding: bool) {
         let focused = ctx.memory(egui::Memory::focused);
         let (pressed, held, scrolled) = ctx.input(|input| {
@@ -50,7 +50,7 @@ impl Gestures {
             (pressed, held, input.smooth_scroll_delta != Vec2::ZERO || input.zoom_delta() != 1.0)
         });
         let lasts = match (pressed, self.pressed) {
-            // The second click of a double-click, which takes back what the first one did to a slider.
+            // The second click of a double-click, which undoes the effect of the first one on a slider.
             (Some((now, at)), Some((before, there))) => {
                 now - before <= DOUBLE_CLICK_SECS && at.distance(there) <= DOUBLE_CLICK_REACH
             }

@@ -1,4 +1,4 @@
-//! Keys and menus, made from the one table of commands.
+//! Keys and menus, made from the table of commands.
 
 use super::command::{COMMANDS, Command, CommandGroup, CommandInfo, Shortcut};
 use egui::{Key, KeyboardShortcut, Modifiers, RichText, Ui};
@@ -20,12 +20,12 @@ pub(crate) fn pressed(ctx: &egui::Context) -> Vec<Command> {
         if typing && !shortcut.modifiers.command {
             continue;
         }
-        // A text takes back and does again what was typed into it.
+        // A text field has its own undo and redo.
         if editing && matches!(command, Command::Undo | Command::Redo) {
             continue;
         }
         if ctx.input_mut(|input| input.consume_shortcut(&shortcut)) {
-            // Tab moves the keyboard to the next control as well, which would then keep all other keys.
+            // Tab also moves the keyboard focus to the next control, which would then receive all other keys.
             ctx.memory_mut(|memory| memory.move_focus(egui::FocusDirection::None));
             commands.push(command);
         }
@@ -37,7 +37,7 @@ fn weight(modifiers: Modifiers) -> u32 {
     u32::from(modifiers.command) + u32::from(modifiers.shift) + u32::from(modifiers.alt)
 }
 
-/// The key that egui knows by the table's words; none where the table names a key that egui has not.
+/// The key of that name in egui; `None` if egui has none.
 fn shortcut(text: &str) -> Option<KeyboardShortcut> {
     let Shortcut { ctrl, shift, alt, key } = Shortcut::parse(text)?;
     let logical = match key {
@@ -53,7 +53,7 @@ fn shortcut(text: &str) -> Option<KeyboardShortcut> {
     Some(KeyboardShortcut::new(modifiers, logical))
 }
 
-/// The menus, each group of commands one. Returns what was chosen.
+/// Shows a menu per group of commands. Returns the command that was chosen.
 pub(crate) fn menus(ui: &mut Ui, enabled: impl Fn(Command) -> bool) -> Option<Command> {
     let mut chosen = None;
     for group in CommandGroup::ALL {
@@ -74,14 +74,14 @@ pub(crate) fn menus(ui: &mut Ui, enabled: impl Fn(Command) -> bool) -> Option<Co
     chosen
 }
 
-/// The commands of a group as its menu has them, part by part.
+/// The commands of a group in the order of its menu, divided into parts.
 fn in_order(group: CommandGroup) -> Vec<&'static CommandInfo> {
     let mut infos: Vec<_> = COMMANDS.iter().filter(|info| info.group == group).collect();
     infos.sort_by_key(|info| part_of(info.command));
     infos
 }
 
-/// The part of its menu that a command stands in: parts are set off by lines.
+/// The part of its menu to which a command belongs. Lines divide the parts.
 fn part_of(command: Command) -> u8 {
     match command {
         Command::Save
@@ -123,11 +123,11 @@ pub(crate) fn list(ui: &mut Ui) {
         }
         for (keys, what) in [
             ("Drag", "Turns the camera about the hair."),
-            ("Shift+drag, right drag", "Moves the camera aside."),
-            ("Wheel", "Moves the camera nearer and farther."),
+            ("Shift+drag, right drag", "Pans the camera."),
+            ("Wheel", "Moves the camera closer or farther away."),
             ("Ctrl+wheel", "Magnifies the panes of a comparison."),
-            ("Hold V", "Shows another pane of a comparison in place."),
-            ("Click a pane", "Plots the light at the hair there."),
+            ("Hold V", "Shows another pane of a comparison in place of a pane."),
+            ("Click a pane", "Plots the transmittance along the light at that point."),
             ("Double-click a control", "Restores its default."),
         ] {
             ui.label(RichText::new(keys).monospace().color(theme::ACCENT));

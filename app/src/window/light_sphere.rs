@@ -5,23 +5,22 @@ use glam::Vec3;
 
 use super::theme;
 
-/// What a sphere is about.
+/// The labels of a sphere.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sphere {
     /// The name of the control.
     pub(crate) name: &'static str,
-    /// What comes from there, such as `the light`.
+    /// What has the direction, such as `the light`.
     pub(crate) what: &'static str,
 }
 
-/// Shows the sphere of a light.
+/// Shows the sphere for a light.
 pub(crate) fn light_sphere(ui: &mut Ui, direction: &mut Vec3, axes: [Vec3; 3]) -> Response {
     sphere(ui, Sphere { name: "Light direction", what: "the light" }, direction, axes)
 }
 
-/// Shows the sphere as the camera sees it. `right`, `up` and `back` are the camera's axes in the world; the
-/// handle is where the light comes from, and is hollow where that is behind the sphere. Returns the response;
-/// `direction` is the way that the light or the wind travels.
+/// Shows the sphere from the camera's view and edits `direction`, in which the light or the wind travels. `right`, `up` and `back`
+/// are the camera's axes in the world. The handle is at the side from which the light comes; it is hollow behind the sphere.
 pub(crate) fn sphere(
     ui: &mut Ui,
     of: Sphere,
@@ -41,7 +40,7 @@ pub(crate) fn sphere(
         response.mark_changed();
     }
     let painter = ui.painter_at(rect);
-    // Rings of a ball lit from where the handle is.
+    // Rings that shade a ball lit from the handle.
     for ring in (1..=12_u8).rev() {
         let share = f32::from(ring) / 12.0;
         let shift = Vec2::new(seen.x, -seen.y) * (1.0 - share) * radius * 0.9;
@@ -57,12 +56,12 @@ pub(crate) fn sphere(
     }
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, of.name));
     response.on_hover_text(format!(
-        "Drag to say where {} comes from, as the camera sees it. A hollow handle is behind.",
+        "Drag to set where {} comes from, as seen by the camera. A hollow handle is behind the sphere.",
         of.what
     ))
 }
 
-/// The point of the unit sphere under `x`, `y`: before it, or behind it where `behind`; on its rim outside.
+/// The point of the unit sphere under `x`, `y`: on its front, or on its back if `behind`. Points outside are moved to the rim.
 fn point_on_sphere(x: f32, y: f32, behind: bool) -> Vec3 {
     let squared = x * x + y * y;
     if squared >= 1.0 {

@@ -51,25 +51,25 @@ use serde::{Deserialize, Serialize};
 use session::Session;
 use viewport::Viewport;
 
-/// Key under which the layout is kept; the number changes when its meaning does.
+/// Key under which the layout is stored. The number changes with the format.
 const LAYOUT_KEY: &str = "layout 1";
 
-/// Projects that are remembered.
+/// Number of recent projects in the menu.
 const RECENT: usize = 10;
 
-/// What the interface remembers between runs.
+/// The state of the interface that is stored between runs.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 struct Layout {
     panels_hidden: bool,
     recent: Vec<PathBuf>,
-    /// Pixels drawn a pixel of the screen; 0 chooses by the device.
+    /// Rendered pixels per pixel of the screen; 0 is automatic.
     view_scale: f32,
     compare: CompareLayout,
     timeline: timeline::Zoom,
 }
 
-/// What is asked before changes are lost.
+/// The action that waits for the confirmation that unsaved changes may be lost.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Pending {
     Quit,
@@ -84,7 +84,7 @@ struct Seen {
     project: Arc<Project>,
 }
 
-/// The window and everything behind it.
+/// The window and its state.
 pub(crate) struct Window {
     history: History,
     project_path: Option<PathBuf>,
@@ -99,39 +99,39 @@ pub(crate) struct Window {
     notices: Notices,
     keys_shown: bool,
     selected_light: usize,
-    /// The gauge whose place is ringed in the picture, as it was when that was asked for.
+    /// The gauge whose place is marked in the image, with its values when the mark was requested.
     pointed: Option<Gauge>,
     colliders: panels::colliders::Shown,
     selected_tie: usize,
-    /// Whether the panel of ties is unfolded: their handles are seen then.
+    /// Whether the panel of ties is unfolded; only then their handles are shown.
     ties_shown: bool,
     scissors: Scissors,
     gestures: Gestures,
     overdub: Overdub,
     thumbnails: timeline::Thumbnails,
-    /// The project as it is seen, and the project and the time that it was made of.
+    /// The project at the current time, with the project and the time from which it was computed.
     seen: Option<Seen>,
     quitting: bool,
     screenshot: Option<Screenshot>,
 }
 
-/// Opens the window, on a file where one is given; with panes beside each other, where that is asked for.
+/// Opens the window with the file at `path`, if there is one; with the panes of a comparison if `panes`.
 pub(crate) fn open(
     path: Option<&Path>,
     panes: bool,
     screenshot: Option<(PathBuf, f64)>,
 ) -> Result<(), ProjectError> {
-    // A file that cannot be opened is an error of the command line: no window is needed to say so.
+    // A file that cannot be opened is an error of the command line, reported without opening the window.
     let opened = path.map(actions::open_for_start).transpose()?;
     let options = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
             .with_title("Lovelock")
             .with_app_id("lovelock")
             .with_inner_size([1440.0, 900.0])
-            // The panels, and as much room again for the picture as one of them takes.
+            // Both panels, and the width of another one for the image.
             .with_min_inner_size([960.0, 540.0])
             .with_drag_and_drop(true),
-        // Pictures come dithered, panels are flat; without a graphics card every pixel of the window costs.
+        // Images are already dithered and panels are flat. Without a graphics card every pixel of the window costs time.
         dithering: false,
         ..Default::default()
     };
@@ -167,7 +167,7 @@ impl Window {
         Ok(window)
     }
 
-    /// Starts what runs behind the window.
+    /// Starts the session behind the window.
     fn start(
         ctx: &egui::Context,
         layout: Layout,
@@ -216,7 +216,7 @@ impl Window {
         Ok(window)
     }
 
-    /// Shows sentences that the user should see.
+    /// Shows messages to the user.
     fn tell(&mut self, sentences: impl IntoIterator<Item = String>) {
         for sentence in sentences {
             tracing::warn!("{sentence}");
@@ -224,14 +224,14 @@ impl Window {
         }
     }
 
-    /// Takes a changed project; the changes of one gesture are one step of undo.
+    /// Applies a changed project. The changes of one gesture are one undo step.
     fn edit(&mut self, label: &str, project: Project) {
         if self.history.edit(label, Some(self.gestures.id()), project) {
             tracing::debug!(label, "edited");
         }
     }
 
-    /// The project as it is where the dance is: its tracks have moved it. The same as long as nothing changes.
+    /// The project at the current time, with its tracks applied. Cached until something changes.
     fn seen(&mut self) -> Arc<Project> {
         let (of, secs) = (Arc::clone(self.history.project()), self.now_secs());
         let writes = self.overdub.writes().next().is_some();
@@ -250,7 +250,7 @@ impl Window {
         project
     }
 
-    /// Takes what the panels made of the project as it was seen: tracks keep what they move.
+    /// Applies the edits of the panels to the project at the current time. Values with a track are written to the track.
     fn take_edit(&mut self, seen: &Project, edited: Project, ctx: &egui::Context) {
         let now = Moment {
             secs: self.now_secs(),
@@ -269,7 +269,7 @@ impl Window {
         }
     }
 
-    /// Whether a command can be done now.
+    /// Whether a command is available now.
     fn can(&self, command: Command) -> bool {
         match command {
             Command::Undo => self.history.undo_len() > 0,
@@ -291,7 +291,7 @@ impl Window {
 
 impl eframe::App for Window {
     fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
-        // Now and then: the window may be moved to another display, and some systems take long to answer.
+        // Asked only occasionally: the window may be moved to another display, and some systems respond slowly.
         if ui.ctx().cumulative_frame_nr() % 128 == 1 {
             let display = frame.winit_window().and_then(|window| window.current_monitor());
             if let Some(millihertz) = display.and_then(|display| display.refresh_rate_millihertz()) {
@@ -301,8 +301,8 @@ impl eframe::App for Window {
         self.pass(ui);
     }
 
-    /// The panels' colour: cleared once instead of painted under each of them, since without a graphics card every pixel
-    /// of the window costs.
+    /// The panels' colour: cleared once instead of painted under each panel, because every pixel of the window costs time without a
+    /// graphics card.
     fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
         theme::PANEL.to_normalized_gamma_f32()
     }
@@ -312,8 +312,8 @@ impl eframe::App for Window {
     }
 }
 
-/// How panes are put together where no window says: beside each other, with the colours of the window and without times,
-/// so that the same panes are the same pixels.
+/// The layout of panes in a recording: side by side, in the colours of the window and without times, so that the same panes give
+/// the same pixels.
 pub(crate) fn sheet_of_panes() -> lovelock_panes::sheet::Sheet {
     lovelock_panes::sheet::Sheet { figures: false, ..CompareLayout::default().sheet() }
 }
@@ -326,7 +326,7 @@ fn title(path: Option<&Path>, modified: bool) -> String {
     format!("{}{name} · Lovelock", if modified { "● " } else { "" })
 }
 
-/// The newest first, each once.
+/// Puts `path` first and removes duplicates.
 fn remember(recent: &mut Vec<PathBuf>, path: &Path) {
     recent.retain(|known| known != path);
     recent.insert(0, path.to_owned());

@@ -1,4 +1,4 @@
-//! Sentences in a corner of the window that go by themselves.
+//! Messages in a corner of the window that disappear after a while.
 
 use egui::{Align2, Area, Color32, Frame, Id, Order, RichText};
 use egui_material_icons::MaterialIcon;
@@ -6,20 +6,20 @@ use egui_material_icons::icons::{ICON_CHECK_CIRCLE, ICON_CLOSE, ICON_ERROR, ICON
 
 use super::theme;
 
-/// Seconds that a sentence stays, and the seconds that each of its letters adds.
+/// Seconds for which a message stays, and the seconds added per letter.
 const STAYS_SECS: f64 = 6.0;
 const READING_SECS: f64 = 0.06;
-/// The most that are shown; older ones go first.
+/// The most messages that are shown; the oldest are removed first.
 const MOST: usize = 5;
 /// Width of the longest line, points.
 const WIDTH: f32 = 360.0;
 
-/// What kind of news it is.
+/// The kind of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
-    /// Something was done.
+    /// Something succeeded.
     Done,
-    /// Something went only partly right.
+    /// Something succeeded only in part.
     Warning,
     /// Something failed.
     Failed,
@@ -40,11 +40,11 @@ struct Notice {
     id: u64,
     kind: Kind,
     text: String,
-    /// When it goes, seconds of the window's time; none before it was first shown.
+    /// When it disappears, in seconds of the window's time; `None` before it was first shown.
     until_secs: Option<f64>,
 }
 
-/// What the window has to say.
+/// The messages of the window.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Notices {
     list: Vec<Notice>,
@@ -52,7 +52,7 @@ pub(crate) struct Notices {
 }
 
 impl Notices {
-    /// Says something. What is on the screen already stays there longer instead of coming twice.
+    /// Adds a message. One that is already visible stays longer instead of appearing twice.
     pub(crate) fn tell(&mut self, kind: Kind, text: impl Into<String>) {
         let text = text.into();
         self.list.retain(|notice| notice.text != text);
@@ -63,7 +63,7 @@ impl Notices {
         self.list.push(Notice { id: self.told, kind, text, until_secs: None });
     }
 
-    /// Shows what there is, the newest at the bottom.
+    /// Shows the messages, the newest at the bottom.
     pub(crate) fn show(&mut self, ctx: &egui::Context) {
         let now = ctx.input(|input| input.time);
         for notice in &mut self.list {

@@ -1,11 +1,11 @@
-//! The command palette: finds a command by a part of its name.
+//! The command palette: finds a command by part of its name.
 
 use super::command::{COMMANDS, Command, CommandInfo};
 use egui::{Key, Modal, RichText, ScrollArea};
 
 use super::theme;
 
-/// What has been typed, and which match is chosen.
+/// The typed text and the selected match.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Palette {
     open: bool,
@@ -14,12 +14,12 @@ pub(crate) struct Palette {
 }
 
 impl Palette {
-    /// Opens or closes it.
+    /// Opens or closes the palette.
     pub(crate) fn toggle(&mut self) {
         *self = Self { open: !self.open, ..Self::default() };
     }
 
-    /// Shows it where it is open. Returns the command that was chosen.
+    /// Shows the palette if it is open. Returns the command that was chosen.
     pub(crate) fn show(&mut self, ctx: &egui::Context, enabled: impl Fn(Command) -> bool) -> Option<Command> {
         if !self.open {
             return None;
@@ -38,7 +38,7 @@ impl Palette {
             let edit = egui::TextEdit::singleline(&mut self.typed)
                 .hint_text("Type a command")
                 .desired_width(f32::INFINITY);
-            let field = ui.add(edit).on_hover_text("A part of the command's name.");
+            let field = ui.add(edit).on_hover_text("Part of the command's name.");
             field.request_focus();
             let found: Vec<_> = matches(&self.typed).filter(|info| enabled(info.command)).collect();
             if field.changed() {
@@ -66,7 +66,7 @@ impl Palette {
                     }
                 }
                 if found.is_empty() {
-                    ui.label(RichText::new("No command of that name").color(theme::QUIET));
+                    ui.label(RichText::new("No matching command").color(theme::QUIET));
                 }
             });
         });
@@ -77,7 +77,7 @@ impl Palette {
     }
 }
 
-/// The commands whose label holds every word of `typed`.
+/// The commands whose label contains every word of `typed`.
 fn matches(typed: &str) -> impl Iterator<Item = &'static CommandInfo> {
     let words: Vec<String> = typed.split_whitespace().map(str::to_lowercase).collect();
     COMMANDS.iter().filter(move |info| {

@@ -1,4 +1,4 @@
-//! Asks for a path: a field to type in, and the system's own dialog where there is one.
+//! The dialog for a path: a text field, and the system's own dialog if there is one.
 
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, TryRecvError, sync_channel};
@@ -10,26 +10,26 @@ use lovelock_project::project::PROJECT_EXTENSION;
 
 use super::theme;
 
-/// What a path is asked for.
+/// What a path is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Purpose {
-    /// Open any file that the program reads.
+    /// Opening any file that the program reads.
     Open,
-    /// Compare with a take.
+    /// Comparing with a take.
     Beside,
-    /// Save the project.
+    /// Saving the project.
     SaveProject,
-    /// Record a film.
+    /// Recording a film.
     Film,
-    /// Record a folder of pictures.
+    /// Recording a folder of images.
     Sequence,
-    /// Record an animated preview.
+    /// Recording an animated preview.
     Preview,
-    /// Go on with a folder of pictures.
+    /// Continuing a folder of images.
     Resume,
-    /// Write the hair and the body for other programs.
+    /// Exporting hair and body for other programs.
     Curves,
-    /// Save the picture in the viewport.
+    /// Saving the image in the viewport.
     Picture,
 }
 
@@ -38,8 +38,8 @@ fn readable() -> Vec<&'static str> {
     FileKind::ALL.into_iter().flat_map(FileKind::extensions).chain(["part"]).collect()
 }
 
-/// Nobody leaves a dialog sooner than this after asking for it: one that does so never came up. The system's
-/// answer does not tell the two apart.
+/// A dialog that returns sooner than this without a path was never shown, seconds: no user closes a dialog so quickly, and the
+/// system's answer is the same in both cases.
 const NO_DIALOG_SECS: f64 = 0.5;
 
 impl Purpose {
@@ -49,11 +49,11 @@ impl Purpose {
             Self::Beside => "Compare with a take",
             Self::SaveProject => "Save the project",
             Self::Film => "Record a film",
-            Self::Sequence => "Record pictures into a folder",
+            Self::Sequence => "Record images to a folder",
             Self::Preview => "Record an animated preview",
-            Self::Resume => "Go on with the pictures in a folder",
+            Self::Resume => "Resume the images in a folder",
             Self::Curves => "Export curves: .usdc, .usda or .glb",
-            Self::Picture => "Save the picture",
+            Self::Picture => "Save the image",
         }
     }
 
@@ -63,11 +63,11 @@ impl Purpose {
             Self::Beside => "Compare",
             Self::SaveProject | Self::Picture | Self::Curves => "Save file",
             Self::Film | Self::Sequence | Self::Preview => "Start recording",
-            Self::Resume => "Go on recording",
+            Self::Resume => "Resume recording",
         }
     }
 
-    /// The extension that is added where none is given.
+    /// The extension that is added if none is given.
     fn extension(self) -> Option<&'static str> {
         match self {
             Self::Open | Self::Beside | Self::Sequence | Self::Resume => None,
@@ -80,43 +80,43 @@ impl Purpose {
     }
 }
 
-/// A question for a path that is on the screen.
+/// An open dialog for a path.
 #[derive(Debug)]
 pub(crate) struct PathDialog {
     purpose: Purpose,
     typed: String,
-    /// What will be at the path.
+    /// Describes the file that will be written.
     about: Option<String>,
-    /// What the system's dialog will send, and since when it is asked.
+    /// The answer of the system's dialog, and when it was opened.
     browsed: Option<(Receiver<Option<PathBuf>>, Stopwatch)>,
-    /// Whether the system seems to have no dialog.
+    /// Whether the system appears to have no dialog.
     no_dialog: bool,
 }
 
-/// What became of the question.
+/// The state of the dialog after a pass.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum Answer {
-    /// It is still asked.
+    /// It is still open.
     Pending,
-    /// It was closed without an answer.
+    /// It was closed without a path.
     Closed,
-    /// This path.
+    /// This path was chosen.
     Path(Purpose, PathBuf),
 }
 
 impl PathDialog {
-    /// Asks, with `suggestion` in the field.
+    /// Opens the dialog with `suggestion` in the field.
     pub(crate) fn new(purpose: Purpose, suggestion: &Path) -> Self {
         let typed = suggestion.display().to_string();
         Self { purpose, typed, about: None, browsed: None, no_dialog: false }
     }
 
-    /// Says in a line what will be at the path.
+    /// Adds a line that describes the file that will be written.
     pub(crate) fn about(self, text: String) -> Self {
         Self { about: Some(text), ..self }
     }
 
-    /// Shows it.
+    /// Shows the dialog.
     pub(crate) fn show(&mut self, ctx: &egui::Context) -> Answer {
         if let Some((receiver, since)) = &self.browsed {
             match receiver.try_recv() {
@@ -142,13 +142,13 @@ impl PathDialog {
                 }
                 field
             });
-            // Enter takes the keyboard from the field: asked before the field takes it back.
+            // Enter removes the keyboard focus from the field, so it must be read before the field requests the focus again.
             let entered = field.inner.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
             if ui.memory(|memory| memory.focused().is_none()) {
                 field.inner.request_focus();
             }
             if self.no_dialog {
-                let text = "The system has no file dialog to show: type the path above.";
+                let text = "The system has no file dialog. Type the path above.";
                 ui.label(RichText::new(text).color(theme::WRONG));
             }
             if let Some(about) = &self.about {
@@ -157,10 +157,10 @@ impl PathDialog {
             let path = self.path();
             let is_file = matches!(self.purpose, Purpose::Film | Purpose::Preview);
             if is_file && path.as_ref().is_some_and(|path| path.exists()) {
-                ui.label(RichText::new("The film of this name will be replaced.").color(theme::ACCENT));
+                ui.label(RichText::new("The film with this name will be replaced.").color(theme::ACCENT));
             }
             if self.purpose == Purpose::Curves && path.as_ref().is_some_and(|path| path.exists()) {
-                ui.label(RichText::new("The file of this name will be replaced.").color(theme::ACCENT));
+                ui.label(RichText::new("The file with this name will be replaced.").color(theme::ACCENT));
             }
             ui.horizontal(|ui| {
                 let go = ui.add_enabled(path.is_some(), egui::Button::new(self.purpose.button()));
@@ -178,7 +178,7 @@ impl PathDialog {
         answer
     }
 
-    /// What is typed, with the extension that its purpose wants.
+    /// The typed path, with the extension of its purpose.
     fn path(&self) -> Option<PathBuf> {
         let typed = self.typed.trim();
         if typed.is_empty() {
@@ -191,7 +191,7 @@ impl PathDialog {
         Some(path)
     }
 
-    /// Opens the system's dialog. Its answer is waited for on a thread, so that the window goes on.
+    /// Opens the system's dialog. A thread waits for its answer, so that the window stays responsive.
     fn browse(&mut self, ctx: &egui::Context) {
         let mut dialog = rfd::AsyncFileDialog::new().set_title(self.purpose.title());
         if let Some(path) = self.path() {
@@ -205,7 +205,7 @@ impl PathDialog {
         let (sender, receiver) = sync_channel(1);
         let ctx = ctx.clone();
         let purpose = self.purpose;
-        // The dialog is made here, on the window's thread, as some systems demand.
+        // Some systems require that the dialog is created on the window's thread.
         let future: std::pin::Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> = match purpose {
             Purpose::Open => Box::pin(dialog.add_filter("Lovelock reads", &readable()).pick_file()),
             Purpose::Beside => Box::pin(dialog.add_filter("Take", &["take", "part"]).pick_file()),

@@ -1,4 +1,4 @@
-//! A small curve from root to tip that is edited where it is drawn: a handle at each end, and one in the middle that bends it.
+//! A small editable curve from root to tip, with a handle at each end and one in the middle that bends it.
 
 use std::ops::RangeInclusive;
 
@@ -12,36 +12,36 @@ use super::theme;
 /// Height of the curve, points.
 const HEIGHT: f32 = 74.0;
 
-/// Room around the curve for the handles, points.
+/// Margin around the curve for the handles, points.
 const AIR: f32 = 9.0;
 
-/// What a pressed arrow key moves a handle by, of its range.
+/// The step of an arrow key, as a fraction of the handle's range.
 const KEY_STEP: f32 = 0.01;
 
-/// A number that goes from the root of a lock to its tip.
+/// A value that changes from the root of a wisp to its tip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct RampValue {
     /// At the root.
     pub(crate) root: f32,
     /// At the tip.
     pub(crate) tip: f32,
-    /// Where in between it changes.
+    /// Which part of the change is reached at the middle.
     pub(crate) bias: f32,
 }
 
-/// A curve that is edited.
+/// An editable curve.
 pub(crate) struct Ramp<'a> {
-    /// What changes along the lock.
+    /// The name of the value.
     pub(crate) label: &'static str,
-    /// The same in a sentence.
+    /// Its description, a sentence.
     pub(crate) hint: &'static str,
-    /// Of its numbers.
+    /// Its unit.
     pub(crate) unit: &'static str,
-    /// What the ends may be.
+    /// The range of the ends.
     pub(crate) range: RangeInclusive<f32>,
-    /// What the bias may be.
+    /// The range of the bias.
     pub(crate) bias: RangeInclusive<f32>,
-    /// The value a part of the way from root to tip; rises or falls with the bias.
+    /// The value at a fraction of the way from root to tip; monotonic in the bias.
     pub(crate) at: &'a dyn Fn(&RampValue, f32) -> f32,
 }
 
@@ -64,7 +64,7 @@ impl Handle {
         }
     }
 
-    /// How far along the lock it is.
+    /// Its position along the wisp, 0 to 1.
     fn along(self) -> f32 {
         match self {
             Self::Root => 0.0,
@@ -91,8 +91,8 @@ impl Handle {
 }
 
 impl Ramp<'_> {
-    /// The curve over the width there is. The up and down keys move the handle that has the focus, ten times as far with Shift;
-    /// a double-click on it restores its default.
+    /// Shows the curve over the available width. The up and down keys move the handle that has the focus, ten times as far with
+    /// Shift; a double-click on a handle restores its default.
     pub(crate) fn show(&self, ui: &mut Ui, value: &mut RampValue, default: RampValue) -> Response {
         let width = ui.available_width().min(420.0);
         let (rect, mut response) = ui.allocate_exact_size(vec2(width, HEIGHT + 2.0 * AIR), Sense::hover());
@@ -106,7 +106,7 @@ impl Ramp<'_> {
         response
     }
 
-    /// Lets one handle be moved.
+    /// Shows one handle and moves it.
     fn handle(
         &self,
         ui: &Ui,
@@ -140,7 +140,7 @@ impl Ramp<'_> {
             ui.memory_mut(|memory| memory.set_focus_lock_filter(id, filter));
             let steps = arrow_keys(ui);
             if steps != 0.0 {
-                // Up is up, whichever way the bias bends the curve.
+                // The up key moves the handle up, whichever way the bias bends the curve.
                 let by = steps * KEY_STEP * (high - low) * self.upward(value, handle);
                 handle.set(value, (handle.of(value) + by).clamp(low, high));
             }
@@ -154,7 +154,7 @@ impl Ramp<'_> {
         response.on_hover_text(format!("{} Drag it, or use the up and down keys.", self.hint))
     }
 
-    /// 1 where a larger number lifts the handle, -1 where it lowers it.
+    /// 1 if a larger number raises the handle, -1 if it lowers it.
     fn upward(&self, value: &RampValue, handle: Handle) -> f32 {
         if handle != Handle::Middle {
             return 1.0;
@@ -163,7 +163,7 @@ impl Ramp<'_> {
         if middle_at(*self.bias.start()) > middle_at(*self.bias.end()) { -1.0 } else { 1.0 }
     }
 
-    /// Finds the bias that takes the middle to `wanted`, or as near as it goes; a flat curve cannot be bent.
+    /// Finds the bias that brings the middle closest to `wanted`; a flat curve cannot be bent.
     fn bend(&self, value: &mut RampValue, wanted: f32) {
         let middle_at = |bias| (self.at)(&RampValue { bias, ..*value }, 0.5);
         let (mut low, mut high) = (*self.bias.start(), *self.bias.end());
@@ -182,10 +182,10 @@ impl Ramp<'_> {
         value.bias = 0.5 * (low + high);
     }
 
-    /// Where a part of the way is in the drawing.
+    /// The position of a handle on the screen.
     fn at(&self, area: Rect, value: &RampValue, along: f32) -> Pos2 {
         let (low, high) = (*self.range.start(), *self.range.end());
-        // Small numbers have more room than large ones: that is where hair is told apart.
+        // Small numbers have more room than large ones, because differences between them are more visible.
         let share = (((self.at)(value, along) - low) / (high - low)).clamp(0.0, 1.0).sqrt();
         pos2(area.left() + along * area.width(), area.bottom() - share * area.height())
     }
@@ -205,7 +205,7 @@ impl Ramp<'_> {
                 painter.hline(area.x_range(), y, Stroke::new(1.0, theme::LINE));
             }
             if share < 0.5 {
-                // There stands which end it is.
+                // The names of the ends are there.
                 continue;
             }
             let value = format!("{:.0}{}", low + share * share * (high - low), self.unit);
@@ -234,7 +234,7 @@ impl Ramp<'_> {
     }
 }
 
-/// Up and down keys pressed in this pass, up counted positive; ten times as many with Shift.
+/// The number of up and down keys pressed in this pass, up positive, times ten with Shift.
 fn arrow_keys(ui: &Ui) -> f32 {
     ui.input(|input| {
         let pressed = input.events.iter().map(|event| match event {

@@ -1,4 +1,4 @@
-//! A recording that runs beside the window.
+//! A recording that runs in the background.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -12,10 +12,10 @@ use lovelock_session::progress::Progress;
 
 use super::panels::recording::State;
 
-/// The recording that runs, if one does, and what became of the last one. Dropping it cancels.
+/// The recording that runs, if any, and the result of the last one. Dropping it cancels the recording.
 pub(crate) struct Recorder {
     running: Option<(RecordJob, Pace)>,
-    /// Whether the one that runs was asked to stop.
+    /// Whether the recording that runs was cancelled.
     cancelled: bool,
     state: State,
 }
@@ -27,8 +27,7 @@ impl Default for Recorder {
 }
 
 impl Recorder {
-    /// Starts to record `project`, or its panes put together, to `out`, unless one runs; `resume` goes on with the sequence that
-    /// is there.
+    /// Starts recording `project`, or its panes, to `out`, unless a recording runs. `resume` continues the sequence at `out`.
     pub(crate) fn start(
         &mut self,
         project: Arc<Project>,
@@ -55,7 +54,7 @@ impl Recorder {
         }
     }
 
-    /// Asks the recording to stop.
+    /// Cancels the recording.
     pub(crate) fn cancel(&mut self) {
         if let Some((job, _)) = &self.running {
             job.cancel();
@@ -68,7 +67,7 @@ impl Recorder {
         self.running.is_some()
     }
 
-    /// Takes note of what has happened since. Returns the end of a recording once.
+    /// Updates the state. Returns the end of a recording once.
     pub(crate) fn update(&mut self) -> Option<&State> {
         let (job, pace) = self.running.as_mut()?;
         if let Some(progress) = job.progress() {
@@ -76,7 +75,7 @@ impl Recorder {
                 Progress::Loading { what } => (what, 0, 1),
                 Progress::Loaded { .. } => ("Loaded".to_owned(), 0, 1),
                 Progress::Simulating { done, total } => {
-                    ("Simulating up to the first frame".to_owned(), done, total)
+                    ("Simulating to the first frame".to_owned(), done, total)
                 }
                 Progress::Frame { done, total, .. } => ("Frame".to_owned(), done, total),
                 Progress::Kept { done, total } => ("Kept".to_owned(), done, total),
@@ -104,7 +103,7 @@ impl Recorder {
         Some(&self.state)
     }
 
-    /// What the panel shows.
+    /// The state that the panel shows.
     pub(crate) fn state(&self) -> &State {
         &self.state
     }

@@ -1,4 +1,4 @@
-//! A picture of the window itself, for documents.
+//! Screenshots of the window, for documents.
 
 use std::path::PathBuf;
 
@@ -6,7 +6,7 @@ use egui::ViewportCommand;
 use lovelock_base::clock::Stopwatch;
 use lovelock_record as recording;
 
-/// Takes a picture of the window some seconds after the first hair is on the screen, and closes it.
+/// Takes a screenshot some seconds after the first hair is on the screen, and closes the window.
 pub(crate) struct Screenshot {
     out: Option<PathBuf>,
     after_secs: f64,
@@ -14,12 +14,12 @@ pub(crate) struct Screenshot {
 }
 
 impl Screenshot {
-    /// A picture to be saved as `out`.
+    /// A screenshot that is saved as `out`.
     pub(crate) fn new(out: PathBuf, after_secs: f64) -> Self {
         Self { out: Some(out), after_secs, since: None }
     }
 
-    /// Call once a pass; `ready` says whether hair is on the screen.
+    /// Must be called once per pass; `ready` says whether hair is on the screen.
     pub(crate) fn update(&mut self, ctx: &egui::Context, ready: bool) {
         if ready && self.since.is_none() {
             self.since = Some(Stopwatch::start());

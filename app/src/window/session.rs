@@ -1,4 +1,4 @@
-//! What runs behind the window: the simulation, the drawing, and what they said last.
+//! The threads behind the window: simulation and rendering, with their latest results.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -15,18 +15,18 @@ use lovelock_session::worker::{Event, Worker};
 
 use super::panels::{body, hair};
 
-/// Frames that the plot of stage times shows.
+/// Number of frames in the plot of stage times.
 const PLOTTED_FRAMES: usize = 240;
 
-/// The engine's threads, and what they left last.
+/// The engine's threads and their latest results.
 pub(crate) struct Session {
     worker: Worker,
     painter: RenderThread,
     live: Live,
     access: Access,
-    /// What was last handed to the simulation.
+    /// The project that was last sent to the simulation.
     simulated: Arc<Project>,
-    /// What was last handed to the drawing: the project, the frame and the size.
+    /// The last request to the render thread: project, frame and size.
     pub(crate) drawn: Option<(Arc<Project>, Arc<FrameSnapshot>, [u32; 2])>,
     seen_painted: u64,
     seen_notices: u64,
@@ -39,23 +39,23 @@ pub(crate) struct Session {
     pub(crate) stages: StageHistory,
     pub(crate) passes: PassHistory,
     pub(crate) playing: bool,
-    /// Seconds of the dance a second.
+    /// Seconds of the dance per second.
     pub(crate) rate: f64,
-    /// Pictures a second that the display shows, as was last told.
+    /// The refresh rate of the display that was last reported, images per second.
     display_hz: f64,
-    /// Whether a take plays from its end to its start.
+    /// Whether a take plays backwards.
     pub(crate) backwards: bool,
-    /// Whether the progress of a load is on the screen.
+    /// Whether the progress of a load is shown.
     pub(crate) load_is_seen: bool,
     pub(crate) draw_error: Option<String>,
-    /// Sentences about what is done, not told yet.
+    /// Messages that have not been shown yet.
     pub(crate) done: Vec<String>,
-    /// The take that was recorded last.
+    /// The latest recorded take.
     pub(crate) saved_take: Option<PathBuf>,
 }
 
 impl Session {
-    /// Starts the threads on `project`; each asks `ctx` to repaint when it has something new.
+    /// Starts the threads for `project`. Each requests a repaint of `ctx` when it has a new result.
     pub(crate) fn start(
         project: &Arc<Project>,
         access: Access,
@@ -63,12 +63,12 @@ impl Session {
     ) -> Result<Self, ProjectError> {
         let wake = ctx.clone();
         let painter = RenderThread::start(move || wake.request_repaint())
-            .map_err(|error| ProjectError::work(format!("no thread to draw on: {error}")))?;
+            .map_err(|error| ProjectError::work(format!("the render thread could not be started: {error}")))?;
         let wake = ctx.clone();
         let live = Live::start(move || wake.request_repaint())
-            .map_err(|error| ProjectError::work(format!("no thread to compare on: {error}")))?;
-        // While a picture is drawn, its end will repaint the window: a repaint for every step of the simulation
-        // would take the processor from the drawing.
+            .map_err(|error| ProjectError::work(format!("the comparison thread could not be started: {error}")))?;
+        // While an image is rendered, its end repaints the window anyway. A repaint per step of the simulation would slow down
+        // rendering.
         let (wake, busy) = (ctx.clone(), [painter.busy(), live.busy()]);
         let wake = move || {
             if !busy.iter().any(|busy| busy.load(std::sync::atomic::Ordering::Relaxed)) {
@@ -109,44 +109,44 @@ impl Session {
         &self.worker
     }
 
-    /// What draws.
+    /// The render thread.
     pub(crate) fn painter(&self) -> &RenderThread {
         &self.painter
     }
 
-    /// What draws panes beside each other.
+    /// The thread that renders panes.
     pub(crate) fn live(&self) -> &Live {
         &self.live
     }
 
-    /// Which files the project may reach.
+    /// The files that the project may read.
     pub(crate) fn access(&self) -> &Access {
         &self.access
     }
 
-    /// The user named this file.
+    /// Grants access to a file that the user picked.
     pub(crate) fn pick(&mut self, path: &std::path::Path) {
         self.access.pick(path);
     }
 
-    /// Another project file is open, or none.
+    /// Sets the path of the open project file, if any.
     pub(crate) fn set_project_path(&mut self, path: Option<&PathBuf>) {
         self.access.set_project(path.map(PathBuf::as_path));
     }
 
-    /// Plays or pauses.
+    /// Starts or pauses playback.
     pub(crate) fn set_playing(&mut self, playing: bool) {
         self.playing = playing;
         self.worker.set_playing(playing);
     }
 
-    /// Seconds of the dance a second.
+    /// Sets the rate of playback, seconds of the dance per second.
     pub(crate) fn set_rate(&mut self, rate: f64) {
         self.rate = rate;
         self.worker.set_rate(rate);
     }
 
-    /// How many pictures the display shows in a second.
+    /// Sets the refresh rate of the display, images per second.
     pub(crate) fn set_display_hz(&mut self, hz: f64) {
         if hz.to_bits() != self.display_hz.to_bits() {
             self.display_hz = hz;
@@ -154,16 +154,16 @@ impl Session {
         }
     }
 
-    /// Whether a take plays from its end to its start.
+    /// Sets whether a take plays backwards.
     pub(crate) fn set_backwards(&mut self, backwards: bool) {
         self.backwards = backwards;
         self.worker.set_backwards(backwards);
     }
 
-    /// Frames that the dance, or the take that plays, lasts at `fps` frames a second; at least one.
+    /// The length of the dance or of the take that plays, in frames at `fps` frames per second; at least one.
     pub(crate) fn frames(&self, fps: f64) -> u64 {
         match (&self.frame, &self.simulated.take.file) {
-            // Its last frame is shown for its length.
+            // The last frame is shown for its whole duration.
             (Some(frame), Some(_)) => {
                 ((frame.duration_secs + lovelock_session::clock::STEP_SECS) * fps).floor().max(1.0) as u64
             }
@@ -171,21 +171,21 @@ impl Session {
         }
     }
 
-    /// Takes what the threads left. Returns sentences that the user should see.
+    /// Collects the results of the threads. Returns messages for the user.
     pub(crate) fn update(&mut self) -> Vec<String> {
         let mut said = Vec::new();
         while let Some(event) = self.worker.poll_event() {
             match event {
                 Event::Loaded { scene, problems } => self.take_scene(scene, problems),
                 Event::LoadCancelled => {
-                    said.push("Loading was cancelled; the scene stays as it was.".to_owned());
+                    said.push("Loading was cancelled. The scene is unchanged.".to_owned());
                 }
                 Event::LoadFailed { message } | Event::TakeFailed { message } => said.push(message),
                 Event::EndReached => self.playing = false,
                 Event::TakeSaved { report, because } => {
                     let why = because.map_or_else(String::new, |why| format!(", ended because {why}"));
                     self.done.push(format!(
-                        "The take is in {}: {:.1} s, {} frames{why}.",
+                        "Saved the take {}: {:.1} s, {} frames{why}.",
                         report.path.display(),
                         report.duration_secs,
                         report.frames
@@ -198,7 +198,7 @@ impl Session {
                 }
                 Event::Panicked { thread, message } => {
                     said.push(format!(
-                        "The {thread} met an error and started again; save your project. ({message})"
+                        "The {thread} thread failed and was restarted. Save your project. ({message})"
                     ));
                 }
             }
@@ -216,8 +216,8 @@ impl Session {
         said
     }
 
-    /// Hands on what has changed: the project to the simulation, the frame to the drawing, with the project as it is `seen`
-    /// where the dance is.
+    /// Sends changes on: the project to the simulation, and the frame to the render thread, with the project `seen` at the current
+    /// time.
     pub(crate) fn send(&mut self, project: &Arc<Project>, seen: &Arc<Project>, size: [u32; 2]) {
         if !Arc::ptr_eq(project, &self.simulated) {
             self.simulated = Arc::clone(project);
@@ -227,8 +227,7 @@ impl Session {
             self.set_backwards(false);
         }
         let Some(frame) = &self.frame else { return };
-        // Frames are told apart by what they are and not by their step, which only passing time raises: going to
-        // another time, settling and other hair make new frames of the same step.
+        // Frames are compared by identity and not by their step: seeking, settling and other hair make new frames of the same step.
         let fresh = self.drawn.as_ref().is_some_and(|(drawn, drawn_frame, drawn_size)| {
             Arc::ptr_eq(drawn, seen) && Arc::ptr_eq(drawn_frame, frame) && *drawn_size == size
         });
@@ -243,7 +242,7 @@ impl Session {
         }
     }
 
-    /// Loads again although the project has not changed: a file was picked that it could not reach before.
+    /// Loads again although the project has not changed, because a file was picked that it could not read before.
     pub(crate) fn reload(&mut self, project: &Arc<Project>) {
         self.simulated = Arc::clone(project);
         self.worker.set_project(Arc::clone(project), self.access.clone());

@@ -1,32 +1,32 @@
-//! Colours and spacing of the interface: the only place that names a colour.
+//! Colours and spacing of the interface. Only this module names colours.
 
 #![expect(clippy::disallowed_methods, reason = "colours come from here")]
 
 use egui::{Color32, CornerRadius, FontId, Margin, Stroke, TextStyle, Theme, Vec2, Visuals};
 
-/// What differs from its default, what is chosen, what runs.
+/// Values that differ from their default, selected items, running work.
 pub(crate) const ACCENT: Color32 = Color32::from_rgb(232, 164, 92);
-/// Text that matters less.
+/// Secondary text.
 pub(crate) const QUIET: Color32 = Color32::from_rgb(142, 146, 154);
-/// Something is wrong.
+/// Errors.
 pub(crate) const WRONG: Color32 = Color32::from_rgb(236, 106, 94);
-/// All is well.
+/// Good values.
 pub(crate) const GOOD: Color32 = Color32::from_rgb(112, 178, 130);
-/// Something may be seen.
+/// Warnings.
 pub(crate) const WATCH: Color32 = Color32::from_rgb(232, 204, 96);
-/// A recording runs.
+/// Recording.
 pub(crate) const RECORDING: Color32 = Color32::from_rgb(226, 72, 62);
-/// Behind everything.
+/// Background of the window.
 pub(crate) const PAGE: Color32 = Color32::from_rgb(19, 20, 23);
 pub(crate) const PANEL: Color32 = Color32::from_rgb(28, 30, 34);
 const RAISED: Color32 = Color32::from_rgb(44, 47, 53);
 const HOVERED: Color32 = Color32::from_rgb(58, 62, 70);
 const TEXT: Color32 = Color32::from_rgb(214, 216, 221);
-/// Text over pictures.
+/// Text over images.
 pub(crate) const BRIGHT: Color32 = Color32::from_rgb(236, 238, 242);
 pub(crate) const LINE: Color32 = Color32::from_rgb(46, 49, 55);
 
-/// Colours of the lines in plots, told apart by those who see no red or green too (after Okabe and Ito).
+/// Colours of the lines in plots, distinguishable with red-green colour blindness (after Okabe and Ito).
 pub(crate) const PLOT: [Color32; 6] = [
     Color32::from_rgb(230, 159, 0),
     Color32::from_rgb(86, 180, 233),
@@ -36,7 +36,7 @@ pub(crate) const PLOT: [Color32; 6] = [
     Color32::from_rgb(204, 121, 167),
 ];
 
-/// Lines of numbers that belong together: x, y, z and one more.
+/// Colours of the components of a vector: x, y, z and one more.
 pub(crate) const AXES: [Color32; 4] = [
     Color32::from_rgb(226, 112, 96),
     Color32::from_rgb(118, 190, 112),
@@ -50,21 +50,21 @@ pub(crate) fn from_linear(linear: [f32; 3]) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
-/// A colour as the screen has it.
+/// A colour in sRGB.
 pub(crate) fn from_srgb([r, g, b]: [u8; 3]) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
-/// What the screen shows of a colour.
+/// The sRGB bytes of a colour.
 pub(crate) fn to_srgb(color: Color32) -> [u8; 3] {
     [color.r(), color.g(), color.b()]
 }
 
-/// Dresses `ctx`.
+/// Applies the theme to `ctx`.
 pub(crate) fn apply(ctx: &egui::Context) {
     ctx.set_theme(Theme::Dark);
     let mut visuals = Visuals::dark();
-    // The window is cleared to the panels' colour.
+    // The window is already cleared to the panels' colour.
     visuals.panel_fill = Color32::TRANSPARENT;
     visuals.window_fill = PANEL;
     visuals.extreme_bg_color = PAGE;

@@ -1,4 +1,4 @@
-//! What the pointer does in the picture beside moving the camera: it moves ties, cuts hair, and chooses and changes colliders.
+//! Tools of the pointer in the image: moving ties, cutting hair, selecting and editing colliders.
 
 use egui::{PointerButton, Response, Ui};
 use lovelock_motion::{Collider, ColliderEdits, FieldPose, PlacedCollider, collider_lines, place_colliders};
@@ -11,8 +11,7 @@ use super::overlay::{self, View};
 use super::{Window, notices};
 
 impl Window {
-    /// Lets the pointer do what the tools are for, and paints what belongs over the picture. Returns whether the pointer is
-    /// free to move the camera.
+    /// Runs the tools and paints their overlays. Returns whether the pointer is free to move the camera.
     pub(super) fn tools(&mut self, ui: &Ui, response: &Response, project: &mut Project) -> bool {
         let painted = self.session.painted.clone();
         let view = painted.as_ref().zip(self.viewport.place(response.rect));
@@ -42,15 +41,15 @@ impl Window {
         !(held && response.dragged_by(PointerButton::Primary))
     }
 
-    /// Cuts the hair beyond a line on the screen, as it is in the picture.
+    /// Cuts the hair beyond a line on the screen, as it is in the image.
     fn cut(&mut self, view: View, painted: &RenderedImage, line: [egui::Pos2; 2], project: &mut Project) {
         match overlay::scissors::cut(view, &painted.snapshot, line) {
             Some(cut) => project.hair.cut = project.hair.cut.and(&cut),
-            None => self.notices.tell(notices::Kind::Warning, "The line meets no hair.".to_owned()),
+            None => self.notices.tell(notices::Kind::Warning, "The line crosses no hair.".to_owned()),
         }
     }
 
-    /// What hair collides with, as wires; a click chooses the shape that is edited, and its handles change it.
+    /// Shows the colliders as wireframes. A click selects a shape, and its handles edit it.
     fn colliders_over(
         &mut self,
         ui: &Ui,
@@ -93,7 +92,7 @@ fn placed(snapshot: &FrameSnapshot, colliders: &[Collider]) -> Vec<PlacedCollide
     placed
 }
 
-/// The wires of all that was fitted to the body, as it stands and with its changes.
+/// The wireframes of all fitted colliders in the current pose, with the user's changes.
 fn wires(snapshot: &FrameSnapshot, edits: &ColliderEdits) -> Vec<Wires> {
     let (scene, pose) = (&snapshot.scene, &snapshot.pose);
     let changed: Vec<Collider> = scene

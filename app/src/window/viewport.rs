@@ -1,4 +1,4 @@
-//! The picture, and what lies over it.
+//! The image in the window.
 
 use egui::{
     Align2, Color32, ColorImage, FontId, Rect, Response, Sense, TextureHandle, TextureOptions, Ui, Vec2, pos2,
@@ -8,8 +8,8 @@ use lovelock_session::render_thread::{Adapter, RenderedImage};
 
 use super::theme;
 
-/// The most pixels that are drawn for the window, so that pictures come often enough to style by: a real card draws
-/// every pixel, the processor fewer, and a software adapter fewer still.
+/// The most pixels that are rendered for the window, so that the image updates often enough for styling: a graphics card renders
+/// every pixel, the CPU fewer, and a software adapter fewer still.
 pub(crate) fn most_pixels(adapter: Option<&Adapter>) -> f32 {
     match adapter {
         Some(adapter) if !adapter.software => f32::INFINITY,
@@ -18,18 +18,18 @@ pub(crate) fn most_pixels(adapter: Option<&Adapter>) -> f32 {
     }
 }
 
-/// The picture as a texture of the window.
+/// The image as a texture of the window.
 #[derive(Default)]
 pub(crate) struct Viewport {
     texture: Option<TextureHandle>,
     shown: Option<(u64, usize)>,
-    /// Size that pictures should have, pixels.
+    /// Requested size of images, pixels.
     pub(crate) wanted: [u32; 2],
 }
 
 impl Viewport {
-    /// Shows the newest picture over the whole of `ui`. `most_pixels` is what the adapter draws quickly, `scale` how
-    /// many pixels a pixel of the screen gets (0 chooses).
+    /// Shows the newest image over the whole of `ui`. `most_pixels` is the number of pixels that the adapter renders quickly, `scale`
+    /// the number of rendered pixels per screen pixel (0 is automatic).
     pub(crate) fn show(
         &mut self,
         ui: &mut Ui,
@@ -41,7 +41,7 @@ impl Viewport {
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Viewport"));
         self.wanted = size_for(rect.size(), ui.ctx().pixels_per_point(), most_pixels, scale);
         if let Some(painted) = painted {
-            // Several pictures may be of one step: in slow motion they lie before it.
+            // In slow motion several images belong to one step.
             let key = (painted.snapshot.time_secs.to_bits(), std::sync::Arc::as_ptr(painted) as usize);
             if self.shown != Some(key) && !painted.picture.rgba.is_empty() {
                 let size = [painted.picture.width as usize, painted.picture.height as usize];
@@ -57,7 +57,7 @@ impl Viewport {
         }
         let painter = ui.painter_at(rect);
         let place = self.texture.as_ref().map(|texture| fit(texture.size_vec2(), rect));
-        // Nothing is painted under the picture where it fills the page.
+        // No background is painted if the image fills the viewport.
         if place.is_none_or(|place| !place.expand(1.0).contains_rect(rect)) {
             painter.rect_filled(rect, 0.0, theme::PAGE);
         }
@@ -80,12 +80,12 @@ impl Viewport {
         response
     }
 
-    /// Where in `rect` the picture is; none before there is one.
+    /// The position of the image in `rect`; `None` before there is one.
     pub(crate) fn place(&self, rect: Rect) -> Option<Rect> {
         self.texture.as_ref().map(|texture| fit(texture.size_vec2(), rect))
     }
 
-    /// A line in a corner of the picture.
+    /// A line of text in a corner of the image.
     pub(crate) fn caption(ui: &Ui, rect: Rect, align: Align2, text: &str, color: Color32) {
         if text.is_empty() {
             return;
@@ -113,7 +113,7 @@ pub(crate) fn size_for(size: Vec2, pixels_per_point: f32, most_pixels: f32, scal
     [side(pixels.x), side(pixels.y)]
 }
 
-/// The largest place in `rect` of the proportions of `size`, in its middle.
+/// The largest centred rectangle in `rect` with the aspect ratio of `size`.
 pub(crate) fn fit(size: Vec2, rect: Rect) -> Rect {
     let scale = (rect.width() / size.x.max(1.0)).min(rect.height() / size.y.max(1.0));
     Rect::from_center_size(rect.center(), size * scale)

@@ -1,4 +1,4 @@
-//! The line over the panes: what they show, and what is done with all of them.
+//! The toolbar above the panes: what they show, and actions on all of them.
 
 use egui::{DragValue, RichText, Ui, Vec2};
 use egui_material_icons::{MaterialIcon, icons};
@@ -10,22 +10,22 @@ use super::layout::CompareLayout;
 use super::legend::LARGEST;
 use crate::window::theme;
 
-/// What the line asks for.
+/// An action that the toolbar requests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ask {
-    /// A pane more.
+    /// Add a pane.
     Add,
-    /// The panes as a picture file.
+    /// Save the panes as an image file.
     Save,
-    /// The dance as a film of the panes.
+    /// Record the dance as a film of the panes.
     Film,
-    /// The whole of the pictures again.
+    /// Show the whole images again.
     WholePicture,
-    /// Back to the one picture.
+    /// Close the comparison.
     Close,
 }
 
-/// The line. `magnified` is how many times larger than the whole the panes show.
+/// Shows the toolbar. `magnified` is the magnification of the panes.
 pub(super) fn ui(
     ui: &mut Ui,
     layout: &mut CompareLayout,
@@ -40,12 +40,12 @@ pub(super) fn ui(
             (
                 false,
                 "Grid",
-                "All panes beside each other. Hold V to see the second of a pair in place of a pane.",
+                "Shows all panes side by side. Hold V to see the second of a pair in place of a pane.",
             ),
             (
                 true,
                 "Wipe",
-                "Two panes on one page, divided by a line to drag. Hold V to see them the other way round.",
+                "Shows two panes on one page, divided by a line that can be dragged. Hold V to swap them.",
             ),
         ] {
             if ui.selectable_label(layout.wipe == wipe, name).on_hover_text(tip).clicked() {
@@ -67,7 +67,7 @@ pub(super) fn ui(
             project.picture.exposure_stops = stops;
         }
         if magnified > 1.001 {
-            let tip = "Shows the whole picture again. Ctrl+wheel over a pane magnifies all panes.";
+            let tip = "Shows the whole image again. Ctrl+wheel over a pane magnifies all panes.";
             if ui.button(format!("{magnified:.1}×")).on_hover_text(tip).clicked() {
                 ask = Some(Ask::WholePicture);
             }
@@ -78,17 +78,17 @@ pub(super) fn ui(
             &mut layout.probe,
             icons::ICON_COLORIZE,
             "Probe",
-            "Plots the light along the ray through a hair that you click.",
+            "Plots the transmittance along the light ray through the hair that you click.",
         );
         toggle(
             ui,
             &mut layout.costs,
             icons::ICON_QUERY_STATS,
             "Costs",
-            "Plots what the panes take, and their error against it.",
+            "Plots the rendering times of the panes, and their errors against cost.",
         );
         let measures =
-            "Measures the error of every pane against the exact method, for the first light that is on. It takes a part of the time.";
+            "Measures the error of every pane against the exact method, for the first light that is on. This slows down rendering.";
         toggle(ui, &mut layout.measures, icons::ICON_STRAIGHTEN, "Measure errors", measures);
         ui.separator();
         let mut button =
@@ -112,7 +112,7 @@ pub(super) fn ui(
             ui,
             icons::ICON_PHOTO_CAMERA,
             "Save comparison",
-            "Saves the panes with their labels as a picture (Ctrl+P).",
+            "Saves the panes with their labels as an image (Ctrl+P).",
             true,
             Ask::Save,
         );
@@ -124,7 +124,7 @@ pub(super) fn ui(
             true,
             Ask::Film,
         );
-        button(ui, icons::ICON_CLOSE, "Close comparison", "Back to the one picture (C).", true, Ask::Close);
+        button(ui, icons::ICON_CLOSE, "Close comparison", "Closes the comparison (C).", true, Ask::Close);
     });
     ask
 }
@@ -157,7 +157,7 @@ fn pair(ui: &mut Ui, layout: &mut CompareLayout, project: &Project) {
     }
 }
 
-/// What the panes show, and the largest number of its scale.
+/// The quantity that the panes show, and the largest value of its scale.
 fn shows(ui: &mut Ui, layout: &mut CompareLayout) {
     let response = egui::ComboBox::from_id_salt("shows")
         .selected_text(layout.shows.label())
@@ -181,7 +181,7 @@ fn shows(ui: &mut Ui, layout: &mut CompareLayout) {
         })
         .response;
     response
-        .widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Largest number of the scale"));
+        .widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Largest value of the scale"));
 }
 
 /// A button that stays pressed.

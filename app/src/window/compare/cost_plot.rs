@@ -1,4 +1,4 @@
-//! What the panes take: over the last seconds, and against their error.
+//! The cost of the panes: over the last seconds, and against their error.
 
 use egui::{Align, Layout, RichText, Ui, vec2};
 use egui_plot::{
@@ -19,7 +19,7 @@ const TABLE_WIDTH: f32 = 476.0;
 /// Width of its column of names, points.
 const NAME_WIDTH: f32 = 148.0;
 
-/// The choice of plot, the plot, and the medians beside it where there is room.
+/// The choice of plot, the plot, and the medians beside it if there is room.
 pub(super) fn ui(ui: &mut Ui, plot: &mut CostPlot, costs: &Costs, project: &Project, panes: &[usize]) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
@@ -59,7 +59,7 @@ fn stage(plot: CostPlot) -> impl Fn(&LiveTimes) -> Option<f64> + Copy {
     }
 }
 
-/// The ways that are on the screen, with their colours.
+/// The variants that are on the screen, with their colours.
 fn shown<'a>(
     costs: &'a Costs,
     project: &'a Project,
@@ -72,7 +72,7 @@ fn shown<'a>(
 }
 
 fn over_time(ui: &mut Ui, which: CostPlot, costs: &Costs, project: &Project, panes: &[usize]) {
-    // Seconds before the newest picture: where nothing is drawn, no time passes.
+    // Seconds before the newest image: while nothing is rendered, no time passes.
     let newest = |way: &Way| way.samples.back().map_or(0.0, |sample| sample.at_secs);
     let now = shown(costs, project, panes).map(|(_, way)| newest(way)).fold(0.0, f64::max);
     let lines: Vec<_> = shown(costs, project, panes)
@@ -113,7 +113,7 @@ fn over_time(ui: &mut Ui, which: CostPlot, costs: &Costs, project: &Project, pan
         });
 }
 
-/// Error and what it costs of one way, as powers of ten; none where one of them is none.
+/// Error and cost of one variant, as powers of ten; `None` if either is missing or zero.
 fn place(way: &Way, which: CostPlot) -> Option<[f64; 2]> {
     let error = way.error.rmse()?;
     let cost = match which {
@@ -138,7 +138,7 @@ fn scatter(ui: &mut Ui, which: CostPlot, costs: &Costs, project: &Project, panes
         .collect();
     let unit = if which == CostPlot::ErrorMemory { "MiB" } else { "ms" };
     if ways.iter().all(|(_, way, _)| way.error == LiveError::NotMeasured) {
-        note(ui, "Errors are not measured: press the ruler over the panes.");
+        note(ui, "Errors are not measured. Press the ruler above the panes.");
     } else if !left_out.is_empty() {
         note(ui, format!("Not on these axes: {}.", left_out.join(", ")));
     }
@@ -181,7 +181,7 @@ fn scatter(ui: &mut Ui, which: CostPlot, costs: &Costs, project: &Project, panes
         });
 }
 
-/// A plot that neither moves nor zooms.
+/// A plot that cannot be panned or zoomed.
 fn plain(id: &str) -> Plot<'_> {
     Plot::new(id.to_owned())
         .allow_zoom(false)
@@ -193,12 +193,12 @@ fn plain(id: &str) -> Plot<'_> {
         .show_y(false)
 }
 
-/// Lines at 1, 2 and 5 times the powers of ten, which are the coordinates here.
+/// Grid lines at 1, 2 and 5 times the powers of ten; coordinates are the exponents.
 fn decades((low, high): (f64, f64)) -> Vec<GridMark> {
     if !(low.abs() < 30.0 && high.abs() < 30.0) {
         return Vec::new();
     }
-    // Where many powers are in view, they alone.
+    // If many powers are visible, only lines at powers.
     let parts: &[f64] = if high - low > 2.2 { &[1.0] } else { &[1.0, 2.0, 5.0] };
     let powers = low.floor() as i32..=high.ceil() as i32;
     let mark = |value: f64| GridMark { value, step_size: 0.5 };
@@ -210,13 +210,13 @@ fn decades((low, high): (f64, f64)) -> Vec<GridMark> {
     if marks.len() > 1 {
         return marks;
     }
-    // A part of a power alone is in view: even steps of the number itself.
+    // If less than one power is visible, even steps of the number itself.
     let even = round_steps((10_f64.powf(low), 10_f64.powf(high)));
     let even = even.into_iter().map(|step| step.value.log10());
     even.filter(|value| (low..=high).contains(value)).map(mark).collect()
 }
 
-/// A number with two digits that count.
+/// A number with two significant digits.
 fn short(value: f64) -> String {
     let digits = (1 - value.abs().max(1e-9).log10().floor() as i32).clamp(0, 6) as usize;
     let text = format!("{value:.digits$}");
@@ -248,7 +248,7 @@ fn table(ui: &mut Ui, costs: &Costs, project: &Project, panes: &[usize]) {
     let titles = ["build", "ask", "draw", "whole", "memory", "error"];
     row(
         ui,
-        (RichText::new("ms").color(theme::QUIET), "Milliseconds, on what each line names."),
+        (RichText::new("ms").color(theme::QUIET), "Milliseconds on the device that each line names."),
         titles.map(|title| RichText::new(title).color(theme::QUIET)),
     );
     for (index, way) in shown(costs, project, panes) {
@@ -275,7 +275,7 @@ fn table(ui: &mut Ui, costs: &Costs, project: &Project, panes: &[usize]) {
             ],
         );
     }
-    note(ui, "Medians of the last pictures, while everything else runs too.");
+    note(ui, "Medians of the last images, measured while everything else runs.");
 }
 
 #[cfg(test)]

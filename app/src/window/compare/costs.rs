@@ -1,4 +1,4 @@
-//! What the panes took over the last seconds, and what became of them under other settings.
+//! The rendering times of the panes over the last seconds, and their history under other settings.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -13,11 +13,11 @@ use lovelock_session::render_thread::Adapter;
 
 /// Seconds that are plotted.
 pub(super) const PLOTTED_SECS: f64 = 12.0;
-/// Pictures of a way that are kept, and ways.
+/// Numbers of images per variant and of variants that are kept.
 const MOST_SAMPLES: usize = 720;
 const MOST_WAYS: usize = 60;
 
-/// Times of one picture.
+/// Times of one image.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sample {
     /// Seconds since the window was opened.
@@ -25,47 +25,47 @@ pub(super) struct Sample {
     pub(super) times: LiveTimes,
 }
 
-/// One way to draw, with what its pictures took.
+/// One variant of rendering, with the times of its images.
 #[derive(Clone, Debug)]
 pub(super) struct Way {
     pub(super) contender: Contender,
-    /// What drew it, whatever was chosen.
+    /// The adapter that rendered it, whichever backend was chosen.
     pub(super) adapter: Adapter,
     pub(super) samples: VecDeque<Sample>,
     pub(super) shadow_bytes: u64,
     pub(super) error: LiveError,
 }
 
-/// What belongs to one trail: a way whose other settings change. The backend is the one that drew.
+/// The key of one trail: a variant whose other settings change. The backend is the one that rendered it.
 pub(super) type Series = (ShadowMethod, Transparency, Backend);
 
 impl Way {
-    /// The trail that it belongs to.
+    /// The trail to which it belongs.
     pub(super) fn series(&self) -> Series {
         (self.contender.shadow.method, self.contender.transparency, self.adapter.backend)
     }
 
-    /// Its method and what drew it, such as `Voxel map · CPU`: times of two backends do not compare.
+    /// Its method and its backend, such as `Voxel map · CPU`: times of two backends are not comparable.
     pub(super) fn label(&self) -> String {
         format!("{} · {}", self.contender.shadow.method.label(), self.adapter.backend_label())
     }
 
-    /// The median of a stage over its last pictures, milliseconds; none where the device does not measure it.
+    /// The median of a stage over its last images, milliseconds; `None` if the device does not measure it.
     pub(super) fn median(&self, stage: impl Fn(&LiveTimes) -> Option<f64>) -> Option<f64> {
         median(self.samples.iter().filter_map(|sample| stage(&sample.times)))
     }
 
-    /// The median of the whole pictures, milliseconds.
+    /// The median of the whole images, milliseconds.
     pub(super) fn whole(&self) -> f64 {
         self.median(|times| Some(times.whole)).unwrap_or_default()
     }
 }
 
-/// The ways that were drawn, the one that was drawn last at the end.
+/// The rendered variants, the latest at the end.
 pub(super) struct Costs {
     clock: Stopwatch,
     ways: Vec<Way>,
-    /// What all ways were drawn of, and how large a pane was to be.
+    /// The project that all variants share, and the size of a pane.
     drawn_of: Option<(Arc<Project>, [u32; 2])>,
 }
 
@@ -76,12 +76,12 @@ impl Default for Costs {
 }
 
 impl Costs {
-    /// Takes note of a pane.
+    /// Adds the times of a pane.
     pub(super) fn push(&mut self, pane: &LivePane) {
         if pane.problem.is_some() {
             return;
         }
-        // Ways are held against each other, so they are of one thing alone.
+        // Variants are compared with each other, so they must show the same scene.
         let same = self.drawn_of.as_ref().is_some_and(|(project, size)| {
             *size == pane.asked_size && is_same_but_for_panes(project, &pane.project)
         });
@@ -89,7 +89,7 @@ impl Costs {
             self.ways.clear();
         }
         self.drawn_of = Some((Arc::clone(&pane.project), pane.asked_size));
-        // One choice can come to mean another backend.
+        // The same choice can resolve to another backend later.
         self.ways
             .retain(|way| way.contender.backend != pane.contender.backend || way.adapter == pane.adapter);
         let known = self.ways.iter().position(|way| way.contender == pane.contender);
@@ -104,7 +104,7 @@ impl Costs {
             },
         };
         let at_secs = self.clock.secs();
-        // Those of former times count no more; the last ones of a way that rests stay for its trail.
+        // Old times are dropped; the last ones of a variant that is no longer rendered stay for its trail.
         while way.samples.len() >= MOST_SAMPLES
             || way.samples.front().is_some_and(|sample| sample.at_secs < at_secs - PLOTTED_SECS)
         {
@@ -121,18 +121,18 @@ impl Costs {
         self.ways.push(way);
     }
 
-    /// What a contender took.
+    /// The times of a contender.
     pub(super) fn of(&self, contender: &Contender) -> Option<&Way> {
         self.ways.iter().find(|way| way.contender == *contender)
     }
 
-    /// The ways of a trail, the one that was drawn last at the end.
+    /// The variants of a trail, the latest at the end.
     pub(super) fn trail(&self, series: Series) -> impl Iterator<Item = &Way> {
         self.ways.iter().filter(move |way| way.series() == series)
     }
 }
 
-/// Whether two projects are one in all that panes share.
+/// Whether two projects are equal in everything that panes share.
 fn is_same_but_for_panes(a: &Arc<Project>, b: &Arc<Project>) -> bool {
     let of_panes = |project: &Project| Project { compare: a.compare.clone(), ..project.clone() };
     Arc::ptr_eq(a, b) || **a == of_panes(b)

@@ -1,4 +1,4 @@
-//! Where panes are.
+//! The positions of panes.
 
 use egui::{Rect, Vec2, pos2};
 use lovelock_panes::sheet::pane_columns;
@@ -11,11 +11,11 @@ pub(super) fn columns(panes: usize, page: Vec2, header: f32) -> usize {
     pane_columns(panes, page.into(), header)
 }
 
-/// The places of `panes` on a page, row by row.
+/// The positions of `panes` on a page, row by row.
 pub(super) fn places(panes: usize, page: Rect, header: f32) -> Vec<Rect> {
     let columns = columns(panes, page.size(), header);
     let rows = panes.div_ceil(columns).max(1);
-    // Whole points: pictures stay sharp.
+    // Whole points keep images sharp.
     let edge =
         |i: usize, of: usize, from: f32, length: f32| (from + (length + GAP) * i as f32 / of as f32).round();
     (0..panes)

@@ -1,4 +1,4 @@
-//! The line over a pane: its method, its settings, and what can be done with it.
+//! The title bar of a pane: its method, its settings, and its buttons.
 
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{PopupCloseBehavior, Rect, RichText, Ui, UiBuilder, pos2, vec2};
@@ -10,24 +10,24 @@ use lovelock_render::{Backend, PictureSettings, ShadowMethod, ShadowSettings, Tr
 use crate::window::control::{Number, choice, note};
 use crate::window::{panels, theme};
 
-/// Height of the line, points.
+/// Height of the title bar, points.
 pub(super) const HEIGHT: f32 = 26.0;
 
-/// What is asked of a pane beside other settings.
+/// An action on a pane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ask {
-    /// Its settings are to be the project's.
+    /// Use its settings for the project.
     Use(usize),
-    /// It changes places with the next one.
+    /// Swap it with the next one.
     Swap(usize),
-    /// It goes.
+    /// Remove it.
     Remove(usize),
 }
 
 /// Width of one of the buttons at the right, points.
 const BUTTON: f32 = 24.0;
 
-/// The line over pane `index` of `panes`, which fills `line`; `pane` is changed by its controls, `drawn` is its last picture.
+/// Shows the title bar of pane `index` of `panes` in `line`. Its controls change `pane`; `drawn` is its last image.
 pub(super) fn ui(
     ui: &mut Ui,
     line: Rect,
@@ -46,7 +46,7 @@ pub(super) fn ui(
     ui.scope_builder(UiBuilder::new().max_rect(part(left, left + width)), |ui| {
         method(ui, index, pane, width);
     });
-    // What drew it, which the choice of a backend does not say.
+    // The adapter, which does not follow from the chosen backend.
     let drawn = drawn.filter(|drawn| drawn.contender == *pane && !drawn.adapter.name.is_empty());
     let said = drawn.map_or_else(|| pane.settings_label(), LivePane::settings_label);
     let tip = drawn.map_or_else(|| said.clone(), |drawn| format!("{said}\n{}", drawn.adapter.name));
@@ -72,9 +72,9 @@ pub(super) fn ui(
             ask = Some(what);
         }
     };
-    let swap = "Changes places with the next pane.";
+    let swap = "Swaps this pane with the next one.";
     button(1, icons::ICON_SWAP_HORIZ, "Swap pane", swap, index + 1 < panes, Ask::Swap(index));
-    let take = "Draws the project this way from now on.";
+    let take = "Uses these settings for the project.";
     button(2, icons::ICON_CHECK, "Use pane", take, true, Ask::Use(index));
     button(3, icons::ICON_CLOSE, "Remove pane", "Removes this pane.", panes > 1, Ask::Remove(index));
     ask
@@ -119,8 +119,8 @@ pub(super) fn all_settings(ui: &mut Ui, pane: &mut Contender) {
     if let Some(take) = pane.take_name() {
         ui.horizontal(|ui| {
             ui.label(format!("Shows the {take}"));
-            let tip = "Shows what the other panes show, in place of the take.";
-            if ui.button("Leave it").on_hover_text(tip).clicked() {
+            let tip = "Shows the scene of the other panes in place of the take.";
+            if ui.button("Remove take").on_hover_text(tip).clicked() {
                 pane.take = None;
             }
         });

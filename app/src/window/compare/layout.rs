@@ -1,4 +1,4 @@
-//! How the comparison is laid out: kept between runs, not part of the project.
+//! The layout of the comparison, which is stored between runs and is not part of the project.
 
 use lovelock_panes::sheet::Sheet;
 use lovelock_panes::view::{LiveShows, LiveView};
@@ -6,44 +6,44 @@ use serde::{Deserialize, Serialize};
 
 use crate::window::theme;
 
-/// How the comparison is laid out.
+/// The layout of the comparison.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 #[expect(clippy::struct_excessive_bools, reason = "switches, each with its own button")]
 pub(crate) struct CompareLayout {
-    /// Whether the panes are on the screen in place of the one picture.
+    /// Whether the panes are shown in place of the single image.
     pub(crate) shown: bool,
-    /// Whether two panes share the page, divided by a line, in place of all in a grid.
+    /// Whether two panes share the page, divided by a line, instead of a grid of all panes.
     pub(crate) wipe: bool,
-    /// The panes left and right of that line; a held key shows the second in place of the others.
+    /// The panes to the left and right of the line. A held key shows the second in place of the others.
     pub(crate) pair: [usize; 2],
-    /// Where the line is, a share of the picture's width.
+    /// The position of the line, as a fraction of the image's width.
     pub(crate) split: f32,
-    /// What the panes show.
+    /// The quantity that the panes show.
     pub(crate) shows: LiveShows,
-    /// What the last colour of the scale stands for.
+    /// The value of the last colour of the scale.
     pub(crate) largest: f32,
     /// Whether errors are measured.
     pub(crate) measures: bool,
-    /// Whether the plot of light along a ray is open.
+    /// Whether the plot of transmittance along a ray is open.
     pub(crate) probe: bool,
     /// Whether the plots of cost are open.
     pub(crate) costs: bool,
-    /// Which plot of cost.
+    /// The selected plot of cost.
     pub(crate) cost_plot: CostPlot,
 }
 
-/// What is plotted of the cost.
+/// A plot of cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum CostPlot {
-    /// The whole picture over the last seconds.
+    /// The time of the whole image over the last seconds.
     #[default]
     Whole,
-    /// The making of shadow maps over the last seconds.
+    /// The time to build the shadow maps over the last seconds.
     Build,
-    /// Their asking.
+    /// The time to look up the shadow maps over the last seconds.
     Ask,
-    /// The rest of the picture.
+    /// The time of the rest of the image over the last seconds.
     Draw,
     /// Error against time.
     ErrorTime,
@@ -69,14 +69,14 @@ impl CostPlot {
 
     pub(crate) const fn tip(self) -> &'static str {
         match self {
-            Self::Whole => "What a picture took over the last seconds, without simulation and strands.",
-            Self::Build => "What making the shadow maps took over the last seconds.",
-            Self::Ask => "What asking the shadow maps at all strand points took over the last seconds.",
-            Self::Draw => "What the rest of the picture took over the last seconds.",
+            Self::Whole => "Time per image over the last seconds, without simulation and interpolation of strands.",
+            Self::Build => "Time to build the shadow maps over the last seconds.",
+            Self::Ask => "Time to look up the shadow maps at all strand points over the last seconds.",
+            Self::Draw => "Time of the rest of the image over the last seconds.",
             Self::ErrorTime => {
-                "Each way as a point: lower left is better. Its former settings are its trail."
+                "Each variant as a point: lower left is better. Its previous settings form a trail."
             }
-            Self::ErrorMemory => "The same against the memory of the shadow maps.",
+            Self::ErrorMemory => "Error against the memory of the shadow maps.",
         }
     }
 }
@@ -99,12 +99,12 @@ impl Default for CompareLayout {
 }
 
 impl CompareLayout {
-    /// The two panes that are compared, of `panes` that there are.
+    /// The two panes that are compared, out of `panes`.
     pub(crate) fn pair_of(&self, panes: usize) -> [usize; 2] {
         self.pair.map(|pane| pane.min(panes.saturating_sub(1)))
     }
 
-    /// The panes put together into one picture as they are on the screen.
+    /// The panes composed into one image as they are on the screen.
     pub(crate) fn sheet(&self) -> Sheet {
         Sheet {
             wipe: self.wipe.then_some((self.pair, self.split)),
@@ -114,13 +114,13 @@ impl CompareLayout {
         }
     }
 
-    /// What the panes show.
+    /// The quantity that the panes show.
     pub(crate) fn view(&self) -> LiveView {
         let measures = self.measures || self.shows.colors().is_some();
         LiveView { shows: self.shows, largest: self.largest, measures, light: 0 }
     }
 
-    /// The panes that are on the screen, of `panes` that there are.
+    /// The panes that are on the screen, out of `panes`.
     pub(crate) fn visible(&self, panes: usize) -> Vec<usize> {
         match (self.wipe, self.pair_of(panes)) {
             (true, [left, right]) if left == right => vec![left],

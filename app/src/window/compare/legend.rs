@@ -1,4 +1,4 @@
-//! The scale of the colours that panes show errors in.
+//! The colour scale of the errors that panes show.
 
 use egui::{Align2, FontId, Rect, Sense, Stroke, Ui, pos2, vec2};
 use lovelock_metrics::ticks;
@@ -9,10 +9,10 @@ use crate::window::theme;
 /// Height of the strip, points.
 const HEIGHT: f32 = 30.0;
 
-/// What the last colour may stand for.
+/// The values that the last colour can have.
 pub(super) const LARGEST: [f32; 6] = [0.02, 0.05, 0.1, 0.25, 0.5, 1.0];
 
-/// The strip with the scale; nothing where panes show pictures.
+/// The strip with the scale; nothing if panes show images.
 pub(super) fn ui(ui: &mut Ui, shows: LiveShows, largest: f32) {
     let Some(colors) = shows.colors() else { return };
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());

@@ -1,4 +1,4 @@
-//! Several ways to draw the same hair at the same instant, beside each other.
+//! Several renderings of the same hair at the same instant, side by side.
 
 mod bar;
 mod cost_plot;
@@ -33,7 +33,7 @@ use zoom::Zoom;
 use super::Window;
 use super::command::Command;
 
-/// What the comparison shows, and what it asked for last.
+/// The state of the comparison, and its last request.
 #[derive(Default)]
 pub(crate) struct Compare {
     panes: [Option<Arc<LivePane>>; CompareSection::MOST_PANES],
@@ -43,23 +43,23 @@ pub(crate) struct Compare {
     textures: PaneTextures,
     zoom: Zoom,
     costs: Costs,
-    /// The hair that was asked for, and what came of it.
+    /// The hair that was probed, and the result.
     place: Option<ProbePlace>,
     probed: Option<Arc<LiveProbe>>,
-    /// Size that panes should have, pixels.
+    /// Requested size of panes, pixels.
     wanted: [u32; 2],
     /// Size of the page that the panes share, points.
     page: egui::Vec2,
     /// Whether the line of the wipe is being dragged.
     splitting: bool,
-    /// Whether a menu was open when the pointer was pressed: the click then closes it and means nothing else.
+    /// Whether a menu was open when the pointer was pressed: the click then only closes it.
     menu_open: bool,
     saving: Vec<Saving>,
     sent: Option<LiveRequest>,
 }
 
 impl Compare {
-    /// Takes what the thread left. Returns sentences that the user should see.
+    /// Collects the results of the thread. Returns messages for the user.
     pub(crate) fn update(&mut self, live: &Live) -> Vec<String> {
         for (index, (seen, held)) in self.seen.iter_mut().zip(&mut self.panes).enumerate() {
             if let Some(pane) = live.pane(index).and_then(|slot| slot.newer_than(seen)) {
@@ -73,7 +73,7 @@ impl Compare {
         live.notices().newer_than(&mut self.seen_notices).map(|said| (*said).clone()).into_iter().collect()
     }
 
-    /// Asks for the panes on the newest frame, where something has changed.
+    /// Requests the panes of the newest frame if something has changed.
     pub(crate) fn send(
         &mut self,
         live: &Live,
@@ -91,7 +91,7 @@ impl Compare {
             panes: layout.visible(project.compare.panes.len()),
             width,
             height,
-            // What is compared is of one instant; where time stands still every pane is.
+            // All panes must show one instant; while time stands still every pane is rendered.
             together: layout.wipe || playing,
             view: layout.view(),
             probe: self.place.filter(|_| layout.probe),
@@ -102,42 +102,42 @@ impl Compare {
         }
     }
 
-    /// The newest picture of a pane.
+    /// The newest image of a pane.
     #[cfg(test)]
     pub(crate) fn pane(&self, index: usize) -> Option<&Arc<LivePane>> {
         self.panes.get(index)?.as_ref()
     }
 
-    /// The hair whose light is plotted.
+    /// The hair whose transmittance is plotted.
     #[cfg(test)]
     pub(crate) fn probed_hair(&self) -> Option<&lovelock_panes::probe::ProbedHair> {
         self.probed.as_ref()?.hair.as_ref()
     }
 
-    /// Which asking was answered last, and which is the last one.
+    /// The numbers of the last answered request and of the last request.
     #[cfg(test)]
     pub(crate) fn probed_and_asked(&self) -> [u64; 2] {
         [self.probed.as_ref().map_or(0, |probed| probed.number), self.place.map_or(0, |place| place.number)]
     }
 
-    /// Size that panes should have, pixels.
+    /// Requested size of panes, pixels.
     pub(crate) fn wanted(&self) -> [u32; 2] {
         self.wanted
     }
 
-    /// Whether there is a picture of any pane.
+    /// Whether any pane has an image.
     pub(crate) fn has_pictures(&self) -> bool {
         self.panes.iter().flatten().any(|pane| !pane.picture.rgba.is_empty())
     }
 
-    /// Asks for the hair at a place of the pictures, shares from the left and the top.
+    /// Requests a probe of the hair at a position in the images, as fractions from the left and the top.
     fn probe_at(&mut self, x: f32, y: f32) {
         let number = self.place.map_or(1, |place| place.number + 1);
         self.place = Some(ProbePlace { number, x, y });
     }
 }
 
-/// Whether two requests ask for the same.
+/// Whether two requests are equal.
 fn is_same(a: &LiveRequest, b: &LiveRequest) -> bool {
     Arc::ptr_eq(&a.project, &b.project)
         && Arc::ptr_eq(&a.snapshot, &b.snapshot)
@@ -146,7 +146,7 @@ fn is_same(a: &LiveRequest, b: &LiveRequest) -> bool {
             == (&b.panes, b.width, b.height, b.together, b.view, b.probe)
 }
 
-/// A pane for the next method that no pane shows, else another of the project's own way.
+/// A pane for the next method that no pane shows, or else one with the project's own settings.
 fn next_pane(project: &Project) -> Contender {
     let panes = &project.compare.panes;
     let methods = lovelock_render::ShadowMethod::ALL;
@@ -159,10 +159,10 @@ fn next_pane(project: &Project) -> Contender {
 }
 
 impl Window {
-    /// The panes in place of the picture.
+    /// Shows the panes in place of the image.
     pub(super) fn comparison(&mut self, ui: &mut Ui, project: &mut Project) {
         let ctx = ui.ctx().clone();
-        // Before anything of this pass closes it.
+        // Must be read before this pass closes the menu.
         let open = Popup::is_any_open(&ctx);
         if ctx.input(|input| input.pointer.any_pressed()) {
             self.compare.menu_open = open;
@@ -198,7 +198,7 @@ impl Window {
             ui.painter().rect_filled(page, 0.0, super::theme::PAGE);
             self.compare.page = page.size();
             self.panes(ui, page, project);
-            // Below the lines over the panes, whose buttons stay free.
+            // Below the title bars of the panes, whose buttons stay clickable.
             self.running(ui, page.with_min_y(page.top() + header::HEIGHT));
         });
         if film {
@@ -209,7 +209,7 @@ impl Window {
         }
     }
 
-    /// The plots under the panes.
+    /// Shows the plots below the panes.
     fn dock(&mut self, ui: &mut Ui, project: &Project) {
         let layout = &mut self.layout.compare;
         let (probe, costs) = (layout.probe, layout.costs);
@@ -241,7 +241,7 @@ impl Window {
         );
     }
 
-    /// The panes on their page.
+    /// Shows the panes on their page.
     fn panes(&mut self, ui: &mut Ui, page: Rect, project: &mut Project) {
         let count = project.compare.panes.len();
         self.compare.textures.keep(count);

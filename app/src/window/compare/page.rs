@@ -12,10 +12,10 @@ use super::{Window, grid, header};
 use crate::window::viewport::{self, Viewport};
 use crate::window::{camera_control, theme};
 
-/// How near to the line of the wipe the pointer takes it, points.
+/// Distance from the line of the wipe within which the pointer grabs it, points.
 const REACH: f32 = 9.0;
 
-/// Pixels that a pane may always have, however many there are.
+/// The fewest pixels that the limit per pane allows, however many panes there are.
 const LEAST_PIXELS: f32 = 640.0 * 360.0;
 
 impl Window {
@@ -80,7 +80,7 @@ impl Window {
         let split = self.layout.compare.split.clamp(0.0, 1.0);
         let x = zoom.to_screen(place, pos2(split, 0.5)).x;
         let near = ui.input(|input| input.pointer.hover_pos()).is_some_and(|at| (at.x - x).abs() < REACH);
-        // The line is taken where it is pressed, and held until it is let go.
+        // The line is grabbed where the pointer is pressed and released with the pointer.
         let pressed = ui.input(|input| input.pointer.primary_pressed());
         if pressed && near {
             self.compare.splitting = true;
@@ -129,7 +129,7 @@ impl Window {
         asked
     }
 
-    /// The line over a pane.
+    /// The title bar of a pane.
     fn header(&self, ui: &mut Ui, cell: Rect, index: usize, project: &mut Project) -> Option<header::Ask> {
         let panes = project.compare.panes.len();
         let pane = project.compare.panes.get_mut(index)?;
@@ -139,7 +139,7 @@ impl Window {
         header::ui(ui, line, (index, panes), pane, drawn)
     }
 
-    /// How large panes should be drawn that are shown at `place`.
+    /// The size at which panes that are shown at `place` should be rendered.
     fn want(&mut self, ui: &Ui, place: Rect, panes: usize) {
         let shown = self.compare.panes.iter().take(panes).flatten();
         let each = shown
@@ -150,7 +150,7 @@ impl Window {
         self.compare.wanted = viewport::size_for(place.size(), points, most, self.layout.view_scale);
     }
 
-    /// What the pointer does over a pane: to the camera, to what is magnified, and to the probe.
+    /// Applies the pointer's input over a pane to the camera, the magnification and the probe.
     fn steer(&mut self, ui: &Ui, place: Rect, index: usize, project: &mut Project) -> Response {
         let response = ui.interact(place, Id::unique(("pane", index)), Sense::click_and_drag());
         let name = format!("Pane {}", index + 1);
@@ -169,7 +169,7 @@ impl Window {
         response
     }
 
-    /// The picture of a pane with what is said of it in a corner.
+    /// The image of a pane with its status in a corner.
     fn pane(&mut self, ui: &Ui, place: Rect, index: usize, project: &Project, corner: Align2) {
         let painter = ui.painter().with_clip_rect(place.intersect(ui.clip_rect()));
         let compare = &mut self.compare;
@@ -182,11 +182,11 @@ impl Window {
         let points = ui.ctx().pixels_per_point();
         let magnified = place.width() * points * zoom.factor() / pane.picture.width.max(1) as f32;
         compare.textures.take(ui.ctx(), index, &pane, magnified);
-        // A picture of another shape is of a moment ago, before the page changed.
+        // An image with another aspect ratio was rendered before the page changed.
         let whole = compare.textures.size(index).map_or(place, |size| viewport::fit(size, place));
         let near = (whole.size() - place.size()).abs().max_elem() < 3.0;
         let whole = if near { place } else { whole };
-        // An older picture under a scale of colours would be taken for an error.
+        // An older image below a colour scale would be mistaken for an error.
         if pane.shows.colors().is_none() || !pane.picture.rgba.is_empty() {
             compare.textures.paint(&painter, index, whole, zoom.shown());
         }
@@ -213,7 +213,7 @@ impl Window {
         Viewport::caption(ui, place, corner, &said, theme::BRIGHT);
     }
 
-    /// Whose picture is seen, in a corner.
+    /// The name of the pane whose image is visible, in a corner.
     fn name(&self, ui: &Ui, place: Rect, index: usize, project: &Project, corner: Align2) {
         let Some(pane) = project.compare.panes.get(index) else { return };
         let drawn = self.compare.panes.get(index).and_then(Option::as_deref);
@@ -223,7 +223,7 @@ impl Window {
         Viewport::caption(ui, place, corner, &text, theme::PLOT[index % theme::PLOT.len()]);
     }
 
-    /// A ring about the hair whose light is plotted.
+    /// A ring around the hair whose transmittance is plotted.
     fn mark(&self, ui: &Ui, place: Rect, pane: &LivePane, project: &Project) {
         let probed = self.compare.probed.as_deref().filter(|_| self.layout.compare.probe);
         let Some(hair) = probed.and_then(|probed| probed.hair.as_ref()) else { return };
@@ -244,10 +244,10 @@ impl Window {
     }
 }
 
-/// How old a pane is.
+/// The age of a pane as text.
 fn age_label(secs: f64) -> Option<String> {
     match secs {
-        // A step of the simulation is no age.
+        // One step of the simulation is not reported.
         secs if secs < 0.025 => None,
         secs if secs < 0.95 => Some(format!("{:.0} ms old", 1e3 * secs)),
         secs => Some(format!("{secs:.1} s old")),

@@ -1,4 +1,4 @@
-//! The light along the ray through a hair, as every pane's method sees it.
+//! The transmittance along the light ray through a hair, as computed by each pane's method.
 
 use egui::{RichText, Ui};
 use egui_plot::{GridMark, HoverPosition, Line, LineStyle, MarkerShape, Plot, PlotPoints, Points, VLine};
@@ -8,16 +8,16 @@ use lovelock_project::Project;
 use crate::window::control::note;
 use crate::window::theme;
 
-/// Height of the row of marks of a pane, of the range of transmittance.
+/// Height of a pane's row of marks, as a fraction of the range of transmittance.
 const ROW: f64 = 0.075;
 
-/// The plot, or what is missing for it. `asked`: whether a hair was clicked.
+/// The plot, or a note on what is missing. `asked` says whether a hair was clicked.
 pub(super) fn ui(ui: &mut Ui, asked: bool, probed: Option<&LiveProbe>, project: &Project, panes: &[usize]) {
     let hair = match probed {
-        None if asked => return note(ui, "Looking for the hair…"),
-        None => return note(ui, "Click a hair in a pane: its light is plotted here, as every pane sees it."),
+        None if asked => return note(ui, "Probing the hair…"),
+        None => return note(ui, "Click a hair in a pane to plot the transmittance along its light ray for every pane."),
         Some(probed) => match &probed.hair {
-            None => return note(ui, "There is no hair there: click another place."),
+            None => return note(ui, "There is no hair at this point. Click another one."),
             Some(hair) => hair,
         },
     };
@@ -38,7 +38,7 @@ pub(super) fn ui(ui: &mut Ui, asked: bool, probed: Option<&LiveProbe>, project: 
     let rows = curves.iter().filter(|(_, curve)| !curve.marks.is_empty()).count();
     let [low, high] = hair.range.map(|depth| 1e3 * f64::from(depth));
     Plot::new("compare probe")
-        // Depth alone is moved and zoomed, by dragging and by Ctrl and the wheel; a double-click shows it whole.
+        // Only the depth axis is panned and zoomed, by dragging and by Ctrl with the wheel; a double-click shows all of it.
         .allow_zoom([true, false])
         .allow_drag([true, false])
         .allow_scroll(false)
@@ -73,7 +73,7 @@ pub(super) fn ui(ui: &mut Ui, asked: bool, probed: Option<&LiveProbe>, project: 
             let steps = staircase(&hair.steps, hair.range);
             if !steps.is_empty() {
                 let line = Line::new("every fragment", steps).color(theme::BRIGHT).width(1.2);
-                // Steps are edges, and not the two sides of a band.
+                // Steps are drawn as edges, not as the two sides of a band.
                 plot.line(line.style(LineStyle::Solid).allow_band(false));
             }
             let mut row = 0;
@@ -120,7 +120,7 @@ pub(super) fn ui(ui: &mut Ui, asked: bool, probed: Option<&LiveProbe>, project: 
         });
 }
 
-/// Transmittance of the step function at the hair itself, which does not shadow itself.
+/// Transmittance of the step function at the hair, which does not shadow itself.
 fn exact_at_the_point(hair: &ProbedHair) -> Option<f32> {
     if hair.steps.is_empty() {
         return None;
@@ -128,7 +128,7 @@ fn exact_at_the_point(hair: &ProbedHair) -> Option<f32> {
     Some(hair.steps.iter().take_while(|step| step.0 < 0.0).last().map_or(1.0, |step| step.1))
 }
 
-/// The corners of a function that is constant between steps, in millimetres.
+/// The corners of a function that is constant between steps; depths in millimetres.
 fn staircase(steps: &[(f32, f32)], [low, high]: [f32; 2]) -> Vec<[f64; 2]> {
     if steps.is_empty() {
         return Vec::new();

@@ -1,4 +1,4 @@
-//! The panes as a picture file, written aside.
+//! Saving the panes as an image file on a background thread.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -12,19 +12,19 @@ use super::costs::Way;
 use super::{Compare, grid, header};
 use crate::window::{Window, notices};
 
-/// A picture that is being written.
+/// An image that is being written.
 pub(super) struct Saving {
     path: PathBuf,
     done: Receiver<Result<(), String>>,
 }
 
 impl Compare {
-    /// How a picture was saved, once it is: the path, or a sentence. Each is told of once.
+    /// The path of an image that was saved, or the error, once per image.
     pub(crate) fn saved(&mut self) -> Option<Result<PathBuf, String>> {
         let finished = self.saving.iter().enumerate().find_map(|(at, saving)| match saving.done.try_recv() {
             Ok(done) => Some((at, done)),
             Err(TryRecvError::Empty) => None,
-            Err(TryRecvError::Disconnected) => Some((at, Err("The picture was not saved.".to_owned()))),
+            Err(TryRecvError::Disconnected) => Some((at, Err("The image was not saved.".to_owned()))),
         });
         let (at, done) = finished?;
         let path = self.saving.remove(at).path;
@@ -53,7 +53,7 @@ impl Compare {
             wake.request_repaint();
         };
         let spawned = std::thread::Builder::new().name("save picture".to_owned()).spawn(write);
-        // Without a thread the channel is closed, which says that nothing was saved.
+        // If no thread can be started the channel is closed, which reports the failure.
         drop(spawned);
         self.saving.push(Saving { path: path.to_owned(), done });
     }
@@ -69,7 +69,7 @@ impl Window {
         self.compare.save(sheet, columns, &panes, path, ctx);
     }
 
-    /// Tells that the picture of the panes was saved, or why not.
+    /// Shows a message that the image of the panes was saved, or why not.
     pub(in crate::window) fn tell_saved(&mut self) {
         while let Some(saved) = self.compare.saved() {
             match saved {

@@ -1,4 +1,4 @@
-//! The newest picture of each pane on the graphics device of the window.
+//! The newest image of each pane as a texture of the window.
 
 use std::sync::Arc;
 
@@ -6,10 +6,10 @@ use egui::{Color32, ColorImage, Painter, Rect, TextureHandle, TextureOptions, Ve
 use lovelock_panes::request::LivePane;
 use lovelock_project::project::CompareSection;
 
-/// Pixels of the screen a pixel of the picture from which on pixels are shown as such.
+/// Screen pixels per image pixel from which on images are shown without interpolation.
 const SHARP: f32 = 3.0;
 
-/// The pictures of the panes.
+/// The textures of the panes.
 #[derive(Default)]
 pub(super) struct PaneTextures {
     held: [Option<Held>; CompareSection::MOST_PANES],
@@ -17,13 +17,13 @@ pub(super) struct PaneTextures {
 
 struct Held {
     texture: TextureHandle,
-    /// The picture that was last put there.
+    /// The image that was uploaded last.
     of: Arc<LivePane>,
     options: TextureOptions,
 }
 
 impl PaneTextures {
-    /// Takes over the newest picture of a pane; one without a picture leaves what was there.
+    /// Uploads the newest image of a pane; a pane without an image keeps its texture.
     pub(super) fn take(&mut self, ctx: &egui::Context, index: usize, pane: &Arc<LivePane>, magnified: f32) {
         let Some(slot) = self.held.get_mut(index) else { return };
         let options = if magnified >= SHARP { TextureOptions::NEAREST } else { TextureOptions::LINEAR };
@@ -34,7 +34,7 @@ impl PaneTextures {
         if picture.rgba.is_empty() {
             return;
         }
-        // Opaque: nothing is multiplied, and the bytes are taken as they are.
+        // Images are opaque, so premultiplication leaves the bytes unchanged.
         let size = [picture.width as usize, picture.height as usize];
         let image = ColorImage::from_rgba_premultiplied(size, &picture.rgba);
         let of = Arc::clone(pane);
@@ -50,19 +50,19 @@ impl PaneTextures {
         }
     }
 
-    /// Size of a pane's picture, pixels.
+    /// Size of a pane's image, pixels.
     pub(super) fn size(&self, index: usize) -> Option<Vec2> {
         self.held.get(index)?.as_ref().map(|held| held.texture.size_vec2())
     }
 
-    /// Paints a pane's picture. Returns false where there is none.
+    /// Paints a pane's image. Returns false if there is none.
     pub(super) fn paint(&self, painter: &Painter, index: usize, place: Rect, shown: Rect) -> bool {
         let Some(held) = self.held.get(index).and_then(Option::as_ref) else { return false };
         painter.image(held.texture.id(), place, shown, Color32::WHITE);
         true
     }
 
-    /// Forgets the pictures of panes that are no more.
+    /// Drops the textures of removed panes.
     pub(super) fn keep(&mut self, panes: usize) {
         for slot in self.held.iter_mut().skip(panes) {
             *slot = None;

@@ -1,13 +1,13 @@
-//! Which part of the pictures is shown: the same of every pane.
+//! The magnified part of the images, which is the same for every pane.
 
 use egui::{PointerButton, Pos2, Rect, Response, Vec2, pos2};
 
-/// The part of the pictures that is shown.
+/// The part of the images that is shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Zoom {
-    /// How many times larger than the whole.
+    /// The magnification.
     factor: f32,
-    /// The middle of what is shown, shares of the picture.
+    /// The middle of the visible part, as fractions of the image.
     middle: Pos2,
 }
 
@@ -18,35 +18,35 @@ impl Default for Zoom {
 }
 
 impl Zoom {
-    /// The largest factor: a pixel is as large as a button then.
+    /// The largest magnification, at which a pixel is as large as a button.
     const MOST: f32 = 24.0;
 
-    /// Whether a part is shown.
+    /// Whether only a part is visible.
     pub(crate) fn is_on(&self) -> bool {
         self.factor > 1.001
     }
 
-    /// How many times larger than the whole.
+    /// The magnification.
     pub(crate) fn factor(&self) -> f32 {
         self.factor
     }
 
-    /// What is shown, shares of the picture.
+    /// The visible part, as fractions of the image.
     pub(crate) fn shown(&self) -> Rect {
         Rect::from_center_size(self.middle, Vec2::splat(1.0 / self.factor))
     }
 
-    /// Where on the screen a place of the picture is, which fills `place` when the whole is shown.
+    /// The position on the screen of a point of the image, which fills `place` at magnification 1.
     pub(crate) fn to_screen(self, place: Rect, at: Pos2) -> Pos2 {
         place.lerp_inside(((at - self.shown().min) * self.factor).to_pos2().to_vec2())
     }
 
-    /// Which place of the picture is there on the screen.
+    /// The point of the image at a position on the screen.
     pub(crate) fn at(self, place: Rect, at: Pos2) -> Pos2 {
         self.shown().min + (at - place.min) / place.size().max(Vec2::splat(1.0)) / self.factor
     }
 
-    /// Multiplies the factor; what is under `at` stays there.
+    /// Multiplies the magnification; the point under `at` stays in place.
     pub(crate) fn magnify(&mut self, place: Rect, at: Pos2, by: f32) {
         if !by.is_finite() {
             return;
@@ -56,14 +56,14 @@ impl Zoom {
         self.shift(fixed - self.at(place, at));
     }
 
-    /// Moves what is shown by shares of the picture.
+    /// Moves the visible part by fractions of the image.
     fn shift(&mut self, by: Vec2) {
         let half = 0.5 / self.factor;
         let (low, high) = (half, (1.0 - half).max(half));
         self.middle = (self.middle + by).clamp(pos2(low, low), pos2(high, high));
     }
 
-    /// Applies what the pointer did over a pane. Returns whether a drag moved what is shown, so that it does not move the
+    /// Applies the pointer's input over a pane. Returns whether a drag moved the visible part, so that it does not also move the
     /// camera.
     pub(crate) fn apply(&mut self, response: &Response, place: Rect) -> bool {
         if response.hovered()

@@ -1,4 +1,4 @@
-//! What hair collides with, as wires over the picture.
+//! The colliders as wireframes over the image.
 
 use egui::{Align2, Color32, FontId, Pos2, Shape, Stroke, Ui};
 use glam::Vec3;
@@ -7,25 +7,25 @@ use lovelock_motion::{ColliderEdit, ColliderShape, PlacedCollider};
 use super::{View, dot, dragged_to, handle};
 use crate::window::theme;
 
-/// How near to a wire a click chooses its shape, points.
+/// Distance from a line within which a click selects its shape, points.
 const NEAR: f32 = 7.0;
 
-/// What is left of the colour of a line on the far side of its shape.
+/// Remaining opacity of a line on the far side of its shape.
 const FAR_SIDE: f32 = 0.2;
 
-/// A shape of wires.
+/// The wireframe of a shape.
 pub(crate) struct Wires {
-    /// Its place in the list of the panel.
+    /// Its index in the list of the panel.
     pub(crate) index: Option<usize>,
-    /// What it is called.
+    /// Its name.
     pub(crate) name: String,
     /// Ends of straight lines, world space.
     pub(crate) lines: Vec<[Vec3; 2]>,
-    /// Whether hair meets it.
+    /// Whether hair collides with it.
     pub(crate) met: bool,
 }
 
-/// Paints the shapes; the chosen one is brighter and bears its name.
+/// Paints the shapes. The selected one is brighter and labelled.
 pub(crate) fn paint(ui: &Ui, view: View, shapes: &[Wires], chosen: Option<usize>) {
     let painter = ui.painter_at(view.place);
     for shape in shapes {
@@ -46,7 +46,7 @@ pub(crate) fn paint(ui: &Ui, view: View, shapes: &[Wires], chosen: Option<usize>
     }
     let middle = ends.iter().fold(egui::Vec2::ZERO, |sum, end| sum + end.to_vec2()) / ends.len() as f32;
     let galley = painter.layout_no_wrap(shape.name.clone(), FontId::proportional(12.0), theme::ACCENT);
-    // Under the handle of the middle.
+    // Below the handle of the middle.
     let under = middle.to_pos2() + egui::vec2(0.0, 18.0);
     let rect = Align2::CENTER_CENTER.anchor_size(under, galley.size());
     painter.rect_filled(rect.expand(3.0), 3.0, theme::PAGE.gamma_multiply(0.7));
@@ -62,13 +62,13 @@ fn color(shape: &Wires, chosen: bool) -> Color32 {
     }
 }
 
-/// How near the nearest and the farthest line of a shape are to the camera, metres.
+/// Distances of the nearest and the farthest line of a shape from the camera, metres.
 fn distances(view: View, lines: &[[Vec3; 2]]) -> [f32; 2] {
     let distances = lines.iter().map(|[a, _]| a.distance(view.eye));
     distances.fold([f32::INFINITY, 0.0], |[low, high], d| [low.min(d), high.max(d)])
 }
 
-/// How strongly a line is painted: the far side of a shape is seen through its near side.
+/// Opacity of a line: the far side of a shape is visible through its near side.
 fn nearness(view: View, [a, b]: &[Vec3; 2], [low, high]: [f32; 2]) -> f32 {
     let far = ((a.midpoint(*b).distance(view.eye) - low) / (high - low).max(1e-4)).clamp(0.0, 1.0);
     let behind = ((far - 0.3) / 0.35).clamp(0.0, 1.0);
@@ -84,7 +84,7 @@ fn on_screen(view: View, lines: &[[Vec3; 2]]) -> impl Iterator<Item = [Pos2; 2]>
     lines.iter().filter_map(move |line| ends_on_screen(view, line))
 }
 
-/// The shape of the list whose wires pass nearest to a place, where any is near.
+/// The shape whose lines pass nearest to a position on the screen, if any is near.
 pub(crate) fn at(view: View, shapes: &[Wires], pointer: Pos2) -> Option<usize> {
     let mut nearest = (NEAR, None);
     for shape in shapes {
@@ -98,10 +98,10 @@ pub(crate) fn at(view: View, shapes: &[Wires], pointer: Pos2) -> Option<usize> {
     nearest.1
 }
 
-/// The chosen shape, as it is changed, and its handles.
+/// The selected shape with its changes, and its handles.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Chosen {
-    /// Where it is, world space.
+    /// Its position, world space.
     pub(crate) placed: PlacedCollider,
     pub(crate) edit: ColliderEdit,
 }
@@ -115,14 +115,14 @@ impl Chosen {
         }
     }
 
-    /// A direction across the view, and how far its surface is from its middle that way, metres.
+    /// A direction across the view, and the distance of the surface from the middle in that direction, metres.
     fn rim(&self, view: View) -> Option<(Vec3, f32)> {
         let middle = self.middle();
         let at = view.to_screen(middle)?;
         let right = view.right_of(at, middle)?;
         let (along, radius): (Vec3, f32) = match self.placed.shape {
             ColliderShape::Capsule { a, b, radius_a, radius_b } => {
-                // Beside the capsule, and not at its end.
+                // At the side of the capsule and not at its end.
                 let aside = (b - a).cross(middle - view.eye);
                 let aside = if aside.dot(right) < 0.0 { -aside } else { aside };
                 let aside = aside.normalize_or(right);
@@ -136,7 +136,7 @@ impl Chosen {
     }
 }
 
-/// Paints the handles of the chosen shape and lets them be dragged: its middle in the plane that faces the camera, its rim to and
+/// Paints the handles of the selected shape and drags them: the middle in the plane that faces the camera, the rim toward and away
 /// from the middle.
 pub(crate) fn edit(ui: &Ui, view: View, chosen: &mut Chosen) {
     let middle = chosen.middle();
@@ -144,13 +144,13 @@ pub(crate) fn edit(ui: &Ui, view: View, chosen: &mut Chosen) {
     let Some(rim) = view.to_screen(middle + along * radius) else { return };
     let painter = ui.painter_at(view.place);
     let before = chosen.edit;
-    // The middle after the rim: it has what lies on both.
-    let size = handle(ui, rim, ui.scope_id().with("radius"), "Radius of the collider in the picture");
+    // The middle comes after the rim, so that it receives clicks on both.
+    let size = handle(ui, rim, ui.scope_id().with("radius"), "Radius of the collider in the image");
     if let Some(pointer) = dragged_to(ui, &size, rim) {
         let out = (view.at_depth_of(pointer, middle + along * radius) - middle).dot(along);
         chosen.edit.scale *= (out / radius).max(1e-3);
     }
-    let place = handle(ui, at, ui.scope_id().with("collider"), "Collider in the picture");
+    let place = handle(ui, at, ui.scope_id().with("collider"), "Collider in the image");
     if let Some(pointer) = dragged_to(ui, &place, at) {
         let moved = view.at_depth_of(pointer, middle) - middle;
         let at_rest = chosen.placed.world_from_rest.matrix3.inverse().mul_vec3(moved);
@@ -162,7 +162,7 @@ pub(crate) fn edit(ui: &Ui, view: View, chosen: &mut Chosen) {
         chosen.edit = chosen.edit.clamped();
     }
     painter.line_segment([at, rim], Stroke::new(1.0, theme::ACCENT.gamma_multiply(0.6)));
-    dot(&painter, size, rim, "Drag to make the shape larger or smaller.");
+    dot(&painter, size, rim, "Drag to scale the shape.");
     dot(&painter, place, at, "Drag to move the shape.");
 }
 

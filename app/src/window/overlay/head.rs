@@ -1,4 +1,4 @@
-//! The head under the pointer: what is dragged over it.
+//! Dragging things over the head.
 
 use egui::Pos2;
 use glam::{Affine3A, Vec3};
@@ -6,13 +6,13 @@ use lovelock_groom::Scalp;
 
 use super::View;
 
-/// What is farther from the head than this is dragged through the air, metres.
+/// Points farther from the head than this are dragged in a plane instead of over the surface, metres.
 const OFF_THE_HEAD: f32 = 0.05;
 
-/// What faces the camera, or away from it by no more than this sine, is on the side that is seen.
+/// Points whose normal is turned away from the camera by no more than this sine count as visible.
 const OUTLINE: f32 = 0.35;
 
-/// The head of a picture.
+/// The head in an image.
 #[derive(Clone, Copy)]
 pub(crate) struct Head<'a> {
     pub(crate) world_from_head: &'a Affine3A,
@@ -20,12 +20,12 @@ pub(crate) struct Head<'a> {
 }
 
 impl Head<'_> {
-    /// Where a place of head space is in the world.
+    /// A point of head space in world space.
     pub(super) fn world(self, place: Vec3) -> Vec3 {
         self.world_from_head.transform_point3(place)
     }
 
-    /// Where the camera is and the unit vector along which it sees a place of the screen, head space.
+    /// The camera's position and the unit vector toward a point of the screen, head space.
     fn ray(self, view: View, at: Pos2) -> (Vec3, Vec3) {
         let head_from_world = self.world_from_head.inverse();
         let along = head_from_world.transform_vector3(view.ray(at)).normalize_or(Vec3::NEG_Z);
@@ -33,15 +33,15 @@ impl Head<'_> {
     }
 }
 
-/// How a place was taken hold of.
+/// How a point was grabbed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Hold {
-    /// The head's normal there, how far over the head the place was, and on which side; none where it was in the air.
+    /// The head's normal there, the height over the head and the side; `None` for a point away from the head.
     over_head: Option<(Vec3, f32, Side)>,
 }
 
 impl Hold {
-    /// Of a place of head space. One that is lower than `lowest` over the head comes up to that, metres.
+    /// Grabs a point of head space. A height over the head below `lowest` is raised to it, metres.
     pub(super) fn new(view: View, head: Head<'_>, place: Vec3, lowest: f32) -> Self {
         let head_from_world = head.world_from_head.inverse();
         let along =
@@ -74,35 +74,35 @@ impl Hold {
     }
 }
 
-/// A place of the head's surface, or over it.
+/// A point on the head's surface or above it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct OnHead {
-    /// Where it is, head space, metres.
+    /// Its position, head space, metres.
     place: Vec3,
     /// The outward unit normal there.
     normal: Vec3,
 }
 
-/// Which side of the head, as the camera sees it.
+/// A side of the head, as seen by the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Side {
-    /// Before the camera.
+    /// The visible side.
     Seen,
-    /// Behind the head.
+    /// The hidden side.
     Far,
 }
 
 impl Side {
-    /// Of a place with that outward normal, which is looked at along `along`; both unit vectors of one space. On the outline of
-    /// the head it is the side that is seen.
+    /// The side of a point with that outward normal, seen along `along`; both are unit vectors of one space. The outline of the head
+    /// counts as visible.
     fn of(normal: Vec3, along: Vec3) -> Self {
         if normal.dot(along) > OUTLINE { Self::Far } else { Self::Seen }
     }
 }
 
-/// Where a ray from `eye` along the unit vector `along` meets the surface that lies `height` metres over the head; none where it
-/// passes by. Of the places on that side of the head it is the one nearest to `near`, and of all where that side has none. All in
-/// head space, metres.
+/// The intersection of a ray from `eye` along the unit vector `along` with the surface `height` metres over the head; `None` if it
+/// misses. Among the intersections on the given side, or among all if that side has none, the one nearest to `near` is returned.
+/// All in head space, metres.
 fn under(
     scalp: &Scalp,
     height: f32,
@@ -128,7 +128,7 @@ fn under(
     best.map(|(_, found)| found)
 }
 
-/// The vertex nearest to a place, and how far over the head the place is there, metres; none where there is no head.
+/// The vertex nearest to a point, and the height of the point over the head, metres; `None` if there is no head.
 fn nearest(scalp: &Scalp, place: Vec3) -> Option<(OnHead, f32)> {
     let vertices = scalp.positions.iter().zip(&scalp.normals);
     let (p, n) = vertices
@@ -138,7 +138,7 @@ fn nearest(scalp: &Scalp, place: Vec3) -> Option<(OnHead, f32)> {
     Some((OnHead { place: *p, normal }, (place - *p).dot(normal)))
 }
 
-/// Where a ray meets a triangle: shares of the second and third corner, and how far along it is (Möller and Trumbore 1997).
+/// The intersection of a ray and a triangle: weights of the second and third corner, and the distance (Möller and Trumbore 1997).
 fn meets([a, b, c]: [Vec3; 3], eye: Vec3, along: Vec3) -> Option<[f32; 3]> {
     let (to_b, to_c) = (b - a, c - a);
     let p = along.cross(to_c);
@@ -169,7 +169,7 @@ mod tests {
         let scalp = PlainHead.scalp(32);
         let middle = middle_of(&scalp);
         let eye = middle - Vec3::Z * 2.0;
-        // Whichever side is nearer: beside the outline it is often the other one.
+        // Near the outline the other side is often nearer.
         for near in [middle - Vec3::Z * 0.1, middle, middle + Vec3::Z * 0.1] {
             for (side, back) in [(Side::Seen, true), (Side::Far, false)] {
                 for height in [0.0, 0.012] {

@@ -1,4 +1,4 @@
-//! What is painted over the picture, where the picture shows it: the same instant and the same camera.
+//! Overlays on the image, drawn for the same instant and camera.
 
 pub(crate) mod colliders;
 pub(crate) mod head;
@@ -12,28 +12,28 @@ use lovelock_session::render_thread::RenderedImage;
 
 use super::theme;
 
-/// The picture on the screen and the camera that it was taken with.
+/// The image on the screen and the camera with which it was rendered.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct View {
-    /// Where the picture is on the screen, points.
+    /// The position of the image on the screen, points.
     pub(crate) place: Rect,
     clip_from_world: Mat4,
     world_from_clip: Mat4,
-    /// Where the camera is, world space.
+    /// The camera's position, world space.
     pub(crate) eye: Vec3,
 }
 
-/// How wide and high what is taken hold of is, points.
+/// Width and height of a handle, points.
 const HANDLE: f32 = 22.0;
 
-/// A place of the picture that can be clicked and dragged, called `name` for those who cannot see it.
+/// A handle in the image that can be clicked and dragged; screen readers announce it as `name`.
 fn handle(ui: &Ui, at: Pos2, id: Id, name: &str) -> Response {
     let handle = ui.interact(Rect::from_center_size(at, Vec2::splat(HANDLE)), id, Sense::click_and_drag());
     handle.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
     handle
 }
 
-/// Where a handle that is at `at` is dragged to: it keeps to the place of it that was taken hold of.
+/// The new position of a handle at `at` that is dragged. The pointer keeps its offset from the handle's middle.
 fn dragged_to(ui: &Ui, handle: &Response, at: Pos2) -> Option<Pos2> {
     if handle.drag_started() {
         let pressed = ui.input(|input| input.pointer.press_origin())?;
@@ -43,7 +43,7 @@ fn dragged_to(ui: &Ui, handle: &Response, at: Pos2) -> Option<Pos2> {
     handle.interact_pointer_pos().filter(|_| handle.dragged()).map(|pointer| pointer - hold)
 }
 
-/// Paints a handle as a dot that swells under the pointer, and says what dragging it does.
+/// Paints a handle as a dot that grows under the pointer, with a tooltip.
 fn dot(painter: &Painter, handle: Response, at: Pos2, words: &str) {
     let over = handle.hovered() || handle.dragged();
     painter.circle_filled(at, if over { 8.0 } else { 6.5 }, theme::PAGE.gamma_multiply(0.7));
@@ -52,7 +52,7 @@ fn dot(painter: &Painter, handle: Response, at: Pos2, words: &str) {
 }
 
 impl View {
-    /// Of a picture that is shown at `place`; none where it has no size.
+    /// The view of an image that is shown at `place`; `None` if it has no size.
     pub(crate) fn new(painted: &RenderedImage, place: Rect) -> Option<Self> {
         let aspect = place.width() / place.height();
         if !(aspect.is_finite() && aspect > 0.0) {
@@ -68,10 +68,10 @@ impl View {
         })
     }
 
-    /// Where a point of the world is on the screen, also beside the picture; none behind the camera.
+    /// The position of a point of the world on the screen, also outside the image; `None` behind the camera.
     pub(crate) fn to_screen(self, world: Vec3) -> Option<Pos2> {
         let clip = self.clip_from_world * world.extend(1.0);
-        // Nearer than this, lines would leave the screen by more than numbers can say.
+        // Projections of nearer points would overflow.
         if !clip.is_finite() || clip.w < 1e-2 {
             return None;
         }
@@ -87,13 +87,13 @@ impl View {
         (world.truncate() / world.w - self.eye).normalize_or(Vec3::NEG_Z)
     }
 
-    /// The unit vector that points to the right on the screen at a place of the world that is seen `at` there; none where that
-    /// cannot be told.
+    /// The unit vector in the world that points to the right on the screen at a point of the world that appears at `at`; `None` if it
+    /// is undefined.
     fn right_of(self, at: Pos2, place: Vec3) -> Option<Vec3> {
         (self.at_depth_of(at + Vec2::new(10.0, 0.0), place) - place).try_normalize()
     }
 
-    /// The place under a point of the screen that is as far from the camera as `depth_of`.
+    /// The point of the world under a point of the screen at the distance of `depth_of` from the camera.
     pub(crate) fn at_depth_of(self, at: Pos2, depth_of: Vec3) -> Vec3 {
         let forward = self.ray(self.place.center());
         let ray = self.ray(at);

@@ -1,4 +1,4 @@
-//! Scissors: a line that is drawn across the hair in the picture, and what it cuts off.
+//! Scissors: a line that is drawn across the hair in the image and cuts it.
 
 use egui::{CursorIcon, PointerButton, Pos2, Response, Stroke, Ui};
 use glam::Vec3;
@@ -14,13 +14,13 @@ const SHORTEST: f32 = 12.0;
 /// The line that is being drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Scissors {
-    /// Whether they are in the hand.
+    /// Whether the tool is active.
     pub(crate) held: bool,
     from: Option<Pos2>,
 }
 
 impl Scissors {
-    /// Draws the line while the pointer is dragged over the picture; returns its ends when it is let go.
+    /// Shows the line while the pointer is dragged over the image; returns its ends when the pointer is released.
     pub(crate) fn drag(&mut self, ui: &Ui, view: View, response: &Response) -> Option<[Pos2; 2]> {
         if !self.held {
             self.from = None;
@@ -44,11 +44,11 @@ impl Scissors {
     }
 }
 
-/// What a line on the screen leaves of the hair of `snapshot`: hair is cut where it first comes to the far side of the plane
-/// through the eye and the line, seen from the head, if it does so within the line. None where it meets no hair.
+/// The cut that a line on the screen makes in the hair of `snapshot`: hair is cut where it first crosses the plane through the eye
+/// and the line away from the head, if it does so between the ends of the line. `None` if it crosses no hair.
 pub(crate) fn cut(view: View, snapshot: &FrameSnapshot, [from, to]: [Pos2; 2]) -> Option<Haircut> {
     let normal = view.ray(from).cross(view.ray(to)).try_normalize()?;
-    // The middle of the head keeps its hair.
+    // The side with the middle of the head keeps its hair.
     let head = snapshot.guides.world_from_head.transform_point3(Vec3::Y * 0.1);
     let normal = if (head - view.eye).dot(normal) > 0.0 { -normal } else { normal };
     let blade = Blade::Plane { point: view.eye, normal };
@@ -66,7 +66,7 @@ pub(crate) fn cut(view: View, snapshot: &FrameSnapshot, [from, to]: [Pos2; 2]) -
     cut.kept.iter().any(|kept| *kept < 1.0).then_some(cut)
 }
 
-/// Whether a place is beside a line, and not beyond its ends.
+/// Whether a point is beside a line and not beyond its ends.
 fn is_beside(at: Pos2, from: Pos2, to: Pos2) -> bool {
     let along = to - from;
     let t = (at - from).dot(along) / along.length_sq().max(1e-6);

@@ -1,5 +1,5 @@
-//! Hair ties in the picture: rings with a handle that is dragged over the head, arrows that are turned, and the patches whose
-//! hair they gather.
+//! Hair ties in the image: rings with a handle that is dragged over the head, arrows that are turned, and the patches whose hair
+//! they gather.
 
 use egui::{CursorIcon, Id, Painter, Pos2, Shape, Stroke, Ui};
 use glam::Vec3;
@@ -9,21 +9,21 @@ use super::head::{Head, Hold};
 use super::{HANDLE, View, dot, dragged_to, handle};
 use crate::window::{aim, theme};
 
-/// Length of the arrow that shows where hair leaves a tie, metres.
+/// Length of the arrow in the direction in which hair leaves a tie, metres.
 const ARROW: f32 = 0.05;
 
-/// A tie as it was when its drag began.
+/// A tie at the start of its drag.
 #[derive(Clone, Copy)]
 struct Grabbed {
     axis: Vec3,
     hold: Hold,
 }
 
-/// Paints the ties and lets the chosen one be dragged, and others be chosen. A tie on the head goes over it, on the
-/// side where it was taken hold of, and turns as it goes; another one moves in the plane that faces the camera.
+/// Paints the ties, drags the selected one and selects others. A tie on the head moves over it, on the side where it was grabbed,
+/// and turns with the surface; any other moves in the plane that faces the camera.
 pub(crate) fn edit(ui: &Ui, view: View, head: Head<'_>, ties: &mut [HairTie], selected: &mut usize) {
     let painter = ui.painter_at(view.place);
-    // Before the rings, which have what lies on both.
+    // The patch comes before the rings, which receive clicks on both.
     if let Some(tie) = ties.get_mut(*selected).filter(|tie| tie.reach == TieReach::InSphere) {
         patch(ui, &painter, view, head, tie);
     }
@@ -32,9 +32,9 @@ pub(crate) fn edit(ui: &Ui, view: View, head: Head<'_>, ties: &mut [HairTie], se
         let Some(at) = view.to_screen(centre) else { continue };
         let axis = head.world_from_head.transform_vector3(tie.axis.normalize_or(Vec3::NEG_Z));
         let end = view.to_screen(centre + axis * ARROW);
-        // Before the ring, which has what lies on both.
+        // The arrow comes before the ring, which receives clicks on both.
         if let Some(end) = end.filter(|_| *selected == i) {
-            let name = format!("Aim of tie {} in the picture", i + 1);
+            let name = format!("Direction of tie {} in the image", i + 1);
             let arrow = handle(ui, end, ui.scope_id().with(("aim", i)), &name);
             if let Some(pointer) = dragged_to(ui, &arrow, end) {
                 let to = view.at_depth_of(pointer, centre + axis * ARROW) - centre;
@@ -45,7 +45,7 @@ pub(crate) fn edit(ui: &Ui, view: View, head: Head<'_>, ties: &mut [HairTie], se
             arrow.on_hover_cursor(CursorIcon::Grab).on_hover_text("Drag to turn the tie.");
         }
         let id = ui.scope_id().with(("tie", i));
-        let ring_handle = handle(ui, at, id, &format!("Tie {} in the picture", i + 1));
+        let ring_handle = handle(ui, at, id, &format!("Tie {} in the image", i + 1));
         if ring_handle.clicked() || ring_handle.drag_started() {
             *selected = i;
         }
@@ -69,7 +69,7 @@ pub(crate) fn edit(ui: &Ui, view: View, head: Head<'_>, ties: &mut [HairTie], se
     }
 }
 
-/// Moves a tie to where the pointer is.
+/// Moves a tie to the pointer.
 fn drag(ui: &Ui, view: View, head: Head<'_>, tie: &mut HairTie, (id, pointer): (Id, Pos2)) {
     let Some(Grabbed { axis, hold }) = ui.data(|data| data.get_temp(id)) else { return };
     let Some((to, normals)) = hold.drag(view, head, (tie.at, pointer)) else { return };
@@ -80,17 +80,17 @@ fn drag(ui: &Ui, view: View, head: Head<'_>, tie: &mut HairTie, (id, pointer): (
     }
 }
 
-/// How far inside the head the middle of a patch stays as it is dragged over it, metres: it gathers roots on both sides.
+/// Depth of the middle of a patch below the surface while it is dragged over the head, metres.
 const INSIDE: f32 = 0.03;
 
-/// Paints the patch whose hair a tie gathers and lets it be changed: its rim is dragged to and from its middle, and where it is not
-/// around the ring its middle goes over the head as a ring does.
+/// Paints the patch whose hair a tie gathers and edits it: its rim is dragged toward and away from its middle, and unless it follows
+/// the ring its middle is dragged over the head like a ring.
 fn patch(ui: &Ui, painter: &Painter, view: View, head: Head<'_>, tie: &mut HairTie) {
     let middle = head.world(tie.sphere_middle());
     let Some(at) = view.to_screen(middle) else { return };
     let Some(right) = view.right_of(at, middle) else { return };
     let Some(rim_at) = view.to_screen(middle + right * tie.sphere_radius) else { return };
-    let rim = handle(ui, rim_at, ui.scope_id().with("patch's rim"), "Radius of the patch in the picture");
+    let rim = handle(ui, rim_at, ui.scope_id().with("patch's rim"), "Radius of the patch in the image");
     if let Some(pointer) = dragged_to(ui, &rim, rim_at) {
         let out = (view.at_depth_of(pointer, middle) - middle).dot(right);
         if out.is_finite() {
@@ -103,7 +103,7 @@ fn patch(ui: &Ui, painter: &Painter, view: View, head: Head<'_>, tie: &mut HairT
     if !tie.sphere_at_ring {
         let id = ui.scope_id().with("patch");
         let handle_at = beside_ring(at, view.to_screen(head.world(tie.at)));
-        let place = handle(ui, handle_at, id, "Patch in the picture");
+        let place = handle(ui, handle_at, id, "Patch in the image");
         if place.drag_started() {
             ui.data_mut(|data| data.insert_temp(id, Hold::new(view, head, tie.sphere_centre, -INSIDE)));
         }
@@ -118,7 +118,7 @@ fn patch(ui: &Ui, painter: &Painter, view: View, head: Head<'_>, tie: &mut HairT
     }
 }
 
-/// Where the handle of a patch is whose middle is at `at`: below it where it would lie under that of the ring.
+/// The position of the handle of a patch with its middle at `at`: below the middle if it would be hidden by that of the ring.
 fn beside_ring(at: Pos2, ring: Option<Pos2>) -> Pos2 {
     let Some(ring) = ring.filter(|ring| (at - *ring).abs().max_elem() < HANDLE) else { return at };
     Pos2::new(at.x, ring.y + 1.25 * HANDLE)

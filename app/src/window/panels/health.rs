@@ -1,4 +1,4 @@
-//! How well the hair is simulated.
+//! The health of the simulation.
 
 use egui::{Align, Color32, Layout, Rect, RichText, Sense, Ui, Vec2, WidgetInfo};
 use egui_material_icons::icons;
@@ -16,8 +16,8 @@ pub(crate) fn color(level: HealthLevel) -> Color32 {
     }
 }
 
-/// The gauges, each with a button that shows where its value is. `shown` is the one that is pointed at in the picture. Returns
-/// the gauge whose place is to be shown.
+/// Shows the gauges, each with a button that marks the place of its value. `shown` is the gauge that is marked in the image.
+/// Returns the gauge whose place should be shown.
 pub(crate) fn ui(ui: &mut Ui, gauges: &[Gauge], shown: Option<GaugeKind>) -> Option<GaugeKind> {
     if gauges.is_empty() {
         note(ui, "Nothing is simulated while a take plays.");
@@ -25,9 +25,9 @@ pub(crate) fn ui(ui: &mut Ui, gauges: &[Gauge], shown: Option<GaugeKind>) -> Opt
     }
     let worst = gauges.iter().map(|gauge| gauge.level).max().unwrap_or(HealthLevel::Good);
     let words = match worst {
-        HealthLevel::Good => "All is well.",
-        HealthLevel::Watch => "Something may be seen:",
-        HealthLevel::Wrong => "Something is wrong:",
+        HealthLevel::Good => "No problems found.",
+        HealthLevel::Watch => "Possibly visible:",
+        HealthLevel::Wrong => "Problems:",
     };
     ui.label(RichText::new(words).color(color(worst)));
     let mut asked = None;
@@ -39,7 +39,7 @@ pub(crate) fn ui(ui: &mut Ui, gauges: &[Gauge], shown: Option<GaugeKind>) -> Opt
     asked
 }
 
-/// One gauge; returns whether its place is asked for.
+/// Shows one gauge; returns whether its button was clicked.
 fn row(ui: &mut Ui, gauge: &Gauge, shown: bool) -> bool {
     let kind = gauge.kind;
     let color = color(gauge.level);
@@ -55,17 +55,17 @@ fn row(ui: &mut Ui, gauge: &Gauge, shown: bool) -> bool {
                 WidgetInfo::selected(egui::Role::Button, gauge.at.is_some(), shown, name.as_str())
             });
             let tip = match (shown, gauge.found_secs()) {
-                (true, _) => "Takes the ring away.",
+                (true, _) => "Removes the mark.",
                 (false, Some(_)) => {
-                    "Goes to when that was, pauses, and rings the place in the picture. What was measured stays."
+                    "Seeks to the time of this value, pauses, and marks the place in the image. The measured values stay."
                 }
-                (false, None) => "Pauses, rings the place in the picture, and goes there.",
+                (false, None) => "Pauses, marks the place in the image, and moves the camera to it.",
             };
-            asked = button.on_hover_text(tip).on_disabled_hover_text("There is no such place.").clicked();
+            asked = button.on_hover_text(tip).on_disabled_hover_text("This value has no place.").clicked();
             ui.label(RichText::new(kind.in_words(gauge.value)).small().color(color));
             if let Some(when) = gauge.when_in_words() {
                 ui.label(RichText::new(when.trim_start()).small().weak())
-                    .on_hover_text("Where the timeline stood then.");
+                    .on_hover_text("Time of this value on the timeline.");
             }
         });
     });
@@ -75,7 +75,7 @@ fn row(ui: &mut Ui, gauge: &Gauge, shown: bool) -> bool {
     ui.painter().rect_filled(full, 1.5, color);
     if let Some(within) = &gauge.within {
         ui.label(RichText::new(format!("in {within}")).small().weak())
-            .on_hover_text("What of the body it is in.");
+            .on_hover_text("Part of the body.");
     }
     if !gauge.advice.is_empty() {
         ui.label(RichText::new(&gauge.advice).small().color(color));

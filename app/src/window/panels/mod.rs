@@ -1,4 +1,4 @@
-//! The panels: each a function of the part of the project that it edits.
+//! The panels. Each is a function of the part of the project that it edits.
 
 pub(crate) mod body;
 pub(crate) mod colliders;

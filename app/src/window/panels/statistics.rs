@@ -1,4 +1,4 @@
-//! What frames cost, and how the hair is.
+//! Rendering times and facts about the scene.
 
 use egui::{RichText, Ui};
 use egui_plot::{GridMark, Line, Plot, PlotPoints};
@@ -11,21 +11,21 @@ use crate::window::theme;
 /// One line of facts.
 #[derive(Clone, Debug)]
 pub(crate) struct Fact {
-    /// What it is.
+    /// Its name.
     pub(crate) name: &'static str,
-    /// The same in a sentence.
+    /// Its description, a sentence.
     pub(crate) tip: &'static str,
     /// Its value with its unit.
     pub(crate) value: String,
 }
 
-/// Passes that belong together: how their names begin, a title, and what they do.
+/// Groups of passes: the prefix of their names, a title, and a description.
 const GROUPS: [(&str, &str, &str); 2] = [
     ("shadow/", "Shadow", "Builds the maps of all lights and looks up how much light reaches the strands."),
-    ("draw/", "Draw", "Shades the strands and puts them together with the body and the background."),
+    ("draw/", "Draw", "Shades the strands and composites them with the body and the background."),
 ];
 
-/// The plot of stage times, the passes and the facts below it.
+/// Shows the plot of stage times, the passes and the facts.
 pub(crate) fn ui(ui: &mut Ui, history: &StageHistory, passes: &PassHistory, facts: &[Fact]) {
     Plot::new("stage times")
         .height(112.0)
@@ -50,7 +50,7 @@ pub(crate) fn ui(ui: &mut Ui, history: &StageHistory, passes: &PassHistory, fact
         });
     let medians = history.medians();
     egui::Grid::new("stages").num_columns(4).spacing([10.0, 2.0]).show(ui, |ui| {
-        // The names are the key to the plot's colours: a legend over it would hide the newest times.
+        // The names serve as the legend: one over the plot would hide the newest times.
         let stages: Vec<_> = Stage::ALL.into_iter().zip(theme::PLOT).take(5).collect();
         for pair in stages.chunks(2) {
             for &(stage, color) in pair {
@@ -78,7 +78,7 @@ pub(crate) fn ui(ui: &mut Ui, history: &StageHistory, passes: &PassHistory, fact
     });
 }
 
-/// Medians of the passes, group by group with their sums.
+/// Medians of the passes, grouped, with a sum per group.
 fn passes_ui(ui: &mut Ui, medians: &[PassTime]) {
     egui::Grid::new("passes").num_columns(2).spacing([10.0, 2.0]).show(ui, |ui| {
         for (group, title, tip) in GROUPS {
@@ -101,17 +101,17 @@ fn passes_ui(ui: &mut Ui, medians: &[PassTime]) {
     });
 }
 
-/// `body-depth` as people write it.
+/// `body-depth` as *Body depth*.
 fn in_words(name: &str) -> String {
     let mut letters = name.chars();
     let first = letters.next().into_iter().flat_map(char::to_uppercase);
     first.chain(letters.map(|letter| if letter == '-' { ' ' } else { letter })).collect()
 }
 
-/// Lines of the grid at 1, 2 or 5 times a power of ten, few enough that each has room for its number.
+/// Grid lines at 1, 2 or 5 times a power of ten, far enough apart for their numbers.
 pub(crate) fn round_steps((low, high): (f64, f64)) -> Vec<GridMark> {
     let step_size = round_step((high - low) / 4.0);
-    // Bounds that are no numbers, or too far from zero for the step, have no lines.
+    // No lines for bounds that are not finite or too large for the step.
     let (first, last) = ((low / step_size).ceil(), (high / step_size).floor());
     if !(first.abs() < 1e9 && last - first < 100.0) {
         return Vec::new();
@@ -119,7 +119,7 @@ pub(crate) fn round_steps((low, high): (f64, f64)) -> Vec<GridMark> {
     (first as i64..=last as i64).map(|i| GridMark { value: i as f64 * step_size, step_size }).collect()
 }
 
-/// The smallest of 1, 2 and 5 times a power of ten that is no less than `least`.
+/// The smallest 1, 2 or 5 times a power of ten that is at least `least`.
 fn round_step(least: f64) -> f64 {
     let ten = 10_f64.powf(least.log10().floor());
     [1.0, 2.0, 5.0].into_iter().map(|times| times * ten).find(|step| *step >= least).unwrap_or(10.0 * ten)

@@ -1,4 +1,4 @@
-//! The menu of the clip's lane: which clip is danced, which part of it, how fast, and round and round.
+//! The menu of the clip's lane: clip, trim, tempo and loop.
 
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{PopupCloseBehavior, Rect, RichText, Ui, UiBuilder};
@@ -8,7 +8,7 @@ use super::{Ask, Edited, View};
 use crate::window::control::{Number, toggle};
 use crate::window::theme;
 
-/// The name of the lane, which opens the menu. Returns what is asked for beyond the motion itself.
+/// The name of the lane, which opens the menu. Returns a request beyond a change of the motion.
 pub(super) fn menu(ui: &mut Ui, place: Rect, view: &View, edited: &mut Edited<'_>) -> Option<Ask> {
     let mut ask = None;
     let button = egui::Button::new(RichText::new("Clip…").size(10.5).color(theme::QUIET)).frame(false);
@@ -20,7 +20,7 @@ pub(super) fn menu(ui: &mut Ui, place: Rect, view: &View, edited: &mut Edited<'_
             ui.set_width(270.0);
             ask = contents(ui, view, edited);
         });
-        let response = response.on_hover_text("Which clip is danced, which part of it, and how fast.");
+        let response = response.on_hover_text("Clip, trim, tempo and loop of the motion.");
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Clip"));
     });
     ask
@@ -45,13 +45,13 @@ fn contents(ui: &mut Ui, view: &View, edited: &mut Edited<'_>) -> Option<Ask> {
     }
     ui.separator();
     let trim = ui.add_enabled(pointed, egui::Button::new("Trim to in and out points"));
-    if trim.on_hover_text("Dances what lies between the brackets on the ruler.").clicked() {
+    if trim.on_hover_text("Plays only the part between the brackets on the ruler.").clicked() {
         ask = Some(Ask::Trim);
         ui.close();
     }
     let trimmed = motion.start_secs > 0.0 || motion.end_secs.is_some();
     let whole = ui.add_enabled(trimmed, egui::Button::new("Whole clip"));
-    if whole.on_hover_text("Takes the trim back.").clicked() {
+    if whole.on_hover_text("Removes the trim.").clicked() {
         ask = Some(Ask::Untrim);
         ui.close();
     }

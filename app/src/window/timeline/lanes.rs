@@ -1,4 +1,4 @@
-//! The ruler with its lanes: a click or a drag goes to a time, the wheel magnifies, brackets and flags can be moved.
+//! The ruler with its lanes: a click or a drag seeks, the wheel zooms, brackets and flags can be moved.
 
 use egui::{Align2, FontId, Id, PointerButton, Pos2, Rect, Response, Sense, Stroke, Ui, Vec2, pos2, vec2};
 use lovelock_project::project::Marker;
@@ -9,11 +9,11 @@ use crate::window::theme;
 
 const RULER: f32 = 22.0;
 const LANE: f32 = 15.0;
-/// Room for the names of lanes, and where there are tracks, which have longer ones.
+/// Widths of the names of lanes without and with tracks, points.
 const NAMES: f32 = 44.0;
 const NAMES_OF_TRACKS: f32 = 150.0;
 
-/// Where times stand on the screen.
+/// The mapping of times to positions on the screen.
 #[derive(Clone, Copy)]
 pub(super) struct Scale {
     left: f32,
@@ -28,12 +28,12 @@ impl Scale {
         self.left + self.width * (((secs - self.from) / span).clamp(-1.0, 2.0)) as f32
     }
 
-    /// Where a time stands, if it is shown.
+    /// The position of a time, if it is visible.
     pub(super) fn x_of(&self, secs: f64) -> Option<f32> {
         (self.from..=self.to).contains(&secs).then(|| self.x(secs))
     }
 
-    /// From the first time that is shown to the last one, points.
+    /// The positions of the first and the last visible time, points.
     pub(super) fn x_range(&self) -> egui::Rangef {
         egui::Rangef::new(self.left, self.left + self.width)
     }
@@ -81,7 +81,7 @@ pub(super) fn ui(ui: &mut Ui, view: &View, zoom: &mut Zoom, edited: &mut Edited<
         bar(ui, lane(1.0), scale, [0.0, duration], theme::ACCENT.gamma_multiply(0.45), &take.name);
     } else if let Some([secs, kept]) = view.recording {
         name(ui, whole, lane(1.0), "Take");
-        // A take goes on in time where the clip goes round: its length, from the left.
+        // The time of a take goes on while the clip repeats, so its length is drawn from the left.
         let end = secs.min(duration);
         bar(ui, lane(1.0), scale, [0.0, end], theme::RECORDING.gamma_multiply(0.35), "");
         bar(ui, lane(1.0), scale, [0.0, kept.min(end)], theme::RECORDING.gamma_multiply(0.6), "recording");
@@ -95,7 +95,7 @@ pub(super) fn ui(ui: &mut Ui, view: &View, zoom: &mut Zoom, edited: &mut Edited<
         painter.circle_filled(pos2(x, rect.top() + RULER - 5.0), 4.0, theme::BRIGHT);
     }
     let response = response
-        .on_hover_text("Drag to move through the dance; the wheel magnifies, the right button moves, a double-click shows all.");
+        .on_hover_text("Drag to scrub. The wheel zooms, the right button pans, and a double-click shows the whole timeline.");
     if response.double_clicked() {
         *zoom = Zoom::default();
     }
@@ -105,7 +105,7 @@ pub(super) fn ui(ui: &mut Ui, view: &View, zoom: &mut Zoom, edited: &mut Edited<
     of_clip.or(flagged.or(at).or(at_track).map(Ask::Seek))
 }
 
-/// The wheel over the ruler magnifies about the pointer; the right or middle button moves.
+/// Zooms about the pointer by the wheel; pans by the right or middle button.
 fn magnify(ui: &Ui, response: &Response, rect: Rect, zoom: &mut Zoom, duration: f64) {
     if let Some(at) = response.hover_pos() {
         let wheel = ui.input(|input| input.smooth_scroll_delta);
@@ -122,14 +122,14 @@ fn magnify(ui: &Ui, response: &Response, rect: Rect, zoom: &mut Zoom, duration: 
     }
 }
 
-/// A tick and a number at round times, or at frames where there is room.
+/// Ticks and numbers at round times, or at frames if there is room.
 fn ruler(ui: &Ui, rect: Rect, scale: Scale) {
     let painter = ui.painter_at(rect);
     let ground = Rect::from_min_max(rect.min, pos2(rect.right(), rect.top() + RULER));
     painter.rect_filled(ground, 2.0, theme::PAGE);
     let every = tick_secs(f64::from(scale.width) / (scale.to - scale.from).max(1e-9), 44.0);
     let first = (scale.from / every).floor() as i64;
-    // At most one number a step that has room: bounded by the width.
+    // The number of labels is bounded by the width.
     let count = ((scale.to - scale.from) / every).ceil().clamp(0.0, 1000.0) as i64 + 1;
     for i in first..=first + count {
         let secs = i as f64 * every;
@@ -194,7 +194,7 @@ fn points(ui: &Ui, rect: Rect, scale: Scale, edited: &mut Edited<'_>, duration: 
     if ends[1] != before[1] {
         recording.end_frame = (ends[1] != last).then_some(ends[1]);
     }
-    // What is not recorded is dimmed.
+    // Frames that are not recorded are dimmed.
     let painter = ui.painter_at(rect);
     for [from, to] in
         [[0.0, ends[0] as f64 / fps], [ends[1] as f64 / fps, duration.max(ends[1] as f64 / fps)]]
@@ -204,7 +204,7 @@ fn points(ui: &Ui, rect: Rect, scale: Scale, edited: &mut Edited<'_>, duration: 
     }
 }
 
-/// Markers: flags on the ruler. A click goes there, a drag moves, the right button removes.
+/// Markers as flags on the ruler. A click seeks, a drag moves the flag, the right button removes it.
 fn flags(ui: &Ui, rect: Rect, scale: Scale, markers: &mut Vec<Marker>) -> Option<f64> {
     let mut sought = None;
     let mut removed = None;
@@ -231,7 +231,7 @@ fn flags(ui: &Ui, rect: Rect, scale: Scale, markers: &mut Vec<Marker>) -> Option
         }
         let hot = response.hovered();
         response.on_hover_text(format!(
-            "{} at {:.2} s. Click to go there, drag to move it, right-click to remove it.",
+            "{} at {:.2} s. Click to go to it, drag to move it, right-click to remove it.",
             marker.name, marker.secs
         ));
         let painter = ui.painter_at(rect);

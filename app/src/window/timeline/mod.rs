@@ -1,4 +1,4 @@
-//! The dance's time: play, step, scrub, record; the clip, the take, in and out points and markers on one ruler.
+//! The timeline: transport buttons, and a ruler with the clip, the take, in and out points, markers and tracks.
 
 mod clip;
 mod lanes;
@@ -16,52 +16,52 @@ use lovelock_project::tracks::Track;
 
 use super::command::Command;
 
-/// Frames a second that times are counted in: the steps of the simulation.
+/// Frames per second in which times are counted: the steps of the simulation.
 const FRAMES_PER_SEC: f64 = 1.0 / lovelock_session::clock::STEP_SECS;
 
 /// Height of the panel without tracks, points.
 pub(crate) const HEIGHT: f32 = 92.0 + thumbnails::HEIGHT;
 
-/// Height of the panel with so many tracks, points; more of them scroll.
+/// Height of the panel with that number of tracks, points; more tracks scroll.
 pub(crate) fn height(tracks: usize) -> f32 {
     HEIGHT + tracks::height(tracks)
 }
 
-/// What the timeline shows.
+/// The state that the timeline shows.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct View {
-    /// Where the dance is, seconds.
+    /// The current time, seconds.
     pub(crate) time_secs: f64,
-    /// How long it is, seconds.
+    /// The length of the dance, seconds.
     pub(crate) duration_secs: f64,
     /// Whether it plays.
     pub(crate) playing: bool,
     /// Whether it starts again at its end.
     pub(crate) looping: bool,
-    /// Seconds of the dance a second.
+    /// Seconds of the dance per second.
     pub(crate) rate: f64,
-    /// Name of the clip; empty where the body rests.
+    /// Name of the clip; empty if the body is at rest.
     pub(crate) clip: String,
-    /// The body's own clips.
+    /// The clips of the character.
     pub(crate) clips: Vec<String>,
-    /// The take that plays in place of the simulation.
+    /// The take that plays instead of the simulation.
     pub(crate) take: Option<Take>,
-    /// Whether a take was recorded that can be played.
+    /// Whether there is a recorded take to play.
     pub(crate) can_play_take: bool,
-    /// Seconds of the take that is being recorded, and of those that are on the disk.
+    /// Seconds of the take that is being recorded, and how many of them are on the disk.
     pub(crate) recording: Option<[f64; 2]>,
-    /// Small pictures by their times.
+    /// Thumbnails by their times.
     pub(crate) thumbs: Vec<(f64, egui::TextureId)>,
-    /// Whether tracks are written, and which.
+    /// The recording of tracks.
     pub(crate) writing: Writing,
 }
 
-/// Whether controls that are moved write tracks.
+/// The recording of tracks by moving controls.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Writing {
-    /// Whether what is moved from now on is written.
+    /// Whether moved controls are recorded from now on.
     pub(crate) armed: bool,
-    /// Targets of the tracks that are being written.
+    /// Targets of the tracks that are being recorded.
     pub(crate) targets: Vec<String>,
 }
 
@@ -70,36 +70,36 @@ pub(crate) struct Writing {
 pub(crate) struct Take {
     /// The file's name.
     pub(crate) name: String,
-    /// Whether it plays from its end to its start.
+    /// Whether it plays backwards.
     pub(crate) backwards: bool,
 }
 
-/// What the timeline asks for beyond changes of the project.
+/// What the timeline requests beyond changes of the project.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Ask {
-    /// A command.
+    /// Run a command.
     Run(Command),
-    /// To go to a time, seconds.
+    /// Seek to a time, seconds.
     Seek(f64),
-    /// To play at another rate.
+    /// Change the rate of playback.
     Rate(f64),
-    /// To dance what lies between the in and the out point.
+    /// Trim the clip to the in and out points.
     Trim,
-    /// To dance the whole clip again.
+    /// Remove the trim.
     Untrim,
-    /// A motion file in place of the clip.
+    /// Pick a motion file.
     PickMotion,
 }
 
-/// The parts of the project that stand on the timeline.
+/// The parts of the project that the timeline edits.
 pub(crate) struct Edited<'a> {
-    /// In and out points are the frames of a recording.
+    /// The frames of a recording, which are the in and out points.
     pub(crate) recording: &'a mut RecordingSection,
     /// Named times.
     pub(crate) markers: &'a mut Vec<Marker>,
-    /// Numbers that follow the timeline.
+    /// Animated values.
     pub(crate) tracks: &'a mut Vec<Track>,
-    /// Which clip is danced, and how.
+    /// The motion.
     pub(crate) motion: &'a mut MotionSection,
 }
 

@@ -1,4 +1,4 @@
-//! Small pictures along the timeline: of what has been played, and of a take whatever has been played of it.
+//! Thumbnails along the timeline: of the parts that have been played, and of all of a take.
 
 use std::sync::Arc;
 
@@ -15,53 +15,53 @@ use super::Zoom;
 use super::lanes::Scale;
 use crate::window::theme;
 
-/// Size of a small picture, pixels; on the screen, points.
+/// Size of a thumbnail, in pixels and on the screen in points.
 const SIZE: [u32; 2] = [64, 36];
 /// Height of the lane, points.
 pub(super) const HEIGHT: f32 = SIZE[1] as f32 + 4.0;
-/// The most that are kept.
+/// The most thumbnails that are kept.
 const MOST: usize = 256;
-/// Pictures of a take are drawn when nothing has changed for so long, seconds.
+/// Thumbnails of a take are rendered when nothing has changed for this long, seconds.
 const STILL_SECS: f64 = 0.6;
 
-/// A small picture and its time.
+/// A thumbnail and its time.
 pub(crate) struct Thumb {
     secs: f64,
     texture: TextureHandle,
 }
 
-/// What a request for pictures of a take was made of.
+/// The inputs of a request for thumbnails of a take.
 type Asked = (Arc<Project>, Vec<u64>);
 
-/// The small pictures that there are.
+/// All thumbnails.
 pub(crate) struct Thumbnails {
     strip: Filmstrip,
     thumbs: Vec<Thumb>,
-    /// What moves as the pictures show it: other hair, another body, another dance, another take.
+    /// The project of the thumbnails: other hair, body, motion or another take makes them outdated.
     of: Option<Arc<Project>>,
-    /// The picture that was looked at last.
+    /// The image that was examined last.
     seen: Option<Arc<RenderedImage>>,
-    /// The slot that was filled last by a picture of the window.
+    /// The slot that was filled last from an image of the window.
     filled: Option<i64>,
     wanted: Option<(Asked, Stopwatch)>,
     asked: Option<Asked>,
 }
 
 impl Thumbnails {
-    /// None yet; `ctx` is repainted when a take's are drawn.
+    /// Starts without thumbnails. `ctx` is repainted when those of a take are rendered.
     ///
     /// # Errors
-    /// The system makes no thread.
+    /// The thread cannot be started.
     pub(crate) fn new(ctx: &Context) -> Result<Self, ProjectError> {
         let wake = ctx.clone();
         let strip = Filmstrip::start(move || wake.request_repaint());
         let strip =
-            strip.map_err(|error| ProjectError::work(format!("no thread for small pictures: {error}")))?;
+            strip.map_err(|error| ProjectError::work(format!("the thread for thumbnails could not be started: {error}")))?;
         Ok(Self { strip, thumbs: Vec::new(), of: None, seen: None, filled: None, wanted: None, asked: None })
     }
 
-    /// Takes what has been drawn, in the window or aside, and asks for what a take still lacks. The lane is `width` points
-    /// wide and shows the part `zoom` of `duration_secs`.
+    /// Collects thumbnails from the window and from the background thread, and requests those that a take still lacks. The lane is
+    /// `width` points wide and shows the part `zoom` of `duration_secs`.
     pub(crate) fn update(
         &mut self,
         ctx: &Context,
@@ -76,7 +76,7 @@ impl Thumbnails {
             self.thumbs.clear();
             self.filled = None;
             self.of = Some(Arc::clone(project));
-            // What is painted now is still of before.
+            // The current image still shows the previous project.
             self.seen = painted.cloned();
         }
         let duration = if duration_secs.is_finite() { duration_secs.max(1e-3) } else { 1e-3 };
@@ -100,7 +100,7 @@ impl Thumbnails {
         self.ask(ctx, project, access, &slots);
     }
 
-    /// Asks for the pictures of a take in the slots that are shown, when the hand rests.
+    /// Requests the thumbnails of a take in the visible slots when nothing changes any more.
     fn ask(&mut self, ctx: &Context, project: &Arc<Project>, access: &Access, slots: &[f64]) {
         if project.take.file.is_none() {
             (self.wanted, self.asked) = (None, None);
@@ -126,7 +126,7 @@ impl Thumbnails {
         ctx.request_repaint_after(std::time::Duration::from_secs_f64(STILL_SECS));
     }
 
-    /// Puts a picture in place of those that are nearer than `near_secs`.
+    /// Adds a thumbnail and removes those that are nearer than `near_secs`.
     fn put(&mut self, ctx: &Context, secs: f64, picture: &Picture, near_secs: f64) {
         let Some(image) = small(picture) else { return };
         self.thumbs.retain(|thumb| (thumb.secs - secs).abs() > near_secs);
@@ -137,20 +137,20 @@ impl Thumbnails {
         self.thumbs.push(Thumb { secs, texture });
     }
 
-    /// Times and textures of all.
+    /// Times and textures of all thumbnails.
     pub(crate) fn shown(&self) -> Vec<(f64, TextureId)> {
         self.thumbs.iter().map(|thumb| (thumb.secs, thumb.texture.id())).collect()
     }
 }
 
-/// Seconds of a slot.
+/// Duration of a slot, seconds.
 fn slot_secs(zoom: Zoom, duration: f64, width: f32) -> f64 {
     let [from, to] = zoom.shown(duration);
     let count = (width / (SIZE[0] as f32 + 2.0)).floor().clamp(1.0, 64.0);
     ((to - from) / f64::from(count)).max(1e-3)
 }
 
-/// Middles of the slots that are shown, seconds.
+/// Middles of the visible slots, seconds.
 fn slots(zoom: Zoom, duration: f64, width: f32) -> Vec<f64> {
     let ([from, to], each) = (zoom.shown(duration), slot_secs(zoom, duration, width));
     let first = (from / each).floor() as i64;
@@ -159,7 +159,7 @@ fn slots(zoom: Zoom, duration: f64, width: f32) -> Vec<f64> {
     middles.filter(|secs| *secs < to.min(duration)).collect()
 }
 
-/// The middle of a picture, as wide as small pictures are, each pixel the mean of some.
+/// The middle of an image in the aspect ratio of thumbnails, scaled down by averaging.
 fn small(picture: &Picture) -> Option<ColorImage> {
     const SAMPLES: u32 = 4;
     let (width, height) = (picture.width, picture.height);
@@ -192,7 +192,7 @@ fn small(picture: &Picture) -> Option<ColorImage> {
     Some(ColorImage::from_rgba_premultiplied(SIZE.map(|side| side as usize), &bytes))
 }
 
-/// The lane: in each slot the picture that is nearest to its middle.
+/// Shows the lane: in each slot the thumbnail that is nearest to its middle.
 pub(super) fn lane(
     ui: &Ui,
     lane: Rect,

@@ -1,4 +1,4 @@
-//! Tracks under the ruler: their curves, their keys, and what can be done with each.
+//! Tracks below the ruler: their curves, keys and buttons.
 
 use egui::{Id, PointerButton, Pos2, Rect, Response, RichText, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
 use egui_material_icons::icons;
@@ -10,16 +10,16 @@ use crate::window::theme;
 
 /// Height of a track, points.
 const TRACK: f32 = 30.0;
-/// The most that all of them take; more scroll.
+/// The greatest height of all tracks; more tracks scroll.
 const MOST: f32 = 124.0;
-/// How near the pointer must be to a key, points.
+/// Distance from a key within which the pointer grabs it, points.
 const REACH: f32 = 6.0;
-/// Height of so many tracks, points.
+/// Height of that number of tracks, points.
 pub(super) fn height(tracks: usize) -> f32 {
     (tracks as f32 * TRACK).min(MOST)
 }
 
-/// A key that is being dragged: which, which of its numbers, and the range that its lane had when the drag began.
+/// A key that is being dragged: its index, which of its numbers, and the range of the lane at the start of the drag.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Dragged {
     key: usize,
@@ -27,7 +27,7 @@ struct Dragged {
     range: [f64; 2],
 }
 
-/// What is done with a whole track.
+/// An action on a whole track.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Whole {
     Mute,
@@ -35,7 +35,7 @@ enum Whole {
     Delete,
 }
 
-/// All tracks. Returns a time to go to.
+/// Shows all tracks. Returns a time to seek to.
 pub(super) fn ui(ui: &mut Ui, names: f32, scale: Scale, view: &View, tracks: &mut Vec<Track>) -> Option<f64> {
     if tracks.is_empty() {
         return None;
@@ -83,21 +83,21 @@ fn head_ui(ui: &mut Ui, head: Rect, index: usize, track: &Track, writes: bool) -
             (
                 icons::ICON_DELETE,
                 "Delete track",
-                "Removes the track; the project's own value counts again.",
+                "Removes the track. The project's own value is used again.",
                 true,
                 Whole::Delete,
             ),
             (
                 icons::ICON_WAVES,
                 "Smooth track",
-                "Takes the jitter of a hand out of the track.",
+                "Smooths jitter out of the track.",
                 many,
                 Whole::Smooth,
             ),
             (
                 mute,
                 "Mute track",
-                "Whether the project's own value counts in place of the track's.",
+                "Mutes the track: the project's own value is used in its place.",
                 true,
                 Whole::Mute,
             ),
@@ -126,7 +126,7 @@ fn head_ui(ui: &mut Ui, head: Rect, index: usize, track: &Track, writes: bool) -
     asked
 }
 
-/// The curve of a track and its keys. Returns a time to go to.
+/// Shows the curve of a track and its keys. Returns a time to seek to.
 fn lane_ui(ui: &Ui, lane: Rect, scale: Scale, index: usize, track: &mut Track, writes: bool) -> Option<f64> {
     let id = Id::unique(("track", index));
     let response = ui.interact(lane, id, Sense::click_and_drag());
@@ -150,7 +150,7 @@ fn lane_ui(ui: &Ui, lane: Rect, scale: Scale, index: usize, track: &mut Track, w
             .map(|(i, n, _)| (i, n))
     };
     let near = near_to(response.hover_pos().or(response.interact_pointer_pos()));
-    // A drag begins where the button went down, and is known to be one some points later.
+    // A drag is recognised some points after the button was pressed, but starts where it was pressed.
     let taken = near_to(ui.input(|input| input.pointer.press_origin()));
     let moved = drag(ui, id, &response, taken, dragged, own, (lane, scale, range), track);
     paint(ui, lane, scale, track, writes, near.or(moved), y);
@@ -167,13 +167,13 @@ fn lane_ui(ui: &Ui, lane: Rect, scale: Scale, index: usize, track: &mut Track, w
     {
         track.put(scale.secs(at.x), value);
     }
-    let tip = "Drag a key to move it, right-click removes it, a double-click sets one; a click elsewhere goes there.";
+    let tip = "Drag a key to move it, right-click it to remove it, double-click to add one. A click elsewhere seeks.";
     let at = response.interact_pointer_pos().filter(|_| response.clicked() && near.is_none());
     response.on_hover_text(tip);
     at.map(|at| scale.secs(at.x))
 }
 
-/// Moves the key that is dragged, within its neighbours. Returns which it is.
+/// Moves the dragged key between its neighbours. Returns its index.
 #[expect(clippy::too_many_arguments, reason = "called once; the parts of a lane")]
 fn drag(
     ui: &Ui,
@@ -208,7 +208,7 @@ fn drag(
     Some((key, number))
 }
 
-/// The least and the greatest number of a track, never the same.
+/// The smallest and the largest value of a track, never equal.
 fn range_of(track: &Track) -> [f64; 2] {
     let ranges = track.range();
     let low = ranges.iter().map(|range| range[0]).fold(f64::INFINITY, f64::min);
@@ -242,7 +242,7 @@ fn paint(
             value.as_ref().and_then(|value| Some(pos2(*x, y(*value.get(number)?))))
         };
         painter.line(values.iter().filter_map(point).collect(), Stroke::new(1.3, color));
-        // Dots so dense that they touch say nothing.
+        // Dots that would touch are left out.
         let shown = track.keys.iter().filter(|key| scale.x_of(key.secs).is_some()).count();
         if shown as f32 * 5.0 > lane.width() {
             continue;

@@ -7,7 +7,7 @@ use egui_material_icons::icons;
 use super::{Ask, FRAMES_PER_SEC, View};
 use crate::window::theme;
 
-/// Rates that are offered, with their names.
+/// The rates on offer, with their labels.
 const RATES: [(f64, &str); 6] =
     [(0.1, "1/10 ×"), (0.25, "1/4 ×"), (0.5, "1/2 ×"), (1.0, "1 ×"), (1.5, "1 1/2 ×"), (2.0, "2 ×")];
 
@@ -44,7 +44,7 @@ pub(super) fn ui(ui: &mut Ui, view: &View) -> Option<Ask> {
     match (&view.take, view.recording) {
         (Some(take), _) => {
             ui.label(RichText::new(format!("Take {}", take.name)).color(theme::ACCENT))
-                .on_hover_text("Body and hair move as they were recorded; light, look and camera are free.");
+                .on_hover_text("Body and hair move as recorded. Lights, look and camera can be changed.");
             if button(ui, icons::ICON_CLOSE.into(), Command::LeaveTake.info()) {
                 ask = Some(Ask::Run(Command::LeaveTake));
             }
@@ -61,14 +61,14 @@ pub(super) fn ui(ui: &mut Ui, view: &View) -> Option<Ask> {
             }
             if let Some([secs, kept]) = recording {
                 ui.label(RichText::new(format!("{secs:.1} s")).color(theme::RECORDING))
-                    .on_hover_text(format!("{kept:.1} s of them are on the disk, whatever happens now."));
+                    .on_hover_text(format!("{kept:.1} s of the take are already safe on the disk."));
             }
         }
     }
     ask
 }
 
-/// A button for a command, told by its name to those who do not see it.
+/// A button for a command, which screen readers announce by the command's name.
 fn button(ui: &mut Ui, icon: RichText, info: &CommandInfo) -> bool {
     let response = ui.add(egui::Button::new(icon).min_size(Vec2::splat(24.0))).on_hover_text(tip(info));
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, info.label));
@@ -98,6 +98,6 @@ fn rate(ui: &mut Ui, rate: f64) -> Option<Ask> {
         }
     });
     response.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Rate"));
-    response.response.on_hover_text("Seconds of the dance in a second: slow motion, of the hair too.");
+    response.response.on_hover_text("Speed of playback: seconds of the dance per second. Hair slows down with it.");
     (chosen != rate).then_some(Ask::Rate(chosen))
 }

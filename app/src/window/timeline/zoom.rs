@@ -1,11 +1,11 @@
-//! Which part of the dance the ruler shows.
+//! The part of the timeline that is visible.
 
 use serde::{Deserialize, Serialize};
 
-/// The least that is shown, seconds: a quarter of a second is fifteen frames.
+/// The shortest visible part, seconds: a quarter of a second is fifteen frames.
 const LEAST_SECS: f64 = 0.25;
 
-/// The part of the timeline that is shown, as fractions of its length: it stays where the length changes.
+/// The visible part of the timeline, as fractions of its length, so that it is kept when the length changes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub(crate) struct Zoom {
@@ -20,13 +20,13 @@ impl Default for Zoom {
 }
 
 impl Zoom {
-    /// First and last time that are shown of a dance of `duration` seconds.
+    /// The first and the last visible time of a dance of `duration` seconds.
     pub(super) fn shown(self, duration: f64) -> [f64; 2] {
         let Self { start, end } = self.inside();
         [start * duration, end * duration]
     }
 
-    /// Shows `factor` times as much, with `at` (0 to 1 of what is shown) staying where it is.
+    /// Scales the visible part by `factor`; the point `at` (0 to 1 of the visible part) stays in place.
     pub(super) fn by(&mut self, factor: f64, at: f64, duration: f64) {
         let Self { start, end } = self.inside();
         let least = (LEAST_SECS / duration.max(1e-9)).min(1.0);
@@ -36,7 +36,7 @@ impl Zoom {
         *self = Self { start, end: start + span };
     }
 
-    /// Moves by a part of what is shown.
+    /// Moves by a fraction of the visible part.
     pub(super) fn pan(&mut self, by: f64) {
         let Self { start, end } = self.inside();
         let span = end - start;
@@ -44,14 +44,14 @@ impl Zoom {
         *self = Self { start, end: start + span };
     }
 
-    /// Whatever a file says, some part of the timeline.
+    /// A valid part of the timeline, whatever was stored.
     fn inside(self) -> Self {
         let good = self.start.is_finite() && self.end.is_finite() && self.end - self.start > 1e-9;
         if good && self.start >= 0.0 && self.end <= 1.0 + 1e-9 { self } else { Self::default() }
     }
 }
 
-/// Seconds between two numbers of the ruler: the finest of frames and round times that leaves each room.
+/// Seconds between two numbers of the ruler: the finest of frames and round times at which numbers do not overlap.
 pub(super) fn tick_secs(points_per_sec: f64, room: f64) -> f64 {
     const STEPS: [f64; 16] = [
         1.0 / 60.0,
